@@ -1,0 +1,23 @@
+// Shape tree to field.
+// Enters: a Derivation. Leaves: a Model: graph, field and the provenance behind its origins. Assumes a finite tree.
+// The field of a node is its own solid combined with its children in order, so a difference cuts what its own node holds
+// so far and nothing else. Slots are keyed by (shape key, attribute).
+#pragma once
+
+#include "grammar/derive/derive.h"
+#include "modeler/core/provenance.h"
+#include "modeler/field/field.h"
+
+namespace sgm::lower {
+
+struct Model {
+    field::Graph graph;
+    field::Field field;      ///< a node of `graph`
+    Provenance provenance;   ///< parts[id] for every origin in the field
+    std::vector<derive::ShapeId> shapeOf;  ///< by OriginId; none for 0
+};
+
+/// Fails when nothing solid is left or the solid is unbounded.
+Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress);
+
+}  // namespace sgm::lower

@@ -1,0 +1,26 @@
+// Syntax tree to checked grammar: names, types, units, ranges, reachability, termination.
+// Enters: Asts. Leaves: a Grammar, or diagnostics with at least one error. Assumes parse errors were collected already.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "grammar/rules/grammar.h"
+#include "modeler/core/result.h"
+
+namespace sgm::rules {
+
+/// Gives the source behind `use "name"` of `from`, or null with `why` set. Files are read by cli/ and viewer/ only.
+using Loader = std::function<syntax::SourcePtr(const std::string& name, const syntax::Source& from, std::string& why)>;
+
+/// Null when `diagnostics` has errors. Reports everything wrong in one run: unknown names with "did you mean", units,
+/// ranges, unused parameters and unreachable rules (warnings), rules that provably never end, features not built yet.
+std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load, syntax::Diagnostics& diagnostics);
+
+/// parse + check of one source.
+std::shared_ptr<const Grammar> load(syntax::SourcePtr source, const Loader& load, syntax::Diagnostics& diagnostics);
+
+/// Parses and checks "NAME=VALUE" text against a parameter (`--set`): type, unit, range, choices.
+Result<Value> parseValue(const Param& param, const std::string& text);
+
+}  // namespace sgm::rules

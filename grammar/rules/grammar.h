@@ -1,0 +1,188 @@
+// The checked grammar ⟨V_T, V_N, R, I⟩ (SG-M definition 1): every name an index, every unit known, every range legal.
+// Enters: an Ast, from `check`. Leaves: an immutable value that `derive` runs. Assumes its Sources outlive it (held here).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grammar/rules/value.h"
+#include "grammar/syntax/ast.h"
+#include "modeler/core/provenance.h"
+#include "modeler/field/primitives.h"
+
+namespace sgm::rules {
+
+using syntax::Operation;
+using syntax::Operator;
+using syntax::SourceSpan;
+
+/// Index of a symbol (terminal or non-terminal) in Grammar::symbols.
+using SymbolId = uint32_t;
+inline constexpr uint32_t none = 0xffffffffu;
+
+/// A checked expression, evaluated by grammar/derive against a shape, parameters and locals.
+struct Expr {
+    enum class Kind : uint8_t {
+        Constant,   ///< value
+        Param,      ///< index into Grammar::params
+        Local,      ///< index into the frame of locals: `for` variables, `i` of a repeat
+        Inherited,  ///< value.text: a value set by `with`, looked up the tree
+        Scope,      ///< index 0 … 2: scope.x, .y, .z in metres
+        Element,    ///< args[0][args[1]] of a vector (an axis indexes 0 … 5)
+        Tuple,      ///< args
+        Unary, Binary,  ///< index is a Fn
+        Call,       ///< index is a Fn over args
+        Range,      ///< args[0] … args[1]: drawn from the shape's stream under `draw`
+        Ramp,       ///< args[0] ~> args[1]: linear over the chain
+        Figure,     ///< index is a Figure: in `check … expect`
+    };
+    Kind kind = Kind::Constant;
+    SourceSpan span;
+    Value value;
+    uint32_t index = 0;
+    uint64_t draw = 0;  ///< Range: hash of the attribute's name (and ordinal where one attribute has several ranges)
+    std::vector<Expr> args;
+};
+
+/// Built-in functions and operators of expressions.
+enum class Fn : uint32_t {
+    Neg, Not, Add, Sub, Mul, Div, Rem, Less, LessEq, Greater, GreaterEq, Equal, NotEqual, And, Or,
+    Min, Max, Abs, Floor, Ceil, Round, Sqrt, Sin, Cos, Clamp, Lerp, If,
+    RotX, RotY, RotZ,  ///< a Rotation from an angle
+    Rgb,
+    Count,  ///< number of live or derived shapes of a symbol: count(Name)
+};
+/// What `check … expect` may ask of a derivation.
+enum class Figure : uint32_t { Bonds, Overlaps, Shapes, Terminals, Classic, Morphic, Floating };
+
+/// A solid: what fills a scope.
+struct Solid {
+    enum class Kind : uint8_t { Primitive, Morph, Kifs, Combination, Nil };
+    Kind kind = Kind::Nil;
+    SourceSpan span;
+    const field::Primitive* primitive = nullptr;
+    std::vector<Expr> args;          ///< Primitive and Kifs: one per row parameter, defaults filled in
+    std::vector<Solid> parts;        ///< Morph: two. Combination: parts with `op` between
+    Operator op = Operator::None;    ///< Combination
+    Expr amount;                     ///< Morph: a in 0 … 1 (eq. 14)
+};
+
+struct Body;
+
+/// What joins the tree when an element runs.
+struct Content {
+    enum class Kind : uint8_t { None, Solid, Symbol, Group };
+    Kind kind = Kind::None;
+    Solid solid;                  ///< Solid
+    SymbolId symbol = none;       ///< Symbol: terminal (V_T) or non-terminal (V_N)
+    std::shared_ptr<Body> group;  ///< Group
+};
+
+struct Attribute {
+    Operation::Id id{};
+    SourceSpan span;
+    std::vector<Expr> args;
+    /// At, To: which joints are asked for. For `free(…)` the candidates (empty = all); else one.
+    bool free = false;
+    std::vector<Expr> joints;     ///< each evaluates to an Axis or a Word (a named joint)
+    /// On: `last`, or `any(d)` with args[0] = d.
+    enum class Host : uint8_t { Matched, Last, Any } host = Host::Matched;
+    /// Displace: args = amplitude, frequency, octaves.
+    bool fbm = false;
+};
+
+struct Choice {
+    Expr weight;
+    std::shared_ptr<Body> body;
+};
+
+struct Element {
+    enum class Kind : uint8_t { Shape, For, While, When, Choose };
+    Kind kind = Kind::Shape;
+    SourceSpan span;
+    Operator op = Operator::None;
+    std::vector<Attribute> prefix;  ///< change the matched scope
+    Content content;
+    std::vector<Attribute> attributes;
+    SymbolId live = none;           ///< `: Name`
+    uint32_t ordinal = 0;           ///< ordinal of this symbol in the rule's body: part of the child's key
+    std::string label;              ///< key text: symbol or primitive name
+    /// For: `local` runs over the values of `over` (a Tuple, Vector of axes or integer Range) where `guard` holds.
+    uint32_t local = 0;
+    std::optional<Expr> over, guard;
+    std::shared_ptr<Body> body;
+    std::vector<Choice> choices;
+};
+
+/// Siblings, each a chain: a content and what its operators join on.
+struct Body {
+    SourceSpan span;
+    std::vector<std::vector<Element>> siblings;
+    bool grows = false;  ///< starts with an operator: the matched content stays
+};
+
+struct Rule {
+    std::string name;       ///< "R0", or "Cell#2" for the second unnamed rule of Cell
+    SymbolId symbol = none;
+    SymbolId beside = none;
+    SourceSpan span;
+    std::optional<Expr> when, repeat;
+    std::optional<Expr> weight;
+    Body body;
+    std::optional<Body> finally_;
+    bool morphic = false;   ///< R_M: its body morphs; else R_C
+    uint32_t locals = 0;    ///< frame size for `for` variables and `i`
+    uint32_t stepLocal = none;  ///< the local that holds i in 1 … n of `repeat`
+};
+
+struct Joint {
+    std::string name;
+    Vec3d at;      ///< shares of the half-size, −1 … 1
+    Vec3d facing;  ///< unit, or zero
+};
+
+struct Symbol {
+    std::string name;
+    bool terminal = false;
+    SourceSpan span;
+    std::optional<Solid> solid;   ///< terminal with a solid; without one it is a cube
+    uint32_t material = none;     ///< index into Grammar::materials, where colour or roughness were given
+    std::vector<Joint> joints;    ///< declared ones, besides the solid's own
+    std::vector<uint32_t> rules;  ///< rules for it, in file order
+};
+
+struct Param {
+    std::string name, label, group, key;
+    SourceSpan span;
+    SourceSpan valueSpan;          ///< what a GUI rewrites
+    Value value;                   ///< default
+    std::optional<Value> lo, hi;   ///< range, inclusive, per component
+    std::vector<std::string> choices;
+};
+
+struct Start { SymbolId symbol; SourceSpan span; Body body; uint32_t locals = 0; };
+struct Derive {
+    std::string name;
+    SourceSpan span;
+    struct Step { uint32_t rule; std::string place; SourceSpan span; };
+    std::vector<Step> steps;
+};
+struct Setting { uint32_t param; Value value; SourceSpan span; };
+struct Style { std::string name; uint32_t start = none; std::vector<Setting> settings; SourceSpan span; };
+struct Check { uint32_t start; std::vector<Setting> settings; Expr expect; SourceSpan span; };
+
+struct Grammar {
+    std::vector<syntax::SourcePtr> sources;  ///< sources[0] is the file itself, the rest came by `use`
+    std::vector<Symbol> symbols;
+    std::vector<Param> params;
+    std::vector<Material> materials;  ///< materials[0] is the default
+    std::vector<Rule> rules;
+    std::vector<Start> starts;
+    std::vector<Derive> derives;
+    std::vector<Style> styles;
+    std::vector<Check> checks;
+};
+
+}  // namespace sgm::rules

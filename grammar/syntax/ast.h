@@ -1,0 +1,160 @@
+// The syntax tree of a grammar file, every node with its span.
+// Enters: tokens, from the parser. Leaves: what was written, names unresolved. Assumes the Source outlives it (held here).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grammar/syntax/operations.h"
+#include "grammar/syntax/source.h"
+
+namespace sgm::syntax {
+
+/// A word with its place.
+struct Name {
+    std::string text;
+    SourceSpan span;
+    bool empty() const { return text.empty(); }
+};
+
+/// An expression. One struct for all kinds: children in `args`, words in `text`.
+struct Expr {
+    enum class Kind {
+        Number,    ///< number, with `unit` ("m", "deg", "%", "/m", "")
+        Floating,  ///< ~args[0]: a share of what is left in a split
+        Text,      ///< "…": text
+        Color,     ///< #rrggbb: number holds 0xrrggbb
+        Name,      ///< text; axes are words too: "+x", "-z"
+        Member,    ///< args[0].text, as scope.x
+        Index,     ///< args[0][args[1]]
+        Call,      ///< text(args…), argNames[i] is "" for a positional argument
+        Tuple,     ///< (args…), two or more
+        Unary,     ///< text is "-" or "not"
+        Binary,    ///< text is + - * / % < <= > >= == != and or
+        Range,     ///< args[0]..args[1]
+        Ramp,      ///< args[0] ~> args[1]
+        Error,     ///< stands where an expression could not be read; a diagnostic was given
+    };
+    Kind kind = Kind::Error;
+    SourceSpan span;
+    double number = 0;
+    std::string unit, text;
+    std::vector<Expr> args;
+    std::vector<std::string> argNames;
+};
+
+/// How an element joins what stands. None: it is the content (or stands beside it, after a comma).
+enum class Operator : uint8_t { None, Sum, Difference, Intersection, Morph };
+
+struct Body;
+
+/// label: body in a split, inset, faces or choose block; `{ … }*` repeats its cases.
+struct Case {
+    SourceSpan span;
+    std::optional<Expr> label;  ///< a size, a weight, or a word ("rim", "side", "tag K")
+    Name tag;                   ///< the K of `tag K:`
+    bool repeated = false;      ///< { cases }*
+    std::vector<Case> cases;    ///< of a repeated group
+    std::shared_ptr<Body> body;
+};
+
+/// `size 2 ~> 1.2`, `at free(+x) `, `split y { … }`: one use of a row of the operation table.
+struct Attribute {
+    SourceSpan span;
+    Name name;
+    Operation::Id id{};
+    std::vector<Expr> args;
+    std::vector<Case> cases;  ///< for operations with a block
+};
+
+/// One step of a body: an operator, a solid or symbol, and the attributes that bind to it; or control around more.
+struct Element {
+    enum class Kind { Shape, Group, For, While, When, Choose };
+    Kind kind = Kind::Shape;
+    SourceSpan span;
+    Operator op = Operator::None;
+    std::vector<Attribute> before;  ///< prefix attributes (change the matched scope when there is no operator)
+    std::optional<Expr> solid;      ///< Shape: a Name or Call; empty when only attributes are given
+    std::vector<Attribute> after;
+    Name live;                      ///< `: Name`
+    std::shared_ptr<Body> body;     ///< Group: ( … ); For, While, When: { … }
+    Name variable;                  ///< For: the word after `for`
+    std::optional<Expr> over;       ///< For: what follows `in`; While and When: the condition
+    std::optional<Expr> guard;      ///< For: what follows `when`
+    std::vector<Case> cases;        ///< Choose: weight: body
+};
+
+/// Siblings by comma; each a chain of elements joined by operators.
+struct Body {
+    SourceSpan span;
+    std::vector<std::vector<Element>> siblings;
+};
+
+struct ParamDecl {
+    SourceSpan span;
+    Name name;
+    Expr value;                       ///< default
+    std::optional<Expr> range;        ///< after `in`
+    std::vector<Name> choices;        ///< after `of`
+    std::string label, group;
+    Name key;
+};
+struct MapDecl { SourceSpan span; Name name; Expr file; std::optional<Expr> range; };
+struct TerminalDecl {
+    SourceSpan span;
+    std::vector<Name> names;          ///< several may share a line
+    std::vector<Attribute> attributes;
+    std::optional<Expr> solid;        ///< after `=`
+    struct JointDecl { SourceSpan span; Name name; Expr at, facing; };
+    std::vector<JointDecl> joints;
+};
+struct StartDecl { SourceSpan span; Name symbol; Body body; };
+struct RuleDecl {
+    SourceSpan span;
+    Name name;                        ///< R0, or empty
+    Name symbol;
+    Name beside;
+    std::optional<Expr> when, weight, repeat;
+    Body body;
+    std::optional<Body> finally_;
+};
+struct DeriveDecl {
+    SourceSpan span;
+    Name name;
+    struct Step { Name rule; Expr at; bool hasPlace = false; std::string place; };  ///< place "Cave/Cell[3]"
+    std::vector<Step> steps;
+};
+struct Setting { SourceSpan span; Name name; Expr value; };
+struct StyleDecl { SourceSpan span; Name name, start; std::vector<Setting> settings; };
+struct CheckDecl { SourceSpan span; Name start; std::vector<Setting> settings; std::optional<Expr> expect; };
+struct OverrideDecl { SourceSpan span; std::string path; std::vector<Setting> settings; };
+struct UseDecl { SourceSpan span; Expr file; };
+struct LsystemDecl {
+    SourceSpan span;
+    Name name;
+    std::vector<Setting> settings;    ///< passes, angle, step
+    Expr axiom;
+    struct Production { SourceSpan span; Name symbol; Expr text; std::optional<Expr> weight; };
+    std::vector<Production> productions;
+};
+
+/// One file, declarations by kind in file order.
+struct Ast {
+    SourcePtr source;
+    int version = 1;
+    std::vector<UseDecl> uses;
+    std::vector<ParamDecl> params;
+    std::vector<MapDecl> maps;
+    std::vector<TerminalDecl> terminals;
+    std::vector<StartDecl> starts;
+    std::vector<RuleDecl> rules;
+    std::vector<DeriveDecl> derives;
+    std::vector<LsystemDecl> lsystems;
+    std::vector<StyleDecl> styles;
+    std::vector<CheckDecl> checks;
+    std::vector<OverrideDecl> overrides;
+};
+
+}  // namespace sgm::syntax

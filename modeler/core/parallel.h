@@ -1,0 +1,30 @@
+// Parallel loops on a chosen number of threads.
+// Enters: a count and a body. Leaves: nothing; the body writes only to its own index's slot, so that order can't show.
+// Assumes the body doesn't throw. TBB does the stealing; its headers stay in parallel.cpp.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "modeler/core/progress.h"
+
+namespace sgm {
+
+/// Threads to use for `wanted` (0 = all the machine has).
+int threadCount(int wanted);
+
+namespace detail {
+void parallelFor(size_t count, int threads, const Progress* progress, void* context, void (*body)(void*, size_t index, int worker));
+}
+
+/// Calls body(index, worker) once for every index in [0, count), on `threads` threads; `worker` in [0, threads) tells
+/// which scratch to use. Stops handing out indices once `progress` is cancelled.
+template <class Body>
+void parallelFor(size_t count, int threads, const Progress* progress, Body&& body) {
+    using B = std::remove_reference_t<Body>;
+    detail::parallelFor(count, threadCount(threads), progress, const_cast<void*>(static_cast<const void*>(std::addressof(body))),
+                        [](void* context, size_t index, int worker) { (*static_cast<B*>(context))(index, worker); });
+}
+
+}  // namespace sgm

@@ -1,0 +1,38 @@
+// Progress and cancel for long work.
+// Enters: ticks from any thread. Leaves: a fraction for whoever shows it, and the wish to stop. Assumes polls within 50 ms.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+namespace sgm {
+
+/// Shared between a worker and its watcher; all members may be used from any thread. Doors that take a
+/// `Progress*` accept null, meaning nobody watches and nobody cancels.
+class Progress {
+public:
+    /// Names the stage (a string literal; it must outlive this object) and says how many ticks it has.
+    void begin(const char* stage, uint64_t ticks) {
+        stage_ = stage;
+        total_ = ticks;
+        done_ = 0;
+    }
+    void tick(uint64_t n = 1) { done_.fetch_add(n, std::memory_order_relaxed); }
+    void cancel() { cancelled_ = true; }
+    bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+    const char* stage() const { return stage_; }
+    /// Share of the present stage that is done, 0 … 1.
+    double fraction() const {
+        const auto total = total_.load();
+        return total ? static_cast<double>(done_.load()) / static_cast<double>(total) : 0.0;
+    }
+
+private:
+    std::atomic<const char*> stage_{""};
+    std::atomic<uint64_t> total_{0}, done_{0};
+    std::atomic<bool> cancelled_{false};
+};
+
+inline bool cancelled(const Progress* p) { return p && p->cancelled(); }
+
+}  // namespace sgm

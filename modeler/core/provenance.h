@@ -1,0 +1,43 @@
+// Where every part of a field, and so every triangle, came from.
+// Enters: ids set while lowering. Leaves: the shape, rule, line and material behind an id. Assumes id 0 means "none".
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "modeler/core/vec.h"
+
+namespace sgm {
+
+/// Index into Provenance::parts; 0 is "nobody's" and stands for the whole object.
+using OriginId = uint32_t;
+
+/// How a terminal looks. Colours are linear RGB, 0 … 1.
+struct Material {
+    std::string name = "default";  ///< stable: the terminal's symbol
+    Vec3f color{0.8f, 0.78f, 0.74f};
+    float roughness = 0.8f;  ///< 0 … 1
+    float metallic = 0.0f;   ///< 0 … 1
+    friend bool operator==(const Material&, const Material&) = default;
+};
+
+/// One shape of the derived tree that owns surface.
+struct Part {
+    std::string path;       ///< path in the shape tree, "Cave/Cell[3]"
+    std::string symbol;     ///< terminal or non-terminal name
+    std::string rule;       ///< the rule application that made it, "" for the start
+    std::string file;       ///< grammar file
+    uint32_t line = 0;      ///< 1-based line of the text that made it
+    uint32_t material = 0;  ///< index into Provenance::materials
+};
+
+/// The table behind OriginId and material indices. parts[0] and materials[0] always exist.
+struct Provenance {
+    std::vector<Part> parts{Part{}};
+    std::vector<Material> materials{Material{}};
+
+    const Material& materialOf(OriginId id) const { return materials[parts[id < parts.size() ? id : 0].material]; }
+};
+
+}  // namespace sgm

@@ -1,0 +1,69 @@
+// Running a tape: over points, over boxes, for gradients and for origins.
+// Enters: a tape and positions in metres. Leaves: values in the caller's buffers. Assumes one Workspace per thread.
+// Promise: for one tape the bits of a value don't depend on batch position, SIMD width or thread.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "modeler/eval/tape.h"
+
+namespace sgm::eval {
+
+/// The SIMD levels the machine may have; every one gives the same bits.
+enum class Isa { Portable, Avx2, Avx512 };
+/// The widest level this processor runs, and the shipped build holds.
+Isa bestIsa();
+
+/// [lo, hi] with lo ≤ hi; encloses every value the kernels can return inside the region.
+struct Range {
+    float lo = 0, hi = 0;
+};
+
+/// Scratch memory, reused across calls; one per thread.
+class Workspace {
+public:
+    explicit Workspace(Isa isa = bestIsa());
+    ~Workspace();
+    Workspace(Workspace&&) noexcept;
+    Workspace& operator=(Workspace&&) noexcept;
+    struct Impl;
+    Impl& impl() const { return *impl_; }
+
+private:
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Positions and where the values go: n of each, any n, no alignment needed.
+struct Points {
+    const float* x;
+    const float* y;
+    const float* z;
+    size_t n;
+};
+
+/// out[i] = f(x[i], y[i], z[i]).
+void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace);
+
+/// Values and their exact derivatives by x, y, z (at a kink, those of the chosen operand).
+void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz, Workspace& workspace);
+
+/// Whose surface each point lies on: walks min, max, blend and morph down the operand they take; ties go to the first.
+void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& workspace);
+
+/// Which branches of a tape can't matter in which of up to 64 regions; filled by evaluateRanges, read by shorten.
+/// Valid until the workspace's next evaluateRanges.
+struct Regions {
+    const Box3f* boxes;
+    size_t n;  ///< 1 … 64
+};
+
+/// out[i] encloses f over boxes[i]; remembers the choices for `shorten`.
+void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& workspace);
+
+/// The tape with everything dropped that can't matter in region `index` of the last evaluateRanges on this workspace
+/// (which must have been of this very tape). Inside the region it returns the same bits as `tape`.
+Tape shorten(const Tape& tape, size_t index, Workspace& workspace);
+
+}  // namespace sgm::eval

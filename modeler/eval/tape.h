@@ -1,0 +1,63 @@
+// The tape: a field as a straight list of instructions with its constants bound.
+// Enters: a graph node and constants (`compile`). Leaves: an immutable program that kernels, intervals, gradients and the
+// GPU interpreter run. Assumes the op table of modeler/field/ops.h.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "modeler/core/provenance.h"
+#include "modeler/core/vec.h"
+#include "modeler/field/field.h"
+
+namespace sgm::eval {
+
+/// Where an instruction reads: a register, or (bit 31 set) a constant of the tape.
+using Source = uint32_t;
+inline constexpr Source constantBit = 0x80000000u;
+constexpr bool isConstant(Source s) { return (s & constantBit) != 0; }
+constexpr uint32_t indexOf(Source s) { return s & ~constantBit; }
+
+/// One step: out = op(a, b), or over `count` sources from `first` in Tape::sources() for ops of more than two operands.
+struct Instruction {
+    field::OpCode op;
+    uint16_t count;  ///< operands
+    uint32_t out;    ///< register
+    Source a = 0;    ///< first operand; for count > 2 the index `first` into Tape::sources()
+    Source b = 0;    ///< second operand
+    uint32_t data = 0;     ///< structural integer of the op (KIFS passes)
+    uint32_t origins = 0;  ///< 1 + index of this instruction's operand origins in Tape::origins(), 0 for none
+};
+
+/// An immutable program; registers are reused, so run it forward. Registers 0, 1, 2 hold x, y, z at the start.
+class Tape {
+public:
+    std::span<const Instruction> code() const { return code_; }
+    std::span<const Source> sources() const { return sources_; }
+    std::span<const float> constants() const { return *constants_; }
+    std::span<const OriginId> origins() const { return origins_; }
+    uint32_t registerCount() const { return registers_; }
+    /// Where the value is at the end: a register, or a constant for a constant field.
+    Source result() const { return result_; }
+    size_t size() const { return code_.size(); }
+    /// Global Lipschitz constant of the field.
+    float lipschitz() const { return lipschitz_; }
+
+private:
+    friend class TapeBuilder;
+    std::vector<Instruction> code_;
+    std::vector<Source> sources_;
+    std::vector<OriginId> origins_;
+    std::shared_ptr<const std::vector<float>> constants_;  ///< shared by a tape and all its shortened forms
+    uint32_t registers_ = 3;
+    Source result_ = 0;
+    float lipschitz_ = 1;
+};
+
+/// Binds `constants` (by SlotId; graph.constants() for the present ones), folds what is constant, orders and allocates.
+/// Costs time linear in the nodes reachable from the field.
+Tape compile(const field::Graph& graph, const field::Field& field, std::span<const float> constants);
+
+}  // namespace sgm::eval

@@ -1,0 +1,38 @@
+// Booleans, blends, morphs and displacement of fields.
+// Enters: fields of one graph, each with the origin that owns its surface (0: its own origins stand).
+// Leaves: one Field with bounds kept true. Assumes nothing about nesting: chains are flattened, nothing recurses deep.
+#pragma once
+
+#include <span>
+
+#include "modeler/field/field.h"
+
+namespace sgm::field {
+
+/// A field and who owns the surface it contributes.
+struct Owned {
+    Field field;
+    OriginId origin = 0;
+};
+
+/// The empty solid ε (`nil`): positive everywhere.
+Field nothing(Graph& graph);
+
+/// Sum, SG-M eq. 13 (min under definition 4), as a balanced tree over a bounding hierarchy, so that the first levels of
+/// a descent are cheap for thousands of parts. Order doesn't change the value. Empty list: nothing().
+Field sum(Graph& graph, std::span<const Owned> parts);
+/// max(a, −b): cuts b from a; the wall of the cut belongs to b's origin.
+Field difference(Owned a, Owned b);
+/// max(a, b).
+Field intersection(Owned a, Owned b);
+/// Order-free n-ary melt of bounded support: solves Σ max(0, c − fᵢ)² = k², f = c − k; 1-Lipschitz, exactly min beyond k.
+/// `radius` is k in metres with its present value; a part owns the surface where it is the least argument.
+Field blend(Graph& graph, std::span<const Owned> parts, Num radius, double radiusValue);
+/// SG-M eq. 14: a·(1 − t) + b·t of true distances; the surface belongs to `origin`.
+Field morph(Field a, Field b, Num t, double tValue, OriginId origin);
+/// Where |d| is at most the noise's reach: d − noise(p·frequency)·amplitude, divided so that the field stays 1-Lipschitz.
+enum class Noise { Billow, Fbm };
+/// `amplitude` in metres, `frequency` in 1/m; octaves 1 … 8 is structure. Papers guide, section 3.
+Field displace(Field f, Point p, Noise noise, Num amplitude, double amplitudeValue, Num frequency, double frequencyValue, int octaves, uint32_t seed);
+
+}  // namespace sgm::field

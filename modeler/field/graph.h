@@ -1,0 +1,140 @@
+// The hash-consed expression graph that every field is a node of.
+// Enters: arithmetic on `Num` handles. Leaves: node ids, equal for equal structure. Assumes one thread builds it.
+// Every number a user can change is a slot, so that structure (and with it a shader) survives a change of numbers;
+// hash-consing never merges two slots. After building, a Graph is only read.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "modeler/core/provenance.h"
+
+namespace sgm::field {
+
+/// Row index in the op table (modeler/field/ops.h); `codeOf<Add>` names one.
+enum class OpCode : uint16_t {};
+
+using NodeId = uint32_t;
+/// Index into a graph's constants table.
+using SlotId = uint32_t;
+
+/// What names a number across re-derivations: the hashed path of the shape it belongs to, and the attribute.
+struct SlotKey {
+    uint64_t path = 0;       ///< the shape's stream key (grammar/derive)
+    uint64_t attribute = 0;  ///< hashText of the attribute's name and component, "size.x"
+    friend bool operator==(const SlotKey&, const SlotKey&) = default;
+};
+
+/// One node. Leaves have no operands: Input (`data` 0, 1, 2 = x, y, z), Literal (`data` = float bits),
+/// Slot (`data` = SlotId). Other ops may keep a structural integer in `data` (the passes of a KIFS).
+struct Node {
+    OpCode op;
+    uint32_t data = 0;
+    uint32_t first = 0;  ///< first operand in Graph::operands()
+    uint32_t count = 0;  ///< number of operands
+};
+
+/// What one operand of a min, max, blend or morph belongs to; 0 lets the operand's own origins through.
+struct Operand {
+    NodeId node = 0;
+    OriginId origin = 0;
+};
+
+class Graph;
+
+/// A handle to a node of a graph; arithmetic on it adds nodes. A plain value, valid while its graph lives.
+class Num {
+public:
+    Num() = default;
+    Num(Graph* graph, NodeId id) : graph_(graph), id_(id) {}
+    Graph& graph() const { return *graph_; }
+    NodeId id() const { return id_; }
+
+private:
+    Graph* graph_ = nullptr;
+    NodeId id_ = 0;
+};
+
+/// Three coordinates (or any three numbers) of one graph.
+struct Point {
+    Num x, y, z;
+};
+
+class Graph {
+public:
+    Graph();
+    Graph(Graph&&) = default;
+    Graph& operator=(Graph&&) = default;
+
+    Num x();
+    Num y();
+    Num z();
+    Point position() { return {x(), y(), z()}; }
+    /// A number that is part of the structure (a formula's 0.5): equal literals are one node.
+    Num literal(float value);
+    /// A number that may change without changing structure. A key seen before keeps its slot and takes the new value.
+    Num slot(SlotKey key, float value);
+    /// A slot nobody else names; for numbers without a path.
+    Num slot(float value);
+    /// A node of the op table. Commutative operands are ordered, equal structure is shared.
+    /// Operand origins are part of the structure and may only be set on min, max, blend and morph.
+    Num apply(OpCode op, std::span<const Operand> operands, uint32_t data = 0);
+    Num apply(OpCode op, std::initializer_list<Num> operands, uint32_t data = 0);
+
+    const Node& node(NodeId id) const { return nodes_[id]; }
+    std::span<const Operand> operands(NodeId id) const { return {operands_.data() + nodes_[id].first, nodes_[id].count}; }
+    size_t nodeCount() const { return nodes_.size(); }
+    /// Present values of all slots, by SlotId: what `compile` binds and the GPU gets as a buffer.
+    std::span<const float> constants() const { return constants_; }
+    /// Key of each slot, by SlotId.
+    std::span<const SlotKey> slotKeys() const { return slotKeys_; }
+
+private:
+    NodeId insert(OpCode op, std::span<const Operand> operands, uint32_t data);
+
+    std::vector<Node> nodes_;
+    std::vector<Operand> operands_;
+    std::vector<float> constants_;
+    std::vector<SlotKey> slotKeys_;
+    std::unordered_multimap<uint64_t, NodeId> byHash_;
+    std::unordered_multimap<uint64_t, SlotId> slotsByHash_;
+};
+
+Num operator+(Num a, Num b);
+Num operator-(Num a, Num b);
+Num operator*(Num a, Num b);
+Num operator/(Num a, Num b);
+Num operator-(Num a);
+Num operator+(Num a, float b);
+Num operator+(float a, Num b);
+Num operator-(Num a, float b);
+Num operator-(float a, Num b);
+Num operator*(Num a, float b);
+Num operator*(float a, Num b);
+Num operator/(Num a, float b);
+Num operator/(float a, Num b);
+Num min(Num a, Num b);
+Num max(Num a, Num b);
+Num min(Num a, float b);
+Num max(Num a, float b);
+Num abs(Num a);
+Num sqrt(Num a);
+Num square(Num a);
+Num floor(Num a);
+/// Floor-modulo a − b·floor(a/b), in [0, b) for b > 0.
+Num mod(Num a, Num b);
+Num sin(Num a);
+Num cos(Num a);
+Num exp(Num a);
+/// Angle of (x, y) in (−π, π].
+Num atan2(Num y, Num x);
+
+inline Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Num dot(Point a, Point b);
+Num length(Point a);
+
+}  // namespace sgm::field

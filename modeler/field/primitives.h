@@ -1,0 +1,65 @@
+// The primitive table: every solid a grammar can name.
+// Enters: local coordinates in metres about the scope's centre, half-sizes and parameters as graph numbers.
+// Leaves: a Field that fills the scope. Assumes half-sizes > 0. Formulas: SG-M III-E with the errata in docs/papers.md.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "modeler/field/field.h"
+
+namespace sgm::field {
+
+/// How a primitive parameter is read and shown.
+enum class ParameterKind { Share, Length, Angle, Count, Vector, Rotation, Choice };
+
+/// One typed parameter of a primitive.
+struct PrimitiveParameter {
+    std::string_view name;
+    ParameterKind kind;
+    double fallback;  ///< in metres, radians or plain numbers; every component of a vector
+    double lo, hi;    ///< inclusive range
+    std::string_view doc;
+    std::string_view choices{};  ///< for Choice: names separated by '|'; the value is the index
+};
+
+/// A value with the node(s) that carry it (slots, or expressions over them) and its present number(s) for bounds.
+/// A Share/Length/Angle/Count/Choice uses [0]; a Vector three; a Rotation nine (matrix by columns, world from local).
+struct Argument {
+    Num node[9];
+    double value[9]{};
+};
+
+/// What a primitive is built from.
+struct PrimitiveInput {
+    Point p;              ///< position in the solid's frame, metres, origin at the scope's centre
+    Point half;           ///< half-size of the scope along x, y, z, metres
+    Vec3d halfValue;      ///< the same, present numbers
+    std::span<const Argument> arguments;  ///< one per row parameter, in row order
+};
+
+/// A joint a solid offers besides the shared ones, in shares of the half-size.
+struct PrimitiveJoint {
+    std::string_view name;
+    Vec3d at;      ///< −1 … 1 of the half-size
+    Vec3d facing;  ///< unit direction; zero meets any other
+};
+
+/// One row.
+struct Primitive {
+    std::string_view name;
+    std::string_view doc;
+    std::span<const PrimitiveParameter> parameters;
+    Field (*build)(const PrimitiveInput&);
+    bool bounded = true;  ///< false: fills half of space, may only cut
+    std::span<const PrimitiveJoint> joints{};
+};
+
+/// The table, in the order of docs/reference.md.
+std::span<const Primitive> primitives();
+/// The row called `name`, or null.
+const Primitive* findPrimitive(std::string_view name);
+
+}  // namespace sgm::field

@@ -1,0 +1,16 @@
+// Editing a mesh through OpenMesh: smoothing and decimation that keep it closed and keep its origins.
+// Enters: a Mesh. Leaves: a Mesh of one chunk. Assumes a closed manifold mesh from polygonize.
+#pragma once
+
+#include "modeler/core/progress.h"
+#include "modeler/core/result.h"
+#include "modeler/mesh/mesh.h"
+
+namespace sgm::mesh {
+
+/// `passes` of OpenMesh's Jacobi-Laplace smoother (tangential and normal, C1).
+Result<Mesh> smooth(const Mesh& mesh, int passes, Progress* progress);
+/// Quadric decimation to `ratio` (0 … 1] of the triangles; topology is kept, so it may stop earlier.
+Result<Mesh> simplify(const Mesh& mesh, double ratio, Progress* progress);
+
+}  // namespace sgm::mesh

@@ -1,0 +1,52 @@
+// The descent from the whole box to the blocks that hold surface.
+// Enters: a tape, a grid. Leaves: blocks in ascending order, each with its own shortened tape. Assumes the grid's box holds
+// the surface with a layer of outside around it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "modeler/core/progress.h"
+#include "modeler/core/result.h"
+#include "modeler/eval/tape.h"
+
+namespace sgm::mesh {
+
+inline constexpr int blockCells = 32;  ///< SG-M III-G
+inline constexpr int brickCells = 8;   ///< an OpenVDB leaf
+
+/// Where samples lie: corner (i, j, k) is at origin + cell · (i, j, k), computed in float32 so that neighbours agree.
+struct Grid {
+    Vec3f origin;      ///< metres
+    float cell_m = 1;  ///< edge of a cell
+    Vec3i cells;       ///< cells along x, y, z; whole blocks are not required
+
+    Vec3f corner(int i, int j, int k) const {
+        return {origin.x + cell_m * static_cast<float>(i), origin.y + cell_m * static_cast<float>(j), origin.z + cell_m * static_cast<float>(k)};
+    }
+};
+
+/// The grid over `bounds` with cells of `cell_m` and an outside layer of at least one cell on every side.
+Grid gridFor(const Box3f& bounds, float cell_m);
+/// The cell size that puts `resolution` cells along the longest side of `bounds`.
+float cellFor(const Box3f& bounds, int resolution);
+
+struct Block {
+    Vec3i index;  ///< block coordinates: cells [32·index, 32·index + 32)
+    eval::Tape tape;
+};
+
+/// What the descent and the sampling counted, for the report; vertex refinement and normals apart.
+struct Counts {
+    uint64_t pointEvaluations = 0;
+    uint64_t intervalEvaluations = 0;
+    uint64_t refinementEvaluations = 0;
+    uint64_t surfaceCells = 0;
+    double subdivideSeconds = 0, sampleSeconds = 0, polygonizeSeconds = 0;
+    Counts& operator+=(const Counts& o);
+};
+
+/// Blocks that may hold surface, ordered by (z, y, x). Error::Cancelled when `progress` says so.
+Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress, Counts& counts);
+
+}  // namespace sgm::mesh

@@ -1,0 +1,47 @@
+// A level set on a sparse grid, behind OpenVDB.
+// Enters: a tape and a grid. Leaves: a narrow band of signed distances (negative inside), in metres. Assumes the field is
+// near 1-Lipschitz; values further than the band are clamped to ±band. OpenVDB's headers stay in the .cpp.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "modeler/core/progress.h"
+#include "modeler/core/result.h"
+#include "modeler/eval/tape.h"
+#include "modeler/mesh/mesh.h"
+#include "modeler/mesh/subdivide.h"
+
+namespace sgm::volume {
+
+class Volume {
+public:
+    struct Impl;  ///< holds an openvdb::FloatGrid
+    explicit Volume(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
+    Impl& impl() const { return *impl_; }
+    float voxel_m() const;
+    uint64_t activeVoxels() const;
+    /// Value at the voxel nearest to p (metres): signed distance, ±band away from the surface.
+    float at(Vec3f p) const;
+    /// Volume enclosed by the level set, m³.
+    double enclosed_m3() const;
+
+private:
+    std::shared_ptr<Impl> impl_;
+};
+
+/// Samples the blocks at the grid's corners into a level set of `halfWidth` voxels to each side; inside and outside beyond
+/// the band are tiled by sign. Equal bytes at any thread count.
+Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& whole, const mesh::Grid& grid, int halfWidth, int threads, Progress* progress);
+
+/// OpenVDB's own polygonisation, to compare ours with.
+Result<mesh::Mesh> toMesh(const Volume& volume);
+
+/// Writes a .vdb with a grid `name`; written beside `path` and renamed into place.
+Status writeVdb(const Volume& volume, const std::filesystem::path& path, const std::string& name);
+/// Reads the first float grid.
+Result<Volume> readVdb(const std::filesystem::path& path);
+
+}  // namespace sgm::volume
