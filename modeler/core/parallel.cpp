@@ -1,6 +1,7 @@
 #include "modeler/core/parallel.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -20,6 +21,8 @@ void parallelFor(size_t count, int threads, const Progress* progress, void* cont
         for (size_t i = 0; i < count && !cancelled(progress); ++i) body(context, i, 0);
         return;
     }
+    // Lets more threads run than the machine has cores: tests of determinism ask for that.
+    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
     tbb::task_arena arena(threads);
     arena.execute([&] {
         tbb::parallel_for(

@@ -1,0 +1,34 @@
+# Shared by run.sh and test.sh: installs what is missing and builds the Release preset. Sourced, from the repo root.
+set -eu
+
+packages="g++ cmake ninja-build ccache pkg-config
+  libopenvdb-dev libboost-iostreams-dev libopenmesh-dev libcgal-dev libtbb-dev libxsimd-dev libfmt-dev
+  nlohmann-json3-dev libtinygltf-dev libcli11-dev libpng-dev libepoxy-dev libegl-dev libegl1 libgl1-mesa-dri
+  libgtest-dev libgmock-dev"
+
+install_missing() {
+  missing=""
+  for p in $packages; do
+    dpkg-query -W -f '${db:Status-Status}' "$p" 2>/dev/null | grep -qx installed || missing="$missing $p"
+  done
+  [ -n "$missing" ] || return 0
+  as_root=""
+  [ "$(id -u)" = 0 ] || as_root=sudo
+  echo "Installing:$missing"
+  $as_root apt-get update -q >/dev/null
+  # shellcheck disable=SC2086
+  DEBIAN_FRONTEND=noninteractive $as_root apt-get install -y -q --no-install-recommends $missing >build/apt.log 2>&1 ||
+    { tail -n 20 build/apt.log; echo "Installing failed: see build/apt.log" >&2; exit 1; }
+}
+
+# build TARGET…: configures once, then builds; quiet unless something is to be done or fails.
+build() {
+  [ -f build/release/build.ninja ] || cmake --preset release >build/configure.log 2>&1 ||
+    { tail -n 30 build/configure.log; exit 1; }
+  ninja -C build/release -n "$@" | grep -q 'no work to do' && return 0
+  echo "Building (a first build takes some minutes)…"
+  ninja -C build/release -j "${JOBS:-2}" "$@" >build/build.log 2>&1 || { grep -A 12 -m 5 'FAILED\|error' build/build.log; exit 1; }
+}
+
+mkdir -p build
+install_missing

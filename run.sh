@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Installs what is missing (Debian 12), builds Release, and runs sgm.
+#   ./run.sh                      models examples/grotto.sgm into out/ and says where the results are
+#   ./run.sh ARGUMENTS…           runs `sgm ARGUMENTS…`, e.g. ./run.sh build examples/tower.sgm -o tower.glb
+#   ./run.sh bench [ARGUMENTS…]   measures field → mesh against a dense SIMD sweep
+#   ./run.sh gallery              draws the pictures of docs/ and README
+cd "$(dirname "$0")"
+. cmake/setup.sh
+case "${1:-}" in
+  bench) build bench && shift && exec build/release/tests/bench/bench "$@" ;;
+  gallery) build sgm && exec docs/gallery.sh ;;
+esac
+build sgm
+sgm=build/release/cli/sgm
+[ $# -eq 0 ] || exec "$sgm" "$@"
+mkdir -p out
+"$sgm" build examples/grotto.sgm -o out/grotto.glb -o out/grotto.vdb --report out/grotto.json
+"$sgm" render examples/grotto.sgm -o out/grotto.png
+echo
+echo "A mesh:    out/grotto.glb   (drop it into Blender, Houdini, Unreal or Godot)"
+echo "A volume:  out/grotto.vdb"
+echo "A picture: out/grotto.png"
+echo "Figures:   out/grotto.json"
+echo "Edit examples/grotto.sgm and run this again; ./run.sh --help shows the commands."

@@ -1,0 +1,83 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <set>
+
+#include "modeler/core/conventions.h"
+#include "modeler/core/parallel.h"
+#include "modeler/core/random.h"
+#include "modeler/core/result.h"
+#include "modeler/core/vec.h"
+
+namespace sgm {
+namespace {
+
+TEST(Vec, RotationIsRightHanded) {
+    const Mat3 r = Mat3::rotation({0, 1, 0}, radians(90));
+    const Vec3d v = r * Vec3d{1, 0, 0};  // x turns to −z about y
+    EXPECT_NEAR(v.x, 0, 1e-15);
+    EXPECT_NEAR(v.z, -1, 1e-15);
+    const Mat3 identity = r * r.transposed();
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(identity.x[i], i == 0 ? 1 : 0, 1e-15);
+}
+
+TEST(Box, EmptyBoxIsTheNeutralElementOfHull) {
+    const Box3d box{{-1, 0, 2}, {3, 4, 5}};
+    EXPECT_EQ(hull(Box3d{}, box), box);
+    EXPECT_TRUE(Box3d{}.empty());
+    EXPECT_TRUE(Box3d{}.inflated(1).empty());
+    EXPECT_TRUE(intersection(box, Box3d{{4, 0, 2}, {5, 1, 3}}).empty());
+    EXPECT_FALSE(Box3d::everything().finite());
+}
+
+TEST(Random, DrawsAreFixedForever) {
+    // Meshes depend on these bits: a change here changes every user's models.
+    EXPECT_EQ(mix(1), 0x910a2dec89025cc1ull);
+    EXPECT_EQ(hashText("size"), hashText("size"));
+    EXPECT_NE(combine(1, 2), combine(2, 1));
+}
+
+TEST(Random, UniformIsEvenAndInRange) {
+    int low = 0;
+    for (uint64_t k = 0; k < 10000; ++k) {
+        const double u = uniform(k);
+        ASSERT_GE(u, 0);
+        ASSERT_LT(u, 1);
+        low += u < 0.25;
+        ASSERT_LT(pick(k, 7), 7u);
+    }
+    EXPECT_NEAR(low, 2500, 150);
+}
+
+TEST(Parallel, EveryIndexOnceAtAnyThreadCount) {
+    for (const int threads : {1, 2, 5}) {
+        std::vector<std::atomic<int>> seen(1000);
+        std::atomic<int> worst{0};
+        parallelFor(seen.size(), threads, nullptr, [&](size_t i, int worker) {
+            ++seen[i];
+            if (worker >= threads) ++worst;
+        });
+        for (const auto& n : seen) ASSERT_EQ(n, 1);
+        EXPECT_EQ(worst, 0);
+    }
+}
+
+TEST(Parallel, CancelStopsHandingOut) {
+    Progress progress;
+    std::atomic<int> done{0};
+    parallelFor(1'000'000, 2, &progress, [&](size_t, int) {
+        if (++done == 10) progress.cancel();
+    });
+    EXPECT_LT(done, 1000);
+}
+
+TEST(Result, HoldsOneOfTwo) {
+    const Result<int> good = 3;
+    const Result<int> bad = Error{Error::Kind::Budget, "too many shapes"};
+    EXPECT_EQ(*good, 3);
+    EXPECT_FALSE(bad.ok());
+    EXPECT_EQ(bad.error().message, "too many shapes");
+}
+
+}  // namespace
+}  // namespace sgm

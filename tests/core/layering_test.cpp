@@ -1,0 +1,116 @@
+// The house rules about includes: no upward include, no cycle, heavy headers only in .cpp files.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Include {
+    std::string from, to;
+};
+
+std::vector<Include> includesUnder(const std::vector<std::string>& folders) {
+    std::vector<Include> found;
+    const std::regex pattern("^\\s*#\\s*include\\s*([\"<])([^\">]+)[\">]");
+    for (const std::string& folder : folders)
+        for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+            const std::string extension = entry.path().extension();
+            if (extension != ".h" && extension != ".cpp") continue;
+            std::ifstream file(entry.path());
+            for (std::string line; std::getline(file, line);) {
+                std::smatch match;
+                if (std::regex_search(line, match, pattern)) found.push_back({entry.path().string(), match[2]});
+            }
+        }
+    return found;
+}
+
+/// "modeler/eval/tape.h" → "modeler/eval"; viewer and cli are one room each.
+std::string roomOf(const std::string& path) {
+    const size_t first = path.find('/');
+    const std::string top = path.substr(0, first);
+    if (top != "modeler" && top != "grammar") return top;
+    return path.substr(0, path.find('/', first + 1));
+}
+
+const std::vector<std::string> folders{"modeler", "grammar", "viewer", "cli"};
+
+/// Bottom to top: a room may see those before it.
+const std::vector<std::string> order{"modeler/core",   "modeler/field",   "modeler/eval",  "modeler/plan",
+                                     "modeler/mesh",   "modeler/volume",  "modeler/export", "grammar/syntax",
+                                     "grammar/rules",  "grammar/derive",  "grammar/lower", "viewer", "cli"};
+
+TEST(Layering, NoUpwardInclude) {
+    std::map<std::string, size_t> level;
+    for (size_t i = 0; i < order.size(); ++i) level[order[i]] = i;
+    size_t seen = 0;
+    for (const Include& include : includesUnder(folders)) {
+        const std::string from = roomOf(include.from), to = roomOf(include.to);
+        if (!level.count(to)) continue;
+        ASSERT_TRUE(level.count(from)) << include.from << " is in no room of the house";
+        EXPECT_LE(level[to], level[from]) << include.from << " includes " << include.to;
+        ++seen;
+    }
+    EXPECT_GT(seen, 50u) << "run from the repository root";
+}
+
+TEST(Layering, NoCycleAmongHeaders) {
+    std::map<std::string, std::vector<std::string>> graph;
+    for (const Include& include : includesUnder(folders))
+        if (include.from.ends_with(".h")) graph[include.from].push_back(include.to);
+    std::set<std::string> done;
+    for (const auto& [start, unused] : graph) {
+        // Depth-first by hand; `path` holds the chain from the start with the next child to try.
+        std::vector<std::pair<std::string, size_t>> path{{start, 0}};
+        std::set<std::string> onPath{start};
+        while (!path.empty()) {
+            auto& [node, next] = path.back();
+            const auto it = graph.find(node);
+            if (done.count(node) || it == graph.end() || next == it->second.size()) {
+                done.insert(node);
+                onPath.erase(node);
+                path.pop_back();
+                continue;
+            }
+            const std::string child = it->second[next++];
+            ASSERT_FALSE(onPath.count(child)) << "include cycle through " << child;
+            onPath.insert(child);
+            path.emplace_back(child, 0);
+        }
+    }
+}
+
+TEST(Layering, HeavyHeadersStayInSources) {
+    for (const Include& include : includesUnder(folders)) {
+        const bool heavy = include.to.starts_with("CGAL/") || include.to.starts_with("openvdb/") ||
+                           include.to.starts_with("OpenMesh/") || include.to.starts_with("CLI/");
+        // openmesh.h is the one door that gives the half-edge type itself to users of the library.
+        if (heavy && include.from != "modeler/mesh/openmesh.h") {
+            EXPECT_TRUE(include.from.ends_with(".cpp")) << include.from << " includes " << include.to;
+        }
+        if (include.to == "modeler/mesh/openmesh.h") {
+            EXPECT_TRUE(include.from.ends_with(".cpp")) << include.from;
+        }
+    }
+}
+
+TEST(Layering, OnlyCliAndViewerPrint) {
+    const std::regex prints("std::cout|std::cerr|\\bf?printf\\(|fmt::print");
+    for (const std::string& folder : {std::string("modeler"), std::string("grammar")})
+        for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+            if (!entry.is_regular_file()) continue;
+            std::ifstream file(entry.path());
+            for (std::string line; std::getline(file, line);)
+                EXPECT_FALSE(std::regex_search(line, prints)) << entry.path() << ": " << line;
+        }
+}
+
+}  // namespace
