@@ -1,0 +1,158 @@
+// sgm build: a grammar to meshes and volumes.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/pipeline.h"
+#include "cli/report.h"
+#include "cli/watch.h"
+#include "modeler/export/exporter.h"
+#include "modeler/mesh/edit.h"
+#include "modeler/volume/volume.h"
+
+namespace sgm::cli {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int bandVoxels = 3;  ///< half-width of the level set, OpenVDB's usual
+
+struct BuildRequest {
+    ModelRequest model;
+    GridRequest grid;
+    std::vector<std::string> outputs;
+    std::vector<std::string> exportOptions;  ///< "NAME=VALUE"
+    std::string report;
+    int smooth = 0;
+    double simplify = 1;
+    bool quiet = false;
+};
+
+Status checkOutputs(const BuildRequest& request) {
+    std::vector<std::string> known;
+    for (const exporter::Exporter& e : exporter::exporters()) known.emplace_back(e.extension);
+    for (const std::string& output : request.outputs) {
+        const std::string extension = fs::path(output).extension();
+        if (!exporter::findExporter(extension))
+            return Error{Error::Kind::Usage, fmt::format("'{}': no format has the ending '{}'; there are {}", output, extension, fmt::join(known, " "))};
+        const fs::path folder = fs::path(output).parent_path();
+        if (std::error_code ignored; !folder.empty() && !fs::is_directory(folder, ignored))
+            return Error{Error::Kind::Input, fmt::format("'{}': the folder '{}' does not exist", output, folder.string())};
+    }
+    return Done{};
+}
+
+Result<std::map<std::string, std::string, std::less<>>> exportOptions(const BuildRequest& request) {
+    std::map<std::string, std::string, std::less<>> options;
+    for (const std::string& text : request.exportOptions) {
+        const size_t equals = text.find('=');
+        const std::string name = text.substr(0, equals);
+        bool known = false;
+        for (const exporter::Exporter& e : exporter::exporters())
+            for (const exporter::ExportOption& o : e.options) known |= o.name == name;
+        if (equals == std::string::npos || !known)
+            return Error{Error::Kind::Usage, fmt::format("--export {}: no format has that option (see `sgm reference`)", text)};
+        options[name] = text.substr(equals + 1);
+    }
+    return options;
+}
+
+Result<mesh::Mesh> edited(mesh::Mesh mesh, const BuildRequest& request, Stages& stages, Progress* progress) {
+    if (request.smooth > 0) {
+        auto result = timed(stages, "smooth", [&] { return mesh::smooth(mesh, request.smooth, progress); });
+        if (!result.ok()) return result;
+        mesh = std::move(*result);
+    }
+    if (request.simplify < 1) {
+        auto result = timed(stages, "simplify", [&] { return mesh::simplify(mesh, request.simplify, progress); });
+        if (!result.ok()) return result;
+        mesh = std::move(*result);
+    }
+    return mesh;
+}
+
+exporter::ExportInput exportInput(const BuildRequest& request, const Model& model, const mesh::Mesh& mesh) {
+    exporter::ExportInput input;
+    input.mesh = &mesh;
+    input.provenance = &model.lowered->provenance;
+    input.name = fs::path(request.model.file).stem();
+    input.extras["grammar"] = fs::path(request.model.file).filename();
+    input.extras["seed"] = fmt::format("{}", request.model.seed);
+    const auto& params = model.derivation.grammar->params;
+    for (size_t i = 0; i < params.size(); ++i) input.extras["param " + params[i].name] = rules::toText(model.derivation.params[i]);
+    return input;
+}
+
+Status writeAll(const BuildRequest& request, const Model& model, const MeshedModel& meshed, exporter::ExportInput input, Progress* progress) {
+    std::unique_ptr<volume::Volume> level;
+    for (const std::string& output : request.outputs) {
+        if (exporter::findExporter(fs::path(output).extension().string())->wantsVolume && !level) {
+            auto sampled = volume::sample(meshed.blocks, model.tape, meshed.grid, bandVoxels, request.grid.threads, progress);
+            if (!sampled.ok()) return sampled.error();
+            level = std::make_unique<volume::Volume>(std::move(*sampled));
+            input.volume = level.get();
+        }
+        if (const Status written = exporter::write(input, output); !written.ok()) return written;
+    }
+    return Done{};
+}
+
+void say(const BuildRequest& request, const Model& model, const mesh::MeshFigures& f, const Stages& stages) {
+    double total = 0;
+    for (const auto& stage : stages) total += stage.second;
+    fmt::print("{} shapes, {} bonds, {} rules; {} triangles in {} component{}, {:.4g} m³; {:.2f} s\n", model.derivation.tree.shapes.size(),
+               model.derivation.tree.bonds.size(), model.derivation.classic + model.derivation.morphic, f.triangles, f.components,
+               f.components == 1 ? "" : "s", f.volume_m3, total);
+    for (const std::string& output : request.outputs) fmt::print("wrote {}\n", output);
+}
+
+int build(const BuildRequest& request) {
+    if (const Status s = checkOutputs(request); !s.ok()) return fail(s.error());
+    const auto options = exportOptions(request);
+    if (!options.ok()) return fail(options.error());
+    Stages stages;
+    Watch watch(request.quiet);
+    const auto model = makeModel(request.model, stages, watch.progress());
+    if (!model.ok()) return fail(model.error());
+    auto meshed = makeMesh(*model, request.grid, stages, watch.progress());
+    if (!meshed.ok()) return fail(meshed.error());
+    auto mesh = edited(std::move(meshed->mesh), request, stages, watch.progress());
+    if (!mesh.ok()) return fail(mesh.error());
+
+    exporter::ExportInput input = exportInput(request, *model, *mesh);
+    input.options = *options;
+    input.progress = watch.progress();
+    const Status written = timed(stages, "write", [&] { return writeAll(request, *model, *meshed, input, watch.progress()); });
+    if (!written.ok()) return fail(written.error());
+    if (request.quiet && request.report.empty()) return 0;
+    const mesh::MeshFigures figures = mesh::measure(*mesh);
+    if (!request.report.empty())
+        if (const Status s = writeText(request.report, reportJson(*model, *meshed, figures, stages, request.grid.threads)); !s.ok()) return fail(s.error());
+    if (!request.quiet) say(request, *model, figures, stages);
+    return 0;
+}
+
+}  // namespace
+
+void addBuild(CLI::App& app, int& exitCode) {
+    CLI::App* command = app.add_subcommand("build", "Grow a grammar and write meshes and volumes");
+    auto request = std::make_shared<BuildRequest>();
+    addModelOptions(*command, request->model);
+    addGridOptions(*command, request->grid);
+    command->add_option("-o,--output", request->outputs, "Output file, format by its ending; may be given again")->allow_extra_args(false);
+    command->add_option("--export", request->exportOptions, "Option of a format, NAME=VALUE (see `sgm reference`)")->allow_extra_args(false);
+    command->add_option("--report", request->report, "Write the figures of this build as JSON");
+    command->add_option("--smooth", request->smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
+    command->add_option("--simplify", request->simplify, "Decimate to this share of the triangles")->check(CLI::Range(0.001, 1.0));
+    command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
+    command->footer(
+        "Examples:\n  sgm build examples/grotto.sgm -o grotto.glb -o grotto.vdb --resolution 256\n"
+        "  sgm build examples/tower.sgm --set floors=12 --seed 7 -o tower.obj --report tower.json");
+    command->callback([request, &exitCode] { exitCode = build(*request); });
+}
+
+}  // namespace sgm::cli

@@ -1,0 +1,67 @@
+// sgm check: every problem of every file, then the grammar's own `check … expect` tests.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/pipeline.h"
+#include "cli/watch.h"
+#include "grammar/syntax/parser.h"
+
+namespace sgm::cli {
+namespace {
+
+struct CheckRequest {
+    std::vector<std::string> files;
+    uint64_t seed = 1;
+    bool json = false;
+};
+
+/// Failed checks become errors at their `check` line, so that text and JSON show them like any other problem.
+int runGrammarChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t seed, syntax::Diagnostics& diagnostics) {
+    Watch watch(false);
+    const auto verdicts = derive::runChecks(std::move(grammar), seed, watch.progress());
+    if (!verdicts.ok()) return fail(verdicts.error());
+    for (const derive::Verdict& v : *verdicts)
+        if (!v.passed) diagnostics.error(v.span, v.message);
+    return 0;
+}
+
+int checkOne(const std::string& file, const CheckRequest& request, nlohmann::json& found) {
+    const auto source = readSource(file);
+    if (!source.ok()) return fail(source.error());
+    syntax::Diagnostics diagnostics;
+    const auto grammar = rules::load(*source, fileLoader(), diagnostics);
+    const int code = grammar ? runGrammarChecks(grammar, request.seed, diagnostics) : 0;
+    if (request.json) {
+        for (auto& entry : nlohmann::json::parse(syntax::toJson(diagnostics))) found.push_back(std::move(entry));
+    } else {
+        for (const syntax::Diagnostic& d : diagnostics.all()) fmt::print(stderr, "{}\n", syntax::render(d));
+        if (!diagnostics.hasErrors() && code == 0) fmt::print("{}: fine\n", file);
+    }
+    return diagnostics.hasErrors() ? 1 : code;
+}
+
+int check(const CheckRequest& request) {
+    int code = 0;
+    nlohmann::json found = nlohmann::json::array();
+    for (const std::string& file : request.files) code = std::max(code, checkOne(file, request, found));
+    if (request.json) fmt::print("{}\n", found.dump(2));
+    return code;
+}
+
+}  // namespace
+
+void addCheck(CLI::App& app, int& exitCode) {
+    CLI::App* command = app.add_subcommand("check", "Show every problem of grammar files and run their `check` lines");
+    auto request = std::make_shared<CheckRequest>();
+    command->add_option("FILE", request->files, "Grammar files (.sgm)")->required();
+    command->add_option("--seed", request->seed, "Seed for the `check` lines")->capture_default_str();
+    command->add_flag("--json", request->json, "Problems as JSON, for editors");
+    command->callback([request, &exitCode] { exitCode = check(*request); });
+}
+
+}  // namespace sgm::cli

@@ -1,0 +1,74 @@
+#include "cli/files.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace sgm::cli {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The standard library stands beside the installed program, or in the tree it was built from.
+fs::path standardLibrary() {
+    std::error_code ignored;
+    const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+    const fs::path installed = program.parent_path().parent_path() / "share/sgm/std";
+    return fs::is_directory(installed, ignored) ? installed : fs::path(SGM_STANDARD_LIBRARY);
+}
+
+bool leadsOutside(const fs::path& relative) {
+    if (relative.is_absolute()) return true;
+    for (const fs::path& part : relative.lexically_normal())
+        if (part == "..") return true;
+    return false;
+}
+
+}  // namespace
+
+Result<syntax::SourcePtr> readSource(const fs::path& path) {
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) return Error{Error::Kind::Input, fmt::format("'{}' is a folder, not a grammar file", path.string())};
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    if (file) text << file.rdbuf();
+    if (!file) return Error{Error::Kind::Input, fmt::format("can't read '{}': {}", path.string(), std::strerror(errno ? errno : EIO))};
+    return std::make_shared<const syntax::Source>(path.string(), text.str());
+}
+
+rules::Loader fileLoader() {
+    return [](const std::string& name, const syntax::Source& from, std::string& why) -> syntax::SourcePtr {
+        const fs::path wanted(name);
+        if (leadsOutside(wanted)) {
+            why = "a grammar may only use files in its own folder or in std/";
+            return nullptr;
+        }
+        const bool isStandard = name.starts_with("std/");
+        const fs::path path = isStandard ? standardLibrary() / name.substr(4) : fs::path(from.name()).parent_path() / wanted;
+        Result<syntax::SourcePtr> source = readSource(path);
+        if (source.ok()) return *source;
+        why = source.error().message;
+        return nullptr;
+    };
+}
+
+Status writeText(const fs::path& path, const std::string& text) {
+    fs::path temporary = path;
+    temporary += ".tmp";
+    std::ofstream file(temporary, std::ios::binary);
+    file << text;
+    file.close();
+    std::error_code problem;
+    if (file) fs::rename(temporary, path, problem);
+    if (!file || problem) {
+        std::error_code ignored;
+        fs::remove(temporary, ignored);
+        return Error{Error::Kind::Input, fmt::format("can't write '{}': {}", path.string(), problem ? problem.message() : std::strerror(errno))};
+    }
+    return Done{};
+}
+
+}  // namespace sgm::cli

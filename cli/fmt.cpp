@@ -1,0 +1,49 @@
+// sgm fmt: canonical layout.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "cli/pipeline.h"
+#include "grammar/syntax/parser.h"
+#include "grammar/syntax/printer.h"
+
+namespace sgm::cli {
+namespace {
+
+/// 0 when the file is (now) in canonical layout.
+int formatOne(const std::string& file, bool checkOnly) {
+    const auto source = readSource(file);
+    if (!source.ok()) return fail(source.error());
+    syntax::Diagnostics diagnostics;
+    syntax::parse(*source, diagnostics);
+    for (const syntax::Diagnostic& d : diagnostics.all()) fmt::print(stderr, "{}\n", syntax::render(d));
+    if (diagnostics.hasErrors()) return 1;
+    const std::string text = syntax::format(**source);
+    if (text == (*source)->text()) return 0;
+    if (checkOnly) {
+        fmt::print("{} is not formatted; run `sgm fmt {}`\n", file, file);
+        return 1;
+    }
+    const Status written = writeText(file, text);
+    if (!written.ok()) return fail(written.error());
+    fmt::print("formatted {}\n", file);
+    return 0;
+}
+
+}  // namespace
+
+void addFmt(CLI::App& app, int& exitCode) {
+    CLI::App* command = app.add_subcommand("fmt", "Lay out grammar files canonically; every comment stays");
+    auto files = std::make_shared<std::vector<std::string>>();
+    auto checkOnly = std::make_shared<bool>(false);
+    command->add_option("FILE", *files, "Grammar files (.sgm)")->required();
+    command->add_flag("--check", *checkOnly, "Change nothing; exit with 1 where a file is not formatted");
+    command->callback([files, checkOnly, &exitCode] {
+        for (const std::string& file : *files) exitCode = std::max(exitCode, formatOne(file, *checkOnly));
+    });
+}
+
+}  // namespace sgm::cli

@@ -1,0 +1,44 @@
+// sgm params: a grammar's parameters, for people and for other programs' panels.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/pipeline.h"
+#include "grammar/rules/params.h"
+
+namespace sgm::cli {
+namespace {
+
+std::string rangeText(const rules::Param& p) {
+    if (!p.choices.empty()) return fmt::format("of {}", fmt::join(p.choices, ", "));
+    return p.lo && p.hi ? fmt::format("in {}..{}", rules::toText(*p.lo), rules::toText(*p.hi)) : "";
+}
+
+int params(const std::string& file, bool json) {
+    Stages stages;
+    const auto grammar = loadGrammar(file, stages);
+    if (!grammar) return 1;
+    if (json) {
+        fmt::print("{}\n", rules::paramsJson(*grammar));
+        return 0;
+    }
+    for (const rules::Param& p : grammar->params)
+        fmt::print("{:16} {:20} {:28} {}{}\n", p.name, rules::toText(p.value), rangeText(p), p.label, p.group.empty() ? "" : fmt::format("  [{}]", p.group));
+    for (const rules::Style& s : grammar->styles) fmt::print("style {}\n", s.name);
+    return 0;
+}
+
+}  // namespace
+
+void addParams(CLI::App& app, int& exitCode) {
+    CLI::App* command = app.add_subcommand("params", "List a grammar's parameters and styles");
+    auto file = std::make_shared<std::string>();
+    auto json = std::make_shared<bool>(false);
+    command->add_option("FILE", *file, "Grammar file (.sgm)")->required();
+    command->add_flag("--json", *json, "As JSON: name, kind, default, range, choices, label, group, key");
+    command->callback([file, json, &exitCode] { exitCode = params(*file, *json); });
+}
+
+}  // namespace sgm::cli

@@ -1,0 +1,73 @@
+// sgm reference: the page docs/reference.md, written from the tables that the program itself runs on.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "grammar/syntax/operations.h"
+#include "modeler/export/exporter.h"
+#include "modeler/field/primitives.h"
+
+namespace sgm::cli {
+namespace {
+
+std::string argumentList(const syntax::Operation& operation) {
+    std::string text;
+    for (const syntax::OperationArgument& a : operation.arguments) text += fmt::format(a.optional ? " [{}]" : " {}", a.name);
+    return text;
+}
+
+std::string operationsPage() {
+    std::string page = "## Rule operations\n\nWhat a rule body may do to a shape.\n";
+    for (const syntax::Operation& o : syntax::operations()) {
+        page += fmt::format("\n### `{}{}{}`\n\n{}{}\n", o.name, argumentList(o), o.block ? " { … }" : "", o.doc, o.supported ? "" : " *Not supported yet.*");
+        for (const syntax::OperationArgument& a : o.arguments) page += fmt::format("- `{}`: {}\n", a.name, a.doc);
+        if (!o.example.empty()) page += fmt::format("\n    {}\n", o.example);
+    }
+    return page;
+}
+
+std::string parameterText(const field::PrimitiveParameter& p) {
+    using Kind = field::ParameterKind;
+    if (p.kind == Kind::Choice) return fmt::format("one of {}", p.choices);
+    if (p.kind == Kind::Rotation) return "a rotation: rotX(a), rotY(a), rotZ(a)";
+    const bool angle = p.kind == Kind::Angle;
+    const double unit = angle ? 180 / 3.14159265358979323846 : 1;
+    const char* name = angle ? "deg" : p.kind == Kind::Length ? "m" : "";
+    return fmt::format("{:.4g}{} in {:.4g}{}..{:.4g}{}", p.fallback * unit, name, p.lo * unit, name, p.hi * unit, name);
+}
+
+std::string primitivesPage() {
+    std::string page = "\n## Primitives\n\nA solid fills its scope. Every one has the joints `+x -x +y -y +z -z` and `centre`.\n";
+    for (const field::Primitive& row : field::primitives()) {
+        page += fmt::format("\n### `{}`\n\n{}{}\n", row.name, row.doc, row.bounded ? "" : " Unbounded: it may only cut.");
+        if (!row.parameters.empty()) page += "\n| parameter | default and range | |\n|---|---|---|\n";
+        for (const field::PrimitiveParameter& p : row.parameters) page += fmt::format("| `{}` | {} | {} |\n", p.name, parameterText(p), p.doc);
+        for (const field::PrimitiveJoint& j : row.joints) page += fmt::format("\nJoint `{}` at ({:.3g}, {:.3g}, {:.3g}) of the half-size.\n", j.name, j.at.x, j.at.y, j.at.z);
+    }
+    return page;
+}
+
+std::string exportersPage() {
+    std::string page = "\n## File formats\n\n`sgm build FILE -o NAME.ENDING`; options by `--export NAME=VALUE`.\n\n| ending | | options |\n|---|---|---|\n";
+    for (const exporter::Exporter& e : exporter::exporters()) {
+        std::string options;
+        for (const exporter::ExportOption& o : e.options) options += fmt::format("`{}={}` ({}) {} ", o.name, o.fallback, o.choices, o.doc);
+        for (size_t i = 0; (i = options.find('|', i)) != std::string::npos; i += 2) options.replace(i, 1, "\\|");
+        page += fmt::format("| `{}` | {} | {} |\n", e.extension, e.doc, options);
+    }
+    return page;
+}
+
+}  // namespace
+
+void addReference(CLI::App& app, int& exitCode) {
+    CLI::App* command = app.add_subcommand("reference", "Print the reference page: operations, primitives, formats");
+    command->callback([&exitCode] {
+        fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}", operationsPage(), primitivesPage(), exportersPage());
+        exitCode = 0;
+    });
+}
+
+}  // namespace sgm::cli

@@ -1,0 +1,61 @@
+#include "cli/report.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "modeler/core/parallel.h"
+
+namespace sgm::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json fieldFigures(const Model& model, const MeshedModel& meshed) {
+    const Vec3<uint64_t> corners = (meshed.grid.cells + Vec3i{1, 1, 1}).as<uint64_t>();
+    return {{"nodes", model.lowered->graph.nodeCount()},
+            {"tape_ops", model.tape.size()},
+            {"point_evaluations", meshed.counts.pointEvaluations},
+            {"refinement_evaluations", meshed.counts.refinementEvaluations},
+            {"interval_evaluations", meshed.counts.intervalEvaluations},
+            {"dense_points", corners.x * corners.y * corners.z},
+            {"surface_cells", meshed.counts.surfaceCells}};
+}
+
+Json meshFigures(const mesh::MeshFigures& f) {
+    return {{"vertices", f.vertices},
+            {"triangles", f.triangles},
+            {"components", f.components},
+            {"boundary_edges", f.boundaryEdges},
+            {"nonmanifold_edges", f.nonmanifoldEdges},
+            {"euler", f.euler},
+            {"volume_m3", f.volume_m3},
+            {"area_m2", f.area_m2},
+            {"bounds", {{f.bounds.lo.x, f.bounds.lo.y, f.bounds.lo.z}, {f.bounds.hi.x, f.bounds.hi.y, f.bounds.hi.z}}}};
+}
+
+uint64_t peakMemory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace
+
+std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Stages& stages, int threads) {
+    const derive::Derivation& d = model.derivation;
+    Json json;
+    for (const auto& [name, seconds] : stages) json["stages"][name] = seconds;
+    json["shapes"] = d.tree.shapes.size();
+    json["terminals"] = d.terminals();
+    json["bonds"] = d.tree.bonds.size();
+    json["rules_applied"] = {{"classic", d.classic}, {"morphic", d.morphic}};
+    json["field"] = fieldFigures(model, meshed);
+    json["mesh"] = meshFigures(figures);
+    json["peak_memory_bytes"] = peakMemory_bytes();
+    json["threads"] = threadCount(threads);
+    json["seed"] = d.seed;
+    return json.dump(2) + "\n";
+}
+
+}  // namespace sgm::cli

@@ -1,0 +1,15 @@
+// The figures of one build, as JSON.
+// Enters: what each stage made and counted. Leaves: text. Assumes a mesh was made.
+#pragma once
+
+#include <string>
+
+#include "cli/pipeline.h"
+#include "modeler/mesh/validate.h"
+
+namespace sgm::cli {
+
+/// stages, shapes, terminals, bonds, rules_applied, field, mesh, peak_memory_bytes, threads, seed.
+std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Stages& stages, int threads);
+
+}  // namespace sgm::cli
