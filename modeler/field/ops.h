@@ -1,0 +1,305 @@
+// The op table: every elementary function a field can be made of, said once.
+// Enters: values of any vocabulary (modeler/field/values.h). Leaves: OpCode, its name and traits, and dispatch over the rows.
+// Assumes nothing but + − × ÷ √ min max and integers in the bodies: that keeps bits equal on all machines.
+//
+// To add an op: write a row (a struct, below or in a header of its own) and name it in `OpTable`. Nothing else changes:
+// tapes, kernels, intervals, derivatives, GLSL and the conformance tests are made from the row.
+//   name, arity                          operands: 1, 2, or `variadic`
+//   V apply(a) | apply(a, b) | apply(span<const V> args, uint32_t data)      the op itself, over any V
+// and, where the default won't do or could be better:
+//   commutative = true                   operands may be ordered
+//   I interval(…same operands as I…)     an enclosure of apply's floats, rounding included. The default is apply over
+//                                        intervals, enclosing because rounding is monotone; correlated operands widen it
+//   D gradient(…same operands as D…)     value (same bits as apply) and derivatives; the default is apply over Dual
+//   choose(span<const I> args, uint32_t data, span<MaskOf<V>> keep)          keep[i]: operand i can matter; dropping the
+//                                        others must leave the same bits. With one droppable operand left the op is that
+//                                        operand, bit for bit. Operands before `firstChoice` are never dropped
+//   owner                                which operand owns the surface (Owner)
+//   glsl                                 body of `float op_NAME(uint first, uint count, uint data)` where `arg(first + i)`
+//                                        reads operand i; needed by variadic rows, whose loops can't become one expression
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "modeler/field/graph.h"
+#include "modeler/field/ops_math.h"
+#if __has_include("modeler/field/kifs.h") && __has_include("modeler/field/noise.h") && __has_include("modeler/field/blend_op.h")
+#define SGM_HAS_OPAQUE
+#include "modeler/field/blend_op.h"
+#include "modeler/field/kifs.h"
+#include "modeler/field/noise.h"
+#endif
+#include "modeler/field/values.h"
+
+namespace sgm::field::ops {
+
+struct Input {
+    static constexpr std::string_view name = "input";
+    static constexpr int arity = leaf;
+};
+struct Literal {
+    static constexpr std::string_view name = "literal";
+    static constexpr int arity = leaf;
+};
+struct Slot {
+    static constexpr std::string_view name = "slot";
+    static constexpr int arity = leaf;
+};
+/// The operand itself; only tapes have it.
+struct Copy {
+    static constexpr std::string_view name = "copy";
+    static constexpr int arity = 1;
+    template <class V>
+    static V apply(V a) { return a; }
+};
+struct Add {
+    static constexpr std::string_view name = "add";
+    static constexpr int arity = 2;
+    static constexpr bool commutative = true;
+    template <class V>
+    static V apply(V a, V b) { return a + b; }
+};
+struct Sub {
+    static constexpr std::string_view name = "sub";
+    static constexpr int arity = 2;
+    template <class V>
+    static V apply(V a, V b) { return a - b; }
+};
+struct Mul {
+    static constexpr std::string_view name = "mul";
+    static constexpr int arity = 2;
+    static constexpr bool commutative = true;
+    template <class V>
+    static V apply(V a, V b) { return a * b; }
+};
+struct Div {
+    static constexpr std::string_view name = "div";
+    static constexpr int arity = 2;
+    template <class V>
+    static V apply(V a, V b) { return a / b; }
+};
+struct Neg {
+    static constexpr std::string_view name = "neg";
+    static constexpr int arity = 1;
+    template <class V>
+    static V apply(V a) { return -a; }
+};
+struct Abs {
+    static constexpr std::string_view name = "abs";
+    static constexpr int arity = 1;
+    template <class V>
+    static V apply(V a) { return abs(a); }
+};
+/// √ of what is positive, 0 of the rest.
+struct Sqrt {
+    static constexpr std::string_view name = "sqrt";
+    static constexpr int arity = 1;
+    template <class V>
+    static V apply(V a) { return sqrt(max(V(0.0f), a)); }
+};
+struct Square {
+    static constexpr std::string_view name = "square";
+    static constexpr int arity = 1;
+    template <class V>
+    static V apply(V a) { return a * a; }
+    template <class I>
+    static I interval(I a) {
+        const I m = abs(a);
+        return I{m.lo * m.lo, m.hi * m.hi};
+    }
+};
+struct Floor {
+    static constexpr std::string_view name = "floor";
+    static constexpr int arity = 1;
+    template <class V>
+    static V apply(V a) { return floor(a); }
+};
+/// Floor-modulo a − b·⌊a/b⌋.
+struct Mod {
+    static constexpr std::string_view name = "mod";
+    static constexpr int arity = 2;
+    template <class V>
+    static V apply(V a, V b) { return a - b * floor(a / b); }
+};
+
+struct Min {
+    static constexpr std::string_view name = "min";
+    static constexpr int arity = 2;
+    static constexpr bool commutative = true;
+    static constexpr Owner owner = Owner::Least;
+    template <class V>
+    static V apply(V a, V b) { return min(a, b); }
+    /// Strict: at a tie ±0 could differ.
+    template <class I, class M>
+    static void choose(std::span<const I> args, uint32_t, std::span<M> keep) {
+        keep[0] = !(args[1].hi < args[0].lo);
+        keep[1] = !(args[0].hi < args[1].lo);
+    }
+};
+struct Max {
+    static constexpr std::string_view name = "max";
+    static constexpr int arity = 2;
+    static constexpr bool commutative = true;
+    static constexpr Owner owner = Owner::Greatest;
+    template <class V>
+    static V apply(V a, V b) { return max(a, b); }
+    template <class I, class M>
+    static void choose(std::span<const I> args, uint32_t, std::span<M> keep) {
+        keep[0] = !(args[0].hi < args[1].lo);
+        keep[1] = !(args[1].hi < args[0].lo);
+    }
+};
+/// a·(1 − t) + b·t over (a, b, t): SG-M eq. 14.
+struct Morph {
+    static constexpr std::string_view name = "morph";
+    static constexpr int arity = variadic;
+    static constexpr Owner owner = Owner::Nearer;
+    static constexpr std::string_view glsl =
+        "float t = arg(first + 2u); return arg(first) * (1.0 - t) + arg(first + 1u) * t;";
+    template <class V>
+    static V apply(std::span<const V> args, uint32_t) {
+        return args[0] * (1.0f - args[2]) + args[1] * args[2];
+    }
+};
+
+struct Sin {
+    static constexpr std::string_view name = "sin";
+    static constexpr int arity = 1;
+    template <class V>
+    static V apply(V a) { return sine(a, 0.0f); }
+    template <class I>
+    static I interval(I a) { return around<I>(apply(centre(a)), radius(a) + 4 * mathError, -1 - mathError, 1 + mathError); }
+    template <class D>
+    static D gradient(D a) { return chain(a, apply(a.value), sine(a.value, 1.0f)); }
+};
+struct Cos {
+    static constexpr std::string_view name = "cos";
+    static constexpr int arity = 1;
+    template <class V>
+    static V apply(V a) { return sine(a, 1.0f); }
+    template <class I>
+    static I interval(I a) { return around<I>(apply(centre(a)), radius(a) + 4 * mathError, -1 - mathError, 1 + mathError); }
+    template <class D>
+    static D gradient(D a) { return chain(a, apply(a.value), -sine(a.value, 0.0f)); }
+};
+struct Exp {
+    static constexpr std::string_view name = "exp";
+    static constexpr int arity = 1;
+    template <class V>
+    static V apply(V a) { return exponential(a); }
+    template <class I>
+    static I interval(I a) {
+        return I{exponential(a.lo) * (1 - 4 * mathError), exponential(a.hi) * (1 + 4 * mathError)};
+    }
+    template <class D>
+    static D gradient(D a) {
+        const auto e = apply(a.value);
+        return chain(a, e, e);
+    }
+};
+/// Angle of (x, y) from the operands (y, x).
+struct Atan2 {
+    static constexpr std::string_view name = "atan2";
+    static constexpr int arity = 2;
+    template <class V>
+    static V apply(V y, V x) { return angleOf(y, x); }
+    /// Harmonic, so its extremes over a box are on the edges, and monotone along each: at the corners. Not across the cut.
+    template <class I>
+    static I interval(I y, I x) {
+        using V = typename I::Value;
+        const V a = angleOf(y.lo, x.lo), b = angleOf(y.lo, x.hi), c = angleOf(y.hi, x.lo), d = angleOf(y.hi, x.hi);
+        const auto cut = (x.lo <= 0.0f) & (y.lo <= 0.0f) & (y.hi >= 0.0f);
+        const V whole = 3.1415930f;
+        const V nan = (y.lo + y.hi) * 0.0f + (x.lo + x.hi) * 0.0f;
+        return I{select(cut, -whole, min(min(a, b), min(c, d)) - 4 * mathError) + nan,
+                 select(cut, whole, max(max(a, b), max(c, d)) + 4 * mathError) + nan};
+    }
+};
+
+}  // namespace sgm::field::ops
+
+namespace sgm::field {
+
+/// A type list; an op's code is its place here. Append only: codes are written into caches.
+template <class... Rows>
+struct TypeList {
+    static constexpr size_t size = sizeof...(Rows);
+};
+using OpTable = TypeList<ops::Input, ops::Literal, ops::Slot, ops::Copy, ops::Add, ops::Sub, ops::Mul, ops::Div, ops::Neg,
+                         ops::Abs, ops::Sqrt, ops::Square, ops::Floor, ops::Mod, ops::Min, ops::Max, ops::Morph, ops::Sin,
+                         ops::Cos, ops::Exp, ops::Atan2
+#ifdef SGM_HAS_OPAQUE
+                         , ops::Kifs, ops::Noise, ops::Blend
+#endif
+                         >;
+
+namespace detail {
+template <class Row, class... Rows>
+constexpr OpCode place(TypeList<Rows...>) {
+    uint16_t i = 0, at = 0;
+    ((std::is_same_v<Row, Rows> ? at = i : 0, ++i), ...);
+    return OpCode{at};
+}
+template <class Row, class... Rows>
+constexpr bool holds(TypeList<Rows...>) {
+    return (std::is_same_v<Row, Rows> || ...);
+}
+template <class Fn, class... Rows>
+constexpr decltype(auto) visit(OpCode code, Fn&& fn, TypeList<Rows...>) {
+    using R = decltype(fn.template operator()<ops::Input>());
+    using Call = R (*)(Fn&);
+    constexpr Call calls[] = {[](Fn& f) -> R { return f.template operator()<Rows>(); }...};
+    return calls[static_cast<size_t>(code)](fn);
+}
+}  // namespace detail
+
+/// The code of a row.
+template <class Row>
+    requires(detail::holds<Row>(OpTable{}))
+inline constexpr OpCode codeOf = detail::place<Row>(OpTable{});
+
+/// fn.operator()<Row>() for the row of `code`. All rows must give the same type.
+template <class Fn>
+constexpr decltype(auto) visitOp(OpCode code, Fn&& fn) {
+    return detail::visit(code, fn, OpTable{});
+}
+
+/// What a row says about itself without its body.
+struct OpTraits {
+    std::string_view name;
+    int arity;
+    bool commutative;
+    bool chooses;
+    uint32_t firstChoice;  ///< operands before it are never dropped
+    ops::Owner owner;
+    std::string_view glsl;  ///< empty where the body is made from apply
+};
+
+template <class Row>
+constexpr OpTraits traitsOf() {
+    OpTraits t{Row::name, Row::arity, false, false, 0, ops::Owner::First, {}};
+    if constexpr (requires { Row::commutative; }) t.commutative = Row::commutative;
+    if constexpr (requires { Row::firstChoice; }) t.firstChoice = Row::firstChoice;
+    if constexpr (requires { Row::owner; }) t.owner = Row::owner;
+    if constexpr (requires { Row::glsl; }) t.glsl = Row::glsl;
+    t.chooses = t.owner == ops::Owner::Least || t.owner == ops::Owner::Greatest;
+    return t;
+}
+
+namespace detail {
+template <class... Rows>
+constexpr std::array<OpTraits, sizeof...(Rows)> allTraits(TypeList<Rows...>) {
+    return {traitsOf<Rows>()...};
+}
+inline constexpr auto opTraits = allTraits(OpTable{});
+}  // namespace detail
+
+/// The traits of a code.
+constexpr const OpTraits& traits(OpCode code) { return detail::opTraits[static_cast<size_t>(code)]; }
+inline constexpr size_t opCount = OpTable::size;
+
+}  // namespace sgm::field
