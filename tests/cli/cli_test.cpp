@@ -1,0 +1,246 @@
+// The program as its user meets it: exit codes, files, messages. Runs the built `sgm` from the repository root.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+struct Run {
+    int code = -1;
+    std::string out;  ///< stdout and stderr together
+};
+
+Run sgm(const std::string& arguments) {
+    Run run;
+    FILE* pipe = popen((std::string(SGM_PROGRAM " ") + arguments + " 2>&1").c_str(), "r");
+    char buffer[4096];
+    for (size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) run.out.append(buffer, n);
+    const int status = pclose(pipe);
+    run.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return run;
+}
+
+std::string read(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+/// A folder of its own for each test, removed afterwards.
+class Cli : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("sgm-" + std::to_string(getpid()) + "-" + testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    std::string grammar(const std::string& text) const {
+        const std::string file = path("test.sgm");
+        std::ofstream(file) << "grammar 1\n" << text;
+        return file;
+    }
+    fs::path folder_;
+};
+
+TEST_F(Cli, WrongUsageIsTwo) {
+    EXPECT_EQ(sgm("").code, 2);
+    EXPECT_EQ(sgm("build").code, 2);
+    EXPECT_EQ(sgm("nonsense").code, 2);
+    EXPECT_EQ(sgm("build examples/joints.sgm -o " + path("a.xyz")).code, 2);
+    EXPECT_EQ(sgm("build examples/joints.sgm --start Nowhere").code, 2);
+    EXPECT_EQ(sgm("build examples/joints.sgm --set nothing=1").code, 2);
+    EXPECT_EQ(sgm("render examples/joints.sgm --size 12 -o " + path("a.png")).code, 2);
+    EXPECT_EQ(sgm("--help").code, 0);
+    EXPECT_EQ(sgm("build --help").code, 0);
+}
+
+TEST_F(Cli, MissingFileIsOne) {
+    const Run run = sgm("build " + path("none.sgm"));
+    EXPECT_EQ(run.code, 1);
+    EXPECT_NE(run.out.find("none.sgm"), std::string::npos);
+    EXPECT_EQ(sgm("build examples/joints.sgm -o " + path("no/such/folder.glb")).code, 1);
+}
+
+TEST_F(Cli, BrokenGrammarLeavesTheOldOutput) {
+    const std::string file = grammar("start A -> spere size 2\n");
+    std::ofstream(path("a.glb")) << "precious";
+    const Run run = sgm("build " + file + " -o " + path("a.glb"));
+    EXPECT_EQ(run.code, 1);
+    EXPECT_NE(run.out.find("sphere"), std::string::npos) << "names the mend: " << run.out;
+    EXPECT_NE(run.out.find("test.sgm:2:12"), std::string::npos) << run.out;
+    EXPECT_EQ(read(path("a.glb")), "precious");
+}
+
+TEST_F(Cli, EveryBadGrammarIsRefusedAndWritesNothing) {
+    size_t seen = 0;
+    for (const auto& entry : fs::directory_iterator("tests/bad")) {
+        if (entry.path().extension() != ".sgm") continue;
+        ++seen;
+        std::ofstream(path("bad.glb")) << "precious";
+        const Run run = sgm("build " + entry.path().string() + " -o " + path("bad.glb"));
+        EXPECT_EQ(run.code, 1) << entry.path() << ": " << run.out;
+        EXPECT_NE(run.out.find(": error: "), std::string::npos) << entry.path() << ": " << run.out;
+        EXPECT_EQ(read(path("bad.glb")), "precious") << entry.path();
+    }
+    EXPECT_GE(seen, 40u);
+}
+
+TEST_F(Cli, RunawayThatOnlyShowsWhileDerivingEndsInTheBudget) {
+    const std::string file = grammar("start A -> cube : Grow\nrule Grow when scope.x > 0m -> + cube size 100% at +x : Grow\n");
+    const auto start = std::chrono::steady_clock::now();
+    const Run run = sgm("build " + file + " --max-shapes 20000 -o " + path("a.glb"));
+    EXPECT_EQ(run.code, 3) << run.out;
+    EXPECT_NE(run.out.find("Grow"), std::string::npos) << run.out;
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+    EXPECT_FALSE(fs::exists(path("a.glb")));
+}
+
+TEST_F(Cli, ProvablyEndlessRuleIsRefusedByTheCheck) {
+    const Run run = sgm("check " + grammar("start A -> cube : Grow\nrule Grow -> + cube at +x to centre : Grow\n"));
+    EXPECT_EQ(run.code, 1) << run.out;
+    EXPECT_NE(run.out.find("Grow"), std::string::npos) << run.out;
+}
+
+TEST_F(Cli, SevenFormatsAtOnceAndTheReport) {
+    std::string command = "build examples/joints.sgm --resolution 48 --report " + path("r.json");
+    for (const char* ending : {"glb", "gltf", "obj", "ply", "stl", "off", "vdb"}) command += " -o " + path(std::string("a.") + ending);
+    const Run run = sgm(command);
+    ASSERT_EQ(run.code, 0) << run.out;
+    for (const char* ending : {"glb", "gltf", "obj", "ply", "stl", "off", "vdb"}) EXPECT_GT(fs::file_size(path(std::string("a.") + ending)), 1000u) << ending;
+    const Json report = Json::parse(read(path("r.json")));
+    for (const char* stage : {"parse", "check", "derive", "lower", "compile", "subdivide", "sample", "polygonize", "write"})
+        EXPECT_TRUE(report["stages"].contains(stage)) << stage;
+    EXPECT_EQ(report["mesh"]["boundary_edges"], 0);
+    EXPECT_EQ(report["mesh"]["nonmanifold_edges"], 0);
+    EXPECT_EQ(report["mesh"]["components"], 1);
+    EXPECT_GT(report["mesh"]["volume_m3"], 8.0);
+    EXPECT_GT(report["field"]["point_evaluations"], 0);
+    EXPECT_EQ(report["seed"], 1);
+}
+
+TEST_F(Cli, SameBytesAtAnyThreadCountAndForTheSameSeed) {
+    for (const char* example : {"grotto", "cumulus", "tower"}) {
+        std::string first;
+        for (const int threads : {1, 2, 5}) {
+            const std::string out = path("t.ply");
+            ASSERT_EQ(sgm(std::string("build examples/") + example + ".sgm --resolution 64 --seed 5 --threads " + std::to_string(threads) + " -o " + out).code, 0);
+            const std::string bytes = read(out);
+            if (first.empty()) first = bytes;
+            EXPECT_EQ(bytes == first, true) << example << " at " << threads << " threads";
+        }
+        ASSERT_EQ(sgm(std::string("build examples/") + example + ".sgm --resolution 64 --seed 6 -o " + path("s.ply")).code, 0);
+        if (std::string(example) != "tower") EXPECT_NE(read(path("s.ply")) == first, true) << "another seed, another " << example;
+    }
+}
+
+TEST_F(Cli, KilledInTheMiddleOfWritingLeavesTheOldFile) {
+    const std::string out = path("a.obj");
+    std::ofstream(out) << "precious";
+    const pid_t child = fork();
+    if (child == 0) {
+        freopen("/dev/null", "w", stdout);
+        execl(SGM_PROGRAM, SGM_PROGRAM, "build", "examples/tower.sgm", "--resolution", "400", "-o", out.c_str(), static_cast<char*>(nullptr));
+        _exit(127);
+    }
+    // Kill as soon as anything is being written beside the target.
+    bool writing = false;
+    for (int i = 0; i < 60000 && !writing && waitpid(child, nullptr, WNOHANG) == 0; ++i) {
+        for (const auto& entry : fs::directory_iterator(folder_)) writing |= entry.path().string() != out;
+        std::this_thread::sleep_for(std::chrono::microseconds(500));
+    }
+    ASSERT_TRUE(writing) << "the writer finished before it was seen";
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    EXPECT_EQ(read(out), "precious");
+}
+
+TEST_F(Cli, InterruptCancelsWith130AndLeavesNothing) {
+    const std::string out = path("a.glb");
+    const pid_t child = fork();
+    if (child == 0) {
+        freopen("/dev/null", "w", stderr);
+        execl(SGM_PROGRAM, SGM_PROGRAM, "build", "examples/grotto.sgm", "--resolution", "1500", "-o", out.c_str(), static_cast<char*>(nullptr));
+        _exit(127);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    kill(child, SIGINT);
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 130);
+    EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(Cli, FormatterIsIdempotentAndExamplesAreFormatted) {
+    for (const auto& entry : fs::directory_iterator("examples")) {
+        if (entry.path().extension() != ".sgm") continue;
+        const Run run = sgm("fmt --check " + entry.path().string());
+        EXPECT_EQ(run.code, 0) << run.out;
+    }
+    const std::string file = grammar("start   A->cube   size 2 // a comment\n");
+    EXPECT_EQ(sgm("fmt --check " + file).code, 1);
+    EXPECT_EQ(sgm("fmt " + file).code, 0);
+    EXPECT_NE(read(file).find("// a comment"), std::string::npos);
+    EXPECT_EQ(sgm("fmt --check " + file).code, 0);
+}
+
+TEST_F(Cli, ExamplesCheckFine) {
+    for (const auto& entry : fs::directory_iterator("examples")) {
+        if (entry.path().extension() != ".sgm") continue;
+        const Run run = sgm("check " + entry.path().string());
+        EXPECT_EQ(run.code, 0) << entry.path() << ": " << run.out;
+    }
+}
+
+TEST_F(Cli, CheckJsonIsMachineReadable) {
+    const Run run = sgm("check --json " + grammar("start A -> spere\n"));
+    EXPECT_EQ(run.code, 1);
+    const Json problems = Json::parse(run.out);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0]["line"], 2);
+    EXPECT_EQ(problems[0]["column"], 12);
+}
+
+TEST_F(Cli, ParamsAndTreePrintJson) {
+    const Json params = Json::parse(sgm("params --json examples/tower.sgm").out);
+    EXPECT_FALSE(params.empty());
+    const Json tree = Json::parse(sgm("tree --json examples/figure1.sgm --derive left").out);
+    EXPECT_FALSE(tree.empty());
+}
+
+TEST_F(Cli, ReferencePageIsUpToDate) { EXPECT_EQ(sgm("reference").out, read("docs/reference.md")) << "run: sgm reference > docs/reference.md"; }
+
+TEST_F(Cli, StylesAndSettingsChangeTheModel) {
+    const std::string file = grammar("param n = 2m in 1m..9m\nstart A -> cube size n\nstyle Big for A { n = 4m }\n");
+    auto volume = [&](const std::string& more) {
+        EXPECT_EQ(sgm("build " + file + " --resolution 32 --report " + path("r.json") + more).code, 0);
+        return Json::parse(read(path("r.json")))["mesh"]["volume_m3"].get<double>();
+    };
+    EXPECT_NEAR(volume(""), 8, 0.1);
+    EXPECT_NEAR(volume(" --style Big"), 64, 1);
+    EXPECT_NEAR(volume(" --style Big --set n=3m"), 27, 0.5);
+    EXPECT_EQ(sgm("build " + file + " --set n=10m").code, 1) << "outside its range";
+}
+
+TEST_F(Cli, SmoothAndSimplifyKeepTheMeshClosed) {
+    ASSERT_EQ(sgm("build examples/joints.sgm --resolution 64 --smooth 3 --simplify 0.3 --report " + path("r.json")).code, 0);
+    const Json mesh = Json::parse(read(path("r.json")))["mesh"];
+    EXPECT_EQ(mesh["boundary_edges"], 0);
+    EXPECT_EQ(mesh["nonmanifold_edges"], 0);
+}
+
+}  // namespace
