@@ -1,0 +1,149 @@
+#include "modeler/field/graph.h"
+
+#include <bit>
+#include <cassert>
+#include <optional>
+#include <utility>
+
+#include "modeler/core/random.h"
+#include "modeler/field/ops.h"
+
+namespace sgm::field {
+namespace {
+
+uint64_t hashOf(OpCode op, std::span<const Operand> operands, uint32_t data) {
+    uint64_t h = mix(static_cast<uint64_t>(op) << 32 | data);
+    for (const Operand& o : operands) h = combine(h, static_cast<uint64_t>(o.origin) << 32 | o.node);
+    return h;
+}
+
+bool isLiteral(const Node& n) { return n.op == codeOf<ops::Literal>; }
+float literalOf(const Node& n) { return std::bit_cast<float>(n.data); }
+
+/// The value of an op of one or two literals.
+std::optional<float> folded(OpCode op, float a, float b, size_t count) {
+    return visitOp(op, [&]<class Row>() -> std::optional<float> {
+        if constexpr (Row::arity == 1) {
+            if (count == 1) return Row::apply(a);
+        } else if constexpr (Row::arity == 2) {
+            if (count == 2) return Row::apply(a, b);
+        }
+        return {};
+    });
+}
+
+/// True where op(a, b) is a, bit for bit.
+bool keepsFirst(OpCode op, float b) {
+    return (b == 1.0f && (op == codeOf<ops::Mul> || op == codeOf<ops::Div>)) ||
+           (std::bit_cast<uint32_t>(b) == 0 && op == codeOf<ops::Sub>);
+}
+
+Num binary(OpCode op, Num a, Num b) { return a.graph().apply(op, {a, b}); }
+Num unary(OpCode op, Num a) { return a.graph().apply(op, {a}); }
+
+}  // namespace
+
+Graph::Graph() = default;
+
+Num Graph::x() { return {this, insert(codeOf<ops::Input>, {}, 0)}; }
+Num Graph::y() { return {this, insert(codeOf<ops::Input>, {}, 1)}; }
+Num Graph::z() { return {this, insert(codeOf<ops::Input>, {}, 2)}; }
+
+Num Graph::literal(float value) { return {this, insert(codeOf<ops::Literal>, {}, std::bit_cast<uint32_t>(value))}; }
+
+Num Graph::slot(SlotKey key, float value) {
+    const uint64_t h = combine(key.path, key.attribute);
+    const auto [first, last] = slotsByHash_.equal_range(h);
+    for (auto i = first; i != last; ++i)
+        if (slotKeys_[i->second] == key) {
+            constants_[i->second] = value;
+            return {this, insert(codeOf<ops::Slot>, {}, i->second)};
+        }
+    slotsByHash_.emplace(h, static_cast<SlotId>(constants_.size()));
+    constants_.push_back(value);
+    slotKeys_.push_back(key);
+    return {this, insert(codeOf<ops::Slot>, {}, static_cast<SlotId>(constants_.size() - 1))};
+}
+
+Num Graph::slot(float value) {
+    constants_.push_back(value);
+    slotKeys_.push_back({});
+    return {this, insert(codeOf<ops::Slot>, {}, static_cast<SlotId>(constants_.size() - 1))};
+}
+
+Num Graph::apply(OpCode op, std::span<const Operand> operands, uint32_t data) {
+    const OpTraits& row = traits(op);
+    assert(row.arity == ops::variadic || operands.size() == static_cast<size_t>(row.arity));
+    assert(row.arity != ops::leaf);
+    if (row.arity != ops::variadic) {
+        const Node& first = nodes_[operands.front().node];
+        const Node& last = nodes_[operands.back().node];
+        if (isLiteral(first) && isLiteral(last))
+            if (const auto value = folded(op, literalOf(first), literalOf(last), operands.size())) return literal(*value);
+        if (operands.size() == 2 && isLiteral(last) && keepsFirst(op, literalOf(last))) return {this, operands[0].node};
+        if (operands.size() == 2 && isLiteral(first) && row.commutative && keepsFirst(op, literalOf(first)))
+            return {this, operands[1].node};
+    }
+    if (row.commutative && operands.size() == 2 && operands[1].node < operands[0].node) {
+        const Operand ordered[] = {operands[1], operands[0]};
+        return {this, insert(op, ordered, data)};
+    }
+    return {this, insert(op, operands, data)};
+}
+
+Num Graph::apply(OpCode op, std::initializer_list<Num> operands, uint32_t data) {
+    std::vector<Operand> list;
+    list.reserve(operands.size());
+    for (const Num& n : operands) list.push_back({n.id(), 0});
+    return apply(op, list, data);
+}
+
+NodeId Graph::insert(OpCode op, std::span<const Operand> operands, uint32_t data) {
+    [[maybe_unused]] const bool mayOwn = traits(op).owner != ops::Owner::First;
+    for ([[maybe_unused]] const Operand& o : operands) assert(o.node < nodes_.size() && (mayOwn || o.origin == 0));
+    const uint64_t h = hashOf(op, operands, data);
+    const auto [first, last] = byHash_.equal_range(h);
+    for (auto i = first; i != last; ++i) {
+        const Node& n = nodes_[i->second];
+        if (n.op != op || n.data != data || n.count != operands.size()) continue;
+        const auto same = [](const Operand& a, const Operand& b) { return a.node == b.node && a.origin == b.origin; };
+        const auto seen = this->operands(i->second);
+        if (std::equal(seen.begin(), seen.end(), operands.begin(), same)) return i->second;
+    }
+    const auto id = static_cast<NodeId>(nodes_.size());
+    nodes_.push_back({op, data, static_cast<uint32_t>(operands_.size()), static_cast<uint32_t>(operands.size())});
+    operands_.insert(operands_.end(), operands.begin(), operands.end());
+    byHash_.emplace(h, id);
+    return id;
+}
+
+Num operator+(Num a, Num b) { return binary(codeOf<ops::Add>, a, b); }
+Num operator-(Num a, Num b) { return binary(codeOf<ops::Sub>, a, b); }
+Num operator*(Num a, Num b) { return a.id() == b.id() ? square(a) : binary(codeOf<ops::Mul>, a, b); }
+Num operator/(Num a, Num b) { return binary(codeOf<ops::Div>, a, b); }
+Num operator-(Num a) { return unary(codeOf<ops::Neg>, a); }
+Num operator+(Num a, float b) { return a + a.graph().literal(b); }
+Num operator+(float a, Num b) { return b.graph().literal(a) + b; }
+Num operator-(Num a, float b) { return a - a.graph().literal(b); }
+Num operator-(float a, Num b) { return b.graph().literal(a) - b; }
+Num operator*(Num a, float b) { return a * a.graph().literal(b); }
+Num operator*(float a, Num b) { return b.graph().literal(a) * b; }
+Num operator/(Num a, float b) { return a / a.graph().literal(b); }
+Num operator/(float a, Num b) { return b.graph().literal(a) / b; }
+Num min(Num a, Num b) { return binary(codeOf<ops::Min>, a, b); }
+Num max(Num a, Num b) { return binary(codeOf<ops::Max>, a, b); }
+Num min(Num a, float b) { return min(a, a.graph().literal(b)); }
+Num max(Num a, float b) { return max(a, a.graph().literal(b)); }
+Num abs(Num a) { return unary(codeOf<ops::Abs>, a); }
+Num sqrt(Num a) { return unary(codeOf<ops::Sqrt>, a); }
+Num square(Num a) { return unary(codeOf<ops::Square>, a); }
+Num floor(Num a) { return unary(codeOf<ops::Floor>, a); }
+Num mod(Num a, Num b) { return binary(codeOf<ops::Mod>, a, b); }
+Num sin(Num a) { return unary(codeOf<ops::Sin>, a); }
+Num cos(Num a) { return unary(codeOf<ops::Cos>, a); }
+Num exp(Num a) { return unary(codeOf<ops::Exp>, a); }
+Num atan2(Num y, Num x) { return binary(codeOf<ops::Atan2>, y, x); }
+Num dot(Point a, Point b) { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
+Num length(Point a) { return sqrt(dot(a, a)); }
+
+}  // namespace sgm::field
