@@ -1,0 +1,97 @@
+#include "modeler/export/exporter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+
+#include "modeler/export/formats.h"
+#include "modeler/volume/atomic_file.h"
+
+namespace sgm::exporter {
+namespace {
+
+constexpr ExportOption uvOption{"uv", "box", "box|none", "texture coordinates in metres, projected along the nearest axis"};
+constexpr ExportOption gltfOptions[] = {uvOption};
+
+constexpr Exporter table[] = {
+    {".glb", "glTF 2.0, binary: normals, texture coordinates, a primitive a material", false, gltfOptions, writeGlb},
+    {".gltf", "glTF 2.0 as JSON, with its buffer inside", false, gltfOptions, writeGltf},
+};
+
+/// `parts`, each turned to text by `name`, with `separator` between them.
+template <class Parts, class Name>
+std::string joined(const Parts& parts, std::string_view separator, Name name) {
+    std::string text;
+    for (const auto& part : parts) {
+        if (!text.empty()) text += separator;
+        text += name(part);
+    }
+    return text;
+}
+
+/// True when `choices` ("y|z") has `value`; every value will do where there are none.
+bool allowed(std::string_view choices, std::string_view value) {
+    if (choices.empty()) return true;
+    for (size_t begin = 0; begin <= choices.size();) {
+        const size_t end = std::min(choices.find('|', begin), choices.size());
+        if (choices.substr(begin, end - begin) == value) return true;
+        begin = end + 1;
+    }
+    return false;
+}
+
+Status checkOptions(const ExportInput& input, const Exporter& row) {
+    for (const auto& [name, value] : input.options) {
+        const auto known = std::find_if(row.options.begin(), row.options.end(),
+                                        [&](const ExportOption& o) { return o.name == name; });
+        if (known == row.options.end())
+            return Error{Error::Kind::Usage,
+                         fmt::format("{} has no option '{}'; it has: {}", row.extension, name,
+                                     joined(row.options, ", ", [](const ExportOption& o) { return o.name; }))};
+        if (!allowed(known->choices, value))
+            return Error{Error::Kind::Usage, fmt::format("option '{}' of {} is one of {}, not '{}'", name,
+                                                         row.extension, known->choices, value)};
+    }
+    return Done{};
+}
+
+Status checkInput(const ExportInput& input, const Exporter& row, const Path& path) {
+    if (row.wantsVolume && !input.volume) return volume::writeError(path, "there is no volume");
+    if (!row.wantsVolume && (!input.mesh || input.mesh->triangleCount() == 0))
+        return volume::writeError(path, "the mesh has no triangles");
+    return checkOptions(input, row);
+}
+
+}  // namespace
+
+std::span<const Exporter> exporters() { return table; }
+
+const Exporter* findExporter(std::string_view extension) {
+    std::string lower(extension);
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    const auto row = std::find_if(std::begin(table), std::end(table), [&](const Exporter& e) { return e.extension == lower; });
+    return row == std::end(table) ? nullptr : row;
+}
+
+Status write(const ExportInput& input, const Path& path) {
+    const Exporter* row = findExporter(path.extension().string());
+    if (!row)
+        return Error{Error::Kind::Usage,
+                     fmt::format("no format for '{}'; the extensions are {}", path.string(),
+                                 joined(table, " ", [](const Exporter& e) { return e.extension; }))};
+    if (Status status = checkInput(input, *row, path); !status.ok()) return status;
+    const Provenance nobody;
+    ExportInput complete = input;
+    if (!complete.provenance) complete.provenance = &nobody;
+    try {
+        return volume::replaceFile(path, [&](const Path& temporary) { return row->write(complete, temporary, path); });
+    } catch (const std::bad_alloc&) {
+        return Error{Error::Kind::Budget, fmt::format("cannot write '{}': out of memory", path.string())};
+    } catch (const std::exception& e) {
+        return volume::writeError(path, e.what());
+    }
+}
+
+}  // namespace sgm::exporter

@@ -1,0 +1,66 @@
+// A file written front to back through one large buffer.
+// Enters: bytes, text and numbers. Leaves: the file, or the first error. Assumes a little-endian machine, as every format
+// here is little-endian.
+#pragma once
+
+#include <bit>
+#include <charconv>
+#include <filesystem>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "modeler/core/result.h"
+#include "modeler/core/vec.h"
+
+namespace sgm::exporter {
+
+static_assert(std::endian::native == std::endian::little);
+
+/// Keeps the first error and ignores all later writes, so that a writer asks once, at `finish`.
+class OutFile {
+public:
+    /// Truncates `path`; `target` is the name that error messages use.
+    OutFile(const std::filesystem::path& path, std::filesystem::path target);
+    ~OutFile();
+    OutFile(const OutFile&) = delete;
+    OutFile& operator=(const OutFile&) = delete;
+
+    void bytes(const void* data, size_t size);
+    void text(std::string_view s) { bytes(s.data(), s.size()); }
+    /// The value's own bytes.
+    template <class T>
+    void raw(const T& value) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        bytes(&value, sizeof value);
+    }
+    /// The shortest decimal text that reads back as the same number.
+    template <class T>
+    void number(T value) {
+        char digits[32];
+        const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+        bytes(digits, static_cast<size_t>(end - digits));
+    }
+    /// Three numbers with `separator` between them.
+    template <class T>
+    void numbers(Vec3<T> v, std::string_view separator) {
+        number(v.x);
+        text(separator);
+        number(v.y);
+        text(separator);
+        number(v.z);
+    }
+    /// Writes what is left and closes. Call it last, once.
+    Status finish();
+
+private:
+    void flush();
+
+    std::filesystem::path target_;
+    std::vector<char> buffer_;
+    size_t used_ = 0;
+    int fd_ = -1;
+    int error_ = 0;  ///< errno of the first failure
+};
+
+}  // namespace sgm::exporter

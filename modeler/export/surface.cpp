@@ -1,0 +1,117 @@
+#include "modeler/export/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sgm::exporter {
+namespace {
+
+constexpr uint32_t facings = 6;
+constexpr uint32_t none = 0xffffffffu;
+
+/// The group (material · 6 + facing) of every triangle, in mesh order.
+std::vector<uint32_t> groupTriangles(const mesh::Mesh& mesh, const Provenance& provenance, bool cutByFacing) {
+    Vertices vertices(mesh);
+    std::vector<uint32_t> groups;
+    groups.reserve(mesh.triangleCount());
+    for (const mesh::Chunk& chunk : mesh.chunks)
+        for (size_t i = 0; i < chunk.triangles.size(); ++i) {
+            const mesh::Triangle t = chunk.triangles[i];
+            uint32_t group = materialIndex(provenance, chunk.origins[i]) * facings;
+            if (cutByFacing) {
+                const Vec3f a = vertices.position(t.x), b = vertices.position(t.y), c = vertices.position(t.z);
+                group += static_cast<uint32_t>(facing(cross(b - a, c - a)));
+            }
+            groups.push_back(group);
+        }
+    return groups;
+}
+
+/// Counting sort of the mesh's triangles by group; fills the patches' triangle ranges.
+std::vector<mesh::Triangle> sortTriangles(const mesh::Mesh& mesh, const std::vector<uint32_t>& groups,
+                                          std::vector<Patch>& patches) {
+    const uint32_t groupCount = groups.empty() ? 0 : *std::max_element(groups.begin(), groups.end()) + 1;
+    std::vector<uint32_t> next(groupCount + 1, 0);
+    for (const uint32_t g : groups) ++next[g + 1];
+    for (uint32_t g = 0; g < groupCount; ++g) {
+        if (next[g + 1] > 0) {
+            Patch patch;
+            patch.material = g / facings;
+            patch.facing = static_cast<int>(g % facings);
+            patch.firstTriangle = next[g];
+            patch.triangleCount = next[g + 1];
+            patches.push_back(patch);
+        }
+        next[g + 1] += next[g];
+    }
+    std::vector<mesh::Triangle> sorted(groups.size());
+    size_t i = 0;
+    for (const mesh::Chunk& chunk : mesh.chunks)
+        for (const mesh::Triangle t : chunk.triangles) sorted[next[groups[i++]]++] = t;
+    return sorted;
+}
+
+}  // namespace
+
+const mesh::Chunk& Vertices::chunkOf(uint32_t v) {
+    const auto& chunks = mesh_.chunks;
+    if (v < first() || v - first() >= chunks[at_].positions.size()) {
+        const auto after = std::upper_bound(chunks.begin(), chunks.end(), v,
+                                            [](uint32_t value, const mesh::Chunk& c) { return value < c.firstVertex; });
+        at_ = static_cast<size_t>(after - chunks.begin()) - 1;
+    }
+    return chunks[at_];
+}
+
+uint32_t materialIndex(const Provenance& provenance, OriginId origin) {
+    const uint32_t material = provenance.parts[origin < provenance.parts.size() ? origin : 0].material;
+    return material < provenance.materials.size() ? material : 0;
+}
+
+Vec3f unitNormal(Vec3f n) {
+    const float l = length(n);
+    return l > 0 && std::isfinite(l) ? n / l : Vec3f{0, 1, 0};
+}
+
+int facing(Vec3f d) {
+    const Vec3f a{std::abs(d.x), std::abs(d.y), std::abs(d.z)};
+    const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+    return 2 * axis + (d[axis] < 0 ? 1 : 0);
+}
+
+std::array<float, 2> boxProjection(Vec3f p, int facing) {
+    switch (facing) {
+        case 0: return {-p.z, p.y};
+        case 1: return {p.z, p.y};
+        case 2: return {p.x, -p.z};
+        case 3: return {p.x, p.z};
+        case 4: return {p.x, p.y};
+        default: return {-p.x, p.y};
+    }
+}
+
+PatchedMesh cutIntoPatches(const mesh::Mesh& mesh, const Provenance& provenance, bool cutByFacing) {
+    PatchedMesh out;
+    out.triangles = sortTriangles(mesh, groupTriangles(mesh, provenance, cutByFacing), out.patches);
+    const size_t vertexCount = mesh.vertexCount();
+    out.vertices.reserve(vertexCount);
+    // A vertex met in an earlier patch has a number below this patch's first: it is met anew.
+    std::vector<uint32_t> patchVertex(vertexCount, none);
+    for (Patch& patch : out.patches) {
+        patch.firstVertex = static_cast<uint32_t>(out.vertices.size());
+        for (uint32_t t = patch.firstTriangle; t < patch.firstTriangle + patch.triangleCount; ++t)
+            for (int corner = 0; corner < 3; ++corner) {
+                uint32_t& index = out.triangles[t][corner];
+                uint32_t& known = patchVertex[index];
+                if (known == none || known < patch.firstVertex) {
+                    known = static_cast<uint32_t>(out.vertices.size());
+                    out.vertices.push_back(index);
+                }
+                index = known;
+            }
+        patch.vertexCount = static_cast<uint32_t>(out.vertices.size()) - patch.firstVertex;
+    }
+    return out;
+}
+
+}  // namespace sgm::exporter

@@ -1,0 +1,58 @@
+// What writers need of a mesh beyond its chunks: vertices by global index, materials by triangle, texture charts.
+// Enters: a Mesh and its Provenance. Leaves: flat lists in a fixed order. Assumes the mesh's promises (mesh.h).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "modeler/core/provenance.h"
+#include "modeler/mesh/mesh.h"
+
+namespace sgm::exporter {
+
+/// Looks a mesh's vertices up by global index; quick where neighbouring look-ups fall into one chunk.
+class Vertices {
+public:
+    explicit Vertices(const mesh::Mesh& mesh) : mesh_(mesh) {}
+    const Vec3f& position(uint32_t v) { return chunkOf(v).positions[v - first()]; }
+    const Vec3f& normal(uint32_t v) { return chunkOf(v).normals[v - first()]; }
+
+private:
+    uint32_t first() const { return mesh_.chunks[at_].firstVertex; }
+    const mesh::Chunk& chunkOf(uint32_t v);
+
+    const mesh::Mesh& mesh_;
+    size_t at_ = 0;  ///< chunk of the last look-up
+};
+
+/// Index into provenance.materials of the part `origin`; 0 where either is unknown.
+uint32_t materialIndex(const Provenance& provenance, OriginId origin);
+
+/// `n` at unit length; +y where it has none.
+Vec3f unitNormal(Vec3f n);
+
+/// The axis a direction points along most: +x -x +y -y +z -z as 0 … 5; ties go to the earlier axis.
+int facing(Vec3f direction);
+/// Texture coordinates in metres of a point seen against the axis `facing`, u to the right and v up, never mirrored.
+std::array<float, 2> boxProjection(Vec3f p, int facing);
+
+/// A connected run of triangles with one material, and one facing where texture coordinates are wanted.
+struct Patch {
+    uint32_t material = 0;
+    int facing = 0;
+    uint32_t firstVertex = 0, vertexCount = 0;      ///< in PatchedMesh::vertices
+    uint32_t firstTriangle = 0, triangleCount = 0;  ///< in PatchedMesh::triangles
+};
+
+/// A mesh cut along the borders of materials and facings: vertices there occur once per patch.
+struct PatchedMesh {
+    std::vector<Patch> patches;             ///< none empty; ascending by material, then facing
+    std::vector<uint32_t> vertices;         ///< global mesh vertex of each patch vertex
+    std::vector<mesh::Triangle> triangles;  ///< corners index `vertices`
+};
+
+/// Sorts triangles into patches, stable within a patch. Linear in the mesh; `cutByFacing` asks for texture charts.
+PatchedMesh cutIntoPatches(const mesh::Mesh& mesh, const Provenance& provenance, bool cutByFacing);
+
+}  // namespace sgm::exporter

@@ -1,0 +1,26 @@
+// All-or-nothing files: what stood at the target stays until the new content is complete and on the disk.
+// Enters: a target path and a function that fills a temporary file. Leaves: the target replaced, or untouched and an Error.
+// Assumes POSIX: rename(2) within one folder is atomic. It lives in the lowest room that writes files.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "modeler/core/result.h"
+
+namespace sgm::volume {
+
+/// Makes an empty file beside `target`, lets `fill` write it, flushes it to disk and renames it over `target`, keeping the
+/// permissions of a file that stood there. A symbolic link is followed. On any failure the temporary is removed and the
+/// target is as it was; Error::Input names the path and the cause. A killed process leaves at most the temporary
+/// (".sgm-<pid>-<n>.tmp").
+Status replaceFile(const std::filesystem::path& target,
+                   const std::function<Status(const std::filesystem::path& temporary)>& fill);
+
+/// "cannot write 'path': cause", the form of every file error here.
+Error writeError(const std::filesystem::path& path, const std::string& cause);
+/// The same, with the cause of a system error number.
+Error writeError(const std::filesystem::path& path, int errorNumber);
+
+}  // namespace sgm::volume
