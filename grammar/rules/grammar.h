@@ -52,7 +52,7 @@ enum class Fn : uint32_t {
     Min, Max, Abs, Floor, Ceil, Round, Sqrt, Sin, Cos, Clamp, Lerp, If,
     RotX, RotY, RotZ,  ///< a Rotation from an angle
     Rgb,
-    Count,  ///< number of live or derived shapes of a symbol: count(Name)
+    Count,  ///< number of live or derived shapes of a symbol: count(Name); args[0] is a Word whose n[0] is the SymbolId
 };
 /// What `check … expect` may ask of a derivation.
 enum class Figure : uint32_t { Bonds, Overlaps, Shapes, Terminals, Classic, Morphic, Floating };
@@ -133,6 +133,7 @@ struct Rule {
     Body body;
     std::optional<Body> finally_;
     bool morphic = false;   ///< R_M: its body morphs; else R_C
+    bool finallyMorphic = false;  ///< the same of `finally_`, which is a step of its own
     uint32_t locals = 0;    ///< frame size for `for` variables and `i`
     uint32_t stepLocal = none;  ///< the local that holds i in 1 … n of `repeat`
 };
@@ -148,7 +149,8 @@ struct Symbol {
     bool terminal = false;
     SourceSpan span;
     std::optional<Solid> solid;   ///< terminal with a solid; without one it is a cube
-    uint32_t material = none;     ///< index into Grammar::materials, where colour or roughness were given
+    uint32_t material = none;     ///< index into Grammar::materials, where colour or roughness were given (at default parameters)
+    std::vector<Attribute> look;  ///< those of Color, Rough, Metal that depend on parameters: they act on every shape of the symbol
     std::vector<Joint> joints;    ///< declared ones, besides the solid's own
     std::vector<uint32_t> rules;  ///< rules for it, in file order
 };
