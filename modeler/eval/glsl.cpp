@@ -1,0 +1,152 @@
+#include "modeler/eval/glsl.h"
+
+#include <bit>
+#include <cstdio>
+
+#include "modeler/eval/values_glsl.h"
+
+namespace sgm::eval {
+
+std::string GlslText::literal(float value) {
+    char text[48];
+    // Nine digits name every float exactly; what isn't a number or is infinite has no literal.
+    if (value - value == 0.0f)
+        std::snprintf(text, sizeof text, "(%.9e)", static_cast<double>(value));
+    else
+        std::snprintf(text, sizeof text, "uintBitsToFloat(%uu)", std::bit_cast<uint32_t>(value));
+    return text;
+}
+
+namespace {
+
+using field::OpCode;
+
+// An instruction is one texel:
+//   x  op in bits 0–7, flags, output register in bits 16–31
+//   y  first operand: a register, or the float itself; of a listed op the texel of its first operand
+//   z  second operand; of a listed op the number of operands
+//   w  the op's structural integer
+// A listed operand is a texel too: y register or float, x non-zero for a float.
+// A tape starts with a texel (end of code, result is a float, result, 0).
+constexpr uint32_t aIsFloat = 1u << 8, bIsFloat = 1u << 9, isHeavy = 1u << 10;
+
+/// Ops with long bodies are kept apart: the interpreter visits them once each, not at every instruction.
+bool heavy(OpCode op) {
+    const auto& row = field::traits(op);
+    return row.arity == field::ops::variadic || row.name == "sin" || row.name == "cos" || row.name == "exp" || row.name == "atan2";
+}
+
+/// Body of the switch case for an op of one or two operands; it sets `value` from `a` and `b`.
+std::string caseBody(OpCode op) {
+    return field::visitOp(op, []<class Row>() -> std::string {
+        GlslBody body;
+        const GlslText a("a", &body), b("b", &body);
+        if constexpr (Row::arity == 1)
+            return body.statements + "value = " + Row::apply(a).text + ";";
+        else if constexpr (Row::arity == 2)
+            return body.statements + "value = " + Row::apply(a, b).text + ";";
+        else if constexpr (Row::arity == field::ops::variadic)
+            return "value = op_" + std::string(Row::name) + "(q.y, q.z, q.w);";
+        else
+            return {};
+    });
+}
+
+std::string functions(const OpSet& ops) {
+    std::string text;
+    for (size_t i = 0; i < field::opCount; ++i) {
+        const auto& row = field::traits(OpCode(i));
+        if (ops[i] && row.arity == field::ops::variadic)
+            text += "float op_" + std::string(row.name) + "(uint first, uint count, uint data) {" + std::string(row.glsl) + "}\n";
+    }
+    return text;
+}
+
+std::string cases(const OpSet& ops, bool heavyOnes) {
+    std::string text;
+    for (size_t i = 0; i < field::opCount; ++i) {
+        const OpCode op{static_cast<uint16_t>(i)};
+        if (ops[i] && field::traits(op).arity != field::ops::leaf && heavy(op) == heavyOnes)
+            text += "        case " + std::to_string(i) + "u: { " + caseBody(op) + " break; }  // " + std::string(field::traits(op).name) + "\n";
+    }
+    return text;
+}
+
+/// One step of a kind: loads its operands, switches, stores.
+std::string step(const std::string& caseText) {
+    return "      float a = (q.x & 256u) != 0u ? uintBitsToFloat(q.y) : registers[q.y & registerMask];\n"
+           "      float b = (q.x & 512u) != 0u ? uintBitsToFloat(q.z) : registers[q.z & registerMask];\n"
+           "      float value = a;\n"
+           "      switch (q.x & 255u) {\n" + caseText + "      default: break;\n      }\n"
+           "      registers[q.x >> 16] = value;\n";
+}
+
+void append(std::vector<uint32_t>& buffer, uint32_t x, uint32_t y, uint32_t z, uint32_t w) {
+    buffer.insert(buffer.end(), {x, y, z, w});
+}
+
+/// A source as a word: the register, or the bits of the constant.
+uint32_t wordOf(const Tape& tape, Source source) {
+    return isConstant(source) ? std::bit_cast<uint32_t>(tape.constants()[indexOf(source)]) : indexOf(source);
+}
+
+}  // namespace
+
+OpSet opsOf(const Tape& tape) {
+    OpSet ops;
+    ops.set(static_cast<size_t>(field::codeOf<field::ops::Copy>));
+    for (const Instruction& i : tape.code()) ops.set(static_cast<size_t>(i.op));
+    return ops;
+}
+
+std::string interpreterGlsl(uint32_t maxRegisters, const OpSet& ops) {
+    // A power of two, so that an operand word that isn't a register can be masked into range.
+    const uint32_t registers = std::bit_ceil(std::max(maxRegisters, 4u));
+    const std::string light = cases(ops, false), long_ = cases(ops, true);
+    std::string text =
+        "uniform usamplerBuffer tapes;\n"
+        "const uint registerMask = " + std::to_string(registers - 1) + "u;\n"
+        "float registers[" + std::to_string(registers) + "];\n"
+        "float arg(uint texel) {\n"
+        "  uvec4 q = texelFetch(tapes, int(texel));\n"
+        "  return q.x != 0u ? uintBitsToFloat(q.y) : registers[q.y & registerMask];\n"
+        "}\n" + functions(ops) +
+        "float evaluateField(uint tapeStart, vec3 p) {\n"
+        "  uvec4 head = texelFetch(tapes, int(tapeStart));\n"
+        "  registers[0] = p.x; registers[1] = p.y; registers[2] = p.z;\n"
+        "  uint at = tapeStart + 1u;\n";
+    // Short ops run in a loop of their own that stops before each long one.
+    if (!long_.empty()) text += "  while (at < head.x) {\n";
+    text += "    uvec4 q = uvec4(0u);\n"
+            "    while (at < head.x) {\n"
+            "      q = texelFetch(tapes, int(at));\n"
+            "      if ((q.x & 1024u) != 0u) break;\n" + step(light) +
+            "      ++at;\n"
+            "    }\n";
+    if (!long_.empty()) text += "    if (at < head.x) {\n" + step(long_) + "      ++at;\n    }\n  }\n";
+    return text + "  return head.y != 0u ? uintBitsToFloat(head.z) : registers[head.z & registerMask];\n}\n";
+}
+
+uint32_t appendTape(const Tape& tape, std::vector<uint32_t>& buffer) {
+    const auto start = static_cast<uint32_t>(buffer.size() / 4);
+    const auto end = start + 1 + static_cast<uint32_t>(tape.size());
+    append(buffer, end, isConstant(tape.result()), wordOf(tape, tape.result()), 0);
+    std::vector<uint32_t> lists;
+    for (const Instruction& i : tape.code()) {
+        const uint32_t x = static_cast<uint32_t>(i.op) | i.out << 16 | (heavy(i.op) ? isHeavy : 0);
+        if (field::traits(i.op).arity != field::ops::variadic) {
+            const uint32_t flags = (isConstant(i.a) ? aIsFloat : 0) | (isConstant(i.b) ? bIsFloat : 0);
+            append(buffer, x | flags, wordOf(tape, i.a), wordOf(tape, i.b), i.data);
+            continue;
+        }
+        append(buffer, x, end + static_cast<uint32_t>(lists.size() / 4), i.count, i.data);
+        for (uint16_t k = 0; k < i.count; ++k) {
+            const Source source = i.count > 2 ? tape.sources()[i.a + k] : k == 0 ? i.a : i.b;
+            append(lists, isConstant(source), wordOf(tape, source), 0, 0);
+        }
+    }
+    buffer.insert(buffer.end(), lists.begin(), lists.end());
+    return start;
+}
+
+}  // namespace sgm::eval

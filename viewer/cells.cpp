@@ -1,0 +1,109 @@
+#include "viewer/cells.h"
+
+#include <array>
+
+#include "modeler/core/parallel.h"
+#include "modeler/eval/evaluate.h"
+
+namespace sgm::viewer {
+namespace {
+
+/// A tape this short isn't worth another cut.
+constexpr size_t shortTape = 12;
+
+/// A cell to be cut: where it is, and its tape.
+struct Pending {
+    uint32_t word;  ///< place in CellTree::nodes that will point to it
+    Vec3f low;
+    eval::Tape tape;
+};
+
+/// The 64 children of one cell.
+struct Children {
+    std::array<CellState, 64> states;
+    std::array<Vec3f, 64> lows;
+    std::vector<eval::Tape> tapes;  ///< of the near ones, in order
+};
+
+/// States and tapes of the children of `cell`, each of `edge`.
+Children childrenOf(const Pending& cell, float edge, float margin, eval::Workspace& workspace) {
+    Children children;
+    std::array<Box3f, 64> boxes;
+    std::array<eval::Range, 64> ranges;
+    for (int i = 0; i < 64; ++i) {
+        const Vec3f step{static_cast<float>(i & 3), static_cast<float>(i >> 2 & 3), static_cast<float>(i >> 4)};
+        const Vec3f low = cell.low + step * edge;
+        children.lows[size_t(i)] = low;
+        boxes[size_t(i)] = Box3f{low, low + Vec3f{edge, edge, edge}}.inflated(edge / 32);
+    }
+    evaluateRanges(cell.tape, {boxes.data(), boxes.size()}, ranges.data(), workspace);
+    for (size_t i = 0; i < 64; ++i) {
+        children.states[i] = ranges[i].lo > margin    ? CellState::Outside
+                             : ranges[i].hi < -margin ? CellState::Inside
+                                                      : CellState::Near;
+        if (children.states[i] == CellState::Near) children.tapes.push_back(shorten(cell.tape, i, workspace));
+    }
+    return children;
+}
+
+}  // namespace
+
+uint32_t CellTree::find(Vec3f p) const {
+    Vec3f q = (p - low) / edge * 4.0f;
+    uint32_t node = 0;
+    for (;;) {
+        uint32_t child = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float k = std::clamp(std::floor(q[axis]), 0.0f, 3.0f);
+            q[axis] = (q[axis] - k) * 4.0f;
+            child |= static_cast<uint32_t>(k) << (2 * axis);
+        }
+        const uint32_t word = nodes[size_t(node) * 64 + child];
+        if (stateOf(word) != CellState::Node) return word;
+        node = indexOf(word);
+    }
+}
+
+Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float margin, int threads, Progress* progress) {
+    CellTree tree;
+    tree.edge = maxComponent(bounds.size()) * 1.001f;
+    tree.low = bounds.centre() - Vec3f{tree.edge, tree.edge, tree.edge} * 0.5f;
+    tree.margin = margin;
+    std::vector<eval::Workspace> workspaces(size_t(threadCount(threads)));
+    std::vector<Pending> pending;
+    pending.push_back({0, tree.low, tape});
+    float edge = tree.edge;
+    for (int level = 0; level < CellTree::depth && !pending.empty(); ++level) {
+        edge /= 4;
+        if (progress) progress->begin("cells", pending.size());
+        std::vector<Children> children(pending.size());
+        parallelFor(pending.size(), threads, progress, [&](size_t i, int worker) {
+            children[i] = childrenOf(pending[i], edge, margin, workspaces[size_t(worker)]);
+            if (progress) progress->tick();
+        });
+        if (cancelled(progress)) return Error{Error::Kind::Cancelled, "cancelled"};
+        std::vector<Pending> next;
+        for (size_t i = 0; i < pending.size(); ++i) {
+            const auto node = static_cast<uint32_t>(tree.nodes.size() / 64);
+            if (node > 0) tree.nodes[pending[i].word] = uint32_t(CellState::Node) << 30 | node;
+            size_t taken = 0;
+            for (size_t c = 0; c < 64; ++c) {
+                const CellState state = children[i].states[c];
+                uint32_t index = 0;
+                if (state == CellState::Near) {
+                    eval::Tape& shortened = children[i].tapes[taken++];
+                    index = static_cast<uint32_t>(tree.tapes.size());
+                    if (level + 1 < CellTree::depth && shortened.size() > shortTape)
+                        next.push_back({static_cast<uint32_t>(tree.nodes.size()), children[i].lows[c], std::move(shortened)});
+                    else
+                        tree.tapes.push_back(std::move(shortened));
+                }
+                tree.nodes.push_back(uint32_t(state) << 30 | index);
+            }
+        }
+        pending = std::move(next);
+    }
+    return tree;
+}
+
+}  // namespace sgm::viewer

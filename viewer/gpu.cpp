@@ -1,0 +1,208 @@
+#include "viewer/gpu.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+namespace sgm::viewer {
+namespace {
+
+Error internal(std::string message) { return {Error::Kind::Internal, std::move(message)}; }
+
+/// The displays worth trying, in order: surfaceless (Mesa, no hardware needed), then the first EGL devices.
+std::vector<EGLDisplay> displays() {
+    std::vector<EGLDisplay> found;
+    if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
+        found.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+    if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") &&
+        epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device")) {
+        EGLDeviceEXT devices[16];
+        EGLint count = 0;
+        if (eglQueryDevicesEXT(16, devices, &count))
+            for (EGLint i = 0; i < count; ++i)
+                found.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
+    }
+    return found;
+}
+
+/// A GL 4.3 core context without a surface on `display`, current on this thread, or EGL_NO_CONTEXT.
+EGLContext contextOn(EGLDisplay display) {
+    if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return EGL_NO_CONTEXT;
+    const EGLint configWanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+    const EGLint contextWanted[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3,
+                                    EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    EGLConfig config = nullptr;
+    EGLint configs = 0;
+    EGLContext context = EGL_NO_CONTEXT;
+    if (eglBindAPI(EGL_OPENGL_API) && eglChooseConfig(display, configWanted, &config, 1, &configs) && configs == 1)
+        context = eglCreateContext(display, config, EGL_NO_CONTEXT, contextWanted);
+    if (context != EGL_NO_CONTEXT && !eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
+        eglDestroyContext(display, context);
+        context = EGL_NO_CONTEXT;
+    }
+    if (context == EGL_NO_CONTEXT) eglTerminate(display);
+    return context;
+}
+
+Result<uint32_t> compileStage(GLenum stage, const std::string& source) {
+    const GLuint shader = glCreateShader(stage);
+    const char* text = source.c_str();
+    glShaderSource(shader, 1, &text, nullptr);
+    glCompileShader(shader);
+    GLint good = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+    if (good) return shader;
+    char log[4096] = "";
+    glGetShaderInfoLog(shader, sizeof log, nullptr, log);
+    glDeleteShader(shader);
+    return internal(std::string("the driver refuses a shader: ") + log);
+}
+
+Result<Program> link(std::initializer_list<std::pair<GLenum, const std::string*>> stages) {
+    Program program(glCreateProgram());
+    for (const auto& [stage, source] : stages) {
+        const Result<uint32_t> shader = compileStage(stage, *source);
+        if (!shader) return shader.error();
+        glAttachShader(program.id(), *shader);
+        glDeleteShader(*shader);
+    }
+    glLinkProgram(program.id());
+    GLint good = 0;
+    glGetProgramiv(program.id(), GL_LINK_STATUS, &good);
+    if (good) return program;
+    char log[4096] = "";
+    glGetProgramInfoLog(program.id(), sizeof log, nullptr, log);
+    return internal(std::string("the driver can't link a shader: ") + log);
+}
+
+Texture makeTexture(GLenum format, int width, int height) {
+    GLuint id = 0;
+    glGenTextures(1, &id);
+    glBindTexture(GL_TEXTURE_2D, id);
+    glTexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    return Texture(id);
+}
+
+}  // namespace
+
+namespace detail {
+void freeProgram(uint32_t id) { glDeleteProgram(id); }
+void freeBuffer(uint32_t id) { glDeleteBuffers(1, &id); }
+void freeTexture(uint32_t id) { glDeleteTextures(1, &id); }
+void freeFramebuffer(uint32_t id) { glDeleteFramebuffers(1, &id); }
+void freeVertexArray(uint32_t id) { glDeleteVertexArrays(1, &id); }
+}  // namespace detail
+
+Result<GpuContext> GpuContext::create() {
+    for (const EGLDisplay display : displays())
+        if (const EGLContext context = contextOn(display); context != EGL_NO_CONTEXT) return GpuContext(display, context);
+    return internal("EGL offers no OpenGL 4.3 context, neither surfaceless nor on a device (Mesa's software driver is enough)");
+}
+
+GpuContext::GpuContext(GpuContext&& other) noexcept
+    : display_(std::exchange(other.display_, nullptr)), context_(std::exchange(other.context_, nullptr)) {}
+
+GpuContext::~GpuContext() {
+    if (!context_) return;
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display_, context_);
+    eglTerminate(display_);
+}
+
+std::string GpuContext::description() const {
+    const auto text = [](GLenum name) { return std::string(reinterpret_cast<const char*>(glGetString(name))); };
+    return text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
+}
+
+Result<Program> Program::compute(const std::string& source) { return link({{GL_COMPUTE_SHADER, &source}}); }
+Result<Program> Program::draw(const std::string& vertex, const std::string& fragment) {
+    return link({{GL_VERTEX_SHADER, &vertex}, {GL_FRAGMENT_SHADER, &fragment}});
+}
+void Program::use() const { glUseProgram(id()); }
+void Program::set(const char* name, float value) const { glProgramUniform1f(id(), glGetUniformLocation(id(), name), value); }
+void Program::set(const char* name, int value) const { glProgramUniform1i(id(), glGetUniformLocation(id(), name), value); }
+void Program::set(const char* name, uint32_t value) const {
+    glProgramUniform1ui(id(), glGetUniformLocation(id(), name), value);
+}
+void Program::set(const char* name, Vec3f v) const {
+    glProgramUniform3f(id(), glGetUniformLocation(id(), name), v.x, v.y, v.z);
+}
+void Program::set(const char* name, const std::array<float, 16>& matrix) const {
+    glProgramUniformMatrix4fv(id(), glGetUniformLocation(id(), name), 1, GL_FALSE, matrix.data());
+}
+
+Buffer Buffer::ofBytes(const void* bytes, size_t size) {
+    GLuint id = 0;
+    glGenBuffers(1, &id);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, id);
+    glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(size), bytes, GL_DYNAMIC_DRAW);
+    return Buffer(id);
+}
+void Buffer::bindStorage(uint32_t binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id()); }
+void Buffer::read(void* bytes, size_t size) const {
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, id());
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(size), bytes);
+}
+
+TexelBuffer TexelBuffer::of(std::span<const uint32_t> words, int wordsPerTexel) {
+    TexelBuffer texels;
+    texels.buffer_ = Buffer::of(words);
+    GLuint id = 0;
+    glGenTextures(1, &id);
+    texels.texture_ = Texture(id);
+    glBindTexture(GL_TEXTURE_BUFFER, id);
+    glTexBuffer(GL_TEXTURE_BUFFER, wordsPerTexel == 1 ? GL_R32UI : GL_RGBA32UI, texels.buffer_.id());
+    return texels;
+}
+void TexelBuffer::bind(uint32_t unit) const {
+    glActiveTexture(GL_TEXTURE0 + unit);
+    glBindTexture(GL_TEXTURE_BUFFER, texture_.id());
+}
+
+void dispatch(size_t count) {
+    glDispatchCompute(static_cast<GLuint>((count + 63) / 64), 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void finish() { glFinish(); }
+
+Result<RenderTarget> RenderTarget::create(int width, int height, int colorCount) {
+    RenderTarget target;
+    target.width = width;
+    target.height = height;
+    target.depth = makeTexture(GL_DEPTH_COMPONENT32F, width, height);
+    GLuint id = 0;
+    glGenFramebuffers(1, &id);
+    target.framebuffer = Framebuffer(id);
+    glBindFramebuffer(GL_FRAMEBUFFER, id);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth.id(), 0);
+    std::vector<GLenum> attachments;
+    for (int i = 0; i < colorCount; ++i) {
+        target.colors.push_back(makeTexture(GL_RGBA32F, width, height));
+        attachments.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+        glFramebufferTexture2D(GL_FRAMEBUFFER, attachments.back(), GL_TEXTURE_2D, target.colors.back().id(), 0);
+    }
+    glDrawBuffers(colorCount, attachments.data());
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        return internal("the driver refuses a 32-bit float render target");
+    return target;
+}
+
+void RenderTarget::bind() const {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+    glViewport(0, 0, width, height);
+}
+
+std::vector<float> RenderTarget::read(int color) const {
+    std::vector<float> pixels(size_t(width) * size_t(height) * 4);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer.id());
+    glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(color));
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, pixels.data());
+    return pixels;
+}
+
+}  // namespace sgm::viewer

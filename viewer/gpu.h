@@ -1,0 +1,142 @@
+// The GPU without a window: an OpenGL 4.3 context over EGL, programs, buffers and render targets that free themselves.
+// Enters: shader text and bytes. Leaves: bytes. Assumes one context at a time, current on the thread that made it;
+// every object below must die before its context does.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "modeler/core/result.h"
+#include "modeler/core/vec.h"
+
+namespace sgm::viewer {
+
+/// An OpenGL core context that needs no display: EGL's surfaceless platform, else its device platform.
+class GpuContext {
+public:
+    /// Makes a context current on this thread; Error::Internal says what EGL lacks.
+    static Result<GpuContext> create();
+    GpuContext(GpuContext&& other) noexcept;
+    GpuContext& operator=(GpuContext&&) = delete;
+    ~GpuContext();
+    /// Renderer and version, as the driver calls itself.
+    std::string description() const;
+
+private:
+    GpuContext(void* display, void* context) : display_(display), context_(context) {}
+    void* display_;
+    void* context_;
+};
+
+/// A GL object's name and the function that frees it; move-only.
+template <void (*Free)(uint32_t)>
+class GpuHandle {
+public:
+    GpuHandle() = default;
+    explicit GpuHandle(uint32_t id) : id_(id) {}
+    GpuHandle(GpuHandle&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+    GpuHandle& operator=(GpuHandle&& other) noexcept {
+        std::swap(id_, other.id_);
+        return *this;
+    }
+    ~GpuHandle() {
+        if (id_) Free(id_);
+    }
+    uint32_t id() const { return id_; }
+
+private:
+    uint32_t id_ = 0;
+};
+
+namespace detail {
+void freeProgram(uint32_t id);
+void freeBuffer(uint32_t id);
+void freeTexture(uint32_t id);
+void freeFramebuffer(uint32_t id);
+void freeVertexArray(uint32_t id);
+}  // namespace detail
+
+using VertexArray = GpuHandle<detail::freeVertexArray>;
+using Texture = GpuHandle<detail::freeTexture>;
+using Framebuffer = GpuHandle<detail::freeFramebuffer>;
+
+/// A linked program; `set` finds a uniform by name and ignores names the compiler removed.
+class Program : public GpuHandle<detail::freeProgram> {
+public:
+    using GpuHandle::GpuHandle;
+    /// From one compute shader. The error holds the driver's log.
+    static Result<Program> compute(const std::string& source);
+    /// From a vertex and a fragment shader.
+    static Result<Program> draw(const std::string& vertex, const std::string& fragment);
+
+    void use() const;
+    void set(const char* name, float value) const;
+    void set(const char* name, int value) const;
+    void set(const char* name, uint32_t value) const;
+    void set(const char* name, Vec3f value) const;
+    /// A column-major 4 × 4 matrix.
+    void set(const char* name, const std::array<float, 16>& matrix) const;
+};
+
+/// A buffer of plain values for shader storage, vertices or indices.
+class Buffer : public GpuHandle<detail::freeBuffer> {
+public:
+    using GpuHandle::GpuHandle;
+    static Buffer ofBytes(const void* bytes, size_t size);
+    template <class T>
+    static Buffer of(std::span<const T> values) {
+        return ofBytes(values.data(), values.size_bytes());
+    }
+    /// Makes the buffer a shader storage block's `binding`.
+    void bindStorage(uint32_t binding) const;
+    /// Copies `size` bytes from its start; waits for the shaders that write it.
+    void read(void* bytes, size_t size) const;
+    template <class T>
+    std::vector<T> read(size_t count) const {
+        std::vector<T> values(count);
+        read(values.data(), count * sizeof(T));
+        return values;
+    }
+};
+
+/// Words that shaders read as a usamplerBuffer: on software GL the quickest way to random words.
+class TexelBuffer {
+public:
+    /// `wordsPerTexel` 1 (R32UI) or 4 (RGBA32UI).
+    static TexelBuffer of(std::span<const uint32_t> words, int wordsPerTexel);
+    /// Makes it the texture of a unit.
+    void bind(uint32_t unit) const;
+
+private:
+    Buffer buffer_;
+    Texture texture_;
+};
+
+/// Runs the program in use over `count` invocations of local size 64; it must compare its index with `count`.
+void dispatch(size_t count);
+
+/// Waits until every command so far is done, so that work stays in short pieces.
+void finish();
+
+/// A colour (RGBA, 32-bit float) and depth target with as many colour textures as asked.
+struct RenderTarget {
+    Framebuffer framebuffer;
+    std::vector<Texture> colors;
+    Texture depth;
+    int width = 0, height = 0;
+
+    /// Error::Internal when the driver refuses the format. `colorCount` 0 … 4; a depth-only target is a shadow map.
+    static Result<RenderTarget> create(int width, int height, int colorCount);
+    /// Draws go here until the next bind.
+    void bind() const;
+    /// RGBA of a colour texture, bottom row first.
+    std::vector<float> read(int color) const;
+};
+
+}  // namespace sgm::viewer

@@ -1,0 +1,29 @@
+// What both pictures share: the view, the sun, the ground and how their numbers reach a shader.
+// Enters: a camera and bounds. Leaves: uniforms. Assumes the parts view, sky, light, ground of viewer/shaders/.
+#pragma once
+
+#include "viewer/gpu.h"
+#include "viewer/offscreen.h"
+
+namespace sgm::viewer {
+
+/// The camera's frame. `right` and `up` reach the picture's edges at distance 1 along `forward`.
+struct View {
+    Vec3d eye, forward, right, up;
+    double pixelAngle;  ///< radians a pixel, at the centre
+};
+View viewOf(const Camera& camera, int width, int height);
+
+/// Towards the sun: behind the left shoulder of the default camera.
+Vec3f sunDirection();
+
+/// Sets every uniform of the shared parts.
+void setScene(const Program& program, const Box3f& bounds, const PictureOptions& options);
+
+/// Error::Input when a picture of this size, with these samples and bounds, can't be drawn.
+Status checkPicture(const Box3f& bounds, const PictureOptions& options);
+
+/// 8 bits of sRGB from display light 0 … 1, four floats a pixel.
+Image encode(const std::vector<float>& rgba, int width, int height);
+
+}  // namespace sgm::viewer

@@ -1,0 +1,82 @@
+// The second pass: normals, shadow and occlusion from the field, light, tone.
+layout(local_size_x = 64) in;
+layout(std430, binding = 1) readonly buffer Jobs { uvec2 jobs[]; };
+layout(std430, binding = 2) readonly buffer Hits { vec4 hits[]; };
+layout(std430, binding = 3) readonly buffer MaterialOfJob { uint materialOfJob[]; };
+layout(std430, binding = 4) readonly buffer Materials { vec4 materials[]; };  // two a material: colour, roughness; metallic
+layout(std430, binding = 5) writeonly buffer Colors { vec4 colors[]; };       // display light, 0 … 1, linear
+uniform uint firstJob, jobCount;
+
+/// Tetrahedral differences; the cell's tape is exact a little beyond the cell.
+vec3 normalAt(vec3 p, float h) {
+    Cell cell = cellAt(p);
+    if (cell.state != cellNear) return vec3(0.0, 1.0, 0.0);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {
+        vec3 corner = vec3(float(((i + 3) >> 1) & 1), float((i >> 1) & 1), float(i & 1)) * 2.0 - 1.0;
+        sum += corner * evaluateField(cell.tape, p + corner * h);
+    }
+    return side * normalize(sum + vec3(0.0, 1e-20, 0.0));
+}
+
+/// Share of the sun's disc that p sees: along the ray, the least clearance in units of the disc's radius there.
+float sunlightAt(vec3 p) {
+    const float sunRadius = 0.035;  // radians
+    vec3 inverseDirection = inverseOf(sunDirection);
+    vec2 span = boundsSpan(p, inverseDirection);
+    float t = max(span.x, 2e-4 * sceneSize), clearance = 1.0;
+    for (int step = 0; step < 96 && t <= span.y && clearance > -1.0; ++step) {
+        vec3 q = p + t * sunDirection;
+        Cell cell = cellAt(q);
+        while (cell.state == cellOutside && t <= span.y) {
+            t += cellExit(cell, q, inverseDirection);
+            q = p + t * sunDirection;
+            cell = cellAt(q);
+        }
+        if (t > span.y) break;
+        float value = cell.state == cellInside ? -margin : side * evaluateField(cell.tape, q);
+        float disc = min(sunRadius * t, margin);
+        clearance = min(clearance, value / disc);
+        t += max(abs(value) * inverseLipschitz * 0.9, max(0.15 * disc, 4e-4 * sceneSize));
+    }
+    // Area of a disc left of a chord, as a smooth step.
+    clearance = clamp(0.5 + 0.5 * clearance, 0.0, 1.0);
+    return clearance * clearance * (3.0 - 2.0 * clearance);
+}
+
+/// Share of the sky that p sees, from the field at growing distances along the normal.
+float opennessAt(vec3 p, vec3 normal) {
+    float hidden = 0.0, weight = 0.0;
+    float reach = margin;
+    for (int i = 0; i < 5; ++i) {
+        float w = 1.0;
+        float free = clamp(distanceAt(p + normal * reach) / reach, -0.2, 1.0);
+        hidden += w * (1.0 - free);
+        weight += w;
+        reach *= 0.5;
+    }
+    return clamp(1.0 - 0.95 * hidden / weight, 0.03, 1.0);
+}
+
+vec3 colorOf(uint job) {
+    vec4 hit = hits[job];
+    if (hit.w == hitSky) return skyColor(hit.xyz);
+    vec3 toEye = normalize(eye - hit.xyz);
+    float distance = length(eye - hit.xyz);
+    vec3 normal = vec3(0.0, 1.0, 0.0);
+    if (hit.w == hitObject) normal = normalAt(hit.xyz, max(2e-5 * sceneSize, 0.4 * pixelAngle * distance));
+    vec3 start = hit.xyz + normal * max(1e-4 * sceneSize, 0.5 * pixelAngle * distance);
+    float sunlight = 0.0;
+    if (dot(normal, sunDirection) > 0.0) sunlight = sunlightAt(start);
+    float openness = opennessAt(hit.xyz, normal);
+    if (hit.w == hitGround) return shadeGround(hit.xyz, toEye, distance, sunlight, openness);
+    uint m = materialOfJob[job] * 2u;
+    Surface s = Surface(hit.xyz, normal, materials[m].rgb, materials[m].a, materials[m + 1u].x);
+    return hazed(shade(s, toEye, sunlight, openness), distance, skyColor(-toEye));
+}
+
+void main() {
+    if (gl_GlobalInvocationID.x >= jobCount) return;
+    uint i = firstJob + gl_GlobalInvocationID.x;
+    colors[i] = vec4(tonemap(colorOf(i)), 1.0);
+}
