@@ -11,12 +11,22 @@
 namespace sgm::exporter {
 namespace {
 
-constexpr ExportOption uvOption{"uv", "box", "box|none", "texture coordinates in metres, projected along the nearest axis"};
-constexpr ExportOption gltfOptions[] = {uvOption};
+constexpr ExportOption uv{"uv", "box", "box|none", "texture coordinates in metres, projected along the nearest axis"};
+constexpr ExportOption up{"up", "y", "y|z", "the axis that points up in the file"};
+constexpr ExportOption unit{"unit", "m", "m|cm|mm", "the length of one unit in the file"};
+constexpr ExportOption gltfOptions[] = {uv};
+constexpr ExportOption texturedOptions[] = {up, unit, uv};
+constexpr ExportOption plainOptions[] = {up, unit};
 
 constexpr Exporter table[] = {
     {".glb", "glTF 2.0, binary: normals, texture coordinates, a primitive a material", false, gltfOptions, writeGlb},
     {".gltf", "glTF 2.0 as JSON, with its buffer inside", false, gltfOptions, writeGltf},
+    {".obj", "Wavefront OBJ, with a .mtl beside it", false, texturedOptions, writeObj},
+    {".ply", "PLY, binary: normals, texture coordinates s t, colours, an origin a face", false, plainOptions, writePly},
+    {".stl", "STL, binary: positions only", false, plainOptions, writeStl},
+    {".off", "OFF: positions and triangles as text", false, plainOptions, writeOff},
+    {".usda", "OpenUSD as text: normals, display colours, a subset and preview surface a material", false, texturedOptions,
+     writeUsda},
 };
 
 /// `parts`, each turned to text by `name`, with `separator` between them.

@@ -73,6 +73,16 @@ Vec3f unitNormal(Vec3f n) {
     return l > 0 && std::isfinite(l) ? n / l : Vec3f{0, 1, 0};
 }
 
+Rgb8 srgb(Vec3f linear) {
+    Rgb8 bytes;
+    for (int i = 0; i < 3; ++i) {
+        const float v = std::clamp(linear[i], 0.0f, 1.0f);
+        const float s = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
+        bytes[static_cast<size_t>(i)] = static_cast<uint8_t>(std::lround(255 * s));
+    }
+    return bytes;
+}
+
 int facing(Vec3f d) {
     const Vec3f a{std::abs(d.x), std::abs(d.y), std::abs(d.z)};
     const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;

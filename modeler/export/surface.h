@@ -32,6 +32,11 @@ uint32_t materialIndex(const Provenance& provenance, OriginId origin);
 /// `n` at unit length; +y where it has none.
 Vec3f unitNormal(Vec3f n);
 
+/// Eight bits a channel, as colour bytes in files are read.
+using Rgb8 = std::array<uint8_t, 3>;
+/// A linear colour (clipped to 0 … 1) with the transfer curve of sRGB (IEC 61966-2-1).
+Rgb8 srgb(Vec3f linear);
+
 /// The axis a direction points along most: +x -x +y -y +z -z as 0 … 5; ties go to the earlier axis.
 int facing(Vec3f direction);
 /// Texture coordinates in metres of a point seen against the axis `facing`, u to the right and v up, never mirrored.
