@@ -1,0 +1,48 @@
+#include "modeler/field/primitives.h"
+
+#include "modeler/field/solids.h"
+
+namespace sgm::field {
+
+namespace {
+
+using Kind = ParameterKind;
+
+constexpr PrimitiveParameter torusParameters[] = {
+    {"tube", Kind::Share, 0.25, 0.02, 0.5, "radius of the tube as a share of the outer radius; the tube is as high as the scope"},
+};
+constexpr PrimitiveParameter roofParameters[] = {
+    {"round", Kind::Share, 0, 0, 1, "0 is the pyramid's sides, 1 an ellipsoid over the same foot"},
+};
+
+constexpr PrimitiveJoint apex[] = {{"apex", {0, 1, 0}, {0, 1, 0}}};
+constexpr PrimitiveJoint ridge[] = {{"ridge", {0, 1, 0}, {0, 1, 0}}};
+constexpr PrimitiveJoint poles[] = {{"north", {0, 1, 0}, {0, 1, 0}}, {"south", {0, -1, 0}, {0, -1, 0}}};
+
+constexpr Primitive table[] = {
+    {"cube", "Box: the whole scope. An exact distance.", {}, solids::cube},
+    {"sphere", "Ball filling the scope; an ellipsoid when the scope isn't a cube.", {}, solids::ellipsoid},
+    {"ellipsoid", "Ellipsoid filling the scope, its axes along the scope's.", {}, solids::ellipsoid, true, poles},
+    {"torus", "Ring about y.", torusParameters, solids::torus},
+    {"cylinder", "Cylinder along y over the ellipse of the scope's x and z.", {}, solids::cylinder},
+    {"cone", "Cone along y: foot on the scope's bottom face, apex in the middle of the top.", {}, solids::cone, true, apex},
+    {"pyramid", "Pyramid over the scope's bottom face, apex in the middle of the top.", {}, solids::pyramid, true, apex},
+    {"prism", "Triangular prism along z: a gable over the scope's bottom face.", {}, solids::prism, true, ridge},
+    {"wedge", "Ramp: the scope below the plane from its upper -x edge to its lower +x edge.", {}, solids::wedge},
+    {"capsule", "Segment along y with round ends of the scope's least half-size.", {}, solids::capsule},
+    {"roof", "Pyramid sides morphed to an ellipsoid, cut at the foot (the scope's bottom face).", roofParameters, solids::roof,
+     true, apex},
+    {"halfspace", "Everything below the scope's middle plane y = 0. Unbounded: may only cut.", {}, solids::halfspace, false},
+};
+
+}  // namespace
+
+std::span<const Primitive> primitives() { return table; }
+
+const Primitive* findPrimitive(std::string_view name) {
+    for (const Primitive& row : table)
+        if (row.name == name) return &row;
+    return nullptr;
+}
+
+}  // namespace sgm::field

@@ -1,0 +1,37 @@
+// The field of each solid in the primitive table.
+// Enters: PrimitiveInput (primitives.h). Leaves: a Field filling the scope [−half, half]; the input's arguments are read in
+// the row's order. Assumes half-sizes > 0. SG-M III-E with the errata in docs/papers.md; a formula on coordinates scaled
+// by the half-sizes is multiplied by the least scale, so that it stays 1-Lipschitz (f(p/s)·min s).
+#pragma once
+
+#include "modeler/field/primitives.h"
+
+namespace sgm::field::solids {
+
+// solids_round.cpp
+Field ellipsoid(const PrimitiveInput& in);  ///< also the sphere: a true distance when the half-sizes are equal
+Field torus(const PrimitiveInput& in);      ///< (tube)
+Field cylinder(const PrimitiveInput& in);
+Field cone(const PrimitiveInput& in);
+Field capsule(const PrimitiveInput& in);
+
+// solids_flat.cpp
+Field cube(const PrimitiveInput& in);
+Field pyramid(const PrimitiveInput& in);
+Field prism(const PrimitiveInput& in);
+Field wedge(const PrimitiveInput& in);
+Field roof(const PrimitiveInput& in);  ///< (round)
+Field halfspace(const PrimitiveInput& in);
+
+// solid_kifs.cpp
+Field kifs(const PrimitiveInput& in);  ///< (center, scale, fold, turn, passes, terminal, form, bailout)
+
+/// The scope's box about the origin; a solid whose field is a maximum with the cube's or the ellipsoid's has f ≥ 0 outside
+/// it in every bit, because −, ÷ and √ round monotonically.
+Box3f scopeBox(const PrimitiveInput& in);
+/// `g` as a growth: rounded down by more than the float formulas' own rounding.
+float growth(double g);
+/// The exact distance to the scope's box.
+Num boxDistance(const Point& p, const Point& half);
+
+}  // namespace sgm::field::solids

@@ -1,0 +1,67 @@
+// Solids bounded by planes, and the roof that morphs between planes and an ellipsoid.
+// A maximum of planes is exact inside a convex solid but too small outside its edges; the maximum with the scope's own
+// distance changes nothing inside (the solid lies in its scope) and gives a growth of 1 outside.
+#include "modeler/field/ops.h"
+#include "modeler/field/solids.h"
+
+namespace sgm::field::solids {
+
+namespace {
+
+/// Signed distance to the plane through (half, −halfY) and (0, halfY), the slanted face over an axis: `across` ≥ 0 is the
+/// distance from that axis, `y` the height.
+Num slope(Num across, Num y, Num half, Num halfY) {
+    const Num rise = 2.0f * halfY;
+    return ((across - half) * rise + (y + halfY) * half) / sqrt(square(rise) + square(half));
+}
+
+Num pyramidSides(const PrimitiveInput& in) {
+    return max(slope(abs(in.p.x), in.p.y, in.half.x, in.half.y), slope(abs(in.p.z), in.p.y, in.half.z, in.half.y));
+}
+
+Field insideScope(const PrimitiveInput& in, Num planes) {
+    return {max(planes, boxDistance(in.p, in.half)), scopeBox(in), 1, growth(1)};
+}
+
+}  // namespace
+
+Box3f scopeBox(const PrimitiveInput& in) {
+    const Vec3f h = in.halfValue.as<float>();
+    return {-h, h};
+}
+
+float growth(double g) { return static_cast<float>(g * (1 - 2e-6)); }
+
+Num boxDistance(const Point& p, const Point& half) {
+    const Point q{abs(p.x) - half.x, abs(p.y) - half.y, abs(p.z) - half.z};
+    const Point out{max(q.x, 0.0f), max(q.y, 0.0f), max(q.z, 0.0f)};
+    return length(out) + min(max(max(q.x, q.y), q.z), 0.0f);
+}
+
+Field cube(const PrimitiveInput& in) { return {boxDistance(in.p, in.half), scopeBox(in), 1, growth(1)}; }
+
+Field pyramid(const PrimitiveInput& in) { return insideScope(in, pyramidSides(in)); }
+
+Field prism(const PrimitiveInput& in) { return insideScope(in, slope(abs(in.p.x), in.p.y, in.half.x, in.half.y)); }
+
+Field wedge(const PrimitiveInput& in) {
+    const Num plane = (in.p.x * in.half.y + in.p.y * in.half.x) / sqrt(square(in.half.x) + square(in.half.y));
+    return insideScope(in, plane);
+}
+
+// Papers guide, section 3 "Architecture": max(lerp(pyramid sides, ellipsoid (w, H, d), a), −y), y from the foot. Morphing
+// a closed pyramid instead would curl its base up. The foot is a face of the scope, so the cut is part of the box.
+Field roof(const PrimitiveInput& in) {
+    const Num foot = in.p.y + in.half.y, height = 2.0f * in.half.y;
+    const Num dome = (length(Point{in.p.x / in.half.x, foot / height, in.p.z / in.half.z}) - 1.0f) *
+                     min(min(in.half.x, in.half.z), height);
+    Graph& graph = in.p.x.graph();
+    return insideScope(in, graph.apply(codeOf<ops::Morph>, {pyramidSides(in), dome, in.arguments[0].node[0]}));
+}
+
+Field halfspace(const PrimitiveInput& in) {
+    constexpr float inf = Box3f::limit();
+    return {in.p.y, {{-inf, -inf, -inf}, {inf, 0, inf}}, 1, 1};
+}
+
+}  // namespace sgm::field::solids
