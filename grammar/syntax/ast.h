@@ -38,8 +38,8 @@ struct Expr {
         Error,     ///< stands where an expression could not be read; a diagnostic was given
     };
     Kind kind = Kind::Error;
-    SourceSpan span;
-    double number = 0;
+    SourceSpan span;     ///< with its parentheses, where it has some
+    double number = 0;   ///< as written: 30% is 30 with the unit "%"
     std::string unit, text;
     std::vector<Expr> args;
     std::vector<std::string> argNames;
@@ -53,7 +53,7 @@ struct Body;
 /// label: body in a split, inset, faces or choose block; `{ … }*` repeats its cases.
 struct Case {
     SourceSpan span;
-    std::optional<Expr> label;  ///< a size, a weight, or a word ("rim", "side", "tag K")
+    std::optional<Expr> label;  ///< a size, a weight, or a word ("rim", "side"); empty for `tag K` and a repeated group
     Name tag;                   ///< the K of `tag K:`
     bool repeated = false;      ///< { cases }*
     std::vector<Case> cases;    ///< of a repeated group
@@ -65,7 +65,7 @@ struct Attribute {
     SourceSpan span;
     Name name;
     Operation::Id id{};
-    std::vector<Expr> args;
+    std::vector<Expr> args;   ///< one per row argument that was given; of `with a = 2m`: the Name a, then 2m
     std::vector<Case> cases;  ///< for operations with a block
 };
 
@@ -76,7 +76,7 @@ struct Element {
     SourceSpan span;
     Operator op = Operator::None;
     std::vector<Attribute> before;  ///< prefix attributes (change the matched scope when there is no operator)
-    std::optional<Expr> solid;      ///< Shape: a Name or Call; empty when only attributes are given
+    std::optional<Expr> solid;      ///< Shape: a Name or Call; empty when only attributes are given (all in `before`)
     std::vector<Attribute> after;
     Name live;                      ///< `: Name`
     std::shared_ptr<Body> body;     ///< Group: ( … ); For, While, When: { … }

@@ -1,12 +1,69 @@
 // Text to syntax tree, by recursive descent. The grammar of the language stands below, whole.
 // Enters: a Source. Leaves: an Ast of everything that could be read, and diagnostics for the rest. Never throws; recovery
 // restarts at a keyword in column one, so one run shows all problems and a slip is reported once.
+//
+//   file        = "grammar" "1" { declaration } .                        a declaration's word stands in column one
+//   declaration = use | param | map | terminal | start | rule | derive | lsystem | style | check | override .
+//
+//   use         = "use" TEXT .
+//   param       = "param" NAME "=" expr { "in" expr | "of" NAME {"," NAME} | TEXT | "group" NAME | "key" NAME } .
+//   map         = "map" NAME "=" TEXT [ "as" expr ] .
+//   terminal    = "terminal" NAME {"," NAME} [ "=" solid ]
+//                 { attribute | "joint" NAME "at" argument "facing" argument } .
+//   start       = "start" NAME "->" body .
+//   rule        = "rule" [ NAME ":" ] NAME { "beside" NAME | "when" expr | "weight" expr | "repeat" expr }
+//                 "->" body [ "finally" body ] .
+//   derive      = "derive" NAME ":" step { "=>" step } .
+//   step        = NAME [ "at" path ] .
+//   path        = NAME { "/" NAME | "[" NUMBER "]" } .
+//   lsystem     = "lsystem" NAME { NAME argument } "axiom" TEXT { NAME "->" TEXT [ ":" argument ] } .
+//   style       = "style" NAME [ "for" NAME ] settings .
+//   check       = "check" NAME [ settings ] "expect" expr .
+//   override    = "override" path settings .
+//   settings    = "{" { NAME "=" expr } "}" .
+//
+//   body        = chain { "," chain } .                                  siblings
+//   chain       = element { element } .                                  every one but the first has an operator or is control
+//   element     = [ operator ] shape | control .
+//   operator    = "+" | "-" | "&" | "morph" .                            "morph" glued to "(" is a solid
+//   shape       = { attribute } [ solid | "(" body ")" ] { attribute } [ ":" NAME ] .       not empty
+//   control     = "for" NAME "in" expr [ "when" expr ] "{" body "}" | ( "while" | "when" ) expr "{" body "}"
+//               | "choose" block .
+//   solid       = NAME | call .
+//   attribute   = OPERATION { argument } [ block ] .                     as its row of the operation table says;
+//                                                                        "with" NAME "=" argument
+//   block       = "{" case { "|" case } "}" .
+//   case        = ( argument | "tag" NAME ) ":" body | block "*" .
+//
+//   argument    = limit [ "~>" limit ] .                                 binds tighter than any operator of a body
+//   limit       = simple [ ".." simple ] .
+//   simple      = "-" simple | postfix .
+//   expr        = range [ "~>" range ] .
+//   range       = or [ ".." or ] .
+//   or          = and { "or" and } .
+//   and         = not { "and" not } .
+//   not         = "not" not | sum [ ( "==" | "!=" | "<" | "<=" | ">" | ">=" ) sum ] .
+//   sum         = product { ( "+" | "-" ) product } .
+//   product     = unary { ( "*" | "/" | "%" ) unary } .
+//   unary       = "-" unary | postfix .
+//   postfix     = primary { "[" expr "]" | "." NAME } .
+//   primary     = NUMBER | TEXT | COLOR | AXIS | NAME | call | "~" simple | "(" expr { "," expr } ")" .
+//   call        = NAME "(" [ [ NAME ":" ] expr { "," [ NAME ":" ] expr } ] ")" .            "(" glued to NAME
+//
+//   NUMBER      = ( DIGITS [ "." DIGITS ] | "." DIGITS ) [ "e" [ "+" | "-" ] DIGITS ] [ "m" | "deg" | "%" | "/m" ] .  glued
+//   AXIS        = ( "+" | "-" ) ( "x" | "y" | "z" ) .                    glued, where a value is expected
+//   COLOR       = "#" and six hex digits.     TEXT = '"' … '"' on one line; \" and \\ are its escapes.
+//   NAME        = letters, digits and "_", beginning with no digit; no word of the language.    // begins a comment.
 #pragma once
 
 #include "grammar/syntax/ast.h"
 
 namespace sgm::syntax {
 
+/// A whole file. Declarations with problems are kept as far as their name was read, so that their names are known.
 Ast parse(SourcePtr source, Diagnostics& diagnostics);
+
+/// A text that is one expression, as in `--set NAME=VALUE`. The source must outlive it.
+Expr parseExpression(SourcePtr source, Diagnostics& diagnostics);
 
 }  // namespace sgm::syntax

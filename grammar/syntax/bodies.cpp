@@ -1,0 +1,307 @@
+#include "grammar/syntax/bodies.h"
+
+#include <utility>
+
+#include "grammar/syntax/expressions.h"
+
+namespace sgm::syntax {
+
+namespace {
+
+std::string plain(std::string_view text) { return std::string(text); }
+
+bool atControl(const Cursor& cursor) {
+    return cursor.at("for") || cursor.at("while") || cursor.at("when") || cursor.at("choose");
+}
+
+/// `morph (…)` is the operator before a group; `morph(a, b, t)` is a solid.
+bool atOperator(const Cursor& cursor) {
+    if (cursor.at("morph")) return !(cursor.at("(", 1) && cursor.peek(1).glued);
+    return cursor.at("+") || cursor.at("-") || cursor.at("&");
+}
+
+Operator takeOperator(Cursor& cursor) {
+    const std::string_view symbol = cursor.text(cursor.take());
+    if (symbol == "+") return Operator::Sum;
+    if (symbol == "-") return Operator::Difference;
+    if (symbol == "&") return Operator::Intersection;
+    return Operator::Morph;
+}
+
+std::vector<Case> readCases(Cursor& cursor);
+
+/// { cases }
+std::vector<Case> readBlock(Cursor& cursor, std::string_view where) {
+    if (!cursor.expect("{", where)) return {};
+    return readCases(cursor);
+}
+
+std::shared_ptr<Body> readBracedBody(Cursor& cursor, std::string_view where) {
+    auto body = std::make_shared<Body>();
+    if (!cursor.expect("{", where)) return body;
+    *body = readBody(cursor);
+    cursor.expect("}", "to close '{'");
+    return body;
+}
+
+/// The label before ':' — a size, a weight, a word, or `tag K`.
+void readLabel(Cursor& cursor, Case& part) {
+    if (cursor.at("tag") && cursor.at(Token::Kind::Word, 1) && cursor.at(":", 2)) {
+        cursor.take();
+        part.tag = readName(cursor, "a tag");
+    } else if (cursor.at(Token::Kind::Word) && cursor.at(":", 1) && !isReserved(cursor.peekText())) {
+        part.label = readSolid(cursor);
+    } else if (startsArgument(cursor)) {
+        part.label = readArgument(cursor);
+    } else {
+        cursor.fail("expected a part 'label: body', found " + cursor.found());
+    }
+}
+
+/// A body that is the one word or call `solid`: what stood where a label was missing.
+std::shared_ptr<Body> bodyOf(Expr solid) {
+    auto body = std::make_shared<Body>();
+    Element element;
+    body->span = element.span = solid.span;
+    element.solid = std::move(solid);
+    body->siblings.push_back({std::move(element)});
+    return body;
+}
+
+/// { cases }* or label: body
+Case readCase(Cursor& cursor) {
+    const Cursor::Nest nest(cursor);
+    const Token first = cursor.peek();
+    Case part;
+    if (cursor.accept("{")) {
+        part.repeated = true;
+        part.cases = readCases(cursor);
+        const SourceSpan braces = cursor.since(first.begin);
+        if (!cursor.accept("*"))
+            cursor.complain(braces, "a block inside a block repeats to fit, and says so with '*'", "write '{ … }*'");
+    } else {
+        readLabel(cursor, part);
+        const SourceSpan label = cursor.since(first.begin);
+        if (cursor.accept(":")) {
+            part.body = std::make_shared<Body>(readBody(cursor));
+        } else if (part.label && (cursor.at("|") || cursor.at("}"))) {
+            cursor.complain(label, quoted(label.text()) + " has no label before it",
+                            "write '~1: " + plain(label.text()) + "'");
+            part.body = bodyOf(*std::exchange(part.label, std::nullopt));
+        } else if (!cursor.failed()) {
+            const std::string mend = "write '" + plain(label.text()) + ": " + plain(cursor.peekText()) + "'";
+            cursor.complain(cursor.span(cursor.peek()), "expected ':' after " + quoted(label.text()) + ", found " + cursor.found(),
+                            cursor.done() ? std::string() : mend);
+            part.body = std::make_shared<Body>(readBody(cursor));
+        }
+    }
+    part.span = cursor.since(first.begin);
+    return part;
+}
+
+/// case {| case} }
+std::vector<Case> readCases(Cursor& cursor) {
+    std::vector<Case> cases;
+    if (cursor.at("}")) cursor.fail("the block is empty", "write 'label: body' in it");
+    do cases.push_back(readCase(cursor));
+    while (cursor.accept("|"));
+    cursor.expect("}", "or '|' after a part");
+    return cases;
+}
+
+std::string_view nounOf(ArgumentType type) {
+    switch (type) {
+        case ArgumentType::Number: return "a number";
+        case ArgumentType::Length: return "a length";
+        case ArgumentType::Angle: return "an angle";
+        case ArgumentType::Size: return "a size";
+        case ArgumentType::Vector: return "a number or (x, y, z)";
+        case ArgumentType::Color: return "a colour";
+        case ArgumentType::Joint: return "a joint";
+        case ArgumentType::Shape: return "'last' or 'any(…)'";
+        case ArgumentType::Noise: return "'billow(…)' or 'fbm(…)'";
+        case ArgumentType::Solid: return "a solid";
+        case ArgumentType::Axis: return "an axis, x, y or z";
+        case ArgumentType::Name: return "a word";
+    }
+    return "a value";
+}
+
+/// The word of an operation is the argument of the one before (a parameter may be called `blend`), unless it goes on as
+/// an operation does, with an argument of its own.
+bool beginsOperation(const Cursor& cursor) {
+    if (!atAttribute(cursor)) return false;
+    switch (cursor.peek(1).kind) {
+        case Token::Kind::Number:
+        case Token::Kind::Text:
+        case Token::Kind::Color: return true;
+        case Token::Kind::Word: return !findOperation(cursor.peekText(1)) && !isReserved(cursor.peekText(1));
+        default: return cursor.at("(", 1) || cursor.at("{", 1) || (cursor.peek(2).glued && !cursor.peek(1).glued &&
+                                                                   (cursor.at("-", 1) || cursor.at("+", 1)));
+    }
+}
+
+Expr readTyped(Cursor& cursor, ArgumentType type) {
+    if (type == ArgumentType::Solid) return readSolid(cursor);
+    if (type == ArgumentType::Name || type == ArgumentType::Axis) {
+        Expr e;
+        const Name name = readName(cursor, nounOf(type));
+        e.kind = name.empty() ? Expr::Kind::Error : Expr::Kind::Name;
+        e.text = name.text;
+        e.span = name.span;
+        return e;
+    }
+    return readArgument(cursor);
+}
+
+bool fits(const Cursor& cursor, ArgumentType type) {
+    const bool word = cursor.at(Token::Kind::Word);
+    if (type == ArgumentType::Axis) return cursor.at("x") || cursor.at("y") || cursor.at("z");
+    if (type == ArgumentType::Name || type == ArgumentType::Solid)
+        return word && !isReserved(cursor.peekText()) && !beginsOperation(cursor);
+    return startsArgument(cursor) && !beginsOperation(cursor);
+}
+
+void readArguments(Cursor& cursor, const Operation& row, Attribute& attribute) {
+    for (const OperationArgument& argument : row.arguments) {
+        if (!fits(cursor, argument.type)) {
+            if (argument.optional) continue;
+            cursor.fail("'" + plain(row.name) + "' needs " + plain(nounOf(argument.type)) + ", found " + cursor.found(),
+                        "as in '" + plain(row.example) + "'");
+            return;
+        }
+        attribute.args.push_back(readTyped(cursor, argument.type));
+        if (row.id == Operation::Id::With && attribute.args.size() == 1) cursor.expect("=", "after the value's name");
+    }
+    if (cursor.at("*") || cursor.at("/") || cursor.at("%"))
+        cursor.fail(cursor.found() + " can't follow the argument of '" + plain(row.name) + "'",
+                    "put a calculation in parentheses");
+}
+
+std::vector<Attribute> readAttributes(Cursor& cursor) {
+    std::vector<Attribute> list;
+    while (atAttribute(cursor)) list.push_back(readAttribute(cursor));
+    return list;
+}
+
+/// Attributes that come after `: Name` are read all the same, and belong before it.
+void readLive(Cursor& cursor, Element& element) {
+    if (!cursor.accept(":")) return;
+    element.live = readName(cursor, "a live shape");
+    if (!atAttribute(cursor)) return;
+    const Token first = cursor.peek();
+    std::vector<Attribute> late = readAttributes(cursor);
+    const SourceSpan span = cursor.since(first.begin);
+    cursor.complain(span, quoted(span.text()) + " stands after ': " + element.live.text + "'",
+                    "attributes come before ':'");
+    for (Attribute& attribute : late) element.after.push_back(std::move(attribute));
+}
+
+/// prefix attributes, then a name, a call, a group, or nothing; attributes; : Name
+void readShape(Cursor& cursor, Element& element) {
+    element.before = readAttributes(cursor);
+    if (cursor.accept("(")) {
+        element.kind = Element::Kind::Group;
+        element.body = std::make_shared<Body>(readBody(cursor));
+        cursor.expect(")", "to close '('");
+    } else if (cursor.at(Token::Kind::Word) && (cursor.at("morph") || !isReserved(cursor.peekText()))) {
+        element.solid = readSolid(cursor);
+    } else if (element.before.empty()) {
+        const bool calculates = element.op != Operator::None && cursor.at(Token::Kind::Number);
+        cursor.fail("expected a shape, found " + cursor.found(),
+                    calculates ? "put a calculation in parentheses: 'size (2 + 1)'" : "");
+        return;
+    }
+    std::vector<Attribute> after = readAttributes(cursor);
+    element.after = std::move(after);
+    readLive(cursor, element);
+}
+
+void readControl(Cursor& cursor, Element& element) {
+    if (element.op != Operator::None) {
+        cursor.complain(cursor.span(cursor.peek()), cursor.found() + " takes no operator before it",
+                        "put the operator before each shape in its block, or group it with ( )");
+    }
+    const std::string_view word = cursor.text(cursor.take());
+    if (word == "choose") {
+        element.kind = Element::Kind::Choose;
+        element.cases = readBlock(cursor, "after 'choose'");
+        return;
+    }
+    element.kind = word == "for" ? Element::Kind::For : word == "while" ? Element::Kind::While : Element::Kind::When;
+    if (word == "for") {
+        element.variable = readName(cursor, "a loop variable");
+        if (!cursor.expect("in", "after the loop variable")) return;
+        element.over = readExpr(cursor);
+        if (cursor.accept("when")) element.guard = readExpr(cursor);
+    } else {
+        element.over = readExpr(cursor);
+    }
+    element.body = readBracedBody(cursor, "before the body of '" + plain(word) + "'");
+}
+
+Element readElement(Cursor& cursor) {
+    const Cursor::Nest nest(cursor);
+    const uint32_t begin = cursor.peek().begin;
+    Element element;
+    if (atOperator(cursor)) element.op = takeOperator(cursor);
+    if (atControl(cursor)) readControl(cursor, element);
+    else readShape(cursor, element);
+    element.span = cursor.since(begin);
+    return element;
+}
+
+/// element {element}, where every one but the first has an operator or is control.
+std::vector<Element> readChain(Cursor& cursor) {
+    std::vector<Element> chain;
+    do chain.push_back(readElement(cursor));
+    while (atOperator(cursor) || atControl(cursor));
+    return chain;
+}
+
+/// Says what is wrong with a token that can't follow a shape. Words of the language end a body and are judged outside.
+void refuseStray(Cursor& cursor) {
+    const Token token = cursor.peek();
+    if (token.kind == Token::Kind::Word && !isReserved(cursor.text(token)) && !token.columnOne) {
+        std::vector<std::string> names;
+        for (const Operation& row : operations()) names.emplace_back(row.name);
+        const std::string near = didYouMean(cursor.text(token), names);
+        cursor.fail(cursor.found() + " can't follow a shape", near.empty() ? "join shapes with + - & morph, or list them with ','"
+                                                                           : "did you mean '" + near + "'?");
+    } else if (cursor.at("(")) {
+        cursor.fail("'(' can't follow a shape", "write it without a blank before '(' for arguments, or join with an operator");
+    } else if (token.kind == Token::Kind::Number || token.kind == Token::Kind::Text || token.kind == Token::Kind::Color) {
+        cursor.fail(cursor.found() + " can't follow a shape", "name the attribute: 'size " + plain(cursor.text(token)) + "'");
+    }
+}
+
+}  // namespace
+
+bool atAttribute(const Cursor& cursor) {
+    if (!cursor.at(Token::Kind::Word) || !findOperation(cursor.peekText())) return false;
+    return !(cursor.at("roof") && cursor.at("(", 1));
+}
+
+Attribute readAttribute(Cursor& cursor) {
+    const Token word = cursor.take();
+    const Operation& row = *findOperation(cursor.text(word));
+    Attribute attribute;
+    attribute.name = {plain(row.name), cursor.span(word)};
+    attribute.id = row.id;
+    readArguments(cursor, row, attribute);
+    if (row.block) attribute.cases = readBlock(cursor, "after '" + plain(row.name) + "'");
+    attribute.span = cursor.since(word.begin);
+    return attribute;
+}
+
+Body readBody(Cursor& cursor) {
+    const uint32_t begin = cursor.peek().begin;
+    Body body;
+    do body.siblings.push_back(readChain(cursor));
+    while (cursor.accept(","));
+    body.span = cursor.since(begin);
+    refuseStray(cursor);
+    return body;
+}
+
+}  // namespace sgm::syntax

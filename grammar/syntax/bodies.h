@@ -1,0 +1,15 @@
+// Rule bodies: siblings, chains, elements, attributes, cases.
+// Enters: a Cursor at a body. Leaves: the Body. Assumes the caller says what may follow it.
+#pragma once
+
+#include "grammar/syntax/ast.h"
+#include "grammar/syntax/cursor.h"
+
+namespace sgm::syntax {
+
+Body readBody(Cursor& cursor);
+/// Whether the word at the cursor is an operation's (and not the solid `roof(…)`).
+bool atAttribute(const Cursor& cursor);
+Attribute readAttribute(Cursor& cursor);
+
+}  // namespace sgm::syntax

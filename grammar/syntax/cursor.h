@@ -1,0 +1,70 @@
+// A walk over the tokens of one declaration.
+// Enters: a slice of tokens without blanks and comments. Leaves: tokens one at a time, and diagnostics. After the first failure
+// the slice counts as used up, so nothing more is said about it and every loop ends; nodes made then are empty but well formed.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "grammar/syntax/lexer.h"
+
+namespace sgm::syntax {
+
+class Cursor {
+public:
+    Cursor(const Source& source, std::span<const Token> tokens, Diagnostics& diagnostics);
+
+    /// The token `ahead` of the next one; End (empty, behind the last one taken) when the slice is used up.
+    Token peek(size_t ahead = 0) const;
+    std::string_view text(const Token& token) const { return textOf(source_, token); }
+    std::string_view peekText(size_t ahead = 0) const { return text(peek(ahead)); }
+    SourceSpan span(const Token& token) const { return {&source_, token.begin, token.end}; }
+
+    bool done() const { return at_ == tokens_.size(); }
+    bool failed() const { return failed_; }
+    bool at(std::string_view wanted, size_t ahead = 0) const { return peekText(ahead) == wanted; }
+    bool at(Token::Kind kind, size_t ahead = 0) const { return peek(ahead).kind == kind; }
+    Token take();
+    /// Takes the next token if it is `wanted`.
+    bool accept(std::string_view wanted);
+    /// Takes `wanted`, or fails with "expected 'wanted' <where>, found …".
+    bool expect(std::string_view wanted, std::string_view where);
+
+    /// From `begin` to the end of the last token taken.
+    SourceSpan since(uint32_t begin) const { return {&source_, begin, begin > lastEnd_ ? begin : lastEnd_}; }
+    /// What stands at the cursor, for a message: "'facade'", "the end of the rule".
+    std::string found() const;
+
+    /// Reports the token at the cursor and gives up the slice.
+    void fail(std::string message, std::string mend = {});
+    void failAt(SourceSpan span, std::string message, std::string mend = {});
+    /// Reports and goes on: the meaning is clear all the same.
+    void complain(SourceSpan span, std::string message, std::string mend = {});
+
+    /// Holds one level of nesting; gives up the slice when there are too many: the stack must not end first.
+    class Nest {
+    public:
+        explicit Nest(Cursor& cursor);
+        ~Nest() { --cursor_.depth_; }
+        Nest(const Nest&) = delete;
+        Nest& operator=(const Nest&) = delete;
+
+    private:
+        Cursor& cursor_;
+    };
+
+private:
+    const Source& source_;
+    std::span<const Token> tokens_;
+    Diagnostics& diagnostics_;
+    size_t at_ = 0;
+    uint32_t lastEnd_ = 0;
+    int depth_ = 0;
+    bool failed_ = false;
+};
+
+/// `text` in quotes for a message, cut where it is long.
+std::string quoted(std::string_view text);
+
+}  // namespace sgm::syntax

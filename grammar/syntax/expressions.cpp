@@ -1,0 +1,330 @@
+#include "grammar/syntax/expressions.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace sgm::syntax {
+
+namespace {
+
+using Kind = Expr::Kind;
+
+constexpr std::string_view reserved[] = {"grammar", "use",    "param",   "map",      "terminal", "start",   "rule",
+                                         "derive",  "lsystem", "style",  "check",    "override", "for",     "while",
+                                         "when",    "choose", "finally", "repeat",   "beside",   "weight",  "and",
+                                         "or",      "not",    "in",      "expect"};
+
+// An expression's tree is at most this many operators and the levels of nesting deep, whatever the file says: those who
+// walk it recurse.
+constexpr int mostOperators = 400;
+
+/// Binary operators by how tightly they bind. `mend` is given for what other languages write.
+struct BinaryOperator {
+    std::string_view symbol, means;
+    int binds;
+};
+constexpr int rampBinds = 1, rangeBinds = 2, comparisonBinds = 5, tightest = 8;
+constexpr BinaryOperator binaryOperators[] = {
+    {"~>", "~>", rampBinds}, {"..", "..", rangeBinds}, {"or", "or", 3},  {"||", "or", 3},   {"and", "and", 4},
+    {"&&", "and", 4},        {"==", "==", 5},          {"=", "==", 5},   {"!=", "!=", 5},   {"<=", "<=", 5},
+    {">=", ">=", 5},         {"<", "<", 5},            {">", ">", 5},    {"+", "+", 6},     {"-", "-", 6},
+    {"*", "*", 7},           {"/", "/", 7},            {"%", "%", 7},
+};
+constexpr int notBinds = 5, minusBinds = tightest;
+
+const BinaryOperator* findBinary(std::string_view symbol) {
+    const auto row = std::find_if(std::begin(binaryOperators), std::end(binaryOperators),
+                                  [&](const BinaryOperator& o) { return o.symbol == symbol; });
+    return row == std::end(binaryOperators) ? nullptr : row;
+}
+
+constexpr bool isAxisLetter(std::string_view word) { return word == "x" || word == "y" || word == "z"; }
+
+/// +x or -z: one word for a joint or an axis.
+bool atAxis(const Cursor& cursor) {
+    return (cursor.at("+") || cursor.at("-")) && isAxisLetter(cursor.peekText(1)) && cursor.peek(1).glued;
+}
+
+/// Reads one expression and counts its operators.
+class Reader {
+public:
+    explicit Reader(Cursor& cursor) : cursor_(cursor) {}
+
+    Expr binary(int binds) {
+        Expr left = unary(binds);
+        while (!cursor_.failed()) {
+            const BinaryOperator* row = findBinary(cursor_.peekText());
+            if (!row || row->binds < binds || tooLong()) break;
+            const Token symbol = cursor_.take();
+            if (row->symbol != row->means)
+                cursor_.complain(cursor_.span(symbol), quoted(row->symbol) + " is no operator of an expression",
+                                 "write " + quoted(row->means));
+            left = joined(*row, std::move(left), binary(row->binds + 1));
+            // a < b < c and a .. b .. c mean nothing.
+            const BinaryOperator* again = findBinary(cursor_.peekText());
+            if (again && again->binds == row->binds && !associates(row->binds))
+                cursor_.fail(quoted(cursor_.peekText()) + " can't follow " + quoted(row->means), "group with ( )");
+        }
+        return left;
+    }
+
+    /// A literal, a name, a call, or something in parentheses, with a sign where `signs`.
+    Expr simple() {
+        const Cursor::Nest nest(cursor_);
+        if (cursor_.at("-") && !atAxis(cursor_)) return prefixed("-", [this] { return simple(); });
+        return postfix();
+    }
+
+    /// simple [.. simple] [~> simple [.. simple]]
+    Expr argument() {
+        Expr first = range();
+        if (!cursor_.at("~>")) return first;
+        cursor_.take();
+        return joined(*findBinary("~>"), std::move(first), range());
+    }
+
+private:
+    static bool associates(int binds) { return binds > comparisonBinds || binds == 3 || binds == 4; }
+
+    Expr range() {
+        Expr first = simple();
+        if (!cursor_.at("..")) return first;
+        cursor_.take();
+        return joined(*findBinary(".."), std::move(first), simple());
+    }
+
+    bool tooLong() {
+        if (++operators_ <= mostOperators) return false;
+        cursor_.fail("more than " + std::to_string(mostOperators) + " operators in one expression", "name a part of it");
+        return true;
+    }
+
+    static Expr joined(const BinaryOperator& row, Expr left, Expr right) {
+        Expr e;
+        e.kind = row.binds == rampBinds ? Kind::Ramp : row.binds == rangeBinds ? Kind::Range : Kind::Binary;
+        if (e.kind == Kind::Binary) e.text = row.means;
+        e.span = join(left.span, right.span);
+        e.args.push_back(std::move(left));
+        e.args.push_back(std::move(right));
+        return e;
+    }
+
+    template <class Operand>
+    Expr prefixed(std::string_view symbol, Operand operand) {
+        Expr e;
+        e.kind = symbol == "~" ? Kind::Floating : Kind::Unary;
+        if (e.kind == Kind::Unary) e.text = symbol;
+        const uint32_t begin = cursor_.take().begin;
+        e.args.push_back(operand());
+        e.span = cursor_.since(begin);
+        return e;
+    }
+
+    Expr unary(int binds) {
+        const Cursor::Nest nest(cursor_);
+        if (cursor_.at("not") && binds <= notBinds) return prefixed("not", [this] { return binary(notBinds); });
+        if (cursor_.at("!")) {
+            cursor_.complain(cursor_.span(cursor_.peek()), "'!' is no operator of an expression", "write 'not'");
+            return prefixed("not", [this] { return unary(notBinds); });
+        }
+        if (cursor_.at("-") && !atAxis(cursor_)) return prefixed("-", [this] { return unary(minusBinds); });
+        return postfix();
+    }
+
+    Expr postfix() {
+        const uint32_t begin = cursor_.peek().begin;
+        Expr e = primary();
+        while (!cursor_.failed() && (cursor_.at("[") || cursor_.at("."))) {
+            if (tooLong()) break;
+            Expr outer;
+            if (cursor_.accept("[")) {
+                outer.kind = Kind::Index;
+                outer.args.push_back(std::move(e));
+                outer.args.push_back(binary(rampBinds));
+                cursor_.expect("]", "to close '['");
+            } else {
+                cursor_.take();
+                outer.kind = Kind::Member;
+                outer.args.push_back(std::move(e));
+                outer.text = readName(cursor_, "a member").text;
+            }
+            outer.span = cursor_.since(begin);
+            e = std::move(outer);
+        }
+        return e;
+    }
+
+    Expr primary() {
+        const Token token = cursor_.peek();
+        Expr e;
+        if (atAxis(cursor_)) {
+            e.kind = Kind::Name;
+            cursor_.take();
+            cursor_.take();
+            e.span = cursor_.since(token.begin);
+            e.text = e.span.text();
+            return e;
+        }
+        switch (token.kind) {
+            case Token::Kind::Number: return number();
+            case Token::Kind::Text: return text();
+            case Token::Kind::Color: return color();
+            case Token::Kind::Word: return nameOrCall();
+            default: break;
+        }
+        if (cursor_.at("~")) return prefixed("~", [this] { return simple(); });
+        if (cursor_.at("(")) return parenthesised();
+        e.span = cursor_.span(token);
+        if (cursor_.at("+"))
+            cursor_.fail("a number has no '+' before it", "leave '+' out");
+        else
+            cursor_.fail("expected a value, found " + cursor_.found());
+        return e;
+    }
+
+    Expr number() {
+        const Token token = cursor_.take();
+        const std::string_view written = cursor_.text(token);
+        Expr e;
+        e.kind = Kind::Number;
+        e.span = cursor_.span(token);
+        const auto [end, error] = std::from_chars(written.data(), written.data() + written.size(), e.number);
+        if (error != std::errc()) cursor_.complain(e.span, "the number " + quoted(written) + " can't be held");
+        e.unit = written.substr(static_cast<size_t>(end - written.data()));
+        checkUnit(e, written.substr(0, written.size() - e.unit.size()));
+        if (cursor_.at(".") && cursor_.peek().glued)
+            cursor_.fail("a number doesn't end with a dot", "write " + quoted(std::string(written) + ".0"));
+        return e;
+    }
+
+    void checkUnit(Expr& number, std::string_view digits) {
+        constexpr std::string_view units[] = {"", "m", "deg", "%", "/m"};
+        if (std::find(std::begin(units), std::end(units), number.unit) != std::end(units)) return;
+        std::string mend = "a number is plain or has m, deg, % or /m";
+        if (number.unit == "cm" || number.unit == "mm")
+            mend = "lengths are in metres: write '(" + std::string(digits) + "m / " +
+                   (number.unit == "cm" ? "100)'" : "1000)'");
+        if (number.unit == "rad") mend = "angles are in degrees: write 'deg'";
+        cursor_.complain(number.span, "there is no unit " + quoted(number.unit), mend);
+        number.unit.clear();
+    }
+
+    Expr text() {
+        const Token token = cursor_.take();
+        std::string_view written = cursor_.text(token).substr(1);
+        Expr e;
+        e.kind = Kind::Text;
+        e.span = cursor_.span(token);
+        for (size_t i = 0; i < written.size(); ++i) {
+            const bool escape = written[i] == '\\' && i + 1 < written.size();
+            if (!escape && written[i] == '"') return e;
+            if (escape && (written[i + 1] == '"' || written[i + 1] == '\\')) ++i;
+            else if (escape)
+                cursor_.complain(e.span, "unknown escape " + quoted(written.substr(i, 2)) + " in a text",
+                                 "only \\\" and \\\\ are escapes");
+            e.text += written[i];
+        }
+        cursor_.complain(e.span, "the text has no end", "close it with '\"' on the same line");
+        return e;
+    }
+
+    Expr color() {
+        const Token token = cursor_.take();
+        const std::string_view digits = cursor_.text(token).substr(1);
+        Expr e;
+        e.kind = Kind::Color;
+        e.span = cursor_.span(token);
+        uint32_t value = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+        if (digits.size() != 6 || error != std::errc() || end != digits.data() + digits.size())
+            cursor_.complain(e.span, quoted(cursor_.text(token)) + " is no colour", "write '#' and six hex digits");
+        else
+            e.number = value;
+        return e;
+    }
+
+    Expr nameOrCall() {
+        const uint32_t begin = cursor_.peek().begin;
+        Expr e;
+        e.kind = Kind::Name;
+        e.text = readName(cursor_, "a value").text;
+        e.span = cursor_.since(begin);
+        if (!cursor_.at("(") || !cursor_.peek().glued) return e;
+        e.kind = Kind::Call;
+        cursor_.take();
+        if (!cursor_.at(")")) arguments(e);
+        cursor_.expect(")", "to close '('");
+        e.span = cursor_.since(begin);
+        return e;
+    }
+
+    /// [name:] expr {, [name:] expr}
+    void arguments(Expr& call) {
+        do {
+            std::string name;
+            if (cursor_.at(Token::Kind::Word) && cursor_.at(":", 1)) {
+                name = cursor_.text(cursor_.take());
+                cursor_.take();
+            }
+            call.argNames.push_back(std::move(name));
+            call.args.push_back(binary(rampBinds));
+        } while (cursor_.accept(","));
+    }
+
+    /// ( expr ) is that expression, ( a, b ) a tuple; either spans its parentheses.
+    Expr parenthesised() {
+        const uint32_t begin = cursor_.take().begin;
+        Expr tuple;
+        tuple.kind = Kind::Tuple;
+        do tuple.args.push_back(binary(rampBinds));
+        while (cursor_.accept(","));
+        cursor_.expect(")", "to close '('");
+        Expr e = tuple.args.size() == 1 ? Expr(std::move(tuple.args[0])) : std::move(tuple);
+        e.span = cursor_.since(begin);
+        return e;
+    }
+
+    Cursor& cursor_;
+    int operators_ = 0;
+};
+
+}  // namespace
+
+Expr readExpr(Cursor& cursor) { return Reader(cursor).binary(rampBinds); }
+
+Expr readArgument(Cursor& cursor) { return Reader(cursor).argument(); }
+
+Expr readSolid(Cursor& cursor) {
+    if (cursor.at(Token::Kind::Word)) return Reader(cursor).simple();
+    cursor.fail("expected a solid or a symbol, found " + cursor.found());
+    return {};
+}
+
+bool startsArgument(const Cursor& cursor) {
+    switch (cursor.peek().kind) {
+        case Token::Kind::Number:
+        case Token::Kind::Text:
+        case Token::Kind::Color: return true;
+        case Token::Kind::Word: return !isReserved(cursor.peekText());
+        default: return cursor.at("(") || cursor.at("~") || cursor.at("-") || atAxis(cursor);
+    }
+}
+
+Name readName(Cursor& cursor, std::string_view what) {
+    if (!cursor.at(Token::Kind::Word)) {
+        cursor.fail("expected the name of " + std::string(what) + ", found " + cursor.found());
+        return {};
+    }
+    if (isReserved(cursor.peekText())) {
+        cursor.fail(cursor.found() + " is a word of the language and can't name " + std::string(what));
+        return {};
+    }
+    const Token token = cursor.take();
+    return {std::string(cursor.text(token)), cursor.span(token)};
+}
+
+bool isReserved(std::string_view word) {
+    return std::find(std::begin(reserved), std::end(reserved), word) != std::end(reserved);
+}
+
+}  // namespace sgm::syntax

@@ -1,0 +1,155 @@
+#include "grammar/syntax/source.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+namespace sgm::syntax {
+
+namespace {
+
+constexpr bool isContinuation(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
+
+/// `text` as a terminal may show it: control characters but tabs become '?'.
+std::string printable(std::string_view text) {
+    std::string out(text);
+    std::replace_if(
+        out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t'; }, '?');
+    return out;
+}
+
+/// The line under `line` that marks bytes [from, to): tabs stay tabs, so that both lines step alike.
+std::string caretLine(std::string_view line, size_t from, size_t to) {
+    std::string marks;
+    for (size_t i = 0; i < from; ++i) {
+        if (i >= line.size()) marks += ' ';
+        else if (!isContinuation(line[i])) marks += line[i] == '\t' ? '\t' : ' ';
+    }
+    marks += '^';
+    for (size_t i = from + 1; i < std::min(to, line.size()); ++i)
+        if (!isContinuation(line[i])) marks += '~';
+    return marks;
+}
+
+/// Levenshtein's distance; both words are short.
+size_t editDistance(std::string_view a, std::string_view b) {
+    std::vector<size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), size_t{0});
+    for (size_t i = 0; i < a.size(); ++i) {
+        size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (size_t j = 0; j < b.size(); ++j) {
+            const size_t replaced = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+std::string lowered(std::string_view word) {
+    std::string out(word);
+    for (char& c : out)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return out;
+}
+
+}  // namespace
+
+Source::Source(std::string name, std::string text) : name_(std::move(name)), text_(std::move(text)), lineStarts_{0} {
+    for (size_t i = 0; i < text_.size(); ++i)
+        if (text_[i] == '\n') lineStarts_.push_back(static_cast<uint32_t>(i + 1));
+}
+
+Source::Place Source::place(uint32_t offset) const {
+    offset = std::min(offset, static_cast<uint32_t>(text_.size()));
+    const auto after = std::upper_bound(lineStarts_.begin(), lineStarts_.end(), offset);
+    return {static_cast<uint32_t>(after - lineStarts_.begin()), offset - *(after - 1) + 1};
+}
+
+std::string_view Source::line(uint32_t number) const {
+    if (number < 1 || number > lineStarts_.size()) return {};
+    const uint32_t begin = lineStarts_[number - 1];
+    const size_t end = number < lineStarts_.size() ? lineStarts_[number] - 1 : text_.size();
+    std::string_view line = text().substr(begin, end - begin);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    return line;
+}
+
+SourceSpan join(SourceSpan a, SourceSpan b) {
+    if (!a.source) return b;
+    if (!b.source) return a;
+    return {a.source, std::min(a.begin, b.begin), std::max(a.end, b.end)};
+}
+
+void Diagnostics::error(SourceSpan span, std::string message, std::string mend) {
+    list_.push_back({Severity::Error, span, std::move(message), std::move(mend)});
+    ++errors_;
+}
+
+void Diagnostics::warning(SourceSpan span, std::string message, std::string mend) {
+    list_.push_back({Severity::Warning, span, std::move(message), std::move(mend)});
+}
+
+std::string render(const Diagnostic& diagnostic) {
+    const char* severity = diagnostic.severity == Severity::Error ? "error" : "warning";
+    const Source* source = diagnostic.span.source;
+    std::string out;
+    if (source) {
+        const Source::Place place = source->place(diagnostic.span.begin);
+        out += source->name() + ':' + std::to_string(place.line) + ':' + std::to_string(place.column) + ": ";
+        const std::string line = printable(source->line(place.line));
+        const size_t from = place.column - 1;
+        const size_t to = from + (diagnostic.span.end - diagnostic.span.begin);
+        out += std::string(severity) + ": " + diagnostic.message + "\n  " + line + "\n  " + caretLine(line, from, to);
+    } else {
+        out += std::string(severity) + ": " + diagnostic.message;
+    }
+    if (!diagnostic.mend.empty()) out += "\n  " + diagnostic.mend;
+    return out + '\n';
+}
+
+std::string toJson(const Diagnostics& diagnostics) {
+    std::vector<Diagnostic> sorted = diagnostics.all();
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Diagnostic& a, const Diagnostic& b) {
+        const std::string_view fileA = a.span.source ? a.span.source->name() : std::string_view();
+        const std::string_view fileB = b.span.source ? b.span.source->name() : std::string_view();
+        return fileA != fileB ? fileA < fileB : a.span.begin < b.span.begin;
+    });
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const Diagnostic& d : sorted) {
+        const Source* source = d.span.source;
+        const Source::Place begin = source ? source->place(d.span.begin) : Source::Place{};
+        const Source::Place end = source ? source->place(d.span.end) : Source::Place{};
+        list.push_back({{"file", source ? source->name() : ""},
+                        {"line", begin.line},
+                        {"column", begin.column},
+                        {"endLine", end.line},
+                        {"endColumn", end.column},
+                        {"severity", d.severity == Severity::Error ? "error" : "warning"},
+                        {"message", d.message},
+                        {"mend", d.mend}});
+    }
+    // A file may hold bytes that are no UTF-8, and messages quote it.
+    return list.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::string didYouMean(std::string_view word, const std::vector<std::string>& candidates) {
+    constexpr size_t longest = 64;
+    if (word.empty() || word.size() > longest) return {};
+    const std::string wanted = lowered(word);
+    std::string best;
+    size_t least = std::max<size_t>(1, word.size() / 3) + 1;
+    for (const std::string& candidate : candidates) {
+        if (candidate.size() > longest || candidate == word) continue;
+        const size_t distance = editDistance(wanted, lowered(candidate));
+        if (distance < least) {
+            least = distance;
+            best = candidate;
+        }
+    }
+    // One letter that turns into another is no slip.
+    return least >= std::max(word.size(), best.size()) ? std::string() : best;
+}
+
+}  // namespace sgm::syntax
