@@ -50,15 +50,6 @@ void uploadCells(const CellTree& tree, FieldPicture& picture, uint32_t& register
     picture.nodes = TexelBuffer::of(nodes, 1);
 }
 
-Buffer uploadMaterials(const Provenance& provenance) {
-    std::vector<Vec4> rows;
-    for (const Material& m : provenance.materials) {
-        rows.push_back({m.color.x, m.color.y, m.color.z, m.roughness});
-        rows.push_back({m.metallic, 0, 0, 0});
-    }
-    return Buffer::of<Vec4>(rows);
-}
-
 /// Value of the field at one place.
 float valueAt(const eval::Tape& tape, Vec3f p) {
     eval::Workspace workspace;

@@ -74,16 +74,19 @@ Result<Program> link(std::initializer_list<std::pair<GLenum, const std::string*>
     return internal(std::string("the driver can't link a shader: ") + log);
 }
 
-Texture makeTexture(GLenum format, int width, int height) {
+Renderbuffer makeRenderbuffer(GLenum format, int width, int height, int samples) {
     GLuint id = 0;
-    glGenTextures(1, &id);
-    glBindTexture(GL_TEXTURE_2D, id);
-    glTexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    return Texture(id);
+    glGenRenderbuffers(1, &id);
+    glBindRenderbuffer(GL_RENDERBUFFER, id);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width, height);
+    return Renderbuffer(id);
+}
+
+Framebuffer makeFramebuffer() {
+    GLuint id = 0;
+    glGenFramebuffers(1, &id);
+    glBindFramebuffer(GL_FRAMEBUFFER, id);
+    return Framebuffer(id);
 }
 
 }  // namespace
@@ -94,6 +97,7 @@ void freeBuffer(uint32_t id) { glDeleteBuffers(1, &id); }
 void freeTexture(uint32_t id) { glDeleteTextures(1, &id); }
 void freeFramebuffer(uint32_t id) { glDeleteFramebuffers(1, &id); }
 void freeVertexArray(uint32_t id) { glDeleteVertexArrays(1, &id); }
+void freeRenderbuffer(uint32_t id) { glDeleteRenderbuffers(1, &id); }
 }  // namespace detail
 
 Result<GpuContext> GpuContext::create() {
@@ -130,8 +134,10 @@ void Program::set(const char* name, uint32_t value) const {
 void Program::set(const char* name, Vec3f v) const {
     glProgramUniform3f(id(), glGetUniformLocation(id(), name), v.x, v.y, v.z);
 }
-void Program::set(const char* name, const std::array<float, 16>& matrix) const {
-    glProgramUniformMatrix4fv(id(), glGetUniformLocation(id(), name), 1, GL_FALSE, matrix.data());
+void Program::set(const char* name, const Matrix4& matrix) const { set(name, std::span(&matrix, 1)); }
+void Program::set(const char* name, std::span<const Matrix4> matrices) const {
+    glProgramUniformMatrix4fv(id(), glGetUniformLocation(id(), name), static_cast<GLsizei>(matrices.size()), GL_FALSE,
+                              matrices.front().data());
 }
 
 Buffer Buffer::ofBytes(const void* bytes, size_t size) {
@@ -170,39 +176,109 @@ void dispatch(size_t count) {
 
 void finish() { glFinish(); }
 
-Result<RenderTarget> RenderTarget::create(int width, int height, int colorCount) {
-    RenderTarget target;
+Result<ColorTarget> ColorTarget::create(int width, int height, int samples) {
+    GLint most = 1;
+    glGetIntegerv(GL_MAX_SAMPLES, &most);
+    samples = samples > 1 ? std::min(samples, most) : 0;
+    ColorTarget target;
     target.width = width;
     target.height = height;
-    target.depth = makeTexture(GL_DEPTH_COMPONENT32F, width, height);
-    GLuint id = 0;
-    glGenFramebuffers(1, &id);
-    target.framebuffer = Framebuffer(id);
-    glBindFramebuffer(GL_FRAMEBUFFER, id);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth.id(), 0);
-    std::vector<GLenum> attachments;
-    for (int i = 0; i < colorCount; ++i) {
-        target.colors.push_back(makeTexture(GL_RGBA32F, width, height));
-        attachments.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
-        glFramebufferTexture2D(GL_FRAMEBUFFER, attachments.back(), GL_TEXTURE_2D, target.colors.back().id(), 0);
-    }
-    glDrawBuffers(colorCount, attachments.data());
+    target.color = makeRenderbuffer(GL_RGBA16F, width, height, samples);
+    target.depth = makeRenderbuffer(GL_DEPTH_COMPONENT32F, width, height, samples);
+    target.resolvedColor = makeRenderbuffer(GL_RGBA16F, width, height, 0);
+    target.resolved = makeFramebuffer();
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target.resolvedColor.id());
+    target.framebuffer = makeFramebuffer();
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target.color.id());
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target.depth.id());
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        return internal("the driver refuses a 32-bit float render target");
+        return internal("the driver refuses a 16-bit float render target");
     return target;
 }
 
-void RenderTarget::bind() const {
+void ColorTarget::bind() const {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
     glViewport(0, 0, width, height);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-std::vector<float> RenderTarget::read(int color) const {
+std::vector<float> ColorTarget::read() const {
     std::vector<float> pixels(size_t(width) * size_t(height) * 4);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer.id());
-    glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(color));
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved.id());
+    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved.id());
     glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, pixels.data());
     return pixels;
 }
+
+MapStack MapStack::create(Kind kind, int edge, int layers) {
+    MapStack maps;
+    maps.kind = kind;
+    maps.edge = edge;
+    GLuint id = 0;
+    glGenTextures(1, &id);
+    maps.texture = Texture(id);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, id);
+    glTexStorage3D(GL_TEXTURE_2D_ARRAY, 1, kind == Kind::Depth ? GL_DEPTH_COMPONENT32F : GL_R32F, edge, edge, layers);
+    const GLint filter = kind == Kind::Depth ? GL_NEAREST : GL_LINEAR;
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, filter);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, filter);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    maps.framebuffer = makeFramebuffer();
+    glDrawBuffer(kind == Kind::Depth ? GL_NONE : GL_COLOR_ATTACHMENT0);
+    return maps;
+}
+
+void MapStack::bindCleared(int layer) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+    glFramebufferTextureLayer(GL_FRAMEBUFFER, kind == Kind::Depth ? GL_DEPTH_ATTACHMENT : GL_COLOR_ATTACHMENT0,
+                              texture.id(), 0, layer);
+    glViewport(0, 0, edge, edge);
+    glClear(kind == Kind::Depth ? GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT);
+}
+
+void MapStack::bindTexture(uint32_t unit) const {
+    glActiveTexture(GL_TEXTURE0 + unit);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, texture.id());
+}
+
+TriangleBuffers TriangleBuffers::of(std::span<const Vec3f> positions, std::span<const Vec3f> normals,
+                                    std::span<const Vec3<uint32_t>> triangles) {
+    TriangleBuffers buffers;
+    buffers.positions_ = Buffer::of(positions);
+    buffers.normals_ = Buffer::of(normals);
+    buffers.indices_ = Buffer::of(triangles);
+    GLuint id = 0;
+    glGenVertexArrays(1, &id);
+    buffers.array_ = VertexArray(id);
+    glBindVertexArray(id);
+    for (GLuint attribute = 0; attribute < 2; ++attribute) {
+        glBindBuffer(GL_ARRAY_BUFFER, attribute == 0 ? buffers.positions_.id() : buffers.normals_.id());
+        glVertexAttribPointer(attribute, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+        glEnableVertexAttribArray(attribute);
+    }
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.indices_.id());
+    return buffers;
+}
+
+void TriangleBuffers::draw(size_t first, size_t count) const {
+    glBindVertexArray(array_.id());
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * 3), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(first * 3 * sizeof(uint32_t)));
+}
+
+ScreenTriangle::ScreenTriangle() {
+    GLuint id = 0;
+    glGenVertexArrays(1, &id);
+    array_ = VertexArray(id);
+}
+void ScreenTriangle::draw() const {
+    glBindVertexArray(array_.id());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void setDepthTest(bool on) { on ? glEnable(GL_DEPTH_TEST) : glDisable(GL_DEPTH_TEST); }
 
 }  // namespace sgm::viewer

@@ -60,11 +60,16 @@ void freeBuffer(uint32_t id);
 void freeTexture(uint32_t id);
 void freeFramebuffer(uint32_t id);
 void freeVertexArray(uint32_t id);
+void freeRenderbuffer(uint32_t id);
 }  // namespace detail
 
 using VertexArray = GpuHandle<detail::freeVertexArray>;
 using Texture = GpuHandle<detail::freeTexture>;
+using Renderbuffer = GpuHandle<detail::freeRenderbuffer>;
 using Framebuffer = GpuHandle<detail::freeFramebuffer>;
+
+/// A 4 × 4 matrix by columns.
+using Matrix4 = std::array<float, 16>;
 
 /// A linked program; `set` finds a uniform by name and ignores names the compiler removed.
 class Program : public GpuHandle<detail::freeProgram> {
@@ -80,8 +85,9 @@ public:
     void set(const char* name, int value) const;
     void set(const char* name, uint32_t value) const;
     void set(const char* name, Vec3f value) const;
-    /// A column-major 4 × 4 matrix.
-    void set(const char* name, const std::array<float, 16>& matrix) const;
+    void set(const char* name, const Matrix4& matrix) const;
+    /// An array of them.
+    void set(const char* name, std::span<const Matrix4> matrices) const;
 };
 
 /// A buffer of plain values for shader storage, vertices or indices.
@@ -124,19 +130,58 @@ void dispatch(size_t count);
 /// Waits until every command so far is done, so that work stays in short pieces.
 void finish();
 
-/// A colour (RGBA, 32-bit float) and depth target with as many colour textures as asked.
-struct RenderTarget {
-    Framebuffer framebuffer;
-    std::vector<Texture> colors;
-    Texture depth;
+/// A colour target with depth and several samples a pixel, resolved when it is read.
+struct ColorTarget {
+    Framebuffer framebuffer, resolved;
+    Renderbuffer color, depth, resolvedColor;
     int width = 0, height = 0;
 
-    /// Error::Internal when the driver refuses the format. `colorCount` 0 … 4; a depth-only target is a shadow map.
-    static Result<RenderTarget> create(int width, int height, int colorCount);
+    /// `samples` is lowered to what the driver offers. Error::Internal when it refuses the format.
+    static Result<ColorTarget> create(int width, int height, int samples);
     /// Draws go here until the next bind.
     void bind() const;
-    /// RGBA of a colour texture, bottom row first.
-    std::vector<float> read(int color) const;
+    /// The mean of each pixel's samples as RGBA, bottom row first.
+    std::vector<float> read() const;
 };
+
+/// A stack of square maps with one number a pixel: depths, or blurred functions of them.
+struct MapStack {
+    enum class Kind { Depth, Number };
+    Texture texture;  ///< a 2D array; depths 0 … 1 unfiltered, numbers filtered linearly
+    Framebuffer framebuffer;
+    Kind kind = Kind::Depth;
+    int edge = 0;  ///< pixels
+
+    static MapStack create(Kind kind, int edge, int layers);
+    /// Draws go to `layer`, cleared to the farthest depth or 0, until the next bind.
+    void bindCleared(int layer) const;
+    /// Makes the stack the texture of a unit.
+    void bindTexture(uint32_t unit) const;
+};
+
+/// Positions and normals with indices; `draw` sends triangles [first, first + count).
+class TriangleBuffers {
+public:
+    static TriangleBuffers of(std::span<const Vec3f> positions, std::span<const Vec3f> normals,
+                              std::span<const Vec3<uint32_t>> triangles);
+    void draw(size_t first, size_t count) const;
+
+private:
+    VertexArray array_;
+    Buffer positions_, normals_, indices_;
+};
+
+/// One triangle that covers the target; its vertices are made in the shader.
+class ScreenTriangle {
+public:
+    ScreenTriangle();
+    void draw() const;
+
+private:
+    VertexArray array_;
+};
+
+/// Whether nearer fragments hide farther ones.
+void setDepthTest(bool on);
 
 }  // namespace sgm::viewer

@@ -53,6 +53,15 @@ void setScene(const Program& program, const Box3f& bounds, const PictureOptions&
     program.set("lampReach", static_cast<float>(options.camera.lamp_m));
 }
 
+Buffer uploadMaterials(const Provenance& provenance) {
+    std::vector<std::array<float, 4>> rows;
+    for (const Material& m : provenance.materials) {
+        rows.push_back({m.color.x, m.color.y, m.color.z, m.roughness});
+        rows.push_back({m.metallic, 0, 0, 0});
+    }
+    return Buffer::of<std::array<float, 4>>(rows);
+}
+
 Status checkPicture(const Box3f& bounds, const PictureOptions& options) {
     const auto refuse = [](const char* why) -> Status { return Error{Error::Kind::Input, why}; };
     if (options.width < 1 || options.height < 1 || options.width > 16384 || options.height > 16384)

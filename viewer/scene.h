@@ -20,6 +20,9 @@ Vec3f sunDirection();
 /// Sets every uniform of the shared parts.
 void setScene(const Program& program, const Box3f& bounds, const PictureOptions& options);
 
+/// Two rows of four floats a material: colour and roughness; metallic.
+Buffer uploadMaterials(const Provenance& provenance);
+
 /// Error::Input when a picture of this size, with these samples and bounds, can't be drawn.
 Status checkPicture(const Box3f& bounds, const PictureOptions& options);
 

@@ -1,21 +1,10 @@
 #include "modeler/eval/glsl.h"
 
 #include <bit>
-#include <cstdio>
 
 #include "modeler/eval/values_glsl.h"
 
 namespace sgm::eval {
-
-std::string GlslText::literal(float value) {
-    char text[48];
-    // Nine digits name every float exactly; what isn't a number or is infinite has no literal.
-    if (value - value == 0.0f)
-        std::snprintf(text, sizeof text, "(%.9e)", static_cast<double>(value));
-    else
-        std::snprintf(text, sizeof text, "uintBitsToFloat(%uu)", std::bit_cast<uint32_t>(value));
-    return text;
-}
 
 namespace {
 
@@ -41,10 +30,11 @@ std::string caseBody(OpCode op) {
     return field::visitOp(op, []<class Row>() -> std::string {
         GlslBody body;
         const GlslText a("a", &body), b("b", &body);
+        const auto assign = [&](const GlslText& value) { return body.text + "value = " + value.expression + ";"; };
         if constexpr (Row::arity == 1)
-            return body.statements + "value = " + Row::apply(a).text + ";";
+            return assign(Row::apply(a));
         else if constexpr (Row::arity == 2)
-            return body.statements + "value = " + Row::apply(a, b).text + ";";
+            return assign(Row::apply(a, b));
         else if constexpr (Row::arity == field::ops::variadic)
             return "value = op_" + std::string(Row::name) + "(q.y, q.z, q.w);";
         else

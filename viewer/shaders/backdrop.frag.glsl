@@ -1,0 +1,16 @@
+// Sky and ground behind a mesh.
+out vec4 color;
+uniform vec3 tileCorner;  // the target's lower left pixel in the picture, from its bottom left
+
+void main() {
+    vec2 fromBottom = gl_FragCoord.xy + tileCorner.xy;
+    vec3 direction = viewDirection(vec2(fromBottom.x, pictureSize.y - fromBottom.y));
+    float t = groundDistance(eye, direction);
+    vec3 light = skyColor(direction);
+    if (t >= 0.0) {
+        vec3 p = eye + t * direction;
+        vec3 up = vec3(0.0, 1.0, 0.0);
+        light = shadeGround(p, -direction, t, sunlightAt(p), opennessAt(p, up));
+    }
+    color = vec4(tonemap(light), 1.0);
+}
