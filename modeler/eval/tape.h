@@ -20,13 +20,13 @@ inline constexpr Source constantBit = 0x80000000u;
 constexpr bool isConstant(Source s) { return (s & constantBit) != 0; }
 constexpr uint32_t indexOf(Source s) { return s & ~constantBit; }
 
-/// One step: out = op(a, b), or over `count` sources from `first` in Tape::sources() for ops of more than two operands.
+/// One step: out = op(a, b), or over `count` sources from `a` in Tape::sources() for variadic ops.
 struct Instruction {
     field::OpCode op;
     uint16_t count;  ///< operands
     uint32_t out;    ///< register
-    Source a = 0;    ///< first operand; for count > 2 the index `first` into Tape::sources()
-    Source b = 0;    ///< second operand
+    Source a = 0;          ///< first operand; for a variadic op its first place in Tape::sources()
+    Source b = 0;          ///< second operand
     uint32_t data = 0;     ///< structural integer of the op (KIFS passes)
     uint32_t origins = 0;  ///< 1 + index of this instruction's operand origins in Tape::origins(), 0 for none
 };
@@ -37,11 +37,14 @@ public:
     std::span<const Instruction> code() const { return code_; }
     std::span<const Source> sources() const { return sources_; }
     std::span<const float> constants() const { return *constants_; }
+    /// Owners of operands, by Instruction::origins; entry 0 is the owner of the result, 0 where the operands decide.
     std::span<const OriginId> origins() const { return origins_; }
     uint32_t registerCount() const { return registers_; }
     /// Where the value is at the end: a register, or a constant for a constant field.
     Source result() const { return result_; }
     size_t size() const { return code_.size(); }
+    /// The constants, as shared by all shortened forms.
+    const std::shared_ptr<const std::vector<float>>& sharedConstants() const { return constants_; }
     /// Global Lipschitz constant of the field.
     float lipschitz() const { return lipschitz_; }
 
@@ -49,7 +52,7 @@ private:
     friend class TapeBuilder;
     std::vector<Instruction> code_;
     std::vector<Source> sources_;
-    std::vector<OriginId> origins_;
+    std::vector<OriginId> origins_{0};
     std::shared_ptr<const std::vector<float>> constants_;  ///< shared by a tape and all its shortened forms
     uint32_t registers_ = 3;
     Source result_ = 0;

@@ -1,0 +1,73 @@
+// A tape over many points: blocks of points small enough that their registers stay in cache.
+// Enters: points in the caller's buffers. Leaves: each block's registers, seen by the caller. Assumes aligned scratch.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+
+#include "modeler/eval/workspace.h"
+
+namespace sgm::eval {
+
+/// Floats of registers that stay in a first-level cache.
+inline constexpr size_t cacheFloats = 32 * 1024 / sizeof(float);
+/// The most points at a time: a brick of 8³.
+inline constexpr size_t maxBlock = 512;
+
+inline size_t roundedUp(size_t n) { return (n + vectorFloats - 1) / vectorFloats * vectorFloats; }
+
+/// Points at a time, so that the registers stay in cache.
+inline size_t blockSize(const Tape& tape, size_t planes) {
+    const size_t fits = cacheFloats / (tape.registerCount() * planes) / vectorFloats * vectorFloats;
+    return std::clamp(fits, vectorFloats, maxBlock);
+}
+
+/// `n` coordinates and, up to `count`, the last one again.
+inline void loadRow(const float* from, size_t n, float* row, size_t count) {
+    std::memcpy(row, from, n * sizeof(float));
+    std::fill(row + n, row + count, from[n - 1]);
+}
+
+/// Row `plane` of a register.
+inline float* rowOf(const StepContext& c, uint32_t reg, size_t planes, size_t plane) {
+    return c.registers + (reg * planes + plane) * c.stride;
+}
+
+/// Puts points [first, first + n) into registers 0, 1, 2 as values of `planes` planes (derivatives 1 where they are due).
+inline void loadPoints(const Points& points, size_t first, size_t n, const StepContext& c, size_t planes) {
+    const float* from[] = {points.x + first, points.y + first, points.z + first};
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+        loadRow(from[axis], n, rowOf(c, axis, planes, 0), c.count);
+        for (size_t d = 1; d < planes; ++d) std::fill_n(rowOf(c, axis, planes, d), c.count, d == axis + 1 ? 1.0f : 0.0f);
+    }
+}
+
+/// Copies a plane of the result to `out`.
+inline void storeResult(const Tape& tape, const StepContext& c, size_t planes, size_t plane, float* out, size_t n) {
+    if (isConstant(tape.result()))
+        std::fill_n(out, n, plane == 0 ? tape.constants()[indexOf(tape.result())] : 0.0f);
+    else
+        std::memcpy(out, rowOf(c, tape.result(), planes, plane), n * sizeof(float));
+}
+
+/// Runs a tape over points in blocks; `before(in, context)` sees each instruction's operands, `done` each block's registers.
+template <class Before, class DoneBlock>
+void runBlocks(const Tape& tape, const Points& points, const Step* steps, size_t planes, Workspace::Impl& w,
+               Before&& before, DoneBlock&& done) {
+    const size_t block = blockSize(tape, planes);
+    StepContext c = w.context(tape, planes, std::min(block, roundedUp(points.n)));
+    for (size_t first = 0; first < points.n; first += block) {
+        const size_t n = std::min(block, points.n - first);
+        c.count = roundedUp(n);
+        loadPoints(points, first, n, c, planes);
+        for (const Instruction& in : tape.code()) {
+            before(in, c);
+            steps[static_cast<size_t>(in.op)](in, c);
+        }
+        done(c, first, n);
+    }
+}
+
+inline constexpr auto nothingBefore = [](const Instruction&, const StepContext&) {};
+
+}  // namespace sgm::eval

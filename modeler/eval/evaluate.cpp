@@ -1,0 +1,101 @@
+#include "modeler/eval/evaluate.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+#include "modeler/eval/blocks.h"
+#include "modeler/field/ops.h"
+
+namespace sgm::eval {
+namespace {
+
+Kernels kernelsFor(Isa isa) {
+#if defined(SGM_X86_KERNELS)
+    if (isa == Isa::Avx512 && bestIsa() == Isa::Avx512) return avx512::kernels();
+    if (isa != Isa::Portable && bestIsa() != Isa::Portable) return avx2::kernels();
+#else
+    static_cast<void>(isa);
+#endif
+    return portable::kernels();
+}
+
+}  // namespace
+
+Isa bestIsa() {
+#if defined(SGM_X86_KERNELS)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+        return Isa::Avx512;
+    if (__builtin_cpu_supports("avx2")) return Isa::Avx2;
+#endif
+    return Isa::Portable;
+}
+
+Workspace::Workspace(Isa isa) : impl_(std::make_unique<Impl>()) { impl_->kernels = kernelsFor(isa); }
+Workspace::~Workspace() = default;
+Workspace::Workspace(Workspace&&) noexcept = default;
+Workspace& Workspace::operator=(Workspace&&) noexcept = default;
+
+size_t longestInstruction(const Tape& tape) {
+    if (tape.sources().empty()) return 0;  // no variadic ops
+    size_t longest = 0;
+    for (const Instruction& in : tape.code()) longest = std::max<size_t>(longest, in.count);
+    return longest;
+}
+
+StepContext Workspace::Impl::context(const Tape& tape, size_t planes, size_t stride) {
+    const size_t argumentFloats = longestInstruction(tape) * argumentBytes / sizeof(float);
+    return {registers.get(tape.registerCount() * planes * stride), stride, stride, tape.constants().data(),
+            tape.sources().data(), arguments.get(argumentFloats), nullptr};
+}
+
+void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace) {
+    Workspace::Impl& w = workspace.impl();
+    runBlocks(tape, points, w.kernels.values, 1, w, nothingBefore, [&](const StepContext& c, size_t first, size_t n) {
+        storeResult(tape, c, 1, 0, out + first, n);
+    });
+}
+
+void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
+                      Workspace& workspace) {
+    Workspace::Impl& w = workspace.impl();
+    float* const out[] = {value, dx, dy, dz};
+    runBlocks(tape, points, w.kernels.gradients, 4, w, nothingBefore, [&](const StepContext& c, size_t first, size_t n) {
+        for (size_t plane = 0; plane < 4; ++plane) storeResult(tape, c, 4, plane, out[plane] + first, n);
+    });
+}
+
+void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& workspace) {
+    assert(regions.n >= 1 && regions.n <= maxBoxes);
+    Workspace::Impl& w = workspace.impl();
+    StepContext c = w.context(tape, 2, maxBoxes);
+    c.count = roundedUp(regions.n);
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+        float *lo = rowOf(c, axis, 2, 0), *hi = rowOf(c, axis, 2, 1);
+        for (size_t i = 0; i < c.count; ++i) {
+            const Box3f& box = regions.boxes[std::min(i, regions.n - 1)];
+            lo[i] = box.lo[static_cast<int>(axis)];
+            hi[i] = box.hi[static_cast<int>(axis)];
+        }
+    }
+    size_t words = 0;
+    for (const Instruction& in : tape.code()) words += field::traits(in.op).chooses ? in.count : 0;
+    w.keeps.assign(words, 0);
+    w.rangedCode = tape.code().data();
+    c.keeps = w.keeps.data();
+    for (const Instruction& in : tape.code()) {
+        w.kernels.ranges[static_cast<size_t>(in.op)](in, c);
+        if (field::traits(in.op).chooses) c.keeps += in.count;
+    }
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (size_t i = 0; i < regions.n; ++i) {
+        const bool constant = isConstant(tape.result());
+        const float number = constant ? tape.constants()[indexOf(tape.result())] : 0.0f;
+        const Range r = constant ? Range{number, number}
+                                 : Range{rowOf(c, tape.result(), 2, 0)[i], rowOf(c, tape.result(), 2, 1)[i]};
+        out[i] = r.lo <= r.hi ? r : Range{-infinity, infinity};
+    }
+}
+
+}  // namespace sgm::eval

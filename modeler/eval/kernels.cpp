@@ -1,0 +1,169 @@
+// Compiled once for each instruction set (CMakeLists.txt), with SGM_ISA the namespace of its table. Nothing here may
+// instantiate an inline function that doesn't depend on Arch: the linker might keep the copy this machine can't run.
+#include "modeler/eval/kernels.h"
+
+#include "modeler/eval/values_dual.h"
+#include "modeler/eval/values_interval.h"
+#include "modeler/eval/values_simd.h"
+#include "modeler/field/ops.h"
+
+namespace sgm::eval {
+namespace {
+
+#if defined(__AVX512BW__)
+using Arch = xsimd::avx512bw;
+#elif defined(__AVX2__)
+using Arch = xsimd::avx2;
+#else
+using Arch = xsimd::default_arch;
+#endif
+using Float = Lanes<Arch>;
+static_assert(vectorFloats % Float::size == 0);
+
+/// How a value type lies in the register file.
+template <class V>
+struct Planes;
+template <>
+struct Planes<Float> {
+    static constexpr size_t count = 1;
+    static Float load(const float* p, size_t) { return Float::load(p); }
+    static void store(Float v, float* p, size_t) { v.store(p); }
+};
+template <>
+struct Planes<Dual<Float>> {
+    static constexpr size_t count = 4;
+    static Dual<Float> load(const float* p, size_t stride) {
+        return {Float::load(p), Float::load(p + stride), Float::load(p + 2 * stride), Float::load(p + 3 * stride)};
+    }
+    static void store(Dual<Float> v, float* p, size_t stride) {
+        v.value.store(p);
+        v.dx.store(p + stride);
+        v.dy.store(p + 2 * stride);
+        v.dz.store(p + 3 * stride);
+    }
+};
+template <>
+struct Planes<Interval<Float>> {
+    static constexpr size_t count = 2;
+    static Interval<Float> load(const float* p, size_t stride) { return {Float::load(p), Float::load(p + stride)}; }
+    static void store(Interval<Float> v, float* p, size_t stride) {
+        const Interval<Float> c = v.checked();
+        c.lo.store(p);
+        c.hi.store(p + stride);
+    }
+};
+
+/// The row's body for a value type, its override where it has one.
+template <class Row, class V>
+struct Body {
+    static V call(auto... args) { return Row::apply(args...); }
+};
+template <class Row, class F>
+struct Body<Row, Dual<F>> {
+    static Dual<F> call(auto... args) {
+        if constexpr (requires { Row::gradient(args...); })
+            return Row::gradient(args...);
+        else
+            return Row::apply(args...);
+    }
+};
+template <class Row, class F>
+struct Body<Row, Interval<F>> {
+    static Interval<F> call(auto... args) {
+        if constexpr (requires { Row::interval(args...); })
+            return Row::interval(args...);
+        else
+            return Row::apply(args...);
+    }
+};
+
+template <class V>
+float* rowOf(const StepContext& c, uint32_t reg) {
+    return c.registers + size_t{reg} * Planes<V>::count * c.stride;
+}
+
+/// An operand that is one constant for all lanes.
+template <class V>
+struct Fixed {
+    V v;
+    V at(size_t) const { return v; }
+};
+/// An operand in a register.
+template <class V>
+struct Moving {
+    const float* row;
+    size_t stride;
+    V at(size_t i) const { return Planes<V>::load(row + i, stride); }
+};
+
+/// fn with the operand as it is: the choice is made once an instruction, not once a vector.
+template <class V, class Fn>
+void withOperand(Source s, const StepContext& c, Fn&& fn) {
+    if (isConstant(s))
+        fn(Fixed<V>{V(c.constants[indexOf(s)])});
+    else
+        fn(Moving<V>{rowOf<V>(c, s), c.stride});
+}
+
+template <class V>
+V loadAt(Source s, const StepContext& c, size_t i) {
+    return isConstant(s) ? V(c.constants[indexOf(s)]) : Planes<V>::load(rowOf<V>(c, s) + i, c.stride);
+}
+
+/// Which operands can matter, lane by lane, into the instruction's choice words.
+template <class Row>
+void choose(const Interval<Float>* args, uint32_t count, uint32_t data, Float::Mask* masks, size_t i, const StepContext& c) {
+    Row::choose(std::span<const Interval<Float>>(args, count), data, std::span<Float::Mask>(masks, count));
+    for (uint32_t k = 0; k < count; ++k) c.keeps[k] |= masks[k].bits() << i;
+}
+
+template <class Row, class V>
+void step(const Instruction& in, const StepContext& c) {
+    [[maybe_unused]] constexpr bool chooses = field::traitsOf<Row>().chooses && std::is_same_v<V, Interval<Float>>;
+    float* const out = rowOf<V>(c, in.out);
+    if constexpr (Row::arity == 1) {
+        withOperand<V>(in.a, c, [&](auto a) {
+            for (size_t i = 0; i < c.count; i += Float::size)
+                Planes<V>::store(Body<Row, V>::call(a.at(i)), out + i, c.stride);
+        });
+    } else if constexpr (Row::arity == 2) {
+        withOperand<V>(in.a, c, [&](auto a) {
+            withOperand<V>(in.b, c, [&](auto b) {
+                for (size_t i = 0; i < c.count; i += Float::size) {
+                    const V args[] = {a.at(i), b.at(i)};
+                    if constexpr (chooses) {
+                        Float::Mask masks[2];
+                        choose<Row>(args, 2, in.data, masks, i, c);
+                    }
+                    Planes<V>::store(Body<Row, V>::call(args[0], args[1]), out + i, c.stride);
+                }
+            });
+        });
+    } else if constexpr (Row::arity == field::ops::variadic) {
+        V* const args = static_cast<V*>(c.arguments);
+        const Source* const sources = c.sources + in.a;
+        for (size_t i = 0; i < c.count; i += Float::size) {
+            for (uint32_t k = 0; k < in.count; ++k) args[k] = loadAt<V>(sources[k], c, i);
+            if constexpr (chooses)
+                choose<Row>(args, in.count, in.data, reinterpret_cast<Float::Mask*>(args + in.count), i, c);
+            Planes<V>::store(Body<Row, V>::call(std::span<const V>(args, in.count), in.data), out + i, c.stride);
+        }
+    }
+}
+
+template <class V, class... Rows>
+const Step* steps(field::TypeList<Rows...>) {
+    static constexpr Step table[] = {step<Rows, V>...};
+    return table;
+}
+
+}  // namespace
+
+namespace SGM_ISA {
+Kernels kernels() {
+    constexpr field::OpTable rows;
+    return {steps<Float>(rows), steps<Dual<Float>>(rows), steps<Interval<Float>>(rows)};
+}
+}  // namespace SGM_ISA
+
+}  // namespace sgm::eval

@@ -1,0 +1,44 @@
+// One step of a tape, compiled for each instruction set.
+// Enters: an instruction and register files. Leaves: the instruction's output registers. Assumes 64-byte aligned memory.
+// A register file is planar: register r of a value type of P floats is P rows of `stride` floats at r · P · stride.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "modeler/eval/tape.h"
+
+namespace sgm::eval {
+
+/// Floats in the longest vector: register rows are multiples of it.
+inline constexpr size_t vectorFloats = 16;
+/// Boxes at once; one bit of a choice word each.
+inline constexpr size_t maxBoxes = 64;
+/// Bytes of argument scratch a variadic op needs for each operand: a Dual, or an Interval and its mask, of the longest vector.
+inline constexpr size_t argumentBytes = 4 * vectorFloats * sizeof(float);
+
+/// Where the steps work.
+struct StepContext {
+    float* registers;
+    size_t stride;           ///< floats in a row, a multiple of vectorFloats
+    size_t count;            ///< floats of a row in use, a multiple of vectorFloats
+    const float* constants;
+    const Source* sources;
+    void* arguments;         ///< argumentBytes for each operand of the longest instruction
+    uint64_t* keeps;         ///< ranges: where the instruction's operands leave the boxes in which they can matter
+};
+
+using Step = void (*)(const Instruction&, const StepContext&);
+
+/// The steps of every op for one instruction set, by OpCode.
+struct Kernels {
+    const Step* values;
+    const Step* gradients;  ///< Dual: rows value, dx, dy, dz
+    const Step* ranges;     ///< Interval: rows lo, hi; ops that choose also write `keeps`
+};
+
+namespace portable { Kernels kernels(); }
+namespace avx2 { Kernels kernels(); }
+namespace avx512 { Kernels kernels(); }
+
+}  // namespace sgm::eval

@@ -1,0 +1,45 @@
+// Scratch behind evaluate.h: register files, choice words and the writer of shortened tapes.
+// Enters: sizes asked for. Leaves: aligned memory that only grows. Assumes one thread.
+#pragma once
+
+#include <vector>
+
+#include "modeler/eval/evaluate.h"
+#include "modeler/eval/kernels.h"
+#include "modeler/eval/tape_builder.h"
+
+namespace sgm::eval {
+
+/// Memory aligned for the longest vector; grows, never shrinks.
+class AlignedFloats {
+public:
+    float* get(size_t floats) {
+        const size_t lines = (floats + vectorFloats - 1) / vectorFloats;
+        if (lines_.size() < lines) lines_.resize(lines);
+        return lines_.empty() ? nullptr : lines_.front().v;
+    }
+
+private:
+    struct alignas(vectorFloats * sizeof(float)) Line {
+        float v[vectorFloats];
+    };
+    std::vector<Line> lines_;
+};
+
+struct Workspace::Impl {
+    Kernels kernels;
+    AlignedFloats registers, arguments;
+    std::vector<OriginId> origins;        ///< origin registers
+    std::vector<uint64_t> keeps;          ///< one word an operand of each choosing instruction, in tape order
+    const Instruction* rangedCode = nullptr;  ///< the tape `keeps` speaks of
+    TapeBuilder builder;
+    std::vector<TapeBuilder::Use> uses;
+
+    /// A context for blocks of `count` floats of a value type of `planes` floats.
+    StepContext context(const Tape& tape, size_t planes, size_t stride);
+};
+
+/// How many operands the longest variadic instruction has.
+size_t longestInstruction(const Tape& tape);
+
+}  // namespace sgm::eval
