@@ -1,8 +1,6 @@
 #include <array>
 #include <cmath>
-#include <vector>
 
-#include "modeler/eval/evaluate.h"
 #include "viewer/offscreen.h"
 
 namespace sgm::viewer {

@@ -1,5 +1,8 @@
 #include "modeler/eval/glsl.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <bit>
 
 #include "modeler/eval/values_glsl.h"
@@ -30,13 +33,13 @@ std::string caseBody(OpCode op) {
     return field::visitOp(op, []<class Row>() -> std::string {
         GlslBody body;
         const GlslText a("a", &body), b("b", &body);
-        const auto assign = [&](const GlslText& value) { return body.text + "value = " + value.expression + ";"; };
+        const auto assign = [&](const GlslText& value) { return fmt::format("{}value = {};", body.text, value.expression); };
         if constexpr (Row::arity == 1)
             return assign(Row::apply(a));
         else if constexpr (Row::arity == 2)
             return assign(Row::apply(a, b));
         else if constexpr (Row::arity == field::ops::variadic)
-            return "value = op_" + std::string(Row::name) + "(q.y, q.z, q.w);";
+            return fmt::format("value = op_{}(q.y, q.z, q.w);", Row::name);
         else
             return {};
     });
@@ -45,9 +48,9 @@ std::string caseBody(OpCode op) {
 std::string functions(const OpSet& ops) {
     std::string text;
     for (size_t i = 0; i < field::opCount; ++i) {
-        const auto& row = field::traits(OpCode(i));
+        const auto& row = field::traits(OpCode{static_cast<uint16_t>(i)});
         if (ops[i] && row.arity == field::ops::variadic)
-            text += "float op_" + std::string(row.name) + "(uint first, uint count, uint data) {" + std::string(row.glsl) + "}\n";
+            text += fmt::format("float op_{}(uint first, uint count, uint data) {{\n{}\n}}\n", row.name, row.glsl);
     }
     return text;
 }
@@ -57,7 +60,7 @@ std::string cases(const OpSet& ops, bool heavyOnes) {
     for (size_t i = 0; i < field::opCount; ++i) {
         const OpCode op{static_cast<uint16_t>(i)};
         if (ops[i] && field::traits(op).arity != field::ops::leaf && heavy(op) == heavyOnes)
-            text += "        case " + std::to_string(i) + "u: { " + caseBody(op) + " break; }  // " + std::string(field::traits(op).name) + "\n";
+            text += fmt::format("        case {}u: {{ {} break; }}  // {}\n", i, caseBody(op), field::traits(op).name);
     }
     return text;
 }
@@ -92,29 +95,29 @@ OpSet opsOf(const Tape& tape) {
 std::string interpreterGlsl(uint32_t maxRegisters, const OpSet& ops) {
     // A power of two, so that an operand word that isn't a register can be masked into range.
     const uint32_t registers = std::bit_ceil(std::max(maxRegisters, 4u));
-    const std::string light = cases(ops, false), long_ = cases(ops, true);
-    std::string text =
-        "uniform usamplerBuffer tapes;\n"
-        "const uint registerMask = " + std::to_string(registers - 1) + "u;\n"
-        "float registers[" + std::to_string(registers) + "];\n"
-        "float arg(uint texel) {\n"
-        "  uvec4 q = texelFetch(tapes, int(texel));\n"
-        "  return q.x != 0u ? uintBitsToFloat(q.y) : registers[q.y & registerMask];\n"
-        "}\n" + functions(ops) +
-        "float evaluateField(uint tapeStart, vec3 p) {\n"
-        "  uvec4 head = texelFetch(tapes, int(tapeStart));\n"
-        "  registers[0] = p.x; registers[1] = p.y; registers[2] = p.z;\n"
-        "  uint at = tapeStart + 1u;\n";
-    // Short ops run in a loop of their own that stops before each long one.
-    if (!long_.empty()) text += "  while (at < head.x) {\n";
-    text += "    uvec4 q = uvec4(0u);\n"
-            "    while (at < head.x) {\n"
-            "      q = texelFetch(tapes, int(at));\n"
-            "      if ((q.x & 1024u) != 0u) break;\n" + step(light) +
-            "      ++at;\n"
-            "    }\n";
-    if (!long_.empty()) text += "    if (at < head.x) {\n" + step(long_) + "      ++at;\n    }\n  }\n";
-    return text + "  return head.y != 0u ? uintBitsToFloat(head.z) : registers[head.z & registerMask];\n}\n";
+    const std::string longCases = cases(ops, true);
+    std::string text = fmt::format(R"(uniform usamplerBuffer tapes;
+const uint registerMask = {}u;
+float registers[{}];
+float arg(uint texel) {{
+  uvec4 q = texelFetch(tapes, int(texel));
+  return q.x != 0u ? uintBitsToFloat(q.y) : registers[q.y & registerMask];
+}}
+)",
+                                   registers - 1, registers);
+    text += functions(ops) + R"(float evaluateField(uint tapeStart, vec3 p) {
+  uvec4 head = texelFetch(tapes, int(tapeStart));
+  registers[0] = p.x; registers[1] = p.y; registers[2] = p.z;
+  uint at = tapeStart + 1u;
+  while (at < head.x) {
+    uvec4 q = uvec4(0u);
+    while (at < head.x) {  // short ops, up to the next long one
+      q = texelFetch(tapes, int(at));
+      if ((q.x & 1024u) != 0u) break;
+)" + step(cases(ops, false)) +
+            "      ++at;\n    }\n";
+    if (!longCases.empty()) text += "    if (at < head.x) {\n" + step(longCases) + "      ++at;\n    }\n";
+    return text + "  }\n  return head.y != 0u ? uintBitsToFloat(head.z) : registers[head.z & registerMask];\n}\n";
 }
 
 uint32_t appendTape(const Tape& tape, std::vector<uint32_t>& buffer) {

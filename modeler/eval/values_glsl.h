@@ -15,7 +15,7 @@ struct GlslBody {
 
     /// Stores an expression in a new temporary and gives its name.
     std::string store(const char* type, const std::string& expression) {
-        const std::string name = "t" + std::to_string(temporaries++);
+        const std::string name = std::string("t").append(std::to_string(temporaries++));
         text += std::string(type) + " " + name + " = " + expression + "; ";
         return name;
     }
