@@ -1,0 +1,337 @@
+// Rule and start bodies: elements, what joins the tree, and control around it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "grammar/rules/checker.h"
+#include "grammar/rules/evaluate.h"
+#include "grammar/rules/words.h"
+
+namespace sgm::rules {
+namespace {
+
+using Id = Operation::Id;
+using Written = syntax::Expr;
+
+const Attribute* find(const std::vector<Attribute>& attributes, Id id) {
+    const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.id == id; });
+    return found == attributes.end() ? nullptr : &*found;
+}
+
+bool isNil(const Body& body) {
+    return body.siblings.size() == 1 && body.siblings[0].size() == 1 && body.siblings[0][0].kind == Element::Kind::Shape &&
+           body.siblings[0][0].content.kind == Content::Kind::Solid && body.siblings[0][0].content.solid.kind == Solid::Kind::Nil;
+}
+
+/// A body grows on the matched content when its first shape has an operator; `nil` beside growing choices adds nothing.
+bool grows(const Body& body) {
+    if (body.siblings.empty() || body.siblings[0].empty()) return false;
+    const Element& first = body.siblings[0][0];
+    switch (first.kind) {
+        case Element::Kind::Shape: return first.op != Operator::None;
+        case Element::Kind::For:
+        case Element::Kind::While:
+        case Element::Kind::When: return first.body && grows(*first.body);
+        case Element::Kind::Choose: return std::any_of(first.choices.begin(), first.choices.end(), [](const Choice& c) { return grows(*c.body); });
+    }
+    return false;
+}
+
+Expr axisConstant(SourceSpan span, int axis) {
+    Expr e;
+    e.span = span;
+    e.value.kind = Value::Kind::Axis;
+    e.value.n[0] = axis;
+    return e;
+}
+
+}  // namespace
+
+void Checker::live(const syntax::Name& name, Element& out) {
+    if (name.empty()) return;
+    if (!isNonTerminal(name.text)) {
+        diagnostics_.error(name.span, fmt::format("a live shape's name begins with a capital: '{}' would be terminal", name.text));
+        return;
+    }
+    out.live = symbols_.at(name.text);
+    if (ruled_.contains(out.live)) return;
+    std::vector<std::string> ruled;
+    for (const SymbolId id : ruled_) ruled.push_back(grammar_.symbols[id].name);
+    if (std::string mend = nearest(name.text, ruled); !mend.empty())
+        diagnostics_.warning(name.span, fmt::format("no rule matches '{}', so nothing will grow here", name.text), std::move(mend));
+}
+
+void Checker::content(Place& place, const Written& e, Element& out) {
+    const auto symbol = symbols_.find(e.text);
+    const bool named = e.kind == Written::Kind::Name && symbol != symbols_.end();
+    if (named) {
+        out.content.kind = Content::Kind::Symbol;
+        out.content.symbol = symbol->second;
+        out.label = e.text;
+        if (!grammar_.symbols[symbol->second].terminal && !ruled_.contains(symbol->second))
+            failed(e.span, fmt::format("there is no rule for '{}'", e.text), unknownSolid(e.text));
+        return;
+    }
+    if (e.kind == Written::Kind::Call && isNonTerminal(e.text)) {
+        diagnostics_.error(e.span, fmt::format("'{}' takes no parameters", e.text), "hand values down with 'with name = …'");
+        return;
+    }
+    out.content.kind = Content::Kind::Solid;
+    out.content.solid = solid(place, e);
+    out.label = e.text;
+    const bool cuts = out.op == Operator::Difference || out.op == Operator::Intersection;
+    if (!cuts && out.op != Operator::None) bounded(out.content.solid, out.op == Operator::Morph ? "morphed" : "added");
+}
+
+/// Attributes that contradict the element's operator or each other.
+void Checker::agreement(const Element& element) {
+    const auto say = [&](Id id, std::string message, std::string mend) {
+        if (const Attribute* a = find(element.attributes, id)) diagnostics_.error(a->span, std::move(message), std::move(mend));
+    };
+    if (element.op == Operator::None) {
+        for (const Id id : {Id::At, Id::To, Id::Overlap, Id::Shift, Id::On, Id::Blend}) {
+            const std::string_view name = syntax::operations()[static_cast<size_t>(id)].name;
+            say(id, fmt::format("'{}' joins a newcomer to what stands, but no operator joins this shape", name), "put '+', '-', '&' or 'morph' before it");
+        }
+    } else if (!find(element.attributes, Id::At)) {
+        for (const Id id : {Id::To, Id::Overlap})
+            say(id, fmt::format("'{}' needs the joint it speaks of", syntax::operations()[static_cast<size_t>(id)].name), "add 'at +x', 'at free(…)' or another joint of ours");
+    }
+    if (element.op != Operator::Morph) say(Id::By, "'by' says how far a morph goes, but this shape isn't joined by 'morph'", "write 'morph' before the shape");
+    if (element.op == Operator::Morph) say(Id::Blend, "a morph has no edge that could be blended", "leave 'blend' out");
+    newcomerJoint(element);
+}
+
+/// `to NAME` where the newcomer is known: it must have that joint.
+void Checker::newcomerJoint(const Element& element) {
+    const Attribute* to = find(element.attributes, Id::To);
+    if (!to || to->joints.size() != 1 || to->joints[0].value.kind != Value::Kind::Word) return;
+    std::vector<std::string> known;
+    const field::Primitive* row = element.content.kind == Content::Kind::Solid ? element.content.solid.primitive : nullptr;
+    if (element.content.kind == Content::Kind::Symbol) {
+        const Symbol& symbol = grammar_.symbols[element.content.symbol];
+        if (!symbol.terminal) return;
+        for (const Joint& joint : symbol.joints) known.push_back(joint.name);
+        if (symbol.solid) row = symbol.solid->primitive;
+    } else if (element.content.kind != Content::Kind::Solid) {
+        return;
+    }
+    if (row)
+        for (const auto& joint : row->joints) known.emplace_back(joint.name);
+    const std::string& wanted = to->joints[0].value.text;
+    if (std::find(known.begin(), known.end(), wanted) == known.end() && jointNames_.contains(wanted))
+        diagnostics_.error(to->joints[0].span, fmt::format("'{}' has no joint '{}'", element.label, wanted), nearest(wanted, known));
+}
+
+void Checker::shape(Place& place, const syntax::Element& written, Element& out) {
+    // With an operator there is no matched scope to change: what stands before the newcomer is meant for it.
+    std::vector<Attribute> before = attributes(place, written.before);
+    out.attributes = attributes(place, written.after);
+    if (out.op == Operator::None) out.prefix = std::move(before);
+    else out.attributes.insert(out.attributes.begin(), before.begin(), before.end());
+    for (const Attribute& a : out.prefix)
+        if (a.id != Id::Size && a.id != Id::Move && a.id != Id::Turn && a.id != Id::With && a.id != Id::Tag)
+            diagnostics_.error(a.span, fmt::format("'{}' can't stand before a shape", syntax::operations()[static_cast<size_t>(a.id)].name), "write it after the shape");
+    if (written.kind == syntax::Element::Kind::Group) {
+        out.content.kind = Content::Kind::Group;
+        out.content.group = std::make_shared<Body>(written.body ? body(place, *written.body) : Body{});
+        out.label = "group";
+    } else if (written.solid) {
+        content(place, *written.solid, out);
+    } else if (out.op != Operator::None && written.live.empty()) {
+        diagnostics_.error(written.span, "nothing is joined here", "name a shape after the operator");
+    }
+    live(written.live, out);
+    if (out.op == Operator::Morph) place.morphs = true;
+    if (!out.label.empty()) out.ordinal = place.ordinals[out.label]++;
+    agreement(out);
+}
+
+/// The values of a loop: `axes`, `sides`, a tuple, or a range of whole numbers.
+Expr Checker::over(Place& place, const Written& e, Type& type) {
+    Expr result;
+    result.span = e.span;
+    result.kind = Expr::Kind::Tuple;
+    type = Type::of(Value::Kind::Axis);
+    if (e.kind == Written::Kind::Name && (e.text == "axes" || e.text == "sides")) {
+        for (int axis = 0; axis < 6; ++axis)
+            if (e.text == "axes" || axis / 2 != 1) result.args.push_back(axisConstant(e.span, axis));
+        return result;
+    }
+    if (e.kind == Written::Kind::Range) {
+        type = Type::number(Unit::None, true);
+        result.kind = Expr::Kind::Range;
+        for (const Written& end : e.args) result.args.push_back(expression(place, end, Want::Count, "a loop"));
+        return result;
+    }
+    if (e.kind == Written::Kind::Tuple) {
+        bool axes = true;
+        for (const Written& part : e.args) {
+            Typed value = expression(place, part);
+            axes = axes && value.type.known && value.type.like.kind == Value::Kind::Axis;
+            if (!axes) asks(value, Want::Count, "a loop", &part);
+            result.args.push_back(std::move(value.expr));
+        }
+        if (!axes) type = Type::number(Unit::None, true);
+        return result;
+    }
+    if (e.kind != Written::Kind::Error)
+        diagnostics_.error(e.span, fmt::format("a loop runs over 'axes', 'sides', a range 1..n or a list (a, b, c), not '{}'", e.span.text()));
+    type = Type::unknown();
+    return result;
+}
+
+void Checker::loop(Place& place, const syntax::Element& written, Element& out) {
+    const size_t outside = place.locals.size();
+    place.enter("loop");
+    if (written.kind == syntax::Element::Kind::For) {
+        Place::Local local{written.variable.text, place.frame++, Type::unknown()};
+        if (written.over) out.over = over(place, *written.over, local.type);
+        out.local = local.index;
+        const bool again = std::any_of(place.locals.begin(), place.locals.end(), [&](const auto& l) { return l.name == local.name; });
+        if (again || params_.contains(local.name))
+            diagnostics_.error(written.variable.span, fmt::format("'{}' already means something else here", local.name), "give the loop's variable another name");
+        else if (local.name != "i" && isTaken(local.name))
+            diagnostics_.error(written.variable.span, fmt::format("'{}' is a word of the language and can't name a loop's variable", local.name));
+        place.locals.push_back(std::move(local));
+        if (written.guard) out.guard = expression(place, *written.guard, Want::Truth, "'when'");
+    } else if (written.over) {
+        const bool isWhile = written.kind == syntax::Element::Kind::While;
+        out.guard = expression(place, *written.over, Want::Truth, isWhile ? "'while'" : "'when'");
+        if (const auto holds = fold(*out.guard, {}); isWhile && holds && holds->truth())
+            diagnostics_.error(out.guard->span, "this 'while' never ends: its condition always holds");
+    }
+    out.body = std::make_shared<Body>(written.body ? body(place, *written.body) : Body{});
+    place.locals.resize(outside, Place::Local{{}, 0, Type::unknown()});
+}
+
+void Checker::choose(Place& place, const syntax::Element& written, Element& out) {
+    double sum = 0;
+    bool folded = true;
+    for (const syntax::Case& c : written.cases) {
+        Choice choice;
+        choice.weight.span = c.span;
+        choice.weight.value = Value::number(1);
+        place.enter("weight");
+        if (c.label) choice.weight = expression(place, *c.label, Want::Number, "the weight of a choice");
+        const auto weight = fold(choice.weight, defaults());
+        if (weight && weight->num() < 0) diagnostics_.error(choice.weight.span, fmt::format("a weight is no less than 0, not {}", toText(*weight)));
+        folded = folded && weight && weight->num() >= 0;
+        sum += weight ? weight->num() : 0;
+        if (c.repeated || !c.tag.empty()) diagnostics_.error(c.span, "a choice is 'weight: body'");
+        choice.body = std::make_shared<Body>(c.body ? body(place, *c.body) : Body{});
+        out.choices.push_back(std::move(choice));
+    }
+    if (folded && !out.choices.empty() && sum == 0) diagnostics_.error(written.span, "all weights are 0, so nothing could be chosen");
+    const auto grow = [](const Choice& c) { return grows(*c.body); };
+    if (std::any_of(out.choices.begin(), out.choices.end(), grow))
+        for (const Choice& c : out.choices)
+            if (!grow(c) && !isNil(*c.body))
+                diagnostics_.error(c.body->span, "this alternative replaces what stands, but others grow on it", "begin every alternative with an operator, or none");
+}
+
+Element Checker::element(Place& place, const syntax::Element& written) {
+    using Kind = syntax::Element::Kind;
+    Element out;
+    out.span = written.span;
+    out.op = written.op;
+    switch (written.kind) {
+        case Kind::Shape:
+        case Kind::Group: shape(place, written, out); return out;
+        case Kind::For: out.kind = Element::Kind::For; break;
+        case Kind::While: out.kind = Element::Kind::While; break;
+        case Kind::When: out.kind = Element::Kind::When; break;
+        case Kind::Choose:
+            out.kind = Element::Kind::Choose;
+            choose(place, written, out);
+            return out;
+    }
+    loop(place, written, out);
+    return out;
+}
+
+Body Checker::body(Place& place, const syntax::Body& written) {
+    Body result;
+    result.span = written.span;
+    for (const auto& chain : written.siblings) {
+        std::vector<Element>& elements = result.siblings.emplace_back();
+        for (const syntax::Element& e : chain) elements.push_back(element(place, e));
+    }
+    result.grows = grows(result);
+    return result;
+}
+
+void Checker::rule(const syntax::RuleDecl& decl) {
+    if (!isNonTerminal(decl.symbol.text)) {
+        diagnostics_.error(decl.symbol.span, fmt::format("rules rewrite shapes whose names begin with a capital, and '{}' doesn't", decl.symbol.text));
+        return;
+    }
+    Rule out;
+    out.span = decl.span;
+    out.symbol = symbols_.at(decl.symbol.text);
+    out.name = decl.name.text;
+    if (out.name.empty()) {
+        const auto unnamed = std::count_if(grammar_.rules.begin(), grammar_.rules.end(), [&](const Rule& r) { return r.symbol == out.symbol && r.name.find('#') != std::string::npos; });
+        out.name = fmt::format("{}#{}", decl.symbol.text, unnamed + 1);
+    }
+    Place guard(Place::Where::Guard);
+    const auto condition = [&](const std::optional<Written>& e, const char* word, Want want) -> std::optional<Expr> {
+        guard.enter(word);
+        return e ? std::optional(expression(guard, *e, want, fmt::format("'{}'", word))) : std::nullopt;
+    };
+    out.when = condition(decl.when, "when", Want::Truth);
+    out.weight = condition(decl.weight, "weight", Want::Number);
+    out.repeat = condition(decl.repeat, "repeat", Want::Count);
+    if (out.weight)
+        if (const auto weight = fold(*out.weight, defaults()); weight && weight->num() < 0)
+            diagnostics_.error(out.weight->span, fmt::format("a weight is no less than 0, not {}", toText(*weight)));
+    if (!decl.beside.empty()) {
+        const auto beside = symbols_.find(decl.beside.text);
+        if (beside == symbols_.end()) failed(decl.beside.span, fmt::format("there is no shape called '{}'", decl.beside.text), nearest(decl.beside.text, symbolNames(false)));
+        else out.beside = beside->second;
+    }
+    Place place(out.repeat ? Place::Where::Chain : Place::Where::Body);
+    if (out.repeat) {
+        out.stepLocal = place.frame++;
+        place.locals.push_back({"i", out.stepLocal, Type::number(Unit::None, true)});
+    }
+    out.body = body(place, decl.body);
+    out.morphic = std::exchange(place.morphs, false);
+    if (decl.finally_) {
+        if (!out.repeat) diagnostics_.error(decl.finally_->span, "'finally' closes a chain, and there is none here", "give the rule a 'repeat'");
+        place.where = Place::Where::Finally;
+        place.locals.clear();
+        out.finally_ = body(place, *decl.finally_);
+        out.finallyMorphic = place.morphs;
+    }
+    out.locals = place.frame;
+    if (!decl.name.empty()) rules_.emplace(out.name, static_cast<uint32_t>(grammar_.rules.size()));
+    grammar_.symbols[out.symbol].rules.push_back(static_cast<uint32_t>(grammar_.rules.size()));
+    grammar_.rules.push_back(std::move(out));
+}
+
+void Checker::start(const syntax::StartDecl& decl) {
+    if (!isNonTerminal(decl.symbol.text)) {
+        diagnostics_.error(decl.symbol.span, fmt::format("a start's name begins with a capital, and '{}' doesn't", decl.symbol.text));
+        return;
+    }
+    Place place(Place::Where::Body);
+    Start out;
+    out.span = decl.span;
+    out.symbol = symbols_.at(decl.symbol.text);
+    out.body = body(place, decl.body);
+    out.locals = place.frame;
+    if (out.body.grows) diagnostics_.error(decl.body.span, "a start begins with a shape: nothing stands yet that could grow", "leave the operator out");
+    for (const auto& chain : out.body.siblings)
+        for (const Element& e : chain)
+            if (e.op == Operator::None && e.content.kind == Content::Kind::Solid) bounded(e.content.solid, "a start");
+    grammar_.starts.push_back(std::move(out));
+}
+
+void Checker::productions(const syntax::Ast& ast) {
+    for (const auto& decl : ast.starts) start(decl);
+    for (const auto& decl : ast.rules) rule(decl);
+}
+
+}  // namespace sgm::rules

@@ -1,0 +1,173 @@
+// The checker at work: one Grammar being filled, and what its names mean so far.
+// Enters: the Asts of a file and of what it uses, in the order they were used. Leaves: a filled Grammar and diagnostics.
+// Assumes declare() runs before the rest: names may stand before they are declared.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "grammar/rules/grammar.h"
+#include "grammar/rules/type.h"
+#include "grammar/syntax/ast.h"
+
+namespace sgm::rules {
+
+/// A value with what it will be.
+struct Typed {
+    Expr expr;
+    Type type;
+};
+
+/// What may be said at a spot of the grammar, and what was said so far in the rule around it.
+struct Place {
+    enum class Where : uint8_t {
+        Constant,  ///< a parameter's default, a setting: plain values only
+        Look,      ///< a terminal's colour or solid: parameters too
+        Guard,     ///< before a rule's arrow: the matched shape and chance too
+        Body,      ///< a rule's or a start's body
+        Chain,     ///< the body of a rule with `repeat`: i, ~>, last, any
+        Finally,   ///< after a chain: last
+        Expect,    ///< a check's figures
+    };
+    explicit Place(Where where) : where(where) {}
+    Where where;
+
+    struct Local {
+        std::string name;
+        uint32_t index;
+        Type type;
+    };
+    std::vector<Local> locals;  ///< in sight, innermost last
+    uint32_t frame = 0;         ///< locals so far, in sight or not
+    std::map<std::string, uint32_t> ordinals;  ///< of each label in the body
+    bool morphs = false;                       ///< an operator or a solid of the body morphs
+
+    std::string attribute;  ///< what a range belongs to: names its draw
+    uint32_t ranges = 0;    ///< ranges in it so far
+    void enter(std::string name) {
+        attribute = std::move(name);
+        ranges = 0;
+    }
+};
+
+class Checker {
+public:
+    Checker(Grammar& grammar, syntax::Diagnostics& diagnostics) : grammar_(grammar), diagnostics_(diagnostics) {}
+
+    /// Takes the names an Ast declares and refuses doubles.
+    void declare(const syntax::Ast& ast);
+    /// Checks what stands behind the names.
+    void parameters(const syntax::Ast& ast);
+    void terminals(const syntax::Ast& ast);
+    void productions(const syntax::Ast& ast);
+    void sayings(const syntax::Ast& ast);  ///< derives, styles, checks
+    void refuse(const syntax::Ast& ast);   ///< what isn't built yet
+    /// A plain value: no parameters, no shape, no chance. Where `word` holds, a name stands for itself.
+    std::optional<Value> plain(const syntax::Expr& e, bool word);
+    /// Parameters of `ast` that nothing asks for.
+    void unused(const syntax::Ast& ast);
+
+private:
+    // names.cpp
+    void declareParameter(const syntax::ParamDecl& decl);
+    void declareTerminals(const syntax::TerminalDecl& decl);
+    void declareRule(const syntax::RuleDecl& decl);
+    void collect(const syntax::Body& body);
+    void collect(const syntax::Attribute& attribute);
+    void collect(const std::vector<syntax::Case>& cases);
+    SymbolId nonTerminal(const syntax::Name& name);
+    bool twice(std::map<std::string, SourceSpan>& seen, const syntax::Name& name, std::string_view kind);
+    std::vector<std::string> symbolNames(bool withRulesOnly) const;
+    std::string nearest(std::string_view word, const std::vector<std::string>& candidates) const;
+
+    // expressions.cpp
+    Typed expression(Place& place, const syntax::Expr& e);
+    Expr expression(Place& place, const syntax::Expr& e, Want want, std::string_view what);
+    Typed infer(Place& place, const syntax::Expr& e);
+    Typed number(const syntax::Expr& e);
+    Typed name(Place& place, const syntax::Expr& e);
+    Typed unknownName(const Place& place, const syntax::Expr& e);
+    Typed member(Place& place, const syntax::Expr& e);
+    Typed index(Place& place, const syntax::Expr& e);
+    Typed call(Place& place, const syntax::Expr& e);
+    Typed countCall(Place& place, const syntax::Expr& e);
+    Typed tuple(Place& place, const syntax::Expr& e);
+    Typed unary(Place& place, const syntax::Expr& e);
+    Typed binary(Place& place, const syntax::Expr& e);
+    Typed comparedWord(Place& place, const syntax::Expr& e, const Type& other);
+    Typed range(Place& place, const syntax::Expr& e);
+    Typed ramp(Place& place, const syntax::Expr& e);
+    Typed failed(SourceSpan span, std::string message, std::string mend = {});
+    Typed applied(Expr::Kind kind, Fn fn, SourceSpan span, std::vector<Typed> args);
+    bool alike(const Typed& a, const Typed& b, std::string_view verb);
+    bool asks(const Typed& value, Want want, std::string_view what, const syntax::Expr* written);
+
+    // solids.cpp
+    Solid solid(Place& place, const syntax::Expr& e);
+    Solid namedSolid(Place& place, const syntax::Expr& e);
+    Solid primitiveSolid(Place& place, const syntax::Expr& e, const field::Primitive& row);
+    Solid morphSolid(Place& place, const syntax::Expr& e);
+    Solid combination(Place& place, const syntax::Expr& e);
+    Expr primitiveArgument(Place& place, const syntax::Expr& e, const field::Primitive& row, size_t index);
+    Expr choiceArgument(Place& place, const syntax::Expr& e, const field::PrimitiveParameter& parameter);
+    Solid terminalSolid(const syntax::Name& name);
+    void bounded(const Solid& solid, std::string_view verb);
+    std::string unknownSolid(std::string_view word) const;
+
+    // attributes.cpp
+    std::vector<Attribute> attributes(Place& place, const std::vector<syntax::Attribute>& written);
+    std::optional<Attribute> attribute(Place& place, const syntax::Attribute& written);
+    void jointArgument(Place& place, const syntax::Expr& e, Attribute& out);
+    Expr joint(Place& place, const syntax::Expr& e);
+    void hostArgument(Place& place, const syntax::Expr& e, Attribute& out);
+    void noiseArgument(Place& place, const syntax::Expr& e, Attribute& out);
+    void withArguments(Place& place, const syntax::Attribute& written, Attribute& out);
+    void sensible(const Attribute& attribute);
+
+    // bodies.cpp
+    Body body(Place& place, const syntax::Body& written);
+    Element element(Place& place, const syntax::Element& written);
+    void shape(Place& place, const syntax::Element& written, Element& out);
+    void content(Place& place, const syntax::Expr& e, Element& out);
+    void loop(Place& place, const syntax::Element& written, Element& out);
+    void choose(Place& place, const syntax::Element& written, Element& out);
+    Expr over(Place& place, const syntax::Expr& e, Type& type);
+    void live(const syntax::Name& name, Element& out);
+    void agreement(const Element& element);
+    void newcomerJoint(const Element& element);
+    void rule(const syntax::RuleDecl& decl);
+    void start(const syntax::StartDecl& decl);
+
+    // declarations.cpp
+    void parameter(const syntax::ParamDecl& decl);
+    void terminal(const syntax::TerminalDecl& decl);
+    void declaredJoint(const syntax::TerminalDecl::JointDecl& decl, std::vector<Joint>& joints);
+    void look(const syntax::TerminalDecl& decl, Material& material, std::vector<Attribute>& open);
+    void derive(const syntax::DeriveDecl& decl);
+    void placeOf(const syntax::DeriveDecl::Step& step);
+    std::vector<Setting> settings(const std::vector<syntax::Setting>& written);
+    uint32_t startCalled(const syntax::Name& name);
+
+    std::vector<Value> defaults() const;
+
+    Grammar& grammar_;
+    syntax::Diagnostics& diagnostics_;
+
+    std::map<std::string, uint32_t> params_;
+    std::map<std::string, SymbolId> symbols_;
+    std::map<std::string, uint32_t> rules_;       ///< named ones
+    std::set<uint32_t> usedParams_;
+    std::set<uint32_t> brokenParams_;             ///< whose default could not be read: of no known type
+    std::set<std::string> withNames_;             ///< set by `with` somewhere
+    std::set<std::string> jointNames_;            ///< declared by a terminal or a primitive
+    std::set<std::string> unbuilt_;               ///< maps and lsystems: named once, refused once
+    std::set<SymbolId> ruled_;                    ///< have a rule
+    std::set<SymbolId> placed_;                   ///< stand in a start, a body or behind a colon
+    std::map<std::string, const syntax::TerminalDecl*> terminalDecls_;
+    std::vector<std::string> terminalsInWork_;    ///< whose solids are being read: finds a = b, b = a
+    std::map<std::string, SourceSpan> seenParams_, seenTerminals_, seenRules_, seenStarts_, seenStyles_, seenDerives_;
+};
+
+}  // namespace sgm::rules

@@ -1,0 +1,39 @@
+#include "grammar/rules/functions.h"
+
+#include <algorithm>
+#include <array>
+
+namespace sgm::rules {
+namespace {
+
+constexpr uint8_t many = 16;
+constexpr std::array<Function, 17> table = {{
+    {"min", Fn::Min, 1, many, Signature::Alike, "the least of its arguments, or of one vector's components"},
+    {"max", Fn::Max, 1, many, Signature::Alike, "the greatest of its arguments, or of one vector's components"},
+    {"abs", Fn::Abs, 1, 1, Signature::Alike, "without its sign"},
+    {"floor", Fn::Floor, 1, 1, Signature::Alike, "the whole number below"},
+    {"ceil", Fn::Ceil, 1, 1, Signature::Alike, "the whole number above"},
+    {"round", Fn::Round, 1, 1, Signature::Alike, "the nearest whole number"},
+    {"clamp", Fn::Clamp, 3, 3, Signature::Alike, "clamp(x, lo, hi): x, no less than lo and no more than hi"},
+    {"sqrt", Fn::Sqrt, 1, 1, Signature::Plain, "square root; 0 of a negative number"},
+    {"sin", Fn::Sin, 1, 1, Signature::Angle, "sine of an angle"},
+    {"cos", Fn::Cos, 1, 1, Signature::Angle, "cosine of an angle"},
+    {"lerp", Fn::Lerp, 3, 3, Signature::Lerp, "lerp(a, b, t): from a (t = 0) to b (t = 1)"},
+    {"if", Fn::If, 3, 3, Signature::If, "if(condition, a, b): a where the condition holds, else b"},
+    {"rotX", Fn::RotX, 1, 1, Signature::Angle, "rotation about x"},
+    {"rotY", Fn::RotY, 1, 1, Signature::Angle, "rotation about y"},
+    {"rotZ", Fn::RotZ, 1, 1, Signature::Angle, "rotation about z"},
+    {"rgb", Fn::Rgb, 3, 3, Signature::Plain, "rgb(r, g, b): a colour from shares 0 … 1, as in #rrggbb"},
+    {"count", Fn::Count, 1, 1, Signature::Symbol, "count(Name): how many shapes of that name there are"},
+}};
+
+}  // namespace
+
+std::span<const Function> functions() { return table; }
+
+const Function* findFunction(std::string_view name) {
+    const auto row = std::find_if(table.begin(), table.end(), [&](const Function& f) { return f.name == name; });
+    return row == table.end() ? nullptr : &*row;
+}
+
+}  // namespace sgm::rules

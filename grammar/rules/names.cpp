@@ -1,0 +1,138 @@
+// What the declarations of a grammar are called, taken before anything is checked.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "grammar/rules/checker.h"
+#include "grammar/rules/functions.h"
+#include "grammar/rules/words.h"
+
+namespace sgm::rules {
+namespace {
+
+constexpr std::array<std::string_view, 17> taken{"axes", "sides", "last",   "any",   "free", "centre", "nil", "scope", "i",
+                                                 "true", "false", "morph", "x",     "y",    "z",      "billow", "fbm"};
+
+}  // namespace
+
+bool isNonTerminal(std::string_view name) { return !name.empty() && std::isupper(static_cast<unsigned char>(name[0])); }
+
+bool isTaken(std::string_view name) {
+    return std::find(taken.begin(), taken.end(), name) != taken.end() || findFunction(name);
+}
+
+bool Checker::twice(std::map<std::string, SourceSpan>& seen, const syntax::Name& name, std::string_view kind) {
+    const auto [entry, fresh] = seen.emplace(name.text, name.span);
+    if (fresh) return false;
+    const SourceSpan first = entry->second;
+    diagnostics_.error(name.span, fmt::format("there is already a {} '{}' in {}, line {}", kind, name.text,
+                                              first.source->name(), first.source->place(first.begin).line),
+                       "give one of them another name");
+    return true;
+}
+
+SymbolId Checker::nonTerminal(const syntax::Name& name) {
+    const auto [entry, fresh] = symbols_.emplace(name.text, static_cast<SymbolId>(grammar_.symbols.size()));
+    if (fresh) {
+        Symbol symbol;
+        symbol.name = name.text;
+        symbol.span = name.span;
+        grammar_.symbols.push_back(std::move(symbol));
+    }
+    return entry->second;
+}
+
+void Checker::declareParameter(const syntax::ParamDecl& decl) {
+    if (decl.name.empty() || twice(seenParams_, decl.name, "parameter")) return;
+    if (isTaken(decl.name.text))
+        diagnostics_.error(decl.name.span, fmt::format("'{}' is a word of the language and can't name a parameter", decl.name.text));
+    params_.emplace(decl.name.text, static_cast<uint32_t>(grammar_.params.size()));
+    Param param;
+    param.name = decl.name.text;
+    param.span = decl.span;
+    param.valueSpan = decl.value.span;
+    grammar_.params.push_back(std::move(param));
+}
+
+void Checker::declareTerminals(const syntax::TerminalDecl& decl) {
+    for (const syntax::Name& name : decl.names) {
+        if (name.empty() || twice(seenTerminals_, name, "terminal")) continue;
+        if (isNonTerminal(name.text))
+            diagnostics_.error(name.span, fmt::format("a terminal's name begins with a small letter: '{}' would be a shape that rules rewrite", name.text));
+        else if (isTaken(name.text) || field::findPrimitive(name.text))
+            diagnostics_.error(name.span, fmt::format("'{}' is {} and can't name a terminal", name.text,
+                                                      isTaken(name.text) ? "a word of the language" : "a primitive"));
+        symbols_.emplace(name.text, static_cast<SymbolId>(grammar_.symbols.size()));
+        terminalDecls_.emplace(name.text, &decl);
+        Symbol symbol;
+        symbol.name = name.text;
+        symbol.terminal = true;
+        symbol.span = name.span;
+        grammar_.symbols.push_back(std::move(symbol));
+    }
+    for (const auto& joint : decl.joints) jointNames_.insert(joint.name.text);
+}
+
+void Checker::declareRule(const syntax::RuleDecl& decl) {
+    if (!decl.name.empty()) twice(seenRules_, decl.name, "rule");
+    if (isNonTerminal(decl.symbol.text)) ruled_.insert(nonTerminal(decl.symbol));
+    collect(decl.body);
+    if (decl.finally_) collect(*decl.finally_);
+}
+
+void Checker::collect(const syntax::Attribute& attribute) {
+    if (attribute.id == Operation::Id::With && !attribute.args.empty()) withNames_.insert(attribute.args[0].text);
+    collect(attribute.cases);
+}
+
+void Checker::collect(const std::vector<syntax::Case>& cases) {
+    for (const syntax::Case& c : cases) {
+        collect(c.cases);
+        if (c.body) collect(*c.body);
+    }
+}
+
+/// Non-terminals need no declaration: those that stand in a body exist, and so do the values set by `with`.
+void Checker::collect(const syntax::Body& body) {
+    for (const auto& chain : body.siblings)
+        for (const syntax::Element& e : chain) {
+            for (const auto& attribute : e.before) collect(attribute);
+            for (const auto& attribute : e.after) collect(attribute);
+            if (isNonTerminal(e.live.text)) placed_.insert(nonTerminal(e.live));
+            if (e.solid && e.solid->kind == syntax::Expr::Kind::Name && isNonTerminal(e.solid->text))
+                placed_.insert(nonTerminal({e.solid->text, e.solid->span}));
+            if (e.body) collect(*e.body);
+            collect(e.cases);
+        }
+}
+
+void Checker::declare(const syntax::Ast& ast) {
+    for (const auto& decl : ast.params) declareParameter(decl);
+    for (const auto& decl : ast.terminals) declareTerminals(decl);
+    for (const auto& decl : ast.maps) unbuilt_.insert(decl.name.text);
+    for (const auto& decl : ast.lsystems) unbuilt_.insert(decl.name.text);
+    for (const auto& decl : ast.starts) {
+        if (decl.symbol.empty() || twice(seenStarts_, decl.symbol, "start")) continue;
+        if (isNonTerminal(decl.symbol.text)) placed_.insert(nonTerminal(decl.symbol));
+        collect(decl.body);
+    }
+    for (const auto& decl : ast.rules) declareRule(decl);
+    for (const field::Primitive& row : field::primitives())
+        for (const field::PrimitiveJoint& joint : row.joints) jointNames_.insert(std::string(joint.name));
+}
+
+std::vector<std::string> Checker::symbolNames(bool withRulesOnly) const {
+    std::vector<std::string> names;
+    for (const auto& [name, id] : symbols_)
+        if (!withRulesOnly || grammar_.symbols[id].terminal || ruled_.contains(id)) names.push_back(name);
+    return names;
+}
+
+std::string Checker::nearest(std::string_view word, const std::vector<std::string>& candidates) const {
+    const std::string name = syntax::didYouMean(word, candidates);
+    return name.empty() ? std::string() : fmt::format("did you mean '{}'?", name);
+}
+
+}  // namespace sgm::rules

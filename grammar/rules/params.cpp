@@ -1,0 +1,148 @@
+#include "grammar/rules/params.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "grammar/rules/check.h"
+#include "grammar/rules/evaluate.h"
+#include "grammar/rules/type.h"
+#include "grammar/syntax/parser.h"
+#include "modeler/core/conventions.h"
+
+namespace sgm::rules {
+namespace {
+
+bool numeric(const Value& v) { return v.kind == Value::Kind::Number || v.kind == Value::Kind::Vector; }
+
+/// `value` with the unit of `like` where it has none, spread over as many components.
+Value adopted(const Value& value, const Value& like) {
+    Value result = like;
+    result.integer = value.integer;
+    for (size_t i = 0; i < std::min<size_t>(like.count, value.units.size()); ++i) {
+        const size_t j = value.count > 1 ? i : 0;
+        result.n[i] = value.n[j];
+        if (value.units[j] != Unit::None) result.units[i] = value.units[j];
+    }
+    return result;
+}
+
+std::string outOfRange(const Param& param, const Value& value) {
+    for (size_t i = 0; i < value.count; ++i)
+        if (value.n[i] < param.lo->n[i] || value.n[i] > param.hi->n[i])
+            return fmt::format("'{}' is {}, outside its range {}..{}", param.name, toText(component(value, Value::number(static_cast<double>(i)))),
+                               toText(component(*param.lo, Value::number(static_cast<double>(i)))), toText(component(*param.hi, Value::number(static_cast<double>(i)))));
+    return {};
+}
+
+/// A component as other programs show it.
+double shown(const Value& v, size_t i) {
+    const Unit unit = v.units[std::min(i, v.units.size() - 1)];
+    // Through text: 0.3 % stays 0.3, 12 degrees stay 12.
+    const double raw = unit == Unit::Angle ? degrees(v.n[i]) : unit == Unit::Share ? v.n[i] * 100 : v.n[i];
+    return std::stod(fmt::format("{:.12g}", raw));
+}
+
+nlohmann::ordered_json jsonOf(const Value& v) {
+    const auto one = [&](size_t i) -> nlohmann::ordered_json {
+        if (v.integer) return static_cast<int64_t>(shown(v, i));
+        return shown(v, i);
+    };
+    switch (v.kind) {
+        case Value::Kind::Number: return one(0);
+        case Value::Kind::Bool: return v.truth();
+        case Value::Kind::Word:
+        case Value::Kind::Text: return v.text;
+        case Value::Kind::Vector: {
+            auto list = nlohmann::ordered_json::array();
+            for (size_t i = 0; i < v.count; ++i) list.push_back(one(i));
+            return list;
+        }
+        default: return toText(v);
+    }
+}
+
+std::string_view kindName(const Value& v) {
+    switch (v.kind) {
+        case Value::Kind::Number: return v.integer ? "integer" : "real";
+        case Value::Kind::Vector: return "vector";
+        case Value::Kind::Bool: return "boolean";
+        case Value::Kind::Color: return "color";
+        case Value::Kind::Word: return "choice";
+        case Value::Kind::Text: return "text";
+        case Value::Kind::Rotation: return "rotation";
+        case Value::Kind::Axis: return "axis";
+    }
+    return {};
+}
+
+std::string_view unitName(Unit unit) {
+    switch (unit) {
+        case Unit::Metre: return "m";
+        case Unit::Angle: return "deg";
+        case Unit::Share: return "%";
+        case Unit::PerMetre: return "/m";
+        default: return "";
+    }
+}
+
+}  // namespace
+
+std::string setRange(Param& param, const Value& lo, const Value& hi) {
+    for (const Value* end : {&lo, &hi})
+        if (!numeric(*end) || (end->count != 1 && end->count != param.value.count) || !compatible(Type::of(*end), Type::of(param.value)) || !compatible(Type::of(lo), Type::of(hi)))
+            return fmt::format("the range of '{}' must be of the same kind as its default {}", param.name, toText(param.value));
+    param.value = adopted(param.value, adopted(lo, adopted(hi, param.value)));
+    param.lo = adopted(lo, param.value);
+    param.hi = adopted(hi, param.value);
+    param.value.integer = param.lo->integer = param.hi->integer = param.value.integer && lo.integer && hi.integer;
+    for (size_t i = 0; i < param.lo->count; ++i)
+        if (param.lo->n[i] > param.hi->n[i]) return fmt::format("the range of '{}' runs backwards", param.name);
+    return {};
+}
+
+Result<Value> conform(const Param& param, Value value) {
+    const auto refuse = [&](std::string message) { return Error{Error::Kind::Input, std::move(message)}; };
+    if (!param.choices.empty()) {
+        if (value.kind == Value::Kind::Word && std::find(param.choices.begin(), param.choices.end(), value.text) != param.choices.end()) return value;
+        return refuse(fmt::format("'{}' is one of {}, not '{}'", param.name, fmt::join(param.choices, ", "), value.kind == Value::Kind::Word ? value.text : toText(value)));
+    }
+    const Type type = Type::of(value), wanted = Type::of(param.value);
+    if (value.kind != param.value.kind) return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
+    if (!numeric(value)) return value;
+    if (value.count != param.value.count || !compatible(type, wanted)) return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
+    if (param.value.integer && !value.integer) return refuse(fmt::format("'{}' is a whole number, not {}", param.name, toText(value)));
+    Value fitted = adopted(value, param.value);
+    fitted.integer = param.value.integer;
+    for (size_t i = 0; i < fitted.count; ++i)
+        if (fitted.units[std::min(i, fitted.units.size() - 1)] != param.value.units[std::min(i, fitted.units.size() - 1)])
+            return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
+    if (param.lo && param.hi)
+        if (std::string problem = outOfRange(param, fitted); !problem.empty()) return refuse(std::move(problem));
+    return fitted;
+}
+
+std::string paramsJson(const Grammar& grammar) {
+    auto list = nlohmann::ordered_json::array();
+    for (const Param& p : grammar.params) {
+        nlohmann::ordered_json entry{{"name", p.name}, {"kind", kindName(p.value)}};
+        const std::string_view unit = numeric(p.value) ? unitName(p.value.units[0]) : "";
+        if (!unit.empty()) entry["unit"] = unit;
+        entry["default"] = jsonOf(p.value);
+        if (p.lo) entry["minimum"] = jsonOf(*p.lo);
+        if (p.hi) entry["maximum"] = jsonOf(*p.hi);
+        if (!p.choices.empty()) entry["choices"] = p.choices;
+        if (!p.label.empty()) entry["label"] = p.label;
+        if (!p.group.empty()) entry["group"] = p.group;
+        if (!p.key.empty()) entry["key"] = p.key;
+        if (p.span.source) {
+            entry["file"] = p.span.source->name();
+            entry["line"] = p.span.source->place(p.span.begin).line;
+        }
+        list.push_back(std::move(entry));
+    }
+    return list.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace sgm::rules

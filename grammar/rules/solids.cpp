@@ -1,0 +1,244 @@
+// Solids: rows of the primitive table, morphs and combinations of them, and terminals that stand for one.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "grammar/rules/checker.h"
+#include "grammar/rules/evaluate.h"
+#include "grammar/rules/words.h"
+
+namespace sgm::rules {
+namespace {
+
+using Written = syntax::Expr;
+using field::ParameterKind;
+
+Want wantOf(ParameterKind kind) {
+    switch (kind) {
+        case ParameterKind::Share: return Want::Number;
+        case ParameterKind::Length: return Want::Length;
+        case ParameterKind::Angle: return Want::Angle;
+        case ParameterKind::Count: return Want::Count;
+        case ParameterKind::Vector: return Want::Triple;
+        case ParameterKind::Rotation: return Want::Rotation;
+        case ParameterKind::Choice: return Want::Anything;
+    }
+    return Want::Anything;
+}
+
+Value plainValue(ParameterKind kind, double v) {
+    const Unit unit = kind == ParameterKind::Length ? Unit::Metre : kind == ParameterKind::Angle ? Unit::Angle : Unit::None;
+    Value value = Value::number(v, unit);
+    value.integer = kind == ParameterKind::Count;
+    return value;
+}
+
+Value fallbackOf(const field::PrimitiveParameter& p) {
+    Value value = plainValue(p.kind, p.fallback);
+    if (p.kind == ParameterKind::Vector) {
+        const std::array<Value, 3> same{value, value, value};
+        return tuple(same);
+    }
+    if (p.kind == ParameterKind::Rotation) return applyFunction(Fn::RotY, std::array{Value::number(p.fallback, Unit::Angle)});
+    return value;
+}
+
+std::vector<std::string> split(std::string_view list, char separator) {
+    std::vector<std::string> parts;
+    while (!list.empty()) {
+        const size_t end = std::min(list.find(separator), list.size());
+        parts.emplace_back(list.substr(0, end));
+        list.remove_prefix(std::min(end + 1, list.size()));
+    }
+    return parts;
+}
+
+Operator operatorOf(std::string_view text) {
+    return text == "-" ? Operator::Difference : text == "&" ? Operator::Intersection : Operator::Sum;
+}
+
+}  // namespace
+
+std::string Checker::unknownSolid(std::string_view word) const {
+    std::vector<std::string> known = symbolNames(true);
+    for (const field::Primitive& row : field::primitives()) known.emplace_back(row.name);
+    return nearest(word, known);
+}
+
+/// One word of a choice becomes its index; a parameter that offers the same words is asked at every derivation.
+Expr Checker::choiceArgument(Place& place, const Written& e, const field::PrimitiveParameter& parameter) {
+    const std::vector<std::string> words = split(parameter.choices, '|');
+    Expr result;
+    result.span = e.span;
+    const auto word = std::find(words.begin(), words.end(), e.text);
+    if (e.kind == Written::Kind::Name && word != words.end()) {
+        result.value = plainValue(parameter.kind, static_cast<double>(word - words.begin()));
+        return result;
+    }
+    Typed chosen;
+    if (e.kind == Written::Kind::Name && params_.contains(e.text)) chosen = expression(place, e);
+    if (!chosen.type.words || *chosen.type.words != words) {
+        diagnostics_.error(e.span, fmt::format("'{}' is one of {}", parameter.name, fmt::join(words, ", ")), nearest(e.text, words));
+        return result;
+    }
+    result.value = plainValue(parameter.kind, 0);
+    for (size_t i = words.size(); i-- > 1;) {
+        Expr text;
+        text.value.kind = Value::Kind::Word;
+        text.value.text = words[i];
+        Expr index;
+        index.value = plainValue(parameter.kind, static_cast<double>(i));
+        Expr equal{Expr::Kind::Binary, e.span, {}, static_cast<uint32_t>(Fn::Equal), 0, {chosen.expr, std::move(text)}};
+        result = Expr{Expr::Kind::Call, e.span, {}, static_cast<uint32_t>(Fn::If), 0, {std::move(equal), std::move(index), std::move(result)}};
+    }
+    return result;
+}
+
+Expr Checker::primitiveArgument(Place& place, const Written& e, const field::Primitive& row, size_t index) {
+    const field::PrimitiveParameter& parameter = row.parameters[index];
+    const std::string what = fmt::format("'{}' of '{}'", parameter.name, row.name);
+    place.enter(fmt::format("{}.{}", row.name, parameter.name));
+    if (parameter.kind == ParameterKind::Choice) return choiceArgument(place, e, parameter);
+    Expr expr = expression(place, e, wantOf(parameter.kind), what);
+    const auto value = fold(expr, defaults());
+    if (!value || parameter.kind == ParameterKind::Rotation || value->kind == Value::Kind::Word) return expr;
+    for (size_t i = 0; i < value->count; ++i)
+        if (value->n[i] < parameter.lo || value->n[i] > parameter.hi) {
+            diagnostics_.error(e.span, fmt::format("{} is {}, but must be {} … {}", what, toText(*value),
+                                                   toText(plainValue(parameter.kind, parameter.lo)), toText(plainValue(parameter.kind, parameter.hi))));
+            break;
+        }
+    return expr;
+}
+
+Solid Checker::primitiveSolid(Place& place, const Written& e, const field::Primitive& row) {
+    Solid solid;
+    solid.kind = Solid::Kind::Primitive;
+    solid.span = e.span;
+    solid.primitive = &row;
+    for (const auto& parameter : row.parameters) {
+        Expr fallback;
+        fallback.span = e.span;
+        fallback.value = fallbackOf(parameter);
+        solid.args.push_back(std::move(fallback));
+    }
+    std::vector<bool> given(row.parameters.size(), false);
+    for (size_t i = 0; i < e.args.size(); ++i) {
+        size_t index = i;
+        const std::string name = i < e.argNames.size() ? e.argNames[i] : std::string();
+        if (!name.empty()) {
+            const auto named = std::find_if(row.parameters.begin(), row.parameters.end(), [&](const auto& p) { return p.name == name; });
+            index = static_cast<size_t>(named - row.parameters.begin());
+        }
+        if (index >= row.parameters.size()) {
+            std::vector<std::string> known;
+            for (const auto& p : row.parameters) known.emplace_back(p.name);
+            const std::string message = !name.empty() ? fmt::format("'{}' has no parameter '{}'", row.name, name)
+                                        : known.empty() ? fmt::format("'{}' takes no parameters", row.name)
+                                                        : fmt::format("'{}' takes no more than {} parameters: {}", row.name, known.size(), fmt::join(known, ", "));
+            diagnostics_.error(e.args[i].span, message, nearest(name, known));
+            break;
+        }
+        if (given[index]) diagnostics_.error(e.args[i].span, fmt::format("'{}' is given twice", row.parameters[index].name));
+        given[index] = true;
+        solid.args[index] = primitiveArgument(place, e.args[i], row, index);
+    }
+    return solid;
+}
+
+void Checker::bounded(const Solid& solid, std::string_view verb) {
+    if (solid.kind == Solid::Kind::Primitive && solid.primitive && !solid.primitive->bounded)
+        diagnostics_.error(solid.span, fmt::format("a {} has no end and can't be {}: it may only cut", solid.primitive->name, verb),
+                           fmt::format("write '- {0}' or '& {0}' after a solid", solid.primitive->name));
+}
+
+Solid Checker::morphSolid(Place& place, const Written& e) {
+    Solid result;
+    result.kind = Solid::Kind::Morph;
+    result.span = e.span;
+    if (e.args.size() != 3) {
+        diagnostics_.error(e.span, fmt::format("'morph' takes two solids and a share, but {} {} given", e.args.size(), e.args.size() == 1 ? "is" : "are"),
+                           "write 'morph(sphere, cube, .5)'");
+        return {};
+    }
+    for (size_t i = 0; i < 2; ++i) {
+        result.parts.push_back(solid(place, e.args[i]));
+        bounded(result.parts.back(), "morphed");
+    }
+    place.enter("morph");
+    result.amount = expression(place, e.args[2], Want::Number, "the share of a morph");
+    if (const auto value = fold(result.amount, defaults()); value && (value->num() < 0 || value->num() > 1))
+        diagnostics_.error(e.args[2].span, fmt::format("the share of a morph is {}, but must be 0 … 1", toText(*value)));
+    place.morphs = true;
+    return result;
+}
+
+Solid Checker::combination(Place& place, const Written& e) {
+    Solid result;
+    result.kind = Solid::Kind::Combination;
+    result.span = e.span;
+    result.op = operatorOf(e.text);
+    for (const Written& part : e.args) result.parts.push_back(solid(place, part));
+    bounded(result.parts[0], "cut or added to");
+    if (result.op == Operator::Sum) bounded(result.parts[1], "added");
+    return result;
+}
+
+Solid Checker::terminalSolid(const syntax::Name& name) {
+    const syntax::TerminalDecl& decl = *terminalDecls_.at(name.text);
+    Place place(Place::Where::Look);
+    Solid result;
+    result.kind = Solid::Kind::Primitive;
+    result.span = name.span;
+    result.primitive = field::findPrimitive("cube");
+    if (!decl.solid) return result;
+    if (std::find(terminalsInWork_.begin(), terminalsInWork_.end(), name.text) != terminalsInWork_.end()) {
+        diagnostics_.error(name.span, fmt::format("the solid of '{}' is made of itself", name.text));
+        return result;
+    }
+    terminalsInWork_.push_back(name.text);
+    result = solid(place, *decl.solid);
+    terminalsInWork_.pop_back();
+    return result;
+}
+
+Solid Checker::namedSolid(Place& place, const Written& e) {
+    Solid nil;
+    nil.span = e.span;
+    if (e.text == "nil") return nil;
+    if (const field::Primitive* row = field::findPrimitive(e.text)) return primitiveSolid(place, e, *row);
+    const auto symbol = symbols_.find(e.text);
+    if (symbol != symbols_.end() && grammar_.symbols[symbol->second].terminal) {
+        if (e.kind == Written::Kind::Call) diagnostics_.error(e.span, fmt::format("the terminal '{}' takes no parameters", e.text));
+        return terminalSolid({e.text, e.span});
+    }
+    if (isNonTerminal(e.text))
+        diagnostics_.error(e.span, fmt::format("'{}' may still be rewritten: a solid is a primitive or a terminal", e.text));
+    else
+        failed(e.span, fmt::format("unknown solid '{}'", e.text), unknownSolid(e.text));
+    return nil;
+}
+
+Solid Checker::solid(Place& place, const Written& e) {
+    Solid nil;
+    nil.span = e.span;
+    switch (e.kind) {
+        case Written::Kind::Call:
+            if (e.text == "morph") return morphSolid(place, e);
+            if (e.text == "mesh") {
+                diagnostics_.error(e.span, "'mesh(…)' is not supported yet");
+                return nil;
+            }
+            return namedSolid(place, e);
+        case Written::Kind::Name: return namedSolid(place, e);
+        case Written::Kind::Binary:
+            if (e.text == "+" || e.text == "-" || e.text == "&") return combination(place, e);
+            break;
+        case Written::Kind::Error: return nil;
+        default: break;
+    }
+    diagnostics_.error(e.span, fmt::format("a solid is a primitive, a terminal or 'morph(…)', not '{}'", e.span.text()));
+    return nil;
+}
+
+}  // namespace sgm::rules
