@@ -25,6 +25,13 @@ float minGrowth(std::span<const Owned> parts) {
     return g;
 }
 
+/// `box` grown so that it holds every point with f < level, which growth puts within level/growth of it.
+Box3f levelBox(const Box3f& box, double level, float growth) {
+    if (box.empty() || level <= 0) return box;
+    if (growth <= 0) return Box3f::everything();
+    return box.inflated(static_cast<float>(level / growth * (1 + 1e-6)));
+}
+
 /// Builds a min tree top-down by median splits of the parts' boxes on their widest axis (Goldsmith & Salmon 1987 call it
 /// an object hierarchy). The order is total, so the tree depends on the parts alone; its depth is ⌈log₂ n⌉.
 class Hierarchy {
@@ -74,6 +81,16 @@ private:
     std::vector<Vec3f> centres_;
 };
 
+/// What both boxes share; an axis in which they don't meet shrinks to the middle of the gap. In each axis a point is at
+/// most as far from the result as from the farther box, so in space at most √2 times the larger of the two distances.
+Box3f commonBox(const Box3f& a, const Box3f& b) {
+    if (a.empty() || b.empty()) return {};
+    Box3f common = intersection(a, b);
+    for (int i = 0; i < 3; ++i)
+        if (common.lo[i] > common.hi[i]) common.lo[i] = common.hi[i] = (common.lo[i] + common.hi[i]) * 0.5f;
+    return common;
+}
+
 /// max of two operands that keep their owners.
 Num ownedMax(Num a, OriginId ownerOfA, Num b, OriginId ownerOfB) {
     const Operand operands[] = {{a.id(), ownerOfA}, {b.id(), ownerOfB}};
@@ -85,6 +102,17 @@ Num owned(const Owned& part) {
     if (part.origin == 0) return part.field.value;
     const Operand twice[] = {{part.field.value.id(), part.origin}, {part.field.value.id(), part.origin}};
     return part.field.value.graph().apply(codeOf<ops::Min>, twice);
+}
+
+/// Appends a part to a blend's operands; a blend of the same radius gives its own, so that grouping can't change the shape.
+void spliceBlend(const Graph& graph, const Owned& part, std::vector<Operand>& operands) {
+    const NodeId id = part.field.value.id();
+    const auto inner = graph.operands(id);
+    if (graph.node(id).op != codeOf<ops::Blend> || inner[0].node != operands[0].node) {
+        operands.push_back({id, part.origin});
+        return;
+    }
+    for (const Operand& o : inner.subspan(1)) operands.push_back({o.node, part.origin ? part.origin : o.origin});
 }
 
 }  // namespace
@@ -104,13 +132,10 @@ Field difference(Owned a, Owned b) {
             std::max(a.field.lipschitz, b.field.lipschitz), a.field.growth};
 }
 
-// Outside the common box each axis is left by at least one of the two boxes, so the distance to it is at most √2 times the
-// larger of the distances to the two. Boxes that don't meet leave nothing to grow from.
 Field intersection(Owned a, Owned b) {
-    const Box3f common = intersection(a.field.bounds, b.field.bounds);
     const float growth = std::min(a.field.growth, b.field.growth) * 0.70710f;
-    return {ownedMax(a.field.value, a.origin, b.field.value, b.origin), common.empty() ? Box3f{} : common,
-            std::max(a.field.lipschitz, b.field.lipschitz), common.empty() ? 0 : growth};
+    return {ownedMax(a.field.value, a.origin, b.field.value, b.origin), commonBox(a.field.bounds, b.field.bounds),
+            std::max(a.field.lipschitz, b.field.lipschitz), growth};
 }
 
 // Where f < 0 one of the two is negative, and outside both boxes both grow, so f does by the smaller growth at least.
@@ -121,6 +146,31 @@ Field morph(Field a, Field b, Num t, double tValue, OriginId origin) {
     if (tValue >= 1) return {value, b.bounds, b.lipschitz, b.growth};
     const auto s = static_cast<float>(tValue);
     return {value, hull(a.bounds, b.bounds), (1 - s) * a.lipschitz + s * b.lipschitz, std::min(a.growth, b.growth)};
+}
+
+// The melt lowers the minimum by k − c' ≤ k(1 − 1/√n), with equality where all n are equal.
+Field blend(Graph& graph, std::span<const Owned> parts, Num radius, double radiusValue) {
+    if (parts.size() < 2) return sum(graph, parts);
+    std::vector<Operand> operands{{radius.id(), 0}};
+    for (const Owned& part : parts) spliceBlend(graph, part, operands);
+    const Num value = graph.apply(codeOf<ops::Blend>, operands);
+
+    const double deepest = radiusValue * (1 - 1 / std::sqrt(static_cast<double>(operands.size() - 1)));
+    Box3f bounds;
+    for (const Owned& part : parts) bounds = hull(bounds, levelBox(part.field.bounds, deepest, part.field.growth));
+    return {value, bounds, maxLipschitz(parts), minGrowth(parts)};
+}
+
+Field displace(Field f, Point p, Noise noise, Num amplitude, double amplitudeValue, Num frequency, double frequencyValue,
+               int octaves, uint32_t seed) {
+    const int count = std::clamp(octaves, 1, ops::Noise::maxOctaves);
+    const float steepness = ops::Noise::lipschitz(count);
+    const Num height = p.x.graph().apply(codeOf<ops::Noise>, {p.x * frequency, p.y * frequency, p.z * frequency},
+                                         ops::Noise::pack(noise == Noise::Fbm, count, seed));
+    const Num divisor = 1.0f + amplitude * frequency * steepness;
+    const auto slope = static_cast<float>(amplitudeValue * frequencyValue) * steepness;
+    return {(f.value - amplitude * height) / divisor, levelBox(f.bounds, amplitudeValue, f.growth),
+            (f.lipschitz + slope) / (1 + slope), f.growth / (1 + slope) * (1 - 1e-6f)};
 }
 
 }  // namespace sgm::field
