@@ -17,6 +17,10 @@ constexpr ExportOption unit{"unit", "m", "m|cm|mm", "the length of one unit in t
 constexpr ExportOption gltfOptions[] = {uv};
 constexpr ExportOption texturedOptions[] = {up, unit, uv};
 constexpr ExportOption plainOptions[] = {up, unit};
+constexpr ExportOption volumeOptions[] = {
+    {"grid", "level_set", "", "name of the grid"},
+    {"half", "no", "no|yes", "16-bit floats: half the size, three digits"},
+};
 
 constexpr Exporter table[] = {
     {".glb", "glTF 2.0, binary: normals, texture coordinates, a primitive a material", false, gltfOptions, writeGlb},
@@ -27,6 +31,7 @@ constexpr Exporter table[] = {
     {".off", "OFF: positions and triangles as text", false, plainOptions, writeOff},
     {".usda", "OpenUSD as text: normals, display colours, a subset and preview surface a material", false, texturedOptions,
      writeUsda},
+    {".vdb", "OpenVDB: a narrow-band level set in metres", true, volumeOptions, writeVdb},
 };
 
 /// `parts`, each turned to text by `name`, with `separator` between them.

@@ -30,7 +30,7 @@ struct ExportInput {
     const mesh::Mesh* mesh = nullptr;
     const volume::Volume* volume = nullptr;
     const Provenance* provenance = nullptr;
-    std::string name = "model";                ///< object and grid name
+    std::string name = "model";                ///< of the object in the file
     std::map<std::string, std::string> extras;  ///< grammar, seed, parameters: kept where the format can hold them
     std::map<std::string, std::string, std::less<>> options;  ///< by ExportOption::name
     Progress* progress = nullptr;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,22 +26,34 @@ public:
     uint64_t activeVoxels() const;
     /// Value at the voxel nearest to p (metres): signed distance, ±band away from the surface.
     float at(Vec3f p) const;
-    /// Volume enclosed by the level set, m³.
+    /// Volume enclosed by the level set, m³; 0 where the grid is none.
     double enclosed_m3() const;
 
 private:
     std::shared_ptr<Impl> impl_;
 };
 
-/// Samples the blocks at the grid's corners into a level set of `halfWidth` voxels to each side; inside and outside beyond
-/// the band are tiled by sign. Equal bytes at any thread count.
-Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& whole, const mesh::Grid& grid, int halfWidth, int threads, Progress* progress);
+/// Samples `whole` at the grid's corners into a level set of `halfWidth` voxels (1 … 32) to each side: in the blocks, which
+/// hold the surface, and in all that touch them. Beyond the band voxels are inactive and inside and outside tiled by sign.
+/// Equal bytes at any thread count.
+Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& whole, const mesh::Grid& grid,
+                      int halfWidth, int threads, Progress* progress);
 
-/// OpenVDB's own polygonisation, to compare ours with.
+/// OpenVDB's own polygonisation, to compare ours with: one chunk, no origins.
 Result<mesh::Mesh> toMesh(const Volume& volume);
 
-/// Writes a .vdb with a grid `name`; written beside `path` and renamed into place.
-Status writeVdb(const Volume& volume, const std::filesystem::path& path, const std::string& name);
+struct VdbOptions {
+    bool half = false;                            ///< 16-bit floats on disk: half the size, three digits
+    std::map<std::string, std::string> metadata;  ///< of the file
+};
+
+/// Writes a .vdb with a grid `name` and OpenVDB's statistics of it; written beside `path` and renamed into place. The same
+/// bytes for the same volume, the file's tag being made from its content.
+Status writeVdb(const Volume& volume, const std::filesystem::path& path, const std::string& name,
+                const VdbOptions& options = {});
+/// The same into an existing `file` as it is; errors speak of `target`. For callers that do their own renaming.
+Status fillVdb(const Volume& volume, const std::filesystem::path& file, const std::filesystem::path& target,
+               const std::string& name, const VdbOptions& options);
 /// Reads the first float grid.
 Result<Volume> readVdb(const std::filesystem::path& path);
 

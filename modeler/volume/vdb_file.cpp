@@ -1,0 +1,95 @@
+// .vdb files: written with offsets, so that readers may load a part; the same bytes for the same volume.
+#include <fmt/format.h>
+#include <openvdb/io/Archive.h>
+#include <openvdb/io/File.h>
+
+#include <cerrno>
+#include <fstream>
+
+#include "modeler/core/random.h"
+#include "modeler/volume/atomic_file.h"
+#include "modeler/volume/volume_impl.h"
+
+namespace sgm::volume {
+namespace {
+
+/// OpenVDB's own file writer doesn't report a full disk; this one writes to our checked stream.
+struct StreamArchive : openvdb::io::Archive {
+    void writeTo(std::ostream& out, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& meta) const {
+        Archive::write(out, grids, true, meta);
+    }
+};
+
+// Magic number, three version numbers and the flag for offsets come first, then the tag: a UUID in text.
+constexpr std::streamoff tagOffset = 8 + 3 * 4 + 1;
+constexpr std::streamoff tagLength = 36;
+
+/// Replaces the random tag in the header, which identifies the content to readers, by one made from the content.
+void setTag(std::iostream& file) {
+    std::vector<char> buffer(size_t{1} << 20);
+    uint64_t a = 1, b = 2;
+    file.seekg(tagOffset + tagLength);
+    while (file) {
+        file.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+        if (file.gcount() == 0) break;
+        const uint64_t part = hashText({buffer.data(), static_cast<size_t>(file.gcount())});
+        a = combine(a, part);
+        b = combine(b, part);
+    }
+    file.clear();
+    const std::string hex = fmt::format("{:016x}{:016x}", a, b);
+    file.seekp(tagOffset);
+    file << fmt::format("{}-{}-{}-{}-{}", hex.substr(0, 8), hex.substr(8, 4), hex.substr(12, 4), hex.substr(16, 4),
+                        hex.substr(20));
+}
+
+}  // namespace
+
+Status fillVdb(const Volume& volume, const std::filesystem::path& file, const std::filesystem::path& target,
+               const std::string& name, const VdbOptions& options) {
+    openvdb::initialize();
+    const openvdb::GridBase::Ptr grid = volume.impl().grid->copyGrid();  // shares the voxels
+    grid->setName(name);
+    grid->setCreator("sgm");
+    grid->setSaveFloatAsHalf(options.half);
+    openvdb::MetaMap meta;
+    for (const auto& [key, value] : options.metadata) meta.insertMeta(key, openvdb::StringMetadata(value));
+    errno = 0;
+    try {
+        std::fstream out(file, std::ios::in | std::ios::out | std::ios::binary | std::ios::trunc);
+        StreamArchive().writeTo(out, {grid}, meta);
+        if (out) setTag(out);
+        out.close();
+        if (!out) return writeError(target, errno != 0 ? errno : EIO);
+    } catch (const std::exception& e) {
+        return writeError(target, e.what());
+    }
+    return Done{};
+}
+
+Status writeVdb(const Volume& volume, const std::filesystem::path& path, const std::string& name,
+                const VdbOptions& options) {
+    return replaceFile(path, [&](const std::filesystem::path& temporary) {
+        return fillVdb(volume, temporary, path, name, options);
+    });
+}
+
+Result<Volume> readVdb(const std::filesystem::path& path) {
+    openvdb::initialize();
+    const auto failed = [&](const std::string& cause) {
+        return Error{Error::Kind::Input, fmt::format("cannot read '{}': {}", path.string(), cause)};
+    };
+    try {
+        openvdb::io::File file(path.string());
+        file.open(false);  // all at once: the file may be replaced while the volume lives
+        for (auto name = file.beginName(); name != file.endName(); ++name)
+            if (file.readGridMetadata(*name)->isType<openvdb::FloatGrid>())
+                return Volume(std::make_shared<Volume::Impl>(
+                    Volume::Impl{openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(*name))}));
+    } catch (const std::exception& e) {
+        return failed(e.what());
+    }
+    return failed("it holds no grid of floats");
+}
+
+}  // namespace sgm::volume

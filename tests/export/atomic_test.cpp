@@ -1,0 +1,142 @@
+// An earlier good file is never lost: not to a full disk, not to a kill, not to an unwritable place.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+
+#include "modeler/export/exporter.h"
+#include "modeler/volume/atomic_file.h"
+#include "tests/export/hand_made.h"
+#include "tests/export/read_back.h"
+#include "tests/export/scratch.h"
+
+namespace sgm::exporter {
+namespace {
+
+using volume::replaceFile;
+
+void put(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+/// Runs `body` in a child process and returns its wait status; the body's value is the exit code.
+template <class Body>
+int inChild(Body body) {
+    const pid_t child = fork();
+    if (child == 0) _exit(body());
+    int status = 0;
+    waitpid(child, &status, 0);
+    return status;
+}
+
+/// Lets no file of this process grow beyond `bytes`, as on a disk that fills up.
+void limitFileSize(rlim_t bytes) {
+    const rlimit limit{bytes, bytes}, noCore{0, 0};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    setrlimit(RLIMIT_CORE, &noCore);
+}
+
+class Atomic : public testing::TestWithParam<std::string> {
+protected:
+    Atomic() : mesh(icosphere({}, 1, 5, 3)), target(folder / ("model" + GetParam())) {
+        input.mesh = &mesh;
+        put(target, "the old file");
+    }
+    mesh::Mesh mesh;
+    ExportInput input;
+    Scratch folder;
+    std::filesystem::path target;
+};
+
+TEST_P(Atomic, AWriteThatFailsLeavesTheOldFile) {
+    const int status = inChild([&] {
+        signal(SIGXFSZ, SIG_IGN);  // writes beyond the limit fail with EFBIG
+        limitFileSize(100'000);
+        const Status written = write(input, target);
+        return !written.ok() && written.error().message.find("File too large") != std::string::npos ? 0 : 1;
+    });
+    EXPECT_EQ(status, 0) << "an error that tells the cause";
+    EXPECT_EQ(contentOf(target), "the old file");
+    EXPECT_EQ(folder.fileCount(), 1u) << "no temporary stays";
+}
+
+TEST_P(Atomic, AKillInTheMiddleOfWritingLeavesTheOldFile) {
+    const int status = inChild([&] {
+        limitFileSize(100'000);  // the kernel kills at the byte beyond
+        return write(input, target).ok() ? 0 : 1;
+    });
+    ASSERT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(contentOf(target), "the old file");
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, Atomic, testing::Values(".glb", ".gltf", ".obj", ".ply", ".stl", ".off", ".usda"),
+                         [](const auto& info) { return info.param.substr(1); });
+
+TEST(ReplaceFile, Kill9BeforeTheEndLeavesTheOldFile) {
+    Scratch folder;
+    const auto target = folder / "file";
+    put(target, "old");
+    const int status = inChild([&] {
+        (void)replaceFile(target, [](const std::filesystem::path& temporary) -> Status {
+            put(temporary, std::string(100'000, 'x'));
+            kill(getpid(), SIGKILL);
+            return Done{};
+        });
+        return 0;
+    });
+    ASSERT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(WTERMSIG(status), SIGKILL);
+    EXPECT_EQ(contentOf(target), "old");
+}
+
+TEST(ReplaceFile, ReplacesAndKeepsPermissionsAndLinks) {
+    Scratch folder;
+    const auto target = folder / "file", link = folder / "link";
+    put(target, "old");
+    chmod(target.c_str(), 0640);
+    std::filesystem::create_symlink("file", link);
+    const auto fill = [](const std::filesystem::path& temporary) -> Status {
+        put(temporary, "new");
+        return Done{};
+    };
+    ASSERT_TRUE(replaceFile(link, fill).ok());
+    EXPECT_TRUE(std::filesystem::is_symlink(link));
+    EXPECT_EQ(contentOf(target), "new");
+    struct stat info {};
+    stat(target.c_str(), &info);
+    EXPECT_EQ(info.st_mode & 07777, 0640u);
+    EXPECT_EQ(folder.fileCount(), 2u);
+}
+
+TEST(ReplaceFile, TellsWhyItCannot) {
+    Scratch folder;
+    put(folder / "file", "text");
+    const auto never = [](const std::filesystem::path&) -> Status {
+        ADD_FAILURE() << "nothing to fill";
+        return Done{};
+    };
+    const auto messageFor = [&](const std::filesystem::path& target) {
+        const Status status = replaceFile(target, never);
+        return status.ok() ? std::string() : status.error().message;
+    };
+    EXPECT_NE(messageFor(folder / "file/a.ply").find("there is no folder"), std::string::npos);
+    EXPECT_NE(messageFor(folder.path()).find("not a regular file"), std::string::npos);
+    EXPECT_NE(messageFor("/dev/null").find("not a regular file"), std::string::npos);
+    EXPECT_NE(messageFor("/proc/sgm-test.ply"), "") << "a folder nobody can write to";
+}
+
+TEST(ReplaceFile, AFailingFillLeavesNothingBehind) {
+    Scratch folder;
+    const Status status = replaceFile(folder / "file", [](const std::filesystem::path&) -> Status {
+        return Error{Error::Kind::Cancelled, "stopped"};
+    });
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().message, "stopped");
+    EXPECT_EQ(folder.fileCount(), 0u);
+}
+
+}  // namespace
+}  // namespace sgm::exporter

@@ -1,0 +1,61 @@
+// Judges from outside: Khronos' gltf-validator and OpenSCAD. Where one isn't installed its test skips aloud.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "modeler/export/exporter.h"
+#include "tests/export/hand_made.h"
+#include "tests/export/read_back.h"
+#include "tests/export/scratch.h"
+
+namespace sgm::exporter {
+namespace {
+
+int run(const std::string& command) {
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+struct Judged : testing::Test {
+    mesh::Mesh mesh = icosphere({0.1f, 0.2f, 0.3f}, 1.7f, 3, 4);
+    Provenance provenance = twoMaterials();
+    Scratch folder;
+    ExportInput input;
+    Judged() {
+        input.mesh = &mesh;
+        input.provenance = &provenance;
+        input.extras = {{"grammar", "a.sgm"}, {"seed", "1"}};
+    }
+};
+
+TEST_F(Judged, GltfValidatorFindsNothing) {
+    const auto glb = folder / "a.glb", gltf = folder / "a.gltf", plain = folder / "b.glb", verdict = folder / "verdict";
+    ASSERT_TRUE(write(input, glb).ok());
+    ASSERT_TRUE(write(input, gltf).ok());
+    input.options = {{"uv", "none"}};
+    ASSERT_TRUE(write(input, plain).ok());
+    const int code = run("node tests/export/validate_gltf.js " + glb.string() + " " + gltf.string() + " " +
+                         plain.string() + " > " + verdict.string() + " 2>/dev/null");
+    if (code == 3 || code == 127) GTEST_SKIP() << "gltf-validator isn't installed: npm install --prefix build gltf-validator";
+    ASSERT_EQ(code, 0);
+    const std::string clean = "{\"errors\":0,\"warnings\":0,\"messages\":[]}\n";
+    EXPECT_EQ(contentOf(verdict), clean + clean + clean);
+}
+
+TEST_F(Judged, OpenScadTakesTheStlInADifference) {
+    if (run("command -v openscad > /dev/null 2>&1") != 0) GTEST_SKIP() << "openscad isn't installed";
+    ASSERT_TRUE(write(input, folder / "a.stl").ok());
+    const auto scene = folder / "cut.scad", cut = folder / "cut.off";
+    std::ofstream(scene) << "difference() { import(\"a.stl\"); translate([0, 0, 5]) cube(10, center = true); }\n";
+    ASSERT_EQ(run("openscad -o " + cut.string() + " " + scene.string() + " > /dev/null 2>&1"), 0);
+    const ReadBack r = readBack(cut);
+    Box3f box;
+    for (const Vec3f& p : r.positions) box = hull(box, p);
+    EXPECT_NEAR(box.hi.z, 0, 1e-5f);
+    EXPECT_NEAR(box.lo.z, 0.3f - 1.7f, 0.05f);
+}
+
+}  // namespace
+}  // namespace sgm::exporter
