@@ -28,19 +28,26 @@ Operator takeOperator(Cursor& cursor) {
     return Operator::Morph;
 }
 
-std::vector<Case> readCases(Cursor& cursor);
+Case readCase(Cursor& cursor, std::string_view sample);
 
-/// { cases }
-std::vector<Case> readBlock(Cursor& cursor, std::string_view where) {
-    if (!cursor.expect("{", where)) return {};
-    return readCases(cursor);
+/// { case {| case} }; `sample` is a label that fits here, for mends.
+std::vector<Case> readBlock(Cursor& cursor, std::string_view where, std::string_view sample) {
+    const Token open = cursor.peek();
+    std::vector<Case> cases;
+    if (!cursor.expect("{", where)) return cases;
+    if (cursor.at("}")) cursor.fail("the block is empty", "write " + quoted(plain(sample) + ": …") + " in it");
+    do cases.push_back(readCase(cursor, sample));
+    while (cursor.accept("|"));
+    cursor.close(open);
+    return cases;
 }
 
 std::shared_ptr<Body> readBracedBody(Cursor& cursor, std::string_view where) {
     auto body = std::make_shared<Body>();
+    const Token open = cursor.peek();
     if (!cursor.expect("{", where)) return body;
     *body = readBody(cursor);
-    cursor.expect("}", "to close '{'");
+    cursor.close(open);
     return body;
 }
 
@@ -69,13 +76,13 @@ std::shared_ptr<Body> bodyOf(Expr solid) {
 }
 
 /// { cases }* or label: body
-Case readCase(Cursor& cursor) {
+Case readCase(Cursor& cursor, std::string_view sample) {
     const Cursor::Nest nest(cursor);
     const Token first = cursor.peek();
     Case part;
-    if (cursor.accept("{")) {
+    if (cursor.at("{")) {
         part.repeated = true;
-        part.cases = readCases(cursor);
+        part.cases = readBlock(cursor, "", sample);
         const SourceSpan braces = cursor.since(first.begin);
         if (!cursor.accept("*"))
             cursor.complain(braces, "a block inside a block repeats to fit, and says so with '*'", "write '{ … }*'");
@@ -86,12 +93,14 @@ Case readCase(Cursor& cursor) {
             part.body = std::make_shared<Body>(readBody(cursor));
         } else if (part.label && (cursor.at("|") || cursor.at("}"))) {
             cursor.complain(label, quoted(label.text()) + " has no label before it",
-                            "write '~1: " + plain(label.text()) + "'");
+                            "write " + quoted(plain(sample) + ": " + plain(label.text())));
             part.body = bodyOf(*std::exchange(part.label, std::nullopt));
-        } else if (!cursor.failed()) {
-            const std::string mend = "write '" + plain(label.text()) + ": " + plain(cursor.peekText()) + "'";
-            cursor.complain(cursor.span(cursor.peek()), "expected ':' after " + quoted(label.text()) + ", found " + cursor.found(),
-                            cursor.done() ? std::string() : mend);
+        } else if (cursor.done()) {
+            cursor.expect(":", "after " + quoted(label.text()));
+        } else {
+            const std::string mend = "write " + quoted(plain(label.text()) + ": " + plain(cursor.peekText()));
+            cursor.complain(cursor.span(cursor.peek()),
+                            "expected ':' after " + quoted(label.text()) + ", found " + cursor.found(), mend);
             part.body = std::make_shared<Body>(readBody(cursor));
         }
     }
@@ -99,30 +108,32 @@ Case readCase(Cursor& cursor) {
     return part;
 }
 
-/// case {| case} }
-std::vector<Case> readCases(Cursor& cursor) {
-    std::vector<Case> cases;
-    if (cursor.at("}")) cursor.fail("the block is empty", "write 'label: body' in it");
-    do cases.push_back(readCase(cursor));
-    while (cursor.accept("|"));
-    cursor.expect("}", "or '|' after a part");
-    return cases;
-}
-
 std::string_view nounOf(ArgumentType type) {
     switch (type) {
-        case ArgumentType::Number: return "a number";
-        case ArgumentType::Length: return "a length";
-        case ArgumentType::Angle: return "an angle";
-        case ArgumentType::Size: return "a size";
-        case ArgumentType::Vector: return "a number or (x, y, z)";
-        case ArgumentType::Color: return "a colour";
-        case ArgumentType::Joint: return "a joint";
-        case ArgumentType::Shape: return "'last' or 'any(…)'";
-        case ArgumentType::Noise: return "'billow(…)' or 'fbm(…)'";
-        case ArgumentType::Solid: return "a solid";
-        case ArgumentType::Axis: return "an axis, x, y or z";
-        case ArgumentType::Name: return "a word";
+        case ArgumentType::Number:
+            return "a number";
+        case ArgumentType::Length:
+            return "a length";
+        case ArgumentType::Angle:
+            return "an angle";
+        case ArgumentType::Size:
+            return "a size";
+        case ArgumentType::Vector:
+            return "a number or (x, y, z)";
+        case ArgumentType::Color:
+            return "a colour";
+        case ArgumentType::Joint:
+            return "a joint";
+        case ArgumentType::Shape:
+            return "'last' or 'any(…)'";
+        case ArgumentType::Noise:
+            return "'billow(…)' or 'fbm(…)'";
+        case ArgumentType::Solid:
+            return "a solid";
+        case ArgumentType::Axis:
+            return "an axis, x, y or z";
+        case ArgumentType::Name:
+            return "a word";
     }
     return "a value";
 }
@@ -134,10 +145,13 @@ bool beginsOperation(const Cursor& cursor) {
     switch (cursor.peek(1).kind) {
         case Token::Kind::Number:
         case Token::Kind::Text:
-        case Token::Kind::Color: return true;
-        case Token::Kind::Word: return !findOperation(cursor.peekText(1)) && !isReserved(cursor.peekText(1));
-        default: return cursor.at("(", 1) || cursor.at("{", 1) || (cursor.peek(2).glued && !cursor.peek(1).glued &&
-                                                                   (cursor.at("-", 1) || cursor.at("+", 1)));
+        case Token::Kind::Color:
+            return true;
+        case Token::Kind::Word:
+            return !findOperation(cursor.peekText(1)) && !isReserved(cursor.peekText(1));
+        default:
+            return cursor.at("(", 1) || cursor.at("{", 1) ||
+                   (cursor.peek(2).glued && !cursor.peek(1).glued && (cursor.at("-", 1) || cursor.at("+", 1)));
     }
 }
 
@@ -200,10 +214,11 @@ void readLive(Cursor& cursor, Element& element) {
 /// prefix attributes, then a name, a call, a group, or nothing; attributes; : Name
 void readShape(Cursor& cursor, Element& element) {
     element.before = readAttributes(cursor);
+    const Token open = cursor.peek();
     if (cursor.accept("(")) {
         element.kind = Element::Kind::Group;
         element.body = std::make_shared<Body>(readBody(cursor));
-        cursor.expect(")", "to close '('");
+        cursor.close(open);
     } else if (cursor.at(Token::Kind::Word) && (cursor.at("morph") || !isReserved(cursor.peekText()))) {
         element.solid = readSolid(cursor);
     } else if (element.before.empty()) {
@@ -225,13 +240,15 @@ void readControl(Cursor& cursor, Element& element) {
     const std::string_view word = cursor.text(cursor.take());
     if (word == "choose") {
         element.kind = Element::Kind::Choose;
-        element.cases = readBlock(cursor, "after 'choose'");
+        element.cases = readBlock(cursor, "after 'choose'", "1");
         return;
     }
     element.kind = word == "for" ? Element::Kind::For : word == "while" ? Element::Kind::While : Element::Kind::When;
     if (word == "for") {
         element.variable = readName(cursor, "a loop variable");
-        if (!cursor.expect("in", "after the loop variable")) return;
+        if (!cursor.expect("in", "after the loop variable",
+                           "write " + quoted("for " + element.variable.text + " in …")))
+            return;
         element.over = readExpr(cursor);
         if (cursor.accept("when")) element.guard = readExpr(cursor);
     } else {
@@ -245,8 +262,10 @@ Element readElement(Cursor& cursor) {
     const uint32_t begin = cursor.peek().begin;
     Element element;
     if (atOperator(cursor)) element.op = takeOperator(cursor);
-    if (atControl(cursor)) readControl(cursor, element);
-    else readShape(cursor, element);
+    if (atControl(cursor))
+        readControl(cursor, element);
+    else
+        readShape(cursor, element);
     element.span = cursor.since(begin);
     return element;
 }
@@ -259,6 +278,10 @@ std::vector<Element> readChain(Cursor& cursor) {
     return chain;
 }
 
+std::string_view sampleLabel(Operation::Id id) {
+    return id == Operation::Id::Split ? "~1" : id == Operation::Id::Inset ? "rim" : "side";
+}
+
 /// Says what is wrong with a token that can't follow a shape. Words of the language end a body and are judged outside.
 void refuseStray(Cursor& cursor) {
     const Token token = cursor.peek();
@@ -266,12 +289,16 @@ void refuseStray(Cursor& cursor) {
         std::vector<std::string> names;
         for (const Operation& row : operations()) names.emplace_back(row.name);
         const std::string near = didYouMean(cursor.text(token), names);
-        cursor.fail(cursor.found() + " can't follow a shape", near.empty() ? "join shapes with + - & morph, or list them with ','"
-                                                                           : "did you mean '" + near + "'?");
+        cursor.fail(
+            cursor.found() + " can't follow a shape",
+            near.empty() ? "join shapes with + - & morph, or list them with ','" : "did you mean '" + near + "'?");
     } else if (cursor.at("(")) {
-        cursor.fail("'(' can't follow a shape", "write it without a blank before '(' for arguments, or join with an operator");
-    } else if (token.kind == Token::Kind::Number || token.kind == Token::Kind::Text || token.kind == Token::Kind::Color) {
-        cursor.fail(cursor.found() + " can't follow a shape", "name the attribute: 'size " + plain(cursor.text(token)) + "'");
+        cursor.fail("'(' can't follow a shape",
+                    "write it without a blank before '(' for arguments, or join with an operator");
+    } else if (token.kind == Token::Kind::Number || token.kind == Token::Kind::Text ||
+               token.kind == Token::Kind::Color) {
+        cursor.fail(cursor.found() + " can't follow a shape",
+                    "name the attribute: 'size " + plain(cursor.text(token)) + "'");
     }
 }
 
@@ -289,7 +316,7 @@ Attribute readAttribute(Cursor& cursor) {
     attribute.name = {plain(row.name), cursor.span(word)};
     attribute.id = row.id;
     readArguments(cursor, row, attribute);
-    if (row.block) attribute.cases = readBlock(cursor, "after '" + plain(row.name) + "'");
+    if (row.block) attribute.cases = readBlock(cursor, "after '" + plain(row.name) + "'", sampleLabel(row.id));
     attribute.span = cursor.since(word.begin);
     return attribute;
 }

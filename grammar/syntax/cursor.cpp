@@ -13,8 +13,8 @@ struct Lookalike {
     std::string_view bytes, mend;
 };
 constexpr Lookalike lookalikes[] = {
-    {"\u2212", "write '-'"},  {"\u2013", "write '-'"},  {"\u00d7", "write '*'"},      {"\u2192", "write '->'"},
-    {"\u201c", "write '\"'"}, {"\u201d", "write '\"'"}, {"\u00b0", "write 'deg'"},    {"\u2026", "write '..'"},
+    {"\u2212", "write '-'"},  {"\u2013", "write '-'"},  {"\u00d7", "write '*'"},       {"\u2192", "write '->'"},
+    {"\u201c", "write '\"'"}, {"\u201d", "write '\"'"}, {"\u00b0", "write 'deg'"},     {"\u2026", "write '..'"},
     {"\u2265", "write '>='"}, {"\u2264", "write '<='"}, {"'", "text stands in \"…\""},
 };
 
@@ -61,10 +61,17 @@ bool Cursor::accept(std::string_view wanted) {
     return true;
 }
 
-bool Cursor::expect(std::string_view wanted, std::string_view where) {
+bool Cursor::expect(std::string_view wanted, std::string_view where, std::string mend) {
     if (accept(wanted)) return true;
-    fail("expected " + quoted(wanted) + " " + std::string(where) + ", found " + found());
+    fail("expected " + quoted(wanted) + " " + std::string(where) + ", found " + found(), std::move(mend));
     return false;
+}
+
+bool Cursor::close(const Token& open) {
+    const std::string_view opening = text(open);
+    const std::string_view closing = opening == "(" ? ")" : opening == "[" ? "]" : "}";
+    return expect(closing,
+                  "to close " + quoted(opening) + " of line " + std::to_string(source_.place(open.begin).line));
 }
 
 std::string Cursor::found() const { return done() ? "the end of the declaration" : quoted(peekText()); }

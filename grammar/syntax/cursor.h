@@ -29,7 +29,9 @@ public:
     /// Takes the next token if it is `wanted`.
     bool accept(std::string_view wanted);
     /// Takes `wanted`, or fails with "expected 'wanted' <where>, found …".
-    bool expect(std::string_view wanted, std::string_view where);
+    bool expect(std::string_view wanted, std::string_view where, std::string mend = {});
+    /// Takes what closes the bracket `open`, or fails with "expected ')' to close '(' of line 3, found …".
+    bool close(const Token& open);
 
     /// From `begin` to the end of the last token taken.
     SourceSpan since(uint32_t begin) const { return {&source_, begin, begin > lastEnd_ ? begin : lastEnd_}; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <numbers>
 
 namespace sgm::syntax {
 
@@ -9,10 +10,10 @@ namespace {
 
 using Kind = Expr::Kind;
 
-constexpr std::string_view reserved[] = {"grammar", "use",    "param",   "map",      "terminal", "start",   "rule",
-                                         "derive",  "lsystem", "style",  "check",    "override", "for",     "while",
-                                         "when",    "choose", "finally", "repeat",   "beside",   "weight",  "and",
-                                         "or",      "not",    "in",      "expect"};
+constexpr std::string_view reserved[] = {"grammar", "use",     "param",   "map",    "terminal", "start",  "rule",
+                                         "derive",  "lsystem", "style",   "check",  "override", "for",    "while",
+                                         "when",    "choose",  "finally", "repeat", "beside",   "weight", "and",
+                                         "or",      "not",     "in",      "expect"};
 
 // An expression's tree is at most this many operators and the levels of nesting deep, whatever the file says: those who
 // walk it recurse.
@@ -25,10 +26,15 @@ struct BinaryOperator {
 };
 constexpr int rampBinds = 1, rangeBinds = 2, comparisonBinds = 5, tightest = 8;
 constexpr BinaryOperator binaryOperators[] = {
-    {"~>", "~>", rampBinds}, {"..", "..", rangeBinds}, {"or", "or", 3},  {"||", "or", 3},   {"and", "and", 4},
-    {"&&", "and", 4},        {"==", "==", 5},          {"=", "==", 5},   {"!=", "!=", 5},   {"<=", "<=", 5},
-    {">=", ">=", 5},         {"<", "<", 5},            {">", ">", 5},    {"+", "+", 6},     {"-", "-", 6},
-    {"*", "*", 7},           {"/", "/", 7},            {"%", "%", 7},
+    {"~>", "~>", rampBinds}, {"..", "..", rangeBinds},
+    {"or", "or", 3},         {"||", "or", 3},
+    {"and", "and", 4},       {"&&", "and", 4},
+    {"==", "==", 5},         {"=", "==", 5},
+    {"!=", "!=", 5},         {"<=", "<=", 5},
+    {">=", ">=", 5},         {"<", "<", 5},
+    {">", ">", 5},           {"+", "+", 6},
+    {"-", "-", 6},           {"*", "*", 7},
+    {"/", "/", 7},           {"%", "%", 7},
 };
 constexpr int notBinds = 5, minusBinds = tightest;
 
@@ -43,6 +49,12 @@ constexpr bool isAxisLetter(std::string_view word) { return word == "x" || word 
 /// +x or -z: one word for a joint or an axis.
 bool atAxis(const Cursor& cursor) {
     return (cursor.at("+") || cursor.at("-")) && isAxisLetter(cursor.peekText(1)) && cursor.peek(1).glued;
+}
+
+/// A number with six digits at most, for a mend.
+std::string plain(double number) {
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof text, number, std::chars_format::general, 6).ptr};
 }
 
 /// Reads one expression and counts its operators.
@@ -95,7 +107,8 @@ private:
 
     bool tooLong() {
         if (++operators_ <= mostOperators) return false;
-        cursor_.fail("more than " + std::to_string(mostOperators) + " operators in one expression", "name a part of it");
+        cursor_.fail("more than " + std::to_string(mostOperators) + " operators in one expression",
+                     "name a part of it");
         return true;
     }
 
@@ -137,13 +150,13 @@ private:
         while (!cursor_.failed() && (cursor_.at("[") || cursor_.at("."))) {
             if (tooLong()) break;
             Expr outer;
-            if (cursor_.accept("[")) {
+            const Token symbol = cursor_.take();
+            if (cursor_.text(symbol) == "[") {
                 outer.kind = Kind::Index;
                 outer.args.push_back(std::move(e));
                 outer.args.push_back(binary(rampBinds));
-                cursor_.expect("]", "to close '['");
+                cursor_.close(symbol);
             } else {
-                cursor_.take();
                 outer.kind = Kind::Member;
                 outer.args.push_back(std::move(e));
                 outer.text = readName(cursor_, "a member").text;
@@ -166,11 +179,16 @@ private:
             return e;
         }
         switch (token.kind) {
-            case Token::Kind::Number: return number();
-            case Token::Kind::Text: return text();
-            case Token::Kind::Color: return color();
-            case Token::Kind::Word: return nameOrCall();
-            default: break;
+            case Token::Kind::Number:
+                return number();
+            case Token::Kind::Text:
+                return text();
+            case Token::Kind::Color:
+                return color();
+            case Token::Kind::Word:
+                return nameOrCall();
+            default:
+                break;
         }
         if (cursor_.at("~")) return prefixed("~", [this] { return simple(); });
         if (cursor_.at("(")) return parenthesised();
@@ -191,20 +209,20 @@ private:
         const auto [end, error] = std::from_chars(written.data(), written.data() + written.size(), e.number);
         if (error != std::errc()) cursor_.complain(e.span, "the number " + quoted(written) + " can't be held");
         e.unit = written.substr(static_cast<size_t>(end - written.data()));
-        checkUnit(e, written.substr(0, written.size() - e.unit.size()));
+        checkUnit(e);
         if (cursor_.at(".") && cursor_.peek().glued)
             cursor_.fail("a number doesn't end with a dot", "write " + quoted(std::string(written) + ".0"));
         return e;
     }
 
-    void checkUnit(Expr& number, std::string_view digits) {
+    void checkUnit(Expr& number) {
         constexpr std::string_view units[] = {"", "m", "deg", "%", "/m"};
         if (std::find(std::begin(units), std::end(units), number.unit) != std::end(units)) return;
         std::string mend = "a number is plain or has m, deg, % or /m";
-        if (number.unit == "cm" || number.unit == "mm")
-            mend = "lengths are in metres: write '(" + std::string(digits) + "m / " +
-                   (number.unit == "cm" ? "100)'" : "1000)'");
-        if (number.unit == "rad") mend = "angles are in degrees: write 'deg'";
+        if (number.unit == "cm") mend = "write " + quoted(plain(number.number / 100) + "m");
+        if (number.unit == "mm") mend = "write " + quoted(plain(number.number / 1000) + "m");
+        if (number.unit == "rad")
+            mend = "angles are in degrees: write " + quoted(plain(number.number * 180 / std::numbers::pi) + "deg");
         cursor_.complain(number.span, "there is no unit " + quoted(number.unit), mend);
         number.unit.clear();
     }
@@ -218,7 +236,8 @@ private:
         for (size_t i = 0; i < written.size(); ++i) {
             const bool escape = written[i] == '\\' && i + 1 < written.size();
             if (!escape && written[i] == '"') return e;
-            if (escape && (written[i + 1] == '"' || written[i + 1] == '\\')) ++i;
+            if (escape && (written[i + 1] == '"' || written[i + 1] == '\\'))
+                ++i;
             else if (escape)
                 cursor_.complain(e.span, "unknown escape " + quoted(written.substr(i, 2)) + " in a text",
                                  "only \\\" and \\\\ are escapes");
@@ -251,9 +270,9 @@ private:
         e.span = cursor_.since(begin);
         if (!cursor_.at("(") || !cursor_.peek().glued) return e;
         e.kind = Kind::Call;
-        cursor_.take();
+        const Token open = cursor_.take();
         if (!cursor_.at(")")) arguments(e);
-        cursor_.expect(")", "to close '('");
+        cursor_.close(open);
         e.span = cursor_.since(begin);
         return e;
     }
@@ -273,14 +292,14 @@ private:
 
     /// ( expr ) is that expression, ( a, b ) a tuple; either spans its parentheses.
     Expr parenthesised() {
-        const uint32_t begin = cursor_.take().begin;
+        const Token open = cursor_.take();
         Expr tuple;
         tuple.kind = Kind::Tuple;
         do tuple.args.push_back(binary(rampBinds));
         while (cursor_.accept(","));
-        cursor_.expect(")", "to close '('");
+        cursor_.close(open);
         Expr e = tuple.args.size() == 1 ? Expr(std::move(tuple.args[0])) : std::move(tuple);
-        e.span = cursor_.since(begin);
+        e.span = cursor_.since(open.begin);
         return e;
     }
 
@@ -304,9 +323,12 @@ bool startsArgument(const Cursor& cursor) {
     switch (cursor.peek().kind) {
         case Token::Kind::Number:
         case Token::Kind::Text:
-        case Token::Kind::Color: return true;
-        case Token::Kind::Word: return !isReserved(cursor.peekText());
-        default: return cursor.at("(") || cursor.at("~") || cursor.at("-") || atAxis(cursor);
+        case Token::Kind::Color:
+            return true;
+        case Token::Kind::Word:
+            return !isReserved(cursor.peekText());
+        default:
+            return cursor.at("(") || cursor.at("~") || cursor.at("-") || atAxis(cursor);
     }
 }
 

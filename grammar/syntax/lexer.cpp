@@ -8,8 +8,8 @@ namespace {
 
 // Longest first, so that the first that fits is the right one.
 constexpr std::string_view symbols[] = {
-    "->", "=>", "~>", "..", "==", "!=", "<=", ">=", "&&", "||", "+", "-", "*", "/", "%", "&", "|",
-    ":",  ",",  "=",  "<",  ">",  "(",  ")",  "[",  "]",  "{",  "}", ".", "~", "!", ";",
+    "->", "=>", "~>", "..", "==", "!=", "<=", ">=", "&&", "||", "+", "-", "*", "/", "%", "&",
+    "|",  ":",  ",",  "=",  "<",  ">",  "(",  ")",  "[",  "]",  "{", "}", ".", "~", "!", ";",
 };
 
 constexpr bool isDigit(char c) { return c >= '0' && c <= '9'; }
@@ -55,9 +55,12 @@ private:
         if (peek() == '.' && isDigit(peek(1))) ++at_, skipWhile(isDigit);
         const size_t sign = peek(1) == '-' || peek(1) == '+';
         if ((peek() == 'e' || peek() == 'E') && isDigit(peek(1 + sign))) at_ += 1 + sign, skipWhile(isDigit);
-        if (peek() == '%') ++at_;
-        else if (peek() == '/' && peek(1) == 'm' && !isWordPart(peek(2))) at_ += 2;
-        else skipWhile(isWordPart);
+        if (peek() == '%')
+            ++at_;
+        else if (peek() == '/' && peek(1) == 'm' && !isWordPart(peek(2)))
+            at_ += 2;
+        else
+            skipWhile(isWordPart);
     }
 
     void text() {

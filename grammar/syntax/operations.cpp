@@ -19,7 +19,8 @@ constexpr Argument turnArguments[] = {
 constexpr Argument atArguments[] = {
     {"ours", Type::Joint, "our joint: a face, centre, a declared name, free(…) or the variable of 'for d in axes'"}};
 constexpr Argument toArguments[] = {
-    {"theirs", Type::Joint, "the newcomer's joint; the opposite face unless said; centre puts its centre on our joint"}};
+    {"theirs", Type::Joint,
+     "the newcomer's joint; the opposite face unless said; centre puts its centre on our joint"}};
 constexpr Argument overlapArguments[] = {
     {"share", Type::Number, "how far the newcomer moves inward along the joint: 0 touches, 1 puts its centre there"}};
 constexpr Argument shiftArguments[] = {
@@ -42,7 +43,8 @@ constexpr Argument withArguments[] = {{"name", Type::Name, "the value's name, fo
 constexpr Argument splitArguments[] = {{"axis", Type::Axis, "x, y or z of the scope"}};
 constexpr Argument insetArguments[] = {{"width", Type::Length, "metres from each edge of the face"}};
 constexpr Argument cladArguments[] = {{"pattern", Type::Solid, "the solid whose folds dress the surface"}};
-constexpr Argument thicknessArguments[] = {{"thickness", Type::Length, "metres of the cladding outside the inner solid"}};
+constexpr Argument thicknessArguments[] = {
+    {"thickness", Type::Length, "metres of the cladding outside the inner solid"}};
 constexpr Argument tileArguments[] = {{"period", Type::Vector, "metres after which the pattern repeats, along and up"}};
 constexpr Argument mirrorArguments[] = {{"plane", Type::Vector, "shares of a tile where the pattern is mirrored"}};
 constexpr Argument footprintArguments[] = {{"lsystem", Type::Name, "the lsystem that draws the outline"}};
@@ -79,19 +81,24 @@ constexpr std::array<Operation, 27> table = {{
      "split x { 1m: wall | { ~2.4m: Tile }* | 1m: wall }", splitArguments, true, false},
     {Id::Inset, "inset", "Cuts a face into its rim and the rest.", "inset .12m { rim: frame | rest: glass }",
      insetArguments, true, false},
-    {Id::Clad, "clad", "Dresses a solid with a pattern: inner + (outer & pattern).",
-     "cube clad ornate thickness .4m", cladArguments, false, false},
+    {Id::Clad, "clad", "Dresses a solid with a pattern: inner + (outer & pattern).", "cube clad ornate thickness .4m",
+     cladArguments, false, false},
     {Id::Thickness, "thickness", "How far cladding stands out.", "cube clad ornate thickness .4m", thicknessArguments,
      false, false},
     {Id::Tile, "tile", "Repeats a cladding.", "cube clad ornate tile (6m, 3m)", tileArguments, false, false},
     {Id::Mirror, "mirror", "Mirrors a cladding inside its tile.", "cube clad ornate mirror (.25, .125, .4)",
      mirrorArguments, false, false},
-    {Id::Footprint, "footprint", "Takes the outline an lsystem draws as the shape's base.",
-     "footprint Plan extrude 9m", footprintArguments, false, false},
+    {Id::Footprint, "footprint", "Takes the outline an lsystem draws as the shape's base.", "footprint Plan extrude 9m",
+     footprintArguments, false, false},
     {Id::Extrude, "extrude", "Raises the base into a prism.", "footprint Plan extrude (floors * 3m)", extrudeArguments,
      false, false},
-    {Id::Faces, "faces", "Gives the faces of a prism to bodies: side, top, bottom or a tag.",
-     "faces { side: wall | top: roof hip 35deg tiles }", {}, true, false},
+    {Id::Faces,
+     "faces",
+     "Gives the faces of a prism to bodies: side, top, bottom or a tag.",
+     "faces { side: wall | top: roof hip 35deg tiles }",
+     {},
+     true,
+     false},
     {Id::Roof, "roof", "Puts a roof on a top face.", "roof hip 35deg tiles", roofArguments, false, false},
     {Id::Balcony, "balcony", "Puts a balcony before a face.", "balcony 1.1m", balconyArguments, false, false},
 }};

@@ -2,303 +2,28 @@
 
 #include <algorithm>
 
-#include "grammar/syntax/bodies.h"
+#include "grammar/syntax/declarations.h"
 #include "grammar/syntax/expressions.h"
 
 namespace sgm::syntax {
 
 namespace {
 
-/// { name = value … }
-std::vector<Setting> readSettings(Cursor& cursor) {
-    std::vector<Setting> settings;
-    if (!cursor.expect("{", "before the settings")) return settings;
-    while (!cursor.done() && !cursor.at("}")) {
-        Setting setting;
-        setting.name = readName(cursor, "a parameter");
-        cursor.expect("=", "after the parameter's name");
-        setting.value = readExpr(cursor);
-        setting.span = join(setting.name.span, setting.value.span);
-        settings.push_back(std::move(setting));
-        if (cursor.at(",")) cursor.complain(cursor.span(cursor.take()), "settings stand side by side", "leave ',' out");
-    }
-    cursor.expect("}", "after the settings");
-    return settings;
-}
-
-/// Takes '->', also where another arrow was written.
-void expectArrow(Cursor& cursor, std::string_view where) {
-    if (cursor.at("=>") || cursor.at("=") || cursor.at("~>"))
-        cursor.complain(cursor.span(cursor.peek()), "expected '->' " + std::string(where) + ", found " + cursor.found(),
-                        "write '->'");
-    else if (!cursor.at("->"))
-        cursor.expect("->", where);
-    cursor.take();
-}
-
-void readUse(Cursor& cursor, Ast& ast) {
-    UseDecl use;
-    const uint32_t begin = cursor.take().begin;
-    if (!cursor.at(Token::Kind::Text)) cursor.fail("expected a file in \"…\", found " + cursor.found());
-    use.file = readArgument(cursor);
-    use.span = cursor.since(begin);
-    ast.uses.push_back(std::move(use));
-}
-
-/// The words after a parameter's default: in, of, "label", group, key.
-void readParamPart(Cursor& cursor, ParamDecl& param) {
-    if (cursor.accept("in")) {
-        param.range = readExpr(cursor);
-    } else if (cursor.accept("of")) {
-        do param.choices.push_back(readName(cursor, "a choice"));
-        while (cursor.accept(","));
-    } else if (cursor.at(Token::Kind::Text)) {
-        param.label = readArgument(cursor).text;
-    } else if (cursor.accept("group")) {
-        param.group = readName(cursor, "a group").text;
-    } else {
-        cursor.take();
-        param.key = readName(cursor, "a key");
-        if (param.key.text.size() > 1) cursor.complain(param.key.span, "a key is one letter", "write 'key " + param.key.text.substr(0, 1) + "'");
-    }
-}
-
-bool atParamPart(const Cursor& cursor) {
-    return cursor.at("in") || cursor.at("of") || cursor.at("group") || cursor.at("key") ||
-           cursor.at(Token::Kind::Text);
-}
-
-void readParam(Cursor& cursor, Ast& ast) {
-    ParamDecl param;
-    const uint32_t begin = cursor.take().begin;
-    param.name = readName(cursor, "a parameter");
-    cursor.expect("=", "and a default after the parameter's name");
-    param.value = readExpr(cursor);
-    while (atParamPart(cursor)) readParamPart(cursor, param);
-    param.span = cursor.since(begin);
-    if (!param.name.empty()) ast.params.push_back(std::move(param));
-}
-
-void readMap(Cursor& cursor, Ast& ast) {
-    MapDecl map;
-    const uint32_t begin = cursor.take().begin;
-    map.name = readName(cursor, "a map");
-    cursor.expect("=", "after the map's name");
-    if (!cursor.at(Token::Kind::Text)) cursor.fail("expected a file in \"…\", found " + cursor.found());
-    map.file = readArgument(cursor);
-    if (cursor.accept("as")) map.range = readExpr(cursor);
-    map.span = cursor.since(begin);
-    if (!map.name.empty()) ast.maps.push_back(std::move(map));
-}
-
-TerminalDecl::JointDecl readJoint(Cursor& cursor) {
-    TerminalDecl::JointDecl joint;
-    const uint32_t begin = cursor.take().begin;
-    joint.name = readName(cursor, "a joint");
-    if (cursor.expect("at", "and a point after the joint's name")) joint.at = readArgument(cursor);
-    if (cursor.expect("facing", "and a direction after the joint's point")) joint.facing = readArgument(cursor);
-    joint.span = cursor.since(begin);
-    return joint;
-}
-
-/// The name of a new symbol: an operation's word can't be one, since it would read as an attribute.
-Name readSymbol(Cursor& cursor, std::string_view what) {
-    Name name = readName(cursor, what);
-    if (!name.empty() && findOperation(name.text))
-        cursor.complain(name.span, quoted(name.text) + " is an operation and can't name " + std::string(what));
-    return name;
-}
-
-void readTerminal(Cursor& cursor, Ast& ast) {
-    TerminalDecl terminal;
-    const uint32_t begin = cursor.take().begin;
-    do terminal.names.push_back(readSymbol(cursor, "a terminal"));
-    while (cursor.accept(","));
-    if (cursor.accept("=")) terminal.solid = readSolid(cursor);
-    while (atAttribute(cursor) || cursor.at("joint")) {
-        if (cursor.at("joint")) terminal.joints.push_back(readJoint(cursor));
-        else terminal.attributes.push_back(readAttribute(cursor));
-    }
-    terminal.span = cursor.since(begin);
-    if (!terminal.names[0].empty()) ast.terminals.push_back(std::move(terminal));
-}
-
-void readStart(Cursor& cursor, Ast& ast) {
-    StartDecl start;
-    const uint32_t begin = cursor.take().begin;
-    start.symbol = readSymbol(cursor, "a symbol");
-    expectArrow(cursor, "after the start's symbol");
-    start.body = readBody(cursor);
-    start.span = cursor.since(begin);
-    if (!start.symbol.empty()) ast.starts.push_back(std::move(start));
-}
-
-/// What may stand between a rule's symbol and its arrow, in any order, each once.
-bool readRuleCondition(Cursor& cursor, RuleDecl& rule) {
-    const Token word = cursor.peek();
-    const bool again = (cursor.at("beside") && !rule.beside.empty()) || (cursor.at("when") && rule.when) ||
-                       (cursor.at("weight") && rule.weight) || (cursor.at("repeat") && rule.repeat);
-    if (cursor.accept("beside")) rule.beside = readName(cursor, "a symbol");
-    else if (cursor.accept("when")) rule.when = readExpr(cursor);
-    else if (cursor.accept("weight")) rule.weight = readExpr(cursor);
-    else if (cursor.accept("repeat")) rule.repeat = readExpr(cursor);
-    else return false;
-    if (again) cursor.complain(cursor.span(word), quoted(cursor.text(word)) + " stands twice before '->'", "say it once");
-    return true;
-}
-
-void readRule(Cursor& cursor, Ast& ast) {
-    RuleDecl rule;
-    const uint32_t begin = cursor.take().begin;
-    if (cursor.at(":", 1)) {
-        rule.name = readName(cursor, "a rule");
-        cursor.take();
-    }
-    rule.symbol = readSymbol(cursor, "a symbol");
-    while (readRuleCondition(cursor, rule)) {}
-    if (cursor.at(Token::Kind::Word) && !cursor.at("->")) {
-        const std::string near = didYouMean(cursor.peekText(), {"beside", "when", "weight", "repeat"});
-        cursor.fail("expected '->' after what the rule matches, found " + cursor.found(),
-                    near.empty() ? "write '-> " + std::string(cursor.peekText()) + "'" : "did you mean '" + near + "'?");
-    }
-    expectArrow(cursor, "after what the rule matches");
-    rule.body = readBody(cursor);
-    if (cursor.accept("finally")) rule.finally_ = readBody(cursor);
-    rule.span = cursor.since(begin);
-    if (!rule.symbol.empty()) ast.rules.push_back(std::move(rule));
-}
-
-/// Name {/ Name | [ index ]}: a path in the tree, as written but without blanks.
-Expr readPath(Cursor& cursor) {
-    const uint32_t begin = cursor.peek().begin;
-    Expr path;
-    path.kind = Expr::Kind::Text;
-    path.text = readName(cursor, "a shape in the tree").text;
-    while (!cursor.done() && (cursor.at("/") || cursor.at("["))) {
-        if (cursor.accept("/")) {
-            path.text += '/' + readName(cursor, "a shape in the tree").text;
-            continue;
-        }
-        cursor.take();
-        if (!cursor.at(Token::Kind::Number)) cursor.fail("expected a number in '[ ]', found " + cursor.found());
-        path.text += '[' + std::string(cursor.text(cursor.take())) + ']';
-        cursor.expect("]", "to close '['");
-    }
-    path.span = cursor.since(begin);
-    return path;
-}
-
-void readDerive(Cursor& cursor, Ast& ast) {
-    DeriveDecl derive;
-    const uint32_t begin = cursor.take().begin;
-    derive.name = readName(cursor, "a derivation");
-    cursor.expect(":", "after the derivation's name");
-    do {
-        DeriveDecl::Step step;
-        step.rule = readName(cursor, "a rule");
-        step.hasPlace = cursor.accept("at");
-        if (step.hasPlace) {
-            step.at = readPath(cursor);
-            step.place = step.at.text;
-        }
-        derive.steps.push_back(std::move(step));
-    } while (cursor.accept("=>"));
-    if (cursor.at("->")) cursor.fail("expected '=>' between steps, found '->'", "write '=>'");
-    derive.span = cursor.since(begin);
-    if (!derive.name.empty()) ast.derives.push_back(std::move(derive));
-}
-
-void readProductions(Cursor& cursor, LsystemDecl& lsystem) {
-    while (cursor.at(Token::Kind::Word) && cursor.at("->", 1)) {
-        LsystemDecl::Production production;
-        const uint32_t begin = cursor.peek().begin;
-        production.symbol = readName(cursor, "a letter");
-        cursor.take();
-        if (!cursor.at(Token::Kind::Text)) cursor.fail("expected a text of letters, found " + cursor.found());
-        production.text = readArgument(cursor);
-        if (cursor.accept(":")) production.weight = readArgument(cursor);
-        production.span = cursor.since(begin);
-        lsystem.productions.push_back(std::move(production));
-    }
-}
-
-void readLsystem(Cursor& cursor, Ast& ast) {
-    LsystemDecl lsystem;
-    const uint32_t begin = cursor.take().begin;
-    lsystem.name = readName(cursor, "an lsystem");
-    while (cursor.at(Token::Kind::Word) && !cursor.at("axiom")) {
-        Setting setting;
-        setting.name = readName(cursor, "a setting");
-        setting.value = readArgument(cursor);
-        setting.span = join(setting.name.span, setting.value.span);
-        lsystem.settings.push_back(std::move(setting));
-    }
-    if (cursor.expect("axiom", "and a text after the settings")) {
-        if (!cursor.at(Token::Kind::Text)) cursor.fail("expected a text of letters, found " + cursor.found());
-        lsystem.axiom = readArgument(cursor);
-        readProductions(cursor, lsystem);
-    }
-    lsystem.span = cursor.since(begin);
-    if (!lsystem.name.empty()) ast.lsystems.push_back(std::move(lsystem));
-}
-
-void readStyle(Cursor& cursor, Ast& ast) {
-    StyleDecl style;
-    const uint32_t begin = cursor.take().begin;
-    style.name = readName(cursor, "a style");
-    if (cursor.accept("for")) style.start = readName(cursor, "a start");
-    style.settings = readSettings(cursor);
-    style.span = cursor.since(begin);
-    if (!style.name.empty()) ast.styles.push_back(std::move(style));
-}
-
-void readCheck(Cursor& cursor, Ast& ast) {
-    CheckDecl check;
-    const uint32_t begin = cursor.take().begin;
-    check.start = readName(cursor, "a start");
-    if (!cursor.at("expect")) check.settings = readSettings(cursor);
-    if (cursor.expect("expect", "and a condition after the settings")) check.expect = readExpr(cursor);
-    check.span = cursor.since(begin);
-    if (!check.start.empty()) ast.checks.push_back(std::move(check));
-}
-
-void readOverride(Cursor& cursor, Ast& ast) {
-    OverrideDecl override_;
-    const uint32_t begin = cursor.take().begin;
-    override_.path = readPath(cursor).text;
-    override_.settings = readSettings(cursor);
-    override_.span = cursor.since(begin);
-    if (!override_.path.empty()) ast.overrides.push_back(std::move(override_));
-}
-
-/// What a file consists of: a word in column one and how its declaration reads.
-struct Declaration {
-    std::string_view word;
-    void (*read)(Cursor&, Ast&);
-};
-constexpr Declaration declarations[] = {
-    {"use", readUse},     {"param", readParam},     {"map", readMap},     {"terminal", readTerminal},
-    {"start", readStart}, {"rule", readRule},       {"derive", readDerive}, {"lsystem", readLsystem},
-    {"style", readStyle}, {"check", readCheck},     {"override", readOverride},
-};
-
-const Declaration* findDeclaration(std::string_view word) {
-    const auto row = std::find_if(std::begin(declarations), std::end(declarations),
-                                  [&](const Declaration& d) { return d.word == word; });
-    return row == std::end(declarations) ? nullptr : row;
-}
-
+/// Says what is wrong with a token where a declaration should begin.
 void refuse(Cursor& cursor) {
     std::vector<std::string> words;
-    for (const Declaration& d : declarations) words.emplace_back(d.word);
+    for (const Declaration& d : declarations()) words.emplace_back(d.word);
     const std::string near = cursor.peek().columnOne ? didYouMean(cursor.peekText(), words) : std::string();
-    if (cursor.at("grammar")) cursor.fail("'grammar' stands once, in the first line");
-    else if (!near.empty()) cursor.fail(cursor.found() + " begins no declaration", "did you mean '" + near + "'?");
-    else cursor.fail("unexpected " + cursor.found());
+    if (cursor.at("grammar"))
+        cursor.fail("'grammar' stands once, in the first line");
+    else if (!near.empty())
+        cursor.fail(cursor.found() + " begins no declaration", "did you mean '" + near + "'?");
+    else
+        cursor.fail("unexpected " + cursor.found());
 }
 
 /// The declarations of one slice: one, unless a second wasn't put in column one.
-void readDeclarations(Cursor& cursor, Ast& ast, const Source& source) {
+void readDeclarations(Cursor& cursor, Ast& ast) {
     for (bool first = true; !cursor.done(); first = false) {
         const Declaration* declaration = findDeclaration(cursor.peekText());
         if (!declaration) {
@@ -306,8 +31,8 @@ void readDeclarations(Cursor& cursor, Ast& ast, const Source& source) {
             return;
         }
         if (!first || !cursor.peek().columnOne)
-            cursor.complain(cursor.span(cursor.peek()), cursor.found() + " begins a declaration and stands in column one",
-                            source.place(cursor.peek().begin).column > 1 ? "begin a new line with it" : "");
+            cursor.complain(cursor.span(cursor.peek()), cursor.found() + " begins a declaration",
+                            "begin a line with it, no blanks before");
         declaration->read(cursor, ast);
     }
 }
@@ -315,7 +40,12 @@ void readDeclarations(Cursor& cursor, Ast& ast, const Source& source) {
 /// grammar 1. False when the rest can't be read as this language.
 bool readVersion(Cursor& cursor, Ast& ast) {
     if (!cursor.at("grammar")) {
-        cursor.complain(cursor.span(cursor.peek()), "a grammar file begins with its version", "write 'grammar 1' in the first line");
+        const std::string message = "a grammar file begins with its version";
+        const std::string mend = "write 'grammar 1' in the first line";
+        if (findDeclaration(cursor.peekText()))
+            cursor.complain(cursor.span(cursor.peek()), message, mend);
+        else
+            cursor.fail(message, mend);
         return true;
     }
     cursor.take();
@@ -326,7 +56,8 @@ bool readVersion(Cursor& cursor, Ast& ast) {
     }
     ast.version = static_cast<int>(std::min(readArgument(cursor).number, 1e6));
     if (cursor.text(version) == "1") return true;
-    cursor.failAt(cursor.span(version), "this program reads grammar version 1, not " + std::string(cursor.text(version)),
+    cursor.failAt(cursor.span(version),
+                  "this program reads grammar version 1, not " + std::string(cursor.text(version)),
                   "write 'grammar 1', or use a newer program");
     return false;
 }
@@ -334,7 +65,8 @@ bool readVersion(Cursor& cursor, Ast& ast) {
 /// Tokens without blanks and comments.
 std::vector<Token> significant(const Source& source) {
     std::vector<Token> tokens = lex(source);
-    tokens.erase(std::remove_if(tokens.begin(), tokens.end(), [](const Token& t) { return isTrivia(t.kind); }), tokens.end());
+    tokens.erase(std::remove_if(tokens.begin(), tokens.end(), [](const Token& t) { return isTrivia(t.kind); }),
+                 tokens.end());
     return tokens;
 }
 
@@ -353,7 +85,7 @@ Ast parse(SourcePtr source, Diagnostics& diagnostics) {
         while (end < tokens.size() && !begins(tokens[end])) ++end;
         Cursor cursor(*source, std::span(tokens).subspan(begin, end - begin), diagnostics);
         if (begin == 0 && !readVersion(cursor, ast)) return ast;
-        readDeclarations(cursor, ast, *source);
+        readDeclarations(cursor, ast);
         begin = end;
     } while (begin < tokens.size());
     return ast;

@@ -22,8 +22,10 @@ std::string printable(std::string_view text) {
 std::string caretLine(std::string_view line, size_t from, size_t to) {
     std::string marks;
     for (size_t i = 0; i < from; ++i) {
-        if (i >= line.size()) marks += ' ';
-        else if (!isContinuation(line[i])) marks += line[i] == '\t' ? '\t' : ' ';
+        if (i >= line.size())
+            marks += ' ';
+        else if (!isContinuation(line[i]))
+            marks += line[i] == '\t' ? '\t' : ' ';
     }
     marks += '^';
     for (size_t i = from + 1; i < std::min(to, line.size()); ++i)
@@ -31,18 +33,19 @@ std::string caretLine(std::string_view line, size_t from, size_t to) {
     return marks;
 }
 
-/// Levenshtein's distance; both words are short.
+/// Letters to insert, delete, replace or swap with their neighbour (optimal string alignment); both words are short.
 size_t editDistance(std::string_view a, std::string_view b) {
-    std::vector<size_t> row(b.size() + 1);
+    std::vector<size_t> before(b.size() + 1), row(b.size() + 1), next(b.size() + 1);
     std::iota(row.begin(), row.end(), size_t{0});
     for (size_t i = 0; i < a.size(); ++i) {
-        size_t diagonal = row[0];
-        row[0] = i + 1;
+        next[0] = i + 1;
         for (size_t j = 0; j < b.size(); ++j) {
-            const size_t replaced = diagonal + (a[i] != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+            next[j + 1] = std::min({row[j] + (a[i] != b[j]), next[j] + 1, row[j + 1] + 1});
+            if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j])
+                next[j + 1] = std::min(next[j + 1], before[j - 1] + 1);
         }
+        std::swap(before, row);
+        std::swap(row, next);
     }
     return row.back();
 }
