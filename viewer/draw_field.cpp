@@ -83,11 +83,8 @@ Result<FieldPicture> prepare(const eval::Tape& tape, const Box3f& bounds, const 
     uploadCells(picture.tree, picture, registers);
 
     const std::string interpreter = eval::interpreterGlsl(registers, eval::opsOf(tape));
-    const auto program = [&](std::string_view stage) -> Result<Program> {
-        return Program::compute(composeShader(interpreter, {"view", "sky", "light", "ground", "tonemap", "cells", "jobs", stage}));
-    };
     for (auto [stage, into] : {std::pair{"trace", &picture.trace}, std::pair{"shade", &picture.shade}}) {
-        Result<Program> made = program(stage);
+        Result<Program> made = Program::compute(shaderText(stage, interpreter));
         if (!made) return made.error();
         *into = std::move(*made);
         setScene(*into, bounds, options);

@@ -94,16 +94,16 @@ Result<MeshPicture> upload(const mesh::Mesh& mesh, const Provenance& provenance)
     picture.triangleCount = triangles.size();
     picture.materialOfTriangle = TexelBuffer::of(materials, 1);
     picture.materials = uploadMaterials(provenance);
-    const auto make = [](Program& into, std::initializer_list<std::string_view> vertex, std::initializer_list<std::string_view> fragment) -> Status {
-        Result<Program> program = Program::draw(composeShader("", vertex), composeShader("", fragment));
-        if (!program) return program.error();
-        into = std::move(*program);
-        return Done{};
+    struct Wanted {
+        Program& program;
+        std::string_view vertex, fragment;
     };
-    if (Status s = make(picture.depth, {"mesh"}, {"depth"}); !s) return s.error();
-    if (Status s = make(picture.blur, {"screen"}, {"blur_depth"}); !s) return s.error();
-    if (Status s = make(picture.color, {"mesh"}, {"view", "sky", "light", "ground", "tonemap", "visibility", "mesh_color"}); !s) return s.error();
-    if (Status s = make(picture.backdrop, {"screen"}, {"view", "sky", "light", "ground", "tonemap", "visibility", "backdrop"}); !s) return s.error();
+    for (const Wanted& wanted : {Wanted{picture.depth, "mesh", "depth"}, Wanted{picture.blur, "screen", "blur_depth"},
+                                 Wanted{picture.color, "mesh", "mesh_color"}, Wanted{picture.backdrop, "screen", "backdrop"}}) {
+        Result<Program> made = Program::draw(shaderText(wanted.vertex), shaderText(wanted.fragment));
+        if (!made) return made.error();
+        wanted.program = std::move(*made);
+    }
     return picture;
 }
 

@@ -1,21 +1,29 @@
 // The shaders' text, built into the library from viewer/shaders/.
-// Enters: names of parts (file names up to the first dot). Leaves: GLSL.
+// Enters: the name of a shader. Leaves: GLSL, composed of named parts that field and mesh share.
 #pragma once
 
-#include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sgm::viewer {
 
 /// The text of shaders/NAME.glsl or shaders/NAME.STAGE.glsl; empty when there is none.
 std::string_view shaderPart(std::string_view name);
 
-/// A whole shader: the version line, `head`, then the parts in order.
-inline std::string composeShader(const std::string& head, std::initializer_list<std::string_view> parts) {
-    std::string text = "#version 430 core\n" + head;
-    for (const std::string_view part : parts) text.append(shaderPart(part)).append("\n");
-    return text;
-}
+/// One whole shader and what it is made of.
+struct Shader {
+    std::string_view name;
+    std::string_view stage;        ///< comp, vert or frag, as the tools' file endings say
+    bool interprets;               ///< starts with the field interpreter
+    std::vector<std::string_view> parts;
+};
+
+/// Every shader of the viewer.
+const std::vector<Shader>& shaders();
+
+/// The source of a shader: the version line, `interpreter` where it takes one, then its parts.
+std::string shaderText(std::string_view name, const std::string& interpreter = {});
 
 }  // namespace sgm::viewer

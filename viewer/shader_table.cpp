@@ -1,0 +1,30 @@
+#include "viewer/shader_text.h"
+
+namespace sgm::viewer {
+
+const std::vector<Shader>& shaders() {
+    static const std::vector<Shader> table{
+        {"trace", "comp", true, {"view", "sky", "light", "ground", "cells", "jobs", "trace"}},
+        {"shade", "comp", true, {"view", "sky", "light", "ground", "tonemap", "cells", "jobs", "shade"}},
+        {"evaluate", "comp", true, {"evaluate"}},
+        {"mesh", "vert", false, {"mesh"}},
+        {"screen", "vert", false, {"screen"}},
+        {"depth", "frag", false, {"depth"}},
+        {"blur_depth", "frag", false, {"blur_depth"}},
+        {"mesh_color", "frag", false, {"view", "sky", "light", "ground", "tonemap", "visibility", "mesh_color"}},
+        {"backdrop", "frag", false, {"view", "sky", "light", "ground", "tonemap", "visibility", "backdrop"}},
+    };
+    return table;
+}
+
+std::string shaderText(std::string_view name, const std::string& interpreter) {
+    std::string text = "#version 430 core\n";
+    for (const Shader& shader : shaders()) {
+        if (shader.name != name) continue;
+        if (shader.interprets) text += interpreter;
+        for (const std::string_view part : shader.parts) text.append(shaderPart(part)).append("\n");
+    }
+    return text;
+}
+
+}  // namespace sgm::viewer
