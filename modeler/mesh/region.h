@@ -1,0 +1,41 @@
+// Cubes of cells on the way down, and whether they can hold surface.
+// Enters: a cube's index and edge, the grid. Leaves: cells, box, verdict. Assumes ranges that enclose the field.
+#pragma once
+
+#include "modeler/core/result.h"
+#include "modeler/eval/evaluate.h"
+#include "modeler/mesh/subdivide.h"
+
+namespace sgm::mesh {
+
+inline constexpr int maxCellsPerAxis = 1 << 15;
+
+/// Cells [lo, hi) of the grid.
+struct CellRange {
+    Vec3i lo, hi;
+    bool empty() const { return lo.x >= hi.x || lo.y >= hi.y || lo.z >= hi.z; }
+};
+
+/// The cells of cube `index` of edge `edgeCells`, cut off at the grid's end.
+inline CellRange cellsOf(Vec3i index, int edgeCells, const Grid& grid) {
+    const Vec3i lo = index * edgeCells;
+    return {lo, min(lo + Vec3i{edgeCells, edgeCells, edgeCells}, grid.cells)};
+}
+
+/// Holds every corner of the cells, bit by bit: `Grid::corner` rounds monotonically.
+inline Box3f boxOf(const CellRange& cells, const Grid& grid) {
+    return {grid.corner(cells.lo.x, cells.lo.y, cells.lo.z), grid.corner(cells.hi.x, cells.hi.y, cells.hi.z)};
+}
+
+/// False when all samples of the cells count alike. Samples on the grid's border count as outside whatever the field says
+/// (so the mesh closes even where bounds were wrong), hence a region that is inside all over ends where it touches the border.
+inline bool mayHoldSurface(eval::Range range, const CellRange& cells, const Grid& grid) {
+    if (range.lo >= 0) return false;
+    const bool touchesBorder = minComponent(cells.lo) == 0 || minComponent(grid.cells - cells.hi) == 0;
+    return !(range.hi < 0) || touchesBorder;
+}
+
+/// Error::Input for cells that float32 can't resolve or that aren't positive, Error::Budget for too many along an axis.
+Status checkGrid(const Grid& grid);
+
+}  // namespace sgm::mesh

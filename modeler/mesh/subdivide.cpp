@@ -1,0 +1,120 @@
+#include "modeler/mesh/subdivide.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <string>
+#include <tuple>
+
+#include "modeler/core/parallel.h"
+#include "modeler/eval/evaluate.h"
+#include "modeler/mesh/region.h"
+
+namespace sgm::mesh {
+namespace {
+
+constexpr int splits = 4;  ///< per axis, so that one batch of intervals is 64 children
+
+/// A cube of blocks on the way down: blocks [index · size, (index + 1) · size) of its level.
+using Region = Block;
+
+/// Splits one region into those children that may hold surface, each with its tape shortened to it.
+std::vector<Region> split(const Region& region, int childCells, const Grid& grid, eval::Workspace& workspace, Counts& counts) {
+    std::array<CellRange, splits * splits * splits> children;
+    std::array<Box3f, splits * splits * splits> boxes;
+    size_t n = 0;
+    for (int k = 0; k < splits; ++k)
+        for (int j = 0; j < splits; ++j)
+            for (int i = 0; i < splits; ++i) {
+                const CellRange cells = cellsOf(region.index * splits + Vec3i{i, j, k}, childCells, grid);
+                if (cells.empty()) continue;
+                children[n] = cells;
+                boxes[n++] = boxOf(cells, grid);
+            }
+    std::array<eval::Range, splits * splits * splits> ranges;
+    eval::evaluateRanges(region.tape, {boxes.data(), n}, ranges.data(), workspace);
+    counts.intervalEvaluations += n;
+
+    std::vector<Region> kept;
+    for (size_t c = 0; c < n; ++c)
+        if (mayHoldSurface(ranges[c], children[c], grid))
+            kept.push_back({children[c].lo / childCells, eval::shorten(region.tape, c, workspace)});
+    return kept;
+}
+
+}  // namespace
+
+Counts& Counts::operator+=(const Counts& o) {
+    pointEvaluations += o.pointEvaluations;
+    intervalEvaluations += o.intervalEvaluations;
+    refinementEvaluations += o.refinementEvaluations;
+    surfaceCells += o.surfaceCells;
+    subdivideSeconds += o.subdivideSeconds;
+    sampleSeconds += o.sampleSeconds;
+    polygonizeSeconds += o.polygonizeSeconds;
+    return *this;
+}
+
+float cellFor(const Box3f& bounds, int resolution) {
+    const float longest = bounds.empty() ? 0.0f : maxComponent(bounds.size());
+    return longest > 0 ? longest / static_cast<float>(std::max(1, resolution)) : 1.0f;
+}
+
+Grid gridFor(const Box3f& bounds, float cell_m) {
+    if (bounds.empty() || !(cell_m > 0)) return {{}, cell_m, {}};
+    Grid grid{{}, cell_m, {}};
+    for (int axis = 0; axis < 3; ++axis) {
+        // Centred, with 1¼ to 1¾ cells around: bounds, where flat faces like to be, never pass through samples.
+        const double size = static_cast<double>(bounds.hi[axis]) - bounds.lo[axis];
+        const double cells = std::round(size / cell_m) + 3;
+        grid.cells[axis] = static_cast<int>(std::min(cells, static_cast<double>(maxCellsPerAxis)));
+        grid.origin[axis] = static_cast<float>(bounds.lo[axis] - (cells * cell_m - size) / 2);
+    }
+    return grid;
+}
+
+Status checkGrid(const Grid& grid) {
+    if (!(grid.cell_m > 0) || !std::isfinite(grid.cell_m)) return Error{Error::Kind::Input, "the cell size must be a positive number of metres"};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (grid.cells[axis] >= maxCellsPerAxis)
+            return Error{Error::Kind::Budget, "the grid would have more than " + std::to_string(maxCellsPerAxis) + " cells along one axis: choose larger cells"};
+        const float last = grid.origin[axis] + grid.cell_m * static_cast<float>(grid.cells[axis]);
+        const float farthest = std::max(std::abs(grid.origin[axis]), std::abs(last));
+        // Vertices keep 1/1024 of a cell from its corners, which float32 has to be able to say.
+        if (!(grid.cell_m >= farthest * 0x1.0p-13f))
+            return Error{Error::Kind::Input, "cells are too small for single precision this far from the origin: choose larger cells or move the object"};
+    }
+    return Done{};
+}
+
+Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress, Counts& counts) {
+    const auto start = std::chrono::steady_clock::now();
+    if (Status status = checkGrid(grid); !status) return status.error();
+    const int blocksAlong = (maxComponent(grid.cells) + blockCells - 1) / blockCells;
+    int size = splits;
+    while (size < blocksAlong) size *= splits;
+
+    std::vector<Region> regions;
+    if (minComponent(grid.cells) > 0) regions.push_back({{0, 0, 0}, tape});
+    std::vector<eval::Workspace> workspaces(static_cast<size_t>(threadCount(threads)));
+    for (; size > 1; size /= splits) {
+        if (progress) progress->begin("subdivide", regions.size());
+        std::vector<std::vector<Region>> children(regions.size());
+        std::vector<Counts> counted(workspaces.size());
+        parallelFor(regions.size(), threads, progress, [&](size_t i, int worker) {
+            children[i] = split(regions[i], size / splits * blockCells, grid, workspaces[worker], counted[worker]);
+            if (progress) progress->tick();
+        });
+        if (cancelled(progress)) return Error{Error::Kind::Cancelled, "cancelled"};
+        regions.clear();
+        for (std::vector<Region>& some : children) std::move(some.begin(), some.end(), std::back_inserter(regions));
+        for (const Counts& c : counted) counts += c;
+    }
+    std::sort(regions.begin(), regions.end(), [](const Block& a, const Block& b) {
+        return std::tie(a.index.z, a.index.y, a.index.x) < std::tie(b.index.z, b.index.y, b.index.x);
+    });
+    counts.subdivideSeconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return regions;
+}
+
+}  // namespace sgm::mesh
