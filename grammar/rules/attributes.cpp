@@ -5,6 +5,7 @@
 
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/make.h"
 #include "grammar/rules/words.h"
 
 namespace sgm::rules {
@@ -64,10 +65,7 @@ bool isCalled(const Written& e, std::string_view word) {
 Expr Checker::joint(Place& place, const Written& e) {
     const bool local = std::any_of(place.locals.begin(), place.locals.end(), [&](const auto& l) { return l.name == e.text; });
     if (e.kind == Written::Kind::Name && axisNumber(e.text) < 0 && !local) {
-        Expr word;
-        word.span = e.span;
-        word.value.kind = Value::Kind::Word;
-        word.value.text = e.text;
+        Expr word = makeConstant(e.span, makeWord(e.text));
         if (jointNames_.contains(e.text)) return word;
         std::vector<std::string> known(jointNames_.begin(), jointNames_.end());
         for (const auto& l : place.locals) known.push_back(l.name);
@@ -123,10 +121,7 @@ void Checker::noiseArgument(Place& place, const Written& e, Attribute& out) {
     }
     out.args.push_back(expression(place, e.args[0], Want::Length, fmt::format("the amplitude of '{}'", e.text)));
     out.args.push_back(expression(place, e.args[1], Want::Frequency, fmt::format("the frequency of '{}'", e.text)));
-    Expr octaves;
-    octaves.span = e.span;
-    octaves.value = Value::number(out.fbm ? 3 : 2);
-    octaves.value.integer = true;
+    Expr octaves = makeConstant(e.span, makeWhole(out.fbm ? 3 : 2));
     if (e.args.size() == 3) octaves = expression(place, e.args[2], Want::Count, fmt::format("the octaves of '{}'", e.text));
     if (const auto n = fold(octaves, defaults()); n && (n->num() < 1 || n->num() > 12))
         diagnostics_.error(octaves.span, fmt::format("noise has 1 … 12 octaves, not {}", toText(*n)));
@@ -135,10 +130,7 @@ void Checker::noiseArgument(Place& place, const Written& e, Attribute& out) {
 
 void Checker::withArguments(Place& place, const syntax::Attribute& written, Attribute& out) {
     if (written.args.size() != 2) return;
-    Expr word;
-    word.span = written.args[0].span;
-    word.value.kind = Value::Kind::Word;
-    word.value.text = written.args[0].text;
+    Expr word = makeConstant(written.args[0].span, makeWord(written.args[0].text));
     if (params_.contains(word.value.text))
         diagnostics_.error(word.span, fmt::format("'{}' is a parameter: a shape's own value needs another name", word.value.text));
     else if (isTaken(word.value.text))
@@ -187,14 +179,7 @@ std::optional<Attribute> Checker::attribute(Place& place, const syntax::Attribut
             case ArgumentType::Noise: noiseArgument(place, arg, out); break;
             case ArgumentType::Name:
             case ArgumentType::Axis:
-            case ArgumentType::Solid: {
-                Expr word;
-                word.span = arg.span;
-                word.value.kind = Value::Kind::Word;
-                word.value.text = arg.text;
-                out.args.push_back(std::move(word));
-                break;
-            }
+            case ArgumentType::Solid: out.args.push_back(makeConstant(arg.span, makeWord(arg.text))); break;
             default: out.args.push_back(expression(place, arg, wantOf(row, row.arguments[i].type), fmt::format("'{}'", row.name)));
         }
     }

@@ -6,6 +6,7 @@
 
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/make.h"
 #include "grammar/rules/words.h"
 
 namespace sgm::rules {
@@ -36,14 +37,6 @@ bool grows(const Body& body) {
         case Element::Kind::Choose: return std::any_of(first.choices.begin(), first.choices.end(), [](const Choice& c) { return grows(*c.body); });
     }
     return false;
-}
-
-Expr axisConstant(SourceSpan span, int axis) {
-    Expr e;
-    e.span = span;
-    e.value.kind = Value::Kind::Axis;
-    e.value.n[0] = axis;
-    return e;
 }
 
 }  // namespace
@@ -85,12 +78,13 @@ void Checker::content(Place& place, const Written& e, Element& out) {
 }
 
 /// Attributes that contradict the element's operator or each other.
-void Checker::agreement(const Element& element) {
+void Checker::agreement(const Place& place, const Element& element) {
     const auto say = [&](Id id, std::string message, std::string mend) {
         if (const Attribute* a = find(element.attributes, id)) diagnostics_.error(a->span, std::move(message), std::move(mend));
     };
     if (element.op == Operator::None) {
         for (const Id id : {Id::At, Id::To, Id::Overlap, Id::Shift, Id::On, Id::Blend}) {
+            if (id == Id::On && place.where == Place::Where::Body) continue;  // its argument was refused already
             const std::string_view name = syntax::operations()[static_cast<size_t>(id)].name;
             say(id, fmt::format("'{}' joins a newcomer to what stands, but no operator joins this shape", name), "put '+', '-', '&' or 'morph' before it");
         }
@@ -145,7 +139,7 @@ void Checker::shape(Place& place, const syntax::Element& written, Element& out) 
     live(written.live, out);
     if (out.op == Operator::Morph) place.morphs = true;
     if (!out.label.empty()) out.ordinal = place.ordinals[out.label]++;
-    agreement(out);
+    agreement(place, out);
 }
 
 /// The values of a loop: `axes`, `sides`, a tuple, or a range of whole numbers.
@@ -156,7 +150,7 @@ Expr Checker::over(Place& place, const Written& e, Type& type) {
     type = Type::of(Value::Kind::Axis);
     if (e.kind == Written::Kind::Name && (e.text == "axes" || e.text == "sides")) {
         for (int axis = 0; axis < 6; ++axis)
-            if (e.text == "axes" || axis / 2 != 1) result.args.push_back(axisConstant(e.span, axis));
+            if (e.text == "axes" || axis / 2 != 1) result.args.push_back(makeConstant(e.span, makeAxis(axis)));
         return result;
     }
     if (e.kind == Written::Kind::Range) {
@@ -211,8 +205,7 @@ void Checker::choose(Place& place, const syntax::Element& written, Element& out)
     bool folded = true;
     for (const syntax::Case& c : written.cases) {
         Choice choice;
-        choice.weight.span = c.span;
-        choice.weight.value = Value::number(1);
+        choice.weight = makeConstant(c.span, Value::number(1));
         place.enter("weight");
         if (c.label) choice.weight = expression(place, *c.label, Want::Number, "the weight of a choice");
         const auto weight = fold(choice.weight, defaults());
@@ -269,6 +262,7 @@ void Checker::rule(const syntax::RuleDecl& decl) {
     }
     Rule out;
     out.span = decl.span;
+    out.symbolSpan = decl.symbol.span;
     out.symbol = symbols_.at(decl.symbol.text);
     out.name = decl.name.text;
     if (out.name.empty()) {

@@ -4,6 +4,7 @@
 
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/judge.h"
 #include "grammar/rules/params.h"
 #include "grammar/rules/uses.h"
 #include "grammar/syntax/parser.h"
@@ -29,8 +30,10 @@ std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load,
     each(&Checker::sayings);
     if (grammar->starts.empty() && !diagnostics.hasErrors())
         diagnostics.error({ast.source.get(), 0, 0}, "there is nothing to begin with", "write 'start Name -> cube'");
+    if (!diagnostics.hasErrors()) findEndless(*grammar, diagnostics);
     if (diagnostics.hasErrors()) return nullptr;
     checker.unused(ast);
+    findUnreachable(*grammar, diagnostics);
     return grammar;
 }
 

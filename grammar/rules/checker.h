@@ -135,7 +135,7 @@ private:
     void choose(Place& place, const syntax::Element& written, Element& out);
     Expr over(Place& place, const syntax::Expr& e, Type& type);
     void live(const syntax::Name& name, Element& out);
-    void agreement(const Element& element);
+    void agreement(const Place& place, const Element& element);
     void newcomerJoint(const Element& element);
     void rule(const syntax::RuleDecl& decl);
     void start(const syntax::StartDecl& decl);

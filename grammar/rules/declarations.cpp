@@ -5,6 +5,7 @@
 
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/make.h"
 #include "grammar/rules/params.h"
 #include "grammar/rules/words.h"
 
@@ -19,12 +20,7 @@ Vec3d vectorOf(const Value& v) { return {v.n[0], v.n[1], v.n[2]}; }
 }  // namespace
 
 std::optional<Value> Checker::plain(const Written& e, bool word) {
-    if (word && e.kind == Written::Kind::Name) {
-        Value value;
-        value.kind = Value::Kind::Word;
-        value.text = e.text;
-        return value;
-    }
+    if (word && e.kind == Written::Kind::Name) return makeWord(e.text);
     Place place(Place::Where::Constant);
     const Typed typed = expression(place, e);
     return typed.type.known ? fold(typed.expr, {}) : std::nullopt;
@@ -42,8 +38,7 @@ void Checker::parameter(const syntax::ParamDecl& decl) {
     }
     if (!param.choices.empty()) {
         if (decl.range) diagnostics_.error(decl.range->span, "a parameter has a range or choices, not both");
-        param.value.kind = Value::Kind::Word;
-        param.value.text = decl.value.text;
+        param.value = makeWord(decl.value.text);
         const bool offered = std::find(param.choices.begin(), param.choices.end(), decl.value.text) != param.choices.end();
         if (decl.value.kind != Written::Kind::Error && (decl.value.kind != Written::Kind::Name || !offered))
             diagnostics_.error(decl.value.span, fmt::format("the default '{}' is none of the choices {}", decl.value.span.text(), fmt::join(param.choices, ", ")), nearest(decl.value.text, param.choices));

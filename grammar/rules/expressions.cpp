@@ -9,6 +9,7 @@
 #include "grammar/rules/color.h"
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/functions.h"
+#include "grammar/rules/make.h"
 #include "grammar/rules/words.h"
 #include "modeler/core/conventions.h"
 #include "modeler/core/random.h"
@@ -23,11 +24,8 @@ constexpr std::array<std::string_view, 7> axisWords{"+x", "-x", "+y", "-y", "+z"
 constexpr std::array<std::string_view, 7> figureWords{"bonds", "overlaps", "shapes", "terminals", "classic", "morphic", "floating"};
 
 Typed constantOf(SourceSpan span, Value value) {
-    Typed result;
-    result.type = Type::of(value);
-    result.expr.span = span;
-    result.expr.value = std::move(value);
-    return result;
+    const Type type = Type::of(value);
+    return {makeConstant(span, std::move(value)), type};
 }
 
 /// Numbers as their place understands them: bare lengths are metres, and only counts stay whole.
@@ -161,12 +159,7 @@ Typed Checker::name(Place& place, const Written& e) {
             result.type = local->type;
             return result;
         }
-    if (const int axis = axisNumber(e.text); axis >= 0) {
-        Value value;
-        value.kind = Value::Kind::Axis;
-        value.n[0] = axis;
-        return constantOf(e.span, value);
-    }
+    if (const int axis = axisNumber(e.text); axis >= 0) return constantOf(e.span, makeAxis(axis));
     if (e.text == "true" || e.text == "false") return constantOf(e.span, Value::boolean(e.text == "true"));
     Typed result;
     result.expr.span = e.span;
@@ -193,8 +186,7 @@ Typed Checker::name(Place& place, const Written& e) {
     }
     if (withNames_.contains(e.text) && place.where >= Where::Guard && place.where != Where::Expect) {
         result.expr.kind = Expr::Kind::Inherited;
-        result.expr.value.kind = Value::Kind::Word;
-        result.expr.value.text = e.text;
+        result.expr.value = makeWord(e.text);
         result.type = Type::unknown();
         return result;
     }
@@ -255,17 +247,9 @@ Typed Checker::countCall(Place& place, const Written& e) {
     const auto symbol = symbols_.find(arg.text);
     if (arg.kind != Written::Kind::Name || symbol == symbols_.end())
         return failed(arg.span, fmt::format("'count' takes the name of a shape, and there is none called '{}'", arg.span.text()), nearest(arg.text, symbolNames(false)));
-    Value word;
-    word.kind = Value::Kind::Word;
-    word.text = arg.text;
+    Value word = makeWord(arg.text);
     word.n[0] = symbol->second;
-    Typed result;
-    result.expr.kind = Expr::Kind::Call;
-    result.expr.index = static_cast<uint32_t>(Fn::Count);
-    result.expr.span = e.span;
-    result.expr.args.push_back(constantOf(arg.span, std::move(word)).expr);
-    result.type = Type::number(Unit::None, true);
-    return result;
+    return {makeCall(Expr::Kind::Call, Fn::Count, e.span, {makeConstant(arg.span, std::move(word))}), Type::number(Unit::None, true)};
 }
 
 Typed Checker::call(Place& place, const Written& e) {
@@ -348,10 +332,7 @@ Typed Checker::comparedWord(Place& place, const Written& e, const Type& other) {
     if (!other.words || e.kind != Written::Kind::Name || params_.contains(e.text)) return expression(place, e);
     if (std::find(other.words->begin(), other.words->end(), e.text) == other.words->end())
         return failed(e.span, fmt::format("it is never '{}', but one of {}", e.text, fmt::join(*other.words, ", ")), nearest(e.text, *other.words));
-    Value word;
-    word.kind = Value::Kind::Word;
-    word.text = e.text;
-    return constantOf(e.span, std::move(word));
+    return constantOf(e.span, makeWord(e.text));
 }
 
 Typed Checker::binary(Place& place, const Written& e) {
@@ -455,6 +436,8 @@ Typed Checker::infer(Place& place, const Written& e) {
 Typed Checker::expression(Place& place, const Written& e) {
     Typed result = infer(place, e);
     result.expr.span = e.span;
+    // What could not be read has no number that another check could complain about.
+    if (!result.type.known && result.expr.kind == Expr::Kind::Constant) result.expr.kind = Expr::Kind::Local;
     return result;
 }
 

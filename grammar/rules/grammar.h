@@ -109,7 +109,7 @@ struct Element {
     SymbolId live = none;           ///< `: Name`
     uint32_t ordinal = 0;           ///< ordinal of this symbol in the rule's body: part of the child's key
     std::string label;              ///< key text: symbol or primitive name
-    /// For: `local` runs over the values of `over` (a Tuple, Vector of axes or integer Range) where `guard` holds.
+    /// For: `local` runs over `over` (a Tuple whose args are the values, or a Range of whole numbers) where `guard` holds.
     uint32_t local = 0;
     std::optional<Expr> over, guard;
     std::shared_ptr<Body> body;
@@ -128,6 +128,7 @@ struct Rule {
     SymbolId symbol = none;
     SymbolId beside = none;
     SourceSpan span;
+    SourceSpan symbolSpan;  ///< the symbol it matches: what messages about the rule point at
     std::optional<Expr> when, repeat;
     std::optional<Expr> weight;
     Body body;

@@ -109,9 +109,10 @@ Result<Value> conform(const Param& param, Value value) {
         return refuse(fmt::format("'{}' is one of {}, not '{}'", param.name, fmt::join(param.choices, ", "), value.kind == Value::Kind::Word ? value.text : toText(value)));
     }
     const Type type = Type::of(value), wanted = Type::of(param.value);
-    if (value.kind != param.value.kind) return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
+    const bool spread = value.kind == Value::Kind::Number && param.value.kind == Value::Kind::Vector;
+    if (value.kind != param.value.kind && !spread) return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
     if (!numeric(value)) return value;
-    if (value.count != param.value.count || !compatible(type, wanted)) return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
+    if ((value.count != param.value.count && !spread) || !compatible(type, wanted)) return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
     if (param.value.integer && !value.integer) return refuse(fmt::format("'{}' is a whole number, not {}", param.name, toText(value)));
     Value fitted = adopted(value, param.value);
     fitted.integer = param.value.integer;

@@ -14,7 +14,7 @@ namespace sgm::rules {
 /// Returns "" or why the range can't be.
 std::string setRange(Param& param, const Value& lo, const Value& hi);
 
-/// `value` as `param` takes it: a bare number gets the unit. Error::Input for a wrong kind or unit, a value out of range,
+/// `value` as `param` takes it: a bare number gets the unit, one number counts for every component. Error::Input for a wrong kind or unit, a value out of range,
 /// a fraction where whole numbers are asked for, or none of the choices.
 Result<Value> conform(const Param& param, Value value);
 

@@ -5,6 +5,7 @@
 
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/make.h"
 #include "grammar/rules/words.h"
 
 namespace sgm::rules {
@@ -68,28 +69,19 @@ std::string Checker::unknownSolid(std::string_view word) const {
 /// One word of a choice becomes its index; a parameter that offers the same words is asked at every derivation.
 Expr Checker::choiceArgument(Place& place, const Written& e, const field::PrimitiveParameter& parameter) {
     const std::vector<std::string> words = split(parameter.choices, '|');
-    Expr result;
-    result.span = e.span;
+    const auto indexOf = [&](size_t i) { return makeConstant(e.span, plainValue(parameter.kind, static_cast<double>(i))); };
     const auto word = std::find(words.begin(), words.end(), e.text);
-    if (e.kind == Written::Kind::Name && word != words.end()) {
-        result.value = plainValue(parameter.kind, static_cast<double>(word - words.begin()));
-        return result;
-    }
+    if (e.kind == Written::Kind::Name && word != words.end()) return indexOf(static_cast<size_t>(word - words.begin()));
     Typed chosen;
     if (e.kind == Written::Kind::Name && params_.contains(e.text)) chosen = expression(place, e);
     if (!chosen.type.words || *chosen.type.words != words) {
         diagnostics_.error(e.span, fmt::format("'{}' is one of {}", parameter.name, fmt::join(words, ", ")), nearest(e.text, words));
-        return result;
+        return indexOf(0);
     }
-    result.value = plainValue(parameter.kind, 0);
+    Expr result = indexOf(0);
     for (size_t i = words.size(); i-- > 1;) {
-        Expr text;
-        text.value.kind = Value::Kind::Word;
-        text.value.text = words[i];
-        Expr index;
-        index.value = plainValue(parameter.kind, static_cast<double>(i));
-        Expr equal{Expr::Kind::Binary, e.span, {}, static_cast<uint32_t>(Fn::Equal), 0, {chosen.expr, std::move(text)}};
-        result = Expr{Expr::Kind::Call, e.span, {}, static_cast<uint32_t>(Fn::If), 0, {std::move(equal), std::move(index), std::move(result)}};
+        Expr equal = makeCall(Expr::Kind::Binary, Fn::Equal, e.span, {chosen.expr, makeConstant(e.span, makeWord(words[i]))});
+        result = makeCall(Expr::Kind::Call, Fn::If, e.span, {std::move(equal), indexOf(i), std::move(result)});
     }
     return result;
 }
@@ -116,12 +108,7 @@ Solid Checker::primitiveSolid(Place& place, const Written& e, const field::Primi
     solid.kind = Solid::Kind::Primitive;
     solid.span = e.span;
     solid.primitive = &row;
-    for (const auto& parameter : row.parameters) {
-        Expr fallback;
-        fallback.span = e.span;
-        fallback.value = fallbackOf(parameter);
-        solid.args.push_back(std::move(fallback));
-    }
+    for (const auto& parameter : row.parameters) solid.args.push_back(makeConstant(e.span, fallbackOf(parameter)));
     std::vector<bool> given(row.parameters.size(), false);
     for (size_t i = 0; i < e.args.size(); ++i) {
         size_t index = i;
