@@ -1,13 +1,26 @@
 #include "modeler/field/domain.h"
 
 #include "modeler/core/random.h"
+#include "modeler/field/solids.h"
 
 namespace sgm::field {
 
 namespace {
 
+using solids::boxDistance;
+
 Num named(Graph& graph, uint64_t path, const char* attribute, double value) {
     return graph.slot(SlotKey{path, hashText(attribute)}, static_cast<float>(value));
+}
+
+Num& component(Point& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+/// Exact distance to a box whose numbers are slots.
+Num distanceTo(const Box3f& box, Point p) {
+    Graph& g = p.x.graph();
+    const Vec3f centre = box.centre(), half = box.size() * 0.5f;
+    const auto slots = [&g](Vec3f v) { return Point{g.slot(v.x), g.slot(v.y), g.slot(v.z)}; };
+    return boxDistance(p - slots(centre), slots(half));
 }
 
 }  // namespace
@@ -50,11 +63,52 @@ Box3f toWorld(const Box3f& local, const Frame& frame) {
 
 Point mirror(Point p, bool x, bool y, bool z) { return {x ? abs(p.x) : p.x, y ? abs(p.y) : p.y, z ? abs(p.z) : p.z}; }
 
+Box3f mirrored(const Box3f& bounds, bool x, bool y, bool z) {
+    Box3f box = bounds;
+    const bool flags[] = {x, y, z};
+    for (int i = 0; i < 3; ++i) {
+        if (!flags[i]) continue;
+        if (box.hi[i] < 0) return {};  // |x| never gets there
+        box.lo[i] = -box.hi[i];
+    }
+    return box;
+}
+
 Point repeat(Point p, int axis, Num period) {
-    Num& c = axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+    Num& c = component(p, axis);
     const Num half = period * 0.5f;
     c = mod(c + half, period) - half;
     return p;
+}
+
+Field repeated(Point p, int axis, Num period, double periodValue, int count, const std::function<Field(Point)>& solid) {
+    Graph& g = p.x.graph();
+    const Num last = g.slot(static_cast<float>(count - 1));
+    // Copy j stands at (j − last/2) · period; the two nearest are ⌊u⌋ and ⌊u⌋ + 1.
+    const Num u = floor(component(p, axis) / period + last * 0.5f);
+    const auto copy = [&](Num index) {
+        Point q = p;
+        Num& c = component(q, axis);
+        c = c - (min(max(index, 0.0f), last) - last * 0.5f) * period;
+        Field f = solid(q);
+        f.value = max(f.value, abs(c) - period * 0.5f);
+        return f;
+    };
+    const Field first = copy(u), second = copy(u + 1.0f);
+
+    Box3f bounds = first.bounds;
+    const auto half = static_cast<float>(periodValue * 0.5), reach = static_cast<float>(periodValue * 0.5 * (count - 1));
+    bounds.lo[axis] = std::max(bounds.lo[axis], -half) - reach;
+    bounds.hi[axis] = std::min(bounds.hi[axis], half) + reach;
+    if (bounds.empty()) bounds = {};
+    // A cut is an intersection (see combine.cpp).
+    const bool cut = first.bounds.lo[axis] < -half || first.bounds.hi[axis] > half;
+    const float growth = first.growth * (cut ? 0.70710f : 1.0f);
+    // Any third copy is at least half a period away, and no nearer than the bounds.
+    const bool known = bounds.finite();
+    const Num away = known ? max(period * 0.5f, distanceTo(bounds, p)) : period * 0.5f;
+    const Num cap = away * g.slot(growth);
+    return {min(min(first.value, second.value), cap), bounds, std::max(first.lipschitz, 1.0f), known ? growth : 0};
 }
 
 }  // namespace sgm::field
