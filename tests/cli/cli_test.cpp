@@ -206,6 +206,22 @@ TEST_F(Cli, ExamplesCheckFine) {
     }
 }
 
+TEST_F(Cli, GrammarsInTheDocsCheckFine) {
+    size_t seen = 0;
+    for (const char* page : {"README.md", "docs/language.md"}) {
+        const std::string text = read(page);
+        for (size_t at = 0; (at = text.find("```sgm\n", at)) != std::string::npos;) {
+            at += 7;
+            const std::string file = path("doc.sgm");
+            std::ofstream(file) << text.substr(at, text.find("```", at) - at);
+            const Run run = sgm("check " + file);
+            EXPECT_EQ(run.code, 0) << page << ": " << run.out;
+            ++seen;
+        }
+    }
+    EXPECT_GE(seen, 3u);
+}
+
 TEST_F(Cli, CheckJsonIsMachineReadable) {
     const Run run = sgm("check --json " + grammar("start A -> spere\n"));
     EXPECT_EQ(run.code, 1);
