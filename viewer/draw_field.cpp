@@ -75,7 +75,7 @@ Result<FieldPicture> prepare(const eval::Tape& tape, const Box3f& bounds, const 
                              Progress* progress) {
     // The pictures' soft shadows and occlusion ask for exact distances up to the margin, and no further.
     const float margin = 0.07f * length(bounds.size());
-    const Box3f box = bounds.inflated(0.002f * length(bounds.size()));
+    const Box3f box = bounds.inflated(margin);
     Result<CellTree> tree = cutIntoCells(tape, box, margin, options.threads, progress);
     if (!tree) return tree.error();
     FieldPicture picture{std::move(*tree), {}, {}, {}, {}, uploadMaterials(provenance), provenance, tape, options.threads};

@@ -4,7 +4,7 @@ uniform float sceneSize;      // diagonal of the bounds, metres
 uniform vec3 sceneCentre;
 uniform int hasGround;
 
-const vec3 groundColor = vec3(0.47, 0.46, 0.44);
+const vec3 groundColor = vec3(0.54, 0.515, 0.475);
 
 /// Where a ray meets the ground, as a distance along it; −1 when it doesn't.
 float groundDistance(vec3 origin, vec3 direction) {

@@ -40,7 +40,8 @@ vec3 shade(Surface s, vec3 toEye, float sunlight, float openness) {
     if (lampReach > 0.0) {
         vec3 toLamp = lampPosition - s.position;
         float distance2 = dot(toLamp, toLamp) / (lampReach * lampReach);
-        light = light * 0.35 + reflected(s, toEye, normalize(toLamp)) * vec3(7.5, 5.6, 3.7) * open / (0.12 + 2.2 * distance2);
+        vec3 lamp = vec3(8.6, 7.0, 5.3) * open / (0.4 + 3.0 * distance2);
+        light = light * 0.12 + reflected(s, toEye, normalize(toLamp)) * lamp;
     }
     return light;
 }
