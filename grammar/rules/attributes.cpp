@@ -71,7 +71,7 @@ Expr Checker::joint(Place& place, const Written& e) {
         for (const auto& l : place.locals) known.push_back(l.name);
         std::string mend = nearest(e.text, known);
         if (mend.empty() && (e.text == "x" || e.text == "y" || e.text == "z")) mend = fmt::format("write '+{0}' or '-{0}'", e.text);
-        failed(e.span, fmt::format("unknown joint '{}'", e.text), std::move(mend));
+        unknown(e.span, e.text, fmt::format("unknown joint '{}'", e.text), std::move(mend));
         return word;
     }
     return expression(place, e, Want::Axis, "a joint");
@@ -123,7 +123,7 @@ void Checker::noiseArgument(Place& place, const Written& e, Attribute& out) {
     out.args.push_back(expression(place, e.args[1], Want::Frequency, fmt::format("the frequency of '{}'", e.text)));
     Expr octaves = makeConstant(e.span, makeWhole(out.fbm ? 3 : 2));
     if (e.args.size() == 3) octaves = expression(place, e.args[2], Want::Count, fmt::format("the octaves of '{}'", e.text));
-    if (const auto n = fold(octaves, defaults()); n && (n->num() < 1 || n->num() > 12))
+    if (const auto n = fold(octaves, defaults_); n && (n->num() < 1 || n->num() > 12))
         diagnostics_.error(octaves.span, fmt::format("noise has 1 … 12 octaves, not {}", toText(*n)));
     out.args.push_back(std::move(octaves));
 }
@@ -147,7 +147,7 @@ void Checker::sensible(const Attribute& attribute) {
     const std::string_view name = syntax::operations()[static_cast<size_t>(attribute.id)].name;
     for (const Expr& arg : attribute.args) {
         bool said = false;
-        eachConstant(arg, defaults(), [&](const Expr& e, const Value& v) {
+        eachConstant(arg, defaults_, [&](const Expr& e, const Value& v) {
             for (size_t i = 0; i < v.count && !said && (v.kind == Value::Kind::Number || v.kind == Value::Kind::Vector); ++i)
                 if (!(v.n[i] >= bounds->lo && v.n[i] <= bounds->hi)) {
                     said = true;

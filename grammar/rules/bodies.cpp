@@ -63,7 +63,7 @@ void Checker::content(Place& place, const Written& e, Element& out) {
         out.content.symbol = symbol->second;
         out.label = e.text;
         if (!grammar_.symbols[symbol->second].terminal && !ruled_.contains(symbol->second))
-            failed(e.span, fmt::format("there is no rule for '{}'", e.text), unknownSolid(e.text));
+            unknown(e.span, e.text, fmt::format("there is no rule for '{}'", e.text), unknownSolid(e.text));
         return;
     }
     if (e.kind == Written::Kind::Call && isNonTerminal(e.text)) {
@@ -208,7 +208,7 @@ void Checker::choose(Place& place, const syntax::Element& written, Element& out)
         choice.weight = makeConstant(c.span, Value::number(1));
         place.enter("weight");
         if (c.label) choice.weight = expression(place, *c.label, Want::Number, "the weight of a choice");
-        const auto weight = fold(choice.weight, defaults());
+        const auto weight = fold(choice.weight, defaults_);
         if (weight && weight->num() < 0) diagnostics_.error(choice.weight.span, fmt::format("a weight is no less than 0, not {}", toText(*weight)));
         folded = folded && weight && weight->num() >= 0;
         sum += weight ? weight->num() : 0;
@@ -265,10 +265,7 @@ void Checker::rule(const syntax::RuleDecl& decl) {
     out.symbolSpan = decl.symbol.span;
     out.symbol = symbols_.at(decl.symbol.text);
     out.name = decl.name.text;
-    if (out.name.empty()) {
-        const auto unnamed = std::count_if(grammar_.rules.begin(), grammar_.rules.end(), [&](const Rule& r) { return r.symbol == out.symbol && r.name.find('#') != std::string::npos; });
-        out.name = fmt::format("{}#{}", decl.symbol.text, unnamed + 1);
-    }
+    if (out.name.empty()) out.name = fmt::format("{}#{}", decl.symbol.text, ++unnamedRules_[out.symbol]);
     Place guard(Place::Where::Guard);
     const auto condition = [&](const std::optional<Written>& e, const char* word, Want want) -> std::optional<Expr> {
         guard.enter(word);
@@ -278,11 +275,11 @@ void Checker::rule(const syntax::RuleDecl& decl) {
     out.weight = condition(decl.weight, "weight", Want::Number);
     out.repeat = condition(decl.repeat, "repeat", Want::Count);
     if (out.weight)
-        if (const auto weight = fold(*out.weight, defaults()); weight && weight->num() < 0)
+        if (const auto weight = fold(*out.weight, defaults_); weight && weight->num() < 0)
             diagnostics_.error(out.weight->span, fmt::format("a weight is no less than 0, not {}", toText(*weight)));
     if (!decl.beside.empty()) {
         const auto beside = symbols_.find(decl.beside.text);
-        if (beside == symbols_.end()) failed(decl.beside.span, fmt::format("there is no shape called '{}'", decl.beside.text), nearest(decl.beside.text, symbolNames(false)));
+        if (beside == symbols_.end()) unknown(decl.beside.span, decl.beside.text, fmt::format("there is no shape called '{}'", decl.beside.text), nearest(decl.beside.text, symbolNames(false)));
         else out.beside = beside->second;
     }
     Place place(out.repeat ? Place::Where::Chain : Place::Where::Body);

@@ -19,6 +19,7 @@ std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load,
     for (size_t i = 0; i + 1 < asts.size(); ++i) grammar->sources.push_back(asts[i].source);
 
     Checker checker(*grammar, diagnostics);
+    checker.excuse(diagnostics);
     const auto each = [&](void (Checker::*step)(const syntax::Ast&)) {
         for (const syntax::Ast& part : asts) (checker.*step)(part);
     };

@@ -56,6 +56,8 @@ class Checker {
 public:
     Checker(Grammar& grammar, syntax::Diagnostics& diagnostics) : grammar_(grammar), diagnostics_(diagnostics) {}
 
+    /// Names that stand in a line that couldn't be read: they may be declared there, so nothing is said of them.
+    void excuse(const syntax::Diagnostics& unread);
     /// Takes the names an Ast declares and refuses doubles.
     void declare(const syntax::Ast& ast);
     /// Checks what stands behind the names.
@@ -100,6 +102,7 @@ private:
     Typed range(Place& place, const syntax::Expr& e);
     Typed ramp(Place& place, const syntax::Expr& e);
     Typed failed(SourceSpan span, std::string message, std::string mend = {});
+    Typed unknown(SourceSpan span, const std::string& word, std::string message, std::string mend = {});
     Typed applied(Expr::Kind kind, Fn fn, SourceSpan span, std::vector<Typed> args);
     bool alike(const Typed& a, const Typed& b, std::string_view verb);
     bool asks(const Typed& value, Want want, std::string_view what, const syntax::Expr* written);
@@ -114,6 +117,7 @@ private:
     Expr choiceArgument(Place& place, const syntax::Expr& e, const field::PrimitiveParameter& parameter);
     Solid terminalSolid(const syntax::Name& name);
     void bounded(const Solid& solid, std::string_view verb);
+    Solid limited(Solid solid);
     std::string unknownSolid(std::string_view word) const;
 
     // attributes.cpp
@@ -150,22 +154,25 @@ private:
     std::vector<Setting> settings(const std::vector<syntax::Setting>& written);
     uint32_t startCalled(const syntax::Name& name);
 
-    std::vector<Value> defaults() const;
 
     Grammar& grammar_;
     syntax::Diagnostics& diagnostics_;
 
     std::map<std::string, uint32_t> params_;
+    std::vector<Value> defaults_;                 ///< of all parameters
     std::map<std::string, SymbolId> symbols_;
     std::map<std::string, uint32_t> rules_;       ///< named ones
     std::set<uint32_t> usedParams_;
     std::set<uint32_t> brokenParams_;             ///< whose default could not be read: of no known type
     std::set<std::string> withNames_;             ///< set by `with` somewhere
     std::set<std::string> jointNames_;            ///< declared by a terminal or a primitive
+    std::set<std::string> excused_;
     std::set<std::string> unbuilt_;               ///< maps and lsystems: named once, refused once
     std::set<SymbolId> ruled_;                    ///< have a rule
     std::set<SymbolId> placed_;                   ///< stand in a start, a body or behind a colon
     std::map<std::string, const syntax::TerminalDecl*> terminalDecls_;
+    std::map<std::string, Solid> terminalSolids_;
+    std::map<SymbolId, uint32_t> unnamedRules_;   ///< how many so far
     std::vector<std::string> terminalsInWork_;    ///< whose solids are being read: finds a = b, b = a
     std::map<std::string, SourceSpan> seenParams_, seenTerminals_, seenRules_, seenStarts_, seenStyles_, seenDerives_;
 };

@@ -68,6 +68,8 @@ void Checker::parameter(const syntax::ParamDecl& decl) {
 void Checker::parameters(const syntax::Ast& ast) {
     for (const auto& decl : ast.params)
         if (const auto seen = seenParams_.find(decl.name.text); seen != seenParams_.end() && seen->second.begin == decl.name.span.begin && seen->second.source == decl.name.span.source) parameter(decl);
+    defaults_.clear();
+    for (const Param& p : grammar_.params) defaults_.push_back(p.value);
 }
 
 void Checker::declaredJoint(const syntax::TerminalDecl::JointDecl& decl, std::vector<Joint>& joints) {
@@ -96,7 +98,7 @@ void Checker::look(const syntax::TerminalDecl& decl, Material& material, std::ve
             continue;
         }
         if (a.args.empty()) continue;
-        const auto value = fold(a.args[0], defaults());
+        const auto value = fold(a.args[0], defaults_);
         if (!value) continue;
         if (a.id == Id::Color) material.color = vectorOf(*value).as<float>();
         if (a.id == Id::Rough) material.roughness = static_cast<float>(value->num());
@@ -138,7 +140,7 @@ uint32_t Checker::startCalled(const syntax::Name& name) {
         known.push_back(grammar_.symbols[grammar_.starts[i].symbol].name);
         if (known.back() == name.text) return static_cast<uint32_t>(i);
     }
-    failed(name.span, fmt::format("there is no start '{}'", name.text), nearest(name.text, known));
+    unknown(name.span, name.text, fmt::format("there is no start '{}'", name.text), nearest(name.text, known));
     return none;
 }
 
@@ -149,7 +151,7 @@ std::vector<Setting> Checker::settings(const std::vector<syntax::Setting>& writt
         if (param == params_.end()) {
             std::vector<std::string> known;
             for (const Param& p : grammar_.params) known.push_back(p.name);
-            failed(s.name.span, fmt::format("there is no parameter '{}'", s.name.text), nearest(s.name.text, known));
+            unknown(s.name.span, s.name.text, fmt::format("there is no parameter '{}'", s.name.text), nearest(s.name.text, known));
             continue;
         }
         const Param& p = grammar_.params[param->second];
@@ -170,7 +172,7 @@ void Checker::placeOf(const syntax::DeriveDecl::Step& step) {
         const size_t end = std::min(rest.find('/'), rest.size());
         const std::string name(rest.substr(0, std::min(rest.find('['), end)));
         if (!symbols_.contains(name) && !field::findPrimitive(name) && name != "morph" && name != "group") {
-            failed(step.at.span, fmt::format("no shape is called '{}'", name), nearest(name, symbolNames(false)));
+            unknown(step.at.span, name, fmt::format("no shape is called '{}'", name), nearest(name, symbolNames(false)));
             return;
         }
         rest.remove_prefix(std::min(end + 1, rest.size()));
@@ -188,7 +190,7 @@ void Checker::derive(const syntax::DeriveDecl& decl) {
         if (step.rule.empty()) continue;
         const auto rule = rules_.find(step.rule.text);
         if (rule == rules_.end()) {
-            failed(step.rule.span, fmt::format("there is no rule named '{}'", step.rule.text), nearest(step.rule.text, known));
+            unknown(step.rule.span, step.rule.text, fmt::format("there is no rule named '{}'", step.rule.text), nearest(step.rule.text, known));
             continue;
         }
         placeOf(step);

@@ -73,10 +73,9 @@ Typed Checker::failed(SourceSpan span, std::string message, std::string mend) {
     return result;
 }
 
-std::vector<Value> Checker::defaults() const {
-    std::vector<Value> values;
-    for (const Param& p : grammar_.params) values.push_back(p.value);
-    return values;
+Typed Checker::unknown(SourceSpan span, const std::string& word, std::string message, std::string mend) {
+    if (!excused_.contains(word)) return failed(span, std::move(message), std::move(mend));
+    return {makeConstant(span, {}), Type::unknown()};
 }
 
 /// `kind` over `args`, folded where everything is constant; its type is that of the samples.
@@ -146,7 +145,7 @@ Typed Checker::unknownName(const Place& place, const Written& e) {
     std::string mend = nearest(e.text, known);
     if (e.text == "i") mend = "'i' counts the steps inside a rule with 'repeat'";
     if (symbols_.contains(e.text)) return failed(e.span, fmt::format("'{}' is a shape, not a value", e.text));
-    return failed(e.span, fmt::format("unknown name '{}'", e.text), std::move(mend));
+    return unknown(e.span, e.text, fmt::format("unknown name '{}'", e.text), std::move(mend));
 }
 
 Typed Checker::name(Place& place, const Written& e) {
@@ -246,7 +245,7 @@ Typed Checker::countCall(Place& place, const Written& e) {
     if (place.where < Where::Guard) return failed(e.span, "there are no shapes here to count");
     const auto symbol = symbols_.find(arg.text);
     if (arg.kind != Written::Kind::Name || symbol == symbols_.end())
-        return failed(arg.span, fmt::format("'count' takes the name of a shape, and there is none called '{}'", arg.span.text()), nearest(arg.text, symbolNames(false)));
+        return unknown(arg.span, arg.text, fmt::format("'count' takes the name of a shape, and there is none called '{}'", arg.span.text()), nearest(arg.text, symbolNames(false)));
     Value word = makeWord(arg.text);
     word.n[0] = symbol->second;
     return {makeCall(Expr::Kind::Call, Fn::Count, e.span, {makeConstant(arg.span, std::move(word))}), Type::number(Unit::None, true)};

@@ -108,6 +108,19 @@ void Checker::collect(const syntax::Body& body) {
         }
 }
 
+void Checker::excuse(const syntax::Diagnostics& unread) {
+    const auto inWord = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+    for (const syntax::Diagnostic& d : unread.all()) {
+        if (d.severity != syntax::Severity::Error || !d.span.source) continue;
+        const std::string_view line = d.span.source->line(d.span.source->place(d.span.begin).line);
+        for (auto begin = line.begin(); begin != line.end();) {
+            const auto end = std::find_if_not(begin, line.end(), inWord);
+            if (end != begin) excused_.emplace(begin, end);
+            begin = end == line.end() ? end : end + 1;
+        }
+    }
+}
+
 void Checker::declare(const syntax::Ast& ast) {
     for (const auto& decl : ast.params) declareParameter(decl);
     for (const auto& decl : ast.terminals) declareTerminals(decl);

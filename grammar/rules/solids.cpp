@@ -54,6 +54,12 @@ std::vector<std::string> split(std::string_view list, char separator) {
     return parts;
 }
 
+size_t partsOf(const Solid& solid) {
+    size_t count = 1;
+    for (const Solid& part : solid.parts) count += partsOf(part);
+    return count;
+}
+
 Operator operatorOf(std::string_view text) {
     return text == "-" ? Operator::Difference : text == "&" ? Operator::Intersection : Operator::Sum;
 }
@@ -92,7 +98,7 @@ Expr Checker::primitiveArgument(Place& place, const Written& e, const field::Pri
     place.enter(fmt::format("{}.{}", row.name, parameter.name));
     if (parameter.kind == ParameterKind::Choice) return choiceArgument(place, e, parameter);
     Expr expr = expression(place, e, wantOf(parameter.kind), what);
-    const auto value = fold(expr, defaults());
+    const auto value = fold(expr, defaults_);
     if (!value || parameter.kind == ParameterKind::Rotation || value->kind == Value::Kind::Word) return expr;
     for (size_t i = 0; i < value->count; ++i)
         if (value->n[i] < parameter.lo || value->n[i] > parameter.hi) {
@@ -139,6 +145,14 @@ void Checker::bounded(const Solid& solid, std::string_view verb) {
                            fmt::format("write '- {0}' or '& {0}' after a solid", solid.primitive->name));
 }
 
+/// Terminals made of terminals can double at every step.
+Solid Checker::limited(Solid solid) {
+    constexpr size_t most = 1000;
+    if (partsOf(solid) <= most) return solid;
+    diagnostics_.error(solid.span, fmt::format("a solid has at most {} parts", most), "build it with rules");
+    return {};
+}
+
 Solid Checker::morphSolid(Place& place, const Written& e) {
     Solid result;
     result.kind = Solid::Kind::Morph;
@@ -154,10 +168,10 @@ Solid Checker::morphSolid(Place& place, const Written& e) {
     }
     place.enter("morph");
     result.amount = expression(place, e.args[2], Want::Number, "the share of a morph");
-    if (const auto value = fold(result.amount, defaults()); value && (value->num() < 0 || value->num() > 1))
+    if (const auto value = fold(result.amount, defaults_); value && (value->num() < 0 || value->num() > 1))
         diagnostics_.error(e.args[2].span, fmt::format("the share of a morph is {}, but must be 0 … 1", toText(*value)));
     place.morphs = true;
-    return result;
+    return limited(std::move(result));
 }
 
 Solid Checker::combination(Place& place, const Written& e) {
@@ -168,7 +182,7 @@ Solid Checker::combination(Place& place, const Written& e) {
     for (const Written& part : e.args) result.parts.push_back(solid(place, part));
     bounded(result.parts[0], "cut or added to");
     if (result.op == Operator::Sum) bounded(result.parts[1], "added");
-    return result;
+    return limited(std::move(result));
 }
 
 Solid Checker::terminalSolid(const syntax::Name& name) {
@@ -179,6 +193,7 @@ Solid Checker::terminalSolid(const syntax::Name& name) {
     result.span = name.span;
     result.primitive = field::findPrimitive("cube");
     if (!decl.solid) return result;
+    if (const auto known = terminalSolids_.find(name.text); known != terminalSolids_.end()) return known->second;
     if (std::find(terminalsInWork_.begin(), terminalsInWork_.end(), name.text) != terminalsInWork_.end()) {
         diagnostics_.error(name.span, fmt::format("the solid of '{}' is made of itself", name.text));
         return result;
@@ -186,6 +201,7 @@ Solid Checker::terminalSolid(const syntax::Name& name) {
     terminalsInWork_.push_back(name.text);
     result = solid(place, *decl.solid);
     terminalsInWork_.pop_back();
+    terminalSolids_.emplace(name.text, result);
     return result;
 }
 
@@ -202,7 +218,7 @@ Solid Checker::namedSolid(Place& place, const Written& e) {
     if (isNonTerminal(e.text))
         diagnostics_.error(e.span, fmt::format("'{}' may still be rewritten: a solid is a primitive or a terminal", e.text));
     else
-        failed(e.span, fmt::format("unknown solid '{}'", e.text), unknownSolid(e.text));
+        unknown(e.span, e.text, fmt::format("unknown solid '{}'", e.text), unknownSolid(e.text));
     return nil;
 }
 
