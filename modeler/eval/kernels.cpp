@@ -47,9 +47,8 @@ struct Planes<Interval<Float>> {
     static constexpr size_t count = 2;
     static Interval<Float> load(const float* p, size_t stride) { return {Float::load(p), Float::load(p + stride)}; }
     static void store(Interval<Float> v, float* p, size_t stride) {
-        const Interval<Float> c = v.checked();
-        c.lo.store(p);
-        c.hi.store(p + stride);
+        v.lo.store(p);
+        v.hi.store(p + stride);
     }
 };
 
@@ -69,7 +68,16 @@ struct Body<Row, Dual<F>> {
 };
 template <class Row, class F>
 struct Body<Row, Interval<F>> {
-    static Interval<F> call(auto... args) {
+    /// Unknown where an operand is.
+    static Interval<F> call(auto... args) { return bare(args...).where((known(args) & ...)); }
+    static Interval<F> call(std::span<const Interval<F>> args, uint32_t data) {
+        auto mask = known(args[0]);
+        for (const Interval<F>& a : args) mask = mask & known(a);
+        return bare(args, data).where(mask);
+    }
+
+private:
+    static Interval<F> bare(auto... args) {
         if constexpr (requires { Row::interval(args...); })
             return Row::interval(args...);
         else

@@ -1,7 +1,8 @@
 // The interval value: an enclosure of what the float kernels can return.
 // Enters: bounds of the operands. Leaves: bounds of the result. Rounding to nearest is monotone, so the bounds computed by
 // the very same float operation enclose every float result; no widening is needed for + − × ÷ √ min max.
-// (Moore, "Interval Analysis", 1966, for the extensions.) A NaN bound means "anything, NaN included" and spreads.
+// (Moore, "Interval Analysis", 1966, for the extensions.) Bounds that are NaN mean "anything, NaN included"; the kernels
+// pass them on (`where`), so the operations here may assume bounds that say something.
 #pragma once
 
 #include <limits>
@@ -42,24 +43,19 @@ struct Interval {
         return {select(pole, -most, min(min(p, q), min(r, s)) + nan), select(pole, most, max(max(p, q), max(r, s)) + nan)};
     }
     friend Interval operator-(Interval a) { return {-a.hi, -a.lo}; }
-    friend Interval min(Interval a, Interval b) { return spread(a, {min(a.lo, b.lo), min(a.hi, b.hi)}); }
-    friend Interval max(Interval a, Interval b) { return spread(a, {max(a.lo, b.lo), max(a.hi, b.hi)}); }
+    friend Interval min(Interval a, Interval b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }
+    friend Interval max(Interval a, Interval b) { return {max(a.lo, b.lo), max(a.hi, b.hi)}; }
     friend Interval abs(Interval a) { return {max(V(0.0f), max(a.lo, -a.hi)), max(-a.lo, a.hi)}; }
     friend Interval sqrt(Interval a) { return {sqrt(a.lo), sqrt(a.hi)}; }
     friend Interval floor(Interval a) { return {floor(a.lo), floor(a.hi)}; }
 
-    /// The same with both bounds NaN where either is or they are out of order.
-    Interval checked() const {
-        const auto good = lo <= hi;
+    /// Lanes whose bounds say something.
+    friend auto known(Interval a) { return a.lo <= a.hi; }
+    /// The same where the mask holds and its own bounds say something; both bounds NaN elsewhere.
+    Interval where(field::ops::MaskOf<V> mask) const {
+        const auto good = mask & known(*this);
         const V nan = std::numeric_limits<float>::quiet_NaN();
         return {select(good, lo, nan), select(good, hi, nan)};
-    }
-
-private:
-    static Interval spread(Interval a, Interval result) {
-        // b's NaN survives min and max as their second operand, a's has to be put back.
-        const auto known = a.lo <= a.hi;
-        return {select(known, result.lo, a.lo), select(known, result.hi, a.hi)};
     }
 };
 

@@ -8,8 +8,8 @@
 //   V apply(a) | apply(a, b) | apply(span<const V> args, uint32_t data)      the op itself, over any V
 // and, where the default won't do or could be better:
 //   commutative = true                   operands may be ordered
-//   I interval(…same operands as I…)     an enclosure of apply's floats, rounding included. The default is apply over
-//                                        intervals, enclosing because rounding is monotone; correlated operands widen it
+//   I interval(…same operands as I…)     an enclosure of apply's floats, rounding included; operands' bounds are never
+//                                        NaN. The default is apply over intervals: rounding is monotone, so it encloses
 //   D gradient(…same operands as D…)     value (same bits as apply) and derivatives; the default is apply over Dual
 //   choose(span<const I> args, uint32_t data, span<MaskOf<V>> keep)          keep[i]: operand i can matter; dropping the
 //                                        others must leave the same bits. With one droppable operand left the op is that
@@ -25,14 +25,11 @@
 #include <string_view>
 #include <utility>
 
-#include "modeler/field/graph.h"
-#include "modeler/field/ops_math.h"
-#if __has_include("modeler/field/kifs.h") && __has_include("modeler/field/noise.h") && __has_include("modeler/field/blend_op.h")
-#define SGM_HAS_OPAQUE
 #include "modeler/field/blend_op.h"
+#include "modeler/field/graph.h"
 #include "modeler/field/kifs.h"
 #include "modeler/field/noise.h"
-#endif
+#include "modeler/field/ops_math.h"
 #include "modeler/field/values.h"
 
 namespace sgm::field::ops {
@@ -124,6 +121,15 @@ struct Mod {
     static constexpr int arity = 2;
     template <class V>
     static V apply(V a, V b) { return a - b * floor(a / b); }
+    /// Within one period the plain extension is tight; across several the result is in [0, b] but for rounding.
+    template <class I>
+    static I interval(I a, I b) {
+        using V = typename I::Value;
+        const I plain = a - b * floor(a / b);
+        const V slack = max(max(abs(a.lo), abs(a.hi)), b.hi) * 5e-7f;
+        const auto known = b.lo > V(0.0f);
+        return I{select(known, max(-slack, plain.lo), plain.lo), select(known, min(b.hi + slack, plain.hi), plain.hi)};
+    }
 };
 
 struct Min {
@@ -198,7 +204,8 @@ struct Exp {
     template <class D>
     static D gradient(D a) {
         const auto e = apply(a.value);
-        return chain(a, e, e);
+        using V = typename D::Value;
+        return chain(a, e, select((a.value > V(leastExponent)) & (a.value < V(mostExponent)), e, V(0.0f)));
     }
 };
 /// Angle of (x, y) from the operands (y, x).
@@ -207,6 +214,14 @@ struct Atan2 {
     static constexpr int arity = 2;
     template <class V>
     static V apply(V y, V x) { return angleOf(y, x); }
+    template <class D>
+    static D gradient(D y, D x) {
+        using V = typename D::Value;
+        const V square = x.value * x.value + y.value * y.value;
+        const V share = select(square > V(0.0f), V(1.0f) / square, V(0.0f));
+        const V a = x.value * share, b = y.value * share;
+        return D{apply(y.value, x.value), y.dx * a - x.dx * b, y.dy * a - x.dy * b, y.dz * a - x.dz * b};
+    }
     /// Harmonic, so its extremes over a box are on the edges, and monotone along each: at the corners. Not across the cut.
     template <class I>
     static I interval(I y, I x) {
@@ -214,9 +229,8 @@ struct Atan2 {
         const V a = angleOf(y.lo, x.lo), b = angleOf(y.lo, x.hi), c = angleOf(y.hi, x.lo), d = angleOf(y.hi, x.hi);
         const auto cut = (x.lo <= 0.0f) & (y.lo <= 0.0f) & (y.hi >= 0.0f);
         const V whole = 3.1415930f;
-        const V nan = (y.lo + y.hi) * 0.0f + (x.lo + x.hi) * 0.0f;
-        return I{select(cut, -whole, min(min(a, b), min(c, d)) - 4 * mathError) + nan,
-                 select(cut, whole, max(max(a, b), max(c, d)) + 4 * mathError) + nan};
+        return I{select(cut, -whole, min(min(a, b), min(c, d)) - 4 * mathError),
+                 select(cut, whole, max(max(a, b), max(c, d)) + 4 * mathError)};
     }
 };
 
@@ -231,11 +245,7 @@ struct TypeList {
 };
 using OpTable = TypeList<ops::Input, ops::Literal, ops::Slot, ops::Copy, ops::Add, ops::Sub, ops::Mul, ops::Div, ops::Neg,
                          ops::Abs, ops::Sqrt, ops::Square, ops::Floor, ops::Mod, ops::Min, ops::Max, ops::Morph, ops::Sin,
-                         ops::Cos, ops::Exp, ops::Atan2
-#ifdef SGM_HAS_OPAQUE
-                         , ops::Kifs, ops::Noise, ops::Blend
-#endif
-                         >;
+                         ops::Cos, ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend>;
 
 namespace detail {
 template <class Row, class... Rows>

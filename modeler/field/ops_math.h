@@ -26,10 +26,11 @@ V sine(V a, float quarters) {
     return select(half - 2.0f * floor(half * 0.5f) > 0.5f, -value, value);
 }
 
-/// eᵃ; a is clamped to [−87, 88], where the result is a normal float.
+/// eᵃ; a is clamped to this range, where the result is a normal float.
+inline constexpr float leastExponent = -87, mostExponent = 88;
 template <class V>
 V exponential(V a) {
-    const V x = min(V(88.0f), max(V(-87.0f), a));
+    const V x = min(V(mostExponent), max(V(leastExponent), a));
     // a = n·ln 2 + r, |r| ≤ ln 2 / 2.
     const V n = floor(x * 1.44269504f + 0.5f);
     const V r = (x - n * 0.693359375f) + n * 2.12194440e-4f;

@@ -59,8 +59,8 @@ inline constexpr int variadic = -1;  ///< arity of ops over a span of operands
 /// a morph the nearer of two.
 enum class Owner { First, Least, Greatest, Nearer };
 
-// For rows that enclose themselves. I is an interval: members `lo` and `hi` of type I::Value, I{lo, hi}. Bounds that are
-// NaN mean "anything, NaN included"; an enclosure must then have a NaN bound too.
+// For rows that enclose themselves. I is an interval: members `lo` and `hi` of type I::Value, I{lo, hi}, lo ≤ hi. A result
+// with a NaN bound means "anything, NaN included".
 
 /// The middle of an interval.
 template <class I>
@@ -79,7 +79,7 @@ auto radius(const I& i) {
 template <class I>
 I around(const typename I::Value& value, const typename I::Value& reach, float least, float most) {
     using V = typename I::Value;
-    // NaN is the second operand throughout, so that it survives.
+    // NaN, as the second operand, survives.
     return I{min(V(most), max(V(least), value - reach)), max(V(least), min(V(most), value + reach))};
 }
 

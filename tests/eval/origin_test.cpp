@@ -1,0 +1,72 @@
+#include "samples.h"
+
+namespace sgm::eval::testing {
+namespace {
+
+/// A sphere on the x axis.
+Num ball(Graph& graph, float x, float radius) {
+    const field::Point p = graph.position();
+    return length(field::Point{p.x - graph.slot(x), p.y, p.z}) - graph.slot(radius);
+}
+
+OriginId ownerAt(const Graph& graph, Num root, float x) {
+    const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
+    Workspace w;
+    Cloud cloud;
+    cloud.add(x, 0, 0);
+    OriginId owner = 99;
+    evaluateOrigin(tape, cloud.points(), &owner, w);
+    return owner;
+}
+
+Num chosen(Graph& graph, field::OpCode op, Num a, OriginId ofA, Num b, OriginId ofB) {
+    const field::Operand both[] = {{a.id(), ofA}, {b.id(), ofB}};
+    return graph.apply(op, both);
+}
+
+TEST(Origin, AUnionBelongsToTheNearerPart) {
+    Graph graph;
+    const Num both = chosen(graph, codeOf<ops::Min>, ball(graph, 0, 1), 1, ball(graph, 4, 1), 2);
+    EXPECT_EQ(ownerAt(graph, both, 1), 1u);
+    EXPECT_EQ(ownerAt(graph, both, 3), 2u);
+}
+
+TEST(Origin, TheWallOfACutBelongsToTheCutter) {
+    Graph graph;
+    const Num cut = chosen(graph, codeOf<ops::Max>, ball(graph, 0, 2), 1, -ball(graph, 2, 1), 2);
+    EXPECT_EQ(ownerAt(graph, cut, -2), 1u);
+    EXPECT_EQ(ownerAt(graph, cut, 1), 2u);
+}
+
+TEST(Origin, AnOuterOwnerHidesTheInnerOnesAndZeroLetsThemThrough) {
+    Graph graph;
+    const Num inner = chosen(graph, codeOf<ops::Min>, ball(graph, 0, 1), 1, ball(graph, 4, 1), 2);
+    const Num shown = chosen(graph, codeOf<ops::Min>, inner, 0, ball(graph, 8, 1), 3);
+    const Num hidden = chosen(graph, codeOf<ops::Min>, inner, 7, ball(graph, 8, 1), 3);
+    EXPECT_EQ(ownerAt(graph, shown, 4), 2u);
+    EXPECT_EQ(ownerAt(graph, hidden, 4), 7u);
+    EXPECT_EQ(ownerAt(graph, hidden, 8), 3u);
+    EXPECT_EQ(ownerAt(graph, -shown * 2.0f + 1.0f, 4), 2u);
+}
+
+TEST(Origin, AMorphBelongsToItsOwnerElseToTheNearerForm) {
+    Graph graph;
+    const Num a = chosen(graph, codeOf<ops::Min>, ball(graph, 0, 1), 1, ball(graph, 9, 1), 1);
+    const Num b = chosen(graph, codeOf<ops::Min>, ball(graph, 1, 1), 2, ball(graph, 9, 1), 2);
+    for (const float t : {0.25f, 0.75f}) {
+        const Num at = graph.slot(t);
+        const field::Operand owned[] = {{a.id(), 5}, {b.id(), 5}, {at.id(), 0}};
+        const field::Operand open[] = {{a.id(), 0}, {b.id(), 0}, {at.id(), 0}};
+        EXPECT_EQ(ownerAt(graph, graph.apply(codeOf<ops::Morph>, owned), 0), 5u);
+        EXPECT_EQ(ownerAt(graph, graph.apply(codeOf<ops::Morph>, open), 0), t < 0.5f ? 1u : 2u);
+    }
+}
+
+TEST(Origin, WhatNobodyOwnsIsZero) {
+    Graph graph;
+    EXPECT_EQ(ownerAt(graph, ball(graph, 0, 1), 0), 0u);
+    EXPECT_EQ(ownerAt(graph, graph.literal(1), 0), 0u);
+}
+
+}  // namespace
+}  // namespace sgm::eval::testing

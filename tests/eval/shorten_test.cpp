@@ -1,0 +1,98 @@
+#include "samples.h"
+
+namespace sgm::eval::testing {
+namespace {
+
+/// Values and owners of a tape and its shortened form must agree inside the region, and so on inside smaller regions.
+void descend(const Tape& full, const Tape& tape, const Box3f& box, int depth, Draws& draws, size_t& dropped) {
+    Workspace w;
+    Box3f boxes[64];
+    const size_t n = 1 + draws.below(64);
+    for (size_t i = 0; i < n; ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+            const float a = draws.real(box.lo[axis], box.hi[axis]), b = draws.real(box.lo[axis], box.hi[axis]);
+            boxes[i].lo[axis] = std::max(box.lo[axis], std::min(a, (a + b) / 2));
+            boxes[i].hi[axis] = std::min(box.hi[axis], std::max(a, (a + b) / 2));
+        }
+    Range ranges[64];
+    evaluateRanges(tape, {boxes, n}, ranges, w);
+    for (int pick = 0; pick < 3; ++pick) {
+        const size_t at = draws.below(n);
+        Workspace inner;
+        evaluateRanges(tape, {boxes, n}, ranges, inner);
+        const Tape shorter = shorten(tape, at, inner);
+        EXPECT_LE(shorter.size(), tape.size());
+        dropped += tape.size() - shorter.size();
+        const Cloud cloud = pointsIn(boxes[at], 40, draws);
+        const std::vector<float> expected = values(full, cloud), got = values(shorter, cloud);
+        std::vector<OriginId> owners(cloud.size()), same(cloud.size());
+        evaluateOrigin(full, cloud.points(), owners.data(), inner);
+        evaluateOrigin(shorter, cloud.points(), same.data(), inner);
+        for (size_t i = 0; i < cloud.size(); ++i) {
+            ASSERT_TRUE(sameBits(expected[i], got[i])) << expected[i] << " but " << got[i];
+            ASSERT_EQ(owners[i], same[i]);
+            ASSERT_TRUE(std::isinf(ranges[at].lo) || std::isinf(ranges[at].hi) ||
+                        (got[i] >= ranges[at].lo && got[i] <= ranges[at].hi));
+        }
+        if (depth > 0) descend(full, shorter, boxes[at], depth - 1, draws, dropped);
+    }
+}
+
+TEST(Shorten, KeepsTheBitsAndTheOwnersInsideTheRegion) {
+    Draws draws{3};
+    size_t dropped = 0;
+    for (int repeat = 0; repeat < 1000; ++repeat) {
+        Graph graph;
+        const Num root = randomExpression(graph, 5 + draws.below(80), draws);
+        const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
+        descend(tape, tape, {{-2, -2, -2}, {2, 2, 2}}, 2, draws, dropped);
+        if (::testing::Test::HasFatalFailure()) return;
+    }
+    EXPECT_GT(dropped, 10000u);
+}
+
+/// Spheres on a line, united in a balanced tree.
+Num spheres(Graph& graph, int first, int count) {
+    if (count > 1) return min(spheres(graph, first, count / 2), spheres(graph, first + count / 2, count - count / 2));
+    const field::Point p = graph.position();
+    return length(field::Point{p.x - graph.slot(float(first)), p.y, p.z}) - graph.slot(0.4f);
+}
+
+TEST(Shorten, AUnionNearOneOfItsSpheresIsThatSphere) {
+    Graph graph;
+    const Num root = spheres(graph, 0, 256);
+    const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
+    Workspace w;
+    const Box3f box{{99.9f, -0.1f, -0.1f}, {100.1f, 0.1f, 0.1f}};
+    Range range;
+    evaluateRanges(tape, {&box, 1}, &range, w);
+    const Tape one = shorten(tape, 0, w);
+    const Num hundredth = spheres(graph, 100, 1);
+    const Tape alone = compile(graph, {hundredth, {}, 1, 1}, graph.constants());
+    EXPECT_EQ(one.size(), alone.size());
+    EXPECT_LE(one.registerCount(), alone.registerCount() + 1);
+}
+
+TEST(Shorten, NothingIsCopiedWhenOperandsHaveOwners) {
+    Graph graph;
+    const Num s = spheres(graph, 0, 1), t = spheres(graph, 10, 1), u = spheres(graph, 20, 1);
+    const field::Operand inner[] = {{s.id(), 1}, {t.id(), 2}};
+    const Num pair = graph.apply(codeOf<ops::Min>, inner);
+    const field::Operand outer[] = {{pair.id(), 0}, {u.id(), 3}};
+    const Num all = graph.apply(codeOf<ops::Min>, outer);
+    const Tape tape = compile(graph, {all, {}, 1, 1}, graph.constants());
+    Workspace w;
+    const Box3f box{{-0.1f, 0, 0}, {0.1f, 0, 0}};
+    Range range;
+    evaluateRanges(tape, {&box, 1}, &range, w);
+    const Tape one = shorten(tape, 0, w);
+    for (const Instruction& in : one.code()) EXPECT_NE(in.op, codeOf<ops::Copy>);
+    Cloud cloud;
+    cloud.add(0, 0, 0);
+    OriginId owner = 0;
+    evaluateOrigin(one, cloud.points(), &owner, w);
+    EXPECT_EQ(owner, 1u);
+}
+
+}  // namespace
+}  // namespace sgm::eval::testing

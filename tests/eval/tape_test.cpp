@@ -1,0 +1,112 @@
+#include "samples.h"
+
+namespace sgm::eval::testing {
+namespace {
+
+Tape compiled(const Graph& graph, Num root) { return compile(graph, {root, {}, 1, 1}, graph.constants()); }
+
+TEST(Tape, IsTheGraphBitForBit) {
+    Draws draws{1};
+    for (int repeat = 0; repeat < 1000; ++repeat) {
+        Graph graph;
+        const Num root = randomExpression(graph, 5 + draws.below(80), draws);
+        const Tape tape = compiled(graph, root);
+        const Cloud cloud = pointsIn({{-2, -2, -2}, {2, 2, 2}}, 33, draws);
+        const std::vector<float> got = values(tape, cloud);
+        for (size_t i = 0; i < cloud.size(); ++i)
+            ASSERT_TRUE(sameBits(got[i], walk(graph, root, cloud.x[i], cloud.y[i], cloud.z[i])));
+    }
+}
+
+TEST(Tape, FoldsWhatIsConstant) {
+    Graph graph;
+    const Num a = graph.slot(2), b = graph.slot(3);
+    const Tape folded = compiled(graph, sqrt(a * b + 3.0f));
+    EXPECT_EQ(folded.size(), 0u);
+    ASSERT_TRUE(isConstant(folded.result()));
+    EXPECT_EQ(folded.constants()[indexOf(folded.result())], 3.0f);
+
+    EXPECT_EQ(compiled(graph, (graph.x() - graph.slot(0)) * graph.slot(1)).size(), 0u);
+    EXPECT_EQ(compiled(graph, graph.x() + (a + b)).size(), 1u);
+}
+
+TEST(Tape, BindsTheConstantsItIsGiven) {
+    Graph graph;
+    const Num root = graph.x() * graph.slot(2);
+    const float other[] = {5};
+    const Tape tape = compile(graph, {root, {}, 1, 1}, other);
+    Cloud cloud;
+    cloud.add(3, 0, 0);
+    EXPECT_EQ(values(tape, cloud)[0], 15.0f);
+}
+
+TEST(Tape, ConstantAndCoordinateFieldsNeedNoCode) {
+    Graph graph;
+    const Tape four = compiled(graph, graph.literal(4)), y = compiled(graph, graph.y());
+    Cloud cloud;
+    cloud.add(1, 2, 3);
+    EXPECT_EQ(values(four, cloud)[0], 4.0f);
+    EXPECT_EQ(values(y, cloud)[0], 2.0f);
+    Workspace w;
+    float v, dx, dy, dz;
+    evaluateGradient(y, cloud.points(), &v, &dx, &dy, &dz, w);
+    EXPECT_EQ(Vec3f(dx, dy, dz), Vec3f(0, 1, 0));
+    evaluateGradient(four, cloud.points(), &v, &dx, &dy, &dz, w);
+    EXPECT_EQ(Vec3f(dx, dy, dz), Vec3f(0, 0, 0));
+    const Box3f box{{0, 1, 2}, {3, 4, 5}};
+    Range range;
+    evaluateRanges(y, {&box, 1}, &range, w);
+    EXPECT_EQ(range.lo, 1.0f);
+    EXPECT_EQ(range.hi, 4.0f);
+    evaluateRanges(four, {&box, 1}, &range, w);
+    EXPECT_EQ(range.hi, 4.0f);
+    EXPECT_EQ(shorten(four, 0, w).size(), 0u);
+}
+
+TEST(Tape, BalancedUnionsNeedFewRegisters) {
+    Graph graph;
+    std::vector<Num> parts;
+    for (int i = 0; i < 1024; ++i) {
+        const field::Point p = graph.position();
+        parts.push_back(length(field::Point{p.x - graph.slot(float(i)), p.y, p.z}) - 0.5f);
+    }
+    while (parts.size() > 1) {
+        std::vector<Num> pairs;
+        for (size_t i = 0; i < parts.size(); i += 2) pairs.push_back(min(parts[i], parts[i + 1]));
+        parts = pairs;
+    }
+    EXPECT_LE(compiled(graph, parts[0]).registerCount(), 3u + 10u + 4u);
+}
+
+TEST(Tape, DeepChainsAndManyNodesDoNotOverflow) {
+    Graph graph;
+    Num chain = graph.x();
+    for (int i = 0; i < 100000; ++i) chain = i % 2 ? sqrt(chain + graph.slot(1)) : min(chain, graph.y() + graph.slot(float(i)));
+    const Tape tape = compiled(graph, chain);
+    EXPECT_LE(tape.registerCount(), 6u);
+    Cloud cloud;
+    cloud.add(0.5f, 1, 0);
+    EXPECT_EQ(values(tape, cloud)[0], walk(graph, chain, 0.5f, 1, 0));
+    Workspace w;
+    const Box3f box{{0, 0, 0}, {1, 1, 1}};
+    Range range;
+    evaluateRanges(tape, {&box, 1}, &range, w);
+    EXPECT_LT(shorten(tape, 0, w).size(), tape.size());
+}
+
+TEST(Tape, BitsDoNotDependOnThePlaceInABatch) {
+    Draws draws{7};
+    Graph graph;
+    const Tape tape = compiled(graph, randomExpression(graph, 60, draws));
+    const Cloud cloud = pointsIn({{-2, -2, -2}, {2, 2, 2}}, 1500, draws);
+    const std::vector<float> all = values(tape, cloud);
+    Workspace w;
+    for (size_t first = 0; first < cloud.size(); first += 37) {
+        float one;
+        evaluate(tape, {&cloud.x[first], &cloud.y[first], &cloud.z[first], 1}, &one, w);
+        EXPECT_TRUE(sameBits(one, all[first]));
+    }
+}
+
+}  // namespace
+}  // namespace sgm::eval::testing
