@@ -1,0 +1,136 @@
+// Control in the bodies of rules: siblings, for, while, when, choose.
+#include <bit>
+#include <cmath>
+
+#include "grammar/derive/interpreter.h"
+#include "modeler/core/random.h"
+
+namespace sgm::derive {
+
+using rules::Element;
+using rules::Value;
+
+namespace {
+
+/// A loop's turn is known by its value, so inserting a direction leaves the draws of the others alone.
+uint64_t turnKey(uint64_t loop, double value) { return combine(loop, std::bit_cast<uint64_t>(value + 0.0)); }
+
+/// What `for` runs over: the values of a tuple or vector, or the integers of a range.
+std::vector<Value> valuesOver(const rules::Expr& over, const Place& place) {
+    std::vector<Value> values;
+    if (over.kind == rules::Expr::Kind::Tuple) {
+        for (const rules::Expr& arg : over.args) values.push_back(evaluate(arg, place));
+        return values;
+    }
+    const Value v = evaluate(over, place);
+    for (uint8_t k = 0; k < v.count; ++k) {
+        Value one;
+        one.kind = v.kind == Value::Kind::Vector ? Value::Kind::Number : v.kind;
+        one.n[0] = v.n[k];
+        one.units[0] = v.units[std::min<size_t>(k, v.units.size() - 1)];
+        one.integer = v.integer;
+        one.text = v.text;
+        values.push_back(std::move(one));
+    }
+    return values;
+}
+
+}  // namespace
+
+bool Interpreter::runBody(const rules::Body& body, const Frame& frame, uint64_t loop) {
+    for (const Elements& sibling : body.siblings) {
+        Frame own = frame;
+        Target target{frame.node, frame.matched};
+        if (!runElements(sibling, own, target, loop)) return false;
+    }
+    return true;
+}
+
+/// The body of a loop or a choice goes on with the chain it stands in.
+bool Interpreter::runInner(const rules::Body& body, Frame& frame, Target& target, uint64_t loop) {
+    for (const Elements& sibling : body.siblings) {
+        Target own = target;
+        Frame inner = frame;
+        if (!runElements(sibling, inner, own, loop)) return false;
+        if (body.siblings.size() == 1 && target.node == frame.node) target = own;
+    }
+    return true;
+}
+
+bool Interpreter::runElements(const Elements& elements, Frame& frame, Target& target, uint64_t loop) {
+    for (const Element& e : elements)
+        if (!runElement(e, frame, target, loop, elements.size() > 1)) return false;
+    return true;
+}
+
+bool Interpreter::runElement(const Element& e, Frame& frame, Target& target, uint64_t loop, bool followed) {
+    switch (e.kind) {
+        case Element::Kind::For: return runFor(e, frame, target, loop);
+        case Element::Kind::While: return runWhile(e, frame, target, loop);
+        case Element::Kind::Choose: return runChoose(e, frame, target, loop);
+        case Element::Kind::When:
+            frame.place.key = combine(combine(frame.key, hashText("when")), loop);
+            return !e.guard || !holds(*e.guard, frame.place) || runInner(*e.body, frame, target, loop);
+        case Element::Kind::Shape: break;
+    }
+    const uint64_t key = combine(combine(frame.key, factsOf(e).hash), loop);
+    if (e.content.kind == rules::Content::Kind::None) {
+        annotate(e, frame, key);
+        return !builder_.failed();
+    }
+    if (e.content.kind == rules::Content::Kind::Solid && e.content.solid.kind == rules::Solid::Kind::Nil) return true;
+    return e.op == rules::Operator::None ? placeHead(e, frame, target, key, followed) : placeGrown(e, frame, target, key);
+}
+
+bool Interpreter::runFor(const Element& e, Frame& frame, Target& target, uint64_t loop) {
+    frame.place.key = combine(combine(frame.key, hashText("for")), loop);
+    const auto turn = [&](Value value) {
+        const uint64_t key = turnKey(loop, value.num());
+        locals_[e.local] = std::move(value);
+        frame.place.key = combine(combine(frame.key, hashText("for")), key);
+        if (!builder_.work()) return false;
+        return (e.guard && !holds(*e.guard, frame.place)) || runInner(*e.body, frame, target, key);
+    };
+    if (e.over->kind != rules::Expr::Kind::Range) {
+        for (Value& value : valuesOver(*e.over, frame.place))
+            if (!turn(std::move(value))) return false;
+        return true;
+    }
+    const double lo = std::ceil(number(e.over->args[0], frame.place)), hi = number(e.over->args[1], frame.place);
+    for (double v = lo; v <= hi; ++v) {
+        Value value = Value::number(v);
+        value.integer = true;
+        if (!turn(std::move(value))) return false;
+    }
+    return true;
+}
+
+bool Interpreter::runWhile(const Element& e, Frame& frame, Target& target, uint64_t loop) {
+    for (uint64_t turn = 1;; ++turn) {
+        const uint64_t key = turnKey(loop, static_cast<double>(turn));
+        frame.place.key = combine(combine(frame.key, hashText("while")), key);
+        if (!builder_.work()) return false;
+        if (!e.guard || !holds(*e.guard, frame.place)) return true;
+        if (!runInner(*e.body, frame, target, key)) return false;
+    }
+}
+
+bool Interpreter::runChoose(const Element& e, Frame& frame, Target& target, uint64_t loop) {
+    const uint64_t key = combine(combine(combine(frame.key, hashText("choose")), e.ordinal), loop);
+    frame.place.key = key;
+    std::vector<double> weights;
+    double total = 0;
+    for (const rules::Choice& c : e.choices) {
+        weights.push_back(std::max(0.0, number(c.weight, frame.place)));
+        total += weights.back();
+    }
+    if (!(total > 0)) return true;
+    double drawn = uniform(combine(key, hashText("weight"))) * total;
+    for (size_t i = 0; i < weights.size(); ++i) {
+        if (drawn < weights[i]) return runInner(*e.choices[i].body, frame, target, loop);
+        drawn -= weights[i];
+    }
+    return true;
+}
+
+}  // namespace sgm::derive

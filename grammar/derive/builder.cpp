@@ -1,0 +1,239 @@
+#include "grammar/derive/builder.h"
+
+#include <fmt/format.h>
+
+namespace sgm::derive {
+
+namespace {
+
+template <class T>
+uint64_t bytes(const std::vector<T>& v) {
+    return v.capacity() * sizeof(T);
+}
+
+bool isDirected(const Joint& j) { return j.direction != Vec3d{}; }
+
+}  // namespace
+
+uint64_t Derivation::memory() const {
+    return bytes(tree.shapes) + bytes(tree.bonds) + bytes(tree.bodies) + bytes(tree.solids) + bytes(tree.extras) +
+           bytes(tree.namedBonds) + bytes(steps) + bytes(materials);
+}
+
+TreeBuilder::TreeBuilder(Derivation& derivation, const Budget& budget, Progress* progress)
+    : derivation_(derivation), budget_(budget), progress_(progress), counts_(derivation.grammar->symbols.size()) {}
+
+void TreeBuilder::fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span) {
+    if (failure_) return;
+    const auto& grammar = *derivation_.grammar;
+    std::string text;
+    if (span.source) {
+        const auto place = span.source->place(span.begin);
+        text = fmt::format("{}:{}:{}: ", span.source->name(), place.line, place.column);
+    }
+    text += what;
+    text += rule_ == none ? std::string(" in the start") : fmt::format(" in rule '{}'", grammar.rules[rule_].name);
+    if (shape_ < tree().shapes.size()) text += fmt::format(" at {}", tree().path(shape_));
+    text += fmt::format(", seed {}", derivation_.seed);
+    failure_ = Error{kind, std::move(text)};
+}
+
+void TreeBuilder::poll() {
+    const syntax::SourceSpan span = rule_ == none ? syntax::SourceSpan{} : derivation_.grammar->rules[rule_].span;
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
+    if (cancelled(progress_)) failure_ = Error{Error::Kind::Cancelled, "cancelled while deriving"};
+    else if (spent.count() > budget_.seconds)
+        fail(Error::Kind::Budget, fmt::format("the budget of {:g} seconds is spent", budget_.seconds), span);
+    else if (derivation_.memory() + joints_.memory() > budget_.memory_bytes)
+        fail(Error::Kind::Budget, fmt::format("the budget of {} MiB of memory is spent", budget_.memory_bytes >> 20), span);
+}
+
+bool TreeBuilder::work() {
+    if (++work_ % 1024 == 0) poll();
+    if (work_ > 4 * budget_.shapes + 4096 && !failure_)
+        fail(Error::Kind::Budget, fmt::format("{} turns were made and there is no end", work_), derivation_.grammar->rules.empty() || rule_ == none ? syntax::SourceSpan{} : derivation_.grammar->rules[rule_].span);
+    return !failure_;
+}
+
+ShapeId TreeBuilder::add(Shape shape) {
+    ShapeTree& t = tree();
+    const auto id = static_cast<ShapeId>(t.shapes.size());
+    if (!work()) return none;
+    if (id >= budget_.shapes) {
+        fail(Error::Kind::Budget, fmt::format("the budget of {} shapes is spent", budget_.shapes), shape.span);
+        return none;
+    }
+    shape.madeBy = step_;
+    if (shape.parent != none) {
+        Shape& parent = t.shapes[shape.parent];
+        shape.depth = parent.depth + 1;
+        if (shape.depth > budget_.depth) {
+            fail(Error::Kind::Budget, fmt::format("the budget of {} levels of depth is spent", budget_.depth), shape.span);
+            return none;
+        }
+        if (shape.extras == none || t.extras[shape.extras].values.empty()) shape.valuesAt = parent.valuesAt;
+        else shape.valuesAt = id;
+        if (shape.op == rules::Operator::None && shape.scope == parent.scope) shape.body = parent.body;
+        if (parent.firstChild == none) parent.firstChild = id;
+        else t.shapes[parent.lastChild].nextSibling = id;
+        parent.lastChild = id;
+    }
+    if (shape.body == none) {
+        shape.body = static_cast<uint32_t>(t.bodies.size());
+        t.bodies.emplace_back().owner = id;
+    }
+    if (shape.jointSet) {
+        shape.firstNamedBond = static_cast<uint32_t>(t.namedBonds.size());
+        t.namedBonds.insert(t.namedBonds.end(), t.namedJoints[shape.jointSet].size(), none);
+    }
+    if (shape.symbol != rules::none) ++counts_[shape.symbol];
+    if (shape.live) live_.push_back(id);
+    t.shapes.push_back(shape);
+    if (progress_) progress_->tick();
+    return id;
+}
+
+Extras& TreeBuilder::extras(ShapeId id) {
+    Shape& s = tree().shapes[id];
+    if (s.extras == none) {
+        s.extras = static_cast<uint32_t>(tree().extras.size());
+        tree().extras.emplace_back();
+    }
+    return tree().extras[s.extras];
+}
+
+uint32_t& TreeBuilder::firstBondAt(ShapeId id, uint32_t joint) {
+    const Shape& s = tree().shapes[id];
+    return joint < firstNamedJoint ? tree().bodies[s.body].bond[joint] : tree().namedBonds[s.firstNamedBond + joint - firstNamedJoint];
+}
+
+void TreeBuilder::linkBond(uint32_t index, int end) {
+    Bond& b = tree().bonds[index];
+    Body& body = tree().bodies[tree().shapes[b.shape[end]].body];
+    b.next[end] = std::exchange(body.firstBond, index);
+    uint32_t& first = firstBondAt(b.shape[end], b.joint[end]);
+    if (first == none || (b.directed && !tree().bonds[first].directed)) first = index;
+}
+
+void TreeBuilder::bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
+    const Joint ja = tree().joint(a, jointA), jb = tree().joint(b, jointB);
+    const auto index = static_cast<uint32_t>(tree().bonds.size());
+    tree().bonds.push_back({{a, b}, {jointA, jointB}, jb.point - ja.point, isDirected(ja) && isDirected(jb), {none, none}});
+    linkBond(index, 0);
+    linkBond(index, 1);
+    if (isDirected(ja) && !isDirected(jb)) {
+        const uint32_t back = opposedFace(tree().shapes[b].scope.axes, ja.direction);
+        if (dot(tree().joint(b, back).direction, ja.direction) < -0.999 && firstBondAt(b, back) == none) firstBondAt(b, back) = index;
+    }
+}
+
+void TreeBuilder::meetNeighbours(ShapeId id) {
+    if (tree().bodies[tree().shapes[id].body].owner != id) return;
+    for (uint32_t j = 0; j < tree().jointCount(id); ++j) {
+        const Joint joint = tree().joint(id, j);
+        if (!isDirected(joint)) continue;
+        const auto partner = joints_.add(tree(), {id, j}, joint);
+        if (!partner || tree().closed(id, j) || tree().closed(partner->shape, partner->joint)) continue;
+        if (tree().shapes[partner->shape].body != tree().shapes[id].body) bond(partner->shape, partner->joint, id, j);
+    }
+}
+
+/// The bonds of a vanished place free its partners' joints.
+void TreeBuilder::release(ShapeId id) {
+    ShapeTree& t = tree();
+    const Body& body = t.bodies[t.shapes[id].body];
+    if (body.owner != id) return;
+    for (uint32_t i = body.firstBond; i != none;) {
+        const Bond& b = t.bonds[i];
+        const int mine = t.bodies[t.shapes[b.shape[0]].body].owner == id ? 0 : 1;
+        uint32_t& first = firstBondAt(b.shape[1 - mine], b.joint[1 - mine]);
+        if (first == i) first = none;
+        i = b.next[mine];
+    }
+}
+
+void TreeBuilder::clearContent(ShapeId id) {
+    ShapeTree& t = tree();
+    t.shapes[id].solid = none;
+    for (ShapeId s = t.next(id, id); s != none; s = t.next(s, id)) {
+        Shape& dead = t.shapes[s];
+        dead.dead = true;
+        dead.live = false;
+        ++deadCount_;
+        if (dead.symbol != rules::none) --counts_[dead.symbol];
+        release(s);
+    }
+    t.shapes[id].firstChild = t.shapes[id].lastChild = none;
+}
+
+std::vector<uint32_t> TreeBuilder::sweepShapes() {
+    ShapeTree& t = tree();
+    std::vector<uint32_t> newId(t.shapes.size(), none);
+    uint32_t kept = 0;
+    for (ShapeId s = 0; s < t.shapes.size(); ++s)
+        if (!t.shapes[s].dead) newId[s] = kept++;
+    const auto renamed = [&](ShapeId s) { return s == none ? none : newId[s]; };
+    for (Step& step : derivation_.steps) {
+        // The shapes of a step stay together; those that are left begin at the first one kept.
+        uint32_t left = 0, first = none;
+        for (uint32_t i = 0; i < step.madeCount; ++i)
+            if (const uint32_t to = newId[step.firstMade + i]; to != none) first = std::min(first, to), ++left;
+        step.firstMade = left ? first : 0;
+        step.madeCount = left;
+        step.shape = renamed(step.shape);
+    }
+    for (ShapeId s = 0; s < t.shapes.size(); ++s) {
+        if (newId[s] == none) continue;
+        Shape shape = t.shapes[s];
+        for (ShapeId* link : {&shape.parent, &shape.firstChild, &shape.lastChild, &shape.nextSibling, &shape.valuesAt}) *link = renamed(*link);
+        t.shapes[newId[s]] = shape;
+    }
+    t.shapes.resize(kept);
+    return newId;
+}
+
+void TreeBuilder::sweepBonds(std::vector<Bond> old, const std::vector<uint32_t>& newId, const std::vector<uint32_t>& ownerOf) {
+    ShapeTree& t = tree();
+    for (Body& body : t.bodies) body = Body{};
+    for (ShapeId s = 0; s < t.shapes.size(); ++s) {
+        ShapeId& owner = t.bodies[t.shapes[s].body].owner;
+        owner = std::min(owner, s);
+    }
+    std::fill(t.namedBonds.begin(), t.namedBonds.end(), none);
+    for (const Bond& b : old) {
+        // A bond made by content that was replaced stays with the shape whose place that content filled.
+        ShapeId end[2];
+        for (int k = 0; k < 2; ++k) {
+            end[k] = newId[b.shape[k]];
+            if (end[k] == none && b.joint[k] < firstNamedJoint) end[k] = newId[ownerOf[b.shape[k]]];
+        }
+        if (end[0] != none && end[1] != none) bond(end[0], b.joint[0], end[1], b.joint[1]);
+    }
+}
+
+void TreeBuilder::numberOccurrences() {
+    ShapeTree& t = tree();
+    std::vector<uint32_t> seen(t.labels.size(), 0), touched;
+    for (const Shape& parent : t.shapes) {
+        for (ShapeId c = parent.firstChild; c != none; c = t.shapes[c].nextSibling) {
+            uint32_t& count = seen[t.shapes[c].label];
+            if (count++ == 0) touched.push_back(t.shapes[c].label);
+            t.shapes[c].occurrence = count;
+        }
+        for (const uint32_t label : touched) seen[label] = 0;
+        touched.clear();
+    }
+    t.shapes[0].occurrence = 1;
+}
+
+void TreeBuilder::finish() {
+    if (deadCount_ > 0) {
+        std::vector<uint32_t> ownerOf;
+        for (const Shape& s : tree().shapes) ownerOf.push_back(tree().bodies[s.body].owner);
+        const auto newId = sweepShapes();
+        sweepBonds(std::exchange(tree().bonds, {}), newId, ownerOf);
+    }
+    numberOccurrences();
+}
+
+}  // namespace sgm::derive

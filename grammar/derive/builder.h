@@ -1,0 +1,70 @@
+// Builds the shape tree: adds and removes shapes, bonds them, and keeps the budget.
+// Enters: shapes with scope and content. Leaves: a consistent ShapeTree. Assumes one thread.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "grammar/derive/derive.h"
+#include "grammar/derive/joints.h"
+
+namespace sgm::derive {
+
+class TreeBuilder {
+public:
+    TreeBuilder(Derivation& derivation, const Budget& budget, Progress* progress);
+
+    /// Adds `shape` as the last child of shape.parent and indexes its joints; none (and a failure) when a budget is
+    /// spent. Content (op None) of its parent's very scope shares the parent's joints.
+    ShapeId add(Shape shape);
+    /// Joins two joints; the shift is what lies between their points. A directed bond closes both, any other leaves them
+    /// open. Where a centre came to our face, the newcomer's face that looks back counts as bonded too.
+    void bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
+    /// Bonds every face of `id` that coincides with another's, so that no rule grows there again. Call after the bond
+    /// that placed it.
+    void meetNeighbours(ShapeId id);
+    /// Takes the solid and the children away: a rule replaces them.
+    void clearContent(ShapeId id);
+    Extras& extras(ShapeId id);
+    /// Removes what is dead and numbers occurrences; ids change.
+    void finish();
+
+    /// Counts a unit of work that adds no shape (a turn of a loop); false once something failed.
+    bool work();
+    bool failed() const { return failure_.has_value(); }
+    Error takeFailure() { return *std::move(failure_); }
+    /// Ends the derivation with a sentence located at `span` and the present rule, path and seed.
+    void fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span);
+    /// What is being run, for messages and the log.
+    void at(uint32_t rule, ShapeId shape, uint32_t step) { rule_ = rule, shape_ = shape, step_ = step; }
+
+    Derivation& derivation() { return derivation_; }
+    ShapeTree& tree() { return derivation_.tree; }
+    std::span<const uint64_t> counts() const { return counts_; }
+    /// Live shapes added since the last call.
+    std::vector<ShapeId> takeLive() { return std::exchange(live_, {}); }
+
+private:
+    void poll();
+    void linkBond(uint32_t bond, int end);
+    uint32_t& firstBondAt(ShapeId id, uint32_t joint);
+    void release(ShapeId id);
+    std::vector<uint32_t> sweepShapes();
+    void sweepBonds(std::vector<Bond> old, const std::vector<uint32_t>& newId, const std::vector<uint32_t>& ownerOf);
+    void numberOccurrences();
+
+    Derivation& derivation_;
+    Budget budget_;
+    Progress* progress_;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    JointIndex joints_;
+    std::vector<uint64_t> counts_;
+    std::vector<ShapeId> live_;
+    std::optional<Error> failure_;
+    uint64_t work_ = 0;
+    uint64_t deadCount_ = 0;
+    uint32_t rule_ = none, step_ = none;
+    ShapeId shape_ = 0;
+};
+
+}  // namespace sgm::derive

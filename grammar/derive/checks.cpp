@@ -1,0 +1,66 @@
+// A grammar's own tests: `check START { settings } expect EXPR`.
+#include <fmt/format.h>
+
+#include "grammar/derive/derive.h"
+#include "grammar/derive/expressions.h"
+
+namespace sgm::derive {
+namespace {
+
+using rules::Expr;
+using rules::Figure;
+
+double figureOf(const Derivation& d, Figure figure) {
+    switch (figure) {
+        case Figure::Bonds: return static_cast<double>(d.tree.bonds.size());
+        case Figure::Overlaps: return static_cast<double>(d.overlaps());
+        case Figure::Shapes: return static_cast<double>(d.tree.shapes.size());
+        case Figure::Terminals: return static_cast<double>(d.terminals());
+        case Figure::Classic: return static_cast<double>(d.classic);
+        case Figure::Morphic: return static_cast<double>(d.morphic);
+        case Figure::Floating: return static_cast<double>(d.floating());
+    }
+    return 0;
+}
+
+/// Puts numbers in place of figures, and tells what they were.
+Expr withFigures(Expr e, const Derivation& d, std::string& told) {
+    if (e.kind == Expr::Kind::Figure) {
+        const double n = figureOf(d, static_cast<Figure>(e.index));
+        told += fmt::format("{}{} is {}", told.empty() ? "" : ", ", e.span.text(), n);
+        e.kind = Expr::Kind::Constant;
+        e.value = rules::Value::number(n);
+        e.value.integer = true;
+        return e;
+    }
+    for (Expr& arg : e.args) arg = withFigures(std::move(arg), d, told);
+    return e;
+}
+
+}  // namespace
+
+Result<std::vector<Verdict>> runChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t seed, Progress* progress) {
+    std::vector<Verdict> verdicts;
+    for (const rules::Check& check : grammar->checks) {
+        Options options;
+        options.start = check.start;
+        options.seed = seed;
+        for (const rules::Param& p : grammar->params) options.params.push_back(p.value);
+        for (const rules::Setting& s : check.settings) options.params[s.param] = s.value;
+        const auto derivation = derive(grammar, options, progress);
+        if (!derivation.ok()) {
+            if (derivation.error().kind == Error::Kind::Cancelled) return derivation.error();
+            verdicts.push_back({false, derivation.error().message, check.span});
+            continue;
+        }
+        std::string told;
+        const Expr expect = withFigures(check.expect, *derivation, told);
+        Place place;
+        place.tree = &derivation->tree;
+        place.params = derivation->params;
+        verdicts.push_back({holds(expect, place), told, check.span});
+    }
+    return verdicts;
+}
+
+}  // namespace sgm::derive

@@ -1,0 +1,154 @@
+#include "grammar/derive/expressions.h"
+
+#include <cmath>
+
+#include "grammar/rules/evaluate.h"
+#include "modeler/core/random.h"
+
+namespace sgm::derive {
+namespace {
+
+using rules::Expr;
+using rules::Fn;
+using rules::Unit;
+using rules::Value;
+using Kind = Expr::Kind;
+
+uint64_t drawKey(const Expr& range, const Place& place, uint64_t component) {
+    return combine(combine(place.key, range.draw), component);
+}
+
+/// The value where it stands already, without a copy; null when it must be computed.
+const Value* stored(const Expr& expr, const Place& place) {
+    switch (expr.kind) {
+        case Kind::Constant: return &expr.value;
+        case Kind::Param: return &place.params[expr.index];
+        case Kind::Local: return &place.locals[expr.index];
+        case Kind::Inherited:
+            for (ShapeId s = place.valuesAt; s != none;) {
+                for (const auto& [name, value] : place.tree->extrasOf(s)->values)
+                    if (name == expr.value.text) return &value;
+                const ShapeId parent = place.tree->shapes[s].parent;
+                s = parent == none ? none : place.tree->shapes[parent].valuesAt;
+            }
+            return &expr.value;
+        default: return nullptr;
+    }
+}
+
+Value drawn(const Expr& expr, const Place& place) {
+    const Value lo = evaluate(expr.args[0], place), hi = evaluate(expr.args[1], place);
+    Value r = rules::interpolate(lo, hi, 0);
+    for (uint8_t i = 0; i < r.count; ++i)
+        r.n[i] = uniform(drawKey(expr, place, i), lo.n[lo.count > 1 ? i : 0], hi.n[hi.count > 1 ? i : 0]);
+    return r;
+}
+
+Value called(const Expr& expr, const Place& place) {
+    const Fn fn = static_cast<Fn>(expr.index);
+    if (fn == Fn::Count) {
+        const auto symbol = static_cast<size_t>(expr.args[0].value.num());
+        return Value::number(symbol < place.counts.size() ? static_cast<double>(place.counts[symbol]) : 0);
+    }
+    if (fn == Fn::If) return evaluate(expr.args[holds(expr.args[0], place) ? 1 : 2], place);
+    std::vector<Value> args;
+    args.reserve(expr.args.size());
+    for (const Expr& arg : expr.args) args.push_back(evaluate(arg, place));
+    return rules::applyFunction(fn, args);
+}
+
+/// Arithmetic on first components, which is what `rules::applyFunction` does to them.
+bool arithmetic(Fn fn, const Expr& expr, const Place& place, double& out) {
+    const auto arg = [&](size_t i) { return number(expr.args[i], place); };
+    switch (fn) {
+        case Fn::Add: out = arg(0) + arg(1); return true;
+        case Fn::Sub: out = arg(0) - arg(1); return true;
+        case Fn::Less: out = arg(0) < arg(1); return true;
+        case Fn::LessEq: out = arg(0) <= arg(1); return true;
+        case Fn::Greater: out = arg(0) > arg(1); return true;
+        case Fn::GreaterEq: out = arg(0) >= arg(1); return true;
+        case Fn::And: out = arg(0) != 0 && arg(1) != 0; return true;
+        case Fn::Or: out = arg(0) != 0 || arg(1) != 0; return true;
+        case Fn::Not: out = arg(0) == 0; return true;
+        default: return false;
+    }
+}
+
+}  // namespace
+
+Value evaluate(const Expr& expr, const Place& place) {
+    if (const Value* v = stored(expr, place)) return *v;
+    switch (expr.kind) {
+        case Kind::Scope: return Value::number(place.scope.size[static_cast<int>(expr.index)], Unit::Metre);
+        case Kind::Element: return rules::component(evaluate(expr.args[0], place), evaluate(expr.args[1], place));
+        case Kind::Tuple: {
+            std::vector<Value> parts;
+            parts.reserve(expr.args.size());
+            for (const Expr& arg : expr.args) parts.push_back(evaluate(arg, place));
+            return rules::tuple(parts);
+        }
+        case Kind::Unary:
+        case Kind::Binary:
+        case Kind::Call: return called(expr, place);
+        case Kind::Range: return drawn(expr, place);
+        case Kind::Ramp: return rules::interpolate(evaluate(expr.args[0], place), evaluate(expr.args[1], place), place.ramp);
+        default: return {};
+    }
+}
+
+double number(const Expr& expr, const Place& place) {
+    if (const Value* v = stored(expr, place)) return v->num();
+    switch (expr.kind) {
+        case Kind::Scope: return place.scope.size[static_cast<int>(expr.index)];
+        case Kind::Element:
+            if (const Value* v = stored(expr.args[0], place)) {
+                Value index;
+                index.n[0] = number(expr.args[1], place);
+                return rules::component(*v, index).num();
+            }
+            break;
+        case Kind::Ramp: {
+            const double a = number(expr.args[0], place), b = number(expr.args[1], place);
+            return a + (b - a) * place.ramp;
+        }
+        case Kind::Range: return uniform(drawKey(expr, place, 0), number(expr.args[0], place), number(expr.args[1], place));
+        case Kind::Unary:
+        case Kind::Binary: {
+            double out = 0;
+            if (arithmetic(static_cast<Fn>(expr.index), expr, place, out)) return out;
+            break;
+        }
+        default: break;
+    }
+    return evaluate(expr, place).num();
+}
+
+double wholeNumber(const Expr& expr, const Place& place) {
+    if (expr.kind != Kind::Range) return std::floor(number(expr, place) + 1e-9);
+    const double lo = std::ceil(number(expr.args[0], place)), hi = std::floor(number(expr.args[1], place));
+    if (hi <= lo) return lo;
+    return lo + std::floor(uniform(drawKey(expr, place, 0)) * (hi - lo + 1));
+}
+
+Vector vector(const Expr& expr, const Place& place, bool eachDraws) {
+    const Value v = evaluate(expr, place);
+    Vector r;
+    for (size_t i = 0; i < 3; ++i) {
+        const size_t from = v.count > 1 ? std::min<size_t>(i, v.count - 1u) : 0;
+        r.n[static_cast<int>(i)] = v.n[from];
+        r.unit[i] = v.units[from];
+    }
+    if (eachDraws && v.count == 1 && expr.kind == Kind::Range) {
+        const double lo = number(expr.args[0], place), hi = number(expr.args[1], place);
+        for (int i = 1; i < 3; ++i) r.n[i] = uniform(drawKey(expr, place, static_cast<uint64_t>(i)), lo, hi);
+    }
+    return r;
+}
+
+Mat3 rotation(const Value& v) {
+    if (v.kind == Value::Kind::Rotation) return {{v.n[0], v.n[1], v.n[2]}, {v.n[3], v.n[4], v.n[5]}, {v.n[6], v.n[7], v.n[8]}};
+    if (v.count == 1) return Mat3::rotation({0, 1, 0}, v.n[0]);
+    return Mat3::rotation({0, 0, 1}, v.n[2]) * Mat3::rotation({0, 1, 0}, v.n[1]) * Mat3::rotation({1, 0, 0}, v.n[0]);
+}
+
+}  // namespace sgm::derive

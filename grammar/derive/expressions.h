@@ -1,0 +1,43 @@
+// Expressions against a shape: its scope, inherited values, locals, chain position and random stream.
+// Enters: a checked Expr and where it stands. Leaves: values. Assumes kinds as `check` left them.
+// A range draws by key = hash(shape's key, attribute, component): a pure function, so order and neighbours can't matter.
+#pragma once
+
+#include <span>
+
+#include "grammar/derive/shape_tree.h"
+
+namespace sgm::derive {
+
+/// Where an expression stands.
+struct Place {
+    const ShapeTree* tree = nullptr;
+    std::span<const rules::Value> params;
+    std::span<const uint64_t> counts;        ///< derived shapes by symbol, for count(Name)
+    std::span<const rules::Value> locals;    ///< `for` variables and the i of `repeat`
+    Scope scope;                             ///< the matched scope
+    ShapeId valuesAt = none;                 ///< nearest shape with `with` values
+    uint64_t key = 0;                        ///< the stream that draws
+    double ramp = 0;                         ///< position in the chain, 0 first … 1 last
+};
+
+/// Any expression but a Figure.
+rules::Value evaluate(const rules::Expr& expr, const Place& place);
+/// The first component as a plain number; much cheaper than `evaluate` for arithmetic.
+double number(const rules::Expr& expr, const Place& place);
+inline bool holds(const rules::Expr& expr, const Place& place) { return number(expr, place) != 0; }
+/// A whole number: a range of integers draws one of them, both ends included; anything else is rounded down.
+double wholeNumber(const rules::Expr& expr, const Place& place);
+
+/// Three components with their units.
+struct Vector {
+    Vec3d n;
+    rules::Unit unit[3];
+};
+/// One number counts for every axis; with `eachDraws`, a range of numbers draws every component by itself.
+Vector vector(const rules::Expr& expr, const Place& place, bool eachDraws);
+
+/// The rotation that an angle (about y), three angles (x, then y, then z) or a rotation means.
+Mat3 rotation(const rules::Value& value);
+
+}  // namespace sgm::derive

@@ -1,0 +1,119 @@
+#include "grammar/derive/joints.h"
+
+#include <cmath>
+
+#include "modeler/core/conventions.h"
+#include "modeler/core/random.h"
+
+namespace sgm::derive {
+namespace {
+
+constexpr double cell_m = 64 * jointTolerance_m;  // wide, so that few joints stand near a cell's border
+constexpr double cosineTolerance = 1e-9;
+
+bool directed(Vec3d d) { return d != Vec3d{}; }
+
+uint64_t cellHash(int64_t x, int64_t y, int64_t z) {
+    // One multiply a coordinate; the final mix spreads neighbours.
+    const uint64_t h = mix(static_cast<uint64_t>(x) * 0x9e3779b97f4a7c15ull ^ static_cast<uint64_t>(y) * 0xc2b2ae3d27d4eb4full ^
+                           static_cast<uint64_t>(z) * 0x165667b19e3779f9ull);
+    return h ? h : 1;
+}
+
+/// Cells within tolerance of p: one nearly always, up to eight at a corner.
+template <class F>
+void forCells(Vec3d p, F f) {
+    int64_t lo[3], hi[3];
+    for (int i = 0; i < 3; ++i) {
+        lo[i] = static_cast<int64_t>(std::floor((p[i] - jointTolerance_m) / cell_m));
+        hi[i] = static_cast<int64_t>(std::floor((p[i] + jointTolerance_m) / cell_m));
+    }
+    for (int64_t x = lo[0]; x <= hi[0]; ++x)
+        for (int64_t y = lo[1]; y <= hi[1]; ++y)
+            for (int64_t z = lo[2]; z <= hi[2]; ++z) f(cellHash(x, y, z));
+}
+
+uint64_t cellOf(Vec3d p) {
+    return cellHash(static_cast<int64_t>(std::floor(p.x / cell_m)), static_cast<int64_t>(std::floor(p.y / cell_m)),
+                    static_cast<int64_t>(std::floor(p.z / cell_m)));
+}
+
+/// Round coordinates, where most joints stand, then lie well within a cell, and forCells looks at one.
+Vec3d offset(Vec3d p) { return p + Vec3d{cell_m, cell_m, cell_m} * 0.43; }
+
+/// The smallest rotation that takes unit a to unit b; half a turn goes about `up` where it can.
+Mat3 turnTo(Vec3d a, Vec3d b, const Mat3& axes) {
+    const double c = dot(a, b);
+    if (c > 1 - cosineTolerance) return {};
+    if (c > -1 + cosineTolerance) return Mat3::rotation(cross(a, b), std::acos(c));
+    const Vec3d axis = std::abs(dot(axes.y, a)) < 0.5 ? axes.y : axes.x;
+    return Mat3::rotation(axis - a * dot(axis, a), pi);
+}
+
+/// Half the length of the box along `direction`.
+double reach(const Mat3& axes, Vec3d size, Vec3d direction) {
+    return 0.5 * (std::abs(dot(axes.x, direction)) * size.x + std::abs(dot(axes.y, direction)) * size.y +
+                  std::abs(dot(axes.z, direction)) * size.z);
+}
+
+}  // namespace
+
+bool faceEachOther(const Joint& a, const Joint& b) {
+    if (!directed(a.direction) || !directed(b.direction)) return false;
+    const Vec3d gap = a.point - b.point;
+    return dot(gap, gap) <= jointTolerance_m * jointTolerance_m && dot(a.direction, b.direction) < -1 + 1e-6;
+}
+
+std::optional<JointIndex::Entry> JointIndex::search(const ShapeTree& tree, uint64_t cell, const Joint& joint) const {
+    const size_t mask = slots_.size() - 1;
+    for (size_t i = cell & mask; slots_[i].cell; i = (i + 1) & mask) {
+        const Slot& slot = slots_[i];
+        if (slot.cell != cell || tree.shapes[slot.entry.shape].dead) continue;
+        if (faceEachOther(joint, tree.joint(slot.entry.shape, slot.entry.joint))) return slot.entry;
+    }
+    return std::nullopt;
+}
+
+void JointIndex::insert(Slot slot) {
+    const size_t mask = slots_.size() - 1;
+    size_t i = slot.cell & mask;
+    while (slots_[i].cell) i = (i + 1) & mask;
+    slots_[i] = slot;
+}
+
+std::optional<JointIndex::Entry> JointIndex::add(const ShapeTree& tree, Entry entry, const Joint& joint) {
+    if (2 * (used_ + 1) > slots_.size()) {
+        std::vector<Slot> old(std::max<size_t>(64, slots_.size() * 4));
+        old.swap(slots_);
+        for (const Slot& slot : old)
+            if (slot.cell) insert(slot);
+    }
+    std::optional<Entry> partner;
+    forCells(offset(joint.point), [&](uint64_t cell) {
+        if (!partner) partner = search(tree, cell, joint);
+    });
+    insert({cellOf(offset(joint.point)), entry});
+    ++used_;
+    return partner;
+}
+
+uint32_t opposedFace(const Mat3& axes, Vec3d direction) {
+    uint32_t best = 0;
+    double least = 2;
+    for (uint32_t j = 0; j < faceCount; ++j) {
+        const double c = dot(axes * faceDirection(j), direction);
+        if (c < least - 1e-9) least = c, best = j;
+    }
+    return best;
+}
+
+Scope mate(const Mating& m, const Mat3& asked, Vec3d size) {
+    Scope scope{m.ours.point, asked, size};
+    if (directed(m.ours.direction) && directed(m.theirs.facing))
+        scope.axes = turnTo(asked * m.theirs.facing, -m.ours.direction, asked) * asked;
+    const Vec3d inward = m.ours.direction * (-m.overlap * reach(scope.axes, size, m.ours.direction));
+    scope.centre = m.ours.point + m.moved_m + inward - scope.axes * (m.theirs.at * scope.half());
+    return scope;
+}
+
+}  // namespace sgm::derive

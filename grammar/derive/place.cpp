@@ -1,0 +1,204 @@
+// Putting shapes: where a newcomer stands (SG-M III-F) and what it is bonded to.
+#include "grammar/derive/interpreter.h"
+#include "modeler/core/random.h"
+
+namespace sgm::derive {
+
+using rules::Attribute;
+using rules::Content;
+using rules::Element;
+using Id = rules::Operation::Id;
+
+namespace {
+
+/// Content that later elements join must not be rewritten or displaced together with them: it gets a node of its own.
+bool needsGroup(const Element& e, const Shape& shape) {
+    return shape.live || shape.extras != none || (e.content.kind == Content::Kind::Group && e.live != rules::none);
+}
+
+/// The matched scope as prefix attributes leave it.
+Scope changedScope(const std::vector<Attribute>& prefix, Place place) {
+    for (const Attribute& a : prefix) {
+        if (a.args.empty()) continue;
+        if (a.id == Id::Turn) place.scope.axes = place.scope.axes * rotation(evaluate(a.args[0], place));
+        if (a.id != Id::Size && a.id != Id::Move) continue;
+        const Vector v = vector(a.args[0], place, a.id == Id::Move);
+        Vec3d m;
+        for (int i = 0; i < 3; ++i) m[i] = v.unit[i] == rules::Unit::Share ? v.n[i] * place.scope.size[i] : v.n[i];
+        if (a.id == Id::Size) place.scope.size = m;
+        else place.scope.centre += place.scope.axes * m;
+    }
+    return place.scope;
+}
+
+}  // namespace
+
+/// Attributes without a shape change the matched one.
+void Interpreter::annotate(const Element& e, Frame& frame, uint64_t key) {
+    Place place = frame.place;
+    place.key = key;
+    frame.place.scope = changedScope(e.prefix, place);
+    Looks looks;
+    looks.scope = frame.place.scope;
+    for (const auto* list : {&e.prefix, &e.attributes})
+        for (const Attribute& a : *list)
+            if (a.id == Id::Displace || a.id == Id::With || a.id == Id::Tag) readAttribute(a, place, looks);
+    const Extras& x = looks.extras;
+    if (x.displace.empty() && x.values.empty() && x.tags.empty()) return;
+    Extras& all = builder_.extras(frame.node);
+    all.displace.insert(all.displace.end(), x.displace.begin(), x.displace.end());
+    all.values.insert(all.values.end(), x.values.begin(), x.values.end());
+    all.tags.insert(all.tags.end(), x.tags.begin(), x.tags.end());
+    if (!x.values.empty()) frame.place.valuesAt = builder_.tree().shapes[frame.node].valuesAt = frame.node;
+}
+
+bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint64_t key, bool followed) {
+    Place place = frame.place;
+    place.key = key;
+    if (!e.prefix.empty()) place.scope = changedScope(e.prefix, place);
+    Looks looks;
+    for (const Attribute& a : e.prefix)
+        if (a.id == Id::With || a.id == Id::Tag) readAttribute(a, place, looks);
+    if (!readLooks(e, factsOf(e), place, looks)) return false;
+    Shape shape = shapeOf(e, looks, place, key);
+    shape.scope = looks.scope;
+    shape.scope.centre += looks.moved_m;
+    shape.parent = target.node;
+    if (followed && needsGroup(e, shape)) {
+        Shape group;
+        group.key = combine(key, hashText("group"));
+        const auto [at, fresh] = labels_.try_emplace("group", static_cast<uint32_t>(labels_.size()));
+        if (fresh) builder_.tree().labels.push_back(at->first);
+        group.label = at->second;
+        group.parent = target.node;
+        group.scope = shape.scope;
+        group.span = e.span;
+        shape.parent = builder_.add(group);
+        if (shape.parent == none) return false;
+    }
+    const ShapeId id = builder_.add(shape);
+    if (id == none) return false;
+    builder_.meetNeighbours(shape.parent);
+    builder_.meetNeighbours(id);
+    if (!fill(e, id, frame)) return false;
+    target = {shape.parent == target.node ? id : shape.parent, id};
+    remember(e, frame, id, centreJoint);
+    return true;
+}
+
+ShapeId Interpreter::hostOf(const ElementFacts& facts, const Frame& frame, const Target& target, const Place& place) const {
+    if (!facts.on || facts.on->host == Attribute::Host::Matched) return target.host;
+    if (facts.on->host == Attribute::Host::Last) return frame.links->last;
+    const auto direction = static_cast<size_t>(evaluate(facts.on->args[0], place).num());
+    if (direction >= faceCount || frame.links->toward[direction].empty()) return frame.links->root;
+    const auto& candidates = frame.links->toward[direction];
+    return candidates[pick(combine(place.key, hashText("on")), candidates.size())];
+}
+
+uint32_t Interpreter::jointNamed(const rules::Expr& expr, ShapeId host, const Place& place) {
+    const rules::Value v = evaluate(expr, place);
+    if (v.kind != rules::Value::Kind::Word) return static_cast<uint32_t>(v.num());
+    const uint32_t joint = builder_.tree().findJoint(host, v.text);
+    if (joint == none) builder_.fail(Error::Kind::Input, "'" + builder_.tree().labels[builder_.tree().shapes[host].label] + "' has no joint '" + v.text + "'", expr.span);
+    return joint;
+}
+
+/// The host's joints that `at` may take: a named one unless a directed bond closed it; of `free(…)` those nobody met.
+std::vector<uint32_t> Interpreter::openJoints(const Attribute& at, ShapeId host, const Place& place) {
+    std::vector<uint32_t> joints;
+    const ShapeTree& tree = builder_.tree();
+    for (const rules::Expr& e : at.joints)
+        if (const uint32_t j = jointNamed(e, host, place); j != none) joints.push_back(j);
+    if (at.free && at.joints.empty())
+        for (uint32_t j = 0; j < tree.jointCount(host); ++j)
+            if (tree.joint(host, j).direction != Vec3d{}) joints.push_back(j);
+    const auto taken = [&](uint32_t j) { return at.free ? tree.joint(host, j).bond != none : tree.closed(host, j); };
+    joints.erase(std::remove_if(joints.begin(), joints.end(), taken), joints.end());
+    return joints;
+}
+
+rules::Joint Interpreter::jointShares(uint32_t joint, uint32_t jointSet) const {
+    if (joint >= firstNamedJoint) return builder_.tree().namedJoints[jointSet][joint - firstNamedJoint];
+    return {std::string(faceName(joint)), faceDirection(joint), faceDirection(joint)};
+}
+
+uint32_t Interpreter::theirJoint(const ElementFacts& facts, const Joint& ours, const Mat3& axes, const Place& place) {
+    if (!facts.to) return ours.direction == Vec3d{} ? centreJoint : opposedFace(axes, ours.direction);
+    const rules::Value v = evaluate(facts.to->joints[0], place);
+    if (v.kind != rules::Value::Kind::Word) return static_cast<uint32_t>(v.num());
+    const auto& named = builder_.tree().namedJoints[facts.jointSet];
+    for (uint32_t i = 0; i < named.size(); ++i)
+        if (named[i].name == v.text) return firstNamedJoint + i;
+    builder_.fail(Error::Kind::Input, "the newcomer has no joint '" + v.text + "'", facts.to->span);
+    return none;
+}
+
+bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& target, uint64_t key) {
+    ElementFacts& facts = factsOf(e);
+    Place place = frame.place;
+    place.key = key;
+    const ShapeId host = hostOf(facts, frame, target, place);
+    const bool whole = frame.wholeContent && !facts.at && !facts.on;
+    place.scope = whole ? contentBox(host) : builder_.tree().shapes[host].scope;
+    place.valuesAt = builder_.tree().shapes[host].valuesAt;
+
+    uint32_t oursIndex = centreJoint;
+    if (facts.at) {
+        const auto open = openJoints(*facts.at, host, place);
+        if (builder_.failed()) return false;
+        if (open.empty()) return true;  // nothing grows where a bond has closed the joint
+        oursIndex = open[open.size() == 1 ? 0 : pick(combine(key, hashText("at")), open.size())];
+    }
+    Looks looks;
+    if (!readLooks(e, facts, place, looks)) return false;
+    Mating mating;
+    mating.ours = builder_.tree().joint(host, oursIndex);
+    if (whole) mating.ours.point = place.scope.centre;
+    mating.moved_m = looks.moved_m;
+    mating.overlap = looks.overlap;
+    const uint32_t theirs = theirJoint(facts, mating.ours, looks.scope.axes, place);
+    if (theirs == none) return false;
+    mating.theirs = jointShares(theirs, facts.jointSet);
+
+    Shape shape = shapeOf(e, looks, place, key);
+    shape.parent = target.node;
+    shape.scope = mate(mating, looks.scope.axes, looks.scope.size);
+    const ShapeId id = builder_.add(shape);
+    if (id == none) return false;
+    builder_.bond(host, oursIndex, id, theirs);
+    builder_.meetNeighbours(id);
+    remember(e, frame, id, oursIndex);
+    return fill(e, id, frame);
+}
+
+/// Keeps the chain's books: what `last`, `any(d)` and the next step speak of.
+void Interpreter::remember(const Element& e, const Frame& frame, ShapeId id, uint32_t ours) {
+    Links& links = *frame.links;
+    links.last = id;
+    if (ours < faceCount) links.placed[ours].push_back(id);
+    if (e.live == rules::none) return;
+    const bool own = e.live == builder_.tree().shapes[links.root].symbol;
+    if (own || !links.ownSymbol) links.newest = id;
+    links.ownSymbol = links.ownSymbol || own;
+}
+
+/// The box, in the root's axes, around every solid of its content.
+Scope Interpreter::contentBox(ShapeId root) const {
+    const ShapeTree& tree = builder_.tree();
+    const Scope& own = tree.shapes[root].scope;
+    const Mat3 localFromWorld = own.axes.transposed();
+    Box3d box;
+    for (ShapeId s = root; s != none; s = tree.next(s, root)) {
+        if (tree.shapes[s].solid == none) continue;
+        const Scope& scope = tree.shapes[s].scope;
+        const Mat3 axes = localFromWorld * scope.axes;
+        const Vec3d centre = localFromWorld * (scope.centre - own.centre), h = scope.half();
+        Vec3d reach;
+        for (int i = 0; i < 3; ++i) reach[i] = std::abs(axes.x[i]) * h.x + std::abs(axes.y[i]) * h.y + std::abs(axes.z[i]) * h.z;
+        box = hull(box, Box3d{centre - reach, centre + reach});
+    }
+    if (box.empty()) return own;
+    return {own.centre + own.axes * box.centre(), own.axes, box.size()};
+}
+
+}  // namespace sgm::derive

@@ -1,0 +1,161 @@
+// Matching and applying rules: single applications, chains of `repeat`, and their `finally`.
+#include "grammar/derive/interpreter.h"
+#include "modeler/core/random.h"
+
+namespace sgm::derive {
+
+using rules::Element;
+using rules::Rule;
+
+namespace {
+
+bool asksForCount(const rules::Expr& e) {
+    if (e.kind == rules::Expr::Kind::Call && static_cast<rules::Fn>(e.index) == rules::Fn::Count) return true;
+    for (const rules::Expr& arg : e.args)
+        if (asksForCount(arg)) return true;
+    return false;
+}
+
+}  // namespace
+
+Interpreter::Interpreter(TreeBuilder& builder, std::span<const rules::Value> params)
+    : builder_(builder), grammar_(*builder.derivation().grammar), params_(params) {
+    builder_.tree().namedJoints.emplace_back();
+    for (const Rule& rule : grammar_.rules) {
+        RuleFacts facts;
+        facts.hash = hashText(rule.name);
+        facts.readsWorld = rule.beside != rules::none || (rule.when && asksForCount(*rule.when));
+        facts_.push_back(facts);
+    }
+}
+
+Place Interpreter::placeOf(ShapeId id) const {
+    const Shape& s = builder_.tree().shapes[id];
+    return {&builder_.tree(), params_, builder_.counts(), locals_, s.scope, s.valuesAt, s.key, 0};
+}
+
+void Interpreter::start(const rules::Start& start, uint64_t seed) {
+    Shape root;
+    root.symbol = start.symbol;
+    root.key = combine(mix(seed), hashText(grammar_.symbols[start.symbol].name));
+    root.label = static_cast<uint32_t>(labels_.try_emplace(grammar_.symbols[start.symbol].name, 0).first->second);
+    builder_.tree().labels.push_back(grammar_.symbols[start.symbol].name);
+    root.span = start.span;
+    builder_.at(none, none, none);
+    const ShapeId id = builder_.add(root);
+    if (id == none) return;
+    builder_.meetNeighbours(id);
+    locals_.assign(start.locals, {});
+    Links links;
+    links.root = links.last = links.newest = id;
+    Frame frame{id, id, combine(root.key, hashText("start")), placeOf(id), &links, false};
+    runBody(start.body, frame, 0);
+}
+
+bool Interpreter::isBeside(ShapeId shape, rules::SymbolId symbol) const {
+    const ShapeTree& tree = builder_.tree();
+    const uint32_t body = tree.shapes[shape].body;
+    for (uint32_t i = tree.bodies[body].firstBond; i != none;) {
+        const Bond& bond = tree.bonds[i];
+        const int mine = tree.shapes[bond.shape[0]].body == body ? 0 : 1;
+        // The neighbour, what it wraps and what wraps it stand at one place.
+        const uint32_t theirs = tree.shapes[bond.shape[1 - mine]].body;
+        const ShapeId owner = tree.bodies[theirs].owner;
+        for (ShapeId s = owner; s != none && !tree.shapes[owner].dead;) {
+            if (tree.shapes[s].symbol == symbol && !tree.shapes[s].dead) return true;
+            const ShapeId child = tree.shapes[s].firstChild;
+            s = child != none && tree.shapes[child].body == theirs ? child : none;
+        }
+        i = bond.next[mine];
+    }
+    return false;
+}
+
+/// False when every joint is closed on which the body's own elements (not those in loops) would grow.
+bool Interpreter::canGrow(const rules::Body& body, ShapeId host, const Place& place) {
+    if (!body.grows) return true;
+    bool asked = false;
+    for (const Elements& sibling : body.siblings)
+        for (const Element& e : sibling) {
+            if (e.kind != Element::Kind::Shape || e.op == rules::Operator::None) continue;
+            const ElementFacts& facts = factsOf(e);
+            if (!facts.at || facts.on) return true;
+            if (!openJoints(*facts.at, host, place).empty()) return true;
+            asked = true;
+        }
+    return !asked;
+}
+
+bool Interpreter::matches(uint32_t index, ShapeId id) {
+    const Rule& rule = grammar_.rules[index];
+    const Shape& s = builder_.tree().shapes[id];
+    if (s.symbol != rule.symbol || (rule.repeat && s.chainRule == index)) return false;
+    if (rule.beside != rules::none && !isBeside(id, rule.beside)) return false;
+    if (locals_.size() < rule.locals) locals_.resize(rule.locals);
+    return canGrow(rule.body, id, placeOf(id));
+}
+
+bool Interpreter::runLogged(const rules::Body& body, const Frame& frame, Step step) {
+    Derivation& d = builder_.derivation();
+    const auto index = static_cast<uint32_t>(d.steps.size());
+    step.shape = frame.matched;
+    step.firstMade = static_cast<ShapeId>(d.tree.shapes.size());
+    ++(step.morphic ? d.morphic : d.classic);
+    d.steps.push_back(step);
+    builder_.at(step.rule, step.shape, index);
+    const bool good = builder_.work() && runBody(body, frame, 0);
+    d.steps[index].madeCount = static_cast<uint32_t>(d.tree.shapes.size()) - step.firstMade;
+    return good;
+}
+
+void Interpreter::apply(uint32_t index, ShapeId id, uint32_t generation) {
+    const Rule& rule = grammar_.rules[index];
+    builder_.tree().shapes[id].live = false;
+    locals_.assign(rule.locals, {});
+    if (rule.repeat) return runChain(index, id, generation);
+    chainRule_ = none;
+    if (!rule.body.grows) builder_.clearContent(id);
+    Links links;
+    links.root = links.last = links.newest = id;
+    const uint64_t key = combine(combine(builder_.tree().shapes[id].key, facts_[index].hash), 0);
+    runLogged(rule.body, {id, id, key, placeOf(id), &links, false}, {index, id, generation, 0, rule.morphic, false, 0, 0});
+}
+
+void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
+    const Rule& rule = grammar_.rules[index];
+    chainRule_ = index;
+    builder_.at(index, root, none);
+    const double steps = wholeNumber(*rule.repeat, placeOf(root));
+    const uint64_t key = combine(builder_.tree().shapes[root].key, facts_[index].hash);
+    Links links;
+    links.root = links.last = links.newest = root;
+    for (double i = 1; i <= steps; ++i) {
+        const ShapeId host = links.newest;
+        Frame frame{host, rule.body.grows ? root : host, combine(key, static_cast<uint64_t>(i)), placeOf(host), &links, false};
+        frame.place.ramp = steps > 1 ? (i - 1) / (steps - 1) : 0;
+        if (rule.stepLocal != none) {
+            locals_[rule.stepLocal] = rules::Value::number(i);
+            locals_[rule.stepLocal].integer = true;
+        }
+        if (!canGrow(rule.body, host, frame.place)) break;
+        if (!rule.body.grows) builder_.clearContent(host), builder_.tree().shapes[host].live = false;
+        links.ownSymbol = false;
+        if (!runLogged(rule.body, frame, {index, host, generation, static_cast<uint32_t>(i), rule.morphic, false, 0, 0})) return;
+        for (size_t d = 0; d < faceCount; ++d)
+            if (!links.placed[d].empty()) links.toward[d] = std::exchange(links.placed[d], {});
+    }
+    if (rule.finally_) runFinally(index, root, links, generation);
+}
+
+void Interpreter::runFinally(uint32_t index, ShapeId root, Links& links, uint32_t generation) {
+    const Rule& rule = grammar_.rules[index];
+    if (!rule.finally_->grows && rule.finally_->siblings.size() && !rule.finally_->siblings[0].empty() &&
+        rule.finally_->siblings[0][0].content.kind != rules::Content::Kind::None)
+        builder_.clearContent(root);
+    const uint64_t key = combine(combine(builder_.tree().shapes[root].key, facts_[index].hash), hashText("finally"));
+    Frame frame{root, root, key, placeOf(root), &links, true};
+    frame.place.ramp = 1;
+    runLogged(*rule.finally_, frame, {index, root, generation, 0, rule.finallyMorphic, true, 0, 0});
+}
+
+}  // namespace sgm::derive

@@ -1,0 +1,132 @@
+#include "grammar/derive/shape_tree.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace sgm::derive {
+
+Vec3d faceDirection(uint32_t joint) {
+    Vec3d d;
+    if (joint < faceCount) d[static_cast<int>(joint / 2)] = joint % 2 ? -1 : 1;
+    return d;
+}
+
+std::string_view faceName(uint32_t joint) {
+    constexpr std::string_view names[] = {"+x", "-x", "+y", "-y", "+z", "-z", "centre"};
+    return names[joint];
+}
+
+uint32_t ShapeTree::jointCount(ShapeId id) const {
+    return firstNamedJoint + static_cast<uint32_t>(namedJoints[shapes[id].jointSet].size());
+}
+
+Joint ShapeTree::joint(ShapeId id, uint32_t index) const {
+    const Shape& s = shapes[id];
+    if (index < firstNamedJoint) {
+        const Vec3d d = faceDirection(index);
+        return {faceName(index), s.scope.point(d), s.scope.axes * d, bodies[s.body].bond[index]};
+    }
+    const uint32_t i = index - firstNamedJoint;
+    const rules::Joint& named = namedJoints[s.jointSet][i];
+    return {named.name, s.scope.point(named.at), s.scope.axes * named.facing, namedBonds[s.firstNamedBond + i]};
+}
+
+uint32_t ShapeTree::findJoint(ShapeId id, std::string_view name) const {
+    for (uint32_t j = 0; j < firstNamedJoint; ++j)
+        if (faceName(j) == name) return j;
+    const auto& named = namedJoints[shapes[id].jointSet];
+    for (uint32_t i = 0; i < named.size(); ++i)
+        if (named[i].name == name) return firstNamedJoint + i;
+    return none;
+}
+
+bool ShapeTree::closed(ShapeId id, uint32_t index) const {
+    const uint32_t bond = index < firstNamedJoint ? bodies[shapes[id].body].bond[index]
+                                                  : namedBonds[shapes[id].firstNamedBond + index - firstNamedJoint];
+    return bond != none && bonds[bond].directed;
+}
+
+ShapeId ShapeTree::next(ShapeId id, ShapeId root, bool over) const {
+    if (!over && shapes[id].firstChild != none) return shapes[id].firstChild;
+    for (; id != root; id = shapes[id].parent)
+        if (shapes[id].nextSibling != none) return shapes[id].nextSibling;
+    return none;
+}
+
+namespace {
+
+/// Counted on the fly while the tree still grows.
+uint32_t occurrenceOf(const ShapeTree& tree, ShapeId id) {
+    const Shape& s = tree.shapes[id];
+    if (s.occurrence || s.parent == none) return s.occurrence;
+    uint32_t n = 1;
+    for (ShapeId c = tree.shapes[s.parent].firstChild; c != none && c != id; c = tree.shapes[c].nextSibling)
+        n += tree.shapes[c].label == s.label;
+    return n;
+}
+
+}  // namespace
+
+std::string ShapeTree::path(ShapeId id) const {
+    constexpr uint32_t shown = 12;  // labels kept at either end
+    std::vector<ShapeId> line;
+    const uint32_t depth = shapes[id].depth;
+    for (ShapeId s = id; s != none; s = shapes[s].parent)
+        if (shapes[s].depth < shown || depth - shapes[s].depth < shown) line.push_back(s);
+    std::string text;
+    for (auto it = line.rbegin(); it != line.rend(); ++it) {
+        const Shape& s = shapes[*it];
+        if (!text.empty()) text += '/';
+        if (it != line.rbegin() && s.depth > shapes[it[-1]].depth + 1) text += "…/";
+        text += labels[s.label];
+        if (const uint32_t n = occurrenceOf(*this, *it); n > 1) text += '[' + std::to_string(n) + ']';
+    }
+    return text;
+}
+
+namespace {
+
+/// One part of a path: label and occurrence.
+struct Part {
+    std::string_view label;
+    uint32_t occurrence = 1;
+};
+
+Part readPart(std::string_view text) {
+    Part part{text, 1};
+    const size_t open = text.find('[');
+    if (open == std::string_view::npos) return part;
+    part.label = text.substr(0, open);
+    std::from_chars(text.data() + open + 1, text.data() + text.size(), part.occurrence);
+    return part;
+}
+
+ShapeId findBelow(const ShapeTree& tree, ShapeId under, const Part& part) {
+    for (ShapeId c = tree.shapes[under].firstChild; c != none; c = tree.shapes[c].nextSibling)
+        if (tree.labels[tree.shapes[c].label] == part.label && occurrenceOf(tree, c) == part.occurrence) return c;
+    uint32_t left = part.occurrence;
+    for (ShapeId s = tree.next(under, under); s != none; s = tree.next(s, under))
+        if (tree.labels[tree.shapes[s].label] == part.label && --left == 0) return s;
+    return none;
+}
+
+}  // namespace
+
+ShapeId ShapeTree::find(std::string_view path) const {
+    ShapeId at = none;
+    while (!path.empty()) {
+        const size_t cut = std::min(path.find('/'), path.size());
+        const Part part = readPart(path.substr(0, cut));
+        path.remove_prefix(std::min(cut + 1, path.size()));
+        if (at == none) {
+            if (labels[shapes[0].label] != part.label) return none;
+            at = 0;
+        } else {
+            at = findBelow(*this, at, part);
+        }
+        if (at == none) return none;
+    }
+    return at;
+}
+
+}  // namespace sgm::derive

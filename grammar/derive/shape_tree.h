@@ -1,0 +1,145 @@
+// The shape tree: scopes, joints (SG-M eq. 15), bonds (eq. 16), and the nodes they join.
+// Enters: what the interpreter places. Leaves: flat arrays that `lower` and `sgm tree` walk. Assumes parents come before
+// their children. Nothing here recurses: a chain may be thousands of shapes deep.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "grammar/rules/grammar.h"
+#include "modeler/core/vec.h"
+
+namespace sgm::derive {
+
+using ShapeId = uint32_t;
+inline constexpr uint32_t none = rules::none;
+
+/// An oriented box: centre, axes, size in metres.
+struct Scope {
+    Vec3d centre;
+    Mat3 axes;             ///< world from local
+    Vec3d size{1, 1, 1};   ///< metres, > 0
+
+    Vec3d half() const { return size * 0.5; }
+    /// The point at `shares` (−1 … 1) of the half-size.
+    Vec3d point(Vec3d shares) const { return centre + axes * (shares * half()); }
+    friend bool operator==(const Scope&, const Scope&) = default;
+};
+
+/// Joints 0 … 5 are the faces +x −x +y −y +z −z, 6 is the centre; 7 and on are those the symbol or its solid names.
+inline constexpr uint32_t faceCount = 6, centreJoint = 6, firstNamedJoint = 7;
+
+/// A joint point J = (P, D), eq. 15, in the object's frame.
+struct Joint {
+    std::string_view name;  ///< "+x" … "-z", "centre", or declared
+    Vec3d point;
+    Vec3d direction;        ///< unit; zero meets any other
+    uint32_t bond = none;   ///< the first bond that met it
+};
+
+/// B = (J₁, J₂) ⇔ J₁.P = J₂.P ∧ J₁.D = −J₂.D, eq. 16, or a D of zero, which meets any other.
+/// Where the grammar says `shift`, `overlap` or `move`, J₁.P stands for the moved point J₁.P + shift.
+/// A bond of two directed joints closes both: nothing more is put there. A bond with a D of zero at either end (what
+/// merges cave cells and puffs) leaves the joint open: a rule that names it may meet it again, `free(…)` won't pick it.
+struct Bond {
+    ShapeId shape[2];
+    uint32_t joint[2];     ///< indices of the shapes' joints
+    Vec3d shift;           ///< S_J and what else moved the mating point, metres, in the object's frame
+    bool directed = true;  ///< both joints have a direction
+    uint32_t next[2];      ///< next bond of either shape's body, or none
+};
+
+/// An evaluated solid, numbers bound.
+struct SolidValue {
+    rules::Solid::Kind kind = rules::Solid::Kind::Nil;
+    const field::Primitive* primitive = nullptr;
+    std::vector<rules::Value> args;  ///< one per row parameter
+    std::vector<SolidValue> parts;   ///< Morph: two; Combination: in order
+    rules::Operator op = rules::Operator::None;
+    double amount = 0;               ///< Morph: a in 0 … 1
+};
+
+struct Displacement {
+    bool fbm = false;
+    double amplitude_m = 0, frequency = 1;
+    int octaves = 2;
+};
+
+/// What few shapes have.
+struct Extras {
+    std::vector<Displacement> displace;  ///< acts on the node's whole content
+    std::vector<std::pair<std::string, rules::Value>> values;  ///< `with`
+    std::vector<std::string> tags;
+};
+
+/// A node of the shape tree. Its field is its own solid combined with its children in order.
+struct Shape {
+    uint64_t key = 0;                      ///< hash(parent's key, rule, label, ordinal, repeat index): its random stream
+    ShapeId parent = none;
+    ShapeId firstChild = none, lastChild = none, nextSibling = none;  ///< children in joining order
+    rules::SymbolId symbol = rules::none;  ///< none for an anonymous solid or group
+    uint32_t label = 0;                    ///< index into ShapeTree::labels: symbol or primitive name
+    uint32_t occurrence = 0;               ///< 1 for the first child of this label under its parent; 0: not yet counted
+    uint32_t depth = 0;                    ///< 0 at the root
+    uint32_t solid = none;                 ///< index into ShapeTree::solids
+    uint32_t material = none;              ///< index into Derivation::materials; none inherits
+    uint32_t extras = none;                ///< index into ShapeTree::extras
+    ShapeId valuesAt = none;               ///< nearest shape, itself or above, that sets values by `with`
+    uint32_t body = none;                  ///< index into ShapeTree::bodies
+    uint32_t jointSet = 0;                 ///< index into ShapeTree::namedJoints
+    uint32_t firstNamedBond = none;        ///< index into ShapeTree::namedBonds, one a named joint
+    uint32_t madeBy = none;                ///< step that made it; none for the start
+    uint32_t chainRule = none;             ///< the `repeat` rule whose chain it is a link of: starts no such chain itself
+    rules::Operator op = rules::Operator::None;  ///< how it joins what its parent holds so far; None: as its content
+    bool live = false;                     ///< rules may still rewrite it
+    bool dead = false;                     ///< replaced; swept away before `derive` returns
+    double amount = 0.5;                   ///< for op Morph: a (`by`)
+    double blend_m = 0;                    ///< melts into what stands with this radius
+    Scope scope;
+    syntax::SourceSpan span;               ///< the text that made it
+};
+
+/// The joints of one place in space, shared by a shape and the content that fills its scope exactly: A, rewritten to a
+/// B of the same scope, hands its bonds on to B.
+struct Body {
+    ShapeId owner = none;        ///< the first shape that stood here
+    uint32_t bond[7];            ///< by joint: the first bond that met it, or none
+    uint32_t firstBond = none;   ///< list of all its bonds, linked by Bond::next
+    Body() { for (uint32_t& b : bond) b = none; }
+};
+
+/// The shape tree; shapes[0] is the root.
+struct ShapeTree {
+    std::vector<Shape> shapes;
+    std::vector<Bond> bonds;
+    std::vector<Body> bodies;
+    std::vector<SolidValue> solids;
+    std::vector<Extras> extras;
+    std::vector<std::string> labels;
+    std::vector<std::vector<rules::Joint>> namedJoints;  ///< sets of declared joints; set 0 is empty
+    std::vector<uint32_t> namedBonds;  ///< first bond of each named joint, or none
+
+    const SolidValue* solidOf(ShapeId id) const { return shapes[id].solid == none ? nullptr : &solids[shapes[id].solid]; }
+    const Extras* extrasOf(ShapeId id) const { return shapes[id].extras == none ? nullptr : &extras[shapes[id].extras]; }
+    /// The joints of a shape are 0 … jointCount − 1.
+    uint32_t jointCount(ShapeId id) const;
+    Joint joint(ShapeId id, uint32_t index) const;
+    /// The joint called `name`, or none.
+    uint32_t findJoint(ShapeId id, std::string_view name) const;
+    /// True when a directed bond has closed the joint.
+    bool closed(ShapeId id, uint32_t index) const;
+    /// "Cave/Cell[3]": labels from the root, occurrences from 2 on in brackets; the middle of very deep paths is elided.
+    std::string path(ShapeId id) const;
+    /// The shape at a path; where no child matches a part, the n-th descendant of that label in tree order.
+    ShapeId find(std::string_view path) const;
+    /// The next shape in tree order (a node, then its children), or none; skips the children of `id` when `over`.
+    ShapeId next(ShapeId id, ShapeId root = 0, bool over = false) const;
+};
+
+/// Local direction of a face joint: +x −x +y −y +z −z; zero for the centre.
+Vec3d faceDirection(uint32_t joint);
+/// "+x" … "-z", "centre".
+std::string_view faceName(uint32_t joint);
+
+}  // namespace sgm::derive
