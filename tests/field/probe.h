@@ -105,7 +105,7 @@ inline double distance(const Box3f& box, Vec3f p) {
 inline void expectPromises(const Graph& graph, const Field& field, Box3d region, uint64_t key, const std::string& what, bool solid = true) {
     SCOPED_TRACE(what);
     Draws draw(key);
-    const double size = length(region.size());
+    const double size = std::max(length(region.size()), 0.1);
     std::vector<Vec3f> points;
     for (int i = 0; i < 3000; ++i) points.push_back(draw.in(region.inflated(size * (i % 3 == 0 ? 1.5 : 0.03))).as<float>());
     const size_t singles = points.size();
