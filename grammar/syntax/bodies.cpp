@@ -30,6 +30,12 @@ Operator takeOperator(Cursor& cursor) {
 
 Case readCase(Cursor& cursor, std::string_view sample);
 
+bool acceptBar(Cursor& cursor) {
+    if (!cursor.at("||")) return cursor.accept("|");
+    cursor.complain(cursor.span(cursor.take()), "one bar stands between two parts", "write '|'");
+    return true;
+}
+
 /// { case {| case} }; `sample` is a label that fits here, for mends.
 std::vector<Case> readBlock(Cursor& cursor, std::string_view where, std::string_view sample) {
     const Token open = cursor.peek();
@@ -37,7 +43,7 @@ std::vector<Case> readBlock(Cursor& cursor, std::string_view where, std::string_
     if (!cursor.expect("{", where)) return cases;
     if (cursor.at("}")) cursor.fail("the block is empty", "write " + quoted(plain(sample) + ": …") + " in it");
     do cases.push_back(readCase(cursor, sample));
-    while (cursor.accept("|"));
+    while (acceptBar(cursor));
     cursor.close(open);
     return cases;
 }
@@ -65,6 +71,8 @@ void readLabel(Cursor& cursor, Case& part) {
     }
 }
 
+bool isSolid(const Expr& e) { return e.kind == Expr::Kind::Name || e.kind == Expr::Kind::Call; }
+
 /// A body that is the one word or call `solid`: what stood where a label was missing.
 std::shared_ptr<Body> bodyOf(Expr solid) {
     auto body = std::make_shared<Body>();
@@ -84,19 +92,19 @@ Case readCase(Cursor& cursor, std::string_view sample) {
         part.repeated = true;
         part.cases = readBlock(cursor, "", sample);
         const SourceSpan braces = cursor.since(first.begin);
-        if (!cursor.accept("*"))
+        if (!cursor.accept("*", Token::Role::Suffix))
             cursor.complain(braces, "a block inside a block repeats to fit, and says so with '*'", "write '{ … }*'");
     } else {
         readLabel(cursor, part);
         const SourceSpan label = cursor.since(first.begin);
-        if (cursor.accept(":")) {
+        if (cursor.accept(":", Token::Role::Suffix)) {
             part.body = std::make_shared<Body>(readBody(cursor));
-        } else if (part.label && (cursor.at("|") || cursor.at("}"))) {
+        } else if (part.label && isSolid(*part.label) && (cursor.at("|") || cursor.at("}"))) {
             cursor.complain(label, quoted(label.text()) + " has no label before it",
                             "write " + quoted(plain(sample) + ": " + plain(label.text())));
             part.body = bodyOf(*std::exchange(part.label, std::nullopt));
-        } else if (cursor.done()) {
-            cursor.expect(":", "after " + quoted(label.text()));
+        } else if (cursor.done() || cursor.at("|") || cursor.at("}")) {
+            cursor.expect(":", "and a body after " + quoted(label.text()));
         } else {
             const std::string mend = "write " + quoted(plain(label.text()) + ": " + plain(cursor.peekText()));
             cursor.complain(cursor.span(cursor.peek()),
@@ -227,8 +235,7 @@ void readShape(Cursor& cursor, Element& element) {
                     calculates ? "put a calculation in parentheses: 'size (2 + 1)'" : "");
         return;
     }
-    std::vector<Attribute> after = readAttributes(cursor);
-    element.after = std::move(after);
+    element.after = readAttributes(cursor);
     readLive(cursor, element);
 }
 
@@ -286,19 +293,16 @@ std::string_view sampleLabel(Operation::Id id) {
 void refuseStray(Cursor& cursor) {
     const Token token = cursor.peek();
     if (token.kind == Token::Kind::Word && !isReserved(cursor.text(token)) && !token.columnOne) {
-        std::vector<std::string> names;
-        for (const Operation& row : operations()) names.emplace_back(row.name);
-        const std::string near = didYouMean(cursor.text(token), names);
-        cursor.fail(
-            cursor.found() + " can't follow a shape",
-            near.empty() ? "join shapes with + - & morph, or list them with ','" : "did you mean '" + near + "'?");
+        const std::string near = nearestWord(cursor.text(token));
+        cursor.fail(cursor.found() + " can't follow a shape",
+                    near.empty() ? "join shapes with + - & morph, or list them with ','" : near);
     } else if (cursor.at("(")) {
         cursor.fail("'(' can't follow a shape",
                     "write it without a blank before '(' for arguments, or join with an operator");
     } else if (token.kind == Token::Kind::Number || token.kind == Token::Kind::Text ||
                token.kind == Token::Kind::Color) {
         cursor.fail(cursor.found() + " can't follow a shape",
-                    "name the attribute: 'size " + plain(cursor.text(token)) + "'");
+                    "name the attribute: " + quoted("size " + plain(cursor.text(token))));
     }
 }
 
@@ -319,6 +323,14 @@ Attribute readAttribute(Cursor& cursor) {
     if (row.block) attribute.cases = readBlock(cursor, "after '" + plain(row.name) + "'", sampleLabel(row.id));
     attribute.span = cursor.since(word.begin);
     return attribute;
+}
+
+std::string nearestWord(std::string_view word) {
+    std::vector<std::string> words = {"for", "while", "when", "choose", "finally", "morph", "in",
+                                      "of",  "group", "key",  "joint",  "expect",  "axiom"};
+    for (const Operation& row : operations()) words.emplace_back(row.name);
+    const std::string near = didYouMean(word, words);
+    return near.empty() ? near : "did you mean " + quoted(near) + "?";
 }
 
 Body readBody(Cursor& cursor) {

@@ -11,5 +11,7 @@ Body readBody(Cursor& cursor);
 /// Whether the word at the cursor is an operation's (and not the solid `roof(…)`).
 bool atAttribute(const Cursor& cursor);
 Attribute readAttribute(Cursor& cursor);
+/// "did you mean 'size'?" for the word of an operation or a declaration's part that is nearest to `word`, or "".
+std::string nearestWord(std::string_view word);
 
 }  // namespace sgm::syntax

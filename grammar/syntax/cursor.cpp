@@ -36,7 +36,7 @@ std::string quoted(std::string_view text) {
     return out;
 }
 
-Cursor::Cursor(const Source& source, std::span<const Token> tokens, Diagnostics& diagnostics)
+Cursor::Cursor(const Source& source, std::span<Token> tokens, Diagnostics& diagnostics)
     : source_(source), tokens_(tokens), diagnostics_(diagnostics), lastEnd_(tokens.empty() ? 0 : tokens[0].begin) {}
 
 Token Cursor::peek(size_t ahead) const {
@@ -46,18 +46,16 @@ Token Cursor::peek(size_t ahead) const {
     return end;
 }
 
-Token Cursor::take() {
-    const Token token = peek();
-    if (!done()) {
-        ++at_;
-        lastEnd_ = token.end;
-    }
-    return token;
+Token Cursor::take(Token::Role role) {
+    if (done()) return peek();
+    tokens_[at_].role = role;
+    lastEnd_ = tokens_[at_].end;
+    return tokens_[at_++];
 }
 
-bool Cursor::accept(std::string_view wanted) {
+bool Cursor::accept(std::string_view wanted, Token::Role role) {
     if (!at(wanted)) return false;
-    take();
+    take(role);
     return true;
 }
 

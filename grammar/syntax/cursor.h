@@ -13,7 +13,7 @@ namespace sgm::syntax {
 
 class Cursor {
 public:
-    Cursor(const Source& source, std::span<const Token> tokens, Diagnostics& diagnostics);
+    Cursor(const Source& source, std::span<Token> tokens, Diagnostics& diagnostics);
 
     /// The token `ahead` of the next one; End (empty, behind the last one taken) when the slice is used up.
     Token peek(size_t ahead = 0) const;
@@ -25,9 +25,9 @@ public:
     bool failed() const { return failed_; }
     bool at(std::string_view wanted, size_t ahead = 0) const { return peekText(ahead) == wanted; }
     bool at(Token::Kind kind, size_t ahead = 0) const { return peek(ahead).kind == kind; }
-    Token take();
+    Token take(Token::Role role = Token::Role::Plain);
     /// Takes the next token if it is `wanted`.
-    bool accept(std::string_view wanted);
+    bool accept(std::string_view wanted, Token::Role role = Token::Role::Plain);
     /// Takes `wanted`, or fails with "expected 'wanted' <where>, found …".
     bool expect(std::string_view wanted, std::string_view where, std::string mend = {});
     /// Takes what closes the bracket `open`, or fails with "expected ')' to close '(' of line 3, found …".
@@ -58,7 +58,7 @@ public:
 
 private:
     const Source& source_;
-    std::span<const Token> tokens_;
+    std::span<Token> tokens_;
     Diagnostics& diagnostics_;
     size_t at_ = 0;
     uint32_t lastEnd_ = 0;

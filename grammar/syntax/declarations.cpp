@@ -173,7 +173,7 @@ void readRule(Cursor& cursor, Ast& ast) {
     const uint32_t begin = cursor.take().begin;
     if (cursor.at(":", 1)) {
         rule.name = readName(cursor, "a rule");
-        cursor.take();
+        cursor.take(Token::Role::Suffix);
     }
     rule.symbol = readSymbol(cursor, "a symbol");
     while (readRuleCondition(cursor, rule)) {
@@ -198,11 +198,11 @@ Expr readPath(Cursor& cursor) {
     path.kind = Expr::Kind::Text;
     path.text = readName(cursor, "a shape in the tree").text;
     while (!cursor.done() && (cursor.at("/") || cursor.at("["))) {
-        if (cursor.accept("/")) {
+        if (cursor.accept("/", Token::Role::Tight)) {
             path.text += '/' + readName(cursor, "a shape in the tree").text;
             continue;
         }
-        const Token open = cursor.take();
+        const Token open = cursor.take(Token::Role::Tight);
         if (!cursor.at(Token::Kind::Number)) cursor.fail("expected a number in '[ ]', found " + cursor.found());
         path.text += '[' + std::string(cursor.text(cursor.take())) + ']';
         cursor.close(open);
@@ -215,7 +215,7 @@ void readDerive(Cursor& cursor, Ast& ast) {
     DeriveDecl derive;
     const uint32_t begin = cursor.take().begin;
     derive.name = readName(cursor, "a derivation");
-    cursor.expect(":", "after the derivation's name");
+    if (!cursor.accept(":", Token::Role::Suffix)) cursor.expect(":", "after the derivation's name");
     do {
         DeriveDecl::Step step;
         step.rule = readName(cursor, "a rule");

@@ -80,11 +80,20 @@ public:
         return left;
     }
 
-    /// A literal, a name, a call, or something in parentheses, with a sign where `signs`.
-    Expr simple() {
-        const Cursor::Nest nest(cursor_);
-        if (cursor_.at("-") && !atAxis(cursor_)) return prefixed("-", [this] { return simple(); });
-        return postfix();
+    /// NAME, or NAME( … ) with the parenthesis glued on.
+    Expr nameOrCall() {
+        const uint32_t begin = cursor_.peek().begin;
+        Expr e;
+        e.kind = Kind::Name;
+        e.text = readName(cursor_, "a value").text;
+        e.span = cursor_.since(begin);
+        if (!cursor_.at("(") || !cursor_.peek().glued) return e;
+        e.kind = Kind::Call;
+        const Token open = cursor_.take(Token::Role::Suffix);
+        if (!cursor_.at(")")) arguments(e);
+        cursor_.close(open);
+        e.span = cursor_.since(begin);
+        return e;
     }
 
     /// simple [.. simple] [~> simple [.. simple]]
@@ -97,6 +106,13 @@ public:
 
 private:
     static bool associates(int binds) { return binds > comparisonBinds || binds == 3 || binds == 4; }
+
+    /// A literal, a name, a call, or something in parentheses, perhaps with a sign.
+    Expr simple() {
+        const Cursor::Nest nest(cursor_);
+        if (cursor_.at("-") && !atAxis(cursor_)) return prefixed("-", [this] { return simple(); });
+        return postfix();
+    }
 
     Expr range() {
         Expr first = simple();
@@ -115,7 +131,7 @@ private:
     static Expr joined(const BinaryOperator& row, Expr left, Expr right) {
         Expr e;
         e.kind = row.binds == rampBinds ? Kind::Ramp : row.binds == rangeBinds ? Kind::Range : Kind::Binary;
-        if (e.kind == Kind::Binary) e.text = row.means;
+        if (e.kind == Kind::Binary) e.text = std::string(row.means);
         e.span = join(left.span, right.span);
         e.args.push_back(std::move(left));
         e.args.push_back(std::move(right));
@@ -126,8 +142,10 @@ private:
     Expr prefixed(std::string_view symbol, Operand operand) {
         Expr e;
         e.kind = symbol == "~" ? Kind::Floating : Kind::Unary;
-        if (e.kind == Kind::Unary) e.text = symbol;
-        const uint32_t begin = cursor_.take().begin;
+        if (e.kind == Kind::Unary) e.text = std::string(symbol);
+        // `- x` negates a value called x, `-x` is a joint: the blank tells them apart.
+        const bool joins = symbol != "not" && !isAxisLetter(cursor_.peekText(1));
+        const uint32_t begin = cursor_.take(joins ? Token::Role::Prefix : Token::Role::Plain).begin;
         e.args.push_back(operand());
         e.span = cursor_.since(begin);
         return e;
@@ -150,7 +168,7 @@ private:
         while (!cursor_.failed() && (cursor_.at("[") || cursor_.at("."))) {
             if (tooLong()) break;
             Expr outer;
-            const Token symbol = cursor_.take();
+            const Token symbol = cursor_.take(Token::Role::Tight);
             if (cursor_.text(symbol) == "[") {
                 outer.kind = Kind::Index;
                 outer.args.push_back(std::move(e));
@@ -172,7 +190,7 @@ private:
         Expr e;
         if (atAxis(cursor_)) {
             e.kind = Kind::Name;
-            cursor_.take();
+            cursor_.take(Token::Role::Prefix);
             cursor_.take();
             e.span = cursor_.since(token.begin);
             e.text = e.span.text();
@@ -262,28 +280,13 @@ private:
         return e;
     }
 
-    Expr nameOrCall() {
-        const uint32_t begin = cursor_.peek().begin;
-        Expr e;
-        e.kind = Kind::Name;
-        e.text = readName(cursor_, "a value").text;
-        e.span = cursor_.since(begin);
-        if (!cursor_.at("(") || !cursor_.peek().glued) return e;
-        e.kind = Kind::Call;
-        const Token open = cursor_.take();
-        if (!cursor_.at(")")) arguments(e);
-        cursor_.close(open);
-        e.span = cursor_.since(begin);
-        return e;
-    }
-
     /// [name:] expr {, [name:] expr}
     void arguments(Expr& call) {
         do {
             std::string name;
             if (cursor_.at(Token::Kind::Word) && cursor_.at(":", 1)) {
                 name = cursor_.text(cursor_.take());
-                cursor_.take();
+                cursor_.take(Token::Role::Suffix);
             }
             call.argNames.push_back(std::move(name));
             call.args.push_back(binary(rampBinds));
@@ -314,7 +317,7 @@ Expr readExpr(Cursor& cursor) { return Reader(cursor).binary(rampBinds); }
 Expr readArgument(Cursor& cursor) { return Reader(cursor).argument(); }
 
 Expr readSolid(Cursor& cursor) {
-    if (cursor.at(Token::Kind::Word)) return Reader(cursor).simple();
+    if (cursor.at(Token::Kind::Word)) return Reader(cursor).nameOrCall();
     cursor.fail("expected a solid or a symbol, found " + cursor.found());
     return {};
 }

@@ -102,4 +102,11 @@ std::vector<Token> lex(const Source& source) {
     return tokens;
 }
 
+std::vector<Token> lexSignificant(const Source& source) {
+    std::vector<Token> tokens = lex(source);
+    const auto trivia = [](const Token& t) { return isTrivia(t.kind); };
+    tokens.erase(std::remove_if(tokens.begin(), tokens.end(), trivia), tokens.end());
+    return tokens;
+}
+
 }  // namespace sgm::syntax

@@ -21,13 +21,23 @@ struct Token {
         Unknown,  ///< anything else
         End,      ///< past the last token; never in the list
     };
+    /// How it stands to its neighbours, said by the parser for the formatter.
+    enum class Role : uint8_t {
+        Plain,   ///< blanks around it, as its text asks
+        Prefix,  ///< no blank behind it: a sign, ~
+        Suffix,  ///< no blank before it: the ( of a call, the : of a label, the * of { }*
+        Tight,   ///< no blank on either side: the . of a member, the / of a path
+    };
     Kind kind = Kind::End;
+    Role role = Role::Plain;
     bool glued = false;      ///< nothing stands between it and the token before
     bool columnOne = false;  ///< it begins its line
     uint32_t begin = 0, end = 0;
 };
 
 std::vector<Token> lex(const Source& source);
+/// The tokens of `source` without blanks and comments.
+std::vector<Token> lexSignificant(const Source& source);
 
 /// Blank or comment.
 constexpr bool isTrivia(Token::Kind kind) { return kind == Token::Kind::Blank || kind == Token::Kind::Comment; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "grammar/syntax/bodies.h"
 #include "grammar/syntax/declarations.h"
 #include "grammar/syntax/expressions.h"
 
@@ -11,15 +12,20 @@ namespace {
 
 /// Says what is wrong with a token where a declaration should begin.
 void refuse(Cursor& cursor) {
-    std::vector<std::string> words;
-    for (const Declaration& d : declarations()) words.emplace_back(d.word);
-    const std::string near = cursor.peek().columnOne ? didYouMean(cursor.peekText(), words) : std::string();
-    if (cursor.at("grammar"))
+    const Token token = cursor.peek();
+    if (cursor.at("grammar")) {
         cursor.fail("'grammar' stands once, in the first line");
-    else if (!near.empty())
-        cursor.fail(cursor.found() + " begins no declaration", "did you mean '" + near + "'?");
-    else
-        cursor.fail("unexpected " + cursor.found());
+    } else if (cursor.at("/") && cursor.at("*", 1)) {
+        cursor.fail("unexpected '/*'", "a comment begins with '//' and ends with its line");
+    } else if (token.columnOne && token.kind == Token::Kind::Word) {
+        std::vector<std::string> words;
+        for (const Declaration& d : declarations()) words.emplace_back(d.word);
+        const std::string near = didYouMean(cursor.peekText(), words);
+        cursor.fail(cursor.found() + " begins no declaration",
+                    near.empty() ? "later lines of a declaration are indented" : "did you mean " + quoted(near) + "?");
+    } else {
+        cursor.fail("unexpected " + cursor.found(), nearestWord(cursor.peekText()));
+    }
 }
 
 /// The declarations of one slice: one, unless a second wasn't put in column one.
@@ -62,20 +68,11 @@ bool readVersion(Cursor& cursor, Ast& ast) {
     return false;
 }
 
-/// Tokens without blanks and comments.
-std::vector<Token> significant(const Source& source) {
-    std::vector<Token> tokens = lex(source);
-    tokens.erase(std::remove_if(tokens.begin(), tokens.end(), [](const Token& t) { return isTrivia(t.kind); }),
-                 tokens.end());
-    return tokens;
-}
-
 }  // namespace
 
-Ast parse(SourcePtr source, Diagnostics& diagnostics) {
+Ast parse(SourcePtr source, std::span<Token> tokens, Diagnostics& diagnostics) {
     Ast ast;
     ast.source = source;
-    const std::vector<Token> tokens = significant(*source);
     const auto begins = [&](const Token& t) {
         return t.columnOne && (textOf(*source, t) == "grammar" || findDeclaration(textOf(*source, t)));
     };
@@ -83,7 +80,7 @@ Ast parse(SourcePtr source, Diagnostics& diagnostics) {
     do {
         size_t end = begin + (begin < tokens.size());
         while (end < tokens.size() && !begins(tokens[end])) ++end;
-        Cursor cursor(*source, std::span(tokens).subspan(begin, end - begin), diagnostics);
+        Cursor cursor(*source, tokens.subspan(begin, end - begin), diagnostics);
         if (begin == 0 && !readVersion(cursor, ast)) return ast;
         readDeclarations(cursor, ast);
         begin = end;
@@ -91,8 +88,13 @@ Ast parse(SourcePtr source, Diagnostics& diagnostics) {
     return ast;
 }
 
+Ast parse(SourcePtr source, Diagnostics& diagnostics) {
+    std::vector<Token> tokens = lexSignificant(*source);
+    return parse(std::move(source), tokens, diagnostics);
+}
+
 Expr parseExpression(SourcePtr source, Diagnostics& diagnostics) {
-    const std::vector<Token> tokens = significant(*source);
+    std::vector<Token> tokens = lexSignificant(*source);
     Cursor cursor(*source, tokens, diagnostics);
     Expr expression = readExpr(cursor);
     if (!cursor.done()) cursor.fail("unexpected " + cursor.found());

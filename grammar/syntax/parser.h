@@ -56,12 +56,18 @@
 //   NAME        = letters, digits and "_", beginning with no digit; no word of the language.    // begins a comment.
 #pragma once
 
+#include <span>
+
 #include "grammar/syntax/ast.h"
+#include "grammar/syntax/lexer.h"
 
 namespace sgm::syntax {
 
 /// A whole file. Declarations with problems are kept as far as their name was read, so that their names are known.
 Ast parse(SourcePtr source, Diagnostics& diagnostics);
+
+/// The same from `lexSignificant(*source)`: sets the roles of the tokens on its way.
+Ast parse(SourcePtr source, std::span<Token> tokens, Diagnostics& diagnostics);
 
 /// A text that is one expression, as in `--set NAME=VALUE`. The source must outlive it.
 Expr parseExpression(SourcePtr source, Diagnostics& diagnostics);

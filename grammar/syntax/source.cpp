@@ -18,6 +18,16 @@ std::string printable(std::string_view text) {
     return out;
 }
 
+/// The stretch of a long line around byte `from`, and where it begins.
+std::pair<std::string_view, size_t> window(std::string_view line, size_t from) {
+    constexpr size_t widest = 160, before = 80;
+    size_t begin = line.size() > widest && from > before ? std::min(from - before, line.size()) : 0;
+    while (begin > 0 && begin < line.size() && isContinuation(line[begin])) --begin;
+    size_t end = std::min(line.size(), begin + widest);
+    while (end < line.size() && isContinuation(line[end])) ++end;
+    return {line.substr(begin, end - begin), begin};
+}
+
 /// The line under `line` that marks bytes [from, to): tabs stay tabs, so that both lines step alike.
 std::string caretLine(std::string_view line, size_t from, size_t to) {
     std::string marks;
@@ -101,8 +111,9 @@ std::string render(const Diagnostic& diagnostic) {
     if (source) {
         const Source::Place place = source->place(diagnostic.span.begin);
         out += source->name() + ':' + std::to_string(place.line) + ':' + std::to_string(place.column) + ": ";
-        const std::string line = printable(source->line(place.line));
-        const size_t from = place.column - 1;
+        const auto [shown, begin] = window(source->line(place.line), place.column - 1);
+        const std::string line = printable(shown);
+        const size_t from = place.column - 1 - begin;
         const size_t to = from + (diagnostic.span.end - diagnostic.span.begin);
         out += std::string(severity) + ": " + diagnostic.message + "\n  " + line + "\n  " + caretLine(line, from, to);
     } else {
