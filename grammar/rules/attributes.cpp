@@ -157,15 +157,11 @@ void Checker::sensible(const Attribute& attribute) {
     }
 }
 
-std::optional<Attribute> Checker::attribute(Place& place, const syntax::Attribute& written) {
+Attribute Checker::attribute(Place& place, const syntax::Attribute& written) {
     const Operation& row = syntax::operations()[static_cast<size_t>(written.id)];
     Attribute out;
     out.id = written.id;
     out.span = written.span;
-    if (!row.supported) {
-        diagnostics_.error(written.name.span, fmt::format("'{}' is not supported yet", row.name));
-        return std::nullopt;
-    }
     place.enter(std::string(row.name));
     if (row.id == Id::With) {
         withArguments(place, written, out);
@@ -190,12 +186,18 @@ std::optional<Attribute> Checker::attribute(Place& place, const syntax::Attribut
 std::vector<Attribute> Checker::attributes(Place& place, const std::vector<syntax::Attribute>& written) {
     std::vector<Attribute> result;
     std::vector<Id> seen;
+    bool refused = false;
     for (const syntax::Attribute& a : written) {
+        if (!syntax::operations()[static_cast<size_t>(a.id)].supported) {
+            if (!refused) diagnostics_.error(a.name.span, fmt::format("'{}' is not supported yet", a.name.text));
+            refused = true;  // what follows it is mostly its own
+            continue;
+        }
         const bool many = a.id == Id::Tag || a.id == Id::With || a.id == Id::Displace;
         if (!many && std::find(seen.begin(), seen.end(), a.id) != seen.end())
             diagnostics_.error(a.span, fmt::format("'{}' is given twice", a.name.text), "say it once");
         seen.push_back(a.id);
-        if (auto checked = attribute(place, a)) result.push_back(std::move(*checked));
+        result.push_back(attribute(place, a));
     }
     return result;
 }

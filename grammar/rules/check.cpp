@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/judge.h"
@@ -11,17 +13,28 @@
 
 namespace sgm::rules {
 
-std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load, syntax::Diagnostics& diagnostics) {
-    const std::vector<syntax::Ast> asts = withUses(ast, load, diagnostics);
-    auto grammar = std::make_shared<Grammar>();
-    grammar->materials.emplace_back();
-    grammar->sources.push_back(ast.source);
-    for (size_t i = 0; i + 1 < asts.size(); ++i) grammar->sources.push_back(asts[i].source);
+namespace {
 
-    Checker checker(*grammar, diagnostics);
-    checker.excuse(diagnostics);
+/// In the order of the text: the main file last, as its uses stand before it.
+void sortInto(syntax::Diagnostics& out, const syntax::Diagnostics& found, const std::vector<syntax::SourcePtr>& sources) {
+    const auto rank = [&](const syntax::Diagnostic& d) {
+        const auto source = std::find_if(sources.begin(), sources.end(), [&](const syntax::SourcePtr& s) { return s.get() == d.span.source; });
+        return std::pair(source == sources.begin() ? sources.end() : source, d.span.begin);
+    };
+    std::vector<syntax::Diagnostic> list = found.all();
+    std::stable_sort(list.begin(), list.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+    for (syntax::Diagnostic& d : list) {
+        const bool error = d.severity == syntax::Severity::Error;
+        (error ? out.error(d.span, std::move(d.message), std::move(d.mend)) : out.warning(d.span, std::move(d.message), std::move(d.mend)));
+    }
+}
+
+/// Everything behind the names, and what follows from it all.
+void fill(Grammar& grammar, const Files& files, const syntax::Diagnostics& unread, syntax::Diagnostics& diagnostics) {
+    Checker checker(grammar, diagnostics);
+    checker.excuse(unread, files.missing);
     const auto each = [&](void (Checker::*step)(const syntax::Ast&)) {
-        for (const syntax::Ast& part : asts) (checker.*step)(part);
+        for (const syntax::Ast& part : files.asts) (checker.*step)(part);
     };
     each(&Checker::declare);
     each(&Checker::refuse);
@@ -29,13 +42,26 @@ std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load,
     each(&Checker::terminals);
     each(&Checker::productions);
     each(&Checker::sayings);
-    if (grammar->starts.empty() && !diagnostics.hasErrors())
-        diagnostics.error({ast.source.get(), 0, 0}, "there is nothing to begin with", "write 'start Name -> cube'");
-    if (!diagnostics.hasErrors()) findEndless(*grammar, diagnostics);
-    if (diagnostics.hasErrors()) return nullptr;
-    checker.unused(ast);
-    findUnreachable(*grammar, diagnostics);
-    return grammar;
+    if (diagnostics.hasErrors() || unread.hasErrors()) return;
+    if (grammar.starts.empty()) diagnostics.error({grammar.sources[0].get(), 0, 0}, "there is nothing to begin with", "write 'start Name -> cube'");
+    checker.unused(files.asts.back());
+    findUnreachable(grammar, diagnostics);
+    findEndless(grammar, diagnostics);
+}
+
+}  // namespace
+
+std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load, syntax::Diagnostics& diagnostics) {
+    const Files files = withUses(ast, load, diagnostics);
+    auto grammar = std::make_shared<Grammar>();
+    grammar->materials.emplace_back();
+    grammar->sources.push_back(ast.source);
+    for (size_t i = 0; i + 1 < files.asts.size(); ++i) grammar->sources.push_back(files.asts[i].source);
+
+    syntax::Diagnostics found;
+    fill(*grammar, files, diagnostics, found);
+    sortInto(diagnostics, found, grammar->sources);
+    return diagnostics.hasErrors() ? nullptr : grammar;
 }
 
 std::shared_ptr<const Grammar> load(syntax::SourcePtr source, const Loader& load, syntax::Diagnostics& diagnostics) {

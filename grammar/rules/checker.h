@@ -56,8 +56,9 @@ class Checker {
 public:
     Checker(Grammar& grammar, syntax::Diagnostics& diagnostics) : grammar_(grammar), diagnostics_(diagnostics) {}
 
-    /// Names that stand in a line that couldn't be read: they may be declared there, so nothing is said of them.
-    void excuse(const syntax::Diagnostics& unread);
+    /// Names that stand in a line that couldn't be read may be declared there, and any name in a file that is missing:
+    /// nothing is said of them.
+    void excuse(const syntax::Diagnostics& unread, bool missingFile);
     /// Takes the names an Ast declares and refuses doubles.
     void declare(const syntax::Ast& ast);
     /// Checks what stands behind the names.
@@ -122,7 +123,7 @@ private:
 
     // attributes.cpp
     std::vector<Attribute> attributes(Place& place, const std::vector<syntax::Attribute>& written);
-    std::optional<Attribute> attribute(Place& place, const syntax::Attribute& written);
+    Attribute attribute(Place& place, const syntax::Attribute& written);
     void jointArgument(Place& place, const syntax::Expr& e, Attribute& out);
     Expr joint(Place& place, const syntax::Expr& e);
     void hostArgument(Place& place, const syntax::Expr& e, Attribute& out);
@@ -167,6 +168,7 @@ private:
     std::set<std::string> withNames_;             ///< set by `with` somewhere
     std::set<std::string> jointNames_;            ///< declared by a terminal or a primitive
     std::set<std::string> excused_;
+    bool anythingExcused_ = false;                ///< a used file is missing, and nobody knows what it declares
     std::set<std::string> unbuilt_;               ///< maps and lsystems: named once, refused once
     std::set<SymbolId> ruled_;                    ///< have a rule
     std::set<SymbolId> placed_;                   ///< stand in a start, a body or behind a colon

@@ -74,7 +74,7 @@ Typed Checker::failed(SourceSpan span, std::string message, std::string mend) {
 }
 
 Typed Checker::unknown(SourceSpan span, const std::string& word, std::string message, std::string mend) {
-    if (!excused_.contains(word)) return failed(span, std::move(message), std::move(mend));
+    if (!anythingExcused_ && !excused_.contains(word)) return failed(span, std::move(message), std::move(mend));
     return {makeConstant(span, {}), Type::unknown()};
 }
 

@@ -108,7 +108,8 @@ void Checker::collect(const syntax::Body& body) {
         }
 }
 
-void Checker::excuse(const syntax::Diagnostics& unread) {
+void Checker::excuse(const syntax::Diagnostics& unread, bool missingFile) {
+    anythingExcused_ = missingFile;
     const auto inWord = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
     for (const syntax::Diagnostic& d : unread.all()) {
         if (d.severity != syntax::Severity::Error || !d.span.source) continue;

@@ -20,16 +20,17 @@ public:
             if (use.file.kind == syntax::Expr::Kind::Text) follow(use, *ast.source);
         chain_.pop_back();
         done_.push_back(ast.source->name());
-        asts_.push_back(ast);
+        files_.asts.push_back(ast);
     }
 
-    std::vector<syntax::Ast> take() { return std::move(asts_); }
+    Files take() { return std::move(files_); }
 
 private:
     void follow(const syntax::UseDecl& use, const syntax::Source& from) {
         std::string why = "it can't be found";
         const syntax::SourcePtr source = load_ ? load_(use.file.text, from, why) : nullptr;
         if (!source) {
+            files_.missing = true;
             diagnostics_.error(use.file.span, fmt::format("can't use \"{}\": {}", use.file.text, why));
             return;
         }
@@ -43,14 +44,14 @@ private:
 
     const Loader& load_;
     syntax::Diagnostics& diagnostics_;
-    std::vector<syntax::Ast> asts_;
+    Files files_;
     std::vector<std::string> chain_;  ///< files being read, the main one first
     std::vector<std::string> done_;
 };
 
 }  // namespace
 
-std::vector<syntax::Ast> withUses(const syntax::Ast& main, const Loader& load, syntax::Diagnostics& diagnostics) {
+Files withUses(const syntax::Ast& main, const Loader& load, syntax::Diagnostics& diagnostics) {
     Gatherer gatherer(load, diagnostics);
     gatherer.gather(main);
     return gatherer.take();

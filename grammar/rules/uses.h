@@ -9,7 +9,12 @@
 
 namespace sgm::rules {
 
-/// The Asts of `main` and everything it uses, `main` last. Cycles and files that can't be had become errors at the `use`.
-std::vector<syntax::Ast> withUses(const syntax::Ast& main, const Loader& load, syntax::Diagnostics& diagnostics);
+struct Files {
+    std::vector<syntax::Ast> asts;  ///< the main file last
+    bool missing = false;           ///< a used file can't be had
+};
+
+/// `main` and everything it uses. Cycles and files that can't be had became errors at the `use`.
+Files withUses(const syntax::Ast& main, const Loader& load, syntax::Diagnostics& diagnostics);
 
 }  // namespace sgm::rules
