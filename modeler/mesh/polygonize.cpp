@@ -1,5 +1,6 @@
 #include "modeler/mesh/polygonize.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <limits>
@@ -51,7 +52,8 @@ bool findVertices(const Block& block, const Grid& grid, const PolygonizeOptions&
     surface.index = chunk.block = block.index;
     if (!sampleBlock(block, grid, s.workspace, progress, s.samples, s.counts)) return false;
     s.vertices.clear();
-    const bool wantOrigins = !block.tape.origins().empty();
+    const auto owners = block.tape.origins();
+    const bool wantOrigins = std::any_of(owners.begin(), owners.end(), [](OriginId id) { return id != 0; });
     for (uint64_t rest = s.samples.active; rest != 0; rest &= rest - 1) {
         if (cancelled(progress)) return false;
         Brick brick = makeBrick(std::countr_zero(rest), block.index, grid, s.samples);
