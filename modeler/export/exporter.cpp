@@ -19,7 +19,7 @@ constexpr ExportOption texturedOptions[] = {up, unit, uv};
 constexpr ExportOption plainOptions[] = {up, unit};
 constexpr ExportOption volumeOptions[] = {
     {"grid", "level_set", "", "name of the grid"},
-    {"half", "no", "no|yes", "16-bit floats: half the size, three digits"},
+    {"half", "no", "no|yes", "16-bit floats: about a third smaller, three digits"},
 };
 
 constexpr Exporter table[] = {

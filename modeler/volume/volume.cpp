@@ -76,7 +76,8 @@ Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& 
         for (const BandLeaf& leaf : batch) result->tree().addLeaf(toLeaf(leaf, band_m).release());
         std::vector<BandLeaf>().swap(batch);  // the samples are stored now
     }
-    openvdb::tools::signedFloodFill(result->tree(), threadCount(threads) > 1);
+    // Leaves (level 0) have all their signs already.
+    openvdb::tools::signedFloodFill(result->tree(), threadCount(threads) > 1, 1, 1);
     return Volume(std::make_shared<Volume::Impl>(Volume::Impl{result}));
 }
 

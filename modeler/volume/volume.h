@@ -43,7 +43,7 @@ Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& 
 Result<mesh::Mesh> toMesh(const Volume& volume);
 
 struct VdbOptions {
-    bool half = false;                            ///< 16-bit floats on disk: half the size, three digits
+    bool half = false;                            ///< 16-bit floats on disk: about a third smaller, three digits
     std::map<std::string, std::string> metadata;  ///< of the file
 };
 

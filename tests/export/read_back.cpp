@@ -5,9 +5,10 @@
 #include <tiny_gltf.h>
 
 #include <cstring>
-#include <fstream>
 #include <sstream>
 #include <tuple>
+
+#include "tests/volume/scratch.h"
 
 namespace sgm::exporter {
 namespace {
@@ -151,11 +152,6 @@ ReadBack welded(const ReadBack& in) {
     for (const mesh::Triangle& t : in.triangles) out.triangles.push_back({number[t.x], number[t.y], number[t.z]});
     out.materials = in.materials;
     return out;
-}
-
-std::string contentOf(const std::filesystem::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace sgm::exporter

@@ -27,7 +27,4 @@ ReadBack readBack(const std::filesystem::path& path);
 /// Vertices of equal position made one, in order of first appearance.
 ReadBack welded(const ReadBack& in);
 
-/// Everything in a file.
-std::string contentOf(const std::filesystem::path& path);
-
 }  // namespace sgm::exporter

@@ -1,11 +1,20 @@
-// A folder of a test's own, gone when the test ends.
+// Files of a test's own: a folder that is gone when the test ends.
 #pragma once
 
 #include <stdlib.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
 
 namespace sgm {
+
+/// Everything in a file.
+inline std::string contentOf(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
 
 class Scratch {
 public:
