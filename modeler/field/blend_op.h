@@ -52,7 +52,8 @@ struct Blend {
         const Solution<V> low = solve(args.size(), kHi, [&](size_t i) { return args[i].lo; });
         const Solution<V> high = solve(args.size(), kLo, [&](size_t i) { return args[i].hi; });
         const float ulps = 2e-7f * static_cast<float>(args.size() + 8);
-        return I{melt(low, kHi) - (abs(low.least) + kHi) * ulps, min(melt(high, kLo) + (abs(high.least) + kLo) * ulps, high.least)};
+        return I{melt(low, kHi) - (abs(low.least) + kHi) * ulps,
+                 min(melt(high, kLo) + (abs(high.least) + kLo) * ulps, high.least)};
     }
 
     /// Implicit differentiation: ∂f/∂fᵢ = tᵢ / Σt with tᵢ = max(0, c' − dᵢ), and ∂f/∂k = k / Σt − 1.
@@ -74,7 +75,8 @@ struct Blend {
         }
         const auto soft = total > V(0.0f);
         const V weight = V(1.0f) / select(soft, total, V(1.0f)), slope = k.value * weight - V(1.0f);
-        return D{melt(s, k.value), select(soft, dx * weight + k.dx * slope, least.dx), select(soft, dy * weight + k.dy * slope, least.dy),
+        return D{melt(s, k.value), select(soft, dx * weight + k.dx * slope, least.dx),
+                 select(soft, dy * weight + k.dy * slope, least.dy),
                  select(soft, dz * weight + k.dz * slope, least.dz)};
     }
 

@@ -67,7 +67,8 @@ private:
         }
         const size_t middle = first + (last - first) / 2;
         const int axis = widestAxis(first, last);
-        std::nth_element(order_.begin() + static_cast<std::ptrdiff_t>(first), order_.begin() + static_cast<std::ptrdiff_t>(middle),
+        std::nth_element(order_.begin() + static_cast<std::ptrdiff_t>(first),
+                         order_.begin() + static_cast<std::ptrdiff_t>(middle),
                          order_.begin() + static_cast<std::ptrdiff_t>(last), [&](uint32_t a, uint32_t b) {
                              const float ca = centres_[a][axis], cb = centres_[b][axis];
                              return ca != cb ? ca < cb : a < b;
@@ -121,7 +122,8 @@ Field nothing(Graph& graph) { return {graph.literal(farAway), {}, 0, 1}; }
 
 Field sum(Graph& graph, std::span<const Owned> parts) {
     if (parts.empty()) return nothing(graph);
-    if (parts.size() == 1) return {owned(parts[0]), parts[0].field.bounds, parts[0].field.lipschitz, parts[0].field.growth};
+    if (parts.size() == 1)
+        return {owned(parts[0]), parts[0].field.bounds, parts[0].field.lipschitz, parts[0].field.growth};
     Box3f bounds;
     for (const Owned& part : parts) bounds = hull(bounds, part.field.bounds);
     return {Num(&graph, Hierarchy(parts).build().node), bounds, maxLipschitz(parts), minGrowth(parts)};
@@ -161,8 +163,8 @@ Field blend(Graph& graph, std::span<const Owned> parts, Num radius, double radiu
     return {value, bounds, maxLipschitz(parts), minGrowth(parts)};
 }
 
-Field displace(Field f, Point p, Noise noise, Num amplitude, double amplitudeValue, Num frequency, double frequencyValue,
-               int octaves, uint32_t seed) {
+Field displace(Field f, Point p, Noise noise, Num amplitude, double amplitudeValue, Num frequency,
+               double frequencyValue, int octaves, uint32_t seed) {
     const int count = std::clamp(octaves, 1, ops::Noise::maxOctaves);
     const float steepness = ops::Noise::lipschitz(count);
     const Num height = p.x.graph().apply(codeOf<ops::Noise>, {p.x * frequency, p.y * frequency, p.z * frequency},

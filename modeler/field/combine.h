@@ -19,18 +19,23 @@ struct Owned {
 Field nothing(Graph& graph);
 
 /// Sum, SG-M eq. 13 (min under definition 4), as a balanced tree over a bounding hierarchy, so that the first levels of
-/// a descent are cheap for thousands of parts. Order doesn't change the value. Empty list: nothing().
+/// a descent are cheap for thousands of parts. Order doesn't change the value. Empty list: nothing(). Give all parts at
+/// once: a chain of sums of two is right but deep.
 Field sum(Graph& graph, std::span<const Owned> parts);
 /// max(a, −b): cuts b from a; the wall of the cut belongs to b's origin.
 Field difference(Owned a, Owned b);
 /// max(a, b).
 Field intersection(Owned a, Owned b);
 /// Order-free n-ary melt of bounded support: solves Σ max(0, c − fᵢ)² = k², f = c − k; 1-Lipschitz, exactly min beyond k.
-/// `radius` is k in metres with its present value; a part owns the surface where it is the least argument.
+/// `radius` is k ≥ 0 in metres with its present value; a part owns the surface where it is the least argument. A part that is
+/// itself a blend of the same radius is taken apart, so grouping can't change the shape; the bounds are tightest when all
+/// parts come at once.
 Field blend(Graph& graph, std::span<const Owned> parts, Num radius, double radiusValue);
 /// SG-M eq. 14: a·(1 − t) + b·t of true distances; the surface belongs to `origin`.
 Field morph(Field a, Field b, Num t, double tValue, OriginId origin);
-/// Where |d| is at most the noise's reach: d − noise(p·frequency)·amplitude, divided so that the field stays 1-Lipschitz.
+/// (d − amplitude · noise(p · frequency)) / (1 + amplitude · frequency · L), L the noise's own bound, so that a distance stays
+/// 1-Lipschitz. The noise is never switched off far away (that would leave specks). Billow is in [0, 1]: rounded lumps on
+/// the outside; fbm in [−1, 1].
 enum class Noise { Billow, Fbm };
 /// `amplitude` in metres, `frequency` in 1/m; octaves 1 … 8 is structure. Papers guide, section 3.
 Field displace(Field f, Point p, Noise noise, Num amplitude, double amplitudeValue, Num frequency, double frequencyValue, int octaves, uint32_t seed);

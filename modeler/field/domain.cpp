@@ -35,7 +35,9 @@ Point toLocal(Point p, const Frame& frame, uint64_t path) {
                                          {"rotation.zx", "rotation.zy", "rotation.zz"}};
     // Rᵀq: the dot products with R's columns.
     const auto along = [&](const Vec3d& column, const char* const* name) {
-        return dot(Point{named(g, path, name[0], column.x), named(g, path, name[1], column.y), named(g, path, name[2], column.z)}, q);
+        return dot(Point{named(g, path, name[0], column.x), named(g, path, name[1], column.y),
+                         named(g, path, name[2], column.z)},
+                   q);
     };
     const Mat3& r = frame.rotation;
     return {along(r.x, names[0]), along(r.y, names[1]), along(r.z, names[2])};
@@ -57,7 +59,8 @@ Box3f toWorld(const Box3f& local, const Frame& frame) {
     }
     // toLocal rounds each coordinate by a few ulps of the largest number it meets.
     double size = 0;
-    for (int i = 0; i < 3; ++i) size = std::max(size, std::abs(frame.centre[i]) + (std::isfinite(reach[i]) ? reach[i] : 0.0));
+    for (int i = 0; i < 3; ++i)
+        size = std::max(size, std::abs(frame.centre[i]) + (std::isfinite(reach[i]) ? reach[i] : 0.0));
     return Box3d{low, high}.inflated(size * 1e-6).as<float>();
 }
 
@@ -97,7 +100,8 @@ Field repeated(Point p, int axis, Num period, double periodValue, int count, con
     const Field first = copy(u), second = copy(u + 1.0f);
 
     Box3f bounds = first.bounds;
-    const auto half = static_cast<float>(periodValue * 0.5), reach = static_cast<float>(periodValue * 0.5 * (count - 1));
+    const auto half = static_cast<float>(periodValue * 0.5),
+               reach = static_cast<float>(periodValue * 0.5 * (count - 1));
     bounds.lo[axis] = std::max(bounds.lo[axis], -half) - reach;
     bounds.hi[axis] = std::min(bounds.hi[axis], half) + reach;
     if (bounds.empty()) bounds = {};

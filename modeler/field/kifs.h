@@ -21,21 +21,21 @@ struct Kifs {
     static constexpr int arity = variadic;
 
     /// Places of the operands; vectors take three, rotations nine (by columns).
-    enum Operand : size_t { position = 0, centreOfScale = 3, scale = 6, fold = 7, turn = 16, bailout = 25, operandCount = 26 };
+    enum Operand : size_t { position, centreOfScale = 3, scale = 6, fold = 7, turn = 16, bailout = 25, operandCount };
 
     /// What of a node is structure.
     struct Form {
-        uint32_t passes = 6;      ///< 1 … 255
-        bool cube = false;        ///< terminal solid: the cube of the centre's largest component, or the ball of radius 2
-        bool jump = false;        ///< as printed, instead of the continuous fold
-        bool bails = false;       ///< stop where the squared radius exceeds the bailout
-        bool folds = true;        ///< false: R₂ = I and its operands are not read
-        bool turns = true;        ///< the same for R₁
+        uint32_t passes = 6;  ///< 1 … 255
+        bool cube = false;    ///< terminal solid: the cube of the centre's largest component, or the ball of radius 2
+        bool jump = false;    ///< as printed, instead of the continuous fold
+        bool bails = false;   ///< stop where the squared radius exceeds the bailout
+        bool folds = true;    ///< false: R₂ = I and its operands are not read
+        bool turns = true;    ///< the same for R₁
         constexpr bool continuous() const { return !bails && !(jump && turns); }
     };
     static constexpr uint32_t pack(const Form& f) {
-        return f.passes | (f.cube ? 256u : 0u) | (f.jump ? 512u : 0u) | (f.bails ? 1024u : 0u) | (f.folds ? 2048u : 0u) |
-               (f.turns ? 4096u : 0u);
+        return f.passes | (f.cube ? 256u : 0u) | (f.jump ? 512u : 0u) | (f.bails ? 1024u : 0u) |
+               (f.folds ? 2048u : 0u) | (f.turns ? 4096u : 0u);
     }
     static constexpr Form unpack(uint32_t d) {
         return {d & 255u, (d & 256u) != 0, (d & 512u) != 0, (d & 1024u) != 0, (d & 2048u) != 0, (d & 4096u) != 0};
@@ -138,7 +138,9 @@ private:
     /// The rotation in the nine operands from `first`, by columns.
     template <class V>
     static State<V> rotated(const State<V>& p, std::span<const V> args, size_t first) {
-        const auto row = [&](size_t r) { return args[first + r] * p.x + args[first + 3 + r] * p.y + args[first + 6 + r] * p.z; };
+        const auto row = [&](size_t r) {
+            return args[first + r] * p.x + args[first + 3 + r] * p.y + args[first + 6 + r] * p.z;
+        };
         return {row(0), row(1), row(2), p.scales};
     }
 

@@ -60,7 +60,8 @@ struct Noise {
 
     template <class V>
     static V apply(std::span<const V> args, uint32_t data) {
-        return octaves<V>({args[0], args[1], args[2]}, data, [](const Place<V>& at, uint32_t seed) { return patch(at, seed).value; });
+        return octaves<V>({args[0], args[1], args[2]}, data,
+                          [](const Place<V>& at, uint32_t seed) { return patch(at, seed).value; });
     }
 
     /// Opaque: value at the centre ± L·r, clipped to the range.
@@ -84,7 +85,8 @@ struct Noise {
         return octaves<D>({x, y, z}, data, [](const Place<D>& at, uint32_t seed) {
             const Patch<V> p = patch(Place<V>{at.x.value, at.y.value, at.z.value}, seed);
             const auto along = [&](const V& dx, const V& dy, const V& dz) { return p.dx * dx + p.dy * dy + p.dz * dz; };
-            return D{p.value, along(at.x.dx, at.y.dx, at.z.dx), along(at.x.dy, at.y.dy, at.z.dy), along(at.x.dz, at.y.dz, at.z.dz)};
+            return D{p.value, along(at.x.dx, at.y.dx, at.z.dx), along(at.x.dy, at.y.dy, at.z.dy),
+                     along(at.x.dz, at.y.dz, at.z.dz)};
         });
     }
 

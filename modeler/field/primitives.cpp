@@ -10,21 +10,27 @@ namespace {
 using Kind = ParameterKind;
 
 constexpr PrimitiveParameter torusParameters[] = {
-    {"tube", Kind::Share, 0.25, 0.02, 0.5, "radius of the tube as a share of the outer radius; the tube is as high as the scope"},
+    {"tube", Kind::Share, 0.25, 0.02, 0.5,
+     "radius of the tube as a share of the outer radius; the tube is as high as the scope"},
 };
 constexpr PrimitiveParameter roofParameters[] = {
     {"round", Kind::Share, 0, 0, 1, "0 is the pyramid's sides, 1 an ellipsoid over the same foot"},
 };
 
 constexpr PrimitiveParameter kifsParameters[] = {
-    {"center", Kind::Vector, 1, 0.05, 2, "centre of scaling; its largest component reaches the scope's faces. All 1: the Menger sponge"},
+    {"center", Kind::Vector, 1, 0.05, 2,
+     "centre of scaling; its largest component reaches the scope's faces. All 1: the Menger sponge"},
     {"scale", Kind::Share, 3, 1.2, 6, "scale of a pass: 3 is the sponge, 3.5 sparse"},
-    {"fold", Kind::Rotation, 0, -pi, pi, "rotation R2 after the folds; useful: y -20 ... 25, z 0 ... 35, x -35 ... 15 degrees"},
+    {"fold", Kind::Rotation, 0, -pi, pi,
+     "rotation R2 after the folds; useful: y -20 ... 25, z 0 ... 35, x -35 ... 15 degrees"},
     {"turn", Kind::Rotation, 0, -pi, pi, "rotation R1 before the folds; about y 7 degrees crumbles, 45 is octagonal"},
     {"passes", Kind::Count, 5, 1, 12, "passes of the loop: each adds details one scale smaller"},
-    {"terminal", Kind::Choice, 0, 0, 1, "what the last copies are: balls as in the paper, or crisper cubes", "ball|cube"},
-    {"form", Kind::Choice, 0, 0, 1, "last fold: continuous, or with the jump the paper prints (no distance bound when turned)", "continuous|jump"},
-    {"bailout", Kind::Share, 0, 0, 1e6, "squared radius (4 at least) beyond which passes stop; 0 never. No distance bound"},
+    {"terminal", Kind::Choice, 0, 0, 1, "what the last copies are: balls as in the paper, or crisper cubes",
+     "ball|cube"},
+    {"form", Kind::Choice, 0, 0, 1,
+     "last fold: continuous, or with the jump the paper prints (no distance bound when turned)", "continuous|jump"},
+    {"bailout", Kind::Share, 0, 0, 1e6,
+     "squared radius (4 at least) beyond which passes stop; 0 never. No distance bound"},
 };
 
 constexpr PrimitiveJoint apex[] = {{"apex", {0, 1, 0}, {0, 1, 0}}};
@@ -37,15 +43,30 @@ constexpr Primitive table[] = {
     {"ellipsoid", "Ellipsoid filling the scope, its axes along the scope's.", {}, solids::ellipsoid, true, poles},
     {"torus", "Ring about y.", torusParameters, solids::torus},
     {"cylinder", "Cylinder along y over the ellipse of the scope's x and z.", {}, solids::cylinder},
-    {"cone", "Cone along y: foot on the scope's bottom face, apex in the middle of the top.", {}, solids::cone, true, apex},
-    {"pyramid", "Pyramid over the scope's bottom face, apex in the middle of the top.", {}, solids::pyramid, true, apex},
+    {"cone",
+     "Cone along y: foot on the scope's bottom face, apex in the middle of the top.",
+     {},
+     solids::cone,
+     true,
+     apex},
+    {"pyramid",
+     "Pyramid over the scope's bottom face, apex in the middle of the top.",
+     {},
+     solids::pyramid,
+     true,
+     apex},
     {"prism", "Triangular prism along z: a gable over the scope's bottom face.", {}, solids::prism, true, ridge},
     {"wedge", "Ramp: the scope below the plane from its upper -x edge to its lower +x edge.", {}, solids::wedge},
     {"capsule", "Segment along y with round ends of the scope's least half-size.", {}, solids::capsule},
-    {"roof", "Pyramid sides morphed to an ellipsoid, cut at the foot (the scope's bottom face).", roofParameters, solids::roof,
-     true, apex},
-    {"kifs", "Kaleidoscopic fractal filling the scope and cut by it (McGraw, algorithm 1).", kifsParameters, solids::kifs},
-    {"halfspace", "Everything below the scope's middle plane y = 0. Unbounded: may only cut.", {}, solids::halfspace, false},
+    {"roof", "Pyramid sides morphed to an ellipsoid, cut at the foot (the scope's bottom face).", roofParameters,
+     solids::roof, true, apex},
+    {"kifs", "Kaleidoscopic fractal filling the scope and cut by it (McGraw, algorithm 1).", kifsParameters,
+     solids::kifs},
+    {"halfspace",
+     "Everything below the scope's middle plane y = 0. Unbounded: may only cut.",
+     {},
+     solids::halfspace,
+     false},
 };
 
 }  // namespace

@@ -32,7 +32,8 @@ Num safeBailout(Num squaredRadius) { return max(squaredRadius, 4.0f); }
 // branches reach over. Scaled coordinates are made good by the least scale; the maximum with the box gives growth 1.
 Field kifs(const PrimitiveInput& in) {
     Graph& graph = in.p.x.graph();
-    const auto& [cx, cy, cz] = Point{in.arguments[Center].node[0], in.arguments[Center].node[1], in.arguments[Center].node[2]};
+    const auto& [cx, cy, cz] =
+        Point{in.arguments[Center].node[0], in.arguments[Center].node[1], in.arguments[Center].node[2]};
     const Num reach = max(max(cx, cy), cz);
     const ops::Kifs::Form form = formOf(in.arguments);
 

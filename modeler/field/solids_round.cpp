@@ -35,7 +35,8 @@ Field torus(const PrimitiveInput& in) {
     const Num across = radial(in) - (1.0f - tube);
     const Num scale = min(min(in.half.x, in.half.z), in.half.y / tube);
     const Vec3d m{in.halfValue.x, in.halfValue.y / in.arguments[0].value[0], in.halfValue.z};
-    return {(hypot(across, in.p.y / in.half.y * tube) - tube) * scale, scopeBox(in).inflated(2e-6f * static_cast<float>(maxComponent(m))), 1,
+    return {(hypot(across, in.p.y / in.half.y * tube) - tube) * scale,
+            scopeBox(in).inflated(2e-6f * static_cast<float>(maxComponent(m))), 1,
             growth(minComponent(m) / maxComponent(m))};
 }
 

@@ -17,7 +17,8 @@ namespace {
 Field someSolid(Graph& graph, Draws& draw) {
     constexpr const char* names[] = {"cube", "sphere", "ellipsoid", "torus", "cylinder", "cone", "pyramid", "capsule"};
     Frame frame{draw.in({{-2, -2, -2}, {2, 2, 2}}), draw.uniform(0, 1) < 0.5 ? Mat3{} : draw.rotation()};
-    Field f = build(graph, names[static_cast<size_t>(draw.uniform(0, 8))], {draw.uniform(0.3, 1), draw.uniform(0.3, 1), draw.uniform(0.3, 1)},
+    Field f = build(graph, names[static_cast<size_t>(draw.uniform(0, 8))],
+                    {draw.uniform(0.3, 1), draw.uniform(0.3, 1), draw.uniform(0.3, 1)},
                     toLocal(graph.position(), frame, static_cast<uint64_t>(draw.uniform(0, 1e15))));
     f.bounds = toWorld(f.bounds, frame);
     return f;
@@ -38,10 +39,21 @@ struct Combination {
 const Combination combinations[] = {
     {"framed", true, [](Graph& g, Draws& d) { return someSolid(g, d); }},
     {"sum", true, [](Graph& g, Draws& d) { return sum(g, someSolids(g, d, 1 + static_cast<int>(d.uniform(0, 12)))); }},
-    {"difference", false, [](Graph& g, Draws& d) { const Field a = someSolid(g, d); return difference({a, 1}, {someSolid(g, d), 2}); }},
-    {"intersection", false, [](Graph& g, Draws& d) { const Field a = someSolid(g, d); return intersection({a, 1}, {someSolid(g, d), 2}); }},
+    {"difference", false,
+     [](Graph& g, Draws& d) {
+         const Field a = someSolid(g, d);
+         return difference({a, 1}, {someSolid(g, d), 2});
+     }},
+    {"intersection", false,
+     [](Graph& g, Draws& d) {
+         const Field a = someSolid(g, d);
+         return intersection({a, 1}, {someSolid(g, d), 2});
+     }},
     {"cut by a half-space", false,
-     [](Graph& g, Draws& d) { const Field a = someSolid(g, d); return difference({a, 1}, {build(g, "halfspace", {1, 1, 1}), 2}); }},
+     [](Graph& g, Draws& d) {
+         const Field a = someSolid(g, d);
+         return difference({a, 1}, {build(g, "halfspace", {1, 1, 1}), 2});
+     }},
     {"blend", true,
      [](Graph& g, Draws& d) {
          const double k = d.uniform(0.01, 1);
@@ -58,8 +70,9 @@ const Combination combinations[] = {
          const double amplitude = d.uniform(0, 0.3), frequency = d.uniform(0.5, 6);
          const Noise noise = d.uniform(0, 1) < 0.5 ? Noise::Billow : Noise::Fbm;
          Field f = build(g, "sphere", {1, 1, 1});
-         return displace(f, g.position(), noise, g.slot(static_cast<float>(amplitude)), amplitude, g.slot(static_cast<float>(frequency)), frequency,
-                         1 + static_cast<int>(d.uniform(0, 5)), static_cast<uint32_t>(d.uniform(0, 1e9)));
+         return displace(f, g.position(), noise, g.slot(static_cast<float>(amplitude)), amplitude,
+                         g.slot(static_cast<float>(frequency)), frequency, 1 + static_cast<int>(d.uniform(0, 5)),
+                         static_cast<uint32_t>(d.uniform(0, 1e9)));
      }},
     {"mirror", false,
      [](Graph& g, Draws& d) {
@@ -74,15 +87,18 @@ const Combination combinations[] = {
          const int axis = static_cast<int>(d.uniform(0, 3));
          const double period = d.uniform(0.8, 3);
          const Frame frame{d.in({{-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}}), d.rotation()};
-         return repeated(g.position(), axis, g.slot(static_cast<float>(period)), period, 1 + static_cast<int>(d.uniform(0, 5)), [&](Point p) {
-             Field f = build(g, "ellipsoid", {0.3, 0.7, 0.2}, toLocal(p, frame, 6));
-             f.bounds = toWorld(f.bounds, frame);
-             return f;
-         });
+         return repeated(g.position(), axis, g.slot(static_cast<float>(period)), period,
+                         1 + static_cast<int>(d.uniform(0, 5)), [&](Point p) {
+                             Field f = build(g, "ellipsoid", {0.3, 0.7, 0.2}, toLocal(p, frame, 6));
+                             f.bounds = toWorld(f.bounds, frame);
+                             return f;
+                         });
      }},
     {"repeat of a symmetric solid, mirrored", true,
      [](Graph& g, Draws& d) {
-         Field f = build(g, "torus", {0.5, 0.2, 0.5}, mirror(repeat(g.position(), 0, g.slot(static_cast<float>(d.uniform(1.1, 2)))), true, false, false));
+         Field f =
+             build(g, "torus", {0.5, 0.2, 0.5},
+                   mirror(repeat(g.position(), 0, g.slot(static_cast<float>(d.uniform(1.1, 2)))), true, false, false));
          f.bounds.lo.x = -Box3f::limit();
          f.bounds.hi.x = Box3f::limit();
          return f;
@@ -104,7 +120,8 @@ TEST(Combine, PromisesHold) {
             Draws draw(key);
             Graph graph;
             const Field field = c.make(graph, draw);
-            const Box3d region = field.bounds.finite() ? field.bounds.as<double>() : Box3d{{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}};
+            const Box3d region =
+                field.bounds.finite() ? field.bounds.as<double>() : Box3d{{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}};
             expectPromises(graph, field, region, key, std::string(c.name) + " " + std::to_string(trial), c.solid);
         }
 }
@@ -123,7 +140,8 @@ TEST(Combine, BooleansAreMinAndMax) {
     const std::vector<Vec3f> points = cloud(draw, 500);
     const std::vector<float> least = Probe(graph, sum(graph, parts))(points);
     const std::vector<float> a = Probe(graph, parts[0].field)(points), b = Probe(graph, parts[1].field)(points);
-    const std::vector<float> cut = Probe(graph, difference(parts[0], parts[1]))(points), common = Probe(graph, intersection(parts[0], parts[1]))(points);
+    const std::vector<float> cut = Probe(graph, difference(parts[0], parts[1]))(points),
+                             common = Probe(graph, intersection(parts[0], parts[1]))(points);
     std::vector<float> expected(points.size(), Box3f::limit());
     for (const Owned& part : parts) {
         const std::vector<float> f = Probe(graph, part.field)(points);
@@ -212,7 +230,8 @@ TEST(Blend, IsExactlyTheMinimumWhenOneIsNear) {
     for (int trial = 0; trial < 5000; ++trial) {
         const auto k = static_cast<float>(draw.uniform(0, 1));
         const auto least = static_cast<float>(trial == 0 ? -0.0 : draw.uniform(-3, 3));
-        const float args[] = {k, least + k + static_cast<float>(draw.uniform(1e-5, 2)), least, least + k * 1.01f + 1e-5f};
+        const float args[] = {k, least + k + static_cast<float>(draw.uniform(1e-5, 2)), least,
+                              least + k * 1.01f + 1e-5f};
         const float f = ops::Blend::apply<float>(std::span<const float>(args), 0);
         ASSERT_EQ(std::bit_cast<uint32_t>(f), std::bit_cast<uint32_t>(least));
     }
@@ -227,7 +246,8 @@ TEST(Blend, DroppingFarFieldsChangesNoBit) {
         const float least = *std::min_element(all.begin() + 1, all.end());
         for (size_t i = 1; i < all.size(); ++i)
             if (all[i] - least < k) near.push_back(all[i]);
-        const float f = ops::Blend::apply<float>(std::span<const float>(all), 0), g = ops::Blend::apply<float>(std::span<const float>(near), 0);
+        const float f = ops::Blend::apply<float>(std::span<const float>(all), 0),
+                    g = ops::Blend::apply<float>(std::span<const float>(near), 0);
         ASSERT_EQ(std::bit_cast<uint32_t>(f), std::bit_cast<uint32_t>(g));
     }
 }

@@ -45,7 +45,9 @@ TEST(Domain, BoxesWithoutEndsStayHonest) {
 TEST(Domain, MirrorAndRepeatMoveCopies) {
     Graph graph;
     const Point p = graph.position();
-    const auto ballAt = [&](Point q, Vec3d centre) { return build(graph, "sphere", {0.3, 0.3, 0.3}, toLocal(q, {centre, {}}, hashText("ball"))); };
+    const auto ballAt = [&](Point q, Vec3d centre) {
+        return build(graph, "sphere", {0.3, 0.3, 0.3}, toLocal(q, {centre, {}}, hashText("ball")));
+    };
     Probe mirrored(graph, ballAt(mirror(p, true, false, false), {2, 0, 0}));
     EXPECT_LT(mirrored({2, 0, 0}), 0);
     EXPECT_LT(mirrored({-2, 0, 0}), 0);

@@ -23,7 +23,8 @@ Operands operands(Vec3d center, double scale, const Mat3& fold = {}, const Mat3&
     };
     put(Kifs::centreOfScale, center);
     a[Kifs::scale] = static_cast<float>(scale);
-    for (const auto& [at, m] : {std::pair{Kifs::fold, fold}, {Kifs::turn, turn}}) put(at, m.x), put(at + 3, m.y), put(at + 6, m.z);
+    for (const auto& [at, m] : {std::pair{Kifs::fold, fold}, {Kifs::turn, turn}})
+        put(at, m.x), put(at + 3, m.y), put(at + 6, m.z);
     a[Kifs::bailout] = static_cast<float>(bailout);
     return a;
 }
@@ -55,7 +56,8 @@ TEST(Kifs, IsTheMengerSponge) {
     for (const int level : {1, 2, 3, 4})
         for (int i = 0; i < 5000; ++i) {
             const Vec3d p = draw.in({{-1.1, -1.1, -1.1}, {1.1, 1.1, 1.1}});
-            const float f = kifs(a, p, {.passes = static_cast<uint32_t>(level), .cube = true, .folds = false, .turns = false});
+            const float f =
+                kifs(a, p, {.passes = static_cast<uint32_t>(level), .cube = true, .folds = false, .turns = false});
             if (std::abs(f) > 1e-5f) {
                 ASSERT_EQ(f < 0, inSponge(p, level)) << level << ": " << p.x << ' ' << p.y << ' ' << p.z;
             }
@@ -65,18 +67,23 @@ TEST(Kifs, IsTheMengerSponge) {
 /// Sections of the level-2 sponge as a person would draw them, sampled at the middles of 9 × 9 cells.
 TEST(Kifs, CrossSectionsHaveTheirHoles) {
     const Operands a = operands({1, 1, 1}, 3);
-    const char* face[9] = {"#########", "#.##.##.#", "#########", "###...###", "#.#...#.#", "###...###", "#########", "#.##.##.#", "#########"};
-    const char* middle[9] = {"#.#...#.#", ".........", "#.#...#.#", ".........", ".........", ".........", "#.#...#.#", ".........", "#.#...#.#"};
+    const char* face[9] = {"#########", "#.##.##.#", "#########", "###...###", "#.#...#.#",
+                           "###...###", "#########", "#.##.##.#", "#########"};
+    const char* middle[9] = {"#.#...#.#", ".........", "#.#...#.#", ".........", ".........",
+                             ".........", "#.#...#.#", ".........", "#.#...#.#"};
     for (int row = 0; row < 9; ++row)
         for (int column = 0; column < 9; ++column) {
             const double x = (column - 4) / 4.5, z = (row - 4) / 4.5;
-            EXPECT_EQ(kifs(a, {x, -0.9, z}, {.passes = 2, .cube = true}) < 0, face[row][column] == '#') << row << ' ' << column;
-            EXPECT_EQ(kifs(a, {x, 0, z}, {.passes = 2, .cube = true}) < 0, middle[row][column] == '#') << row << ' ' << column;
+            EXPECT_EQ(kifs(a, {x, -0.9, z}, {.passes = 2, .cube = true}) < 0, face[row][column] == '#')
+                << row << ' ' << column;
+            EXPECT_EQ(kifs(a, {x, 0, z}, {.passes = 2, .cube = true}) < 0, middle[row][column] == '#')
+                << row << ' ' << column;
         }
 }
 
 /// Algorithm 1 in double, with the paper's comparison (`<`) or the right one (`>`), and the paper's bailout or none.
-double algorithm1(Vec3d p, Vec3d c, double s, const Mat3& r1, const Mat3& r2, int passes, bool printedComparison, double bailout) {
+double algorithm1(Vec3d p, Vec3d c, double s, const Mat3& r1, const Mat3& r2, int passes, bool printedComparison,
+                  double bailout) {
     double scales = 1;
     for (int i = 0; i < passes; ++i) {
         p = r1 * p;
@@ -135,7 +142,8 @@ TEST(Kifs, ContinuousFormIsOneLipschitz) {
             double steepest = 0;
             for (int i = 0; i < 4000; ++i) {
                 const Vec3d p = draw.in({{-2, -2, -2}, {2, 2, 2}}), q = p + draw.direction() * draw.size(1e-3, 1);
-                const double rise = std::abs(kifs(a, p, {.passes = 6, .cube = cube}) - kifs(a, q, {.passes = 6, .cube = cube}));
+                const double rise =
+                    std::abs(kifs(a, p, {.passes = 6, .cube = cube}) - kifs(a, q, {.passes = 6, .cube = cube}));
                 steepest = std::max(steepest, (rise - 2e-6) / length(p - q));
             }
             EXPECT_LE(steepest, 1.00001);
@@ -191,7 +199,9 @@ TEST(Kifs, IntervalsEnclose) {
                 Operands at;
                 for (size_t i = 0; i < a.size(); ++i) {
                     const double t = n < 2 ? n : draw.uniform(0, 1);
-                    at[i] = std::min(box[i].hi, std::max(box[i].lo, static_cast<float>(box[i].lo + t * (double(box[i].hi) - box[i].lo))));
+                    at[i] = std::min(
+                        box[i].hi,
+                        std::max(box[i].lo, static_cast<float>(box[i].lo + t * (double(box[i].hi) - box[i].lo))));
                 }
                 const float f = Kifs::apply<float>(std::span<const float>(at), Kifs::pack(form));
                 ASSERT_LE(range.lo, f) << trial;
@@ -227,7 +237,8 @@ TEST(Kifs, TapeGivesTheSameBits) {
             for (int i = 0; i < 100; ++i) points.push_back(draw.in({{-2, -2, -2}, {2, 2, 2}}).as<float>());
             const std::vector<float> f = probe(points);
             for (size_t i = 0; i < points.size(); ++i)
-                ASSERT_EQ(std::bit_cast<uint32_t>(f[i]), std::bit_cast<uint32_t>(kifs(a, points[i].as<double>(), form)));
+                ASSERT_EQ(std::bit_cast<uint32_t>(f[i]),
+                          std::bit_cast<uint32_t>(kifs(a, points[i].as<double>(), form)));
         }
 }
 

@@ -70,7 +70,8 @@ TEST(Noise, DerivativesMatchDifferences) {
     Draws draw(4);
     for (int i = 0; i < 2000; ++i) {
         const Vec3d p = draw.in({{-4, -4, -4}, {4, 4, 4}});
-        const D args[] = {D(static_cast<float>(p.x), 1, 0, 0), D(static_cast<float>(p.y), 0, 1, 0), D(static_cast<float>(p.z), 0, 0, 1)};
+        const D args[] = {D(static_cast<float>(p.x), 1, 0, 0), D(static_cast<float>(p.y), 0, 1, 0),
+                          D(static_cast<float>(p.z), 0, 0, 1)};
         const uint32_t data = Noise::pack(true, 2, 9);
         const D f = Noise::gradient(std::span<const D>(args), data);
         EXPECT_EQ(std::bit_cast<uint32_t>(f.value), std::bit_cast<uint32_t>(noise(p, data)));
@@ -97,7 +98,8 @@ TEST(Noise, IntervalsEnclose) {
         EXPECT_LE(range.hi, 1.001f);
         for (int i = 0; i < 20; ++i) {
             float at[3];
-            for (int axis = 0; axis < 3; ++axis) at[axis] = static_cast<float>(draw.uniform(args[axis].lo, args[axis].hi));
+            for (int axis = 0; axis < 3; ++axis)
+                at[axis] = static_cast<float>(draw.uniform(args[axis].lo, args[axis].hi));
             const float f = Noise::apply<float>(std::span<const float>(at), data);
             ASSERT_LE(range.lo, f);
             ASSERT_GE(range.hi, f);

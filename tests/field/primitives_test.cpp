@@ -13,12 +13,18 @@ std::vector<Argument> randomArguments(Graph& graph, const Primitive& row, Draws&
     std::vector<Argument> list;
     for (const PrimitiveParameter& p : row.parameters) {
         const double a = draw.uniform(p.lo, p.hi);
-        if (p.kind == ParameterKind::Rotation) list.push_back(argument(graph, draw.uniform(0, 1) < 0.3 ? Mat3{} : draw.rotation()));
-        else if (p.kind == ParameterKind::Vector) list.push_back(argument(graph, {a, draw.uniform(p.lo, p.hi), draw.uniform(p.lo, p.hi)}));
-        else if (p.kind == ParameterKind::Count) list.push_back(argument(graph, {std::floor(a)}));
-        else if (p.kind == ParameterKind::Choice) list.push_back(argument(graph, {double(draw.uniform(0, 1) < 0.5)}));
-        else if (p.name == "bailout") list.push_back(argument(graph, {draw.uniform(0, 1) < 0.7 ? 0 : a}));
-        else list.push_back(argument(graph, {a}));
+        if (p.kind == ParameterKind::Rotation)
+            list.push_back(argument(graph, draw.uniform(0, 1) < 0.3 ? Mat3{} : draw.rotation()));
+        else if (p.kind == ParameterKind::Vector)
+            list.push_back(argument(graph, {a, draw.uniform(p.lo, p.hi), draw.uniform(p.lo, p.hi)}));
+        else if (p.kind == ParameterKind::Count)
+            list.push_back(argument(graph, {std::floor(a)}));
+        else if (p.kind == ParameterKind::Choice)
+            list.push_back(argument(graph, {double(draw.uniform(0, 1) < 0.5)}));
+        else if (p.name == "bailout")
+            list.push_back(argument(graph, {draw.uniform(0, 1) < 0.7 ? 0 : a}));
+        else
+            list.push_back(argument(graph, {a}));
     }
     return list;
 }
@@ -36,10 +42,12 @@ TEST(Primitives, RowsAreWellFormed) {
             EXPECT_GE(p.hi, p.fallback) << p.name;
             EXPECT_EQ(p.kind == ParameterKind::Choice, !p.choices.empty()) << p.name;
         }
-        for (const PrimitiveJoint& j : row.joints) EXPECT_TRUE(length(j.facing) == 0 || std::abs(length(j.facing) - 1) < 1e-9);
+        for (const PrimitiveJoint& j : row.joints)
+            EXPECT_TRUE(length(j.facing) == 0 || std::abs(length(j.facing) - 1) < 1e-9);
     }
     EXPECT_EQ(findPrimitive("dodecahedron"), nullptr);
-    for (const char* name : {"cube", "sphere", "ellipsoid", "torus", "cylinder", "cone", "pyramid", "capsule", "halfspace", "roof", "kifs"})
+    for (const char* name : {"cube", "sphere", "ellipsoid", "torus", "cylinder", "cone", "pyramid", "capsule",
+                             "halfspace", "roof", "kifs"})
         EXPECT_NE(findPrimitive(name), nullptr) << name;
 }
 
@@ -56,7 +64,8 @@ TEST(Primitives, KeepTheirPromises) {
             const Field field = build(graph, row, half, arguments, graph.position());
             std::ostringstream what;
             what << row.name << " half " << half.x << ' ' << half.y << ' ' << half.z;
-            for (size_t i = 0; i < arguments.size(); ++i) what << ' ' << row.parameters[i].name << '=' << arguments[i].value[0];
+            for (size_t i = 0; i < arguments.size(); ++i)
+                what << ' ' << row.parameters[i].name << '=' << arguments[i].value[0];
             EXPECT_EQ(field.bounds.finite(), row.bounded) << what.str();
             expectPromises(graph, field, {-half, half}, key, what.str(), row.name != "kifs");
         }
@@ -73,17 +82,24 @@ TEST(Primitives, FillTheirScope) {
     const Vec3d east{1, 0, 0}, west{-1, 0, 0}, top{0, 1, 0}, foot{0, -1, 0}, north{0, 0, -1}, south{0, 0, 1};
     const std::vector<Vec3d> faces{east, west, top, foot, north, south};
     const Vec3d low{0.999, -0.999, 0}, front{0, -0.999, 0.999};
-    const Touch touches[] = {{"cube", faces}, {"sphere", faces}, {"ellipsoid", faces}, {"cylinder", faces},
+    const Touch touches[] = {{"cube", faces},
+                             {"sphere", faces},
+                             {"ellipsoid", faces},
+                             {"cylinder", faces},
                              {"capsule", {top, foot, east, west, north, south}},
-                             {"cone", {top, foot, low, front}}, {"pyramid", {top, foot, low, front}},
-                             {"prism", {top, foot, low}}, {"wedge", {west, foot}}, {"roof", {top, foot, low, front}},
+                             {"cone", {top, foot, low, front}},
+                             {"pyramid", {top, foot, low, front}},
+                             {"prism", {top, foot, low}},
+                             {"wedge", {west, foot}},
+                             {"roof", {top, foot, low, front}},
                              {"torus", {{1, 0, 0}, {0, 0, 1}, {0.75, 1, 0}, {0, -1, 0.75}}, true}};
     for (const Touch& t : touches) {
         SCOPED_TRACE(t.name);
         Graph graph;
         Probe probe(graph, build(graph, t.name, half));
         for (const Vec3d& at : t.at) {
-            const Vec3d core = t.hollow ? normalized(Vec3d{at.x, 0, at.z}) * 0.75 : Vec3d{};  // the ring's, or the middle
+            const Vec3d core =
+                t.hollow ? normalized(Vec3d{at.x, 0, at.z}) * 0.75 : Vec3d{};  // the ring's, or the middle
             EXPECT_LT(probe(((core + (at - core) * 0.97) * half).as<float>()), 0) << at.x << ' ' << at.y << ' ' << at.z;
             EXPECT_GE(probe((at * 1.01 * half).as<float>()), 0) << at.x << ' ' << at.y << ' ' << at.z;
         }
@@ -102,7 +118,7 @@ TEST(Primitives, DistancesInClosedForm) {
     EXPECT_FLOAT_EQ(sphere({3, 4, 12}), 11);
     EXPECT_FLOAT_EQ(sphere({0, 0, 0}), -2);
     Probe ellipsoid(graph, build(graph, "ellipsoid", {1, 2, 4}));
-    EXPECT_FLOAT_EQ(ellipsoid({0, 4, 0}), 1);  // (|p/s| − 1) · min s
+    EXPECT_FLOAT_EQ(ellipsoid({0, 4, 0}), 1);              // (|p/s| − 1) · min s
     Probe torus(graph, build(graph, "torus", {4, 1, 4}));  // R = 3, r = 1
     EXPECT_FLOAT_EQ(torus({3, 0, 0}), -1);
     EXPECT_FLOAT_EQ(torus({0, 0, 0}), 2);
@@ -129,8 +145,11 @@ TEST(Primitives, RoofIsPyramidThenEllipsoidCutAtTheFoot) {
     std::vector<Vec3f> points;
     for (int i = 0; i < 2000; ++i) points.push_back(draw.in(Box3d{-half, half}.inflated(1)).as<float>());
     Graph graph;
-    const auto at = [&](double round) { return Probe(graph, build(graph, row, half, {argument(graph, {round})}, graph.position()))(points); };
-    const std::vector<float> sharp = at(0), between = at(0.5), dome = at(1), pyramid = Probe(graph, build(graph, "pyramid", half))(points);
+    const auto at = [&](double round) {
+        return Probe(graph, build(graph, row, half, {argument(graph, {round})}, graph.position()))(points);
+    };
+    const std::vector<float> sharp = at(0), between = at(0.5), dome = at(1),
+                             pyramid = Probe(graph, build(graph, "pyramid", half))(points);
     for (size_t i = 0; i < points.size(); ++i) {
         EXPECT_EQ(sharp[i], pyramid[i]);
         const double x = points[i].x / half.x, y = (points[i].y + half.y) / (2 * half.y), z = points[i].z / half.z;
@@ -144,7 +163,9 @@ TEST(Primitives, RoofIsPyramidThenEllipsoidCutAtTheFoot) {
 
 TEST(Primitives, VolumesBySampling) {
     Graph graph;
-    const auto sampled = [&](const char* name, Vec3d half) { return volume(graph, build(graph, name, half), {-half, half}, 60); };
+    const auto sampled = [&](const char* name, Vec3d half) {
+        return volume(graph, build(graph, name, half), {-half, half}, 60);
+    };
     EXPECT_NEAR(sampled("sphere", {1, 1, 1}), 4.0 / 3 * pi, 0.01);
     EXPECT_NEAR(sampled("ellipsoid", {1, 2, 3}), 4.0 / 3 * pi * 6, 0.06);
     EXPECT_NEAR(sampled("torus", {4, 1, 4}), 2 * pi * pi * 3, 0.1);

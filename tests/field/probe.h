@@ -89,7 +89,9 @@ inline Field build(Graph& graph, std::string_view name, Vec3d half, Point p) {
     const Primitive& row = *findPrimitive(name);
     return build(graph, row, half, defaults(graph, row), p);
 }
-inline Field build(Graph& graph, std::string_view name, Vec3d half) { return build(graph, name, half, graph.position()); }
+inline Field build(Graph& graph, std::string_view name, Vec3d half) {
+    return build(graph, name, half, graph.position());
+}
 
 inline double distance(const Box3f& box, Vec3f p) {
     double d = 0;
@@ -102,12 +104,14 @@ inline double distance(const Box3f& box, Vec3f p) {
 
 /// Holds `field` to its bounds, growth and Lipschitz constant on random points around `region` (the bounds when finite).
 /// An infinite Lipschitz constant promises nothing. `solid` asks for some inside point.
-inline void expectPromises(const Graph& graph, const Field& field, Box3d region, uint64_t key, const std::string& what, bool solid = true) {
+inline void expectPromises(const Graph& graph, const Field& field, Box3d region, uint64_t key, const std::string& what,
+                           bool solid = true) {
     SCOPED_TRACE(what);
     Draws draw(key);
     const double size = std::max(length(region.size()), 0.1);
     std::vector<Vec3f> points;
-    for (int i = 0; i < 3000; ++i) points.push_back(draw.in(region.inflated(size * (i % 3 == 0 ? 1.5 : 0.03))).as<float>());
+    for (int i = 0; i < 3000; ++i)
+        points.push_back(draw.in(region.inflated(size * (i % 3 == 0 ? 1.5 : 0.03))).as<float>());
     const size_t singles = points.size();
     for (size_t i = 0; i < singles; ++i)  // partners from far to near
         points.push_back(points[i] + (draw.direction() * draw.size(size * 1e-3, size)).as<float>());
@@ -119,9 +123,11 @@ inline void expectPromises(const Graph& graph, const Field& field, Box3d region,
         ASSERT_TRUE(std::isfinite(f[i])) << points[i].x << ' ' << points[i].y << ' ' << points[i].z;
         if (f[i] < 0) {
             ++inside;
-            ASSERT_TRUE(field.bounds.contains(points[i])) << f[i] << " at " << points[i].x << ' ' << points[i].y << ' ' << points[i].z;
+            ASSERT_TRUE(field.bounds.contains(points[i]))
+                << f[i] << " at " << points[i].x << ' ' << points[i].y << ' ' << points[i].z;
         } else if (field.growth > 0 && !field.bounds.empty()) {
-            ASSERT_GE(f[i] + tolerance, field.growth * distance(field.bounds, points[i])) << points[i].x << ' ' << points[i].y << ' ' << points[i].z;
+            ASSERT_GE(f[i] + tolerance, field.growth * distance(field.bounds, points[i]))
+                << points[i].x << ' ' << points[i].y << ' ' << points[i].z;
         }
         if (i < singles && std::isfinite(field.lipschitz)) {
             const double apart = length((points[i] - points[i + singles]).as<double>());
