@@ -1,0 +1,206 @@
+#include "grammar/lower/lower.h"
+
+#include <fmt/format.h>
+
+#include <unordered_map>
+
+#include "grammar/lower/materials.h"
+#include "grammar/lower/solids.h"
+#include "modeler/core/random.h"
+#include "modeler/field/combine.h"
+
+namespace sgm::lower {
+namespace {
+
+using derive::none;
+using derive::Shape;
+using derive::ShapeId;
+using derive::ShapeTree;
+using field::Owned;
+using rules::Operator;
+
+/// What a node holds so far: terms of one pending n-ary sum, or of one pending blend.
+struct Content {
+    ShapeId shape = none;  ///< the node whose content this is
+    std::vector<Owned> terms;
+    double blend_m = 0;    ///< > 0: the terms are those of a blend with this radius
+    uint64_t blendKey = 0;
+};
+
+/// Walks the tree once, without recursion. A child that only adds to what stands, and is itself a plain sum, pours its
+/// terms into its parent's, so that thousands of parts meet in one n-ary sum.
+class Lowering {
+public:
+    Lowering(const derive::Derivation& d, Model& model) : d_(d), tree_(d.tree), model_(model), materials_(d) {}
+
+    Status run(Progress* progress);
+
+private:
+    void enter(ShapeId id);
+    void leave(ShapeId id);
+    void join(Content& content, ShapeId id, Owned part);
+    Owned take(Content& content);
+    OriginId ownerOf(ShapeId id);
+    Owned displaced(Owned part, ShapeId id);
+    bool pours(ShapeId id) const;
+    bool isSum(const Shape& s) const { return (s.op == Operator::Sum || s.op == Operator::None) && s.blend_m <= 0; }
+    std::vector<bool> plainSums() const;
+
+    const derive::Derivation& d_;
+    const ShapeTree& tree_;
+    Model& model_;
+    Materials materials_;
+    std::vector<Content> open_;
+    std::vector<bool> plain_;  ///< by shape: its content is nothing but a sum
+    std::unordered_map<ShapeId, OriginId> owners_;
+};
+
+std::vector<bool> Lowering::plainSums() const {
+    std::vector<bool> plain(tree_.shapes.size(), true);
+    for (ShapeId s = 0; s < tree_.shapes.size(); ++s) {
+        const Shape& shape = tree_.shapes[s];
+        if (const auto* x = tree_.extrasOf(s); x && !x->displace.empty()) plain[s] = false;
+        if (shape.parent != none && !isSum(shape)) plain[shape.parent] = false;
+    }
+    return plain;
+}
+
+/// True when the shape's terms belong to its parent's sum.
+bool Lowering::pours(ShapeId id) const { return tree_.shapes[id].parent != none && isSum(tree_.shapes[id]) && plain_[id]; }
+
+/// Who owns surface: the part is made when it is first asked for.
+OriginId Lowering::ownerOf(ShapeId id) {
+    const auto [at, fresh] = owners_.try_emplace(id, static_cast<OriginId>(model_.provenance.parts.size()));
+    if (!fresh) return at->second;
+    const Shape& s = tree_.shapes[id];
+    Part part;
+    part.path = tree_.path(id);
+    part.symbol = tree_.labels[s.label];
+    if (s.madeBy != none) part.rule = d_.grammar->rules[d_.steps[s.madeBy].rule].name;
+    if (s.span.source) {
+        part.file = s.span.source->name();
+        part.line = s.span.source->place(s.span.begin).line;
+    }
+    part.material = materials_.of(id);
+    model_.provenance.parts.push_back(std::move(part));
+    model_.shapeOf.push_back(id);
+    return at->second;
+}
+
+Owned Lowering::take(Content& content) {
+    Owned result{field::nothing(model_.graph), 0};
+    if (content.terms.size() == 1) result = content.terms[0];
+    else if (content.blend_m > 0)
+        result.field = field::blend(model_.graph, content.terms, model_.graph.slot({content.blendKey, hashText("blend")}, static_cast<float>(content.blend_m)), content.blend_m);
+    else if (!content.terms.empty())
+        result.field = field::sum(model_.graph, content.terms);
+    content.terms.clear();
+    content.blend_m = 0;
+    return result;
+}
+
+/// Combines a finished child with what its parent holds so far.
+void Lowering::join(Content& content, ShapeId id, Owned part) {
+    const Shape& s = tree_.shapes[id];
+    if (isSum(s)) {
+        if (content.blend_m > 0) content.terms = {take(content)};
+        content.terms.push_back(part);
+        return;
+    }
+    if (s.op == Operator::Sum || s.op == Operator::None) {
+        if (content.blend_m != s.blend_m) {
+            if (!content.terms.empty()) content.terms = {take(content)};
+            content.blend_m = s.blend_m;
+            content.blendKey = s.key;
+        }
+        content.terms.push_back(part);
+        return;
+    }
+    const bool empty = content.terms.empty();
+    const Owned stands = take(content);
+    if (empty && s.op != Operator::Morph) return;  // nothing to cut from, nothing to share
+    if (s.op == Operator::Difference) content.terms = {{field::difference(stands, part), 0}};
+    else if (s.op == Operator::Intersection) content.terms = {{field::intersection(stands, part), 0}};
+    else if (empty) content.terms = {part};
+    else {
+        const field::Num t = model_.graph.slot({s.key, hashText("by")}, static_cast<float>(s.amount));
+        content.terms = {{field::morph(stands.field, part.field, t, s.amount, ownerOf(id)), ownerOf(id)}};
+    }
+}
+
+Owned Lowering::displaced(Owned part, ShapeId id) {
+    const auto* x = tree_.extrasOf(id);
+    if (!x || x->displace.empty() || part.field.bounds.empty()) return part;
+    // Owners are found along minima and maxima, which noise hides: the displaced surface is the shape's.
+    if (part.origin == 0) part.origin = ownerOf(id);
+    const Shape& s = tree_.shapes[id];
+    for (size_t i = 0; i < x->displace.size(); ++i) {
+        const derive::Displacement& n = x->displace[i];
+        const uint64_t key = combine(s.key, i);
+        part.field = field::displace(part.field, model_.graph.position(), n.fbm ? field::Noise::Fbm : field::Noise::Billow,
+                                     model_.graph.slot({key, hashText("displace.amplitude")}, static_cast<float>(n.amplitude_m)), n.amplitude_m,
+                                     model_.graph.slot({key, hashText("displace.frequency")}, static_cast<float>(n.frequency)), n.frequency, n.octaves,
+                                     static_cast<uint32_t>(key >> 32));
+    }
+    return part;
+}
+
+void Lowering::enter(ShapeId id) {
+    materials_.enter(id);
+    if (!pours(id)) open_.push_back({id, {}, 0, 0});
+    if (const derive::SolidValue* solid = tree_.solidOf(id)) {
+        const field::Field f = lowerSolid(model_.graph, *solid, tree_.shapes[id].scope, tree_.shapes[id].key);
+        Content& content = open_.back();
+        if (content.blend_m > 0) content.terms = {take(content)};
+        content.terms.push_back({f, ownerOf(id)});
+    }
+}
+
+void Lowering::leave(ShapeId id) {
+    if (pours(id)) return;
+    Owned part = displaced(take(open_.back()), id);
+    open_.pop_back();
+    if (open_.empty()) model_.field = field::sum(model_.graph, std::span(&part, 1));  // one part alone keeps its owner
+    else if (!part.field.bounds.empty()) join(open_.back(), id, part);
+}
+
+Status Lowering::run(Progress* progress) {
+    plain_ = plainSums();
+    if (progress) progress->begin("lower", tree_.shapes.size());
+    uint32_t visited = 0;
+    for (ShapeId s = 0; s != none;) {
+        enter(s);
+        if (progress) progress->tick();
+        if (++visited % 256 == 0 && cancelled(progress)) return Error{Error::Kind::Cancelled, "cancelled while lowering"};
+        if (tree_.shapes[s].firstChild != none) {
+            s = tree_.shapes[s].firstChild;
+            continue;
+        }
+        for (;; s = tree_.shapes[s].parent) {
+            leave(s);
+            if (s == 0 || tree_.shapes[s].nextSibling != none) break;
+        }
+        s = s == 0 ? none : tree_.shapes[s].nextSibling;
+    }
+    return Done{};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress) {
+    auto model = std::make_unique<Model>();
+    model->provenance.materials = derivation.materials;
+    model->shapeOf.push_back(none);
+    Lowering lowering(derivation, *model);
+    const Status done = lowering.run(progress);
+    if (!done.ok()) return done.error();
+    if (model->field.bounds.empty()) return Error{Error::Kind::Input, fmt::format("nothing solid is left of '{}'", derivation.tree.path(0))};
+    if (!model->field.bounds.finite()) return Error{Error::Kind::Input, fmt::format("'{}' has no end: a half-space may only cut", derivation.tree.path(0))};
+    // Surface that no operand owns (a field of a single part) is the root's, with the first part's look.
+    Part whole = model->provenance.parts.size() > 1 ? model->provenance.parts[1] : Part{};
+    if (model->provenance.parts.size() > 2) whole.path = derivation.tree.path(0), whole.symbol = derivation.tree.labels[0], whole.rule.clear();
+    model->provenance.parts[0] = std::move(whole);
+    return model;
+}
+
+}  // namespace sgm::lower
