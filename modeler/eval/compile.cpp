@@ -110,7 +110,10 @@ private:
         sorted_.clear();
         for (const field::Operand& o : graph_.operands(id))
             if (fateOf(o.node).kind == Fate::Instruction && !isInput(standIn(o.node))) sorted_.push_back(standIn(o.node));
-        std::stable_sort(sorted_.begin(), sorted_.end(), [&](NodeId a, NodeId b) { return fates_[a].need > fates_[b].need; });
+        const auto heavier = [&](NodeId a, NodeId b) {
+            return fates_[a].need != fates_[b].need ? fates_[a].need > fates_[b].need : a < b;
+        };
+        std::sort(sorted_.begin(), sorted_.end(), heavier);
         return sorted_;
     }
     uint32_t need(std::span<const NodeId> heavy) const {

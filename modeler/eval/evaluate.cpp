@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "modeler/eval/blocks.h"
-#include "modeler/field/ops.h"
 
 namespace sgm::eval {
 namespace {
@@ -79,14 +78,12 @@ void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& wo
             hi[i] = box.hi[static_cast<int>(axis)];
         }
     }
-    size_t words = 0;
-    for (const Instruction& in : tape.code()) words += field::traits(in.op).chooses ? in.count : 0;
-    w.keeps.assign(words, 0);
+    float* const bounds = w.bounds.get(tape.boundRows() * maxBoxes);
     w.rangedCode = tape.code().data();
-    c.keeps = w.keeps.data();
-    for (const Instruction& in : tape.code()) {
+    for (size_t i = 0; i < tape.size(); ++i) {
+        const Instruction& in = tape.code()[i];
+        c.bounds = bounds + size_t{tape.links()[i].bounds} * maxBoxes;
         w.kernels.ranges[static_cast<size_t>(in.op)](in, c);
-        if (field::traits(in.op).chooses) c.keeps += in.count;
     }
     constexpr float infinity = std::numeric_limits<float>::infinity();
     for (size_t i = 0; i < regions.n; ++i) {

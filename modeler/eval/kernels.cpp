@@ -2,6 +2,8 @@
 // instantiate an inline function that doesn't depend on Arch: the linker might keep the copy this machine can't run.
 #include "modeler/eval/kernels.h"
 
+#include <limits>
+
 #include "modeler/eval/values_dual.h"
 #include "modeler/eval/values_interval.h"
 #include "modeler/eval/values_simd.h"
@@ -118,11 +120,16 @@ V loadAt(Source s, const StepContext& c, size_t i) {
     return isConstant(s) ? V(c.constants[indexOf(s)]) : Planes<V>::load(rowOf<V>(c, s) + i, c.stride);
 }
 
-/// Which operands can matter, lane by lane, into the instruction's choice words.
+/// What pruning needs to know: each operand's end that is nearer to being chosen, and the reach; NaN where one is unknown.
 template <class Row>
-void choose(const Interval<Float>* args, uint32_t count, uint32_t data, Float::Mask* masks, size_t i, const StepContext& c) {
-    Row::choose(std::span<const Interval<Float>>(args, count), data, std::span<Float::Mask>(masks, count));
-    for (uint32_t k = 0; k < count; ++k) c.keeps[k] |= masks[k].bits() << i;
+void keepBounds(std::span<const Interval<Float>> args, uint32_t data, size_t i, const StepContext& c) {
+    auto mask = known(args[0]);
+    for (size_t k = 0; k < args.size(); ++k) {
+        mask = mask & known(args[k]);
+        (Row::owner == field::ops::Owner::Least ? args[k].lo : args[k].hi).store(c.bounds + k * maxBoxes + i);
+    }
+    const Float reach = select(mask, Row::reach(args, data), Float(std::numeric_limits<float>::quiet_NaN()));
+    reach.store(c.bounds + args.size() * maxBoxes + i);
 }
 
 template <class Row, class V>
@@ -139,10 +146,7 @@ void step(const Instruction& in, const StepContext& c) {
             withOperand<V>(in.b, c, [&](auto b) {
                 for (size_t i = 0; i < c.count; i += Float::size) {
                     const V args[] = {a.at(i), b.at(i)};
-                    if constexpr (chooses) {
-                        Float::Mask masks[2];
-                        choose<Row>(args, 2, in.data, masks, i, c);
-                    }
+                    if constexpr (chooses) keepBounds<Row>(args, in.data, i, c);
                     Planes<V>::store(Body<Row, V>::call(args[0], args[1]), out + i, c.stride);
                 }
             });
@@ -152,9 +156,9 @@ void step(const Instruction& in, const StepContext& c) {
         const Source* const sources = c.sources + in.a;
         for (size_t i = 0; i < c.count; i += Float::size) {
             for (uint32_t k = 0; k < in.count; ++k) args[k] = loadAt<V>(sources[k], c, i);
-            if constexpr (chooses)
-                choose<Row>(args, in.count, in.data, reinterpret_cast<Float::Mask*>(args + in.count), i, c);
-            Planes<V>::store(Body<Row, V>::call(std::span<const V>(args, in.count), in.data), out + i, c.stride);
+            const std::span<const V> all(args, in.count);
+            if constexpr (chooses) keepBounds<Row>(all, in.data, i, c);
+            Planes<V>::store(Body<Row, V>::call(all, in.data), out + i, c.stride);
         }
     }
 }

@@ -12,9 +12,9 @@ namespace sgm::eval {
 
 /// Floats in the longest vector: register rows are multiples of it.
 inline constexpr size_t vectorFloats = 16;
-/// Boxes at once; one bit of a choice word each.
+/// Boxes at once: floats of a row of bounds.
 inline constexpr size_t maxBoxes = 64;
-/// Bytes of argument scratch a variadic op needs for each operand: a Dual, or an Interval and its mask, of the longest vector.
+/// Bytes of argument scratch a variadic op needs for each operand: a Dual of the longest vector.
 inline constexpr size_t argumentBytes = 4 * vectorFloats * sizeof(float);
 
 /// Where the steps work.
@@ -25,7 +25,7 @@ struct StepContext {
     const float* constants;
     const Source* sources;
     void* arguments;         ///< argumentBytes for each operand of the longest instruction
-    uint64_t* keeps;         ///< ranges: where the instruction's operands leave the boxes in which they can matter
+    float* bounds;           ///< ranges: rows of the instruction's operands and reach, where it chooses
 };
 
 using Step = void (*)(const Instruction&, const StepContext&);
@@ -34,7 +34,7 @@ using Step = void (*)(const Instruction&, const StepContext&);
 struct Kernels {
     const Step* values;
     const Step* gradients;  ///< Dual: rows value, dx, dy, dz
-    const Step* ranges;     ///< Interval: rows lo, hi; ops that choose also write `keeps`
+    const Step* ranges;     ///< Interval: rows lo, hi; ops that choose also write `bounds`
 };
 
 namespace portable { Kernels kernels(); }

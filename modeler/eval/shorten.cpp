@@ -1,36 +1,76 @@
+// Pruning: going backward, an operand of min, max or blend that can't matter inside the region isn't asked for, and so
+// nothing it needs is written. (Keeter, "Massively parallel rendering of complex closed-form implicit surfaces", 2020.)
+// Beyond the choice of one instruction we also pass down what the consumers tell apart (Care): a part of a union that is
+// farther than another part of the whole is dropped even where its own neighbours are farther still.
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "modeler/eval/workspace.h"
 #include "modeler/field/ops.h"
 
 namespace sgm::eval {
+namespace {
+
+using field::ops::Owner;
+
+/// What matters of the operands of an op that chooses, and with it what may be dropped. `reach` is the op's own, NaN where
+/// an operand is unknown: then nothing may be dropped, since a NaN takes sides by its place.
+Care careOfOperands(const field::OpTraits& row, float reach, Care care) {
+    if (std::isnan(reach)) return {};
+    const Care outer = row.selects ? care : Care{};
+    if (row.owner == Owner::Least) return {outer.least, std::min(outer.most, reach)};
+    return {std::max(outer.least, reach), outer.most};
+}
+
+/// True where no value of the operand is told apart. Strict: at a tie ±0 could differ.
+bool beyond(const field::OpTraits& row, float bound, Care care) {
+    return row.owner == Owner::Least ? bound > care.most : bound < care.least;
+}
+
+/// The operands of instruction `i` that are left in region `index`, with what of them matters.
+void operandsLeft(const Tape& tape, size_t i, const float* bounds, Care care, std::vector<TapeBuilder::Use>& uses) {
+    const Instruction& in = tape.code()[i];
+    const Link& link = tape.links()[i];
+    const field::OpTraits& row = field::traits(in.op);
+    const Source direct[] = {link.a, link.b};
+    const Source* const values = row.arity == field::ops::variadic ? tape.sourceValues().data() + link.a : direct;
+    const OriginId* const origins = in.origins ? tape.origins().data() + in.origins - 1 : nullptr;
+    const auto use = [&](uint32_t k, Care c) { uses.push_back({values[k], origins ? origins[k] : 0, c}); };
+    uses.clear();
+    if (!row.chooses) {
+        Care passed;
+        if (in.op == field::codeOf<field::ops::Neg>) passed = {-care.most, -care.least};
+        for (uint32_t k = 0; k < in.count; ++k) use(k, passed);
+        return;
+    }
+    const Care inner = careOfOperands(row, bounds[in.count * maxBoxes], care);
+    for (uint32_t k = 0; k < row.firstChoice; ++k) use(k, {});
+    for (uint32_t k = row.firstChoice; k < in.count; ++k)
+        if (!beyond(row, bounds[k * maxBoxes], inner)) use(k, inner);
+    // All beyond what the consumer tells apart: any of them will do.
+    if (uses.size() == row.firstChoice) use(row.firstChoice, inner);
+}
+
+}  // namespace
 
 Tape shorten(const Tape& tape, size_t index, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
     assert(w.rangedCode == tape.code().data() && index < maxBoxes);
+    const float* const bounds = w.bounds.get(tape.boundRows() * maxBoxes) + index;
     TapeBuilder& b = w.builder;
-    b.begin(tape.registerCount());
+    b.begin(tape.size() + 3);
     for (uint32_t axis = 0; axis < 3; ++axis) b.bindInput(axis, axis);
-    b.result({tape.result(), tape.origins()[0]});
-    const uint64_t* keeps = w.keeps.data() + w.keeps.size();
-    for (size_t i = tape.size(); i-- > 0;) {
+    b.result({tape.resultValue(), tape.origins()[0]});
+    for (uint32_t value = b.nextLive(static_cast<uint32_t>(tape.size()) + 3); value != TapeBuilder::none; value = b.nextLive(value)) {
+        const size_t i = value - 3;
         const Instruction& in = tape.code()[i];
         const field::OpTraits& row = field::traits(in.op);
-        if (row.chooses) keeps -= in.count;
-        if (!b.live(in.out)) continue;
-        const bool many = row.arity == field::ops::variadic;
-        const Source direct[] = {in.a, in.b};
-        const Source* const sources = many ? tape.sources().data() + in.a : direct;
-        const OriginId* const origins = in.origins ? tape.origins().data() + in.origins - 1 : nullptr;
-        w.uses.clear();
-        for (uint32_t k = 0; k < in.count; ++k) {
-            const bool kept = !row.chooses || k < row.firstChoice || (keeps[k] >> index & 1) != 0;
-            if (kept) w.uses.push_back({sources[k], origins ? origins[k] : 0});
-        }
+        operandsLeft(tape, i, bounds + size_t{tape.links()[i].bounds} * maxBoxes, b.care(value), w.uses);
         if (row.chooses && w.uses.size() == row.firstChoice + 1u)
-            b.alias(in.out, w.uses.back());
+            b.alias(value, w.uses.back());
         else
-            b.define(in.out, in.op, in.data, w.uses.data(), w.uses.size(), origins != nullptr);
+            b.define(value, in.op, in.data, w.uses.data(), w.uses.size(), in.origins != 0);
     }
     return b.finish(tape.sharedConstants(), tape.lipschitz());
 }

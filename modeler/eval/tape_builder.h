@@ -11,28 +11,37 @@
 
 namespace sgm::eval {
 
+/// What the consumers of a value tell apart: any two numbers above `most` are the same to them, and any two below `least`.
+struct Care {
+    float least = -std::numeric_limits<float>::infinity();
+    float most = std::numeric_limits<float>::infinity();
+};
+
 /// Scratch is kept between tapes: nothing but the tape itself is allocated in steady state.
 class TapeBuilder {
 public:
     static constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
 
-    /// What an operand is before it has a register: a constant, or the key of a value; and who owns it.
+    /// What an operand is before it has a register: a constant, or the key of a value; who owns it, and what of it matters.
     struct Use {
         Source source;
         OriginId origin = 0;
+        Care care{};
     };
 
     /// Starts a tape whose values have keys below `keys`.
     void begin(size_t keys);
     /// Says that `key` is coordinate 0, 1 or 2; those registers are never given to others.
-    void bindInput(uint32_t key, uint32_t coordinate) { values_[key].reg = coordinate; }
+    void bindInput(uint32_t key, uint32_t coordinate);
     /// The tape's value. First call after begin and bindInput.
     void result(Use use);
-    /// True when something already written needs the value.
-    bool live(uint32_t key) const { return values_[key].reg != none; }
-    /// Writes the instruction that defines `key`, if it is live. `listed`: it keeps the owners of its operands.
+    /// The greatest key below `below` that something already written needs, inputs apart; `none` when there is none.
+    uint32_t nextLive(uint32_t below) const;
+    /// What of a live value matters to what is written.
+    Care care(uint32_t key) const { return values_[key].care; }
+    /// Writes the instruction that defines the live value `key`. `listed`: it keeps the owners of its operands.
     void define(uint32_t key, field::OpCode op, uint32_t data, const Use* operands, size_t count, bool listed);
-    /// `key` is the same value as `same`: no instruction unless `same` already has a register of its own.
+    /// The live value `key` is the same as `same`: no instruction unless `same` already has a register of its own.
     void alias(uint32_t key, Use same);
     /// The tape, in order.
     Tape finish(std::shared_ptr<const std::vector<float>> constants, float lipschitz);
@@ -42,14 +51,19 @@ private:
     struct Value {
         uint32_t reg = none;
         uint32_t owner = none;
+        Care care{};
     };
     Source demand(const Use& use, uint32_t ownerEntry);
+    bool live(uint32_t key) const { return values_[key].reg != none; }
+    void enter(uint32_t key, Value v);
+    Value leave(uint32_t key);
     uint32_t takeRegister();
-    void release(uint32_t key);
+    static void link(Tape& tape);
 
-    std::vector<Value> values_;
-    std::vector<uint32_t> free_;
-    std::vector<Instruction> code_;   // in reverse
+    std::vector<Value> values_;        // all dead between tapes
+    std::vector<uint64_t> liveBits_;   // by key, inputs apart
+    std::vector<uint32_t> inputs_, free_;
+    std::vector<Instruction> code_;    // in reverse
     std::vector<Source> sources_;
     std::vector<OriginId> origins_;
     uint32_t registers_ = 3;

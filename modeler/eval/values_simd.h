@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <type_traits>
 
 #include <xsimd/xsimd.hpp>
 
@@ -22,31 +21,6 @@ struct LaneMask {
     friend LaneMask operator|(LaneMask a, LaneMask b) { return {a.m | b.m}; }
     friend LaneMask operator!(LaneMask a) { return {!a.m}; }
     friend bool any(LaneMask a) { return xsimd::any(a.m); }
-    /// Bit i is lane i.
-    uint64_t bits() const { return bitsOf(m.data); }
-
-private:
-    /// AVX-512 and other machines that keep masks as bits.
-    template <class R>
-        requires std::is_integral_v<R>
-    static uint64_t bitsOf(R mask) {
-        return mask;
-    }
-    template <class R>
-        requires(!std::is_integral_v<R>)
-    uint64_t bitsOf(R) const {
-#if defined(__SSE2__)
-        if constexpr (sizeof(R) == 16) return static_cast<uint32_t>(_mm_movemask_ps(m));
-#endif
-#if defined(__AVX__)
-        if constexpr (sizeof(R) == 32) return static_cast<uint32_t>(_mm256_movemask_ps(m));
-#endif
-        bool lanes[xsimd::batch<float, A>::size];
-        m.store_unaligned(lanes);
-        uint64_t bits = 0;
-        for (size_t i = 0; i < std::size(lanes); ++i) bits |= uint64_t{lanes[i]} << i;
-        return bits;
-    }
 };
 
 /// 32 wrapping bits a lane.

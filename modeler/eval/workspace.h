@@ -1,4 +1,4 @@
-// Scratch behind evaluate.h: register files, choice words and the writer of shortened tapes.
+// Scratch behind evaluate.h: register files, bounds and the writer of shortened tapes.
 // Enters: sizes asked for. Leaves: aligned memory that only grows. Assumes one thread.
 #pragma once
 
@@ -29,9 +29,9 @@ private:
 struct Workspace::Impl {
     Kernels kernels;
     AlignedFloats registers, arguments;
+    AlignedFloats bounds;                 ///< rows of maxBoxes floats, see Link::bounds
     std::vector<OriginId> origins;        ///< origin registers
-    std::vector<uint64_t> keeps;          ///< one word an operand of each choosing instruction, in tape order
-    const Instruction* rangedCode = nullptr;  ///< the tape `keeps` speaks of
+    const Instruction* rangedCode = nullptr;  ///< the tape `bounds` speaks of
     TapeBuilder builder;
     std::vector<TapeBuilder::Use> uses;
 

@@ -80,21 +80,13 @@ struct Blend {
                  select(soft, dz * weight + k.dz * slope, least.dz)};
     }
 
-    /// Field i is out when fᵢ − m ≥ k for certain, and it isn't the least itself.
-    template <class I, class M>
-    static void choose(std::span<const I> args, uint32_t, std::span<M> keep) {
+    /// Field i is out when fᵢ − m ≥ k for certain, however that is rounded.
+    template <class I>
+    static auto reach(std::span<const I> args, uint32_t) {
         using V = typename I::Value;
-        V least = args[1].hi, unknown = 0.0f;
-        for (size_t i = 1; i < args.size(); ++i) {
-            least = min(args[i].hi, least);
-            unknown = unknown + (args[i].lo + args[i].hi) * V(0.0f);  // NaN stays NaN and keeps all
-        }
-        least = least + unknown;
-        keep[0] = !(args[0].hi < args[0].lo);
-        for (size_t i = 1; i < args.size(); ++i) {
-            const M another = args[i].lo > least, beyond = args[i].lo - least >= args[0].hi;
-            keep[i] = !(another & beyond);
-        }
+        V least = args[1].hi;
+        for (size_t i = 2; i < args.size(); ++i) least = min(args[i].hi, least);
+        return (least + args[0].hi) + (abs(least) + args[0].hi) * 4e-7f;
     }
 
 private:

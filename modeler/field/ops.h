@@ -11,10 +11,13 @@
 //   I interval(…same operands as I…)     an enclosure of apply's floats, rounding included; operands' bounds are never
 //                                        NaN. The default is apply over intervals: rounding is monotone, so it encloses
 //   D gradient(…same operands as D…)     value (same bits as apply) and derivatives; the default is apply over Dual
-//   choose(span<const I> args, uint32_t data, span<MaskOf<V>> keep)          keep[i]: operand i can matter; dropping the
-//                                        others must leave the same bits. With one droppable operand left the op is that
-//                                        operand, bit for bit. Operands before `firstChoice` are never dropped
 //   owner                                which operand owns the surface (Owner)
+//   V reach(span<const I> args, uint32_t data)                               for Owner::Least (Greatest): an operand that
+//                                        lies above (below) it can't matter: the bits stay the same without it or with
+//                                        any other number beyond it. With one operand left the op is that operand, bit
+//                                        for bit. Operands before `firstChoice` are never dropped
+//   selects = true                       the result is one of the operands, so that what the consumer of the result
+//                                        doesn't care for needn't be told apart in the operands either
 //   glsl                                 body of `float op_NAME(uint first, uint count, uint data)` where `arg(first + i)`
 //                                        reads operand i; needed by variadic rows, whose loops can't become one expression
 #pragma once
@@ -139,11 +142,10 @@ struct Min {
     static constexpr Owner owner = Owner::Least;
     template <class V>
     static V apply(V a, V b) { return min(a, b); }
-    /// Strict: at a tie ±0 could differ.
-    template <class I, class M>
-    static void choose(std::span<const I> args, uint32_t, std::span<M> keep) {
-        keep[0] = !(args[1].hi < args[0].lo);
-        keep[1] = !(args[0].hi < args[1].lo);
+    static constexpr bool selects = true;
+    template <class I>
+    static auto reach(std::span<const I> args, uint32_t) {
+        return min(args[0].hi, args[1].hi);
     }
 };
 struct Max {
@@ -153,10 +155,10 @@ struct Max {
     static constexpr Owner owner = Owner::Greatest;
     template <class V>
     static V apply(V a, V b) { return max(a, b); }
-    template <class I, class M>
-    static void choose(std::span<const I> args, uint32_t, std::span<M> keep) {
-        keep[0] = !(args[0].hi < args[1].lo);
-        keep[1] = !(args[1].hi < args[0].lo);
+    static constexpr bool selects = true;
+    template <class I>
+    static auto reach(std::span<const I> args, uint32_t) {
+        return max(args[0].lo, args[1].lo);
     }
 };
 /// a·(1 − t) + b·t over (a, b, t): SG-M eq. 14.
@@ -283,7 +285,8 @@ struct OpTraits {
     std::string_view name;
     int arity;
     bool commutative;
-    bool chooses;
+    bool chooses;  ///< has a reach
+    bool selects;
     uint32_t firstChoice;  ///< operands before it are never dropped
     ops::Owner owner;
     std::string_view glsl;  ///< empty where the body is made from apply
@@ -291,8 +294,9 @@ struct OpTraits {
 
 template <class Row>
 constexpr OpTraits traitsOf() {
-    OpTraits t{Row::name, Row::arity, false, false, 0, ops::Owner::First, {}};
+    OpTraits t{Row::name, Row::arity, false, false, false, 0, ops::Owner::First, {}};
     if constexpr (requires { Row::commutative; }) t.commutative = Row::commutative;
+    if constexpr (requires { Row::selects; }) t.selects = Row::selects;
     if constexpr (requires { Row::firstChoice; }) t.firstChoice = Row::firstChoice;
     if constexpr (requires { Row::owner; }) t.owner = Row::owner;
     if constexpr (requires { Row::glsl; }) t.glsl = Row::glsl;
