@@ -86,10 +86,11 @@ const Combination combinations[] = {
      [](Graph& g, Draws& d) {
          const int axis = static_cast<int>(d.uniform(0, 3));
          const double period = d.uniform(0.8, 3);
-         const Frame frame{d.in({{-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}}), d.rotation()};
+         Frame frame{{}, d.rotation()};
+         frame.centre[axis] = d.uniform(-0.6, 0.6) * period;  // also near and over the cell's ends
          return repeated(g.position(), axis, g.slot(static_cast<float>(period)), period,
                          1 + static_cast<int>(d.uniform(0, 5)), [&](Point p) {
-                             Field f = build(g, "ellipsoid", {0.3, 0.7, 0.2}, toLocal(p, frame, 6));
+                             Field f = build(g, "ellipsoid", {0.2, 0.3, 0.1}, toLocal(p, frame, 6));
                              f.bounds = toWorld(f.bounds, frame);
                              return f;
                          });
