@@ -73,6 +73,26 @@ TEST(Shorten, AUnionNearOneOfItsSpheresIsThatSphere) {
     EXPECT_LE(one.registerCount(), alone.registerCount() + 1);
 }
 
+TEST(Shorten, APartIsDroppedForANearerOneElsewhereInTheTree) {
+    Graph graph;
+    const auto ball = [&](float x) {
+        const field::Point p = graph.position();
+        return length(field::Point{p.x - graph.slot(x), p.y, p.z}) - graph.slot(0.4f);
+    };
+    // The balls at 1.2 and 1.25 don't beat each other, nor does that at 0.6 beat them; the one at 0 does.
+    const Num others = min(min(ball(1.2f), ball(1.25f)), ball(0.6f));
+    const Num root = max(-min(ball(0), others), graph.y() - 9.0f);
+    const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
+    Workspace w;
+    const Box3f box{{-0.3f, -0.3f, -0.3f}, {0.3f, 0.3f, 0.3f}};
+    Range range;
+    evaluateRanges(tape, {&box, 1}, &range, w);
+    const Tape one = shorten(tape, 0, w);
+    size_t balls = 0;
+    for (const Instruction& in : one.code()) balls += in.op == codeOf<ops::Sqrt>;
+    EXPECT_EQ(balls, 2u);  // those at 0 and 0.6, whose ranges meet
+}
+
 TEST(Shorten, NothingIsCopiedWhenOperandsHaveOwners) {
     Graph graph;
     const Num s = spheres(graph, 0, 1), t = spheres(graph, 10, 1), u = spheres(graph, 20, 1);
