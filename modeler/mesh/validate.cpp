@@ -25,14 +25,15 @@ Flat flatten(const Mesh& mesh) {
     return flat;
 }
 
-/// Sorts by the low `digits` 16-bit digits of key(item), least significant first: linear and stable.
+/// Sorts by key(item), an unsigned integer, byte by byte from the lowest: linear and stable.
 template <class Item, class Key>
-void radixSort(std::vector<Item>& items, int digits, Key key) {
+void radixSort(std::vector<Item>& items, Key key) {
     std::vector<Item> other(items.size());
-    for (int digit = 0; digit < digits; ++digit) {
-        std::vector<size_t> start(0x10001);
-        const auto bucket = [&](const Item& item) { return key(item) >> 16 * digit & 0xffff; };
+    for (size_t byte = 0; byte < sizeof(key(items[0])); ++byte) {
+        std::array<size_t, 257> start{};
+        const auto bucket = [&](const Item& item) { return key(item) >> 8 * byte & 0xff; };
         for (const Item& item : items) ++start[bucket(item) + 1];
+        if (std::find(start.begin(), start.end(), items.size()) != start.end()) continue;  // all bytes are equal
         std::partial_sum(start.begin(), start.end(), start.begin());
         for (const Item& item : items) other[start[bucket(item)]++] = item;
         items.swap(other);
@@ -44,7 +45,7 @@ std::vector<uint32_t> weldMap(const std::vector<Vec3f>& positions) {
     std::vector<uint32_t> order(positions.size()), map(positions.size());
     std::iota(order.begin(), order.end(), 0u);
     for (int axis = 0; axis < 3; ++axis)
-        radixSort(order, 2, [&](uint32_t v) { return std::bit_cast<uint32_t>(positions[v][axis] + 0.0f); });
+        radixSort(order, [&](uint32_t v) { return std::bit_cast<uint32_t>(positions[v][axis] + 0.0f); });
     for (size_t i = 0; i < order.size(); ++i)
         map[order[i]] = i > 0 && positions[order[i]] == positions[order[i - 1]] ? map[order[i - 1]] : order[i];
     return map;
@@ -81,7 +82,7 @@ void countEdges(const Flat& flat, MeshFigures& figures, uint64_t& edges) {
             const uint64_t a = t[i], b = t[(i + 1) % 3];
             all.push_back({std::min(a, b) << 32 | std::max(a, b), a < b});
         }
-    radixSort(all, 4, [](const DirectedEdge& e) { return e.key; });
+    radixSort(all, [](const DirectedEdge& e) { return e.key; });
     for (size_t i = 0, next; i < all.size(); i = next) {
         size_t upwards = 0;
         for (next = i; next < all.size() && all[next].key == all[i].key; ++next) upwards += all[next].upwards ? 1 : 0;

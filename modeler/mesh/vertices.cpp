@@ -6,8 +6,9 @@
 namespace sgm::mesh {
 namespace {
 
-/// Residual, as a share of the difference between an edge's ends, at which a vertex is good enough.
-constexpr float goodEnough = 1e-6f;
+/// Residual, as a share of the difference between the bracket's ends, that one more interpolation may settle unseen: on a
+/// smooth field it leaves the square of this, on a kink no more than the margin that vertices are moved by anyway.
+constexpr float goodEnough = edgeMargin;
 
 /// Lays out a lane for each cut edge: its line, and the bracket given by the samples at its ends.
 void loadEdges(const Brick& brick, Vec3i blockIndex, const Grid& grid, const BlockSamples& samples, EdgeLanes& lanes) {
@@ -85,6 +86,13 @@ void appendNormals(const Brick& brick, const EdgeLanes& lanes, std::vector<Vec3f
     }
 }
 
+void appendOrigins(const eval::Tape& tape, eval::Points points, eval::Workspace& workspace, std::vector<OriginId>& origins) {
+    const OriginId whole = tape.origins()[0];
+    origins.resize(origins.size() + points.n, whole);
+    if (whole != 0 || tape.origins().size() == 1) return;  // one owner for all
+    eval::evaluateOrigin(tape, points, origins.data() + origins.size() - points.n, workspace);
+}
+
 }  // namespace
 
 void EdgeLanes::resize(size_t n) {
@@ -112,10 +120,7 @@ void appendVertices(const Brick& brick, Vec3i blockIndex, const Grid& grid, cons
 
     for (size_t i = 0; i < n; ++i) vertices.positions.push_back({lanes.x[i], lanes.y[i], lanes.z[i]});
     appendNormals(brick, lanes, vertices.normals);
-    if (wantOrigins) {
-        vertices.origins.resize(vertices.origins.size() + n);
-        eval::evaluateOrigin(tape, points, vertices.origins.data() + vertices.origins.size() - n, workspace);
-    }
+    if (wantOrigins) appendOrigins(tape, points, workspace, vertices.origins);
 }
 
 }  // namespace sgm::mesh

@@ -1,0 +1,297 @@
+// Field to mesh: closed forms, closedness of anything, determinism, origins, budgets.
+#include "modeler/mesh/polygonize.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <thread>
+
+#include "modeler/core/conventions.h"
+#include "modeler/mesh/validate.h"
+#include "modeler/mesh/vertices.h"
+#include "tests/mesh/scenes.h"
+
+namespace sgm::mesh {
+namespace {
+
+void expectClosed(const Mesh& mesh, const char* what, uint64_t which = 0) {
+    for (const MeshFigures& f : {measure(mesh), measureWelded(mesh)}) {
+        ASSERT_EQ(f.boundaryEdges, 0u) << what << ' ' << which;
+        ASSERT_EQ(f.nonmanifoldEdges, 0u) << what << ' ' << which;
+        ASSERT_EQ(f.vertices, mesh.vertexCount()) << what << ' ' << which << ": vertices coincide or are unused";
+    }
+}
+
+std::vector<unsigned char> bytesOf(const Mesh& mesh) {
+    std::vector<unsigned char> bytes;
+    const auto add = [&](const auto& list) {
+        const auto* p = reinterpret_cast<const unsigned char*>(list.data());
+        bytes.insert(bytes.end(), p, p + list.size() * sizeof(list[0]));
+    };
+    for (const Chunk& c : mesh.chunks) {
+        add(std::vector<Vec3i>{c.block, {static_cast<int>(c.firstVertex), 0, 0}});
+        add(c.positions), add(c.normals), add(c.triangles), add(c.origins);
+    }
+    return bytes;
+}
+
+/// Errors of volume and area at two resolutions must shrink like the square of the cell.
+void expectSecondOrder(const Scene& scene, double volume, double area, int coarse, double leastRatio) {
+    double volumeError[2], areaError[2];
+    for (int i = 0; i < 2; ++i) {
+        const Meshed m = meshOf(scene, coarse << i);
+        ASSERT_TRUE(m.mesh.ok());
+        expectClosed(*m.mesh, "closed form");
+        const MeshFigures f = measure(*m.mesh);
+        EXPECT_EQ(f.components, 1u);
+        volumeError[i] = std::abs(f.volume_m3 - volume) / volume;
+        areaError[i] = std::abs(f.area_m2 - area) / area;
+    }
+    EXPECT_LT(volumeError[1], 2e-3);
+    EXPECT_LT(areaError[1], 1e-2);
+    EXPECT_GT(volumeError[0] / volumeError[1], leastRatio);
+    EXPECT_GT(areaError[0] / areaError[1], leastRatio * 0.8);
+}
+
+TEST(Polygonize, SphereConvergesAtSecondOrder) { expectSecondOrder(ballScene(), 4 * pi / 3, 4 * pi, 40, 3.7); }
+
+TEST(Polygonize, TorusConvergesAtSecondOrder) {
+    Scene s;
+    s.field = torus(s.graph, 1, 0.35f);
+    expectSecondOrder(s, 2 * pi * pi * 0.35 * 0.35, 4 * pi * pi * 0.35, 60, 3.6);
+    EXPECT_EQ(measure(*meshOf(s, 60).mesh).euler, 0);
+}
+
+TEST(Polygonize, BoxIsExactUpToItsBevelledEdges) {
+    // Faces are met exactly; what is lost lies within a cell of the 12 edges, so it goes with cell².
+    Scene s;
+    s.field = box(s.graph, {0, 0, 0}, {1, 0.7f, 0.4f});
+    double error[2];
+    for (int i = 0; i < 2; ++i) {
+        const Meshed m = meshOf(s, 50 << i);
+        expectClosed(*m.mesh, "box");
+        error[i] = 8 * 0.7 * 0.4 - measure(*m.mesh).volume_m3;
+    }
+    EXPECT_GT(error[1], 0);
+    EXPECT_LT(error[1], 1e-3);
+    EXPECT_GT(error[0] / error[1], 3.0);
+}
+
+TEST(Polygonize, VerticesLieOnTheSurfaceAndInsideTheirEdges) {
+    const Scene s = ballScene();
+    const Meshed m = meshOf(s, 70);
+    for (const Chunk& c : m.mesh.value().chunks)
+        for (size_t i = 0; i < c.positions.size(); ++i) {
+            const Vec3f p = c.positions[i];
+            const Vec3d out = p.as<double>() - Vec3d{0.1, -0.2, 0.3};
+            int moving = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double at = (double(p[axis]) - m.grid.origin[axis]) / m.grid.cell_m, nearest = std::round(at);
+                if (std::abs(at - nearest) < edgeMargin * 0.5) continue;
+                ++moving;
+                EXPECT_GE(std::abs(at - nearest), edgeMargin * 0.98);
+            }
+            ASSERT_EQ(moving, 1);
+            EXPECT_NEAR(length(out), 1, 1.01 * edgeMargin * m.grid.cell_m);
+            EXPECT_GT(dot(normalized(out), c.normals[i].as<double>()), 0.9999);
+        }
+}
+
+TEST(Polygonize, RefinementBeatsTheLineBetweenSamples) {
+    // A cubed distance is far from straight along an edge.
+    Scene s;
+    const field::Num d = field::length(s.graph.position()) - 1.0f;
+    s.field = {d * square(d + 0.5f) * 3.0f, {{-1, -1, -1}, {1, 1, 1}}, 40, 0};
+    double worst[2] = {0, 0};
+    for (int i = 0; i < 2; ++i) {
+        PolygonizeOptions options;
+        options.refineSteps = i ? 3 : 0;
+        const Meshed m = meshOf(s, 24, 1, options);
+        EXPECT_EQ(m.counts.refinementEvaluations > 0, i == 1);
+        for (const Chunk& c : m.mesh.value().chunks)
+            for (const Vec3f& p : c.positions) worst[i] = std::max(worst[i], std::abs(length(p.as<double>()) - 1) / m.grid.cell_m);
+    }
+    EXPECT_GT(worst[0], 0.02);
+    EXPECT_LT(worst[1], 0.0021);
+}
+
+TEST(Polygonize, CountsStayBelowTwentySamplesASurfaceCell) {
+    const Meshed m = meshOf(cloudScene(60, 0.12f, 5), 200);
+    ASSERT_TRUE(m.mesh.ok());
+    EXPECT_LT(double(m.counts.pointEvaluations), 20.0 * double(m.counts.surfaceCells));
+    EXPECT_GT(m.counts.intervalEvaluations, 64u);
+}
+
+TEST(Polygonize, SameBytesAtAnyThreadCount) {
+    const Scene s = cloudScene(80, 0.15f, 3);
+    const auto one = bytesOf(*meshOf(s, 110, 1).mesh);
+    EXPECT_GT(one.size(), 100000u);
+    EXPECT_EQ(one, bytesOf(*meshOf(s, 110, 2).mesh));
+    EXPECT_EQ(one, bytesOf(*meshOf(s, 110, 5).mesh));
+}
+
+TEST(Polygonize, BlocksMeetWithoutCracks) {
+    const Meshed m = meshOf(cloudScene(40, 0.2f, 11), 150);
+    ASSERT_TRUE(m.mesh.ok());
+    EXPECT_GT(m.mesh->chunks.size(), 30u);
+    expectClosed(*m.mesh, "cloud");
+    for (size_t i = 1; i < m.mesh->chunks.size(); ++i)
+        EXPECT_EQ(m.mesh->chunks[i].firstVertex, m.mesh->chunks[i - 1].firstVertex + m.mesh->chunks[i - 1].positions.size());
+}
+
+/// Sums of waves far finer than the cells: in effect a random sign at each corner.
+Scene noiseScene(uint64_t key, double finest) {
+    Scene s;
+    field::Num f = s.graph.literal(static_cast<float>(uniform(combine(key, 99), -0.5, 0.5)));
+    for (uint64_t wave = 0; wave < 3; ++wave) {
+        const auto draw = [&](uint64_t i) { return static_cast<float>(uniform(combine(combine(key, wave), i), -finest, finest)); };
+        f = f + sin(s.graph.x() * draw(1) + s.graph.y() * draw(2) + s.graph.z() * draw(3) + draw(4));
+    }
+    s.field = {f, {{-1, -1, -1}, {1, 1, 1}}, static_cast<float>(6 * finest), 0};
+    return s;
+}
+
+/// Balls and boxes joined, cut, blended and morphed at random.
+Scene solidScene(uint64_t key) {
+    Scene s;
+    const auto draw = [&](uint64_t i, double lo, double hi) { return static_cast<float>(uniform(combine(key, i), lo, hi)); };
+    const auto part = [&](uint64_t i) {
+        const Vec3f at{draw(10 * i + 1, -1, 1), draw(10 * i + 2, -1, 1), draw(10 * i + 3, -1, 1)};
+        if (draw(10 * i + 4, 0, 1) < 0.5f) return ball(s.graph, at, draw(10 * i + 5, 0.1, 0.8));
+        return box(s.graph, at, {draw(10 * i + 5, 0.02, 0.8), draw(10 * i + 6, 0.02, 0.8), draw(10 * i + 7, 0.02, 0.8)});
+    };
+    s.field = part(1);
+    for (uint64_t i = 2; i < 6; ++i) {
+        const field::Field other = part(i);
+        const auto origin = static_cast<OriginId>(i);
+        const field::Owned both[] = {{s.field, 0}, {other, origin}};
+        switch (pick(combine(key, 1000 + i), 5)) {
+            case 0: s.field = field::difference({s.field, 0}, {other, origin}); break;
+            case 1: s.field = field::blend(s.graph, both, s.graph.literal(0.2f), 0.2); break;
+            case 2: s.field = field::morph(s.field, other, s.graph.literal(0.4f), 0.4, origin); break;
+            default: s.field = field::sum(s.graph, both);
+        }
+    }
+    return s;
+}
+
+TEST(Polygonize, TenThousandRandomFieldsAreClosedAndManifold) {
+    uint64_t meshes = 0;
+    for (uint64_t i = 0; i < 10000; ++i) {
+        Meshed m;
+        if (i % 2 == 0) {
+            const Scene s = noiseScene(i, i % 4 == 0 ? 300 : 20);
+            // The field doesn't keep to its box here: the grid's border has to close it.
+            m = meshOf(s.tape(), {{-1, -1, -1}, 0.25f, {8, 8, 7 + int(i % 3)}}, 1);
+        } else {
+            m = meshOf(solidScene(i), 4 + int(pick(i, 12)), 1);
+        }
+        ASSERT_TRUE(m.mesh.ok());
+        expectClosed(*m.mesh, "field", i);
+        meshes += m.mesh->triangleCount() > 0;
+    }
+    EXPECT_GT(meshes, 9000u);
+}
+
+TEST(Polygonize, RandomSignsAcrossBlocksAreClosed) {
+    for (uint64_t i = 0; i < 4; ++i) {
+        const Meshed m = meshOf(noiseScene(i, 400).tape(), {{-1, -1, -1}, 0.05f, {40, 37, 41}}, 2);
+        ASSERT_TRUE(m.mesh.ok());
+        EXPECT_GT(m.mesh->triangleCount(), 20000u);
+        expectClosed(*m.mesh, "noise", i);
+    }
+}
+
+TEST(Polygonize, FlatFacesOnSamplesLeaveNoDegenerateTriangles) {
+    Scene s;
+    s.field = box(s.graph, {0, 0, 0}, {1, 1, 1});
+    const Meshed m = meshOf(s.tape(), {{-2, -2, -2}, 0.25f, {16, 16, 16}}, 1);
+    ASSERT_TRUE(m.mesh.ok());
+    expectClosed(*m.mesh, "box on samples");
+    // Only bevels are missing: of one cell at 12 edges, each 2 m long.
+    EXPECT_LT(measure(*m.mesh).volume_m3, 8);
+    EXPECT_GT(measure(*m.mesh).volume_m3, 8 - 12 * 2 * 0.25 * 0.25 / 2);
+}
+
+TEST(Polygonize, BoundsNeverPassThroughSamples) {
+    for (const int resolution : {7, 32, 64, 100, 333})
+        for (const float size : {0.1f, 1.0f, 3.0f, 77.7f}) {
+            const Box3f bounds{{-size, 0, -0.31f * size}, {size, size, 0.5f * size}};
+            const Grid g = gridFor(bounds, cellFor(bounds, resolution));
+            EXPECT_EQ(g.cells.x, resolution + 3);
+            for (int axis = 0; axis < 3; ++axis)
+                for (const float side : {bounds.lo[axis], bounds.hi[axis]}) {
+                    const double at = (double(side) - g.origin[axis]) / g.cell_m;
+                    EXPECT_GT(std::abs(at - std::round(at)), 0.2);
+                    EXPECT_GT(at, 1);
+                    EXPECT_LT(at, g.cells[axis] - 1);
+                }
+        }
+}
+
+TEST(Polygonize, EveryTriangleKnowsItsOwner) {
+    // Two balls side by side: each triangle away from the seam belongs to the nearer one.
+    Scene s;
+    const field::Owned parts[] = {{ball(s.graph, {-0.6f, 0, 0}, 1), 7}, {ball(s.graph, {0.6f, 0, 0}, 1), 3}};
+    s.field = field::sum(s.graph, parts);
+    const Meshed m = meshOf(s, 80);
+    std::set<OriginId> seen;
+    std::vector<Vec3f> at;
+    for (const Chunk& c : m.mesh.value().chunks) at.insert(at.end(), c.positions.begin(), c.positions.end());
+    for (const Chunk& c : m.mesh.value().chunks) {
+        ASSERT_EQ(c.origins.size(), c.triangles.size());
+        for (size_t i = 0; i < c.triangles.size(); ++i) {
+            const Triangle t = c.triangles[i];
+            const int left = (at[t.x].x < 0) + (at[t.y].x < 0) + (at[t.z].x < 0);
+            EXPECT_EQ(c.origins[i], left >= 2 ? 7u : 3u);
+            seen.insert(c.origins[i]);
+        }
+    }
+    EXPECT_EQ(seen.size(), 2u);
+}
+
+TEST(Polygonize, EmptyFieldsGiveEmptyMeshes) {
+    Scene s;
+    s.field = field::nothing(s.graph);
+    EXPECT_EQ(meshOf(s, 64).mesh.value().triangleCount(), 0u);
+    EXPECT_EQ(meshOf(s.tape(), {{0, 0, 0}, 1, {64, 64, 64}}).mesh.value().triangleCount(), 0u);
+}
+
+TEST(Polygonize, BudgetsAndImpossibleGridsAreErrors) {
+    PolygonizeOptions options;
+    options.memoryBudget_bytes = 1 << 20;
+    const Meshed m = meshOf(ballScene(), 128, 2, options);
+    ASSERT_FALSE(m.mesh.ok());
+    EXPECT_EQ(m.mesh.error().kind, Error::Kind::Budget);
+    const eval::Tape tape = ballScene().tape();
+    EXPECT_EQ(meshOf(tape, {{1e6f, 0, 0}, 0.01f, {8, 8, 8}}).mesh.error().kind, Error::Kind::Input);
+    EXPECT_EQ(meshOf(tape, {{0, 0, 0}, 0, {8, 8, 8}}).mesh.error().kind, Error::Kind::Input);
+    EXPECT_EQ(meshOf(tape, gridFor({{-1, -1, -1}, {1, 1, 1}}, 1e-6f)).mesh.error().kind, Error::Kind::Budget);
+}
+
+TEST(Polygonize, StopsWithinFiftyMilliseconds) {
+    const Scene s = cloudScene(3000, 0.05f, 9);
+    const eval::Tape tape = s.tape();
+    Progress progress;
+    Counts counts;
+    std::chrono::steady_clock::time_point asked;
+    std::thread watcher([&] {
+        while (std::strcmp(progress.stage(), "sample") != 0 || progress.fraction() < 0.02) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        asked = std::chrono::steady_clock::now();
+        progress.cancel();
+    });
+    const Grid grid = gridFor(s.field.bounds, cellFor(s.field.bounds, 600));
+    const auto blocks = subdivide(tape, grid, 2, &progress, counts);
+    ASSERT_TRUE(blocks.ok());
+    const auto mesh = polygonize(*blocks, grid, {}, &progress, counts);
+    const std::chrono::duration<double> late = std::chrono::steady_clock::now() - asked;
+    watcher.join();
+    ASSERT_FALSE(mesh.ok());
+    EXPECT_EQ(mesh.error().kind, Error::Kind::Cancelled);
+    EXPECT_LT(late.count(), 0.15);  // 50 ms, and the patience a busy test machine needs
+}
+
+}  // namespace
+}  // namespace sgm::mesh
