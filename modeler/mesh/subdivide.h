@@ -1,6 +1,7 @@
 // The descent from the whole box to the blocks that hold surface.
 // Enters: a tape, a grid. Leaves: blocks in ascending order, each with its own shortened tape. Assumes the grid's box holds
-// the surface with a layer of outside around it.
+// the surface with a layer of outside around it; corners on the grid's border count as outside whatever the field says, so
+// what sticks out is cut off flat there and the mesh still closes.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +27,10 @@ struct Grid {
     }
 };
 
-/// The grid over `bounds` with cells of `cell_m` and an outside layer of at least one cell on every side.
+/// The grid over `bounds` with cells of `cell_m` and 1¼ to 1¾ cells of outside on every side, so that flat faces on the
+/// bounds pass between samples. No cells when the bounds are empty.
 Grid gridFor(const Box3f& bounds, float cell_m);
-/// The cell size that puts `resolution` cells along the longest side of `bounds`.
+/// The cell size that puts `resolution` (at least 1) cells along the longest side of `bounds`; 1 m for an empty box.
 float cellFor(const Box3f& bounds, int resolution);
 
 struct Block {
@@ -36,7 +38,8 @@ struct Block {
     eval::Tape tape;
 };
 
-/// What the descent and the sampling counted, for the report; vertex refinement and normals apart.
+/// What the descent and the sampling counted, for the report; vertex refinement apart, normals not counted.
+/// `sampleSeconds` covers samples and vertices, `polygonizeSeconds` the triangles.
 struct Counts {
     uint64_t pointEvaluations = 0;
     uint64_t intervalEvaluations = 0;
@@ -46,7 +49,8 @@ struct Counts {
     Counts& operator+=(const Counts& o);
 };
 
-/// Blocks that may hold surface, ordered by (z, y, x). Error::Cancelled when `progress` says so.
+/// Blocks that may hold surface, ordered by (z, y, x). Error::Cancelled when `progress` says so, Error::Input for cells that
+/// aren't positive or that float32 can't resolve at the grid's place, Error::Budget for more than 2¹⁵ cells along an axis.
 Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress, Counts& counts);
 
 }  // namespace sgm::mesh

@@ -1,4 +1,5 @@
-// Judgements on a mesh. Enters: a Mesh. Leaves: figures. Assumes nothing: bad meshes get bad figures.
+// Judgements on a mesh. Enters: a Mesh. Leaves: figures. Bad meshes get bad figures; `measure` assumes that triangles
+// name vertices that are there, `judge` looks.
 #pragma once
 
 #include "modeler/core/result.h"
@@ -6,7 +7,7 @@
 
 namespace sgm::mesh {
 
-/// Counted over welded indices; `volume_m3` by the divergence theorem (positive = outward).
+/// Counted over the vertices that triangles use; `volume_m3` by the divergence theorem (positive = outward).
 struct MeshFigures {
     uint64_t vertices = 0, triangles = 0, components = 0;
     uint64_t boundaryEdges = 0;     ///< edges of one triangle

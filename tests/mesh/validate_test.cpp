@@ -1,0 +1,147 @@
+// Figures and judgements on good meshes and on deliberately bad ones.
+#include "modeler/mesh/validate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "modeler/core/conventions.h"
+#include "tests/mesh/scenes.h"
+
+namespace sgm::mesh {
+namespace {
+
+Mesh oneChunk(std::vector<Vec3f> positions, std::vector<Triangle> triangles) {
+    Mesh mesh;
+    Chunk c;
+    c.normals.resize(positions.size(), Vec3f{0, 0, 1});
+    c.origins.resize(triangles.size());
+    c.positions = std::move(positions);
+    c.triangles = std::move(triangles);
+    mesh.chunks.push_back(std::move(c));
+    return mesh;
+}
+
+/// A tetrahedron of volume 1/6 with its corner at `at`.
+void addTetrahedron(std::vector<Vec3f>& p, std::vector<Triangle>& t, Vec3f at) {
+    const auto v = static_cast<uint32_t>(p.size());
+    p.insert(p.end(), {at, at + Vec3f{1, 0, 0}, at + Vec3f{0, 1, 0}, at + Vec3f{0, 0, 1}});
+    t.insert(t.end(), {{v, v + 2, v + 1}, {v, v + 1, v + 3}, {v, v + 3, v + 2}, {v + 1, v + 2, v + 3}});
+}
+
+Mesh tetrahedra(std::initializer_list<Vec3f> places) {
+    std::vector<Vec3f> p;
+    std::vector<Triangle> t;
+    for (const Vec3f at : places) addTetrahedron(p, t, at);
+    return oneChunk(std::move(p), std::move(t));
+}
+
+TEST(Measure, TetrahedraHaveTheirClosedForms) {
+    const MeshFigures f = measure(tetrahedra({{5, 5, 5}, {9, 0, 0}}));
+    EXPECT_EQ(f.vertices, 8u);
+    EXPECT_EQ(f.triangles, 8u);
+    EXPECT_EQ(f.components, 2u);
+    EXPECT_EQ(f.boundaryEdges, 0u);
+    EXPECT_EQ(f.nonmanifoldEdges, 0u);
+    EXPECT_EQ(f.euler, 4);
+    EXPECT_NEAR(f.volume_m3, 2.0 / 6, 1e-12);
+    EXPECT_NEAR(f.area_m2, 2 * (1.5 + std::sqrt(3.0) / 2), 1e-6);
+    EXPECT_EQ(f.bounds, (Box3f{{5, 0, 0}, {10, 6, 6}}));
+}
+
+TEST(Measure, MissingTriangleLeavesThreeBoundaryEdges) {
+    Mesh m = tetrahedra({{0, 0, 0}});
+    m.chunks[0].triangles.pop_back();
+    EXPECT_EQ(measure(m).boundaryEdges, 3u);
+    EXPECT_EQ(measure(m).nonmanifoldEdges, 0u);
+}
+
+TEST(Measure, FlippedTriangleMakesItsEdgesNonManifold) {
+    Mesh m = tetrahedra({{0, 0, 0}});
+    std::swap(m.chunks[0].triangles[0].y, m.chunks[0].triangles[0].z);
+    EXPECT_EQ(measure(m).nonmanifoldEdges, 3u);
+}
+
+TEST(Measure, WeldingJoinsWhatTouches) {
+    // Two tetrahedra share an edge of equal positions: manifold apart, not once welded.
+    const Mesh m = tetrahedra({{0, 0, 0}});
+    Mesh two = m;
+    Chunk mirrored = m.chunks[0];
+    for (Vec3f& p : mirrored.positions) p = {-p.x, -p.y, p.z};
+    for (Triangle& t : mirrored.triangles) t = {t.x + 4, t.y + 4, t.z + 4};
+    mirrored.firstVertex = 4;
+    two.chunks.push_back(mirrored);
+    EXPECT_EQ(measure(two).nonmanifoldEdges, 0u);
+    EXPECT_EQ(measure(two).components, 2u);
+    const MeshFigures welded = measureWelded(two);
+    EXPECT_EQ(welded.nonmanifoldEdges, 1u);
+    EXPECT_EQ(welded.components, 1u);
+    EXPECT_EQ(welded.vertices, 6u);
+    EXPECT_NEAR(welded.volume_m3, 2.0 / 6, 1e-12);
+}
+
+TEST(Measure, EmptyMeshHasNothing) {
+    const MeshFigures f = measure({});
+    EXPECT_EQ(f.vertices, 0u);
+    EXPECT_EQ(f.euler, 0);
+    EXPECT_TRUE(f.bounds.empty());
+}
+
+TEST(Judge, AcceptsACloudWithHolesAndSeams) {
+    // Cut, blended and unresolved: every ambiguous case turns up.
+    Scene s = cloudScene(60, 0.12f, 21);
+    s.field = field::difference({s.field, 0}, {ball(s.graph, {0.5f, 0.5f, 0.5f}, 0.35f), 99});
+    const Meshed m = meshOf(s, 60);
+    const auto judged = judge(*m.mesh);
+    ASSERT_TRUE(judged.ok());
+    EXPECT_TRUE(judged->closed);
+    EXPECT_TRUE(judged->outward);
+    EXPECT_FALSE(judged->selfIntersects);
+    EXPECT_NEAR(judged->volume_m3, measure(*m.mesh).volume_m3, 1e-6);
+}
+
+TEST(Judge, NoiseNeverCrossesItself) {
+    Scene s;
+    const field::Point p = s.graph.position();
+    const field::Num f = sin(p.x * 71.0f + p.y * 13.0f) + sin(p.y * 83.0f + p.z * 29.0f) + sin(p.z * 97.0f + p.x * 31.0f);
+    const Meshed m = meshOf(eval::compile(s.graph, {f, {{-1, -1, -1}, {1, 1, 1}}, 300, 0}, s.graph.constants()), {{-1, -1, -1}, 0.1f, {20, 20, 20}});
+    ASSERT_GT(m.mesh->triangleCount(), 5000u);
+    const auto judged = judge(*m.mesh);
+    ASSERT_TRUE(judged.ok());
+    EXPECT_TRUE(judged->closed);
+    EXPECT_FALSE(judged->selfIntersects);
+}
+
+TEST(Judge, SeesCrossingTetrahedra) {
+    const auto apart = judge(tetrahedra({{0, 0, 0}, {2, 0, 0}}));
+    ASSERT_TRUE(apart.ok());
+    EXPECT_FALSE(apart->selfIntersects);
+    EXPECT_TRUE(apart->outward);
+    const auto crossing = judge(tetrahedra({{0, 0, 0}, {0.2f, 0.2f, 0.2f}}));
+    ASSERT_TRUE(crossing.ok());
+    EXPECT_TRUE(crossing->selfIntersects);
+    EXPECT_TRUE(crossing->closed);
+}
+
+TEST(Judge, SeesInsideOutAndOpenMeshes) {
+    Mesh inverted = tetrahedra({{0, 0, 0}});
+    for (Triangle& t : inverted.chunks[0].triangles) std::swap(t.y, t.z);
+    EXPECT_TRUE(judge(inverted)->closed);
+    EXPECT_FALSE(judge(inverted)->outward);
+    EXPECT_LT(judge(inverted)->volume_m3, 0);
+    Mesh open = tetrahedra({{0, 0, 0}});
+    open.chunks[0].triangles.pop_back();
+    EXPECT_FALSE(judge(open)->closed);
+}
+
+TEST(Judge, RefusesMeshesThatAreNone) {
+    Mesh dangling = tetrahedra({{0, 0, 0}});
+    dangling.chunks[0].triangles[0].x = 17;
+    EXPECT_EQ(judge(dangling).error().kind, Error::Kind::Input);
+    Mesh nan = tetrahedra({{0, 0, 0}});
+    nan.chunks[0].positions[0].x = NAN;
+    EXPECT_FALSE(judge(nan).ok());
+}
+
+}  // namespace
+}  // namespace sgm::mesh
