@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <fstream>
 
 #include "modeler/export/exporter.h"
@@ -32,7 +31,8 @@ int inChild(Body body) {
     return status;
 }
 
-/// Lets no file of this process grow beyond `bytes`, as on a disk that fills up.
+/// Lets no file of this process grow beyond `bytes`: the kernel kills it at the byte beyond, or, where SIGXFSZ is
+/// ignored, fails the write as on a disk that is full.
 void limitFileSize(rlim_t bytes) {
     const rlimit limit{bytes, bytes}, noCore{0, 0};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -65,7 +65,7 @@ TEST_P(Atomic, AWriteThatFailsLeavesTheOldFile) {
 
 TEST_P(Atomic, AKillInTheMiddleOfWritingLeavesTheOldFile) {
     const int status = inChild([&] {
-        limitFileSize(100'000);  // the kernel kills at the byte beyond
+        limitFileSize(100'000);
         return write(input, target).ok() ? 0 : 1;
     });
     ASSERT_TRUE(WIFSIGNALED(status));

@@ -47,7 +47,7 @@ TEST_F(Judged, GltfValidatorFindsNothing) {
 TEST_F(Judged, OpenScadTakesTheStlInADifference) {
     if (run("command -v openscad > /dev/null 2>&1") != 0) GTEST_SKIP() << "openscad isn't installed";
     ASSERT_TRUE(write(input, folder / "a.stl").ok());
-    const auto scene = folder / "cut.scad", cut = folder / "cut.off";
+    const auto scene = folder / "cut.scad", cut = folder / "cut.stl";
     std::ofstream(scene) << "difference() { import(\"a.stl\"); translate([0, 0, 5]) cube(10, center = true); }\n";
     ASSERT_EQ(run("openscad -o " + cut.string() + " " + scene.string() + " > /dev/null 2>&1"), 0);
     const ReadBack r = readBack(cut);

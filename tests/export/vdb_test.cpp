@@ -1,0 +1,77 @@
+// Volumes through the exporter table.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+#include "modeler/eval/tape.h"
+#include "modeler/export/exporter.h"
+#include "modeler/field/field.h"
+#include "tests/volume/scratch.h"
+
+namespace sgm::exporter {
+namespace {
+
+/// A unit sphere in voxels of 2 cm: a file of about half a megabyte.
+volume::Volume unitSphere() {
+    field::Graph graph;
+    const field::Field field{length(graph.position()) - 1.0f, {{-1, -1, -1}, {1, 1, 1}}};
+    const eval::Tape tape = eval::compile(graph, field, graph.constants());
+    const mesh::Grid grid = mesh::gridFor(field.bounds, 0.02f);
+    mesh::Counts counts;
+    const auto blocks = mesh::subdivide(tape, grid, 1, nullptr, counts);
+    auto volume = volume::sample(*blocks, tape, grid, 3, 1, nullptr);
+    return std::move(volume).value();
+}
+
+struct VdbExport : testing::Test {
+    volume::Volume sphere = unitSphere();
+    ExportInput input;
+    Scratch folder;
+    VdbExport() { input.volume = &sphere; }
+};
+
+TEST_F(VdbExport, WritesTheVolumeUnderItsGridName) {
+    input.extras = {{"grammar", "rock.sgm"}};
+    ASSERT_TRUE(write(input, folder / "a.vdb").ok());
+    const std::string bytes = contentOf(folder / "a.vdb");
+    EXPECT_NE(bytes.find("level_set"), std::string::npos);
+    EXPECT_NE(bytes.find("rock.sgm"), std::string::npos);
+    const auto read = volume::readVdb(folder / "a.vdb");
+    ASSERT_TRUE(read.ok());
+    EXPECT_EQ(read->activeVoxels(), sphere.activeVoxels());
+    EXPECT_DOUBLE_EQ(read->enclosed_m3(), sphere.enclosed_m3());
+
+    input.options = {{"grid", "rock"}, {"half", "yes"}};
+    ASSERT_TRUE(write(input, folder / "b.vdb").ok());
+    EXPECT_EQ(contentOf(folder / "b.vdb").find("level_set"), std::string::npos);
+    EXPECT_LT(std::filesystem::file_size(folder / "b.vdb"), bytes.size());
+}
+
+/// Run alone in a process of its own by the next test: OpenVDB starts threads, after which a plain fork can't write.
+TEST_F(VdbExport, DISABLED_WritesToTheTargetItIsGiven) {
+    const Status written = write(input, std::getenv("SGM_TEST_TARGET"));
+    ASSERT_FALSE(written.ok());
+    EXPECT_NE(written.error().message.find("File too large"), std::string::npos) << written.error().message;
+}
+
+TEST_F(VdbExport, AWriteThatFailsOrIsKilledLeavesTheOldFile) {
+    const auto target = folder / "a.vdb";
+    std::ofstream(target) << "the old file";
+    const auto statusAfter = [&](const std::string& setUp) {
+        return std::system((setUp + "; ulimit -c 0; ulimit -f 100; SGM_TEST_TARGET=" + target.string() + " exec " +
+                            std::filesystem::read_symlink("/proc/self/exe").string() +
+                            " --gtest_also_run_disabled_tests --gtest_filter=VdbExport.DISABLED_* > " +
+                            (folder / "log").string())
+                               .c_str());
+    };
+    EXPECT_EQ(statusAfter("trap '' XFSZ"), 0) << contentOf(folder / "log");  // the write fails as on a full disk
+    EXPECT_EQ(folder.fileCount(), 2u);
+    EXPECT_EQ(contentOf(target), "the old file");
+    const int killed = statusAfter("true");  // the kernel kills in the middle of the write
+    EXPECT_TRUE(WIFSIGNALED(killed)) << killed;
+    EXPECT_EQ(contentOf(target), "the old file");
+}
+
+}  // namespace
+}  // namespace sgm::exporter
