@@ -48,9 +48,13 @@ Token Cursor::peek(size_t ahead) const {
 
 Token Cursor::take(Token::Role role) {
     if (done()) return peek();
-    tokens_[at_].role = role;
+    if (role != Token::Role::Plain) mark(role);
     lastEnd_ = tokens_[at_].end;
     return tokens_[at_++];
+}
+
+void Cursor::mark(Token::Role role) {
+    if (!done()) tokens_[at_].role = role;
 }
 
 bool Cursor::accept(std::string_view wanted, Token::Role role) {

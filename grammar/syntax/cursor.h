@@ -26,6 +26,8 @@ public:
     bool at(std::string_view wanted, size_t ahead = 0) const { return peekText(ahead) == wanted; }
     bool at(Token::Kind kind, size_t ahead = 0) const { return peek(ahead).kind == kind; }
     Token take(Token::Role role = Token::Role::Plain);
+    /// Gives the next token a role.
+    void mark(Token::Role role);
     /// Takes the next token if it is `wanted`.
     bool accept(std::string_view wanted, Token::Role role = Token::Role::Plain);
     /// Takes `wanted`, or fails with "expected 'wanted' <where>, found …".

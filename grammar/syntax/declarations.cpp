@@ -88,7 +88,10 @@ void readParam(Cursor& cursor, Ast& ast) {
     param.name = readName(cursor, "a parameter");
     cursor.expect("=", "and a default after the parameter's name", equalsMend(cursor, param.name));
     param.value = readExpr(cursor);
-    while (atParamPart(cursor)) readParamPart(cursor, param);
+    while (atParamPart(cursor)) {
+        cursor.mark(Token::Role::Part);
+        readParamPart(cursor, param);
+    }
     param.span = cursor.since(begin);
     if (!param.name.empty()) ast.params.push_back(std::move(param));
 }

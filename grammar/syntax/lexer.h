@@ -21,12 +21,13 @@ struct Token {
         Unknown,  ///< anything else
         End,      ///< past the last token; never in the list
     };
-    /// How it stands to its neighbours, said by the parser for the formatter.
+    /// What it is to its neighbours, said by the parser for the formatter.
     enum class Role : uint8_t {
         Plain,   ///< blanks around it, as its text asks
         Prefix,  ///< no blank behind it: a sign, ~
         Suffix,  ///< no blank before it: the ( of a call, the : of a label, the * of { }*
         Tight,   ///< no blank on either side: the . of a member, the / of a path
+        Part,    ///< it begins a part of a parameter: in, of, the label, group, key
     };
     Kind kind = Kind::End;
     Role role = Role::Plain;

@@ -115,12 +115,10 @@ private:
 
     /// The column a token of a parameter's line begins, or the one it goes on with.
     Column columnOf(size_t i) const {
-        const std::string_view word = text(i), before = text(previous_);
-        if (column_ == First) return word == "=" ? Default : First;
-        if (before == "group" || before == "key") return column_;
-        if (word == "in" || word == "of") return Range;
+        if (column_ == First && text(i) == "=") return Default;
+        if (tokens_[i].role != Token::Role::Part) return column_;
         if (tokens_[i].kind == Token::Kind::Text) return Label;
-        return word == "group" ? Group : word == "key" ? Key : column_;
+        return text(i) == "group" ? Group : text(i) == "key" ? Key : Range;
     }
 
     bool blankBetween(size_t before, size_t after) const {

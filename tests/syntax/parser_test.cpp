@@ -19,7 +19,7 @@ Ast parsed(const std::string& text) {
     return ast;
 }
 
-/// The only element of the only start, whose body is `body`.
+/// The only element of the only start.
 Element elementOf(const Ast& ast) {
     EXPECT_EQ(ast.starts.at(0).body.siblings.size(), 1u);
     return ast.starts.at(0).body.siblings.at(0).at(0);
@@ -141,10 +141,12 @@ TEST(Parser, AttributesBindTighterThanOperators) {
 }
 
 TEST(Parser, PrefixAttributesStandBefore) {
-    const Element both = elementOf(parsed("start A -> size 50% facade turn 30deg\n"));
+    const Ast bothAst = parsed("start A -> size 50% facade turn 30deg\n");
+    const Element both = elementOf(bothAst);
     EXPECT_EQ(both.before.size(), 1u);
     EXPECT_EQ(both.after.size(), 1u);
-    const Element alone = elementOf(parsed("start A -> size 2 split z { ~1: B }\n"));
+    const Ast aloneAst = parsed("start A -> size 2 split z { ~1: B }\n");
+    const Element alone = elementOf(aloneAst);
     EXPECT_EQ(alone.before.size(), 2u);
     EXPECT_FALSE(alone.solid);
 }
@@ -171,7 +173,8 @@ TEST(Parser, WordsThatAreBothSolidAndOperation) {
 }
 
 TEST(Parser, WithHoldsItsNameAndItsValue) {
-    const Element e = elementOf(parsed("start A -> B with storey = (floors + 1)\n"));
+    const Ast ast = parsed("start A -> B with storey = (floors + 1)\n");
+    const Element e = elementOf(ast);
     ASSERT_EQ(e.after[0].args.size(), 2u);
     EXPECT_EQ(e.after[0].args[0].text, "storey");
     EXPECT_EQ(shortForm(e.after[0].args[1]), "(+ floors 1)");
@@ -222,7 +225,8 @@ TEST(Parser, RuleHeadsTakeTheirPartsInAnyOrder) {
 }
 
 TEST(Parser, DerivationsNamePlaces) {
-    const DeriveDecl derive = parsed("derive left: R0 => R1 at Cave / Cell[3] => R3\n").derives[0];
+    const Ast ast = parsed("derive left: R0 => R1 at Cave / Cell[3] => R3\n");
+    const DeriveDecl& derive = ast.derives[0];
     ASSERT_EQ(derive.steps.size(), 3u);
     EXPECT_FALSE(derive.steps[0].hasPlace);
     EXPECT_EQ(derive.steps[1].place, "Cave/Cell[3]");

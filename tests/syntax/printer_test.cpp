@@ -78,6 +78,11 @@ TEST(Printer, ParametersAndCommentsStandInColumns) {
         "\nparam c = flat of flat, round\n");
 }
 
+TEST(Printer, ParametersMayBeCalledLikeTheirParts) {
+    EXPECT_EQ(formatted("grammar 1\nparam a = key in group..of group in key key\nparam b = 1\n"),
+              "grammar 1\nparam a = key in group..of group in key key\nparam b = 1\n");
+}
+
 TEST(Printer, TextWithProblemsStaysAsItIs) {
     const std::string broken = "grammar 1\nstart  A ->   cube siz 2\n";
     EXPECT_EQ(formatted(broken), broken);
