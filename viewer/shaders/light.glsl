@@ -24,7 +24,8 @@ vec3 reflected(Surface s, vec3 toEye, vec3 toLight) {
     return (diffuse * (1.0 - fresnel) + fresnel * distribution * visibility) * nl;
 }
 
-/// All light a surface throws towards the eye. `sunlight` and `openness` are shares in 0 … 1.
+/// All light a surface throws towards the eye. `sunlight` and `openness` are shares in 0 … 1. With a lamp, which means in
+/// a hollow, the sky only fills the dark a little.
 vec3 shade(Surface s, vec3 toEye, float sunlight, float openness) {
     vec3 light = reflected(s, toEye, sunDirection) * sunColor * sunlight;
 

@@ -12,7 +12,7 @@ void main() {
     int m = int(texelFetch(materialOfTriangle, firstTriangle + gl_PrimitiveID).x) * 2;
     Surface s = Surface(worldPosition, normal, materials[m].rgb, materials[m].a, materials[m + 1].x);
     vec3 start = worldPosition + normal * (1.5e-3 * mapSpan);
-    float sunlight = dot(normal, sunDirection) > 0.0 ? sunlightAt(start) : 0.0;
+    float sunlight = lampReach == 0.0 && dot(normal, sunDirection) > 0.0 ? sunlightAt(start) : 0.0;
     vec3 light = shade(s, toEye, sunlight, opennessAt(start, normal));
     color = vec4(tonemap(hazed(light, distance, skyColor(-toEye))), 1.0);
 }

@@ -67,7 +67,7 @@ vec3 colorOf(uint job) {
     if (hit.w == hitObject) normal = normalAt(hit.xyz, max(2e-5 * sceneSize, 0.4 * pixelAngle * distance));
     vec3 start = hit.xyz + normal * max(1e-4 * sceneSize, 0.5 * pixelAngle * distance);
     float sunlight = 0.0;
-    if (dot(normal, sunDirection) > 0.0) sunlight = sunlightAt(start);
+    if (lampReach == 0.0 && dot(normal, sunDirection) > 0.0) sunlight = sunlightAt(start);
     float openness = opennessAt(hit.xyz, normal);
     if (hit.w == hitGround) return shadeGround(hit.xyz, toEye, distance, sunlight, openness);
     uint m = materialOfJob[job] * 2u;
