@@ -1,6 +1,7 @@
 #include "grammar/derive/joints.h"
 
 #include <cmath>
+#include <utility>
 
 #include "modeler/core/conventions.h"
 #include "modeler/core/random.h"
@@ -8,34 +9,32 @@
 namespace sgm::derive {
 namespace {
 
-constexpr double cell_m = 64 * jointTolerance_m;  // wide, so that few joints stand near a cell's border
+constexpr double cell_m = 32 * jointTolerance_m;  // wide, so that few joints stand near a cell's border
 constexpr double cosineTolerance = 1e-9;
 
 bool directed(Vec3d d) { return d != Vec3d{}; }
 
-uint64_t cellHash(int64_t x, int64_t y, int64_t z) {
-    // One multiply a coordinate; the final mix spreads neighbours.
-    const uint64_t h = mix(static_cast<uint64_t>(x) * 0x9e3779b97f4a7c15ull ^ static_cast<uint64_t>(y) * 0xc2b2ae3d27d4eb4full ^
-                           static_cast<uint64_t>(z) * 0x165667b19e3779f9ull);
-    return h ? h : 1;
+/// Joints of one direction share a bucket, so that a search meets only those that look the other way.
+uint64_t cellHash(int64_t x, int64_t y, int64_t z, Vec3d direction) {
+    const auto coarse = [](double d) { return static_cast<uint64_t>(static_cast<int64_t>(std::floor(d * 4 + 0.5)) + 8); };
+    const uint64_t looks = coarse(direction.x) | coarse(direction.y) << 8 | coarse(direction.z) << 16;
+    return mix(static_cast<uint64_t>(x) * 0x9e3779b97f4a7c15ull ^ static_cast<uint64_t>(y) * 0xc2b2ae3d27d4eb4full ^
+               static_cast<uint64_t>(z) * 0x165667b19e3779f9ull ^ looks);
 }
 
-/// Cells within tolerance of p: one nearly always, up to eight at a corner.
+int64_t cellOf(double v) { return static_cast<int64_t>(std::floor(v / cell_m)); }
+
+/// Calls f with the cells within tolerance of p: one nearly always, up to eight at a corner.
 template <class F>
-void forCells(Vec3d p, F f) {
+void forCells(Vec3d p, Vec3d direction, F f) {
     int64_t lo[3], hi[3];
     for (int i = 0; i < 3; ++i) {
-        lo[i] = static_cast<int64_t>(std::floor((p[i] - jointTolerance_m) / cell_m));
-        hi[i] = static_cast<int64_t>(std::floor((p[i] + jointTolerance_m) / cell_m));
+        lo[i] = cellOf(p[i] - jointTolerance_m);
+        hi[i] = cellOf(p[i] + jointTolerance_m);
     }
     for (int64_t x = lo[0]; x <= hi[0]; ++x)
         for (int64_t y = lo[1]; y <= hi[1]; ++y)
-            for (int64_t z = lo[2]; z <= hi[2]; ++z) f(cellHash(x, y, z));
-}
-
-uint64_t cellOf(Vec3d p) {
-    return cellHash(static_cast<int64_t>(std::floor(p.x / cell_m)), static_cast<int64_t>(std::floor(p.y / cell_m)),
-                    static_cast<int64_t>(std::floor(p.z / cell_m)));
+            for (int64_t z = lo[2]; z <= hi[2]; ++z) f(cellHash(x, y, z, direction));
 }
 
 /// Round coordinates, where most joints stand, then lie well within a cell, and forCells looks at one.
@@ -65,8 +64,8 @@ bool faceEachOther(const Joint& a, const Joint& b) {
 }
 
 std::optional<JointIndex::Entry> JointIndex::search(const ShapeTree& tree, uint64_t cell, const Joint& joint) const {
-    const size_t mask = slots_.size() - 1;
-    for (size_t i = cell & mask; slots_[i].cell; i = (i + 1) & mask) {
+    if (heads_.empty()) return std::nullopt;
+    for (uint32_t i = heads_[cell & (heads_.size() - 1)]; i != none; i = slots_[i].next) {
         const Slot& slot = slots_[i];
         if (slot.cell != cell || tree.shapes[slot.entry.shape].dead) continue;
         if (faceEachOther(joint, tree.joint(slot.entry.shape, slot.entry.joint))) return slot.entry;
@@ -74,26 +73,21 @@ std::optional<JointIndex::Entry> JointIndex::search(const ShapeTree& tree, uint6
     return std::nullopt;
 }
 
-void JointIndex::insert(Slot slot) {
-    const size_t mask = slots_.size() - 1;
-    size_t i = slot.cell & mask;
-    while (slots_[i].cell) i = (i + 1) & mask;
-    slots_[i] = slot;
+void JointIndex::insert(uint64_t cell, Entry entry) {
+    const auto link = [&](uint32_t i) { slots_[i].next = std::exchange(heads_[slots_[i].cell & (heads_.size() - 1)], i); };
+    slots_.push_back({cell, entry, none});
+    if (slots_.size() <= heads_.size()) return link(static_cast<uint32_t>(slots_.size() - 1));
+    heads_.assign(std::max<size_t>(64, heads_.size() * 4), none);
+    for (uint32_t i = 0; i < slots_.size(); ++i) link(i);
 }
 
 std::optional<JointIndex::Entry> JointIndex::add(const ShapeTree& tree, Entry entry, const Joint& joint) {
-    if (2 * (used_ + 1) > slots_.size()) {
-        std::vector<Slot> old(std::max<size_t>(64, slots_.size() * 4));
-        old.swap(slots_);
-        for (const Slot& slot : old)
-            if (slot.cell) insert(slot);
-    }
     std::optional<Entry> partner;
-    forCells(offset(joint.point), [&](uint64_t cell) {
+    const Vec3d p = offset(joint.point);
+    forCells(p, -joint.direction, [&](uint64_t cell) {
         if (!partner) partner = search(tree, cell, joint);
     });
-    insert({cellOf(offset(joint.point)), entry});
-    ++used_;
+    insert(cellHash(cellOf(p.x), cellOf(p.y), cellOf(p.z), joint.direction), entry);
     return partner;
 }
 

@@ -10,7 +10,7 @@
 namespace sgm::derive {
 
 /// Joints nearer than this are at the same point. Chains of thousands of shapes stay below it in double precision.
-inline constexpr double jointTolerance_m = 1e-5;
+inline constexpr double jointTolerance_m = 1e-6;
 
 /// P₁ = P₂ and D₁ = −D₂ within tolerance, both directed: two walls face to face.
 bool faceEachOther(const Joint& a, const Joint& b);
@@ -24,18 +24,19 @@ public:
     };
     /// Adds the joint and returns the first living one that faces it, if any.
     std::optional<Entry> add(const ShapeTree& tree, Entry entry, const Joint& joint);
-    uint64_t memory() const { return slots_.capacity() * sizeof(Slot); }
+    uint64_t memory() const { return slots_.capacity() * sizeof(Slot) + heads_.capacity() * sizeof(uint32_t); }
 
 private:
     struct Slot {
-        uint64_t cell = 0;  ///< hash of the cell, 0 for an empty slot
+        uint64_t cell;  ///< hash of the cell and the direction
         Entry entry;
+        uint32_t next;  ///< next slot of this bucket, or none
     };
-    void insert(Slot slot);
+    void insert(uint64_t cell, Entry entry);
     std::optional<Entry> search(const ShapeTree& tree, uint64_t cell, const Joint& joint) const;
 
-    std::vector<Slot> slots_;  // open addressing, a power of two, at most half full
-    size_t used_ = 0;
+    std::vector<Slot> slots_;
+    std::vector<uint32_t> heads_;  ///< buckets, a power of two, no fewer than slots
 };
 
 /// What a newcomer asks for: its size and orientation are given, its place follows from the joints.
