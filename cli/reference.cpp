@@ -14,7 +14,7 @@ namespace {
 
 std::string argumentList(const syntax::Operation& operation) {
     std::string text;
-    for (const syntax::OperationArgument& a : operation.arguments) text += fmt::format(a.optional ? " [{}]" : " {}", a.name);
+    for (const syntax::OperationArgument& a : operation.arguments) text += a.optional ? fmt::format(" [{}]", a.name) : fmt::format(" {}", a.name);
     return text;
 }
 
