@@ -47,7 +47,7 @@ void Checker::live(const syntax::Name& name, Element& out) {
         diagnostics_.error(name.span, fmt::format("a live shape's name begins with a capital: '{}' would be terminal", name.text));
         return;
     }
-    out.live = symbols_.at(name.text);
+    out.live = nonTerminal(name);
     if (ruled_.contains(out.live)) return;
     std::vector<std::string> ruled;
     for (const SymbolId id : ruled_) ruled.push_back(grammar_.symbols[id].name);
@@ -263,7 +263,7 @@ void Checker::rule(const syntax::RuleDecl& decl) {
     Rule out;
     out.span = decl.span;
     out.symbolSpan = decl.symbol.span;
-    out.symbol = symbols_.at(decl.symbol.text);
+    out.symbol = nonTerminal(decl.symbol);
     out.name = decl.name.text;
     if (out.name.empty()) out.name = fmt::format("{}#{}", decl.symbol.text, ++unnamedRules_[out.symbol]);
     Place guard(Place::Where::Guard);
@@ -310,7 +310,7 @@ void Checker::start(const syntax::StartDecl& decl) {
     Place place(Place::Where::Body);
     Start out;
     out.span = decl.span;
-    out.symbol = symbols_.at(decl.symbol.text);
+    out.symbol = nonTerminal(decl.symbol);
     out.body = body(place, decl.body);
     out.locals = place.frame;
     if (out.body.grows) diagnostics_.error(decl.body.span, "a start begins with a shape: nothing stands yet that could grow", "leave the operator out");

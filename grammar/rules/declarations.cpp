@@ -135,6 +135,7 @@ void Checker::terminals(const syntax::Ast& ast) {
 }
 
 uint32_t Checker::startCalled(const syntax::Name& name) {
+    if (name.empty()) return none;
     std::vector<std::string> known;
     for (size_t i = 0; i < grammar_.starts.size(); ++i) {
         known.push_back(grammar_.symbols[grammar_.starts[i].symbol].name);
@@ -147,6 +148,7 @@ uint32_t Checker::startCalled(const syntax::Name& name) {
 std::vector<Setting> Checker::settings(const std::vector<syntax::Setting>& written) {
     std::vector<Setting> result;
     for (const syntax::Setting& s : written) {
+        if (s.name.empty()) continue;  // the parser spoke of it
         const auto param = params_.find(s.name.text);
         if (param == params_.end()) {
             std::vector<std::string> known;

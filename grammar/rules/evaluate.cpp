@@ -83,6 +83,12 @@ bool same(const Value& a, const Value& b) {
     return true;
 }
 
+/// The other face along the same axis; the centre stays.
+Value opposite(Value axis) {
+    if (axis.num() < maxComponents) axis.n[0] = static_cast<double>(static_cast<int>(axis.num()) ^ 1);
+    return axis;
+}
+
 Value rgb(std::span<const Value> args) {
     Value r;
     r.kind = Value::Kind::Color;
@@ -114,11 +120,7 @@ Value applyFunction(Fn fn, std::span<const Value> a) {
     const double x = a.empty() ? 0 : a[0].num(), y = a.size() < 2 ? 0 : a[1].num();
     switch (fn) {
         case Fn::Neg:
-            if (a[0].kind == Value::Kind::Axis && x < maxComponents) {
-                Value opposite = a[0];
-                opposite.n[0] = static_cast<double>(static_cast<int>(x) ^ 1);
-                return opposite;
-            }
+            if (a[0].kind == Value::Kind::Axis) return opposite(a[0]);
             return componentwise(a[0], [](double v) { return -v; });
         case Fn::Not: return Value::boolean(!a[0].truth());
         case Fn::Add: return componentwise(a[0], a[1], [](double p, double q) { return p + q; }, either);

@@ -28,6 +28,14 @@ Typed constantOf(SourceSpan span, Value value) {
     return {makeConstant(span, std::move(value)), type};
 }
 
+/// Stands for what was refused: it has no number that another check could complain about.
+Expr unreadable(SourceSpan span) {
+    Expr e;
+    e.kind = Expr::Kind::Local;
+    e.span = span;
+    return e;
+}
+
 /// Numbers as their place understands them: bare lengths are metres, and only counts stay whole.
 void adapt(Expr& e, Want want) {
     if (want == Want::Anything || want == Want::Count || want == Want::Truth) return;
@@ -435,14 +443,13 @@ Typed Checker::infer(Place& place, const Written& e) {
 Typed Checker::expression(Place& place, const Written& e) {
     Typed result = infer(place, e);
     result.expr.span = e.span;
-    // What could not be read has no number that another check could complain about.
-    if (!result.type.known && result.expr.kind == Expr::Kind::Constant) result.expr.kind = Expr::Kind::Local;
+    if (!result.type.known && result.expr.kind == Expr::Kind::Constant) result.expr = unreadable(e.span);
     return result;
 }
 
 Expr Checker::expression(Place& place, const Written& e, Want want, std::string_view what) {
     Typed result = expression(place, e);
-    asks(result, want, what, &e);
+    if (!asks(result, want, what, &e)) return unreadable(e.span);
     adapt(result.expr, want);
     return std::move(result.expr);
 }

@@ -6,7 +6,6 @@
 #include <cctype>
 
 #include "grammar/rules/checker.h"
-#include "grammar/rules/functions.h"
 #include "grammar/rules/words.h"
 
 namespace sgm::rules {
@@ -20,12 +19,12 @@ constexpr std::array<std::string_view, 17> taken{"axes", "sides", "last",   "any
 bool isNonTerminal(std::string_view name) { return !name.empty() && std::isupper(static_cast<unsigned char>(name[0])); }
 
 bool isTaken(std::string_view name) {
-    return std::find(taken.begin(), taken.end(), name) != taken.end() || findFunction(name);
+    return std::find(taken.begin(), taken.end(), name) != taken.end();
 }
 
 bool Checker::twice(std::map<std::string, SourceSpan>& seen, const syntax::Name& name, std::string_view kind) {
     const auto [entry, fresh] = seen.emplace(name.text, name.span);
-    if (fresh) return false;
+    if (fresh || name.empty()) return false;
     const SourceSpan first = entry->second;
     diagnostics_.error(name.span, fmt::format("there is already a {} '{}' in {}, line {}", kind, name.text,
                                               first.source->name(), first.source->place(first.begin).line),
@@ -128,7 +127,7 @@ void Checker::declare(const syntax::Ast& ast) {
     for (const auto& decl : ast.maps) unbuilt_.insert(decl.name.text);
     for (const auto& decl : ast.lsystems) unbuilt_.insert(decl.name.text);
     for (const auto& decl : ast.starts) {
-        if (decl.symbol.empty() || twice(seenStarts_, decl.symbol, "start")) continue;
+        twice(seenStarts_, decl.symbol, "start");
         if (isNonTerminal(decl.symbol.text)) placed_.insert(nonTerminal(decl.symbol));
         collect(decl.body);
     }

@@ -1,0 +1,68 @@
+// Damaged grammars through parse and check: no crash, every span inside its file, each fast.
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "tests/rules/read.h"
+#include "tests/syntax/mutate.h"
+
+namespace sgm::rules {
+namespace {
+
+constexpr uint64_t mutants = 5000;
+constexpr double most_s = 0.05;
+
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+void expectInside(const syntax::SourceSpan& span, const syntax::Source& source, const std::string& message) {
+    ASSERT_EQ(span.source, &source) << message;
+    ASSERT_LE(span.begin, span.end) << message;
+    ASSERT_LE(span.end, source.text().size()) << message;
+}
+
+TEST(Fuzz, MutantsAreJudgedQuicklyAndInPlace) {
+    const char* const seeds[] = {"tests/rules/sketch.sgm", "tests/syntax/sketch.sgm", "examples/grotto.sgm", "examples/tower.sgm"};
+    uint64_t key = 0, sound = 0;
+    double slowest = 0;
+    for (const char* const seed : seeds) {
+        const syntax::Mutator mutate(readText(seed));
+        for (uint64_t i = 0; i < mutants / std::size(seeds); ++i) {
+            const std::string text = mutate(++key);
+            const double before = seconds();
+            const Checked c = checked(text);
+            double taken = seconds() - before;
+            // A busy machine may stop us anywhere: only what is slow again is slow.
+            if (taken > most_s) {
+                const double again = seconds();
+                checked(text);
+                taken = seconds() - again;
+            }
+            slowest = std::max(slowest, taken);
+            ASSERT_LT(taken, most_s) << "mutant " << key << " of " << seed;
+            for (const auto& d : c.diagnostics.all()) {
+                expectInside(d.span, *c.source, d.message);
+                ASSERT_FALSE(syntax::render(d).empty());
+            }
+            ASSERT_EQ(c.grammar == nullptr, c.diagnostics.hasErrors()) << "mutant " << key;
+            sound += c.grammar != nullptr;
+        }
+    }
+    EXPECT_GT(sound, mutants / 200) << "some mutants must reach the end of the check";
+    RecordProperty("slowest_ms", static_cast<int>(slowest * 1000));
+    RecordProperty("sound", static_cast<int>(sound));
+}
+
+TEST(Fuzz, SolidsThatDoubleAreRefused) {
+    std::string text = "terminal t0 = morph(cube, sphere, .5)\n";
+    for (int i = 1; i < 60; ++i) {
+        const std::string last = "t" + std::to_string(i - 1);
+        text.append("terminal t").append(std::to_string(i)).append(" = morph(" + last).append(", " + last).append(", .5)\n");
+    }
+    const double before = seconds();
+    const Checked c = checkedBody(text + "start S -> t59\n");
+    EXPECT_LT(seconds() - before, 1);
+    EXPECT_NE(c.messages().find("a solid has at most 1000 parts"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sgm::rules

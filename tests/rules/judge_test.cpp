@@ -1,0 +1,75 @@
+// Rules that never run and rules that never end.
+#include <gtest/gtest.h>
+
+#include "tests/rules/read.h"
+
+namespace sgm::rules {
+namespace {
+
+/// What is said of the rules behind `start S -> cube : A`.
+std::string judged(const std::string& rules) { return checkedBody("start S -> cube : A\n" + rules).messages(); }
+
+TEST(Endless, RulesAreNamed) {
+    EXPECT_EQ(judged("rule Grow: A -> + cube at +x : A\n"), "rule 'Grow' never ends: every 'A' makes another 'A'\n");
+    EXPECT_EQ(judged("rule A -> cube : A\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
+    EXPECT_EQ(judged("rule A -> (sphere + A at +y)\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
+    EXPECT_EQ(judged("rule A -> cube for d in axes { + A }\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
+}
+
+TEST(Endless, CirclesAreNamed) {
+    EXPECT_EQ(judged("rule A -> B\nrule B -> C, cube\nrule C -> sphere : A\n"),
+              "rule 'A#1' never ends: 'A' (A#1) -> 'B' (B#1) -> 'C' (C#1) -> 'A'\n");
+    EXPECT_EQ(judged("rule A -> B\nrule B -> B\n"), "rule 'B#1' never ends: every 'B' makes another 'B'\n");
+}
+
+TEST(Endless, EveryAlternativeMustGoOn) {
+    EXPECT_EQ(judged("rule A -> choose { 1: cube : A | 2: sphere : A }\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
+    EXPECT_EQ(judged("rule A -> choose { 1: cube : A | 2: sphere }\n"), "");
+    EXPECT_EQ(judged("rule A -> choose { 1: cube : A | 0: sphere }\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
+    EXPECT_EQ(judged("rule A -> cube : A\nrule A -> sphere\n"), "") << "drawn by weight";
+    EXPECT_EQ(judged("rule A -> cube : A\nrule A weight 0 -> sphere\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
+}
+
+TEST(Endless, WhatMayStopIsAllowed) {
+    EXPECT_EQ(judged("rule A repeat 9 -> + cube at +x : A\n"), "");
+    EXPECT_EQ(judged("rule A when scope.x > 1 -> cube size 50% : A\n"), "");
+    EXPECT_EQ(judged("rule A -> + cube at free() : A\n"), "") << "joints run out";
+    EXPECT_EQ(judged("rule A beside A -> + cube at +x : A\n"), "");
+    EXPECT_EQ(judged("rule A -> cube when scope.x > 1 { + cube at +x : A }\n"), "");
+    EXPECT_EQ(judged("rule A -> cube for k in 1..0 { + A }\n"), "") << "no turn at all";
+    EXPECT_EQ(judged("rule A -> + cube at +x : B\nrule B -> + cube at +y : A\n"), "") << "may meet itself";
+    EXPECT_EQ(judged("rule A -> + cube at +x to +x : A\n"), "") << "the next joint is taken";
+    EXPECT_EQ(judged("rule A -> + cube at +x : Done\n"), "");
+}
+
+TEST(Endless, AGuardThatAlwaysHoldsIsNone) {
+    EXPECT_EQ(judged("rule A when 1 < 2 -> cube : A\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
+    EXPECT_EQ(judged("rule A -> cube while true { + cube at +x }\n"), "this 'while' never ends: its condition always holds\n");
+}
+
+TEST(Unreachable, RulesAreWarnedOf) {
+    const Checked c = checkedBody("start S -> cube : A\nrule A -> sphere\nrule B -> C\nrule C -> sphere\n");
+    EXPECT_TRUE(c.grammar);
+    EXPECT_EQ(c.messages(), "warning: this rule never runs: no start leads to a 'B'\nwarning: this rule never runs: no start leads to a 'C'\n");
+}
+
+TEST(Unreachable, EndlessRulesHarmNobody) {
+    const Checked c = checkedBody("start S -> cube\nrule B -> cube : B\n");
+    EXPECT_TRUE(c.grammar);
+    EXPECT_EQ(c.messages(), "warning: this rule never runs: no start leads to a 'B'\n");
+}
+
+TEST(Unused, ParametersAreWarnedOf) {
+    const Checked c = checkedBody("param a = 1\nparam b = 2\nstart S -> cube size b\n");
+    EXPECT_TRUE(c.grammar);
+    EXPECT_EQ(c.messages(), "warning: nothing uses the parameter 'a'\n");
+}
+
+TEST(Live, NamesNearARulesAreWarnedOf) {
+    EXPECT_EQ(checkedBody("start S -> cube : Cel\nrule Cell -> sphere\n").messages(),
+              "warning: no rule matches 'Cel', so nothing will grow here\nwarning: this rule never runs: no start leads to a 'Cell'\n");
+    EXPECT_EQ(checkedBody("start S -> cube : Done\n").messages(), "") << "recognised, and left as it is";
+}
+
+}  // namespace
+}  // namespace sgm::rules
