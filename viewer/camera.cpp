@@ -9,7 +9,8 @@ namespace {
 std::array<Vec3d, 8> corners(const Box3f& box) {
     std::array<Vec3d, 8> points;
     for (size_t i = 0; i < 8; ++i)
-        points[i] = Vec3f{i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z}.as<double>();
+        points[i] =
+            Vec3f{i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z}.as<double>();
     return points;
 }
 
@@ -28,7 +29,8 @@ Camera frame(const Box3f& bounds, double aspect) {
         distance = 0;
         for (const Vec3d& corner : corners(bounds)) {
             const Vec3d v = corner - camera.at;
-            distance = std::max({distance, std::abs(dot(v, right)) / tanRight + dot(v, towardsEye), std::abs(dot(v, up)) / tanUp + dot(v, towardsEye)});
+            distance = std::max({distance, std::abs(dot(v, right)) / tanRight + dot(v, towardsEye),
+                                 std::abs(dot(v, up)) / tanUp + dot(v, towardsEye)});
         }
         Box3d seen;
         for (const Vec3d& corner : corners(bounds)) {

@@ -64,7 +64,8 @@ uint32_t CellTree::find(Vec3f p) const {
     }
 }
 
-Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float margin, int threads, Progress* progress) {
+Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float margin, int threads,
+                              Progress* progress) {
     CellTree tree;
     tree.edge = maxComponent(bounds.size()) * 1.001f;
     tree.low = bounds.centre() - Vec3f{tree.edge, tree.edge, tree.edge} * 0.5f;
@@ -94,7 +95,8 @@ Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float
                     eval::Tape& shortened = children[i].tapes[taken++];
                     index = static_cast<uint32_t>(tree.tapes.size());
                     if (level + 1 < CellTree::depth && shortened.size() > shortTape)
-                        next.push_back({static_cast<uint32_t>(tree.nodes.size()), children[i].lows[c], std::move(shortened)});
+                        next.push_back(
+                            {static_cast<uint32_t>(tree.nodes.size()), children[i].lows[c], std::move(shortened)});
                     else
                         tree.tapes.push_back(std::move(shortened));
                 }

@@ -1,6 +1,7 @@
-// Space cut into cells, each with the field's tape shortened for it: what lets a ray, a shadow or an occlusion probe pay
-// only for the parts nearby. Cells belong to space and not to the screen, so shadows use the same ones as the picture.
-// Enters: a tape and bounds. Leaves: a tree of 4 × 4 × 4 cells a node and the leaves' tapes. Assumes finite bounds.
+// Space cut into cells, each with the field's tape shortened for it: what lets a ray, a shadow or an occlusion probe
+// pay only for the parts nearby. Cells belong to space and not to the screen, so shadows use the same ones as the
+// picture. Enters: a tape and bounds. Leaves: a tree of 4 × 4 × 4 cells a node and the leaves' tapes. Assumes finite
+// bounds.
 #pragma once
 
 #include <cstdint>
@@ -36,6 +37,7 @@ struct CellTree {
 };
 
 /// Cuts `bounds` into cells. Error::Cancelled when `progress` says so.
-Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float margin, int threads, Progress* progress);
+Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float margin, int threads,
+                              Progress* progress);
 
 }  // namespace sgm::viewer

@@ -1,5 +1,5 @@
-// Sphere tracing in one fixed shader (design: "The viewer"). The CPU cuts space into cells with shortened tapes and says
-// whose surface each hit is; the GPU finds the hits and lights them. Pixels on edges are sampled again.
+// Sphere tracing in one fixed shader (design: "The viewer"). The CPU cuts space into cells with shortened tapes and
+// says whose surface each hit is; the GPU finds the hits and lights them. Pixels on edges are sampled again.
 #include <chrono>
 #include <cmath>
 
@@ -71,14 +71,15 @@ void setCells(const Program& program, const FieldPicture& picture, const Box3f& 
     program.set("margin", tree.margin);
 }
 
-Result<FieldPicture> prepare(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance, const PictureOptions& options,
-                             Progress* progress) {
+Result<FieldPicture> prepare(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
+                             const PictureOptions& options, Progress* progress) {
     // The pictures' soft shadows and occlusion ask for exact distances up to the margin, and no further.
     const float margin = 0.07f * length(bounds.size());
     const Box3f box = bounds.inflated(margin);
     Result<CellTree> tree = cutIntoCells(tape, box, margin, options.threads, progress);
     if (!tree) return tree.error();
-    FieldPicture picture{std::move(*tree), {}, {}, {}, {}, uploadMaterials(provenance), provenance, tape, options.threads};
+    FieldPicture picture{std::move(*tree), {}, {}, {}, {}, uploadMaterials(provenance), provenance, tape,
+                         options.threads};
     uint32_t registers = tape.registerCount();
     uploadCells(picture.tree, picture, registers);
 
@@ -116,12 +117,14 @@ Status runInPieces(const Program& program, size_t count, Progress* progress) {
 
 /// The material under every hit: hits are gathered by cell and asked on the cell's own tape.
 std::vector<uint32_t> materialsOf(const std::vector<Vec4>& hits, const FieldPicture& picture) {
-    const size_t leaves = picture.tree.tapes.size();  // index `leaves` is the whole tape, for hits beside every near cell
+    const size_t leaves =
+        picture.tree.tapes.size();  // index `leaves` is the whole tape, for hits beside every near cell
     std::vector<std::vector<uint32_t>> byLeaf(leaves + 1);
     for (size_t i = 0; i < hits.size(); ++i) {
         if (hits[i][3] != hitObject) continue;
         const uint32_t word = picture.tree.find({hits[i][0], hits[i][1], hits[i][2]});
-        byLeaf[CellTree::stateOf(word) == CellState::Near ? CellTree::indexOf(word) : leaves].push_back(static_cast<uint32_t>(i));
+        byLeaf[CellTree::stateOf(word) == CellState::Near ? CellTree::indexOf(word) : leaves].push_back(
+            static_cast<uint32_t>(i));
     }
     std::vector<uint32_t> materials(hits.size(), 0);
     std::vector<eval::Workspace> workspaces(size_t(threadCount(picture.threads)));
@@ -136,7 +139,8 @@ std::vector<uint32_t> materialsOf(const std::vector<Vec4>& hits, const FieldPict
         }
         std::vector<OriginId> origins(members.size());
         const eval::Tape& tape = leaf < leaves ? picture.tree.tapes[leaf] : picture.whole;
-        eval::evaluateOrigin(tape, {x.data(), y.data(), z.data(), x.size()}, origins.data(), workspaces[size_t(worker)]);
+        eval::evaluateOrigin(tape, {x.data(), y.data(), z.data(), x.size()}, origins.data(),
+                             workspaces[size_t(worker)]);
         for (size_t k = 0; k < members.size(); ++k) {
             const OriginId origin = origins[k] < picture.provenance.parts.size() ? origins[k] : 0;
             materials[members[k]] = picture.provenance.parts[origin].material;
@@ -164,7 +168,8 @@ Result<std::vector<Vec4>> drawChunk(std::span<const Job> jobs, const FieldPictur
 }
 
 /// Adds the display light of every job to its pixel.
-Status addJobs(const std::vector<Job>& jobs, const FieldPicture& picture, int width, std::vector<float>& pixels, Progress* progress) {
+Status addJobs(const std::vector<Job>& jobs, const FieldPicture& picture, int width, std::vector<float>& pixels,
+               Progress* progress) {
     if (progress) progress->begin("draw", jobs.size() * 2);
     for (size_t first = 0; first < jobs.size(); first += chunkJobs) {
         const std::span chunk = std::span(jobs).subspan(first, std::min(chunkJobs, jobs.size() - first));
@@ -196,7 +201,8 @@ std::vector<bool> edges(const std::vector<float>& pixels, int width, int height)
     std::vector<bool> edge(size_t(width) * size_t(height), false);
     const auto compare = [&](size_t a, size_t b) {
         float most = 0;
-        for (size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(std::sqrt(pixels[a * 4 + c]) - std::sqrt(pixels[b * 4 + c])));
+        for (size_t c = 0; c < 3; ++c)
+            most = std::max(most, std::abs(std::sqrt(pixels[a * 4 + c]) - std::sqrt(pixels[b * 4 + c])));
         if (most > visible) edge[a] = edge[b] = true;
     };
     for (int y = 0; y < height; ++y)
@@ -210,8 +216,8 @@ std::vector<bool> edges(const std::vector<float>& pixels, int width, int height)
 
 }  // namespace
 
-Result<Image> drawField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance, const PictureOptions& options,
-                        Progress* progress) {
+Result<Image> drawField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
+                        const PictureOptions& options, Progress* progress) {
     if (Status status = checkPicture(bounds, options); !status) return status.error();
     const Result<GpuContext> gpu = GpuContext::create();
     if (!gpu) return gpu.error();

@@ -24,7 +24,7 @@ struct MeshPicture {
     MapStack sunMap, skyMaps;
 };
 
-/// Rows a, b, c of an affine map as a matrix by columns.
+/// Four rows as a matrix by columns.
 Matrix4 matrixOf(const std::array<std::array<double, 4>, 4>& rows) {
     Matrix4 matrix;
     for (size_t r = 0; r < 4; ++r)
@@ -34,7 +34,8 @@ Matrix4 matrixOf(const std::array<std::array<double, 4>, 4>& rows) {
 
 /// Looks along −`towardsLight` at a ball of diameter `span`: all of it maps to lo … hi in the three components.
 Matrix4 lightMatrix(Vec3d towardsLight, Vec3d centre, double span, double lo, double hi) {
-    const Vec3d right = normalized(cross(std::abs(towardsLight.y) > 0.99 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}, towardsLight));
+    const Vec3d right =
+        normalized(cross(std::abs(towardsLight.y) > 0.99 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}, towardsLight));
     const Vec3d up = cross(towardsLight, right);
     const double scale = (hi - lo) / span, middle = (hi + lo) / 2;
     const auto row = [&](Vec3d axis) {
@@ -52,7 +53,8 @@ Vec3d skyDirection(size_t i, size_t count) {
 }
 
 /// Clip space of one tile of the picture: x0, y0 its lower left pixel from the bottom left.
-Matrix4 tileMatrix(const View& view, const PictureOptions& options, double near, double far, int x0, int y0, int width, int height) {
+Matrix4 tileMatrix(const View& view, const PictureOptions& options, double near, double far, int x0, int y0, int width,
+                   int height) {
     const double right2 = dot(view.right, view.right), up2 = dot(view.up, view.up);
     const Vec3d x = view.right / right2, y = view.up / up2, z = view.forward;
     // Picture coordinates −1 … 1 become the tile's by a scale and a shift, before the division by depth.
@@ -63,7 +65,7 @@ Matrix4 tileMatrix(const View& view, const PictureOptions& options, double near,
     return matrixOf({row(cx, 0), row(cy, 0), row(cz, -2 * far * near / (far - near)), row(z, 0)});
 }
 
-/// All triangles in batches; `set` hears the first of each.
+/// All triangles, in batches.
 Status drawTriangles(const MeshPicture& picture, const Program& program, Progress* progress) {
     program.use();
     for (size_t first = 0; first < picture.triangleCount; first += batchTriangles) {
@@ -98,8 +100,9 @@ Result<MeshPicture> upload(const mesh::Mesh& mesh, const Provenance& provenance)
         Program& program;
         std::string_view vertex, fragment;
     };
-    for (const Wanted& wanted : {Wanted{picture.depth, "mesh", "depth"}, Wanted{picture.blur, "screen", "blur_depth"},
-                                 Wanted{picture.color, "mesh", "mesh_color"}, Wanted{picture.backdrop, "screen", "backdrop"}}) {
+    for (const Wanted& wanted :
+         {Wanted{picture.depth, "mesh", "depth"}, Wanted{picture.blur, "screen", "blur_depth"},
+          Wanted{picture.color, "mesh", "mesh_color"}, Wanted{picture.backdrop, "screen", "backdrop"}}) {
         Result<Program> made = Program::draw(shaderText(wanted.vertex), shaderText(wanted.fragment));
         if (!made) return made.error();
         wanted.program = std::move(*made);
@@ -113,7 +116,8 @@ Status drawMaps(MeshPicture& picture, const Box3f& bounds, const PictureOptions&
     const double span = 1.02 * length(bounds.size().as<double>());
     // Inside a hollow no sky is seen: the lamp does it alone.
     const bool lamp = options.camera.lamp_m > 0;
-    const size_t skyCount = lamp ? 0 : std::clamp<size_t>((size_t(24) << 20) / std::max<size_t>(picture.triangleCount, 1), 12, mostSkyMaps);
+    const size_t skyCount =
+        lamp ? 0 : std::clamp<size_t>((size_t(24) << 20) / std::max<size_t>(picture.triangleCount, 1), 12, mostSkyMaps);
     picture.sunMap = MapStack::create(MapStack::Kind::Depth, sunMapEdge, 1);
     picture.skyMaps = MapStack::create(MapStack::Kind::Number, skyMapEdge, std::max(1, static_cast<int>(skyCount)));
     const MapStack skyDepth = MapStack::create(MapStack::Kind::Depth, skyMapEdge, 1);
@@ -149,7 +153,8 @@ Status drawMaps(MeshPicture& picture, const Box3f& bounds, const PictureOptions&
 }
 
 /// One tile, RGBA, bottom row first.
-Result<std::vector<float>> drawTile(const MeshPicture& picture, const ColorTarget& target, int x0, int y0, const Matrix4& clip, Progress* progress) {
+Result<std::vector<float>> drawTile(const MeshPicture& picture, const ColorTarget& target, int x0, int y0,
+                                    const Matrix4& clip, Progress* progress) {
     target.bind();
     setDepthTest(false);
     picture.backdrop.use();
@@ -163,7 +168,8 @@ Result<std::vector<float>> drawTile(const MeshPicture& picture, const ColorTarge
 
 }  // namespace
 
-Result<Image> drawMesh(const mesh::Mesh& mesh, const Provenance& provenance, const PictureOptions& options, Progress* progress) {
+Result<Image> drawMesh(const mesh::Mesh& mesh, const Provenance& provenance, const PictureOptions& options,
+                       Progress* progress) {
     const Box3f bounds = mesh.bounds();
     if (Status status = checkPicture(bounds, options); !status) return status.error();
     const Result<GpuContext> gpu = GpuContext::create();
@@ -179,18 +185,21 @@ Result<Image> drawMesh(const mesh::Mesh& mesh, const Provenance& provenance, con
 
     const View view = viewOf(options.camera, options.width, options.height);
     const double size = length(bounds.size().as<double>());
-    const double near = std::max(length(bounds.centre().as<double>() - view.eye) - size / 2, 1e-3 * size), far = near + 2 * size + length(bounds.centre().as<double>() - view.eye);
+    const double near = std::max(length(bounds.centre().as<double>() - view.eye) - size / 2, 1e-3 * size),
+                 far = near + 2 * size + length(bounds.centre().as<double>() - view.eye);
     std::vector<float> pixels(size_t(options.width) * size_t(options.height) * 4);
     for (int y0 = 0; y0 < options.height; y0 += tileEdge)
         for (int x0 = 0; x0 < options.width; x0 += tileEdge) {
             const int width = std::min(tileEdge, options.width - x0), height = std::min(tileEdge, options.height - y0);
             const Result<ColorTarget> target = ColorTarget::create(width, height, options.samples);
             if (!target) return target.error();
-            const Result<std::vector<float>> tile = drawTile(*picture, *target, x0, y0, tileMatrix(view, options, near, far, x0, y0, width, height), progress);
+            const Result<std::vector<float>> tile = drawTile(
+                *picture, *target, x0, y0, tileMatrix(view, options, near, far, x0, y0, width, height), progress);
             if (!tile) return tile.error();
             for (int y = 0; y < height; ++y) {
                 const size_t row = size_t(options.height - 1 - (y0 + y)) * size_t(options.width) + size_t(x0);
-                std::copy_n(tile->begin() + std::ptrdiff_t(size_t(y) * size_t(width) * 4), size_t(width) * 4, pixels.begin() + std::ptrdiff_t(row * 4));
+                std::copy_n(tile->begin() + std::ptrdiff_t(size_t(y) * size_t(width) * 4), size_t(width) * 4,
+                            pixels.begin() + std::ptrdiff_t(row * 4));
             }
         }
     return encode(pixels, options.width, options.height);

@@ -9,7 +9,8 @@ Result<std::vector<float>> evaluateOnGpu(const eval::Tape& tape, const std::vect
     if (points.empty()) return std::vector<float>{};
     const Result<GpuContext> gpu = GpuContext::create();
     if (!gpu) return gpu.error();
-    const Result<Program> program = Program::compute(shaderText("evaluate", eval::interpreterGlsl(tape.registerCount())));
+    const Result<Program> program =
+        Program::compute(shaderText("evaluate", eval::interpreterGlsl(tape.registerCount())));
     if (!program) return program.error();
 
     std::vector<uint32_t> words;

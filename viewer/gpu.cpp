@@ -28,8 +28,9 @@ std::vector<EGLDisplay> displays() {
 EGLContext contextOn(EGLDisplay display) {
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return EGL_NO_CONTEXT;
     const EGLint configWanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-    const EGLint contextWanted[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3,
-                                    EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    const EGLint contextWanted[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint configs = 0;
     EGLContext context = EGL_NO_CONTEXT;
@@ -102,8 +103,10 @@ void freeRenderbuffer(uint32_t id) { glDeleteRenderbuffers(1, &id); }
 
 Result<GpuContext> GpuContext::create() {
     for (const EGLDisplay display : displays())
-        if (const EGLContext context = contextOn(display); context != EGL_NO_CONTEXT) return GpuContext(display, context);
-    return internal("EGL offers no OpenGL 4.3 context, neither surfaceless nor on a device (Mesa's software driver is enough)");
+        if (const EGLContext context = contextOn(display); context != EGL_NO_CONTEXT)
+            return GpuContext(display, context);
+    return internal(
+        "EGL offers no OpenGL 4.3 context, neither surfaceless nor on a device (Mesa's software driver is enough)");
 }
 
 GpuContext::GpuContext(GpuContext&& other) noexcept
@@ -126,8 +129,12 @@ Result<Program> Program::draw(const std::string& vertex, const std::string& frag
     return link({{GL_VERTEX_SHADER, &vertex}, {GL_FRAGMENT_SHADER, &fragment}});
 }
 void Program::use() const { glUseProgram(id()); }
-void Program::set(const char* name, float value) const { glProgramUniform1f(id(), glGetUniformLocation(id(), name), value); }
-void Program::set(const char* name, int value) const { glProgramUniform1i(id(), glGetUniformLocation(id(), name), value); }
+void Program::set(const char* name, float value) const {
+    glProgramUniform1f(id(), glGetUniformLocation(id(), name), value);
+}
+void Program::set(const char* name, int value) const {
+    glProgramUniform1i(id(), glGetUniformLocation(id(), name), value);
+}
 void Program::set(const char* name, uint32_t value) const {
     glProgramUniform1ui(id(), glGetUniformLocation(id(), name), value);
 }

@@ -1,5 +1,5 @@
-// Where to stand inside a hollow: a coarse grid of the field says which empty places are enclosed and how deep they are,
-// rays say where one can look far.
+// Where to stand inside a hollow: a coarse grid of the field says which empty places are enclosed and how deep they
+// are, rays say where one can look far.
 #include <array>
 #include <cmath>
 #include <vector>
@@ -23,8 +23,12 @@ struct Samples {
     Vec3f at(int i, int j, int k) const {
         return bounds.lo + Vec3f{float(i) + 0.5f, float(j) + 0.5f, float(k) + 0.5f} * cell;
     }
-    size_t index(int i, int j, int k) const { return (size_t(k) * size_t(count.y) + size_t(j)) * size_t(count.x) + size_t(i); }
-    bool holds(int i, int j, int k) const { return i >= 0 && j >= 0 && k >= 0 && i < count.x && j < count.y && k < count.z; }
+    size_t index(int i, int j, int k) const {
+        return (size_t(k) * size_t(count.y) + size_t(j)) * size_t(count.x) + size_t(i);
+    }
+    bool holds(int i, int j, int k) const {
+        return i >= 0 && j >= 0 && k >= 0 && i < count.x && j < count.y && k < count.z;
+    }
 };
 
 std::vector<float> valuesAt(const eval::Tape& tape, const std::vector<Vec3f>& points) {
@@ -43,7 +47,8 @@ Samples sample(const eval::Tape& tape, const Box3f& bounds) {
     Samples grid;
     grid.bounds = bounds;
     grid.cell = maxComponent(bounds.size()) / gridEdge;
-    for (int axis = 0; axis < 3; ++axis) grid.count[axis] = std::max(1, static_cast<int>(bounds.size()[axis] / grid.cell));
+    for (int axis = 0; axis < 3; ++axis)
+        grid.count[axis] = std::max(1, static_cast<int>(bounds.size()[axis] / grid.cell));
     std::vector<Vec3f> points;
     for (int k = 0; k < grid.count.z; ++k)
         for (int j = 0; j < grid.count.y; ++j)
@@ -90,7 +95,8 @@ Stand deepest(const Samples& grid) {
 }
 
 /// How far one can go from the stand in each direction before meeting the surface or leaving the bounds, metres.
-std::vector<float> freeDistances(const eval::Tape& tape, const Samples& grid, const Stand& stand, const std::vector<Vec3f>& directions) {
+std::vector<float> freeDistances(const eval::Tape& tape, const Samples& grid, const Stand& stand,
+                                 const std::vector<Vec3f>& directions) {
     std::vector<float> distances(directions.size(), 0.0f);
     std::vector<bool> stopped(directions.size(), false);
     for (int step = 0; step < 64; ++step) {

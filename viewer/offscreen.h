@@ -16,14 +16,15 @@
 namespace sgm::viewer {
 
 struct Camera {
-    Vec3d eye, at;              ///< metres, object frame
-    double fieldOfView = 0.7;   ///< vertical, radians
-    double lamp_m = 0;          ///< reach of a warm lamp beside the eye, metres; 0 for none
+    Vec3d eye, at;             ///< metres, object frame
+    double fieldOfView = 0.7;  ///< vertical, radians
+    double lamp_m = 0;         ///< reach of a warm lamp beside the eye, metres; 0 for none
 };
 /// Frames `bounds` three-quarter from above.
 Camera frame(const Box3f& bounds, double aspect);
-/// Stands inside the largest hollow of the field, looking along its longest free direction with a lamp (`--camera inside`).
-/// A field without a hollow is taken as the hollow itself: the camera stands in its solid, which is then drawn inside out.
+/// Stands inside the largest hollow of the field, looking along its longest free direction with a lamp (`--camera
+/// inside`). A field without a hollow is taken as the hollow itself: the camera stands in its solid, which is then
+/// drawn inside out.
 Camera inside(const eval::Tape& tape, const Box3f& bounds);
 
 struct Image {
@@ -34,15 +35,17 @@ struct Image {
 struct PictureOptions {
     int width = 640, height = 640;
     Camera camera;
-    bool ground = true;   ///< a plane under the object that takes its shadow
-    int samples = 4;      ///< for a pixel on an edge, 1 … 64
-    int threads = 0;      ///< for the work beside the GPU's; 0 = all
+    bool ground = true;  ///< a plane under the object that takes its shadow
+    int samples = 4;     ///< for a pixel on an edge, 1 … 64
+    int threads = 0;     ///< for the work beside the GPU's; 0 = all
 };
 
 /// Sphere tracing with the Lipschitz bound in one fixed shader that interprets per-tile shortened tapes.
-Result<Image> drawField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance, const PictureOptions& options, Progress* progress);
+Result<Image> drawField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
+                        const PictureOptions& options, Progress* progress);
 /// The mesh with the same camera, light and materials.
-Result<Image> drawMesh(const mesh::Mesh& mesh, const Provenance& provenance, const PictureOptions& options, Progress* progress);
+Result<Image> drawMesh(const mesh::Mesh& mesh, const Provenance& provenance, const PictureOptions& options,
+                       Progress* progress);
 
 /// PNG by libpng, written beside `path` and renamed into place.
 Status writePng(const Image& image, const std::filesystem::path& path);

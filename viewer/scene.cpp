@@ -69,7 +69,8 @@ Status checkPicture(const Box3f& bounds, const PictureOptions& options) {
     if (options.samples < 1 || options.samples > 64) return refuse("a picture takes 1 to 64 samples a pixel");
     if (bounds.empty() || !bounds.finite() || !(length(bounds.size()) > 0))
         return refuse("there is nothing to draw: the model is empty or has no bounds");
-    if (!(length(options.camera.at - options.camera.eye) > 0)) return refuse("the camera looks at the place where it stands");
+    if (!(length(options.camera.at - options.camera.eye) > 0))
+        return refuse("the camera looks at the place where it stands");
     return Done{};
 }
 

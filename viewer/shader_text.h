@@ -15,8 +15,8 @@ std::string_view shaderPart(std::string_view name);
 /// One whole shader and what it is made of.
 struct Shader {
     std::string_view name;
-    std::string_view stage;        ///< comp, vert or frag, as the tools' file endings say
-    bool interprets;               ///< starts with the field interpreter
+    std::string_view stage;  ///< comp, vert or frag, as the tools' file endings say
+    bool interprets;         ///< starts with the field interpreter
     std::vector<std::string_view> parts;
 };
 

@@ -25,7 +25,8 @@ constexpr uint32_t aIsFloat = 1u << 8, bIsFloat = 1u << 9, isHeavy = 1u << 10;
 /// Ops with long bodies are kept apart: the interpreter visits them once each, not at every instruction.
 bool heavy(OpCode op) {
     const auto& row = field::traits(op);
-    return row.arity == field::ops::variadic || row.name == "sin" || row.name == "cos" || row.name == "exp" || row.name == "atan2";
+    return row.arity == field::ops::variadic || row.name == "sin" || row.name == "cos" || row.name == "exp" ||
+           row.name == "atan2";
 }
 
 /// Body of the switch case for an op of one or two operands; it sets `value` from `a` and `b`.
@@ -33,7 +34,9 @@ std::string caseBody(OpCode op) {
     return field::visitOp(op, []<class Row>() -> std::string {
         GlslBody body;
         const GlslText a("a", &body), b("b", &body);
-        const auto assign = [&](const GlslText& value) { return fmt::format("{}value = {};", body.text, value.expression); };
+        const auto assign = [&](const GlslText& value) {
+            return fmt::format("{}value = {};", body.text, value.expression);
+        };
         if constexpr (Row::arity == 1)
             return assign(Row::apply(a));
         else if constexpr (Row::arity == 2)
@@ -70,7 +73,9 @@ std::string step(const std::string& caseText) {
     return "      float a = (q.x & 256u) != 0u ? uintBitsToFloat(q.y) : registers[q.y & registerMask];\n"
            "      float b = (q.x & 512u) != 0u ? uintBitsToFloat(q.z) : registers[q.z & registerMask];\n"
            "      float value = a;\n"
-           "      switch (q.x & 255u) {\n" + caseText + "      default: break;\n      }\n"
+           "      switch (q.x & 255u) {\n" +
+           caseText +
+           "      default: break;\n      }\n"
            "      registers[q.x >> 16] = value;\n";
 }
 

@@ -1,7 +1,7 @@
 // The op table as GLSL: one interpreter for every field.
 // Enters: nothing but the op table; tapes become texels for its buffer. Leaves: GLSL functions and buffer contents.
-// Assumes GLSL 4.30 and a buffer texture of RGBA32UI texels called `tapes` (on software GL a third faster than a storage
-// buffer); the interpreter's opcode switch is generated from the table.
+// Assumes GLSL 4.30 and a buffer texture of RGBA32UI texels called `tapes` (on software GL a third faster than a
+// storage buffer); the interpreter's opcode switch is generated from the table.
 #pragma once
 
 #include <bitset>
@@ -22,8 +22,8 @@ inline OpSet allOps() { return OpSet().set(); }
 OpSet opsOf(const Tape& tape);
 
 /// GLSL source of `float evaluateField(uint tapeStart, vec3 p)` over the texels of `tapes`, with everything it needs.
-/// `maxRegisters` sizes its register file. It interprets the ops in `ops`: a driver without branches (llvmpipe) pays for
-/// all of them at every instruction, so a short list is faster.
+/// `maxRegisters` sizes its register file. It interprets the ops in `ops`: a driver without branches (llvmpipe) pays
+/// for all of them at every instruction, so a short list is faster.
 std::string interpreterGlsl(uint32_t maxRegisters, const OpSet& ops = allOps());
 
 /// Appends a tape to `buffer`, four words a texel, and returns the texel where it starts.

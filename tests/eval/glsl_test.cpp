@@ -21,7 +21,8 @@ constexpr double sceneSize = 6;  // metres
 std::vector<Vec3f> scatter(size_t count) {
     std::vector<Vec3f> points;
     for (size_t i = 0; i < count; ++i)
-        points.push_back({static_cast<float>(uniform(combine(1, i), -3, 3)), static_cast<float>(uniform(combine(2, i), -3, 3)),
+        points.push_back({static_cast<float>(uniform(combine(1, i), -3, 3)),
+                          static_cast<float>(uniform(combine(2, i), -3, 3)),
                           static_cast<float>(uniform(combine(3, i), -3, 3))});
     return points;
 }
@@ -115,10 +116,14 @@ TEST_F(Glsl, AgreesForEveryPrimitive) {
 TEST_F(Glsl, AgreesForABlendedAndDisplacedSum) {
     Scene scene;
     for (int i = 0; i < 12; ++i)
-        scene.parts.push_back({scene.solid(i % 2 ? "sphere" : "cube", {uniform(combine(9, i), -2, 2), uniform(combine(10, i), -2, 2), 0.1 * i}, {0.6, 0.5, 0.7}), 0});
+        scene.parts.push_back(
+            {scene.solid(i % 2 ? "sphere" : "cube",
+                         {uniform(combine(9, i), -2, 2), uniform(combine(10, i), -2, 2), 0.1 * i}, {0.6, 0.5, 0.7}),
+             0});
     field::Graph& g = scene.graph;
     const field::Field melted = field::blend(g, scene.parts, g.slot(0.3f), 0.3);
-    const field::Field rough = field::displace(melted, g.position(), field::Noise::Billow, g.slot(0.05f), 0.05, g.slot(2.2f), 2.2, 3, 5);
+    const field::Field rough =
+        field::displace(melted, g.position(), field::Noise::Billow, g.slot(0.05f), 0.05, g.slot(2.2f), 2.2, 3, 5);
     expectAgreement(scene.compile(rough), "cloud");
 }
 

@@ -42,7 +42,9 @@ TEST_F(Parts, CellsKnowTheFieldExactly) {
     Scene scene;
     for (uint64_t i = 0; i < 40; ++i) {
         const double r = uniform(combine(4, i), 0.3, 0.9);
-        scene.add("sphere", {uniform(combine(1, i), -4, 4), uniform(combine(2, i), -1, 1), uniform(combine(3, i), -3, 3)}, {r, r, r}, {1, 1, 1});
+        scene.add("sphere",
+                  {uniform(combine(1, i), -4, 4), uniform(combine(2, i), -1, 1), uniform(combine(3, i), -3, 3)},
+                  {r, r, r}, {1, 1, 1});
     }
     const field::Field field = scene.sum();
     const eval::Tape tape = scene.compile(field);
@@ -53,12 +55,17 @@ TEST_F(Parts, CellsKnowTheFieldExactly) {
     for (uint64_t i = 0; i < 3000; ++i) {
         Vec3f p;
         for (int axis = 0; axis < 3; ++axis)
-            p[axis] = static_cast<float>(uniform(combine(10 + uint64_t(axis), i), field.bounds.lo[axis], field.bounds.hi[axis]));
+            p[axis] = static_cast<float>(
+                uniform(combine(10 + uint64_t(axis), i), field.bounds.lo[axis], field.bounds.hi[axis]));
         const uint32_t word = tree->find(p);
         const float value = valueOf(tape, p);
         switch (CellTree::stateOf(word)) {
-            case CellState::Outside: EXPECT_GT(value, margin); break;
-            case CellState::Inside: EXPECT_LT(value, -margin); break;
+            case CellState::Outside:
+                EXPECT_GT(value, margin);
+                break;
+            case CellState::Inside:
+                EXPECT_LT(value, -margin);
+                break;
             case CellState::Near: {
                 const eval::Tape& local = tree->tapes[CellTree::indexOf(word)];
                 EXPECT_EQ(valueOf(local, p), value);
@@ -66,7 +73,8 @@ TEST_F(Parts, CellsKnowTheFieldExactly) {
                 shorter += local.size() * 4 < tape.size() ? 1 : 0;
                 break;
             }
-            case CellState::Node: ADD_FAILURE() << "find must end at a leaf";
+            case CellState::Node:
+                ADD_FAILURE() << "find must end at a leaf";
         }
     }
     EXPECT_GT(near, 500u);
@@ -81,10 +89,14 @@ TEST_F(Parts, FrameFitsTheBoxTightly) {
             const View view = viewOf(camera, static_cast<int>(1000 * aspect), 1000);
             double most = 0;
             for (int i = 0; i < 8; ++i) {
-                const Vec3d v = Vec3f{i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z}.as<double>() - view.eye;
+                const Vec3d v =
+                    Vec3f{i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z}
+                        .as<double>() -
+                    view.eye;
                 const double depth = dot(v, view.forward);
                 EXPECT_GT(depth, 0);
-                most = std::max({most, std::abs(dot(v, view.right) / dot(view.right, view.right)) / depth, std::abs(dot(v, view.up) / dot(view.up, view.up)) / depth});
+                most = std::max({most, std::abs(dot(v, view.right) / dot(view.right, view.right)) / depth,
+                                 std::abs(dot(v, view.up) / dot(view.up, view.up)) / depth});
             }
             EXPECT_LT(most, 0.92);
             EXPECT_GT(most, 0.80);
@@ -106,7 +118,8 @@ TEST_F(Parts, PngKeepsEveryByte) {
     EXPECT_EQ(png.width, 37u);
     EXPECT_EQ(png.height, 19u);
     EXPECT_EQ(read, image.rgb);
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "nothing is left beside the picture";
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1)
+        << "nothing is left beside the picture";
 }
 
 TEST_F(Parts, PngThatCannotBeWrittenLeavesTheOldOne) {
@@ -118,14 +131,16 @@ TEST_F(Parts, PngThatCannotBeWrittenLeavesTheOldOne) {
 }
 
 TEST_F(Parts, AnotherCompilerTakesEveryShader) {
-    if (std::system("command -v glslangValidator >/dev/null 2>&1") != 0) GTEST_SKIP() << "glslangValidator isn't installed";
+    if (std::system("command -v glslangValidator >/dev/null 2>&1") != 0)
+        GTEST_SKIP() << "glslangValidator isn't installed";
     const std::string interpreter = eval::interpreterGlsl(64);
     for (const Shader& shader : shaders()) {
         const auto path = folder / (std::string(shader.name) + "." + std::string(shader.stage));
         std::ofstream(path) << shaderText(shader.name, interpreter);
         const auto log = folder / "log";
         EXPECT_EQ(std::system(("glslangValidator " + path.string() + " >" + log.string() + " 2>&1").c_str()), 0)
-            << shader.name << ":\n" << std::ifstream(log).rdbuf();
+            << shader.name << ":\n"
+            << std::ifstream(log).rdbuf();
     }
 }
 

@@ -1,4 +1,5 @@
-// What a picture must show: the silhouette where projection says, the materials, the ground's shadow; and nothing random.
+// What a picture must show: the silhouette where projection says, the materials, the ground's shadow; and nothing
+// random.
 #include <cmath>
 
 #include "tests/viewer/gpu_fixture.h"
@@ -27,8 +28,10 @@ std::array<int, 3> colorAt(const Image& image, const Camera& camera, Vec3d place
     const View view = viewOf(camera, image.width, image.height);
     const Vec3d v = place - view.eye;
     const double depth = dot(v, view.forward);
-    const double x = dot(v, view.right) / dot(view.right, view.right) / depth, y = dot(v, view.up) / dot(view.up, view.up) / depth;
-    const auto px = static_cast<size_t>((x + 1) / 2 * image.width), py = static_cast<size_t>((1 - y) / 2 * image.height);
+    const double x = dot(v, view.right) / dot(view.right, view.right) / depth,
+                 y = dot(v, view.up) / dot(view.up, view.up) / depth;
+    const auto px = static_cast<size_t>((x + 1) / 2 * image.width),
+               py = static_cast<size_t>((1 - y) / 2 * image.height);
     const size_t at = (py * size_t(image.width) + px) * 3;
     return {image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
 }
@@ -64,7 +67,9 @@ struct RedBall {
         scene.add("sphere", {0, 0, 0}, {1, 1, 1}, red);
         field = scene.sum();
     }
-    Result<Image> draw(bool ground) { return drawField(scene.compile(field), field.bounds, scene.provenance, optionsAt(camera, ground), nullptr); }
+    Result<Image> draw(bool ground) {
+        return drawField(scene.compile(field), field.bounds, scene.provenance, optionsAt(camera, ground), nullptr);
+    }
 };
 
 /// Every pixel that lies clearly inside the ball's cone of sight is red, clearly outside it is sky.
@@ -90,7 +95,8 @@ TEST_F(Picture, FieldSilhouetteIsWhereProjectionSays) {
 
 TEST_F(Picture, MeshSilhouetteIsWhereProjectionSays) {
     RedBall ball;
-    const auto image = drawMesh(ballMesh({0, 0, 0}, 1, 1), ball.scene.provenance, optionsAt(ball.camera, false), nullptr);
+    const auto image =
+        drawMesh(ballMesh({0, 0, 0}, 1, 1), ball.scene.provenance, optionsAt(ball.camera, false), nullptr);
     ASSERT_TRUE(image.ok()) << image.error().message;
     expectSilhouette(*image);
 }
@@ -101,7 +107,8 @@ TEST_F(Picture, MaterialsBelongToTheirParts) {
     scene.add("sphere", {1.2, 0, 0}, {1, 1, 1}, green);
     const field::Field field = scene.sum();
     const Camera camera = frame(field.bounds, 1);
-    const auto image = drawField(scene.compile(field), field.bounds, scene.provenance, optionsAt(camera, true), nullptr);
+    const auto image =
+        drawField(scene.compile(field), field.bounds, scene.provenance, optionsAt(camera, true), nullptr);
     ASSERT_TRUE(image.ok()) << image.error().message;
     const auto left = colorAt(*image, camera, {-1.2, 0, 0}), right = colorAt(*image, camera, {1.2, 0, 0});
     EXPECT_GT(left[0], left[1] + 40);
@@ -118,7 +125,8 @@ TEST_F(Picture, GroundTakesTheShadow) {
     const Vec3d shadow = sun * (-1 / sun.y), sunny = {-shadow.x, -1, -shadow.z};
     for (const auto& image : {field, mesh}) {
         ASSERT_TRUE(image.ok()) << image.error().message;
-        const auto dark = colorAt(*image, ball.camera, shadow + Vec3d{0.75, 0, 0}), light = colorAt(*image, ball.camera, sunny + Vec3d{0.9, 0, 0.6});
+        const auto dark = colorAt(*image, ball.camera, shadow + Vec3d{0.75, 0, 0}),
+                   light = colorAt(*image, ball.camera, sunny + Vec3d{0.9, 0, 0.6});
         EXPECT_LT(dark[1] + 25, light[1]);
     }
 }
@@ -145,7 +153,8 @@ TEST_F(Picture, EdgesAreSmooth) {
         const auto image = drawField(tape, ball.field.bounds, ball.scene.provenance, options, nullptr);
         // Blue changes most from the ball to the sky: count values between the two along the silhouette.
         size_t between = 0;
-        for (size_t i = 0; image.ok() && i < image->rgb.size(); i += 3) between += image->rgb[i + 2] > 150 && image->rgb[i + 2] < 195 ? 1 : 0;
+        for (size_t i = 0; image.ok() && i < image->rgb.size(); i += 3)
+            between += image->rgb[i + 2] > 150 && image->rgb[i + 2] < 195 ? 1 : 0;
         return between;
     };
     EXPECT_GT(levels(8), levels(1) + 40);
@@ -153,7 +162,8 @@ TEST_F(Picture, EdgesAreSmooth) {
 
 TEST_F(Picture, InsideStandsInTheHollow) {
     Scene scene;
-    const field::Field rock = scene.solid("cube", {0, 0, 0}, {4, 3, 3}), cave = scene.solid("sphere", {1, 0.5, 0}, {2, 2, 2});
+    const field::Field rock = scene.solid("cube", {0, 0, 0}, {4, 3, 3}),
+                       cave = scene.solid("sphere", {1, 0.5, 0}, {2, 2, 2});
     const field::Field field = field::difference({rock, scene.origin({0.5f, 0.4f, 0.3f})}, {cave, 0});
     const eval::Tape tape = scene.compile(field);
     const Camera camera = inside(tape, field.bounds);
@@ -184,7 +194,8 @@ TEST_F(Picture, CanBeCancelled) {
     RedBall ball;
     Progress progress;
     progress.cancel();
-    const auto image = drawField(ball.scene.compile(ball.field), ball.field.bounds, ball.scene.provenance, optionsAt(ball.camera, true), &progress);
+    const auto image = drawField(ball.scene.compile(ball.field), ball.field.bounds, ball.scene.provenance,
+                                 optionsAt(ball.camera, true), &progress);
     ASSERT_FALSE(image.ok());
     EXPECT_EQ(image.error().kind, Error::Kind::Cancelled);
 }
@@ -196,7 +207,9 @@ TEST_F(Picture, RefusesWhatCannotBeDrawn) {
     flat.height = 0;
     EXPECT_FALSE(drawField(tape, ball.field.bounds, ball.scene.provenance, flat, nullptr).ok());
     EXPECT_FALSE(drawField(tape, Box3f{}, ball.scene.provenance, optionsAt(ball.camera, true), nullptr).ok());
-    EXPECT_FALSE(drawField(tape, ball.field.bounds, ball.scene.provenance, optionsAt({{1, 1, 1}, {1, 1, 1}}, true), nullptr).ok());
+    EXPECT_FALSE(
+        drawField(tape, ball.field.bounds, ball.scene.provenance, optionsAt({{1, 1, 1}, {1, 1, 1}}, true), nullptr)
+            .ok());
     EXPECT_FALSE(drawMesh({}, ball.scene.provenance, optionsAt(ball.camera, true), nullptr).ok());
 }
 

@@ -19,11 +19,13 @@ struct Scene {
     Provenance provenance;
     uint64_t path = 0;  ///< of the latest solid
 
-    /// The solid of a row, its parameters at their defaults (vectors and turns too), about `centre` with half-sizes `half`.
+    /// The solid of a row, its parameters at their defaults (vectors and turns too), about `centre` with half-sizes
+    /// `half`.
     field::Field solid(const field::Primitive& row, Vec3d centre, Vec3d half) {
         field::PrimitiveInput in;
         in.p = field::toLocal(graph.position(), {centre, {}}, ++path);
-        in.half = {graph.slot(static_cast<float>(half.x)), graph.slot(static_cast<float>(half.y)), graph.slot(static_cast<float>(half.z))};
+        in.half = {graph.slot(static_cast<float>(half.x)), graph.slot(static_cast<float>(half.y)),
+                   graph.slot(static_cast<float>(half.z))};
         in.halfValue = half;
         std::vector<field::Argument> arguments;
         for (const field::PrimitiveParameter& parameter : row.parameters) {
@@ -40,7 +42,9 @@ struct Scene {
         field.bounds = field::toWorld(field.bounds, {centre, {}});
         return field;
     }
-    field::Field solid(std::string_view name, Vec3d centre, Vec3d half) { return solid(*field::findPrimitive(name), centre, half); }
+    field::Field solid(std::string_view name, Vec3d centre, Vec3d half) {
+        return solid(*field::findPrimitive(name), centre, half);
+    }
 
     /// A new origin with a material of its own.
     OriginId origin(Vec3f color, float roughness = 0.8f, float metallic = 0) {
