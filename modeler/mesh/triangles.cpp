@@ -18,9 +18,11 @@ void loadVertices(const BlockSurface& block, const Brick& owner, Vec3i offset, B
         for (int k = 0; k < (offset.z ? 1 : slabs); ++k) {
             const int word = axis * slabs + k;
             const uint64_t bits = owner.crossed[word];
+            uint32_t next = owner.rank[word];
             for (uint64_t rest = bits & wanted; rest != 0; rest &= rest - 1) {
                 const int bit = std::countr_zero(rest);
-                const uint32_t rank = owner.rank[word] + static_cast<uint32_t>(std::popcount(bits & ((1ull << bit) - 1)));
+                // A bit's rank is the number of bits before it: where all are wanted, it counts up.
+                const uint32_t rank = wanted == everyBit ? next++ : next + static_cast<uint32_t>(std::popcount(bits & ((1ull << bit) - 1)));
                 const int at = axis * BrickVertices::corners + cornerNumber(bit % brickCells + offset.x * brickCells, bit / brickCells + offset.y * brickCells, k + offset.z * brickCells);
                 out.index[at] = first + rank;
                 out.origin[at] = block.vertexOrigins.empty() ? 0 : block.vertexOrigins[owner.firstVertex + rank];

@@ -77,12 +77,21 @@ bool narrow(EdgeLanes& lanes) {
     return open != 0;
 }
 
-void appendNormals(const Brick& brick, const EdgeLanes& lanes, std::vector<Vec3f>& normals) {
-    for (size_t i = 0; i < brick.vertices(); ++i) {
+void appendPositions(const EdgeLanes& lanes, std::vector<Vec3f>& positions) {
+    const size_t n = lanes.size(), first = positions.size();
+    positions.resize(first + n);
+    for (size_t i = 0; i < n; ++i) positions[first + i] = {lanes.x[i], lanes.y[i], lanes.z[i]};
+}
+
+void appendNormals(const EdgeLanes& lanes, std::vector<Vec3f>& normals) {
+    const size_t n = lanes.size(), first = normals.size();
+    normals.resize(first + n);
+    for (size_t i = 0; i < n; ++i) {
         const Vec3f g{lanes.dx[i], lanes.dy[i], lanes.dz[i]};
         const float squared = dot(g, g);
         const bool usable = squared > 1e-30f && squared < 1e30f;
-        normals.push_back(usable ? g * (1.0f / std::sqrt(squared)) : Vec3f{});
+        const float scale = usable ? 1.0f / std::sqrt(squared) : 0.0f;
+        normals[first + i] = usable ? g * scale : Vec3f{};
     }
 }
 
@@ -118,8 +127,8 @@ void appendVertices(const Brick& brick, Vec3i blockIndex, const Grid& grid, cons
     }
     eval::evaluateGradient(tape, points, lanes.f.data(), lanes.dx.data(), lanes.dy.data(), lanes.dz.data(), workspace);
 
-    for (size_t i = 0; i < n; ++i) vertices.positions.push_back({lanes.x[i], lanes.y[i], lanes.z[i]});
-    appendNormals(brick, lanes, vertices.normals);
+    appendPositions(lanes, vertices.positions);
+    appendNormals(lanes, vertices.normals);
     if (wantOrigins) appendOrigins(tape, points, workspace, vertices.origins);
 }
 
