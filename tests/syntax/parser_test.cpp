@@ -182,8 +182,8 @@ TEST(Parser, WithHoldsItsNameAndItsValue) {
 }
 
 TEST(Parser, BlocksHoldLabelsTagsAndRepetitions) {
-    const Element e =
-        elementOf(parsed("start A -> faces { tag K: split y { { ~3m: Row }* | pane: wall } | side: wall }\n"));
+    const Ast ast = parsed("start A -> faces { tag K: split y { { ~3m: Row }* | pane: wall } | side: wall }\n");
+    const Element e = elementOf(ast);
     const std::vector<Case>& faces = e.before[0].cases;
     ASSERT_EQ(faces.size(), 2u);
     EXPECT_EQ(faces[0].tag.text, "K");
