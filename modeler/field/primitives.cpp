@@ -35,12 +35,11 @@ constexpr PrimitiveParameter kifsParameters[] = {
 
 constexpr PrimitiveJoint apex[] = {{"apex", {0, 1, 0}, {0, 1, 0}}};
 constexpr PrimitiveJoint ridge[] = {{"ridge", {0, 1, 0}, {0, 1, 0}}};
-constexpr PrimitiveJoint poles[] = {{"north", {0, 1, 0}, {0, 1, 0}}, {"south", {0, -1, 0}, {0, -1, 0}}};
 
 constexpr Primitive table[] = {
     {"cube", "Box: the whole scope. An exact distance.", {}, solids::cube},
     {"sphere", "Ball filling the scope; an ellipsoid when the scope isn't a cube.", {}, solids::ellipsoid},
-    {"ellipsoid", "Ellipsoid filling the scope, its axes along the scope's.", {}, solids::ellipsoid, true, poles},
+    {"ellipsoid", "Ellipsoid filling the scope, its axes along the scope's.", {}, solids::ellipsoid},
     {"torus", "Ring about y.", torusParameters, solids::torus},
     {"cylinder", "Cylinder along y over the ellipse of the scope's x and z.", {}, solids::cylinder},
     {"cone",

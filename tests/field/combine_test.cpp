@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "modeler/core/conventions.h"
+#include "modeler/eval/values_interval.h"
 #include "modeler/field/domain.h"
 #include "modeler/field/ops.h"
 #include "tests/field/probe.h"
@@ -250,6 +251,32 @@ TEST(Blend, DroppingFarFieldsChangesNoBit) {
         const float f = ops::Blend::apply<float>(std::span<const float>(all), 0),
                     g = ops::Blend::apply<float>(std::span<const float>(near), 0);
         ASSERT_EQ(std::bit_cast<uint32_t>(f), std::bit_cast<uint32_t>(g));
+    }
+}
+
+TEST(Blend, IntervalsEnclose) {
+    using I = eval::Interval<float>;
+    Draws draw(10);
+    for (int trial = 0; trial < 1000; ++trial) {
+        std::vector<I> boxes{{static_cast<float>(draw.uniform(0, 0.5)), static_cast<float>(draw.uniform(0.5, 1))}};
+        const int n = 1 + static_cast<int>(draw.size(1, trial % 50 == 0 ? 2000 : 12));
+        const double far = trial % 3 == 0 ? 100 : 0, spread = draw.size(1e-4, 1);
+        for (int i = 0; i < n; ++i) {
+            const double lo = far + draw.uniform(-1, 1);
+            boxes.push_back({static_cast<float>(lo), static_cast<float>(lo + spread)});
+        }
+        const I range = ops::Blend::interval(std::span<const I>(boxes), 0);
+        for (int i = 0; i < 30; ++i) {
+            std::vector<float> args;
+            for (const I& box : boxes)
+                args.push_back(i == 0 ? box.lo : i == 1 ? box.hi : static_cast<float>(draw.uniform(box.lo, box.hi)));
+            if (i < 2) args[0] = i == 0 ? boxes[0].hi : boxes[0].lo;  // the extremes: f falls with k
+            const float f = ops::Blend::apply<float>(std::span<const float>(args), 0);
+            ASSERT_LE(range.lo, f);
+            ASSERT_GE(range.hi, f);
+            ASSERT_TRUE(i != 0 || f - range.lo < 1e-3f);
+            ASSERT_TRUE(i != 1 || range.hi - f < 1e-3f);
+        }
     }
 }
 
