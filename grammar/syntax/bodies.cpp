@@ -227,7 +227,7 @@ void readShape(Cursor& cursor, Element& element) {
         element.kind = Element::Kind::Group;
         element.body = std::make_shared<Body>(readBody(cursor));
         cursor.close(open);
-    } else if (cursor.at(Token::Kind::Word) && (cursor.at("morph") || !isReserved(cursor.peekText()))) {
+    } else if (cursor.at(Token::Kind::Word) && !isReserved(cursor.peekText())) {
         element.solid = readSolid(cursor);
     } else if (element.before.empty()) {
         const bool calculates = element.op != Operator::None && cursor.at(Token::Kind::Number);

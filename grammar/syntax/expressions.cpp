@@ -19,24 +19,23 @@ constexpr std::string_view reserved[] = {"grammar", "use",     "param",   "map",
 // walk it recurse.
 constexpr int mostOperators = 400;
 
-/// Binary operators by how tightly they bind. `mend` is given for what other languages write.
+/// A binary operator and how tightly it binds. Where `symbol` isn't what it `means`, another language writes it so.
 struct BinaryOperator {
     std::string_view symbol, means;
     int binds;
 };
-constexpr int rampBinds = 1, rangeBinds = 2, comparisonBinds = 5, tightest = 8;
+enum : int { rampBinds = 1, rangeBinds, orBinds, andBinds, comparisonBinds, sumBinds, productBinds, signBinds };
 constexpr BinaryOperator binaryOperators[] = {
-    {"~>", "~>", rampBinds}, {"..", "..", rangeBinds},
-    {"or", "or", 3},         {"||", "or", 3},
-    {"and", "and", 4},       {"&&", "and", 4},
-    {"==", "==", 5},         {"=", "==", 5},
-    {"!=", "!=", 5},         {"<=", "<=", 5},
-    {">=", ">=", 5},         {"<", "<", 5},
-    {">", ">", 5},           {"+", "+", 6},
-    {"-", "-", 6},           {"*", "*", 7},
-    {"/", "/", 7},           {"%", "%", 7},
+    {"~>", "~>", rampBinds},       {"..", "..", rangeBinds},      {"or", "or", orBinds},
+    {"||", "or", orBinds},         {"and", "and", andBinds},      {"&&", "and", andBinds},
+    {"==", "==", comparisonBinds}, {"=", "==", comparisonBinds},  {"!=", "!=", comparisonBinds},
+    {"<=", "<=", comparisonBinds}, {">=", ">=", comparisonBinds}, {"<", "<", comparisonBinds},
+    {">", ">", comparisonBinds},   {"+", "+", sumBinds},          {"-", "-", sumBinds},
+    {"*", "*", productBinds},      {"/", "/", productBinds},      {"%", "%", productBinds},
 };
-constexpr int notBinds = 5, minusBinds = tightest;
+
+/// a < b < c, a .. b .. c and a ~> b ~> c mean nothing.
+constexpr bool chains(int binds) { return binds != comparisonBinds && binds != rangeBinds && binds != rampBinds; }
 
 const BinaryOperator* findBinary(std::string_view symbol) {
     const auto row = std::find_if(std::begin(binaryOperators), std::end(binaryOperators),
@@ -72,9 +71,8 @@ public:
                 cursor_.complain(cursor_.span(symbol), quoted(row->symbol) + " is no operator of an expression",
                                  "write " + quoted(row->means));
             left = joined(*row, std::move(left), binary(row->binds + 1));
-            // a < b < c and a .. b .. c mean nothing.
             const BinaryOperator* again = findBinary(cursor_.peekText());
-            if (again && again->binds == row->binds && !associates(row->binds))
+            if (again && again->binds == row->binds && !chains(row->binds))
                 cursor_.fail(quoted(cursor_.peekText()) + " can't follow " + quoted(row->means), "group with ( )");
         }
         return left;
@@ -105,8 +103,6 @@ public:
     }
 
 private:
-    static bool associates(int binds) { return binds > comparisonBinds || binds == 3 || binds == 4; }
-
     /// A literal, a name, a call, or something in parentheses, perhaps with a sign.
     Expr simple() {
         const Cursor::Nest nest(cursor_);
@@ -153,12 +149,13 @@ private:
 
     Expr unary(int binds) {
         const Cursor::Nest nest(cursor_);
-        if (cursor_.at("not") && binds <= notBinds) return prefixed("not", [this] { return binary(notBinds); });
+        if (cursor_.at("not") && binds <= comparisonBinds)
+            return prefixed("not", [this] { return binary(comparisonBinds); });
         if (cursor_.at("!")) {
             cursor_.complain(cursor_.span(cursor_.peek()), "'!' is no operator of an expression", "write 'not'");
-            return prefixed("not", [this] { return unary(notBinds); });
+            return prefixed("not", [this] { return unary(comparisonBinds); });
         }
-        if (cursor_.at("-") && !atAxis(cursor_)) return prefixed("-", [this] { return unary(minusBinds); });
+        if (cursor_.at("-") && !atAxis(cursor_)) return prefixed("-", [this] { return unary(signBinds); });
         return postfix();
     }
 
