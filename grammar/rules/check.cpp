@@ -43,7 +43,10 @@ void fill(Grammar& grammar, const Files& files, const syntax::Diagnostics& unrea
     each(&Checker::productions);
     each(&Checker::sayings);
     if (diagnostics.hasErrors() || unread.hasErrors()) return;
-    if (grammar.starts.empty()) diagnostics.error({grammar.sources[0].get(), 0, 0}, "there is nothing to begin with", "write 'start Name -> cube'");
+    if (grammar.starts.empty()) {
+        diagnostics.error({grammar.sources[0].get(), 0, 0}, "there is nothing to begin with", "write 'start Name -> cube'");
+        return;
+    }
     checker.unused(files.asts.back());
     findUnreachable(grammar, diagnostics);
     findEndless(grammar, diagnostics);
@@ -69,6 +72,7 @@ std::shared_ptr<const Grammar> load(syntax::SourcePtr source, const Loader& load
 }
 
 Result<Value> parseValue(const Param& param, const std::string& text) {
+    if (text.find_first_not_of(" \t") == std::string::npos) return Error{Error::Kind::Input, fmt::format("'{}' is set to nothing", param.name)};
     const auto source = std::make_shared<const syntax::Source>("--set " + param.name, text);
     syntax::Diagnostics diagnostics;
     const syntax::Expr expr = syntax::parseExpression(source, diagnostics);

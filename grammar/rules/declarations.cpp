@@ -62,7 +62,10 @@ void Checker::parameter(const syntax::ParamDecl& decl) {
     const auto lo = plain(decl.range->args[0], false), hi = plain(decl.range->args[1], false);
     if (!lo || !hi) return;
     if (const std::string problem = setRange(param, *lo, *hi); !problem.empty()) diagnostics_.error(decl.range->span, problem);
-    else if (const auto fitted = conform(param, param.value); !fitted.ok()) diagnostics_.error(decl.value.span, fitted.error().message);
+    else if (const auto fitted = conform(param, param.value); !fitted.ok()) {
+        diagnostics_.error(decl.value.span, fitted.error().message);
+        brokenParams_.insert(params_.at(decl.name.text));
+    }
 }
 
 void Checker::parameters(const syntax::Ast& ast) {

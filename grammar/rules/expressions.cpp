@@ -49,6 +49,7 @@ void adapt(Expr& e, Want want) {
         for (Expr& arg : e.args) adapt(arg, want);
 }
 
+bool takesThree(Want want) { return want == Want::Size || want == Want::Offset || want == Want::Triple || want == Want::Angles; }
 bool isZero(const Expr& e) { return e.kind == Expr::Kind::Constant && e.value.kind == Value::Kind::Number && e.value.num() == 0 && e.value.units[0] == Unit::None; }
 
 struct BinaryRow {
@@ -188,7 +189,7 @@ Typed Checker::name(Place& place, const Written& e) {
         result.expr.index = param->second;
         result.type = Type::of(p.value);
         if (!p.choices.empty()) result.type.words = &p.choices;
-        if (brokenParams_.contains(param->second)) result.type = Type::unknown();
+        if (brokenParams_.contains(param->second)) return {unreadable(e.span), Type::unknown()};
         return result;
     }
     if (withNames_.contains(e.text) && place.where >= Where::Guard && place.where != Where::Expect) {
@@ -265,7 +266,8 @@ Typed Checker::call(Place& place, const Written& e) {
     if (!row) {
         std::vector<std::string> known;
         for (const Function& f : functions()) known.emplace_back(f.name);
-        return failed(e.span, fmt::format("unknown function '{}'", e.text), nearest(e.text, known));
+        const SourceSpan word{e.span.source, e.span.begin, e.span.begin + static_cast<uint32_t>(e.text.size())};
+        return failed(word, fmt::format("unknown function '{}'", e.text), nearest(e.text, known));
     }
     if (e.args.size() < row->least || e.args.size() > row->most)
         return failed(e.span, fmt::format("'{}' takes {} argument{}{}, but {} {} given", row->name, row->least, row->least == 1 ? "" : "s",
@@ -449,7 +451,16 @@ Typed Checker::expression(Place& place, const Written& e) {
 
 Expr Checker::expression(Place& place, const Written& e, Want want, std::string_view what) {
     Typed result = expression(place, e);
-    if (!asks(result, want, what, &e)) return unreadable(e.span);
+    const bool byComponent = e.kind == Written::Kind::Tuple && e.args.size() == 3 && takesThree(want) && !fits(result.type, want);
+    bool good = byComponent || asks(result, want, what, &e);
+    for (size_t i = 0; byComponent && i < 3; ++i) {
+        const SourceSpan span = e.args[i].span;
+        const Value index = makeWhole(static_cast<double>(i));
+        Expr part = result.expr.kind == Expr::Kind::Tuple ? result.expr.args[i] : makeConstant(span, component(result.expr.value, index));
+        part.span = span;
+        good = asks({std::move(part), Type::of(component(result.type.like, index))}, want, what, &e.args[i]) && good;
+    }
+    if (!good) return unreadable(e.span);
     adapt(result.expr, want);
     return std::move(result.expr);
 }

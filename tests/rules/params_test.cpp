@@ -70,7 +70,7 @@ TEST_F(Params, SayWhyAValueIsRefused) {
     EXPECT_EQ(set(5, "oval"), "'shape' is one of round, square, not 'oval'");
     EXPECT_EQ(set(6, "red"), "'paint' can't be 'red': unknown name 'red'");
     EXPECT_EQ(set(7, "1"), "'lit' is true or false, but this is a plain number");
-    EXPECT_EQ(set(0, ""), "'count' can't be '': expected a value, found the end of the expression");
+    EXPECT_EQ(set(0, ""), "'count' is set to nothing");
     EXPECT_EQ(set(1, "0..1"), "'share' can't be '0..1': nothing is drawn by chance here: a plain value must stand here");
 }
 

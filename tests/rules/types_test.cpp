@@ -38,6 +38,8 @@ INSTANTIATE_TEST_SUITE_P(Rule, Types, testing::Values(
     Case{"+ cube turn a at +x", ""},
     Case{"+ cube turn 0 at +x", ""},
     Case{"+ cube turn (0deg, a, 5deg) at +x", ""},
+    Case{"+ cube turn (0, a, 0) at +x", ""},
+    Case{"+ cube turn (0, 5, 0deg) at +x", "'turn' takes an angle (30deg), or three, but this is a plain number"},
     Case{"+ cube turn 5 at +x", "'turn' takes an angle (30deg), or three, but this is a plain number"},
     Case{"+ cube shift (10%, .2, 1m) at +x", ""},
     Case{"+ cube blend 30% at +x", "'blend' takes a length in metres, but this is a share (%)"},
