@@ -63,7 +63,8 @@ struct Regions {
 void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& workspace);
 
 /// The tape with everything dropped that can't matter in region `index` of the last evaluateRanges on this workspace
-/// (which must have been of this very tape). Inside the region it returns the same bits as `tape`.
+/// (which must have been of this very tape). Inside the region it returns the same bits as `tape`, and the same owners;
+/// derivatives agree up to rounding.
 Tape shorten(const Tape& tape, size_t index, Workspace& workspace);
 
 }  // namespace sgm::eval

@@ -3,7 +3,15 @@
 namespace sgm::eval::testing {
 namespace {
 
-/// Values and owners of a tape and its shortened form must agree inside the region, and so on inside smaller regions.
+/// Values and derivatives, one after the other.
+std::vector<float> gradients(const Tape& tape, const Cloud& cloud, Workspace& w) {
+    const size_t n = cloud.size();
+    std::vector<float> all(4 * n);
+    evaluateGradient(tape, cloud.points(), &all[0], &all[n], &all[2 * n], &all[3 * n], w);
+    return all;
+}
+
+/// Values, derivatives and owners of a tape and its shortened form must agree inside the region, and so on inside smaller regions.
 void descend(const Tape& full, const Tape& tape, const Box3f& box, int depth, Draws& draws, size_t& dropped) {
     Workspace w;
     Box3f boxes[64];
@@ -28,6 +36,13 @@ void descend(const Tape& full, const Tape& tape, const Box3f& box, int depth, Dr
         std::vector<OriginId> owners(cloud.size()), same(cloud.size());
         evaluateOrigin(full, cloud.points(), owners.data(), inner);
         evaluateOrigin(shorter, cloud.points(), same.data(), inner);
+        const std::vector<float> slopes = gradients(full, cloud, inner), slopesLeft = gradients(shorter, cloud, inner);
+        // Up to rounding: a blend weighs its only part by t · (1/t). Infinite slopes feel the parts of weight 0.
+        for (size_t i = 0; i < slopes.size(); ++i) {
+            const float slack = 1e-3f * (1 + std::abs(slopes[i]));
+            ASSERT_TRUE(!std::isfinite(slopes[i]) || std::abs(slopes[i] - slopesLeft[i]) <= slack)
+                << slopes[i] << " but " << slopesLeft[i];
+        }
         for (size_t i = 0; i < cloud.size(); ++i) {
             ASSERT_TRUE(sameBits(expected[i], got[i])) << expected[i] << " but " << got[i];
             ASSERT_EQ(owners[i], same[i]);
@@ -38,7 +53,7 @@ void descend(const Tape& full, const Tape& tape, const Box3f& box, int depth, Dr
     }
 }
 
-TEST(Shorten, KeepsTheBitsAndTheOwnersInsideTheRegion) {
+TEST(Shorten, KeepsValuesDerivativesAndOwnersInsideTheRegion) {
     Draws draws{3};
     size_t dropped = 0;
     for (int repeat = 0; repeat < 1000; ++repeat) {

@@ -50,9 +50,9 @@ TEST(Tape, ConstantAndCoordinateFieldsNeedNoCode) {
     Workspace w;
     float v, dx, dy, dz;
     evaluateGradient(y, cloud.points(), &v, &dx, &dy, &dz, w);
-    EXPECT_EQ(Vec3f(dx, dy, dz), Vec3f(0, 1, 0));
+    EXPECT_EQ((Vec3f{dx, dy, dz}), (Vec3f{0, 1, 0}));
     evaluateGradient(four, cloud.points(), &v, &dx, &dy, &dz, w);
-    EXPECT_EQ(Vec3f(dx, dy, dz), Vec3f(0, 0, 0));
+    EXPECT_EQ((Vec3f{dx, dy, dz}), (Vec3f{}));
     const Box3f box{{0, 1, 2}, {3, 4, 5}};
     Range range;
     evaluateRanges(y, {&box, 1}, &range, w);
