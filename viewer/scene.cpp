@@ -5,10 +5,17 @@
 namespace sgm::viewer {
 namespace {
 
-uint8_t srgb(float linear) {
+/// `threshold` in 0 … 1 decides which way a level between two goes.
+uint8_t srgb(float linear, double threshold) {
     const double v = std::clamp(static_cast<double>(linear), 0.0, 1.0);
     const double s = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-    return static_cast<uint8_t>(std::lround(255 * s));
+    return static_cast<uint8_t>(std::min(255.0, std::floor(255 * s + threshold)));
+}
+
+/// Interleaved gradient noise (Jimenez 2014): evenly spread thresholds, so that pale gradients don't band.
+double thresholdAt(int x, int y) {
+    const double t = 0.06711056 * x + 0.00583715 * y, u = 52.9829189 * (t - std::floor(t));
+    return u - std::floor(u);
 }
 
 /// A little above and to the left of the eye, so that relief shows.
@@ -77,8 +84,11 @@ Status checkPicture(const Box3f& bounds, const PictureOptions& options) {
 Image encode(const std::vector<float>& rgba, int width, int height) {
     Image image{width, height, {}};
     image.rgb.reserve(rgba.size() / 4 * 3);
-    for (size_t i = 0; i + 3 < rgba.size(); i += 4)
-        for (size_t c = 0; c < 3; ++c) image.rgb.push_back(srgb(rgba[i + c]));
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const size_t at = (size_t(y) * size_t(width) + size_t(x)) * 4;
+            for (size_t c = 0; c < 3; ++c) image.rgb.push_back(srgb(rgba[at + c], thresholdAt(x, y)));
+        }
     return image;
 }
 

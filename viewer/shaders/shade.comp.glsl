@@ -25,7 +25,7 @@ float sunlightAt(vec3 p) {
     vec3 inverseDirection = inverseOf(sunDirection);
     vec2 span = boundsSpan(p, inverseDirection);
     float t = max(span.x, 2e-4 * sceneSize), clearance = 1.0;
-    for (int step = 0; step < 96 && t <= span.y && clearance > -1.0; ++step) {
+    for (int step = 0; step < 160 && t <= span.y && clearance > -1.0; ++step) {
         vec3 q = p + t * sunDirection;
         Cell cell = cellAt(q);
         while (cell.state == cellOutside && t <= span.y) {
@@ -37,7 +37,7 @@ float sunlightAt(vec3 p) {
         float value = cell.state == cellInside ? -margin : side * evaluateField(cell.tape, q);
         float disc = min(sunRadius * t, margin);
         clearance = min(clearance, value / disc);
-        t += max(abs(value) * inverseLipschitz * 0.9, max(0.15 * disc, 4e-4 * sceneSize));
+        t += max(abs(value) * inverseLipschitz * 0.9, max(0.25 * disc, 5e-4 * sceneSize));
     }
     // Area of a disc left of a chord, as a smooth step.
     clearance = clamp(0.5 + 0.5 * clearance, 0.0, 1.0);
