@@ -33,12 +33,14 @@ inline float* rowOf(const StepContext& c, uint32_t reg, size_t planes, size_t pl
     return c.registers + (reg * planes + plane) * c.stride;
 }
 
-/// Puts points [first, first + n) into registers 0, 1, 2 as values of `planes` planes (derivatives 1 where they are due).
+/// Puts points [first, first + n) into registers 0, 1, 2 as values of `planes` planes (derivatives 1 where they are
+/// due).
 inline void loadPoints(const Points& points, size_t first, size_t n, const StepContext& c, size_t planes) {
     const float* from[] = {points.x + first, points.y + first, points.z + first};
     for (uint32_t axis = 0; axis < 3; ++axis) {
         loadRow(from[axis], n, rowOf(c, axis, planes, 0), c.count);
-        for (size_t d = 1; d < planes; ++d) std::fill_n(rowOf(c, axis, planes, d), c.count, d == axis + 1 ? 1.0f : 0.0f);
+        for (size_t d = 1; d < planes; ++d)
+            std::fill_n(rowOf(c, axis, planes, d), c.count, d == axis + 1 ? 1.0f : 0.0f);
     }
 }
 
@@ -50,7 +52,8 @@ inline void storeResult(const Tape& tape, const StepContext& c, size_t planes, s
         std::memcpy(out, rowOf(c, tape.result(), planes, plane), n * sizeof(float));
 }
 
-/// Runs a tape over points in blocks; `before(in, context)` sees each instruction's operands, `done` each block's registers.
+/// Runs a tape over points in blocks; `before(in, context)` sees each instruction's operands, `done` each block's
+/// registers.
 template <class Before, class DoneBlock>
 void runBlocks(const Tape& tape, const Points& points, const Step* steps, size_t planes, Workspace::Impl& w,
                Before&& before, DoneBlock&& done) {

@@ -9,11 +9,10 @@
 namespace sgm::eval {
 namespace {
 
+using field::codeOf;
 using field::Graph;
 using field::Node;
 using field::NodeId;
-using field::OpCode;
-using field::codeOf;
 namespace ops = field::ops;
 
 /// What a node turned out to be: a number, another node, or an instruction.
@@ -28,7 +27,8 @@ struct Fate {
 class Constants {
 public:
     Source source(float value) {
-        const auto [at, isNew] = index_.try_emplace(std::bit_cast<uint32_t>(value), static_cast<uint32_t>(values_.size()));
+        const auto [at, isNew] =
+            index_.try_emplace(std::bit_cast<uint32_t>(value), static_cast<uint32_t>(values_.size()));
         if (isNew) values_.push_back(value);
         return at->second | constantBit;
     }
@@ -41,17 +41,15 @@ private:
 
 float foldedValue(const Node& n, std::span<const float> args) {
     return field::visitOp(n.op, [&]<class Row>() -> float {
-        if constexpr (Row::arity == 1) return Row::apply(args[0]);
-        else if constexpr (Row::arity == 2) return Row::apply(args[0], args[1]);
-        else if constexpr (Row::arity == ops::variadic) return Row::apply(args, n.data);
-        else return 0.0f;
+        if constexpr (Row::arity == 1)
+            return Row::apply(args[0]);
+        else if constexpr (Row::arity == 2)
+            return Row::apply(args[0], args[1]);
+        else if constexpr (Row::arity == ops::variadic)
+            return Row::apply(args, n.data);
+        else
+            return 0.0f;
     });
-}
-
-/// True where op(a, number) is a, bit for bit.
-bool keepsFirst(OpCode op, float number) {
-    return (number == 1.0f && (op == codeOf<ops::Mul> || op == codeOf<ops::Div>)) ||
-           (std::bit_cast<uint32_t>(number) == 0 && op == codeOf<ops::Sub>);
 }
 
 class Compiler {
@@ -97,7 +95,7 @@ private:
         if (args_.size() == operands.size()) return constant(foldedValue(n, args_));
         if (args_.size() == 1 && operands.size() == 2) {
             const bool second = fateOf(operands[1].node).kind == Fate::Constant;
-            if ((second || field::traits(n.op).commutative) && keepsFirst(n.op, args_[0])) {
+            if ((second || field::traits(n.op).commutative) && field::keepsFirst(n.op, args_[0])) {
                 fate = {Fate::Same, standIn(operands[second ? 0 : 1].node), 0, 0};
                 return;
             }
@@ -109,7 +107,8 @@ private:
     std::span<const NodeId> heavyFirst(NodeId id) {
         sorted_.clear();
         for (const field::Operand& o : graph_.operands(id))
-            if (fateOf(o.node).kind == Fate::Instruction && !isInput(standIn(o.node))) sorted_.push_back(standIn(o.node));
+            if (fateOf(o.node).kind == Fate::Instruction && !isInput(standIn(o.node)))
+                sorted_.push_back(standIn(o.node));
         const auto heavier = [&](NodeId a, NodeId b) {
             return fates_[a].need != fates_[b].need ? fates_[a].need > fates_[b].need : a < b;
         };
@@ -118,7 +117,8 @@ private:
     }
     uint32_t need(std::span<const NodeId> heavy) const {
         uint32_t most = 1;
-        for (size_t i = 0; i < heavy.size(); ++i) most = std::max(most, fates_[heavy[i]].need + static_cast<uint32_t>(i));
+        for (size_t i = 0; i < heavy.size(); ++i)
+            most = std::max(most, fates_[heavy[i]].need + static_cast<uint32_t>(i));
         return most;
     }
 

@@ -45,24 +45,29 @@ size_t longestInstruction(const Tape& tape) {
 
 StepContext Workspace::Impl::context(const Tape& tape, size_t planes, size_t stride) {
     const size_t argumentFloats = longestInstruction(tape) * argumentBytes / sizeof(float);
-    return {registers.get(tape.registerCount() * planes * stride), stride, stride, tape.constants().data(),
-            tape.sources().data(), arguments.get(argumentFloats), nullptr};
+    return {registers.get(tape.registerCount() * planes * stride),
+            stride,
+            stride,
+            tape.constants().data(),
+            tape.sources().data(),
+            arguments.get(argumentFloats),
+            nullptr};
 }
 
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
-    runBlocks(tape, points, w.kernels.values, 1, w, nothingBefore, [&](const StepContext& c, size_t first, size_t n) {
-        storeResult(tape, c, 1, 0, out + first, n);
-    });
+    runBlocks(tape, points, w.kernels.values, 1, w, nothingBefore,
+              [&](const StepContext& c, size_t first, size_t n) { storeResult(tape, c, 1, 0, out + first, n); });
 }
 
 void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
                       Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
     float* const out[] = {value, dx, dy, dz};
-    runBlocks(tape, points, w.kernels.gradients, 4, w, nothingBefore, [&](const StepContext& c, size_t first, size_t n) {
-        for (size_t plane = 0; plane < 4; ++plane) storeResult(tape, c, 4, plane, out[plane] + first, n);
-    });
+    runBlocks(tape, points, w.kernels.gradients, 4, w, nothingBefore,
+              [&](const StepContext& c, size_t first, size_t n) {
+                  for (size_t plane = 0; plane < 4; ++plane) storeResult(tape, c, 4, plane, out[plane] + first, n);
+              });
 }
 
 void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& workspace) {

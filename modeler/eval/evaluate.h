@@ -47,7 +47,8 @@ struct Points {
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace);
 
 /// Values and their exact derivatives by x, y, z (at a kink, those of the chosen operand).
-void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz, Workspace& workspace);
+void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
+                      Workspace& workspace);
 
 /// Whose surface each point lies on: walks min, max, blend and morph down the operand they take; ties go to the first.
 void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& workspace);

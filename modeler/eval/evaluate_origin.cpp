@@ -31,10 +31,14 @@ size_t best(const std::vector<Owned>& operands, size_t first, size_t i, Beats be
 /// Which operand an instruction takes at point i.
 size_t taken(const field::OpTraits& row, const std::vector<Owned>& operands, size_t i) {
     switch (row.owner) {
-        case Owner::Least: return best(operands, row.firstChoice, i, [](float a, float b) { return a < b; });
-        case Owner::Greatest: return best(operands, row.firstChoice, i, [](float a, float b) { return a > b; });
-        case Owner::Nearer: return operands[2].value(i) > 0.5f ? 1 : 0;
-        case Owner::First: break;
+        case Owner::Least:
+            return best(operands, row.firstChoice, i, [](float a, float b) { return a < b; });
+        case Owner::Greatest:
+            return best(operands, row.firstChoice, i, [](float a, float b) { return a > b; });
+        case Owner::Nearer:
+            return operands[2].value(i) > 0.5f ? 1 : 0;
+        case Owner::First:
+            break;
     }
     size_t k = 0;
     while (k + 1 < operands.size() && operands[k].owner(i) == 0) ++k;
@@ -89,10 +93,11 @@ private:
 void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
     OriginPass pass(tape, w.origins);
-    runBlocks(tape, points, w.kernels.values, 1, w, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
-              [&](const StepContext&, size_t first, size_t n) {
-                  for (size_t i = 0; i < n; ++i) out[first + i] = pass.result(i);
-              });
+    runBlocks(
+        tape, points, w.kernels.values, 1, w, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
+        [&](const StepContext&, size_t first, size_t n) {
+            for (size_t i = 0; i < n; ++i) out[first + i] = pass.result(i);
+        });
 }
 
 }  // namespace sgm::eval

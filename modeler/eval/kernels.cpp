@@ -120,7 +120,8 @@ V loadAt(Source s, const StepContext& c, size_t i) {
     return isConstant(s) ? V(c.constants[indexOf(s)]) : Planes<V>::load(rowOf<V>(c, s) + i, c.stride);
 }
 
-/// What pruning needs to know: each operand's end that is nearer to being chosen, and the reach; NaN where one is unknown.
+/// What pruning needs to know: each operand's end that is nearer to being chosen, and the reach; NaN where one is
+/// unknown.
 template <class Row>
 void keepBounds(std::span<const Interval<Float>> args, uint32_t data, size_t i, const StepContext& c) {
     auto mask = known(args[0]);

@@ -1,6 +1,7 @@
 // One step of a tape, compiled for each instruction set.
-// Enters: an instruction and register files. Leaves: the instruction's output registers. Assumes 64-byte aligned memory.
-// A register file is planar: register r of a value type of P floats is P rows of `stride` floats at r · P · stride.
+// Enters: an instruction and register files. Leaves: the instruction's output registers. Assumes 64-byte aligned
+// memory. A register file is planar: register r of a value type of P floats is P rows of `stride` floats at r · P ·
+// stride.
 #pragma once
 
 #include <cstddef>
@@ -20,12 +21,12 @@ inline constexpr size_t argumentBytes = 4 * vectorFloats * sizeof(float);
 /// Where the steps work.
 struct StepContext {
     float* registers;
-    size_t stride;           ///< floats in a row, a multiple of vectorFloats
-    size_t count;            ///< floats of a row in use, a multiple of vectorFloats
+    size_t stride;  ///< floats in a row, a multiple of vectorFloats
+    size_t count;   ///< floats of a row in use, a multiple of vectorFloats
     const float* constants;
     const Source* sources;
-    void* arguments;         ///< argumentBytes for each operand of the longest instruction
-    float* bounds;           ///< ranges: rows of the instruction's operands and reach, where it chooses
+    void* arguments;  ///< argumentBytes for each operand of the longest instruction
+    float* bounds;    ///< ranges: rows of the instruction's operands and reach, where it chooses
 };
 
 using Step = void (*)(const Instruction&, const StepContext&);
@@ -37,8 +38,14 @@ struct Kernels {
     const Step* ranges;     ///< Interval: rows lo, hi; ops that choose also write `bounds`
 };
 
-namespace portable { Kernels kernels(); }
-namespace avx2 { Kernels kernels(); }
-namespace avx512 { Kernels kernels(); }
+namespace portable {
+Kernels kernels();
+}
+namespace avx2 {
+Kernels kernels();
+}
+namespace avx512 {
+Kernels kernels();
+}
 
 }  // namespace sgm::eval

@@ -1,7 +1,7 @@
 // Pruning: going backward, an operand of min, max or blend that can't matter inside the region isn't asked for, and so
 // nothing it needs is written. (Keeter, "Massively parallel rendering of complex closed-form implicit surfaces", 2020.)
-// Beyond the choice of one instruction we also pass down what the consumers tell apart (Care): a part of a union that is
-// farther than another part of the whole is dropped even where its own neighbours are farther still.
+// Beyond the choice of one instruction we also pass down what the consumers tell apart (Care): a part of a union that
+// is farther than another part of the whole is dropped even where its own neighbours are farther still.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -14,8 +14,8 @@ namespace {
 
 using field::ops::Owner;
 
-/// What matters of the operands of an op that chooses, and with it what may be dropped. `reach` is the op's own, NaN where
-/// an operand is unknown: then nothing may be dropped, since a NaN takes sides by its place.
+/// What matters of the operands of an op that chooses, and with it what may be dropped. `reach` is the op's own, NaN
+/// where an operand is unknown: then nothing may be dropped, since a NaN takes sides by its place.
 Care careOfOperands(const field::OpTraits& row, float reach, Care care) {
     if (std::isnan(reach)) return {};
     const Care outer = row.selects ? care : Care{};
@@ -62,7 +62,8 @@ Tape shorten(const Tape& tape, size_t index, Workspace& workspace) {
     b.begin(tape.size() + 3);
     for (uint32_t axis = 0; axis < 3; ++axis) b.bindInput(axis, axis);
     b.result({tape.resultValue(), tape.origins()[0]});
-    for (uint32_t value = b.nextLive(static_cast<uint32_t>(tape.size()) + 3); value != TapeBuilder::none; value = b.nextLive(value)) {
+    for (uint32_t value = b.nextLive(static_cast<uint32_t>(tape.size()) + 3); value != TapeBuilder::none;
+         value = b.nextLive(value)) {
         const size_t i = value - 3;
         const Instruction& in = tape.code()[i];
         const field::OpTraits& row = field::traits(in.op);

@@ -1,6 +1,6 @@
 // The tape: a field as a straight list of instructions with its constants bound.
-// Enters: a graph node and constants (`compile`). Leaves: an immutable program that kernels, intervals, gradients and the
-// GPU interpreter run. Assumes the op table of modeler/field/ops.h.
+// Enters: a graph node and constants (`compile`). Leaves: an immutable program that kernels, intervals, gradients and
+// the GPU interpreter run. Assumes the op table of modeler/field/ops.h.
 #pragma once
 
 #include <cstdint>
@@ -23,16 +23,16 @@ constexpr uint32_t indexOf(Source s) { return s & ~constantBit; }
 /// One step: out = op(a, b), or over `count` sources from `a` in Tape::sources() for variadic ops.
 struct Instruction {
     field::OpCode op;
-    uint16_t count;  ///< operands
-    uint32_t out;    ///< register
+    uint16_t count;        ///< operands
+    uint32_t out;          ///< register
     Source a = 0;          ///< first operand; for a variadic op its first place in Tape::sources()
     Source b = 0;          ///< second operand
     uint32_t data = 0;     ///< structural integer of the op (KIFS passes)
     uint32_t origins = 0;  ///< 1 + index of this instruction's operand origins in Tape::origins(), 0 for none
 };
 
-/// What an instruction reads, told by value instead of register: x, y, z are values 0, 1, 2 and instruction i makes value
-/// 3 + i; constants as in Source. It lets a backward pass go from a value straight to what it needs.
+/// What an instruction reads, told by value instead of register: x, y, z are values 0, 1, 2 and instruction i makes
+/// value 3 + i; constants as in Source. It lets a backward pass go from a value straight to what it needs.
 struct Link {
     Source a, b;      ///< as in Instruction; b is unused by variadic ops, whose a is a place in Tape::sourceValues()
     uint32_t bounds;  ///< first row of this instruction's bounds, for ops that choose (evaluateRanges)

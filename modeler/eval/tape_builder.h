@@ -1,7 +1,7 @@
 // Writes a tape from its last instruction to its first, giving out registers on the way.
 // Enters: instructions in reverse order, operands as keys (any small integers). Leaves: a Tape. Assumes that a value's
-// consumers come before it. Going backward, the first use met of a value is its last in time, so a register is taken there
-// and freed at the value's definition: linear scan (Poletto & Sarkar 1999) in one pass.
+// consumers come before it. Going backward, the first use met of a value is its last in time, so a register is taken
+// there and freed at the value's definition: linear scan (Poletto & Sarkar 1999) in one pass.
 #pragma once
 
 #include <limits>
@@ -11,7 +11,8 @@
 
 namespace sgm::eval {
 
-/// What the consumers of a value tell apart: any two numbers above `most` are the same to them, and any two below `least`.
+/// What the consumers of a value tell apart: any two numbers above `most` are the same to them, and any two below
+/// `least`.
 struct Care {
     float least = -std::numeric_limits<float>::infinity();
     float most = std::numeric_limits<float>::infinity();
@@ -22,7 +23,8 @@ class TapeBuilder {
 public:
     static constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
 
-    /// What an operand is before it has a register: a constant, or the key of a value; who owns it, and what of it matters.
+    /// What an operand is before it has a register: a constant, or the key of a value; who owns it, and what of it
+    /// matters.
     struct Use {
         Source source;
         OriginId origin = 0;
@@ -60,10 +62,10 @@ private:
     uint32_t takeRegister();
     static void link(Tape& tape);
 
-    std::vector<Value> values_;        // all dead between tapes
-    std::vector<uint64_t> liveBits_;   // by key, inputs apart
+    std::vector<Value> values_;       // all dead between tapes
+    std::vector<uint64_t> liveBits_;  // by key, inputs apart
     std::vector<uint32_t> inputs_, free_;
-    std::vector<Instruction> code_;    // in reverse
+    std::vector<Instruction> code_;  // in reverse
     std::vector<Source> sources_;
     std::vector<OriginId> origins_;
     uint32_t registers_ = 3;

@@ -7,7 +7,8 @@
 
 namespace sgm::eval {
 
-using field::ops::abs, field::ops::floor, field::ops::powerOfTwo, field::ops::select, field::ops::sqrt, field::ops::toInt;
+using field::ops::abs, field::ops::floor, field::ops::powerOfTwo, field::ops::select, field::ops::sqrt,
+    field::ops::toInt;
 
 /// value and ∂value/∂(x, y, z) over a V (float or Lanes).
 template <class V>

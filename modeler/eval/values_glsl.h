@@ -1,6 +1,7 @@
 // The GLSL value: an op's body as shader text.
-// Enters: operands as GLSL expressions. Leaves: statements that name every intermediate once, and the result's expression.
-// Assumes GLSL 3.30 or later. Integers are missing: rows that need them are variadic and bring their own text.
+// Enters: operands as GLSL expressions. Leaves: statements that name every intermediate once, and the result's
+// expression. Assumes GLSL 3.30 or later. Integers are missing: rows that need them are variadic and bring their own
+// text.
 #pragma once
 
 #include <charconv>
@@ -26,8 +27,12 @@ struct GlslMask {
     std::string expression;
     GlslBody* body = nullptr;
 
-    friend GlslMask operator&(const GlslMask& a, const GlslMask& b) { return {"(" + a.expression + " && " + b.expression + ")", a.body}; }
-    friend GlslMask operator|(const GlslMask& a, const GlslMask& b) { return {"(" + a.expression + " || " + b.expression + ")", a.body}; }
+    friend GlslMask operator&(const GlslMask& a, const GlslMask& b) {
+        return {"(" + a.expression + " && " + b.expression + ")", a.body};
+    }
+    friend GlslMask operator|(const GlslMask& a, const GlslMask& b) {
+        return {"(" + a.expression + " || " + b.expression + ")", a.body};
+    }
     friend GlslMask operator!(const GlslMask& a) { return {"(!" + a.expression + ")", a.body}; }
 };
 

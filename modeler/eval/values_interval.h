@@ -1,8 +1,8 @@
 // The interval value: an enclosure of what the float kernels can return.
-// Enters: bounds of the operands. Leaves: bounds of the result. Rounding to nearest is monotone, so the bounds computed by
-// the very same float operation enclose every float result; no widening is needed for + − × ÷ √ min max.
-// (Moore, "Interval Analysis", 1966, for the extensions.) Bounds that are NaN mean "anything, NaN included"; the kernels
-// pass them on (`where`), so the operations here may assume bounds that say something.
+// Enters: bounds of the operands. Leaves: bounds of the result. Rounding to nearest is monotone, so the bounds computed
+// by the very same float operation enclose every float result; no widening is needed for + − × ÷ √ min max. (Moore,
+// "Interval Analysis", 1966, for the extensions.) Bounds that are NaN mean "anything, NaN included"; the kernels pass
+// them on (`where`), so the operations here may assume bounds that say something.
 #pragma once
 
 #include <limits>
@@ -40,7 +40,8 @@ struct Interval {
         // At a pole anything is possible, 0/0 = NaN too when a holds 0.
         const auto zero = (a.lo <= V(0.0f)) & (a.hi >= V(0.0f));
         const V most = select(zero, V(std::numeric_limits<float>::quiet_NaN()), V(infinity) + a.lo + a.hi);
-        return {select(pole, -most, min(min(p, q), min(r, s)) + nan), select(pole, most, max(max(p, q), max(r, s)) + nan)};
+        return {select(pole, -most, min(min(p, q), min(r, s)) + nan),
+                select(pole, most, max(max(p, q), max(r, s)) + nan)};
     }
     friend Interval operator-(Interval a) { return {-a.hi, -a.lo}; }
     friend Interval min(Interval a, Interval b) { return {min(a.lo, b.lo), min(a.hi, b.hi)}; }

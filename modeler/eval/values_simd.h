@@ -77,9 +77,7 @@ struct Lanes {
         const auto whole = xsimd::batch_cast<int32_t>(xsimd::max(xsimd::min(a.v, limit), -limit));
         return Int(xsimd::bitwise_cast<xsimd::batch<uint32_t, A>>(whole));
     }
-    friend Lanes powerOfTwo(Lanes a) {
-        return Lanes(xsimd::bitwise_cast<Batch>(((toInt(a) + Int(127u)) << 23).v));
-    }
+    friend Lanes powerOfTwo(Lanes a) { return Lanes(xsimd::bitwise_cast<Batch>(((toInt(a) + Int(127u)) << 23).v)); }
 };
 
 template <class A>

@@ -29,8 +29,8 @@ private:
 struct Workspace::Impl {
     Kernels kernels;
     AlignedFloats registers, arguments;
-    AlignedFloats bounds;                 ///< rows of maxBoxes floats, see Link::bounds
-    std::vector<OriginId> origins;        ///< origin registers
+    AlignedFloats bounds;                     ///< rows of maxBoxes floats, see Link::bounds
+    std::vector<OriginId> origins;            ///< origin registers
     const Instruction* rangedCode = nullptr;  ///< the tape `bounds` speaks of
     TapeBuilder builder;
     std::vector<TapeBuilder::Use> uses;

@@ -32,12 +32,6 @@ std::optional<float> folded(OpCode op, float a, float b, size_t count) {
     });
 }
 
-/// True where op(a, b) is a, bit for bit.
-bool keepsFirst(OpCode op, float b) {
-    return (b == 1.0f && (op == codeOf<ops::Mul> || op == codeOf<ops::Div>)) ||
-           (std::bit_cast<uint32_t>(b) == 0 && op == codeOf<ops::Sub>);
-}
-
 Num binary(OpCode op, Num a, Num b) { return a.graph().apply(op, {a, b}); }
 Num unary(OpCode op, Num a) { return a.graph().apply(op, {a}); }
 
@@ -79,7 +73,8 @@ Num Graph::apply(OpCode op, std::span<const Operand> operands, uint32_t data) {
         const Node& first = nodes_[operands.front().node];
         const Node& last = nodes_[operands.back().node];
         if (isLiteral(first) && isLiteral(last))
-            if (const auto value = folded(op, literalOf(first), literalOf(last), operands.size())) return literal(*value);
+            if (const auto value = folded(op, literalOf(first), literalOf(last), operands.size()))
+                return literal(*value);
         if (operands.size() == 2 && isLiteral(last) && keepsFirst(op, literalOf(last))) return {this, operands[0].node};
         if (operands.size() == 2 && isLiteral(first) && row.commutative && keepsFirst(op, literalOf(first)))
             return {this, operands[1].node};

@@ -85,7 +85,9 @@ public:
     Num apply(OpCode op, std::initializer_list<Num> operands, uint32_t data = 0);
 
     const Node& node(NodeId id) const { return nodes_[id]; }
-    std::span<const Operand> operands(NodeId id) const { return {operands_.data() + nodes_[id].first, nodes_[id].count}; }
+    std::span<const Operand> operands(NodeId id) const {
+        return {operands_.data() + nodes_[id].first, nodes_[id].count};
+    }
     size_t nodeCount() const { return nodes_.size(); }
     /// Present values of all slots, by SlotId: what `compile` binds and the GPU gets as a buffer.
     std::span<const float> constants() const { return constants_; }

@@ -1,6 +1,6 @@
 // The op table: every elementary function a field can be made of, said once.
-// Enters: values of any vocabulary (modeler/field/values.h). Leaves: OpCode, its name and traits, and dispatch over the rows.
-// Assumes nothing but + − × ÷ √ min max and integers in the bodies: that keeps bits equal on all machines.
+// Enters: values of any vocabulary (modeler/field/values.h). Leaves: OpCode, its name and traits, and dispatch over the
+// rows. Assumes nothing but + − × ÷ √ min max and integers in the bodies: that keeps bits equal on all machines.
 //
 // To add an op: write a row (a struct, below or in a header of its own) and name it in `OpTable`. Nothing else changes:
 // tapes, kernels, intervals, derivatives, GLSL and the conformance tests are made from the row.
@@ -12,17 +12,18 @@
 //                                        NaN. The default is apply over intervals: rounding is monotone, so it encloses
 //   D gradient(…same operands as D…)     value (same bits as apply) and derivatives; the default is apply over Dual
 //   owner                                which operand owns the surface (Owner)
-//   V reach(span<const I> args, uint32_t data)                               for Owner::Least (Greatest): an operand that
-//                                        lies above (below) it can't matter: the bits stay the same without it or with
-//                                        any other number beyond it. With one operand left the op is that operand, bit
-//                                        for bit. Operands before `firstChoice` are never dropped
+//   V reach(span<const I>, uint32_t)     for Owner::Least (Greatest): an operand that lies above (below) it can't matter:
+//                                        the bits stay the same without it or with any other number beyond it. With one
+//                                        operand left the op is that operand, bit for bit. Operands before `firstChoice`
+//                                        are never dropped
 //   selects = true                       the result is one of the operands, so that what the consumer of the result
 //                                        doesn't care for needn't be told apart in the operands either
-//   glsl                                 body of `float op_NAME(uint first, uint count, uint data)` where `arg(first + i)`
-//                                        reads operand i; needed by variadic rows, whose loops can't become one expression
+//   glsl                                 body of `float op_NAME(uint first, uint count, uint data)`, in which operand i is
+//                                        `arg(first + i)`; needed by variadic rows: a loop can't become one expression
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <span>
 #include <string_view>
@@ -54,58 +55,76 @@ struct Copy {
     static constexpr std::string_view name = "copy";
     static constexpr int arity = 1;
     template <class V>
-    static V apply(V a) { return a; }
+    static V apply(V a) {
+        return a;
+    }
 };
 struct Add {
     static constexpr std::string_view name = "add";
     static constexpr int arity = 2;
     static constexpr bool commutative = true;
     template <class V>
-    static V apply(V a, V b) { return a + b; }
+    static V apply(V a, V b) {
+        return a + b;
+    }
 };
 struct Sub {
     static constexpr std::string_view name = "sub";
     static constexpr int arity = 2;
     template <class V>
-    static V apply(V a, V b) { return a - b; }
+    static V apply(V a, V b) {
+        return a - b;
+    }
 };
 struct Mul {
     static constexpr std::string_view name = "mul";
     static constexpr int arity = 2;
     static constexpr bool commutative = true;
     template <class V>
-    static V apply(V a, V b) { return a * b; }
+    static V apply(V a, V b) {
+        return a * b;
+    }
 };
 struct Div {
     static constexpr std::string_view name = "div";
     static constexpr int arity = 2;
     template <class V>
-    static V apply(V a, V b) { return a / b; }
+    static V apply(V a, V b) {
+        return a / b;
+    }
 };
 struct Neg {
     static constexpr std::string_view name = "neg";
     static constexpr int arity = 1;
     template <class V>
-    static V apply(V a) { return -a; }
+    static V apply(V a) {
+        return -a;
+    }
 };
 struct Abs {
     static constexpr std::string_view name = "abs";
     static constexpr int arity = 1;
     template <class V>
-    static V apply(V a) { return abs(a); }
+    static V apply(V a) {
+        return abs(a);
+    }
 };
 /// √ of what is positive, 0 of the rest.
 struct Sqrt {
     static constexpr std::string_view name = "sqrt";
     static constexpr int arity = 1;
     template <class V>
-    static V apply(V a) { return sqrt(max(V(0.0f), a)); }
+    static V apply(V a) {
+        return sqrt(max(V(0.0f), a));
+    }
 };
 struct Square {
     static constexpr std::string_view name = "square";
     static constexpr int arity = 1;
     template <class V>
-    static V apply(V a) { return a * a; }
+    static V apply(V a) {
+        return a * a;
+    }
     template <class I>
     static I interval(I a) {
         const I m = abs(a);
@@ -116,14 +135,18 @@ struct Floor {
     static constexpr std::string_view name = "floor";
     static constexpr int arity = 1;
     template <class V>
-    static V apply(V a) { return floor(a); }
+    static V apply(V a) {
+        return floor(a);
+    }
 };
 /// Floor-modulo a − b·⌊a/b⌋.
 struct Mod {
     static constexpr std::string_view name = "mod";
     static constexpr int arity = 2;
     template <class V>
-    static V apply(V a, V b) { return a - b * floor(a / b); }
+    static V apply(V a, V b) {
+        return a - b * floor(a / b);
+    }
     /// Within one period the plain extension is tight; across several the result is in [0, b] but for rounding.
     template <class I>
     static I interval(I a, I b) {
@@ -141,7 +164,9 @@ struct Min {
     static constexpr bool commutative = true;
     static constexpr Owner owner = Owner::Least;
     template <class V>
-    static V apply(V a, V b) { return min(a, b); }
+    static V apply(V a, V b) {
+        return min(a, b);
+    }
     static constexpr bool selects = true;
     template <class I>
     static auto reach(std::span<const I> args, uint32_t) {
@@ -154,7 +179,9 @@ struct Max {
     static constexpr bool commutative = true;
     static constexpr Owner owner = Owner::Greatest;
     template <class V>
-    static V apply(V a, V b) { return max(a, b); }
+    static V apply(V a, V b) {
+        return max(a, b);
+    }
     static constexpr bool selects = true;
     template <class I>
     static auto reach(std::span<const I> args, uint32_t) {
@@ -178,27 +205,41 @@ struct Sin {
     static constexpr std::string_view name = "sin";
     static constexpr int arity = 1;
     template <class V>
-    static V apply(V a) { return sine(a, 0.0f); }
+    static V apply(V a) {
+        return sine(a, 0.0f);
+    }
     template <class I>
-    static I interval(I a) { return around<I>(apply(centre(a)), radius(a) + 4 * mathError, -1 - mathError, 1 + mathError); }
+    static I interval(I a) {
+        return around<I>(apply(centre(a)), radius(a) + 4 * mathError, -1 - mathError, 1 + mathError);
+    }
     template <class D>
-    static D gradient(D a) { return chain(a, apply(a.value), sine(a.value, 1.0f)); }
+    static D gradient(D a) {
+        return chain(a, apply(a.value), sine(a.value, 1.0f));
+    }
 };
 struct Cos {
     static constexpr std::string_view name = "cos";
     static constexpr int arity = 1;
     template <class V>
-    static V apply(V a) { return sine(a, 1.0f); }
+    static V apply(V a) {
+        return sine(a, 1.0f);
+    }
     template <class I>
-    static I interval(I a) { return around<I>(apply(centre(a)), radius(a) + 4 * mathError, -1 - mathError, 1 + mathError); }
+    static I interval(I a) {
+        return around<I>(apply(centre(a)), radius(a) + 4 * mathError, -1 - mathError, 1 + mathError);
+    }
     template <class D>
-    static D gradient(D a) { return chain(a, apply(a.value), -sine(a.value, 0.0f)); }
+    static D gradient(D a) {
+        return chain(a, apply(a.value), -sine(a.value, 0.0f));
+    }
 };
 struct Exp {
     static constexpr std::string_view name = "exp";
     static constexpr int arity = 1;
     template <class V>
-    static V apply(V a) { return exponential(a); }
+    static V apply(V a) {
+        return exponential(a);
+    }
     template <class I>
     static I interval(I a) {
         return I{exponential(a.lo) * (1 - 4 * mathError), exponential(a.hi) * (1 + 4 * mathError)};
@@ -215,7 +256,9 @@ struct Atan2 {
     static constexpr std::string_view name = "atan2";
     static constexpr int arity = 2;
     template <class V>
-    static V apply(V y, V x) { return angleOf(y, x); }
+    static V apply(V y, V x) {
+        return angleOf(y, x);
+    }
     template <class D>
     static D gradient(D y, D x) {
         using V = typename D::Value;
@@ -224,7 +267,8 @@ struct Atan2 {
         const V a = x.value * share, b = y.value * share;
         return D{apply(y.value, x.value), y.dx * a - x.dx * b, y.dy * a - x.dy * b, y.dz * a - x.dz * b};
     }
-    /// Harmonic, so its extremes over a box are on the edges, and monotone along each: at the corners. Not across the cut.
+    /// Harmonic, so its extremes over a box are on the edges, and monotone along each: at the corners. Not across the
+    /// cut.
     template <class I>
     static I interval(I y, I x) {
         using V = typename I::Value;
@@ -240,14 +284,14 @@ struct Atan2 {
 
 namespace sgm::field {
 
-/// A type list; an op's code is its place here. Append only: codes are written into caches.
+/// A type list; an op's code is its place here.
 template <class... Rows>
 struct TypeList {
     static constexpr size_t size = sizeof...(Rows);
 };
-using OpTable = TypeList<ops::Input, ops::Literal, ops::Slot, ops::Copy, ops::Add, ops::Sub, ops::Mul, ops::Div, ops::Neg,
-                         ops::Abs, ops::Sqrt, ops::Square, ops::Floor, ops::Mod, ops::Min, ops::Max, ops::Morph, ops::Sin,
-                         ops::Cos, ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend>;
+using OpTable = TypeList<ops::Input, ops::Literal, ops::Slot, ops::Copy, ops::Add, ops::Sub, ops::Mul, ops::Div,
+                         ops::Neg, ops::Abs, ops::Sqrt, ops::Square, ops::Floor, ops::Mod, ops::Min, ops::Max,
+                         ops::Morph, ops::Sin, ops::Cos, ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend>;
 
 namespace detail {
 template <class Row, class... Rows>
@@ -271,8 +315,7 @@ constexpr decltype(auto) visit(OpCode code, Fn&& fn, TypeList<Rows...>) {
 
 /// The code of a row.
 template <class Row>
-    requires(detail::holds<Row>(OpTable{}))
-inline constexpr OpCode codeOf = detail::place<Row>(OpTable{});
+requires(detail::holds<Row>(OpTable{})) inline constexpr OpCode codeOf = detail::place<Row>(OpTable{});
 
 /// fn.operator()<Row>() for the row of `code`. All rows must give the same type.
 template <class Fn>
@@ -315,5 +358,11 @@ inline constexpr auto opTraits = allTraits(OpTable{});
 /// The traits of a code.
 constexpr const OpTraits& traits(OpCode code) { return detail::opTraits[static_cast<size_t>(code)]; }
 inline constexpr size_t opCount = OpTable::size;
+
+/// True where op(a, number) is a, bit for bit, whatever a is.
+constexpr bool keepsFirst(OpCode op, float number) {
+    return (number == 1.0f && (op == codeOf<ops::Mul> || op == codeOf<ops::Div>)) ||
+           (std::bit_cast<uint32_t>(number) == 0 && op == codeOf<ops::Sub>);
+}
 
 }  // namespace sgm::field

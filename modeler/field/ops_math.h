@@ -48,7 +48,8 @@ V angleOf(V y, V x) {
     const auto steep = t > 0.414213562f;
     const V u = select(steep, (t - 1.0f) / (t + 1.0f), t);
     const V s = u * u;
-    const V atan_u = u + u * s * (-3.333271605e-01f + s * (1.997066057e-01f + s * (-1.381322619e-01f + s * 7.870114699e-02f)));
+    const V atan_u =
+        u + u * s * (-3.333271605e-01f + s * (1.997066057e-01f + s * (-1.381322619e-01f + s * 7.870114699e-02f)));
     const V low = select(steep, atan_u + 0.785398163f, atan_u);
     const V first = select(ay > ax, 1.57079633f - low, low);
     const V right = select(x < 0.0f, 3.14159265f - first, first);

@@ -59,8 +59,8 @@ inline constexpr int variadic = -1;  ///< arity of ops over a span of operands
 /// a morph the nearer of two.
 enum class Owner { First, Least, Greatest, Nearer };
 
-// For rows that enclose themselves. I is an interval: members `lo` and `hi` of type I::Value, I{lo, hi}, lo ≤ hi. A result
-// with a NaN bound means "anything, NaN included".
+// For rows that enclose themselves. I is an interval: members `lo` and `hi` of type I::Value, I{lo, hi}, lo ≤ hi. A
+// result with a NaN bound means "anything, NaN included".
 
 /// The middle of an interval.
 template <class I>

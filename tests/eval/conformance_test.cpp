@@ -75,14 +75,16 @@ TYPED_TEST(OpConformance, EveryInstructionSetGivesTheBitsOfPlainFloats) {
                 const std::vector<float> got = values(one.tape, cloud, isa);
                 for (size_t i = 0; i < n; ++i) {
                     const float expected = one.at(cloud.x[i], cloud.y[i], cloud.z[i]);
-                    ASSERT_TRUE(sameBits(expected, got[i])) << expected << " but " << got[i] << " with isa " << int(isa);
+                    ASSERT_TRUE(sameBits(expected, got[i]))
+                        << expected << " but " << got[i] << " with isa " << int(isa);
                 }
             });
 }
 
 TYPED_TEST(OpConformance, OddNumbersGiveTheSameBitsToo) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
-    const float odd[] = {0.0f, -0.0f, 1.0f, -1.0f, 0.5f, -2.5f, 1e-42f, -1e-42f, 1e30f, -1e30f, infinity, -infinity, std::nanf("")};
+    const float odd[] = {0.0f,    -0.0f, 1.0f,   -1.0f,    0.5f,      -2.5f,        1e-42f,
+                         -1e-42f, 1e30f, -1e30f, infinity, -infinity, std::nanf("")};
     if constexpr (TypeParam::arity == 1 || TypeParam::arity == 2) {
         Graph graph;
         const Num root = TypeParam::arity == 1 ? graph.apply(codeOf<TypeParam>, {graph.x()})
@@ -95,8 +97,8 @@ TYPED_TEST(OpConformance, OddNumbersGiveTheSameBitsToo) {
             const std::vector<float> got = values(tape, cloud, isa);
             for (size_t i = 0; i < cloud.size(); ++i) {
                 const float expected = walk(graph, root, cloud.x[i], cloud.y[i], 0);
-                EXPECT_TRUE(sameBits(expected, got[i]))
-                    << expected << " but " << got[i] << " of " << cloud.x[i] << ", " << cloud.y[i] << " with isa " << int(isa);
+                EXPECT_TRUE(sameBits(expected, got[i])) << expected << " but " << got[i] << " of " << cloud.x[i] << ", "
+                                                        << cloud.y[i] << " with isa " << int(isa);
             }
         }
     }
@@ -156,7 +158,8 @@ TYPED_TEST(OpConformance, DerivativesAgreeWithDifferences) {
                 Vec3f lo = p, hi = p;
                 lo[axis] -= h;
                 hi[axis] += h;
-                const float before = (v[i] - one.at(lo.x, lo.y, lo.z)) / h, after = (one.at(hi.x, hi.y, hi.z) - v[i]) / h;
+                const float before = (v[i] - one.at(lo.x, lo.y, lo.z)) / h,
+                            after = (one.at(hi.x, hi.y, hi.z) - v[i]) / h;
                 const float slope = (before + after) / 2;
                 // Kinks, jumps and poles have no derivative to compare with.
                 if (!(std::abs(after - before) < 0.05f * (1 + std::abs(slope)))) continue;

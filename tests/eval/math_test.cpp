@@ -23,8 +23,10 @@ TEST(Math, ExponentialIsWithinItsRelativeError) {
 TEST(Math, AngleIsWithinItsErrorAllAround) {
     Draws draws{5};
     for (int i = 0; i < 200000; ++i) {
-        const float size = std::pow(10.0f, draws.real(-6, 6)), x = size * draws.real(-1, 1), y = size * draws.real(-1, 1);
-        ASSERT_NEAR(ops::Atan2::apply(y, x), std::atan2(double{y}, double{x}), double{ops::mathError}) << y << ", " << x;
+        const float size = std::pow(10.0f, draws.real(-6, 6)), x = size * draws.real(-1, 1),
+                    y = size * draws.real(-1, 1);
+        ASSERT_NEAR(ops::Atan2::apply(y, x), std::atan2(double{y}, double{x}), double{ops::mathError})
+            << y << ", " << x;
     }
     EXPECT_EQ(ops::Atan2::apply(0.0f, 0.0f), 0.0f);
     EXPECT_FLOAT_EQ(ops::Atan2::apply(0.0f, -1.0f), 3.14159265f);

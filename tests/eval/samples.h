@@ -88,12 +88,18 @@ inline float walk(const Graph& graph, Num root, float x, float y, float z) {
         args.clear();
         for (const field::Operand& o : graph.operands(id)) args.push_back(value[o.node]);
         value[id] = field::visitOp(n.op, [&]<class Row>() -> float {
-            if constexpr (Row::arity == 1) return Row::apply(args[0]);
-            else if constexpr (Row::arity == 2) return Row::apply(args[0], args[1]);
-            else if constexpr (Row::arity == ops::variadic) return Row::apply(std::span<const float>(args), n.data);
-            else if constexpr (std::is_same_v<Row, ops::Input>) return n.data == 0 ? x : n.data == 1 ? y : z;
-            else if constexpr (std::is_same_v<Row, ops::Slot>) return graph.constants()[n.data];
-            else return std::bit_cast<float>(n.data);
+            if constexpr (Row::arity == 1)
+                return Row::apply(args[0]);
+            else if constexpr (Row::arity == 2)
+                return Row::apply(args[0], args[1]);
+            else if constexpr (Row::arity == ops::variadic)
+                return Row::apply(std::span<const float>(args), n.data);
+            else if constexpr (std::is_same_v<Row, ops::Input>)
+                return n.data == 0 ? x : n.data == 1 ? y : z;
+            else if constexpr (std::is_same_v<Row, ops::Slot>)
+                return graph.constants()[n.data];
+            else
+                return std::bit_cast<float>(n.data);
         });
     }
     return value[root.id()];
@@ -123,13 +129,19 @@ inline Example kifsExample(ops::Kifs::Form form) {
 template <class Row>
 std::vector<Example> examplesOf() {
     constexpr float r = 4;
-    if constexpr (std::is_same_v<Row, ops::Exp>) return {{{{-3, 3}}}, {{{-90, -84}}}, {{{80, 89}}}};
-    else if constexpr (std::is_same_v<Row, ops::Sin> || std::is_same_v<Row, ops::Cos>) return {{{{-r, r}}}, {{{990, 1000}}}};
-    else if constexpr (std::is_same_v<Row, ops::Mod>) return {{{{-r, r}, {1.5f, 1.5f, false}}}, {{{-r, r}, {0.3f, 2}}}};
-    else if constexpr (std::is_same_v<Row, ops::Div>) return {{{{-r, r}, {0.5f, 3}}}, {{{-r, r}, {-1, 1}}}};
-    else if constexpr (std::is_same_v<Row, ops::Morph>) return {{{{-r, r}, {-r, r}, {0, 1, false}}}, {{{-r, r}, {-r, r}, {0, 1}}}};
+    if constexpr (std::is_same_v<Row, ops::Exp>)
+        return {{{{-3, 3}}}, {{{-90, -84}}}, {{{80, 89}}}};
+    else if constexpr (std::is_same_v<Row, ops::Sin> || std::is_same_v<Row, ops::Cos>)
+        return {{{{-r, r}}}, {{{990, 1000}}}};
+    else if constexpr (std::is_same_v<Row, ops::Mod>)
+        return {{{{-r, r}, {1.5f, 1.5f, false}}}, {{{-r, r}, {0.3f, 2}}}};
+    else if constexpr (std::is_same_v<Row, ops::Div>)
+        return {{{{-r, r}, {0.5f, 3}}}, {{{-r, r}, {-1, 1}}}};
+    else if constexpr (std::is_same_v<Row, ops::Morph>)
+        return {{{{-r, r}, {-r, r}, {0, 1, false}}}, {{{-r, r}, {-r, r}, {0, 1}}}};
     else if constexpr (std::is_same_v<Row, ops::Noise>)
-        return {{{{-r, r}, {-r, r}, {-r, r}}, ops::Noise::pack(false, 1, 7)}, {{{-r, r}, {0, 1}, {5, 9}}, ops::Noise::pack(true, 3, 8)}};
+        return {{{{-r, r}, {-r, r}, {-r, r}}, ops::Noise::pack(false, 1, 7)},
+                {{{-r, r}, {0, 1}, {5, 9}}, ops::Noise::pack(true, 3, 8)}};
     else if constexpr (std::is_same_v<Row, ops::Blend>)
         return {{{{0.3f, 0.3f, false}, {-r, r}, {-r, r}}},
                 {{{0, 2, false}, {-1, 1}, {-1, 1}, {-1, 0}, {0.5f, 0.5f, false}}},
@@ -138,8 +150,10 @@ std::vector<Example> examplesOf() {
     else if constexpr (std::is_same_v<Row, ops::Kifs>)
         return {kifsExample({3, false, false, false, true, true}), kifsExample({2, true, true, false, true, false}),
                 kifsExample({4, true, false, true, true, true})};
-    else if constexpr (Row::arity == 1) return {{{{-r, r}}}, {{{0.001f, 1}}}};
-    else return {{{{-r, r}, {-r, r}}}, {{{-r, r}, {-1, 1, false}}}};
+    else if constexpr (Row::arity == 1)
+        return {{{{-r, r}}}, {{{0.001f, 1}}}};
+    else
+        return {{{{-r, r}, {-r, r}}}, {{{-r, r}, {-1, 1, false}}}};
 }
 
 /// A random expression of up to `size` ops, rich in min and max, with owners on their operands.
@@ -149,7 +163,8 @@ inline Num randomExpression(Graph& graph, size_t size, Draws& draws) {
     for (int i = 0; i < 3; ++i) pool.push_back(graph.literal(draws.real(-2, 2)));
     const auto any = [&] {
         // Late nodes more often, so that depth grows.
-        return pool[draws.below(2) == 0 ? draws.below(pool.size()) : pool.size() - 1 - draws.below(std::min<size_t>(6, pool.size()))];
+        return pool[draws.below(2) == 0 ? draws.below(pool.size())
+                                        : pool.size() - 1 - draws.below(std::min<size_t>(6, pool.size()))];
     };
     for (size_t i = 0; i < size; ++i) {
         const uint64_t kind = draws.below(10);
@@ -162,12 +177,15 @@ inline Num randomExpression(Graph& graph, size_t size, Draws& draws) {
             pool.push_back(length(p) - draws.real(0, 2));
         } else {
             pool.push_back(field::visitOp(field::OpCode(draws.below(field::opCount)), [&]<class Row>() {
-                if constexpr (Row::arity == 1) return graph.apply(codeOf<Row>, {any()});
-                else if constexpr (Row::arity == 2) return graph.apply(codeOf<Row>, {any(), any()});
+                if constexpr (Row::arity == 1)
+                    return graph.apply(codeOf<Row>, {any()});
+                else if constexpr (Row::arity == 2)
+                    return graph.apply(codeOf<Row>, {any(), any()});
                 else if constexpr (std::is_same_v<Row, ops::Blend>) {
                     std::vector<field::Operand> parts{{graph.slot(draws.real(0, 1)).id(), 0}};
                     const size_t count = 1 + draws.below(6);
-                    for (size_t k = 0; k < count; ++k) parts.push_back({any().id(), static_cast<OriginId>(draws.below(3) * (i + 1))});
+                    for (size_t k = 0; k < count; ++k)
+                        parts.push_back({any().id(), static_cast<OriginId>(draws.below(3) * (i + 1))});
                     return graph.apply(codeOf<Row>, parts);
                 } else if constexpr (Row::arity == ops::variadic) {
                     const std::vector<Example> examples = examplesOf<Row>();
@@ -176,7 +194,8 @@ inline Num randomExpression(Graph& graph, size_t size, Draws& draws) {
                     for (const Example::Operand& o : e.operands)
                         parts.push_back({(o.varies ? any() : graph.slot(draws.real(o.lo, o.hi))).id(), 0});
                     return graph.apply(codeOf<Row>, parts, e.data);
-                } else return any() + any();
+                } else
+                    return any() + any();
             }));
         }
     }

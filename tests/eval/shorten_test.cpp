@@ -11,7 +11,8 @@ std::vector<float> gradients(const Tape& tape, const Cloud& cloud, Workspace& w)
     return all;
 }
 
-/// Values, derivatives and owners of a tape and its shortened form must agree inside the region, and so on inside smaller regions.
+/// Values, derivatives and owners of a tape and its shortened form must agree inside the region, and so on inside
+/// smaller regions.
 void descend(const Tape& full, const Tape& tape, const Box3f& box, int depth, Draws& draws, size_t& dropped) {
     Workspace w;
     Box3f boxes[64];

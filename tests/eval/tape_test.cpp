@@ -81,7 +81,8 @@ TEST(Tape, BalancedUnionsNeedFewRegisters) {
 TEST(Tape, DeepChainsAndManyNodesDoNotOverflow) {
     Graph graph;
     Num chain = graph.x();
-    for (int i = 0; i < 100000; ++i) chain = i % 2 ? sqrt(chain + graph.slot(1)) : min(chain, graph.y() + graph.slot(float(i)));
+    for (int i = 0; i < 100000; ++i)
+        chain = i % 2 ? sqrt(chain + graph.slot(1)) : min(chain, graph.y() + graph.slot(float(i)));
     const Tape tape = compiled(graph, chain);
     EXPECT_LE(tape.registerCount(), 6u);
     Cloud cloud;
