@@ -17,13 +17,20 @@ using syntax::ArgumentType;
 
 Want wantOf(const Operation& row, ArgumentType type) {
     switch (type) {
-        case ArgumentType::Number: return Want::Number;
-        case ArgumentType::Length: return Want::Length;
-        case ArgumentType::Angle: return row.id == Id::Turn ? Want::Angles : Want::Angle;
-        case ArgumentType::Size: return Want::Size;
-        case ArgumentType::Vector: return Want::Offset;
-        case ArgumentType::Color: return Want::Color;
-        default: return Want::Anything;
+        case ArgumentType::Number:
+            return Want::Number;
+        case ArgumentType::Length:
+            return Want::Length;
+        case ArgumentType::Angle:
+            return row.id == Id::Turn ? Want::Angles : Want::Angle;
+        case ArgumentType::Size:
+            return Want::Size;
+        case ArgumentType::Vector:
+            return Want::Offset;
+        case ArgumentType::Color:
+            return Want::Color;
+        default:
+            return Want::Anything;
     }
 }
 
@@ -35,15 +42,21 @@ struct Bounds {
 std::optional<Bounds> boundsOf(Id id) {
     constexpr double big = 1e6;
     switch (id) {
-        case Id::Size: return Bounds{1e-6, big, "greater than zero, and at most 1000 km"};
+        case Id::Size:
+            return Bounds{1e-6, big, "greater than zero, and at most 1000 km"};
         case Id::Move:
-        case Id::Shift: return Bounds{-big, big, "at most 1000 km"};
+        case Id::Shift:
+            return Bounds{-big, big, "at most 1000 km"};
         case Id::By:
         case Id::Rough:
-        case Id::Metal: return Bounds{0, 1, "0 … 1"};
-        case Id::Overlap: return Bounds{-big, 1, "at most 1"};
-        case Id::Blend: return Bounds{0, big, "no less than 0"};
-        default: return std::nullopt;
+        case Id::Metal:
+            return Bounds{0, 1, "0 … 1"};
+        case Id::Overlap:
+            return Bounds{-big, 1, "at most 1"};
+        case Id::Blend:
+            return Bounds{0, big, "no less than 0"};
+        default:
+            return std::nullopt;
     }
 }
 
@@ -63,14 +76,16 @@ bool isCalled(const Written& e, std::string_view word) {
 
 /// A joint by name, or a value that is a direction.
 Expr Checker::joint(Place& place, const Written& e) {
-    const bool local = std::any_of(place.locals.begin(), place.locals.end(), [&](const auto& l) { return l.name == e.text; });
+    const bool local =
+        std::any_of(place.locals.begin(), place.locals.end(), [&](const auto& l) { return l.name == e.text; });
     if (e.kind == Written::Kind::Name && axisNumber(e.text) < 0 && !local) {
         Expr word = makeConstant(e.span, makeWord(e.text));
         if (jointNames_.contains(e.text)) return word;
         std::vector<std::string> known(jointNames_.begin(), jointNames_.end());
         for (const auto& l : place.locals) known.push_back(l.name);
         std::string mend = nearest(e.text, known);
-        if (mend.empty() && (e.text == "x" || e.text == "y" || e.text == "z")) mend = fmt::format("write '+{0}' or '-{0}'", e.text);
+        if (mend.empty() && (e.text == "x" || e.text == "y" || e.text == "z"))
+            mend = fmt::format("write '+{0}' or '-{0}'", e.text);
         unknown(e.span, e.text, fmt::format("unknown joint '{}'", e.text), std::move(mend));
         return word;
     }
@@ -83,7 +98,8 @@ void Checker::jointArgument(Place& place, const Written& e, Attribute& out) {
         return;
     }
     out.free = true;
-    if (out.id == Id::To) diagnostics_.error(e.span, "the newcomer's joints are all free: name one", "write 'to centre' or 'to +y'");
+    if (out.id == Id::To)
+        diagnostics_.error(e.span, "the newcomer's joints are all free: name one", "write 'to centre' or 'to +y'");
     for (const Written& candidate : e.args) out.joints.push_back(joint(place, candidate));
 }
 
@@ -91,12 +107,16 @@ void Checker::hostArgument(Place& place, const Written& e, Attribute& out) {
     const bool chain = place.where == Place::Where::Chain;
     if (isCalled(e, "last")) {
         out.host = Attribute::Host::Last;
-        if (!chain && place.where != Place::Where::Finally) diagnostics_.error(e.span, "'last' is the newest shape of a chain, and there is none here", "give the rule a 'repeat'");
+        if (!chain && place.where != Place::Where::Finally)
+            diagnostics_.error(e.span, "'last' is the newest shape of a chain, and there is none here",
+                               "give the rule a 'repeat'");
         return;
     }
     if (isCalled(e, "any")) {
         out.host = Attribute::Host::Any;
-        if (!chain) diagnostics_.error(e.span, "'any(d)' draws among the shapes of a chain, and there is none here", "give the rule a 'repeat'");
+        if (!chain)
+            diagnostics_.error(e.span, "'any(d)' draws among the shapes of a chain, and there is none here",
+                               "give the rule a 'repeat'");
         if (e.args.size() == 1) {
             out.args.push_back(expression(place, e.args[0], Want::Axis, "'any'"));
             return;
@@ -104,25 +124,34 @@ void Checker::hostArgument(Place& place, const Written& e, Attribute& out) {
         diagnostics_.error(e.span, "'any' takes one direction", "write 'any(+x)' or 'any(d)'");
         return;
     }
-    if (e.kind != Written::Kind::Error) diagnostics_.error(e.span, fmt::format("'on' takes 'last' or 'any(d)', not '{}'", e.span.text()));
+    if (e.kind != Written::Kind::Error)
+        diagnostics_.error(e.span, fmt::format("'on' takes 'last' or 'any(d)', not '{}'", e.span.text()));
 }
 
 void Checker::noiseArgument(Place& place, const Written& e, Attribute& out) {
     const bool billow = isCalled(e, "billow");
     out.fbm = isCalled(e, "fbm");
     if (e.kind != Written::Kind::Call || !(billow || out.fbm)) {
-        if (e.kind != Written::Kind::Error) diagnostics_.error(e.span, fmt::format("'displace' takes billow(amplitude, frequency) or fbm(amplitude, frequency, octaves), not '{}'", e.span.text()));
+        if (e.kind != Written::Kind::Error)
+            diagnostics_.error(
+                e.span,
+                fmt::format(
+                    "'displace' takes billow(amplitude, frequency) or fbm(amplitude, frequency, octaves), not '{}'",
+                    e.span.text()));
         return;
     }
     if (e.args.size() < 2 || e.args.size() > 3) {
-        diagnostics_.error(e.span, fmt::format("'{}' takes an amplitude, a frequency and maybe octaves, but {} {} given", e.text, e.args.size(), e.args.size() == 1 ? "is" : "are"),
+        diagnostics_.error(e.span,
+                           fmt::format("'{}' takes an amplitude, a frequency and maybe octaves, but {} {} given",
+                                       e.text, e.args.size(), e.args.size() == 1 ? "is" : "are"),
                            fmt::format("write '{}(.05m, 2.2/m)'", e.text));
         return;
     }
     out.args.push_back(expression(place, e.args[0], Want::Length, fmt::format("the amplitude of '{}'", e.text)));
     out.args.push_back(expression(place, e.args[1], Want::Frequency, fmt::format("the frequency of '{}'", e.text)));
     Expr octaves = makeConstant(e.span, makeWhole(out.fbm ? 3 : 2));
-    if (e.args.size() == 3) octaves = expression(place, e.args[2], Want::Count, fmt::format("the octaves of '{}'", e.text));
+    if (e.args.size() == 3)
+        octaves = expression(place, e.args[2], Want::Count, fmt::format("the octaves of '{}'", e.text));
     if (const auto n = fold(octaves, defaults_); n && (n->num() < 1 || n->num() > 12))
         diagnostics_.error(octaves.span, fmt::format("noise has 1 … 12 octaves, not {}", toText(*n)));
     out.args.push_back(std::move(octaves));
@@ -132,9 +161,11 @@ void Checker::withArguments(Place& place, const syntax::Attribute& written, Attr
     if (written.args.size() != 2) return;
     Expr word = makeConstant(written.args[0].span, makeWord(written.args[0].text));
     if (params_.contains(word.value.text))
-        diagnostics_.error(word.span, fmt::format("'{}' is a parameter: a shape's own value needs another name", word.value.text));
+        diagnostics_.error(word.span,
+                           fmt::format("'{}' is a parameter: a shape's own value needs another name", word.value.text));
     else if (isTaken(word.value.text))
-        diagnostics_.error(word.span, fmt::format("'{}' is a word of the language and can't name a value", word.value.text));
+        diagnostics_.error(word.span,
+                           fmt::format("'{}' is a word of the language and can't name a value", word.value.text));
     place.enter("with " + word.value.text);
     out.args.push_back(std::move(word));
     out.args.push_back(expression(place, written.args[1], Want::Anything, "'with'"));
@@ -148,10 +179,12 @@ void Checker::sensible(const Attribute& attribute) {
     for (const Expr& arg : attribute.args) {
         bool said = false;
         eachConstant(arg, defaults_, [&](const Expr& e, const Value& v) {
-            for (size_t i = 0; i < v.count && !said && (v.kind == Value::Kind::Number || v.kind == Value::Kind::Vector); ++i)
+            for (size_t i = 0; i < v.count && !said && (v.kind == Value::Kind::Number || v.kind == Value::Kind::Vector);
+                 ++i)
                 if (!(v.n[i] >= bounds->lo && v.n[i] <= bounds->hi)) {
                     said = true;
-                    diagnostics_.error(e.span, fmt::format("'{}' is {}, but must be {}", name, toText(v), bounds->text));
+                    diagnostics_.error(e.span,
+                                       fmt::format("'{}' is {}, but must be {}", name, toText(v), bounds->text));
                 }
         });
     }
@@ -170,13 +203,23 @@ Attribute Checker::attribute(Place& place, const syntax::Attribute& written) {
     for (size_t i = 0; i < written.args.size() && i < row.arguments.size(); ++i) {
         const Written& arg = written.args[i];
         switch (row.arguments[i].type) {
-            case ArgumentType::Joint: jointArgument(place, arg, out); break;
-            case ArgumentType::Shape: hostArgument(place, arg, out); break;
-            case ArgumentType::Noise: noiseArgument(place, arg, out); break;
+            case ArgumentType::Joint:
+                jointArgument(place, arg, out);
+                break;
+            case ArgumentType::Shape:
+                hostArgument(place, arg, out);
+                break;
+            case ArgumentType::Noise:
+                noiseArgument(place, arg, out);
+                break;
             case ArgumentType::Name:
             case ArgumentType::Axis:
-            case ArgumentType::Solid: out.args.push_back(makeConstant(arg.span, makeWord(arg.text))); break;
-            default: out.args.push_back(expression(place, arg, wantOf(row, row.arguments[i].type), fmt::format("'{}'", row.name)));
+            case ArgumentType::Solid:
+                out.args.push_back(makeConstant(arg.span, makeWord(arg.text)));
+                break;
+            default:
+                out.args.push_back(
+                    expression(place, arg, wantOf(row, row.arguments[i].type), fmt::format("'{}'", row.name)));
         }
     }
     sensible(out);

@@ -16,13 +16,16 @@ using Id = Operation::Id;
 using Written = syntax::Expr;
 
 const Attribute* find(const std::vector<Attribute>& attributes, Id id) {
-    const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.id == id; });
+    const auto found =
+        std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.id == id; });
     return found == attributes.end() ? nullptr : &*found;
 }
 
 bool isNil(const Body& body) {
-    return body.siblings.size() == 1 && body.siblings[0].size() == 1 && body.siblings[0][0].kind == Element::Kind::Shape &&
-           body.siblings[0][0].content.kind == Content::Kind::Solid && body.siblings[0][0].content.solid.kind == Solid::Kind::Nil;
+    return body.siblings.size() == 1 && body.siblings[0].size() == 1 &&
+           body.siblings[0][0].kind == Element::Kind::Shape &&
+           body.siblings[0][0].content.kind == Content::Kind::Solid &&
+           body.siblings[0][0].content.solid.kind == Solid::Kind::Nil;
 }
 
 /// A body grows on the matched content when its first shape has an operator; `nil` beside growing choices adds nothing.
@@ -30,11 +33,15 @@ bool grows(const Body& body) {
     if (body.siblings.empty() || body.siblings[0].empty()) return false;
     const Element& first = body.siblings[0][0];
     switch (first.kind) {
-        case Element::Kind::Shape: return first.op != Operator::None;
+        case Element::Kind::Shape:
+            return first.op != Operator::None;
         case Element::Kind::For:
         case Element::Kind::While:
-        case Element::Kind::When: return first.body && grows(*first.body);
-        case Element::Kind::Choose: return std::any_of(first.choices.begin(), first.choices.end(), [](const Choice& c) { return grows(*c.body); });
+        case Element::Kind::When:
+            return first.body && grows(*first.body);
+        case Element::Kind::Choose:
+            return std::any_of(first.choices.begin(), first.choices.end(),
+                               [](const Choice& c) { return grows(*c.body); });
     }
     return false;
 }
@@ -44,7 +51,8 @@ bool grows(const Body& body) {
 void Checker::live(const syntax::Name& name, Element& out) {
     if (name.empty()) return;
     if (!isNonTerminal(name.text)) {
-        diagnostics_.error(name.span, fmt::format("a live shape's name begins with a capital: '{}' would be terminal", name.text));
+        diagnostics_.error(name.span,
+                           fmt::format("a live shape's name begins with a capital: '{}' would be terminal", name.text));
         return;
     }
     out.live = nonTerminal(name);
@@ -52,7 +60,8 @@ void Checker::live(const syntax::Name& name, Element& out) {
     std::vector<std::string> ruled;
     for (const SymbolId id : ruled_) ruled.push_back(grammar_.symbols[id].name);
     if (std::string mend = nearest(name.text, ruled); !mend.empty())
-        diagnostics_.warning(name.span, fmt::format("no rule matches '{}', so nothing will grow here", name.text), std::move(mend));
+        diagnostics_.warning(name.span, fmt::format("no rule matches '{}', so nothing will grow here", name.text),
+                             std::move(mend));
 }
 
 void Checker::content(Place& place, const Written& e, Element& out) {
@@ -67,7 +76,8 @@ void Checker::content(Place& place, const Written& e, Element& out) {
         return;
     }
     if (e.kind == Written::Kind::Call && isNonTerminal(e.text)) {
-        diagnostics_.error(e.span, fmt::format("'{}' takes no parameters", e.text), "hand values down with 'with name = …'");
+        diagnostics_.error(e.span, fmt::format("'{}' takes no parameters", e.text),
+                           "hand values down with 'with name = …'");
         return;
     }
     out.content.kind = Content::Kind::Solid;
@@ -80,19 +90,25 @@ void Checker::content(Place& place, const Written& e, Element& out) {
 /// Attributes that contradict the element's operator or each other.
 void Checker::agreement(const Place& place, const Element& element) {
     const auto say = [&](Id id, std::string message, std::string mend) {
-        if (const Attribute* a = find(element.attributes, id)) diagnostics_.error(a->span, std::move(message), std::move(mend));
+        if (const Attribute* a = find(element.attributes, id))
+            diagnostics_.error(a->span, std::move(message), std::move(mend));
     };
     if (element.op == Operator::None) {
         for (const Id id : {Id::At, Id::To, Id::Overlap, Id::Shift, Id::On, Id::Blend}) {
             if (id == Id::On && place.where == Place::Where::Body) continue;  // its argument was refused already
             const std::string_view name = syntax::operations()[static_cast<size_t>(id)].name;
-            say(id, fmt::format("'{}' joins a newcomer to what stands, but no operator joins this shape", name), "put '+', '-', '&' or 'morph' before it");
+            say(id, fmt::format("'{}' joins a newcomer to what stands, but no operator joins this shape", name),
+                "put '+', '-', '&' or 'morph' before it");
         }
     } else if (!find(element.attributes, Id::At)) {
         for (const Id id : {Id::To, Id::Overlap})
-            say(id, fmt::format("'{}' needs the joint it speaks of", syntax::operations()[static_cast<size_t>(id)].name), "add 'at +x', 'at free(…)' or another joint of ours");
+            say(id,
+                fmt::format("'{}' needs the joint it speaks of", syntax::operations()[static_cast<size_t>(id)].name),
+                "add 'at +x', 'at free(…)' or another joint of ours");
     }
-    if (element.op != Operator::Morph) say(Id::By, "'by' says how far a morph goes, but this shape isn't joined by 'morph'", "write 'morph' before the shape");
+    if (element.op != Operator::Morph)
+        say(Id::By, "'by' says how far a morph goes, but this shape isn't joined by 'morph'",
+            "write 'morph' before the shape");
     if (element.op == Operator::Morph) say(Id::Blend, "a morph has no edge that could be blended", "leave 'blend' out");
     newcomerJoint(element);
 }
@@ -102,7 +118,8 @@ void Checker::newcomerJoint(const Element& element) {
     const Attribute* to = find(element.attributes, Id::To);
     if (!to || to->joints.size() != 1 || to->joints[0].value.kind != Value::Kind::Word) return;
     std::vector<std::string> known;
-    const field::Primitive* row = element.content.kind == Content::Kind::Solid ? element.content.solid.primitive : nullptr;
+    const field::Primitive* row =
+        element.content.kind == Content::Kind::Solid ? element.content.solid.primitive : nullptr;
     if (element.content.kind == Content::Kind::Symbol) {
         const Symbol& symbol = grammar_.symbols[element.content.symbol];
         if (!symbol.terminal) return;
@@ -115,18 +132,24 @@ void Checker::newcomerJoint(const Element& element) {
         for (const auto& joint : row->joints) known.emplace_back(joint.name);
     const std::string& wanted = to->joints[0].value.text;
     if (std::find(known.begin(), known.end(), wanted) == known.end() && jointNames_.contains(wanted))
-        diagnostics_.error(to->joints[0].span, fmt::format("'{}' has no joint '{}'", element.label, wanted), nearest(wanted, known));
+        diagnostics_.error(to->joints[0].span, fmt::format("'{}' has no joint '{}'", element.label, wanted),
+                           nearest(wanted, known));
 }
 
 void Checker::shape(Place& place, const syntax::Element& written, Element& out) {
     // With an operator there is no matched scope to change: what stands before the newcomer is meant for it.
     std::vector<Attribute> before = attributes(place, written.before);
     out.attributes = attributes(place, written.after);
-    if (out.op == Operator::None) out.prefix = std::move(before);
-    else out.attributes.insert(out.attributes.begin(), before.begin(), before.end());
+    if (out.op == Operator::None)
+        out.prefix = std::move(before);
+    else
+        out.attributes.insert(out.attributes.begin(), before.begin(), before.end());
     for (const Attribute& a : out.prefix)
         if (a.id != Id::Size && a.id != Id::Move && a.id != Id::Turn && a.id != Id::With && a.id != Id::Tag)
-            diagnostics_.error(a.span, fmt::format("'{}' can't stand before a shape", syntax::operations()[static_cast<size_t>(a.id)].name), "write it after the shape");
+            diagnostics_.error(
+                a.span,
+                fmt::format("'{}' can't stand before a shape", syntax::operations()[static_cast<size_t>(a.id)].name),
+                "write it after the shape");
     if (written.kind == syntax::Element::Kind::Group) {
         out.content.kind = Content::Kind::Group;
         out.content.group = std::make_shared<Body>(written.body ? body(place, *written.body) : Body{});
@@ -171,7 +194,9 @@ Expr Checker::over(Place& place, const Written& e, Type& type) {
         return result;
     }
     if (e.kind != Written::Kind::Error)
-        diagnostics_.error(e.span, fmt::format("a loop runs over 'axes', 'sides', a range 1..n or a list (a, b, c), not '{}'", e.span.text()));
+        diagnostics_.error(
+            e.span,
+            fmt::format("a loop runs over 'axes', 'sides', a range 1..n or a list (a, b, c), not '{}'", e.span.text()));
     type = Type::unknown();
     return result;
 }
@@ -183,11 +208,15 @@ void Checker::loop(Place& place, const syntax::Element& written, Element& out) {
         Place::Local local{written.variable.text, place.frame++, Type::unknown()};
         if (written.over) out.over = over(place, *written.over, local.type);
         out.local = local.index;
-        const bool again = std::any_of(place.locals.begin(), place.locals.end(), [&](const auto& l) { return l.name == local.name; });
+        const bool again =
+            std::any_of(place.locals.begin(), place.locals.end(), [&](const auto& l) { return l.name == local.name; });
         if (again || params_.contains(local.name))
-            diagnostics_.error(written.variable.span, fmt::format("'{}' already means something else here", local.name), "give the loop's variable another name");
+            diagnostics_.error(written.variable.span, fmt::format("'{}' already means something else here", local.name),
+                               "give the loop's variable another name");
         else if (local.name != "i" && isTaken(local.name))
-            diagnostics_.error(written.variable.span, fmt::format("'{}' is a word of the language and can't name a loop's variable", local.name));
+            diagnostics_.error(
+                written.variable.span,
+                fmt::format("'{}' is a word of the language and can't name a loop's variable", local.name));
         place.locals.push_back(std::move(local));
         if (written.guard) out.guard = expression(place, *written.guard, Want::Truth, "'when'");
     } else if (written.over) {
@@ -209,19 +238,22 @@ void Checker::choose(Place& place, const syntax::Element& written, Element& out)
         place.enter("weight");
         if (c.label) choice.weight = expression(place, *c.label, Want::Number, "the weight of a choice");
         const auto weight = fold(choice.weight, defaults_);
-        if (weight && weight->num() < 0) diagnostics_.error(choice.weight.span, fmt::format("a weight is no less than 0, not {}", toText(*weight)));
+        if (weight && weight->num() < 0)
+            diagnostics_.error(choice.weight.span, fmt::format("a weight is no less than 0, not {}", toText(*weight)));
         folded = folded && weight && weight->num() >= 0;
         sum += weight ? weight->num() : 0;
         if (c.repeated || !c.tag.empty()) diagnostics_.error(c.span, "a choice is 'weight: body'");
         choice.body = std::make_shared<Body>(c.body ? body(place, *c.body) : Body{});
         out.choices.push_back(std::move(choice));
     }
-    if (folded && !out.choices.empty() && sum == 0) diagnostics_.error(written.span, "all weights are 0, so nothing could be chosen");
+    if (folded && !out.choices.empty() && sum == 0)
+        diagnostics_.error(written.span, "all weights are 0, so nothing could be chosen");
     const auto grow = [](const Choice& c) { return grows(*c.body); };
     if (std::any_of(out.choices.begin(), out.choices.end(), grow))
         for (const Choice& c : out.choices)
             if (!grow(c) && !isNil(*c.body))
-                diagnostics_.error(c.body->span, "this alternative replaces what stands, but others grow on it", "begin every alternative with an operator, or none");
+                diagnostics_.error(c.body->span, "this alternative replaces what stands, but others grow on it",
+                                   "begin every alternative with an operator, or none");
 }
 
 Element Checker::element(Place& place, const syntax::Element& written) {
@@ -231,10 +263,18 @@ Element Checker::element(Place& place, const syntax::Element& written) {
     out.op = written.op;
     switch (written.kind) {
         case Kind::Shape:
-        case Kind::Group: shape(place, written, out); return out;
-        case Kind::For: out.kind = Element::Kind::For; break;
-        case Kind::While: out.kind = Element::Kind::While; break;
-        case Kind::When: out.kind = Element::Kind::When; break;
+        case Kind::Group:
+            shape(place, written, out);
+            return out;
+        case Kind::For:
+            out.kind = Element::Kind::For;
+            break;
+        case Kind::While:
+            out.kind = Element::Kind::While;
+            break;
+        case Kind::When:
+            out.kind = Element::Kind::When;
+            break;
         case Kind::Choose:
             out.kind = Element::Kind::Choose;
             choose(place, written, out);
@@ -257,7 +297,9 @@ Body Checker::body(Place& place, const syntax::Body& written) {
 
 void Checker::rule(const syntax::RuleDecl& decl) {
     if (!isNonTerminal(decl.symbol.text)) {
-        diagnostics_.error(decl.symbol.span, fmt::format("rules rewrite shapes whose names begin with a capital, and '{}' doesn't", decl.symbol.text));
+        diagnostics_.error(
+            decl.symbol.span,
+            fmt::format("rules rewrite shapes whose names begin with a capital, and '{}' doesn't", decl.symbol.text));
         return;
     }
     Rule out;
@@ -279,8 +321,11 @@ void Checker::rule(const syntax::RuleDecl& decl) {
             diagnostics_.error(out.weight->span, fmt::format("a weight is no less than 0, not {}", toText(*weight)));
     if (!decl.beside.empty()) {
         const auto beside = symbols_.find(decl.beside.text);
-        if (beside == symbols_.end()) unknown(decl.beside.span, decl.beside.text, fmt::format("there is no shape called '{}'", decl.beside.text), nearest(decl.beside.text, symbolNames(false)));
-        else out.beside = beside->second;
+        if (beside == symbols_.end())
+            unknown(decl.beside.span, decl.beside.text, fmt::format("there is no shape called '{}'", decl.beside.text),
+                    nearest(decl.beside.text, symbolNames(false)));
+        else
+            out.beside = beside->second;
     }
     Place place(out.repeat ? Place::Where::Chain : Place::Where::Body);
     if (out.repeat) {
@@ -290,7 +335,9 @@ void Checker::rule(const syntax::RuleDecl& decl) {
     out.body = body(place, decl.body);
     out.morphic = std::exchange(place.morphs, false);
     if (decl.finally_) {
-        if (!out.repeat) diagnostics_.error(decl.finally_->span, "'finally' closes a chain, and there is none here", "give the rule a 'repeat'");
+        if (!out.repeat)
+            diagnostics_.error(decl.finally_->span, "'finally' closes a chain, and there is none here",
+                               "give the rule a 'repeat'");
         place.where = Place::Where::Finally;
         place.locals.clear();
         out.finally_ = body(place, *decl.finally_);
@@ -304,7 +351,8 @@ void Checker::rule(const syntax::RuleDecl& decl) {
 
 void Checker::start(const syntax::StartDecl& decl) {
     if (!isNonTerminal(decl.symbol.text)) {
-        diagnostics_.error(decl.symbol.span, fmt::format("a start's name begins with a capital, and '{}' doesn't", decl.symbol.text));
+        diagnostics_.error(decl.symbol.span,
+                           fmt::format("a start's name begins with a capital, and '{}' doesn't", decl.symbol.text));
         return;
     }
     Place place(Place::Where::Body);
@@ -313,7 +361,9 @@ void Checker::start(const syntax::StartDecl& decl) {
     out.symbol = nonTerminal(decl.symbol);
     out.body = body(place, decl.body);
     out.locals = place.frame;
-    if (out.body.grows) diagnostics_.error(decl.body.span, "a start begins with a shape: nothing stands yet that could grow", "leave the operator out");
+    if (out.body.grows)
+        diagnostics_.error(decl.body.span, "a start begins with a shape: nothing stands yet that could grow",
+                           "leave the operator out");
     for (const auto& chain : out.body.siblings)
         for (const Element& e : chain)
             if (e.op == Operator::None && e.content.kind == Content::Kind::Solid) bounded(e.content.solid, "a start");

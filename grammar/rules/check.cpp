@@ -16,16 +16,19 @@ namespace sgm::rules {
 namespace {
 
 /// In the order of the text: the main file last, as its uses stand before it.
-void sortInto(syntax::Diagnostics& out, const syntax::Diagnostics& found, const std::vector<syntax::SourcePtr>& sources) {
+void sortInto(syntax::Diagnostics& out, const syntax::Diagnostics& found,
+              const std::vector<syntax::SourcePtr>& sources) {
     const auto rank = [&](const syntax::Diagnostic& d) {
-        const auto source = std::find_if(sources.begin(), sources.end(), [&](const syntax::SourcePtr& s) { return s.get() == d.span.source; });
+        const auto source = std::find_if(sources.begin(), sources.end(),
+                                         [&](const syntax::SourcePtr& s) { return s.get() == d.span.source; });
         return std::pair(source == sources.begin() ? sources.end() : source, d.span.begin);
     };
     std::vector<syntax::Diagnostic> list = found.all();
     std::stable_sort(list.begin(), list.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
     for (syntax::Diagnostic& d : list) {
         const bool error = d.severity == syntax::Severity::Error;
-        (error ? out.error(d.span, std::move(d.message), std::move(d.mend)) : out.warning(d.span, std::move(d.message), std::move(d.mend)));
+        (error ? out.error(d.span, std::move(d.message), std::move(d.mend))
+               : out.warning(d.span, std::move(d.message), std::move(d.mend)));
     }
 }
 
@@ -44,7 +47,8 @@ void fill(Grammar& grammar, const Files& files, const syntax::Diagnostics& unrea
     each(&Checker::sayings);
     if (diagnostics.hasErrors() || unread.hasErrors()) return;
     if (grammar.starts.empty()) {
-        diagnostics.error({grammar.sources[0].get(), 0, 0}, "there is nothing to begin with", "write 'start Name -> cube'");
+        diagnostics.error({grammar.sources[0].get(), 0, 0}, "there is nothing to begin with",
+                          "write 'start Name -> cube'");
         return;
     }
     checker.unused(files.asts.back());
@@ -72,7 +76,8 @@ std::shared_ptr<const Grammar> load(syntax::SourcePtr source, const Loader& load
 }
 
 Result<Value> parseValue(const Param& param, const std::string& text) {
-    if (text.find_first_not_of(" \t") == std::string::npos) return Error{Error::Kind::Input, fmt::format("'{}' is set to nothing", param.name)};
+    if (text.find_first_not_of(" \t") == std::string::npos)
+        return Error{Error::Kind::Input, fmt::format("'{}' is set to nothing", param.name)};
     const auto source = std::make_shared<const syntax::Source>("--set " + param.name, text);
     syntax::Diagnostics diagnostics;
     const syntax::Expr expr = syntax::parseExpression(source, diagnostics);

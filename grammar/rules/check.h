@@ -10,12 +10,14 @@
 
 namespace sgm::rules {
 
-/// Gives the source behind `use "name"` of `from`, or null with `why` set. Files are read by cli/ and viewer/ only. A file
-/// is known by its source's name(). Diagnostics point into the source: whoever loads keeps it for as long as they are read.
+/// Gives the source behind `use "name"` of `from`, or null with `why` set. Files are read by cli/ and viewer/ only. A
+/// file is known by its source's name(). Diagnostics point into the source: whoever loads keeps it for as long as they
+/// are read.
 using Loader = std::function<syntax::SourcePtr(const std::string& name, const syntax::Source& from, std::string& why)>;
 
-/// Null when `diagnostics` has errors. Reports everything wrong in one run, in the order of the text, used files first: unknown names with "did you mean", units,
-/// ranges, unused parameters and unreachable rules (warnings), rules that provably never end, features not built yet.
+/// Null when `diagnostics` has errors. Reports everything wrong in one run, in the order of the text, used files first:
+/// unknown names with "did you mean", units, ranges, unused parameters and unreachable rules (warnings), rules that
+/// provably never end, features not built yet.
 std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load, syntax::Diagnostics& diagnostics);
 
 /// parse + check of one source.

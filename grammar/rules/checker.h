@@ -1,6 +1,6 @@
 // The checker at work: one Grammar being filled, and what its names mean so far.
-// Enters: the Asts of a file and of what it uses, in the order they were used. Leaves: a filled Grammar and diagnostics.
-// Assumes declare() runs before the rest: names may stand before they are declared.
+// Enters: the Asts of a file and of what it uses, in the order they were used. Leaves: a filled Grammar and
+// diagnostics. Assumes declare() runs before the rest: names may stand before they are declared.
 #pragma once
 
 #include <map>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "grammar/rules/grammar.h"
+#include "grammar/rules/make.h"
 #include "grammar/rules/type.h"
 #include "grammar/syntax/ast.h"
 
@@ -19,6 +20,11 @@ struct Typed {
     Expr expr;
     Type type;
 };
+
+inline Typed makeTyped(SourceSpan span, Value value) {
+    const Type type = Type::of(value);
+    return {makeConstant(span, std::move(value)), type};
+}
 
 /// What may be said at a spot of the grammar, and what was said so far in the rule around it.
 struct Place {
@@ -39,8 +45,8 @@ struct Place {
         uint32_t index;
         Type type;
     };
-    std::vector<Local> locals;  ///< in sight, innermost last
-    uint32_t frame = 0;         ///< locals so far, in sight or not
+    std::vector<Local> locals;                 ///< in sight, innermost last
+    uint32_t frame = 0;                        ///< locals so far, in sight or not
     std::map<std::string, uint32_t> ordinals;  ///< of each label in the body
     bool morphs = false;                       ///< an operator or a solid of the body morphs
 
@@ -94,19 +100,21 @@ private:
     Typed unknownName(const Place& place, const syntax::Expr& e);
     Typed member(Place& place, const syntax::Expr& e);
     Typed index(Place& place, const syntax::Expr& e);
-    Typed call(Place& place, const syntax::Expr& e);
-    Typed countCall(Place& place, const syntax::Expr& e);
     Typed tuple(Place& place, const syntax::Expr& e);
-    Typed unary(Place& place, const syntax::Expr& e);
-    Typed binary(Place& place, const syntax::Expr& e);
-    Typed comparedWord(Place& place, const syntax::Expr& e, const Type& other);
-    Typed range(Place& place, const syntax::Expr& e);
-    Typed ramp(Place& place, const syntax::Expr& e);
     Typed failed(SourceSpan span, std::string message, std::string mend = {});
     Typed unknown(SourceSpan span, const std::string& word, std::string message, std::string mend = {});
     Typed applied(Expr::Kind kind, Fn fn, SourceSpan span, std::vector<Typed> args);
     bool alike(const Typed& a, const Typed& b, std::string_view verb);
     bool asks(const Typed& value, Want want, std::string_view what, const syntax::Expr* written);
+
+    // operators.cpp
+    Typed call(Place& place, const syntax::Expr& e);
+    Typed countCall(Place& place, const syntax::Expr& e);
+    Typed unary(Place& place, const syntax::Expr& e);
+    Typed binary(Place& place, const syntax::Expr& e);
+    Typed comparedWord(Place& place, const syntax::Expr& e, const Type& other);
+    Typed range(Place& place, const syntax::Expr& e);
+    Typed ramp(Place& place, const syntax::Expr& e);
 
     // solids.cpp
     Solid solid(Place& place, const syntax::Expr& e);
@@ -155,27 +163,26 @@ private:
     std::vector<Setting> settings(const std::vector<syntax::Setting>& written);
     uint32_t startCalled(const syntax::Name& name);
 
-
     Grammar& grammar_;
     syntax::Diagnostics& diagnostics_;
 
     std::map<std::string, uint32_t> params_;
-    std::vector<Value> defaults_;                 ///< of all parameters
+    std::vector<Value> defaults_;  ///< of all parameters
     std::map<std::string, SymbolId> symbols_;
-    std::map<std::string, uint32_t> rules_;       ///< named ones
+    std::map<std::string, uint32_t> rules_;  ///< named ones
     std::set<uint32_t> usedParams_;
-    std::set<uint32_t> brokenParams_;             ///< whose default could not be read: of no known type
-    std::set<std::string> withNames_;             ///< set by `with` somewhere
-    std::set<std::string> jointNames_;            ///< declared by a terminal or a primitive
+    std::set<uint32_t> brokenParams_;   ///< whose default could not be read: of no known type
+    std::set<std::string> withNames_;   ///< set by `with` somewhere
+    std::set<std::string> jointNames_;  ///< declared by a terminal or a primitive
     std::set<std::string> excused_;
-    bool anythingExcused_ = false;                ///< a used file is missing, and nobody knows what it declares
-    std::set<std::string> unbuilt_;               ///< maps and lsystems: named once, refused once
-    std::set<SymbolId> ruled_;                    ///< have a rule
-    std::set<SymbolId> placed_;                   ///< stand in a start, a body or behind a colon
+    bool anythingExcused_ = false;   ///< a used file is missing, and nobody knows what it declares
+    std::set<std::string> unbuilt_;  ///< maps and lsystems: named once, refused once
+    std::set<SymbolId> ruled_;       ///< have a rule
+    std::set<SymbolId> placed_;      ///< stand in a start, a body or behind a colon
     std::map<std::string, const syntax::TerminalDecl*> terminalDecls_;
     std::map<std::string, Solid> terminalSolids_;
-    std::map<SymbolId, uint32_t> unnamedRules_;   ///< how many so far
-    std::vector<std::string> terminalsInWork_;    ///< whose solids are being read: finds a = b, b = a
+    std::map<SymbolId, uint32_t> unnamedRules_;  ///< how many so far
+    std::vector<std::string> terminalsInWork_;   ///< whose solids are being read: finds a = b, b = a
     std::map<std::string, SourceSpan> seenParams_, seenTerminals_, seenRules_, seenStarts_, seenStyles_, seenDerives_;
 };
 

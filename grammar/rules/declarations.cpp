@@ -39,9 +39,13 @@ void Checker::parameter(const syntax::ParamDecl& decl) {
     if (!param.choices.empty()) {
         if (decl.range) diagnostics_.error(decl.range->span, "a parameter has a range or choices, not both");
         param.value = makeWord(decl.value.text);
-        const bool offered = std::find(param.choices.begin(), param.choices.end(), decl.value.text) != param.choices.end();
+        const bool offered =
+            std::find(param.choices.begin(), param.choices.end(), decl.value.text) != param.choices.end();
         if (decl.value.kind != Written::Kind::Error && (decl.value.kind != Written::Kind::Name || !offered))
-            diagnostics_.error(decl.value.span, fmt::format("the default '{}' is none of the choices {}", decl.value.span.text(), fmt::join(param.choices, ", ")), nearest(decl.value.text, param.choices));
+            diagnostics_.error(decl.value.span,
+                               fmt::format("the default '{}' is none of the choices {}", decl.value.span.text(),
+                                           fmt::join(param.choices, ", ")),
+                               nearest(decl.value.text, param.choices));
         return;
     }
     const auto value = plain(decl.value, false);
@@ -52,16 +56,19 @@ void Checker::parameter(const syntax::ParamDecl& decl) {
     param.value = *value;
     if (!decl.range) return;
     if (value->kind != Value::Kind::Number && value->kind != Value::Kind::Vector) {
-        diagnostics_.error(decl.range->span, fmt::format("a range belongs to a number, but '{}' is {}", param.name, describe(Type::of(*value))));
+        diagnostics_.error(decl.range->span, fmt::format("a range belongs to a number, but '{}' is {}", param.name,
+                                                         describe(Type::of(*value))));
         return;
     }
     if (decl.range->kind != Written::Kind::Range) {
-        if (decl.range->kind != Written::Kind::Error) diagnostics_.error(decl.range->span, "'in' takes a range", "write 'in 0..1'");
+        if (decl.range->kind != Written::Kind::Error)
+            diagnostics_.error(decl.range->span, "'in' takes a range", "write 'in 0..1'");
         return;
     }
     const auto lo = plain(decl.range->args[0], false), hi = plain(decl.range->args[1], false);
     if (!lo || !hi) return;
-    if (const std::string problem = setRange(param, *lo, *hi); !problem.empty()) diagnostics_.error(decl.range->span, problem);
+    if (const std::string problem = setRange(param, *lo, *hi); !problem.empty())
+        diagnostics_.error(decl.range->span, problem);
     else if (const auto fitted = conform(param, param.value); !fitted.ok()) {
         diagnostics_.error(decl.value.span, fitted.error().message);
         brokenParams_.insert(params_.at(decl.name.text));
@@ -70,7 +77,10 @@ void Checker::parameter(const syntax::ParamDecl& decl) {
 
 void Checker::parameters(const syntax::Ast& ast) {
     for (const auto& decl : ast.params)
-        if (const auto seen = seenParams_.find(decl.name.text); seen != seenParams_.end() && seen->second.begin == decl.name.span.begin && seen->second.source == decl.name.span.source) parameter(decl);
+        if (const auto seen = seenParams_.find(decl.name.text); seen != seenParams_.end() &&
+                                                                seen->second.begin == decl.name.span.begin &&
+                                                                seen->second.source == decl.name.span.source)
+            parameter(decl);
     defaults_.clear();
     for (const Param& p : grammar_.params) defaults_.push_back(p.value);
 }
@@ -78,17 +88,26 @@ void Checker::parameters(const syntax::Ast& ast) {
 void Checker::declaredJoint(const syntax::TerminalDecl::JointDecl& decl, std::vector<Joint>& joints) {
     Joint joint;
     joint.name = decl.name.text;
-    if (axisNumber(joint.name) >= 0 || isTaken(joint.name)) diagnostics_.error(decl.name.span, fmt::format("'{}' is a word of the language and can't name a joint", joint.name));
-    if (std::any_of(joints.begin(), joints.end(), [&](const Joint& j) { return j.name == joint.name; })) diagnostics_.error(decl.name.span, fmt::format("there is already a joint '{}'", joint.name));
+    if (axisNumber(joint.name) >= 0 || isTaken(joint.name))
+        diagnostics_.error(decl.name.span,
+                           fmt::format("'{}' is a word of the language and can't name a joint", joint.name));
+    if (std::any_of(joints.begin(), joints.end(), [&](const Joint& j) { return j.name == joint.name; }))
+        diagnostics_.error(decl.name.span, fmt::format("there is already a joint '{}'", joint.name));
     if (const auto at = plain(decl.at, false)) {
-        if (at->kind != Value::Kind::Vector || at->count != 3 || !fits(Type::of(*at), Want::Triple)) diagnostics_.error(decl.at.span, "a joint stands at a point (x, y, z), in shares of the solid's size from its centre");
+        if (at->kind != Value::Kind::Vector || at->count != 3 || !fits(Type::of(*at), Want::Triple))
+            diagnostics_.error(decl.at.span,
+                               "a joint stands at a point (x, y, z), in shares of the solid's size from its centre");
         joint.at = vectorOf(*at) * 2.0;  // written in the unit solid, −.5 … .5; held in half-sizes
     }
     if (const auto facing = plain(decl.facing, false)) {
         const int axis = facing->kind == Value::Kind::Axis ? static_cast<int>(facing->num()) : -1;
-        if (axis >= 0 && axis < 6) joint.facing[axis / 2] = axis % 2 ? -1 : 1;
-        else if (facing->kind == Value::Kind::Vector && facing->count == 3) joint.facing = normalized(vectorOf(*facing));
-        else if (axis != 6) diagnostics_.error(decl.facing.span, "a joint faces a direction such as -z or (1, 1, 0), or 'centre' to meet any other");
+        if (axis >= 0 && axis < 6)
+            joint.facing[axis / 2] = axis % 2 ? -1 : 1;
+        else if (facing->kind == Value::Kind::Vector && facing->count == 3)
+            joint.facing = normalized(vectorOf(*facing));
+        else if (axis != 6)
+            diagnostics_.error(decl.facing.span,
+                               "a joint faces a direction such as -z or (1, 1, 0), or 'centre' to meet any other");
     }
     joints.push_back(std::move(joint));
 }
@@ -97,7 +116,10 @@ void Checker::look(const syntax::TerminalDecl& decl, Material& material, std::ve
     Place place(Place::Where::Look);
     for (const Attribute& a : attributes(place, decl.attributes)) {
         if (a.id != Id::Color && a.id != Id::Rough && a.id != Id::Metal) {
-            diagnostics_.error(a.span, fmt::format("a terminal has a colour, a roughness, a metalness and joints, but no '{}'", syntax::operations()[static_cast<size_t>(a.id)].name), "say it where the terminal is used");
+            diagnostics_.error(a.span,
+                               fmt::format("a terminal has a colour, a roughness, a metalness and joints, but no '{}'",
+                                           syntax::operations()[static_cast<size_t>(a.id)].name),
+                               "say it where the terminal is used");
             continue;
         }
         if (a.args.empty()) continue;
@@ -128,7 +150,8 @@ void Checker::terminal(const syntax::TerminalDecl& decl) {
             symbol.material = static_cast<uint32_t>(grammar_.materials.size());
             grammar_.materials.push_back(material);
         }
-        if (decl.solid) symbol.solid = first ? terminalSolid(name) : grammar_.symbols[symbols_.at(decl.names[0].text)].solid;
+        if (decl.solid)
+            symbol.solid = first ? terminalSolid(name) : grammar_.symbols[symbols_.at(decl.names[0].text)].solid;
         first = false;
     }
 }
@@ -156,17 +179,21 @@ std::vector<Setting> Checker::settings(const std::vector<syntax::Setting>& writt
         if (param == params_.end()) {
             std::vector<std::string> known;
             for (const Param& p : grammar_.params) known.push_back(p.name);
-            unknown(s.name.span, s.name.text, fmt::format("there is no parameter '{}'", s.name.text), nearest(s.name.text, known));
+            unknown(s.name.span, s.name.text, fmt::format("there is no parameter '{}'", s.name.text),
+                    nearest(s.name.text, known));
             continue;
         }
         const Param& p = grammar_.params[param->second];
         if (brokenParams_.contains(param->second)) continue;
-        if (std::any_of(result.begin(), result.end(), [&](const Setting& r) { return r.param == param->second; })) diagnostics_.error(s.span, fmt::format("'{}' is set twice", p.name));
+        if (std::any_of(result.begin(), result.end(), [&](const Setting& r) { return r.param == param->second; }))
+            diagnostics_.error(s.span, fmt::format("'{}' is set twice", p.name));
         const auto value = plain(s.value, !p.choices.empty());
         if (!value) continue;
         const auto fitted = conform(p, *value);
-        if (!fitted.ok()) diagnostics_.error(s.value.span, fitted.error().message, nearest(value->text, p.choices));
-        else result.push_back({param->second, *fitted, s.span});
+        if (!fitted.ok())
+            diagnostics_.error(s.value.span, fitted.error().message, nearest(value->text, p.choices));
+        else
+            result.push_back({param->second, *fitted, s.span});
     }
     return result;
 }
@@ -177,7 +204,8 @@ void Checker::placeOf(const syntax::DeriveDecl::Step& step) {
         const size_t end = std::min(rest.find('/'), rest.size());
         const std::string name(rest.substr(0, std::min(rest.find('['), end)));
         if (!symbols_.contains(name) && !field::findPrimitive(name) && name != "morph" && name != "group") {
-            unknown(step.at.span, name, fmt::format("no shape is called '{}'", name), nearest(name, symbolNames(false)));
+            unknown(step.at.span, name, fmt::format("no shape is called '{}'", name),
+                    nearest(name, symbolNames(false)));
             return;
         }
         rest.remove_prefix(std::min(end + 1, rest.size()));
@@ -195,7 +223,8 @@ void Checker::derive(const syntax::DeriveDecl& decl) {
         if (step.rule.empty()) continue;
         const auto rule = rules_.find(step.rule.text);
         if (rule == rules_.end()) {
-            unknown(step.rule.span, step.rule.text, fmt::format("there is no rule named '{}'", step.rule.text), nearest(step.rule.text, known));
+            unknown(step.rule.span, step.rule.text, fmt::format("there is no rule named '{}'", step.rule.text),
+                    nearest(step.rule.text, known));
             continue;
         }
         placeOf(step);
@@ -208,7 +237,8 @@ void Checker::sayings(const syntax::Ast& ast) {
     for (const auto& decl : ast.derives) derive(decl);
     for (const auto& decl : ast.styles) {
         if (twice(seenStyles_, decl.name, "style")) continue;
-        grammar_.styles.push_back({decl.name.text, decl.start.empty() ? none : startCalled(decl.start), settings(decl.settings), decl.span});
+        grammar_.styles.push_back(
+            {decl.name.text, decl.start.empty() ? none : startCalled(decl.start), settings(decl.settings), decl.span});
     }
     for (const auto& decl : ast.checks) {
         Check out;
@@ -229,7 +259,8 @@ void Checker::refuse(const syntax::Ast& ast) {
 
 void Checker::unused(const syntax::Ast& ast) {
     for (const auto& decl : ast.params)
-        if (const auto param = params_.find(decl.name.text); param != params_.end() && !usedParams_.contains(param->second))
+        if (const auto param = params_.find(decl.name.text);
+            param != params_.end() && !usedParams_.contains(param->second))
             diagnostics_.warning(decl.name.span, fmt::format("nothing uses the parameter '{}'", decl.name.text));
 }
 

@@ -55,9 +55,7 @@ Value whole(Value v) {
     return v;
 }
 
-Mat3 matrixOf(const Value& v) {
-    return {{v.n[0], v.n[1], v.n[2]}, {v.n[3], v.n[4], v.n[5]}, {v.n[6], v.n[7], v.n[8]}};
-}
+Mat3 matrixOf(const Value& v) { return {{v.n[0], v.n[1], v.n[2]}, {v.n[3], v.n[4], v.n[5]}, {v.n[6], v.n[7], v.n[8]}}; }
 Value rotationOf(const Mat3& m) {
     Value r;
     r.kind = Value::Kind::Rotation;
@@ -68,10 +66,12 @@ Value rotationOf(const Mat3& m) {
 
 Value multiply(const Value& a, const Value& b) {
     if (a.kind == Value::Kind::Rotation) return rotationOf(matrixOf(a) * matrixOf(b));
-    return componentwise(a, b, [](double x, double y) { return x * y; }, unitOfProduct);
+    return componentwise(
+        a, b, [](double x, double y) { return x * y; }, unitOfProduct);
 }
 Value divide(const Value& a, const Value& b) {
-    Value r = componentwise(a, b, [](double x, double y) { return y == 0 ? 0 : x / y; }, unitOfQuotient);
+    Value r = componentwise(
+        a, b, [](double x, double y) { return y == 0 ? 0 : x / y; }, unitOfQuotient);
     r.integer = false;
     return r;
 }
@@ -122,37 +122,70 @@ Value applyFunction(Fn fn, std::span<const Value> a) {
         case Fn::Neg:
             if (a[0].kind == Value::Kind::Axis) return opposite(a[0]);
             return componentwise(a[0], [](double v) { return -v; });
-        case Fn::Not: return Value::boolean(!a[0].truth());
-        case Fn::Add: return componentwise(a[0], a[1], [](double p, double q) { return p + q; }, either);
-        case Fn::Sub: return componentwise(a[0], a[1], [](double p, double q) { return p - q; }, either);
-        case Fn::Mul: return multiply(a[0], a[1]);
-        case Fn::Div: return divide(a[0], a[1]);
-        case Fn::Rem: return componentwise(a[0], a[1], remainder, either);
-        case Fn::Less: return Value::boolean(x < y);
-        case Fn::LessEq: return Value::boolean(x <= y);
-        case Fn::Greater: return Value::boolean(x > y);
-        case Fn::GreaterEq: return Value::boolean(x >= y);
-        case Fn::Equal: return Value::boolean(same(a[0], a[1]));
-        case Fn::NotEqual: return Value::boolean(!same(a[0], a[1]));
-        case Fn::And: return Value::boolean(a[0].truth() && a[1].truth());
-        case Fn::Or: return Value::boolean(a[0].truth() || a[1].truth());
-        case Fn::Min: return extreme(a, smaller);
-        case Fn::Max: return extreme(a, larger);
-        case Fn::Abs: return componentwise(a[0], [](double v) { return std::abs(v); });
-        case Fn::Floor: return whole(componentwise(a[0], [](double v) { return std::floor(v); }));
-        case Fn::Ceil: return whole(componentwise(a[0], [](double v) { return std::ceil(v); }));
-        case Fn::Round: return whole(componentwise(a[0], [](double v) { return std::floor(v + 0.5); }));
-        case Fn::Sqrt: return Value::number(std::sqrt(larger(x, 0)));
-        case Fn::Sin: return Value::number(std::sin(x));
-        case Fn::Cos: return Value::number(std::cos(x));
-        case Fn::Clamp: return componentwise(componentwise(a[0], a[1], larger, either), a[2], smaller, either);
-        case Fn::Lerp: return interpolate(a[0], a[1], a[2].num());
-        case Fn::If: return a[0].truth() ? a[1] : a[2];
-        case Fn::RotX: return rotationOf(Mat3::rotation({1, 0, 0}, x));
-        case Fn::RotY: return rotationOf(Mat3::rotation({0, 1, 0}, x));
-        case Fn::RotZ: return rotationOf(Mat3::rotation({0, 0, 1}, x));
-        case Fn::Rgb: return rgb(a);
-        case Fn::Count: return whole(Value::number(0));
+        case Fn::Not:
+            return Value::boolean(!a[0].truth());
+        case Fn::Add:
+            return componentwise(
+                a[0], a[1], [](double p, double q) { return p + q; }, either);
+        case Fn::Sub:
+            return componentwise(
+                a[0], a[1], [](double p, double q) { return p - q; }, either);
+        case Fn::Mul:
+            return multiply(a[0], a[1]);
+        case Fn::Div:
+            return divide(a[0], a[1]);
+        case Fn::Rem:
+            return componentwise(a[0], a[1], remainder, either);
+        case Fn::Less:
+            return Value::boolean(x < y);
+        case Fn::LessEq:
+            return Value::boolean(x <= y);
+        case Fn::Greater:
+            return Value::boolean(x > y);
+        case Fn::GreaterEq:
+            return Value::boolean(x >= y);
+        case Fn::Equal:
+            return Value::boolean(same(a[0], a[1]));
+        case Fn::NotEqual:
+            return Value::boolean(!same(a[0], a[1]));
+        case Fn::And:
+            return Value::boolean(a[0].truth() && a[1].truth());
+        case Fn::Or:
+            return Value::boolean(a[0].truth() || a[1].truth());
+        case Fn::Min:
+            return extreme(a, smaller);
+        case Fn::Max:
+            return extreme(a, larger);
+        case Fn::Abs:
+            return componentwise(a[0], [](double v) { return std::abs(v); });
+        case Fn::Floor:
+            return whole(componentwise(a[0], [](double v) { return std::floor(v); }));
+        case Fn::Ceil:
+            return whole(componentwise(a[0], [](double v) { return std::ceil(v); }));
+        case Fn::Round:
+            return whole(componentwise(a[0], [](double v) { return std::floor(v + 0.5); }));
+        case Fn::Sqrt:
+            return Value::number(std::sqrt(larger(x, 0)));
+        case Fn::Sin:
+            return Value::number(std::sin(x));
+        case Fn::Cos:
+            return Value::number(std::cos(x));
+        case Fn::Clamp:
+            return componentwise(componentwise(a[0], a[1], larger, either), a[2], smaller, either);
+        case Fn::Lerp:
+            return interpolate(a[0], a[1], a[2].num());
+        case Fn::If:
+            return a[0].truth() ? a[1] : a[2];
+        case Fn::RotX:
+            return rotationOf(Mat3::rotation({1, 0, 0}, x));
+        case Fn::RotY:
+            return rotationOf(Mat3::rotation({0, 1, 0}, x));
+        case Fn::RotZ:
+            return rotationOf(Mat3::rotation({0, 0, 1}, x));
+        case Fn::Rgb:
+            return rgb(a);
+        case Fn::Count:
+            return whole(Value::number(0));
     }
     return {};
 }
@@ -185,14 +218,16 @@ Value interpolate(const Value& a, const Value& b, double t) {
         for (size_t i = 0; i < 3; ++i) r.n[i] = a.n[i] + (b.n[i] - a.n[i]) * t;
         return r;
     }
-    Value r = componentwise(a, b, [t](double p, double q) { return p + (q - p) * t; }, either);
+    Value r = componentwise(
+        a, b, [t](double p, double q) { return p + (q - p) * t; }, either);
     r.integer = false;
     return r;
 }
 
 std::optional<Value> fold(const Expr& expr, std::span<const Value> params) {
     if (expr.kind == Expr::Kind::Constant) return expr.value;
-    if (expr.kind == Expr::Kind::Param) return expr.index < params.size() ? std::optional(params[expr.index]) : std::nullopt;
+    if (expr.kind == Expr::Kind::Param)
+        return expr.index < params.size() ? std::optional(params[expr.index]) : std::nullopt;
     std::vector<Value> args;
     for (const Expr& arg : expr.args) {
         auto value = fold(arg, params);
@@ -200,14 +235,17 @@ std::optional<Value> fold(const Expr& expr, std::span<const Value> params) {
         args.push_back(std::move(*value));
     }
     switch (expr.kind) {
-        case Expr::Kind::Element: return component(args[0], args[1]);
-        case Expr::Kind::Tuple: return tuple(args);
+        case Expr::Kind::Element:
+            return component(args[0], args[1]);
+        case Expr::Kind::Tuple:
+            return tuple(args);
         case Expr::Kind::Unary:
         case Expr::Kind::Binary:
         case Expr::Kind::Call:
             if (static_cast<Fn>(expr.index) == Fn::Count) return std::nullopt;
             return applyFunction(static_cast<Fn>(expr.index), args);
-        default: return std::nullopt;
+        default:
+            return std::nullopt;
     }
 }
 

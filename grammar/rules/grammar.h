@@ -1,5 +1,6 @@
 // The checked grammar ⟨V_T, V_N, R, I⟩ (SG-M definition 1): every name an index, every unit known, every range legal.
-// Enters: an Ast, from `check`. Leaves: an immutable value that `derive` runs. Assumes its Sources outlive it (held here).
+// Enters: an Ast, from `check`. Leaves: an immutable value that `derive` runs. Assumes its Sources outlive it (held
+// here).
 #pragma once
 
 #include <memory>
@@ -32,11 +33,12 @@ struct Expr {
         Scope,      ///< index 0 … 2: scope.x, .y, .z in metres
         Element,    ///< args[0][args[1]] of a vector (an axis indexes 0 … 5)
         Tuple,      ///< args
-        Unary, Binary,  ///< index is a Fn
-        Call,       ///< index is a Fn over args
-        Range,      ///< args[0] … args[1]: drawn from the shape's stream under `draw`
-        Ramp,       ///< args[0] ~> args[1]: linear over the chain
-        Figure,     ///< index is a Figure: in `check … expect`
+        Unary,
+        Binary,  ///< index is a Fn
+        Call,    ///< index is a Fn over args
+        Range,   ///< args[0] … args[1]: drawn from the shape's stream under `draw`
+        Ramp,    ///< args[0] ~> args[1]: linear over the chain
+        Figure,  ///< index is a Figure: in `check … expect`
     };
     Kind kind = Kind::Constant;
     SourceSpan span;
@@ -48,9 +50,36 @@ struct Expr {
 
 /// Built-in functions and operators of expressions.
 enum class Fn : uint32_t {
-    Neg, Not, Add, Sub, Mul, Div, Rem, Less, LessEq, Greater, GreaterEq, Equal, NotEqual, And, Or,
-    Min, Max, Abs, Floor, Ceil, Round, Sqrt, Sin, Cos, Clamp, Lerp, If,
-    RotX, RotY, RotZ,  ///< a Rotation from an angle
+    Neg,
+    Not,
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Rem,
+    Less,
+    LessEq,
+    Greater,
+    GreaterEq,
+    Equal,
+    NotEqual,
+    And,
+    Or,
+    Min,
+    Max,
+    Abs,
+    Floor,
+    Ceil,
+    Round,
+    Sqrt,
+    Sin,
+    Cos,
+    Clamp,
+    Lerp,
+    If,
+    RotX,
+    RotY,
+    RotZ,  ///< a Rotation from an angle
     Rgb,
     Count,  ///< number of live or derived shapes of a symbol: count(Name); args[0] is a Word whose n[0] is the SymbolId
 };
@@ -63,10 +92,10 @@ struct Solid {
     Kind kind = Kind::Nil;
     SourceSpan span;
     const field::Primitive* primitive = nullptr;
-    std::vector<Expr> args;          ///< Primitive and Kifs: one per row parameter, defaults filled in
-    std::vector<Solid> parts;        ///< Morph: two. Combination: parts with `op` between
-    Operator op = Operator::None;    ///< Combination
-    Expr amount;                     ///< Morph: a in 0 … 1 (eq. 14)
+    std::vector<Expr> args;        ///< Primitive and Kifs: one per row parameter, defaults filled in
+    std::vector<Solid> parts;      ///< Morph: two. Combination: parts with `op` between
+    Operator op = Operator::None;  ///< Combination
+    Expr amount;                   ///< Morph: a in 0 … 1 (eq. 14)
 };
 
 struct Body;
@@ -86,7 +115,7 @@ struct Attribute {
     std::vector<Expr> args;
     /// At, To: which joints are asked for. For `free(…)` the candidates (empty = all); else one.
     bool free = false;
-    std::vector<Expr> joints;     ///< each evaluates to an Axis or a Word (a named joint)
+    std::vector<Expr> joints;  ///< each evaluates to an Axis or a Word (a named joint)
     /// On: `last`, or `any(d)` with args[0] = d.
     enum class Host : uint8_t { Matched, Last, Any } host = Host::Matched;
     /// Displace: args = amplitude, frequency, octaves.
@@ -106,10 +135,11 @@ struct Element {
     std::vector<Attribute> prefix;  ///< change the matched scope
     Content content;
     std::vector<Attribute> attributes;
-    SymbolId live = none;           ///< `: Name`
-    uint32_t ordinal = 0;           ///< ordinal of this symbol in the rule's body: part of the child's key
-    std::string label;              ///< key text: symbol or primitive name
-    /// For: `local` runs over `over` (a Tuple whose args are the values, or a Range of whole numbers) where `guard` holds.
+    SymbolId live = none;  ///< `: Name`
+    uint32_t ordinal = 0;  ///< ordinal of this symbol in the rule's body: part of the child's key
+    std::string label;     ///< key text: symbol or primitive name
+    /// For: `local` runs over `over` (a Tuple whose args are the values, or a Range of whole numbers) where `guard`
+    /// holds.
     uint32_t local = 0;
     std::optional<Expr> over, guard;
     std::shared_ptr<Body> body;
@@ -124,7 +154,7 @@ struct Body {
 };
 
 struct Rule {
-    std::string name;       ///< "R0", or "Cell#2" for the second unnamed rule of Cell
+    std::string name;  ///< "R0", or "Cell#2" for the second unnamed rule of Cell
     SymbolId symbol = none;
     SymbolId beside = none;
     SourceSpan span;
@@ -133,10 +163,10 @@ struct Rule {
     std::optional<Expr> weight;
     Body body;
     std::optional<Body> finally_;
-    bool morphic = false;   ///< R_M: its body morphs; else R_C
+    bool morphic = false;         ///< R_M: its body morphs; else R_C
     bool finallyMorphic = false;  ///< the same of `finally_`, which is a step of its own
-    uint32_t locals = 0;    ///< frame size for `for` variables and `i`
-    uint32_t stepLocal = none;  ///< the local that holds i in 1 … n of `repeat`
+    uint32_t locals = 0;          ///< frame size for `for` variables and `i`
+    uint32_t stepLocal = none;    ///< the local that holds i in 1 … n of `repeat`
 };
 
 struct Joint {
@@ -149,9 +179,11 @@ struct Symbol {
     std::string name;
     bool terminal = false;
     SourceSpan span;
-    std::optional<Solid> solid;   ///< terminal with a solid; without one it is a cube
-    uint32_t material = none;     ///< index into Grammar::materials, where colour or roughness were given (at default parameters)
-    std::vector<Attribute> look;  ///< those of Color, Rough, Metal that depend on parameters: they act on every shape of the symbol
+    std::optional<Solid> solid;  ///< terminal with a solid; without one it is a cube
+    uint32_t material =
+        none;  ///< index into Grammar::materials, where colour or roughness were given (at default parameters)
+    std::vector<Attribute>
+        look;  ///< those of Color, Rough, Metal that depend on parameters: they act on every shape of the symbol
     std::vector<Joint> joints;    ///< declared ones, besides the solid's own
     std::vector<uint32_t> rules;  ///< rules for it, in file order
 };
@@ -159,22 +191,45 @@ struct Symbol {
 struct Param {
     std::string name, label, group, key;
     SourceSpan span;
-    SourceSpan valueSpan;          ///< what a GUI rewrites
-    Value value;                   ///< default
-    std::optional<Value> lo, hi;   ///< range, inclusive, per component
+    SourceSpan valueSpan;         ///< what a GUI rewrites
+    Value value;                  ///< default
+    std::optional<Value> lo, hi;  ///< range, inclusive, per component
     std::vector<std::string> choices;
 };
 
-struct Start { SymbolId symbol; SourceSpan span; Body body; uint32_t locals = 0; };
+struct Start {
+    SymbolId symbol;
+    SourceSpan span;
+    Body body;
+    uint32_t locals = 0;
+};
 struct Derive {
     std::string name;
     SourceSpan span;
-    struct Step { uint32_t rule; std::string place; SourceSpan span; };
+    struct Step {
+        uint32_t rule;
+        std::string place;
+        SourceSpan span;
+    };
     std::vector<Step> steps;
 };
-struct Setting { uint32_t param; Value value; SourceSpan span; };
-struct Style { std::string name; uint32_t start = none; std::vector<Setting> settings; SourceSpan span; };
-struct Check { uint32_t start; std::vector<Setting> settings; Expr expect; SourceSpan span; };
+struct Setting {
+    uint32_t param;
+    Value value;
+    SourceSpan span;
+};
+struct Style {
+    std::string name;
+    uint32_t start = none;
+    std::vector<Setting> settings;
+    SourceSpan span;
+};
+struct Check {
+    uint32_t start;
+    std::vector<Setting> settings;
+    Expr expect;
+    SourceSpan span;
+};
 
 struct Grammar {
     std::vector<syntax::SourcePtr> sources;  ///< sources[0] is the file itself, the rest came by `use`

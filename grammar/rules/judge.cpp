@@ -100,8 +100,8 @@ private:
         return !drawn;
     }
 
-    /// May the rule find nothing to match? A guard may fail, a neighbour be missing, a joint be taken. Growth straight on
-    /// along one axis always finds the next joint free, and only that is held for certain.
+    /// May the rule find nothing to match? A guard may fail, a neighbour be missing, a joint be taken. Growth straight
+    /// on along one axis always finds the next joint free, and only that is held for certain.
     static bool mayFail(const Rule& rule) {
         if (rule.beside != none || !alwaysHolds(rule.when)) return true;
         if (rule.repeat && certain(rule.repeat).value_or(0) < 1) return true;
@@ -110,8 +110,11 @@ private:
         eachElement(rule.body, [&](const Element& e) {
             for (const Attribute& a : e.attributes) {
                 const Expr* joint = a.joints.empty() ? nullptr : &a.joints[0];
-                const bool axis = joint && joint->kind == Expr::Kind::Constant && joint->value.kind == Value::Kind::Axis;
-                if (a.id == Id::At) fails = fails || a.free || !axis || joint->value.num() > 5 || !used.insert(joint->value.num()).second;
+                const bool axis =
+                    joint && joint->kind == Expr::Kind::Constant && joint->value.kind == Value::Kind::Axis;
+                if (a.id == Id::At)
+                    fails =
+                        fails || a.free || !axis || joint->value.num() > 5 || !used.insert(joint->value.num()).second;
                 if (a.id == Id::To) fails = fails || !axis || joint->value.num() < 6;
                 if (a.id == Id::Turn) fails = true;
             }
@@ -134,8 +137,10 @@ private:
                 return !e.content.group || bodyMayEnd(*e.content.group, chain);
             case Element::Kind::For:
                 return !alwaysHolds(e.guard) || !runsOnce(*e.over) || bodyMayEnd(*e.body, chain);
-            case Element::Kind::While: return true;
-            case Element::Kind::When: return !alwaysHolds(e.guard) || bodyMayEnd(*e.body, chain);
+            case Element::Kind::While:
+                return true;
+            case Element::Kind::When:
+                return !alwaysHolds(e.guard) || bodyMayEnd(*e.body, chain);
             case Element::Kind::Choose:
                 return std::any_of(e.choices.begin(), e.choices.end(), [&](const Choice& c) {
                     return certain(c.weight).value_or(1) != 0 && bodyMayEnd(*c.body, chain);
@@ -169,13 +174,17 @@ bool oneAxis(const Grammar& grammar, const std::vector<uint32_t>& cycle) {
 void report(const Grammar& grammar, const std::vector<uint32_t>& cycle, syntax::Diagnostics& diagnostics) {
     const Rule& first = grammar.rules[cycle[0]];
     const std::string& symbol = grammar.symbols[first.symbol].name;
-    std::string message = fmt::format("rule '{}' never ends: every '{}' makes another '{}'", first.name, symbol, symbol);
+    std::string message =
+        fmt::format("rule '{}' never ends: every '{}' makes another '{}'", first.name, symbol, symbol);
     if (cycle.size() > 1) {
         std::string way;
-        for (const uint32_t rule : cycle) way += fmt::format("'{}' ({}) -> ", grammar.symbols[grammar.rules[rule].symbol].name, grammar.rules[rule].name);
+        for (const uint32_t rule : cycle)
+            way += fmt::format("'{}' ({}) -> ", grammar.symbols[grammar.rules[rule].symbol].name,
+                               grammar.rules[rule].name);
         message = fmt::format("rule '{}' never ends: {}'{}'", first.name, way, symbol);
     }
-    diagnostics.error(first.symbolSpan, std::move(message), "give a rule a 'when' or a 'repeat', or 'choose' with an alternative that stops");
+    diagnostics.error(first.symbolSpan, std::move(message),
+                      "give a rule a 'when' or a 'repeat', or 'choose' with an alternative that stops");
 }
 
 }  // namespace
@@ -184,7 +193,8 @@ void findUnreachable(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
     const std::set<SymbolId> found = reachable(grammar);
     for (const Rule& rule : grammar.rules)
         if (!found.contains(rule.symbol) && rule.span.source == grammar.sources[0].get())
-            diagnostics.warning(rule.symbolSpan, fmt::format("this rule never runs: no start leads to a '{}'", grammar.symbols[rule.symbol].name));
+            diagnostics.warning(rule.symbolSpan, fmt::format("this rule never runs: no start leads to a '{}'",
+                                                             grammar.symbols[rule.symbol].name));
 }
 
 void findEndless(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
@@ -199,7 +209,8 @@ void findEndless(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
             if (again != walk.end()) {
                 std::vector<uint32_t> cycle(rules.begin() + (again - walk.begin()), rules.end());
                 std::rotate(cycle.begin(), std::min_element(cycle.begin(), cycle.end()), cycle.end());
-                if (said.insert(grammar.rules[cycle[0]].symbol).second && oneAxis(grammar, cycle)) report(grammar, cycle, diagnostics);
+                if (said.insert(grammar.rules[cycle[0]].symbol).second && oneAxis(grammar, cycle))
+                    report(grammar, cycle, diagnostics);
                 break;
             }
             walk.push_back(at);

@@ -17,6 +17,14 @@ inline Expr makeConstant(SourceSpan span, Value value) {
     return e;
 }
 
+/// Stands for what was refused: it has no number that another check could complain about.
+inline Expr makeUnreadable(SourceSpan span) {
+    Expr e;
+    e.kind = Expr::Kind::Local;
+    e.span = span;
+    return e;
+}
+
 inline Value makeWord(std::string text) {
     Value value;
     value.kind = Value::Kind::Word;

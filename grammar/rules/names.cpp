@@ -11,23 +11,23 @@
 namespace sgm::rules {
 namespace {
 
-constexpr std::array<std::string_view, 17> taken{"axes", "sides", "last",   "any",   "free", "centre", "nil", "scope", "i",
-                                                 "true", "false", "morph", "x",     "y",    "z",      "billow", "fbm"};
+constexpr std::array<std::string_view, 17> taken{"axes", "sides", "last", "any",    "free",  "centre",
+                                                 "nil",  "scope", "i",    "true",   "false", "morph",
+                                                 "x",    "y",     "z",    "billow", "fbm"};
 
 }  // namespace
 
 bool isNonTerminal(std::string_view name) { return !name.empty() && std::isupper(static_cast<unsigned char>(name[0])); }
 
-bool isTaken(std::string_view name) {
-    return std::find(taken.begin(), taken.end(), name) != taken.end();
-}
+bool isTaken(std::string_view name) { return std::find(taken.begin(), taken.end(), name) != taken.end(); }
 
 bool Checker::twice(std::map<std::string, SourceSpan>& seen, const syntax::Name& name, std::string_view kind) {
     const auto [entry, fresh] = seen.emplace(name.text, name.span);
     if (fresh || name.empty()) return false;
     const SourceSpan first = entry->second;
-    diagnostics_.error(name.span, fmt::format("there is already a {} '{}' in {}, line {}", kind, name.text,
-                                              first.source->name(), first.source->place(first.begin).line),
+    diagnostics_.error(name.span,
+                       fmt::format("there is already a {} '{}' in {}, line {}", kind, name.text, first.source->name(),
+                                   first.source->place(first.begin).line),
                        "give one of them another name");
     return true;
 }
@@ -46,7 +46,8 @@ SymbolId Checker::nonTerminal(const syntax::Name& name) {
 void Checker::declareParameter(const syntax::ParamDecl& decl) {
     if (decl.name.empty() || twice(seenParams_, decl.name, "parameter")) return;
     if (isTaken(decl.name.text))
-        diagnostics_.error(decl.name.span, fmt::format("'{}' is a word of the language and can't name a parameter", decl.name.text));
+        diagnostics_.error(decl.name.span,
+                           fmt::format("'{}' is a word of the language and can't name a parameter", decl.name.text));
     params_.emplace(decl.name.text, static_cast<uint32_t>(grammar_.params.size()));
     Param param;
     param.name = decl.name.text;
@@ -59,7 +60,10 @@ void Checker::declareTerminals(const syntax::TerminalDecl& decl) {
     for (const syntax::Name& name : decl.names) {
         if (name.empty() || twice(seenTerminals_, name, "terminal")) continue;
         if (isNonTerminal(name.text))
-            diagnostics_.error(name.span, fmt::format("a terminal's name begins with a small letter: '{}' would be a shape that rules rewrite", name.text));
+            diagnostics_.error(
+                name.span,
+                fmt::format("a terminal's name begins with a small letter: '{}' would be a shape that rules rewrite",
+                            name.text));
         else if (isTaken(name.text) || field::findPrimitive(name.text))
             diagnostics_.error(name.span, fmt::format("'{}' is {} and can't name a terminal", name.text,
                                                       isTaken(name.text) ? "a word of the language" : "a primitive"));

@@ -31,8 +31,10 @@ Value adopted(const Value& value, const Value& like) {
 std::string outOfRange(const Param& param, const Value& value) {
     for (size_t i = 0; i < value.count; ++i)
         if (value.n[i] < param.lo->n[i] || value.n[i] > param.hi->n[i])
-            return fmt::format("'{}' is {}, outside its range {}..{}", param.name, toText(component(value, Value::number(static_cast<double>(i)))),
-                               toText(component(*param.lo, Value::number(static_cast<double>(i)))), toText(component(*param.hi, Value::number(static_cast<double>(i)))));
+            return fmt::format("'{}' is {}, outside its range {}..{}", param.name,
+                               toText(component(value, Value::number(static_cast<double>(i)))),
+                               toText(component(*param.lo, Value::number(static_cast<double>(i)))),
+                               toText(component(*param.hi, Value::number(static_cast<double>(i)))));
     return {};
 }
 
@@ -50,40 +52,57 @@ nlohmann::ordered_json jsonOf(const Value& v) {
         return shown(v, i);
     };
     switch (v.kind) {
-        case Value::Kind::Number: return one(0);
-        case Value::Kind::Bool: return v.truth();
+        case Value::Kind::Number:
+            return one(0);
+        case Value::Kind::Bool:
+            return v.truth();
         case Value::Kind::Word:
-        case Value::Kind::Text: return v.text;
+        case Value::Kind::Text:
+            return v.text;
         case Value::Kind::Vector: {
             auto list = nlohmann::ordered_json::array();
             for (size_t i = 0; i < v.count; ++i) list.push_back(one(i));
             return list;
         }
-        default: return toText(v);
+        default:
+            return toText(v);
     }
 }
 
 std::string_view kindName(const Value& v) {
     switch (v.kind) {
-        case Value::Kind::Number: return v.integer ? "integer" : "real";
-        case Value::Kind::Vector: return "vector";
-        case Value::Kind::Bool: return "boolean";
-        case Value::Kind::Color: return "color";
-        case Value::Kind::Word: return "choice";
-        case Value::Kind::Text: return "text";
-        case Value::Kind::Rotation: return "rotation";
-        case Value::Kind::Axis: return "axis";
+        case Value::Kind::Number:
+            return v.integer ? "integer" : "real";
+        case Value::Kind::Vector:
+            return "vector";
+        case Value::Kind::Bool:
+            return "boolean";
+        case Value::Kind::Color:
+            return "color";
+        case Value::Kind::Word:
+            return "choice";
+        case Value::Kind::Text:
+            return "text";
+        case Value::Kind::Rotation:
+            return "rotation";
+        case Value::Kind::Axis:
+            return "axis";
     }
     return {};
 }
 
 std::string_view unitName(Unit unit) {
     switch (unit) {
-        case Unit::Metre: return "m";
-        case Unit::Angle: return "deg";
-        case Unit::Share: return "%";
-        case Unit::PerMetre: return "/m";
-        default: return "";
+        case Unit::Metre:
+            return "m";
+        case Unit::Angle:
+            return "deg";
+        case Unit::Share:
+            return "%";
+        case Unit::PerMetre:
+            return "/m";
+        default:
+            return "";
     }
 }
 
@@ -91,8 +110,10 @@ std::string_view unitName(Unit unit) {
 
 std::string setRange(Param& param, const Value& lo, const Value& hi) {
     for (const Value* end : {&lo, &hi})
-        if (!numeric(*end) || (end->count != 1 && end->count != param.value.count) || !compatible(Type::of(*end), Type::of(param.value)) || !compatible(Type::of(lo), Type::of(hi)))
-            return fmt::format("the range of '{}' must be of the same kind as its default {}", param.name, toText(param.value));
+        if (!numeric(*end) || (end->count != 1 && end->count != param.value.count) ||
+            !compatible(Type::of(*end), Type::of(param.value)) || !compatible(Type::of(lo), Type::of(hi)))
+            return fmt::format("the range of '{}' must be of the same kind as its default {}", param.name,
+                               toText(param.value));
     param.value = adopted(param.value, adopted(lo, adopted(hi, param.value)));
     param.lo = adopted(lo, param.value);
     param.hi = adopted(hi, param.value);
@@ -105,19 +126,26 @@ std::string setRange(Param& param, const Value& lo, const Value& hi) {
 Result<Value> conform(const Param& param, Value value) {
     const auto refuse = [&](std::string message) { return Error{Error::Kind::Input, std::move(message)}; };
     if (!param.choices.empty()) {
-        if (value.kind == Value::Kind::Word && std::find(param.choices.begin(), param.choices.end(), value.text) != param.choices.end()) return value;
-        return refuse(fmt::format("'{}' is one of {}, not '{}'", param.name, fmt::join(param.choices, ", "), value.kind == Value::Kind::Word ? value.text : toText(value)));
+        if (value.kind == Value::Kind::Word &&
+            std::find(param.choices.begin(), param.choices.end(), value.text) != param.choices.end())
+            return value;
+        return refuse(fmt::format("'{}' is one of {}, not '{}'", param.name, fmt::join(param.choices, ", "),
+                                  value.kind == Value::Kind::Word ? value.text : toText(value)));
     }
     const Type type = Type::of(value), wanted = Type::of(param.value);
     const bool spread = value.kind == Value::Kind::Number && param.value.kind == Value::Kind::Vector;
-    if (value.kind != param.value.kind && !spread) return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
+    if (value.kind != param.value.kind && !spread)
+        return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
     if (!numeric(value)) return value;
-    if ((value.count != param.value.count && !spread) || !compatible(type, wanted)) return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
-    if (param.value.integer && !value.integer) return refuse(fmt::format("'{}' is a whole number, not {}", param.name, toText(value)));
+    if ((value.count != param.value.count && !spread) || !compatible(type, wanted))
+        return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
+    if (param.value.integer && !value.integer)
+        return refuse(fmt::format("'{}' is a whole number, not {}", param.name, toText(value)));
     Value fitted = adopted(value, param.value);
     fitted.integer = param.value.integer;
     for (size_t i = 0; i < fitted.count; ++i)
-        if (fitted.units[std::min(i, fitted.units.size() - 1)] != param.value.units[std::min(i, fitted.units.size() - 1)])
+        if (fitted.units[std::min(i, fitted.units.size() - 1)] !=
+            param.value.units[std::min(i, fitted.units.size() - 1)])
             return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
     if (param.lo && param.hi)
         if (std::string problem = outOfRange(param, fitted); !problem.empty()) return refuse(std::move(problem));

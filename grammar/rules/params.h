@@ -1,6 +1,6 @@
 // What a parameter may be, and the table of parameters for panels and other programs.
-// Enters: parameters and values. Leaves: values that fit, or a sentence that says why not. Assumes values of one kind and
-// unit a parameter: its default decides, and where that is bare its range does.
+// Enters: parameters and values. Leaves: values that fit, or a sentence that says why not. Assumes values of one kind
+// and unit a parameter: its default decides, and where that is bare its range does.
 #pragma once
 
 #include <string>
@@ -14,13 +14,13 @@ namespace sgm::rules {
 /// Returns "" or why the range can't be.
 std::string setRange(Param& param, const Value& lo, const Value& hi);
 
-/// `value` as `param` takes it: a bare number gets the unit, one number counts for every component. Error::Input for a wrong kind or unit, a value out of range,
-/// a fraction where whole numbers are asked for, or none of the choices.
+/// `value` as `param` takes it: a bare number gets the unit, one number counts for every component. Error::Input for a
+/// wrong kind or unit, a value out of range, a fraction where whole numbers are asked for, or none of the choices.
 Result<Value> conform(const Param& param, Value value);
 
-/// The parameters as JSON for other programs' panels: a list of {name, kind (integer, real, vector, choice, color, boolean,
-/// text), unit, default, minimum, maximum, choices, label, group, key, file, line}; members that don't apply are left out.
-/// Lengths are in metres, angles in degrees, shares in percent, colours "#rrggbb".
+/// The parameters as JSON for other programs' panels: a list of {name, kind (integer, real, vector, choice, color,
+/// boolean, text), unit, default, minimum, maximum, choices, label, group, key, file, line}; members that don't apply
+/// are left out. Lengths are in metres, angles in degrees, shares in percent, colours "#rrggbb".
 std::string paramsJson(const Grammar& grammar);
 
 }  // namespace sgm::rules

@@ -16,19 +16,28 @@ using field::ParameterKind;
 
 Want wantOf(ParameterKind kind) {
     switch (kind) {
-        case ParameterKind::Share: return Want::Number;
-        case ParameterKind::Length: return Want::Length;
-        case ParameterKind::Angle: return Want::Angle;
-        case ParameterKind::Count: return Want::Count;
-        case ParameterKind::Vector: return Want::Triple;
-        case ParameterKind::Rotation: return Want::Rotation;
-        case ParameterKind::Choice: return Want::Anything;
+        case ParameterKind::Share:
+            return Want::Number;
+        case ParameterKind::Length:
+            return Want::Length;
+        case ParameterKind::Angle:
+            return Want::Angle;
+        case ParameterKind::Count:
+            return Want::Count;
+        case ParameterKind::Vector:
+            return Want::Triple;
+        case ParameterKind::Rotation:
+            return Want::Rotation;
+        case ParameterKind::Choice:
+            return Want::Anything;
     }
     return Want::Anything;
 }
 
 Value plainValue(ParameterKind kind, double v) {
-    const Unit unit = kind == ParameterKind::Length ? Unit::Metre : kind == ParameterKind::Angle ? Unit::Angle : Unit::None;
+    const Unit unit = kind == ParameterKind::Length  ? Unit::Metre
+                      : kind == ParameterKind::Angle ? Unit::Angle
+                                                     : Unit::None;
     Value value = Value::number(v, unit);
     value.integer = kind == ParameterKind::Count;
     return value;
@@ -40,7 +49,8 @@ Value fallbackOf(const field::PrimitiveParameter& p) {
         const std::array<Value, 3> same{value, value, value};
         return tuple(same);
     }
-    if (p.kind == ParameterKind::Rotation) return applyFunction(Fn::RotY, std::array{Value::number(p.fallback, Unit::Angle)});
+    if (p.kind == ParameterKind::Rotation)
+        return applyFunction(Fn::RotY, std::array{Value::number(p.fallback, Unit::Angle)});
     return value;
 }
 
@@ -75,18 +85,22 @@ std::string Checker::unknownSolid(std::string_view word) const {
 /// One word of a choice becomes its index; a parameter that offers the same words is asked at every derivation.
 Expr Checker::choiceArgument(Place& place, const Written& e, const field::PrimitiveParameter& parameter) {
     const std::vector<std::string> words = split(parameter.choices, '|');
-    const auto indexOf = [&](size_t i) { return makeConstant(e.span, plainValue(parameter.kind, static_cast<double>(i))); };
+    const auto indexOf = [&](size_t i) {
+        return makeConstant(e.span, plainValue(parameter.kind, static_cast<double>(i)));
+    };
     const auto word = std::find(words.begin(), words.end(), e.text);
     if (e.kind == Written::Kind::Name && word != words.end()) return indexOf(static_cast<size_t>(word - words.begin()));
     Typed chosen;
     if (e.kind == Written::Kind::Name && params_.contains(e.text)) chosen = expression(place, e);
     if (!chosen.type.words || *chosen.type.words != words) {
-        diagnostics_.error(e.span, fmt::format("'{}' is one of {}", parameter.name, fmt::join(words, ", ")), nearest(e.text, words));
+        diagnostics_.error(e.span, fmt::format("'{}' is one of {}", parameter.name, fmt::join(words, ", ")),
+                           nearest(e.text, words));
         return indexOf(0);
     }
     Expr result = indexOf(0);
     for (size_t i = words.size(); i-- > 1;) {
-        Expr equal = makeCall(Expr::Kind::Binary, Fn::Equal, e.span, {chosen.expr, makeConstant(e.span, makeWord(words[i]))});
+        Expr equal =
+            makeCall(Expr::Kind::Binary, Fn::Equal, e.span, {chosen.expr, makeConstant(e.span, makeWord(words[i]))});
         result = makeCall(Expr::Kind::Call, Fn::If, e.span, {std::move(equal), indexOf(i), std::move(result)});
     }
     return result;
@@ -103,7 +117,8 @@ Expr Checker::primitiveArgument(Place& place, const Written& e, const field::Pri
     for (size_t i = 0; i < value->count; ++i)
         if (value->n[i] < parameter.lo || value->n[i] > parameter.hi) {
             diagnostics_.error(e.span, fmt::format("{} is {}, but must be {} … {}", what, toText(*value),
-                                                   toText(plainValue(parameter.kind, parameter.lo)), toText(plainValue(parameter.kind, parameter.hi))));
+                                                   toText(plainValue(parameter.kind, parameter.lo)),
+                                                   toText(plainValue(parameter.kind, parameter.hi))));
             break;
         }
     return expr;
@@ -120,19 +135,22 @@ Solid Checker::primitiveSolid(Place& place, const Written& e, const field::Primi
         size_t index = i;
         const std::string name = i < e.argNames.size() ? e.argNames[i] : std::string();
         if (!name.empty()) {
-            const auto named = std::find_if(row.parameters.begin(), row.parameters.end(), [&](const auto& p) { return p.name == name; });
+            const auto named = std::find_if(row.parameters.begin(), row.parameters.end(),
+                                            [&](const auto& p) { return p.name == name; });
             index = static_cast<size_t>(named - row.parameters.begin());
         }
         if (index >= row.parameters.size()) {
             std::vector<std::string> known;
             for (const auto& p : row.parameters) known.emplace_back(p.name);
-            const std::string message = !name.empty() ? fmt::format("'{}' has no parameter '{}'", row.name, name)
+            const std::string message = !name.empty()   ? fmt::format("'{}' has no parameter '{}'", row.name, name)
                                         : known.empty() ? fmt::format("'{}' takes no parameters", row.name)
-                                                        : fmt::format("'{}' takes no more than {} parameters: {}", row.name, known.size(), fmt::join(known, ", "));
+                                                        : fmt::format("'{}' takes no more than {} parameters: {}",
+                                                                      row.name, known.size(), fmt::join(known, ", "));
             diagnostics_.error(e.args[i].span, message, nearest(name, known));
             break;
         }
-        if (given[index]) diagnostics_.error(e.args[i].span, fmt::format("'{}' is given twice", row.parameters[index].name));
+        if (given[index])
+            diagnostics_.error(e.args[i].span, fmt::format("'{}' is given twice", row.parameters[index].name));
         given[index] = true;
         solid.args[index] = primitiveArgument(place, e.args[i], row, index);
     }
@@ -141,7 +159,8 @@ Solid Checker::primitiveSolid(Place& place, const Written& e, const field::Primi
 
 void Checker::bounded(const Solid& solid, std::string_view verb) {
     if (solid.kind == Solid::Kind::Primitive && solid.primitive && !solid.primitive->bounded)
-        diagnostics_.error(solid.span, fmt::format("a {} has no end and can't be {}: it may only cut", solid.primitive->name, verb),
+        diagnostics_.error(solid.span,
+                           fmt::format("a {} has no end and can't be {}: it may only cut", solid.primitive->name, verb),
                            fmt::format("write '- {0}' or '& {0}' after a solid", solid.primitive->name));
 }
 
@@ -158,7 +177,9 @@ Solid Checker::morphSolid(Place& place, const Written& e) {
     result.kind = Solid::Kind::Morph;
     result.span = e.span;
     if (e.args.size() != 3) {
-        diagnostics_.error(e.span, fmt::format("'morph' takes two solids and a share, but {} {} given", e.args.size(), e.args.size() == 1 ? "is" : "are"),
+        diagnostics_.error(e.span,
+                           fmt::format("'morph' takes two solids and a share, but {} {} given", e.args.size(),
+                                       e.args.size() == 1 ? "is" : "are"),
                            "write 'morph(sphere, cube, .5)'");
         return {};
     }
@@ -169,7 +190,8 @@ Solid Checker::morphSolid(Place& place, const Written& e) {
     place.enter("morph");
     result.amount = expression(place, e.args[2], Want::Number, "the share of a morph");
     if (const auto value = fold(result.amount, defaults_); value && (value->num() < 0 || value->num() > 1))
-        diagnostics_.error(e.args[2].span, fmt::format("the share of a morph is {}, but must be 0 … 1", toText(*value)));
+        diagnostics_.error(e.args[2].span,
+                           fmt::format("the share of a morph is {}, but must be 0 … 1", toText(*value)));
     place.morphs = true;
     return limited(std::move(result));
 }
@@ -212,11 +234,13 @@ Solid Checker::namedSolid(Place& place, const Written& e) {
     if (const field::Primitive* row = field::findPrimitive(e.text)) return primitiveSolid(place, e, *row);
     const auto symbol = symbols_.find(e.text);
     if (symbol != symbols_.end() && grammar_.symbols[symbol->second].terminal) {
-        if (e.kind == Written::Kind::Call) diagnostics_.error(e.span, fmt::format("the terminal '{}' takes no parameters", e.text));
+        if (e.kind == Written::Kind::Call)
+            diagnostics_.error(e.span, fmt::format("the terminal '{}' takes no parameters", e.text));
         return terminalSolid({e.text, e.span});
     }
     if (isNonTerminal(e.text))
-        diagnostics_.error(e.span, fmt::format("'{}' may still be rewritten: a solid is a primitive or a terminal", e.text));
+        diagnostics_.error(e.span,
+                           fmt::format("'{}' may still be rewritten: a solid is a primitive or a terminal", e.text));
     else
         unknown(e.span, e.text, fmt::format("unknown solid '{}'", e.text), unknownSolid(e.text));
     return nil;
@@ -233,14 +257,18 @@ Solid Checker::solid(Place& place, const Written& e) {
                 return nil;
             }
             return namedSolid(place, e);
-        case Written::Kind::Name: return namedSolid(place, e);
+        case Written::Kind::Name:
+            return namedSolid(place, e);
         case Written::Kind::Binary:
             if (e.text == "+" || e.text == "-" || e.text == "&") return combination(place, e);
             break;
-        case Written::Kind::Error: return nil;
-        default: break;
+        case Written::Kind::Error:
+            return nil;
+        default:
+            break;
     }
-    diagnostics_.error(e.span, fmt::format("a solid is a primitive, a terminal or 'morph(…)', not '{}'", e.span.text()));
+    diagnostics_.error(e.span,
+                       fmt::format("a solid is a primitive, a terminal or 'morph(…)', not '{}'", e.span.text()));
     return nil;
 }
 

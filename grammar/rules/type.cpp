@@ -22,12 +22,18 @@ bool measure(Unit u) { return plain(u) || u == Unit::Metre; }
 
 std::string_view describe(Unit unit) {
     switch (unit) {
-        case Unit::None: return "a plain number";
-        case Unit::Metre: return "a length";
-        case Unit::Angle: return "an angle";
-        case Unit::Share: return "a share (%)";
-        case Unit::PerMetre: return "a frequency (1/m)";
-        case Unit::Floating: return "a floating size (~)";
+        case Unit::None:
+            return "a plain number";
+        case Unit::Metre:
+            return "a length";
+        case Unit::Angle:
+            return "an angle";
+        case Unit::Share:
+            return "a share (%)";
+        case Unit::PerMetre:
+            return "a frequency (1/m)";
+        case Unit::Floating:
+            return "a floating size (~)";
     }
     return {};
 }
@@ -62,34 +68,56 @@ Type Type::of(const Value& value) {
 
 std::string_view describe(Want want) {
     switch (want) {
-        case Want::Anything: return "a value";
-        case Want::Truth: return "something true or false";
-        case Want::Number: return "a plain number";
-        case Want::Count: return "a whole number";
-        case Want::Length: return "a length in metres";
-        case Want::Frequency: return "a frequency (2.2/m)";
-        case Want::Angle: return "an angle (30deg)";
-        case Want::Angles: return "an angle (30deg), or three";
-        case Want::Size: return "a length, a share (30%) or (x, y, z) of them";
-        case Want::Offset: return "a number, a length or (x, y, z) of them";
-        case Want::Triple: return "three numbers (x, y, z)";
-        case Want::Color: return "a colour (#rrggbb)";
-        case Want::Rotation: return "a rotation: rotX(a), rotY(a) or rotZ(a)";
-        case Want::Axis: return "a direction such as +x";
+        case Want::Anything:
+            return "a value";
+        case Want::Truth:
+            return "something true or false";
+        case Want::Number:
+            return "a plain number";
+        case Want::Count:
+            return "a whole number";
+        case Want::Length:
+            return "a length in metres";
+        case Want::Frequency:
+            return "a frequency (2.2/m)";
+        case Want::Angle:
+            return "an angle (30deg)";
+        case Want::Angles:
+            return "an angle (30deg), or three";
+        case Want::Size:
+            return "a length, a share (30%) or (x, y, z) of them";
+        case Want::Offset:
+            return "a number, a length or (x, y, z) of them";
+        case Want::Triple:
+            return "three numbers (x, y, z)";
+        case Want::Color:
+            return "a colour (#rrggbb)";
+        case Want::Rotation:
+            return "a rotation: rotX(a), rotY(a) or rotZ(a)";
+        case Want::Axis:
+            return "a direction such as +x";
     }
     return {};
 }
 
 std::string describe(const Type& type) {
     switch (type.like.kind) {
-        case Value::Kind::Number: return std::string(describe(type.like.units[0]));
-        case Value::Kind::Vector: return fmt::format("a vector of {}", type.like.count);
-        case Value::Kind::Bool: return "true or false";
-        case Value::Kind::Color: return "a colour";
-        case Value::Kind::Word: return "a word";
-        case Value::Kind::Text: return "a text";
-        case Value::Kind::Rotation: return "a rotation";
-        case Value::Kind::Axis: return "a direction";
+        case Value::Kind::Number:
+            return std::string(describe(type.like.units[0]));
+        case Value::Kind::Vector:
+            return fmt::format("a vector of {}", type.like.count);
+        case Value::Kind::Bool:
+            return "true or false";
+        case Value::Kind::Color:
+            return "a colour";
+        case Value::Kind::Word:
+            return "a word";
+        case Value::Kind::Text:
+            return "a text";
+        case Value::Kind::Rotation:
+            return "a rotation";
+        case Value::Kind::Axis:
+            return "a direction";
     }
     return {};
 }
@@ -100,20 +128,33 @@ bool fits(const Type& type, Want want) {
     const bool one = v.kind == Value::Kind::Number;
     const bool three = v.kind == Value::Kind::Vector && v.count == 3;
     switch (want) {
-        case Want::Anything: return true;
-        case Want::Truth: return v.kind == Value::Kind::Bool;
-        case Want::Number: return one && everyUnit(v, plain);
-        case Want::Count: return one && v.integer && v.units[0] == Unit::None;
-        case Want::Length: return one && everyUnit(v, length);
-        case Want::Frequency: return one && (v.units[0] == Unit::None || v.units[0] == Unit::PerMetre);
-        case Want::Angle: return one && v.units[0] == Unit::Angle;
-        case Want::Angles: return (one || three) && everyUnit(v, [](Unit u) { return u == Unit::Angle; });
+        case Want::Anything:
+            return true;
+        case Want::Truth:
+            return v.kind == Value::Kind::Bool;
+        case Want::Number:
+            return one && everyUnit(v, plain);
+        case Want::Count:
+            return one && v.integer && v.units[0] == Unit::None;
+        case Want::Length:
+            return one && everyUnit(v, length);
+        case Want::Frequency:
+            return one && (v.units[0] == Unit::None || v.units[0] == Unit::PerMetre);
+        case Want::Angle:
+            return one && v.units[0] == Unit::Angle;
+        case Want::Angles:
+            return (one || three) && everyUnit(v, [](Unit u) { return u == Unit::Angle; });
         case Want::Size:
-        case Want::Offset: return (one || three) && everyUnit(v, measure);
-        case Want::Triple: return three && everyUnit(v, measure);
-        case Want::Color: return v.kind == Value::Kind::Color;
-        case Want::Rotation: return v.kind == Value::Kind::Rotation;
-        case Want::Axis: return v.kind == Value::Kind::Axis;
+        case Want::Offset:
+            return (one || three) && everyUnit(v, measure);
+        case Want::Triple:
+            return three && everyUnit(v, measure);
+        case Want::Color:
+            return v.kind == Value::Kind::Color;
+        case Want::Rotation:
+            return v.kind == Value::Kind::Rotation;
+        case Want::Axis:
+            return v.kind == Value::Kind::Axis;
     }
     return false;
 }

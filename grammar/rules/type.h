@@ -1,6 +1,6 @@
 // What an expression will evaluate to, known before anything is derived.
-// Enters: sample values. Leaves: types, and whether they fit where they stand. Assumes units combine as in evaluate.h: a
-// type is a Value whose numbers mean nothing, so the type of f(a, b) is that of f applied to samples of a and b.
+// Enters: sample values. Leaves: types, and whether they fit where they stand. Assumes units combine as in evaluate.h:
+// a type is a Value whose numbers mean nothing, so the type of f(a, b) is that of f applied to samples of a and b.
 #pragma once
 
 #include <string>
@@ -31,10 +31,10 @@ enum class Want : uint8_t {
     Length,     ///< metres; bare numbers are metres
     Frequency,  ///< 1/m, or bare
     Angle,
-    Angles,     ///< one, or three
-    Size,       ///< lengths or shares, one or three
-    Offset,     ///< plain numbers, shares or lengths, one or three
-    Triple,     ///< plain numbers or lengths, exactly three
+    Angles,  ///< one, or three
+    Size,    ///< lengths or shares, one or three
+    Offset,  ///< plain numbers, shares or lengths, one or three
+    Triple,  ///< plain numbers or lengths, exactly three
     Color,
     Rotation,
     Axis,

@@ -36,10 +36,14 @@ private:
         }
         const auto open = std::find(chain_.begin(), chain_.end(), source->name());
         if (open != chain_.end()) {
-            diagnostics_.error(use.file.span, fmt::format("files use each other in a circle: {} -> {}", fmt::join(open, chain_.end(), " -> "), source->name()), "leave one 'use' out");
+            diagnostics_.error(use.file.span,
+                               fmt::format("files use each other in a circle: {} -> {}",
+                                           fmt::join(open, chain_.end(), " -> "), source->name()),
+                               "leave one 'use' out");
             return;
         }
-        if (std::find(done_.begin(), done_.end(), source->name()) == done_.end()) gather(syntax::parse(source, diagnostics_));
+        if (std::find(done_.begin(), done_.end(), source->name()) == done_.end())
+            gather(syntax::parse(source, diagnostics_));
     }
 
     const Loader& load_;

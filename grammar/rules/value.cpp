@@ -17,12 +17,18 @@ std::string digits(double v, const char* unit) { return fmt::format("{:.12g}{}",
 
 std::string numberText(double v, Unit unit) {
     switch (unit) {
-        case Unit::None: return digits(v, "");
-        case Unit::Metre: return digits(v, "m");
-        case Unit::Angle: return digits(degrees(v), "deg");
-        case Unit::Share: return digits(v * 100, "%");
-        case Unit::PerMetre: return digits(v, "/m");
-        case Unit::Floating: return fmt::format("~{:.12g}", v);
+        case Unit::None:
+            return digits(v, "");
+        case Unit::Metre:
+            return digits(v, "m");
+        case Unit::Angle:
+            return digits(degrees(v), "deg");
+        case Unit::Share:
+            return digits(v * 100, "%");
+        case Unit::PerMetre:
+            return digits(v, "/m");
+        case Unit::Floating:
+            return fmt::format("~{:.12g}", v);
     }
     return {};
 }
@@ -41,14 +47,22 @@ std::string tupleText(const Value& value, size_t count) {
 
 std::string toText(const Value& value) {
     switch (value.kind) {
-        case Value::Kind::Number: return numberText(value.n[0], value.units[0]);
-        case Value::Kind::Bool: return value.truth() ? "true" : "false";
-        case Value::Kind::Vector: return tupleText(value, value.count);
-        case Value::Kind::Color: return fmt::format("#{:06x}", hexFromLinear({value.n[0], value.n[1], value.n[2]}));
-        case Value::Kind::Word: return value.text;
-        case Value::Kind::Text: return fmt::format("\"{}\"", value.text);
-        case Value::Kind::Rotation: return fmt::format("rotation{}", tupleText(value, 9));
-        case Value::Kind::Axis: return axisNames[static_cast<size_t>(value.n[0])];
+        case Value::Kind::Number:
+            return numberText(value.n[0], value.units[0]);
+        case Value::Kind::Bool:
+            return value.truth() ? "true" : "false";
+        case Value::Kind::Vector:
+            return tupleText(value, value.count);
+        case Value::Kind::Color:
+            return fmt::format("#{:06x}", hexFromLinear({value.n[0], value.n[1], value.n[2]}));
+        case Value::Kind::Word:
+            return value.text;
+        case Value::Kind::Text:
+            return fmt::format("\"{}\"", value.text);
+        case Value::Kind::Rotation:
+            return fmt::format("rotation{}", tupleText(value, 9));
+        case Value::Kind::Axis:
+            return axisNames[static_cast<size_t>(value.n[0])];
     }
     return {};
 }

@@ -25,17 +25,21 @@ std::vector<std::string> grammars() {
 /// Names are relative to the folder, so that the expected text doesn't depend on where the tests run.
 std::string said(const std::string& name) {
     std::vector<syntax::SourcePtr> kept;
-    const Loader loader = [&](const std::string& wanted, const syntax::Source& from, std::string& why) -> syntax::SourcePtr {
+    const Loader loader = [&](const std::string& wanted, const syntax::Source& from,
+                              std::string& why) -> syntax::SourcePtr {
         const fs::path path = (fs::path(from.name()).parent_path() / wanted).lexically_normal();
-        if (*path.begin() == "..") why = "a grammar may only use files in its own folder or in std/";
-        else if (!fs::exists(folder / path)) why = "there is no such file";
+        if (*path.begin() == "..")
+            why = "a grammar may only use files in its own folder or in std/";
+        else if (!fs::exists(folder / path))
+            why = "there is no such file";
         else {
             kept.push_back(std::make_shared<const syntax::Source>(path.string(), readText((folder / path).string())));
             return kept.back();
         }
         return nullptr;
     };
-    const auto source = std::make_shared<const syntax::Source>(name + ".sgm", readText((folder / (name + ".sgm")).string()));
+    const auto source =
+        std::make_shared<const syntax::Source>(name + ".sgm", readText((folder / (name + ".sgm")).string()));
     syntax::Diagnostics diagnostics;
     const auto grammar = load(source, loader, diagnostics);
     EXPECT_FALSE(grammar);

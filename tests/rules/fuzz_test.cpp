@@ -21,7 +21,8 @@ void expectInside(const syntax::SourceSpan& span, const syntax::Source& source, 
 }
 
 TEST(Fuzz, MutantsAreJudgedQuicklyAndInPlace) {
-    const char* const seeds[] = {"tests/rules/sketch.sgm", "tests/syntax/sketch.sgm", "examples/grotto.sgm", "examples/tower.sgm"};
+    const char* const seeds[] = {"tests/rules/sketch.sgm", "tests/syntax/sketch.sgm", "examples/grotto.sgm",
+                                 "examples/tower.sgm"};
     uint64_t key = 0, sound = 0;
     double slowest = 0;
     for (const char* const seed : seeds) {
@@ -56,7 +57,11 @@ TEST(Fuzz, SolidsThatDoubleAreRefused) {
     std::string text = "terminal t0 = morph(cube, sphere, .5)\n";
     for (int i = 1; i < 60; ++i) {
         const std::string last = "t" + std::to_string(i - 1);
-        text.append("terminal t").append(std::to_string(i)).append(" = morph(" + last).append(", " + last).append(", .5)\n");
+        text.append("terminal t")
+            .append(std::to_string(i))
+            .append(" = morph(" + last)
+            .append(", " + last)
+            .append(", .5)\n");
     }
     const double before = seconds();
     const Checked c = checkedBody(text + "start S -> t59\n");

@@ -23,11 +23,14 @@ TEST(Endless, CirclesAreNamed) {
 }
 
 TEST(Endless, EveryAlternativeMustGoOn) {
-    EXPECT_EQ(judged("rule A -> choose { 1: cube : A | 2: sphere : A }\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
+    EXPECT_EQ(judged("rule A -> choose { 1: cube : A | 2: sphere : A }\n"),
+              "rule 'A#1' never ends: every 'A' makes another 'A'\n");
     EXPECT_EQ(judged("rule A -> choose { 1: cube : A | 2: sphere }\n"), "");
-    EXPECT_EQ(judged("rule A -> choose { 1: cube : A | 0: sphere }\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
+    EXPECT_EQ(judged("rule A -> choose { 1: cube : A | 0: sphere }\n"),
+              "rule 'A#1' never ends: every 'A' makes another 'A'\n");
     EXPECT_EQ(judged("rule A -> cube : A\nrule A -> sphere\n"), "") << "drawn by weight";
-    EXPECT_EQ(judged("rule A -> cube : A\nrule A weight 0 -> sphere\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
+    EXPECT_EQ(judged("rule A -> cube : A\nrule A weight 0 -> sphere\n"),
+              "rule 'A#1' never ends: every 'A' makes another 'A'\n");
 }
 
 TEST(Endless, WhatMayStopIsAllowed) {
@@ -44,13 +47,16 @@ TEST(Endless, WhatMayStopIsAllowed) {
 
 TEST(Endless, AGuardThatAlwaysHoldsIsNone) {
     EXPECT_EQ(judged("rule A when 1 < 2 -> cube : A\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
-    EXPECT_EQ(judged("rule A -> cube while true { + cube at +x }\n"), "this 'while' never ends: its condition always holds\n");
+    EXPECT_EQ(judged("rule A -> cube while true { + cube at +x }\n"),
+              "this 'while' never ends: its condition always holds\n");
 }
 
 TEST(Unreachable, RulesAreWarnedOf) {
     const Checked c = checkedBody("start S -> cube : A\nrule A -> sphere\nrule B -> C\nrule C -> sphere\n");
     EXPECT_TRUE(c.grammar);
-    EXPECT_EQ(c.messages(), "warning: this rule never runs: no start leads to a 'B'\nwarning: this rule never runs: no start leads to a 'C'\n");
+    EXPECT_EQ(c.messages(),
+              "warning: this rule never runs: no start leads to a 'B'\nwarning: this rule never runs: no start leads "
+              "to a 'C'\n");
 }
 
 TEST(Unreachable, EndlessRulesHarmNobody) {
@@ -67,7 +73,8 @@ TEST(Unused, ParametersAreWarnedOf) {
 
 TEST(Live, NamesNearARulesAreWarnedOf) {
     EXPECT_EQ(checkedBody("start S -> cube : Cel\nrule Cell -> sphere\n").messages(),
-              "warning: no rule matches 'Cel', so nothing will grow here\nwarning: this rule never runs: no start leads to a 'Cell'\n");
+              "warning: no rule matches 'Cel', so nothing will grow here\nwarning: this rule never runs: no start "
+              "leads to a 'Cell'\n");
     EXPECT_EQ(checkedBody("start S -> cube : Done\n").messages(), "") << "recognised, and left as it is";
 }
 

@@ -71,13 +71,23 @@ TEST_F(Params, SayWhyAValueIsRefused) {
     EXPECT_EQ(set(6, "red"), "'paint' can't be 'red': unknown name 'red'");
     EXPECT_EQ(set(7, "1"), "'lit' is true or false, but this is a plain number");
     EXPECT_EQ(set(0, ""), "'count' is set to nothing");
-    EXPECT_EQ(set(1, "0..1"), "'share' can't be '0..1': nothing is drawn by chance here: a plain value must stand here");
+    EXPECT_EQ(set(1, "0..1"),
+              "'share' can't be '0..1': nothing is drawn by chance here: a plain value must stand here");
 }
 
 TEST_F(Params, MakeATableForOtherPrograms) {
     const auto table = nlohmann::json::parse(paramsJson(*c.grammar));
     ASSERT_EQ(table.size(), 8u);
-    EXPECT_EQ(table[0], (nlohmann::json{{"name", "count"}, {"kind", "integer"}, {"default", 4}, {"minimum", 1}, {"maximum", 9}, {"label", "How many"}, {"group", "Panel"}, {"key", "n"}, {"file", "test.sgm"}, {"line", 3}}));
+    EXPECT_EQ(table[0], (nlohmann::json{{"name", "count"},
+                                        {"kind", "integer"},
+                                        {"default", 4},
+                                        {"minimum", 1},
+                                        {"maximum", 9},
+                                        {"label", "How many"},
+                                        {"group", "Panel"},
+                                        {"key", "n"},
+                                        {"file", "test.sgm"},
+                                        {"line", 3}}));
     EXPECT_EQ(table[3]["default"], 12);
     EXPECT_EQ(table[3]["unit"], "deg");
     EXPECT_EQ(table[4]["default"], nlohmann::json::array({1, 2, 3}));

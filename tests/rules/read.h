@@ -20,12 +20,14 @@ struct Checked {
     /// All messages, one a line, warnings marked.
     std::string messages() const {
         std::string text;
-        for (const auto& d : diagnostics.all()) text += (d.severity == syntax::Severity::Warning ? "warning: " : "") + d.message + "\n";
+        for (const auto& d : diagnostics.all())
+            text += (d.severity == syntax::Severity::Warning ? "warning: " : "") + d.message + "\n";
         return text;
     }
 };
 
-inline Checked checked(const std::string& text, const std::map<std::string, std::string>& files = {}, const std::string& name = "test.sgm") {
+inline Checked checked(const std::string& text, const std::map<std::string, std::string>& files = {},
+                       const std::string& name = "test.sgm") {
     Checked result;
     result.source = std::make_shared<const syntax::Source>(name, text);
     const Loader loader = [&](const std::string& wanted, const syntax::Source&, std::string& why) -> syntax::SourcePtr {

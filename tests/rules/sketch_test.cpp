@@ -20,12 +20,14 @@ protected:
 
     const Grammar& grammar() const { return *sketch_->grammar; }
     const Rule& rule(const std::string& name) const {
-        const auto found = std::find_if(grammar().rules.begin(), grammar().rules.end(), [&](const Rule& r) { return r.name == name; });
+        const auto found =
+            std::find_if(grammar().rules.begin(), grammar().rules.end(), [&](const Rule& r) { return r.name == name; });
         return found == grammar().rules.end() ? grammar().rules.at(999) : *found;
     }
     const std::string& symbol(SymbolId id) const { return grammar().symbols.at(id).name; }
     const Symbol& symbolCalled(const std::string& name) const {
-        return *std::find_if(grammar().symbols.begin(), grammar().symbols.end(), [&](const Symbol& s) { return s.name == name; });
+        return *std::find_if(grammar().symbols.begin(), grammar().symbols.end(),
+                             [&](const Symbol& s) { return s.name == name; });
     }
     static const Attribute& attribute(const Element& e, Id id) {
         return *std::find_if(e.attributes.begin(), e.attributes.end(), [&](const Attribute& a) { return a.id == id; });
@@ -96,7 +98,8 @@ TEST_F(Sketch, CloudLoopsOverAxesAndSteps) {
     const Element& torus = puff.finally_->siblings[0][0];
     EXPECT_EQ(torus.op, Operator::Morph);
     EXPECT_EQ(attribute(torus, Id::By).args.at(0).value, Value::number(.2));
-    EXPECT_EQ(torus.content.solid.args.at(0).value.num(), torus.content.solid.primitive->parameters[0].fallback) << "default filled in";
+    EXPECT_EQ(torus.content.solid.args.at(0).value.num(), torus.content.solid.primitive->parameters[0].fallback)
+        << "default filled in";
 }
 
 TEST_F(Sketch, BuildingChoosesItsProfileByGuard) {
@@ -153,10 +156,18 @@ TEST_F(Sketch, KifsTakesNamedArguments) {
     ASSERT_EQ(ornate.args.size(), ornate.primitive->parameters.size());
     for (size_t i = 0; i < ornate.args.size(); ++i) {
         const std::string_view name = ornate.primitive->parameters[i].name;
-        if (name == "center") { EXPECT_EQ(ornate.args[i].value.n[2], .33); }
-        if (name == "passes") { EXPECT_EQ(ornate.args[i].value.num(), 6); }
-        if (name == "fold") { EXPECT_EQ(static_cast<Fn>(ornate.args[i].index), Fn::RotY); }
-        if (name == "turn") { EXPECT_EQ(ornate.args[i].value.kind, Value::Kind::Rotation) << "default"; }
+        if (name == "center") {
+            EXPECT_EQ(ornate.args[i].value.n[2], .33);
+        }
+        if (name == "passes") {
+            EXPECT_EQ(ornate.args[i].value.num(), 6);
+        }
+        if (name == "fold") {
+            EXPECT_EQ(static_cast<Fn>(ornate.args[i].index), Fn::RotY);
+        }
+        if (name == "turn") {
+            EXPECT_EQ(ornate.args[i].value.kind, Value::Kind::Rotation) << "default";
+        }
     }
 }
 
@@ -173,7 +184,8 @@ TEST_F(Sketch, SaysItsStylesAndChecks) {
 }
 
 TEST(Draws, AreNamedByAttributeAndOrdinal) {
-    const Checked c = checkedBody("start A -> cube : B\nrule B -> + cube size (1..2, 3, 4..5) at +x + cube size 1..2 at -x\n");
+    const Checked c =
+        checkedBody("start A -> cube : B\nrule B -> + cube size (1..2, 3, 4..5) at +x + cube size 1..2 at -x\n");
     ASSERT_TRUE(c.grammar) << c.messages();
     const auto& chain = c.grammar->rules[0].body.siblings[0];
     const Expr& first = chain[0].attributes[0].args[0];
@@ -231,7 +243,9 @@ TEST(Looks, OfParametersStayOpen) {
 }
 
 TEST(Choices, OfPrimitivesFollowParameters) {
-    const Checked c = checkedBody("param kind = ball of ball, cube\nterminal a = kifs(terminal: cube)\nterminal b = kifs(terminal: kind)\nstart A -> a + b at +x\n");
+    const Checked c = checkedBody(
+        "param kind = ball of ball, cube\nterminal a = kifs(terminal: cube)\nterminal b = kifs(terminal: kind)\nstart "
+        "A -> a + b at +x\n");
     ASSERT_TRUE(c.grammar) << c.messages();
     const auto& row = *c.grammar->symbols[0].solid->primitive;
     size_t i = 0;

@@ -7,8 +7,10 @@ namespace sgm::rules {
 namespace {
 
 TEST(Uses, MergeDeclarationsBeforeTheirUser) {
-    const Checked c = checked("grammar 1\nuse \"a.sgm\"\nuse \"b.sgm\"\nstart S -> wall : Cell\nrule Cell -> + wall at +y\n",
-                              {{"a.sgm", "grammar 1\nuse \"b.sgm\"\nrule Cell when scope.x > 9 -> nil\n"}, {"b.sgm", "grammar 1\nterminal wall\n"}});
+    const Checked c =
+        checked("grammar 1\nuse \"a.sgm\"\nuse \"b.sgm\"\nstart S -> wall : Cell\nrule Cell -> + wall at +y\n",
+                {{"a.sgm", "grammar 1\nuse \"b.sgm\"\nrule Cell when scope.x > 9 -> nil\n"},
+                 {"b.sgm", "grammar 1\nterminal wall\n"}});
     ASSERT_TRUE(c.grammar) << c.messages();
     EXPECT_EQ(c.messages(), "");
     ASSERT_EQ(c.grammar->sources.size(), 3u);
@@ -19,7 +21,8 @@ TEST(Uses, MergeDeclarationsBeforeTheirUser) {
 }
 
 TEST(Uses, RefuseCircles) {
-    const Checked c = checked("grammar 1\nuse \"a.sgm\"\nstart S -> cube\n", {{"a.sgm", "grammar 1\nuse \"b.sgm\"\n"}, {"b.sgm", "grammar 1\nuse \"a.sgm\"\n"}});
+    const Checked c = checked("grammar 1\nuse \"a.sgm\"\nstart S -> cube\n",
+                              {{"a.sgm", "grammar 1\nuse \"b.sgm\"\n"}, {"b.sgm", "grammar 1\nuse \"a.sgm\"\n"}});
     EXPECT_FALSE(c.grammar);
     EXPECT_EQ(c.messages(), "files use each other in a circle: a.sgm -> b.sgm -> a.sgm\n");
     EXPECT_EQ(c.diagnostics.all()[0].span.source->name(), "b.sgm");
@@ -36,13 +39,15 @@ TEST(Uses, SayWhatTheLoaderSaysAndNoMore) {
 }
 
 TEST(Uses, PointIntoTheUsedFile) {
-    const Checked c = checked("grammar 1\nuse \"a.sgm\"\nstart S -> cube\n", {{"a.sgm", "grammar 1\nrule Wall -> cubee\n"}});
+    const Checked c =
+        checked("grammar 1\nuse \"a.sgm\"\nstart S -> cube\n", {{"a.sgm", "grammar 1\nrule Wall -> cubee\n"}});
     ASSERT_EQ(c.diagnostics.all().size(), 1u);
     EXPECT_EQ(syntax::render(c.diagnostics.all()[0]).rfind("a.sgm:2:14: error: unknown solid 'cubee'", 0), 0u);
 }
 
 TEST(Uses, DontWarnOfWhatALibraryOffers) {
-    const Checked c = checked("grammar 1\nuse \"a.sgm\"\nstart S -> cube\n", {{"a.sgm", "grammar 1\nparam depth = 1\nrule Wall -> cube\n"}});
+    const Checked c = checked("grammar 1\nuse \"a.sgm\"\nstart S -> cube\n",
+                              {{"a.sgm", "grammar 1\nparam depth = 1\nrule Wall -> cube\n"}});
     EXPECT_TRUE(c.grammar);
     EXPECT_EQ(c.messages(), "");
 }

@@ -12,7 +12,9 @@ namespace sgm::rules {
 namespace {
 
 Value apply(Fn fn, std::initializer_list<Value> args) { return applyFunction(fn, std::vector<Value>(args)); }
-Value vec(double a, double b, double c) { return tuple(std::array{Value::number(a), Value::number(b), Value::number(c)}); }
+Value vec(double a, double b, double c) {
+    return tuple(std::array{Value::number(a), Value::number(b), Value::number(c)});
+}
 Value axis(int n) {
     Value v;
     v.kind = Value::Kind::Axis;

@@ -1,0 +1,212 @@
+// Functions and operators of expressions: argument counts, kinds and units.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "grammar/rules/checker.h"
+#include "grammar/rules/evaluate.h"
+#include "grammar/rules/functions.h"
+#include "grammar/rules/make.h"
+#include "modeler/core/random.h"
+
+namespace sgm::rules {
+namespace {
+
+using Written = syntax::Expr;
+using Where = Place::Where;
+
+struct BinaryRow {
+    std::string_view text;
+    Fn fn;
+    std::string_view verb;
+};
+constexpr std::array<BinaryRow, 13> binaryRows{{{"+", Fn::Add, "add"},
+                                                {"-", Fn::Sub, "subtract"},
+                                                {"*", Fn::Mul, "multiply"},
+                                                {"/", Fn::Div, "divide"},
+                                                {"%", Fn::Rem, "divide"},
+                                                {"<", Fn::Less, "compare"},
+                                                {"<=", Fn::LessEq, "compare"},
+                                                {">", Fn::Greater, "compare"},
+                                                {">=", Fn::GreaterEq, "compare"},
+                                                {"==", Fn::Equal, "compare"},
+                                                {"!=", Fn::NotEqual, "compare"},
+                                                {"and", Fn::And, "join"},
+                                                {"or", Fn::Or, "join"}}};
+
+const BinaryRow& binaryRow(std::string_view text) {
+    const auto row =
+        std::find_if(binaryRows.begin(), binaryRows.end(), [&](const BinaryRow& r) { return r.text == text; });
+    return row == binaryRows.end() ? binaryRows[0] : *row;
+}
+
+}  // namespace
+
+Typed Checker::countCall(Place& place, const Written& e) {
+    const Written& arg = e.args[0];
+    if (place.where < Where::Guard) return failed(e.span, "there are no shapes here to count");
+    const auto symbol = symbols_.find(arg.text);
+    if (arg.kind != Written::Kind::Name || symbol == symbols_.end())
+        return unknown(arg.span, arg.text,
+                       fmt::format("'count' takes the name of a shape, and there is none called '{}'", arg.span.text()),
+                       nearest(arg.text, symbolNames(false)));
+    Value word = makeWord(arg.text);
+    word.n[0] = symbol->second;
+    return {makeCall(Expr::Kind::Call, Fn::Count, e.span, {makeConstant(arg.span, std::move(word))}),
+            Type::number(Unit::None, true)};
+}
+
+Typed Checker::call(Place& place, const Written& e) {
+    const Function* row = findFunction(e.text);
+    if (e.text == "overlaps") return failed(e.span, "'overlaps(…)' is not supported yet");
+    if (!row) {
+        std::vector<std::string> known;
+        for (const Function& f : functions()) known.emplace_back(f.name);
+        const SourceSpan word{e.span.source, e.span.begin, e.span.begin + static_cast<uint32_t>(e.text.size())};
+        return failed(word, fmt::format("unknown function '{}'", e.text), nearest(e.text, known));
+    }
+    if (e.args.size() < row->least || e.args.size() > row->most)
+        return failed(e.span, fmt::format("'{}' takes {} argument{}{}, but {} {} given", row->name, row->least,
+                                          row->least == 1 ? "" : "s", row->most > row->least ? " or more" : "",
+                                          e.args.size(), e.args.size() == 1 ? "is" : "are"));
+    for (size_t i = 0; i < e.argNames.size(); ++i)
+        if (!e.argNames[i].empty())
+            return failed(e.args[i].span, fmt::format("the arguments of '{}' have no names", row->name),
+                          fmt::format("leave '{}:' out", e.argNames[i]));
+    if (row->signature == Signature::Symbol) return countCall(place, e);
+
+    const std::string what = fmt::format("'{}'", row->name);
+    std::vector<Typed> args;
+    for (const Written& arg : e.args) args.push_back(expression(place, arg));
+    bool good = true;
+    const auto each = [&](Want want, size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) good = asks(args[i], want, what, &e.args[i]) && good;
+    };
+    const auto pair = [&](size_t a, size_t b) {
+        const bool sameKind = args[a].type.like.kind == args[b].type.like.kind && !args[a].type.numeric();
+        good = good && (sameKind || alike(args[a], args[b], "choose between"));
+    };
+    switch (row->signature) {
+        case Signature::Alike:
+            for (size_t i = 0; i < args.size(); ++i) good = good && alike(args[0], args[i], "compare");
+            break;
+        case Signature::Plain:
+            each(Want::Number, 0, args.size());
+            break;
+        case Signature::Angle:
+            each(Want::Angle, 0, args.size());
+            break;
+        case Signature::Lerp:
+            each(Want::Number, 2, 3);
+            pair(0, 1);
+            break;
+        case Signature::If:
+            each(Want::Truth, 0, 1);
+            pair(1, 2);
+            break;
+        case Signature::Symbol:
+            break;
+    }
+    if (!good) return {{}, Type::unknown()};
+    return applied(Expr::Kind::Call, row->fn, e.span, std::move(args));
+}
+
+Typed Checker::unary(Place& place, const Written& e) {
+    Typed arg = expression(place, e.args[0]);
+    std::vector<Typed> args;
+    if (e.text == "not") {
+        if (!asks(arg, Want::Truth, "'not'", nullptr)) return {{}, Type::unknown()};
+        args.push_back(std::move(arg));
+        return applied(Expr::Kind::Unary, Fn::Not, e.span, std::move(args));
+    }
+    if (arg.type.known && !arg.type.numeric() && arg.type.like.kind != Value::Kind::Axis)
+        return failed(e.span, fmt::format("'-' takes a number, but this is {}", describe(arg.type)));
+    args.push_back(std::move(arg));
+    return applied(Expr::Kind::Unary, Fn::Neg, e.span, std::move(args));
+}
+
+/// A bare word beside `==`: one of the words of the parameter it is compared with.
+Typed Checker::comparedWord(Place& place, const Written& e, const Type& other) {
+    if (!other.words || e.kind != Written::Kind::Name || params_.contains(e.text)) return expression(place, e);
+    if (std::find(other.words->begin(), other.words->end(), e.text) == other.words->end())
+        return failed(e.span, fmt::format("it is never '{}', but one of {}", e.text, fmt::join(*other.words, ", ")),
+                      nearest(e.text, *other.words));
+    return makeTyped(e.span, makeWord(e.text));
+}
+
+Typed Checker::binary(Place& place, const Written& e) {
+    const BinaryRow& row = binaryRow(e.text);
+    const bool equality = row.fn == Fn::Equal || row.fn == Fn::NotEqual;
+    const auto isWordParam = [&](const Written& side) {
+        const auto param = side.kind == Written::Kind::Name ? params_.find(side.text) : params_.end();
+        return param != params_.end() && !grammar_.params[param->second].choices.empty();
+    };
+    std::vector<Typed> args(2);
+    const size_t first = equality && isWordParam(e.args[1]) ? 1 : 0;
+    args[first] = expression(place, e.args[first]);
+    args[1 - first] =
+        equality ? comparedWord(place, e.args[1 - first], args[first].type) : expression(place, e.args[1 - first]);
+    const Typed &a = args[0], &b = args[1];
+    const Value::Kind ka = a.type.like.kind, kb = b.type.like.kind;
+    bool good = true;
+    if (row.fn == Fn::And || row.fn == Fn::Or) {
+        for (size_t i = 0; i < 2; ++i)
+            good = asks(args[i], Want::Truth, fmt::format("'{}'", row.text), nullptr) && good;
+    } else if (row.fn == Fn::Mul && ka == Value::Kind::Rotation && kb == ka) {
+        good = true;
+    } else if (row.fn == Fn::Mul || row.fn == Fn::Div) {
+        Typed plainB = b;  // any unit may multiply any other number; what comes of it is judged where it is used
+        plainB.type.like.units.fill(Unit::None);
+        good = alike(a, plainB, row.verb);
+        const Unit ua = a.type.like.units[0], ub = b.type.like.units[0];
+        if (good && a.type.known && b.type.known && row.fn == Fn::Mul && ua == ub &&
+            (ua == Unit::Metre || ua == Unit::Angle || ua == Unit::PerMetre))
+            good = failed(e.span, fmt::format("{} times {} is nothing a grammar can measure", describe(a.type),
+                                              describe(b.type)))
+                       .type.known;
+    } else if (!(equality && ka == kb && !a.type.numeric())) {
+        good = alike(a, b, row.verb);
+    }
+    if (!good) return {{}, Type::unknown()};
+    return applied(Expr::Kind::Binary, row.fn, e.span, std::move(args));
+}
+
+Typed Checker::range(Place& place, const Written& e) {
+    if (place.where < Where::Guard || place.where == Where::Expect)
+        return failed(e.span, "nothing is drawn by chance here: a plain value must stand here");
+    const uint32_t ordinal = place.ranges++;
+    std::vector<Typed> ends;
+    for (const Written& end : e.args) ends.push_back(expression(place, end));
+    if (!alike(ends[0], ends[1], "draw between")) return {{}, Type::unknown()};
+    const auto lo = fold(ends[0].expr, {}), hi = fold(ends[1].expr, {});
+    if (lo && hi && lo->kind == Value::Kind::Number && hi->kind == Value::Kind::Number && lo->num() > hi->num())
+        return failed(e.span, "the range runs backwards",
+                      fmt::format("write '{}..{}'", e.args[1].span.text(), e.args[0].span.text()));
+    Typed result = applied(Expr::Kind::Binary, Fn::Add, e.span, ends);
+    result.expr = {};
+    result.expr.kind = Expr::Kind::Range;
+    result.expr.span = e.span;
+    const uint64_t key = hashText(place.attribute);
+    result.expr.draw = ordinal == 0 ? key : combine(key, ordinal);
+    for (Typed& end : ends) result.expr.args.push_back(std::move(end.expr));
+    return result;
+}
+
+Typed Checker::ramp(Place& place, const Written& e) {
+    if (place.where != Where::Chain)
+        return failed(e.span, "'~>' runs along a chain, and there is none here", "give the rule a 'repeat'");
+    std::vector<Typed> ends;
+    for (const Written& end : e.args) ends.push_back(expression(place, end));
+    const bool colors = ends[0].type.like.kind == Value::Kind::Color && ends[1].type.like.kind == Value::Kind::Color;
+    if (!colors && !alike(ends[0], ends[1], "go between")) return {{}, Type::unknown()};
+    Typed result;
+    result.type.known = ends[0].type.known && ends[1].type.known;
+    result.type.like = interpolate(ends[0].type.like, ends[1].type.like, 0);
+    result.expr.kind = Expr::Kind::Ramp;
+    result.expr.span = e.span;
+    for (Typed& end : ends) result.expr.args.push_back(std::move(end.expr));
+    return result;
+}
+
+}  // namespace sgm::rules
