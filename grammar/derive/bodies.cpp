@@ -41,36 +41,36 @@ bool Interpreter::runBody(const rules::Body& body, const Frame& frame, uint64_t 
     for (const Elements& sibling : body.siblings) {
         Frame own = frame;
         Target target{frame.node, frame.matched};
-        if (!runElements(sibling, own, target, loop)) return false;
+        if (!runElements(sibling, own, target, loop, false)) return false;
     }
     return true;
 }
 
 /// The body of a loop or a choice goes on with the chain it stands in.
-bool Interpreter::runInner(const rules::Body& body, Frame& frame, Target& target, uint64_t loop) {
+bool Interpreter::runInner(const rules::Body& body, Frame& frame, Target& target, uint64_t loop, bool followed) {
     for (const Elements& sibling : body.siblings) {
         Target own = target;
         Frame inner = frame;
-        if (!runElements(sibling, inner, own, loop)) return false;
-        if (body.siblings.size() == 1 && target.node == frame.node) target = own;
+        if (!runElements(sibling, inner, own, loop, followed)) return false;
+        if (body.siblings.size() == 1) target = own;
     }
     return true;
 }
 
-bool Interpreter::runElements(const Elements& elements, Frame& frame, Target& target, uint64_t loop) {
+bool Interpreter::runElements(const Elements& elements, Frame& frame, Target& target, uint64_t loop, bool followed) {
     for (const Element& e : elements)
-        if (!runElement(e, frame, target, loop, elements.size() > 1)) return false;
+        if (!runElement(e, frame, target, loop, followed || elements.size() > 1)) return false;
     return true;
 }
 
 bool Interpreter::runElement(const Element& e, Frame& frame, Target& target, uint64_t loop, bool followed) {
     switch (e.kind) {
-        case Element::Kind::For: return runFor(e, frame, target, loop);
-        case Element::Kind::While: return runWhile(e, frame, target, loop);
-        case Element::Kind::Choose: return runChoose(e, frame, target, loop);
+        case Element::Kind::For: return runFor(e, frame, target, loop, followed);
+        case Element::Kind::While: return runWhile(e, frame, target, loop, followed);
+        case Element::Kind::Choose: return runChoose(e, frame, target, loop, followed);
         case Element::Kind::When:
             frame.place.key = combine(combine(frame.key, hashText("when")), loop);
-            return !e.guard || !holds(*e.guard, frame.place) || runInner(*e.body, frame, target, loop);
+            return !e.guard || !holds(*e.guard, frame.place) || runInner(*e.body, frame, target, loop, followed);
         case Element::Kind::Shape: break;
     }
     const uint64_t key = combine(combine(frame.key, factsOf(e).hash), loop);
@@ -82,14 +82,14 @@ bool Interpreter::runElement(const Element& e, Frame& frame, Target& target, uin
     return e.op == rules::Operator::None ? placeHead(e, frame, target, key, followed) : placeGrown(e, frame, target, key);
 }
 
-bool Interpreter::runFor(const Element& e, Frame& frame, Target& target, uint64_t loop) {
+bool Interpreter::runFor(const Element& e, Frame& frame, Target& target, uint64_t loop, bool followed) {
     frame.place.key = combine(combine(frame.key, hashText("for")), loop);
     const auto turn = [&](Value value) {
         const uint64_t key = turnKey(loop, value.num());
         locals_[e.local] = std::move(value);
         frame.place.key = combine(combine(frame.key, hashText("for")), key);
         if (!builder_.work()) return false;
-        return (e.guard && !holds(*e.guard, frame.place)) || runInner(*e.body, frame, target, key);
+        return (e.guard && !holds(*e.guard, frame.place)) || runInner(*e.body, frame, target, key, followed);
     };
     if (e.over->kind != rules::Expr::Kind::Range) {
         for (Value& value : valuesOver(*e.over, frame.place))
@@ -105,17 +105,17 @@ bool Interpreter::runFor(const Element& e, Frame& frame, Target& target, uint64_
     return true;
 }
 
-bool Interpreter::runWhile(const Element& e, Frame& frame, Target& target, uint64_t loop) {
+bool Interpreter::runWhile(const Element& e, Frame& frame, Target& target, uint64_t loop, bool followed) {
     for (uint64_t turn = 1;; ++turn) {
         const uint64_t key = turnKey(loop, static_cast<double>(turn));
         frame.place.key = combine(combine(frame.key, hashText("while")), key);
         if (!builder_.work()) return false;
         if (!e.guard || !holds(*e.guard, frame.place)) return true;
-        if (!runInner(*e.body, frame, target, key)) return false;
+        if (!runInner(*e.body, frame, target, key, followed)) return false;
     }
 }
 
-bool Interpreter::runChoose(const Element& e, Frame& frame, Target& target, uint64_t loop) {
+bool Interpreter::runChoose(const Element& e, Frame& frame, Target& target, uint64_t loop, bool followed) {
     const uint64_t key = combine(combine(combine(frame.key, hashText("choose")), e.ordinal), loop);
     frame.place.key = key;
     std::vector<double> weights;
@@ -127,7 +127,7 @@ bool Interpreter::runChoose(const Element& e, Frame& frame, Target& target, uint
     if (!(total > 0)) return true;
     double drawn = uniform(combine(key, hashText("weight"))) * total;
     for (size_t i = 0; i < weights.size(); ++i) {
-        if (drawn < weights[i]) return runInner(*e.choices[i].body, frame, target, loop);
+        if (drawn < weights[i]) return runInner(*e.choices[i].body, frame, target, loop, followed);
         drawn -= weights[i];
     }
     return true;

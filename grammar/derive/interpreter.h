@@ -70,14 +70,14 @@ private:
     };
     using Elements = std::vector<rules::Element>;
 
-    // bodies.cpp
+    // bodies.cpp; `followed`: operators may come that join the shape placed here
     bool runBody(const rules::Body& body, const Frame& frame, uint64_t loop);
-    bool runInner(const rules::Body& body, Frame& frame, Target& target, uint64_t loop);
-    bool runElements(const Elements& elements, Frame& frame, Target& target, uint64_t loop);
+    bool runInner(const rules::Body& body, Frame& frame, Target& target, uint64_t loop, bool followed);
+    bool runElements(const Elements& elements, Frame& frame, Target& target, uint64_t loop, bool followed);
     bool runElement(const rules::Element& e, Frame& frame, Target& target, uint64_t loop, bool followed);
-    bool runFor(const rules::Element& e, Frame& frame, Target& target, uint64_t loop);
-    bool runWhile(const rules::Element& e, Frame& frame, Target& target, uint64_t loop);
-    bool runChoose(const rules::Element& e, Frame& frame, Target& target, uint64_t loop);
+    bool runFor(const rules::Element& e, Frame& frame, Target& target, uint64_t loop, bool followed);
+    bool runWhile(const rules::Element& e, Frame& frame, Target& target, uint64_t loop, bool followed);
+    bool runChoose(const rules::Element& e, Frame& frame, Target& target, uint64_t loop, bool followed);
 
     // place.cpp
     bool placeHead(const rules::Element& e, Frame& frame, Target& target, uint64_t key, bool followed);

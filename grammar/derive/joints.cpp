@@ -14,12 +14,15 @@ constexpr double cosineTolerance = 1e-9;
 
 bool directed(Vec3d d) { return d != Vec3d{}; }
 
-/// Joints of one direction share a bucket, so that a search meets only those that look the other way.
+/// Joints of one direction share a bucket and those that look the other way have the next one, in the same cache line.
 uint64_t cellHash(int64_t x, int64_t y, int64_t z, Vec3d direction) {
-    const auto coarse = [](double d) { return static_cast<uint64_t>(static_cast<int64_t>(std::floor(d * 4 + 0.5)) + 8); };
-    const uint64_t looks = coarse(direction.x) | coarse(direction.y) << 8 | coarse(direction.z) << 16;
-    return mix(static_cast<uint64_t>(x) * 0x9e3779b97f4a7c15ull ^ static_cast<uint64_t>(y) * 0xc2b2ae3d27d4eb4full ^
-               static_cast<uint64_t>(z) * 0x165667b19e3779f9ull ^ looks);
+    const auto coarse = [](double d) { return static_cast<int64_t>(std::lround(d * 4)); };
+    int64_t looks = coarse(direction.x) * 289 + coarse(direction.y) * 17 + coarse(direction.z);
+    const bool flipped = looks < 0;
+    if (flipped) looks = -looks;
+    const uint64_t h = mix(static_cast<uint64_t>(x) * 0x9e3779b97f4a7c15ull ^ static_cast<uint64_t>(y) * 0xc2b2ae3d27d4eb4full ^
+                           static_cast<uint64_t>(z) * 0x165667b19e3779f9ull ^ static_cast<uint64_t>(looks));
+    return (h & ~uint64_t{1}) | (flipped ? 1 : 0);
 }
 
 int64_t cellOf(double v) { return static_cast<int64_t>(std::floor(v / cell_m)); }

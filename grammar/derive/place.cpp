@@ -63,14 +63,14 @@ bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint
     Shape shape = shapeOf(e, looks, place, key);
     shape.scope = looks.scope;
     shape.scope.centre += looks.moved_m;
-    shape.parent = target.node;
+    shape.parent = frame.node;
     if (followed && needsGroup(e, shape)) {
         Shape group;
         group.key = combine(key, hashText("group"));
         const auto [at, fresh] = labels_.try_emplace("group", static_cast<uint32_t>(labels_.size()));
         if (fresh) builder_.tree().labels.push_back(at->first);
         group.label = at->second;
-        group.parent = target.node;
+        group.parent = frame.node;
         group.scope = shape.scope;
         group.span = e.span;
         shape.parent = builder_.add(group);
@@ -81,7 +81,7 @@ bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint
     builder_.meetNeighbours(shape.parent);
     builder_.meetNeighbours(id);
     if (!fill(e, id, frame)) return false;
-    target = {shape.parent == target.node ? id : shape.parent, id};
+    target = {shape.parent == frame.node ? id : shape.parent, id};
     remember(e, frame, id, centreJoint);
     return true;
 }

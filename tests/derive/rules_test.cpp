@@ -1,0 +1,161 @@
+// Rules: matching, choice, chains, budgets, and draws that stay put.
+#include "tests/derive/grammars.h"
+
+namespace sgm {
+namespace {
+
+using namespace testing_;
+
+TEST(Chains, CloudAddsNSpheresInTheNthRule) {
+    const auto d = derived(cloud);
+    // Σ over axes of 1 + … + Max, the root and the closing torus; and the start's own node.
+    EXPECT_EQ(d.terminals(), 45u + 21 + 6 + 3 + 10 + 10 + 2);
+    EXPECT_EQ(d.classic, 9u);
+    EXPECT_EQ(d.morphic, 1u);
+    EXPECT_EQ(d.steps[1].madeCount, 2u * 6);
+    const auto& torus = at(d, "Cloud/Puff/torus");
+    EXPECT_EQ(torus.op, rules::Operator::Morph);
+    EXPECT_DOUBLE_EQ(torus.amount, 0.2);
+    EXPECT_GT(torus.scope.size.x, 5);  // it fills the box of everything grown
+}
+
+TEST(Chains, CaveRunsOnTheNewestAndNeverTurnsBack) {
+    const auto d = derived(cave);
+    EXPECT_EQ(d.morphic, 14u);
+    EXPECT_EQ(d.tree.bonds.size(), 14u);
+    for (size_t i = 1; i < d.tree.bonds.size(); ++i) {
+        EXPECT_EQ(d.tree.bonds[i].shape[0], d.tree.bonds[i - 1].shape[1]);
+        const auto came = d.tree.bonds[i - 1].joint[0], went = d.tree.bonds[i].joint[0];
+        EXPECT_NE(went, came ^ 1u);
+    }
+    expectNear(at(d, "Cave/Cell/Cell").scope.size, {2, 2, 2});
+    expectNear(at(d, "Cave/Cell/Cell[14]").scope.size, {1.2, 1.2, 1.2});
+}
+
+TEST(Chains, HouseStacksStoreysAndPutsTheRoofOnTheLast) {
+    const auto d = derived(house);
+    EXPECT_EQ(d.tree.bonds.size(), 7u);
+    expectNear(at(d, "House/Storey/Storey[6]").scope.size, {8, 2.8, 7});
+    const auto& top = at(d, "House/Storey/Storey[6]").scope;
+    const auto& roof = at(d, "House/Storey/roof").scope;
+    EXPECT_NEAR(roof.centre.y, top.centre.y + 1.4 + 1.5, 1e-9);
+    derive::Options convex;
+    for (const auto& p : d.grammar->params) convex.params.push_back(p.value);
+    convex.params[1].text = "convex";
+    EXPECT_EQ(derived(house, convex).terminals(), 7u * 5 + 1);
+}
+
+TEST(Chains, AnyDrawsAmongTheStepBefore) {
+    const auto d = derived("grammar 1\nstart S -> cube : A\nrule A repeat 3 -> for k in 1..2 { + cube size .5 on any(+x) at +x to centre : A }\n");
+    for (const derive::Bond& b : d.tree.bonds) {
+        if (b.directed) continue;  // faces that happen to coincide
+        const uint32_t step = d.steps[d.tree.shapes[b.shape[1]].madeBy].chainIndex;
+        const uint32_t madeBy = d.tree.shapes[b.shape[0]].madeBy;
+        EXPECT_EQ(madeBy == derive::none ? 0 : d.steps[madeBy].chainIndex, step - 1);
+    }
+}
+
+TEST(Rules, GuardsWinInFileOrderAndWeightsDraw) {
+    const std::string text = "grammar 1\nparam n = 1 in 0..9\nstart S -> for k in 1..400 { cube move (2 * k, 0, 0) : A }\nrule A when n > 1 -> sphere\nrule A when n > 0 -> cone\nrule A -> torus\nrule A weight 3 -> cylinder\n";
+    const auto count = [&](double n, const char* label) {
+        derive::Options options;
+        options.params = {rules::Value::number(n)};
+        const auto d = derived(text, options);
+        size_t found = 0;
+        for (const auto& s : d.tree.shapes) found += d.tree.labels[s.label] == label;
+        return found;
+    };
+    EXPECT_EQ(count(2, "sphere"), 400u);
+    EXPECT_EQ(count(1, "cone"), 400u);
+    EXPECT_NEAR(static_cast<double>(count(0, "cylinder")), 300, 30);
+    EXPECT_EQ(count(0, "torus") + count(0, "cylinder"), 400u);
+}
+
+TEST(Rules, ReplacingDropsGrowingKeeps) {
+    const auto d = derived("grammar 1\nstart S -> Box : Wrap\nrule Box -> cube\nrule Wrap -> + sphere at +y\n");
+    EXPECT_NE(d.tree.find("S/Wrap/Box/cube"), derive::none);
+    EXPECT_NE(d.tree.find("S/Wrap/sphere"), derive::none);
+    const auto gone = derived("grammar 1\nstart S -> Box : Wrap\nrule Box -> cube\nrule Wrap -> cone\n");
+    EXPECT_EQ(gone.terminals(), 1u);
+    EXPECT_EQ(derived("grammar 1\nstart S -> cube : A, cube move (2, 0, 0)\nrule A -> nil\n").terminals(), 1u);
+}
+
+TEST(Rules, CountReadsTheGenerationsStart) {
+    const auto d = derived("grammar 1\nstart S -> cube : A, cube move (3, 0, 0) : A\nrule A when count(B) < 1 -> cube : B\nrule B when count(B) > 2 -> cone\n");
+    EXPECT_EQ(d.steps.size(), 2u);  // both saw no B
+}
+
+TEST(Rules, ValuesAreInherited) {
+    const auto d = derived("grammar 1\nstart S -> A with tall = 3\nrule A -> B\nrule B -> cube size (1, tall, 1)\n");
+    expectNear(at(d, "S/A/B/cube").scope.size, {1, 3, 1});
+}
+
+std::string sizesOf(const derive::Derivation& d, const std::string& under) {
+    std::string text;
+    const derive::ShapeId root = d.tree.find(under);
+    for (derive::ShapeId s = root; s != derive::none; s = d.tree.next(s, root)) text += std::to_string(d.tree.shapes[s].scope.size.x) + " ";
+    return text;
+}
+
+TEST(Draws, EditingOneBranchLeavesTheOthersAlone) {
+    const std::string rules = "rule Right -> cube size .2..1 + sphere size .2..1 at free()\n";
+    const auto before = sizesOf(derived("grammar 1\nstart S -> Left, Right\nrule Left -> cube size .2..1\n" + rules), "S/Right");
+    for (const char* edit : {"start S -> Right, Left\nrule Left -> cube size .2..1\n", "start S -> cone, Left, Right\nrule Left -> sphere, sphere size .2..1\n",
+                             "start S -> Port, Right\nrule Port -> cube size .2..1\n", "start S -> Left, Right\nrule Other: Left -> for d in axes { sphere size .2..1 }\n"})
+        EXPECT_EQ(sizesOf(derived("grammar 1\n" + std::string(edit) + rules), "S/Right"), before) << edit;
+    EXPECT_NE(sizesOf(derived("grammar 1\nstart S -> Left, Right\nrule Left -> cube size .2..1\n" + rules, withSeed(2)), "S/Right"), before);
+}
+
+TEST(Draws, ALoopsTurnsAreKeyedByTheirValue) {
+    const auto size = [](const std::string& axes) {
+        const auto d = derived("grammar 1\nstart S -> cube + cube size 3 : A\nrule A -> for d in (" + axes + ") { + sphere size .2..1 at d }\n");
+        for (const auto& b : d.tree.bonds)
+            if (b.joint[0] == 5) return d.tree.shapes[b.shape[1]].scope.size.x;
+        return 0.0;
+    };
+    EXPECT_GT(size("+x, -z"), 0.2);
+    EXPECT_EQ(size("+x, -z"), size("+x, +y, -x, -z"));
+}
+
+TEST(Derive, SameSeedSameTree) {
+    for (const char* text : {cave, cloud, house}) EXPECT_EQ(derive::toJson(derived(text, withSeed(7))), derive::toJson(derived(text, withSeed(7))));
+    EXPECT_NE(derive::toJson(derived(cave, withSeed(7))), derive::toJson(derived(cave, withSeed(8))));
+}
+
+const char* const runaway = "grammar 1\nparam stop = 0 in 0..1\nstart S -> cube : X\nrule Grow: X when stop < 1 -> + cube size 50% at +x : X, + cube size 50% at +y : X\n";
+
+TEST(Budgets, ShapesDepthMemorySecondsEndWithAPlace) {
+    const auto expectBudget = [](const char* text, derive::Budget budget, const char* what) {
+        derive::Options options = withSeed(42);
+        options.budget = budget;
+        const auto d = tryDerive(text, options);
+        ASSERT_FALSE(d.ok());
+        EXPECT_EQ(d.error().kind, Error::Kind::Budget);
+        for (const char* part : {what, "rule 'Grow'", "seed 42", "test.sgm:4", "S/X"})
+            EXPECT_NE(d.error().message.find(part), std::string::npos) << part << " in " << d.error().message;
+    };
+    expectBudget(runaway, {.shapes = 5000}, "5000 shapes");
+    expectBudget(runaway, {.depth = 12}, "12 levels");
+    expectBudget(runaway, {.memory_bytes = 1 << 20}, "1 MiB");
+    expectBudget(runaway, {.seconds = 0}, "seconds");
+    const char* loop = "grammar 1\nparam stop = 0 in 0..1\nstart S -> cube : X\nrule Grow: X -> cube while stop < 1 { when stop > 2 { + cube } }\n";
+    expectBudget(loop, {.shapes = 10000}, "no end");
+}
+
+TEST(Budgets, CancelEndsTheDerivation) {
+    Progress progress;
+    progress.cancel();
+    const auto d = derive::derive(grammarOf(runaway), {}, &progress);
+    ASSERT_FALSE(d.ok());
+    EXPECT_EQ(d.error().kind, Error::Kind::Cancelled);
+}
+
+TEST(Budgets, DeepTreesDontRecurse) {
+    const auto d = derived("grammar 1\nstart S -> cube : X\nrule X when scope.x > .1 -> + cube size (scope.x - .0001, 1, 1) at +y : X\n");
+    EXPECT_EQ(d.tree.shapes.back().depth, 9002u) << d.tree.shapes.size();
+    EXPECT_LT(d.tree.path(static_cast<derive::ShapeId>(d.tree.shapes.size() - 1)).size(), 200u);
+    EXPECT_GT(derive::toText(d, false).size(), 9000u);
+}
+
+}  // namespace
+}  // namespace sgm

@@ -1,0 +1,171 @@
+// Lowering: the order of combination, owners, materials, slots; seen by evaluating fields at points.
+#include "grammar/lower/lower.h"
+
+#include <chrono>
+
+#include "modeler/eval/evaluate.h"
+#include "tests/derive/grammars.h"
+
+namespace sgm {
+namespace {
+
+using namespace testing_;
+
+struct Lowered {
+    derive::Derivation derivation;
+    std::unique_ptr<lower::Model> model;
+
+    explicit Lowered(const std::string& text, derive::Options options = {}) : derivation(derived(text, options)) {
+        auto result = lower::lower(derivation, nullptr);
+        if (result.ok()) model = std::move(*result);
+        else ADD_FAILURE() << result.error().message;
+    }
+    eval::Tape tape() const { return eval::compile(model->graph, model->field, model->graph.constants()); }
+    float value(Vec3f p) const {
+        eval::Workspace workspace(eval::Isa::Portable);
+        float out = 0;
+        eval::evaluate(tape(), {&p.x, &p.y, &p.z, 1}, &out, workspace);
+        return out;
+    }
+    bool inside(Vec3f p) const { return value(p) < 0; }
+    const Part& owner(Vec3f p) const {
+        eval::Workspace workspace(eval::Isa::Portable);
+        OriginId id = 0;
+        eval::evaluateOrigin(tape(), {&p.x, &p.y, &p.z, 1}, &id, workspace);
+        return model->provenance.parts[id];
+    }
+};
+
+TEST(Order, ADifferenceCutsWhatItsNodeHoldsSoFar) {
+    // The ball comes after the cut and fills it again.
+    const Lowered later("grammar 1\nstart S -> cube size 4 - cube size 2 + sphere size 1\n");
+    EXPECT_TRUE(later.inside({0, 0, 0}));
+    EXPECT_FALSE(later.inside({0.8f, 0, 0}));
+    const Lowered before("grammar 1\nstart S -> cube size 4 + sphere size 1 - cube size 2\n");
+    EXPECT_FALSE(before.inside({0, 0, 0}));
+}
+
+TEST(Order, ADifferenceCutsNothingElse) {
+    const Lowered d("grammar 1\nstart S -> cube size 4, cube size 4 move (6, 0, 0) - cube size (20, 1, 1)\n");
+    EXPECT_TRUE(d.inside({0, 0, 0}));   // the first sibling stays whole
+    EXPECT_FALSE(d.inside({6, 0, 0}));
+}
+
+TEST(Order, IntersectionAndMorphTakeTheWhole) {
+    const Lowered both("grammar 1\nstart S -> cube size 2 + cube size (6, 1, 1) & sphere size 4\n");
+    EXPECT_TRUE(both.inside({1.5f, 0, 0}));
+    EXPECT_FALSE(both.inside({2.5f, 0, 0}));
+    // Eq. 14 between a ball of radius 1 and one of radius 3: radius 1·(1 − .25) + 3·.25.
+    const Lowered melted("grammar 1\nstart S -> sphere size 2 morph sphere size 6 by .25\n");
+    EXPECT_NEAR(melted.value({1.5f, 0, 0}), 0, 1e-5);
+    const Lowered solid("grammar 1\nstart S -> morph(sphere, cube, .5) size 2\n");
+    EXPECT_NEAR(solid.value({0, 0, 0}), -1, 1e-5);
+}
+
+TEST(Order, ConsecutiveBlendsAreOneMelt) {
+    // Equal balls around a point: the melt doesn't depend on their order.
+    const char* parts[] = {" + sphere size 2 move (1, 0, 0) blend .5", " + sphere size 2 move (0, 1, 0) blend .5"};
+    const std::string head = "grammar 1\nstart S -> sphere size 2";
+    const Lowered ab(head + parts[0] + parts[1] + "\n"), ba(head + parts[1] + parts[0] + "\n"), sharp(head + " + sphere size 2 move (1, 0, 0) + sphere size 2 move (0, 1, 0)\n");
+    for (const Vec3f p : {Vec3f{0.9f, 0.9f, 0}, Vec3f{0.5f, 0.5f, 0.8f}}) {
+        EXPECT_NEAR(ab.value(p), ba.value(p), 1e-6);
+        EXPECT_LT(ab.value(p), sharp.value(p) - 1e-3);
+    }
+}
+
+TEST(Order, DisplacementMovesTheWholeContent) {
+    const Lowered plain("grammar 1\nstart S -> (cube size 2 + sphere size 2 at +y)\n");
+    const Lowered rough("grammar 1\nstart S -> (cube size 2 + sphere size 2 at +y) displace billow(.1m, 2/m)\n");
+    int changed = 0;
+    for (float y = -1; y < 3; y += 0.25f) changed += std::abs(plain.value({1, y, 0.1f}) - rough.value({1, y, 0.1f})) > 1e-4f;
+    EXPECT_GT(changed, 8);
+    EXPECT_NE(rough.owner({1, 0, 0}).path, "");
+}
+
+TEST(Shapes, TurnedAndPlacedScopes) {
+    const Lowered d("grammar 1\nstart S -> cube size (4, 1, 1) turn 90deg move (0, 0, 5)\n");
+    EXPECT_TRUE(d.inside({0, 0, 6.8f}));
+    EXPECT_FALSE(d.inside({1.5f, 0, 5}));
+    EXPECT_TRUE(d.model->field.bounds.contains({0, 0, 6.9f}));
+    EXPECT_FALSE(d.model->field.bounds.contains({1.5f, 0, 5}));
+}
+
+TEST(Owners, SurfaceTellsItsShapeAndLine) {
+    const Lowered d("grammar 1\nterminal wall color #ff0000\nterminal glass color #0000ff\nstart S -> wall : A\n"
+                    "rule Cut: A -> - cube size .5 at +x to centre, - glass size .5 at -x to centre, + sphere size .5 at +y to centre\n");
+    const auto material = [&](const Part& p) { return d.model->provenance.materials[p.material].name; };
+    EXPECT_EQ(d.owner({0, 0, 0.5f}).symbol, "A");
+    EXPECT_EQ(material(d.owner({0, 0, 0.5f})), "wall");
+    const Part& cut = d.owner({0.25f, 0, 0});
+    EXPECT_EQ(cut.rule, "Cut");
+    EXPECT_EQ(cut.line, 5u);
+    EXPECT_EQ(cut.file, "test.sgm");
+    EXPECT_EQ(material(cut), "wall");                       // the wall of a cut looks like its host
+    EXPECT_EQ(material(d.owner({-0.25f, 0, 0})), "glass");  // unless the cutter names a material
+    EXPECT_EQ(material(d.owner({0, 0.75f, 0})), "wall");    // inherited
+    const Lowered one("grammar 1\nstart S -> sphere\n");
+    EXPECT_EQ(one.owner({0.5f, 0, 0}).symbol, "sphere");
+    EXPECT_EQ(one.model->provenance.parts[0].symbol, "sphere");
+}
+
+TEST(Slots, AChangedNumberKeepsTheStructure) {
+    const std::string text = "grammar 1\nparam r = 1 in .5..2\nstart S -> cube : A\nrule A repeat 5 -> + morph(sphere, cube, r / 2) size r at free() : A\n";
+    derive::Options other;
+    other.params = {rules::Value::number(1.5)};
+    const Lowered a(text), b(text, other);
+    const auto &ga = a.model->graph, &gb = b.model->graph;
+    ASSERT_EQ(ga.nodeCount(), gb.nodeCount());
+    ASSERT_EQ(ga.slotKeys().size(), gb.slotKeys().size());
+    size_t changed = 0;
+    for (size_t i = 0; i < ga.slotKeys().size(); ++i) {
+        EXPECT_EQ(ga.slotKeys()[i], gb.slotKeys()[i]);
+        changed += ga.constants()[i] != gb.constants()[i];
+    }
+    EXPECT_GT(changed, 10u);
+}
+
+TEST(Failures, NothingAndUnbounded) {
+    const auto empty = lower::lower(derived("grammar 1\nstart S -> nil\n"), nullptr);
+    ASSERT_FALSE(empty.ok());
+    EXPECT_NE(empty.error().message.find("nothing solid"), std::string::npos);
+    Progress progress;
+    progress.cancel();
+    const auto big = derived("grammar 1\nstart S -> cube : A\nrule A repeat 600 -> + cube at +y : A\n");
+    const auto stopped = lower::lower(big, &progress);
+    ASSERT_FALSE(stopped.ok());
+    EXPECT_EQ(stopped.error().kind, Error::Kind::Cancelled);
+}
+
+TEST(Scale, CavesAndCloudsOfThousands) {
+    const auto begin = std::chrono::steady_clock::now();
+    derive::Options cells;
+    cells.params = {rules::Value::number(2000)};
+    const auto text = grammarOf(cave);
+    for (size_t i = 1; i < text->params.size(); ++i) cells.params.push_back(text->params[i].value);
+    const Lowered big(cave, cells);
+    EXPECT_EQ(big.derivation.terminals(), 2001u);
+    derive::Options reach;
+    reach.params = {grammarOf(cloud)->params[0].value};
+    for (size_t i = 0; i < 6; ++i) reach.params[0].n[i] = 40;
+    const Lowered puffs(cloud, reach);
+    EXPECT_EQ(puffs.derivation.terminals(), 6u * 820 + 2);
+    // A tree 2,000 deep, not only wide.
+    const Lowered deep("grammar 1\nstart S -> cube : X\nrule X when scope.x > .8 -> + sphere size (scope.x - .0001, 1, 1) at +y : X\n");
+    EXPECT_GT(deep.derivation.tree.shapes.back().depth, 1990u);
+    EXPECT_TRUE(deep.inside({0, 1000, 0}));
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+    EXPECT_LT(spent.count(), 15) << "generous: other work may share the machine";
+}
+
+TEST(Determinism, EqualDerivationsGiveEqualGraphs) {
+    const Lowered a(house), b(house);
+    ASSERT_EQ(a.model->graph.nodeCount(), b.model->graph.nodeCount());
+    for (field::NodeId i = 0; i < a.model->graph.nodeCount(); ++i) {
+        EXPECT_EQ(a.model->graph.node(i).op, b.model->graph.node(i).op);
+        EXPECT_EQ(a.model->graph.node(i).first, b.model->graph.node(i).first);
+    }
+    EXPECT_TRUE(std::equal(a.model->graph.constants().begin(), a.model->graph.constants().end(), b.model->graph.constants().begin()));
+}
+
+}  // namespace
+}  // namespace sgm
