@@ -1,6 +1,7 @@
 // A brick's surface as bits: which corners are inside, which of its grid edges the surface crosses.
-// Enters: a block's samples. Leaves: 400 bytes that number every vertex without a hash map: a vertex belongs to the brick that
-// holds the low corner of its grid edge and is numbered by the rank of its bit there. Assumes brick corners were sampled.
+// Enters: a block's samples. Leaves: 400 bytes that number every vertex without a hash map: a vertex belongs to the
+// brick that holds the low corner of its grid edge and is numbered by the rank of its bit there. Assumes brick corners
+// were sampled.
 #pragma once
 
 #include <array>
@@ -16,10 +17,10 @@ inline constexpr int slabs = brickCells;  ///< of 64 corners, one a z
 
 struct Brick {
     std::array<uint16_t, brickCorners * brickCorners> inside{};  ///< row j + 9 k, bit i: corner (i, j, k) has f < 0
-    std::array<uint64_t, 3 * slabs> crossed{};                   ///< word axis · 8 + k, bit i + 8 j: that grid edge is cut
-    std::array<uint16_t, 3 * slabs> rank{};                      ///< cut edges in the words before
-    uint32_t firstVertex = 0;                                    ///< in its block
-    uint32_t cells = 0;                                          ///< cells with surface
+    std::array<uint64_t, 3 * slabs> crossed{};  ///< word axis · 8 + k, bit i + 8 j: that grid edge is cut
+    std::array<uint16_t, 3 * slabs> rank{};     ///< cut edges in the words before
+    uint32_t firstVertex = 0;                   ///< in its block
+    uint32_t cells = 0;                         ///< cells with surface
     uint32_t triangles = 0;
     uint8_t number = 0;  ///< in its block
 

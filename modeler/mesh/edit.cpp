@@ -47,7 +47,8 @@ Result<Mesh> smooth(const Mesh& mesh, int passes, Progress* progress) {
 }
 
 Result<Mesh> simplify(const Mesh& mesh, double ratio, Progress* progress) {
-    if (!(ratio > 0 && ratio <= 1)) return Error{Error::Kind::Usage, "the simplification ratio must be above 0 and at most 1"};
+    if (!(ratio > 0 && ratio <= 1))
+        return Error{Error::Kind::Usage, "the simplification ratio must be above 0 and at most 1"};
     HalfEdgeMesh half = toOpenMesh(mesh);
     const auto target = static_cast<size_t>(std::ceil(ratio * static_cast<double>(half.n_faces())));
     if (target == half.n_faces()) return fromOpenMesh(half, true);

@@ -8,9 +8,11 @@
 
 namespace sgm::mesh {
 
-/// `passes` of OpenMesh's Jacobi-Laplace smoother (tangential and normal, C1).
+/// `passes` (≥ 0) of OpenMesh's Jacobi-Laplace smoother (tangential and normal, C1); normals are recomputed from faces.
+/// Error::Usage for a negative count, Error::Cancelled when `progress` says so.
 Result<Mesh> smooth(const Mesh& mesh, int passes, Progress* progress);
-/// Quadric decimation to `ratio` (0 … 1] of the triangles; topology is kept, so it may stop earlier.
+/// Quadric decimation to `ratio` in (0, 1] of the triangles; topology is kept and no face may turn by more than 60°, so
+/// it may stop earlier. Normals are recomputed from faces. Error::Usage for another ratio, Error::Cancelled.
 Result<Mesh> simplify(const Mesh& mesh, double ratio, Progress* progress);
 
 }  // namespace sgm::mesh

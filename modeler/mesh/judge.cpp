@@ -24,18 +24,21 @@ Result<Judgement> judge(const Mesh& mesh) {
     polygons.reserve(mesh.triangleCount());
     for (const Chunk& c : mesh.chunks) {
         for (const Vec3f& p : c.positions) {
-            if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return Error{Error::Kind::Input, "a vertex of the mesh is not finite"};
+            if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+                return Error{Error::Kind::Input, "a vertex of the mesh is not finite"};
             points.emplace_back(p.x, p.y, p.z);
         }
         for (const Triangle& t : c.triangles) polygons.push_back({t.x, t.y, t.z});
     }
     for (const auto& t : polygons)
         for (const size_t v : t)
-            if (v >= points.size()) return Error{Error::Kind::Input, "a triangle of the mesh names a vertex that isn't there"};
+            if (v >= points.size())
+                return Error{Error::Kind::Input, "a triangle of the mesh names a vertex that isn't there"};
 
     try {
         Judgement judgement;
-        // A soup that is no manifold mesh is neither closed nor outward; splitting it where it isn't still lets CGAL see crossings.
+        // A soup that is no manifold mesh is neither closed nor outward; splitting it where it isn't still lets CGAL
+        // see crossings.
         const bool manifold = pmp::is_polygon_soup_a_polygon_mesh(polygons);
         if (!manifold) pmp::orient_polygon_soup(points, polygons);
         SurfaceMesh surface;
@@ -46,7 +49,8 @@ Result<Judgement> judge(const Mesh& mesh) {
         if (!judgement.closed) return judgement;
         judgement.volume_m3 = CGAL::to_double(pmp::volume(surface));
         // CGAL's own word on orientation presumes a mesh that doesn't cross itself.
-        judgement.outward = !judgement.selfIntersects && surface.number_of_faces() > 0 && pmp::does_bound_a_volume(surface) && judgement.volume_m3 > 0;
+        judgement.outward = !judgement.selfIntersects && surface.number_of_faces() > 0 &&
+                            pmp::does_bound_a_volume(surface) && judgement.volume_m3 > 0;
         return judgement;
     } catch (const std::exception& e) {
         return Error{Error::Kind::Internal, std::string("CGAL: ") + e.what()};

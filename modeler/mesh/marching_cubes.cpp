@@ -79,7 +79,10 @@ public:
         const int k = apex_[i][j];
         emit(i, k, out);
         emit(k, j, out);
-        for (const int corner : {i, k, j}) out.edges[3 * out.triangles + (corner == i ? 0 : corner == k ? 1 : 2)] = static_cast<uint8_t>(loop_[corner]);
+        for (const int corner : {i, k, j})
+            out.edges[3 * out.triangles + (corner == i   ? 0
+                                           : corner == k ? 1
+                                                         : 2)] = static_cast<uint8_t>(loop_[corner]);
         ++out.triangles;
     }
 

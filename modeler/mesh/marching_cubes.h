@@ -7,9 +7,10 @@
 //   inside corners are thus apart.) The segments join into loops. A loop is split into triangles by the chords of least
 //   total squared length between edge midpoints, none of which lies in a face of the cell; ties go to the lower edge.
 //
-// Two cells read the same segments from the face they share, and touch it nowhere else: so the surface is closed, oriented
-// and 2-manifold. Triangles of one cell never cross, wherever the vertices lie inside their edges: the shortest chords see
-// to it (of the 16 triangulations of a loop of seven, 4 can cross themselves), and a test proves it over positions.
+// Two cells read the same segments from the face they share, and touch it nowhere else: so the surface is closed,
+// oriented and 2-manifold. Triangles of one cell never cross, wherever the vertices lie inside their edges: the
+// shortest chords see to it (of the 16 triangulations of a loop of seven, 4 can cross themselves), and a test proves it
+// over positions.
 #pragma once
 
 #include <array>
@@ -24,9 +25,12 @@ constexpr int edgeAxis(int e) { return e / 4; }
 constexpr int edgeCorner(int e) {
     const int a = e & 1, b = e >> 1 & 1;
     switch (edgeAxis(e)) {
-        case 0: return a << 1 | b << 2;
-        case 1: return a | b << 2;
-        default: return a | b << 1;
+        case 0:
+            return a << 1 | b << 2;
+        case 1:
+            return a | b << 2;
+        default:
+            return a | b << 1;
     }
 }
 

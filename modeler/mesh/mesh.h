@@ -1,6 +1,6 @@
 // The mesh every writer takes: indexed triangles in chunks, one chunk a block of 32³ cells.
-// Enters: chunks from polygonize. Leaves: vertices, normals, triangles, origins. Assumes chunks in ascending block order;
-// vertex indices are global: chunk c owns [firstVertex, firstVertex + positions.size()).
+// Enters: chunks from polygonize. Leaves: vertices, normals, triangles, origins. Assumes chunks in ascending block
+// order; vertex indices are global: chunk c owns [firstVertex, firstVertex + positions.size()).
 #pragma once
 
 #include <cstdint>

@@ -16,7 +16,8 @@ HalfEdgeMesh toOpenMesh(const Mesh& mesh) {
     const size_t vertices = mesh.vertexCount(), triangles = mesh.triangleCount();
     result.reserve(vertices, vertices + triangles, triangles);
     for (const Chunk& c : mesh.chunks)
-        for (size_t i = 0; i < c.positions.size(); ++i) result.set_normal(result.add_vertex(fromVec(c.positions[i])), fromVec(c.normals[i]));
+        for (size_t i = 0; i < c.positions.size(); ++i)
+            result.set_normal(result.add_vertex(fromVec(c.positions[i])), fromVec(c.normals[i]));
     OpenMesh::FPropHandleT<OriginId> origin;
     result.add_property(origin, originProperty);
     const auto vertex = [](uint32_t v) { return OpenMesh::VertexHandle(static_cast<int>(v)); };
@@ -51,7 +52,8 @@ Mesh fromOpenMesh(const HalfEdgeMesh& mesh, bool keepNormals) {
         chunk.triangles.push_back(t);
         chunk.origins.push_back(hasOrigin ? mesh.property(origin, f) : OriginId{0});
         if (keepNormals) continue;
-        const Vec3f p = chunk.positions[t.x], n = cross(chunk.positions[t.y] - p, chunk.positions[t.z] - p);  // weighs by area
+        const Vec3f p = chunk.positions[t.x],
+                    n = cross(chunk.positions[t.y] - p, chunk.positions[t.z] - p);  // weighs by area
         for (int i = 0; i < 3; ++i) chunk.normals[t[i]] += n;
     }
     for (Vec3f& n : chunk.normals) n = normalized(n);

@@ -39,7 +39,8 @@ public:
     void add(uint64_t bytes) { used_.fetch_add(bytes, std::memory_order_relaxed); }
     bool exceeded() const { return used_.load(std::memory_order_relaxed) > budget_; }
     Error error() const {
-        return {Error::Kind::Budget, "the mesh needs more than the memory budget of " + std::to_string(budget_ >> 20) + " MiB: choose larger cells"};
+        return {Error::Kind::Budget, "the mesh needs more than the memory budget of " + std::to_string(budget_ >> 20) +
+                                         " MiB: choose larger cells"};
     }
 
 private:
@@ -48,7 +49,8 @@ private:
 };
 
 /// First pass: samples a block, finds its vertices and how many triangles will join them. False when cancelled.
-bool findVertices(const Block& block, const Grid& grid, const PolygonizeOptions& options, const Progress* progress, Scratch& s, BlockSurface& surface, Chunk& chunk) {
+bool findVertices(const Block& block, const Grid& grid, const PolygonizeOptions& options, const Progress* progress,
+                  Scratch& s, BlockSurface& surface, Chunk& chunk) {
     surface.index = chunk.block = block.index;
     if (!sampleBlock(block, grid, s.workspace, progress, s.samples, s.counts)) return false;
     s.vertices.clear();
@@ -61,7 +63,8 @@ bool findVertices(const Block& block, const Grid& grid, const PolygonizeOptions&
         brick.firstVertex = static_cast<uint32_t>(s.vertices.positions.size());
         surface.triangles += brick.triangles;
         s.counts.surfaceCells += brick.cells;
-        appendVertices(brick, block.index, grid, s.samples, options.refineSteps, wantOrigins, s.workspace, s.lanes, s.vertices, s.counts);
+        appendVertices(brick, block.index, grid, s.samples, options.refineSteps, wantOrigins, s.workspace, s.lanes,
+                       s.vertices, s.counts);
         surface.bricks.push_back(brick);
         surface.brickOf[brick.number] = static_cast<uint8_t>(surface.bricks.size());
     }
@@ -73,8 +76,8 @@ bool findVertices(const Block& block, const Grid& grid, const PolygonizeOptions&
 }
 
 uint64_t bytesOf(const BlockSurface& surface) {
-    return surface.bricks.capacity() * sizeof(Brick) + surface.vertexOrigins.size() * sizeof(OriginId) + surface.vertices * 2ull * sizeof(Vec3f) +
-           surface.triangles * (sizeof(Triangle) + sizeof(OriginId));
+    return surface.bricks.capacity() * sizeof(Brick) + surface.vertexOrigins.size() * sizeof(OriginId) +
+           surface.vertices * 2ull * sizeof(Vec3f) + surface.triangles * (sizeof(Triangle) + sizeof(OriginId));
 }
 
 /// Gives vertices where the field had no usable derivative the mean of their triangles' normals, weighted by area.
@@ -86,7 +89,8 @@ void fillMissingNormals(Mesh& mesh) {
     if (missing.empty()) return;
 
     const auto chunkOf = [&](uint32_t vertex) -> Chunk& {
-        return *std::prev(std::upper_bound(mesh.chunks.begin(), mesh.chunks.end(), vertex, [](uint32_t v, const Chunk& c) { return v < c.firstVertex; }));
+        return *std::prev(std::upper_bound(mesh.chunks.begin(), mesh.chunks.end(), vertex,
+                                           [](uint32_t v, const Chunk& c) { return v < c.firstVertex; }));
     };
     const auto position = [&](uint32_t v) {
         const Chunk& c = chunkOf(v);
@@ -110,7 +114,8 @@ void fillMissingNormals(Mesh& mesh) {
 
 }  // namespace
 
-Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options, Progress* progress, Counts& counts) {
+Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options,
+                        Progress* progress, Counts& counts) {
     if (Status status = checkGrid(grid); !status) return status.error();
     const Error cancelledError{Error::Kind::Cancelled, "cancelled"};
     const Stopwatch sampling;
@@ -134,7 +139,8 @@ Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, cons
         surfaces[b].firstVertex = mesh.chunks[b].firstVertex = static_cast<uint32_t>(vertices);
         vertices += surfaces[b].vertices;
     }
-    if (vertices > std::numeric_limits<uint32_t>::max()) return Error{Error::Kind::Budget, "the mesh has more than 2^32 vertices: choose larger cells"};
+    if (vertices > std::numeric_limits<uint32_t>::max())
+        return Error{Error::Kind::Budget, "the mesh has more than 2^32 vertices: choose larger cells"};
     for (const Scratch& s : scratch) counts += s.counts;
     counts.sampleSeconds += sampling.seconds();
 

@@ -11,11 +11,12 @@
 namespace sgm::mesh {
 
 struct PolygonizeOptions {
-    int threads = 0;          ///< 0 = all
-    int refineSteps = 3;      ///< root-finding steps a vertex after linear interpolation; 0 = the paper's interpolation
+    int threads = 0;      ///< 0 = all
+    int refineSteps = 3;  ///< root-finding steps a vertex after linear interpolation; 0 = the paper's interpolation
     uint64_t memoryBudget_bytes = 8ull << 30;  ///< Error::Budget beyond
 };
 
-Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options, Progress* progress, Counts& counts);
+Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options,
+                        Progress* progress, Counts& counts);
 
 }  // namespace sgm::mesh

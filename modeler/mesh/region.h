@@ -27,8 +27,9 @@ inline Box3f boxOf(const CellRange& cells, const Grid& grid) {
     return {grid.corner(cells.lo.x, cells.lo.y, cells.lo.z), grid.corner(cells.hi.x, cells.hi.y, cells.hi.z)};
 }
 
-/// False when all samples of the cells count alike. Samples on the grid's border count as outside whatever the field says
-/// (so the mesh closes even where bounds were wrong), hence a region that is inside all over ends where it touches the border.
+/// False when all samples of the cells count alike. Samples on the grid's border count as outside whatever the field
+/// says (so the mesh closes even where bounds were wrong), hence a region that is inside all over ends where it touches
+/// the border.
 inline bool mayHoldSurface(eval::Range range, const CellRange& cells, const Grid& grid) {
     if (range.lo >= 0) return false;
     const bool touchesBorder = minComponent(cells.lo) == 0 || minComponent(grid.cells - cells.hi) == 0;

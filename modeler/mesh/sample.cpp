@@ -9,7 +9,8 @@ constexpr int maxBatch = brickCorners * brickCorners * brickCorners;
 constexpr size_t shortEnough = 8;
 
 /// Drops bricks without surface and shortens the block's tape for the others.
-void activateBricks(const Block& block, const Grid& grid, eval::Workspace& workspace, BlockSamples& samples, Counts& counts) {
+void activateBricks(const Block& block, const Grid& grid, eval::Workspace& workspace, BlockSamples& samples,
+                    Counts& counts) {
     std::array<CellRange, bricksPerBlock> cells;
     std::array<Box3f, bricksPerBlock> boxes;
     std::array<int, bricksPerBlock> numbers;
@@ -28,12 +29,13 @@ void activateBricks(const Block& block, const Grid& grid, eval::Workspace& works
     for (size_t i = 0; i < n; ++i) {
         if (!mayHoldSurface(ranges[i], cells[i], grid)) continue;
         samples.active |= 1ull << numbers[i];
-        samples.tapes[numbers[i]] = block.tape.size() <= shortEnough ? block.tape : eval::shorten(block.tape, i, workspace);
+        samples.tapes[numbers[i]] =
+            block.tape.size() <= shortEnough ? block.tape : eval::shorten(block.tape, i, workspace);
     }
 }
 
-/// Which of a brick's high faces, edges and corner a later active brick samples: bit d (x = 1, y = 2, z = 4) is set when
-/// a corner on the high sides d lies on the low sides of some active brick.
+/// Which of a brick's high faces, edges and corner a later active brick samples: bit d (x = 1, y = 2, z = 4) is set
+/// when a corner on the high sides d lies on the low sides of some active brick.
 uint8_t sampledByOthers(uint64_t active, Vec3i brick) {
     uint8_t result = 0;
     for (int offset = 1; offset < 8; ++offset) {
@@ -82,17 +84,20 @@ void gather(Vec3i brick, Vec3i blockIndex, const Grid& grid, BlockSamples& sampl
 
 }  // namespace
 
-bool sampleBlock(const Block& block, const Grid& grid, eval::Workspace& workspace, const Progress* progress, BlockSamples& samples, Counts& counts) {
+bool sampleBlock(const Block& block, const Grid& grid, eval::Workspace& workspace, const Progress* progress,
+                 BlockSamples& samples, Counts& counts) {
     activateBricks(block, grid, workspace, samples, counts);
     Batch batch;
     for (uint64_t rest = samples.active; rest != 0; rest &= rest - 1) {
         if (cancelled(progress)) return false;
         const int b = std::countr_zero(rest);
         gather(brickAt(b), block.index, grid, samples, batch);
-        eval::evaluate(samples.tapes[b], {batch.x.data(), batch.y.data(), batch.z.data(), batch.points}, batch.f.data(), workspace);
+        eval::evaluate(samples.tapes[b], {batch.x.data(), batch.y.data(), batch.z.data(), batch.points}, batch.f.data(),
+                       workspace);
         counts.pointEvaluations += batch.points;
         const float* f = batch.f.data();
-        for (size_t r = 0; r < batch.rowCount; f += batch.rows[r++].count) std::copy_n(f, batch.rows[r].count, batch.rows[r].values);
+        for (size_t r = 0; r < batch.rowCount; f += batch.rows[r++].count)
+            std::copy_n(f, batch.rows[r].count, batch.rows[r].values);
     }
     return true;
 }

@@ -19,7 +19,8 @@ constexpr int splits = 4;  ///< per axis, so that one batch of intervals is 64 c
 using Region = Block;
 
 /// Splits one region into those children that may hold surface, each with its tape shortened to it.
-std::vector<Region> split(const Region& region, int childCells, const Grid& grid, eval::Workspace& workspace, Counts& counts) {
+std::vector<Region> split(const Region& region, int childCells, const Grid& grid, eval::Workspace& workspace,
+                          Counts& counts) {
     std::array<CellRange, splits * splits * splits> children;
     std::array<Box3f, splits * splits * splits> boxes;
     size_t n = 0;
@@ -74,20 +75,25 @@ Grid gridFor(const Box3f& bounds, float cell_m) {
 }
 
 Status checkGrid(const Grid& grid) {
-    if (!(grid.cell_m > 0) || !std::isfinite(grid.cell_m)) return Error{Error::Kind::Input, "the cell size must be a positive number of metres"};
+    if (!(grid.cell_m > 0) || !std::isfinite(grid.cell_m))
+        return Error{Error::Kind::Input, "the cell size must be a positive number of metres"};
     for (int axis = 0; axis < 3; ++axis) {
         if (grid.cells[axis] >= maxCellsPerAxis)
-            return Error{Error::Kind::Budget, "the grid would have more than " + std::to_string(maxCellsPerAxis) + " cells along one axis: choose larger cells"};
+            return Error{Error::Kind::Budget, "the grid would have more than " + std::to_string(maxCellsPerAxis) +
+                                                  " cells along one axis: choose larger cells"};
         const float last = grid.origin[axis] + grid.cell_m * static_cast<float>(grid.cells[axis]);
         const float farthest = std::max(std::abs(grid.origin[axis]), std::abs(last));
         // Vertices keep 1/1024 of a cell from its corners, which float32 has to be able to say.
         if (!(grid.cell_m >= farthest * 0x1.0p-13f))
-            return Error{Error::Kind::Input, "cells are too small for single precision this far from the origin: choose larger cells or move the object"};
+            return Error{Error::Kind::Input,
+                         "cells are too small for single precision this far from the origin: choose larger cells or "
+                         "move the object"};
     }
     return Done{};
 }
 
-Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress, Counts& counts) {
+Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress,
+                                     Counts& counts) {
     const auto start = std::chrono::steady_clock::now();
     if (Status status = checkGrid(grid); !status) return status.error();
     const int blocksAlong = (maxComponent(grid.cells) + blockCells - 1) / blockCells;

@@ -1,7 +1,7 @@
 // The descent from the whole box to the blocks that hold surface.
-// Enters: a tape, a grid. Leaves: blocks in ascending order, each with its own shortened tape. Assumes the grid's box holds
-// the surface with a layer of outside around it; corners on the grid's border count as outside whatever the field says, so
-// what sticks out is cut off flat there and the mesh still closes.
+// Enters: a tape, a grid. Leaves: blocks in ascending order, each with its own shortened tape. Assumes the grid's box
+// holds the surface with a layer of outside around it; corners on the grid's border count as outside whatever the field
+// says, so what sticks out is cut off flat there and the mesh still closes.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,8 @@ struct Grid {
     Vec3i cells;       ///< cells along x, y, z; whole blocks are not required
 
     Vec3f corner(int i, int j, int k) const {
-        return {origin.x + cell_m * static_cast<float>(i), origin.y + cell_m * static_cast<float>(j), origin.z + cell_m * static_cast<float>(k)};
+        return {origin.x + cell_m * static_cast<float>(i), origin.y + cell_m * static_cast<float>(j),
+                origin.z + cell_m * static_cast<float>(k)};
     }
 };
 
@@ -49,8 +50,10 @@ struct Counts {
     Counts& operator+=(const Counts& o);
 };
 
-/// Blocks that may hold surface, ordered by (z, y, x). Error::Cancelled when `progress` says so, Error::Input for cells that
-/// aren't positive or that float32 can't resolve at the grid's place, Error::Budget for more than 2¹⁵ cells along an axis.
-Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress, Counts& counts);
+/// Blocks that may hold surface, ordered by (z, y, x). Error::Cancelled when `progress` says so, Error::Input for cells
+/// that aren't positive or that float32 can't resolve at the grid's place, Error::Budget for more than 2¹⁵ cells along
+/// an axis.
+Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress,
+                                     Counts& counts);
 
 }  // namespace sgm::mesh

@@ -22,8 +22,12 @@ void loadVertices(const BlockSurface& block, const Brick& owner, Vec3i offset, B
             for (uint64_t rest = bits & wanted; rest != 0; rest &= rest - 1) {
                 const int bit = std::countr_zero(rest);
                 // A bit's rank is the number of bits before it: where all are wanted, it counts up.
-                const uint32_t rank = wanted == everyBit ? next++ : next + static_cast<uint32_t>(std::popcount(bits & ((1ull << bit) - 1)));
-                const int at = axis * BrickVertices::corners + cornerNumber(bit % brickCells + offset.x * brickCells, bit / brickCells + offset.y * brickCells, k + offset.z * brickCells);
+                const uint32_t rank = wanted == everyBit
+                                          ? next++
+                                          : next + static_cast<uint32_t>(std::popcount(bits & ((1ull << bit) - 1)));
+                const int at = axis * BrickVertices::corners + cornerNumber(bit % brickCells + offset.x * brickCells,
+                                                                            bit / brickCells + offset.y * brickCells,
+                                                                            k + offset.z * brickCells);
                 out.index[at] = first + rank;
                 out.origin[at] = block.vertexOrigins.empty() ? 0 : block.vertexOrigins[owner.firstVertex + rank];
             }
@@ -88,7 +92,8 @@ void joinVertices(const BlockSurface& block, const BlockMap& map, BrickVertices&
             const CellCase& cell = cases[inside];
             const int base = cornerNumber(c.x, c.y, c.z);
             for (int t = 0; t < cell.triangles; ++t) {
-                const int a = base + offsets[cell.edges[3 * t]], b = base + offsets[cell.edges[3 * t + 1]], d = base + offsets[cell.edges[3 * t + 2]];
+                const int a = base + offsets[cell.edges[3 * t]], b = base + offsets[cell.edges[3 * t + 1]],
+                          d = base + offsets[cell.edges[3 * t + 2]];
                 *triangle++ = {scratch.index[a], scratch.index[b], scratch.index[d]};
                 *origin++ = majority(scratch.origin[a], scratch.origin[b], scratch.origin[d]);
             }

@@ -1,6 +1,6 @@
 // Triangles of a block, their vertices numbered across the whole mesh.
-// Enters: every block's bricks. Leaves: triangles and origins of one block. Assumes all bricks with surface are there: an edge
-// that the surface cuts is cut in every brick around it, so the brick that owns the vertex exists.
+// Enters: every block's bricks. Leaves: triangles and origins of one block. Assumes all bricks with surface are there:
+// an edge that the surface cuts is cut in every brick around it, so the brick that owns the vertex exists.
 #pragma once
 
 #include <vector>
@@ -13,10 +13,10 @@ namespace sgm::mesh {
 /// What a block keeps between finding vertices and joining them.
 struct BlockSurface {
     Vec3i index;
-    std::vector<Brick> bricks;                            ///< with surface, by number
-    std::array<uint8_t, bricksPerBlock> brickOf{};        ///< 1 + place in `bricks`, 0 for none
-    std::vector<OriginId> vertexOrigins;                  ///< empty: nobody's
-    uint32_t firstVertex = 0;                             ///< in the mesh
+    std::vector<Brick> bricks;                      ///< with surface, by number
+    std::array<uint8_t, bricksPerBlock> brickOf{};  ///< 1 + place in `bricks`, 0 for none
+    std::vector<OriginId> vertexOrigins;            ///< empty: nobody's
+    uint32_t firstVertex = 0;                       ///< in the mesh
     uint32_t vertices = 0, triangles = 0;
 };
 
@@ -42,8 +42,8 @@ struct BrickVertices {
     std::vector<OriginId> origins;
 };
 
-/// Replaces the scratch's triangles and origins by those of `block`. A triangle takes the origin of most of its vertices,
-/// the lowest where all three differ.
+/// Replaces the scratch's triangles and origins by those of `block`. A triangle takes the origin of most of its
+/// vertices, the lowest where all three differ.
 void joinVertices(const BlockSurface& block, const BlockMap& map, BrickVertices& scratch);
 
 }  // namespace sgm::mesh

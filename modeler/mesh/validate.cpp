@@ -100,7 +100,8 @@ MeshFigures measureFlat(const Flat& flat) {
     std::vector<bool> used(flat.positions.size());
     const Vec3d origin = flat.positions.empty() ? Vec3d{} : flat.positions.front().as<double>();
     for (const Triangle& t : flat.triangles) {
-        const Vec3d a = flat.positions[t.x].as<double>() - origin, b = flat.positions[t.y].as<double>() - origin, c = flat.positions[t.z].as<double>() - origin;
+        const Vec3d a = flat.positions[t.x].as<double>() - origin, b = flat.positions[t.y].as<double>() - origin,
+                    c = flat.positions[t.z].as<double>() - origin;
         figures.volume_m3 += dot(a, cross(b, c)) / 6;
         figures.area_m2 += length(cross(b - a, c - a)) / 2;
         components.join(t.x, t.y);
@@ -115,7 +116,8 @@ MeshFigures measureFlat(const Flat& flat) {
     }
     uint64_t edges = 0;
     countEdges(flat, figures, edges);
-    figures.euler = static_cast<int64_t>(figures.vertices) - static_cast<int64_t>(edges) + static_cast<int64_t>(figures.triangles);
+    figures.euler =
+        static_cast<int64_t>(figures.vertices) - static_cast<int64_t>(edges) + static_cast<int64_t>(figures.triangles);
     return figures;
 }
 

@@ -6,8 +6,8 @@
 namespace sgm::mesh {
 namespace {
 
-/// Residual, as a share of the difference between the bracket's ends, that one more interpolation may settle unseen: on a
-/// smooth field it leaves the square of this, on a kink no more than the margin that vertices are moved by anyway.
+/// Residual, as a share of the difference between the bracket's ends, that one more interpolation may settle unseen: on
+/// a smooth field it leaves the square of this, on a kink no more than the margin that vertices are moved by anyway.
 constexpr float goodEnough = edgeMargin;
 
 /// Lays out a lane for each cut edge: its line, and the bracket given by the samples at its ends.
@@ -52,7 +52,8 @@ void interpolate(EdgeLanes& lanes, bool weighted) {
     }
     float* const moving[3] = {lanes.x.data(), lanes.y.data(), lanes.z.data()};
     for (int axis = 0; axis < 3; ++axis)
-        for (size_t i = lanes.axisBegin[axis]; i < lanes.axisBegin[axis + 1]; ++i) moving[axis][i] = lanes.base[i] + lanes.t[i] * lanes.span[i];
+        for (size_t i = lanes.axisBegin[axis]; i < lanes.axisBegin[axis + 1]; ++i)
+            moving[axis][i] = lanes.base[i] + lanes.t[i] * lanes.span[i];
 }
 
 /// Puts the value at t in the place of the bracket's end of its sign; an end that stays twice loses half its weight.
@@ -95,7 +96,8 @@ void appendNormals(const EdgeLanes& lanes, std::vector<Vec3f>& normals) {
     }
 }
 
-void appendOrigins(const eval::Tape& tape, eval::Points points, eval::Workspace& workspace, std::vector<OriginId>& origins) {
+void appendOrigins(const eval::Tape& tape, eval::Points points, eval::Workspace& workspace,
+                   std::vector<OriginId>& origins) {
     const OriginId whole = tape.origins()[0];
     origins.resize(origins.size() + points.n, whole);
     if (whole != 0 || tape.origins().size() == 1) return;  // one owner for all
@@ -105,11 +107,14 @@ void appendOrigins(const eval::Tape& tape, eval::Points points, eval::Workspace&
 }  // namespace
 
 void EdgeLanes::resize(size_t n) {
-    for (std::vector<float>* v : {&x, &y, &z, &base, &span, &tIn, &fIn, &wIn, &tOut, &fOut, &wOut, &lastSide, &t, &f, &dx, &dy, &dz}) v->resize(n);
+    for (std::vector<float>* v :
+         {&x, &y, &z, &base, &span, &tIn, &fIn, &wIn, &tOut, &fOut, &wOut, &lastSide, &t, &f, &dx, &dy, &dz})
+        v->resize(n);
 }
 
-void appendVertices(const Brick& brick, Vec3i blockIndex, const Grid& grid, const BlockSamples& samples, int refineSteps, bool wantOrigins,
-                    eval::Workspace& workspace, EdgeLanes& lanes, BlockVertices& vertices, Counts& counts) {
+void appendVertices(const Brick& brick, Vec3i blockIndex, const Grid& grid, const BlockSamples& samples,
+                    int refineSteps, bool wantOrigins, eval::Workspace& workspace, EdgeLanes& lanes,
+                    BlockVertices& vertices, Counts& counts) {
     loadEdges(brick, blockIndex, grid, samples, lanes);
     const size_t n = lanes.size();
     if (n == 0) return;

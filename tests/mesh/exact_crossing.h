@@ -42,23 +42,29 @@ inline bool meets(Point p, Point q, Point a, Point b, Point c) {
 
 /// Do two triangles, given by edges of the cell, share more than the corners and the side they have in common?
 inline bool cross(std::array<int, 3> s, std::array<int, 3> t, const std::array<Point, edgesPerCell>& at) {
-    const auto has = [](const std::array<int, 3>& list, int e) { return std::find(list.begin(), list.end(), e) != list.end(); };
+    const auto has = [](const std::array<int, 3>& list, int e) {
+        return std::find(list.begin(), list.end(), e) != list.end();
+    };
     // The common corners first in both.
     const auto shared = std::partition(s.begin(), s.end(), [&](int e) { return has(t, e); }) - s.begin();
     std::partition(t.begin(), t.end(), [&](int e) { return has(s, e); });
-    const auto sideMeets = [&](int p, int q, const std::array<int, 3>& tri) { return meets(at[p], at[q], at[tri[0]], at[tri[1]], at[tri[2]]); };
+    const auto sideMeets = [&](int p, int q, const std::array<int, 3>& tri) {
+        return meets(at[p], at[q], at[tri[0]], at[tri[1]], at[tri[2]]);
+    };
     switch (shared) {
         case 0:
             for (int i = 0; i < 3; ++i)
                 if (sideMeets(s[i], s[(i + 1) % 3], t) || sideMeets(t[i], t[(i + 1) % 3], s)) return true;
             return false;
-        case 1: return sideMeets(s[1], s[2], t) || sideMeets(t[1], t[2], s);
+        case 1:
+            return sideMeets(s[1], s[2], t) || sideMeets(t[1], t[2], s);
         case 2: {  // they overlap only when folded flat onto each other
             if (orient(at[s[0]], at[s[1]], at[s[2]], at[t[2]]) != 0) return false;
             const Point side = at[s[1]] - at[s[0]];
             return dot(cross(side, at[s[2]] - at[s[0]]), cross(side, at[t[2]] - at[s[0]])) >= 0;
         }
-        default: return true;
+        default:
+            return true;
     }
 }
 

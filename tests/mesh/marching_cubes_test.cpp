@@ -61,7 +61,8 @@ TEST(MarchingCubes, UsesExactlyTheEdgesWhoseEndsDiffer) {
 TEST(MarchingCubes, TouchesFacesOnlyAtTheRim) {
     for (int mask = 0; mask < 256; ++mask) {
         const std::set<Segment> rim = rimOf(mask);
-        for (const auto& [a, b] : rim) EXPECT_NE(facesOf(a) & facesOf(b), 0) << "case " << mask << ": a rim leaves the faces";
+        for (const auto& [a, b] : rim)
+            EXPECT_NE(facesOf(a) & facesOf(b), 0) << "case " << mask << ": a rim leaves the faces";
         for (const auto& t : trianglesOf(mask))
             for (int i = 0; i < 3; ++i) {
                 const int a = t[i], b = t[(i + 1) % 3];
@@ -84,14 +85,17 @@ TEST(MarchingCubes, CutsInsideCornersApartOnAmbiguousFaces) {
                     const bool ambiguous = in.size() == 2 && ((in[0] ^ in[1]) & ~(1 << axis)) == (7 & ~(1 << axis));
                     if (!ambiguous) continue;
                     const std::set<int> ends{edgeCorner(a), highCorner(a)};
-                    const int shared = ends.count(edgeCorner(b)) ? edgeCorner(b) : ends.count(highCorner(b)) ? highCorner(b) : -1;
+                    const int shared = ends.count(edgeCorner(b))   ? edgeCorner(b)
+                                       : ends.count(highCorner(b)) ? highCorner(b)
+                                                                   : -1;
                     ASSERT_GE(shared, 0) << "case " << mask;
                     EXPECT_TRUE(inside(mask, shared)) << "case " << mask;
                 }
         }
 }
 
-/// The rim on one face, with edges named as seen from the low cell (side 1) or the high cell (side 0) of the shared face.
+/// The rim on one face, with edges named as seen from the low cell (side 1) or the high cell (side 0) of the shared
+/// face.
 std::set<Segment> rimOnFace(int mask, int axis, int side) {
     const auto lowered = [&](int edge) {  // the same edge of the other cell
         for (int e = 0; e < edgesPerCell; ++e)
@@ -151,7 +155,8 @@ TEST(MarchingCubes, TrianglesOfACellNeverCross) {
                 return kind == 0 ? 1 : kind == 1 ? gridUnits - 1 : trial % 3 == 1 ? place : gridUnits / 2;
             });
             for (size_t i = 0; i < triangles.size(); ++i)
-                for (size_t j = i + 1; j < triangles.size(); ++j) ASSERT_FALSE(cross(triangles[i], triangles[j], at)) << "case " << mask;
+                for (size_t j = i + 1; j < triangles.size(); ++j)
+                    ASSERT_FALSE(cross(triangles[i], triangles[j], at)) << "case " << mask;
         }
     }
 }

@@ -111,10 +111,23 @@ TEST(Polygonize, RefinementBeatsTheLineBetweenSamples) {
         const Meshed m = meshOf(s, 24, 1, options);
         EXPECT_EQ(m.counts.refinementEvaluations > 0, i == 1);
         for (const Chunk& c : m.mesh.value().chunks)
-            for (const Vec3f& p : c.positions) worst[i] = std::max(worst[i], std::abs(length(p.as<double>()) - 1) / m.grid.cell_m);
+            for (const Vec3f& p : c.positions)
+                worst[i] = std::max(worst[i], std::abs(length(p.as<double>()) - 1) / m.grid.cell_m);
     }
     EXPECT_GT(worst[0], 0.02);
     EXPECT_LT(worst[1], 0.0021);
+}
+
+TEST(Polygonize, NormalsOfAFieldWithoutDerivativeComeFromTheFaces) {
+    Scene s;
+    s.field = {floor(field::length(s.graph.position())) - 0.5f, {{-1, -1, -1}, {1, 1, 1}}, 100, 0};
+    const Meshed m = meshOf(s, 64);
+    ASSERT_GT(m.mesh.value().triangleCount(), 1000u);
+    for (const Chunk& c : m.mesh->chunks)
+        for (size_t i = 0; i < c.normals.size(); ++i) {
+            EXPECT_NEAR(length(c.normals[i]), 1, 1e-5);
+            EXPECT_GT(dot(c.normals[i], normalized(c.positions[i])), 0.8f);
+        }
 }
 
 TEST(Polygonize, CountsStayBelowTwentySamplesASurfaceCell) {
@@ -138,7 +151,8 @@ TEST(Polygonize, BlocksMeetWithoutCracks) {
     EXPECT_GT(m.mesh->chunks.size(), 30u);
     expectClosed(*m.mesh, "cloud");
     for (size_t i = 1; i < m.mesh->chunks.size(); ++i)
-        EXPECT_EQ(m.mesh->chunks[i].firstVertex, m.mesh->chunks[i - 1].firstVertex + m.mesh->chunks[i - 1].positions.size());
+        EXPECT_EQ(m.mesh->chunks[i].firstVertex,
+                  m.mesh->chunks[i - 1].firstVertex + m.mesh->chunks[i - 1].positions.size());
 }
 
 /// Sums of waves far finer than the cells: in effect a random sign at each corner.
@@ -146,7 +160,9 @@ Scene noiseScene(uint64_t key, double finest) {
     Scene s;
     field::Num f = s.graph.literal(static_cast<float>(uniform(combine(key, 99), -0.5, 0.5)));
     for (uint64_t wave = 0; wave < 3; ++wave) {
-        const auto draw = [&](uint64_t i) { return static_cast<float>(uniform(combine(combine(key, wave), i), -finest, finest)); };
+        const auto draw = [&](uint64_t i) {
+            return static_cast<float>(uniform(combine(combine(key, wave), i), -finest, finest));
+        };
         f = f + sin(s.graph.x() * draw(1) + s.graph.y() * draw(2) + s.graph.z() * draw(3) + draw(4));
     }
     s.field = {f, {{-1, -1, -1}, {1, 1, 1}}, static_cast<float>(6 * finest), 0};
@@ -156,11 +172,14 @@ Scene noiseScene(uint64_t key, double finest) {
 /// Balls and boxes joined, cut, blended and morphed at random.
 Scene solidScene(uint64_t key) {
     Scene s;
-    const auto draw = [&](uint64_t i, double lo, double hi) { return static_cast<float>(uniform(combine(key, i), lo, hi)); };
+    const auto draw = [&](uint64_t i, double lo, double hi) {
+        return static_cast<float>(uniform(combine(key, i), lo, hi));
+    };
     const auto part = [&](uint64_t i) {
         const Vec3f at{draw(10 * i + 1, -1, 1), draw(10 * i + 2, -1, 1), draw(10 * i + 3, -1, 1)};
         if (draw(10 * i + 4, 0, 1) < 0.5f) return ball(s.graph, at, draw(10 * i + 5, 0.1, 0.8));
-        return box(s.graph, at, {draw(10 * i + 5, 0.02, 0.8), draw(10 * i + 6, 0.02, 0.8), draw(10 * i + 7, 0.02, 0.8)});
+        return box(s.graph, at,
+                   {draw(10 * i + 5, 0.02, 0.8), draw(10 * i + 6, 0.02, 0.8), draw(10 * i + 7, 0.02, 0.8)});
     };
     s.field = part(1);
     for (uint64_t i = 2; i < 6; ++i) {
@@ -168,10 +187,17 @@ Scene solidScene(uint64_t key) {
         const auto origin = static_cast<OriginId>(i);
         const field::Owned both[] = {{s.field, 0}, {other, origin}};
         switch (pick(combine(key, 1000 + i), 5)) {
-            case 0: s.field = field::difference({s.field, 0}, {other, origin}); break;
-            case 1: s.field = field::blend(s.graph, both, s.graph.literal(0.2f), 0.2); break;
-            case 2: s.field = field::morph(s.field, other, s.graph.literal(0.4f), 0.4, origin); break;
-            default: s.field = field::sum(s.graph, both);
+            case 0:
+                s.field = field::difference({s.field, 0}, {other, origin});
+                break;
+            case 1:
+                s.field = field::blend(s.graph, both, s.graph.literal(0.2f), 0.2);
+                break;
+            case 2:
+                s.field = field::morph(s.field, other, s.graph.literal(0.4f), 0.4, origin);
+                break;
+            default:
+                s.field = field::sum(s.graph, both);
         }
     }
     return s;
@@ -278,7 +304,8 @@ TEST(Polygonize, StopsWithinFiftyMilliseconds) {
     Counts counts;
     std::chrono::steady_clock::time_point asked;
     std::thread watcher([&] {
-        while (std::strcmp(progress.stage(), "sample") != 0 || progress.fraction() < 0.02) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        while (std::strcmp(progress.stage(), "sample") != 0 || progress.fraction() < 0.02)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
         asked = std::chrono::steady_clock::now();
         progress.cancel();
     });

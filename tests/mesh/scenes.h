@@ -71,8 +71,10 @@ inline Scene cloudScene(int count, float radius, uint64_t key) {
     std::vector<field::Owned> parts;
     for (int i = 0; i < count; ++i) {
         const uint64_t k = combine(key, static_cast<uint64_t>(i));
-        const Vec3f at{static_cast<float>(uniform(combine(k, 1))), static_cast<float>(uniform(combine(k, 2))), static_cast<float>(uniform(combine(k, 3)))};
-        parts.push_back({ball(s.graph, at, radius * static_cast<float>(uniform(combine(k, 4), 0.5, 1.5))), static_cast<OriginId>(i + 1)});
+        const Vec3f at{static_cast<float>(uniform(combine(k, 1))), static_cast<float>(uniform(combine(k, 2))),
+                       static_cast<float>(uniform(combine(k, 3)))};
+        parts.push_back({ball(s.graph, at, radius * static_cast<float>(uniform(combine(k, 4), 0.5, 1.5))),
+                         static_cast<OriginId>(i + 1)});
     }
     s.field = field::sum(s.graph, parts);
     return s;

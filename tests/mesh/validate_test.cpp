@@ -103,8 +103,10 @@ TEST(Judge, AcceptsACloudWithHolesAndSeams) {
 TEST(Judge, NoiseNeverCrossesItself) {
     Scene s;
     const field::Point p = s.graph.position();
-    const field::Num f = sin(p.x * 71.0f + p.y * 13.0f) + sin(p.y * 83.0f + p.z * 29.0f) + sin(p.z * 97.0f + p.x * 31.0f);
-    const Meshed m = meshOf(eval::compile(s.graph, {f, {{-1, -1, -1}, {1, 1, 1}}, 300, 0}, s.graph.constants()), {{-1, -1, -1}, 0.1f, {20, 20, 20}});
+    const field::Num f =
+        sin(p.x * 71.0f + p.y * 13.0f) + sin(p.y * 83.0f + p.z * 29.0f) + sin(p.z * 97.0f + p.x * 31.0f);
+    const Meshed m = meshOf(eval::compile(s.graph, {f, {{-1, -1, -1}, {1, 1, 1}}, 300, 0}, s.graph.constants()),
+                            {{-1, -1, -1}, 0.1f, {20, 20, 20}});
     ASSERT_GT(m.mesh->triangleCount(), 5000u);
     const auto judged = judge(*m.mesh);
     ASSERT_TRUE(judged.ok());
