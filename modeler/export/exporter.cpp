@@ -29,8 +29,8 @@ constexpr Exporter table[] = {
     {".ply", "PLY, binary: normals, texture coordinates s t, colours, an origin a face", false, plainOptions, writePly},
     {".stl", "STL, binary: positions only", false, plainOptions, writeStl},
     {".off", "OFF: positions and triangles as text", false, plainOptions, writeOff},
-    {".usda", "OpenUSD as text: normals, display colours, a subset and preview surface a material", false, texturedOptions,
-     writeUsda},
+    {".usda", "OpenUSD as text: normals, display colours, a subset and preview surface a material", false,
+     texturedOptions, writeUsda},
     {".vdb", "OpenVDB: a narrow-band level set in metres", true, volumeOptions, writeVdb},
 };
 
@@ -59,7 +59,7 @@ bool allowed(std::string_view choices, std::string_view value) {
 Status checkOptions(const ExportInput& input, const Exporter& row) {
     for (const auto& [name, value] : input.options) {
         const auto known = std::find_if(row.options.begin(), row.options.end(),
-                                        [&](const ExportOption& o) { return o.name == name; });
+                                        [&name = name](const ExportOption& o) { return o.name == name; });
         if (known == row.options.end())
             return Error{Error::Kind::Usage,
                          fmt::format("{} has no option '{}'; it has: {}", row.extension, name,
@@ -86,7 +86,8 @@ const Exporter* findExporter(std::string_view extension) {
     std::string lower(extension);
     for (char& c : lower)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    const auto row = std::find_if(std::begin(table), std::end(table), [&](const Exporter& e) { return e.extension == lower; });
+    const auto row =
+        std::find_if(std::begin(table), std::end(table), [&](const Exporter& e) { return e.extension == lower; });
     return row == std::end(table) ? nullptr : row;
 }
 

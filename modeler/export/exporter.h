@@ -1,6 +1,6 @@
 // The exporter table: one row a format.
-// Enters: a mesh (or a volume) with its provenance. Leaves: a file, written beside its target and renamed into place, so
-// that a good earlier file is never lost. Assumes metres, Y up; options say otherwise for formats that can't.
+// Enters: a mesh (or a volume) with its provenance. Leaves: a file, written beside its target and renamed into place,
+// so that a good earlier file is never lost. Assumes metres, Y up; options say otherwise for formats that can't.
 #pragma once
 
 #include <filesystem>
@@ -30,7 +30,7 @@ struct ExportInput {
     const mesh::Mesh* mesh = nullptr;
     const volume::Volume* volume = nullptr;
     const Provenance* provenance = nullptr;
-    std::string name = "model";                ///< of the object in the file
+    std::string name = "model";                 ///< of the object in the file
     std::map<std::string, std::string> extras;  ///< grammar, seed, parameters: kept where the format can hold them
     std::map<std::string, std::string, std::less<>> options;  ///< by ExportOption::name
     Progress* progress = nullptr;
@@ -42,7 +42,8 @@ struct Exporter {
     bool wantsVolume;
     std::span<const ExportOption> options;
     /// Writes to `temporary`; `write` renames it into place.
-    Status (*write)(const ExportInput& input, const std::filesystem::path& temporary, const std::filesystem::path& target);
+    Status (*write)(const ExportInput& input, const std::filesystem::path& temporary,
+                    const std::filesystem::path& target);
 };
 
 /// The table, in the order of docs/reference.md.

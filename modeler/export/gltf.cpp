@@ -84,7 +84,8 @@ public:
         if (input_.progress) input_.progress->begin("write", patched_.patches.size());
         for (size_t i = 0; i < patched_.patches.size();) {
             size_t end = i;
-            while (end < patched_.patches.size() && patched_.patches[end].material == patched_.patches[i].material) ++end;
+            while (end < patched_.patches.size() && patched_.patches[end].material == patched_.patches[i].material)
+                ++end;
             addPrimitive(i, end);
             if (cancelled(input_.progress)) return false;
             if (input_.progress) input_.progress->tick(end - i);

@@ -1,5 +1,5 @@
-// Wavefront OBJ with its materials in a .mtl beside it (Wavefront, Advanced Visualizer Manual, appendix B). Positions and
-// normals stay shared, so the mesh stays closed; only texture coordinates are cut at chart borders.
+// Wavefront OBJ with its materials in a .mtl beside it (Wavefront, Advanced Visualizer Manual, appendix B). Positions
+// and normals stay shared, so the mesh stays closed; only texture coordinates are cut at chart borders.
 #include <fmt/format.h>
 
 #include "modeler/export/formats.h"
@@ -11,9 +11,7 @@ namespace sgm::exporter {
 namespace {
 
 /// The .mtl lies beside the .obj; its name is one word, since many readers end it at a blank.
-Path materialFile(const Path& target) {
-    return target.parent_path() / wordOf(target.stem().string() + ".mtl");
-}
+Path materialFile(const Path& target) { return target.parent_path() / wordOf(target.stem().string() + ".mtl"); }
 
 void writeVertices(OutFile& out, const mesh::Mesh& mesh, const Placement& place) {
     const auto line = [&](std::string_view keyword, Vec3f v) {

@@ -1,6 +1,6 @@
 // A file written front to back through one large buffer.
-// Enters: bytes, text and numbers. Leaves: the file, or the first error. Assumes a little-endian machine, as every format
-// here is little-endian.
+// Enters: bytes, text and numbers. Leaves: the file, or the first error. Assumes a little-endian machine, as every
+// format here is little-endian.
 #pragma once
 
 #include <bit>

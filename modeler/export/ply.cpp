@@ -1,5 +1,5 @@
-// PLY, binary little-endian (Turk, "The PLY Polygon File Format", 1994). Vertices stay shared, so the mesh stays closed;
-// a vertex on a material border takes the colour of its first triangle.
+// PLY, binary little-endian (Turk, "The PLY Polygon File Format", 1994). Vertices stay shared, so the mesh stays
+// closed; a vertex on a material border takes the colour of its first triangle.
 #include <fmt/format.h>
 
 #include "modeler/export/formats.h"
@@ -11,10 +11,12 @@ namespace {
 
 void writeHeader(OutFile& out, const ExportInput& input) {
     out.text("ply\nformat binary_little_endian 1.0\ncomment sgm, metres and y up unless its options said otherwise\n");
-    for (const auto& [key, value] : input.extras) out.text(fmt::format("comment {}: {}\n", oneLine(key), oneLine(value)));
+    for (const auto& [key, value] : input.extras)
+        out.text(fmt::format("comment {}: {}\n", oneLine(key), oneLine(value)));
     out.text(fmt::format("element vertex {}\n", input.mesh->vertexCount()));
     // Texture coordinates are named as Blender looks for them.
-    for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "s", "t"}) out.text(fmt::format("property float {}\n", name));
+    for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "s", "t"})
+        out.text(fmt::format("property float {}\n", name));
     for (const char* name : {"red", "green", "blue"}) out.text(fmt::format("property uchar {}\n", name));
     out.text(fmt::format("element face {}\nproperty list uchar uint vertex_indices\nproperty uint origin\nend_header\n",
                          input.mesh->triangleCount()));

@@ -91,12 +91,18 @@ int facing(Vec3f d) {
 
 std::array<float, 2> boxProjection(Vec3f p, int facing) {
     switch (facing) {
-        case 0: return {-p.z, p.y};
-        case 1: return {p.z, p.y};
-        case 2: return {p.x, -p.z};
-        case 3: return {p.x, p.z};
-        case 4: return {p.x, p.y};
-        default: return {-p.x, p.y};
+        case 0:
+            return {-p.z, p.y};
+        case 1:
+            return {p.z, p.y};
+        case 2:
+            return {p.x, -p.z};
+        case 3:
+            return {p.x, p.z};
+        case 4:
+            return {p.x, p.y};
+        default:
+            return {-p.x, p.y};
     }
 }
 

@@ -42,7 +42,7 @@ int facing(Vec3f direction);
 /// Texture coordinates in metres of a point seen against the axis `facing`, u to the right and v up, never mirrored.
 std::array<float, 2> boxProjection(Vec3f p, int facing);
 
-/// A connected run of triangles with one material, and one facing where texture coordinates are wanted.
+/// A run of triangles with one material, and one facing where texture coordinates are wanted.
 struct Patch {
     uint32_t material = 0;
     int facing = 0;

@@ -1,5 +1,5 @@
-// OpenUSD as text (.usda): a UsdGeomMesh with normals, indexed display colours and texture coordinates, and a face subset
-// bound to a UsdPreviewSurface for each material.
+// OpenUSD as text (.usda): a UsdGeomMesh with normals, indexed display colours and texture coordinates, and a face
+// subset bound to a UsdPreviewSurface for each material.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -52,14 +52,11 @@ public:
         const Vec3f a = place_.position(box.lo), b = place_.position(box.hi);
         out_.text(fmt::format("        float3[] extent = [{}, {}]\n", tuple(min(a, b)), tuple(max(a, b))));
         const size_t n = input_.mesh->vertexCount();
-        list("point3f[] points", n, [&](size_t i) {
-            parenthesized(place_.position(vertices_.position(static_cast<uint32_t>(i))));
-        });
+        list("point3f[] points", n,
+             [&](size_t i) { parenthesized(place_.position(vertices_.position(static_cast<uint32_t>(i)))); });
         list(
             "normal3f[] normals", n,
-            [&](size_t i) {
-                parenthesized(place_.direction(unitNormal(vertices_.normal(static_cast<uint32_t>(i)))));
-            },
+            [&](size_t i) { parenthesized(place_.direction(unitNormal(vertices_.normal(static_cast<uint32_t>(i))))); },
             "vertex");
     }
 
@@ -96,12 +93,13 @@ public:
     void subsets(const std::vector<Subset>& subsets, const std::vector<std::string>& names, const std::string& root) {
         out_.text("        uniform token subsetFamily:materialBind:familyType = \"partition\"\n");
         for (const Subset& s : subsets) {
-            out_.text(fmt::format("\n        def GeomSubset \"{0}\" (\n"
-                                  "            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n        {{\n"
-                                  "            uniform token elementType = \"face\"\n"
-                                  "            uniform token familyName = \"materialBind\"\n"
-                                  "            rel material:binding = </{1}/Materials/{0}>\n",
-                                  names[s.material], root));
+            out_.text(
+                fmt::format("\n        def GeomSubset \"{0}\" (\n"
+                            "            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n        {{\n"
+                            "            uniform token elementType = \"face\"\n"
+                            "            uniform token familyName = \"materialBind\"\n"
+                            "            rel material:binding = </{1}/Materials/{0}>\n",
+                            names[s.material], root));
             list("    int[] indices", s.triangleCount, [&](size_t i) { out_.number(s.firstTriangle + i); });
             out_.text("        }\n");
         }
@@ -144,8 +142,9 @@ void writeLayer(OutFile& out, const ExportInput& input, const std::string& root)
         out.text("    }\n");
     }
     const Placement place = placementOf(input);
-    out.text(fmt::format("    defaultPrim = \"{}\"\n    doc = \"sgm\"\n    metersPerUnit = {}\n    upAxis = \"{}\"\n)\n\n", root,
-                         1.0 / static_cast<double>(place.unitsPerMetre), place.zUp ? "Z" : "Y"));
+    out.text(
+        fmt::format("    defaultPrim = \"{}\"\n    doc = \"sgm\"\n    metersPerUnit = {}\n    upAxis = \"{}\"\n)\n\n",
+                    root, 1.0 / static_cast<double>(place.unitsPerMetre), place.zUp ? "Z" : "Y"));
 }
 
 void writeMaterials(OutFile& out, const Provenance& provenance, const std::vector<Subset>& subsets,
@@ -153,15 +152,16 @@ void writeMaterials(OutFile& out, const Provenance& provenance, const std::vecto
     out.text("    def Scope \"Materials\"\n    {\n");
     for (const Subset& s : subsets) {
         const Material& m = provenance.materials[s.material];
-        out.text(fmt::format("        def Material \"{0}\"\n        {{\n"
-                             "            token outputs:surface.connect = </{1}/Materials/{0}/Surface.outputs:surface>\n\n"
-                             "            def Shader \"Surface\"\n            {{\n"
-                             "                uniform token info:id = \"UsdPreviewSurface\"\n"
-                             "                color3f inputs:diffuseColor = {2}\n"
-                             "                float inputs:roughness = {3}\n"
-                             "                float inputs:metallic = {4}\n"
-                             "                token outputs:surface\n            }}\n        }}\n",
-                             names[s.material], root, tuple(m.color), m.roughness, m.metallic));
+        out.text(
+            fmt::format("        def Material \"{0}\"\n        {{\n"
+                        "            token outputs:surface.connect = </{1}/Materials/{0}/Surface.outputs:surface>\n\n"
+                        "            def Shader \"Surface\"\n            {{\n"
+                        "                uniform token info:id = \"UsdPreviewSurface\"\n"
+                        "                color3f inputs:diffuseColor = {2}\n"
+                        "                float inputs:roughness = {3}\n"
+                        "                float inputs:metallic = {4}\n"
+                        "                token outputs:surface\n            }}\n        }}\n",
+                        names[s.material], root, tuple(m.color), m.roughness, m.metallic));
     }
     out.text("    }\n");
 }
@@ -178,9 +178,10 @@ Status writeUsda(const ExportInput& input, const Path& temporary, const Path& ta
 
     OutFile out(temporary, target);
     writeLayer(out, input, root);
-    out.text(fmt::format("def Xform \"{}\" (\n    kind = \"component\"\n)\n{{\n    def Mesh \"Surface\"\n    {{\n"
-                         "        uniform token subdivisionScheme = \"none\"\n",
-                         root));
+    out.text(
+        fmt::format("def Xform \"{}\" (\n    kind = \"component\"\n)\n{{\n    def Mesh \"Surface\"\n    {{\n"
+                    "        uniform token subdivisionScheme = \"none\"\n",
+                    root));
     MeshPrim prim(out, input, patched);
     prim.topology();
     if (!advance(input.progress)) return cancelledError();

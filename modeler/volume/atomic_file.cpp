@@ -73,7 +73,8 @@ Status replaceFile(const fs::path& target, const std::function<Status(const fs::
     const fs::path path = resolved(target);
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     std::error_code error;
-    if (!fs::is_directory(folder, error)) return writeError(target, fmt::format("there is no folder '{}'", folder.string()));
+    if (!fs::is_directory(folder, error))
+        return writeError(target, fmt::format("there is no folder '{}'", folder.string()));
     struct stat old {};
     const bool replaces = stat(path.c_str(), &old) == 0;
     if (replaces && !S_ISREG(old.st_mode)) return writeError(target, "it is not a regular file");

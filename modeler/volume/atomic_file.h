@@ -1,6 +1,6 @@
 // All-or-nothing files: what stood at the target stays until the new content is complete and on the disk.
-// Enters: a target path and a function that fills a temporary file. Leaves: the target replaced, or untouched and an Error.
-// Assumes POSIX: rename(2) within one folder is atomic. It lives in the lowest room that writes files.
+// Enters: a target path and a function that fills a temporary file. Leaves: the target replaced, or untouched and an
+// Error. Assumes POSIX: rename(2) within one folder is atomic. It lives in the lowest room that writes files.
 #pragma once
 
 #include <filesystem>
@@ -11,9 +11,9 @@
 
 namespace sgm::volume {
 
-/// Makes an empty file beside `target`, lets `fill` write it, flushes it to disk and renames it over `target`, keeping the
-/// permissions of a file that stood there. A symbolic link is followed. On any failure the temporary is removed and the
-/// target is as it was; Error::Input names the path and the cause. A killed process leaves at most the temporary
+/// Makes an empty file beside `target`, lets `fill` write it, flushes it to disk and renames it over `target`, keeping
+/// the permissions of a file that stood there. A symbolic link is followed. On any failure the temporary is removed and
+/// the target is as it was; Error::Input names the path and the cause. A killed process leaves at most the temporary
 /// (".sgm-<pid>-<n>.tmp").
 Status replaceFile(const std::filesystem::path& target,
                    const std::function<Status(const std::filesystem::path& temporary)>& fill);

@@ -10,7 +10,8 @@
 namespace sgm::volume {
 namespace {
 
-constexpr size_t batchBlocks = 16;  ///< blocks whose ranges are taken in one call: enough for SIMD, few enough to share out
+constexpr size_t batchBlocks =
+    16;  ///< blocks whose ranges are taken in one call: enough for SIMD, few enough to share out
 constexpr int blockLeaves = mesh::blockCells / leafVoxels;  ///< along an edge
 constexpr size_t leavesInBlock = blockLeaves * blockLeaves * blockLeaves;
 static_assert(leavesInBlock <= 64, "one call of evaluateRanges takes 64 boxes");
@@ -36,7 +37,8 @@ public:
     BandSampler(const eval::Tape& whole, const mesh::Grid& grid, float band_m)
         : whole_(whole), grid_(grid), band_m_(band_m) {}
 
-    /// The blocks' own tapes hold inside their boxes only; these reach a voxel beyond, so each block's tape is cut anew.
+    /// The blocks' own tapes hold inside their boxes only; these reach a voxel beyond, so each block's tape is cut
+    /// anew.
     std::vector<BandLeaf> sample(std::span<const Vec3i> blocks) {
         std::vector<Box3f> boxes;
         for (const Vec3i& b : blocks) boxes.push_back(voxelBox(b * mesh::blockCells, mesh::blockCells));

@@ -69,9 +69,8 @@ Status fillVdb(const Volume& volume, const std::filesystem::path& file, const st
 
 Status writeVdb(const Volume& volume, const std::filesystem::path& path, const std::string& name,
                 const VdbOptions& options) {
-    return replaceFile(path, [&](const std::filesystem::path& temporary) {
-        return fillVdb(volume, temporary, path, name, options);
-    });
+    return replaceFile(
+        path, [&](const std::filesystem::path& temporary) { return fillVdb(volume, temporary, path, name, options); });
 }
 
 Result<Volume> readVdb(const std::filesystem::path& path) {

@@ -1,6 +1,6 @@
 // A level set on a sparse grid, behind OpenVDB.
-// Enters: a tape and a grid. Leaves: a narrow band of signed distances (negative inside), in metres. Assumes the field is
-// near 1-Lipschitz; values further than the band are clamped to ±band. OpenVDB's headers stay in the .cpp.
+// Enters: a tape and a grid. Leaves: a narrow band of signed distances (negative inside), in metres. Assumes the field
+// is near 1-Lipschitz; values further than the band are clamped to ±band. OpenVDB's headers stay in the .cpp.
 #pragma once
 
 #include <filesystem>
@@ -33,9 +33,9 @@ private:
     std::shared_ptr<Impl> impl_;
 };
 
-/// Samples `whole` at the grid's corners into a level set of `halfWidth` voxels (1 … 32) to each side: in the blocks, which
-/// hold the surface, and in all that touch them. Beyond the band voxels are inactive and inside and outside tiled by sign.
-/// Equal bytes at any thread count.
+/// Samples `whole` at the grid's corners into a level set of `halfWidth` voxels (1 … 32) to each side: in the blocks,
+/// which hold the surface, and in all that touch them. Beyond the band voxels are inactive and inside and outside tiled
+/// by sign. Equal bytes at any thread count.
 Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& whole, const mesh::Grid& grid,
                       int halfWidth, int threads, Progress* progress);
 
@@ -47,8 +47,8 @@ struct VdbOptions {
     std::map<std::string, std::string> metadata;  ///< of the file
 };
 
-/// Writes a .vdb with a grid `name` and OpenVDB's statistics of it; written beside `path` and renamed into place. The same
-/// bytes for the same volume, the file's tag being made from its content.
+/// Writes a .vdb with a grid `name` and OpenVDB's statistics of it; written beside `path` and renamed into place. The
+/// same bytes for the same volume, the file's tag being made from its content.
 Status writeVdb(const Volume& volume, const std::filesystem::path& path, const std::string& name,
                 const VdbOptions& options = {});
 /// The same into an existing `file` as it is; errors speak of `target`. For callers that do their own renaming.

@@ -38,7 +38,8 @@ TEST_F(Judged, GltfValidatorFindsNothing) {
     ASSERT_TRUE(write(input, plain).ok());
     const int code = run("node tests/export/validate_gltf.js " + glb.string() + " " + gltf.string() + " " +
                          plain.string() + " > " + verdict.string() + " 2>/dev/null");
-    if (code == 3 || code == 127) GTEST_SKIP() << "gltf-validator isn't installed: npm install --prefix build gltf-validator";
+    if (code == 3 || code == 127)
+        GTEST_SKIP() << "gltf-validator isn't installed: npm install --prefix build gltf-validator";
     ASSERT_EQ(code, 0);
     const std::string clean = "{\"errors\":0,\"warnings\":0,\"messages\":[]}\n";
     EXPECT_EQ(contentOf(verdict), clean + clean + clean);

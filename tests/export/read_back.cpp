@@ -1,8 +1,8 @@
 #include "tests/export/read_back.h"
 
+#include <tiny_gltf.h>
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
-#include <tiny_gltf.h>
 
 #include <cstring>
 #include <sstream>
@@ -121,7 +121,8 @@ ReadBack readUsda(const std::filesystem::path& path) {
     ReadBack out;
     out.positions = triples(usdNumbers(text, "point3f[] points"));
     out.normals = triples(usdNumbers(text, "normal3f[] normals"));
-    for (const Vec3f t : triples(usdNumbers(text, "int[] faceVertexIndices"))) out.triangles.push_back(t.as<uint32_t>());
+    for (const Vec3f t : triples(usdNumbers(text, "int[] faceVertexIndices")))
+        out.triangles.push_back(t.as<uint32_t>());
     out.materials.resize(out.triangles.size());
     const std::string subset = "def GeomSubset \"";
     for (size_t at = text.find(subset); at != std::string::npos; at = text.find(subset, at + 1)) {

@@ -13,10 +13,10 @@ namespace sgm::exporter {
 
 struct ReadBack {
     std::vector<Vec3f> positions, normals;
-    std::vector<std::array<float, 2>> uvs;   ///< by vertex; empty where the format has none
+    std::vector<std::array<float, 2>> uvs;  ///< by vertex; empty where the format has none
     std::vector<mesh::Triangle> triangles;
-    std::vector<std::string> materials;      ///< by triangle; empty where the format has none
-    std::map<std::string, Vec3f> colors;     ///< by material
+    std::vector<std::string> materials;   ///< by triangle; empty where the format has none
+    std::map<std::string, Vec3f> colors;  ///< by material
     std::map<std::string, std::string> extras;
     std::string generator;
 };

@@ -44,7 +44,8 @@ Volume sphere(float radius, float voxel_m, int threads = 2) {
     return std::move(volume).value();
 }
 
-/// Largest difference between the volume and clamp(slope · distance, ±band) over every corner, `margin` beyond the grid.
+/// Largest difference between the volume and clamp(slope · distance, ±band) over every corner, `margin` beyond the
+/// grid.
 float worstDifference(const Volume& volume, const mesh::Grid& grid, float radius, float slope, float band, int margin) {
     float worst = 0;
     for (int i = -margin; i <= grid.cells.x + margin; ++i)
@@ -65,7 +66,8 @@ TEST(LevelSet, HoldsTheClampedFieldEverywhere) {
         EXPECT_FLOAT_EQ(v.voxel_m(), voxel_m);
         EXPECT_LT(worstDifference(v, grid, 1, 1, 3 * voxel_m, 5), 1e-6f) << voxel_m;
         // Active voxels fill a shell six voxels thick.
-        EXPECT_NEAR(static_cast<double>(v.activeVoxels()) * std::pow(voxel_m, 3), 4 * pi * 6 * voxel_m, 0.05 * 4 * pi * 6 * voxel_m);
+        EXPECT_NEAR(static_cast<double>(v.activeVoxels()) * std::pow(voxel_m, 3), 4 * pi * 6 * voxel_m,
+                    0.05 * 4 * pi * 6 * voxel_m);
     }
 }
 
@@ -80,7 +82,8 @@ TEST(LevelSet, BandIsCompleteAcrossBlocksWithoutSurface) {
     for (const int halfWidth : {1, 3, 20}) {
         const auto v = sampleTape(tape, grid, halfWidth);
         ASSERT_TRUE(v.ok());
-        EXPECT_LT(worstDifference(*v, grid, radius, 1, static_cast<float>(halfWidth) * voxel_m, 31), 1e-6f) << halfWidth;
+        EXPECT_LT(worstDifference(*v, grid, radius, 1, static_cast<float>(halfWidth) * voxel_m, 31), 1e-6f)
+            << halfWidth;
     }
 }
 
@@ -150,7 +153,8 @@ TEST(VdbFile, ReadsBackWhatWasWritten) {
     const mesh::Grid grid = sphereGrid(1, 0.05f);
     for (int i = -2; i < grid.cells.x + 2; ++i)
         for (int j = 0; j < grid.cells.y; j += 3)
-            for (int k = 0; k < grid.cells.z; k += 5) ASSERT_EQ(r->at(grid.corner(i, j, k)), v.at(grid.corner(i, j, k)));
+            for (int k = 0; k < grid.cells.z; k += 5)
+                ASSERT_EQ(r->at(grid.corner(i, j, k)), v.at(grid.corner(i, j, k)));
 }
 
 TEST(VdbFile, TellsWhatItHolds) {
