@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
+#include <fstream>
+#include <sstream>
 
 #include "grammar/derive/derive.h"
 #include "grammar/derive/print.h"
@@ -11,14 +12,24 @@
 
 namespace sgm::testing_ {
 
+/// The text of a file in the repository, "" where there is none.
+inline std::string fileText(const std::string& path) {
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
 inline std::shared_ptr<const rules::Grammar> grammarOf(const std::string& text) {
     syntax::Diagnostics diagnostics;
     const auto source = std::make_shared<const syntax::Source>("test.sgm", text);
-    const rules::Loader none = [](const std::string&, const syntax::Source&, std::string& why) {
-        why = "tests use no files";
+    const rules::Loader fromGrammar = [](const std::string& name, const syntax::Source&, std::string& why) {
+        const std::string used = fileText("grammar/" + name);
+        if (!used.empty()) return syntax::SourcePtr(std::make_shared<const syntax::Source>(name, used));
+        why = "there is no such file";
         return syntax::SourcePtr();
     };
-    auto grammar = rules::load(source, none, diagnostics);
+    auto grammar = rules::load(source, fromGrammar, diagnostics);
     for (const auto& d : diagnostics.all())
         if (d.severity == syntax::Severity::Error) ADD_FAILURE() << syntax::render(d);
     return grammar;
