@@ -48,7 +48,7 @@ float opennessAt(vec3 p, vec3 normal) {
         vec3 at = (m * vec4(p, 1.0)).xyz;
         float seen = 1.0;
         if (!outsideMap(at))
-            seen = min(texture(skyMaps, vec3(at.xy, float(i))).x * exp(-skySharpness * min(at.z, 1.0)), 1.0);
+            seen = min(exp(log(texture(skyMaps, vec3(at.xy, float(i))).x) - skySharpness * (min(at.z, 1.0) - 0.01)), 1.0);
         open += cosine * seen;
         all += cosine;
     }
