@@ -50,7 +50,7 @@ struct Derivation {
 
 /// Limits of a derivation; what passes one ends in Error::Budget.
 struct Budget {
-    uint64_t shapes = 500'000;            ///< a runaway reaches it within a second
+    uint64_t shapes = 250'000;            ///< a runaway reaches it within a second
     uint32_t depth = 10'000;               ///< levels of the shape tree
     uint64_t memory_bytes = 4ull << 30;    ///< of the tree and the log
     double seconds = 600;
