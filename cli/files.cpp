@@ -7,6 +7,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "modeler/core/atomic_file.h"
+
 namespace sgm::cli {
 namespace fs = std::filesystem;
 
@@ -56,19 +58,12 @@ rules::Loader fileLoader() {
 }
 
 Status writeText(const fs::path& path, const std::string& text) {
-    fs::path temporary = path;
-    temporary += ".tmp";
-    std::ofstream file(temporary, std::ios::binary);
-    file << text;
-    file.close();
-    std::error_code problem;
-    if (file) fs::rename(temporary, path, problem);
-    if (!file || problem) {
-        std::error_code ignored;
-        fs::remove(temporary, ignored);
-        return Error{Error::Kind::Input, fmt::format("can't write '{}': {}", path.string(), problem ? problem.message() : std::strerror(errno))};
-    }
-    return Done{};
+    return replaceFile(path, [&](const fs::path& temporary) -> Status {
+        std::ofstream file(temporary, std::ios::binary);
+        file << text;
+        file.close();
+        return file ? Status(Done{}) : Status(writeError(path, errno ? errno : EIO));
+    });
 }
 
 }  // namespace sgm::cli

@@ -28,5 +28,8 @@ int main() {
     const auto mesh = mesh::polygonize(*blocks, grid, {}, nullptr, counts);
     if (!mesh.ok()) return 1;
     std::printf("%zu triangles from %llu field evaluations\n", mesh->triangleCount(), static_cast<unsigned long long>(counts.pointEvaluations));
-    return exporter::write({.mesh = &*mesh, .provenance = &provenance}, "embed.glb").ok() ? 0 : 1;
+    exporter::ExportInput input;
+    input.mesh = &*mesh;
+    input.provenance = &provenance;
+    return exporter::write(input, "embed.glb").ok() ? 0 : 1;
 }

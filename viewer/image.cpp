@@ -1,9 +1,10 @@
 #include <png.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <memory>
-#include <system_error>
 
+#include "modeler/core/atomic_file.h"
 #include "viewer/offscreen.h"
 
 namespace sgm::viewer {
@@ -30,25 +31,15 @@ bool writeTo(std::FILE* file, const Image& image, std::string& why) {
 }  // namespace
 
 Status writePng(const Image& image, const std::filesystem::path& path) {
-    const auto fail = [&](const std::string& why) -> Status {
-        return Error{Error::Kind::Input, "can't write " + path.string() + ": " + why};
-    };
     if (image.width <= 0 || image.height <= 0 || image.rgb.size() != size_t(image.width) * size_t(image.height) * 3)
-        return fail("the picture is empty");
-    std::filesystem::path beside = path;
-    beside += ".part";
-    std::string why = "the disk is full or the folder can't be written";
-    std::error_code error;
-    std::unique_ptr<std::FILE, Close> file(std::fopen(beside.c_str(), "wb"));
-    if (!file) return fail(why);
-    const bool written = writeTo(file.get(), image, why);
-    if (std::fclose(file.release()) != 0 || !written) {
-        std::filesystem::remove(beside, error);
-        return fail(why);
-    }
-    std::filesystem::rename(beside, path, error);
-    if (error) return fail(error.message());
-    return Done{};
+        return writeError(path, "the picture is empty");
+    return replaceFile(path, [&](const std::filesystem::path& temporary) -> Status {
+        std::string why = "the disk is full or the folder can't be written";
+        std::unique_ptr<std::FILE, Close> file(std::fopen(temporary.c_str(), "wb"));
+        if (!file) return writeError(path, errno);
+        const bool written = writeTo(file.get(), image, why);
+        return std::fclose(file.release()) == 0 && written ? Status(Done{}) : Status(writeError(path, why));
+    });
 }
 
 }  // namespace sgm::viewer

@@ -71,6 +71,7 @@ bool readVersion(Cursor& cursor, Ast& ast) {
 }  // namespace
 
 Ast parse(SourcePtr source, std::span<Token> tokens, Diagnostics& diagnostics) {
+    diagnostics.keep(source);
     Ast ast;
     ast.source = source;
     const auto begins = [&](const Token& t) {

@@ -55,9 +55,12 @@ public:
     void warning(SourceSpan span, std::string message, std::string mend = {});
     bool hasErrors() const { return errors_ > 0; }
     const std::vector<Diagnostic>& all() const { return list_; }
+    /// Keeps a source alive as long as the problems that point into it.
+    void keep(SourcePtr source) { sources_.push_back(std::move(source)); }
 
 private:
     std::vector<Diagnostic> list_;
+    std::vector<SourcePtr> sources_;
     size_t errors_ = 0;
 };
 

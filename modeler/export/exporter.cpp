@@ -6,7 +6,7 @@
 #include <new>
 
 #include "modeler/export/formats.h"
-#include "modeler/volume/atomic_file.h"
+#include "modeler/core/atomic_file.h"
 
 namespace sgm::exporter {
 namespace {
@@ -72,9 +72,9 @@ Status checkOptions(const ExportInput& input, const Exporter& row) {
 }
 
 Status checkInput(const ExportInput& input, const Exporter& row, const Path& path) {
-    if (row.wantsVolume && !input.volume) return volume::writeError(path, "there is no volume");
+    if (row.wantsVolume && !input.volume) return writeError(path, "there is no volume");
     if (!row.wantsVolume && (!input.mesh || input.mesh->triangleCount() == 0))
-        return volume::writeError(path, "the mesh has no triangles");
+        return writeError(path, "the mesh has no triangles");
     return checkOptions(input, row);
 }
 
@@ -102,11 +102,11 @@ Status write(const ExportInput& input, const Path& path) {
     ExportInput complete = input;
     if (!complete.provenance) complete.provenance = &nobody;
     try {
-        return volume::replaceFile(path, [&](const Path& temporary) { return row->write(complete, temporary, path); });
+        return replaceFile(path, [&](const Path& temporary) { return row->write(complete, temporary, path); });
     } catch (const std::bad_alloc&) {
         return Error{Error::Kind::Budget, fmt::format("cannot write '{}': out of memory", path.string())};
     } catch (const std::exception& e) {
-        return volume::writeError(path, e.what());
+        return writeError(path, e.what());
     }
 }
 

@@ -9,7 +9,7 @@
 
 #include "modeler/export/formats.h"
 #include "modeler/export/surface.h"
-#include "modeler/volume/atomic_file.h"
+#include "modeler/core/atomic_file.h"
 
 namespace sgm::exporter {
 namespace {
@@ -175,12 +175,12 @@ Status writeScene(const ExportInput& input, const Path& temporary, const Path& t
     addScene(builder.model, input);
     // The container's lengths have 32 bits; a little room is left for the JSON.
     if (binary && builder.model.buffers[0].data.size() > 0xfff00000u)
-        return volume::writeError(target, "the mesh is larger than the 4 GB a .glb can hold; choose another format");
+        return writeError(target, "the mesh is larger than the 4 GB a .glb can hold; choose another format");
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
     errno = 0;
     tinygltf::TinyGLTF().WriteGltfSceneToStream(&builder.model, out, !binary, binary);
     out.close();
-    if (!out) return volume::writeError(target, errno != 0 ? errno : EIO);
+    if (!out) return writeError(target, errno != 0 ? errno : EIO);
     return Done{};
 }
 

@@ -5,7 +5,7 @@
 #include "modeler/export/formats.h"
 #include "modeler/export/out_file.h"
 #include "modeler/export/surface.h"
-#include "modeler/volume/atomic_file.h"
+#include "modeler/core/atomic_file.h"
 
 namespace sgm::exporter {
 namespace {
@@ -52,7 +52,7 @@ void writePatch(OutFile& out, const PatchedMesh& patched, const Patch& patch, Ve
 
 Status writeMaterials(const ExportInput& input, const PatchedMesh& patched, const std::vector<std::string>& names,
                       const Path& target) {
-    return volume::replaceFile(target, [&](const Path& temporary) {
+    return replaceFile(target, [&](const Path& temporary) {
         OutFile out(temporary, target);
         out.text("# sgm\n");
         for (size_t i = 0; i < patched.patches.size(); ++i) {

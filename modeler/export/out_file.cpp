@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "modeler/volume/atomic_file.h"
+#include "modeler/core/atomic_file.h"
 
 namespace sgm::exporter {
 
@@ -47,7 +47,7 @@ Status OutFile::finish() {
     flush();
     if (fd_ >= 0 && close(fd_) != 0 && error_ == 0) error_ = errno;
     fd_ = -1;
-    if (error_ != 0) return volume::writeError(target_, error_);
+    if (error_ != 0) return writeError(target_, error_);
     return Done{};
 }
 

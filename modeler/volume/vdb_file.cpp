@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "modeler/core/random.h"
-#include "modeler/volume/atomic_file.h"
+#include "modeler/core/atomic_file.h"
 #include "modeler/volume/volume_impl.h"
 
 namespace sgm::volume {

@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "modeler/export/exporter.h"
-#include "modeler/volume/atomic_file.h"
+#include "modeler/core/atomic_file.h"
 #include "tests/export/hand_made.h"
 #include "tests/export/read_back.h"
 #include "tests/volume/scratch.h"
@@ -17,7 +17,6 @@
 namespace sgm::exporter {
 namespace {
 
-using volume::replaceFile;
 
 void put(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
 

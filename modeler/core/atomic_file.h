@@ -1,6 +1,6 @@
 // All-or-nothing files: what stood at the target stays until the new content is complete and on the disk.
 // Enters: a target path and a function that fills a temporary file. Leaves: the target replaced, or untouched and an
-// Error. Assumes POSIX: rename(2) within one folder is atomic. It lives in the lowest room that writes files.
+// Error. Assumes POSIX: rename(2) within one folder is atomic.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 #include "modeler/core/result.h"
 
-namespace sgm::volume {
+namespace sgm {
 
 /// Makes an empty file beside `target`, lets `fill` write it, flushes it to disk and renames it over `target`, keeping
 /// the permissions of a file that stood there. A symbolic link is followed. On any failure the temporary is removed and
@@ -23,4 +23,4 @@ Error writeError(const std::filesystem::path& path, const std::string& cause);
 /// The same, with the cause of a system error number.
 Error writeError(const std::filesystem::path& path, int errorNumber);
 
-}  // namespace sgm::volume
+}  // namespace sgm

@@ -1,4 +1,4 @@
-#include "modeler/volume/atomic_file.h"
+#include "modeler/core/atomic_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <system_error>
 
-namespace sgm::volume {
+namespace sgm {
 namespace fs = std::filesystem;
 namespace {
 
@@ -90,4 +90,4 @@ Status replaceFile(const fs::path& target, const std::function<Status(const fs::
     return Done{};
 }
 
-}  // namespace sgm::volume
+}  // namespace sgm
