@@ -13,6 +13,7 @@
 #include "cli/watch.h"
 #include "modeler/export/exporter.h"
 #include "modeler/mesh/edit.h"
+#include "modeler/mesh/validate.h"
 #include "modeler/volume/volume.h"
 
 namespace sgm::cli {
@@ -29,7 +30,7 @@ struct BuildRequest {
     std::string report;
     int smooth = 0;
     double simplify = 1;
-    bool quiet = false;
+    bool judge = false, quiet = false;
 };
 
 Status checkOutputs(const BuildRequest& request) {
@@ -110,6 +111,18 @@ void say(const BuildRequest& request, const Model& model, const mesh::MeshFigure
     for (const std::string& output : request.outputs) fmt::print("wrote {}\n", output);
 }
 
+/// CGAL's word on the mesh as a line; Error::Input when it finds a fault.
+Status judged(const mesh::Mesh& mesh, Stages& stages) {
+    const auto judgement = timed(stages, "judge", [&] { return mesh::judge(mesh); });
+    if (!judgement.ok()) return judgement.error();
+    const std::string verdict = fmt::format("CGAL: {}, {}, {}, {:.6g} m³", judgement->closed ? "closed" : "not closed",
+                                            judgement->outward ? "outward" : "not outward",
+                                            judgement->selfIntersects ? "crosses itself" : "free of self-intersections", judgement->volume_m3);
+    if (!judgement->closed || !judgement->outward || judgement->selfIntersects) return Error{Error::Kind::Input, verdict};
+    fmt::print("{}\n", verdict);
+    return Done{};
+}
+
 int build(const BuildRequest& request) {
     if (const Status s = checkOutputs(request); !s.ok()) return fail(s.error());
     const auto options = exportOptions(request);
@@ -122,6 +135,8 @@ int build(const BuildRequest& request) {
     if (!meshed.ok()) return fail(meshed.error());
     auto mesh = edited(std::move(meshed->mesh), request, stages, watch.progress());
     if (!mesh.ok()) return fail(mesh.error());
+    if (request.judge)
+        if (const Status s = judged(*mesh, stages); !s.ok()) return fail(s.error());
 
     exporter::ExportInput input = exportInput(request, *model, *mesh);
     input.options = *options;
@@ -148,6 +163,7 @@ void addBuild(CLI::App& app, int& exitCode) {
     command->add_option("--report", request->report, "Write the figures of this build as JSON");
     command->add_option("--smooth", request->smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
     command->add_option("--simplify", request->simplify, "Decimate to this share of the triangles")->check(CLI::Range(0.001, 1.0));
+    command->add_flag("--judge", request->judge, "Let CGAL judge the mesh before it is written: closed, outward, no self-intersection");
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
     command->footer(
         "Examples:\n  sgm build examples/grotto.sgm -o grotto.glb -o grotto.vdb --resolution 256\n"
