@@ -10,5 +10,5 @@ for name in grotto cumulus tower figure1 joints; do
   done
   echo "docs/pictures/$name-{field,mesh}.png"
 done
-"$sgm" render examples/grotto.sgm --camera inside --size 640x640 -q -o docs/pictures/grotto-inside.png
+"$sgm" render examples/grotto.sgm --set cut=5m --camera inside --size 640x640 -q -o docs/pictures/grotto-inside.png
 echo "docs/pictures/grotto-inside.png"

@@ -262,6 +262,29 @@ TEST_F(Cli, StylesAndSettingsChangeTheModel) {
     EXPECT_EQ(sgm("build " + file + " --set n=10m").code, 1) << "outside its range";
 }
 
+TEST_F(Cli, ExamplesAreClosedAndFreeOfSelfIntersections) {
+    for (const std::string example : {"grotto", "cumulus", "tower", "joints"}) {
+        const Outcome run = sgm("build examples/" + example + ".sgm --resolution 128 --judge --report " + path("r.json"));
+        EXPECT_EQ(run.code, 0) << example << ": " << run.out;
+        const Json mesh = Json::parse(read(path("r.json")))["mesh"];
+        EXPECT_EQ(mesh["boundary_edges"], 0) << example;
+        EXPECT_EQ(mesh["nonmanifold_edges"], 0) << example;
+        EXPECT_EQ(mesh["components"], 1) << example;
+    }
+}
+
+TEST_F(Cli, GrottoIsOneConnectedVoid) {
+    ASSERT_EQ(sgm("build examples/grotto.sgm --start Void --resolution 128 --report " + path("r.json")).code, 0);
+    const Json report = Json::parse(read(path("r.json")));
+    EXPECT_EQ(report["mesh"]["components"], 1);
+    EXPECT_GE(report["rules_applied"]["morphic"], 12);
+    // The rock with its lid on, less the void, is the block: 36 x 10 x 30 m.
+    const double hollow = report["mesh"]["volume_m3"];
+    ASSERT_EQ(sgm("build examples/grotto.sgm --set cut=5m --resolution 128 --report " + path("r.json")).code, 0);
+    const double rock = Json::parse(read(path("r.json")))["mesh"]["volume_m3"];
+    EXPECT_NEAR(rock + hollow, 36.0 * 10 * 30, 500);
+}
+
 TEST_F(Cli, SmoothAndSimplifyKeepTheMeshClosed) {
     ASSERT_EQ(sgm("build examples/joints.sgm --resolution 64 --smooth 3 --simplify 0.3 --report " + path("r.json")).code, 0);
     const Json mesh = Json::parse(read(path("r.json")))["mesh"];
