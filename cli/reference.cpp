@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "grammar/rules/functions.h"
 #include "grammar/syntax/operations.h"
 #include "modeler/export/exporter.h"
 #include "modeler/field/primitives.h"
@@ -28,9 +29,16 @@ std::string operationsPage() {
     return page;
 }
 
+/// "ball|cube" as "`ball`, `cube`".
+std::string listed(std::string_view choices) {
+    std::string text = "`";
+    for (const char c : choices) text += c == '|' ? std::string("`, `") : std::string(1, c);
+    return text + "`";
+}
+
 std::string parameterText(const field::PrimitiveParameter& p) {
     using Kind = field::ParameterKind;
-    if (p.kind == Kind::Choice) return fmt::format("one of {}", p.choices);
+    if (p.kind == Kind::Choice) return fmt::format("one of {}", listed(p.choices));
     if (p.kind == Kind::Rotation) return "a rotation: rotX(a), rotY(a), rotZ(a)";
     const bool angle = p.kind == Kind::Angle;
     const double unit = angle ? 180 / 3.14159265358979323846 : 1;
@@ -49,12 +57,20 @@ std::string primitivesPage() {
     return page;
 }
 
+std::string functionsPage() {
+    std::string page = "\n## Functions\n\nWhat an expression may call.\n\n| function | arguments | |\n|---|---|---|\n";
+    for (const rules::Function& f : rules::functions())
+        page += fmt::format("| `{}` | {} | {} |\n", f.name, f.least == f.most ? fmt::format("{}", f.least) : f.most == 255 ? fmt::format("{} or more", f.least) : fmt::format("{} to {}", f.least, f.most), f.doc);
+    return page;
+}
+
 std::string exportersPage() {
     std::string page = "\n## File formats\n\n`sgm build FILE -o NAME.ENDING`; options by `--export NAME=VALUE`.\n\n| ending | | options |\n|---|---|---|\n";
     for (const exporter::Exporter& e : exporter::exporters()) {
         std::string options;
-        for (const exporter::ExportOption& o : e.options) options += fmt::format("`{}={}` ({}) {} ", o.name, o.fallback, o.choices, o.doc);
-        for (size_t i = 0; (i = options.find('|', i)) != std::string::npos; i += 2) options.replace(i, 1, "\\|");
+        for (const exporter::ExportOption& o : e.options)
+            options += fmt::format("{}`{}={}`: {}{}", options.empty() ? "" : "<br>", o.name, o.fallback, o.doc,
+                                   o.choices.empty() ? "" : fmt::format(" ({})", listed(o.choices)));
         page += fmt::format("| `{}` | {} | {} |\n", e.extension, e.doc, options);
     }
     return page;
@@ -63,9 +79,9 @@ std::string exportersPage() {
 }  // namespace
 
 void addReference(CLI::App& app, int& exitCode) {
-    CLI::App* command = app.add_subcommand("reference", "Print the reference page: operations, primitives, formats");
+    CLI::App* command = app.add_subcommand("reference", "Print the reference page: operations, primitives, functions, formats");
     command->callback([&exitCode] {
-        fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}", operationsPage(), primitivesPage(), exportersPage());
+        fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}{}", operationsPage(), primitivesPage(), functionsPage(), exportersPage());
         exitCode = 0;
     });
 }
