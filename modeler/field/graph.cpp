@@ -1,5 +1,7 @@
 #include "modeler/field/graph.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <optional>
@@ -47,21 +49,20 @@ Num Graph::literal(float value) { return {this, insert(codeOf<ops::Literal>, {},
 
 Num Graph::slot(SlotKey key, float value) {
     const uint64_t h = combine(key.path, key.attribute);
-    const auto [first, last] = slotsByHash_.equal_range(h);
-    for (auto i = first; i != last; ++i)
-        if (slotKeys_[i->second] == key) {
-            constants_[i->second] = value;
-            return {this, insert(codeOf<ops::Slot>, {}, i->second)};
-        }
-    slotsByHash_.emplace(h, static_cast<SlotId>(constants_.size()));
-    constants_.push_back(value);
-    slotKeys_.push_back(key);
-    return {this, insert(codeOf<ops::Slot>, {}, static_cast<SlotId>(constants_.size() - 1))};
+    const SlotId known = slotIndex_.find(h, [&](SlotId id) { return slotKeys_[id] == key; });
+    if (known == HashIndex::none) {
+        slotIndex_.insert(h, static_cast<SlotId>(constants_.size()));
+        return addSlot(key, value);
+    }
+    constants_[known] = value;
+    return {this, insert(codeOf<ops::Slot>, {}, known)};
 }
 
-Num Graph::slot(float value) {
+Num Graph::slot(float value) { return addSlot({}, value); }
+
+Num Graph::addSlot(SlotKey key, float value) {
     constants_.push_back(value);
-    slotKeys_.push_back({});
+    slotKeys_.push_back(key);
     return {this, insert(codeOf<ops::Slot>, {}, static_cast<SlotId>(constants_.size() - 1))};
 }
 
@@ -87,9 +88,12 @@ Num Graph::apply(OpCode op, std::span<const Operand> operands, uint32_t data) {
 }
 
 Num Graph::apply(OpCode op, std::initializer_list<Num> operands, uint32_t data) {
-    std::vector<Operand> list;
-    list.reserve(operands.size());
-    for (const Num& n : operands) list.push_back({n.id(), 0});
+    constexpr size_t few = 4;  // all but the longest lists, so that arithmetic allocates nothing here
+    std::array<Operand, few> small;
+    std::vector<Operand> large(operands.size() > few ? operands.size() : 0);
+    const std::span<Operand> list =
+        large.empty() ? std::span<Operand>(small.data(), operands.size()) : std::span<Operand>(large);
+    std::transform(operands.begin(), operands.end(), list.begin(), [](const Num& n) { return Operand{n.id(), 0}; });
     return apply(op, list, data);
 }
 
@@ -97,18 +101,16 @@ NodeId Graph::insert(OpCode op, std::span<const Operand> operands, uint32_t data
     [[maybe_unused]] const bool mayOwn = traits(op).owner != ops::Owner::First;
     for ([[maybe_unused]] const Operand& o : operands) assert(o.node < nodes_.size() && (mayOwn || o.origin == 0));
     const uint64_t h = hashOf(op, operands, data);
-    const auto [first, last] = byHash_.equal_range(h);
-    for (auto i = first; i != last; ++i) {
-        const Node& n = nodes_[i->second];
-        if (n.op != op || n.data != data || n.count != operands.size()) continue;
-        const auto same = [](const Operand& a, const Operand& b) { return a.node == b.node && a.origin == b.origin; };
-        const auto seen = this->operands(i->second);
-        if (std::equal(seen.begin(), seen.end(), operands.begin(), same)) return i->second;
-    }
+    const NodeId known = nodeIndex_.find(h, [&](NodeId i) {
+        const Node& n = nodes_[i];
+        const auto seen = this->operands(i);
+        return n.op == op && n.data == data && std::equal(seen.begin(), seen.end(), operands.begin(), operands.end());
+    });
+    if (known != HashIndex::none) return known;
     const auto id = static_cast<NodeId>(nodes_.size());
     nodes_.push_back({op, data, static_cast<uint32_t>(operands_.size()), static_cast<uint32_t>(operands.size())});
     operands_.insert(operands_.end(), operands.begin(), operands.end());
-    byHash_.emplace(h, id);
+    nodeIndex_.insert(h, id);
     return id;
 }
 

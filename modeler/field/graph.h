@@ -5,12 +5,13 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "modeler/core/provenance.h"
+#include "modeler/field/hash_index.h"
 
 namespace sgm::field {
 
@@ -41,6 +42,7 @@ struct Node {
 struct Operand {
     NodeId node = 0;
     OriginId origin = 0;
+    friend bool operator==(const Operand&, const Operand&) = default;
 };
 
 class Graph;
@@ -96,13 +98,13 @@ public:
 
 private:
     NodeId insert(OpCode op, std::span<const Operand> operands, uint32_t data);
+    Num addSlot(SlotKey key, float value);
 
     std::vector<Node> nodes_;
     std::vector<Operand> operands_;
     std::vector<float> constants_;
     std::vector<SlotKey> slotKeys_;
-    std::unordered_multimap<uint64_t, NodeId> byHash_;
-    std::unordered_multimap<uint64_t, SlotId> slotsByHash_;
+    HashIndex nodeIndex_, slotIndex_;
 };
 
 Num operator+(Num a, Num b);

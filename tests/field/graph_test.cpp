@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <vector>
 
 #include "modeler/field/ops.h"
 
@@ -57,6 +58,29 @@ TEST(Graph, FoldsLiteralsAndWhatChangesNothing) {
     EXPECT_EQ((g.x() / 1.0f).id(), g.x().id());
     EXPECT_NE((1.0f / g.x()).id(), g.x().id());
     EXPECT_EQ((g.x() * g.x()).id(), square(g.x()).id());
+}
+
+TEST(Graph, ManyNodesAreFoundAgain) {
+    Graph g;
+    std::vector<NodeId> first;
+    const auto build = [&](uint64_t i) {
+        return sqrt(g.x() - g.slot({i, 1}, 1.0f)) + g.slot({i, 2}, 2.0f) * static_cast<float>(i % 100 + 2);
+    };
+    for (uint64_t i = 0; i < 20000; ++i) first.push_back(build(i).id());
+    const size_t nodes = g.nodeCount(), slots = g.constants().size();
+    EXPECT_EQ(slots, 40000u);
+    for (uint64_t i = 0; i < 20000; ++i) ASSERT_EQ(build(i).id(), first[i]);
+    EXPECT_EQ(g.nodeCount(), nodes);
+    EXPECT_EQ(g.constants().size(), slots);
+}
+
+TEST(HashIndex, TellsItemsOfOneHashApart) {
+    HashIndex index;
+    const auto item = [](uint32_t wanted) { return [wanted](uint32_t id) { return id == wanted; }; };
+    EXPECT_EQ(index.find(7, item(0)), HashIndex::none);
+    for (uint32_t id = 0; id < 500; ++id) index.insert(id % 2 ? 7 : 7 + (uint64_t{id} << 32), id);  // one low half
+    for (uint32_t id = 0; id < 500; ++id) EXPECT_EQ(index.find(7, item(id)), id);
+    EXPECT_EQ(index.find(8, item(3)), HashIndex::none);
 }
 
 TEST(Graph, CodesNameTheirRows) {
