@@ -23,7 +23,7 @@ constexpr uint32_t indexOf(Source s) { return s & ~constantBit; }
 /// One step: out = op(a, b), or over `count` sources from `a` in Tape::sources() for variadic ops.
 struct Instruction {
     field::OpCode op;
-    uint16_t count;        ///< operands
+    uint32_t count;        ///< operands; a melt of a whole cloud has more than 2¹⁶
     uint32_t out;          ///< register
     Source a = 0;          ///< first operand; for a variadic op its first place in Tape::sources()
     Source b = 0;          ///< second operand

@@ -70,7 +70,7 @@ void TapeBuilder::result(Use use) {
 
 void TapeBuilder::define(uint32_t key, field::OpCode op, uint32_t data, const Use* operands, size_t count,
                          bool listed) {
-    Instruction in{op, static_cast<uint16_t>(count), values_[key].reg};
+    Instruction in{op, static_cast<uint32_t>(count), values_[key].reg};
     in.data = data;
     free_.push_back(leave(key).reg);
     if (listed) {

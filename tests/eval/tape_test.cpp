@@ -18,6 +18,37 @@ TEST(Tape, IsTheGraphBitForBit) {
     }
 }
 
+TEST(Tape, HoldsBlendsOfMoreOperandsThanSixteenBits) {
+    // Spheres in a row, far more than the melt reaches, so that a small blend around a point is the whole truth there.
+    constexpr int count = 70'000;
+    Graph graph;
+    const auto rowOf = [&graph](int first, int last) {
+        std::vector<field::Operand> operands{{graph.literal(0.5f).id(), 0}};
+        for (int i = first; i < last; ++i)
+            operands.push_back({abs(graph.x() - static_cast<float>(i)).id(), static_cast<OriginId>(i + 1)});
+        return graph.apply(field::codeOf<ops::Blend>, operands);
+    };
+    const Tape all = compiled(graph, rowOf(0, count));
+    Cloud cloud;
+    cloud.add(69'000.75f, 0, 0);
+    cloud.add(69'999.25f, 0, 0);
+    const std::vector<float> got = values(all, cloud);
+    EXPECT_EQ(got[0], values(compiled(graph, rowOf(68'999, 69'004)), cloud)[0]);
+    EXPECT_EQ(got[1], values(compiled(graph, rowOf(69'996, count)), cloud)[1]);
+
+    Workspace w;
+    OriginId owners[2];
+    evaluateOrigin(all, cloud.points(), owners, w);
+    EXPECT_EQ(owners[0], 69'002u);
+    EXPECT_EQ(owners[1], 70'000u);
+    const Box3f box{{69'000.5f, 0, 0}, {69'001, 1, 1}};
+    Range range;
+    evaluateRanges(all, {&box, 1}, &range, w);
+    const Tape shorter = shorten(all, 0, w);
+    EXPECT_LT(shorter.size(), 20u);
+    EXPECT_EQ(values(shorter, cloud)[0], got[0]);
+}
+
 TEST(Tape, FoldsWhatIsConstant) {
     Graph graph;
     const Num a = graph.slot(2), b = graph.slot(3);
