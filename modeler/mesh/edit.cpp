@@ -17,17 +17,13 @@ namespace decimater = OpenMesh::Decimater;
 class CancelObserver : public decimater::Observer {
 public:
     explicit CancelObserver(Progress* progress) : Observer(interval), progress_(progress) {}
-    void notify(size_t) override {
-        if (progress_) progress_->tick(interval);
-    }
+    void notify(size_t) override { tick(progress_, interval); }
     bool abort() const override { return cancelled(progress_); }
 
 private:
     static constexpr size_t interval = 256;
     Progress* progress_;
 };
-
-Error cancelledError() { return {Error::Kind::Cancelled, "cancelled"}; }
 
 }  // namespace
 
@@ -41,7 +37,7 @@ Result<Mesh> smooth(const Mesh& mesh, int passes, Progress* progress) {
     for (int pass = 0; pass < passes; ++pass) {
         if (cancelled(progress)) return cancelledError();
         smoother.smooth(1);
-        if (progress) progress->tick();
+        tick(progress);
     }
     return fromOpenMesh(half, passes == 0);
 }

@@ -117,7 +117,6 @@ void fillMissingNormals(Mesh& mesh) {
 Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options,
                         Progress* progress, Counts& counts) {
     if (Status status = checkGrid(grid); !status) return status.error();
-    const Error cancelledError{Error::Kind::Cancelled, "cancelled"};
     const Stopwatch sampling;
     Memory memory(options.memoryBudget_bytes);
     Mesh mesh;
@@ -130,31 +129,31 @@ Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, cons
         if (memory.exceeded()) return;
         if (!findVertices(blocks[b], grid, options, progress, scratch[worker], surfaces[b], mesh.chunks[b])) return;
         memory.add(bytesOf(surfaces[b]));
-        if (progress) progress->tick();
+        tick(progress);
     });
-    if (cancelled(progress)) return cancelledError;
+    if (cancelled(progress)) return cancelledError();
     if (memory.exceeded()) return memory.error();
-    uint64_t vertices = 0;
+    uint64_t vertices = 0, triangles = 0;
     for (size_t b = 0; b < blocks.size(); ++b) {
         surfaces[b].firstVertex = mesh.chunks[b].firstVertex = static_cast<uint32_t>(vertices);
         vertices += surfaces[b].vertices;
+        triangles += surfaces[b].triangles;
     }
-    if (vertices > std::numeric_limits<uint32_t>::max())
-        return Error{Error::Kind::Budget, "the mesh has more than 2^32 vertices: choose larger cells"};
+    if (std::max(vertices, triangles) >= std::numeric_limits<uint32_t>::max())
+        return Error{Error::Kind::Budget, "the mesh has more than 2^32 vertices or triangles: choose larger cells"};
     for (const Scratch& s : scratch) counts += s.counts;
     counts.sampleSeconds += sampling.seconds();
 
     const Stopwatch joining;
     if (progress) progress->begin("polygonize", blocks.size());
-    const BlockMap map(surfaces, grid);
     parallelFor(blocks.size(), options.threads, progress, [&](size_t b, int worker) {
         BrickVertices& joined = scratch[worker].joined;
-        joinVertices(surfaces[b], map, joined);
+        joinVertices(surfaces[b], surfaces, joined);
         mesh.chunks[b].triangles.assign(joined.triangles.begin(), joined.triangles.end());
         mesh.chunks[b].origins.assign(joined.origins.begin(), joined.origins.end());
-        if (progress) progress->tick();
+        tick(progress);
     });
-    if (cancelled(progress)) return cancelledError;
+    if (cancelled(progress)) return cancelledError();
     std::erase_if(mesh.chunks, [](const Chunk& c) { return c.positions.empty() && c.triangles.empty(); });
     fillMissingNormals(mesh);
     counts.polygonizeSeconds += joining.seconds();

@@ -2,6 +2,8 @@
 // Enters: a cube's index and edge, the grid. Leaves: cells, box, verdict. Assumes ranges that enclose the field.
 #pragma once
 
+#include <tuple>
+
 #include "modeler/core/result.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/mesh/subdivide.h"
@@ -9,6 +11,9 @@
 namespace sgm::mesh {
 
 inline constexpr int maxCellsPerAxis = 1 << 15;
+
+/// The order of blocks: by z, then y, then x.
+inline bool zyxLess(Vec3i a, Vec3i b) { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); }
 
 /// Cells [lo, hi) of the grid.
 struct CellRange {
@@ -36,7 +41,7 @@ inline bool mayHoldSurface(eval::Range range, const CellRange& cells, const Grid
     return !(range.hi < 0) || touchesBorder;
 }
 
-/// Error::Input for cells that float32 can't resolve or that aren't positive, Error::Budget for too many along an axis.
+/// Error::Input for a box without end and for cells that float32 can't resolve or that aren't positive, Error::Budget for too many along an axis.
 Status checkGrid(const Grid& grid);
 
 }  // namespace sgm::mesh

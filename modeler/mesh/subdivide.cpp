@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <limits>
 #include <string>
-#include <tuple>
 
 #include "modeler/core/parallel.h"
 #include "modeler/eval/evaluate.h"
@@ -62,7 +62,9 @@ float cellFor(const Box3f& bounds, int resolution) {
 }
 
 Grid gridFor(const Box3f& bounds, float cell_m) {
-    if (bounds.empty() || !(cell_m > 0)) return {{}, cell_m, {}};
+    if (bounds.empty() || !(cell_m > 0) || !std::isfinite(cell_m)) return {{}, cell_m, {}};
+    constexpr float nowhere = std::numeric_limits<float>::quiet_NaN();
+    if (!bounds.finite()) return {{nowhere, nowhere, nowhere}, cell_m, {}};
     Grid grid{{}, cell_m, {}};
     for (int axis = 0; axis < 3; ++axis) {
         // Centred, with 1¼ to 1¾ cells around: bounds, where flat faces like to be, never pass through samples.
@@ -78,6 +80,8 @@ Status checkGrid(const Grid& grid) {
     if (!(grid.cell_m > 0) || !std::isfinite(grid.cell_m))
         return Error{Error::Kind::Input, "the cell size must be a positive number of metres"};
     for (int axis = 0; axis < 3; ++axis) {
+        if (!std::isfinite(grid.origin[axis]))
+            return Error{Error::Kind::Input, "the box to fill with cells has no end: cut the object to a finite one"};
         if (grid.cells[axis] >= maxCellsPerAxis)
             return Error{Error::Kind::Budget, "the grid would have more than " + std::to_string(maxCellsPerAxis) +
                                                   " cells along one axis: choose larger cells"};
@@ -109,16 +113,15 @@ Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, i
         std::vector<Counts> counted(workspaces.size());
         parallelFor(regions.size(), threads, progress, [&](size_t i, int worker) {
             children[i] = split(regions[i], size / splits * blockCells, grid, workspaces[worker], counted[worker]);
-            if (progress) progress->tick();
+            tick(progress);
         });
-        if (cancelled(progress)) return Error{Error::Kind::Cancelled, "cancelled"};
+        if (cancelled(progress)) return cancelledError();
         regions.clear();
         for (std::vector<Region>& some : children) std::move(some.begin(), some.end(), std::back_inserter(regions));
         for (const Counts& c : counted) counts += c;
     }
-    std::sort(regions.begin(), regions.end(), [](const Block& a, const Block& b) {
-        return std::tie(a.index.z, a.index.y, a.index.x) < std::tie(b.index.z, b.index.y, b.index.x);
-    });
+    std::sort(regions.begin(), regions.end(),
+              [](const Block& a, const Block& b) { return zyxLess(a.index, b.index); });
     counts.subdivideSeconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return regions;
 }

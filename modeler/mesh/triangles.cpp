@@ -36,9 +36,10 @@ void loadVertices(const BlockSurface& block, const Brick& owner, Vec3i offset, B
 }
 
 /// The brick at `at` counted in `block`'s bricks, which may lie in a block above.
-void loadNeighbour(const BlockSurface& block, const BlockMap& map, Vec3i at, Vec3i offset, BrickVertices& out) {
+void loadNeighbour(const BlockSurface& block, const std::vector<BlockSurface>& blocks, Vec3i at, Vec3i offset,
+                   BrickVertices& out) {
     const Vec3i blockOffset{at.x / bricksAlong, at.y / bricksAlong, at.z / bricksAlong};
-    const BlockSurface* holder = blockOffset == Vec3i{} ? &block : map.find(block.index + blockOffset);
+    const BlockSurface* holder = blockOffset == Vec3i{} ? &block : findBlock(blocks, block.index + blockOffset);
     if (!holder) return;
     const uint8_t place = holder->brickOf[brickNumber(at - blockOffset * bricksAlong)];
     if (place) loadVertices(*holder, holder->bricks[place - 1u], offset, out);
@@ -61,22 +62,13 @@ std::array<int, edgesPerCell> edgeOffsets() {
 
 }  // namespace
 
-BlockMap::BlockMap(const std::vector<BlockSurface>& blocks, const Grid& grid) : blocks_(blocks) {
-    for (int axis = 0; axis < 3; ++axis) size_[axis] = (grid.cells[axis] + blockCells - 1) / blockCells;
-    slots_.resize(static_cast<size_t>(size_.x) * size_.y * size_.z);
-    for (uint32_t b = 0; b < blocks.size(); ++b) {
-        const Vec3i at = blocks[b].index;
-        slots_[at.x + static_cast<size_t>(size_.x) * (at.y + static_cast<size_t>(size_.y) * at.z)] = b + 1;
-    }
+const BlockSurface* findBlock(const std::vector<BlockSurface>& blocks, Vec3i index) {
+    const auto at = std::lower_bound(blocks.begin(), blocks.end(), index,
+                                     [](const BlockSurface& b, Vec3i i) { return zyxLess(b.index, i); });
+    return at != blocks.end() && at->index == index ? &*at : nullptr;
 }
 
-const BlockSurface* BlockMap::find(Vec3i at) const {
-    if (at.x >= size_.x || at.y >= size_.y || at.z >= size_.z) return nullptr;
-    const uint32_t slot = slots_[at.x + static_cast<size_t>(size_.x) * (at.y + static_cast<size_t>(size_.y) * at.z)];
-    return slot ? &blocks_[slot - 1] : nullptr;
-}
-
-void joinVertices(const BlockSurface& block, const BlockMap& map, BrickVertices& scratch) {
+void joinVertices(const BlockSurface& block, const std::vector<BlockSurface>& blocks, BrickVertices& scratch) {
     const CaseTable& cases = caseTable();
     const std::array<int, edgesPerCell> offsets = edgeOffsets();
     scratch.triangles.resize(block.triangles);
@@ -86,7 +78,7 @@ void joinVertices(const BlockSurface& block, const BlockMap& map, BrickVertices&
     for (const Brick& brick : block.bricks) {
         for (int o = 0; o < 7; ++o) {
             const Vec3i offset{o & 1, o >> 1 & 1, o >> 2};
-            loadNeighbour(block, map, brickAt(brick.number) + offset, offset, scratch);
+            loadNeighbour(block, blocks, brickAt(brick.number) + offset, offset, scratch);
         }
         forEachSurfaceCell(brick, [&](Vec3i c, uint32_t inside) {
             const CellCase& cell = cases[inside];

@@ -20,18 +20,8 @@ struct BlockSurface {
     uint32_t vertices = 0, triangles = 0;
 };
 
-/// Blocks by their coordinates.
-class BlockMap {
-public:
-    explicit BlockMap(const std::vector<BlockSurface>& blocks, const Grid& grid);
-    /// Null where there is none.
-    const BlockSurface* find(Vec3i index) const;
-
-private:
-    const std::vector<BlockSurface>& blocks_;
-    Vec3i size_;
-    std::vector<uint32_t> slots_;  ///< 1 + place, x fastest
-};
+/// The block at `index` among blocks in order of (z, y, x); null where there is none.
+const BlockSurface* findBlock(const std::vector<BlockSurface>& blocks, Vec3i index);
 
 /// One worker's scratch: numbers (and origins) of the vertices on a brick's grid edges, by axis, k, j, i.
 struct BrickVertices {
@@ -42,8 +32,8 @@ struct BrickVertices {
     std::vector<OriginId> origins;
 };
 
-/// Replaces the scratch's triangles and origins by those of `block`. A triangle takes the origin of most of its
+/// Replaces the scratch's triangles and origins by those of `block`, one of `blocks`. A triangle takes the origin of most of its
 /// vertices, the lowest where all three differ.
-void joinVertices(const BlockSurface& block, const BlockMap& map, BrickVertices& scratch);
+void joinVertices(const BlockSurface& block, const std::vector<BlockSurface>& blocks, BrickVertices& scratch);
 
 }  // namespace sgm::mesh

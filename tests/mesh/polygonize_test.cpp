@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <set>
 #include <thread>
 
@@ -116,6 +117,27 @@ TEST(Polygonize, RefinementBeatsTheLineBetweenSamples) {
     }
     EXPECT_GT(worst[0], 0.02);
     EXPECT_LT(worst[1], 0.0021);
+}
+
+TEST(Polygonize, WithoutRefinementAVertexLiesWhereThePaperPutsIt) {
+    // SG-M III-G: densities 0.1 and −0.3 at the ends of an edge put its vertex at 25 % of it.
+    Scene s;
+    s.field = {square(s.graph.x()) - 4.0f, {{-2, -2, -2}, {2, 2, 2}}, 8, 0};  // straight only if one looks at the ends
+    const auto vertexOn = [&](float inside, float outside, float from) {
+        // f(x) = inside at x = from, outside a cell further, with a bend of 1 between.
+        const field::Num t = s.graph.x() - from;
+        const field::Num f = t * (outside - inside) + inside + t * (t - 1.0f);
+        s.field = {max(max(f, abs(s.graph.y()) - 1.5f), max(abs(s.graph.z()) - 1.5f, -1.0f - t)), {}, 8, 0};
+        const Meshed m = meshOf(s.tape(), {{-4, -4, -4}, 1, {8, 8, 8}}, 1, {.refineSteps = 0});
+        float x = std::numeric_limits<float>::quiet_NaN();
+        for (const Chunk& c : m.mesh.value().chunks)
+            for (const Vec3f& p : c.positions)
+                if (p.y == 0 && p.z == 0 && p.x > from) x = p.x;
+        return x - from;
+    };
+    EXPECT_FLOAT_EQ(vertexOn(-0.1f, 0.3f, 1), 0.25f);
+    EXPECT_FLOAT_EQ(vertexOn(-0.3f, 0.1f, 1), 0.75f);
+    EXPECT_FLOAT_EQ(vertexOn(-0.3f, 0.3f, 0), 0.5f);
 }
 
 TEST(Polygonize, NormalsOfAFieldWithoutDerivativeComeFromTheFaces) {
@@ -295,6 +317,18 @@ TEST(Polygonize, BudgetsAndImpossibleGridsAreErrors) {
     EXPECT_EQ(meshOf(tape, {{1e6f, 0, 0}, 0.01f, {8, 8, 8}}).mesh.error().kind, Error::Kind::Input);
     EXPECT_EQ(meshOf(tape, {{0, 0, 0}, 0, {8, 8, 8}}).mesh.error().kind, Error::Kind::Input);
     EXPECT_EQ(meshOf(tape, gridFor({{-1, -1, -1}, {1, 1, 1}}, 1e-6f)).mesh.error().kind, Error::Kind::Budget);
+    // Boxes without end or sense, and what cellFor makes of them.
+    constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    for (const Box3f& box : {Box3f{{-inf, -inf, -inf}, {inf, 0, inf}}, Box3f{{inf, 0, 0}, {inf, 1, 1}}, Box3f{{nan, 0, 0}, {1, 1, 1}},
+                             Box3f{{0, 0, 0}, {1, nan, 1}}})
+        for (const float cell : {0.1f, cellFor(box, 64), inf, nan, -1.0f})
+            EXPECT_EQ(meshOf(tape, gridFor(box, cell)).mesh.error().kind, Error::Kind::Input);
+}
+
+TEST(Polygonize, FlatBoxesHaveAGrid) {
+    const Grid g = gridFor({{1, 2, 3}, {1, 2, 3}}, cellFor({{1, 2, 3}, {1, 2, 3}}, 64));
+    EXPECT_EQ(g.cells, (Vec3i{3, 3, 3}));
+    EXPECT_EQ(meshOf(ballScene().tape(), g).mesh.value().triangleCount(), 0u);
 }
 
 TEST(Polygonize, StopsWithinFiftyMilliseconds) {
