@@ -55,8 +55,10 @@ int flushToDisk(const fs::path& path) {
 /// Where the bytes go: behind symbolic links, so that a link stays a link.
 fs::path resolved(const fs::path& target) {
     std::error_code ignored;
-    const fs::path behind = fs::is_symlink(target, ignored) ? fs::weakly_canonical(target, ignored) : target;
-    return behind.empty() ? target : behind;
+    fs::path path = target;
+    for (int links = 0; links < 40 && fs::is_symlink(path, ignored); ++links)  // as many as Linux follows
+        path = path.parent_path() / fs::read_symlink(path, ignored);           // also one that leads nowhere yet
+    return path;
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 #include <memory>
-#include <vector>
+#include <type_traits>
 
 #include "modeler/core/progress.h"
 

@@ -2,8 +2,11 @@
 // Enters: ticks from any thread. Leaves: a fraction for whoever shows it, and the wish to stop. Assumes polls within 50 ms.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
+
+#include "modeler/core/result.h"
 
 namespace sgm {
 
@@ -24,7 +27,7 @@ public:
     /// Share of the present stage that is done, 0 … 1.
     double fraction() const {
         const auto total = total_.load();
-        return total ? static_cast<double>(done_.load()) / static_cast<double>(total) : 0.0;
+        return total ? std::min(1.0, static_cast<double>(done_.load()) / static_cast<double>(total)) : 0.0;
     }
 
 private:
@@ -34,5 +37,11 @@ private:
 };
 
 inline bool cancelled(const Progress* p) { return p && p->cancelled(); }
+inline void tick(Progress* p, uint64_t n = 1) {
+    if (p) p->tick(n);
+}
+
+/// What a door answers when it stopped because it was asked to.
+inline Error cancelledError() { return {Error::Kind::Cancelled, "cancelled"}; }
 
 }  // namespace sgm

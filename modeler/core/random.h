@@ -29,7 +29,7 @@ constexpr uint64_t hashText(std::string_view text) {
 /// A number in [0, 1), 53 bits, decided by `key` alone.
 constexpr double uniform(uint64_t key) { return static_cast<double>(mix(key) >> 11) * 0x1.0p-53; }
 
-/// A number in [lo, hi), decided by `key` alone.
+/// A number from lo to hi (which only rounding reaches), decided by `key` alone.
 constexpr double uniform(uint64_t key, double lo, double hi) { return lo + (hi - lo) * uniform(key); }
 
 /// An integer in [0, count), decided by `key` alone. `count` must be positive.

@@ -50,7 +50,7 @@ struct Exporter {
 std::span<const Exporter> exporters();
 /// The row for ".glb" …, or null.
 const Exporter* findExporter(std::string_view extension);
-/// Writes `path` by its extension: all or nothing.
+/// Writes `path` by its extension: all or nothing, Error::Cancelled when `input.progress` says so.
 Status write(const ExportInput& input, const std::filesystem::path& path);
 
 }  // namespace sgm::exporter

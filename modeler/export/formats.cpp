@@ -59,11 +59,4 @@ std::vector<std::string> distinctNames(const std::vector<Material>& materials, s
     return names;
 }
 
-bool advance(Progress* progress) {
-    if (progress) progress->tick();
-    return !cancelled(progress);
-}
-
-Error cancelledError() { return {Error::Kind::Cancelled, "writing was cancelled"}; }
-
 }  // namespace sgm::exporter

@@ -46,8 +46,4 @@ std::string identifierOf(std::string name);
 /// The materials' names, each turned by `turn`, equal ones told apart by "_2", "_3", … in order.
 std::vector<std::string> distinctNames(const std::vector<Material>& materials, std::string (*turn)(std::string));
 
-/// Counts a step of `progress`; false when it was cancelled. Null counts nothing.
-bool advance(Progress* progress);
-Error cancelledError();
-
 }  // namespace sgm::exporter

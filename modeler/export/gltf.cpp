@@ -5,11 +5,12 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
+#include <ostream>
 
+#include "modeler/core/atomic_file.h"
+#include "modeler/core/polled_file.h"
 #include "modeler/export/formats.h"
 #include "modeler/export/surface.h"
-#include "modeler/core/atomic_file.h"
 
 namespace sgm::exporter {
 namespace {
@@ -88,7 +89,7 @@ public:
                 ++end;
             addPrimitive(i, end);
             if (cancelled(input_.progress)) return false;
-            if (input_.progress) input_.progress->tick(end - i);
+            tick(input_.progress, end - i);
             i = end;
         }
         return true;
@@ -132,6 +133,7 @@ private:
 
     void putVertices(const Patch& patch, Box3f& bounds) {
         for (uint32_t v = patch.firstVertex; v < patch.firstVertex + patch.vertexCount; ++v) {
+            if (cancelled(input_.progress)) return;
             const Vec3f position = vertices_.position(patched_.vertices[v]);
             bounds = hull(bounds, position);
             put(positions_, v, position);
@@ -176,10 +178,12 @@ Status writeScene(const ExportInput& input, const Path& temporary, const Path& t
     // The container's lengths have 32 bits; a little room is left for the JSON.
     if (binary && builder.model.buffers[0].data.size() > 0xfff00000u)
         return writeError(target, "the mesh is larger than the 4 GB a .glb can hold; choose another format");
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
     errno = 0;
+    PolledFile file(temporary, input.progress);
+    std::ostream out(&file);
     tinygltf::TinyGLTF().WriteGltfSceneToStream(&builder.model, out, !binary, binary);
-    out.close();
+    if (!file.close()) out.setstate(std::ios::badbit);
+    if (cancelled(input.progress)) return cancelledError();
     if (!out) return writeError(target, errno != 0 ? errno : EIO);
     return Done{};
 }

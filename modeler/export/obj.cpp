@@ -15,6 +15,7 @@ Path materialFile(const Path& target) { return target.parent_path() / wordOf(tar
 
 void writeVertices(OutFile& out, const mesh::Mesh& mesh, const Placement& place) {
     const auto line = [&](std::string_view keyword, Vec3f v) {
+        if (out.failed()) return;
         out.text(keyword);
         out.numbers(v, " ");
         out.text("\n");
@@ -35,7 +36,7 @@ void writePatch(OutFile& out, const PatchedMesh& patched, const Patch& patch, Ve
         out.number(t);
         out.text("\n");
     }
-    for (uint32_t t = patch.firstTriangle; t < patch.firstTriangle + patch.triangleCount; ++t) {
+    for (uint32_t t = patch.firstTriangle; t < patch.firstTriangle + patch.triangleCount && !out.failed(); ++t) {
         out.text("f");
         for (int corner = 0; corner < 3; ++corner) {
             const uint32_t v = patched.triangles[t][corner];
@@ -53,7 +54,7 @@ void writePatch(OutFile& out, const PatchedMesh& patched, const Patch& patch, Ve
 Status writeMaterials(const ExportInput& input, const PatchedMesh& patched, const std::vector<std::string>& names,
                       const Path& target) {
     return replaceFile(target, [&](const Path& temporary) {
-        OutFile out(temporary, target);
+        OutFile out(temporary, target, input.progress);
         out.text("# sgm\n");
         for (size_t i = 0; i < patched.patches.size(); ++i) {
             const uint32_t index = patched.patches[i].material;
@@ -74,7 +75,7 @@ Status writeObj(const ExportInput& input, const Path& temporary, const Path& tar
     const std::vector<std::string> names = distinctNames(input.provenance->materials, wordOf);
     const Path materials = materialFile(target);
 
-    OutFile out(temporary, target);
+    OutFile out(temporary, target, input.progress);
     out.text("# sgm\n");
     for (const auto& [key, value] : input.extras) out.text(fmt::format("# {}: {}\n", oneLine(key), oneLine(value)));
     out.text(fmt::format("mtllib {}\no {}\n", materials.filename().string(), wordOf(input.name)));
@@ -86,7 +87,7 @@ Status writeObj(const ExportInput& input, const Path& temporary, const Path& tar
         if (i == 0 || patched.patches[i - 1].material != patch.material)
             out.text(fmt::format("usemtl {}\n", names[patch.material]));
         writePatch(out, patched, patch, vertices, textured);
-        if (!advance(input.progress)) return cancelledError();
+        tick(input.progress);
     }
     if (Status status = out.finish(); !status.ok()) return status;
     // Both files are complete before either is replaced; the .mtl goes first, as the .obj names it.

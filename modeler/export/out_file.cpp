@@ -10,8 +10,8 @@
 
 namespace sgm::exporter {
 
-OutFile::OutFile(const std::filesystem::path& path, std::filesystem::path target)
-    : target_(std::move(target)), buffer_(size_t{1} << 20) {
+OutFile::OutFile(const std::filesystem::path& path, std::filesystem::path target, const Progress* progress)
+    : target_(std::move(target)), buffer_(size_t{1} << 20), progress_(progress) {
     fd_ = open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
     if (fd_ < 0) error_ = errno;
 }
@@ -33,7 +33,8 @@ void OutFile::bytes(const void* data, size_t size) {
 }
 
 void OutFile::flush() {
-    for (size_t done = 0; done < used_ && error_ == 0;) {
+    stopped_ = stopped_ || cancelled(progress_);
+    for (size_t done = 0; done < used_ && !failed();) {
         const ssize_t n = ::write(fd_, buffer_.data() + done, used_ - done);
         if (n >= 0)
             done += static_cast<size_t>(n);
@@ -47,6 +48,7 @@ Status OutFile::finish() {
     flush();
     if (fd_ >= 0 && close(fd_) != 0 && error_ == 0) error_ = errno;
     fd_ = -1;
+    if (stopped_) return cancelledError();
     if (error_ != 0) return writeError(target_, error_);
     return Done{};
 }

@@ -1,5 +1,5 @@
 // A file written front to back through one large buffer.
-// Enters: bytes, text and numbers. Leaves: the file, or the first error. Assumes a little-endian machine, as every
+// Enters: bytes, text and numbers. Leaves: the file, or the first error; a cancelled progress is one. Assumes a little-endian machine, as every
 // format here is little-endian.
 #pragma once
 
@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "modeler/core/progress.h"
 #include "modeler/core/result.h"
 #include "modeler/core/vec.h"
 
@@ -20,8 +21,8 @@ static_assert(std::endian::native == std::endian::little);
 /// Keeps the first error and ignores all later writes, so that a writer asks once, at `finish`.
 class OutFile {
 public:
-    /// Truncates `path`; `target` is the name that error messages use.
-    OutFile(const std::filesystem::path& path, std::filesystem::path target);
+    /// Truncates `path`; `target` is the name that error messages use. `progress` is asked at every flush whether to go on.
+    OutFile(const std::filesystem::path& path, std::filesystem::path target, const Progress* progress);
     ~OutFile();
     OutFile(const OutFile&) = delete;
     OutFile& operator=(const OutFile&) = delete;
@@ -50,7 +51,9 @@ public:
         text(separator);
         number(v.z);
     }
-    /// Writes what is left and closes. Call it last, once.
+    /// True once nothing more is written, so that a long loop may end early.
+    bool failed() const { return error_ != 0 || stopped_; }
+    /// Writes what is left and closes. Call it last, once. Error::Cancelled where the progress was.
     Status finish();
 
 private:
@@ -58,7 +61,9 @@ private:
 
     std::filesystem::path target_;
     std::vector<char> buffer_;
+    const Progress* progress_;
     size_t used_ = 0;
+    bool stopped_ = false;  ///< cancelled
     int fd_ = -1;
     int error_ = 0;  ///< errno of the first failure
 };

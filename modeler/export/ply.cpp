@@ -46,26 +46,26 @@ Status writePly(const ExportInput& input, const Path& temporary, const Path& tar
     std::vector<Rgb8> colors;
     for (const Material& m : input.provenance->materials) colors.push_back(srgb(m.color));
 
-    OutFile out(temporary, target);
+    OutFile out(temporary, target, input.progress);
     writeHeader(out, input);
     if (input.progress) input.progress->begin("write", 2 * mesh.chunks.size());
     for (const mesh::Chunk& chunk : mesh.chunks) {
-        for (size_t i = 0; i < chunk.positions.size(); ++i) {
+        for (size_t i = 0; i < chunk.positions.size() && !out.failed(); ++i) {
             const Vec3f normal = unitNormal(chunk.normals[i]);
             out.raw(place.position(chunk.positions[i]));
             out.raw(place.direction(normal));
             out.raw(boxProjection(chunk.positions[i], facing(normal)));
             out.raw(colors[materials[chunk.firstVertex + i]]);
         }
-        if (!advance(input.progress)) return cancelledError();
+        tick(input.progress);
     }
     for (const mesh::Chunk& chunk : mesh.chunks) {
-        for (size_t i = 0; i < chunk.triangles.size(); ++i) {
+        for (size_t i = 0; i < chunk.triangles.size() && !out.failed(); ++i) {
             out.raw(uint8_t{3});
             out.raw(chunk.triangles[i]);
             out.raw(chunk.origins[i]);
         }
-        if (!advance(input.progress)) return cancelledError();
+        tick(input.progress);
     }
     return out.finish();
 }

@@ -17,11 +17,12 @@ bool forEachTriangle(const ExportInput& input, const Placement& place, Visit vis
     Vertices vertices(*input.mesh);
     for (const mesh::Chunk& chunk : input.mesh->chunks) {
         for (const mesh::Triangle t : chunk.triangles) {
+            if (cancelled(input.progress)) return false;
             const Vec3f a = place.position(vertices.position(t.x)), b = place.position(vertices.position(t.y)),
                         c = place.position(vertices.position(t.z));
             if (a != b && b != c && c != a) visit(a, b, c);
         }
-        if (!advance(input.progress)) return false;
+        tick(input.progress);
     }
     return true;
 }
@@ -34,7 +35,7 @@ Status writeStl(const ExportInput& input, const Path& temporary, const Path& tar
     uint32_t count = 0;
     if (!forEachTriangle(input, place, [&](Vec3f, Vec3f, Vec3f) { ++count; })) return cancelledError();
 
-    OutFile out(temporary, target);
+    OutFile out(temporary, target, input.progress);
     char header[80] = {};  // must not begin with "solid"
     const std::string title = "sgm binary STL: " + oneLine(input.name);
     std::memcpy(header, title.data(), std::min(title.size(), sizeof header - 1));

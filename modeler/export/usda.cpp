@@ -112,7 +112,7 @@ private:
         out_.text("        ");
         out_.text(declaration);
         out_.text(" = [");
-        for (size_t i = 0; i < count; ++i) {
+        for (size_t i = 0; i < count && !out_.failed(); ++i) {
             if (i > 0) out_.text(", ");
             element(i);
         }
@@ -176,7 +176,7 @@ Status writeUsda(const ExportInput& input, const Path& temporary, const Path& ta
     const std::string root = identifierOf(input.name);
     if (input.progress) input.progress->begin("write", 4);
 
-    OutFile out(temporary, target);
+    OutFile out(temporary, target, input.progress);
     writeLayer(out, input, root);
     out.text(
         fmt::format("def Xform \"{}\" (\n    kind = \"component\"\n)\n{{\n    def Mesh \"Surface\"\n    {{\n"
@@ -184,17 +184,17 @@ Status writeUsda(const ExportInput& input, const Path& temporary, const Path& ta
                     root));
     MeshPrim prim(out, input, patched);
     prim.topology();
-    if (!advance(input.progress)) return cancelledError();
+    tick(input.progress);
     prim.vertices();
-    if (!advance(input.progress)) return cancelledError();
+    tick(input.progress);
     prim.colors(subsets);
     if (textured) prim.textureCoordinates();
-    if (!advance(input.progress)) return cancelledError();
+    tick(input.progress);
     prim.subsets(subsets, names, root);
     out.text("    }\n\n");
     writeMaterials(out, *input.provenance, subsets, names, root);
     out.text("}\n");
-    if (!advance(input.progress)) return cancelledError();
+    tick(input.progress);
     return out.finish();
 }
 

@@ -2,21 +2,19 @@
 
 #include <algorithm>
 #include <span>
-#include <tuple>
 
 #include "modeler/core/parallel.h"
 #include "modeler/eval/evaluate.h"
+#include "modeler/mesh/region.h"
 
 namespace sgm::volume {
 namespace {
 
-constexpr size_t batchBlocks =
-    16;  ///< blocks whose ranges are taken in one call: enough for SIMD, few enough to share out
+/// Blocks whose ranges are taken in one call: enough for SIMD, few enough to share out.
+constexpr size_t batchBlocks = 16;
 constexpr int blockLeaves = mesh::blockCells / leafVoxels;  ///< along an edge
 constexpr size_t leavesInBlock = blockLeaves * blockLeaves * blockLeaves;
 static_assert(leavesInBlock <= 64, "one call of evaluateRanges takes 64 boxes");
-
-bool zyxLess(const Vec3i& a, const Vec3i& b) { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); }
 
 /// Blocks with surface and all that touch them, in order of (z, y, x).
 std::vector<Vec3i> withNeighbours(const std::vector<mesh::Block>& blocks) {
@@ -26,7 +24,7 @@ std::vector<Vec3i> withNeighbours(const std::vector<mesh::Block>& blocks) {
         for (int z = -1; z <= 1; ++z)
             for (int y = -1; y <= 1; ++y)
                 for (int x = -1; x <= 1; ++x) all.push_back(block.index + Vec3i{x, y, z});
-    std::sort(all.begin(), all.end(), zyxLess);
+    std::sort(all.begin(), all.end(), mesh::zyxLess);
     all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
 }
@@ -34,18 +32,18 @@ std::vector<Vec3i> withNeighbours(const std::vector<mesh::Block>& blocks) {
 /// The samples of one worker's blocks.
 class BandSampler {
 public:
-    BandSampler(const eval::Tape& whole, const mesh::Grid& grid, float band_m)
-        : whole_(whole), grid_(grid), band_m_(band_m) {}
+    BandSampler(const eval::Tape& whole, const mesh::Grid& grid, float band_m, const Progress* progress)
+        : whole_(whole), grid_(grid), band_m_(band_m), progress_(progress) {}
 
     /// The blocks' own tapes hold inside their boxes only; these reach a voxel beyond, so each block's tape is cut
-    /// anew.
+    /// anew. What is left out once the watcher cancels is nobody's loss.
     std::vector<BandLeaf> sample(std::span<const Vec3i> blocks) {
         std::vector<Box3f> boxes;
         for (const Vec3i& b : blocks) boxes.push_back(voxelBox(b * mesh::blockCells, mesh::blockCells));
         eval::Range ranges[batchBlocks];
         eval::evaluateRanges(whole_, {boxes.data(), boxes.size()}, ranges, workspace_);
         std::vector<std::pair<Vec3i, eval::Tape>> kept;
-        for (size_t i = 0; i < blocks.size(); ++i)
+        for (size_t i = 0; i < blocks.size() && !cancelled(progress_); ++i)
             if (meetsBand(ranges[i])) kept.emplace_back(blocks[i], eval::shorten(whole_, i, workspace_));
         std::vector<BandLeaf> leaves;
         for (const auto& [block, tape] : kept) sampleBlock(block * mesh::blockCells, tape, leaves);
@@ -72,7 +70,7 @@ private:
                 }
         eval::Range ranges[leavesInBlock];
         eval::evaluateRanges(tape, {boxes, n}, ranges, workspace_);
-        for (size_t i = 0; i < n; ++i)
+        for (size_t i = 0; i < n && !cancelled(progress_); ++i)
             if (meetsBand(ranges[i])) leaves.push_back(sampleLeaf(corners[i], eval::shorten(tape, i, workspace_)));
     }
 
@@ -96,6 +94,7 @@ private:
     const eval::Tape& whole_;
     const mesh::Grid& grid_;
     float band_m_;
+    const Progress* progress_;
     eval::Workspace workspace_;
     std::array<float, 512> x_, y_, z_;
 };
@@ -109,15 +108,15 @@ Result<std::vector<std::vector<BandLeaf>>> sampleBand(const std::vector<mesh::Bl
     const size_t batches = (all.size() + batchBlocks - 1) / batchBlocks;
     std::vector<std::vector<BandLeaf>> leaves(batches);
     std::vector<BandSampler> samplers;
-    for (int i = 0; i < threadCount(threads); ++i) samplers.emplace_back(whole, grid, band_m);
+    for (int i = 0; i < threadCount(threads); ++i) samplers.emplace_back(whole, grid, band_m, progress);
     if (progress) progress->begin("sample volume", batches);
     parallelFor(batches, threads, progress, [&](size_t batch, int worker) {
         const size_t first = batch * batchBlocks;
         const std::span<const Vec3i> part(all.data() + first, std::min(batchBlocks, all.size() - first));
         leaves[batch] = samplers[static_cast<size_t>(worker)].sample(part);
-        if (progress) progress->tick();
+        tick(progress);
     });
-    if (cancelled(progress)) return Error{Error::Kind::Cancelled, "sampling the volume was cancelled"};
+    if (cancelled(progress)) return cancelledError();
     return leaves;
 }
 

@@ -4,10 +4,11 @@
 #include <openvdb/io/File.h>
 
 #include <cerrno>
-#include <fstream>
+#include <istream>
 
-#include "modeler/core/random.h"
 #include "modeler/core/atomic_file.h"
+#include "modeler/core/polled_file.h"
+#include "modeler/core/random.h"
 #include "modeler/volume/volume_impl.h"
 
 namespace sgm::volume {
@@ -25,11 +26,11 @@ constexpr std::streamoff tagOffset = 8 + 3 * 4 + 1;
 constexpr std::streamoff tagLength = 36;
 
 /// Replaces the random tag in the header, which identifies the content to readers, by one made from the content.
-void setTag(std::iostream& file) {
+void setTag(std::iostream& file, const Progress* progress) {
     std::vector<char> buffer(size_t{1} << 20);
     uint64_t a = 1, b = 2;
     file.seekg(tagOffset + tagLength);
-    while (file) {
+    while (file && !cancelled(progress)) {
         file.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
         if (file.gcount() == 0) break;
         const uint64_t part = hashText({buffer.data(), static_cast<size_t>(file.gcount())});
@@ -46,7 +47,7 @@ void setTag(std::iostream& file) {
 }  // namespace
 
 Status fillVdb(const Volume& volume, const std::filesystem::path& file, const std::filesystem::path& target,
-               const std::string& name, const VdbOptions& options) {
+               const std::string& name, const VdbOptions& options, const Progress* progress) {
     openvdb::initialize();
     const openvdb::GridBase::Ptr grid = volume.impl().grid->copyGrid();  // shares the voxels
     grid->setName(name);
@@ -56,11 +57,18 @@ Status fillVdb(const Volume& volume, const std::filesystem::path& file, const st
     for (const auto& [key, value] : options.metadata) meta.insertMeta(key, openvdb::StringMetadata(value));
     errno = 0;
     try {
-        std::fstream out(file, std::ios::in | std::ios::out | std::ios::binary | std::ios::trunc);
+        PolledFile buffer(file, progress);
+        std::iostream out(&buffer);
+        out.exceptions(std::ios::badbit | std::ios::failbit);  // OpenVDB itself doesn't ask how a write went
         StreamArchive().writeTo(out, {grid}, meta);
-        if (out) setTag(out);
-        out.close();
+        out.exceptions(std::ios::goodbit);
+        setTag(out, progress);
+        if (!buffer.close()) out.setstate(std::ios::badbit);
+        if (cancelled(progress)) return cancelledError();
         if (!out) return writeError(target, errno != 0 ? errno : EIO);
+    } catch (const std::ios_base::failure&) {
+        if (cancelled(progress)) return cancelledError();
+        return writeError(target, errno != 0 ? errno : EIO);
     } catch (const std::exception& e) {
         return writeError(target, e.what());
     }

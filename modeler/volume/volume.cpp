@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "modeler/core/parallel.h"
+#include "modeler/mesh/region.h"
 #include "modeler/volume/band.h"
 #include "modeler/volume/volume_impl.h"
 
@@ -62,6 +63,7 @@ Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& 
     if (halfWidth < 1 || halfWidth > mesh::blockCells)
         return Error{Error::Kind::Usage,
                      fmt::format("a band of {} voxels: it takes 1 to {}", halfWidth, mesh::blockCells)};
+    if (Status status = mesh::checkGrid(grid); !status.ok()) return status.error();
     openvdb::initialize();  // once for all, whichever thread comes first
     const float band_m = static_cast<float>(halfWidth) * grid.cell_m;
     auto band = sampleBand(blocks, whole, grid, band_m, threads, progress);
@@ -73,6 +75,7 @@ Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& 
     transform->postTranslate(openvdb::Vec3d(grid.origin.x, grid.origin.y, grid.origin.z));
     result->setTransform(transform);
     for (auto& batch : *band) {
+        if (cancelled(progress)) return cancelledError();
         for (const BandLeaf& leaf : batch) result->tree().addLeaf(toLeaf(leaf, band_m).release());
         std::vector<BandLeaf>().swap(batch);  // the samples are stored now
     }

@@ -35,7 +35,7 @@ private:
 
 /// Samples `whole` at the grid's corners into a level set of `halfWidth` voxels (1 … 32) to each side: in the blocks,
 /// which hold the surface, and in all that touch them. Beyond the band voxels are inactive and inside and outside tiled
-/// by sign. Equal bytes at any thread count.
+/// by sign. Equal bytes at any thread count. Error::Usage for another width, the errors of mesh::subdivide for the grid.
 Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& whole, const mesh::Grid& grid,
                       int halfWidth, int threads, Progress* progress);
 
@@ -52,8 +52,9 @@ struct VdbOptions {
 Status writeVdb(const Volume& volume, const std::filesystem::path& path, const std::string& name,
                 const VdbOptions& options = {});
 /// The same into an existing `file` as it is; errors speak of `target`. For callers that do their own renaming.
+/// Error::Cancelled when `progress` says so.
 Status fillVdb(const Volume& volume, const std::filesystem::path& file, const std::filesystem::path& target,
-               const std::string& name, const VdbOptions& options);
+               const std::string& name, const VdbOptions& options, const Progress* progress = nullptr);
 /// Reads the first float grid.
 Result<Volume> readVdb(const std::filesystem::path& path);
 

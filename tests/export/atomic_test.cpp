@@ -6,7 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "modeler/export/exporter.h"
 #include "modeler/core/atomic_file.h"
@@ -71,6 +73,43 @@ TEST_P(Atomic, AKillInTheMiddleOfWritingLeavesTheOldFile) {
     EXPECT_EQ(contentOf(target), "the old file");
 }
 
+TEST_P(Atomic, ACancelledWriteLeavesTheOldFile) {
+    Progress progress;
+    progress.cancel();
+    input.progress = &progress;
+    const Status written = write(input, target);
+    ASSERT_FALSE(written.ok());
+    EXPECT_EQ(written.error().kind, Error::Kind::Cancelled);
+    EXPECT_EQ(contentOf(target), "the old file");
+    EXPECT_EQ(folder.fileCount(), 1u) << "no temporary, no material file";
+}
+
+TEST_P(Atomic, AWriteThatIsCancelledOnItsWayStopsSoon) {
+    if (GetParam() == ".gltf") GTEST_SKIP() << "its JSON is made in one go by a library";
+    mesh = icosphere({}, 1, 5, 1);  // in one chunk, as edited meshes are
+    mesh::Chunk& chunk = mesh.chunks[0];
+    const size_t once = chunk.triangles.size();
+    for (size_t i = once; i < 200 * once; ++i) {  // four million triangles
+        chunk.triangles.push_back(chunk.triangles[i - once]);
+        chunk.origins.push_back(0);
+    }
+    Progress progress;
+    input.progress = &progress;
+    std::chrono::steady_clock::time_point asked;
+    std::thread watcher([&] {
+        while (*progress.stage() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        asked = std::chrono::steady_clock::now();
+        progress.cancel();
+    });
+    const Status written = write(input, target);
+    const std::chrono::duration<double> late = std::chrono::steady_clock::now() - asked;
+    watcher.join();
+    ASSERT_FALSE(written.ok());
+    EXPECT_EQ(written.error().kind, Error::Kind::Cancelled);
+    EXPECT_LT(late.count(), 0.15);  // 50 ms, and the patience a busy test machine needs
+    EXPECT_EQ(contentOf(target), "the old file");
+}
+
 INSTANTIATE_TEST_SUITE_P(Formats, Atomic, testing::Values(".glb", ".gltf", ".obj", ".ply", ".stl", ".off", ".usda"),
                          [](const auto& info) { return info.param.substr(1); });
 
@@ -108,6 +147,12 @@ TEST(ReplaceFile, ReplacesAndKeepsPermissionsAndLinks) {
     stat(target.c_str(), &info);
     EXPECT_EQ(info.st_mode & 07777, 0640u);
     EXPECT_EQ(folder.fileCount(), 2u);
+
+    std::filesystem::create_directory(folder / "deep");
+    std::filesystem::create_symlink("deep/later", folder / "ahead");
+    ASSERT_TRUE(replaceFile(folder / "ahead", fill).ok()) << "a link to a file that isn't there yet";
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "ahead"));
+    EXPECT_EQ(contentOf(folder / "deep/later"), "new");
 }
 
 TEST(ReplaceFile, TellsWhyItCannot) {

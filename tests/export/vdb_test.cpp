@@ -48,6 +48,19 @@ TEST_F(VdbExport, WritesTheVolumeUnderItsGridName) {
     EXPECT_LT(std::filesystem::file_size(folder / "b.vdb"), bytes.size());
 }
 
+TEST_F(VdbExport, ACancelledWriteLeavesTheOldFile) {
+    const auto target = folder / "a.vdb";
+    std::ofstream(target) << "the old file";
+    Progress progress;
+    progress.cancel();
+    input.progress = &progress;
+    const Status written = write(input, target);
+    ASSERT_FALSE(written.ok());
+    EXPECT_EQ(written.error().kind, Error::Kind::Cancelled);
+    EXPECT_EQ(contentOf(target), "the old file");
+    EXPECT_EQ(folder.fileCount(), 1u);
+}
+
 /// Run alone in a process of its own by the next test: OpenVDB starts threads, after which a plain fork can't write.
 TEST_F(VdbExport, DISABLED_WritesToTheTargetItIsGiven) {
     const Status written = write(input, std::getenv("SGM_TEST_TARGET"));

@@ -1,8 +1,10 @@
 // Level sets sampled from fields with known distances.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <fstream>
+#include <thread>
 
 #include "modeler/core/conventions.h"
 #include "modeler/eval/evaluate.h"
@@ -155,6 +157,40 @@ TEST(VdbFile, ReadsBackWhatWasWritten) {
         for (int j = 0; j < grid.cells.y; j += 3)
             for (int k = 0; k < grid.cells.z; k += 5)
                 ASSERT_EQ(r->at(grid.corner(i, j, k)), v.at(grid.corner(i, j, k)));
+}
+
+TEST(Sample, RefusesAGridThatIsNone) {
+    const eval::Tape tape = sphereTape(1);
+    mesh::Grid grid = sphereGrid(1, 0.1f);
+    grid.cell_m = 0;
+    const auto volume = sample({}, tape, grid, 3, 1, nullptr);
+    ASSERT_FALSE(volume.ok());
+    EXPECT_EQ(volume.error().kind, Error::Kind::Input);
+}
+
+TEST(Sample, StopsWithinABatchOfBlocks) {
+    // One batch, on one thread, of a field that takes far longer than the wait for the answer.
+    field::Graph graph;
+    field::Num f = length(graph.position()) - 1.0f;
+    for (int i = 1; i < 4000; ++i) f = f + sin(graph.x() * static_cast<float>(i)) * 1e-9f;
+    const eval::Tape tape = eval::compile(graph, {f, {}, 1, 1}, graph.constants());
+    const mesh::Grid grid = sphereGrid(1, 0.05f);
+    mesh::Counts counts;
+    const auto blocks = mesh::subdivide(tape, grid, 2, nullptr, counts);
+    ASSERT_TRUE(blocks.ok());
+    Progress progress;
+    std::chrono::steady_clock::time_point asked;
+    std::thread watcher([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(30));
+        asked = std::chrono::steady_clock::now();
+        progress.cancel();
+    });
+    const auto volume = sample(*blocks, tape, grid, 3, 1, &progress);
+    watcher.join();
+    const std::chrono::duration<double> late = std::chrono::steady_clock::now() - asked;
+    ASSERT_FALSE(volume.ok());
+    EXPECT_EQ(volume.error().kind, Error::Kind::Cancelled);
+    EXPECT_LT(late.count(), 0.15);  // 50 ms, and the patience a busy test machine needs
 }
 
 TEST(VdbFile, TellsWhatItHolds) {
