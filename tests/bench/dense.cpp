@@ -3,7 +3,6 @@
 #include <cstring>
 
 #include "modeler/core/parallel.h"
-#include "modeler/eval/evaluate.h"
 #include "modeler/mesh/marching_cubes.h"
 #include "modeler/mesh/mesh.h"
 #include "tests/bench/stopwatch.h"
@@ -39,9 +38,10 @@ struct Plane {
 /// A slab of layers on its way to triangles.
 class Slab {
 public:
-    Slab(const eval::Tape& tape, const mesh::Grid& grid)
-        : tape_(tape),
+    Slab(const Sampler& sampler, const mesh::Grid& grid, int worker)
+        : sampler_(sampler),
           grid_(grid),
+          worker_(worker),
           n_(grid.cells + Vec3i{1, 1, 1}),
           lower_(corners()),
           upper_(corners()),
@@ -49,11 +49,11 @@ public:
           row_(static_cast<size_t>(n_.x) + 8) {}
 
     /// Layers [first, last) of cells.
-    void run(int first, int last, eval::Workspace& workspace) {
-        evaluate(first, workspace);
+    void run(int first, int last) {
+        evaluate(first);
         for (int k = first; k < last; ++k) {
             std::swap(lower_, upper_);
-            evaluate(k + 1, workspace);
+            evaluate(k + 1);
             const Stopwatch joining;
             if (k == first) addPlaneVertices(lower_, k);
             addPlaneVertices(upper_, k + 1);
@@ -74,7 +74,7 @@ private:
     }
 
     /// Samples plane `k` into the upper one.
-    void evaluate(int k, eval::Workspace& workspace) {
+    void evaluate(int k) {
         const Stopwatch sampling;
         const int rows = std::max(1, pointsAtOnce / n_.x);
         const size_t room = at(0, rows);
@@ -84,8 +84,7 @@ private:
         for (int j0 = 0; j0 < n_.y; j0 += rows) {
             const int count = std::min(rows, n_.y - j0);
             for (int j = 0; j < count; ++j) std::fill_n(y_.data() + at(0, j), n_.x, grid_.corner(0, j0 + j, 0).y);
-            eval::evaluate(tape_, {x_.data(), y_.data(), z_.data(), at(0, count)}, upper_.values.data() + at(0, j0),
-                           workspace);
+            sampler_({x_.data(), y_.data(), z_.data(), at(0, count)}, upper_.values.data() + at(0, j0), worker_);
         }
         for (size_t c = 0; c < upper_.values.size(); ++c) upper_.inside[c] = upper_.values[c] < 0 ? 1 : 0;
         evaluateSeconds += sampling.seconds();
@@ -152,8 +151,9 @@ private:
         });
     }
 
-    const eval::Tape& tape_;
+    const Sampler& sampler_;
     const mesh::Grid& grid_;
+    int worker_;
     Vec3i n_;  ///< corners
     Plane lower_, upper_;
     std::vector<uint32_t> zEdge_;
@@ -163,12 +163,11 @@ private:
 
 }  // namespace
 
-DenseResult sweepDense(const eval::Tape& tape, const mesh::Grid& grid, int threads, int maxSlabs) {
+DenseResult sweepDense(const Sampler& sampler, const mesh::Grid& grid, int threads, int maxSlabs) {
     DenseResult result;
     result.slabs = (grid.cells.z + slabLayers - 1) / slabLayers;
     result.slabsMeasured = maxSlabs > 0 ? std::min(maxSlabs, result.slabs) : result.slabs;
     const int workers = threadCount(threads);
-    std::vector<eval::Workspace> workspaces(static_cast<size_t>(workers));
     std::vector<DenseResult> parts(static_cast<size_t>(result.slabsMeasured));
     std::vector<std::vector<Vec3f>> positions(parts.size());
     std::vector<std::vector<mesh::Triangle>> triangles(parts.size());
@@ -176,9 +175,8 @@ DenseResult sweepDense(const eval::Tape& tape, const mesh::Grid& grid, int threa
     const Stopwatch whole;
     parallelFor(parts.size(), threads, nullptr, [&](size_t s, int worker) {
         const int slab = static_cast<int>((2 * s + 1) * static_cast<size_t>(result.slabs) / (2 * parts.size()));
-        Slab work(tape, grid);
-        work.run(slab * slabLayers, std::min((slab + 1) * slabLayers, grid.cells.z),
-                 workspaces[static_cast<size_t>(worker)]);
+        Slab work(sampler, grid, worker);
+        work.run(slab * slabLayers, std::min((slab + 1) * slabLayers, grid.cells.z));
         parts[s].evaluateSeconds = work.evaluateSeconds;
         parts[s].polygonizeSeconds = work.polygonizeSeconds;
         positions[s] = std::move(work.positions);

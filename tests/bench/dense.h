@@ -1,14 +1,19 @@
 // The reference: every sample of the grid, and marching cubes over them.
-// Enters: a tape and a grid. Leaves: what it took. Assumes nothing about the field: nothing is skipped.
-// The tape is run whole, in blocks that stay in cache and the widest SIMD of the machine. Planes of samples are joined
-// as soon as there are two, so that no sample goes through memory; vertices are linear interpolations, shared within a
-// slab of 32 layers of cells. It makes no normals, no origins and no closed border: all of that flatters it.
+// Enters: a sampler and a grid. Leaves: what it took. Assumes nothing about the field: nothing is skipped.
+// Planes of samples are joined as soon as there are two, so that no sample goes through memory; vertices are linear
+// interpolations, shared within a slab of 32 layers of cells. It makes no normals, no origins and no closed border: all
+// of that flatters it.
 #pragma once
 
-#include "modeler/eval/tape.h"
+#include <functional>
+
+#include "modeler/eval/evaluate.h"
 #include "modeler/mesh/subdivide.h"
 
 namespace sgm::bench {
+
+/// Fills in values at points, on a worker of its number.
+using Sampler = std::function<void(eval::Points points, float* out, int worker)>;
 
 struct DenseResult {
     double seconds = 0;            ///< wall clock of the whole grid
@@ -20,6 +25,6 @@ struct DenseResult {
 };
 
 /// Sweeps the grid on `threads` threads. `maxSlabs` > 0 measures only so many slabs, spread evenly, and scales up.
-DenseResult sweepDense(const eval::Tape& tape, const mesh::Grid& grid, int threads, int maxSlabs);
+DenseResult sweepDense(const Sampler& sampler, const mesh::Grid& grid, int threads, int maxSlabs);
 
 }  // namespace sgm::bench

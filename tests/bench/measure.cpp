@@ -29,15 +29,23 @@ Status runOurs(const Scene& scene, const mesh::Grid& grid, int threads, Measurem
 }
 
 /// The best of the sweeps that fit into `quickSeconds`, at least one.
-DenseResult bestDense(const eval::Tape& tape, const mesh::Grid& grid, const MeasureOptions& options, int maxSlabs) {
-    DenseResult best = sweepDense(tape, grid, options.threads, maxSlabs);
+DenseResult bestDense(const Sampler& sampler, const mesh::Grid& grid, const MeasureOptions& options, int maxSlabs) {
+    DenseResult best = sweepDense(sampler, grid, options.threads, maxSlabs);
     double spent = best.seconds;
     for (int r = 1; r < options.repeats && spent < quickSeconds; ++r) {
-        const DenseResult again = sweepDense(tape, grid, options.threads, maxSlabs);
+        const DenseResult again = sweepDense(sampler, grid, options.threads, maxSlabs);
         spent += again.seconds;
         if (again.seconds < best.seconds) best = again;
     }
     return best;
+}
+
+/// The hand-written reference where the scene has one, else its tape.
+Sampler samplerOf(const Scene& scene, std::vector<eval::Workspace>& workspaces) {
+    if (scene.reference) return [&](eval::Points points, float* out, int) { evaluate(*scene.reference, points, out); };
+    return [&](eval::Points points, float* out, int worker) {
+        eval::evaluate(scene.tape, points, out, workspaces[static_cast<size_t>(worker)]);
+    };
 }
 
 }  // namespace
@@ -57,10 +65,10 @@ Result<Measurement> measure(const Scene& scene, int resolution, const MeasureOpt
         if (Status status = runOurs(scene, grid, options.threads, m); !status) return status.error();
         if (r == 0) m.peakBytes = peak.bytes();
     }
-    m.dense = bestDense(scene.tape, grid, options,
-                        options.denseSlabs > 0 ? options.denseSlabs
-                        : resolution > 512     ? 4
-                                               : 0);
+    const int slabs = options.denseSlabs > 0 ? options.denseSlabs : resolution > 512 ? 4 : 0;
+    std::vector<eval::Workspace> workspaces(static_cast<size_t>(options.threads));
+    m.dense = bestDense(samplerOf(scene, workspaces), grid, options, slabs);
+    m.handWritten = scene.reference.has_value();
     if (options.peers) {
         mesh::Counts ignored;
         const auto blocks = mesh::subdivide(scene.tape, grid, options.threads, nullptr, ignored);

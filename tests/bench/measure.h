@@ -10,7 +10,7 @@
 namespace sgm::bench {
 
 struct MeasureOptions {
-    int threads = 2;
+    int threads = 2;     ///< at least 1
     int repeats = 3;     ///< of ours, and of the dense sweep as long as it is quick
     int denseSlabs = 0;  ///< measure only so many slabs of the dense sweep and scale up; 0: all up to 512, 4 beyond
     bool peers = true;
@@ -26,6 +26,7 @@ struct Measurement {
     uint64_t vertices = 0, triangles = 0;
     uint64_t peakBytes = 0;  ///< of the first run, above the start
     DenseResult dense;
+    bool handWritten = false;  ///< the dense sweep ran the hand-written reference, not the tape
     OpenVdbResult openvdb;
 
     double ratio() const { return dense.seconds / totalSeconds; }

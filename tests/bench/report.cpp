@@ -21,13 +21,13 @@ ordered_json stagesOf(const Measurement& m) {
             {"sample_seconds", m.counts.sampleSeconds}, {"polygonize_seconds", m.counts.polygonizeSeconds}};
 }
 
-ordered_json denseOf(const DenseResult& d) {
+ordered_json denseOf(const DenseResult& d, bool handWritten) {
     return {{"evaluate_seconds", d.evaluateSeconds},
             {"polygonize_seconds", d.polygonizeSeconds},
             {"triangles", d.triangles},
             {"slabs", d.slabs},
             {"slabs_measured", d.slabsMeasured},
-            {"evaluator", "the same tape, whole"}};
+            {"evaluator", handWritten ? "hand-written" : "tape"}};
 }
 
 ordered_json sceneOf(const Measurement& m, const Limits& limits) {
@@ -47,7 +47,7 @@ ordered_json sceneOf(const Measurement& m, const Limits& limits) {
                           {"refinement_evaluations", m.counts.refinementEvaluations},
                           {"peak_bytes", m.peakBytes},
                           {"polygonize_over_write", polygonizeOverWrite(m, limits)},
-                          {"dense", denseOf(m.dense)},
+                          {"dense", denseOf(m.dense, m.handWritten)},
                           {"peers", ordered_json::object()}};
     if (m.openvdb.triangles > 0)
         scene["peers"]["openvdb"] = {{"sample_seconds", m.openvdb.sampleSeconds},
@@ -66,17 +66,20 @@ std::string limitsLine(const Limits& limits, int threads) {
 
 std::string tableHeader() {
     return fmt::format(
-        "{:12} {:>5} {:>6} | {:>8} {:>8} {:>8} {:>8} | {:>8} {:>7} | {:>8} {:>8} {:>7} | {:>9} {:>6} {:>6} {:>6} {:>5}",
-        "scene", "res", "tape", "total", "descend", "sample", "join", "dense", "ratio", "vdb smp", "vdb mesh", "ratio",
-        "triangles", "ns/tri", "ev/cel", "B/tri", "j/wr");
+        "{:12} {:>5} {:>6} | {:>8} {:>8} {:>8} {:>8} | {:>8} {:4} {:>7} | {:>8} {:>8} {:>7} | {:>9} {:>6} {:>6} {:>6} "
+        "{:>5}",
+        "scene", "res", "tape", "total", "descend", "sample", "join", "dense", "of", "ratio", "vdb smp", "vdb mesh",
+        "ratio", "triangles", "ns/tri", "ev/cel", "B/tri", "j/wr");
 }
 
 std::string tableRow(const Measurement& m, const Limits& limits) {
     return fmt::format(
-        "{:12} {:>5} {:>6} | {:>8.4f} {:>8.4f} {:>8.4f} {:>8.4f} | {:>8.3f} {:>6.1f}x | {:>8.4f} {:>8.4f} {:>6.1f}x | "
+        "{:12} {:>5} {:>6} | {:>8.4f} {:>8.4f} {:>8.4f} {:>8.4f} | {:>8.3f} {:4} {:>6.1f}x | {:>8.4f} {:>8.4f} "
+        "{:>6.1f}x | "
         "{:>9} {:>6.1f} {:>6.2f} {:>6.0f} {:>5.1f}",
         m.scene, m.resolution, m.tapeLength, m.totalSeconds, m.counts.subdivideSeconds, m.counts.sampleSeconds,
-        m.counts.polygonizeSeconds, m.dense.seconds, m.ratio(), m.openvdb.sampleSeconds, m.openvdb.meshSeconds,
+        m.counts.polygonizeSeconds, m.dense.seconds, m.handWritten ? "hand" : "tape", m.ratio(),
+        m.openvdb.sampleSeconds, m.openvdb.meshSeconds,
         (m.openvdb.sampleSeconds + m.openvdb.meshSeconds) / m.totalSeconds, m.triangles, m.nsPerTriangle(),
         m.evaluationsPerCell(),
         static_cast<double>(m.peakBytes) / static_cast<double>(std::max<uint64_t>(1, m.triangles)),

@@ -90,8 +90,11 @@ Result<Scene> loadScene(const SceneEntry& entry) {
     const double lowerSeconds = lowering.seconds();
     const Stopwatch compiling;
     eval::Tape tape = eval::compile((*model)->graph, (*model)->field, (*model)->graph.constants());
-    return Scene{std::string(entry.name), std::move(*model), std::move(tape),
-                 deriveSeconds,           lowerSeconds,      compiling.seconds()};
+    const double compileSeconds = compiling.seconds();
+    auto reference = referenceOf(derivation->tree);
+    if (reference && !agrees(*reference, tape, (*model)->field.bounds)) reference.reset();
+    return Scene{std::string(entry.name), std::move(*model), std::move(tape), std::move(reference),
+                 deriveSeconds,           lowerSeconds,      compileSeconds};
 }
 
 }  // namespace sgm::bench

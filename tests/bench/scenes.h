@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "grammar/lower/lower.h"
 #include "modeler/core/result.h"
 #include "modeler/eval/tape.h"
+#include "tests/bench/reference.h"
 
 namespace sgm::bench {
 
@@ -31,6 +33,7 @@ struct Scene {
     std::string name;
     std::unique_ptr<lower::Model> model;
     eval::Tape tape;
+    std::optional<Reference> reference;  ///< where it agrees with the tape
     double deriveSeconds = 0, lowerSeconds = 0, compileSeconds = 0;
 };
 
