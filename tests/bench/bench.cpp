@@ -35,7 +35,7 @@ void addOptions(CLI::App& app, Request& request) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     app.add_option("--dense-slabs", request.measure.denseSlabs,
-                   "Slabs of the dense sweep to measure, scaled up (0: all up to 512, 4 beyond)")
+                   "Slabs of the dense sweep to measure, scaled up (0: all where that takes up to 15 s)")
         ->check(CLI::Range(0, 1024));
     app.add_flag("--no-peers", request.noPeers, "Leave OpenVDB out");
     app.add_option("--json", request.json, "Write all figures to this file");

@@ -9,7 +9,8 @@
 namespace sgm::bench {
 namespace {
 
-constexpr double quickSeconds = 1;  ///< a sweep is repeated only while all of them together took less
+constexpr double quickSeconds = 1;  ///< sweeps are repeated only while all of them together took less
+constexpr double longSeconds = 15;  ///< longer ones are measured in part
 
 /// One run from tape to mesh; sets `out` where it is the fastest so far.
 Status runOurs(const Scene& scene, const mesh::Grid& grid, int threads, Measurement& out) {
@@ -28,12 +29,16 @@ Status runOurs(const Scene& scene, const mesh::Grid& grid, int threads, Measurem
     return Done{};
 }
 
-/// The best of the sweeps that fit into `quickSeconds`, at least one.
-DenseResult bestDense(const Sampler& sampler, const mesh::Grid& grid, const MeasureOptions& options, int maxSlabs) {
-    DenseResult best = sweepDense(sampler, grid, options.threads, maxSlabs);
+/// The sweep of the whole grid, or of `maxSlabs` slabs; where that would be long, of one slab a thread, scaled up.
+/// Quick ones are repeated, and the best counts.
+DenseResult bestDense(const Sampler& sampler, const mesh::Grid& grid, const MeasureOptions& options) {
+    DenseResult best =
+        sweepDense(sampler, grid, options.threads, options.denseSlabs > 0 ? options.denseSlabs : options.threads);
+    if (options.denseSlabs > 0 || best.seconds > longSeconds) return best;
+    best = sweepDense(sampler, grid, options.threads, 0);
     double spent = best.seconds;
     for (int r = 1; r < options.repeats && spent < quickSeconds; ++r) {
-        const DenseResult again = sweepDense(sampler, grid, options.threads, maxSlabs);
+        const DenseResult again = sweepDense(sampler, grid, options.threads, 0);
         spent += again.seconds;
         if (again.seconds < best.seconds) best = again;
     }
@@ -65,9 +70,8 @@ Result<Measurement> measure(const Scene& scene, int resolution, const MeasureOpt
         if (Status status = runOurs(scene, grid, options.threads, m); !status) return status.error();
         if (r == 0) m.peakBytes = peak.bytes();
     }
-    const int slabs = options.denseSlabs > 0 ? options.denseSlabs : resolution > 512 ? 4 : 0;
     std::vector<eval::Workspace> workspaces(static_cast<size_t>(options.threads));
-    m.dense = bestDense(samplerOf(scene, workspaces), grid, options, slabs);
+    m.dense = bestDense(samplerOf(scene, workspaces), grid, options);
     m.handWritten = scene.reference.has_value();
     if (options.peers) {
         mesh::Counts ignored;

@@ -12,7 +12,7 @@ namespace sgm::bench {
 struct MeasureOptions {
     int threads = 2;     ///< at least 1
     int repeats = 3;     ///< of ours, and of the dense sweep as long as it is quick
-    int denseSlabs = 0;  ///< measure only so many slabs of the dense sweep and scale up; 0: all up to 512, 4 beyond
+    int denseSlabs = 0;  ///< measure only so many slabs of the dense sweep and scale up; 0: all that take up to 15 s
     bool peers = true;
 };
 

@@ -15,6 +15,11 @@ double polygonizeOverWrite(const Measurement& m, const Limits& limits) {
     return floor > 0 ? m.counts.polygonizeSeconds / floor : 0;
 }
 
+/// What was swept; with a ~ where it was scaled up from a part.
+std::string denseLabel(const Measurement& m) {
+    return std::string(m.handWritten ? "hand" : "tape") + (m.dense.slabsMeasured < m.dense.slabs ? "~" : "");
+}
+
 ordered_json stagesOf(const Measurement& m) {
     return {{"derive_seconds", m.deriveSeconds},        {"lower_seconds", m.lowerSeconds},
             {"compile_seconds", m.compileSeconds},      {"subdivide_seconds", m.counts.subdivideSeconds},
@@ -66,7 +71,7 @@ std::string limitsLine(const Limits& limits, int threads) {
 
 std::string tableHeader() {
     return fmt::format(
-        "{:12} {:>5} {:>6} | {:>8} {:>8} {:>8} {:>8} | {:>8} {:4} {:>7} | {:>8} {:>8} {:>7} | {:>9} {:>6} {:>6} {:>6} "
+        "{:12} {:>5} {:>6} | {:>8} {:>8} {:>8} {:>8} | {:>8} {:5} {:>7} | {:>8} {:>8} {:>7} | {:>9} {:>6} {:>6} {:>6} "
         "{:>5}",
         "scene", "res", "tape", "total", "descend", "sample", "join", "dense", "of", "ratio", "vdb smp", "vdb mesh",
         "ratio", "triangles", "ns/tri", "ev/cel", "B/tri", "j/wr");
@@ -74,14 +79,13 @@ std::string tableHeader() {
 
 std::string tableRow(const Measurement& m, const Limits& limits) {
     return fmt::format(
-        "{:12} {:>5} {:>6} | {:>8.4f} {:>8.4f} {:>8.4f} {:>8.4f} | {:>8.3f} {:4} {:>6.1f}x | {:>8.4f} {:>8.4f} "
+        "{:12} {:>5} {:>6} | {:>8.4f} {:>8.4f} {:>8.4f} {:>8.4f} | {:>8.3f} {:5} {:>6.1f}x | {:>8.4f} {:>8.4f} "
         "{:>6.1f}x | "
         "{:>9} {:>6.1f} {:>6.2f} {:>6.0f} {:>5.1f}",
         m.scene, m.resolution, m.tapeLength, m.totalSeconds, m.counts.subdivideSeconds, m.counts.sampleSeconds,
-        m.counts.polygonizeSeconds, m.dense.seconds, m.handWritten ? "hand" : "tape", m.ratio(),
-        m.openvdb.sampleSeconds, m.openvdb.meshSeconds,
-        (m.openvdb.sampleSeconds + m.openvdb.meshSeconds) / m.totalSeconds, m.triangles, m.nsPerTriangle(),
-        m.evaluationsPerCell(),
+        m.counts.polygonizeSeconds, m.dense.seconds, denseLabel(m), m.ratio(), m.openvdb.sampleSeconds,
+        m.openvdb.meshSeconds, (m.openvdb.sampleSeconds + m.openvdb.meshSeconds) / m.totalSeconds, m.triangles,
+        m.nsPerTriangle(), m.evaluationsPerCell(),
         static_cast<double>(m.peakBytes) / static_cast<double>(std::max<uint64_t>(1, m.triangles)),
         polygonizeOverWrite(m, limits));
 }
