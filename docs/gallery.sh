@@ -4,11 +4,50 @@ cd "$(dirname "$0")/.."
 set -eu
 sgm=build/release/cli/sgm
 mkdir -p docs/pictures
-for name in grotto cumulus tower figure1 joints; do
-  for view in field mesh; do
-    "$sgm" render "examples/$name.sgm" --view "$view" --size 640x640 -q -o "docs/pictures/$name-$view.png"
+
+# draw NAME ARGUMENTS…: docs/pictures/NAME-mesh.png, the mesh at 256 cells, and NAME-field.png, the field itself.
+draw() {
+  local name=$1
+  shift
+  for view in mesh field; do
+    "$sgm" render "$@" --view "$view" --size 640x640 -q -o "docs/pictures/$name-$view.png"
   done
-  echo "docs/pictures/$name-{field,mesh}.png"
+  echo "docs/pictures/$name-{mesh,field}.png"
+}
+
+# inside NAME ARGUMENTS…: docs/pictures/NAME-inside.png, seen from within.
+inside() {
+  local name=$1
+  shift
+  "$sgm" render "$@" --camera inside --size 640x640 -q -o "docs/pictures/$name-inside.png"
+  echo "docs/pictures/$name-inside.png"
+}
+
+draw grotto  examples/grotto.sgm
+draw cumulus examples/cumulus.sgm --seed 8 --no-ground
+draw tower   examples/tower.sgm
+draw figure1 examples/figure1.sgm
+draw joints  examples/joints.sgm
+inside grotto examples/grotto.sgm --set cut=5m
+
+caves=examples/caves
+draw regular   $caves/regular.sgm   --style default --camera 15,28,27,0,-2,0
+draw irregular $caves/irregular.sgm --style default --seed 4 --camera 26,14,56,2,-2,0
+draw branching $caves/branching.sgm --style default --camera 24,50,44,0,-2,1
+draw halls     $caves/halls.sgm     --style default --camera 24,58,50,0,-2,1
+inside regular   $caves/regular.sgm   --style default --set open=none
+inside irregular $caves/irregular.sgm --style default --seed 4 --set open=none
+"$sgm" render $caves/branching.sgm --style default --set open=none --camera=-24,.6,-1,-12,-.4,-1 --size 640x640 -q -o docs/pictures/branching-inside.png
+inside halls     $caves/halls.sgm     --style default --set open=none
+
+clouds=examples/clouds
+draw plain     $clouds/plain.sgm     --style default --no-ground
+draw mediocris $clouds/mediocris.sgm --style default --no-ground --seed 6
+draw bank      $clouds/bank.sgm      --style default --no-ground
+draw congestus $clouds/congestus.sgm --style default --no-ground
+draw ring      $clouds/ring.sgm      --style default --no-ground
+draw ball      $clouds/ball.sgm      --style default --no-ground
+
+for name in spire palace hall pagoda apartment; do
+  draw $name examples/buildings/$name.sgm --style default
 done
-"$sgm" render examples/grotto.sgm --set cut=5m --camera inside --size 640x640 -q -o docs/pictures/grotto-inside.png
-echo "docs/pictures/grotto-inside.png"
