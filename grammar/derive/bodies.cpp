@@ -78,7 +78,8 @@ bool Interpreter::runElement(const Element& e, Frame& frame, Target& target, uin
         annotate(e, frame, key);
         return !builder_.failed();
     }
-    if (e.content.kind == rules::Content::Kind::Solid && e.content.solid.kind == rules::Solid::Kind::Nil) return true;
+    const bool nil = e.content.kind == rules::Content::Kind::Solid && e.content.solid.kind == rules::Solid::Kind::Nil;
+    if (nil && e.op != rules::Operator::Intersection) return true;
     return e.op == rules::Operator::None ? placeHead(e, frame, target, key, followed) : placeGrown(e, frame, target, key);
 }
 

@@ -73,7 +73,8 @@ ShapeId TreeBuilder::add(Shape shape) {
         }
         if (shape.extras == none || t.extras[shape.extras].values.empty()) shape.valuesAt = parent.valuesAt;
         else shape.valuesAt = id;
-        if (shape.op == rules::Operator::None && shape.scope == parent.scope) shape.body = parent.body;
+        // The root's box is only where the start begins: nothing stands there to be met.
+        if (shape.parent != 0 && shape.op == rules::Operator::None && shape.scope == parent.scope) shape.body = parent.body;
         if (parent.firstChild == none) parent.firstChild = id;
         else t.shapes[parent.lastChild].nextSibling = id;
         parent.lastChild = id;

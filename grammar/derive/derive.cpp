@@ -34,7 +34,10 @@ private:
     bool mayMatchLater(ShapeId shape) const;
     std::vector<Decision> decide(std::vector<ShapeId>& waiting);
     ShapeId placeOfStep(const rules::Derive::Step& step);
-    void failStep(const rules::Derive::Step& step, const std::string& what) { builder_.fail(Error::Kind::Input, what, step.span); }
+    void failStep(const rules::Derive::Step& step, const std::string& what) {
+        builder_.at(step.rule, none, none);
+        builder_.fail(Error::Kind::Input, what, step.span);
+    }
 
     TreeBuilder& builder_;
     const Grammar& grammar_;
@@ -47,6 +50,7 @@ uint32_t Rewriter::choose(ShapeId shape) {
     std::vector<uint32_t> plain;
     for (const uint32_t r : candidates) {
         const Rule& rule = grammar_.rules[r];
+        builder_.at(r, shape, none);
         if (!rule.when) {
             if (interpreter_.matches(r, shape)) plain.push_back(r);
         } else if (holds(*rule.when, interpreter_.placeOf(shape)) && interpreter_.matches(r, shape)) {

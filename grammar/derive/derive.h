@@ -27,10 +27,17 @@ struct Step {
     uint32_t madeCount = 0;
 };
 
+/// An element that found its joint closed, so that nothing grew there.
+struct Closed {
+    syntax::SourceSpan span;  ///< the element
+    uint64_t count = 0;       ///< how often
+};
+
 struct Derivation {
     std::shared_ptr<const rules::Grammar> grammar;
     ShapeTree tree;
     std::vector<Step> steps;
+    std::vector<Closed> closed;       ///< one an element, in the order they first met a closed joint
     std::vector<Material> materials;  ///< the grammar's, then those given by attributes
     std::vector<rules::Value> params;
     uint32_t start = 0;               ///< index into Grammar::starts

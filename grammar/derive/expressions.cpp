@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "grammar/derive/builder.h"
 #include "grammar/rules/evaluate.h"
 #include "modeler/core/random.h"
 
@@ -31,6 +32,8 @@ const Value* stored(const Expr& expr, const Place& place) {
                 const ShapeId parent = place.tree->shapes[s].parent;
                 s = parent == none ? none : place.tree->shapes[parent].valuesAt;
             }
+            if (place.builder)
+                place.builder->fail(Error::Kind::Input, "neither this shape nor any above it sets '" + expr.value.text + "' by 'with'", expr.span);
             return &expr.value;
         default: return nullptr;
     }

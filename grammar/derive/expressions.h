@@ -9,6 +9,8 @@
 
 namespace sgm::derive {
 
+class TreeBuilder;
+
 /// Where an expression stands.
 struct Place {
     const ShapeTree* tree = nullptr;
@@ -19,6 +21,7 @@ struct Place {
     ShapeId valuesAt = none;                 ///< nearest shape with `with` values
     uint64_t key = 0;                        ///< the stream that draws
     double ramp = 0;                         ///< position in the chain, 0 first … 1 last
+    TreeBuilder* builder = nullptr;          ///< told of values that nothing above the shape sets; may be null
 };
 
 /// Any expression but a Figure.

@@ -37,7 +37,7 @@ private:
     /// What is known of an element before it runs: filled at its first use.
     struct ElementFacts {
         uint64_t hash = 0;
-        uint32_t label = 0, jointSet = 0, solid = none;
+        uint32_t label = 0, jointSet = 0, solid = none, closed = none;
         bool constantSolid = false;
         const rules::Attribute *at = nullptr, *to = nullptr, *on = nullptr, *size = nullptr, *turn = nullptr;
     };

@@ -78,7 +78,7 @@ bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint
     }
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
-    builder_.meetNeighbours(shape.parent);
+    if (shape.parent != frame.node) builder_.meetNeighbours(shape.parent);
     builder_.meetNeighbours(id);
     if (!fill(e, id, frame)) return false;
     target = {shape.parent == frame.node ? id : shape.parent, id};
@@ -146,7 +146,15 @@ bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& targe
     if (facts.at) {
         const auto open = openJoints(*facts.at, host, place);
         if (builder_.failed()) return false;
-        if (open.empty()) return true;  // nothing grows where a bond has closed the joint
+        if (open.empty()) {  // nothing grows where a bond has closed the joint
+            auto& closed = builder_.derivation().closed;
+            if (facts.closed == none) {
+                facts.closed = static_cast<uint32_t>(closed.size());
+                closed.push_back({e.span, 0});
+            }
+            ++closed[facts.closed].count;
+            return true;
+        }
         oursIndex = open[open.size() == 1 ? 0 : pick(combine(key, hashText("at")), open.size())];
     }
     Looks looks;

@@ -71,6 +71,15 @@ void printSteps(const Derivation& d, std::back_insert_iterator<std::string> out)
     }
 }
 
+/// Where a grammar asked for a joint that a bond had closed.
+void printClosed(const Derivation& d, std::back_insert_iterator<std::string> out) {
+    for (const Closed& c : d.closed) {
+        const auto place = c.span.source->place(c.span.begin);
+        fmt::format_to(out, "{}:{}:{}: its joint was closed {}, so nothing grew there\n", c.span.source->name(), place.line, place.column,
+                       c.count == 1 ? "once" : fmt::format("{} times", c.count));
+    }
+}
+
 void printShape(const Derivation& d, ShapeId id, uint32_t bond, std::back_insert_iterator<std::string> out) {
     constexpr uint32_t deepest = 40;
     const Shape& s = d.tree.shapes[id];
@@ -115,6 +124,7 @@ std::string toText(const Derivation& d, bool steps) {
     const auto out = std::back_inserter(text);
     fmt::format_to(out, "{} shapes, {} bonds, {} classic and {} morphic rules, seed {}\n", d.tree.shapes.size(), d.tree.bonds.size(), d.classic, d.morphic, d.seed);
     if (steps) printSteps(d, out);
+    if (steps) printClosed(d, out);
     const auto bonds = bondsOfNewcomers(d.tree);
     for (ShapeId s = 0; s != none; s = d.tree.next(s)) printShape(d, s, bonds[s], out);
     return text;
@@ -122,11 +132,12 @@ std::string toText(const Derivation& d, bool steps) {
 
 std::string toJson(const Derivation& d) {
     json root{{"seed", d.seed}, {"start", d.grammar->symbols[d.grammar->starts[d.start].symbol].name}, {"classic", d.classic}, {"morphic", d.morphic},
-              {"terminals", d.terminals()}, {"shapes", json::array()}, {"bonds", json::array()}, {"steps", json::array()}};
+              {"terminals", d.terminals()}, {"shapes", json::array()}, {"bonds", json::array()}, {"steps", json::array()}, {"closed", json::array()}};
     for (ShapeId s = 0; s < d.tree.shapes.size(); ++s) root["shapes"].push_back(shapeJson(d, s));
     for (const Bond& b : d.tree.bonds)
         root["bonds"].push_back({{"shapes", {b.shape[0], b.shape[1]}}, {"joints", {d.tree.joint(b.shape[0], b.joint[0]).name, d.tree.joint(b.shape[1], b.joint[1]).name}},
                                  {"shift_m", vectorOf(b.shift)}, {"directed", b.directed}});
+    for (const Closed& c : d.closed) root["closed"].push_back({{"file", c.span.source->name()}, {"line", lineOf(c.span)}, {"times", c.count}});
     for (const Step& s : d.steps)
         root["steps"].push_back({{"rule", d.grammar->rules[s.rule].name}, {"shape", s.shape == none ? json() : json(s.shape)}, {"generation", s.generation},
                                  {"chain_index", s.chainIndex}, {"morphic", s.morphic}, {"finally", s.closing}, {"first_made", s.firstMade}, {"made", s.madeCount}});

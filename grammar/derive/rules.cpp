@@ -31,7 +31,7 @@ Interpreter::Interpreter(TreeBuilder& builder, std::span<const rules::Value> par
 
 Place Interpreter::placeOf(ShapeId id) const {
     const Shape& s = builder_.tree().shapes[id];
-    return {&builder_.tree(), params_, builder_.counts(), locals_, s.scope, s.valuesAt, s.key, 0};
+    return {&builder_.tree(), params_, builder_.counts(), locals_, s.scope, s.valuesAt, s.key, 0, &builder_};
 }
 
 void Interpreter::start(const rules::Start& start, uint64_t seed) {
@@ -44,7 +44,6 @@ void Interpreter::start(const rules::Start& start, uint64_t seed) {
     builder_.at(none, none, none);
     const ShapeId id = builder_.add(root);
     if (id == none) return;
-    builder_.meetNeighbours(id);
     locals_.assign(start.locals, {});
     Links links;
     links.root = links.last = links.newest = id;

@@ -162,6 +162,7 @@ void Lowering::leave(ShapeId id) {
     open_.pop_back();
     if (open_.empty()) model_.field = field::sum(model_.graph, std::span(&part, 1));  // one part alone keeps its owner
     else if (!part.field.bounds.empty()) join(open_.back(), id, part);
+    else if (tree_.shapes[id].op == Operator::Intersection) take(open_.back());  // nothing is shared with ε
 }
 
 Status Lowering::run(Progress* progress) {

@@ -55,8 +55,7 @@ Field combination(Graph& graph, Field a, Field b, Operator op) {
 /// Recursion follows the solid's text, which nests a few levels at most.
 Field build(Graph& graph, const SolidValue& solid, const Frame& frame, uint64_t key) {
     switch (solid.kind) {
-        case rules::Solid::Kind::Primitive:
-        case rules::Solid::Kind::Kifs: return primitive(graph, solid, frame, key);
+        case rules::Solid::Kind::Primitive: return primitive(graph, solid, frame, key);
         case rules::Solid::Kind::Morph: {
             const Field a = build(graph, solid.parts[0], frame, combine(key, 0)), b = build(graph, solid.parts[1], frame, combine(key, 1));
             return field::morph(a, b, graph.slot({key, hashText("morph")}, static_cast<float>(solid.amount)), solid.amount, 0);

@@ -152,8 +152,8 @@ void Checker::noiseArgument(Place& place, const Written& e, Attribute& out) {
     Expr octaves = makeConstant(e.span, makeWhole(out.fbm ? 3 : 2));
     if (e.args.size() == 3)
         octaves = expression(place, e.args[2], Want::Count, fmt::format("the octaves of '{}'", e.text));
-    if (const auto n = fold(octaves, defaults_); n && (n->num() < 1 || n->num() > 12))
-        diagnostics_.error(octaves.span, fmt::format("noise has 1 … 12 octaves, not {}", toText(*n)));
+    if (const auto n = fold(octaves, defaults_); n && (n->num() < 1 || n->num() > 8))
+        diagnostics_.error(octaves.span, fmt::format("noise has 1 … 8 octaves, not {}", toText(*n)));
     out.args.push_back(std::move(octaves));
 }
 

@@ -109,6 +109,8 @@ void Checker::agreement(const Place& place, const Element& element) {
     if (element.op != Operator::Morph)
         say(Id::By, "'by' says how far a morph goes, but this shape isn't joined by 'morph'",
             "write 'morph' before the shape");
+    if (element.op == Operator::Difference || element.op == Operator::Intersection)
+        say(Id::Blend, "only what is added melts: a cut keeps its edge", "leave 'blend' out, or add the shape with '+'");
     if (element.op == Operator::Morph) say(Id::Blend, "a morph has no edge that could be blended", "leave 'blend' out");
     newcomerJoint(element);
 }
@@ -180,6 +182,10 @@ Expr Checker::over(Place& place, const Written& e, Type& type) {
         type = Type::number(Unit::None, true);
         result.kind = Expr::Kind::Range;
         for (const Written& end : e.args) result.args.push_back(expression(place, end, Want::Count, "a loop"));
+        const auto lo = fold(result.args[0], {}), hi = fold(result.args[1], {});
+        if (lo && hi && lo->num() > hi->num() + 1)  // 1..0 is how one writes no turn at all
+            diagnostics_.error(e.span, "this loop never runs: its range runs backwards",
+                               fmt::format("write '{}..{}'", e.args[1].span.text(), e.args[0].span.text()));
         return result;
     }
     if (e.kind == Written::Kind::Tuple) {

@@ -85,6 +85,10 @@ Result<Value> parseValue(const Param& param, const std::string& text) {
     std::optional<Value> value;
     if (!diagnostics.hasErrors()) value = Checker(empty, diagnostics).plain(expr, !param.choices.empty());
     if (value) return conform(param, std::move(*value));
+    if (param.value.kind == Value::Kind::Bool)
+        return Error{Error::Kind::Input, fmt::format("'{}' is true or false, not '{}'", param.name, text)};
+    if (param.value.kind == Value::Kind::Color)
+        return Error{Error::Kind::Input, fmt::format("'{}' is a colour such as #c8b090, not '{}'", param.name, text)};
     const std::string why = diagnostics.all().empty() ? "it is no value" : diagnostics.all()[0].message;
     return Error{Error::Kind::Input, fmt::format("'{}' can't be '{}': {}", param.name, text, why)};
 }

@@ -88,11 +88,11 @@ enum class Figure : uint32_t { Bonds, Overlaps, Shapes, Terminals, Classic, Morp
 
 /// A solid: what fills a scope.
 struct Solid {
-    enum class Kind : uint8_t { Primitive, Morph, Kifs, Combination, Nil };
+    enum class Kind : uint8_t { Primitive, Morph, Combination, Nil };
     Kind kind = Kind::Nil;
     SourceSpan span;
     const field::Primitive* primitive = nullptr;
-    std::vector<Expr> args;        ///< Primitive and Kifs: one per row parameter, defaults filled in
+    std::vector<Expr> args;        ///< Primitive: one per row parameter, defaults filled in
     std::vector<Solid> parts;      ///< Morph: two. Combination: parts with `op` between
     Operator op = Operator::None;  ///< Combination
     Expr amount;                   ///< Morph: a in 0 … 1 (eq. 14)

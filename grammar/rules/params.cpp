@@ -28,6 +28,16 @@ Value adopted(const Value& value, const Value& like) {
     return result;
 }
 
+/// A plain number where its fellows are angles would be taken for radians: what to write instead, or "".
+std::string bareAngle(const Value& value, const Value& like) {
+    for (size_t i = 0; i < std::min<size_t>(value.count, value.units.size()); ++i) {
+        const Unit wanted = like.units[like.count > 1 ? std::min<size_t>(i, like.count - 1u) : 0];
+        if (wanted == Unit::Angle && value.units[i] == Unit::None && value.n[i] != 0)
+            return fmt::format("an angle needs its unit: write '{:g}deg'", value.n[i]);
+    }
+    return {};
+}
+
 std::string outOfRange(const Param& param, const Value& value) {
     for (size_t i = 0; i < value.count; ++i)
         if (value.n[i] < param.lo->n[i] || value.n[i] > param.hi->n[i])
@@ -114,6 +124,10 @@ std::string setRange(Param& param, const Value& lo, const Value& hi) {
             !compatible(Type::of(*end), Type::of(param.value)) || !compatible(Type::of(lo), Type::of(hi)))
             return fmt::format("the range of '{}' must be of the same kind as its default {}", param.name,
                                toText(param.value));
+    const Value* const given[] = {&param.value, &lo, &hi};
+    for (const Value* one : given)
+        for (const Value* like : given)
+            if (std::string problem = bareAngle(*one, *like); !problem.empty()) return problem;
     param.value = adopted(param.value, adopted(lo, adopted(hi, param.value)));
     param.lo = adopted(lo, param.value);
     param.hi = adopted(hi, param.value);
@@ -141,6 +155,7 @@ Result<Value> conform(const Param& param, Value value) {
         return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
     if (param.value.integer && !value.integer)
         return refuse(fmt::format("'{}' is a whole number, not {}", param.name, toText(value)));
+    if (std::string problem = bareAngle(value, param.value); !problem.empty()) return refuse(std::move(problem));
     Value fitted = adopted(value, param.value);
     fitted.integer = param.value.integer;
     for (size_t i = 0; i < fitted.count; ++i)

@@ -113,5 +113,24 @@ TEST(Figures, ChecksRun) {
     EXPECT_NE((*verdicts)[1].message.find("bonds is 2"), std::string::npos);
 }
 
+TEST(Bonds, NothingMeetsTheBoxWhereTheStartBegins) {
+    // The ball's lower joint touches the unit box of the start, in which nothing stands.
+    const auto d = derived("grammar 1\nstart S -> cone size 2 + sphere size 1 at apex to centre\n");
+    EXPECT_EQ(d.tree.bonds.size(), 1u);
+    // The first solid's own joints still meet, when it fills that box exactly too.
+    const auto met = derived("grammar 1\nstart S -> cube size 1, cube size 1 move (1, 0, 0)\n");
+    EXPECT_EQ(met.tree.bonds.size(), 1u);
+}
+
+TEST(Bonds, AClosedJointIsCountedWhereNothingGrew) {
+    const auto d = derived("grammar 1\nstart S -> cube : A\nrule A -> + cube at +x + cube at +x for k in 1..3 { + cube at +x }\n");
+    EXPECT_EQ(d.terminals(), 2u);
+    ASSERT_EQ(d.closed.size(), 2u);
+    EXPECT_EQ(d.closed[0].count, 1u);
+    EXPECT_EQ(d.closed[0].span.text(), "+ cube at +x");
+    EXPECT_EQ(d.closed[1].count, 3u);
+    EXPECT_NE(derive::toText(d, true).find("test.sgm:3:24: its joint was closed once, so nothing grew there"), std::string::npos) << derive::toText(d, true);
+}
+
 }  // namespace
 }  // namespace sgm

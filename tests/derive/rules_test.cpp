@@ -157,5 +157,27 @@ TEST(Budgets, DeepTreesDontRecurse) {
     EXPECT_GT(derive::toText(d, false).size(), 9000u);
 }
 
+TEST(Values, WhatNothingAboveSetsIsAnError) {
+    const std::string text = "grammar 1\nstart S -> A with n = 2, A\nrule A -> cube size n\n";
+    const auto d = tryDerive(text);
+    ASSERT_FALSE(d.ok());
+    EXPECT_EQ(d.error().kind, Error::Kind::Input);
+    EXPECT_EQ(d.error().message, "test.sgm:3:21: neither this shape nor any above it sets 'n' by 'with' in rule 'A#1' at S/A[2], seed 1");
+    // A guard asks too, and says which rule it belongs to.
+    const auto guarded = tryDerive("grammar 1\nstart S -> A with n = 2, B\nrule A -> cube size n\nrule B when n > 1 -> cube\n");
+    ASSERT_FALSE(guarded.ok());
+    EXPECT_NE(guarded.error().message.find("test.sgm:4:13: neither this shape nor any above it sets 'n' by 'with' in rule 'B#1' at S/B"), std::string::npos)
+        << guarded.error().message;
+    EXPECT_TRUE(tryDerive("grammar 1\nstart S -> A with n = 2\nrule A -> B : C\nrule B -> cube size n\n").ok());
+}
+
+TEST(Ways, AFailingStepNamesItsOwnRule) {
+    derive::Options options = way("w");
+    const auto d = tryDerive("grammar 1\nstart S -> cube : A\nrule R0: A -> + cube at +x : B, + cube at -x : B\nrule R1: B -> sphere\nderive w: R0 => R1\n", options);
+    ASSERT_FALSE(d.ok());
+    EXPECT_NE(d.error().message.find("matches 2 shapes here"), std::string::npos);
+    EXPECT_EQ(d.error().message.find("'R0'"), std::string::npos) << d.error().message;
+}
+
 }  // namespace
 }  // namespace sgm

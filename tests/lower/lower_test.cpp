@@ -167,5 +167,17 @@ TEST(Determinism, EqualDerivationsGiveEqualGraphs) {
     EXPECT_TRUE(std::equal(a.model->graph.constants().begin(), a.model->graph.constants().end(), b.model->graph.constants().begin()));
 }
 
+TEST(Order, NothingIsSharedWithTheEmptyShape) {
+    for (const char* text : {"start S -> cube size 2 & A\nrule A -> nil\n", "start S -> cube size 2 & nil\n"}) {
+        const auto d = derived(std::string("grammar 1\n") + text);
+        const auto result = lower::lower(d, nullptr);
+        ASSERT_FALSE(result.ok()) << text;
+        EXPECT_NE(result.error().message.find("nothing solid is left"), std::string::npos);
+    }
+    const Lowered later("grammar 1\nstart S -> cube size 2 & A + sphere size 1\nrule A -> nil\n");
+    EXPECT_TRUE(later.inside({0, 0, 0}));
+    EXPECT_FALSE(later.inside({0.8f, 0, 0}));
+}
+
 }  // namespace
 }  // namespace sgm

@@ -54,6 +54,7 @@ TEST_F(Params, AreSetFromText) {
     EXPECT_EQ(set(2, "2"), "2m");
     EXPECT_EQ(set(2, "(1m + .5m)"), "1.5m");
     EXPECT_EQ(set(3, "30deg"), "30deg");
+    EXPECT_EQ(set(3, "0"), "0deg");
     EXPECT_EQ(set(4, "(1, 1, 2m)"), "(1m, 1m, 2m)");
     EXPECT_EQ(set(4, "3"), "(3m, 3m, 3m)");
     EXPECT_EQ(set(5, "square"), "square");
@@ -65,10 +66,11 @@ TEST_F(Params, SayWhyAValueIsRefused) {
     EXPECT_EQ(set(0, "10"), "'count' is 10, outside its range 1..9");
     EXPECT_EQ(set(0, "2.5"), "'count' is a whole number, not 2.5");
     EXPECT_EQ(set(2, "30deg"), "'width' is a length, but this is an angle");
-    EXPECT_EQ(set(3, "30"), "'tilt' is 1718.87338539deg, outside its range 0deg..45deg");
+    EXPECT_EQ(set(3, "30"), "an angle needs its unit: write '30deg'");
     EXPECT_EQ(set(4, "(1, 2)"), "'size' is a vector of 3, but this is a vector of 2");
     EXPECT_EQ(set(5, "oval"), "'shape' is one of round, square, not 'oval'");
-    EXPECT_EQ(set(6, "red"), "'paint' can't be 'red': unknown name 'red'");
+    EXPECT_EQ(set(6, "red"), "'paint' is a colour such as #c8b090, not 'red'");
+    EXPECT_EQ(set(7, "no"), "'lit' is true or false, not 'no'");
     EXPECT_EQ(set(7, "1"), "'lit' is true or false, but this is a plain number");
     EXPECT_EQ(set(0, ""), "'count' is set to nothing");
     EXPECT_EQ(set(1, "0..1"),

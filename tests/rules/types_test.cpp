@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"+ cube displace billow(.05m, 2.2/m) at +x", ""},
         Case{"+ cube displace billow(.05m, 2m) at +x",
              "the frequency of 'billow' takes a frequency (2.2/m), but this is a length"},
-        Case{"+ cube displace fbm(.1, 2, 40) at +x", "noise has 1 … 12 octaves, not 40"},
+        Case{"+ cube displace fbm(.1, 2, 40) at +x", "noise has 1 … 8 octaves, not 40"},
         Case{"+ cube color #102030 rough .2 at +x", ""},
         Case{"+ cube color .2 at +x", "'color' takes a colour (#rrggbb), but this is a plain number"},
         Case{"+ cube color rgb(.1, .2, .3) at +x", ""},
