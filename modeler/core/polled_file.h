@@ -1,6 +1,6 @@
 // A stream buffer on a file, for libraries that write to a std::ostream and can't be asked to stop.
-// Enters: a stream's bytes. Leaves: the file. Once the watcher cancels it takes no more, as on a full disk, and the stream
-// goes bad. Assumes that whoever sees that asks `cancelled` for the reason.
+// Enters: a stream's bytes. Leaves: the file. Once the watcher cancels it takes no more, as on a full disk, and the
+// stream goes bad. Assumes that whoever sees that asks `cancelled` for the reason.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Progress and cancel for long work.
-// Enters: ticks from any thread. Leaves: a fraction for whoever shows it, and the wish to stop. Assumes polls within 50 ms.
+// Enters: ticks from any thread. Leaves: a fraction for whoever shows it, and the wish to stop. Assumes polls within 50
+// ms.
 #pragma once
 
 #include <algorithm>

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <new>
 
-#include "modeler/export/formats.h"
 #include "modeler/core/atomic_file.h"
+#include "modeler/export/formats.h"
 
 namespace sgm::exporter {
 namespace {

@@ -2,10 +2,10 @@
 // and normals stay shared, so the mesh stays closed; only texture coordinates are cut at chart borders.
 #include <fmt/format.h>
 
+#include "modeler/core/atomic_file.h"
 #include "modeler/export/formats.h"
 #include "modeler/export/out_file.h"
 #include "modeler/export/surface.h"
-#include "modeler/core/atomic_file.h"
 
 namespace sgm::exporter {
 namespace {

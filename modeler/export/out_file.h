@@ -1,6 +1,6 @@
 // A file written front to back through one large buffer.
-// Enters: bytes, text and numbers. Leaves: the file, or the first error; a cancelled progress is one. Assumes a little-endian machine, as every
-// format here is little-endian.
+// Enters: bytes, text and numbers. Leaves: the file, or the first error; a cancelled progress is one. Assumes a
+// little-endian machine, as every format here is little-endian.
 #pragma once
 
 #include <bit>
@@ -21,7 +21,8 @@ static_assert(std::endian::native == std::endian::little);
 /// Keeps the first error and ignores all later writes, so that a writer asks once, at `finish`.
 class OutFile {
 public:
-    /// Truncates `path`; `target` is the name that error messages use. `progress` is asked at every flush whether to go on.
+    /// Truncates `path`; `target` is the name that error messages use. `progress` is asked at every flush whether to go
+    /// on.
     OutFile(const std::filesystem::path& path, std::filesystem::path target, const Progress* progress);
     ~OutFile();
     OutFile(const OutFile&) = delete;

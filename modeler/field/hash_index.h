@@ -44,7 +44,8 @@ private:
         places_[at] = place;
     }
     void grow() {
-        const std::vector<Place> old = std::exchange(places_, std::vector<Place>(places_.empty() ? 64 : 2 * places_.size()));
+        const std::vector<Place> old =
+            std::exchange(places_, std::vector<Place>(places_.empty() ? 64 : 2 * places_.size()));
         for (const Place& place : old)
             if (place.id != none) put(place);
     }

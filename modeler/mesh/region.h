@@ -41,7 +41,8 @@ inline bool mayHoldSurface(eval::Range range, const CellRange& cells, const Grid
     return !(range.hi < 0) || touchesBorder;
 }
 
-/// Error::Input for a box without end and for cells that float32 can't resolve or that aren't positive, Error::Budget for too many along an axis.
+/// Error::Input for a box without end and for cells that float32 can't resolve or that aren't positive, Error::Budget
+/// for too many along an axis.
 Status checkGrid(const Grid& grid);
 
 }  // namespace sgm::mesh

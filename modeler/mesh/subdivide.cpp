@@ -120,8 +120,7 @@ Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, i
         for (std::vector<Region>& some : children) std::move(some.begin(), some.end(), std::back_inserter(regions));
         for (const Counts& c : counted) counts += c;
     }
-    std::sort(regions.begin(), regions.end(),
-              [](const Block& a, const Block& b) { return zyxLess(a.index, b.index); });
+    std::sort(regions.begin(), regions.end(), [](const Block& a, const Block& b) { return zyxLess(a.index, b.index); });
     counts.subdivideSeconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return regions;
 }

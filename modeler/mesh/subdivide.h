@@ -29,7 +29,8 @@ struct Grid {
 };
 
 /// The grid over `bounds` with cells of `cell_m` and 1¼ to 1¾ cells of outside on every side, so that flat faces on the
-/// bounds pass between samples. No cells when the bounds are empty; one that `subdivide` refuses when they aren't finite.
+/// bounds pass between samples. No cells when the bounds are empty; one that `subdivide` refuses when they aren't
+/// finite.
 Grid gridFor(const Box3f& bounds, float cell_m);
 /// The cell size that puts `resolution` (at least 1) cells along the longest side of `bounds`; 1 m for an empty box.
 float cellFor(const Box3f& bounds, int resolution);
@@ -51,8 +52,8 @@ struct Counts {
 };
 
 /// Blocks that may hold surface, ordered by (z, y, x). Error::Cancelled when `progress` says so, Error::Input for a
-/// box without end and for cells that aren't positive or that float32 can't resolve at the grid's place, Error::Budget for more than 2¹⁵ cells along
-/// an axis.
+/// box without end and for cells that aren't positive or that float32 can't resolve at the grid's place, Error::Budget
+/// for more than 2¹⁵ cells along an axis.
 Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress,
                                      Counts& counts);
 

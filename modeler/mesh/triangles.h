@@ -32,8 +32,8 @@ struct BrickVertices {
     std::vector<OriginId> origins;
 };
 
-/// Replaces the scratch's triangles and origins by those of `block`, one of `blocks`. A triangle takes the origin of most of its
-/// vertices, the lowest where all three differ.
+/// Replaces the scratch's triangles and origins by those of `block`, one of `blocks`. A triangle takes the origin of
+/// most of its vertices, the lowest where all three differ.
 void joinVertices(const BlockSurface& block, const std::vector<BlockSurface>& blocks, BrickVertices& scratch);
 
 }  // namespace sgm::mesh

@@ -35,7 +35,8 @@ private:
 
 /// Samples `whole` at the grid's corners into a level set of `halfWidth` voxels (1 … 32) to each side: in the blocks,
 /// which hold the surface, and in all that touch them. Beyond the band voxels are inactive and inside and outside tiled
-/// by sign. Equal bytes at any thread count. Error::Usage for another width, the errors of mesh::subdivide for the grid.
+/// by sign. Equal bytes at any thread count. Error::Usage for another width, the errors of mesh::subdivide for the
+/// grid.
 Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& whole, const mesh::Grid& grid,
                       int halfWidth, int threads, Progress* progress);
 

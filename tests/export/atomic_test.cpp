@@ -10,15 +10,14 @@
 #include <fstream>
 #include <thread>
 
-#include "modeler/export/exporter.h"
 #include "modeler/core/atomic_file.h"
+#include "modeler/export/exporter.h"
 #include "tests/export/hand_made.h"
 #include "tests/export/read_back.h"
 #include "tests/volume/scratch.h"
 
 namespace sgm::exporter {
 namespace {
-
 
 void put(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
 

@@ -122,9 +122,8 @@ TEST(Polygonize, RefinementBeatsTheLineBetweenSamples) {
 TEST(Polygonize, WithoutRefinementAVertexLiesWhereThePaperPutsIt) {
     // SG-M III-G: densities 0.1 and −0.3 at the ends of an edge put its vertex at 25 % of it.
     Scene s;
-    s.field = {square(s.graph.x()) - 4.0f, {{-2, -2, -2}, {2, 2, 2}}, 8, 0};  // straight only if one looks at the ends
     const auto vertexOn = [&](float inside, float outside, float from) {
-        // f(x) = inside at x = from, outside a cell further, with a bend of 1 between.
+        // Along x the field is `inside` at `from` and `outside` a cell further, with a bend between that must not show.
         const field::Num t = s.graph.x() - from;
         const field::Num f = t * (outside - inside) + inside + t * (t - 1.0f);
         s.field = {max(max(f, abs(s.graph.y()) - 1.5f), max(abs(s.graph.z()) - 1.5f, -1.0f - t)), {}, 8, 0};
@@ -319,8 +318,8 @@ TEST(Polygonize, BudgetsAndImpossibleGridsAreErrors) {
     EXPECT_EQ(meshOf(tape, gridFor({{-1, -1, -1}, {1, 1, 1}}, 1e-6f)).mesh.error().kind, Error::Kind::Budget);
     // Boxes without end or sense, and what cellFor makes of them.
     constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-    for (const Box3f& box : {Box3f{{-inf, -inf, -inf}, {inf, 0, inf}}, Box3f{{inf, 0, 0}, {inf, 1, 1}}, Box3f{{nan, 0, 0}, {1, 1, 1}},
-                             Box3f{{0, 0, 0}, {1, nan, 1}}})
+    for (const Box3f& box : {Box3f{{-inf, -inf, -inf}, {inf, 0, inf}}, Box3f{{inf, 0, 0}, {inf, 1, 1}},
+                             Box3f{{nan, 0, 0}, {1, 1, 1}}, Box3f{{0, 0, 0}, {1, nan, 1}}})
         for (const float cell : {0.1f, cellFor(box, 64), inf, nan, -1.0f})
             EXPECT_EQ(meshOf(tape, gridFor(box, cell)).mesh.error().kind, Error::Kind::Input);
 }
