@@ -13,7 +13,7 @@ constexpr size_t batch = 64;  ///< points whose values stay in registers or next
 
 /// Coordinates and values of a batch.
 struct Batch {
-    float x[batch], y[batch], z[batch], part[batch], value[batch];
+    float x[batch], y[batch], z[batch], part[batch], value[batch], before[batch];
 };
 
 SGM_INLINE float ball(float x, float y, float z, const Primitive& p) {
@@ -53,6 +53,10 @@ SGM_INLINE void join(Batch& b, const Primitive& p, bool cut) {
 SGM_INLINE void evaluateBatch(const Reference& r, Batch& b) {
     std::fill(std::begin(b.value), std::end(b.value), std::numeric_limits<float>::infinity());
     for (size_t k = 0; k + 1 < r.first.size(); ++k) {
+        if (k > 0 && k == r.morphTo) {
+            std::copy_n(b.value, batch, b.before);
+            std::fill_n(b.value, batch, std::numeric_limits<float>::infinity());
+        }
         for (size_t i = r.first[k]; i < r.first[k + 1]; ++i) {
             const Primitive& p = r.primitives[i];
             const bool cut = i != r.first[k];
@@ -73,6 +77,8 @@ SGM_INLINE void evaluateBatch(const Reference& r, Batch& b) {
         }
         for (size_t i = 0; i < batch; ++i) b.value[i] = std::min(b.value[i], b.part[i]);
     }
+    if (r.morphTo > 0)
+        for (size_t i = 0; i < batch; ++i) b.value[i] = b.before[i] + r.amount * (b.value[i] - b.before[i]);
 }
 
 using BatchLoop = void (*)(const Reference&, Batch&);
@@ -127,7 +133,12 @@ std::optional<Reference> referenceOf(const derive::ShapeTree& tree) {
     std::vector<bool> cuts(tree.shapes.size(), false);
     for (derive::ShapeId id = 0; id != derive::none; id = tree.next(id)) {
         const derive::Shape& shape = tree.shapes[id];
-        if (shape.op == rules::Operator::Intersection || shape.op == rules::Operator::Morph) return std::nullopt;
+        if (shape.op == rules::Operator::Intersection) return std::nullopt;
+        if (shape.op == rules::Operator::Morph) {
+            if (shape.parent != 0 || r.first.empty() || r.morphTo > 0) return std::nullopt;
+            r.morphTo = r.first.size();
+            r.amount = static_cast<float>(shape.amount);
+        }
         cuts[id] = shape.op == rules::Operator::Difference || (shape.parent != derive::none && cuts[shape.parent]);
         const derive::SolidValue* solid = tree.solidOf(id);
         if (!solid || solid->kind == rules::Solid::Kind::Nil) continue;

@@ -20,10 +20,13 @@ struct Primitive {
     float amount = 0;  ///< Morph: 0 is the ball, 1 the box; Roof: 0 the pyramid, 1 the dome
 };
 
-/// The union of parts; part k is primitives[first[k]] less those up to first[k + 1].
+/// The union of parts; part k is primitives[first[k]] less those up to first[k + 1]. Where `morphTo` is a part, the
+/// morph of the union of those before it and that of the rest.
 struct Reference {
     std::vector<Primitive> primitives;
     std::vector<size_t> first;
+    size_t morphTo = 0;  ///< 0: no morph
+    float amount = 0;    ///< of the morph
 };
 
 /// The reference of a tree, if it has one. Whether it is the same field as the tape is for `agrees` to say.
