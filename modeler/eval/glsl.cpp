@@ -138,7 +138,7 @@ uint32_t appendTape(const Tape& tape, std::vector<uint32_t>& buffer) {
             continue;
         }
         append(buffer, x, end + static_cast<uint32_t>(lists.size() / 4), i.count, i.data);
-        for (uint16_t k = 0; k < i.count; ++k) {
+        for (uint32_t k = 0; k < i.count; ++k) {
             const Source source = tape.sources()[i.a + k];
             append(lists, isConstant(source), wordOf(tape, source), 0, 0);
         }
