@@ -37,7 +37,7 @@ draw branching $caves/branching.sgm --style default --camera 24,50,44,0,-2,1
 draw halls     $caves/halls.sgm     --style default --camera 24,58,50,0,-2,1
 inside regular   $caves/regular.sgm   --style default --set open=none
 inside irregular $caves/irregular.sgm --style default --seed 4 --set open=none
-"$sgm" render $caves/branching.sgm --style default --set open=none --camera=-24,.6,-1,-12,-.4,-1 --size 640x640 -q -o docs/pictures/branching-inside.png
+inside branching $caves/branching.sgm --style default --set open=none
 inside halls     $caves/halls.sgm     --style default --set open=none
 
 clouds=examples/clouds
