@@ -30,9 +30,8 @@ Result<viewer::PictureOptions> parseSize(const std::string& text) {
 }
 
 /// "ex,ey,ez,ax,ay,az": where the eye is and what it looks at, metres; "inside"; or nothing for the default frame.
-Result<viewer::Camera> parseCamera(const std::string& text, const Model& model, double aspect) {
-    const Box3f& bounds = model.lowered->field.bounds;
-    if (text.empty()) return viewer::frame(bounds, aspect);
+Result<viewer::Camera> parseCamera(const std::string& text, const Model& model, const Box3f& bounds, double aspect) {
+    if (text.empty()) return viewer::frame(model.tape, bounds, aspect);
     if (text == "inside") return viewer::inside(model.tape, bounds);
     viewer::Camera c;
     int used = 0;
@@ -42,9 +41,10 @@ Result<viewer::Camera> parseCamera(const std::string& text, const Model& model, 
     return c;
 }
 
-Result<viewer::Image> draw(const RenderRequest& request, const Model& model, const viewer::PictureOptions& options, Progress* progress) {
+Result<viewer::Image> draw(const RenderRequest& request, const Model& model, const Box3f& bounds, const viewer::PictureOptions& options,
+                           Progress* progress) {
     const Provenance& provenance = model.lowered->provenance;
-    if (request.view == "field") return viewer::drawField(model.tape, model.lowered->field.bounds, provenance, options, progress);
+    if (request.view == "field") return viewer::drawField(model.tape, bounds, provenance, options, progress);
     Stages stages;
     const auto meshed = makeMesh(model, request.grid, stages, progress);
     if (!meshed.ok()) return meshed.error();
@@ -58,12 +58,13 @@ int render(const RenderRequest& request) {
     Watch watch(request.quiet);
     const auto model = makeModel(request.model, stages, watch.progress());
     if (!model.ok()) return fail(model.error());
-    const auto camera = parseCamera(request.camera, *model, static_cast<double>(options->width) / options->height);
+    const Box3f bounds = viewer::tighten(model->tape, model->lowered->field.bounds);
+    const auto camera = parseCamera(request.camera, *model, bounds, static_cast<double>(options->width) / options->height);
     if (!camera.ok()) return fail(camera.error());
     options->camera = *camera;
     options->samples = request.samples;
     options->ground = !request.noGround && request.camera != "inside";
-    const auto image = draw(request, *model, *options, watch.progress());
+    const auto image = draw(request, *model, bounds, *options, watch.progress());
     if (!image.ok()) return fail(image.error());
     if (const Status s = viewer::writePng(*image, request.output); !s.ok()) return fail(s.error());
     if (!request.quiet) fmt::print("wrote {}\n", request.output);

@@ -1,40 +1,31 @@
-#include <array>
 #include <cmath>
 
 #include "viewer/offscreen.h"
+#include "viewer/samples.h"
 
 namespace sgm::viewer {
 namespace {
 
-std::array<Vec3d, 8> corners(const Box3f& box) {
-    std::array<Vec3d, 8> points;
-    for (size_t i = 0; i < 8; ++i)
-        points[i] =
-            Vec3f{i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z}.as<double>();
-    return points;
-}
-
-}  // namespace
-
-Camera frame(const Box3f& bounds, double aspect) {
-    constexpr double fill = 0.86;  // share of the picture that the box may take
-    const Vec3d towardsEye = normalized(Vec3d{0.55, 0.42, 0.85});
+/// Three-quarter from above, as near as the points allow, their projection centred.
+Camera framePoints(const std::vector<Vec3d>& points, const Box3d& box, double aspect) {
+    constexpr double fill = 0.84;  // share of the picture that the points may take; the rest is for the shadow
+    const Vec3d towardsEye = normalized(Vec3d{0.58, 0.38, 0.85});
     const Vec3d right = normalized(cross(Vec3d{0, 1, 0}, towardsEye)), up = cross(towardsEye, right);
     Camera camera;
     const double tanUp = std::tan(camera.fieldOfView / 2) * fill, tanRight = tanUp * aspect;
-    camera.at = bounds.centre().as<double>();
+    camera.at = box.centre();
     double distance = 1;
     // Moving the centre changes the perspective a little: a few rounds settle it.
     for (int round = 0; round < 6; ++round) {
         distance = 0;
-        for (const Vec3d& corner : corners(bounds)) {
-            const Vec3d v = corner - camera.at;
+        for (const Vec3d& point : points) {
+            const Vec3d v = point - camera.at;
             distance = std::max({distance, std::abs(dot(v, right)) / tanRight + dot(v, towardsEye),
                                  std::abs(dot(v, up)) / tanUp + dot(v, towardsEye)});
         }
         Box3d seen;
-        for (const Vec3d& corner : corners(bounds)) {
-            const Vec3d v = corner - camera.at;
+        for (const Vec3d& point : points) {
+            const Vec3d v = point - camera.at;
             const double depth = distance - dot(v, towardsEye);
             seen = hull(seen, Vec3d{dot(v, right) / depth, dot(v, up) / depth, 0});
         }
@@ -42,6 +33,25 @@ Camera frame(const Box3f& bounds, double aspect) {
     }
     camera.eye = camera.at + towardsEye * distance;
     return camera;
+}
+
+}  // namespace
+
+Camera frame(const Box3f& bounds, double aspect) {
+    std::vector<Vec3d> corners;
+    for (int i = 0; i < 8; ++i)
+        corners.push_back(
+            Vec3f{i & 1 ? bounds.hi.x : bounds.lo.x, i & 2 ? bounds.hi.y : bounds.lo.y, i & 4 ? bounds.hi.z : bounds.lo.z}
+                .as<double>());
+    return framePoints(corners, bounds.as<double>(), aspect);
+}
+
+Camera frame(const eval::Tape& tape, const Box3f& bounds, double aspect) {
+    if (bounds.empty() || !bounds.finite() || !(maxComponent(bounds.size()) > 0)) return frame(bounds, aspect);
+    const Samples grid = sample(tape, bounds);
+    std::vector<Vec3d> points;
+    for (const Vec3f& place : grid.placesBelow(0.3f * grid.cell)) points.push_back(place.as<double>());
+    return points.empty() ? frame(bounds, aspect) : framePoints(points, bounds.as<double>(), aspect);
 }
 
 }  // namespace sgm::viewer

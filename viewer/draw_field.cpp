@@ -74,7 +74,7 @@ void setCells(const Program& program, const FieldPicture& picture, const Box3f& 
 Result<FieldPicture> prepare(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
                              const PictureOptions& options, Progress* progress) {
     // The pictures' soft shadows and occlusion ask for exact distances up to the margin, and no further.
-    const float margin = 0.07f * length(bounds.size());
+    const float margin = 0.03f * length(bounds.size());
     const Box3f box = bounds.inflated(margin);
     Result<CellTree> tree = cutIntoCells(tape, box, margin, options.threads, progress);
     if (!tree) return tree.error();
@@ -197,7 +197,7 @@ std::vector<Job> firstSamples(int width, int height) {
 
 /// True where a pixel differs from a neighbour enough to be seen (Whitted 1980's adaptive sampling, on display light).
 std::vector<bool> edges(const std::vector<float>& pixels, int width, int height) {
-    constexpr float visible = 0.045f;  // of the square root of light, which is about what the eye sees
+    constexpr float visible = 0.055f;  // of the square root of light, which is about what the eye sees
     std::vector<bool> edge(size_t(width) * size_t(height), false);
     const auto compare = [&](size_t a, size_t b) {
         float most = 0;

@@ -1,61 +1,14 @@
 // Where to stand inside a hollow: a coarse grid of the field says which empty places are enclosed and how deep they
 // are, rays say where one can look far.
-#include <array>
 #include <cmath>
 #include <vector>
 
 #include "modeler/core/conventions.h"
-#include "modeler/eval/evaluate.h"
 #include "viewer/offscreen.h"
+#include "viewer/samples.h"
 
 namespace sgm::viewer {
 namespace {
-
-constexpr int gridEdge = 40;  // samples along the longest side
-
-/// Field values at the centres of a grid's cells.
-struct Samples {
-    Box3f bounds;
-    Vec3i count;
-    float cell = 1;  ///< metres
-    std::vector<float> values;
-
-    Vec3f at(int i, int j, int k) const {
-        return bounds.lo + Vec3f{float(i) + 0.5f, float(j) + 0.5f, float(k) + 0.5f} * cell;
-    }
-    size_t index(int i, int j, int k) const {
-        return (size_t(k) * size_t(count.y) + size_t(j)) * size_t(count.x) + size_t(i);
-    }
-    bool holds(int i, int j, int k) const {
-        return i >= 0 && j >= 0 && k >= 0 && i < count.x && j < count.y && k < count.z;
-    }
-};
-
-std::vector<float> valuesAt(const eval::Tape& tape, const std::vector<Vec3f>& points) {
-    std::vector<float> x, y, z, values(points.size());
-    for (const Vec3f& p : points) {
-        x.push_back(p.x);
-        y.push_back(p.y);
-        z.push_back(p.z);
-    }
-    eval::Workspace workspace;
-    eval::evaluate(tape, {x.data(), y.data(), z.data(), x.size()}, values.data(), workspace);
-    return values;
-}
-
-Samples sample(const eval::Tape& tape, const Box3f& bounds) {
-    Samples grid;
-    grid.bounds = bounds;
-    grid.cell = maxComponent(bounds.size()) / gridEdge;
-    for (int axis = 0; axis < 3; ++axis)
-        grid.count[axis] = std::max(1, static_cast<int>(bounds.size()[axis] / grid.cell));
-    std::vector<Vec3f> points;
-    for (int k = 0; k < grid.count.z; ++k)
-        for (int j = 0; j < grid.count.y; ++j)
-            for (int i = 0; i < grid.count.x; ++i) points.push_back(grid.at(i, j, k));
-    grid.values = valuesAt(tape, points);
-    return grid;
-}
 
 /// Share of the 26 directions of the grid in which solid stands between cell (i, j, k) and the outside.
 double enclosure(const Samples& grid, int i, int j, int k) {
@@ -79,9 +32,11 @@ struct Stand {
     float side = 1;
 };
 
-/// The deepest enclosed empty place; failing that, the deepest place in the solid.
+/// The best enclosed empty place: deep, and rather under a roof than in a pit, whose open sky leaves it 17 of the 26
+/// directions; failing that, the deepest place in the solid.
 Stand deepest(const Samples& grid) {
     Stand hollow, solid;
+    double best = 0;
     solid.side = -1;
     solid.place = grid.bounds.centre();
     for (int k = 0; k < grid.count.z; ++k)
@@ -89,9 +44,14 @@ Stand deepest(const Samples& grid) {
             for (int i = 0; i < grid.count.x; ++i) {
                 const float f = grid.values[grid.index(i, j, k)];
                 if (-f > solid.depth) solid = {grid.at(i, j, k), -f, -1};
-                if (f > hollow.depth && enclosure(grid, i, j, k) > 0.72) hollow = {grid.at(i, j, k), f, 1};
+                if (!(f > 0.5f * grid.cell)) continue;
+                const double enclosed = enclosure(grid, i, j, k), score = f * enclosed * enclosed;
+                if (enclosed > 0.6 && score > best) {
+                    best = score;
+                    hollow = {grid.at(i, j, k), f, 1};
+                }
             }
-    return hollow.depth > grid.cell ? hollow : solid;
+    return best > 0 ? hollow : solid;
 }
 
 /// How far one can go from the stand in each direction before meeting the surface or leaving the bounds, metres.

@@ -20,8 +20,12 @@ struct Camera {
     double fieldOfView = 0.7;  ///< vertical, radians
     double lamp_m = 0;         ///< reach of a warm lamp beside the eye, metres; 0 for none
 };
-/// Frames `bounds` three-quarter from above.
+/// Frames `bounds` three-quarter from above: the box takes 84 % of the tighter side of the picture, centred.
 Camera frame(const Box3f& bounds, double aspect);
+/// The same for the solid itself, seen on a grid: closer wherever it leaves corners of its bounds empty.
+Camera frame(const eval::Tape& tape, const Box3f& bounds, double aspect);
+/// The part of `bounds` that may hold the solid; found on a grid, exact to about a cell.
+Box3f tighten(const eval::Tape& tape, const Box3f& bounds);
 /// Stands inside the largest hollow of the field, looking along its longest free direction with a lamp (`--camera
 /// inside`). A field without a hollow is taken as the hollow itself: the camera stands in its solid, which is then
 /// drawn inside out.

@@ -178,6 +178,16 @@ TEST_F(Picture, InsideStandsInTheHollow) {
     }
 }
 
+TEST_F(Picture, InsidePrefersAnOpenPitToTheSolid) {
+    Scene scene;
+    const field::Field rock = scene.solid("cube", {0, 0, 0}, {6, 3, 4}), pit = scene.solid("cube", {1, 2, 0}, {3, 3, 1.5});
+    const field::Field field = field::difference({rock, scene.origin({0.5f, 0.4f, 0.3f})}, {pit, 0});
+    const Camera camera = inside(scene.compile(field), field.bounds);
+    EXPECT_LT(length(Vec3d{(camera.eye.x - 1) / 3, 0, camera.eye.z / 1.5}), 1.5);
+    EXPECT_GT(camera.eye.y, -1);
+    EXPECT_LT(camera.eye.y, 3);
+}
+
 TEST_F(Picture, InsideASolidDrawsItFromWithin) {
     Scene scene;
     scene.add("sphere", {0, 0, 0}, {2, 2, 2}, {0.6f, 0.5f, 0.4f});

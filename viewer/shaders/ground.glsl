@@ -2,9 +2,8 @@
 uniform float groundHeight;   // metres
 uniform float sceneSize;      // diagonal of the bounds, metres
 uniform vec3 sceneCentre;
-uniform int hasGround;
 
-const vec3 groundColor = vec3(0.54, 0.515, 0.475);
+const vec3 groundColor = vec3(0.42, 0.41, 0.36);
 
 /// Where a ray meets the ground, as a distance along it; −1 when it doesn't.
 float groundDistance(vec3 origin, vec3 direction) {
@@ -24,5 +23,5 @@ vec3 shadeGround(vec3 position, vec3 toEye, float distance, float sunlight, floa
     float aside = length(position.xz - sceneCentre.xz) / sceneSize;
     vec3 sky = skyColor(normalize(vec3(direction.x, 0.0, direction.z) + vec3(0.0, 1e-3, 0.0)));
     float fade = 1.0 - exp(-max(aside - 0.6, 0.0) * 0.45);
-    return mix(shade(s, toEye, sunlight, openness), sky, fade);
+    return mix(shade(s, toEye, sunlight, openness, lampReach == 0.0 ? 1.0 : 0.12), sky, fade);
 }

@@ -13,6 +13,6 @@ void main() {
     Surface s = Surface(worldPosition, normal, materials[m].rgb, materials[m].a, materials[m + 1].x);
     vec3 start = worldPosition + normal * (1.5e-3 * mapSpan);
     float sunlight = lampReach == 0.0 && dot(normal, sunDirection) > 0.0 ? sunlightAt(start) : 0.0;
-    vec3 light = shade(s, toEye, sunlight, opennessAt(start, normal));
+    vec3 light = shade(s, toEye, sunlight, opennessAt(start, normal), lampReach == 0.0 ? 1.0 : 0.12);
     color = vec4(tonemap(hazed(light, distance, skyColor(-toEye))), 1.0);
 }

@@ -19,43 +19,65 @@ vec3 normalAt(vec3 p, float h) {
     return side * normalize(sum + vec3(0.0, 1e-20, 0.0));
 }
 
-/// Share of the sun's disc that p sees: along the ray, the least clearance in units of the disc's radius there.
-float sunlightAt(vec3 p) {
-    const float sunRadius = 0.035;  // radians
-    vec3 inverseDirection = inverseOf(sunDirection);
+/// Share that p sees of a disc of light of half angle `radius` (radians) about `direction`: along the ray, the least
+/// clearance in units of the disc's radius there. Strides are relaxed as in trace.comp.glsl: away from
+/// the penumbra one and a half times the free radius, taken back when the two radii leave a gap.
+float discSeen(vec3 p, vec3 direction, float radius) {
+    vec3 inverseDirection = inverseOf(direction);
     vec2 span = boundsSpan(p, inverseDirection);
-    float t = max(span.x, 2e-4 * sceneSize), clearance = 1.0;
-    for (int step = 0; step < 160 && t <= span.y && clearance > -1.0; ++step) {
-        vec3 q = p + t * sunDirection;
+    float t = max(span.x, 3e-4 * sceneSize), clearance = 1.0, free = 0.0, stride = 0.0;
+    for (int step = 0; step < 128 && t + stride <= span.y && clearance > -1.0; ++step) {
+        vec3 q = p + (t + stride) * direction;
         Cell cell = cellAt(q);
-        while (cell.state == cellOutside && t <= span.y) {
-            t += cellExit(cell, q, inverseDirection);
-            q = p + t * sunDirection;
-            cell = cellAt(q);
+        if (cell.state == cellOutside) {
+            t += stride + cellExit(cell, q, inverseDirection);
+            free = stride = 0.0;
+            continue;
         }
-        if (t > span.y) break;
         float value = cell.state == cellInside ? -margin : side * evaluateField(cell.tape, q);
-        float disc = min(sunRadius * t, margin);
+        float next = abs(value) * inverseLipschitz;
+        float disc = min(radius * (t + stride), margin), least = max(0.25 * disc, 6e-4 * sceneSize);
+        if (stride > max(free + next, least)) {
+            stride = max(free, least);
+            continue;
+        }
         clearance = min(clearance, value / disc);
-        t += max(abs(value) * inverseLipschitz * 0.9, max(0.25 * disc, 5e-4 * sceneSize));
+        t += stride;
+        free = next;
+        stride = max(free > 2.0 * disc ? 1.5 * free : 0.9 * free, least);
     }
     // Area of a disc left of a chord, as a smooth step.
     clearance = clamp(0.5 + 0.5 * clearance, 0.0, 1.0);
     return clearance * clearance * (3.0 - 2.0 * clearance);
 }
 
+float sunlightAt(vec3 p) { return discSeen(p, sunDirection, 0.035); }
+
 /// Share of the sky that p sees, from the field at growing distances along the normal.
 float opennessAt(vec3 p, vec3 normal) {
     float hidden = 0.0, weight = 0.0;
-    float reach = margin;
-    for (int i = 0; i < 5; ++i) {
+    float reach = 0.07 * sceneSize;
+    for (int i = 0; i < 4; ++i) {
         float w = 1.0;
-        float free = clamp(distanceAt(p + normal * reach) / reach, -0.2, 1.0);
+        float free = clamp(distanceAt(p + normal * reach) / min(reach, margin), -0.2, 1.0);
         hidden += w * (1.0 - free);
         weight += w;
-        reach *= 0.5;
+        reach *= 0.4;
     }
     return clamp(1.0 - 0.95 * hidden / weight, 0.03, 1.0);
+}
+
+/// Share of the day that comes into a hollow to p: wide discs of the upper sky.
+float daylightAt(vec3 p, vec3 normal) {
+    if (side < 0.0) return 0.0;
+    float seen = 0.0;
+    for (int i = 0; i < 5; ++i) {
+        float angle = 1.5707963 * float(i);
+        vec3 direction = i == 4 ? vec3(0.0, 1.0, 0.0) : vec3(0.7 * cos(angle), 0.714, 0.7 * sin(angle));
+        float cosine = dot(normal, direction);
+        if (cosine > 0.0) seen += cosine * discSeen(p, direction, 0.3);
+    }
+    return min(0.4 * seen, 1.0);
 }
 
 vec3 colorOf(uint job) {
@@ -67,12 +89,13 @@ vec3 colorOf(uint job) {
     if (hit.w == hitObject) normal = normalAt(hit.xyz, max(2e-5 * sceneSize, 0.4 * pixelAngle * distance));
     vec3 start = hit.xyz + normal * max(1e-4 * sceneSize, 0.5 * pixelAngle * distance);
     float sunlight = 0.0;
-    if (lampReach == 0.0 && dot(normal, sunDirection) > 0.0) sunlight = sunlightAt(start);
+    if ((lampReach == 0.0 || side > 0.0) && dot(normal, sunDirection) > 0.0) sunlight = sunlightAt(start);
     float openness = opennessAt(hit.xyz, normal);
     if (hit.w == hitGround) return shadeGround(hit.xyz, toEye, distance, sunlight, openness);
     uint m = materialOfJob[job] * 2u;
     Surface s = Surface(hit.xyz, normal, materials[m].rgb, materials[m].a, materials[m + 1u].x);
-    return hazed(shade(s, toEye, sunlight, openness), distance, skyColor(-toEye));
+    float daylight = lampReach == 0.0 ? 1.0 : daylightAt(start, normal);
+    return hazed(shade(s, toEye, sunlight, openness, daylight), distance, skyColor(-toEye));
 }
 
 void main() {

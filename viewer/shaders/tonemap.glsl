@@ -8,7 +8,7 @@ vec3 shoulder(vec3 x) {
 
 /// Scene light to display light, still linear, in 0 … 1.
 vec3 tonemap(vec3 light) {
-    const float exposure = 0.78;
+    const float exposure = 0.80;
     vec3 x = max(light, 0.0) * exposure;
     float luminance = dot(x, vec3(0.2126, 0.7152, 0.0722));
     vec3 hueKept = x * (shoulder(vec3(luminance)).x / max(luminance, 1e-4));

@@ -39,6 +39,7 @@ float trace(vec3 origin, vec3 direction) {
         free = next;
         if (value < max(tolerance, 0.2 * pixelAngle * t)) return max(t + min(free, 0.0), 0.0);
         stride = max(free, 2.0 * free / (1.0 - min(slope, 0.6)));
+        if (t + stride > span.y) stride = free;  // the long step would leave the box, perhaps past a last surface
     }
     return t + stride <= span.y ? t : -1.0;
 }
