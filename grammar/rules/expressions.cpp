@@ -216,7 +216,16 @@ Typed Checker::member(Place& place, const Written& e) {
 Typed Checker::index(Place& place, const Written& e) {
     Typed vector = expression(place, e.args[0]);
     Typed at = expression(place, e.args[1]);
-    if (!vector.type.known || !at.type.known) return {std::move(vector.expr), Type::unknown()};
+    const auto element = [&](Type type) {
+        Typed result{{}, type};
+        result.expr.kind = Expr::Kind::Element;
+        result.expr.span = e.span;
+        result.expr.args.push_back(std::move(vector.expr));
+        result.expr.args.push_back(std::move(at.expr));
+        return result;
+    };
+    // What `with` sets has its type only while deriving.
+    if (!vector.type.known || !at.type.known) return element(Type::unknown());
     const uint8_t count = vector.type.like.count;
     if (vector.type.like.kind != Value::Kind::Vector)
         return failed(e.args[0].span, fmt::format("[ ] asks for a vector, but this is {}", describe(vector.type)));
@@ -229,13 +238,7 @@ Typed Checker::index(Place& place, const Written& e) {
     if (const auto value = fold(at.expr, {}); value && (value->num() < 0 || value->num() >= count))
         return failed(e.args[1].span, fmt::format("there is no value number {:.12g}: the vector's are 0 … {}",
                                                   value->num(), count - 1));
-    Typed result;
-    result.expr.kind = Expr::Kind::Element;
-    result.expr.span = e.span;
-    result.type = Type::of(component(vector.type.like, Value::number(0)));
-    result.expr.args.push_back(std::move(vector.expr));
-    result.expr.args.push_back(std::move(at.expr));
-    return result;
+    return element(Type::of(component(vector.type.like, Value::number(0))));
 }
 
 Typed Checker::tuple(Place& place, const Written& e) {

@@ -171,6 +171,12 @@ TEST(Values, WhatNothingAboveSetsIsAnError) {
     EXPECT_TRUE(tryDerive("grammar 1\nstart S -> A with n = 2\nrule A -> B : C\nrule B -> cube size n\n").ok());
 }
 
+TEST(Values, AnInheritedVectorIsIndexed) {
+    const auto d = tryDerive("grammar 1\nstart S -> A with n = (4, 5, 6)\nrule A -> cube size (n[2], n[0] + 0, 1)\n");
+    ASSERT_TRUE(d.ok()) << d.error().message;
+    EXPECT_EQ(d->tree.shapes.back().scope.size, (Vec3d{6, 4, 1}));
+}
+
 TEST(Ways, AFailingStepNamesItsOwnRule) {
     derive::Options options = way("w");
     const auto d = tryDerive("grammar 1\nstart S -> cube : A\nrule R0: A -> + cube at +x : B, + cube at -x : B\nrule R1: B -> sphere\nderive w: R0 => R1\n", options);
