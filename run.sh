@@ -2,7 +2,7 @@
 # Installs what is missing (Debian 12), builds Release, and runs sgm.
 #   ./run.sh                      models examples/grotto.sgm into out/ and says where the results are
 #   ./run.sh ARGUMENTS…           runs `sgm ARGUMENTS…`, e.g. ./run.sh build examples/tower.sgm -o tower.glb
-#   ./run.sh bench [ARGUMENTS…]   measures field → mesh against a dense SIMD sweep
+#   ./run.sh bench [ARGUMENTS…]   measures field → mesh beside a dense sweep, OpenVDB and the machine (docs/performance.md)
 #   ./run.sh gallery              draws the pictures of docs/ and README
 cd "$(dirname "$0")"
 . cmake/setup.sh
