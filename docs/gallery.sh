@@ -23,7 +23,7 @@ inside() {
   echo "docs/pictures/$name-inside.png"
 }
 
-draw grotto  examples/grotto.sgm
+draw grotto  examples/grotto.sgm --camera 16,44,52,-1,-3,-1
 draw cumulus examples/cumulus.sgm --seed 8 --no-ground
 draw tower   examples/tower.sgm
 draw figure1 examples/figure1.sgm
