@@ -10,6 +10,7 @@
 #include "tests/viewer/gpu_fixture.h"
 #include "tests/viewer/scenes.h"
 #include "viewer/offscreen.h"
+#include "viewer/samples.h"
 
 namespace sgm::viewer::test {
 namespace {
@@ -27,22 +28,10 @@ std::vector<Vec3f> scatter(size_t count) {
     return points;
 }
 
-std::vector<float> onCpu(const eval::Tape& tape, const std::vector<Vec3f>& points) {
-    std::vector<float> x, y, z, values(points.size());
-    for (const Vec3f& p : points) {
-        x.push_back(p.x);
-        y.push_back(p.y);
-        z.push_back(p.z);
-    }
-    eval::Workspace workspace;
-    eval::evaluate(tape, {x.data(), y.data(), z.data(), x.size()}, values.data(), workspace);
-    return values;
-}
-
 /// At most 1 % of 10⁴ points (those beside a discontinuity) may differ by more than 1e-4 of the scene.
 void expectAgreement(const eval::Tape& tape, const std::string& what) {
     const std::vector<Vec3f> points = scatter(10000);
-    const std::vector<float> cpu = onCpu(tape, points);
+    const std::vector<float> cpu = viewer::valuesAt(tape, points);
     const auto gpu = evaluateOnGpu(tape, points);
     ASSERT_TRUE(gpu.ok()) << what << ": " << gpu.error().message;
     ASSERT_EQ(gpu->size(), points.size());
