@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/files.h"
+#include "cli/floating.h"
 #include "cli/pipeline.h"
 #include "cli/report.h"
 #include "cli/watch.h"
@@ -102,13 +103,14 @@ Status writeAll(const BuildRequest& request, const Model& model, const MeshedMod
     return Done{};
 }
 
-void say(const BuildRequest& request, const Model& model, const mesh::MeshFigures& f, const Stages& stages) {
+void say(const BuildRequest& request, const Model& model, const mesh::MeshFigures& f, const Support& support, const Stages& stages) {
     double total = 0;
     for (const auto& stage : stages) total += stage.second;
     fmt::print("{} shapes, {} bonds, {} rules; {} triangles in {} component{}, {:.4g} m³; {:.2f} s\n", model.derivation.tree.shapes.size(),
                model.derivation.tree.bonds.size(), model.derivation.classic + model.derivation.morphic, f.triangles, f.components,
                f.components == 1 ? "" : "s", f.volume_m3, total);
     for (const std::string& output : request.outputs) fmt::print("wrote {}\n", output);
+    sayFloating(model, support);
 }
 
 /// CGAL's word on the mesh as a line; Error::Input when it finds a fault.
@@ -145,9 +147,10 @@ int build(const BuildRequest& request) {
     if (!written.ok()) return fail(written.error());
     if (request.quiet && request.report.empty()) return 0;
     const mesh::MeshFigures figures = mesh::measure(*mesh);
+    const Support support = supportOf(*model, *mesh, meshed->grid.cell_m);
     if (!request.report.empty())
-        if (const Status s = writeText(request.report, reportJson(*model, *meshed, figures, stages, request.grid.threads)); !s.ok()) return fail(s.error());
-    if (!request.quiet) say(request, *model, figures, stages);
+        if (const Status s = writeText(request.report, reportJson(*model, *meshed, figures, support, stages, request.grid.threads)); !s.ok()) return fail(s.error());
+    if (!request.quiet) say(request, *model, figures, support, stages);
     return 0;
 }
 

@@ -34,6 +34,25 @@ Json meshFigures(const mesh::MeshFigures& f) {
             {"bounds", {{f.bounds.lo.x, f.bounds.lo.y, f.bounds.lo.z}, {f.bounds.hi.x, f.bounds.hi.y, f.bounds.hi.z}}}};
 }
 
+/// The solids that float and the shapes that made them.
+Json floatingFigures(const Model& model, const Support& support) {
+    const derive::Derivation& d = model.derivation;
+    Json list = Json::array();
+    for (const Floating& f : support.floating) {
+        const derive::Shape& s = d.tree.shapes[f.shape];
+        Json entry = {{"path", d.tree.path(f.shape)},
+                      {"rule", s.madeBy == derive::none ? "" : d.grammar->rules[d.steps[s.madeBy].rule].name},
+                      {"file", s.span.source ? s.span.source->name() : ""},
+                      {"line", s.span.source ? s.span.source->place(s.span.begin).line : 0}};
+        const Box3f& b = f.piece.bounds;
+        entry["triangles"] = f.piece.triangles;
+        entry["volume_m3"] = f.piece.volume_m3;
+        entry["bounds"] = {{b.lo.x, b.lo.y, b.lo.z}, {b.hi.x, b.hi.y, b.hi.z}};
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
 uint64_t peakMemory_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -42,7 +61,8 @@ uint64_t peakMemory_bytes() {
 
 }  // namespace
 
-std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Stages& stages, int threads) {
+std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Support& support,
+                       const Stages& stages, int threads) {
     const derive::Derivation& d = model.derivation;
     Json json;
     for (const auto& [name, seconds] : stages) json["stages"][name] = seconds;
@@ -52,6 +72,8 @@ std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh
     json["rules_applied"] = {{"classic", d.classic}, {"morphic", d.morphic}};
     json["field"] = fieldFigures(model, meshed);
     json["mesh"] = meshFigures(figures);
+    json["pieces"] = support.pieces;
+    json["floating"] = floatingFigures(model, support);
     json["peak_memory_bytes"] = peakMemory_bytes();
     json["threads"] = threadCount(threads);
     json["seed"] = d.seed;

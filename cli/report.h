@@ -4,12 +4,14 @@
 
 #include <string>
 
+#include "cli/floating.h"
 #include "cli/pipeline.h"
 #include "modeler/mesh/validate.h"
 
 namespace sgm::cli {
 
-/// stages, shapes, terminals, bonds, rules_applied, field, mesh, peak_memory_bytes, threads, seed.
-std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Stages& stages, int threads);
+/// stages, shapes, terminals, bonds, rules_applied, field, mesh, pieces, floating, peak_memory_bytes, threads, seed.
+std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Support& support,
+                       const Stages& stages, int threads);
 
 }  // namespace sgm::cli

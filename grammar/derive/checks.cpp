@@ -3,6 +3,7 @@
 
 #include "grammar/derive/derive.h"
 #include "grammar/derive/expressions.h"
+#include "grammar/derive/support.h"
 
 namespace sgm::derive {
 namespace {
@@ -23,11 +24,22 @@ double figureOf(const Derivation& d, Figure figure) {
     return 0;
 }
 
+/// Who floats and who made it; the first few of many.
+std::string floatersOf(const Derivation& d) {
+    constexpr size_t most = 3;
+    const auto shapes = d.floatingShapes();
+    std::string text;
+    for (size_t i = 0; i < std::min(shapes.size(), most); ++i) text += (i ? "; " : "") + madeBy(d, shapes[i]);
+    if (shapes.size() > most) text += fmt::format("; and {} more", shapes.size() - most);
+    return text;
+}
+
 /// Puts numbers in place of figures, and tells what they were.
 Expr withFigures(Expr e, const Derivation& d, std::string& told) {
     if (e.kind == Expr::Kind::Figure) {
         const double n = figureOf(d, static_cast<Figure>(e.index));
         told += fmt::format("{}{} is {}", told.empty() ? "" : ", ", e.span.text(), n);
+        if (static_cast<Figure>(e.index) == Figure::Floating && n > 0) told += ": " + floatersOf(d);
         e.kind = Expr::Kind::Constant;
         e.value = rules::Value::number(n);
         e.value.integer = true;

@@ -49,8 +49,10 @@ struct Derivation {
     uint64_t overlaps() const;
     /// Shapes that carry a solid.
     uint64_t terminals() const;
-    /// Solids that neither bonds nor touching boxes connect with the first one.
+    /// Solids that touching boxes neither connect with the first one nor with the lowest level.
     uint64_t floating() const;
+    /// Where each group of floating solids begins, in tree order.
+    std::vector<ShapeId> floatingShapes() const;
     /// Memory of the arrays, bytes.
     uint64_t memory() const;
 };

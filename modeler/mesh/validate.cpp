@@ -5,6 +5,8 @@
 #include <bit>
 #include <numeric>
 
+#include "modeler/mesh/components.h"
+
 namespace sgm::mesh {
 namespace {
 
@@ -50,23 +52,6 @@ std::vector<uint32_t> weldMap(const std::vector<Vec3f>& positions) {
         map[order[i]] = i > 0 && positions[order[i]] == positions[order[i - 1]] ? map[order[i - 1]] : order[i];
     return map;
 }
-
-/// Union-find with path halving.
-class Components {
-public:
-    explicit Components(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    uint32_t find(uint32_t v) {
-        while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-        return v;
-    }
-    void join(uint32_t a, uint32_t b) {
-        a = find(a), b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<uint32_t> parent_;
-};
 
 /// Edges of all triangles as (low vertex, high vertex) in one key, and whether the triangle runs upwards along it.
 struct DirectedEdge {

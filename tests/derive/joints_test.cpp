@@ -97,7 +97,7 @@ TEST(Joints, BesideAsksForANeighbour) {
 }
 
 TEST(Figures, OverlapsAndFloating) {
-    const auto d = derived("grammar 1\nstart S -> cube, cube move (.5, 0, 0), cube move (5, 0, 0), cube move (1.5, 0, 0)\n");
+    const auto d = derived("grammar 1\nstart S -> cube, cube move (.5, 0, 0), cube move (5, 3, 0), cube move (1.5, 0, 0)\n");
     EXPECT_EQ(d.overlaps(), 1u);
     EXPECT_EQ(d.floating(), 1u);
     EXPECT_EQ(d.terminals(), 4u);

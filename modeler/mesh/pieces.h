@@ -1,0 +1,23 @@
+// The separate solids of a mesh, and which of them float.
+// Enters: a Mesh. Leaves: its connected solids with volume, box and owners. Assumes closed surfaces facing outward, so
+// that a surface around air (a cavity) has negative volume.
+#pragma once
+
+#include "modeler/mesh/mesh.h"
+
+namespace sgm::mesh {
+
+/// One connected surface that encloses solid.
+struct Piece {
+    uint64_t triangles = 0;
+    double volume_m3 = 0;           ///< of what the surface encloses, its cavities included
+    Box3f bounds;
+    std::vector<OriginId> origins;  ///< who owns it, most triangles first
+    bool floats = false;            ///< neither the greatest nor standing on the model's lowest level
+};
+
+/// The pieces in the order of their first triangle. Whatever comes down to `slack_m` above the mesh's lowest point
+/// stands; one cell is a sensible slack. O(n log n).
+std::vector<Piece> pieces(const Mesh& mesh, float slack_m);
+
+}  // namespace sgm::mesh

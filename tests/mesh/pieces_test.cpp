@@ -1,0 +1,54 @@
+// Separate solids of a mesh: cavities are no solids, and what hangs in the air floats.
+#include "modeler/mesh/pieces.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/mesh/scenes.h"
+
+namespace sgm::mesh {
+namespace {
+
+/// The mesh of a scene at cells of 1/8 m.
+Mesh meshed(const Scene& s) {
+    const eval::Tape tape = s.tape();
+    const Grid grid = gridFor(s.field.bounds, 0.125f);
+    Counts counts;
+    const auto blocks = subdivide(tape, grid, 1, nullptr, counts);
+    return *polygonize(*blocks, grid, {.threads = 1}, nullptr, counts);
+}
+
+TEST(Pieces, ABallInACavityFloatsAndTheCavityIsNoPiece) {
+    Scene s;
+    auto& g = s.graph;
+    const field::Field rock = field::difference({box(g, {0, 4, 0}, {4, 4, 4}), 1}, {ball(g, {0, 4, 0}, 3), 1});
+    const field::Owned parts[] = {{rock, 1}, {ball(g, {0, 5, 0}, 1), 2}, {box(g, {7, 1, 0}, {1, 1, 1}), 3}};
+    s.field = field::sum(g, parts);
+    const auto found = pieces(meshed(s), 0.125f);
+    ASSERT_EQ(found.size(), 3u);
+    uint64_t floating = 0;
+    for (const Piece& p : found) {
+        floating += p.floats;
+        if (!p.floats) continue;
+        ASSERT_FALSE(p.origins.empty());
+        EXPECT_EQ(p.origins[0], 2u);
+        EXPECT_NEAR(p.volume_m3, 4 * std::numbers::pi / 3, 0.1);
+        EXPECT_NEAR(p.bounds.lo.y, 4, 0.02);
+    }
+    EXPECT_EQ(floating, 1u);  // the box beside the rock stands on the same ground
+}
+
+TEST(Pieces, WhatTouchesIsOne) {
+    Scene s;
+    const field::Owned parts[] = {{box(s.graph, {0, 1, 0}, {1, 1, 1}), 1}, {ball(s.graph, {0, 2.5f, 0}, 1), 2}};
+    s.field = field::sum(s.graph, parts);
+    const auto found = pieces(meshed(s), 0.125f);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_FALSE(found[0].floats);
+    EXPECT_EQ(found[0].origins.size(), 2u);
+    EXPECT_TRUE(pieces({}, 0.1f).empty());
+}
+
+}  // namespace
+}  // namespace sgm::mesh
