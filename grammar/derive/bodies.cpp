@@ -120,18 +120,11 @@ bool Interpreter::runChoose(const Element& e, Frame& frame, Target& target, uint
     const uint64_t key = combine(combine(combine(frame.key, hashText("choose")), e.ordinal), loop);
     frame.place.key = key;
     std::vector<double> weights;
-    double total = 0;
-    for (const rules::Choice& c : e.choices) {
-        weights.push_back(std::max(0.0, number(c.weight, frame.place)));
-        total += weights.back();
-    }
-    if (!(total > 0)) return true;
-    double drawn = uniform(combine(key, hashText("weight"))) * total;
-    for (size_t i = 0; i < weights.size(); ++i) {
-        if (drawn < weights[i]) return runInner(*e.choices[i].body, frame, target, loop, followed);
-        drawn -= weights[i];
-    }
-    return true;
+    for (const rules::Choice& c : e.choices) weights.push_back(number(c.weight, frame.place));
+    const uint32_t at = drawByWeight(weights, combine(key, hashText("weight")));
+    if (at != none) return runInner(*e.choices[at].body, frame, target, loop, followed);
+    builder_.fail(Error::Kind::Input, std::string(allZero), e.span);
+    return false;
 }
 
 }  // namespace sgm::derive

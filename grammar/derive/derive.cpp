@@ -57,23 +57,23 @@ uint32_t Rewriter::choose(ShapeId shape) {
             return r;
         }
     }
-    return plain.size() > 1 ? draw(shape, plain) : plain.empty() ? none : plain[0];
+    if (plain.empty()) return none;
+    return plain.size() == 1 && !grammar_.rules[plain[0]].weight ? plain[0] : draw(shape, plain);
 }
 
+/// One of `rules` by weight; fails when all weigh 0.
 uint32_t Rewriter::draw(ShapeId shape, const std::vector<uint32_t>& rules) {
     const Place place = interpreter_.placeOf(shape);
-    double total = 0;
     std::vector<double> weights;
     for (const uint32_t r : rules) {
         const auto& weight = grammar_.rules[r].weight;
-        weights.push_back(weight ? std::max(0.0, number(*weight, place)) : 1.0);
-        total += weights.back();
+        weights.push_back(weight ? number(*weight, place) : 1.0);
     }
-    double drawn = uniform(combine(place.key, hashText("rule"))) * total;
-    for (size_t i = 0; i < rules.size(); ++i) {
-        if (drawn < weights[i]) return rules[i];
-        drawn -= weights[i];
-    }
+    const uint32_t at = drawByWeight(weights, combine(place.key, hashText("rule")));
+    if (at != none) return rules[at];
+    builder_.at(rules[0], shape, none);
+    builder_.fail(Error::Kind::Input, fmt::format("every rule for '{}' that matches has weight 0", grammar_.symbols[builder_.tree().shapes[shape].symbol].name),
+                  grammar_.rules[rules[0]].weight->span);
     return none;
 }
 

@@ -47,6 +47,15 @@ Value drawn(const Expr& expr, const Place& place) {
     return r;
 }
 
+/// The value that a `choose` draws.
+const Expr& chosen(const Expr& expr, const Place& place) {
+    std::vector<double> weights;
+    for (size_t i = 0; i < expr.args.size(); i += 2) weights.push_back(number(expr.args[i], place));
+    const uint32_t at = drawByWeight(weights, drawKey(expr, place, 0));
+    if (at == none && place.builder) place.builder->fail(Error::Kind::Input, std::string(allZero), expr.span);
+    return expr.args[2 * (at == none ? 0 : at) + 1];
+}
+
 Value called(const Expr& expr, const Place& place) {
     const Fn fn = static_cast<Fn>(expr.index);
     if (fn == Fn::Count) {
@@ -94,6 +103,7 @@ Value evaluate(const Expr& expr, const Place& place) {
         case Kind::Binary:
         case Kind::Call: return called(expr, place);
         case Kind::Range: return drawn(expr, place);
+        case Kind::Choose: return evaluate(chosen(expr, place), place);
         case Kind::Ramp: return rules::interpolate(evaluate(expr.args[0], place), evaluate(expr.args[1], place), place.ramp);
         default: return {};
     }
@@ -115,6 +125,7 @@ double number(const Expr& expr, const Place& place) {
             return a + (b - a) * place.ramp;
         }
         case Kind::Range: return uniform(drawKey(expr, place, 0), number(expr.args[0], place), number(expr.args[1], place));
+        case Kind::Choose: return number(chosen(expr, place), place);
         case Kind::Unary:
         case Kind::Binary: {
             double out = 0;
@@ -126,7 +137,22 @@ double number(const Expr& expr, const Place& place) {
     return evaluate(expr, place).num();
 }
 
+uint32_t drawByWeight(std::span<const double> weights, uint64_t key) {
+    double total = 0;
+    for (const double w : weights) total += std::max(0.0, w);
+    double drawn = uniform(key) * total;
+    uint32_t last = none;
+    for (uint32_t i = 0; i < weights.size(); ++i) {
+        if (!(weights[i] > 0)) continue;
+        if (drawn < weights[i]) return i;
+        drawn -= weights[i];
+        last = i;  // where rounding leaves a rest
+    }
+    return last;
+}
+
 double wholeNumber(const Expr& expr, const Place& place) {
+    if (expr.kind == Kind::Choose) return wholeNumber(chosen(expr, place), place);
     if (expr.kind != Kind::Range) return std::floor(number(expr, place) + 1e-9);
     const double lo = std::ceil(number(expr.args[0], place)), hi = std::floor(number(expr.args[1], place));
     if (hi <= lo) return lo;
@@ -134,6 +160,7 @@ double wholeNumber(const Expr& expr, const Place& place) {
 }
 
 Vector vector(const Expr& expr, const Place& place, bool eachDraws) {
+    if (expr.kind == Kind::Choose) return vector(chosen(expr, place), place, eachDraws);
     const Value v = evaluate(expr, place);
     Vector r;
     for (size_t i = 0; i < 3; ++i) {

@@ -32,6 +32,11 @@ inline bool holds(const rules::Expr& expr, const Place& place) { return number(e
 /// A whole number: a range of integers draws one of them, both ends included; anything else is rounded down.
 double wholeNumber(const rules::Expr& expr, const Place& place);
 
+/// What a choice says that has nothing to choose from.
+inline constexpr std::string_view allZero = "all weights are 0, so nothing can be drawn";
+/// Draws among weights (those below 0 count as 0) by the stream `key`: an index, or `none` when all are 0.
+uint32_t drawByWeight(std::span<const double> weights, uint64_t key);
+
 /// Three components with their units.
 struct Vector {
     Vec3d n;

@@ -60,12 +60,14 @@ std::optional<Bounds> boundsOf(Id id) {
     }
 }
 
-/// Every constant part of an expression: both ends of a range or ramp, each component.
+/// Every constant part of an expression: both ends of a range or ramp, each component, each value to choose from.
 template <class Visit>
 void eachConstant(const Expr& e, const std::vector<Value>& params, Visit visit) {
     if (const auto value = fold(e, params)) return visit(e, *value);
     if (e.kind == Expr::Kind::Range || e.kind == Expr::Kind::Ramp || e.kind == Expr::Kind::Tuple)
         for (const Expr& arg : e.args) eachConstant(arg, params, visit);
+    if (e.kind == Expr::Kind::Choose)
+        for (size_t i = 1; i < e.args.size(); i += 2) eachConstant(e.args[i], params, visit);
 }
 
 bool isCalled(const Written& e, std::string_view word) {
@@ -89,7 +91,13 @@ Expr Checker::joint(Place& place, const Written& e) {
         unknown(e.span, e.text, fmt::format("unknown joint '{}'", e.text), std::move(mend));
         return word;
     }
-    return expression(place, e, Want::Axis, "a joint");
+    if (e.kind != Written::Kind::Choose) return expression(place, e, Want::Axis, "a joint");
+    Expr chosen = chance(place, e);
+    for (size_t i = 0; i + 1 < e.args.size(); i += 2) {
+        chosen.args.push_back(weight(place, e.args[i]));
+        chosen.args.push_back(joint(place, e.args[i + 1]));
+    }
+    return chosen;
 }
 
 void Checker::jointArgument(Place& place, const Written& e, Attribute& out) {

@@ -236,24 +236,18 @@ void Checker::loop(Place& place, const syntax::Element& written, Element& out) {
 }
 
 void Checker::choose(Place& place, const syntax::Element& written, Element& out) {
-    double sum = 0;
-    bool folded = true;
     for (const syntax::Case& c : written.cases) {
         Choice choice;
         choice.weight = makeConstant(c.span, Value::number(1));
         place.enter("weight");
-        if (c.label) choice.weight = expression(place, *c.label, Want::Number, "the weight of a choice");
-        const auto weight = fold(choice.weight, defaults_);
-        if (weight && weight->num() < 0)
-            diagnostics_.error(choice.weight.span, fmt::format("a weight is no less than 0, not {}", toText(*weight)));
-        folded = folded && weight && weight->num() >= 0;
-        sum += weight ? weight->num() : 0;
+        if (c.label) choice.weight = weight(place, *c.label);
         if (c.repeated || !c.tag.empty()) diagnostics_.error(c.span, "a choice is 'weight: body'");
         choice.body = std::make_shared<Body>(c.body ? body(place, *c.body) : Body{});
         out.choices.push_back(std::move(choice));
     }
-    if (folded && !out.choices.empty() && sum == 0)
-        diagnostics_.error(written.span, "all weights are 0, so nothing could be chosen");
+    std::vector<const Expr*> weights;
+    for (const Choice& c : out.choices) weights.push_back(&c.weight);
+    possible(weights, written.span);
     const auto grow = [](const Choice& c) { return grows(*c.body); };
     if (std::any_of(out.choices.begin(), out.choices.end(), grow))
         for (const Choice& c : out.choices)

@@ -115,6 +115,10 @@ private:
     Typed comparedWord(Place& place, const syntax::Expr& e, const Type& other);
     Typed range(Place& place, const syntax::Expr& e);
     Typed ramp(Place& place, const syntax::Expr& e);
+    Typed choice(Place& place, const syntax::Expr& e);
+    Expr chance(Place& place, const syntax::Expr& e);
+    Expr weight(Place& place, const syntax::Expr& e);
+    void possible(const std::vector<const Expr*>& weights, SourceSpan span);
 
     // solids.cpp
     Solid solid(Place& place, const syntax::Expr& e);

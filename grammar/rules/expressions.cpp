@@ -37,6 +37,8 @@ void adapt(Expr& e, Want want) {
     }
     if (e.kind == Expr::Kind::Tuple || e.kind == Expr::Kind::Range || e.kind == Expr::Kind::Ramp)
         for (Expr& arg : e.args) adapt(arg, want);
+    if (e.kind == Expr::Kind::Choose)
+        for (size_t i = 1; i < e.args.size(); i += 2) adapt(e.args[i], want);
 }
 
 bool takesThree(Want want) {
@@ -301,6 +303,8 @@ Typed Checker::infer(Place& place, const Written& e) {
             return range(place, e);
         case Written::Kind::Ramp:
             return ramp(place, e);
+        case Written::Kind::Choose:
+            return choice(place, e);
         case Written::Kind::Error:
             break;
     }

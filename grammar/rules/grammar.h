@@ -38,13 +38,14 @@ struct Expr {
         Call,    ///< index is a Fn over args
         Range,   ///< args[0] … args[1]: drawn from the shape's stream under `draw`
         Ramp,    ///< args[0] ~> args[1]: linear over the chain
+        Choose,  ///< args[1], args[3], … drawn under `draw` by the weights args[0], args[2], …
         Figure,  ///< index is a Figure: in `check … expect`
     };
     Kind kind = Kind::Constant;
     SourceSpan span;
     Value value;
     uint32_t index = 0;
-    uint64_t draw = 0;  ///< Range: hash of the attribute's name (and ordinal where one attribute has several ranges)
+    uint64_t draw = 0;  ///< Range, Choose: hash of the attribute's name (and ordinal where one attribute has several ranges)
     std::vector<Expr> args;
 };
 

@@ -16,6 +16,8 @@ namespace {
 using Written = syntax::Expr;
 using Where = Place::Where;
 
+constexpr std::string_view noChance = "nothing is drawn by chance here: a plain value must stand here";
+
 struct BinaryRow {
     std::string_view text;
     Fn fn;
@@ -172,10 +174,63 @@ Typed Checker::binary(Place& place, const Written& e) {
     return applied(Expr::Kind::Binary, row.fn, e.span, std::move(args));
 }
 
-Typed Checker::range(Place& place, const Written& e) {
-    if (place.where < Where::Guard || place.where == Where::Expect)
-        return failed(e.span, "nothing is drawn by chance here: a plain value must stand here");
+/// A draw of this attribute's own, without its arguments.
+Expr Checker::chance(Place& place, const Written& e) {
+    Expr drawn;
+    drawn.kind = e.kind == Written::Kind::Range ? Expr::Kind::Range : Expr::Kind::Choose;
+    drawn.span = e.span;
+    const uint64_t key = hashText(place.attribute);
     const uint32_t ordinal = place.ranges++;
+    drawn.draw = ordinal == 0 ? key : combine(key, ordinal);
+    return drawn;
+}
+
+Expr Checker::weight(Place& place, const Written& e) {
+    Expr result = expression(place, e, Want::Number, "the weight of a choice");
+    if (const auto value = fold(result, defaults_); value && value->num() < 0)
+        diagnostics_.error(result.span, fmt::format("a weight is no less than 0, not {}", toText(*value)));
+    return result;
+}
+
+/// Refuses weights that are 0 whatever the parameters are.
+void Checker::possible(const std::vector<const Expr*>& weights, SourceSpan span) {
+    const auto never = [](const Expr* e) {
+        const auto value = fold(*e, {});
+        return value && value->num() == 0;
+    };
+    if (!weights.empty() && std::all_of(weights.begin(), weights.end(), never))
+        diagnostics_.error(span, "all weights are 0, so nothing could be chosen");
+}
+
+Typed Checker::choice(Place& place, const Written& e) {
+    if (place.where < Where::Guard || place.where == Where::Expect) return failed(e.span, std::string(noChance));
+    Typed result;
+    result.expr = chance(place, e);
+    std::vector<Typed> values;
+    std::vector<const Expr*> weights;
+    for (size_t i = 0; i + 1 < e.args.size(); i += 2) {
+        result.expr.args.push_back(weight(place, e.args[i]));
+        values.push_back(expression(place, e.args[i + 1]));
+        result.expr.args.push_back(values.back().expr);
+        result.type.known = result.type.known && values.back().type.known;
+    }
+    for (size_t i = 0; i < result.expr.args.size(); i += 2) weights.push_back(&result.expr.args[i]);
+    possible(weights, e.span);
+    if (!result.type.known || values.empty()) return {std::move(result.expr), Type::unknown()};
+    result.type = values[0].type;
+    for (const Typed& value : values) {
+        const Value& like = value.type.like;
+        if (like.kind == result.type.like.kind && !value.type.numeric()) continue;
+        if (!alike(values[0], value, "choose between")) return {{}, Type::unknown()};
+        const Value sample[] = {result.type.like, like};
+        result.type = Type::of(applyFunction(Fn::Add, sample));
+    }
+    return result;
+}
+
+Typed Checker::range(Place& place, const Written& e) {
+    if (place.where < Where::Guard || place.where == Where::Expect) return failed(e.span, std::string(noChance));
+    Expr drawn = chance(place, e);
     std::vector<Typed> ends;
     for (const Written& end : e.args) ends.push_back(expression(place, end));
     if (!alike(ends[0], ends[1], "draw between")) return {{}, Type::unknown()};
@@ -184,11 +239,7 @@ Typed Checker::range(Place& place, const Written& e) {
         return failed(e.span, "the range runs backwards",
                       fmt::format("write '{}..{}'", e.args[1].span.text(), e.args[0].span.text()));
     Typed result = applied(Expr::Kind::Binary, Fn::Add, e.span, ends);
-    result.expr = {};
-    result.expr.kind = Expr::Kind::Range;
-    result.expr.span = e.span;
-    const uint64_t key = hashText(place.attribute);
-    result.expr.draw = ordinal == 0 ? key : combine(key, ordinal);
+    result.expr = std::move(drawn);
     for (Typed& end : ends) result.expr.args.push_back(std::move(end.expr));
     return result;
 }

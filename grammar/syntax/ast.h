@@ -35,6 +35,7 @@ struct Expr {
         Binary,    ///< text is + - * / % < <= > >= == != and or
         Range,     ///< args[0]..args[1]
         Ramp,      ///< args[0] ~> args[1]
+        Choose,    ///< choose { args[0]: args[1] | args[2]: args[3] … }: weights and values
         Error,     ///< stands where an expression could not be read; a diagnostic was given
     };
     Kind kind = Kind::Error;

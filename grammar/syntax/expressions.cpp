@@ -201,7 +201,7 @@ private:
             case Token::Kind::Color:
                 return color();
             case Token::Kind::Word:
-                return nameOrCall();
+                return cursor_.at("choose") ? choice() : nameOrCall();
             default:
                 break;
         }
@@ -290,6 +290,23 @@ private:
         } while (cursor_.accept(","));
     }
 
+    /// choose { weight: value {| weight: value} }
+    Expr choice() {
+        Expr e;
+        e.kind = Kind::Choose;
+        const uint32_t begin = cursor_.take().begin;
+        const Token open = cursor_.peek();
+        if (!cursor_.expect("{", "after 'choose'", "as in 'choose { 3: +x | 1: -z }'")) return e;
+        do {
+            e.args.push_back(binary(rampBinds));
+            if (!cursor_.accept(":", Token::Role::Suffix)) cursor_.expect(":", "and a value after the weight");
+            e.args.push_back(binary(rampBinds));
+        } while (cursor_.accept("|"));
+        cursor_.close(open);
+        e.span = cursor_.since(begin);
+        return e;
+    }
+
     /// ( expr ) is that expression, ( a, b ) a tuple; either spans its parentheses.
     Expr parenthesised() {
         const Token open = cursor_.take();
@@ -326,7 +343,7 @@ bool startsArgument(const Cursor& cursor) {
         case Token::Kind::Color:
             return true;
         case Token::Kind::Word:
-            return !isReserved(cursor.peekText());
+            return !isReserved(cursor.peekText()) || cursor.at("choose");
         default:
             return cursor.at("(") || cursor.at("~") || cursor.at("-") || atAxis(cursor);
     }

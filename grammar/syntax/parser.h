@@ -47,7 +47,8 @@
 //   product     = unary { ( "*" | "/" | "%" ) unary } .
 //   unary       = "-" unary | postfix .
 //   postfix     = primary { "[" expr "]" | "." NAME } .
-//   primary     = NUMBER | TEXT | COLOR | AXIS | NAME | call | "~" simple | "(" expr { "," expr } ")" .
+//   primary     = NUMBER | TEXT | COLOR | AXIS | NAME | call | "~" simple | "(" expr { "," expr } ")"
+//               | "choose" "{" expr ":" expr { "|" expr ":" expr } "}" .
 //   call        = NAME "(" [ [ NAME ":" ] expr { "," [ NAME ":" ] expr } ] ")" .            "(" glued to NAME
 //
 //   NUMBER      = ( DIGITS [ "." DIGITS ] | "." DIGITS ) [ "e" [ "+" | "-" ] DIGITS ] [ "m" | "deg" | "%" | "/m" ] .  glued
