@@ -19,6 +19,10 @@ Kernels kernelsFor(Isa isa) {
     return portable::kernels();
 }
 
+void count(const Tape& tape, size_t points, bool gradient, Tally& tally) {
+    for (const Instruction& in : tape.code()) tally[{in.op, in.count, in.data, gradient}] += points;
+}
+
 }  // namespace
 
 Isa bestIsa() {
@@ -35,6 +39,7 @@ Workspace::Workspace(Isa isa) : impl_(std::make_unique<Impl>()) { impl_->kernels
 Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
+void Workspace::tallyInto(Tally* tally) { impl_->tally = tally; }
 
 size_t longestInstruction(const Tape& tape) {
     if (tape.sources().empty()) return 0;  // no variadic ops
@@ -56,6 +61,7 @@ StepContext Workspace::Impl::context(const Tape& tape, size_t planes, size_t str
 
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
+    if (w.tally) count(tape, points.n, false, *w.tally);
     runBlocks(tape, points, w.kernels.values, 1, w, nothingBefore,
               [&](const StepContext& c, size_t first, size_t n) { storeResult(tape, c, 1, 0, out + first, n); });
 }
@@ -63,6 +69,7 @@ void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace)
 void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
                       Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
+    if (w.tally) count(tape, points.n, true, *w.tally);
     float* const out[] = {value, dx, dy, dz};
     runBlocks(tape, points, w.kernels.gradients, 4, w, nothingBefore,
               [&](const StepContext& c, size_t first, size_t n) {

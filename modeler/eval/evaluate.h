@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 
+#include "modeler/eval/tally.h"
 #include "modeler/eval/tape.h"
 
 namespace sgm::eval {
@@ -28,6 +29,8 @@ public:
     ~Workspace();
     Workspace(Workspace&&) noexcept;
     Workspace& operator=(Workspace&&) noexcept;
+    /// From now on counts operations in `tally`; null, as at first, for none. It must outlive the workspace.
+    void tallyInto(Tally* tally);
     struct Impl;
     Impl& impl() const { return *impl_; }
 

@@ -28,6 +28,7 @@ private:
 
 struct Workspace::Impl {
     Kernels kernels;
+    Tally* tally = nullptr;  ///< where operations are counted, if at all
     AlignedFloats registers, arguments;
     AlignedFloats bounds;                     ///< rows of maxBoxes floats, see Link::bounds
     std::vector<OriginId> origins;            ///< origin registers

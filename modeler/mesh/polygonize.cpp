@@ -30,6 +30,7 @@ struct Scratch {
     BlockVertices vertices;
     BrickVertices joined;
     Counts counts;
+    eval::Tally tally;
 };
 
 /// Bytes the result holds so far, against the budget.
@@ -123,6 +124,7 @@ Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, cons
     mesh.chunks.resize(blocks.size());
     std::vector<BlockSurface> surfaces(blocks.size());
     std::vector<Scratch> scratch(static_cast<size_t>(threadCount(options.threads)));
+    for (Scratch& s : scratch) s.workspace.tallyInto(options.tally ? &s.tally : nullptr);
 
     if (progress) progress->begin("sample", blocks.size());
     parallelFor(blocks.size(), options.threads, progress, [&](size_t b, int worker) {
@@ -141,7 +143,10 @@ Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, cons
     }
     if (std::max(vertices, triangles) >= std::numeric_limits<uint32_t>::max())
         return Error{Error::Kind::Budget, "the mesh has more than 2^32 vertices or triangles: choose larger cells"};
-    for (const Scratch& s : scratch) counts += s.counts;
+    for (const Scratch& s : scratch) {
+        counts += s.counts;
+        for (const auto& [operation, points] : s.tally) (*options.tally)[operation] += points;
+    }
     counts.sampleSeconds += sampling.seconds();
 
     const Stopwatch joining;

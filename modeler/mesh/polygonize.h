@@ -5,6 +5,7 @@
 
 #include "modeler/core/progress.h"
 #include "modeler/core/result.h"
+#include "modeler/eval/tally.h"
 #include "modeler/mesh/mesh.h"
 #include "modeler/mesh/subdivide.h"
 
@@ -14,6 +15,7 @@ struct PolygonizeOptions {
     int threads = 0;      ///< 0 = all
     int refineSteps = 3;  ///< root-finding steps a vertex after linear interpolation; 0 = the paper's interpolation
     uint64_t memoryBudget_bytes = 8ull << 30;  ///< Error::Budget beyond
+    eval::Tally* tally = nullptr;              ///< adds up the operations that samples and vertices took
 };
 
 Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options,

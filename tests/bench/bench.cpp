@@ -1,4 +1,4 @@
-// bench: field to mesh beside a dense sweep, OpenVDB and the limits of the machine, all measured in one run.
+// bench: field to mesh beside dense sweeps, OpenVDB, VTK and the limits of the machine, all measured in one run.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -18,7 +18,7 @@ struct Request {
     std::vector<int> resolutions;
     MeasureOptions measure;
     std::string json;
-    bool noPeers = false;
+    bool bars = false, cpu = false, noPeers = false, noDense = false;
 };
 
 void addOptions(CLI::App& app, Request& request) {
@@ -28,16 +28,19 @@ void addOptions(CLI::App& app, Request& request) {
     app.add_option("--resolution", request.resolutions,
                    "Cells along the longest side (default 256); may be given again")
         ->check(CLI::Range(2, 8192));
-    app.add_option("--threads", request.measure.threads, "Threads (0: all)")
+    app.add_option("--threads", request.measure.running.threads, "Threads (0: all)")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
-    app.add_option("--repeats", request.measure.repeats, "Runs of ours; the best counts")
+    app.add_option("--repeats", request.measure.repeats, "Rounds; of every contestant the best run counts")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    app.add_option("--dense-slabs", request.measure.denseSlabs,
-                   "Slabs of the dense sweep to measure, scaled up (0: all where that takes up to 15 s)")
-        ->check(CLI::Range(0, 1024));
-    app.add_flag("--no-peers", request.noPeers, "Leave OpenVDB out");
+    app.add_flag(
+        "--cpu", request.cpu,
+        "Count the processor's time over the threads instead of the wall's: for machines busy with other work");
+    app.add_flag("--bars", request.bars,
+                 "Judge the bars of docs/performance.md; all their scenes and resolutions, unless some are given");
+    app.add_flag("--no-dense", request.noDense, "Leave the dense sweeps out");
+    app.add_flag("--no-peers", request.noPeers, "Leave OpenVDB and VTK out");
     app.add_option("--json", request.json, "Write all figures to this file");
 }
 
@@ -45,7 +48,10 @@ void addOptions(CLI::App& app, Request& request) {
 Result<std::vector<SceneEntry>> chooseScenes(const Request& request) {
     std::vector<std::string> names = request.scenes;
     if (names.empty() && request.files.empty())
-        names = {"grotto", "cumulus", "tower", "S1", "S3", "S4", "S5", "S6", "S7"};
+        names = request.bars
+                    ? std::vector<std::string>{"S1", "S2-csg-4", "S2-folded-4", "S3", "S4", "S5",
+                                               "S6", "S7",       "S8",          "S9", "S10"}
+                    : std::vector<std::string>{"grotto", "cumulus", "tower", "S1", "S3", "S4", "S5", "S6", "S7"};
     std::vector<SceneEntry> chosen;
     for (const std::string& name : names) {
         const auto found = findScenes(name);
@@ -62,7 +68,9 @@ Status measureAll(const Request& request, const std::vector<SceneEntry>& scenes,
         const auto scene = loadScene(entry);
         if (!scene.ok()) return scene.error();
         for (const int resolution : request.resolutions) {
-            const auto m = measure(*scene, resolution, request.measure);
+            MeasureOptions options = request.measure;
+            options.oneThread = request.bars && resolution == 512 && options.running.threads > 1;
+            const auto m = measure(*scene, resolution, options);
             if (!m.ok()) return Error{m.error().kind, fmt::format("{}: {}", entry.name, m.error().message)};
             fmt::print("{}\n", tableRow(*m, limits));
             std::fflush(stdout);
@@ -81,22 +89,31 @@ int fail(const Error& error) {
 
 int main(int argc, char** argv) {
     Request request;
-    CLI::App app{"bench: field to mesh against a dense SIMD sweep of the same tape, OpenVDB and the machine's limits"};
+    CLI::App app{"bench: field to mesh beside dense SIMD sweeps, OpenVDB, VTK and the machine's limits"};
     addOptions(app, request);
     CLI11_PARSE(app, argc, argv);
-    if (request.resolutions.empty()) request.resolutions = {256};
-    request.measure.threads = threadCount(request.measure.threads);
+    if (request.resolutions.empty())
+        request.resolutions = request.bars ? std::vector<int>{64, 256, 512} : std::vector<int>{256};
+    request.measure.running.threads = threadCount(request.measure.running.threads);
+    if (request.cpu) request.measure.running.clock = Clock::Processor;
     request.measure.peers = !request.noPeers;
+    request.measure.dense = !request.noDense;
 
     const auto scenes = chooseScenes(request);
     if (!scenes.ok()) return fail(scenes.error());
-    const Limits limits = measureLimits(request.measure.threads);
-    fmt::print("{}\n{}\n", limitsLine(limits, request.measure.threads), tableHeader());
+    const Limits limits = measureLimits(request.measure.running);
+    fmt::print("{}\n{}\n", limitsLine(limits, request.measure.running.threads), tableHeader());
     std::vector<Measurement> measurements;
     if (Status status = measureAll(request, *scenes, limits, measurements); !status) return fail(status.error());
+    std::vector<Bar> bars;
+    if (request.bars) {
+        bars = judge(measurements, limits);
+        fmt::print("\n");
+        for (const Bar& bar : bars) fmt::print("{}\n", barLine(bar));
+    }
     if (request.json.empty()) return 0;
     std::ofstream file(request.json, std::ios::binary);
-    file << toJson(measurements, limits, request.measure.threads);
+    file << toJson(measurements, bars, limits, request.measure.running.threads);
     file.close();
     return file ? 0 : fail({Error::Kind::Input, "can't write " + request.json});
 }

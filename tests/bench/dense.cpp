@@ -5,12 +5,12 @@
 #include "modeler/core/parallel.h"
 #include "modeler/mesh/marching_cubes.h"
 #include "modeler/mesh/mesh.h"
-#include "tests/bench/stopwatch.h"
 
 namespace sgm::bench {
 namespace {
 
 constexpr int slabLayers = 32;
+constexpr int thinLayers = 8;       ///< of a part that stands for the whole
 constexpr int pointsAtOnce = 2048;  ///< their coordinates stay in cache
 
 /// Calls body(i, byte) for every byte that is neither 0 nor 255, eight at a time where all are alike.
@@ -26,44 +26,70 @@ void forEachMixed(const uint8_t* bytes, int n, Body&& body) {
     }
 }
 
+/// Samples planes of a grid, a few rows at a time, for one worker.
+class PlaneSampler {
+public:
+    PlaneSampler(const Sampler& sampler, const mesh::Grid& grid, int worker)
+        : sampler_(sampler), grid_(grid), worker_(worker) {}
+
+    /// All corners of plane `k`, x fastest.
+    void sample(int k, float* out) {
+        const int nx = grid_.cells.x + 1, ny = grid_.cells.y + 1, rows = std::max(1, pointsAtOnce / nx);
+        const auto at = [&](int i, int j) {
+            return static_cast<size_t>(j) * static_cast<size_t>(nx) + static_cast<size_t>(i);
+        };
+        const size_t room = at(0, rows);
+        x_.resize(room), y_.resize(room), z_.assign(room, grid_.corner(0, 0, k).z);
+        for (int j = 0; j < rows; ++j)
+            for (int i = 0; i < nx; ++i) x_[at(i, j)] = grid_.corner(i, 0, 0).x;
+        for (int j0 = 0; j0 < ny; j0 += rows) {
+            const int count = std::min(rows, ny - j0);
+            for (int j = 0; j < count; ++j) std::fill_n(y_.data() + at(0, j), nx, grid_.corner(0, j0 + j, 0).y);
+            sampler_({x_.data(), y_.data(), z_.data(), at(0, count)}, out + at(0, j0), worker_);
+        }
+    }
+
+private:
+    const Sampler& sampler_;
+    const mesh::Grid& grid_;
+    int worker_;
+    std::vector<float> x_, y_, z_;
+};
+
 /// Samples of one plane, which of them are inside, and the vertices on its edges.
 struct Plane {
-    std::vector<float> values;
+    const float* values = nullptr;
     std::vector<uint8_t> inside;         ///< 1 or 0
     std::vector<uint32_t> xEdge, yEdge;  ///< vertex on the edge that starts at a corner; only set where one is
 
-    explicit Plane(size_t corners) : values(corners), inside(corners), xEdge(corners), yEdge(corners) {}
+    explicit Plane(size_t corners) : inside(corners), xEdge(corners), yEdge(corners) {}
 };
 
 /// A slab of layers on its way to triangles.
 class Slab {
 public:
-    Slab(const Sampler& sampler, const mesh::Grid& grid, int worker)
-        : sampler_(sampler),
-          grid_(grid),
-          worker_(worker),
+    explicit Slab(const mesh::Grid& grid)
+        : grid_(grid),
           n_(grid.cells + Vec3i{1, 1, 1}),
           lower_(corners()),
           upper_(corners()),
           zEdge_(corners()),
           row_(static_cast<size_t>(n_.x) + 8) {}
 
-    /// Layers [first, last) of cells.
-    void run(int first, int last) {
-        evaluate(first);
+    /// Layers [first, last) of cells; plane(k) gives the samples of plane k, valid until the next but one is asked for.
+    template <class PlaneOf>
+    void run(int first, int last, PlaneOf&& plane) {
+        enter(plane(first));
         for (int k = first; k < last; ++k) {
             std::swap(lower_, upper_);
-            evaluate(k + 1);
-            const Stopwatch joining;
+            enter(plane(k + 1));
             if (k == first) addPlaneVertices(lower_, k);
             addPlaneVertices(upper_, k + 1);
             addUprightVertices(k);
             for (int j = 0; j < grid_.cells.y; ++j) joinRow(j);
-            polygonizeSeconds += joining.seconds();
         }
     }
 
-    double evaluateSeconds = 0, polygonizeSeconds = 0;
     std::vector<Vec3f> positions;
     std::vector<mesh::Triangle> triangles;
 
@@ -73,21 +99,9 @@ private:
         return static_cast<size_t>(j) * static_cast<size_t>(n_.x) + static_cast<size_t>(i);
     }
 
-    /// Samples plane `k` into the upper one.
-    void evaluate(int k) {
-        const Stopwatch sampling;
-        const int rows = std::max(1, pointsAtOnce / n_.x);
-        const size_t room = at(0, rows);
-        x_.resize(room), y_.resize(room), z_.assign(room, grid_.corner(0, 0, k).z);
-        for (int j = 0; j < rows; ++j)
-            for (int i = 0; i < n_.x; ++i) x_[at(i, j)] = grid_.corner(i, 0, 0).x;
-        for (int j0 = 0; j0 < n_.y; j0 += rows) {
-            const int count = std::min(rows, n_.y - j0);
-            for (int j = 0; j < count; ++j) std::fill_n(y_.data() + at(0, j), n_.x, grid_.corner(0, j0 + j, 0).y);
-            sampler_({x_.data(), y_.data(), z_.data(), at(0, count)}, upper_.values.data() + at(0, j0), worker_);
-        }
-        for (size_t c = 0; c < upper_.values.size(); ++c) upper_.inside[c] = upper_.values[c] < 0 ? 1 : 0;
-        evaluateSeconds += sampling.seconds();
+    void enter(const float* values) {
+        upper_.values = values;
+        for (size_t c = 0; c < upper_.inside.size(); ++c) upper_.inside[c] = values[c] < 0 ? 1 : 0;
     }
 
     /// Where the line between two samples of different sign crosses zero; both at corners of the grid.
@@ -100,7 +114,7 @@ private:
 
     void addPlaneVertices(Plane& plane, int k) {
         for (int j = 0; j < n_.y; ++j) {
-            const float* v = plane.values.data() + at(0, j);
+            const float* v = plane.values + at(0, j);
             const uint8_t* in = plane.inside.data() + at(0, j);
             for (int i = 0; i + 1 < n_.x; ++i) row_[i] = in[i] ^ in[i + 1];
             forEachMixed(row_.data(), n_.x - 1, [&](int i, uint8_t) {
@@ -151,46 +165,124 @@ private:
         });
     }
 
-    const Sampler& sampler_;
     const mesh::Grid& grid_;
-    int worker_;
     Vec3i n_;  ///< corners
     Plane lower_, upper_;
     std::vector<uint32_t> zEdge_;
     std::vector<uint8_t> row_;
-    std::vector<float> x_, y_, z_;
 };
+
+/// Layers [first, last) that are swept as one task, and what that took and gave.
+struct Part {
+    int first = 0, last = 0;
+    double evaluateSeconds = 0, polygonizeSeconds = 0;
+    std::vector<Vec3f> positions = {};
+    std::vector<mesh::Triangle> triangles = {};
+
+    void take(Slab& slab) { positions = std::move(slab.positions), triangles = std::move(slab.triangles); }
+};
+
+std::vector<Part> partsOf(int layers, int threads, bool inPart) {
+    std::vector<Part> parts;
+    if (!inPart) {
+        for (int k = 0; k < layers; k += slabLayers)
+            parts.push_back({.first = k, .last = std::min(k + slabLayers, layers)});
+        return parts;
+    }
+    for (int t = 0; t < threads; ++t) {
+        const int middle = (2 * t + 1) * layers / (2 * threads);
+        parts.push_back(
+            {.first = std::max(0, middle - thinLayers / 2), .last = std::min(layers, middle + thinLayers / 2)});
+    }
+    return parts;
+}
+
+/// Each part samples its planes into two buffers of its own and joins them at once.
+void sweepFused(const Sampler& sampler, const mesh::Grid& grid, Running running, std::vector<Part>& parts) {
+    const size_t planeSize = static_cast<size_t>(grid.cells.x + 1) * static_cast<size_t>(grid.cells.y + 1);
+    parallelFor(parts.size(), running.threads, nullptr, [&](size_t i, int worker) {
+        const Stopwatch whole(running.clock);
+        Part& part = parts[i];
+        PlaneSampler planes(sampler, grid, worker);
+        std::vector<float> buffers(2 * planeSize);
+        Slab slab(grid);
+        slab.run(part.first, part.last, [&](int k) {
+            const Stopwatch sampling(running.clock);
+            float* const buffer = buffers.data() + static_cast<size_t>(k & 1) * planeSize;
+            planes.sample(k, buffer);
+            part.evaluateSeconds += sampling.seconds();
+            return buffer;
+        });
+        part.polygonizeSeconds = whole.seconds() - part.evaluateSeconds;
+        part.take(slab);
+    });
+}
+
+/// First all samples into memory, then marching cubes over them. Gives the memory; parts that don't meet lie a plane
+/// apart.
+std::shared_ptr<float[]> sweepStored(const Sampler& sampler, const mesh::Grid& grid, Running running, bool inPart,
+                                     std::vector<Part>& parts) {
+    const size_t planeSize = static_cast<size_t>(grid.cells.x + 1) * static_cast<size_t>(grid.cells.y + 1);
+    struct Place {
+        int k;
+        size_t part;
+    };
+    std::vector<Place> planes;                // in memory's order
+    std::vector<size_t> begin(parts.size());  // first plane of each part
+    for (size_t i = 0; i < parts.size(); ++i) {
+        if (inPart && i > 0) planes.push_back({parts[i - 1].last, i - 1});
+        begin[i] = planes.size();
+        for (int k = parts[i].first; k < parts[i].last; ++k) planes.push_back({k, i});
+    }
+    planes.push_back({parts.back().last, parts.size() - 1});
+    std::shared_ptr<float[]> values(new float[planes.size() * planeSize]);  // not cleared: every value is written
+    std::vector<double> seconds(planes.size());
+    parallelFor(planes.size(), running.threads, nullptr, [&](size_t p, int worker) {
+        const Stopwatch sampling(running.clock);
+        PlaneSampler(sampler, grid, worker).sample(planes[p].k, values.get() + p * planeSize);
+        seconds[p] = sampling.seconds();
+    });
+    for (size_t p = 0; p < planes.size(); ++p) parts[planes[p].part].evaluateSeconds += seconds[p];
+    parallelFor(parts.size(), running.threads, nullptr, [&](size_t i, int) {
+        const Stopwatch joining(running.clock);
+        Slab slab(grid);
+        slab.run(parts[i].first, parts[i].last, [&](int k) {
+            return values.get() + (begin[i] + static_cast<size_t>(k - parts[i].first)) * planeSize;
+        });
+        parts[i].take(slab);
+        parts[i].polygonizeSeconds = joining.seconds();
+    });
+    return values;
+}
 
 }  // namespace
 
-DenseResult sweepDense(const Sampler& sampler, const mesh::Grid& grid, int threads, int maxSlabs) {
+DenseResult sweepDense(Sweep kind, const Sampler& sampler, const mesh::Grid& grid, Running running, bool inPart) {
+    const int workers = running.threads;
+    std::vector<Part> parts = partsOf(grid.cells.z, workers, inPart);
     DenseResult result;
-    result.slabs = (grid.cells.z + slabLayers - 1) / slabLayers;
-    result.slabsMeasured = maxSlabs > 0 ? std::min(maxSlabs, result.slabs) : result.slabs;
-    const int workers = threadCount(threads);
-    std::vector<DenseResult> parts(static_cast<size_t>(result.slabsMeasured));
-    std::vector<std::vector<Vec3f>> positions(parts.size());
-    std::vector<std::vector<mesh::Triangle>> triangles(parts.size());
-
-    const Stopwatch whole;
-    parallelFor(parts.size(), threads, nullptr, [&](size_t s, int worker) {
-        const int slab = static_cast<int>((2 * s + 1) * static_cast<size_t>(result.slabs) / (2 * parts.size()));
-        Slab work(sampler, grid, worker);
-        work.run(slab * slabLayers, std::min((slab + 1) * slabLayers, grid.cells.z));
-        parts[s].evaluateSeconds = work.evaluateSeconds;
-        parts[s].polygonizeSeconds = work.polygonizeSeconds;
-        positions[s] = std::move(work.positions);
-        triangles[s] = std::move(work.triangles);
-    });
-    const double scale = static_cast<double>(result.slabs) / result.slabsMeasured;
-    result.seconds = whole.seconds() * scale;
-    uint64_t count = 0;
-    for (size_t s = 0; s < parts.size(); ++s) {
-        result.evaluateSeconds += parts[s].evaluateSeconds * scale / workers;
-        result.polygonizeSeconds += parts[s].polygonizeSeconds * scale / workers;
-        count += triangles[s].size();
+    const Stopwatch whole(running);
+    if (kind == Sweep::Fused)
+        sweepFused(sampler, grid, running, parts);
+    else
+        result.values = sweepStored(sampler, grid, running, inPart, parts);
+    result.seconds = whole.seconds();
+    int layers = 0;
+    for (const Part& part : parts) {
+        layers += part.last - part.first;
+        result.evaluateSeconds += part.evaluateSeconds / workers;
+        result.polygonizeSeconds += part.polygonizeSeconds / workers;
+        result.triangles += part.triangles.size();
     }
-    result.triangles = static_cast<uint64_t>(static_cast<double>(count) * scale);
+    result.scaled = inPart;
+    if (!inPart) return result;
+    // A part evaluates a plane more than it has layers.
+    const double scale = static_cast<double>(grid.cells.z) / layers;
+    const double planes = static_cast<double>(grid.cells.z + 1) / (layers + static_cast<int>(parts.size()));
+    result.evaluateSeconds *= planes, result.polygonizeSeconds *= scale;
+    result.seconds = result.evaluateSeconds + result.polygonizeSeconds;
+    result.triangles = static_cast<uint64_t>(static_cast<double>(result.triangles) * scale);
+    result.values.reset();
     return result;
 }
 

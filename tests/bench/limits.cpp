@@ -11,7 +11,6 @@
 
 #include "modeler/core/parallel.h"
 #include "modeler/eval/evaluate.h"
-#include "tests/bench/stopwatch.h"
 
 namespace sgm::bench {
 namespace {
@@ -68,24 +67,25 @@ FusedLoop fusedLoop() {
 
 /// Least seconds of a few tries of body(thread) on all threads.
 template <class Body>
-double bestSeconds(int threads, Body&& body) {
+double bestSeconds(Running running, Body&& body) {
     double best = 1e30;
     for (int t = 0; t < tries; ++t) {
-        const Stopwatch watch;
-        parallelFor(static_cast<size_t>(threads), threads, nullptr, [&](size_t thread, int) { body(thread); });
+        const Stopwatch watch(running);
+        parallelFor(static_cast<size_t>(running.threads), running.threads, nullptr,
+                    [&](size_t thread, int) { body(thread); });
         best = std::min(best, watch.seconds());
     }
     return best;
 }
 
-double fusedGflops(int threads) {
-    std::vector<float> results(static_cast<size_t>(threads));
+double fusedGflops(Running running) {
+    std::vector<float> results(static_cast<size_t>(running.threads));
     std::vector<int> lanes(results.size());
     const FusedLoop loop = fusedLoop();
-    const double seconds = bestSeconds(threads, [&](size_t t) { results[t] = loop(lanes[t]); });
+    const double seconds = bestSeconds(running, [&](size_t t) { results[t] = loop(lanes[t]); });
     // Reading the results keeps the loops from being dropped.
     const bool sane = std::all_of(results.begin(), results.end(), [](float r) { return r > 0; });
-    return sane ? 2e-9 * rounds * chains * lanes[0] * threads / seconds : 0;
+    return sane ? 2e-9 * rounds * chains * lanes[0] * running.threads / seconds : 0;
 }
 
 }  // namespace
@@ -101,19 +101,20 @@ std::string_view instructionSet() {
     }
 }
 
-Limits measureLimits(int threads) {
-    const int n = threadCount(threads);
+Limits measureLimits(Running running) {
+    const int n = running.threads;
     std::vector<std::unique_ptr<char[]>> from(static_cast<size_t>(n)), to(from.size());
     const auto fresh = [&](size_t t) {
         to[t].reset(new char[bytesAThread]);
         std::memset(to[t].get(), 1, bytesAThread);
     };
-    const double freshSeconds = bestSeconds(n, fresh);
+    const double freshSeconds = bestSeconds(running, fresh);
     for (auto& f : from) f = std::make_unique<char[]>(bytesAThread);
-    const double writeSeconds = bestSeconds(n, [&](size_t t) { std::memset(to[t].get(), 2, bytesAThread); });
-    const double copySeconds = bestSeconds(n, [&](size_t t) { std::memcpy(to[t].get(), from[t].get(), bytesAThread); });
+    const double writeSeconds = bestSeconds(running, [&](size_t t) { std::memset(to[t].get(), 2, bytesAThread); });
+    const double copySeconds =
+        bestSeconds(running, [&](size_t t) { std::memcpy(to[t].get(), from[t].get(), bytesAThread); });
     const double gigabytes = 1e-9 * static_cast<double>(bytesAThread) * n;
-    return {fusedGflops(n), gigabytes / writeSeconds, gigabytes / freshSeconds, gigabytes / copySeconds};
+    return {fusedGflops(running), gigabytes / writeSeconds, gigabytes / freshSeconds, gigabytes / copySeconds};
 }
 
 }  // namespace sgm::bench

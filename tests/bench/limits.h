@@ -1,8 +1,10 @@
 // What the machine can do at best, measured on the spot.
-// Enters: a number of threads. Leaves: rates. Assumes nothing else runs; the best of a few tries counts.
+// Enters: a number of threads and a clock. Leaves: rates. Assumes nothing else runs; the best of a few tries counts.
 #pragma once
 
 #include <string_view>
+
+#include "tests/bench/stopwatch.h"
 
 namespace sgm::bench {
 
@@ -13,7 +15,7 @@ struct Limits {
     double copyGBs = 0;        ///< 10⁹ byte/s read plus as many written
 };
 
-Limits measureLimits(int threads);
+Limits measureLimits(Running running);
 /// The widest instruction set used, "AVX-512", "AVX2" or "portable".
 std::string_view instructionSet();
 

@@ -1,48 +1,48 @@
 #include "tests/bench/measure.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "modeler/mesh/polygonize.h"
 #include "tests/bench/memory.h"
-#include "tests/bench/stopwatch.h"
+#include "tests/bench/operation_times.h"
 
 namespace sgm::bench {
 namespace {
 
-constexpr double quickSeconds = 1;  ///< sweeps are repeated only while all of them together took less
-constexpr double longSeconds = 15;  ///< longer ones are measured in part
+constexpr double patience_s = 4;   ///< of one contestant, over all rounds
+constexpr double longSeconds = 3;  ///< sweeps that would take longer are measured in part
+constexpr double mostVtkCorners = 3e8;
 
-/// One run from tape to mesh; sets `out` where it is the fastest so far.
-Status runOurs(const Scene& scene, const mesh::Grid& grid, int threads, Measurement& out) {
-    mesh::Counts counts;
-    const Stopwatch watch;
-    const auto blocks = mesh::subdivide(scene.tape, grid, threads, nullptr, counts);
-    if (!blocks.ok()) return blocks.error();
-    const auto mesh = mesh::polygonize(*blocks, grid, {.threads = threads}, nullptr, counts);
-    if (!mesh.ok()) return mesh.error();
-    const double seconds = watch.seconds();
-    if (out.totalSeconds > 0 && seconds >= out.totalSeconds) return Done{};
-    out.totalSeconds = seconds;
-    out.counts = counts;
-    out.vertices = mesh->vertexCount();
-    out.triangles = mesh->triangleCount();
-    return Done{};
+/// `grid` grown by whole cells to a cube around the same middle: what a program takes that asks for one resolution.
+mesh::Grid cubeOf(mesh::Grid grid) {
+    const int n = maxComponent(grid.cells);
+    for (int axis = 0; axis < 3; ++axis) {
+        grid.origin[axis] -= grid.cell_m * static_cast<float>((n - grid.cells[axis]) / 2);
+        grid.cells[axis] = n;
+    }
+    return grid;
 }
 
-/// The sweep of the whole grid, or of `maxSlabs` slabs; where that would be long, of one slab a thread, scaled up.
-/// Quick ones are repeated, and the best counts.
-DenseResult bestDense(const Sampler& sampler, const mesh::Grid& grid, const MeasureOptions& options) {
-    DenseResult best =
-        sweepDense(sampler, grid, options.threads, options.denseSlabs > 0 ? options.denseSlabs : options.threads);
-    if (options.denseSlabs > 0 || best.seconds > longSeconds) return best;
-    best = sweepDense(sampler, grid, options.threads, 0);
-    double spent = best.seconds;
-    for (int r = 1; r < options.repeats && spent < quickSeconds; ++r) {
-        const DenseResult again = sweepDense(sampler, grid, options.threads, 0);
-        spent += again.seconds;
-        if (again.seconds < best.seconds) best = again;
-    }
-    return best;
+/// One run from tape to mesh, on `m`'s cube; `seconds` and `counts` keep the best.
+Status runOurs(const Scene& scene, const mesh::Grid& grid, Running running, eval::Tally* tally, double& best,
+               Measurement& m, mesh::Counts& counts) {
+    mesh::Counts now;
+    const Stopwatch watch(running), wall;
+    const auto blocks = mesh::subdivide(scene.tape, grid, running.threads, nullptr, now);
+    if (!blocks.ok()) return blocks.error();
+    const auto mesh = mesh::polygonize(*blocks, grid, {.threads = running.threads, .tally = tally}, nullptr, now);
+    if (!mesh.ok()) return mesh.error();
+    const double seconds = watch.seconds(), wallSeconds = wall.seconds();
+    m.vertices = mesh->vertexCount();
+    m.triangles = mesh->triangleCount();
+    if (best > 0 && seconds >= best) return Done{};
+    best = seconds;
+    counts = now;
+    // Stages are told by the wall.
+    for (double* stage : {&counts.subdivideSeconds, &counts.sampleSeconds, &counts.polygonizeSeconds})
+        *stage *= seconds / wallSeconds;
+    return Done{};
 }
 
 /// The hand-written reference where the scene has one, else its tape.
@@ -53,34 +53,104 @@ Sampler samplerOf(const Scene& scene, std::vector<eval::Workspace>& workspaces) 
     };
 }
 
+/// One of those that are measured in turns.
+struct Contestant {
+    std::function<Status()> run;
+    double spent_s = 0;
+};
+
+/// A sweep; `best` keeps the fastest. Where the whole would be long, parts are measured.
+Contestant sweeper(Sweep kind, const Sampler& sampler, const mesh::Grid& grid, Running running, DenseResult& best,
+                   VtkResult* vtk) {
+    return {[=, &sampler, &best]() -> Status {
+        DenseResult now;
+        if (best.seconds == 0 || best.scaled) now = sweepDense(kind, sampler, grid, running, true);
+        if (!(now.seconds > longSeconds)) now = sweepDense(kind, sampler, grid, running, false);
+        if (vtk && now.values && static_cast<double>(grid.cells.x) * grid.cells.y * grid.cells.z < mostVtkCorners) {
+            const VtkResult v =
+                measureVtk(now.values.get(), {grid.cells.x + 1, grid.cells.y + 1, grid.cells.z + 1}, running);
+            if (vtk->seconds == 0 || v.seconds < vtk->seconds) *vtk = v;
+        }
+        now.values.reset();
+        if (best.seconds == 0 || now.seconds < best.seconds) best = now;
+        return Done{};
+    }};
+}
+
+Contestant openVdb(const Scene& scene, const mesh::Grid& grid, Running running, OpenVdbResult& best) {
+    return {[&scene, grid, running, &best]() -> Status {
+        mesh::Counts ignored;
+        const auto blocks = mesh::subdivide(scene.tape, grid, running.threads, nullptr, ignored);
+        if (!blocks.ok()) return blocks.error();
+        const auto now = measureOpenVdb(*blocks, scene.tape, grid, running);
+        if (!now.ok()) return now.error();
+        if (best.triangles == 0 || now->sampleSeconds + now->meshSeconds < best.sampleSeconds + best.meshSeconds)
+            best = *now;
+        return Done{};
+    }};
+}
+
+Status takeTurns(std::vector<Contestant>& contestants, int rounds) {
+    for (int r = 0; r < rounds; ++r)
+        for (Contestant& c : contestants) {
+            if (r > 0 && c.spent_s > patience_s) continue;
+            const Stopwatch watch;
+            if (Status status = c.run(); !status) return status;
+            c.spent_s += watch.seconds();
+        }
+    return Done{};
+}
+
+/// The least time of what one run's samples and vertices are made of.
+Result<double> leastSampleSeconds(const Scene& scene, const mesh::Grid& grid, Running running) {
+    eval::Tally tally;
+    Measurement ignored;
+    double seconds = 0;
+    if (Status status = runOurs(scene, grid, running, &tally, seconds, ignored, ignored.counts); !status)
+        return status.error();
+    return leastSeconds(tally) / running.threads;
+}
+
 }  // namespace
 
 Result<Measurement> measure(const Scene& scene, int resolution, const MeasureOptions& options) {
     const Box3f bounds = scene.model->field.bounds;
-    const mesh::Grid grid = mesh::gridFor(bounds, mesh::cellFor(bounds, resolution));
+    const mesh::Grid tight = mesh::gridFor(bounds, mesh::cellFor(bounds, resolution)), cube = cubeOf(tight);
+    const Running running = options.running;
     Measurement m;
     m.scene = scene.name;
     m.resolution = resolution;
+    m.cells = cube.cells;
     m.tapeLength = scene.tape.size();
     m.deriveSeconds = scene.deriveSeconds;
     m.lowerSeconds = scene.lowerSeconds;
     m.compileSeconds = scene.compileSeconds;
-    const PeakMemory peak;
-    for (int r = 0; r < options.repeats; ++r) {
-        if (Status status = runOurs(scene, grid, options.threads, m); !status) return status.error();
-        if (r == 0) m.peakBytes = peak.bytes();
-    }
-    std::vector<eval::Workspace> workspaces(static_cast<size_t>(options.threads));
-    m.dense = bestDense(samplerOf(scene, workspaces), grid, options);
     m.handWritten = scene.reference.has_value();
-    if (options.peers) {
-        mesh::Counts ignored;
-        const auto blocks = mesh::subdivide(scene.tape, grid, options.threads, nullptr, ignored);
-        if (!blocks.ok()) return blocks.error();
-        const auto openvdb = measureOpenVdb(*blocks, scene.tape, grid, options.threads);
-        if (!openvdb.ok()) return openvdb.error();
-        m.openvdb = *openvdb;
+
+    std::vector<eval::Workspace> workspaces(static_cast<size_t>(running.threads));
+    const Sampler sampler = samplerOf(scene, workspaces);
+    mesh::Counts ignored;
+    const PeakMemory peak;
+    std::vector<Contestant> contestants{{[&] {
+        const Status status = runOurs(scene, cube, running, nullptr, m.totalSeconds, m, m.counts);
+        if (m.peakBytes == 0) m.peakBytes = peak.bytes();
+        return status;
+    }}};
+    if (options.oneThread)
+        contestants.push_back({[&] {
+            return runOurs(scene, cube, {1, running.clock}, nullptr, m.oneThreadSeconds, m, ignored);
+        }});
+    if (options.dense) {
+        contestants.push_back(
+            sweeper(Sweep::Stored, sampler, cube, running, m.dense, options.peers ? &m.vtk : nullptr));
+        contestants.push_back(sweeper(Sweep::Fused, sampler, cube, running, m.fused, nullptr));
+        contestants.push_back(sweeper(Sweep::Fused, sampler, tight, running, m.tight, nullptr));
     }
+    if (options.peers) contestants.push_back(openVdb(scene, cube, running, m.openvdb));
+    if (Status status = takeTurns(contestants, options.repeats); !status) return status.error();
+    const auto least = leastSampleSeconds(scene, cube, running);
+    if (!least.ok()) return least.error();
+    m.leastSampleSeconds = *least;
     return m;
 }
 

@@ -1,33 +1,41 @@
-// One scene at one resolution: ours, the dense sweep and the peers.
-// Enters: a scene. Leaves: a Measurement. Assumes a calm machine; the best of a few runs counts, for noise only adds.
+// One scene at one resolution: ours, the dense sweeps and the peers, in turns.
+// Enters: a scene. Leaves: a Measurement. Assumes a calm machine; the best of a few rounds counts, for noise only adds,
+// and all take part in every round, so that a busy stretch of time slows them alike.
 #pragma once
 
 #include "modeler/mesh/mesh.h"
 #include "tests/bench/dense.h"
 #include "tests/bench/peers.h"
 #include "tests/bench/scenes.h"
+#include "tests/bench/vtk.h"
 
 namespace sgm::bench {
 
 struct MeasureOptions {
-    int threads = 2;     ///< at least 1
-    int repeats = 3;     ///< of ours, and of the dense sweep as long as it is quick
-    int denseSlabs = 0;  ///< measure only so many slabs of the dense sweep and scale up; 0: all that take up to 15 s
-    bool peers = true;
+    Running running;
+    int repeats = 3;  ///< rounds; who has used up `patience_s` sits the rest out
+    bool dense = true, peers = true;
+    bool oneThread = false;  ///< ours on one thread too
 };
 
 struct Measurement {
     std::string scene;
     int resolution = 0;
+    Vec3i cells;            ///< a cube for all but `tight`
     size_t tapeLength = 0;  ///< instructions
     double deriveSeconds = 0, lowerSeconds = 0, compileSeconds = 0;
-    double totalSeconds = 0;  ///< tape to mesh: refined positions, normals, triangles, origins
-    mesh::Counts counts;      ///< stages of the best run
+    double totalSeconds = 0;        ///< tape to mesh: refined positions, normals, triangles, origins
+    double oneThreadSeconds = 0;    ///< the same on one thread; 0 where not asked for
+    mesh::Counts counts;            ///< stages of the best run
+    double leastSampleSeconds = 0;  ///< of its operations alone, from register to register, shared by the threads
     uint64_t vertices = 0, triangles = 0;
-    uint64_t peakBytes = 0;  ///< of the first run, above the start
-    DenseResult dense;
-    bool handWritten = false;  ///< the dense sweep ran the hand-written reference, not the tape
+    uint64_t peakBytes = 0;    ///< of the first run, above the start
+    DenseResult dense;         ///< every sample of the cube in memory, then marching cubes
+    DenseResult fused;         ///< the cube, plane by plane
+    DenseResult tight;         ///< the bounds alone, plane by plane: the least that a sweep can do
+    bool handWritten = false;  ///< the sweeps ran the hand-written reference, not the tape
     OpenVdbResult openvdb;
+    VtkResult vtk;
 
     double ratio() const { return dense.seconds / totalSeconds; }
     double nsPerTriangle() const { return 1e9 * totalSeconds / static_cast<double>(std::max<uint64_t>(1, triangles)); }
@@ -35,8 +43,14 @@ struct Measurement {
         return static_cast<double>(counts.pointEvaluations) /
                static_cast<double>(std::max<uint64_t>(1, counts.surfaceCells));
     }
+    double bytesPerTriangle() const {
+        return static_cast<double>(peakBytes) / static_cast<double>(std::max<uint64_t>(1, triangles));
+    }
+    /// The sampling stage over the least time of its operations.
+    double sampleOverLeast() const { return leastSampleSeconds > 0 ? counts.sampleSeconds / leastSampleSeconds : 0; }
     /// What polygonize stores: a triangle's corners and its origin.
     uint64_t polygonizedBytes() const { return triangles * (sizeof(mesh::Triangle) + sizeof(OriginId)); }
+    double openvdbSeconds() const { return openvdb.sampleSeconds + openvdb.meshSeconds; }
 };
 
 /// Errors as of subdivide and polygonize.

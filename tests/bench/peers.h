@@ -6,6 +6,7 @@
 
 #include "modeler/core/result.h"
 #include "modeler/mesh/subdivide.h"
+#include "tests/bench/stopwatch.h"
 
 namespace sgm::bench {
 
@@ -17,6 +18,6 @@ struct OpenVdbResult {
 
 /// Error as of volume::sample.
 Result<OpenVdbResult> measureOpenVdb(const std::vector<mesh::Block>& blocks, const eval::Tape& tape,
-                                     const mesh::Grid& grid, int threads);
+                                     const mesh::Grid& grid, Running running);
 
 }  // namespace sgm::bench

@@ -2,102 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-
-#define SGM_INLINE [[gnu::always_inline]] inline  // into the function of each instruction set
 
 namespace sgm::bench {
 namespace {
-
-constexpr size_t batch = 64;  ///< points whose values stay in registers or next to them
-
-/// Coordinates and values of a batch.
-struct Batch {
-    float x[batch], y[batch], z[batch], part[batch], value[batch], before[batch];
-};
-
-SGM_INLINE float ball(float x, float y, float z, const Primitive& p) {
-    return std::sqrt(x * x + y * y + z * z) - p.half.x;
-}
-SGM_INLINE float box(float x, float y, float z, const Primitive& p) {
-    const float qx = std::abs(x) - p.half.x, qy = std::abs(y) - p.half.y, qz = std::abs(z) - p.half.z;
-    const float ox = std::max(qx, 0.0f), oy = std::max(qy, 0.0f), oz = std::max(qz, 0.0f);
-    return std::sqrt(ox * ox + oy * oy + oz * oz) + std::min(std::max(qx, std::max(qy, qz)), 0.0f);
-}
-SGM_INLINE float morph(float x, float y, float z, const Primitive& p) {
-    const float a = ball(x, y, z, p), b = box(x, y, z, p);
-    return a + p.amount * (b - a);
-}
-SGM_INLINE float roof(float x, float y, float z, const Primitive& p) {
-    const float rise = 2 * p.half.y, foot = y + p.half.y;
-    const float sx = ((std::abs(x) - p.half.x) * rise + foot * p.half.x) / std::sqrt(rise * rise + p.half.x * p.half.x);
-    const float sz = ((std::abs(z) - p.half.z) * rise + foot * p.half.z) / std::sqrt(rise * rise + p.half.z * p.half.z);
-    const float ux = x / p.half.x, uy = foot / rise, uz = z / p.half.z;
-    const float dome = (std::sqrt(ux * ux + uy * uy + uz * uz) - 1) * std::min(std::min(p.half.x, p.half.z), rise);
-    const float sides = std::max(sx, sz);
-    return std::max(sides + p.amount * (dome - sides), box(x, y, z, p));
-}
-
-/// Puts a solid into the part, or cuts it from what is there.
-template <float (*distance)(float, float, float, const Primitive&)>
-SGM_INLINE void join(Batch& b, const Primitive& p, bool cut) {
-    if (cut)
-        for (size_t i = 0; i < batch; ++i)
-            b.part[i] =
-                std::max(b.part[i], -distance(b.x[i] - p.centre.x, b.y[i] - p.centre.y, b.z[i] - p.centre.z, p));
-    else
-        for (size_t i = 0; i < batch; ++i)
-            b.part[i] = distance(b.x[i] - p.centre.x, b.y[i] - p.centre.y, b.z[i] - p.centre.z, p);
-}
-
-SGM_INLINE void evaluateBatch(const Reference& r, Batch& b) {
-    std::fill(std::begin(b.value), std::end(b.value), std::numeric_limits<float>::infinity());
-    for (size_t k = 0; k + 1 < r.first.size(); ++k) {
-        if (k > 0 && k == r.morphTo) {
-            std::copy_n(b.value, batch, b.before);
-            std::fill_n(b.value, batch, std::numeric_limits<float>::infinity());
-        }
-        for (size_t i = r.first[k]; i < r.first[k + 1]; ++i) {
-            const Primitive& p = r.primitives[i];
-            const bool cut = i != r.first[k];
-            switch (p.kind) {
-                case Primitive::Kind::Box:
-                    join<box>(b, p, cut);
-                    break;
-                case Primitive::Kind::Ball:
-                    join<ball>(b, p, cut);
-                    break;
-                case Primitive::Kind::Morph:
-                    join<morph>(b, p, cut);
-                    break;
-                case Primitive::Kind::Roof:
-                    join<roof>(b, p, cut);
-                    break;
-            }
-        }
-        for (size_t i = 0; i < batch; ++i) b.value[i] = std::min(b.value[i], b.part[i]);
-    }
-    if (r.morphTo > 0)
-        for (size_t i = 0; i < batch; ++i) b.value[i] = b.before[i] + r.amount * (b.value[i] - b.before[i]);
-}
-
-using BatchLoop = void (*)(const Reference&, Batch&);
-void batchPortable(const Reference& r, Batch& b) { evaluateBatch(r, b); }
-#if defined(__x86_64__)
-__attribute__((target("avx2,fma"))) void batchAvx2(const Reference& r, Batch& b) { evaluateBatch(r, b); }
-__attribute__((target("avx512f,avx512cd,avx512dq,avx512bw,avx512vl,fma"))) void batchAvx512(const Reference& r,
-                                                                                            Batch& b) {
-    evaluateBatch(r, b);
-}
-#endif
-
-BatchLoop batchLoop() {
-#if defined(__x86_64__)
-    if (eval::bestIsa() == eval::Isa::Avx512) return batchAvx512;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return batchAvx2;
-#endif
-    return batchPortable;
-}
 
 std::optional<Primitive> morphOf(const derive::SolidValue& solid, Primitive p) {
     const auto nameOf = [&](size_t part) {
@@ -125,6 +32,28 @@ std::optional<Primitive> primitiveOf(const derive::SolidValue& solid, const deri
     return p;
 }
 
+std::optional<Fractal> fractalOf(const derive::SolidValue& solid, const derive::Scope& scope) {
+    enum { Center, Scale, Fold, Turn, Passes, Terminal, Form, Bailout };  // arguments, in the row's order
+    if (solid.kind != rules::Solid::Kind::Primitive || solid.primitive->name != "kifs") return std::nullopt;
+    const auto isIdentity = [](const rules::Value& r) {
+        for (size_t i = 0; i < 9; ++i)
+            if (r.n[i] != (i % 4 == 0 ? 1 : 0)) return false;
+        return true;
+    };
+    const auto& args = solid.args;
+    if (!isIdentity(args[Turn]) || args[Form].num() != 0 || args[Bailout].num() > 0) return std::nullopt;
+    Fractal f;
+    f.box = {Primitive::Kind::Box, scope.centre.as<float>(), scope.half().as<float>(), 0};
+    f.passes = static_cast<int>(args[Passes].num());
+    f.cubes = args[Terminal].num() != 0;
+    f.turned = !isIdentity(args[Fold]);
+    f.scale = static_cast<float>(args[Scale].num());
+    const auto component = [&](size_t i) { return static_cast<float>(args[Center].n[args[Center].count > 1 ? i : 0]); };
+    f.scaleCentre = {component(0), component(1), component(2)};
+    for (size_t i = 0; i < 9; ++i) f.fold[i] = static_cast<float>(args[Fold].n[i]);
+    return f;
+}
+
 }  // namespace
 
 // In tree order every cut comes after the solid it is cut from, and all below a cut is cut with it.
@@ -135,13 +64,18 @@ std::optional<Reference> referenceOf(const derive::ShapeTree& tree) {
         const derive::Shape& shape = tree.shapes[id];
         if (shape.op == rules::Operator::Intersection) return std::nullopt;
         if (shape.op == rules::Operator::Morph) {
-            if (shape.parent != 0 || r.first.empty() || r.morphTo > 0) return std::nullopt;
+            if (r.first.empty() || r.morphTo > 0) return std::nullopt;
             r.morphTo = r.first.size();
             r.amount = static_cast<float>(shape.amount);
         }
         cuts[id] = shape.op == rules::Operator::Difference || (shape.parent != derive::none && cuts[shape.parent]);
         const derive::SolidValue* solid = tree.solidOf(id);
         if (!solid || solid->kind == rules::Solid::Kind::Nil) continue;
+        if (r.first.empty() && !r.fractal)
+            r.fractal = fractalOf(*solid, shape.scope);
+        else if (r.fractal)
+            return std::nullopt;
+        if (r.fractal) continue;
         const auto primitive = primitiveOf(*solid, shape.scope);
         if (!primitive || (cuts[id] && r.first.empty())) return std::nullopt;
         if (!cuts[id]) r.first.push_back(r.primitives.size());
@@ -149,20 +83,6 @@ std::optional<Reference> referenceOf(const derive::ShapeTree& tree) {
     }
     r.first.push_back(r.primitives.size());
     return r;
-}
-
-void evaluate(const Reference& reference, eval::Points points, float* out) {
-    const BatchLoop loop = batchLoop();
-    Batch b;
-    for (size_t first = 0; first < points.n; first += batch) {
-        const size_t n = std::min(batch, points.n - first);
-        for (size_t i = 0; i < batch; ++i) {
-            const size_t from = first + std::min(i, n - 1);
-            b.x[i] = points.x[from], b.y[i] = points.y[from], b.z[i] = points.z[from];
-        }
-        loop(reference, b);
-        std::copy_n(b.value, n, out + first);
-    }
 }
 
 bool agrees(const Reference& reference, const eval::Tape& tape, const Box3f& box) {

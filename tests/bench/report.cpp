@@ -9,35 +9,35 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// How many times longer polygonize took than its output needs at the measured bandwidth to fresh pages.
-double polygonizeOverWrite(const Measurement& m, const Limits& limits) {
-    const double floor = static_cast<double>(m.polygonizedBytes()) / (1e9 * limits.freshWriteGBs);
-    return floor > 0 ? m.counts.polygonizeSeconds / floor : 0;
-}
-
-/// What was swept; with a ~ where it was scaled up from a part.
-std::string denseLabel(const Measurement& m) {
-    return std::string(m.handWritten ? "hand" : "tape") + (m.dense.slabsMeasured < m.dense.slabs ? "~" : "");
-}
-
 ordered_json stagesOf(const Measurement& m) {
     return {{"derive_seconds", m.deriveSeconds},        {"lower_seconds", m.lowerSeconds},
             {"compile_seconds", m.compileSeconds},      {"subdivide_seconds", m.counts.subdivideSeconds},
             {"sample_seconds", m.counts.sampleSeconds}, {"polygonize_seconds", m.counts.polygonizeSeconds}};
 }
 
-ordered_json denseOf(const DenseResult& d, bool handWritten) {
-    return {{"evaluate_seconds", d.evaluateSeconds},
+ordered_json sweepOf(const DenseResult& d) {
+    return {{"seconds", d.seconds},
+            {"evaluate_seconds", d.evaluateSeconds},
             {"polygonize_seconds", d.polygonizeSeconds},
             {"triangles", d.triangles},
-            {"slabs", d.slabs},
-            {"slabs_measured", d.slabsMeasured},
-            {"evaluator", handWritten ? "hand-written" : "tape"}};
+            {"scaled_up", d.scaled}};
+}
+
+ordered_json peersOf(const Measurement& m) {
+    ordered_json peers = ordered_json::object();
+    if (m.openvdb.triangles > 0)
+        peers["openvdb"] = {{"sample_seconds", m.openvdb.sampleSeconds},
+                            {"mesh_seconds", m.openvdb.meshSeconds},
+                            {"triangles", m.openvdb.triangles}};
+    if (m.vtk.seconds > 0)
+        peers["vtk_flying_edges"] = {{"mesh_seconds", m.vtk.seconds}, {"triangles", m.vtk.triangles}};
+    return peers;
 }
 
 ordered_json sceneOf(const Measurement& m, const Limits& limits) {
     ordered_json scene = {{"scene", m.scene},
                           {"resolution", m.resolution},
+                          {"cells", {m.cells.x, m.cells.y, m.cells.z}},
                           {"tape_length", m.tapeLength},
                           {"total_seconds", m.totalSeconds},
                           {"dense_seconds", m.dense.seconds},
@@ -51,17 +51,24 @@ ordered_json sceneOf(const Measurement& m, const Limits& limits) {
                           {"interval_evaluations", m.counts.intervalEvaluations},
                           {"refinement_evaluations", m.counts.refinementEvaluations},
                           {"peak_bytes", m.peakBytes},
+                          {"least_sample_seconds", m.leastSampleSeconds},
+                          {"sample_over_least", m.sampleOverLeast()},
                           {"polygonize_over_write", polygonizeOverWrite(m, limits)},
-                          {"dense", denseOf(m.dense, m.handWritten)},
-                          {"peers", ordered_json::object()}};
-    if (m.openvdb.triangles > 0)
-        scene["peers"]["openvdb"] = {{"sample_seconds", m.openvdb.sampleSeconds},
-                                     {"mesh_seconds", m.openvdb.meshSeconds},
-                                     {"triangles", m.openvdb.triangles}};
+                          {"swept_by", m.handWritten ? "hand-written loops" : "tape"},
+                          {"dense", sweepOf(m.dense)},
+                          {"fused", sweepOf(m.fused)},
+                          {"fused_over_bounds_alone", sweepOf(m.tight)},
+                          {"peers", peersOf(m)}};
+    if (m.oneThreadSeconds > 0) scene["one_thread_seconds"] = m.oneThreadSeconds;
     return scene;
 }
 
 }  // namespace
+
+double polygonizeOverWrite(const Measurement& m, const Limits& limits) {
+    const double floor = static_cast<double>(m.polygonizedBytes()) / (1e9 * limits.freshWriteGBs);
+    return floor > 0 ? m.counts.polygonizeSeconds / floor : 0;
+}
 
 std::string limitsLine(const Limits& limits, int threads) {
     return fmt::format(
@@ -71,28 +78,42 @@ std::string limitsLine(const Limits& limits, int threads) {
 
 std::string tableHeader() {
     return fmt::format(
-        "{:12} {:>5} {:>6} | {:>8} {:>8} {:>8} {:>8} | {:>8} {:5} {:>7} | {:>8} {:>8} {:>7} | {:>9} {:>6} {:>6} {:>6} "
-        "{:>5}",
-        "scene", "res", "tape", "total", "descend", "sample", "join", "dense", "of", "ratio", "vdb smp", "vdb mesh",
-        "ratio", "triangles", "ns/tri", "ev/cel", "B/tri", "j/wr");
+        "{:12} {:>4} {:>6} | {:>7} {:>7} {:>7} {:>7} {:>5} {:>5} | {:5} {:>7} {:>7} | {:>7} {:>7} | {:>7} {:>7} | "
+        "{:>7} {:>7} {:>7} | "
+        "{:>7} | {:>8} {:>6} {:>6} {:>5}",
+        "scene", "res", "tape", "total", "descend", "sample", "join", "s/op", "j/wr", "by", "dense", "ratio", "fused",
+        "ratio", "tight", "ratio", "vdb smp", "vdb msh", "ratio", "vtk", "triangle", "ns/tri", "ev/cel", "B/tri");
 }
 
 std::string tableRow(const Measurement& m, const Limits& limits) {
+    const auto seconds = [](double s) { return s > 0 ? fmt::format("{:.4f}", s) : std::string("–"); };
+    const auto ratio = [&](double s) { return s > 0 ? fmt::format("{:.1f}x", s / m.totalSeconds) : std::string("–"); };
+    const auto sweep = [&](const DenseResult& d) {
+        return (d.scaled ? "~" : "") + (d.seconds > 0 ? fmt::format("{:.3f}", d.seconds) : std::string("–"));
+    };
     return fmt::format(
-        "{:12} {:>5} {:>6} | {:>8.4f} {:>8.4f} {:>8.4f} {:>8.4f} | {:>8.3f} {:5} {:>6.1f}x | {:>8.4f} {:>8.4f} "
-        "{:>6.1f}x | "
-        "{:>9} {:>6.1f} {:>6.2f} {:>6.0f} {:>5.1f}",
+        "{:12} {:>4} {:>6} | {:>7.4f} {:>7.4f} {:>7.4f} {:>7.4f} {:>5.1f} {:>5.1f} | {:5} {:>7} {:>7} | {:>7} {:>7} | "
+        "{:>7} {:>7} | "
+        "{:>7} {:>7} {:>7} | {:>7} | {:>8} {:>6.1f} {:>6.2f} {:>5.0f}",
         m.scene, m.resolution, m.tapeLength, m.totalSeconds, m.counts.subdivideSeconds, m.counts.sampleSeconds,
-        m.counts.polygonizeSeconds, m.dense.seconds, denseLabel(m), m.ratio(), m.openvdb.sampleSeconds,
-        m.openvdb.meshSeconds, (m.openvdb.sampleSeconds + m.openvdb.meshSeconds) / m.totalSeconds, m.triangles,
-        m.nsPerTriangle(), m.evaluationsPerCell(),
-        static_cast<double>(m.peakBytes) / static_cast<double>(std::max<uint64_t>(1, m.triangles)),
-        polygonizeOverWrite(m, limits));
+        m.counts.polygonizeSeconds, m.sampleOverLeast(), polygonizeOverWrite(m, limits),
+        m.handWritten ? "hand" : "tape", sweep(m.dense), ratio(m.dense.seconds), sweep(m.fused), ratio(m.fused.seconds),
+        sweep(m.tight), ratio(m.tight.seconds), seconds(m.openvdb.sampleSeconds), seconds(m.openvdb.meshSeconds),
+        ratio(m.openvdbSeconds()), seconds(m.vtk.seconds), m.triangles, m.nsPerTriangle(), m.evaluationsPerCell(),
+        m.bytesPerTriangle());
 }
 
-std::string toJson(const std::vector<Measurement>& measurements, const Limits& limits, int threads) {
-    ordered_json scenes = ordered_json::array();
+std::string toJson(const std::vector<Measurement>& measurements, const std::vector<Bar>& bars, const Limits& limits,
+                   int threads) {
+    ordered_json scenes = ordered_json::array(), judged = ordered_json::array();
     for (const Measurement& m : measurements) scenes.push_back(sceneOf(m, limits));
+    for (const Bar& b : bars)
+        if (b.measured > 0)
+            judged.push_back({{"what", b.what},
+                              {b.atLeast ? "at_least" : "at_most", b.aim},
+                              {"measured", b.measured},
+                              {"reached", b.reached()},
+                              {"remark", b.remark}});
     const ordered_json all = {{"threads", threads},
                               {"limits",
                                {{"instruction_set", instructionSet()},
@@ -100,7 +121,8 @@ std::string toJson(const std::vector<Measurement>& measurements, const Limits& l
                                 {"write_gb_per_second", limits.writeGBs},
                                 {"fresh_write_gb_per_second", limits.freshWriteGBs},
                                 {"copy_gb_per_second", limits.copyGBs}}},
-                              {"scenes", scenes}};
+                              {"scenes", scenes},
+                              {"bars", judged}};
     return all.dump(2) + "\n";
 }
 

@@ -49,6 +49,27 @@ TEST(Tape, HoldsBlendsOfMoreOperandsThanSixteenBits) {
     EXPECT_EQ(values(shorter, cloud)[0], got[0]);
 }
 
+TEST(Tape, ItsOperationsAreCounted) {
+    Graph graph;
+    const Tape tape = compiled(graph, min(graph.x() * graph.z() + graph.y() * graph.z(), graph.y()));
+    Tally tally;
+    Workspace w;
+    w.tallyInto(&tally);
+    const std::vector<float> at(100, 1.0f);
+    std::vector<float> f(100), dx(100), dy(100), dz(100);
+    evaluate(tape, {at.data(), at.data(), at.data(), 100}, f.data(), w);
+    evaluateGradient(tape, {at.data(), at.data(), at.data(), 7}, f.data(), dx.data(), dy.data(), dz.data(), w);
+    using field::codeOf;
+    const Tally expected{{{codeOf<ops::Mul>, 2, 0, false}, 200}, {{codeOf<ops::Add>, 2, 0, false}, 100},
+                         {{codeOf<ops::Min>, 2, 0, false}, 100}, {{codeOf<ops::Mul>, 2, 0, true}, 14},
+                         {{codeOf<ops::Add>, 2, 0, true}, 7},    {{codeOf<ops::Min>, 2, 0, true}, 7}};
+    EXPECT_EQ(tally, expected);
+
+    w.tallyInto(nullptr);
+    evaluate(tape, {at.data(), at.data(), at.data(), 100}, f.data(), w);
+    EXPECT_EQ(tally, expected);
+}
+
 TEST(Tape, FoldsWhatIsConstant) {
     Graph graph;
     const Num a = graph.slot(2), b = graph.slot(3);

@@ -1,0 +1,112 @@
+// Compiled once for each instruction set, with SGM_ISA the namespace. As in modeler/eval/kernels.cpp, nothing here may
+// instantiate an inline function that doesn't depend on Arch.
+#include "modeler/eval/values_dual.h"
+#include "modeler/eval/values_simd.h"
+#include "modeler/field/ops.h"
+#include "tests/bench/operation_times.h"
+
+namespace sgm::bench {
+namespace {
+
+#if defined(__AVX512BW__)
+using Arch = xsimd::avx512bw;
+#elif defined(__AVX2__)
+using Arch = xsimd::avx2;
+#else
+using Arch = xsimd::default_arch;
+#endif
+using Float = eval::Lanes<Arch>;
+using Dual = eval::Dual<Float>;
+
+constexpr int chains = 8;  ///< independent inputs, so that latency doesn't count
+constexpr int tries = 5;
+constexpr double trySeconds = 2e-4;
+constexpr uint32_t mostOperands = 64;  ///< longer lists are measured with so many and scaled
+
+/// Makes the compiler believe that the value was changed, or is needed.
+inline void opaque(Float& f) {
+#if defined(__AVX512BW__)
+    asm volatile("" : "+v"(f.v.data));
+#elif defined(__x86_64__)
+    asm volatile("" : "+x"(f.v.data));
+#else
+    asm volatile("" : "+m"(f.v.data));
+#endif
+}
+inline void opaque(Dual& d) { opaque(d.value), opaque(d.dx), opaque(d.dy), opaque(d.dz); }
+
+template <class V>
+V number(float f) {
+    V v(f);
+    opaque(v);
+    return v;
+}
+
+template <class Row, class V>
+V call(auto... args) {
+    if constexpr (std::is_same_v<V, Dual> && requires { Row::gradient(args...); })
+        return Row::gradient(args...);
+    else
+        return Row::apply(args...);
+}
+
+/// Seconds of one run of `body`, the least of a few tries.
+template <class Body>
+double leastOf(Body&& body) {
+    double best = 1e30;
+    for (int t = 0, rounds = 64; t < tries; ++t) {
+        const double start = secondsNow();
+        for (int i = 0; i < rounds; ++i) body();
+        const double seconds = secondsNow() - start;
+        best = seconds / rounds < best ? seconds / rounds : best;
+        if (seconds < trySeconds) rounds *= 8, --t;
+    }
+    return best;
+}
+
+template <class Row, class V>
+double measured([[maybe_unused]] const eval::Operation& operation) {
+    if constexpr (Row::arity == field::ops::leaf) {
+        return 0;
+    } else if constexpr (Row::arity == field::ops::variadic) {
+        const uint32_t n = operation.count < mostOperands ? operation.count : mostOperands;
+        V args[mostOperands];
+        for (uint32_t i = 0; i < n; ++i) args[i] = number<V>(0.25f + 0.01f * static_cast<float>(i));
+        const double seconds = leastOf([&] {
+            for (int c = 0; c < chains; ++c) {
+                opaque(args[0]);
+                V out = call<Row, V>(std::span<const V>(args, n), operation.data);
+                opaque(out);
+            }
+        });
+        return seconds / chains * operation.count / n;
+    } else {
+        V a[chains], b = number<V>(0.75f);
+        for (int c = 0; c < chains; ++c) a[c] = number<V>(0.5f + 0.01f * static_cast<float>(c));
+        return leastOf([&] {
+                   for (V& v : a) {
+                       opaque(v);
+                       V out = v;
+                       if constexpr (Row::arity == 1)
+                           out = call<Row, V>(v);
+                       else
+                           out = call<Row, V>(v, b);
+                       opaque(out);
+                   }
+               }) /
+               chains;
+    }
+}
+
+}  // namespace
+
+namespace SGM_ISA {
+double secondsPerPoint(const eval::Operation& operation) {
+    const double vector = field::visitOp(operation.op, [&]<class Row>() {
+        return operation.gradient ? measured<Row, Dual>(operation) : measured<Row, Float>(operation);
+    });
+    return vector / static_cast<double>(Float::size);
+}
+}  // namespace SGM_ISA
+
+}  // namespace sgm::bench
