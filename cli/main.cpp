@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
     addBuild(app, exitCode);
     addRender(app, exitCode);
     addCheck(app, exitCode);
+    addStep(app, exitCode);
     addTree(app, exitCode);
     addParams(app, exitCode);
     addFmt(app, exitCode);

@@ -24,9 +24,13 @@ int params(const std::string& file, bool json) {
         fmt::print("{}\n", rules::paramsJson(*grammar));
         return 0;
     }
-    for (const rules::Param& p : grammar->params)
-        fmt::print("{:16} {:20} {:28} {}{}\n", p.name, rules::toText(p.value), rangeText(p), p.label, p.group.empty() ? "" : fmt::format("  [{}]", p.group));
-    for (const rules::Style& s : grammar->styles) fmt::print("style {}\n", s.name);
+    const auto values = rules::valuesOf(*grammar, 0);
+    for (size_t i = 0; i < values.size(); ++i) {
+        const rules::Param& p = grammar->params[i];
+        fmt::print("{:16} {:20} {:28} {}{}\n", p.name, rules::toText(values[i]), rangeText(p), p.label, p.group.empty() ? "" : fmt::format("  [{}]", p.group));
+    }
+    for (const rules::Style& s : grammar->styles)
+        fmt::print("style {}{}\n", s.name, s.start == rules::none ? "" : " for " + grammar->symbols[grammar->starts[s.start].symbol].name);
     return 0;
 }
 

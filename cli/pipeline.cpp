@@ -8,6 +8,7 @@
 
 #include "cli/files.h"
 #include "grammar/rules/check.h"
+#include "grammar/rules/params.h"
 #include "grammar/syntax/parser.h"
 
 namespace sgm::cli {
@@ -59,9 +60,13 @@ Result<uint32_t> find(const List& list, const std::string& wanted, const char* w
 }
 
 Status applyStyle(const rules::Grammar& grammar, const std::string& name, derive::Options& options) {
-    const auto style = find(grammar.styles, name, "style", [](const rules::Style& s) { return s.name; });
-    if (!style.ok()) return style.error();
-    for (const rules::Setting& s : grammar.styles[*style].settings) options.params[s.param] = s.value;
+    const rules::Style* style = rules::findStyle(grammar, name, options.start);
+    if (!style) {
+        const auto other = find(grammar.styles, name, "style", [](const rules::Style& s) { return s.name; });
+        if (!other.ok()) return other.error();
+        style = &grammar.styles[*other];
+    }
+    for (const rules::Setting& s : style->settings) options.params[s.param] = s.value;
     return Done{};
 }
 
@@ -84,13 +89,13 @@ Result<derive::Options> optionsFor(const rules::Grammar& grammar, const ModelReq
     options.derive = request.derive;
     options.budget.shapes = request.shapeBudget;
     options.budget.seconds = request.secondsBudget;
-    for (const rules::Param& p : grammar.params) options.params.push_back(p.value);
     if (grammar.starts.empty()) return Error{Error::Kind::Input, fmt::format("{}: no `start`, so there is nothing to build", request.file)};
     if (!request.start.empty()) {
         const auto start = find(grammar.starts, request.start, "start", [&](const rules::Start& s) { return grammar.symbols[s.symbol].name; });
         if (!start.ok()) return start.error();
         options.start = *start;
     }
+    options.params = rules::valuesOf(grammar, options.start);
     if (!request.derive.empty()) {
         const auto way = find(grammar.derives, request.derive, "derive way", [](const rules::Derive& d) { return d.name; });
         if (!way.ok()) return way.error();

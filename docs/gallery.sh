@@ -31,23 +31,23 @@ draw joints  examples/joints.sgm
 inside grotto examples/grotto.sgm --set cut=5m
 
 caves=examples/caves
-draw regular   $caves/regular.sgm   --style default --camera 15,28,27,0,-2,0
-draw irregular $caves/irregular.sgm --style default --seed 4 --camera 26,14,56,2,-2,0
-draw branching $caves/branching.sgm --style default --camera 24,50,44,0,-2,1
-draw halls     $caves/halls.sgm     --style default --camera 24,58,50,0,-2,1
-inside regular   $caves/regular.sgm   --style default --set open=none
-inside irregular $caves/irregular.sgm --style default --seed 4 --set open=none
-inside branching $caves/branching.sgm --style default --set open=none
-inside halls     $caves/halls.sgm     --style default --set open=none
+draw regular   $caves/regular.sgm --camera 15,28,27,0,-2,0
+draw irregular $caves/irregular.sgm --seed 4 --camera 26,14,56,2,-2,0
+draw branching $caves/branching.sgm --camera 24,50,44,0,-2,1
+draw halls     $caves/halls.sgm --camera 24,58,50,0,-2,1
+inside regular   $caves/regular.sgm --set open=none
+inside irregular $caves/irregular.sgm --seed 4 --set open=none
+inside branching $caves/branching.sgm --set open=none
+inside halls     $caves/halls.sgm --set open=none
 
 clouds=examples/clouds
-draw plain     $clouds/plain.sgm     --style default --no-ground
-draw mediocris $clouds/mediocris.sgm --style default --no-ground --seed 6
-draw bank      $clouds/bank.sgm      --style default --no-ground
-draw congestus $clouds/congestus.sgm --style default --no-ground
-draw ring      $clouds/ring.sgm      --style default --no-ground
-draw ball      $clouds/ball.sgm      --style default --no-ground
+draw plain     $clouds/plain.sgm --no-ground
+draw mediocris $clouds/mediocris.sgm --no-ground --seed 6
+draw bank      $clouds/bank.sgm --no-ground
+draw congestus $clouds/congestus.sgm --no-ground
+draw ring      $clouds/ring.sgm --no-ground
+draw ball      $clouds/ball.sgm --no-ground
 
 for name in spire palace hall pagoda apartment; do
-  draw $name examples/buildings/$name.sgm --style default
+  draw $name examples/buildings/$name.sgm
 done

@@ -26,12 +26,7 @@ TreeBuilder::TreeBuilder(Derivation& derivation, const Budget& budget, Progress*
 void TreeBuilder::fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span) {
     if (failure_) return;
     const auto& grammar = *derivation_.grammar;
-    std::string text;
-    if (span.source) {
-        const auto place = span.source->place(span.begin);
-        text = fmt::format("{}:{}:{}: ", span.source->name(), place.line, place.column);
-    }
-    text += what;
+    std::string text = syntax::placeText(span) + what;
     text += rule_ == none ? std::string(" in the start") : fmt::format(" in rule '{}'", grammar.rules[rule_].name);
     if (shape_ < tree().shapes.size()) text += fmt::format(" at {}", tree().path(shape_));
     text += fmt::format(", seed {}", derivation_.seed);
@@ -130,7 +125,9 @@ void TreeBuilder::bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
 
 void TreeBuilder::meetNeighbours(ShapeId id) {
     if (tree().bodies[tree().shapes[id].body].owner != id) return;
-    for (uint32_t j = 0; j < tree().jointCount(id); ++j) {
+    const uint32_t count = tree().jointCount(id);
+    for (uint32_t j = 0; j < count; ++j) joints_.expect(tree().joint(id, j));
+    for (uint32_t j = 0; j < count; ++j) {
         const Joint joint = tree().joint(id, j);
         if (!isDirected(joint)) continue;
         const auto partner = joints_.add(tree(), {id, j}, joint);

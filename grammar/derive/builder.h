@@ -32,7 +32,10 @@ public:
     /// Counts a unit of work that adds no shape (a turn of a loop); false once something failed.
     bool work();
     bool failed() const { return failure_.has_value(); }
-    Error takeFailure() { return *std::move(failure_); }
+    /// Why it failed; from then on it hasn't.
+    Error takeFailure() { return *std::exchange(failure_, std::nullopt); }
+    /// Begins a piece of work of its own: its time counts from now, and `progress` is told of it.
+    void resume(Progress* progress) { progress_ = progress, begin_ = std::chrono::steady_clock::now(), work_ = 0; }
     /// Ends the derivation with a sentence located at `span` and the present rule, path and seed.
     void fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span);
     /// What is being run, for messages and the log.

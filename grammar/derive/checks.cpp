@@ -3,6 +3,7 @@
 
 #include "grammar/derive/derive.h"
 #include "grammar/derive/expressions.h"
+#include "grammar/rules/params.h"
 #include "grammar/derive/support.h"
 
 namespace sgm::derive {
@@ -57,7 +58,7 @@ Result<std::vector<Verdict>> runChecks(std::shared_ptr<const rules::Grammar> gra
         Options options;
         options.start = check.start;
         options.seed = seed;
-        for (const rules::Param& p : grammar->params) options.params.push_back(p.value);
+        options.params = rules::valuesOf(*grammar, check.start);
         for (const rules::Setting& s : check.settings) options.params[s.param] = s.value;
         const auto derivation = derive(grammar, options, progress);
         if (!derivation.ok()) {

@@ -68,7 +68,7 @@ struct Budget {
 struct Options {
     uint32_t start = 0;                  ///< index into Grammar::starts
     std::string derive;                  ///< name of a `derive` way; empty: automatic
-    std::vector<rules::Value> params;    ///< by index; empty: the defaults
+    std::vector<rules::Value> params;    ///< by index; empty: the start's defaults (rules::valuesOf)
     uint64_t seed = 1;
     Budget budget;
 };

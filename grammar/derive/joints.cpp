@@ -14,7 +14,7 @@ constexpr double cosineTolerance = 1e-9;
 
 bool directed(Vec3d d) { return d != Vec3d{}; }
 
-/// Joints of one direction share a bucket and those that look the other way have the next one, in the same cache line.
+/// Joints of one direction begin at one slot and those that look the other way at its neighbour, in the same cache line.
 uint64_t cellHash(int64_t x, int64_t y, int64_t z, Vec3d direction) {
     const auto coarse = [](double d) { return static_cast<int64_t>(std::lround(d * 4)); };
     int64_t looks = coarse(direction.x) * 289 + coarse(direction.y) * 17 + coarse(direction.z);
@@ -66,31 +66,41 @@ bool faceEachOther(const Joint& a, const Joint& b) {
     return dot(gap, gap) <= jointTolerance_m * jointTolerance_m && dot(a.direction, b.direction) < -1 + 1e-6;
 }
 
-std::optional<JointIndex::Entry> JointIndex::search(const ShapeTree& tree, uint64_t cell, const Joint& joint) const {
-    if (heads_.empty()) return std::nullopt;
-    for (uint32_t i = heads_[cell & (heads_.size() - 1)]; i != none; i = slots_[i].next) {
-        const Slot& slot = slots_[i];
-        if (slot.cell != cell || tree.shapes[slot.entry.shape].dead) continue;
-        if (faceEachOther(joint, tree.joint(slot.entry.shape, slot.entry.joint))) return slot.entry;
+void JointIndex::search(const ShapeTree& tree, uint64_t cell, const Joint& joint, std::optional<Entry>& newest) const {
+    const size_t mask = slots_.size() - 1;
+    for (size_t i = cell & mask; slots_[i].entry.shape != none; i = (i + 1) & mask) {
+        const auto [key, entry] = slots_[i];
+        if (key != cell || tree.shapes[entry.shape].dead) continue;
+        if (newest && std::pair(entry.shape, entry.joint) < std::pair(newest->shape, newest->joint)) continue;
+        if (faceEachOther(joint, tree.joint(entry.shape, entry.joint))) newest = entry;
     }
-    return std::nullopt;
 }
 
-void JointIndex::insert(uint64_t cell, Entry entry) {
-    const auto link = [&](uint32_t i) { slots_[i].next = std::exchange(heads_[slots_[i].cell & (heads_.size() - 1)], i); };
-    slots_.push_back({cell, entry, none});
-    if (slots_.size() <= heads_.size()) return link(static_cast<uint32_t>(slots_.size() - 1));
-    heads_.assign(std::max<size_t>(64, heads_.size() * 4), none);
-    for (uint32_t i = 0; i < slots_.size(); ++i) link(i);
+void JointIndex::insert(Slot slot) {
+    const size_t mask = slots_.size() - 1;
+    size_t i = slot.cell & mask;
+    while (slots_[i].entry.shape != none) i = (i + 1) & mask;
+    slots_[i] = slot;
+}
+
+void JointIndex::grow() {
+    const std::vector<Slot> old = std::exchange(slots_, std::vector<Slot>(slots_.size() * 2));
+    for (const Slot& slot : old)
+        if (slot.entry.shape != none) insert(slot);
+}
+
+void JointIndex::expect(const Joint& joint) const {
+    if (!directed(joint.direction)) return;
+    const Vec3d p = offset(joint.point);
+    __builtin_prefetch(&slots_[cellHash(cellOf(p.x), cellOf(p.y), cellOf(p.z), joint.direction) & (slots_.size() - 1)]);
 }
 
 std::optional<JointIndex::Entry> JointIndex::add(const ShapeTree& tree, Entry entry, const Joint& joint) {
     std::optional<Entry> partner;
     const Vec3d p = offset(joint.point);
-    forCells(p, -joint.direction, [&](uint64_t cell) {
-        if (!partner) partner = search(tree, cell, joint);
-    });
-    insert(cellHash(cellOf(p.x), cellOf(p.y), cellOf(p.z), joint.direction), entry);
+    forCells(p, -joint.direction, [&](uint64_t cell) { search(tree, cell, joint, partner); });
+    if (++used_ * 2 > slots_.size()) grow();
+    insert({cellHash(cellOf(p.x), cellOf(p.y), cellOf(p.z), joint.direction), entry});
     return partner;
 }
 

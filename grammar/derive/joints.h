@@ -15,28 +15,32 @@ inline constexpr double jointTolerance_m = 1e-6;
 /// P₁ = P₂ and D₁ = −D₂ within tolerance, both directed: two walls face to face.
 bool faceEachOther(const Joint& a, const Joint& b);
 
-/// A spatial hash of directed joints, for finding the face that coincides with a new one.
+/// A spatial hash of directed joints, for finding the face that coincides with a new one: open addressing, so that a
+/// joint costs one line of memory for search and insertion together.
 class JointIndex {
 public:
     struct Entry {
         ShapeId shape = none;
         uint32_t joint = 0;
     };
-    /// Adds the joint and returns the first living one that faces it, if any.
+    /// Fetches the memory that `add` of this joint will want. Said of all joints of a shape before the first is added,
+    /// so that they wait for it together.
+    void expect(const Joint& joint) const;
+    /// Adds the joint and returns the newest living one that faces it, if any.
     std::optional<Entry> add(const ShapeTree& tree, Entry entry, const Joint& joint);
-    uint64_t memory() const { return slots_.capacity() * sizeof(Slot) + heads_.capacity() * sizeof(uint32_t); }
+    uint64_t memory() const { return slots_.capacity() * sizeof(Slot); }
 
 private:
     struct Slot {
-        uint64_t cell;  ///< hash of the cell and the direction
-        Entry entry;
-        uint32_t next;  ///< next slot of this bucket, or none
+        uint64_t cell = 0;  ///< hash of the cell and the direction
+        Entry entry;        ///< of no shape: the slot is empty
     };
-    void insert(uint64_t cell, Entry entry);
-    std::optional<Entry> search(const ShapeTree& tree, uint64_t cell, const Joint& joint) const;
+    void grow();
+    void insert(Slot slot);
+    void search(const ShapeTree& tree, uint64_t cell, const Joint& joint, std::optional<Entry>& newest) const;
 
-    std::vector<Slot> slots_;
-    std::vector<uint32_t> heads_;  ///< buckets, a power of two, no fewer than slots
+    std::vector<Slot> slots_ = std::vector<Slot>(64);  ///< a power of two, at least half of them empty
+    size_t used_ = 0;
 };
 
 /// What a newcomer asks for: its size and orientation are given, its place follows from the joints.

@@ -74,8 +74,7 @@ void printSteps(const Derivation& d, std::back_insert_iterator<std::string> out)
 /// Where a grammar asked for a joint that a bond had closed.
 void printClosed(const Derivation& d, std::back_insert_iterator<std::string> out) {
     for (const Closed& c : d.closed) {
-        const auto place = c.span.source->place(c.span.begin);
-        fmt::format_to(out, "{}:{}:{}: its joint was closed {}, so nothing grew there\n", c.span.source->name(), place.line, place.column,
+        fmt::format_to(out, "{}its joint was closed {}, so nothing grew there\n", syntax::placeText(c.span),
                        c.count == 1 ? "once" : fmt::format("{} times", c.count));
     }
 }

@@ -67,8 +67,8 @@ uint32_t occurrenceOf(const ShapeTree& tree, ShapeId id) {
 
 }  // namespace
 
-std::string ShapeTree::path(ShapeId id) const {
-    constexpr uint32_t shown = 12;  // labels kept at either end
+std::string ShapeTree::path(ShapeId id, bool whole) const {
+    const uint32_t shown = whole ? none : 12;  // labels kept at either end
     std::vector<ShapeId> line;
     const uint32_t depth = shapes[id].depth;
     for (ShapeId s = id; s != none; s = shapes[s].parent)

@@ -129,8 +129,9 @@ struct ShapeTree {
     uint32_t findJoint(ShapeId id, std::string_view name) const;
     /// True when a directed bond has closed the joint.
     bool closed(ShapeId id, uint32_t index) const;
-    /// "Cave/Cell[3]": labels from the root, occurrences from 2 on in brackets; the middle of very deep paths is elided.
-    std::string path(ShapeId id) const;
+    /// "Cave/Cell[3]": labels from the root, occurrences from 2 on in brackets; the middle of very deep paths is elided
+    /// unless `whole`.
+    std::string path(ShapeId id, bool whole = false) const;
     /// The shape at a path; where no child matches a part, the n-th descendant of that label in tree order.
     ShapeId find(std::string_view path) const;
     /// The next shape in tree order (a node, then its children), or none; skips the children of `id` when `over`.

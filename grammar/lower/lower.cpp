@@ -195,8 +195,12 @@ Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progr
     Lowering lowering(derivation, *model);
     const Status done = lowering.run(progress);
     if (!done.ok()) return done.error();
-    if (model->field.bounds.empty()) return Error{Error::Kind::Input, fmt::format("nothing solid is left of '{}'", derivation.tree.path(0))};
-    if (!model->field.bounds.finite()) return Error{Error::Kind::Input, fmt::format("'{}' has no end: a half-space may only cut", derivation.tree.path(0))};
+    const bool nothing = model->field.bounds.empty();
+    if (nothing || !model->field.bounds.finite()) {
+        const std::string path = derivation.tree.path(0);
+        const std::string what = nothing ? fmt::format("nothing solid is left of '{}'", path) : fmt::format("'{}' has no end: a half-space may only cut", path);
+        return Error{Error::Kind::Input, syntax::placeText(derivation.tree.shapes[0].span) + what};
+    }
     // Surface that no operand owns (a field of a single part) is the root's, with the first part's look.
     Part whole = model->provenance.parts.size() > 1 ? model->provenance.parts[1] : Part{};
     if (model->provenance.parts.size() > 2) whole.path = derivation.tree.path(0), whole.symbol = derivation.tree.labels[0], whole.rule.clear();

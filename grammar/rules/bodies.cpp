@@ -344,7 +344,7 @@ void Checker::rule(const syntax::RuleDecl& decl) {
         out.finallyMorphic = place.morphs;
     }
     out.locals = place.frame;
-    if (!decl.name.empty()) rules_.emplace(out.name, static_cast<uint32_t>(grammar_.rules.size()));
+    rules_.emplace(out.name, static_cast<uint32_t>(grammar_.rules.size()));
     grammar_.symbols[out.symbol].rules.push_back(static_cast<uint32_t>(grammar_.rules.size()));
     grammar_.rules.push_back(std::move(out));
 }

@@ -159,6 +159,7 @@ private:
 
     // declarations.cpp
     void parameter(const syntax::ParamDecl& decl);
+    void usedDefaults(const syntax::Ast& ast);
     void terminal(const syntax::TerminalDecl& decl);
     void declaredJoint(const syntax::TerminalDecl::JointDecl& decl, std::vector<Joint>& joints);
     void look(const syntax::TerminalDecl& decl, Material& material, std::vector<Attribute>& open);
@@ -173,7 +174,7 @@ private:
     std::map<std::string, uint32_t> params_;
     std::vector<Value> defaults_;  ///< of all parameters
     std::map<std::string, SymbolId> symbols_;
-    std::map<std::string, uint32_t> rules_;  ///< named ones
+    std::map<std::string, uint32_t> rules_;  ///< by name; unnamed ones as Cell#1
     std::set<uint32_t> usedParams_;
     std::set<uint32_t> brokenParams_;   ///< whose default could not be read: of no known type
     std::set<std::string> withNames_;   ///< set by `with` somewhere

@@ -72,10 +72,28 @@ void Checker::parameter(const syntax::ParamDecl& decl) {
     else if (const auto fitted = conform(param, param.value); !fitted.ok()) {
         diagnostics_.error(decl.value.span, fitted.error().message);
         brokenParams_.insert(params_.at(decl.name.text));
+    } else if (param.value.integer && param.value.count == 1 && param.lo->num() == 0 && param.hi->num() == 1) {
+        diagnostics_.warning(decl.range->span, fmt::format("'{}' is a whole number, so it is 0 or 1 and nothing between", param.name),
+                             "write '0..1.0' for a real number, or 'true' for a switch");
     }
 }
 
+/// `use "file" { name = value }`: other defaults for the parameters of the files used.
+void Checker::usedDefaults(const syntax::Ast& ast) {
+    for (const syntax::UseDecl& use : ast.uses)
+        for (const Setting& s : settings(use.settings)) {
+            Param& p = grammar_.params[s.param];
+            if (p.span.source == ast.source.get()) {
+                diagnostics_.error(s.span, fmt::format("'{}' is this file's own parameter", p.name), "give it another default where it is declared");
+                continue;
+            }
+            p.value = s.value;
+            p.valueSpan = s.valueSpan;
+        }
+}
+
 void Checker::parameters(const syntax::Ast& ast) {
+    usedDefaults(ast);
     for (const auto& decl : ast.params)
         if (const auto seen = seenParams_.find(decl.name.text); seen != seenParams_.end() &&
                                                                 seen->second.begin == decl.name.span.begin &&
@@ -193,7 +211,7 @@ std::vector<Setting> Checker::settings(const std::vector<syntax::Setting>& writt
         if (!fitted.ok())
             diagnostics_.error(s.value.span, fitted.error().message, nearest(value->text, p.choices));
         else
-            result.push_back({param->second, *fitted, s.span});
+            result.push_back({param->second, *fitted, s.span, s.value.span});
     }
     return result;
 }
@@ -236,9 +254,10 @@ void Checker::derive(const syntax::DeriveDecl& decl) {
 void Checker::sayings(const syntax::Ast& ast) {
     for (const auto& decl : ast.derives) derive(decl);
     for (const auto& decl : ast.styles) {
-        if (twice(seenStyles_, decl.name, "style")) continue;
+        const bool plain = decl.start.empty();
+        if (twice(seenStyles_, {decl.name.text + (plain ? "" : " for " + decl.start.text), decl.name.span}, "style")) continue;
         grammar_.styles.push_back(
-            {decl.name.text, decl.start.empty() ? none : startCalled(decl.start), settings(decl.settings), decl.span});
+            {decl.name.text, plain ? none : startCalled(decl.start), settings(decl.settings), decl.span});
     }
     for (const auto& decl : ast.checks) {
         Check out;

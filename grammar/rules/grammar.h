@@ -192,7 +192,7 @@ struct Symbol {
 struct Param {
     std::string name, label, group, key;
     SourceSpan span;
-    SourceSpan valueSpan;         ///< what a GUI rewrites
+    SourceSpan valueSpan;         ///< what a GUI rewrites: the default, or what a `use` sets in its place
     Value value;                  ///< default
     std::optional<Value> lo, hi;  ///< range, inclusive, per component
     std::vector<std::string> choices;
@@ -218,6 +218,7 @@ struct Setting {
     uint32_t param;
     Value value;
     SourceSpan span;
+    SourceSpan valueSpan;  ///< what a GUI rewrites
 };
 struct Style {
     std::string name;

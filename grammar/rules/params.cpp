@@ -154,7 +154,7 @@ Result<Value> conform(const Param& param, Value value) {
     if ((value.count != param.value.count && !spread) || !compatible(type, wanted))
         return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
     if (param.value.integer && !value.integer)
-        return refuse(fmt::format("'{}' is a whole number, not {}", param.name, toText(value)));
+        return refuse(fmt::format("'{}' is a whole number, not {}: with a point in its default or range (0..1.0) it would be a real one", param.name, toText(value)));
     if (std::string problem = bareAngle(value, param.value); !problem.empty()) return refuse(std::move(problem));
     Value fitted = adopted(value, param.value);
     fitted.integer = param.value.integer;
@@ -167,13 +167,29 @@ Result<Value> conform(const Param& param, Value value) {
     return fitted;
 }
 
+std::vector<Value> valuesOf(const Grammar& grammar, uint32_t start) {
+    std::vector<Value> values;
+    for (const Param& p : grammar.params) values.push_back(p.value);
+    if (const Style* style = findStyle(grammar, "default", start))
+        for (const Setting& s : style->settings) values[s.param] = s.value;
+    return values;
+}
+
+const Style* findStyle(const Grammar& grammar, const std::string& name, uint32_t start) {
+    const Style* found = nullptr;
+    for (const Style& s : grammar.styles)
+        if (s.name == name && (s.start == start || (s.start == none && !found))) found = &s;
+    return found;
+}
+
 std::string paramsJson(const Grammar& grammar) {
     auto list = nlohmann::ordered_json::array();
+    const std::vector<Value> values = valuesOf(grammar, 0);
     for (const Param& p : grammar.params) {
         nlohmann::ordered_json entry{{"name", p.name}, {"kind", kindName(p.value)}};
         const std::string_view unit = numeric(p.value) ? unitName(p.value.units[0]) : "";
         if (!unit.empty()) entry["unit"] = unit;
-        entry["default"] = jsonOf(p.value);
+        entry["default"] = jsonOf(values[static_cast<size_t>(&p - grammar.params.data())]);
         if (p.lo) entry["minimum"] = jsonOf(*p.lo);
         if (p.hi) entry["maximum"] = jsonOf(*p.hi);
         if (!p.choices.empty()) entry["choices"] = p.choices;

@@ -18,8 +18,14 @@ std::string setRange(Param& param, const Value& lo, const Value& hi);
 /// wrong kind or unit, a value out of range, a fraction where whole numbers are asked for, or none of the choices.
 Result<Value> conform(const Param& param, Value value);
 
+/// The style called `name` for the start with this index, else one of that name for any start, or null.
+const Style* findStyle(const Grammar& grammar, const std::string& name, uint32_t start);
+
+/// What the parameters are before the user changes any: their defaults, or what `style default` says for this start.
+std::vector<Value> valuesOf(const Grammar& grammar, uint32_t start);
+
 /// The parameters as JSON for other programs' panels: a list of {name, kind (integer, real, vector, choice, color,
-/// boolean, text), unit, default, minimum, maximum, choices, label, group, key, file, line}; members that don't apply
+/// boolean, text), unit, default (for the first start), minimum, maximum, choices, label, group, key, file, line}; members that don't apply
 /// are left out. Lengths are in metres, angles in degrees, shares in percent, colours "#rrggbb".
 std::string paramsJson(const Grammar& grammar);
 

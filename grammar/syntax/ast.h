@@ -93,6 +93,7 @@ struct Body {
     std::vector<std::vector<Element>> siblings;
 };
 
+struct Setting { SourceSpan span; Name name; Expr value; };
 struct ParamDecl {
     SourceSpan span;
     Name name;
@@ -127,11 +128,10 @@ struct DeriveDecl {
     struct Step { Name rule; Expr at; bool hasPlace = false; std::string place; };  ///< place "Cave/Cell[3]"
     std::vector<Step> steps;
 };
-struct Setting { SourceSpan span; Name name; Expr value; };
 struct StyleDecl { SourceSpan span; Name name, start; std::vector<Setting> settings; };
 struct CheckDecl { SourceSpan span; Name start; std::vector<Setting> settings; std::optional<Expr> expect; };
 struct OverrideDecl { SourceSpan span; std::string path; std::vector<Setting> settings; };
-struct UseDecl { SourceSpan span; Expr file; };
+struct UseDecl { SourceSpan span; Expr file; std::vector<Setting> settings; };
 struct LsystemDecl {
     SourceSpan span;
     Name name;

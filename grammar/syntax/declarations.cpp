@@ -55,6 +55,7 @@ void readUse(Cursor& cursor, Ast& ast) {
     UseDecl use;
     const uint32_t begin = cursor.take().begin;
     use.file = readText(cursor, "a file's name");
+    if (cursor.at("{")) use.settings = readSettings(cursor);
     use.span = cursor.since(begin);
     ast.uses.push_back(std::move(use));
 }
@@ -222,6 +223,10 @@ void readDerive(Cursor& cursor, Ast& ast) {
     do {
         DeriveDecl::Step step;
         step.rule = readName(cursor, "a rule");
+        if (cursor.at(Token::Kind::Color) && cursor.peek().glued) {  // Cell#2: the second rule for Cell without a name
+            const Token number = cursor.take(Token::Role::Suffix);
+            step.rule = {step.rule.text + std::string(cursor.text(number)), join(step.rule.span, cursor.span(number))};
+        }
         step.hasPlace = cursor.accept("at");
         if (step.hasPlace) {
             step.at = readPath(cursor);

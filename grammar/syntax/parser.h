@@ -5,7 +5,7 @@
 //   file        = "grammar" "1" { declaration } .                        a declaration's word stands in column one
 //   declaration = use | param | map | terminal | start | rule | derive | lsystem | style | check | override .
 //
-//   use         = "use" TEXT .
+//   use         = "use" TEXT [ settings ] .
 //   param       = "param" NAME "=" expr { "in" expr | "of" NAME {"," NAME} | TEXT | "group" NAME | "key" NAME } .
 //   map         = "map" NAME "=" TEXT [ "as" expr ] .
 //   terminal    = "terminal" NAME {"," NAME} [ "=" solid ]
@@ -14,7 +14,7 @@
 //   rule        = "rule" [ NAME ":" ] NAME { "beside" NAME | "when" expr | "weight" expr | "repeat" expr }
 //                 "->" body [ "finally" body ] .
 //   derive      = "derive" NAME ":" step { "=>" step } .
-//   step        = NAME [ "at" path ] .
+//   step        = NAME [ "#" DIGITS ] [ "at" path ] .                    glued; Cell#2 is the second unnamed rule for Cell
 //   path        = NAME { "/" NAME | "[" NUMBER "]" } .
 //   lsystem     = "lsystem" NAME { NAME argument } "axiom" TEXT { NAME "->" TEXT [ ":" argument ] } .
 //   style       = "style" NAME [ "for" NAME ] settings .

@@ -89,6 +89,12 @@ std::string_view Source::line(uint32_t number) const {
     return line;
 }
 
+std::string placeText(SourceSpan span) {
+    if (!span.source) return {};
+    const Source::Place place = span.source->place(span.begin);
+    return span.source->name() + ':' + std::to_string(place.line) + ':' + std::to_string(place.column) + ": ";
+}
+
 SourceSpan join(SourceSpan a, SourceSpan b) {
     if (!a.source) return b;
     if (!b.source) return a;
@@ -110,7 +116,7 @@ std::string render(const Diagnostic& diagnostic) {
     std::string out;
     if (source) {
         const Source::Place place = source->place(diagnostic.span.begin);
-        out += source->name() + ':' + std::to_string(place.line) + ':' + std::to_string(place.column) + ": ";
+        out += placeText(diagnostic.span);
         const auto [shown, begin] = window(source->line(place.line), place.column - 1);
         const std::string line = printable(shown);
         const size_t from = place.column - 1 - begin;

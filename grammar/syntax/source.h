@@ -36,6 +36,8 @@ struct SourceSpan {
     uint32_t begin = 0, end = 0;
     std::string_view text() const { return source ? source->text().substr(begin, end - begin) : std::string_view(); }
 };
+/// "file:line:column: ", or nothing for a span that points nowhere.
+std::string placeText(SourceSpan span);
 /// The smallest span that holds both (same source).
 SourceSpan join(SourceSpan a, SourceSpan b);
 

@@ -15,6 +15,12 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.body; }
 
 class Types : public testing::TestWithParam<Case> {};
 
+TEST(Parameters, WholeNumbersBetweenZeroAndOneAreWarnedOf) {
+    const auto said = [](const std::string& range) { return checkedBody("param n = " + range + "\nstart S -> cube size (1 + n)\n").messages(); };
+    EXPECT_EQ(said("1 in 0..1"), "warning: 'n' is a whole number, so it is 0 or 1 and nothing between\n");
+    for (const char* real : {"1 in 0..1.0", ".5 in 0..1", "1m in 0..1", "1 in 0..2"}) EXPECT_EQ(said(real), "") << real;
+}
+
 TEST_P(Types, AreCheckedInTheRule) {
     const std::string prelude =
         "param n = 3 in 1..9\nparam w = 1m in 0..2m\nparam a = 9deg\nparam v = (1, 2, 3, 4, 5, 6)\nparam b = "

@@ -106,6 +106,7 @@ void Dump::simpleDeclarations(const Ast& ast) {
     for (const UseDecl& d : ast.uses) {
         open("\nuse", d.span);
         expr(d.file);
+        settings(d.settings);
         close();
     }
     for (const ParamDecl& d : ast.params) {

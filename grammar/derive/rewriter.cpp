@@ -1,0 +1,143 @@
+#include "grammar/derive/rewriter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "modeler/core/random.h"
+
+namespace sgm::derive {
+
+using rules::Rule;
+
+/// Rules whose guard holds win, in file order; of several without a guard one is drawn by weight.
+uint32_t Rewriter::choose(ShapeId shape) {
+    const auto& candidates = grammar_.symbols[builder_.tree().shapes[shape].symbol].rules;
+    std::vector<uint32_t> plain;
+    for (const uint32_t r : candidates) {
+        const Rule& rule = grammar_.rules[r];
+        builder_.at(r, shape, none);
+        if (!rule.when) {
+            if (interpreter_.matches(r, shape)) plain.push_back(r);
+        } else if (holds(*rule.when, interpreter_.placeOf(shape)) && interpreter_.matches(r, shape)) {
+            return r;
+        }
+    }
+    if (plain.empty()) return none;
+    return plain.size() == 1 && !grammar_.rules[plain[0]].weight ? plain[0] : draw(shape, plain);
+}
+
+/// One of `rules` by weight; fails when all weigh 0.
+uint32_t Rewriter::draw(ShapeId shape, const std::vector<uint32_t>& rules) {
+    const Place place = interpreter_.placeOf(shape);
+    std::vector<double> weights;
+    for (const uint32_t r : rules) {
+        const auto& weight = grammar_.rules[r].weight;
+        weights.push_back(weight ? number(*weight, place) : 1.0);
+    }
+    const uint32_t at = drawByWeight(weights, combine(place.key, hashText("rule")));
+    if (at != none) return rules[at];
+    builder_.at(rules[0], shape, none);
+    builder_.fail(Error::Kind::Input, fmt::format("every rule for '{}' that matches has weight 0", grammar_.symbols[builder_.tree().shapes[shape].symbol].name),
+                  grammar_.rules[rules[0]].weight->span);
+    return none;
+}
+
+bool Rewriter::mayMatchLater(ShapeId shape) const {
+    const auto& candidates = grammar_.symbols[builder_.tree().shapes[shape].symbol].rules;
+    return std::any_of(candidates.begin(), candidates.end(), [&](uint32_t r) { return interpreter_.readsWorld(r); });
+}
+
+/// Chooses rules by the state at the generation's start; `waiting` keeps the shapes that may match later.
+std::vector<Rewriter::Decision> Rewriter::decide(std::vector<ShapeId>& waiting) {
+    std::vector<Decision> decisions;
+    std::vector<ShapeId> later;
+    for (const ShapeId s : waiting) {
+        const Shape& shape = builder_.tree().shapes[s];
+        if (!shape.live) continue;
+        if (!builder_.work()) return {};
+        if (const uint32_t rule = choose(s); rule != none) decisions.push_back({shape.key, {rule, s}});
+        else if (mayMatchLater(s)) later.push_back(s);
+    }
+    std::sort(decisions.begin(), decisions.end(), [](const Decision& a, const Decision& b) {
+        return a.key != b.key ? a.key < b.key : a.application.shape < b.application.shape;
+    });
+    waiting = std::move(later);
+    return decisions;
+}
+
+void Rewriter::automatic() {
+    builder_.takeLive();
+    std::vector<ShapeId> waiting = live();
+    for (uint32_t generation = 1; !builder_.failed(); ++generation) {
+        const auto decisions = decide(waiting);
+        if (decisions.empty()) return;
+        for (const Decision& d : decisions) {
+            const Application& a = d.application;
+            if (!builder_.tree().shapes[a.shape].live) continue;
+            // A lower key may have taken the joint: the shape then waits for the next generation.
+            if (interpreter_.matches(a.rule, a.shape)) apply(a, generation);
+            else waiting.push_back(a.shape);
+            if (builder_.failed()) return;
+        }
+        const auto made = builder_.takeLive();
+        waiting.insert(waiting.end(), made.begin(), made.end());
+    }
+}
+
+void Rewriter::apply(Application a, uint32_t generation) {
+    applied_.push_back(a);
+    interpreter_.apply(a.rule, a.shape, generation);
+}
+
+void Rewriter::apply(Application a) { apply(a, static_cast<uint32_t>(applied_.size() + 1)); }
+
+std::vector<ShapeId> Rewriter::live() const {
+    std::vector<ShapeId> found;
+    const ShapeTree& tree = builder_.tree();
+    if (tree.shapes.empty()) return found;
+    for (ShapeId s = 0; s != none; s = tree.next(s))
+        if (tree.shapes[s].live) found.push_back(s);
+    return found;
+}
+
+bool Rewriter::usable(Application a) {
+    const Rule& rule = grammar_.rules[a.rule];
+    builder_.at(a.rule, a.shape, none);
+    return builder_.tree().shapes[a.shape].live && interpreter_.matches(a.rule, a.shape) &&
+           (!rule.when || holds(*rule.when, interpreter_.placeOf(a.shape)));
+}
+
+Result<ShapeId> Rewriter::meant(uint32_t index, const std::string& place) {
+    const Rule& rule = grammar_.rules[index];
+    const ShapeTree& tree = builder_.tree();
+    const auto refuse = [](std::string what) { return Error{Error::Kind::Input, std::move(what)}; };
+    if (!place.empty()) {
+        const ShapeId s = tree.find(place);
+        if (s == none) return refuse(fmt::format("there is no shape '{}' here", place));
+        if (!usable({index, s})) return refuse(fmt::format("rule '{}' doesn't match '{}' here", rule.name, place));
+        return s;
+    }
+    std::vector<ShapeId> found;
+    for (const ShapeId s : live())
+        if (usable({index, s})) found.push_back(s);
+    if (found.size() == 1) return found[0];
+    if (found.empty())
+        return refuse(fmt::format("rule '{}' matches nothing here: no live shape is a '{}' that it could rewrite", rule.name, grammar_.symbols[rule.symbol].name));
+    return refuse(fmt::format("rule '{}' matches {} shapes here: write 'at {}' or another of them", rule.name, found.size(), tree.path(found[0])));
+}
+
+void Rewriter::along(const rules::Derive& way) {
+    for (const rules::Derive::Step& step : way.steps) {
+        if (builder_.failed()) return;
+        const auto shape = meant(step.rule, step.place);
+        if (shape.ok()) {
+            apply({step.rule, *shape});
+        } else {
+            builder_.at(step.rule, none, none);
+            builder_.fail(shape.error().kind, shape.error().message, step.span);
+        }
+    }
+}
+
+}  // namespace sgm::derive

@@ -1,0 +1,157 @@
+#include "grammar/derive/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sgm::derive {
+
+/// A derivation under way: what `derive` holds while it runs.
+struct Session::State {
+    State(Derivation begun, const Options& options, Progress* progress)
+        : derivation(std::move(begun)), builder(derivation, options.budget, progress), rewriter(builder, derivation.params) {}
+
+    Derivation derivation;
+    TreeBuilder builder;
+    Rewriter rewriter;
+};
+
+Result<std::shared_ptr<Session::State>> Session::begun(std::shared_ptr<const rules::Grammar> grammar, const Options& options, Progress* progress) {
+    auto empty = emptyDerivation(grammar, options);
+    if (!empty.ok()) return empty.error();
+    auto state = std::make_shared<State>(std::move(*empty), options, progress);
+    state->rewriter.start(grammar->starts[options.start], options.seed);
+    if (state->builder.failed()) return state->builder.takeFailure();
+    return state;
+}
+
+Result<Session> Session::begin(std::shared_ptr<const rules::Grammar> grammar, Options options, Progress* progress) {
+    auto state = begun(grammar, options, progress);
+    if (!state.ok()) return state.error();
+    Session session;
+    session.grammar_ = std::move(grammar);
+    session.options_ = std::move(options);
+    session.state_ = std::move(*state);
+    return session;
+}
+
+Result<std::shared_ptr<Session::State>> Session::replayed(const std::vector<Applications>& steps) const {
+    auto state = begun(grammar_, options_, nullptr);
+    if (!state.ok()) return state;
+    for (const Applications& step : steps)
+        for (const Application& a : step) (*state)->rewriter.apply(a);
+    if ((*state)->builder.failed()) return (*state)->builder.takeFailure();
+    return state;
+}
+
+const ShapeTree& Session::tree() const { return state_->derivation.tree; }
+
+std::vector<ShapeId> Session::live() const { return state_->rewriter.live(); }
+
+std::vector<uint32_t> Session::rulesFor(ShapeId shape) {
+    std::vector<uint32_t> found;
+    for (const uint32_t rule : grammar_->symbols[tree().shapes[shape].symbol].rules) {
+        if (state_->rewriter.usable({rule, shape})) found.push_back(rule);
+        // A guard that asks for what is not set fails; to ask it changes nothing.
+        if (state_->builder.failed()) (void)state_->builder.takeFailure();
+    }
+    return found;
+}
+
+Result<ShapeId> Session::meant(uint32_t rule, const std::string& place) {
+    auto shape = state_->rewriter.meant(rule, place);
+    if (state_->builder.failed()) return state_->builder.takeFailure();
+    return shape;
+}
+
+Status Session::apply(Application application, Progress* progress) {
+    state_->builder.resume(progress);
+    state_->rewriter.apply(application);
+    return settled({application});
+}
+
+Status Session::applyRest(Progress* progress) {
+    const size_t before = state_->rewriter.applied().size();
+    state_->builder.resume(progress);
+    state_->rewriter.automatic();
+    const auto& all = state_->rewriter.applied();
+    return settled({all.begin() + static_cast<ptrdiff_t>(before), all.end()});
+}
+
+/// Keeps a step that went well; takes one back that failed.
+Status Session::settled(Applications step) {
+    state_->builder.resume(nullptr);
+    if (state_->builder.failed()) {
+        const Error error = state_->builder.takeFailure();
+        auto state = replayed(done_);
+        if (!state.ok()) return state.error();
+        state_ = std::move(*state);
+        return error;
+    }
+    if (step.empty()) return Done{};
+    done_.push_back(std::move(step));
+    undone_.clear();
+    return Done{};
+}
+
+Status Session::undo() {
+    if (done_.empty()) return Done{};
+    undone_.push_back(std::move(done_.back()));
+    done_.pop_back();
+    auto state = replayed(done_);
+    if (!state.ok()) return state.error();
+    state_ = std::move(*state);
+    return Done{};
+}
+
+Status Session::redo() {
+    if (undone_.empty()) return Done{};
+    for (const Application& a : undone_.back()) state_->rewriter.apply(a);
+    done_.push_back(std::move(undone_.back()));
+    undone_.pop_back();
+    return Done{};
+}
+
+namespace {
+
+/// A path that leads to the shape: the short form "Root/Label[n]" where it does, else every label from the root.
+std::string placeOf(const ShapeTree& tree, ShapeId id) {
+    const auto& label = tree.labels[tree.shapes[id].label];
+    uint32_t n = 0;
+    for (ShapeId s = tree.next(0); s != none; s = tree.next(s)) {
+        n += tree.labels[tree.shapes[s].label] == label;
+        if (s == id) break;
+    }
+    const std::string root = tree.labels[tree.shapes[0].label];
+    const std::string brief = n > 1 ? fmt::format("{}/{}[{}]", root, label, n) : fmt::format("{}/{}", root, label);
+    return tree.find(brief) == id ? brief : tree.path(id, true);
+}
+
+}  // namespace
+
+Result<std::vector<rules::Derive::Step>> Session::way() const {
+    auto state = begun(grammar_, options_, nullptr);
+    if (!state.ok()) return state.error();
+    Rewriter& rewriter = (*state)->rewriter;
+    std::vector<rules::Derive::Step> steps;
+    for (const Applications& step : done_)
+        for (const Application& a : step) {
+            const auto& rule = grammar_->rules[a.rule];
+            if (!rewriter.usable(a))
+                return Error{Error::Kind::Input, fmt::format("step {}, rule '{}', can't stand in a 'derive' line: its guard counts shapes that stood otherwise when it was chosen", steps.size() + 1, rule.name)};
+            const auto meant = rewriter.meant(a.rule, "");
+            if ((*state)->builder.failed()) (void)(*state)->builder.takeFailure();
+            steps.push_back({a.rule, meant.ok() ? "" : placeOf((*state)->derivation.tree, a.shape), {}});
+            rewriter.apply(a);
+        }
+    return steps;
+}
+
+Result<Derivation> Session::derivation() const {
+    auto state = replayed(done_);
+    if (!state.ok()) return state.error();
+    (*state)->builder.finish();
+    return std::move((*state)->derivation);
+}
+
+}  // namespace sgm::derive
