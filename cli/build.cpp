@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "cli/animation.h"
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/floating.h"
@@ -28,6 +29,7 @@ struct BuildRequest {
     GridRequest grid;
     std::vector<std::string> outputs;
     std::vector<std::string> exportOptions;  ///< "NAME=VALUE"
+    std::vector<std::string> animations;  ///< "NAME=FROM..TO:FRAMES"
     std::string report;
     int smooth = 0;
     double simplify = 1;
@@ -125,33 +127,103 @@ Status judged(const mesh::Mesh& mesh, Stages& stages) {
     return Done{};
 }
 
-int build(const BuildRequest& request) {
-    if (const Status s = checkOutputs(request); !s.ok()) return fail(s.error());
+/// From a mesh to what was asked for: edits, judgement, files, figures.
+Status deliver(const BuildRequest& request, const Model& model, MeshedModel meshed, Stages& stages, Progress* progress) {
     const auto options = exportOptions(request);
-    if (!options.ok()) return fail(options.error());
+    if (!options.ok()) return options.error();
+    auto mesh = edited(std::move(meshed.mesh), request, stages, progress);
+    if (!mesh.ok()) return mesh.error();
+    if (request.judge)
+        if (const Status s = judged(*mesh, stages); !s.ok()) return s;
+
+    exporter::ExportInput input = exportInput(request, model, *mesh);
+    input.options = *options;
+    input.progress = progress;
+    const Status written = timed(stages, "write", [&] { return writeAll(request, model, meshed, input, progress); });
+    if (!written.ok() || (request.quiet && request.report.empty())) return written;
+    const mesh::MeshFigures figures = mesh::measure(*mesh);
+    const Support support = supportOf(model, *mesh, meshed.grid.cell_m);
+    if (!request.report.empty())
+        if (const Status s = writeText(request.report, reportJson(model, meshed, figures, support, stages, request.grid.threads)); !s.ok()) return s;
+    if (!request.quiet) say(request, model, figures, support, stages);
+    return Done{};
+}
+
+Status buildOne(const BuildRequest& request) {
+    if (const auto options = exportOptions(request); !options.ok()) return options.error();
     Stages stages;
     Watch watch(request.quiet);
     const auto model = makeModel(request.model, stages, watch.progress());
-    if (!model.ok()) return fail(model.error());
+    if (!model.ok()) return model.error();
     auto meshed = makeMesh(*model, request.grid, stages, watch.progress());
-    if (!meshed.ok()) return fail(meshed.error());
-    auto mesh = edited(std::move(meshed->mesh), request, stages, watch.progress());
-    if (!mesh.ok()) return fail(mesh.error());
-    if (request.judge)
-        if (const Status s = judged(*mesh, stages); !s.ok()) return fail(s.error());
+    if (!meshed.ok()) return meshed.error();
+    return deliver(request, *model, std::move(*meshed), stages, watch.progress());
+}
 
-    exporter::ExportInput input = exportInput(request, *model, *mesh);
-    input.options = *options;
-    input.progress = watch.progress();
-    const Status written = timed(stages, "write", [&] { return writeAll(request, *model, *meshed, input, watch.progress()); });
-    if (!written.ok()) return fail(written.error());
-    if (request.quiet && request.report.empty()) return 0;
-    const mesh::MeshFigures figures = mesh::measure(*mesh);
-    const Support support = supportOf(*model, *mesh, meshed->grid.cell_m);
-    if (!request.report.empty())
-        if (const Status s = writeText(request.report, reportJson(*model, *meshed, figures, support, stages, request.grid.threads)); !s.ok()) return fail(s.error());
-    if (!request.quiet) say(request, *model, figures, support, stages);
-    return 0;
+/// The request of one frame: its files by name.
+Result<BuildRequest> requestOf(const BuildRequest& request, int frame) {
+    BuildRequest one = request;
+    for (std::string& output : one.outputs) {
+        const auto name = frameName(output, frame);
+        if (!name.ok()) return name.error();
+        output = *name;
+    }
+    if (one.report.empty()) return one;
+    const auto report = frameName(one.report, frame);
+    if (!report.ok()) return report.error();
+    one.report = *report;
+    return one;
+}
+
+/// All frames stand in one grid, so that what doesn't move has the same vertices in each: the box around them all.
+Result<Box3f> boundsOfFrames(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, const Animation& animation, Progress* progress) {
+    Box3f bounds;
+    for (int frame = 0; frame < animation.frames; ++frame) {
+        derive::Options at = options;
+        at.params = animation.values(options.params, frame);
+        const auto derivation = derive::derive(grammar, at, progress);
+        if (!derivation.ok()) return derivation.error();
+        const auto lowered = lower::lower(*derivation, progress);
+        if (!lowered.ok()) return lowered.error();
+        bounds = hull(bounds, (*lowered)->field.bounds);
+    }
+    return bounds;
+}
+
+Status buildFrames(const BuildRequest& request) {
+    if (request.outputs.empty()) return Error{Error::Kind::Usage, "--animate needs files to write: -o roof_%04d.glb"};
+    for (int frame : {0, 1})
+        if (const auto one = requestOf(request, frame); !one.ok()) return one.error();
+    Stages loading;
+    const auto grammar = loadGrammar(request.model.file, loading);
+    if (!grammar) return Error{Error::Kind::Input, ""};
+    auto options = optionsFor(*grammar, request.model);
+    if (!options.ok()) return options.error();
+    const auto animation = readAnimation(*grammar, request.animations);
+    if (!animation.ok()) return animation.error();
+    Watch watch(request.quiet);
+    const auto bounds = boundsOfFrames(grammar, *options, *animation, watch.progress());
+    if (!bounds.ok()) return bounds.error();
+    const mesh::Grid grid = gridOver(*bounds, request.grid);
+    const auto still = options->params;
+    for (int frame = 0; frame < animation->frames; ++frame) {
+        Stages stages;
+        options->params = animation->values(still, frame);
+        const auto model = makeModel(grammar, *options, stages, watch.progress());
+        if (!model.ok()) return model.error();
+        auto meshed = makeMesh(*model, grid, request.grid.threads, stages, watch.progress());
+        if (!meshed.ok()) return meshed.error();
+        if (!request.quiet) fmt::print("frame {} of {}, {}: ", frame + 1, animation->frames, animation->text(*grammar, frame));
+        if (const Status s = deliver(*requestOf(request, frame), *model, std::move(*meshed), stages, watch.progress()); !s.ok()) return s;
+        std::fflush(stdout);
+    }
+    return Done{};
+}
+
+int build(const BuildRequest& request) {
+    Status done = checkOutputs(request);
+    if (done.ok()) done = request.animations.empty() ? buildOne(request) : buildFrames(request);
+    return done.ok() ? 0 : fail(done.error());
 }
 
 }  // namespace
@@ -163,6 +235,7 @@ void addBuild(CLI::App& app, int& exitCode) {
     addGridOptions(*command, request->grid);
     command->add_option("-o,--output", request->outputs, "Output file, format by its ending; may be given again")->allow_extra_args(false);
     command->add_option("--export", request->exportOptions, "Option of a format, NAME=VALUE (see `sgm reference`)")->allow_extra_args(false);
+    command->add_option("--animate", request->animations, "Run a parameter through frames, NAME=FROM..TO:FRAMES; -o needs a number: roof_%04d.glb")->allow_extra_args(false);
     command->add_option("--report", request->report, "Write the figures of this build as JSON");
     command->add_option("--smooth", request->smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
     command->add_option("--simplify", request->simplify, "Decimate to this share of the triangles")->check(CLI::Range(0.001, 1.0));
@@ -170,7 +243,8 @@ void addBuild(CLI::App& app, int& exitCode) {
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
     command->footer(
         "Examples:\n  sgm build examples/grotto.sgm -o grotto.glb -o grotto.vdb --resolution 256\n"
-        "  sgm build examples/tower.sgm --set floors=12 --seed 7 -o tower.obj --report tower.json");
+        "  sgm build examples/tower.sgm --set floors=12 --seed 7 -o tower.obj --report tower.json\n"
+        "  sgm build examples/tower.sgm --animate peak=0..1:48 -o roof_%04d.glb");
     command->callback([request, &exitCode] { exitCode = build(*request); });
 }
 

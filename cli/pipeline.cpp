@@ -112,7 +112,11 @@ Result<Model> makeModel(const ModelRequest& request, Stages& stages, Progress* p
     if (!grammar) return Error{Error::Kind::Input, ""};  // the diagnostics are out already
     const auto options = optionsFor(*grammar, request);
     if (!options.ok()) return options.error();
-    auto derivation = timed(stages, "derive", [&] { return derive::derive(grammar, *options, progress); });
+    return makeModel(grammar, *options, stages, progress);
+}
+
+Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Stages& stages, Progress* progress) {
+    auto derivation = timed(stages, "derive", [&] { return derive::derive(grammar, options, progress); });
     if (!derivation.ok()) return derivation.error();
     auto lowered = timed(stages, "lower", [&] { return lower::lower(*derivation, progress); });
     if (!lowered.ok()) return lowered.error();
@@ -121,15 +125,17 @@ Result<Model> makeModel(const ModelRequest& request, Stages& stages, Progress* p
     return Model{std::move(*derivation), std::move(*lowered), std::move(tape)};
 }
 
-Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress) {
-    const Box3f bounds = model.lowered->field.bounds;
+mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request) {
+    return mesh::gridFor(bounds, request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution));
+}
+
+Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int threads, Stages& stages, Progress* progress) {
     MeshedModel made;
-    const float cell = request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
-    made.grid = mesh::gridFor(bounds, cell);
-    auto blocks = timed(stages, "subdivide", [&] { return mesh::subdivide(model.tape, made.grid, request.threads, progress, made.counts); });
+    made.grid = grid;
+    auto blocks = timed(stages, "subdivide", [&] { return mesh::subdivide(model.tape, made.grid, threads, progress, made.counts); });
     if (!blocks.ok()) return blocks.error();
     made.blocks = std::move(*blocks);
-    const mesh::PolygonizeOptions options{.threads = request.threads};
+    const mesh::PolygonizeOptions options{.threads = threads};
     Stages whole;
     auto mesh = timed(whole, "polygonize", [&] { return mesh::polygonize(made.blocks, made.grid, options, progress, made.counts); });
     if (!mesh.ok()) return mesh.error();
@@ -140,6 +146,10 @@ Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Sta
     stages.emplace_back("sample", whole[0].second * share);
     stages.emplace_back("polygonize", whole[0].second * (1 - share));
     return made;
+}
+
+Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress) {
+    return makeMesh(model, gridOver(model.lowered->field.bounds, request), request.threads, stages, progress);
 }
 
 int fail(const Error& error) {

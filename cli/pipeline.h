@@ -59,6 +59,8 @@ struct Model {
     std::unique_ptr<lower::Model> lowered;
     eval::Tape tape;
 };
+Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Stages& stages, Progress* progress);
+/// The same from the file on.
 Result<Model> makeModel(const ModelRequest& request, Stages& stages, Progress* progress);
 
 /// A mesh with the grid and blocks it came from.
@@ -68,6 +70,10 @@ struct MeshedModel {
     mesh::Mesh mesh;
     mesh::Counts counts;
 };
+Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int threads, Stages& stages, Progress* progress);
+/// The grid that is asked for over these bounds.
+mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request);
+/// The same over the model's own bounds.
 Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress);
 
 /// Prints "sgm: …" to stderr and gives the exit code: 1 input, 2 usage, 3 budget, 130 cancelled.

@@ -125,12 +125,11 @@ void TreeBuilder::bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
 
 void TreeBuilder::meetNeighbours(ShapeId id) {
     if (tree().bodies[tree().shapes[id].body].owner != id) return;
-    const uint32_t count = tree().jointCount(id);
-    for (uint32_t j = 0; j < count; ++j) joints_.expect(tree().joint(id, j));
-    for (uint32_t j = 0; j < count; ++j) {
-        const Joint joint = tree().joint(id, j);
-        if (!isDirected(joint)) continue;
-        const auto partner = joints_.add(tree(), {id, j}, joint);
+    meeting_.clear();
+    for (uint32_t j = 0; j < tree().jointCount(id); ++j)
+        if (const Joint joint = tree().joint(id, j); isDirected(joint)) meeting_.push_back({j, joint, joints_.expect(joint)});
+    for (const auto& [j, joint, spot] : meeting_) {
+        const auto partner = joints_.add(tree(), {id, j}, joint, spot);
         if (!partner || tree().closed(id, j) || tree().closed(partner->shape, partner->joint)) continue;
         if (tree().shapes[partner->shape].body != tree().shapes[id].body) bond(partner->shape, partner->joint, id, j);
     }

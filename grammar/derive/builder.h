@@ -61,6 +61,12 @@ private:
     Progress* progress_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     JointIndex joints_;
+    struct Meeting {
+        uint32_t joint;
+        Joint at;
+        JointIndex::Spot spot;
+    };
+    std::vector<Meeting> meeting_;  ///< scratch of meetNeighbours
     std::vector<uint64_t> counts_;
     std::vector<ShapeId> live_;
     std::optional<Error> failure_;

@@ -16,7 +16,7 @@ bool directed(Vec3d d) { return d != Vec3d{}; }
 
 /// Joints of one direction begin at one slot and those that look the other way at its neighbour, in the same cache line.
 uint64_t cellHash(int64_t x, int64_t y, int64_t z, Vec3d direction) {
-    const auto coarse = [](double d) { return static_cast<int64_t>(std::lround(d * 4)); };
+    const auto coarse = [](double d) { return static_cast<int64_t>(d * 4 + std::copysign(0.5, d)); };
     int64_t looks = coarse(direction.x) * 289 + coarse(direction.y) * 17 + coarse(direction.z);
     const bool flipped = looks < 0;
     if (flipped) looks = -looks;
@@ -24,6 +24,9 @@ uint64_t cellHash(int64_t x, int64_t y, int64_t z, Vec3d direction) {
                            static_cast<uint64_t>(z) * 0x165667b19e3779f9ull ^ static_cast<uint64_t>(looks));
     return (h & ~uint64_t{1}) | (flipped ? 1 : 0);
 }
+
+/// The hash of the same cell for the opposite direction.
+uint64_t opposite(uint64_t cell) { return cell ^ 1; }
 
 int64_t cellOf(double v) { return static_cast<int64_t>(std::floor(v / cell_m)); }
 
@@ -89,18 +92,21 @@ void JointIndex::grow() {
         if (slot.entry.shape != none) insert(slot);
 }
 
-void JointIndex::expect(const Joint& joint) const {
-    if (!directed(joint.direction)) return;
+JointIndex::Spot JointIndex::expect(const Joint& joint) const {
     const Vec3d p = offset(joint.point);
-    __builtin_prefetch(&slots_[cellHash(cellOf(p.x), cellOf(p.y), cellOf(p.z), joint.direction) & (slots_.size() - 1)]);
+    const int64_t x = cellOf(p.x), y = cellOf(p.y), z = cellOf(p.z);
+    const auto inside = [](double v, int64_t cell) { return cellOf(v - jointTolerance_m) == cell && cellOf(v + jointTolerance_m) == cell; };
+    const Spot spot{cellHash(x, y, z, joint.direction), inside(p.x, x) && inside(p.y, y) && inside(p.z, z)};
+    __builtin_prefetch(&slots_[spot.cell & (slots_.size() - 1)]);
+    return spot;
 }
 
-std::optional<JointIndex::Entry> JointIndex::add(const ShapeTree& tree, Entry entry, const Joint& joint) {
+std::optional<JointIndex::Entry> JointIndex::add(const ShapeTree& tree, Entry entry, const Joint& joint, Spot spot) {
     std::optional<Entry> partner;
-    const Vec3d p = offset(joint.point);
-    forCells(p, -joint.direction, [&](uint64_t cell) { search(tree, cell, joint, partner); });
+    if (spot.inside) search(tree, opposite(spot.cell), joint, partner);
+    else forCells(offset(joint.point), -joint.direction, [&](uint64_t cell) { search(tree, cell, joint, partner); });
     if (++used_ * 2 > slots_.size()) grow();
-    insert({cellHash(cellOf(p.x), cellOf(p.y), cellOf(p.z), joint.direction), entry});
+    insert({spot.cell, entry});
     return partner;
 }
 

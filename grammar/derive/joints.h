@@ -23,11 +23,16 @@ public:
         ShapeId shape = none;
         uint32_t joint = 0;
     };
-    /// Fetches the memory that `add` of this joint will want. Said of all joints of a shape before the first is added,
-    /// so that they wait for it together.
-    void expect(const Joint& joint) const;
+    /// Where a joint belongs.
+    struct Spot {
+        uint64_t cell = 0;   ///< hash of its cell and direction
+        bool inside = true;  ///< its tolerance reaches into no other cell
+    };
+    /// Finds a directed joint's spot and fetches the memory that `add` will want. Asked of all joints of a shape before
+    /// the first is added, so that they wait for memory together.
+    Spot expect(const Joint& joint) const;
     /// Adds the joint and returns the newest living one that faces it, if any.
-    std::optional<Entry> add(const ShapeTree& tree, Entry entry, const Joint& joint);
+    std::optional<Entry> add(const ShapeTree& tree, Entry entry, const Joint& joint, Spot spot);
     uint64_t memory() const { return slots_.capacity() * sizeof(Slot); }
 
 private:

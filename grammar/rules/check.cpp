@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
@@ -14,6 +15,28 @@
 namespace sgm::rules {
 
 namespace {
+
+/// The first line of the declaration around a span: the last one that doesn't begin with a blank.
+uint32_t declarationOf(SourceSpan span) {
+    uint32_t line = span.source->place(span.begin).line;
+    while (line > 1 && (span.source->line(line).empty() || std::isspace(static_cast<unsigned char>(span.source->line(line)[0])))) --line;
+    return line;
+}
+
+/// What was found without those errors that stand in a declaration that couldn't be read: a slip is reported once.
+syntax::Diagnostics withoutEchoes(const syntax::Diagnostics& found, const syntax::Diagnostics& unread) {
+    const auto echoes = [&](const syntax::Diagnostic& d) {
+        return d.span.source && std::any_of(unread.all().begin(), unread.all().end(), [&](const syntax::Diagnostic& slip) {
+            return slip.span.source == d.span.source && declarationOf(slip.span) == declarationOf(d.span);
+        });
+    };
+    syntax::Diagnostics kept;
+    for (const syntax::Diagnostic& d : found.all()) {
+        if (echoes(d)) continue;
+        d.severity == syntax::Severity::Error ? kept.error(d.span, d.message, d.mend) : kept.warning(d.span, d.message, d.mend);
+    }
+    return kept;
+}
 
 /// In the order of the text: the main file last, as its uses stand before it.
 void sortInto(syntax::Diagnostics& out, const syntax::Diagnostics& found,
@@ -67,7 +90,7 @@ std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load,
 
     syntax::Diagnostics found;
     fill(*grammar, files, diagnostics, found);
-    sortInto(diagnostics, found, grammar->sources);
+    sortInto(diagnostics, withoutEchoes(found, diagnostics), grammar->sources);
     return diagnostics.hasErrors() ? nullptr : grammar;
 }
 

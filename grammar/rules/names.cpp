@@ -117,6 +117,8 @@ void Checker::excuse(const syntax::Diagnostics& unread, bool missingFile) {
     for (const syntax::Diagnostic& d : unread.all()) {
         if (d.severity != syntax::Severity::Error || !d.span.source) continue;
         const std::string_view line = d.span.source->line(d.span.source->place(d.span.begin).line);
+        // A `use` that couldn't be read brings nothing, and nobody knows what it would have.
+        anythingExcused_ = anythingExcused_ || line.starts_with("use");
         for (auto begin = line.begin(); begin != line.end();) {
             const auto end = std::find_if_not(begin, line.end(), inWord);
             if (end != begin) excused_.emplace(begin, end);

@@ -32,6 +32,16 @@ TEST(Chains, CaveRunsOnTheNewestAndNeverTurnsBack) {
     expectNear(at(d, "Cave/Cell/Cell[14]").scope.size, {1.2, 1.2, 1.2});
 }
 
+TEST(Chains, MorphsGoFromFirstToLast) {
+    const auto d = derived("grammar 1\nstart S -> sphere : A\nrule A repeat 5 -> + morph(sphere, cube, 0 ~> 1) size 2 ~> 1 at +x : A\n");
+    for (int i = 1; i <= 5; ++i) {
+        const auto& shape = at(d, "S/A/A" + (i > 1 ? "[" + std::to_string(i) + "]" : ""));
+        EXPECT_DOUBLE_EQ(d.tree.solids[shape.solid].amount, (i - 1) / 4.0);
+        EXPECT_DOUBLE_EQ(shape.scope.size.x, 2 - (i - 1) / 4.0);
+    }
+    EXPECT_EQ(d.morphic, 5u);
+}
+
 TEST(Chains, HouseStacksStoreysAndPutsTheRoofOnTheLast) {
     const auto d = derived(house);
     EXPECT_EQ(d.tree.bonds.size(), 7u);

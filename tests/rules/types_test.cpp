@@ -15,6 +15,13 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.body; }
 
 class Types : public testing::TestWithParam<Case> {};
 
+TEST(Slips, AreReportedOnce) {
+    EXPECT_EQ(checkedBody("start S -> cube ++ sphere at +x\n").messages(), "expected a shape, found '+'\n");
+    EXPECT_EQ(checkedBody("start S -> cube\n  + morph(sphere cube, .5) at +x\n").messages().find('\n'), checkedBody("start S -> cube\n  + morph(sphere cube, .5) at +x\n").messages().size() - 1);
+    EXPECT_EQ(checkedBody("use std/walls.sgm\nstart S -> stone\n").messages(), "expected a file's name in quotes, found 'std'\n");
+    EXPECT_EQ(checkedBody("start S -> cube ++ sphere\nrule S -> spere\n").messages(), "expected a shape, found '+'\nunknown solid 'spere'\n") << "other declarations still speak";
+}
+
 TEST(Parameters, WholeNumbersBetweenZeroAndOneAreWarnedOf) {
     const auto said = [](const std::string& range) { return checkedBody("param n = " + range + "\nstart S -> cube size (1 + n)\n").messages(); };
     EXPECT_EQ(said("1 in 0..1"), "warning: 'n' is a whole number, so it is 0 or 1 and nothing between\n");
