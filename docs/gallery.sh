@@ -42,9 +42,10 @@ inside halls     $caves/halls.sgm --set open=none
 
 clouds=examples/clouds
 draw plain     $clouds/plain.sgm --no-ground
+draw humilis   $clouds/humilis.sgm --no-ground
 draw mediocris $clouds/mediocris.sgm --no-ground --seed 6
+draw congestus $clouds/congestus.sgm --no-ground --seed 9
 draw bank      $clouds/bank.sgm --no-ground
-draw congestus $clouds/congestus.sgm --no-ground
 draw ring      $clouds/ring.sgm --no-ground
 draw ball      $clouds/ball.sgm --no-ground
 

@@ -1,0 +1,128 @@
+// The clouds that ship (SG-M, section III-C), measured on their meshes: whole for every seed, and true to their names.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// A file that is gone when the test ends.
+struct Passing {
+    std::string path = (fs::temp_directory_path() / ("sgm-cloud-" + std::to_string(getpid()) + ".json")).string();
+    ~Passing() { fs::remove(path); }
+};
+
+/// The report of `sgm build ARGUMENTS`; null where it failed.
+Json built(const std::string& arguments) {
+    const Passing report;
+    const std::string command = SGM_PROGRAM " build " + arguments + " -q --report " + report.path;
+    if (std::system(command.c_str()) != 0) return nullptr;
+    return Json::parse(std::ifstream(report.path));
+}
+
+Json cloud(const std::string& name, int seed, const std::string& more) {
+    return built("examples/clouds/" + name + ".sgm --style default --seed " + std::to_string(seed) + " " + more);
+}
+
+/// Extents of a mesh along x, y, z, metres.
+std::array<double, 3> extents(const Json& report) {
+    const Json& b = report["mesh"]["bounds"];
+    return {b[1][0].get<double>() - b[0][0].get<double>(), b[1][1].get<double>() - b[0][1].get<double>(),
+            b[1][2].get<double>() - b[0][2].get<double>()};
+}
+
+constexpr int seeds = 10;
+
+TEST(Clouds, AreWholeForEverySeed) {
+    for (const std::string name : {"plain", "humilis", "mediocris", "congestus", "bank", "ring", "ball"})
+        for (int seed = 1; seed <= seeds; ++seed) {
+            const Json report = cloud(name, seed, "--resolution 40");
+            ASSERT_FALSE(report.is_null()) << name;
+            EXPECT_EQ(report["mesh"]["components"], 1) << name << ", seed " << seed;
+        }
+}
+
+TEST(Clouds, SpeciesAreAsWideAsTheirNamesSay) {
+    const struct {
+        const char* name;
+        double least, most;  ///< of the mean width by the height
+    } species[] = {{"humilis", 2, 6}, {"mediocris", 1, 2}, {"congestus", .4, 1}};
+    for (const auto& s : species)
+        for (int seed = 1; seed <= seeds; ++seed) {
+            const auto [x, y, z] = extents(cloud(s.name, seed, "--resolution 40"));
+            EXPECT_GE((x + z) / 2 / y, s.least) << s.name << ", seed " << seed;
+            EXPECT_LE((x + z) / 2 / y, s.most) << s.name << ", seed " << seed;
+        }
+}
+
+TEST(Clouds, BasesAreFlat) {
+    // The lowest slab of a tenth of a metre holds a good part of the cloud's area seen from below.
+    for (const std::string name : {"humilis", "mediocris", "congestus", "bank"}) {
+        const Passing mesh;
+        const Json report = cloud(name, 3, "--resolution 64 --export up=y -o " + mesh.path + ".off");
+        std::ifstream off(mesh.path + ".off");
+        std::string word;
+        size_t points = 0, faces = 0, edges = 0;
+        off >> word >> points >> faces >> edges;
+        std::vector<std::array<double, 3>> p(points);
+        for (auto& q : p) off >> q[0] >> q[1] >> q[2];
+        const double lowest = report["mesh"]["bounds"][0][1];
+        double flat = 0, below = 0;
+        for (size_t f = 0, n, a, b, c; f < faces && off >> n >> a >> b >> c; ++f) {
+            // Twice the area seen from below: the cross product's y.
+            const double down = (p[b][0] - p[a][0]) * (p[c][2] - p[a][2]) - (p[b][2] - p[a][2]) * (p[c][0] - p[a][0]);
+            if (down <= 0) continue;
+            below += down;
+            if (std::max({p[a][1], p[b][1], p[c][1]}) < lowest + .1) flat += down;
+        }
+        fs::remove(mesh.path + ".off");
+        ASSERT_GT(below, 0) << name;
+        EXPECT_GT(flat / below, .4) << name;
+    }
+}
+
+TEST(Clouds, EveryParameterMatters) {
+    const struct {
+        const char *name, *other, *context;
+    } cases[] = {{"reach", "(1,2,3,1,0,2)", ""},
+                 {"root", "200m", ""},
+                 {"tip", "120m", ""},
+                 {"stray", ".2", ""},
+                 {"sink", ".2", ""},
+                 {"lift", ".2", ""},
+                 {"pack", ".8", ""},
+                 {"base", "flat", ""},
+                 {"foot", "20m", "--set base=flat"},
+                 {"aim", "ball", ""},
+                 {"goal", "(600,500,400)", "--set aim=ring"},
+                 {"tube", ".4", "--set aim=ring"},
+                 {"become", ".8", "--set aim=ring"},
+                 {"buds", "5", ""},
+                 {"bud", "70%", ""},
+                 {"low", "-1", ""},
+                 {"tiers", "0", ""},
+                 {"mist", "60m", ""},
+                 {"puffed", "20m", ""},
+                 {"puffs", ".01/m", ""}};
+    const Passing list;
+    ASSERT_EQ(std::system((SGM_PROGRAM " params --json examples/clouds/plain.sgm > " + list.path).c_str()), 0);
+    EXPECT_EQ(Json::parse(std::ifstream(list.path)).size(), std::size(cases)) << "a parameter without a case";
+    const std::string start = "examples/clouds/plain.sgm --set reach='(2,2,2,1,2,2)' --cell 20 ";
+    for (const auto& c : cases) {
+        const std::string with = start + c.context;
+        const Json before = built(with), after = built(with + " --set " + c.name + "='" + c.other + "'");
+        ASSERT_FALSE(before.is_null() || after.is_null()) << c.name;
+        EXPECT_NE(before["mesh"]["volume_m3"], after["mesh"]["volume_m3"]) << c.name;
+    }
+}
+
+}  // namespace
