@@ -18,8 +18,14 @@ constexpr ExportOption gltfOptions[] = {uv};
 constexpr ExportOption texturedOptions[] = {up, unit, uv};
 constexpr ExportOption plainOptions[] = {up, unit};
 constexpr ExportOption volumeOptions[] = {
-    {"grid", "level_set", "", "name of the grid"},
+    {"grids", "levelset", "levelset|fog|levelset,fog", "which grids the file holds; the fog's is called density"},
+    {"grid", "level_set", "", "name of the level set's grid"},
     {"half", "no", "no|yes", "16-bit floats: about a third smaller, three digits"},
+    {"density", "1", "", "fog: density deep inside", 1e-6, 1e6},
+    {"edge", "0", "", "fog: metres of depth over which it thickens to that; 0: three voxels", 0, 1e5},
+    {"wisps", "0", "", "fog: how far noise eats into the edge", 0, 0.95},
+    {"billow", "0", "", "fog: how much noise thins the inside, which is then stored voxel by voxel", 0, 1},
+    {"lump", "0", "", "fog: metres of the largest lumps of noise; 0: an eighth of the least extent", 0, 1e5},
 };
 
 constexpr Exporter table[] = {
@@ -31,7 +37,8 @@ constexpr Exporter table[] = {
     {".off", "OFF: positions and triangles as text", false, plainOptions, writeOff},
     {".usda", "OpenUSD as text: normals, display colours, a subset and preview surface a material", false,
      texturedOptions, writeUsda},
-    {".vdb", "OpenVDB: a narrow-band level set in metres", true, volumeOptions, writeVdb},
+    {".vdb", "OpenVDB: a narrow-band level set, fog for renderers, or both; voxels in metres", true, volumeOptions,
+     writeVdb},
 };
 
 /// `parts`, each turned to text by `name`, with `separator` between them.
@@ -56,29 +63,39 @@ bool allowed(std::string_view choices, std::string_view value) {
     return false;
 }
 
-Status checkOptions(const ExportInput& input, const Exporter& row) {
-    for (const auto& [name, value] : input.options) {
-        const auto known = std::find_if(row.options.begin(), row.options.end(),
-                                        [&name = name](const ExportOption& o) { return o.name == name; });
-        if (known == row.options.end())
-            return Error{Error::Kind::Usage,
-                         fmt::format("{} has no option '{}'; it has: {}", row.extension, name,
-                                     joined(row.options, ", ", [](const ExportOption& o) { return o.name; }))};
-        if (!allowed(known->choices, value))
-            return Error{Error::Kind::Usage, fmt::format("option '{}' of {} is one of {}, not '{}'", name,
-                                                         row.extension, known->choices, value)};
-    }
-    return Done{};
+/// Why the option doesn't take `value`, "" where it does.
+std::string refusal(const ExportOption& option, const std::string& value) {
+    if (!allowed(option.choices, value)) return fmt::format("is one of {}, not '{}'", option.choices, value);
+    if (option.lo >= option.hi) return {};
+    const std::optional<double> number = numberOf(value);
+    if (!number) return fmt::format("is a number, not '{}'", value);
+    if (*number < option.lo || *number > option.hi)
+        return fmt::format("is from {} to {}, not {}", option.lo, option.hi, value);
+    return {};
 }
 
 Status checkInput(const ExportInput& input, const Exporter& row, const Path& path) {
     if (row.wantsVolume && !input.volume) return writeError(path, "there is no volume");
     if (!row.wantsVolume && (!input.mesh || input.mesh->triangleCount() == 0))
         return writeError(path, "the mesh has no triangles");
-    return checkOptions(input, row);
+    return checkOptions(row, input.options);
 }
 
 }  // namespace
+
+Status checkOptions(const Exporter& row, const ExportOptions& options) {
+    for (const auto& [name, value] : options) {
+        const auto known = std::find_if(row.options.begin(), row.options.end(),
+                                        [&name = name](const ExportOption& o) { return o.name == name; });
+        if (known == row.options.end())
+            return Error{Error::Kind::Usage,
+                         fmt::format("{} has no option '{}'; it has: {}", row.extension, name,
+                                     joined(row.options, ", ", [](const ExportOption& o) { return o.name; }))};
+        if (const std::string why = refusal(*known, value); !why.empty())
+            return Error{Error::Kind::Usage, fmt::format("option '{}' of {} {}", name, row.extension, why)};
+    }
+    return Done{};
+}
 
 std::span<const Exporter> exporters() { return table; }
 

@@ -1,6 +1,6 @@
 // The exporter table: one row a format.
-// Enters: a mesh (or a volume) with its provenance. Leaves: a file, written beside its target and renamed into place,
-// so that a good earlier file is never lost. Assumes metres, Y up; options say otherwise for formats that can't.
+// Enters: a mesh (or a level set) with its provenance. Leaves: a file, written beside its target and renamed into
+// place, so that a good earlier file is never lost. Assumes metres, Y up; options say otherwise for formats that can't.
 #pragma once
 
 #include <filesystem>
@@ -21,18 +21,21 @@ namespace sgm::exporter {
 struct ExportOption {
     std::string_view name;
     std::string_view fallback;
-    std::string_view choices;  ///< "y|z", or "" for free text
+    std::string_view choices;  ///< "y|z", or "" for free text or a number
     std::string_view doc;
+    double lo = 0, hi = 0;  ///< a number in lo … hi where lo < hi
 };
+/// Values by ExportOption::name.
+using ExportOptions = std::map<std::string, std::string, std::less<>>;
 
-/// What is written. `mesh` is set for mesh formats, `volume` for volumes.
+/// What is written. `mesh` is set for mesh formats, `volume`, a level set, for volumes.
 struct ExportInput {
     const mesh::Mesh* mesh = nullptr;
     const volume::Volume* volume = nullptr;
     const Provenance* provenance = nullptr;
     std::string name = "model";                 ///< of the object in the file
     std::map<std::string, std::string> extras;  ///< grammar, seed, parameters: kept where the format can hold them
-    std::map<std::string, std::string, std::less<>> options;  ///< by ExportOption::name
+    ExportOptions options;                      ///< those of the format, checked by `write`
     Progress* progress = nullptr;
 };
 
@@ -50,6 +53,8 @@ struct Exporter {
 std::span<const Exporter> exporters();
 /// The row for ".glb" …, or null.
 const Exporter* findExporter(std::string_view extension);
+/// Error::Usage, in words, for a name that the format doesn't have and for a value that the option doesn't take.
+Status checkOptions(const Exporter& row, const ExportOptions& options);
 /// Writes `path` by its extension: all or nothing, Error::Cancelled when `input.progress` says so.
 Status write(const ExportInput& input, const std::filesystem::path& path);
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace sgm::exporter {
@@ -17,6 +19,13 @@ bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') 
 std::string_view option(const ExportInput& input, std::string_view name, std::string_view fallback) {
     const auto found = input.options.find(name);
     return found == input.options.end() ? fallback : std::string_view(found->second);
+}
+
+std::optional<double> numberOf(std::string_view text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+    return value;
 }
 
 Placement placementOf(const ExportInput& input) {

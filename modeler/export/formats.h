@@ -1,8 +1,9 @@
 // The writers behind the exporter table, one .cpp each, and the few things they share.
-// Enters: what `write` has checked: a mesh with triangles (or a volume), a provenance, known options with known values.
-// Leaves: the temporary file filled. `target` is for messages and for files that lie beside.
+// Enters: what `write` has checked: a mesh with triangles (or a level set), a provenance, known options with known
+// values. Leaves: the temporary file filled. `target` is for messages and for files that lie beside.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ Status writeVdb(const ExportInput& input, const Path& temporary, const Path& tar
 
 /// The value of a checked option, or `fallback` where it isn't given.
 std::string_view option(const ExportInput& input, std::string_view name, std::string_view fallback);
+
+/// `text` as a number, where all of it is a finite one.
+std::optional<double> numberOf(std::string_view text);
 
 /// The axes and unit of a file, by the options `up` and `unit`.
 struct Placement {

@@ -1,11 +1,41 @@
-// OpenVDB (.vdb): the level set, by the room that owns it.
+// OpenVDB (.vdb): the level set, the fog made from it, or both, by the room that owns them. Renderers look for a float
+// grid called "density" of the class fog volume.
+#include <optional>
+
 #include "modeler/export/formats.h"
+#include "modeler/volume/fog.h"
 
 namespace sgm::exporter {
+namespace {
+
+volume::FogOptions fogOptions(const ExportInput& input) {
+    volume::FogOptions fog;
+    const auto read = [&](std::string_view name, double& value) {
+        if (const auto given = numberOf(option(input, name, ""))) value = *given;
+    };
+    read("density", fog.density);
+    read("edge", fog.edge_m);
+    read("wisps", fog.wisps);
+    read("billow", fog.billow);
+    read("lump", fog.lump_m);
+    return fog;
+}
+
+}  // namespace
 
 Status writeVdb(const ExportInput& input, const Path& temporary, const Path& target) {
-    const volume::VdbOptions options{option(input, "half", "no") == "yes", input.extras};
-    return volume::fillVdb(*input.volume, temporary, target, std::string(option(input, "grid", "level_set")), options,
+    const std::string_view grids = option(input, "grids", "levelset");
+    std::vector<volume::NamedVolume> volumes;
+    if (grids.find("levelset") != grids.npos)
+        volumes.push_back({*input.volume, std::string(option(input, "grid", "level_set"))});
+    std::optional<volume::Volume> density;
+    if (grids.find("fog") != grids.npos) {
+        auto fog = volume::fog(*input.volume, fogOptions(input), input.progress);
+        if (!fog.ok()) return fog.error();
+        density = std::move(*fog);
+        volumes.push_back({*density, "density"});
+    }
+    return volume::fillVdb(volumes, temporary, target, {option(input, "half", "no") == "yes", input.extras},
                            input.progress);
 }
 

@@ -46,13 +46,17 @@ void setTag(std::iostream& file, const Progress* progress) {
 
 }  // namespace
 
-Status fillVdb(const Volume& volume, const std::filesystem::path& file, const std::filesystem::path& target,
-               const std::string& name, const VdbOptions& options, const Progress* progress) {
+Status fillVdb(const std::vector<NamedVolume>& volumes, const std::filesystem::path& file,
+               const std::filesystem::path& target, const VdbOptions& options, const Progress* progress) {
     openvdb::initialize();
-    const openvdb::GridBase::Ptr grid = volume.impl().grid->copyGrid();  // shares the voxels
-    grid->setName(name);
-    grid->setCreator("sgm");
-    grid->setSaveFloatAsHalf(options.half);
+    openvdb::GridCPtrVec grids;
+    for (const NamedVolume& v : volumes) {
+        const openvdb::GridBase::Ptr grid = v.volume.impl().grid->copyGrid();  // shares the voxels
+        grid->setName(v.name);
+        grid->setCreator("sgm");
+        grid->setSaveFloatAsHalf(options.half);
+        grids.push_back(grid);
+    }
     openvdb::MetaMap meta;
     for (const auto& [key, value] : options.metadata) meta.insertMeta(key, openvdb::StringMetadata(value));
     errno = 0;
@@ -60,7 +64,7 @@ Status fillVdb(const Volume& volume, const std::filesystem::path& file, const st
         PolledFile buffer(file, progress);
         std::iostream out(&buffer);
         out.exceptions(std::ios::badbit | std::ios::failbit);  // OpenVDB itself doesn't ask how a write went
-        StreamArchive().writeTo(out, {grid}, meta);
+        StreamArchive().writeTo(out, grids, meta);
         out.exceptions(std::ios::goodbit);
         setTag(out, progress);
         if (!buffer.close()) out.setstate(std::ios::badbit);
@@ -77,11 +81,12 @@ Status fillVdb(const Volume& volume, const std::filesystem::path& file, const st
 
 Status writeVdb(const Volume& volume, const std::filesystem::path& path, const std::string& name,
                 const VdbOptions& options) {
-    return replaceFile(
-        path, [&](const std::filesystem::path& temporary) { return fillVdb(volume, temporary, path, name, options); });
+    return replaceFile(path, [&](const std::filesystem::path& temporary) {
+        return fillVdb({{volume, name}}, temporary, path, options);
+    });
 }
 
-Result<Volume> readVdb(const std::filesystem::path& path) {
+Result<Volume> readVdb(const std::filesystem::path& path, const std::string& name) {
     openvdb::initialize();
     const auto failed = [&](const std::string& cause) {
         return Error{Error::Kind::Input, fmt::format("cannot read '{}': {}", path.string(), cause)};
@@ -89,14 +94,15 @@ Result<Volume> readVdb(const std::filesystem::path& path) {
     try {
         openvdb::io::File file(path.string());
         file.open(false);  // all at once: the file may be replaced while the volume lives
-        for (auto name = file.beginName(); name != file.endName(); ++name)
-            if (file.readGridMetadata(*name)->isType<openvdb::FloatGrid>())
+        for (auto at = file.beginName(); at != file.endName(); ++at)
+            if ((name.empty() || *at == name) && file.readGridMetadata(*at)->isType<openvdb::FloatGrid>())
                 return Volume(std::make_shared<Volume::Impl>(
-                    Volume::Impl{openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(*name))}));
+                    Volume::Impl{openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(*at))}));
     } catch (const std::exception& e) {
         return failed(e.what());
     }
-    return failed("it holds no grid of floats");
+    return failed(name.empty() ? "it holds no grid of floats"
+                               : fmt::format("it holds no grid of floats called '{}'", name));
 }
 
 }  // namespace sgm::volume

@@ -58,6 +58,21 @@ double Volume::enclosed_m3() const {
     return openvdb::tools::levelSetVolume(grid);
 }
 
+double Volume::integral_m3() const {
+    double sum = 0;
+    for (auto v = impl_->grid->cbeginValueOn(); v; ++v) sum += *v * static_cast<double>(v.getVoxelCount());
+    return sum * std::pow(impl_->grid->voxelSize()[0], 3);
+}
+
+Box3f Volume::bounds() const {
+    const openvdb::CoordBBox box = impl_->grid->evalActiveVoxelBoundingBox();
+    if (box.empty()) return {};
+    const openvdb::BBoxd world =
+        impl_->grid->transform().indexToWorld(openvdb::BBoxd(box.min().asVec3d() - 0.5, box.max().asVec3d() + 0.5));
+    return {Vec3d{world.min().x(), world.min().y(), world.min().z()}.as<float>(),
+            Vec3d{world.max().x(), world.max().y(), world.max().z()}.as<float>()};
+}
+
 Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& whole, const mesh::Grid& grid,
                       int halfWidth, int threads, Progress* progress) {
     if (halfWidth < 1 || halfWidth > mesh::blockCells)

@@ -1,4 +1,4 @@
-// A level set on a sparse grid, behind OpenVDB.
+// A sparse grid of floats behind OpenVDB: a level set, or fog (fog.h) made from one.
 // Enters: a tape and a grid. Leaves: a narrow band of signed distances (negative inside), in metres. Assumes the field
 // is near 1-Lipschitz; values further than the band are clamped to ±band. OpenVDB's headers stay in the .cpp.
 #pragma once
@@ -28,6 +28,10 @@ public:
     float at(Vec3f p) const;
     /// Volume enclosed by the level set, m³; 0 where the grid is none.
     double enclosed_m3() const;
+    /// Integral of the active values: of fog, its density times m³.
+    double integral_m3() const;
+    /// Box of the active voxels, their whole cells, metres; empty where there are none.
+    Box3f bounds() const;
 
 private:
     std::shared_ptr<Impl> impl_;
@@ -48,15 +52,21 @@ struct VdbOptions {
     std::map<std::string, std::string> metadata;  ///< of the file
 };
 
+/// A volume and what its grid is called in a file.
+struct NamedVolume {
+    const Volume& volume;
+    std::string name;
+};
+
 /// Writes a .vdb with a grid `name` and OpenVDB's statistics of it; written beside `path` and renamed into place. The
 /// same bytes for the same volume, the file's tag being made from its content.
 Status writeVdb(const Volume& volume, const std::filesystem::path& path, const std::string& name,
                 const VdbOptions& options = {});
-/// The same into an existing `file` as it is; errors speak of `target`. For callers that do their own renaming.
-/// Error::Cancelled when `progress` says so.
-Status fillVdb(const Volume& volume, const std::filesystem::path& file, const std::filesystem::path& target,
-               const std::string& name, const VdbOptions& options, const Progress* progress = nullptr);
-/// Reads the first float grid.
-Result<Volume> readVdb(const std::filesystem::path& path);
+/// The same of several volumes into an existing `file` as it is; errors speak of `target`. For callers that do their
+/// own renaming. Error::Cancelled when `progress` says so.
+Status fillVdb(const std::vector<NamedVolume>& volumes, const std::filesystem::path& file,
+               const std::filesystem::path& target, const VdbOptions& options, const Progress* progress = nullptr);
+/// Reads the float grid of that name, or the first one.
+Result<Volume> readVdb(const std::filesystem::path& path, const std::string& name = "");
 
 }  // namespace sgm::volume

@@ -1,0 +1,111 @@
+#include "cli/outputs.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "modeler/mesh/proxy.h"
+#include "modeler/volume/volume.h"
+
+namespace sgm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using exporter::Exporter;
+
+constexpr int bandVoxels = 3;  ///< half-width of the level set, OpenVDB's usual
+
+const Exporter* formatOf(const std::string& file) { return exporter::findExporter(fs::path(file).extension().string()); }
+
+Status checkFile(const std::string& file) {
+    std::vector<std::string> known;
+    for (const Exporter& e : exporter::exporters()) known.emplace_back(e.extension);
+    if (!formatOf(file))
+        return Error{Error::Kind::Usage, fmt::format("'{}': no format has the ending '{}'; there are {}", file, fs::path(file).extension().string(), fmt::join(known, " "))};
+    const fs::path folder = fs::path(file).parent_path();
+    if (std::error_code ignored; !folder.empty() && !fs::is_directory(folder, ignored))
+        return Error{Error::Kind::Input, fmt::format("'{}': the folder '{}' does not exist", file, folder.string())};
+    return Done{};
+}
+
+bool has(const Exporter& row, std::string_view name) {
+    return std::any_of(row.options.begin(), row.options.end(), [&](const exporter::ExportOption& o) { return o.name == name; });
+}
+
+/// Those of the options that the format has.
+exporter::ExportOptions optionsFor(const OutputRequest& request, const Exporter& row) {
+    exporter::ExportOptions options;
+    for (const std::string& text : request.options) {
+        const size_t equals = text.find('=');
+        if (has(row, text.substr(0, equals))) options[text.substr(0, equals)] = text.substr(equals + 1);
+    }
+    return options;
+}
+
+/// An option that none of the files takes says so, rather than do nothing.
+Status checkOption(const OutputRequest& request, const std::string& text) {
+    const std::string name = text.substr(0, text.find('='));
+    if (name.size() == text.size()) return Error{Error::Kind::Usage, fmt::format("write --export NAME=VALUE instead of '{}'", text)};
+    for (const std::string& file : allFiles(request))
+        if (has(*formatOf(file), name)) return Done{};
+    std::vector<std::string> endings;
+    for (const Exporter& e : exporter::exporters())
+        if (has(e, name)) endings.emplace_back(e.extension);
+    if (endings.empty()) return Error{Error::Kind::Usage, fmt::format("--export {}: no format has that option (see `sgm reference`)", text)};
+    return Error{Error::Kind::Usage, fmt::format("--export {}: an option of {}, and no such file is asked for", text, fmt::join(endings, " "))};
+}
+
+}  // namespace
+
+void addOutputOptions(CLI::App& command, OutputRequest& request) {
+    command.add_option("-o,--output", request.files, "Output file, format by its ending; may be given again")->allow_extra_args(false);
+    command.add_option("--export", request.options, "Option of a format, NAME=VALUE (see `sgm reference`)")->allow_extra_args(false);
+    auto* proxy = command.add_option("--proxy", request.proxy, "Mesh file for a coarse closed mesh around the model: shadows, light, collision");
+    command.add_option("--proxy-tolerance", request.proxyTolerance_m, "Metres the proxy may stand off (default: a twentieth of the longest side)")->check(CLI::PositiveNumber)->needs(proxy);
+}
+
+std::vector<std::string> allFiles(const OutputRequest& request) {
+    std::vector<std::string> files = request.files;
+    if (!request.proxy.empty()) files.push_back(request.proxy);
+    return files;
+}
+
+Status checkOutputs(const OutputRequest& request) {
+    for (const std::string& file : allFiles(request))
+        if (const Status s = checkFile(file); !s.ok()) return s;
+    if (!request.proxy.empty() && formatOf(request.proxy)->wantsVolume)
+        return Error{Error::Kind::Usage, fmt::format("--proxy {}: a proxy is a mesh", request.proxy)};
+    for (const std::string& text : request.options)
+        if (const Status s = checkOption(request, text); !s.ok()) return s;
+    for (const std::string& file : allFiles(request))
+        if (const Status s = exporter::checkOptions(*formatOf(file), optionsFor(request, *formatOf(file))); !s.ok()) return s;
+    return Done{};
+}
+
+Status writeOutputs(const OutputRequest& request, const Model& model, const MeshedModel& meshed, exporter::ExportInput input, int threads) {
+    std::optional<volume::Volume> level;
+    for (const std::string& file : request.files) {
+        const Exporter& row = *formatOf(file);
+        if (row.wantsVolume && !level) {
+            auto sampled = volume::sample(meshed.blocks, model.tape, meshed.grid, bandVoxels, threads, input.progress);
+            if (!sampled.ok()) return sampled.error();
+            level = std::move(*sampled);
+            input.volume = &*level;
+        }
+        input.options = optionsFor(request, row);
+        if (const Status written = exporter::write(input, file); !written.ok()) return written;
+    }
+    if (request.proxy.empty()) return Done{};
+    const Vec3f side = model.lowered->field.bounds.size();
+    const double tolerance_m = request.proxyTolerance_m > 0 ? request.proxyTolerance_m : static_cast<double>(std::max({side.x, side.y, side.z})) / 20;
+    const auto around = mesh::proxy(model.lowered->graph, model.lowered->field, tolerance_m, threads, input.progress);
+    if (!around.ok()) return around.error();
+    input.mesh = &*around;
+    input.options = optionsFor(request, *formatOf(request.proxy));
+    return exporter::write(input, request.proxy);
+}
+
+}  // namespace sgm::cli

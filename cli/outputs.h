@@ -1,0 +1,28 @@
+// What `sgm build` writes: files by their endings, options of formats, the proxy.
+// Enters: what the user asked for, a model and its mesh. Leaves: files. Assumes `checkOutputs` came before the work.
+#pragma once
+
+#include "cli/pipeline.h"
+#include "modeler/export/exporter.h"
+
+namespace sgm::cli {
+
+struct OutputRequest {
+    std::vector<std::string> files;
+    std::vector<std::string> options;  ///< "NAME=VALUE"
+    std::string proxy;                 ///< a mesh file, "" for none
+    double proxyTolerance_m = 0;       ///< 0: a twentieth of the model's longest side
+};
+/// Adds -o, --export, --proxy and --proxy-tolerance.
+void addOutputOptions(CLI::App& command, OutputRequest& request);
+
+/// The outputs and the proxy, if there is one.
+std::vector<std::string> allFiles(const OutputRequest& request);
+
+/// Error::Usage for endings, options and values that no format takes; Error::Input for folders that aren't there.
+Status checkOutputs(const OutputRequest& request);
+
+/// Writes every file. `input` has the mesh and what is known of the model.
+Status writeOutputs(const OutputRequest& request, const Model& model, const MeshedModel& meshed, exporter::ExportInput input, int threads);
+
+}  // namespace sgm::cli

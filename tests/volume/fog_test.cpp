@@ -1,0 +1,129 @@
+// Fog made from level sets of known solids, and read back from files.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "modeler/volume/fog.h"
+#include "tests/volume/scratch.h"
+#include "tests/volume/shapes.h"
+
+namespace sgm::volume {
+namespace {
+
+constexpr float voxel_m = 0.03f;
+
+Volume ballLevelSet() { return std::move(levelSetOf(oneBall(1), voxel_m)).value(); }
+
+Volume fogOf(const Volume& levelSet, const FogOptions& options) {
+    auto made = fog(levelSet, options);
+    EXPECT_TRUE(made.ok());
+    return std::move(made).value();
+}
+
+/// The integral over a ball of radius 1 of min(1, depth/edge): 4π ∫ r² min(1, (1 − r)/e) dr.
+double rampOverBall(double e) {
+    const double inner = 1 - e;
+    return 4 * pi * (std::pow(inner, 3) / 3 + ((1 - std::pow(inner, 3)) / 3 - (1 - std::pow(inner, 4)) / 4) / e);
+}
+
+TEST(Fog, HoldsAsMuchAsTheClosedForm) {
+    const Volume level = ballLevelSet();
+    // Within the level set's band, and far beyond it.
+    for (const double edge_m : {2.5 * static_cast<double>(voxel_m), 0.3, 0.9}) {
+        const Volume f = fogOf(level, {.density = 2.5, .edge_m = edge_m});
+        EXPECT_NEAR(f.integral_m3() / (2.5 * rampOverBall(edge_m)), 1, 0.015) << edge_m;
+    }
+}
+
+TEST(Fog, ThickensWithDepthAndEndsAtTheSurface) {
+    const Volume f = fogOf(ballLevelSet(), {.edge_m = 0.5});
+    for (const float depth : {0.05f, 0.2f, 0.4f})
+        EXPECT_NEAR(f.at(somewhere + Vec3f{0, 1 - depth, 0}), depth / 0.5f, 1.5f * voxel_m / 0.5f);
+    EXPECT_FLOAT_EQ(f.at(somewhere), 1);
+    EXPECT_FLOAT_EQ(f.at(somewhere + Vec3f{1.2f, 0, 0}), 0);
+    const Box3f box = f.bounds(), ball = oneBall(1).field.bounds;
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(box.lo[i], ball.lo[i], 1.5f * voxel_m);
+        EXPECT_NEAR(box.hi[i], ball.hi[i], 1.5f * voxel_m);
+    }
+}
+
+TEST(Fog, WispsEatTheEdgeAndBillowsThinTheInside) {
+    const Volume level = ballLevelSet();
+    const Volume plain = fogOf(level, {.edge_m = 0.4});
+    const Volume wispy = fogOf(level, {.edge_m = 0.4, .wisps = 0.8});
+    const Volume billowy = fogOf(level, {.edge_m = 0.4, .billow = 0.6, .lump_m = 0.3});
+    EXPECT_LT(wispy.integral_m3(), 0.95 * plain.integral_m3());
+    EXPECT_GT(wispy.integral_m3(), 0.5 * plain.integral_m3());
+    EXPECT_FLOAT_EQ(wispy.at(somewhere), 1);  // wisps leave the inside alone
+    EXPECT_LT(wispy.activeVoxels(), plain.activeVoxels());
+    EXPECT_LT(billowy.integral_m3(), plain.integral_m3());
+    float least = 1, most = 0;
+    for (float x = -0.4f; x <= 0.4f; x += voxel_m) {
+        const float v = billowy.at(somewhere + Vec3f{x, 0, 0});
+        least = std::min(least, v), most = std::max(most, v);
+        EXPECT_GE(v, 0.4f - 1e-6f);
+        EXPECT_LE(v, 1);
+    }
+    EXPECT_GT(most - least, 0.1f);  // it varies inside
+}
+
+TEST(Fog, LiesBesideTheLevelSetInOneFile) {
+    const Scratch folder;
+    const Volume level = ballLevelSet();
+    const Volume f = fogOf(level, {.edge_m = 0.2});
+    for (const bool half : {false, true}) {
+        const auto file = folder / "both.vdb";
+        ASSERT_TRUE(fillVdb({{level, "level_set"}, {f, "density"}}, file, file, {half, {}}).ok());
+        const std::string bytes = contentOf(file);
+        EXPECT_NE(bytes.find("fog volume"), std::string::npos);
+        EXPECT_NE(bytes.find("level set"), std::string::npos);
+        const auto read = readVdb(file, "density");
+        ASSERT_TRUE(read.ok());
+        EXPECT_FLOAT_EQ(read->voxel_m(), voxel_m);
+        EXPECT_EQ(read->activeVoxels(), f.activeVoxels());
+        EXPECT_NEAR(read->integral_m3(), f.integral_m3(), half ? 1e-3 : 0);
+        for (int i = 0; i < 3; ++i) EXPECT_FLOAT_EQ(read->bounds().hi[i], f.bounds().hi[i]);
+        EXPECT_EQ(readVdb(file, "smoke").error().message.find("cannot read"), 0u);
+        EXPECT_GT(readVdb(file, "level_set")->enclosed_m3(), 4);
+    }
+}
+
+TEST(Fog, OpensInOpenVdbsOwnTool) {
+    if (std::system("command -v vdb_print > /dev/null") != 0)
+        GTEST_SKIP() << "vdb_print isn't installed (libopenvdb-tools)";
+    const Scratch folder;
+    ASSERT_TRUE(writeVdb(fogOf(ballLevelSet(), {}), folder / "a.vdb", "density").ok());
+    ASSERT_EQ(std::system(("vdb_print -l " + (folder / "a.vdb").string() + " > " + (folder / "said").string()).c_str()),
+              0);
+    const std::string said = contentOf(folder / "said");
+    for (const char* text : {"density", "float", "fog volume", "voxel size: 0.03"})
+        EXPECT_NE(said.find(text), std::string::npos) << text << " in\n" << said;
+}
+
+TEST(Fog, HasTheSameBytesEveryTime) {
+    const Scratch folder;
+    std::string first;
+    for (int run = 0; run < 3; ++run) {
+        const Volume f = fogOf(ballLevelSet(), {.edge_m = 0.5, .wisps = 0.5, .billow = 0.5});
+        ASSERT_TRUE(writeVdb(f, folder / "a.vdb", "density").ok());
+        if (first.empty()) first = contentOf(folder / "a.vdb");
+        EXPECT_TRUE(contentOf(folder / "a.vdb") == first);
+    }
+}
+
+TEST(Fog, RefusesWhatMakesNone) {
+    const Volume level = ballLevelSet();
+    EXPECT_EQ(fog(level, {.density = 0}).error().kind, Error::Kind::Usage);
+    EXPECT_EQ(fog(level, {.edge_m = -1}).error().kind, Error::Kind::Usage);
+    EXPECT_EQ(fog(level, {.wisps = 1}).error().kind, Error::Kind::Usage);
+    EXPECT_EQ(fog(level, {.billow = 2}).error().kind, Error::Kind::Usage);
+    EXPECT_EQ(fog(fogOf(level, {}), {}).error().kind, Error::Kind::Usage);  // fog of fog
+    Progress progress;
+    progress.cancel();
+    EXPECT_EQ(fog(level, {}, &progress).error().kind, Error::Kind::Cancelled);
+}
+
+}  // namespace
+}  // namespace sgm::volume
