@@ -70,7 +70,7 @@ std::string exportersPage() {
         std::string options;
         for (const exporter::ExportOption& o : e.options)
             options += fmt::format("{}`{}={}`: {}{}", options.empty() ? "" : "<br>", o.name, o.fallback, o.doc,
-                                   o.choices.empty() ? "" : fmt::format(" ({})", listed(o.choices)));
+                                   !o.choices.empty() ? fmt::format(" ({})", listed(o.choices)) : o.lo < o.hi ? fmt::format(" ({} to {})", o.lo, o.hi) : "");
         page += fmt::format("| `{}` | {} | {} |\n", e.extension, e.doc, options);
     }
     return page;

@@ -13,6 +13,7 @@ namespace sgm::mesh {
 namespace {
 
 constexpr double sqrt3 = 1.7320508;
+constexpr int mostThinnings = 5;  ///< to two fifths each, so to a hundredth
 using Corners = std::array<Vec3f, 3>;
 
 Vec3f middle(const Corners& t) { return (t[0] + t[1] + t[2]) / 3.0f; }
@@ -91,12 +92,14 @@ Result<Mesh> proxy(field::Graph& graph, const field::Field& field, double tolera
     const eval::Tape tape = eval::compile(graph, field, constants);
     auto fine = polygonized(eval::compile(graph, swollen, constants), swollen.bounds, cell_m, threads, progress);
     if (!fine.ok()) return fine;
-    for (const double ratio : {0.08, 0.15, 0.3, 0.6}) {
-        auto thin = simplify(*fine, ratio, progress);
-        if (!thin.ok()) return thin;
-        if (encloses(*thin, tape)) return thin;
+    Result<Mesh> kept = std::move(fine);
+    for (int step = 0; step < mostThinnings; ++step) {
+        auto thinner = simplify(*kept, 0.4, progress);
+        if (!thinner.ok()) return thinner;
+        if (!encloses(*thinner, tape)) break;
+        kept = std::move(thinner);
     }
-    return fine;
+    return kept;
 }
 
 }  // namespace sgm::mesh

@@ -57,7 +57,9 @@ public:
           billow_(static_cast<float>(o.billow)),
           perMetre_(static_cast<float>(1 / lump_m)) {}
 
-    float operator()(float ramp, Vec3f p) const {
+    /// `depth` in shares of the edge; sdfToFogVolume lets those beyond it pass.
+    float operator()(float depth, Vec3f p) const {
+        const float ramp = std::min(1.0f, depth);
         const float eaten = wisps_ > 0 ? wisps_ * (0.5f + 0.5f * noise(p * (4 * perMetre_), wispData)) : 0;
         const float thinned = billow_ > 0 ? billow_ * noise(p * perMetre_, billowData) : 0;
         return density_ * std::max(0.0f, (ramp - eaten) / (1 - eaten)) * (1 - thinned);

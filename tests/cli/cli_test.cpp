@@ -397,4 +397,22 @@ TEST_F(Cli, SmoothAndSimplifyKeepTheMeshClosed) {
     EXPECT_EQ(mesh["nonmanifold_edges"], 0);
 }
 
+TEST_F(Cli, OptionsGoToTheOutputsThatKnowThem) {
+    const std::string start = "build examples/joints.sgm --resolution 32 -o " + path("a.glb") + " -o " + path("a.vdb");
+    EXPECT_EQ(sgm(start + " --export half=yes --export uv=none").code, 0);
+    EXPECT_EQ(sgm("build examples/joints.sgm --resolution 32 -o " + path("b.glb") + " --export half=yes").code, 2) << "does nothing";
+    EXPECT_EQ(sgm(start + " --export half").code, 2);
+    // Before the work, and before anything is written.
+    fs::remove(path("a.glb"));
+    EXPECT_EQ(sgm(start + " --export wisps=2").code, 2);
+    EXPECT_FALSE(fs::exists(path("a.glb")));
+}
+
+TEST_F(Cli, ProxyIsASecondCoarseMesh) {
+    ASSERT_EQ(sgm("build examples/joints.sgm --resolution 64 -o " + path("a.off") + " --proxy " + path("p.off")).code, 0);
+    EXPECT_LT(fs::file_size(path("p.off")), fs::file_size(path("a.off")) / 10);
+    EXPECT_EQ(sgm("build examples/joints.sgm --proxy " + path("p.vdb")).code, 2);
+    EXPECT_EQ(sgm("build examples/joints.sgm --proxy-tolerance 1").code, 2) << "of no proxy";
+}
+
 }  // namespace

@@ -48,6 +48,33 @@ TEST_F(VdbExport, WritesTheVolumeUnderItsGridName) {
     EXPECT_LT(std::filesystem::file_size(folder / "b.vdb"), bytes.size());
 }
 
+TEST_F(VdbExport, WritesFogAloneOrBesideTheLevelSet) {
+    input.options = {{"grids", "fog"}, {"density", "2"}, {"edge", "0.2"}};
+    ASSERT_TRUE(write(input, folder / "fog.vdb").ok());
+    EXPECT_FALSE(volume::readVdb(folder / "fog.vdb", "level_set").ok());
+    const auto alone = volume::readVdb(folder / "fog.vdb", "density");
+    ASSERT_TRUE(alone.ok());
+    EXPECT_FLOAT_EQ(alone->at({0, 0, 0}), 2);
+    input.options["grids"] = "levelset,fog";
+    input.options["wisps"] = "0.7";
+    ASSERT_TRUE(write(input, folder / "both.vdb").ok());
+    EXPECT_TRUE(volume::readVdb(folder / "both.vdb", "level_set").ok());
+    EXPECT_LT(volume::readVdb(folder / "both.vdb", "density")->integral_m3(), alone->integral_m3());
+}
+
+TEST_F(VdbExport, RefusesNumbersOutOfRange) {
+    const auto said = [&](const std::string& name, const std::string& value) {
+        input.options = {{name, value}};
+        return write(input, folder / "a.vdb").error().message;
+    };
+    EXPECT_EQ(said("wisps", "1"), "option 'wisps' of .vdb is from 0 to 0.95, not 1");
+    EXPECT_EQ(said("edge", "wide"), "option 'edge' of .vdb is a number, not 'wide'");
+    EXPECT_EQ(said("edge", "3m"), "option 'edge' of .vdb is a number, not '3m'");
+    EXPECT_EQ(said("density", "nan"), "option 'density' of .vdb is a number, not 'nan'");
+    EXPECT_EQ(said("grids", "mist"), "option 'grids' of .vdb is one of levelset|fog|levelset,fog, not 'mist'");
+    EXPECT_EQ(folder.fileCount(), 0u);
+}
+
 TEST_F(VdbExport, ACancelledWriteLeavesTheOldFile) {
     const auto target = folder / "a.vdb";
     std::ofstream(target) << "the old file";

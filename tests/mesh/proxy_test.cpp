@@ -24,7 +24,7 @@ field::Field twoBalls(field::Graph& g, double noise_m) {
 }
 
 TEST(Proxy, EnclosesWithinItsTolerance) {
-    for (const double tolerance_m : {0.1, 0.4}) {
+    for (const double tolerance_m : {0.2, 0.5}) {
         field::Graph graph;
         const field::Field solid = twoBalls(graph, 0);
         const auto made = proxy(graph, solid, tolerance_m, 2, nullptr);
@@ -47,7 +47,7 @@ TEST(Proxy, EnclosesWithinItsTolerance) {
 TEST(Proxy, IsCoarse) {
     field::Graph graph;
     const field::Field solid = twoBalls(graph, 0.1);
-    const auto fine = proxy(graph, solid, 0.1, 2, nullptr), coarse = proxy(graph, solid, 0.4, 2, nullptr);
+    const auto fine = proxy(graph, solid, 0.25, 2, nullptr), coarse = proxy(graph, solid, 0.5, 2, nullptr);
     ASSERT_TRUE(fine.ok() && coarse.ok());
     EXPECT_LT(coarse->triangleCount(), 600u);
     EXPECT_LT(coarse->triangleCount(), fine->triangleCount());
@@ -57,10 +57,10 @@ TEST(Proxy, IsCoarse) {
 TEST(Proxy, ASmallerMeshDoesNotEnclose) {
     field::Graph graph;
     const field::Field solid = twoBalls(graph, 0);
-    auto made = proxy(graph, solid, 0.1, 2, nullptr);
+    auto made = proxy(graph, solid, 0.3, 2, nullptr);
     ASSERT_TRUE(made.ok());
     for (Chunk& c : made->chunks)
-        for (Vec3f& p : c.positions) p = p * 0.95f;
+        for (Vec3f& p : c.positions) p = p * 0.8f;
     EXPECT_FALSE(encloses(*made, eval::compile(graph, solid, graph.constants())));
 }
 
