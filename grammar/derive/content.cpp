@@ -208,10 +208,10 @@ Shape Interpreter::shapeOf(const Element& e, Looks& looks, const Place& place, u
     return s;
 }
 
-/// What stands inside a shape: the non-terminal that `: Name` wraps, or the shapes of a group.
+/// What stands inside a shape: the non-terminal that `: Name` wraps, the shapes of a group, or the parts of a split.
 bool Interpreter::fill(const Element& e, ShapeId id, const Frame& frame) {
     const Shape& s = builder_.tree().shapes[id];
-    if (e.content.kind == Content::Kind::Group) {
+    if (e.content.kind == Content::Kind::Group || e.content.kind == Content::Kind::Split) {
         Links links;
         links.root = links.last = id;
         Frame inner = frame;
@@ -221,6 +221,7 @@ bool Interpreter::fill(const Element& e, ShapeId id, const Frame& frame) {
         inner.wholeContent = false;
         inner.place.scope = s.scope;
         inner.place.valuesAt = s.valuesAt;
+        if (e.content.kind == Content::Kind::Split) return runSplit(*e.content.split, inner);
         return runBody(*e.content.group, inner, 0);
     }
     if (e.live == rules::none || e.content.kind != Content::Kind::Symbol || grammar_.symbols[e.content.symbol].terminal) return true;

@@ -1,7 +1,7 @@
 // Runs the bodies of rules: what an application of a rule adds to the tree.
 // Enters: a rule and the shape it matched. Leaves: new shapes and bonds in the builder, steps in the log. Assumes checked
 // rules. Recursion follows the nesting of the text, never the depth of the tree.
-// Sources: rules.cpp matches and applies, bodies.cpp runs control, place.cpp puts shapes, content.cpp fills them.
+// Sources: rules.cpp matches and applies, bodies.cpp runs control, place.cpp puts shapes, content.cpp fills them, split.cpp cuts their scopes.
 #pragma once
 
 #include <array>
@@ -90,6 +90,9 @@ private:
     rules::Joint jointShares(uint32_t joint, uint32_t jointSet) const;
     Scope contentBox(ShapeId root) const;
     void remember(const rules::Element& e, const Frame& frame, ShapeId id, uint32_t ours);
+
+    // split.cpp
+    bool runSplit(const rules::Split& split, const Frame& frame);
 
     // content.cpp
     ElementFacts& factsOf(const rules::Element& e);

@@ -142,7 +142,9 @@ void Checker::shape(Place& place, const syntax::Element& written, Element& out) 
     // With an operator there is no matched scope to change: what stands before the newcomer is meant for it.
     std::vector<Attribute> before = attributes(place, written.before);
     out.attributes = attributes(place, written.after);
-    if (out.op == Operator::None)
+    const syntax::Attribute* cut = splitOf(written);
+    for (auto* list : {&before, &out.attributes}) std::erase_if(*list, [](const Attribute& a) { return a.id == Id::Split; });
+    if (out.op == Operator::None && !cut)
         out.prefix = std::move(before);
     else
         out.attributes.insert(out.attributes.begin(), before.begin(), before.end());
@@ -152,7 +154,11 @@ void Checker::shape(Place& place, const syntax::Element& written, Element& out) 
                 a.span,
                 fmt::format("'{}' can't stand before a shape", syntax::operations()[static_cast<size_t>(a.id)].name),
                 "write it after the shape");
-    if (written.kind == syntax::Element::Kind::Group) {
+    if (cut) {
+        out.content.kind = Content::Kind::Split;
+        out.content.split = parts(place, *cut);
+        out.label = "split";
+    } else if (written.kind == syntax::Element::Kind::Group) {
         out.content.kind = Content::Kind::Group;
         out.content.group = std::make_shared<Body>(written.body ? body(place, *written.body) : Body{});
         out.label = "group";

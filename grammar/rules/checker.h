@@ -143,6 +143,12 @@ private:
     void withArguments(Place& place, const syntax::Attribute& written, Attribute& out);
     void sensible(const Attribute& attribute);
 
+    // splits.cpp
+    const syntax::Attribute* splitOf(const syntax::Element& written);
+    std::shared_ptr<Split> parts(Place& place, const syntax::Attribute& written);
+    Split::Part part(Place& place, const syntax::Case& written);
+    Split::Part repeatedParts(Place& place, const syntax::Case& written);
+
     // bodies.cpp
     Body body(Place& place, const syntax::Body& written);
     Element element(Place& place, const syntax::Element& written);

@@ -29,7 +29,7 @@ void adapt(Expr& e, Want want) {
     if (e.kind == Expr::Kind::Constant &&
         (e.value.kind == Value::Kind::Number || e.value.kind == Value::Kind::Vector)) {
         e.value.integer = false;
-        const Unit bare = want == Want::Length || want == Want::Size ? Unit::Metre
+        const Unit bare = want == Want::Length || want == Want::Size || want == Want::Extent ? Unit::Metre
                           : want == Want::Frequency                  ? Unit::PerMetre
                                                                      : Unit::None;
         for (size_t i = 0; i < std::min<size_t>(e.value.count, e.value.units.size()); ++i)

@@ -101,13 +101,29 @@ struct Solid {
 
 struct Body;
 
+/// `split x { … }`: the scope cut along an axis, a body in every part.
+struct Split {
+    struct Part {
+        SourceSpan span;
+        Expr size;                  ///< metres or a share of the scope; floating: a weight, in `{ … }*` wished metres
+        bool floating = false;      ///< ~: shares what fixed sizes leave
+        std::shared_ptr<Body> body;
+        std::vector<Part> repeated; ///< of `{ … }*`; then size and body say nothing
+        uint32_t local = none;      ///< the local that counts repetitions from 1
+    };
+    SourceSpan span;
+    int axis = 0;                   ///< 0 x, 1 y, 2 z
+    std::vector<Part> parts;        ///< from low to high
+};
+
 /// What joins the tree when an element runs.
 struct Content {
-    enum class Kind : uint8_t { None, Solid, Symbol, Group };
+    enum class Kind : uint8_t { None, Solid, Symbol, Group, Split };
     Kind kind = Kind::None;
     Solid solid;                  ///< Solid
     SymbolId symbol = none;       ///< Symbol: terminal (V_T) or non-terminal (V_N)
     std::shared_ptr<Body> group;  ///< Group
+    std::shared_ptr<Split> split; ///< Split
 };
 
 struct Attribute {

@@ -12,6 +12,17 @@ namespace {
 
 using Id = Operation::Id;
 
+template <class Visit>
+void eachElement(const Body& body, Visit visit);
+
+template <class Visit>
+void eachPart(const std::vector<Split::Part>& parts, Visit visit) {
+    for (const Split::Part& part : parts) {
+        if (part.body) eachElement(*part.body, visit);
+        eachPart(part.repeated, visit);
+    }
+}
+
 /// Calls `visit` with every element of a body, groups and alternatives included.
 template <class Visit>
 void eachElement(const Body& body, Visit visit) {
@@ -20,6 +31,7 @@ void eachElement(const Body& body, Visit visit) {
             visit(e);
             if (e.content.group) eachElement(*e.content.group, visit);
             if (e.body) eachElement(*e.body, visit);
+            if (e.content.split) eachPart(e.content.split->parts, visit);
             for (const Choice& c : e.choices) eachElement(*c.body, visit);
         }
 }
@@ -132,6 +144,7 @@ private:
     bool elementMayEnd(const Element& e, bool chain) const {
         switch (e.kind) {
             case Element::Kind::Shape:
+                if (e.content.split) return true;  // parts shrink, and those without extent vanish
                 if (e.content.symbol != none && !ends_[e.content.symbol]) return false;
                 if (!chain && e.live != none && !ends_[e.live]) return false;  // in a chain it starts none of its own
                 return !e.content.group || bodyMayEnd(*e.content.group, chain);

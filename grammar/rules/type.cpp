@@ -86,6 +86,8 @@ std::string_view describe(Want want) {
             return "an angle (30deg), or three";
         case Want::Size:
             return "a length, a share (30%) or (x, y, z) of them";
+        case Want::Extent:
+            return "a length or a share (30%)";
         case Want::Offset:
             return "a number, a length or (x, y, z) of them";
         case Want::Triple:
@@ -144,6 +146,8 @@ bool fits(const Type& type, Want want) {
             return one && v.units[0] == Unit::Angle;
         case Want::Angles:
             return (one || three) && everyUnit(v, [](Unit u) { return u == Unit::Angle; });
+        case Want::Extent:
+            return one && everyUnit(v, measure);
         case Want::Size:
         case Want::Offset:
             return (one || three) && everyUnit(v, measure);

@@ -33,6 +33,7 @@ enum class Want : uint8_t {
     Angle,
     Angles,  ///< one, or three
     Size,    ///< lengths or shares, one or three
+    Extent,  ///< one length or share
     Offset,  ///< plain numbers, shares or lengths, one or three
     Triple,  ///< plain numbers or lengths, exactly three
     Color,

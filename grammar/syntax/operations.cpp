@@ -78,7 +78,7 @@ constexpr std::array<Operation, 27> table = {{
     {Id::With, "with", "Sets a value that the shape's descendants inherit.", "Level with storey = 3", withArguments},
     {Id::Split, "split",
      "Cuts the scope along an axis: sizes are absolute (4m), relative (30%) or floating (~1); { … }* repeats to fit.",
-     "split x { 1m: wall | { ~2.4m: Tile }* | 1m: wall }", splitArguments, true, false},
+     "split x { 1m: wall | { ~2.4m: Tile }* | 1m: wall }", splitArguments, true, true},
     {Id::Inset, "inset", "Cuts a face into its rim and the rest.", "inset .12m { rim: frame | rest: glass }",
      insetArguments, true, false},
     {Id::Clad, "clad", "Dresses a solid with a pattern: inner + (outer & pattern).", "cube clad ornate thickness .4m",
