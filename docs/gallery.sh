@@ -49,6 +49,6 @@ draw bank      $clouds/bank.sgm --no-ground
 draw ring      $clouds/ring.sgm --no-ground
 draw ball      $clouds/ball.sgm --no-ground
 
-for name in spire palace hall pagoda apartment; do
+for name in spire palace hall pagoda apartment cloister skyscraper twist terrace; do
   draw $name examples/buildings/$name.sgm
 done

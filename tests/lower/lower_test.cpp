@@ -3,38 +3,12 @@
 
 #include <chrono>
 
-#include "modeler/eval/evaluate.h"
-#include "tests/derive/grammars.h"
+#include "tests/lower/lowered.h"
 
 namespace sgm {
 namespace {
 
 using namespace testing_;
-
-struct Lowered {
-    derive::Derivation derivation;
-    std::unique_ptr<lower::Model> model;
-
-    explicit Lowered(const std::string& text, derive::Options options = {}) : derivation(derived(text, options)) {
-        auto result = lower::lower(derivation, nullptr);
-        if (result.ok()) model = std::move(*result);
-        else ADD_FAILURE() << result.error().message;
-    }
-    eval::Tape tape() const { return eval::compile(model->graph, model->field, model->graph.constants()); }
-    float value(Vec3f p) const {
-        eval::Workspace workspace(eval::Isa::Portable);
-        float out = 0;
-        eval::evaluate(tape(), {&p.x, &p.y, &p.z, 1}, &out, workspace);
-        return out;
-    }
-    bool inside(Vec3f p) const { return value(p) < 0; }
-    const Part& owner(Vec3f p) const {
-        eval::Workspace workspace(eval::Isa::Portable);
-        OriginId id = 0;
-        eval::evaluateOrigin(tape(), {&p.x, &p.y, &p.z, 1}, &id, workspace);
-        return model->provenance.parts[id];
-    }
-};
 
 TEST(Order, ADifferenceCutsWhatItsNodeHoldsSoFar) {
     // The ball comes after the cut and fills it again.
