@@ -295,6 +295,32 @@ TEST_F(Cli, FramesOfAnAnimationAreClosedAndGoFromEndToEnd) {
     EXPECT_NE(volume[0], volume[1]);
 }
 
+TEST_F(Cli, InterruptedAnimationLeavesWholeFrames) {
+    const std::string out = path("f_%04d.off");
+    const pid_t child = fork();
+    if (child == 0) {
+        freopen("/dev/null", "w", stderr);
+        execl(SGM_PROGRAM, SGM_PROGRAM, "build", "examples/morphs.sgm", "-q", "--animate", "become=0..1:2000", "--resolution", "64", "-o", out.c_str(), static_cast<char*>(nullptr));
+        _exit(127);
+    }
+    for (int i = 0; i < 60000 && !fs::exists(path("f_0003.off")) && waitpid(child, nullptr, WNOHANG) == 0; ++i) std::this_thread::sleep_for(std::chrono::microseconds(500));
+    kill(child, SIGINT);
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 130);
+    EXPECT_TRUE(fs::exists(path("f_0003.off")));
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+        ASSERT_EQ(entry.path().extension(), ".off") << entry.path();
+        std::istringstream text(read(entry.path()));
+        std::string word;
+        size_t vertices = 0, faces = 0, lines = 0;
+        text >> word >> vertices >> faces;
+        for (std::getline(text, word); std::getline(text, word);) lines += !word.empty();
+        EXPECT_EQ(lines, vertices + faces) << entry.path();
+    }
+}
+
 TEST_F(Cli, AnimationsThatMeanNothingAreWrongUsage) {
     const auto said = [&](const std::string& more) {
         const Outcome run = sgm("build examples/morphs.sgm --resolution 16 " + more);
