@@ -1,10 +1,11 @@
 // .vdb files: written with offsets, so that readers may load a part; the same bytes for the same volume.
 #include <fmt/format.h>
 #include <openvdb/io/Archive.h>
-#include <openvdb/io/File.h>
+#include <openvdb/io/Stream.h>
 
 #include <cerrno>
-#include <istream>
+#include <cstring>
+#include <fstream>
 
 #include "modeler/core/atomic_file.h"
 #include "modeler/core/polled_file.h"
@@ -92,12 +93,14 @@ Result<Volume> readVdb(const std::filesystem::path& path, const std::string& nam
         return Error{Error::Kind::Input, fmt::format("cannot read '{}': {}", path.string(), cause)};
     };
     try {
-        openvdb::io::File file(path.string());
-        file.open(false);  // all at once: the file may be replaced while the volume lives
-        for (auto at = file.beginName(); at != file.endName(); ++at)
-            if ((name.empty() || *at == name) && file.readGridMetadata(*at)->isType<openvdb::FloatGrid>())
-                return Volume(std::make_shared<Volume::Impl>(
-                    Volume::Impl{openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(*at))}));
+        // A stream that throws at its end: openvdb::io::File would take a cut file's missing sizes as they come.
+        std::ifstream in(path, std::ios::binary);
+        if (!in) return failed(std::strerror(errno));
+        in.exceptions(std::ios::failbit | std::ios::badbit);
+        openvdb::io::Stream stream(in, false);  // all at once: the file may be replaced while the volume lives
+        for (const openvdb::GridBase::Ptr& grid : *stream.getGrids())
+            if (const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid); floats && (name.empty() || grid->getName() == name))
+                return Volume(std::make_shared<Volume::Impl>(Volume::Impl{floats}));
     } catch (const std::exception& e) {
         return failed(e.what());
     }

@@ -101,11 +101,9 @@ TEST_F(Cli, EveryBadGrammarIsRefusedAndWritesNothing) {
 
 TEST_F(Cli, RunawayThatOnlyShowsWhileDerivingEndsInTheBudget) {
     const std::string file = grammar("start A -> cube : Grow\nrule Grow when scope.x > 0m -> + cube size 100% at +x : Grow\n");
-    const auto start = std::chrono::steady_clock::now();
     const Outcome run = sgm("build " + file + " --max-shapes 20000 -o " + path("a.glb"));
     EXPECT_EQ(run.code, 3) << run.out;
     EXPECT_NE(run.out.find("Grow"), std::string::npos) << run.out;
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
     EXPECT_FALSE(fs::exists(path("a.glb")));
 }
 
@@ -205,6 +203,14 @@ TEST_F(Cli, KilledInTheMiddleOfWritingLeavesTheOldFile) {
     EXPECT_EQ(read(out), "precious");
 }
 
+/// Whether a process has a handler for the signal by now.
+bool catches(pid_t process, int signal) {
+    std::ifstream in("/proc/" + std::to_string(process) + "/status");
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with("SigCgt:")) return std::stoull(line.substr(7), nullptr, 16) >> (signal - 1) & 1;
+    return false;
+}
+
 TEST_F(Cli, InterruptCancelsWith130AndLeavesNothing) {
     const std::string out = path("a.glb");
     const pid_t child = fork();
@@ -213,9 +219,10 @@ TEST_F(Cli, InterruptCancelsWith130AndLeavesNothing) {
         execl(SGM_PROGRAM, SGM_PROGRAM, "build", "examples/grotto.sgm", "--resolution", "1500", "-o", out.c_str(), static_cast<char*>(nullptr));
         _exit(127);
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(400));
-    kill(child, SIGINT);
     int status = 0;
+    while (!catches(child, SIGINT) && waitpid(child, &status, WNOHANG) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // into the work
+    kill(child, SIGINT);
     waitpid(child, &status, 0);
     ASSERT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 130);

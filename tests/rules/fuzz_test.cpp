@@ -1,32 +1,19 @@
 // Damaged grammars through parse and check: no crash, every span inside its file, each fast.
 #include <gtest/gtest.h>
-#include <time.h>
 
 #include <cstdlib>
 
+#include "tests/cpu_time.h"
 #include "tests/rules/read.h"
 #include "tests/syntax/mutate.h"
 
 namespace sgm::rules {
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr double most_s = 0.5;  // instrumented code is no measure of speed
-#else
-constexpr double most_s = 0.05;
-#endif
-
 /// SGM_FUZZ_MUTANTS asks for a longer run.
 uint64_t mutantCount() {
     const char* asked = std::getenv("SGM_FUZZ_MUTANTS");
     return asked ? std::strtoull(asked, nullptr, 10) : 5000;
-}
-
-/// CPU seconds of this thread: a busy machine doesn't count.
-double seconds() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 void expectInside(const syntax::SourceSpan& span, const syntax::Source& source, const std::string& message) {
@@ -45,11 +32,11 @@ TEST(Fuzz, MutantsAreJudgedQuicklyAndInPlace) {
         const syntax::Mutator mutate(readText(seed));
         for (uint64_t i = 0; i < mutants / std::size(seeds); ++i) {
             const std::string text = mutate(++key);
-            const double before = seconds();
+            const double before = secondsOf(threadClock());
             const Checked c = checked(text);
-            const double taken = seconds() - before;
+            const double taken = secondsOf(threadClock()) - before;
             slowest = std::max(slowest, taken);
-            ASSERT_LT(taken, most_s) << "mutant " << key << " of " << seed;
+            ASSERT_LT(taken, cpuSeconds(.05)) << "mutant " << key << " of " << seed;
             for (const auto& d : c.diagnostics.all()) {
                 expectInside(d.span, *c.source, d.message);
                 ASSERT_FALSE(syntax::render(d).empty());
@@ -73,9 +60,9 @@ TEST(Fuzz, SolidsThatDoubleAreRefused) {
             .append(", " + last)
             .append(", .5)\n");
     }
-    const double before = seconds();
+    const double before = secondsOf(threadClock());
     const Checked c = checkedBody(text + "start S -> t59\n");
-    EXPECT_LT(seconds() - before, 1);
+    EXPECT_LT(secondsOf(threadClock()) - before, cpuSeconds(1));
     EXPECT_NE(c.messages().find("a solid has at most 1000 parts"), std::string::npos);
 }
 
