@@ -133,6 +133,41 @@ void keepBounds(std::span<const Interval<Float>> args, uint32_t data, size_t i, 
     reach.store(c.bounds + args.size() * maxBoxes + i);
 }
 
+/// Any operands, gathered vector by vector.
+template <class Row, class V>
+void stepOver(const Instruction& in, const StepContext& c) {
+    [[maybe_unused]] constexpr bool chooses = field::traitsOf<Row>().chooses && std::is_same_v<V, Interval<Float>>;
+    float* const out = rowOf<V>(c, in.out);
+    V* const args = static_cast<V*>(c.arguments);
+    const Source* const sources = c.sources + in.a;
+    for (size_t i = 0; i < c.count; i += Float::size) {
+        for (uint32_t k = 0; k < in.count; ++k) args[k] = loadAt<V>(sources[k], c, i);
+        const std::span<const V> all(args, in.count);
+        if constexpr (chooses) keepBounds<Row>(all, in.data, i, c);
+        Planes<V>::store(Body<Row, V>::call(all, in.data), out + i, c.stride);
+    }
+}
+
+/// Operands of a known number, the moving ones in registers and the others constant: those stay in vector registers.
+/// False where the operands are otherwise.
+template <class Row, class V>
+bool stepOverNumbers(const Instruction& in, const StepContext& c) {
+    constexpr size_t count = Row::operandCount, moving = Row::moving;
+    const Source* const sources = c.sources + in.a;
+    for (size_t k = 0; k < count; ++k)
+        if (isConstant(sources[k]) != (k >= moving)) return false;
+    const float* rows[moving];
+    for (size_t k = 0; k < moving; ++k) rows[k] = rowOf<V>(c, sources[k]);
+    V args[count];
+    for (size_t k = moving; k < count; ++k) args[k] = V(c.constants[indexOf(sources[k])]);
+    float* const out = rowOf<V>(c, in.out);
+    for (size_t i = 0; i < c.count; i += Float::size) {
+        for (size_t k = 0; k < moving; ++k) args[k] = Planes<V>::load(rows[k] + i, c.stride);
+        Planes<V>::store(Body<Row, V>::call(std::span<const V>(args, count), in.data), out + i, c.stride);
+    }
+    return true;
+}
+
 template <class Row, class V>
 void step(const Instruction& in, const StepContext& c) {
     [[maybe_unused]] constexpr bool chooses = field::traitsOf<Row>().chooses && std::is_same_v<V, Interval<Float>>;
@@ -153,14 +188,10 @@ void step(const Instruction& in, const StepContext& c) {
             });
         });
     } else if constexpr (Row::arity == field::ops::variadic) {
-        V* const args = static_cast<V*>(c.arguments);
-        const Source* const sources = c.sources + in.a;
-        for (size_t i = 0; i < c.count; i += Float::size) {
-            for (uint32_t k = 0; k < in.count; ++k) args[k] = loadAt<V>(sources[k], c, i);
-            const std::span<const V> all(args, in.count);
-            if constexpr (chooses) keepBounds<Row>(all, in.data, i, c);
-            Planes<V>::store(Body<Row, V>::call(all, in.data), out + i, c.stride);
+        if constexpr (requires { Row::operandCount; }) {
+            if (stepOverNumbers<Row, V>(in, c)) return;
         }
+        stepOver<Row, V>(in, c);
     }
 }
 

@@ -19,6 +19,7 @@ namespace sgm::field::ops {
 struct Kifs {
     static constexpr std::string_view name = "kifs";
     static constexpr int arity = variadic;
+    static constexpr size_t moving = 3;
 
     /// Places of the operands; vectors take three, rotations nine (by columns).
     enum Operand : size_t { position, centreOfScale = 3, scale = 6, fold = 7, turn = 16, bailout = 25, operandCount };

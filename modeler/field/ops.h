@@ -7,6 +7,8 @@
 //   name, arity                          operands: 1, 2, or `variadic`
 //   V apply(a) | apply(a, b) | apply(span<const V> args, uint32_t data)      the op itself, over any V
 // and, where the default won't do or could be better:
+//   operandCount, moving                 of a variadic row: it always has so many operands, and those from `moving` on are
+//                                        mostly numbers: kernels are fast then
 //   commutative = true                   operands may be ordered
 //   I interval(…same operands as I…)     an enclosure of apply's floats, rounding included; operands' bounds are never
 //                                        NaN. The default is apply over intervals: rounding is monotone, so it encloses
@@ -34,6 +36,7 @@
 #include "modeler/field/kifs.h"
 #include "modeler/field/noise.h"
 #include "modeler/field/ops_math.h"
+#include "modeler/field/solid_ops.h"
 #include "modeler/field/values.h"
 
 namespace sgm::field::ops {
@@ -192,6 +195,7 @@ struct Max {
 struct Morph {
     static constexpr std::string_view name = "morph";
     static constexpr int arity = variadic;
+    static constexpr size_t operandCount = 3, moving = 3;
     static constexpr Owner owner = Owner::Nearer;
     static constexpr std::string_view glsl =
         "float t = arg(first + 2u); return arg(first) * (1.0 - t) + arg(first + 1u) * t;";
@@ -291,7 +295,7 @@ struct TypeList {
 };
 using OpTable = TypeList<ops::Input, ops::Literal, ops::Slot, ops::Copy, ops::Add, ops::Sub, ops::Mul, ops::Div,
                          ops::Neg, ops::Abs, ops::Sqrt, ops::Square, ops::Floor, ops::Mod, ops::Min, ops::Max,
-                         ops::Morph, ops::Sin, ops::Cos, ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend>;
+                         ops::Morph, ops::Sin, ops::Cos, ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend, ops::Ball, ops::Box>;
 
 namespace detail {
 template <class Row, class... Rows>

@@ -31,6 +31,11 @@ Field kifs(const PrimitiveInput& in);  ///< (center, scale, fold, turn, passes, 
 Box3f scopeBox(const PrimitiveInput& in);
 /// `g` as a growth: rounded down by more than the float formulas' own rounding.
 float growth(double g);
+/// A position as another one less numbers: so that ops of whole solids subtract them on the way.
+struct Placed {
+    Point p, centre;
+};
+Placed placed(const Point& p);
 /// The exact distance to the scope's box.
 Num boxDistance(const Point& p, const Point& half);
 

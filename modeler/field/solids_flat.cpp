@@ -32,10 +32,27 @@ Box3f scopeBox(const PrimitiveInput& in) {
 
 float growth(double g) { return static_cast<float>(g * (1 - 2e-6)); }
 
+Placed placed(const Point& p) {
+    Graph& graph = p.x.graph();
+    Placed result{p, {graph.literal(0), graph.literal(0), graph.literal(0)}};
+    const auto takeApart = [&graph](Num& n, Num& centre) {
+        const Node& node = graph.node(n.id());
+        if (node.op != codeOf<ops::Sub>) return;
+        const auto operands = graph.operands(n.id());
+        const OpCode subtracted = graph.node(operands[1].node).op;
+        if (subtracted != codeOf<ops::Slot> && subtracted != codeOf<ops::Literal>) return;
+        n = {&graph, operands[0].node};
+        centre = {&graph, operands[1].node};
+    };
+    takeApart(result.p.x, result.centre.x);
+    takeApart(result.p.y, result.centre.y);
+    takeApart(result.p.z, result.centre.z);
+    return result;
+}
+
 Num boxDistance(const Point& p, const Point& half) {
-    const Point q{abs(p.x) - half.x, abs(p.y) - half.y, abs(p.z) - half.z};
-    const Point out{max(q.x, 0.0f), max(q.y, 0.0f), max(q.z, 0.0f)};
-    return length(out) + min(max(max(q.x, q.y), q.z), 0.0f);
+    const auto [q, c] = placed(p);
+    return p.x.graph().apply(codeOf<ops::Box>, {q.x, q.y, q.z, c.x, c.y, c.z, half.x, half.y, half.z});
 }
 
 Field cube(const PrimitiveInput& in) { return {boxDistance(in.p, in.half), scopeBox(in), 1, growth(1)}; }

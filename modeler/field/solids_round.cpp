@@ -1,5 +1,6 @@
 // Round solids. Cross-sections may be elliptical: (|p/s| − 1)·min s is 1-Lipschitz and exact for a circle.
 // Growth: a solid whose exact distance is measured in coordinates v = p/m, times min m, grows by min m / max m at least.
+#include "modeler/field/ops.h"
 #include "modeler/field/solids.h"
 
 namespace sgm::field::solids {
@@ -22,10 +23,14 @@ Num cylinderDistance(const PrimitiveInput& in) {
 
 }  // namespace
 
+// Squeezed onto the ball of the least half-size; the scales are rounded unless they are 1, hence the wider box.
 Field ellipsoid(const PrimitiveInput& in) {
-    const Point u{in.p.x / in.half.x, in.p.y / in.half.y, in.p.z / in.half.z};
-    const Num value = (length(u) - 1.0f) * min(min(in.half.x, in.half.y), in.half.z);
-    return {value, scopeBox(in), 1, growth(minComponent(in.halfValue) / maxComponent(in.halfValue))};
+    const Num r = min(min(in.half.x, in.half.y), in.half.z);
+    const auto [p, c] = placed(in.p);
+    const Num value = r.graph().apply(
+        codeOf<ops::Ball>, {p.x, p.y, p.z, c.x, c.y, c.z, r / in.half.x, r / in.half.y, r / in.half.z, r});
+    const double most = maxComponent(in.halfValue), share = minComponent(in.halfValue) / most;
+    return {value, share == 1 ? scopeBox(in) : scopeBox(in).inflated(2e-6f * static_cast<float>(most)), 1, growth(share)};
 }
 
 // In the scope's ellipse as unit circle the rim is 1 and the tube's radius `tube`; y is scaled so that the tube is as high

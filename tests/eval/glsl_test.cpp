@@ -54,6 +54,12 @@ std::vector<Num> sampleNodes(field::Graph& g, field::OpCode op) {
     if (row.arity == 2) return {g.apply(op, {a, row.name == "div" || row.name == "mod" ? positive : b})};
     if (row.name == "morph") return {g.apply(op, {a, b, field::abs(g.z()) * 0.3f})};
     if (row.name == "blend") return {g.apply(op, {g.literal(0.7f), a, b, g.z() + 0.1f, a * b * 0.2f})};
+    if (row.name == "ball" || row.name == "box") {
+        std::vector<field::Operand> operands{{a.id(), 0}, {b.id(), 0}, {g.z().id(), 0}};
+        for (const float v : {0.4f, -0.3f, 0.2f, 1.0f, 0.7f, 0.9f, 0.8f}) operands.push_back({g.literal(v).id(), 0});
+        if (row.name == "box") operands.pop_back();
+        return {g.apply(op, operands)};
+    }
     std::vector<Num> nodes;
     if (row.name == "noise")
         for (const bool fbm : {false, true})

@@ -147,7 +147,14 @@ std::vector<Example> examplesOf() {
                 {{{0, 2, false}, {-1, 1}, {-1, 1}, {-1, 0}, {0.5f, 0.5f, false}}},
                 {{{0, 1}, {0, 1}, {0, 0.5f}}},
                 {{{0, 0, false}, {-1, 1}, {-1, 1}}}};
-    else if constexpr (std::is_same_v<Row, ops::Kifs>)
+    else if constexpr (std::is_same_v<Row, ops::Ball> || std::is_same_v<Row, ops::Box>) {
+        std::vector<Example> examples(2, {{{-r, r}, {-r, r}, {-r, r}}});
+        for (Example& e : examples)
+            for (size_t i = 3; i < Row::operandCount; ++i)
+                e.operands.push_back({i < 6 ? -1.0f : 0.5f, &e == &examples[0] ? 1.0f : 1.5f, false});
+        examples[1].operands[0] = {-0.1f, 0.1f};
+        return examples;
+    } else if constexpr (std::is_same_v<Row, ops::Kifs>)
         return {kifsExample({3, false, false, false, true, true}), kifsExample({2, true, true, false, true, false}),
                 kifsExample({4, true, false, true, true, true})};
     else if constexpr (Row::arity == 1)
