@@ -159,6 +159,11 @@ private:
             const Node& n = graph_.node(ordered_[i]);
             uses.clear();
             for (const field::Operand& o : graph_.operands(ordered_[i])) uses.push_back(useOf(o));
+            // min(f, f) is a place for f's owner.
+            if (field::traits(n.op).selects && uses[0].source == uses[1].source && uses[0].origin == uses[1].origin) {
+                builder.alias(ordered_[i], uses[0]);
+                continue;
+            }
             const bool listed = owned_ && field::traits(n.op).owner != ops::Owner::First;
             builder.define(ordered_[i], n.op, n.data, uses.data(), uses.size(), listed);
         }

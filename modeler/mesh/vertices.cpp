@@ -96,14 +96,6 @@ void appendNormals(const EdgeLanes& lanes, std::vector<Vec3f>& normals) {
     }
 }
 
-void appendOrigins(const eval::Tape& tape, eval::Points points, eval::Workspace& workspace,
-                   std::vector<OriginId>& origins) {
-    const OriginId whole = tape.origins()[0];
-    origins.resize(origins.size() + points.n, whole);
-    if (whole != 0 || tape.origins().size() == 1) return;  // one owner for all
-    eval::evaluateOrigin(tape, points, origins.data() + origins.size() - points.n, workspace);
-}
-
 }  // namespace
 
 void EdgeLanes::resize(size_t n) {
@@ -130,11 +122,12 @@ void appendVertices(const Brick& brick, Vec3i blockIndex, const Grid& grid, cons
         interpolate(lanes, open && step + 1 < refineSteps);
         if (!open) break;
     }
-    eval::evaluateGradient(tape, points, lanes.f.data(), lanes.dx.data(), lanes.dy.data(), lanes.dz.data(), workspace);
+    if (wantOrigins) vertices.origins.resize(vertices.origins.size() + n);
+    eval::evaluateGradient(tape, points, lanes.f.data(), lanes.dx.data(), lanes.dy.data(), lanes.dz.data(), workspace,
+                           wantOrigins ? vertices.origins.data() + vertices.origins.size() - n : nullptr);
 
     appendPositions(lanes, vertices.positions);
     appendNormals(lanes, vertices.normals);
-    if (wantOrigins) appendOrigins(tape, points, workspace, vertices.origins);
 }
 
 }  // namespace sgm::mesh
