@@ -167,7 +167,9 @@ private:
             const bool listed = owned_ && field::traits(n.op).owner != ops::Owner::First;
             builder.define(ordered_[i], n.op, n.data, uses.data(), uses.size(), listed);
         }
-        return builder.finish(std::make_shared<const std::vector<float>>(constants_.take()), lipschitz);
+        Tape tape;
+        builder.finish(std::make_shared<const std::vector<float>>(constants_.take()), lipschitz, tape);
+        return tape;
     }
 
     const Graph& graph_;

@@ -41,15 +41,8 @@ Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 void Workspace::tallyInto(Tally* tally) { impl_->tally = tally; }
 
-size_t longestInstruction(const Tape& tape) {
-    if (tape.sources().empty()) return 0;  // no variadic ops
-    size_t longest = 0;
-    for (const Instruction& in : tape.code()) longest = std::max<size_t>(longest, in.count);
-    return longest;
-}
-
 StepContext Workspace::Impl::context(const Tape& tape, size_t planes, size_t stride) {
-    const size_t argumentFloats = longestInstruction(tape) * argumentBytes / sizeof(float);
+    const size_t argumentFloats = tape.longest() * argumentBytes / sizeof(float);
     return {registers.get(tape.registerCount() * planes * stride),
             stride,
             stride,
@@ -105,11 +98,11 @@ void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& wo
             hi[i] = box.hi[static_cast<int>(axis)];
         }
     }
-    float* const bounds = w.bounds.get(tape.boundRows() * maxBoxes);
-    w.rangedCode = tape.code().data();
+    w.links.follow(tape);
+    float* const bounds = w.bounds.get(w.links.boundRows() * maxBoxes);
     for (size_t i = 0; i < tape.size(); ++i) {
         const Instruction& in = tape.code()[i];
-        c.bounds = bounds + size_t{tape.links()[i].bounds} * maxBoxes;
+        c.bounds = bounds + size_t{w.links.bounds(i)} * maxBoxes;
         w.kernels.ranges[static_cast<size_t>(in.op)](in, c);
     }
     constexpr float infinity = std::numeric_limits<float>::infinity();

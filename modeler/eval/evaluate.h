@@ -71,5 +71,7 @@ void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& wo
 /// (which must have been of this very tape). Inside the region it returns the same bits as `tape`, and the same owners;
 /// derivatives agree up to rounding.
 Tape shorten(const Tape& tape, size_t index, Workspace& workspace);
+/// The same in the memory of another tape than `tape`: nothing is allocated in steady state.
+void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into);
 
 }  // namespace sgm::eval

@@ -148,6 +148,14 @@ void stepOver(const Instruction& in, const StepContext& c) {
     }
 }
 
+template <class Row, class V>
+V callWithNumbers(std::span<const V> args, uint32_t data) {
+    if constexpr (std::is_same_v<V, Dual<Float>> && requires { Row::gradientByNumbers(args, data); })
+        return Row::gradientByNumbers(args, data);
+    else
+        return Body<Row, V>::call(args, data);
+}
+
 /// Operands of a known number, the moving ones in registers and the others constant: those stay in vector registers.
 /// False where the operands are otherwise.
 template <class Row, class V>
@@ -163,7 +171,7 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
     float* const out = rowOf<V>(c, in.out);
     for (size_t i = 0; i < c.count; i += Float::size) {
         for (size_t k = 0; k < moving; ++k) args[k] = Planes<V>::load(rows[k] + i, c.stride);
-        Planes<V>::store(Body<Row, V>::call(std::span<const V>(args, count), in.data), out + i, c.stride);
+        Planes<V>::store(callWithNumbers<Row>(std::span<const V>(args, count), in.data), out + i, c.stride);
     }
     return true;
 }

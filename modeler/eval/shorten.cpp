@@ -28,22 +28,16 @@ bool beyond(const field::OpTraits& row, float bound, Care care) {
     return row.owner == Owner::Least ? bound > care.most : bound < care.least;
 }
 
-/// The operands of instruction `i` that are left in region `index`, with what of them matters.
-void operandsLeft(const Tape& tape, size_t i, const float* bounds, Care care, std::vector<TapeBuilder::Use>& uses) {
-    const Instruction& in = tape.code()[i];
-    const Link& link = tape.links()[i];
-    const field::OpTraits& row = field::traits(in.op);
-    const Source direct[] = {link.a, link.b};
-    const Source* const values = row.arity == field::ops::variadic ? tape.sourceValues().data() + link.a : direct;
-    const OriginId* const origins = in.origins ? tape.origins().data() + in.origins - 1 : nullptr;
+/// The owners of an instruction's operands, or null.
+const OriginId* ownersOf(const Tape& tape, const Instruction& in) {
+    return in.origins ? tape.origins().data() + in.origins - 1 : nullptr;
+}
+
+/// The operands that are left of an instruction that chooses, with what of them matters.
+void operandsLeft(const field::OpTraits& row, const Instruction& in, const Source* values, const OriginId* origins,
+                  const float* bounds, Care care, std::vector<TapeBuilder::Use>& uses) {
     const auto use = [&](uint32_t k, Care c) { uses.push_back({values[k], origins ? origins[k] : 0, c}); };
     uses.clear();
-    if (!row.chooses) {
-        Care passed;
-        if (in.op == field::codeOf<field::ops::Neg>) passed = {-care.most, -care.least};
-        for (uint32_t k = 0; k < in.count; ++k) use(k, passed);
-        return;
-    }
     const Care inner = careOfOperands(row, bounds[in.count * maxBoxes], care);
     for (uint32_t k = 0; k < row.firstChoice; ++k) use(k, {});
     for (uint32_t k = row.firstChoice; k < in.count; ++k)
@@ -54,26 +48,43 @@ void operandsLeft(const Tape& tape, size_t i, const float* bounds, Care care, st
 
 }  // namespace
 
-Tape shorten(const Tape& tape, size_t index, Workspace& workspace) {
+void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into) {
     Workspace::Impl& w = workspace.impl();
-    assert(w.rangedCode == tape.code().data() && index < maxBoxes);
-    const float* const bounds = w.bounds.get(tape.boundRows() * maxBoxes) + index;
+    assert(w.links.follows(tape) && index < maxBoxes && &into != &tape);
+    const float* const bounds = w.bounds.get(w.links.boundRows() * maxBoxes) + index;
     TapeBuilder& b = w.builder;
     b.begin(tape.size() + 3);
     for (uint32_t axis = 0; axis < 3; ++axis) b.bindInput(axis, axis);
-    b.result({tape.resultValue(), tape.origins()[0]});
+    b.result({w.links.result(), tape.origins()[0]});
     for (uint32_t value = b.nextLive(static_cast<uint32_t>(tape.size()) + 3); value != TapeBuilder::none;
          value = b.nextLive(value)) {
         const size_t i = value - 3;
         const Instruction& in = tape.code()[i];
         const field::OpTraits& row = field::traits(in.op);
-        operandsLeft(tape, i, bounds + size_t{tape.links()[i].bounds} * maxBoxes, b.care(value), w.uses);
-        if (row.chooses && w.uses.size() == row.firstChoice + 1u)
-            b.alias(value, w.uses.back());
-        else
-            b.define(value, in.op, in.data, w.uses.data(), w.uses.size(), in.origins != 0);
+        const Source* const values = w.links.operands(i);
+        const OriginId* const origins = ownersOf(tape, in);
+        if (row.chooses) {
+            operandsLeft(row, in, values, origins, bounds + size_t{w.links.bounds(i)} * maxBoxes, b.care(value),
+                         w.uses);
+            if (w.uses.size() == row.firstChoice + 1u)
+                b.alias(value, w.uses.back());
+            else
+                b.define(value, in.op, in.data, w.uses.data(), w.uses.size(), origins != nullptr);
+        } else if (in.op == field::codeOf<field::ops::Neg>) {
+            const Care care = b.care(value);
+            const TapeBuilder::Use negated{values[0], origins ? origins[0] : 0, {-care.most, -care.least}};
+            b.define(value, in.op, in.data, &negated, 1, origins != nullptr);
+        } else {
+            b.define(value, in, values, origins);
+        }
     }
-    return b.finish(tape.sharedConstants(), tape.lipschitz());
+    b.finish(tape.sharedConstants(), tape.lipschitz(), into);
+}
+
+Tape shorten(const Tape& tape, size_t index, Workspace& workspace) {
+    Tape result;
+    shorten(tape, index, workspace, result);
+    return result;
 }
 
 }  // namespace sgm::eval

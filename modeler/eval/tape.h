@@ -31,25 +31,13 @@ struct Instruction {
     uint32_t origins = 0;  ///< 1 + index of this instruction's operand origins in Tape::origins(), 0 for none
 };
 
-/// What an instruction reads, told by value instead of register: x, y, z are values 0, 1, 2 and instruction i makes
-/// value 3 + i; constants as in Source. It lets a backward pass go from a value straight to what it needs.
-struct Link {
-    Source a, b;      ///< as in Instruction; b is unused by variadic ops, whose a is a place in Tape::sourceValues()
-    uint32_t bounds;  ///< first row of this instruction's bounds, for ops that choose (evaluateRanges)
-};
-
 /// An immutable program; registers are reused, so run it forward. Registers 0, 1, 2 hold x, y, z at the start.
 class Tape {
 public:
     std::span<const Instruction> code() const { return code_; }
     std::span<const Source> sources() const { return sources_; }
-    std::span<const Link> links() const { return links_; }
-    /// sources() told by value.
-    std::span<const Source> sourceValues() const { return sourceValues_; }
-    /// The result told by value.
-    Source resultValue() const { return resultValue_; }
-    /// Rows of bounds of all instructions that choose: one an operand and one for the reach.
-    uint32_t boundRows() const { return boundRows_; }
+    /// Operands of the longest variadic instruction, 0 without any.
+    uint32_t longest() const { return longest_; }
     std::span<const float> constants() const { return *constants_; }
     /// Owners of operands, by Instruction::origins; entry 0 is the owner of the result, 0 where the operands decide.
     std::span<const OriginId> origins() const { return origins_; }
@@ -65,13 +53,12 @@ public:
 private:
     friend class TapeBuilder;
     std::vector<Instruction> code_;
-    std::vector<Link> links_;
-    std::vector<Source> sources_, sourceValues_;
+    std::vector<Source> sources_;
     std::vector<OriginId> origins_{0};
     std::shared_ptr<const std::vector<float>> constants_;  ///< shared by a tape and all its shortened forms
     uint32_t registers_ = 3;
-    uint32_t boundRows_ = 0;
-    Source result_ = 0, resultValue_ = 0;
+    uint32_t longest_ = 0;
+    Source result_ = 0;
     float lipschitz_ = 1;
 };
 

@@ -18,6 +18,7 @@ void TapeBuilder::begin(size_t keys) {
     sources_.clear();
     origins_.assign(1, 0);  // entry 0 is the owner of the result
     registers_ = 3;
+    longest_ = 0;
 }
 
 void TapeBuilder::bindInput(uint32_t key, uint32_t coordinate) {
@@ -68,22 +69,45 @@ void TapeBuilder::result(Use use) {
     result_ = demand(use, 0);
 }
 
-void TapeBuilder::define(uint32_t key, field::OpCode op, uint32_t data, const Use* operands, size_t count,
-                         bool listed) {
-    Instruction in{op, static_cast<uint32_t>(count), values_[key].reg};
+/// The instruction that defines `key`, which is dead from here on; its operands' places are next in the lists.
+Instruction TapeBuilder::begun(uint32_t key, field::OpCode op, uint32_t data, size_t count, bool listed) {
+    Instruction in{op, static_cast<uint32_t>(count), leave(key).reg};
     in.data = data;
-    free_.push_back(leave(key).reg);
-    if (listed) {
-        in.origins = static_cast<uint32_t>(origins_.size()) + 1;
-        for (size_t i = 0; i < count; ++i) origins_.push_back(operands[i].origin);
-    }
-    const auto entry = [&](size_t i) { return listed ? in.origins - 1 + static_cast<uint32_t>(i) : none; };
+    free_.push_back(in.out);
+    if (listed) in.origins = static_cast<uint32_t>(origins_.size()) + 1;
     if (field::traits(op).arity == field::ops::variadic) {
         in.a = static_cast<Source>(sources_.size());
+        longest_ = std::max(longest_, in.count);
+    }
+    return in;
+}
+
+void TapeBuilder::define(uint32_t key, field::OpCode op, uint32_t data, const Use* operands, size_t count,
+                         bool listed) {
+    Instruction in = begun(key, op, data, count, listed);
+    if (listed)
+        for (size_t i = 0; i < count; ++i) origins_.push_back(operands[i].origin);
+    const auto entry = [&](size_t i) { return listed ? in.origins - 1 + static_cast<uint32_t>(i) : none; };
+    if (field::traits(op).arity == field::ops::variadic) {
         for (size_t i = 0; i < count; ++i) sources_.push_back(demand(operands[i], entry(i)));
     } else {
         in.a = demand(operands[0], entry(0));
         if (count > 1) in.b = demand(operands[1], entry(1));
+    }
+    code_.push_back(in);
+}
+
+void TapeBuilder::define(uint32_t key, const Instruction& like, const Source* operands, const OriginId* origins) {
+    Instruction in = begun(key, like.op, like.data, like.count, origins != nullptr);
+    if (origins) origins_.insert(origins_.end(), origins, origins + in.count);
+    const auto source = [&](uint32_t i) {
+        return demand({operands[i], origins ? origins[i] : 0}, origins ? in.origins - 1 + i : none);
+    };
+    if (field::traits(in.op).arity == field::ops::variadic) {
+        for (uint32_t i = 0; i < in.count; ++i) sources_.push_back(isConstant(operands[i]) ? operands[i] : source(i));
+    } else {
+        in.a = source(0);
+        if (in.count > 1) in.b = source(1);
     }
     code_.push_back(in);
 }
@@ -103,40 +127,17 @@ void TapeBuilder::alias(uint32_t key, Use same) {
     }
 }
 
-void TapeBuilder::link(Tape& tape) {
-    std::vector<uint32_t> holder(tape.registers_);  // the value each register holds
-    for (uint32_t axis = 0; axis < 3; ++axis) holder[axis] = axis;
-    const auto valueOf = [&](Source s) { return isConstant(s) ? s : holder[s]; };
-    tape.links_.resize(tape.code_.size());
-    tape.sourceValues_.resize(tape.sources_.size());
-    for (size_t i = 0; i < tape.code_.size(); ++i) {
-        const Instruction& in = tape.code_[i];
-        const field::OpTraits& row = field::traits(in.op);
-        if (row.arity == field::ops::variadic) {
-            for (uint32_t k = in.a; k < in.a + in.count; ++k) tape.sourceValues_[k] = valueOf(tape.sources_[k]);
-            tape.links_[i] = {in.a, 0, tape.boundRows_};
-        } else {
-            tape.links_[i] = {valueOf(in.a), in.count > 1 ? valueOf(in.b) : 0, tape.boundRows_};
-        }
-        if (row.chooses) tape.boundRows_ += in.count + 1u;
-        holder[in.out] = static_cast<uint32_t>(i) + 3;
-    }
-    tape.resultValue_ = valueOf(tape.result_);
-}
-
-Tape TapeBuilder::finish(std::shared_ptr<const std::vector<float>> constants, float lipschitz) {
+void TapeBuilder::finish(const std::shared_ptr<const std::vector<float>>& constants, float lipschitz, Tape& into) {
     for (const uint32_t key : inputs_) values_[key] = {};
     inputs_.clear();
-    Tape tape;
-    tape.code_.assign(code_.rbegin(), code_.rend());
-    tape.sources_ = sources_;
-    tape.origins_ = origins_;
-    tape.constants_ = std::move(constants);
-    tape.registers_ = registers_;
-    tape.result_ = result_;
-    tape.lipschitz_ = lipschitz;
-    link(tape);
-    return tape;
+    into.code_.assign(code_.rbegin(), code_.rend());
+    into.sources_ = sources_;
+    into.origins_ = origins_;
+    if (into.constants_ != constants) into.constants_ = constants;  // the count of owners is shared between threads
+    into.registers_ = registers_;
+    into.longest_ = longest_;
+    into.result_ = result_;
+    into.lipschitz_ = lipschitz;
 }
 
 }  // namespace sgm::eval

@@ -43,10 +43,12 @@ public:
     Care care(uint32_t key) const { return values_[key].care; }
     /// Writes the instruction that defines the live value `key`. `listed`: it keeps the owners of its operands.
     void define(uint32_t key, field::OpCode op, uint32_t data, const Use* operands, size_t count, bool listed);
+    /// The same for operands of which everything matters, as instruction `in` has them; `origins` null: not listed.
+    void define(uint32_t key, const Instruction& in, const Source* operands, const OriginId* origins);
     /// The live value `key` is the same as `same`: no instruction unless `same` already has a register of its own.
     void alias(uint32_t key, Use same);
-    /// The tape, in order.
-    Tape finish(std::shared_ptr<const std::vector<float>> constants, float lipschitz);
+    /// The tape, in order, in the memory `into` has.
+    void finish(const std::shared_ptr<const std::vector<float>>& constants, float lipschitz, Tape& into);
 
 private:
     /// Where a live value is, and the one place that says who owns it (`none` when several consumers read it).
@@ -60,7 +62,7 @@ private:
     void enter(uint32_t key, Value v);
     Value leave(uint32_t key);
     uint32_t takeRegister();
-    static void link(Tape& tape);
+    Instruction begun(uint32_t key, field::OpCode op, uint32_t data, size_t count, bool listed);
 
     std::vector<Value> values_;       // all dead between tapes
     std::vector<uint64_t> liveBits_;  // by key, inputs apart
@@ -68,7 +70,7 @@ private:
     std::vector<Instruction> code_;  // in reverse
     std::vector<Source> sources_;
     std::vector<OriginId> origins_;
-    uint32_t registers_ = 3;
+    uint32_t registers_ = 3, longest_ = 0;
     Source result_ = 0;
 };
 

@@ -6,6 +6,7 @@
 
 #include "modeler/eval/evaluate.h"
 #include "modeler/eval/kernels.h"
+#include "modeler/eval/links.h"
 #include "modeler/eval/tape_builder.h"
 
 namespace sgm::eval {
@@ -30,17 +31,14 @@ struct Workspace::Impl {
     Kernels kernels;
     Tally* tally = nullptr;  ///< where operations are counted, if at all
     AlignedFloats registers, arguments;
-    AlignedFloats bounds;                     ///< rows of maxBoxes floats, see Link::bounds
-    std::vector<OriginId> origins;            ///< origin registers
-    const Instruction* rangedCode = nullptr;  ///< the tape `bounds` speaks of
+    Links links;                    ///< of the last evaluateRanges
+    AlignedFloats bounds;           ///< rows of maxBoxes floats, see Links::bounds
+    std::vector<OriginId> origins;  ///< origin registers
     TapeBuilder builder;
     std::vector<TapeBuilder::Use> uses;
 
     /// A context for blocks of `count` floats of a value type of `planes` floats.
     StepContext context(const Tape& tape, size_t planes, size_t stride);
 };
-
-/// How many operands the longest variadic instruction has.
-size_t longestInstruction(const Tape& tape);
 
 }  // namespace sgm::eval

@@ -71,21 +71,35 @@ struct Kifs {
     static V apply(std::span<const V> args, uint32_t data) {
         const Form form = unpack(data);
         State<V> at = start(args);
-        for (uint32_t i = 0; i < form.passes; ++i) {
-            State<V> next = isometries(at, args, form);
-            const V h = lastFold(args);
-            next.z = form.jump ? select(next.z > h, next.z - (h + h), next.z) : h - abs(next.z - h);
-            if (!form.bails) {
-                at = next;
-                continue;
-            }
-            const V limit = i == 0 ? V(std::numeric_limits<float>::infinity()) : args[bailout];
-            const auto moves = dot(at) <= limit;
-            at = {select(moves, next.x, at.x), select(moves, next.y, at.y), select(moves, next.z, at.z),
-                  select(moves, next.scales, at.scales)};
-            if (!any(moves)) break;
-        }
+        walk(at, args, form, [](uint32_t) { return Unkept{}; });
         return terminal(at, args, form);
+    }
+
+    /// Where the parameters are numbers: back through the passes from the terminal solid's normal. Each turns and reflects
+    /// it; the scaling of the passes is divided out again at the end.
+    template <class D>
+    static D gradientByNumbers(std::span<const D> args, uint32_t data) {
+        using V = typename D::Value;
+        constexpr uint32_t mostPasses = 16;
+        const Form form = unpack(data);
+        if (form.passes > mostPasses) return apply<D>(args, data);
+        V numbers[operandCount];
+        for (size_t i = 0; i < operandCount; ++i) numbers[i] = args[i].value;
+        const std::span<const V> all(numbers, operandCount);
+        Kept<V> kept[mostPasses];
+        State<V> at = start(all);
+        const uint32_t passes = walk(at, all, form, [&](uint32_t i) -> Kept<V>& { return kept[i]; });
+        State<V> g = normal(at, form);
+        for (uint32_t i = passes; i-- > 0;) {
+            const State<V> before = kept[i].back(g, all, form);
+            if (form.bails)
+                g = chosen(kept[i].moves, before, g);
+            else
+                g = before;
+        }
+        const D &x = args[position], &y = args[position + 1], &z = args[position + 2];
+        return D{terminal(at, all, form), g.x * x.dx + g.y * y.dx + g.z * z.dx, g.x * x.dy + g.y * y.dy + g.z * z.dy,
+                 g.x * x.dz + g.y * y.dz + g.z * z.dz};
     }
 
     /// With fixed parameters and a continuous form: f(centre) ± the radius of the box, not below the terminal solid's depth.
@@ -119,6 +133,86 @@ private:
         V x, y, z, scales;
     };
 
+    /// Which way a pass went, for the way back.
+    template <class V>
+    struct Kept {
+        MaskOf<V> negX, negY, negZ, xy, z, rest, low, moves;
+
+        void signs(const State<V>& p) { negX = p.x < V(0.0f), negY = p.y < V(0.0f), negZ = p.z < V(0.0f); }
+        void order(const V& x, const V& y, const V& mostXy, const V& z0, const V& leastXy, const V& leastZ) {
+            xy = x > y, z = mostXy > z0, rest = leastXy > leastZ;
+        }
+        void fold(const V& offset) { low = offset < V(0.0f); }
+        void move(const MaskOf<V>& m) { moves = m; }
+
+        /// The derivatives before the pass from those after it.
+        State<V> back(State<V> g, std::span<const V> args, const Form& form) const {
+            if (!form.jump) g.z = select(low, g.z, -g.z);
+            if (form.folds) g = turnedBack(g, args, Kifs::fold);
+            const V yx = select(rest, g.y, g.z), leastZ = select(rest, g.z, g.y);
+            const V most = select(z, g.x, leastZ), gz = select(z, leastZ, g.x);
+            const V gx = select(xy, most, yx), gy = select(xy, yx, most);
+            g = {select(negX, -gx, gx), select(negY, -gy, gy), select(negZ, -gz, gz), g.scales};
+            return form.turns ? turnedBack(g, args, Kifs::turn) : g;
+        }
+    };
+    struct Unkept {
+        void signs(const auto&) {}
+        void order(const auto&...) {}
+        void fold(const auto&) {}
+        void move(const auto&) {}
+    };
+
+    template <class V>
+    static State<V> chosen(const MaskOf<V>& mask, const State<V>& a, const State<V>& b) {
+        return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z),
+                select(mask, a.scales, b.scales)};
+    }
+
+    /// Takes `at` through the passes; keep(i) is told which way pass i went. Returns how many were begun.
+    template <class V, class Keep>
+    static uint32_t walk(State<V>& at, std::span<const V> args, const Form& form, const Keep& keep) {
+        for (uint32_t i = 0; i < form.passes; ++i) {
+            auto&& kept = keep(i);
+            State<V> next = isometries(at, args, form, kept);
+            const V h = lastFold(args);
+            if (form.jump) {
+                next.z = select(next.z > h, next.z - (h + h), next.z);
+            } else {
+                const V offset = next.z - h;
+                kept.fold(offset);
+                next.z = h - abs(offset);
+            }
+            if (!form.bails) {
+                at = next;
+                continue;
+            }
+            const V limit = i == 0 ? V(std::numeric_limits<float>::infinity()) : args[bailout];
+            const auto moves = dot(at) <= limit;
+            kept.move(moves);
+            at = chosen<V>(moves, next, at);
+            if (!any(moves)) return i + 1;
+        }
+        return form.passes;
+    }
+
+    /// Derivatives of the terminal solid's distance.
+    template <class V>
+    static State<V> normal(const State<V>& p, const Form& form) {
+        const V zero = 0.0f;
+        if (!form.cube) {
+            const V length = sqrt(dot(p));
+            const auto off = length > zero;
+            const V share = select(off, V(1.0f) / select(off, length, V(1.0f)), zero);
+            return {p.x * share, p.y * share, p.z * share, p.scales};
+        }
+        const V x = abs(p.x), y = abs(p.y), z = abs(p.z);
+        const auto inX = (x >= y) & (x >= z), inY = y >= z;
+        const auto side = [&](const V& v) { return select(v < zero, V(-1.0f), V(1.0f)); };
+        return {select(inX, side(p.x), zero), select(inX, zero, select(inY, side(p.y), zero)),
+                select(inX | inY, zero, side(p.z)), p.scales};
+    }
+
     template <class V>
     static State<V> start(std::span<const V> args) {
         return {args[position], args[position + 1], args[position + 2], V(1.0f)};
@@ -145,13 +239,24 @@ private:
         return {row(0), row(1), row(2), p.scales};
     }
 
-    /// One pass up to the last fold.
+    /// The inverse rotation.
     template <class V>
-    static State<V> isometries(State<V> p, std::span<const V> args, const Form& form) {
+    static State<V> turnedBack(const State<V>& p, std::span<const V> args, size_t first) {
+        const auto column = [&](size_t c) {
+            return args[first + 3 * c] * p.x + args[first + 3 * c + 1] * p.y + args[first + 3 * c + 2] * p.z;
+        };
+        return {column(0), column(1), column(2), p.scales};
+    }
+
+    /// One pass up to the last fold.
+    template <class V, class Keep>
+    static State<V> isometries(State<V> p, std::span<const V> args, const Form& form, Keep&& kept) {
         if (form.turns) p = rotated(p, args, turn);
+        kept.signs(p);
         const V x = abs(p.x), y = abs(p.y), z = abs(p.z);
         const V xy = max(x, y), yx = min(x, y);
         const V first = max(xy, z), rest = min(xy, z);
+        kept.order(x, y, xy, z, yx, rest);
         State<V> q{first, max(yx, rest), min(yx, rest), p.scales};
         if (form.folds) q = rotated(q, args, fold);
         const V s = args[scale], less = s - V(1.0f);
@@ -172,7 +277,7 @@ private:
         State<I> at = start(args);
         V lo = std::numeric_limits<float>::infinity(), hi = -std::numeric_limits<float>::infinity();
         for (uint32_t i = 0; i < form.passes; ++i) {
-            at = isometries(at, args, form);
+            at = isometries(at, args, form, Unkept{});
             const I h = lastFold(args);
             if (form.jump) {
                 const auto may = at.z.hi > h.lo, must = at.z.lo > h.hi;

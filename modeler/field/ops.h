@@ -13,6 +13,7 @@
 //   I interval(…same operands as I…)     an enclosure of apply's floats, rounding included; operands' bounds are never
 //                                        NaN. The default is apply over intervals: rounding is monotone, so it encloses
 //   D gradient(…same operands as D…)     value (same bits as apply) and derivatives; the default is apply over Dual
+//   D gradientByNumbers(same)            the same, for a row with `moving` while the operands from there on are numbers
 //   owner                                which operand owns the surface (Owner)
 //   V reach(span<const I>, uint32_t)     for Owner::Least (Greatest): an operand that lies above (below) it can't matter:
 //                                        the bits stay the same without it or with any other number beyond it. With one

@@ -29,8 +29,11 @@ void activateBricks(const Block& block, const Grid& grid, eval::Workspace& works
     for (size_t i = 0; i < n; ++i) {
         if (!mayHoldSurface(ranges[i], cells[i], grid)) continue;
         samples.active |= 1ull << numbers[i];
-        samples.tapes[numbers[i]] =
-            block.tape.size() <= shortEnough ? block.tape : eval::shorten(block.tape, i, workspace);
+        eval::Tape& tape = samples.tapes[numbers[i]];
+        if (block.tape.size() <= shortEnough)
+            tape = block.tape;
+        else
+            eval::shorten(block.tape, i, workspace, tape);
     }
 }
 

@@ -1,0 +1,35 @@
+// What a tape's instructions read, told by value instead of register, so that a backward pass goes from a value
+// straight to what it needs. Enters: a tape. Leaves: for each instruction the values it reads and where its bounds are.
+// Assumes one Links a thread, whose memory is used again.
+#pragma once
+
+#include <vector>
+
+#include "modeler/eval/tape.h"
+
+namespace sgm::eval {
+
+/// x, y, z are values 0, 1, 2 and instruction i makes value 3 + i; constants as in Source.
+class Links {
+public:
+    /// Follows the tape; what was told of another one is forgotten.
+    void follow(const Tape& tape);
+    /// The operands of instruction i, as many as it has.
+    const Source* operands(size_t i) const { return values_.data() + first_[i]; }
+    /// Its first row of bounds, if it chooses (evaluateRanges).
+    uint32_t bounds(size_t i) const { return bounds_[i]; }
+    /// Rows of bounds of all instructions that choose: one an operand and one for the reach.
+    uint32_t boundRows() const { return boundRows_; }
+    Source result() const { return result_; }
+    /// True for the tape followed last.
+    bool follows(const Tape& tape) const { return code_ == tape.code().data(); }
+
+private:
+    std::vector<Source> values_, holder_;
+    std::vector<uint32_t> first_, bounds_;
+    uint32_t boundRows_ = 0;
+    Source result_ = 0;
+    const Instruction* code_ = nullptr;
+};
+
+}  // namespace sgm::eval
