@@ -68,7 +68,7 @@ void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, 
         for (size_t plane = 0; plane < 4; ++plane) storeResult(tape, c, 4, plane, out[plane] + first, n);
     };
     if (!owners) return runBlocks(tape, points, w.kernels.gradients, 4, w, nothingBefore, store);
-    OwnerPass pass(tape, 4, w.origins);
+    OwnerPass pass(tape, 4, w);
     runBlocks(
         tape, points, w.kernels.gradients, 4, w, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
         [&](const StepContext& c, size_t first, size_t n) {
@@ -79,7 +79,7 @@ void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, 
 
 void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
-    OwnerPass pass(tape, 1, w.origins);
+    OwnerPass pass(tape, 1, w);
     runBlocks(
         tape, points, w.kernels.values, 1, w, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
         [&](const StepContext&, size_t first, size_t n) { pass.store(out + first, n); });

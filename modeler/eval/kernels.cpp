@@ -203,6 +203,17 @@ void step(const Instruction& in, const StepContext& c) {
     }
 }
 
+template <bool Lesser>
+void moveOwners(const float* values, const float* owners, float one, size_t n, float* best, float* taken) {
+    for (size_t i = 0; i < n; i += Float::size) {
+        const Float value = Float::load(values + i), soFar = Float::load(best + i);
+        const auto wins = Lesser ? value < soFar : value > soFar;
+        const Float owner = owners ? Float::load(owners + i) : Float(one);
+        select(wins, value, soFar).store(best + i);
+        select(wins, owner, Float::load(taken + i)).store(taken + i);
+    }
+}
+
 template <class V, class... Rows>
 const Step* steps(field::TypeList<Rows...>) {
     static constexpr Step table[] = {step<Rows, V>...};
@@ -214,7 +225,8 @@ const Step* steps(field::TypeList<Rows...>) {
 namespace SGM_ISA {
 Kernels kernels() {
     constexpr field::OpTable rows;
-    return {steps<Float>(rows), steps<Dual<Float>>(rows), steps<Interval<Float>>(rows)};
+    return {steps<Float>(rows), steps<Dual<Float>>(rows), steps<Interval<Float>>(rows), moveOwners<true>,
+            moveOwners<false>};
 }
 }  // namespace SGM_ISA
 

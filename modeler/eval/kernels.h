@@ -31,11 +31,16 @@ struct StepContext {
 
 using Step = void (*)(const Instruction&, const StepContext&);
 
+/// Over n points (a multiple of vectorFloats, all rows aligned): where `values` beats `best`, both rows take this
+/// operand's place. Owners are kept as the bits of floats; where `owners` is null, `one` is everybody's.
+using MoveOwners = void (*)(const float* values, const float* owners, float one, size_t n, float* best, float* taken);
+
 /// The steps of every op for one instruction set, by OpCode.
 struct Kernels {
     const Step* values;
     const Step* gradients;  ///< Dual: rows value, dx, dy, dz
     const Step* ranges;     ///< Interval: rows lo, hi; ops that choose also write `bounds`
+    MoveOwners toLesser, toGreater;
 };
 
 namespace portable {

@@ -4,31 +4,15 @@ namespace sgm::eval {
 
 using field::ops::Owner;
 
-namespace {
+OwnerPass::OwnerPass(const Tape& tape, size_t planes, Workspace::Impl& workspace)
+    : tape_(tape),
+      planes_(planes),
+      kernels_(workspace.kernels),
+      rows_(workspace.owners.get((tape.registerCount() + size_t{1}) * maxBlock)),
+      taken_(rowOf(tape.registerCount())),
+      owners_(tape.registerCount()) {}
 
-/// Moves the lanes where `beats` to this operand. `Same`: it has one owner.
-template <bool Same, class Beats>
-void moveTo(const float* values, const OriginId* owners, OriginId owner, size_t n, float* best, OriginId* taken,
-            Beats beats) {
-    for (size_t i = 0; i < n; ++i) {
-        const bool wins = beats(values[i], best[i]);
-        best[i] = wins ? values[i] : best[i];
-        taken[i] = wins ? (Same ? owner : owners[i]) : taken[i];
-    }
-}
-
-}  // namespace
-
-OwnerPass::OwnerPass(const Tape& tape, size_t planes, std::vector<OriginId>& scratch)
-    : tape_(tape), planes_(planes), rows_(scratch), owners_(tape.registerCount()) {
-    const size_t ids = (tape.registerCount() + size_t{1}) * maxBlock;
-    if (rows_.size() < ids) rows_.resize(ids);
-    taken_ = rowOf(tape.registerCount());
-}
-
-void OwnerPass::gather(const Instruction& in, const field::OpTraits& row, const StepContext& c) {
-    const Source direct[] = {in.a, in.b};
-    const Source* const sources = row.arity == field::ops::variadic ? c.sources + in.a : direct;
+void OwnerPass::gather(const Instruction& in, const Source* sources, const StepContext& c) {
     operands_.clear();
     for (uint32_t k = 0; k < in.count; ++k) {
         const Source s = sources[k];
@@ -54,17 +38,16 @@ const float* OwnerPass::valuesOf(const Operand& o, size_t n) {
 }
 
 /// The operand from `first` on that no later one beats; ties go to the first.
-template <class Beats>
-void OwnerPass::takeBest(uint32_t first, size_t n, Beats beats) {
+void OwnerPass::takeBest(uint32_t first, size_t n, MoveOwners move) {
     const Operand& start = operands_[first];
     std::copy_n(valuesOf(start, n), n, best_.data());
-    for (size_t i = 0; i < n; ++i) taken_[i] = start.owners.at(i);
+    if (start.owners.row)
+        std::copy_n(start.owners.row, n, taken_);
+    else
+        std::fill_n(taken_, n, std::bit_cast<float>(start.owners.one));
     for (size_t k = first + 1; k < operands_.size(); ++k) {
         const Operand& o = operands_[k];
-        if (o.owners.row)
-            moveTo<false>(valuesOf(o, n), o.owners.row, 0, n, best_.data(), taken_, beats);
-        else
-            moveTo<true>(valuesOf(o, n), nullptr, o.owners.one, n, best_.data(), taken_, beats);
+        move(valuesOf(o, n), o.owners.row, std::bit_cast<float>(o.owners.one), n, best_.data(), taken_);
     }
 }
 
@@ -72,28 +55,35 @@ void OwnerPass::takeBest(uint32_t first, size_t n, Beats beats) {
 void OwnerPass::take(const field::OpTraits& row, size_t n) {
     switch (row.owner) {
         case Owner::Least:
-            return takeBest(row.firstChoice, n, [](float a, float b) { return a < b; });
+            return takeBest(row.firstChoice, n, kernels_.toLesser);
         case Owner::Greatest:
-            return takeBest(row.firstChoice, n, [](float a, float b) { return a > b; });
+            return takeBest(row.firstChoice, n, kernels_.toGreater);
         case Owner::Nearer: {
             const float* const t = valuesOf(operands_[2], n);
-            for (size_t i = 0; i < n; ++i) taken_[i] = operands_[t[i] > 0.5f ? 1 : 0].owners.at(i);
+            for (size_t i = 0; i < n; ++i)
+                taken_[i] = std::bit_cast<float>(operands_[t[i] > 0.5f ? 1 : 0].owners.at(i));
             return;
         }
         case Owner::First:
             for (size_t i = 0; i < n; ++i) {
                 size_t k = 0;
                 while (k + 1 < operands_.size() && operands_[k].owners.at(i) == 0) ++k;
-                taken_[i] = operands_[k].owners.at(i);
+                taken_[i] = std::bit_cast<float>(operands_[k].owners.at(i));
             }
     }
 }
 
 void OwnerPass::operator()(const Instruction& in, const StepContext& c) {
     const field::OpTraits& row = field::traits(in.op);
-    gather(in, row, c);
-    const uint32_t last = row.owner == Owner::Nearer ? 2 : in.count;
-    if (alike(row.firstChoice, last)) {  // most of a tape: the arithmetic below the first union
+    const Source direct[] = {in.a, in.b};
+    const Source* const sources = row.arity == field::ops::variadic ? c.sources + in.a : direct;
+    const auto nobodys = [&](Source s) { return isConstant(s) || (!owners_[s].row && owners_[s].one == 0); };
+    if (in.origins == 0 && std::all_of(sources, sources + in.count, nobodys)) {  // most of a tape
+        owners_[in.out] = {};
+        return;
+    }
+    gather(in, sources, c);
+    if (alike(row.firstChoice, row.owner == Owner::Nearer ? 2 : in.count)) {
         owners_[in.out] = operands_[row.firstChoice].owners;
         return;
     }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <vector>
 
 #include "modeler/eval/blocks.h"
@@ -13,8 +14,8 @@ namespace sgm::eval {
 
 class OwnerPass {
 public:
-    /// `planes` floats a value in the registers; the rows in `scratch` are kept from call to call.
-    OwnerPass(const Tape& tape, size_t planes, std::vector<OriginId>& scratch);
+    /// `planes` floats a value in the registers.
+    OwnerPass(const Tape& tape, size_t planes, Workspace::Impl& workspace);
 
     /// To be called before each instruction runs.
     void operator()(const Instruction& in, const StepContext& c);
@@ -25,30 +26,30 @@ public:
 private:
     /// Owners of a register or an operand over a block.
     struct Owners {
-        const OriginId* row = nullptr;  ///< null where all points have the same
-        OriginId one = 0;               ///< then that one; 0 is nobody
-        OriginId at(size_t i) const { return row ? row[i] : one; }
+        const float* row = nullptr;  ///< their bits; null where all points have the same
+        OriginId one = 0;            ///< then that one; 0 is nobody
+        OriginId at(size_t i) const { return row ? std::bit_cast<OriginId>(row[i]) : one; }
     };
     struct Operand {
         const float* values;  ///< null for a constant
         float constant;
         Owners owners;
     };
-    OriginId* rowOf(uint32_t reg) { return rows_.data() + reg * maxBlock; }
+    float* rowOf(uint32_t reg) { return rows_ + reg * maxBlock; }
     const float* valuesOf(const Operand& o, size_t n);
-    void gather(const Instruction& in, const field::OpTraits& row, const StepContext& c);
+    void gather(const Instruction& in, const Source* sources, const StepContext& c);
     bool alike(uint32_t first, uint32_t last) const;
     void take(const field::OpTraits& row, size_t n);
-    template <class Beats>
-    void takeBest(uint32_t first, size_t n, Beats beats);
+    void takeBest(uint32_t first, size_t n, MoveOwners move);
 
     const Tape& tape_;
     const size_t planes_;
-    std::vector<OriginId>& rows_;  // by register, then one for the instruction at work
-    std::vector<Owners> owners_;   // by register; x, y, z belong to nobody
+    const Kernels& kernels_;
+    float* const rows_;           // by register
+    float* const taken_;          // of the instruction at work
+    std::vector<Owners> owners_;  // by register; x, y, z belong to nobody
     std::vector<Operand> operands_;
-    std::array<float, maxBlock> constant_, best_;
-    OriginId* taken_;
+    alignas(vectorFloats * sizeof(float)) std::array<float, maxBlock> constant_, best_;
 };
 
 }  // namespace sgm::eval

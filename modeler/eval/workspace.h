@@ -32,8 +32,8 @@ struct Workspace::Impl {
     Tally* tally = nullptr;  ///< where operations are counted, if at all
     AlignedFloats registers, arguments;
     Links links;                    ///< of the last evaluateRanges
-    AlignedFloats bounds;           ///< rows of maxBoxes floats, see Links::bounds
-    std::vector<OriginId> origins;  ///< origin registers
+    AlignedFloats bounds;  ///< rows of maxBoxes floats, see Links::bounds
+    AlignedFloats owners;  ///< registers of owners, as bits
     TapeBuilder builder;
     std::vector<TapeBuilder::Use> uses;
 

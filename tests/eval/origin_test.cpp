@@ -16,6 +16,10 @@ OriginId ownerAt(const Graph& graph, Num root, float x) {
     cloud.add(x, 0, 0);
     OriginId owner = 99;
     evaluateOrigin(tape, cloud.points(), &owner, w);
+    OriginId besideDerivatives = 98;
+    float value, dx, dy, dz;
+    evaluateGradient(tape, cloud.points(), &value, &dx, &dy, &dz, w, &besideDerivatives);
+    EXPECT_EQ(owner, besideDerivatives);
     return owner;
 }
 
@@ -29,6 +33,23 @@ TEST(Origin, AUnionBelongsToTheNearerPart) {
     const Num both = chosen(graph, codeOf<ops::Min>, ball(graph, 0, 1), 1, ball(graph, 4, 1), 2);
     EXPECT_EQ(ownerAt(graph, both, 1), 1u);
     EXPECT_EQ(ownerAt(graph, both, 3), 2u);
+}
+
+TEST(Origin, TheOwnerOfASinglePartCostsNothing) {
+    Graph graph;
+    const Num alone = ball(graph, 0, 1), owned = chosen(graph, codeOf<ops::Min>, alone, 3, alone, 3);
+    EXPECT_EQ(ownerAt(graph, owned, 1), 3u);
+    EXPECT_EQ(compile(graph, {owned, {}, 1, 1}, graph.constants()).size(),
+              compile(graph, {alone, {}, 1, 1}, graph.constants()).size());
+}
+
+TEST(Origin, AMeltOfNumbersAndABallBelongsToTheLeast) {
+    Graph graph;
+    const field::Operand parts[] = {
+        {graph.slot(0.1f).id(), 0}, {graph.slot(3).id(), 4}, {ball(graph, 0, 1).id(), 5}, {graph.slot(1).id(), 6}};
+    const Num melt = graph.apply(codeOf<ops::Blend>, parts);
+    EXPECT_EQ(ownerAt(graph, melt, 1), 5u);
+    EXPECT_EQ(ownerAt(graph, melt, 4), 6u);
 }
 
 TEST(Origin, TheWallOfACutBelongsToTheCutter) {

@@ -29,7 +29,8 @@ void descend(const Tape& full, const Tape& tape, const Box3f& box, int depth, Dr
         const size_t at = draws.below(n);
         Workspace inner;
         evaluateRanges(tape, {boxes, n}, ranges, inner);
-        const Tape shorter = shorten(tape, at, inner);
+        Tape shorter = full;  // whose memory is taken
+        shorten(tape, at, inner, shorter);
         EXPECT_LE(shorter.size(), tape.size());
         dropped += tape.size() - shorter.size();
         const Cloud cloud = pointsIn(boxes[at], 40, draws);
