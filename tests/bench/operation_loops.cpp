@@ -44,7 +44,9 @@ V number(float f) {
 
 template <class Row, class V>
 V call(auto... args) {
-    if constexpr (std::is_same_v<V, Dual> && requires { Row::gradient(args...); })
+    if constexpr (std::is_same_v<V, Dual> && requires { Row::gradientByNumbers(args...); })
+        return Row::gradientByNumbers(args...);
+    else if constexpr (std::is_same_v<V, Dual> && requires { Row::gradient(args...); })
         return Row::gradient(args...);
     else
         return Row::apply(args...);
