@@ -85,7 +85,7 @@ Result<MeshPicture> upload(const mesh::Mesh& mesh, const Provenance& provenance)
     for (const mesh::Chunk& chunk : mesh.chunks) {
         positions.insert(positions.end(), chunk.positions.begin(), chunk.positions.end());
         normals.insert(normals.end(), chunk.normals.begin(), chunk.normals.end());
-        triangles.insert(triangles.end(), chunk.triangles.begin(), chunk.triangles.end());
+        for (const mesh::Triangle& t : chunk.triangles) triangles.push_back(chunk.inMesh(t));
         for (const OriginId origin : chunk.origins)
             materials.push_back(provenance.parts[origin < provenance.parts.size() ? origin : 0].material);
     }

@@ -25,7 +25,7 @@ Status writeOff(const ExportInput& input, const Path& temporary, const Path& tar
         for (const mesh::Triangle t : chunk.triangles) {
             if (out.failed()) break;
             out.text("3 ");
-            out.numbers(t, " ");
+            out.numbers(chunk.inMesh(t), " ");
             out.text("\n");
         }
         tick(input.progress);

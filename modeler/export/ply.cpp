@@ -29,7 +29,7 @@ std::vector<uint32_t> vertexMaterials(const mesh::Mesh& mesh, const Provenance& 
     for (const mesh::Chunk& chunk : mesh.chunks)
         for (size_t i = 0; i < chunk.triangles.size(); ++i)
             for (int corner = 0; corner < 3; ++corner) {
-                uint32_t& material = materials[chunk.triangles[i][corner]];
+                uint32_t& material = materials[chunk.inMesh(chunk.triangles[i][corner])];
                 if (material == unset) material = materialIndex(provenance, chunk.origins[i]);
             }
     for (uint32_t& material : materials)
@@ -62,7 +62,7 @@ Status writePly(const ExportInput& input, const Path& temporary, const Path& tar
     for (const mesh::Chunk& chunk : mesh.chunks) {
         for (size_t i = 0; i < chunk.triangles.size() && !out.failed(); ++i) {
             out.raw(uint8_t{3});
-            out.raw(chunk.triangles[i]);
+            out.raw(chunk.inMesh(chunk.triangles[i]));
             out.raw(chunk.origins[i]);
         }
         tick(input.progress);

@@ -16,8 +16,9 @@ template <class Visit>
 bool forEachTriangle(const ExportInput& input, const Placement& place, Visit visit) {
     Vertices vertices(*input.mesh);
     for (const mesh::Chunk& chunk : input.mesh->chunks) {
-        for (const mesh::Triangle t : chunk.triangles) {
+        for (const mesh::Triangle& local : chunk.triangles) {
             if (cancelled(input.progress)) return false;
+            const mesh::Triangle t = chunk.inMesh(local);
             const Vec3f a = place.position(vertices.position(t.x)), b = place.position(vertices.position(t.y)),
                         c = place.position(vertices.position(t.z));
             if (a != b && b != c && c != a) visit(a, b, c);

@@ -16,7 +16,7 @@ std::vector<uint32_t> groupTriangles(const mesh::Mesh& mesh, const Provenance& p
     groups.reserve(mesh.triangleCount());
     for (const mesh::Chunk& chunk : mesh.chunks)
         for (size_t i = 0; i < chunk.triangles.size(); ++i) {
-            const mesh::Triangle t = chunk.triangles[i];
+            const mesh::Triangle t = chunk.inMesh(chunk.triangles[i]);
             uint32_t group = materialIndex(provenance, chunk.origins[i]) * facings;
             if (cutByFacing) {
                 const Vec3f a = vertices.position(t.x), b = vertices.position(t.y), c = vertices.position(t.z);
@@ -47,7 +47,7 @@ std::vector<mesh::Triangle> sortTriangles(const mesh::Mesh& mesh, const std::vec
     std::vector<mesh::Triangle> sorted(groups.size());
     size_t i = 0;
     for (const mesh::Chunk& chunk : mesh.chunks)
-        for (const mesh::Triangle t : chunk.triangles) sorted[next[groups[i++]]++] = t;
+        for (const mesh::Triangle& t : chunk.triangles) sorted[next[groups[i++]]++] = chunk.inMesh(t);
     return sorted;
 }
 

@@ -1,60 +1,57 @@
-// A brick's surface as bits: which corners are inside, which of its grid edges the surface crosses.
-// Enters: a block's samples. Leaves: 400 bytes that number every vertex without a hash map: a vertex belongs to the
-// brick that holds the low corner of its grid edge and is numbered by the rank of its bit there. Assumes brick corners
-// were sampled.
+// A brick's surface as rows of bits: which corners are inside, which grid edges and cells the surface crosses.
+// Enters: samples. Leaves: bits, 16 a row of corners along x, so that whole brick takes a few vector operations.
+// Assumes brick corners were sampled. A vertex belongs to the lowest brick that touches its grid edge.
 #pragma once
 
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 
-#include "modeler/mesh/marching_cubes.h"
 #include "modeler/mesh/sample.h"
 
 namespace sgm::mesh {
 
-inline constexpr int slabs = brickCells;  ///< of 64 corners, one a z
+inline constexpr int brickRows = brickCorners * brickCorners;
+/// Rows, with room for reading the row above the last one.
+inline constexpr int paddedRows = 96;
+/// Row j + 9 k, bit i.
+using BitRows = std::array<uint16_t, paddedRows>;
 
-struct Brick {
-    std::array<uint16_t, brickCorners * brickCorners> inside{};  ///< row j + 9 k, bit i: corner (i, j, k) has f < 0
-    std::array<uint64_t, 3 * slabs> crossed{};  ///< word axis · 8 + k, bit i + 8 j: that grid edge is cut
-    std::array<uint16_t, 3 * slabs> rank{};     ///< cut edges in the words before
-    uint32_t firstVertex = 0;                   ///< in its block
-    uint32_t cells = 0;                         ///< cells with surface
-    uint32_t triangles = 0;
-    uint8_t number = 0;  ///< in its block
+/// Coordinates of a row.
+constexpr int rowJ(int row) { return row % brickCorners; }
+constexpr int rowK(int row) { return row / brickCorners; }
 
-    uint32_t vertices() const { return rank.back() + static_cast<uint32_t>(std::popcount(crossed.back())); }
-};
+/// Bit i of row (j, k): corner (i, j, k) of the brick has f < 0. `corner` is the sample at its low corner.
+BitRows insideRows(const float* corner);
 
-/// Reads the signs of brick `number` and counts what it will hold.
-Brick makeBrick(int number, Vec3i blockIndex, const Grid& grid, const BlockSamples& samples);
+/// The brick's grid edges along `axis` that the surface cuts, by their low corners. Edges on the brick's low sides
+/// belong to the brick below, save along the axes in the mask `lowSides`, where there is none in the block.
+BitRows cutRows(const BitRows& inside, int axis, int lowSides);
 
-/// Calls visit(corner, inside) for each cell that holds surface, z, y, x ascending, with its low corner and case.
-template <class Visit>
-void forEachSurfaceCell(const Brick& brick, Visit&& visit) {
-    for (int k = 0; k < brickCells; ++k)
-        for (int j = 0; j < brickCells; ++j) {
-            const uint16_t* row = brick.inside.data() + j + brickCorners * k;
-            const uint32_t r0 = row[0], r1 = row[1], r2 = row[brickCorners], r3 = row[brickCorners + 1];
-            const uint32_t any = r0 | r1 | r2 | r3, all = r0 & r1 & r2 & r3;
-            uint32_t mixed = (any | any >> 1) & ~(all & all >> 1) & 0xff;
-            for (; mixed != 0; mixed &= mixed - 1) {
-                const int i = std::countr_zero(mixed);
-                const uint32_t inside = (r0 >> i & 3) | (r1 >> i & 3) << 2 | (r2 >> i & 3) << 4 | (r3 >> i & 3) << 6;
-                visit(Vec3i{i, j, k}, inside);
-            }
-        }
+/// The brick's cells that hold surface, by their low corners.
+BitRows surfaceRows(const BitRows& inside);
+
+/// The corners of cell (i, row) that are inside, as a case of marching cubes.
+inline uint32_t caseOf(const BitRows& inside, int row, int i) {
+    const uint32_t a = inside[row], b = inside[row + 1], c = inside[row + brickCorners],
+                   d = inside[row + brickCorners + 1];
+    return (a >> i & 3) | (b >> i & 3) << 2 | (c >> i & 3) << 4 | (d >> i & 3) << 6;
 }
 
-/// Calls visit(axis, corner) for each grid edge of the brick that the surface cuts, in the order of their vertices.
+/// Calls visit(row, i) for each bit set, ascending.
 template <class Visit>
-void forEachVertex(const Brick& brick, Visit&& visit) {
-    for (int word = 0; word < 3 * slabs; ++word)
-        for (uint64_t rest = brick.crossed[word]; rest != 0; rest &= rest - 1) {
-            const int bit = std::countr_zero(rest);
-            visit(word / slabs, Vec3i{bit % brickCells, bit / brickCells, word % slabs});
+void forEachBit(const BitRows& rows, Visit&& visit) {
+    static_assert(std::endian::native == std::endian::little);
+    constexpr int rowsAWord = 4, bitsARow = 16;
+    for (int first = 0; first < brickRows; first += rowsAWord) {
+        uint64_t word;
+        std::memcpy(&word, rows.data() + first, sizeof word);
+        for (; word != 0; word &= word - 1) {
+            const int bit = std::countr_zero(word);
+            visit(first + bit / bitsARow, bit % bitsARow);
         }
+    }
 }
 
 }  // namespace sgm::mesh

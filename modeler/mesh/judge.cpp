@@ -28,7 +28,10 @@ Result<Judgement> judge(const Mesh& mesh) {
                 return Error{Error::Kind::Input, "a vertex of the mesh is not finite"};
             points.emplace_back(p.x, p.y, p.z);
         }
-        for (const Triangle& t : c.triangles) polygons.push_back({t.x, t.y, t.z});
+        for (const Triangle& local : c.triangles) {
+            const Triangle t = c.inMesh(local);
+            polygons.push_back({t.x, t.y, t.z});
+        }
     }
     for (const auto& t : polygons)
         for (const size_t v : t)

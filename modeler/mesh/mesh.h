@@ -1,27 +1,52 @@
 // The mesh every writer takes: indexed triangles in chunks, one chunk a block of 32³ cells.
 // Enters: chunks from polygonize. Leaves: vertices, normals, triangles, origins. Assumes chunks in ascending block
-// order; vertex indices are global: chunk c owns [firstVertex, firstVertex + positions.size()).
+// order. A chunk numbers its own vertices from 0, so that it stays as it is whatever becomes of the others; vertices on
+// a border between blocks belong to the lowest of them, and the others borrow them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "modeler/core/pages.h"
 #include "modeler/core/provenance.h"
 #include "modeler/core/vec.h"
 
 namespace sgm::mesh {
 
-/// Corner indices into the whole mesh, counter-clockwise seen from outside.
+/// Corner indices, counter-clockwise seen from outside.
 using Triangle = Vec3<uint32_t>;
+
+/// Marks a corner that counts in Chunk::borrowed instead of Chunk::positions.
+inline constexpr uint32_t borrowedBit = 0x80000000u;
+
+/// The ways in which blocks meet: kind + 1 is the mask of axes along which the lender is one block lower (x 1, y 2, z
+/// 4).
+inline constexpr int seamKinds = 6;
+
+/// Lists by the kind of seam, one after the other. Both sides of a seam list its vertices in the same order.
+struct SeamList {
+    std::array<uint32_t, seamKinds + 1> begin{};  ///< of the kinds; the last one is the end
+    std::vector<uint32_t> vertices;
+};
 
 /// What one block contributes.
 struct Chunk {
-    Vec3i block;                   ///< block coordinates in the grid
-    uint32_t firstVertex = 0;      ///< global index of positions[0]
-    std::vector<Vec3f> positions;  ///< metres, object frame
-    std::vector<Vec3f> normals;    ///< unit, outward, from the field's derivative
-    std::vector<Triangle> triangles;
-    std::vector<OriginId> origins;  ///< one per triangle
+    Vec3i block;                     ///< block coordinates in the grid
+    uint32_t firstVertex = 0;        ///< index of positions[0] in the whole mesh
+    PageVector<Vec3f> positions;     ///< metres, object frame
+    PageVector<Vec3f> normals;       ///< unit, outward, from the field's derivative
+    PageVector<Triangle> triangles;  ///< corners count in this chunk, see `inMesh`
+    PageVector<OriginId> origins;    ///< one per triangle
+    SeamList borrowed;               ///< indices in the whole mesh of vertices that lower blocks own
+    SeamList lent;                   ///< own vertices that higher blocks borrow
+    std::vector<uint32_t> faceted;   ///< own vertices without derivative: their normals come from the triangles
+
+    /// A corner's or a triangle's vertices, counted in the whole mesh.
+    uint32_t inMesh(uint32_t corner) const {
+        return corner & borrowedBit ? borrowed.vertices[corner & ~borrowedBit] : firstVertex + corner;
+    }
+    Triangle inMesh(Triangle t) const { return {inMesh(t.x), inMesh(t.y), inMesh(t.z)}; }
 };
 
 struct Mesh {

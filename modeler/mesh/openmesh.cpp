@@ -23,7 +23,7 @@ HalfEdgeMesh toOpenMesh(const Mesh& mesh) {
     const auto vertex = [](uint32_t v) { return OpenMesh::VertexHandle(static_cast<int>(v)); };
     for (const Chunk& c : mesh.chunks)
         for (size_t i = 0; i < c.triangles.size(); ++i) {
-            const Triangle t = c.triangles[i];
+            const Triangle t = c.inMesh(c.triangles[i]);
             const OpenMesh::FaceHandle face = result.add_face(vertex(t.x), vertex(t.y), vertex(t.z));
             if (face.is_valid()) result.property(origin, face) = c.origins[i];
         }

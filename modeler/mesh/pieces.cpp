@@ -20,7 +20,7 @@ std::vector<Vec3f> positionsOf(const Mesh& mesh) {
 template <class F>
 void forTriangles(const Mesh& mesh, F f) {
     for (const Chunk& c : mesh.chunks)
-        for (size_t i = 0; i < c.triangles.size(); ++i) f(c.triangles[i], i < c.origins.size() ? c.origins[i] : 0);
+        for (size_t i = 0; i < c.triangles.size(); ++i) f(c.inMesh(c.triangles[i]), i < c.origins.size() ? c.origins[i] : 0);
 }
 
 using Tally = std::unordered_map<OriginId, uint64_t>;

@@ -13,7 +13,7 @@ namespace sgm::mesh {
 
 struct PolygonizeOptions {
     int threads = 0;      ///< 0 = all
-    int refineSteps = 3;  ///< root-finding steps a vertex after linear interpolation; 0 = the paper's interpolation
+    int refineSteps = 3;  ///< evaluations a vertex may take after linear interpolation; 0 = the paper's interpolation
     uint64_t memoryBudget_bytes = 8ull << 30;  ///< Error::Budget beyond
     eval::Tally* tally = nullptr;              ///< adds up the operations that samples and vertices took
 };

@@ -35,7 +35,10 @@ std::vector<Corners> trianglesOf(const Mesh& mesh) {
     std::vector<Corners> triangles;
     for (const Chunk& c : mesh.chunks) points.insert(points.end(), c.positions.begin(), c.positions.end());
     for (const Chunk& c : mesh.chunks)
-        for (const Triangle& t : c.triangles) triangles.push_back({points[t.x], points[t.y], points[t.z]});
+        for (const Triangle& local : c.triangles) {
+            const Triangle t = c.inMesh(local);
+            triangles.push_back({points[t.x], points[t.y], points[t.z]});
+        }
     return triangles;
 }
 

@@ -1,16 +1,46 @@
 #include "modeler/mesh/sample.h"
 
+#include <algorithm>
+
 namespace sgm::mesh {
 namespace {
-
-constexpr int maxBatch = brickCorners * brickCorners * brickCorners;
 
 /// Below this a shorter tape saves less than making it costs.
 constexpr size_t shortEnough = 8;
 
-/// Drops bricks without surface and shortens the block's tape for the others.
-void activateBricks(const Block& block, const Grid& grid, eval::Workspace& workspace, BlockSamples& samples,
-                    Counts& counts) {
+/// Which of a brick's low faces, edges and corner a lower active brick has sampled: bit d (x = 1, y = 2, z = 4) is set
+/// when a corner on the low sides d lies on the high sides of some active brick.
+uint8_t sampledBelow(uint64_t active, Vec3i brick) {
+    uint8_t result = 0;
+    for (int offset = 1; offset < 8; ++offset) {
+        const Vec3i other = brick - Vec3i{offset & 1, offset >> 1 & 1, offset >> 2};
+        if (minComponent(other) < 0) continue;
+        if (!(active >> brickNumber(other) & 1)) continue;
+        for (int d = offset; d < 8; ++d)
+            if ((d & offset) == offset) result |= static_cast<uint8_t>(1 << d);
+    }
+    return result;
+}
+
+/// `from` to `to`, nine floats and some more.
+void copyRow(const float* from, float* to) {
+    for (int i = 0; i < 12; ++i) to[i] = from[i];
+}
+void fillRow(float value, float* to) {
+    for (int i = 0; i < 12; ++i) to[i] = value;
+}
+
+}  // namespace
+
+void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts) {
+    block_ = &block;
+    const Vec3i first = block.index * blockCells;
+    last_ = grid.cells - first;
+    for (int i = 0; i < blockCorners; ++i) {
+        const Vec3f at = grid.corner(first.x + i, first.y + i, first.z + i);
+        for (int axis = 0; axis < 3; ++axis) coordinates_[axis][i] = at[axis];
+    }
+
     std::array<CellRange, bricksPerBlock> cells;
     std::array<Box3f, bricksPerBlock> boxes;
     std::array<int, bricksPerBlock> numbers;
@@ -24,85 +54,64 @@ void activateBricks(const Block& block, const Grid& grid, eval::Workspace& works
     std::array<eval::Range, bricksPerBlock> ranges;
     eval::evaluateRanges(block.tape, {boxes.data(), n}, ranges.data(), workspace);
     counts.intervalEvaluations += n;
-
-    samples.active = 0;
+    active_ = 0;
     for (size_t i = 0; i < n; ++i) {
         if (!mayHoldSurface(ranges[i], cells[i], grid)) continue;
-        samples.active |= 1ull << numbers[i];
-        eval::Tape& tape = samples.tapes[numbers[i]];
-        if (block.tape.size() <= shortEnough)
-            tape = block.tape;
-        else
-            eval::shorten(block.tape, i, workspace, tape);
+        active_ |= 1ull << numbers[i];
+        region_[numbers[i]] = static_cast<uint8_t>(i);
     }
 }
 
-/// Which of a brick's high faces, edges and corner a later active brick samples: bit d (x = 1, y = 2, z = 4) is set
-/// when a corner on the high sides d lies on the low sides of some active brick.
-uint8_t sampledByOthers(uint64_t active, Vec3i brick) {
-    uint8_t result = 0;
-    for (int offset = 1; offset < 8; ++offset) {
-        const Vec3i other = brick + Vec3i{offset & 1, offset >> 1 & 1, offset >> 2};
-        if (maxComponent(other) >= bricksAlong || !(active >> brickNumber(other) & 1)) continue;
-        for (int d = offset; d < 8; ++d)
-            if ((d & offset) == offset) result |= static_cast<uint8_t>(1 << d);
-    }
-    return result;
-}
-
-/// A brick's corners that it has to evaluate, as rows along x of the block's values.
-struct Batch {
-    struct Row {
-        float* values;
-        int count;
-    };
-    std::array<float, maxBatch> x, y, z, f;
-    std::array<Row, brickCorners * brickCorners> rows;
-    size_t points = 0, rowCount = 0;
-};
-
-void gather(Vec3i brick, Vec3i blockIndex, const Grid& grid, BlockSamples& samples, Batch& batch) {
-    const Vec3i first = brick * brickCells, global = blockIndex * blockCells + first;
-    const Vec3i corners = min(Vec3i{brickCorners, brickCorners, brickCorners}, grid.cells + Vec3i{1, 1, 1} - global);
-    const uint8_t byOthers = sampledByOthers(samples.active, brick);
-    std::array<float, brickCorners> xs;
-    for (int i = 0; i < corners.x; ++i) xs[i] = grid.corner(global.x + i, 0, 0).x;
-
-    batch.points = batch.rowCount = 0;
+void BlockSamples::gather(Vec3i brick) {
+    const Vec3i first = brick * brickCells;
+    const Vec3i corners = min(Vec3i{brickCorners, brickCorners, brickCorners}, last_ + Vec3i{1, 1, 1} - first);
+    const uint8_t below = sampledBelow(active_, brick);
+    points_ = rowCount_ = 0;
     for (int k = 0; k < corners.z; ++k)
         for (int j = 0; j < corners.y; ++j) {
-            const int high = (j == brickCells ? 2 : 0) | (k == brickCells ? 4 : 0);
-            if (byOthers >> high & 1) continue;
-            const int count = byOthers >> (high | 1) & 1 ? std::min<int>(corners.x, brickCells) : corners.x;
-            const Vec3f at = grid.corner(0, global.y + j, global.z + k);
-            for (int i = 0; i < count; ++i) {
-                batch.x[batch.points + i] = xs[i];
-                batch.y[batch.points + i] = at.y;
-                batch.z[batch.points + i] = at.z;
-            }
-            batch.rows[batch.rowCount++] = {samples.row(first.y + j, first.z + k) + first.x, count};
-            batch.points += static_cast<size_t>(count);
+            const int low = (j == 0 ? 2 : 0) | (k == 0 ? 4 : 0);
+            if (below >> low & 1) continue;
+            const int skip = below >> (low | 1) & 1;
+            copyRow(coordinates_[0].data() + first.x + skip, x_.data() + points_);
+            fillRow(coordinates_[1][first.y + j], y_.data() + points_);
+            fillRow(coordinates_[2][first.z + k], z_.data() + points_);
+            const Row row{cornerNumber(first.x + skip, first.y + j, first.z + k), corners.x - skip};
+            rows_[rowCount_++] = row;
+            points_ += static_cast<size_t>(row.count);
         }
 }
 
-}  // namespace
+void BlockSamples::sealBorder(Vec3i brick) {
+    const Vec3i first = brick * brickCells;
+    if (minComponent(block_->index * blockCells + first) > 0 && minComponent(last_ - first) > brickCells) return;
+    for (int k = first.z; k <= first.z + brickCells; ++k)
+        for (int j = first.y; j <= first.y + brickCells; ++j)
+            for (int i = first.x; i <= first.x + brickCells; ++i) {
+                float& f = values_[cornerNumber(i, j, k)];
+                const Vec3i global = block_->index * blockCells + Vec3i{i, j, k}, toEnd = last_ - Vec3i{i, j, k};
+                if (minComponent(toEnd) < 0)
+                    f = 0;
+                else if (minComponent(global) == 0 || minComponent(toEnd) == 0)
+                    f = std::max(0.0f, f);
+            }
+}
 
-bool sampleBlock(const Block& block, const Grid& grid, eval::Workspace& workspace, const Progress* progress,
-                 BlockSamples& samples, Counts& counts) {
-    activateBricks(block, grid, workspace, samples, counts);
-    Batch batch;
-    for (uint64_t rest = samples.active; rest != 0; rest &= rest - 1) {
-        if (cancelled(progress)) return false;
-        const int b = std::countr_zero(rest);
-        gather(brickAt(b), block.index, grid, samples, batch);
-        eval::evaluate(samples.tapes[b], {batch.x.data(), batch.y.data(), batch.z.data(), batch.points}, batch.f.data(),
-                       workspace);
-        counts.pointEvaluations += batch.points;
-        const float* f = batch.f.data();
-        for (size_t r = 0; r < batch.rowCount; f += batch.rows[r++].count)
-            std::copy_n(f, batch.rows[r].count, batch.rows[r].values);
+const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Counts& counts) {
+    const bool whole = block_->tape.size() <= shortEnough;
+    if (!whole) eval::shorten(block_->tape, region_[brick], workspace, tape_);
+    const eval::Tape& tape = whole ? block_->tape : tape_;
+    gather(brickAt(brick));
+    eval::evaluate(tape, {x_.data(), y_.data(), z_.data(), points_}, f_.data(), workspace);
+    counts.pointEvaluations += points_;
+    const float* f = f_.data();
+    for (size_t r = 0; r < rowCount_; ++r) {
+        const Row row = rows_[r];
+        float* const to = values_.data() + row.corner;
+        for (int i = 0; i < row.count; ++i) to[i] = f[i];
+        f += row.count;
     }
-    return true;
+    sealBorder(brickAt(brick));
+    return tape;
 }
 
 }  // namespace sgm::mesh

@@ -1,12 +1,13 @@
 // The field's values at a block's corners, brick by brick, each brick with its own shortened tape.
-// Enters: a block. Leaves: values at every corner of its active bricks, and the bricks' tapes. Assumes pruning is
-// exact: the bricks around a corner would all compute the same bits for it, so one of them does.
+// Enters: a block. Leaves: which bricks may hold surface; their tapes and values, one brick after the other. Assumes
+// pruning is exact: the bricks around a corner would all compute the same bits for it, so one of them does.
 #pragma once
 
 #include <array>
 #include <bit>
 #include <vector>
 
+#include "modeler/core/pages.h"
 #include "modeler/mesh/region.h"
 
 namespace sgm::mesh {
@@ -15,25 +16,57 @@ inline constexpr int bricksAlong = blockCells / brickCells;
 inline constexpr int bricksPerBlock = bricksAlong * bricksAlong * bricksAlong;
 inline constexpr int blockCorners = blockCells + 1;
 inline constexpr int brickCorners = brickCells + 1;
+/// Corners of a block, and their numbers, x fastest.
+inline constexpr int cornersPerBlock = blockCorners * blockCorners * blockCorners;
+constexpr int cornerNumber(int i, int j, int k) { return i + blockCorners * (j + blockCorners * k); }
 
-/// A brick's number in its block, and its coordinates there.
+/// A brick's number in its block, its coordinates there and its low corner's number.
 constexpr int brickNumber(Vec3i at) { return at.x + bricksAlong * (at.y + bricksAlong * at.z); }
 constexpr Vec3i brickAt(int number) {
     return {number % bricksAlong, number / bricksAlong % bricksAlong, number / (bricksAlong * bricksAlong)};
 }
+constexpr int brickCorner(Vec3i brick) {
+    return cornerNumber(brick.x * brickCells, brick.y * brickCells, brick.z * brickCells);
+}
 
 /// One worker's samples, reused from block to block.
-struct BlockSamples {
-    uint64_t active = 0;                           ///< bricks that may hold surface, by number
-    std::array<eval::Tape, bricksPerBlock> tapes;  ///< of the active bricks
-    std::vector<float> values = std::vector<float>(blockCorners * blockCorners * blockCorners);  ///< x fastest
+class BlockSamples {
+public:
+    /// Goes to a block: asks the field's range in each brick.
+    void enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts);
+    /// Bricks that may hold surface, by number.
+    uint64_t active() const { return active_; }
+    /// Shortens the tape to an active brick and evaluates the corners that no lower brick has. To be called in
+    /// ascending order; the tape lasts until the next call.
+    const eval::Tape& sample(int brick, eval::Workspace& workspace, Counts& counts);
 
-    const float* row(int j, int k) const { return values.data() + blockCorners * (j + blockCorners * k); }
-    float* row(int j, int k) { return values.data() + blockCorners * (j + blockCorners * k); }
+    /// The block's samples by corner; those of active bricks are there once their brick was sampled. Corners on the
+    /// grid's border or beyond are never inside.
+    const float* values() const { return values_.data(); }
+    /// Coordinate of corners i along `axis`, metres.
+    const float* coordinates(int axis) const { return coordinates_[axis].data(); }
+
+private:
+    void gather(Vec3i brick);
+    void sealBorder(Vec3i brick);
+
+    /// A brick's corners that it has to evaluate, as rows along x of the block's values.
+    struct Row {
+        int corner, count;
+    };
+    static constexpr int padding = 16;  ///< rows are copied in whole vectors
+    static constexpr int maxBatch = brickCorners * brickCorners * brickCorners + padding;
+
+    const Block* block_ = nullptr;
+    uint64_t active_ = 0;
+    std::array<uint8_t, bricksPerBlock> region_{};  ///< of a brick, in the last evaluateRanges
+    eval::Tape tape_;
+    Vec3i last_;  ///< the highest corner in the grid, counted from the block's first
+    PageVector<float> values_ = PageVector<float>(cornersPerBlock);
+    std::array<std::array<float, blockCorners + padding>, 3> coordinates_{};
+    std::array<float, maxBatch> x_, y_, z_, f_;
+    std::array<Row, brickCorners * brickCorners> rows_;
+    size_t points_ = 0, rowCount_ = 0;
 };
-
-/// Fills `samples` for the block; false when it was cancelled on the way.
-bool sampleBlock(const Block& block, const Grid& grid, eval::Workspace& workspace, const Progress* progress,
-                 BlockSamples& samples, Counts& counts);
 
 }  // namespace sgm::mesh

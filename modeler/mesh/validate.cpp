@@ -22,7 +22,7 @@ Flat flatten(const Mesh& mesh) {
     flat.triangles.reserve(mesh.triangleCount());
     for (const Chunk& c : mesh.chunks) {
         flat.positions.insert(flat.positions.end(), c.positions.begin(), c.positions.end());
-        flat.triangles.insert(flat.triangles.end(), c.triangles.begin(), c.triangles.end());
+        for (const Triangle& t : c.triangles) flat.triangles.push_back(c.inMesh(t));
     }
     return flat;
 }

@@ -1,133 +1,112 @@
 #include "modeler/mesh/vertices.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace sgm::mesh {
 namespace {
 
-/// Residual, as a share of the difference between the bracket's ends, that one more interpolation may settle unseen: on
-/// a smooth field it leaves the square of this, on a kink no more than the margin that vertices are moved by anyway.
-constexpr float goodEnough = edgeMargin;
+/// The loops for the widest vectors this processor has.
+const EdgeLoops& edgeLoops() {
+#if defined(SGM_X86_KERNELS)
+    if (eval::bestIsa() == eval::Isa::Avx512) return avx512::loops;
+    if (eval::bestIsa() == eval::Isa::Avx2) return avx2::loops;
+#endif
+    return portable::loops;
+}
 
-/// Lays out a lane for each cut edge: its line, and the bracket given by the samples at its ends.
-void loadEdges(const Brick& brick, Vec3i blockIndex, const Grid& grid, const BlockSamples& samples, EdgeLanes& lanes) {
-    lanes.resize(brick.vertices());
-    for (int axis = 0; axis < 3; ++axis) lanes.axisBegin[axis] = brick.rank[axis * slabs];
-    lanes.axisBegin[3] = lanes.size();
+EdgeArrays arraysOf(CutEdges& e) {
+    return {e.base.data(), e.span.data(), e.slope.data(), e.tIn.data(), e.fIn.data(),
+            e.tOut.data(), e.fOut.data(), e.t.data(),     e.f.data(),   e.place.data()};
+}
 
-    const Vec3i first = brickAt(brick.number) * brickCells, global = blockIndex * blockCells + first;
-    size_t lane = 0;
-    forEachVertex(brick, [&](int axis, Vec3i c) {
-        Vec3i end = c;
-        ++end[axis];
-        const Vec3i g = global + c, h = global + end;
-        const Vec3f p = grid.corner(g.x, g.y, g.z), q = grid.corner(h.x, h.y, h.z);
-        lanes.x[lane] = p.x, lanes.y[lane] = p.y, lanes.z[lane] = p.z;
-        lanes.base[lane] = p[axis], lanes.span[lane] = q[axis] - p[axis];
-        const bool lowInside = (brick.inside[c.y + brickCorners * c.z] >> c.x & 1) != 0;
-        const float low = samples.row(first.y + c.y, first.z + c.z)[first.x + c.x];
-        const float high = samples.row(first.y + end.y, first.z + end.z)[first.x + end.x];
-        lanes.tIn[lane] = lowInside ? 0.0f : 1.0f, lanes.fIn[lane] = lowInside ? low : high;
-        lanes.tOut[lane] = lowInside ? 1.0f : 0.0f;
-        // On the grid's border the outer end counts as outside whatever the field says there.
-        lanes.fOut[lane] = std::max(0.0f, lowInside ? high : low);
-        ++lane;
+/// Calls visit(axis, begin, end) for the entries along each axis.
+template <class Visit>
+void forEachAxis(const CutEdges& e, Visit&& visit) {
+    for (int axis = 0; axis < 3; ++axis) visit(axis, e.axisBegin[axis], e.axisBegin[axis + 1]);
+}
+
+/// Goes where the loops have found each vertex.
+void moveToPlace(CutEdges& e) {
+    float* const moving[3] = {e.x.data(), e.y.data(), e.z.data()};
+    forEachAxis(e, [&](int axis, size_t begin, size_t end) {
+        std::copy(e.place.data() + begin, e.place.data() + end, moving[axis] + begin);
     });
-    std::fill(lanes.wIn.begin(), lanes.wIn.end(), 1.0f);
-    std::fill(lanes.wOut.begin(), lanes.wOut.end(), 1.0f);
-    std::fill(lanes.lastSide.begin(), lanes.lastSide.end(), 0.0f);
 }
 
-/// The line through the bracket's (weighted) ends meets zero at t; then the lanes' positions follow t.
-void interpolate(EdgeLanes& lanes, bool weighted) {
-    const size_t n = lanes.size();
-    for (size_t i = 0; i < n; ++i) {
-        const float in = weighted ? lanes.fIn[i] * lanes.wIn[i] : lanes.fIn[i];
-        const float out = weighted ? lanes.fOut[i] * lanes.wOut[i] : lanes.fOut[i];
-        const float t = lanes.tIn[i] + (lanes.tOut[i] - lanes.tIn[i]) * (in / (in - out));
-        // The comparisons send a NaN (from infinite values) to the margin.
-        const float low = t > edgeMargin ? t : edgeMargin;
-        lanes.t[i] = low < 1.0f - edgeMargin ? low : 1.0f - edgeMargin;
-    }
-    float* const moving[3] = {lanes.x.data(), lanes.y.data(), lanes.z.data()};
-    for (int axis = 0; axis < 3; ++axis)
-        for (size_t i = lanes.axisBegin[axis]; i < lanes.axisBegin[axis + 1]; ++i)
-            moving[axis][i] = lanes.base[i] + lanes.t[i] * lanes.span[i];
+/// The field's value, its derivatives, and among them the one along the edge.
+void evaluate(const eval::Tape& tape, CutEdges& e, eval::Workspace& workspace) {
+    eval::evaluateGradient(tape, {e.x.data(), e.y.data(), e.z.data(), e.size()}, e.f.data(), e.dx.data(), e.dy.data(),
+                           e.dz.data(), workspace);
+    const float* const derivatives[3] = {e.dx.data(), e.dy.data(), e.dz.data()};
+    forEachAxis(e, [&](int axis, size_t begin, size_t end) {
+        std::copy(derivatives[axis] + begin, derivatives[axis] + end, e.slope.data() + begin);
+    });
 }
 
-/// Puts the value at t in the place of the bracket's end of its sign; an end that stays twice loses half its weight.
-/// Returns false once every lane is good enough.
-bool narrow(EdgeLanes& lanes) {
-    const size_t n = lanes.size();
-    int open = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const float t = lanes.t[i], f = lanes.f[i];
-        open |= std::abs(f) > goodEnough * (lanes.fOut[i] - lanes.fIn[i]) ? 1 : 0;
-        const bool inside = f < 0;
-        const float side = inside ? 1.0f : -1.0f;
-        const float halve = lanes.lastSide[i] == side ? 0.5f : 1.0f;
-        lanes.lastSide[i] = side;
-        lanes.wIn[i] = inside ? 1.0f : lanes.wIn[i] * halve;
-        lanes.wOut[i] = inside ? lanes.wOut[i] * halve : 1.0f;
-        lanes.tIn[i] = inside ? t : lanes.tIn[i];
-        lanes.fIn[i] = inside ? f : lanes.fIn[i];
-        lanes.tOut[i] = inside ? lanes.tOut[i] : t;
-        lanes.fOut[i] = inside ? lanes.fOut[i] : f;
-    }
-    return open != 0;
+/// The `count` entries that a step left open; their slots say which they were.
+void pickOpen(const CutEdges& from, size_t count, CutEdges& to) {
+    to.reserve(count);
+    size_t n = 0;
+    forEachAxis(from, [&](int axis, size_t begin, size_t end) {
+        to.axisBegin[axis] = n;
+        for (size_t i = begin; i < end; ++i) {
+            if (from.f[i] == 0.0f) continue;
+            to.x[n] = from.x[i], to.y[n] = from.y[i], to.z[n] = from.z[i];
+            to.base[n] = from.base[i], to.span[n] = from.span[i], to.t[n] = from.t[i];
+            to.tIn[n] = from.tIn[i], to.fIn[n] = from.fIn[i];
+            to.tOut[n] = from.tOut[i], to.fOut[n] = from.fOut[i];
+            to.slot[n++] = static_cast<uint32_t>(i);
+        }
+    });
+    to.axisBegin[3] = n;
 }
 
-void appendPositions(const EdgeLanes& lanes, std::vector<Vec3f>& positions) {
-    const size_t n = lanes.size(), first = positions.size();
-    positions.resize(first + n);
-    for (size_t i = 0; i < n; ++i) positions[first + i] = {lanes.x[i], lanes.y[i], lanes.z[i]};
-}
-
-void appendNormals(const EdgeLanes& lanes, std::vector<Vec3f>& normals) {
-    const size_t n = lanes.size(), first = normals.size();
-    normals.resize(first + n);
-    for (size_t i = 0; i < n; ++i) {
-        const Vec3f g{lanes.dx[i], lanes.dy[i], lanes.dz[i]};
-        const float squared = dot(g, g);
-        const bool usable = squared > 1e-30f && squared < 1e30f;
-        const float scale = usable ? 1.0f / std::sqrt(squared) : 0.0f;
-        normals[first + i] = usable ? g * scale : Vec3f{};
+/// Hands positions and derivatives back to where the entries were picked from.
+void putBack(const CutEdges& from, CutEdges& to) {
+    for (size_t i = 0; i < from.size(); ++i) {
+        const size_t at = from.slot[i];
+        to.x[at] = from.x[i], to.y[at] = from.y[i], to.z[at] = from.z[i];
+        to.dx[at] = from.dx[i], to.dy[at] = from.dy[i], to.dz[at] = from.dz[i];
     }
 }
 
 }  // namespace
 
-void EdgeLanes::resize(size_t n) {
-    for (std::vector<float>* v :
-         {&x, &y, &z, &base, &span, &tIn, &fIn, &wIn, &tOut, &fOut, &wOut, &lastSide, &t, &f, &dx, &dy, &dz})
+void CutEdges::reserve(size_t n) {
+    if (n <= slot.size()) return;
+    for (PageVector<float>* v :
+         {&x, &y, &z, &dx, &dy, &dz, &base, &span, &slope, &tIn, &fIn, &tOut, &fOut, &t, &f, &place})
         v->resize(n);
+    slot.resize(n);
 }
 
-void appendVertices(const Brick& brick, Vec3i blockIndex, const Grid& grid, const BlockSamples& samples,
-                    int refineSteps, bool wantOrigins, eval::Workspace& workspace, EdgeLanes& lanes,
-                    BlockVertices& vertices, Counts& counts) {
-    loadEdges(brick, blockIndex, grid, samples, lanes);
-    const size_t n = lanes.size();
-    if (n == 0) return;
-    const eval::Tape& tape = samples.tapes[brick.number];
-    const eval::Points points{lanes.x.data(), lanes.y.data(), lanes.z.data(), n};
-
-    interpolate(lanes, true);
-    for (int step = 0; step < refineSteps; ++step) {
-        eval::evaluate(tape, points, lanes.f.data(), workspace);
-        counts.refinementEvaluations += n;
-        const bool open = narrow(lanes);
-        // The last interpolation trusts the values as they are: nobody looks at the result again.
-        interpolate(lanes, open && step + 1 < refineSteps);
-        if (!open) break;
+uint64_t findVertices(const eval::Tape& tape, size_t refineSteps, eval::Workspace& workspace,
+                      std::vector<CutEdges>& scratch, CutEdges& edges) {
+    if (edges.size() == 0) return 0;
+    const EdgeLoops& loops = edgeLoops();
+    loops.interpolate(arraysOf(edges), edges.size());
+    moveToPlace(edges);
+    uint64_t evaluations = 0;
+    scratch.resize(std::max(scratch.size(), refineSteps));
+    CutEdges* list = &edges;
+    for (size_t s = 0;; ++s) {
+        evaluate(tape, *list, workspace);
+        if (s == refineSteps) break;  // where the last step led, only the derivative is asked
+        evaluations += list->size();
+        const size_t open = loops.step(arraysOf(*list), list->size());
+        moveToPlace(*list);
+        if (open == 0) break;
+        pickOpen(*list, open, scratch[s]);
+        list = &scratch[s];
     }
-    if (wantOrigins) vertices.origins.resize(vertices.origins.size() + n);
-    eval::evaluateGradient(tape, points, lanes.f.data(), lanes.dx.data(), lanes.dy.data(), lanes.dz.data(), workspace,
-                           wantOrigins ? vertices.origins.data() + vertices.origins.size() - n : nullptr);
-
-    appendPositions(lanes, vertices.positions);
-    appendNormals(lanes, vertices.normals);
+    // Each list was picked from the one before.
+    while (list != &edges) {
+        CutEdges& from = *list;
+        list = list == scratch.data() ? &edges : list - 1;
+        putBack(from, *list);
+    }
+    loops.normalize(edges.dx.data(), edges.dy.data(), edges.dz.data(), edges.size());
+    return evaluations;
 }
 
 }  // namespace sgm::mesh

@@ -1,42 +1,45 @@
 // Vertices on the grid edges that the surface cuts: found on the edge, refined against the field, with normal and
-// origin. Enters: a brick, its samples and its tape. Leaves: positions, normals, origins in the brick's vertex order.
-// Assumes the two ends of a cut edge differ in sign. Linear interpolation is Lorensen & Cline 1987; root finding is the
-// Illinois form of regula falsi (Dowell & Jarratt 1971), which keeps its bracket and so can't leave the edge.
+// origin. Enters: cut edges with the samples at their ends, the brick's tape. Leaves: position and gradient of each.
+// Assumes the two ends of a cut edge differ in sign. Linear interpolation is Lorensen & Cline 1987. A refinement
+// evaluates value and derivatives together and takes Newton's step, or halves the bracket where that would leave it.
+// Newton's step and the secant through the bracket's other end enclose the root where the field is convex or concave
+// between them, so a vertex is done once the two agree.
 #pragma once
 
+#include <array>
 #include <vector>
 
-#include "modeler/mesh/brick.h"
+#include "modeler/core/pages.h"
+#include "modeler/core/vec.h"
+#include "modeler/eval/evaluate.h"
+#include "modeler/mesh/edge_loops.h"
 
 namespace sgm::mesh {
 
-/// Vertices keep this share of a cell away from the ends of their edge, so that no two ever meet at a corner.
-inline constexpr float edgeMargin = 0x1.0p-10f;
+/// Cut edges of one brick, an entry each, grouped by axis; and what is found on them. Names as in EdgeArrays.
+struct CutEdges {
+    PageVector<float> x, y, z;     ///< where the field is evaluated and, at last, the vertex; metres
+    PageVector<float> dx, dy, dz;  ///< derivatives where last evaluated; at last the normal
+    PageVector<float> base, span, slope, tIn, fIn, tOut, fOut, t, f, place;
+    PageVector<uint32_t> slot;          ///< the caller's
+    std::array<size_t, 4> axisBegin{};  ///< entries [axisBegin[a], axisBegin[a + 1]) lie along axis a
 
-/// What one worker has found of a block so far.
-struct BlockVertices {
-    std::vector<Vec3f> positions;
-    std::vector<Vec3f> normals;     ///< unit; zero where the field has no usable derivative
-    std::vector<OriginId> origins;  ///< empty when the tape knows none
-    void clear() { positions.clear(), normals.clear(), origins.clear(); }
+    size_t size() const { return axisBegin[3]; }
+    /// Makes room for n entries; never shrinks.
+    void reserve(size_t n);
+    /// Writes entry i: an edge from (x, y, z), its low end on its own axis, its length, and the samples at its ends.
+    void set(size_t i, Vec3f low, float base_m, float span_m, float fLow, float fHigh, uint32_t where) {
+        x[i] = low.x, y[i] = low.y, z[i] = low.z;
+        base[i] = base_m, span[i] = span_m;
+        fIn[i] = fLow, fOut[i] = fHigh;  // as EdgeLoops::interpolate wants them
+        slot[i] = where;
+    }
 };
 
-/// Scratch of `appendVertices`: one lane a vertex.
-struct EdgeLanes {
-    std::vector<float> x, y, z;           ///< where the field is evaluated, metres
-    std::vector<float> base, span;        ///< moving coordinate of the low end, and the way to the high end, metres
-    std::vector<float> tIn, fIn, wIn;     ///< end of the bracket that is inside: place on the edge, value, weight
-    std::vector<float> tOut, fOut, wOut;  ///< the other end
-    std::vector<float> lastSide;          ///< sign of the end that moved last: 1 inside, −1 outside, 0 none yet
-    std::vector<float> t, f, dx, dy, dz;
-    std::array<size_t, 4> axisBegin{};  ///< lanes [axisBegin[a], axisBegin[a + 1]) move along axis a
-    size_t size() const { return x.size(); }
-    void resize(size_t n);
-};
-
-/// Appends the vertices of `brick`, refined in at most `refineSteps` evaluations each.
-void appendVertices(const Brick& brick, Vec3i blockIndex, const Grid& grid, const BlockSamples& samples,
-                    int refineSteps, bool wantOrigins, eval::Workspace& workspace, EdgeLanes& lanes,
-                    BlockVertices& vertices, Counts& counts);
+/// Moves all vertices to the surface in at most `refineSteps` evaluations each (0: the line between the samples), and
+/// leaves in dx, dy, dz the unit normal where the field was last evaluated, zero where it has none. `scratch` grows to
+/// a list a step. Returns how many evaluations refined.
+uint64_t findVertices(const eval::Tape& tape, size_t refineSteps, eval::Workspace& workspace,
+                      std::vector<CutEdges>& scratch, CutEdges& edges);
 
 }  // namespace sgm::mesh

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <string>
 
+#include "modeler/core/pages.h"
+
 namespace sgm::bench {
 namespace {
 
@@ -23,7 +25,8 @@ uint64_t statusBytes(const std::string& key) {
 }  // namespace
 
 PeakMemory::PeakMemory() {
-    malloc_trim(0);                               // what earlier work left unused
+    malloc_trim(0);  // what earlier work left unused
+    releasePages();
     std::ofstream("/proc/self/clear_refs") << 5;  // proc(5): resets the peak to what is resident now
     start_bytes_ = statusBytes("VmRSS");
 }

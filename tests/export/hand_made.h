@@ -65,7 +65,10 @@ inline mesh::Mesh icosphere(Vec3f centre, float radius, int levels, size_t chunk
                     chunk.positions.push_back(centre + n * radius);
                     chunk.normals.push_back(n);
                 }
-                faces[f][k] = v;
+                if (v < chunk.firstVertex) chunk.borrowed.vertices.push_back(v);
+                faces[f][k] = v < chunk.firstVertex
+                                  ? mesh::borrowedBit | static_cast<uint32_t>(chunk.borrowed.vertices.size() - 1)
+                                  : v - chunk.firstVertex;
             }
             chunk.triangles.push_back(faces[f]);
             chunk.origins.push_back(y > 0 ? 2 : 1);

@@ -33,7 +33,8 @@ struct Fixture {
 
 std::vector<mesh::Triangle> trianglesOf(const mesh::Mesh& mesh) {
     std::vector<mesh::Triangle> all;
-    for (const mesh::Chunk& c : mesh.chunks) all.insert(all.end(), c.triangles.begin(), c.triangles.end());
+    for (const mesh::Chunk& c : mesh.chunks)
+        for (const mesh::Triangle& t : c.triangles) all.push_back(c.inMesh(t));
     return all;
 }
 

@@ -11,11 +11,11 @@
 namespace sgm::mesh {
 namespace {
 
-Mesh oneChunk(std::vector<Vec3f> positions, std::vector<Triangle> triangles) {
+Mesh oneChunk(PageVector<Vec3f> positions, PageVector<Triangle> triangles) {
     Mesh mesh;
     Chunk c;
     c.normals.resize(positions.size(), Vec3f{0, 0, 1});
-    c.origins.resize(triangles.size());
+    c.origins.assign(triangles.size(), 0);
     c.positions = std::move(positions);
     c.triangles = std::move(triangles);
     mesh.chunks.push_back(std::move(c));
@@ -23,15 +23,15 @@ Mesh oneChunk(std::vector<Vec3f> positions, std::vector<Triangle> triangles) {
 }
 
 /// A tetrahedron of volume 1/6 with its corner at `at`.
-void addTetrahedron(std::vector<Vec3f>& p, std::vector<Triangle>& t, Vec3f at) {
+void addTetrahedron(PageVector<Vec3f>& p, PageVector<Triangle>& t, Vec3f at) {
     const auto v = static_cast<uint32_t>(p.size());
     p.insert(p.end(), {at, at + Vec3f{1, 0, 0}, at + Vec3f{0, 1, 0}, at + Vec3f{0, 0, 1}});
     t.insert(t.end(), {{v, v + 2, v + 1}, {v, v + 1, v + 3}, {v, v + 3, v + 2}, {v + 1, v + 2, v + 3}});
 }
 
 Mesh tetrahedra(std::initializer_list<Vec3f> places) {
-    std::vector<Vec3f> p;
-    std::vector<Triangle> t;
+    PageVector<Vec3f> p;
+    PageVector<Triangle> t;
     for (const Vec3f at : places) addTetrahedron(p, t, at);
     return oneChunk(std::move(p), std::move(t));
 }
@@ -68,7 +68,6 @@ TEST(Measure, WeldingJoinsWhatTouches) {
     Mesh two = m;
     Chunk mirrored = m.chunks[0];
     for (Vec3f& p : mirrored.positions) p = {-p.x, -p.y, p.z};
-    for (Triangle& t : mirrored.triangles) t = {t.x + 4, t.y + 4, t.z + 4};
     mirrored.firstVertex = 4;
     two.chunks.push_back(mirrored);
     EXPECT_EQ(measure(two).nonmanifoldEdges, 0u);

@@ -1,0 +1,133 @@
+#include "modeler/core/pages.h"
+
+#include <sys/mman.h>
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <new>
+
+namespace sgm {
+namespace {
+
+constexpr size_t hugePage = size_t{2} << 20;
+constexpr size_t regionBytes = 4 * hugePage;
+constexpr size_t mostFreeRegions = 32;
+constexpr size_t lineBytes = 64;
+/// Larger pieces get a mapping of their own.
+constexpr size_t largest = regionBytes / 4;
+
+/// Maps `bytes` at a multiple of `alignment` and asks for huge pages.
+void* mapPages(size_t bytes, size_t alignment) {
+    void* const mapped =
+        mmap(nullptr, bytes + alignment, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (mapped == MAP_FAILED) throw std::bad_alloc();
+    char* const from = static_cast<char*>(mapped);
+    const size_t before = (alignment - reinterpret_cast<uintptr_t>(from) % alignment) % alignment;
+    if (before > 0) munmap(from, before);
+    if (before < alignment) munmap(from + before + bytes, alignment - before);
+#if defined(MADV_HUGEPAGE)
+    madvise(from + before, bytes, MADV_HUGEPAGE);
+#endif
+    return from + before;
+}
+
+/// The start of a region: pieces are cut one after the other and never reused before all of them are free.
+struct alignas(lineBytes) Region {
+    std::atomic<size_t> pieces{1};  ///< not yet freed; the thread that cuts from it counts as one
+    size_t used = sizeof(Region);
+    Region* next = nullptr;  ///< in the list of free ones
+};
+
+/// Regions that nothing lies in.
+class FreeRegions {
+public:
+    Region* take() {
+        {
+            const std::lock_guard lock(mutex_);
+            if (Region* const region = first_) {
+                first_ = region->next;
+                --count_;
+                return new (region) Region;
+            }
+        }
+        return new (mapPages(regionBytes, regionBytes)) Region;
+    }
+    void put(Region* region) {
+        const std::lock_guard lock(mutex_);
+        if (count_ == mostFreeRegions) {
+            munmap(region, regionBytes);
+            return;
+        }
+        region->next = first_;
+        first_ = region;
+        ++count_;
+    }
+    void release() {
+        const std::lock_guard lock(mutex_);
+        for (; first_; --count_) {
+            Region* const next = first_->next;
+            munmap(first_, regionBytes);
+            first_ = next;
+        }
+    }
+
+private:
+    std::mutex mutex_;
+    Region* first_ = nullptr;
+    size_t count_ = 0;
+};
+
+/// Never destroyed: threads give regions back until the very end.
+FreeRegions& freeRegions() {
+    static FreeRegions& regions = *new FreeRegions;
+    return regions;
+}
+
+void drop(Region* region) {
+    if (region->pieces.fetch_sub(1, std::memory_order_acq_rel) == 1) freeRegions().put(region);
+}
+
+/// The region a thread cuts from.
+struct Current {
+    Region* region = nullptr;
+    ~Current() {
+        if (region) drop(region);
+    }
+};
+
+}  // namespace
+
+namespace detail {
+
+void* allocatePages(size_t bytes) {
+    if (bytes > largest) return mapPages((bytes + hugePage - 1) / hugePage * hugePage, hugePage);
+    static thread_local Current current;
+    const size_t rounded = (bytes + lineBytes - 1) / lineBytes * lineBytes;
+    Region*& region = current.region;
+    if (region && region->pieces.load(std::memory_order_acquire) == 1) region->used = sizeof(Region);
+    if (!region || region->used + rounded > regionBytes) {
+        if (region) drop(region);
+        region = nullptr;
+        region = freeRegions().take();
+    }
+    char* const piece = reinterpret_cast<char*>(region) + region->used;
+    region->used += rounded;
+    region->pieces.fetch_add(1, std::memory_order_relaxed);
+    return piece;
+}
+
+void freePages(void* memory, size_t bytes) noexcept {
+    if (bytes > largest) {
+        munmap(memory, (bytes + hugePage - 1) / hugePage * hugePage);
+        return;
+    }
+    const uintptr_t at = reinterpret_cast<uintptr_t>(memory);
+    drop(reinterpret_cast<Region*>(at - at % regionBytes));
+}
+
+}  // namespace detail
+
+void releasePages() noexcept { freeRegions().release(); }
+
+}  // namespace sgm

@@ -1,0 +1,46 @@
+// Memory for large results: cut from regions of huge pages, kept for the next result when it is freed.
+// Enters: sizes. Leaves: 64-byte aligned memory that nobody has cleared. Assumes arrays of plain numbers: a fresh page
+// of 4 KiB costs seven times as long as its share of a huge one (the kernel maps and clears it), and more than
+// computing what goes into it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+namespace sgm {
+
+namespace detail {
+/// Any thread may free what another has allocated. Throws std::bad_alloc.
+void* allocatePages(size_t bytes);
+/// `bytes` as they were asked for.
+void freePages(void* memory, size_t bytes) noexcept;
+}  // namespace detail
+
+/// Gives regions that nothing lies in back to the system. Up to 256 MiB of them are kept otherwise.
+void releasePages() noexcept;
+
+/// For std::vector: a `resize` leaves new elements as the memory was, to be written once.
+template <class T>
+struct PageAllocator {
+    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+    using value_type = T;
+    PageAllocator() = default;
+    template <class U>
+    PageAllocator(const PageAllocator<U>&) {}
+    T* allocate(size_t n) { return static_cast<T*>(detail::allocatePages(n * sizeof(T))); }
+    void deallocate(T* p, size_t n) noexcept { detail::freePages(p, n * sizeof(T)); }
+    void construct(T*) noexcept {}
+    template <class... Args>
+    void construct(T* p, Args&&... args) {
+        ::new (static_cast<void*>(p)) T{std::forward<Args>(args)...};
+    }
+    friend bool operator==(PageAllocator, PageAllocator) { return true; }
+};
+
+/// A vector for what is large and plain; elements added by `resize(n)` hold anything until they are written.
+template <class T>
+using PageVector = std::vector<T, PageAllocator<T>>;
+
+}  // namespace sgm

@@ -1,0 +1,214 @@
+#include "modeler/mesh/chunk.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "modeler/core/stopwatch.h"
+#include "modeler/mesh/marching_cubes.h"
+
+namespace sgm::mesh {
+namespace {
+
+/// A borrowed vertex's slot: its place in the list of its kind of seam, and above that the kind.
+constexpr int placeBits = 24;
+constexpr uint32_t placeMask = (1u << placeBits) - 1;
+
+/// Way from a corner's number to that of the next one along an axis.
+constexpr std::array<int, 3> stride{1, blockCorners, blockCorners* blockCorners};
+
+/// The cases with the places of a triangle's edges, counted from the cell's low corner.
+struct PlacedCase {
+    std::array<int32_t, 15> edges;
+    uint32_t triangles;
+};
+
+const std::array<PlacedCase, 256>& placedCases() {
+    static const auto table = [] {
+        std::array<PlacedCase, 256> all{};
+        for (size_t c = 0; c < all.size(); ++c) {
+            const CellCase& cell = caseTable()[c];
+            all[c].triangles = cell.triangles;
+            for (int i = 0; i < 3 * cell.triangles; ++i) {
+                const int e = cell.edges[i], low = edgeCorner(e);
+                all[c].edges[i] = edgeAxis(e) * cornersPerBlock + cornerNumber(low & 1, low >> 1 & 1, low >> 2);
+            }
+        }
+        return all;
+    }();
+    return table;
+}
+
+OriginId majority(OriginId a, OriginId b, OriginId c) {
+    if (a == b || a == c) return a;
+    return b == c ? b : std::min({a, b, c});
+}
+
+/// Mask of the axes along which a corner is at `side` (x = 1, y = 2, z = 4).
+int sidesAt(int side, int x, int y, int z) { return (x == side ? 1 : 0) | (y == side ? 2 : 0) | (z == side ? 4 : 0); }
+
+/// Who owns all that a tape can show; nothing where it depends on the place.
+std::optional<OriginId> onlyOwner(const eval::Tape& tape) {
+    const auto origins = tape.origins();
+    if (origins[0] != 0 || origins.size() == 1) return origins[0];
+    // The last instruction takes one of its operands.
+    const eval::Instruction& last = tape.code().back();
+    if (last.out != tape.result() || last.origins == 0) return {};
+    const auto operands = origins.subspan(last.origins - 1, last.count);
+    const bool same = std::all_of(operands.begin(), operands.end(), [&](OriginId o) { return o == operands[0]; });
+    return same && operands[0] != 0 ? std::optional(operands[0]) : std::nullopt;
+}
+
+}  // namespace
+
+void BlockMesher::clear() {
+    positions_.clear(), normals_.clear(), origins_.clear(), borrowedOrigins_.clear();
+    cells_.clear(), bricks_.clear();
+    for (auto& list : borrowed_) list.clear();
+    for (auto& list : lent_) list.clear();
+    vertices_ = 0, triangles_ = 0;
+}
+
+bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chunk) {
+    const Stopwatch sampling;
+    clear();
+    samples_.enter(block, grid_, workspace_, counts_);
+    for (uint64_t rest = samples_.active(); rest != 0; rest &= rest - 1) {
+        if (cancelled(progress)) return false;
+        const int brick = std::countr_zero(rest);
+        addBrick(brick, samples_.sample(brick, workspace_, counts_));
+    }
+    counts_.sampleSeconds += sampling.seconds();
+
+    const Stopwatch joining;
+    chunk.block = block.index;
+    chunk.positions = positions_;
+    chunk.normals = normals_;
+    for (size_t i = 0; i < normals_.size(); ++i)
+        if (normals_[i] == Vec3f{}) chunk.faceted.push_back(static_cast<uint32_t>(i));
+    listSeams(chunk);
+    writeTriangles(chunk);
+    counts_.polygonizeSeconds += joining.seconds();
+    return true;
+}
+
+void BlockMesher::addBrick(int number, const eval::Tape& tape) {
+    const Vec3i brick = brickAt(number);
+    const int corner = brickCorner(brick);
+    const BitRows inside = insideRows(samples_.values() + corner);
+    const std::optional<OriginId> owner = onlyOwner(tape);
+    const size_t before = cells_.size();
+    const auto& cases = placedCases();
+    forEachBit(surfaceRows(inside), [&](int row, int i) {
+        const uint32_t c = caseOf(inside, row, i);
+        cells_.push_back(
+            {static_cast<uint16_t>(corner + cornerNumber(i, rowJ(row), rowK(row))), static_cast<uint8_t>(c)});
+        triangles_ += cases[c].triangles;
+    });
+    counts_.surfaceCells += cells_.size() - before;
+    if (cells_.size() == before) return;
+    bricks_.push_back({cells_.size(), owner});
+    addEdges(inside, brick, owner);
+    addVertices(tape, owner);
+}
+
+/// Numbers a vertex on the block's border. On low sides (a mask of axes) a lower block owns it: its slot holds the kind
+/// of seam and the place in that list. Else it is lent to every block that meets this one there.
+uint32_t BlockMesher::borderVertex(int edge, int lowSides, int highSides, OriginId owner) {
+    if (lowSides != 0) {
+        std::vector<Borrowed>& list = borrowed_[lowSides - 1];
+        list.push_back({static_cast<uint32_t>(edge), owner});
+        return borrowedBit | static_cast<uint32_t>(lowSides - 1) << placeBits | static_cast<uint32_t>(list.size() - 1);
+    }
+    for (int kind = highSides; kind > 0; kind = (kind - 1) & highSides) lent_[kind - 1].push_back(vertices_);
+    return vertices_++;
+}
+
+/// The brick's cut edges, numbered. Those that other blocks own are looked for only where their origin is asked.
+void BlockMesher::addEdges(const BitRows& inside, Vec3i brick, std::optional<OriginId> owner) {
+    const Vec3i first = brick * brickCells;
+    const int lowSides = sidesAt(0, first.x, first.y, first.z);
+    const float* const values = samples_.values();
+    const float *const xs = samples_.coordinates(0), *const ys = samples_.coordinates(1),
+                       *const zs = samples_.coordinates(2);
+    size_t n = 0;
+    edges_.reserve(3 * brickRows * brickCorners);
+    for (int axis = 0; axis < 3; ++axis) {
+        edges_.axisBegin[axis] = n;
+        const float* const along = samples_.coordinates(axis);
+        const int step = stride[axis], across = 7 & ~(1 << axis);
+        forEachBit(cutRows(inside, axis, lowSides), [&](int row, int i) {
+            const int x = first.x + i, y = first.y + rowJ(row), z = first.z + rowK(row);
+            const int corner = cornerNumber(x, y, z), edge = axis * cornersPerBlock + corner;
+            const int low = sidesAt(0, x, y, z) & across, high = sidesAt(blockCells, x, y, z);
+            const uint32_t slot = low | high ? borderVertex(edge, low, high, owner.value_or(0)) : vertices_++;
+            number_[edge] = slot;
+            if (low != 0 && owner) return;
+            const int at = axis == 0 ? x : axis == 1 ? y : z;
+            edges_.set(n++, {xs[x], ys[y], zs[z]}, along[at], along[at + 1] - along[at], values[corner],
+                       values[corner + step], slot);
+        });
+    }
+    edges_.axisBegin[3] = n;
+}
+
+void BlockMesher::addVertices(const eval::Tape& tape, std::optional<OriginId> owner) {
+    counts_.refinementEvaluations += findVertices(tape, refineSteps_, workspace_, openEdges_, edges_);
+    const size_t n = edges_.size();
+    found_.resize(n);
+    if (owner)
+        std::fill(found_.begin(), found_.end(), *owner);
+    else
+        eval::evaluateOrigin(tape, {edges_.x.data(), edges_.y.data(), edges_.z.data(), n}, found_.data(), workspace_);
+    positions_.resize(vertices_), normals_.resize(vertices_), origins_.resize(vertices_);
+    for (size_t i = 0; i < n; ++i) {
+        const uint32_t slot = edges_.slot[i];
+        if (slot & borrowedBit) {
+            borrowed_[(slot & ~borrowedBit) >> placeBits][slot & placeMask].origin = found_[i];
+            continue;
+        }
+        positions_[slot] = {edges_.x[i], edges_.y[i], edges_.z[i]};
+        normals_[slot] = {edges_.dx[i], edges_.dy[i], edges_.dz[i]};
+        origins_[slot] = found_[i];
+    }
+}
+
+/// Puts the lists of the seams one after the other, and numbers borrowed edges by their place there.
+void BlockMesher::listSeams(Chunk& chunk) {
+    borrowedOrigins_.clear();
+    for (int kind = 0; kind < seamKinds; ++kind) {
+        chunk.borrowed.begin[kind] = static_cast<uint32_t>(borrowedOrigins_.size());
+        for (const Borrowed& b : borrowed_[kind]) {
+            number_[b.edge] = borrowedBit | static_cast<uint32_t>(borrowedOrigins_.size());
+            borrowedOrigins_.push_back(b.origin);
+        }
+        chunk.lent.begin[kind] = static_cast<uint32_t>(chunk.lent.vertices.size());
+        chunk.lent.vertices.insert(chunk.lent.vertices.end(), lent_[kind].begin(), lent_[kind].end());
+    }
+    chunk.borrowed.vertices.resize(borrowedOrigins_.size());
+    chunk.borrowed.begin.back() = static_cast<uint32_t>(borrowedOrigins_.size());
+    chunk.lent.begin.back() = static_cast<uint32_t>(chunk.lent.vertices.size());
+}
+
+/// Joins vertices cell by cell. A triangle takes the origin of most of its vertices, the lowest where all three differ.
+void BlockMesher::writeTriangles(Chunk& chunk) const {
+    chunk.triangles.resize(triangles_);
+    chunk.origins.resize(triangles_);
+    Triangle* triangle = chunk.triangles.data();
+    OriginId* origin = chunk.origins.data();
+    const uint32_t* const number = number_.data();
+    const auto& cases = placedCases();
+    size_t c = 0;
+    for (const Brick& brick : bricks_)
+        for (; c < brick.cellsEnd; ++c) {
+            const PlacedCase& cell = cases[cells_[c].inside];
+            const uint32_t* const at = number + cells_[c].corner;
+            for (uint32_t t = 0; t < cell.triangles; ++t) {
+                const Triangle corners{at[cell.edges[3 * t]], at[cell.edges[3 * t + 1]], at[cell.edges[3 * t + 2]]};
+                *triangle++ = corners;
+                *origin++ = brick.owner ? *brick.owner
+                                        : majority(originOf(corners.x), originOf(corners.y), originOf(corners.z));
+            }
+        }
+}
+
+}  // namespace sgm::mesh

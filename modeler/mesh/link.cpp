@@ -1,0 +1,81 @@
+// Chunks to a mesh: their vertices counted across it, and normals that only their triangles can tell.
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+#include "modeler/core/parallel.h"
+#include "modeler/mesh/chunk.h"
+
+namespace sgm::mesh {
+namespace {
+
+/// The chunk of block `index`, among chunks in order of (z, y, x); null where there is none.
+const Chunk* findChunk(const std::vector<Chunk>& chunks, Vec3i index) {
+    const auto at = std::lower_bound(chunks.begin(), chunks.end(), index,
+                                     [](const Chunk& c, Vec3i i) { return zyxLess(c.block, i); });
+    return at != chunks.end() && at->block == index ? &*at : nullptr;
+}
+
+/// Names what the chunk borrows.
+void nameBorrowed(const std::vector<Chunk>& chunks, Chunk& chunk) {
+    for (int kind = 0; kind < seamKinds; ++kind) {
+        const uint32_t begin = chunk.borrowed.begin[kind], end = chunk.borrowed.begin[kind + 1];
+        if (begin == end) continue;
+        const int sides = kind + 1;
+        const Chunk* const lender = findChunk(chunks, chunk.block - Vec3i{sides & 1, sides >> 1 & 1, sides >> 2});
+        assert(lender && lender->lent.begin[kind + 1] - lender->lent.begin[kind] == end - begin);
+        const uint32_t* const lent = lender->lent.vertices.data() + lender->lent.begin[kind];
+        for (uint32_t i = begin; i < end; ++i) chunk.borrowed.vertices[i] = lender->firstVertex + lent[i - begin];
+    }
+}
+
+/// Gives faceted vertices the mean of their triangles' normals, weighted by area.
+void setFacetedNormals(std::vector<Chunk>& chunks) {
+    std::vector<uint32_t> faceted;  // in the mesh, ascending
+    for (const Chunk& c : chunks)
+        for (const uint32_t v : c.faceted) faceted.push_back(c.firstVertex + v);
+    if (faceted.empty()) return;
+
+    const auto chunkOf = [&](uint32_t vertex) -> Chunk& {
+        return *std::prev(std::upper_bound(chunks.begin(), chunks.end(), vertex,
+                                           [](uint32_t v, const Chunk& c) { return v < c.firstVertex; }));
+    };
+    const auto position = [&](uint32_t v) {
+        const Chunk& c = chunkOf(v);
+        return c.positions[v - c.firstVertex].as<double>();
+    };
+    std::vector<Vec3d> sums(faceted.size());
+    for (const Chunk& c : chunks)
+        for (const Triangle& local : c.triangles) {
+            const Triangle t = c.inMesh(local);
+            for (int corner = 0; corner < 3; ++corner) {
+                const auto at = std::lower_bound(faceted.begin(), faceted.end(), t[corner]);
+                if (at == faceted.end() || *at != t[corner]) continue;
+                const Vec3d p = position(t.x);
+                sums[static_cast<size_t>(at - faceted.begin())] += cross(position(t.y) - p, position(t.z) - p);
+            }
+        }
+    for (size_t i = 0; i < faceted.size(); ++i) {
+        const Vec3d n = normalized(sums[i]);
+        Chunk& c = chunkOf(faceted[i]);
+        c.normals[faceted[i] - c.firstVertex] = n == Vec3d{} ? Vec3f{0, 1, 0} : n.as<float>();
+    }
+}
+
+}  // namespace
+
+Status link(std::vector<Chunk>& chunks, int threads) {
+    uint64_t vertices = 0, triangles = 0;
+    for (Chunk& c : chunks) {
+        c.firstVertex = static_cast<uint32_t>(vertices);
+        vertices += c.positions.size();
+        triangles += c.triangles.size();
+    }
+    if (std::max(vertices, triangles) >= std::numeric_limits<uint32_t>::max())
+        return Error{Error::Kind::Budget, "the mesh has more than 2^32 vertices or triangles: choose larger cells"};
+    parallelFor(chunks.size(), threads, nullptr, [&](size_t i, int) { nameBorrowed(chunks, chunks[i]); });
+    setFacetedNormals(chunks);
+    return Done{};
+}
+
+}  // namespace sgm::mesh
