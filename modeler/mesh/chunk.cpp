@@ -43,8 +43,26 @@ OriginId majority(OriginId a, OriginId b, OriginId c) {
     return b == c ? b : std::min({a, b, c});
 }
 
-/// Mask of the axes along which a corner is at `side` (x = 1, y = 2, z = 4).
-int sidesAt(int side, int x, int y, int z) { return (x == side ? 1 : 0) | (y == side ? 2 : 0) | (z == side ? 4 : 0); }
+/// Where a brick's rows begin, counted from its low corner.
+struct RowPlace {
+    uint16_t corner;
+    uint8_t j, k;
+};
+constexpr auto rowPlaces = [] {
+    std::array<RowPlace, brickRows> places{};
+    for (int row = 0; row < brickRows; ++row)
+        places[row] = {static_cast<uint16_t>(cornerNumber(0, rowJ(row), rowK(row))), static_cast<uint8_t>(rowJ(row)),
+                       static_cast<uint8_t>(rowK(row))};
+    return places;
+}();
+
+/// Whether a coordinate in the block lies on the low side (1), on the high side (8) or between (0): shifted by the axis
+/// these make two masks of axes.
+constexpr auto sideOf = [] {
+    std::array<uint8_t, blockCorners> sides{};
+    sides.front() = 1, sides.back() = 8;
+    return sides;
+}();
 
 /// Who owns all that a tape can show; nothing where it depends on the place.
 std::optional<OriginId> onlyOwner(const eval::Tape& tape) {
@@ -91,26 +109,6 @@ bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chun
     return true;
 }
 
-void BlockMesher::addBrick(int number, const eval::Tape& tape) {
-    const Vec3i brick = brickAt(number);
-    const int corner = brickCorner(brick);
-    const BitRows inside = insideRows(samples_.values() + corner);
-    const std::optional<OriginId> owner = onlyOwner(tape);
-    const size_t before = cells_.size();
-    const auto& cases = placedCases();
-    forEachBit(surfaceRows(inside), [&](int row, int i) {
-        const uint32_t c = caseOf(inside, row, i);
-        cells_.push_back(
-            {static_cast<uint16_t>(corner + cornerNumber(i, rowJ(row), rowK(row))), static_cast<uint8_t>(c)});
-        triangles_ += cases[c].triangles;
-    });
-    counts_.surfaceCells += cells_.size() - before;
-    if (cells_.size() == before) return;
-    bricks_.push_back({cells_.size(), owner});
-    addEdges(inside, brick, owner);
-    addVertices(tape, owner);
-}
-
 /// Numbers a vertex on the block's border. On low sides (a mask of axes) a lower block owns it: its slot holds the kind
 /// of seam and the place in that list. Else it is lent to every block that meets this one there.
 uint32_t BlockMesher::borderVertex(int edge, int lowSides, int highSides, OriginId owner) {
@@ -123,32 +121,33 @@ uint32_t BlockMesher::borderVertex(int edge, int lowSides, int highSides, Origin
     return vertices_++;
 }
 
-/// The brick's cut edges, numbered. Those that other blocks own are looked for only where their origin is asked.
-void BlockMesher::addEdges(const BitRows& inside, Vec3i brick, std::optional<OriginId> owner) {
+/// The brick's cut edges along one axis, numbered. Those that other blocks own are looked for only where their origin
+/// is asked. `n` counts entries.
+template <int axis>
+void BlockMesher::addEdges(const BitRows& inside, Vec3i brick, std::optional<OriginId> owner, size_t& n) {
     const Vec3i first = brick * brickCells;
-    const int lowSides = sidesAt(0, first.x, first.y, first.z);
+    const int lowSides = (brick.x == 0 ? 1 : 0) | (brick.y == 0 ? 2 : 0) | (brick.z == 0 ? 4 : 0);
+    const int brickFirst = brickCorner(brick);
     const float* const values = samples_.values();
-    const float *const xs = samples_.coordinates(0), *const ys = samples_.coordinates(1),
-                       *const zs = samples_.coordinates(2);
-    size_t n = 0;
-    edges_.reserve(3 * brickRows * brickCorners);
-    for (int axis = 0; axis < 3; ++axis) {
-        edges_.axisBegin[axis] = n;
-        const float* const along = samples_.coordinates(axis);
-        const int step = stride[axis], across = 7 & ~(1 << axis);
-        forEachBit(cutRows(inside, axis, lowSides), [&](int row, int i) {
-            const int x = first.x + i, y = first.y + rowJ(row), z = first.z + rowK(row);
-            const int corner = cornerNumber(x, y, z), edge = axis * cornersPerBlock + corner;
-            const int low = sidesAt(0, x, y, z) & across, high = sidesAt(blockCells, x, y, z);
-            const uint32_t slot = low | high ? borderVertex(edge, low, high, owner.value_or(0)) : vertices_++;
-            number_[edge] = slot;
-            if (low != 0 && owner) return;
-            const int at = axis == 0 ? x : axis == 1 ? y : z;
-            edges_.set(n++, {xs[x], ys[y], zs[z]}, along[at], along[at + 1] - along[at], values[corner],
-                       values[corner + step], slot);
-        });
-    }
-    edges_.axisBegin[3] = n;
+    const float *const xs = samples_.coordinates(0) + first.x, *const ys = samples_.coordinates(1) + first.y,
+                       *const zs = samples_.coordinates(2) + first.z;
+    const uint8_t *const xSides = sideOf.data() + first.x, *const ySides = sideOf.data() + first.y,
+                         *const zSides = sideOf.data() + first.z;
+    edges_.axisBegin[axis] = n;
+    forEachBit(cutRows(inside, axis, lowSides), [&](int row, int i) {
+        const RowPlace place = rowPlaces[row];
+        const int corner = brickFirst + place.corner + i, edge = axis * cornersPerBlock + corner;
+        // An edge lies between the sides of its own axis.
+        const int sides = (axis == 0 ? 0 : xSides[i]) | (axis == 1 ? 0 : ySides[place.j]) << 1 |
+                          (axis == 2 ? 0 : zSides[place.k]) << 2;
+        const int low = sides & 7;
+        const uint32_t slot = sides != 0 ? borderVertex(edge, low, sides >> 3, owner.value_or(0)) : vertices_++;
+        number_[edge] = slot;
+        if (low != 0 && owner) return;
+        const float* const along = axis == 0 ? xs + i : axis == 1 ? ys + place.j : zs + place.k;
+        edges_.set(n++, {xs[i], ys[place.j], zs[place.k]}, along[0], along[1] - along[0], values[corner],
+                   values[corner + stride[axis]], slot);
+    });
 }
 
 void BlockMesher::addVertices(const eval::Tape& tape, std::optional<OriginId> owner) {
@@ -170,6 +169,31 @@ void BlockMesher::addVertices(const eval::Tape& tape, std::optional<OriginId> ow
         normals_[slot] = {edges_.dx[i], edges_.dy[i], edges_.dz[i]};
         origins_[slot] = found_[i];
     }
+}
+
+void BlockMesher::addBrick(int number, const eval::Tape& tape) {
+    const Vec3i brick = brickAt(number);
+    const int corner = brickCorner(brick);
+    const BitRows inside = insideRows(samples_.values() + corner);
+    const std::optional<OriginId> owner = onlyOwner(tape);
+    const size_t before = cells_.size();
+    const auto& cases = placedCases();
+    forEachBit(surfaceRows(inside), [&](int row, int i) {
+        const uint32_t c = caseOf(inside, row, i);
+        cells_.push_back(
+            {static_cast<uint16_t>(corner + cornerNumber(i, rowJ(row), rowK(row))), static_cast<uint8_t>(c)});
+        triangles_ += cases[c].triangles;
+    });
+    counts_.surfaceCells += cells_.size() - before;
+    if (cells_.size() == before) return;
+    bricks_.push_back({cells_.size(), owner});
+    size_t edges = 0;
+    edges_.reserve(3 * brickRows * brickCorners);
+    addEdges<0>(inside, brick, owner, edges);
+    addEdges<1>(inside, brick, owner, edges);
+    addEdges<2>(inside, brick, owner, edges);
+    edges_.axisBegin[3] = edges;
+    addVertices(tape, owner);
 }
 
 /// Puts the lists of the seams one after the other, and numbers borrowed edges by their place there.

@@ -45,7 +45,8 @@ private:
 
     void clear();
     void addBrick(int number, const eval::Tape& tape);
-    void addEdges(const BitRows& inside, Vec3i brick, std::optional<OriginId> owner);
+    template <int axis>
+    void addEdges(const BitRows& inside, Vec3i brick, std::optional<OriginId> owner, size_t& n);
     uint32_t borderVertex(int edge, int lowSides, int highSides, OriginId owner);
     void addVertices(const eval::Tape& tape, std::optional<OriginId> owner);
     void listSeams(Chunk& chunk);

@@ -1,0 +1,41 @@
+// Memory of large results: alignment, pieces that don't overlap, pieces freed by other threads.
+#include "modeler/core/pages.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <thread>
+
+namespace sgm {
+namespace {
+
+TEST(Pages, PiecesAreAlignedAndApart) {
+    std::vector<PageVector<uint32_t>> pieces;
+    for (uint32_t i = 0; i < 3000; ++i) {
+        // From a few bytes to more than a region holds.
+        pieces.emplace_back(i % 1000 == 999 ? 3'000'000 : 1 + i * 7 % 5000);
+        ASSERT_EQ(reinterpret_cast<uintptr_t>(pieces.back().data()) % 64, 0u);
+        std::fill(pieces.back().begin(), pieces.back().end(), i);
+        if (i % 3 == 0) pieces[i / 2] = {};
+    }
+    for (uint32_t i = 0; i < pieces.size(); ++i)
+        for (const uint32_t value : pieces[i]) ASSERT_EQ(value, i);
+}
+
+TEST(Pages, AnyThreadMayFreeWhatAnotherMade) {
+    for (int round = 0; round < 20; ++round) {
+        std::vector<PageVector<uint8_t>> made[2];
+        std::thread makers[2];
+        for (int t = 0; t < 2; ++t)
+            makers[t] = std::thread([&list = made[t]] {
+                for (size_t i = 0; i < 200; ++i) list.emplace_back(size_t{100'000}, uint8_t{7});
+            });
+        for (std::thread& m : makers) m.join();
+        for (const auto& list : made)
+            for (const PageVector<uint8_t>& piece : list) ASSERT_EQ(piece.back(), 7);
+    }
+    releasePages();
+}
+
+}  // namespace
+}  // namespace sgm
