@@ -49,8 +49,8 @@ size_t step(size_t n, const float* __restrict base, const float* __restrict span
         const float newton = t - f / (slope[i] * span[i]);
         const float low = t0 < t1 ? t0 : t1, high = t0 < t1 ? t1 : t0;
         const bool kept = (newton >= low) & (newton <= high);
-        const bool agree = (magnitude(newton - secant) <= agreement) & (magnitude(newton - t) <= longStep);
-        const bool done = (kept & agree) | (high - low <= agreement);
+        const float apart = magnitude(newton - secant), way = magnitude(newton - t);
+        const bool done = (kept & (apart <= agreement) & (way <= longStep)) | (high - low <= agreement);
         tIn[i] = t0, fIn[i] = f0;
         tOut[i] = t1, fOut[i] = f1;
         const float moved = withinEdge(kept ? newton : 0.5f * (t0 + t1));
