@@ -148,6 +148,18 @@ Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int thr
     return made;
 }
 
+Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::Rebuild& rebuild, Stages& stages, Progress* progress) {
+    MeshedModel made;
+    made.grid = grid;
+    const auto mesh = rebuild.update(model.tape, grid, progress, made.counts);
+    if (!mesh.ok()) return mesh.error();
+    made.mesh = **mesh;
+    stages.emplace_back("subdivide", made.counts.subdivideSeconds);
+    stages.emplace_back("sample", made.counts.sampleSeconds);
+    stages.emplace_back("polygonize", made.counts.polygonizeSeconds);
+    return made;
+}
+
 Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress) {
     return makeMesh(model, gridOver(model.lowered->field.bounds, request), request.threads, stages, progress);
 }

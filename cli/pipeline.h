@@ -13,6 +13,7 @@
 #include "grammar/lower/lower.h"
 #include "modeler/eval/tape.h"
 #include "modeler/mesh/polygonize.h"
+#include "modeler/mesh/rebuild.h"
 
 namespace CLI {
 class App;
@@ -71,6 +72,8 @@ struct MeshedModel {
     mesh::Counts counts;
 };
 Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int threads, Stages& stages, Progress* progress);
+/// The same, taking what didn't change from the last mesh of `rebuild`; without blocks, which only volumes want.
+Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::Rebuild& rebuild, Stages& stages, Progress* progress);
 /// The grid that is asked for over these bounds.
 mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request);
 /// The same over the model's own bounds.

@@ -35,8 +35,8 @@ uint64_t bytesOf(const Chunk& c) {
 
 }  // namespace
 
-Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options,
-                        Progress* progress, Counts& counts) {
+Result<std::vector<Chunk>> meshBlocks(const std::vector<Block>& blocks, const Grid& grid,
+                                      const PolygonizeOptions& options, Progress* progress, Counts& counts) {
     if (Status status = checkGrid(grid); !status) return status.error();
     Memory memory(options.memoryBudget_bytes);
     const auto threads = static_cast<size_t>(threadCount(options.threads));
@@ -46,13 +46,12 @@ Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, cons
         workers.emplace_back(grid, static_cast<size_t>(options.refineSteps));
         if (options.tally) workers[w].tallyInto(&tallies[w]);
     }
-    Mesh mesh;
-    mesh.chunks.resize(blocks.size());
+    std::vector<Chunk> chunks(blocks.size());
 
     if (progress) progress->begin("sample", blocks.size());
     parallelFor(blocks.size(), options.threads, progress, [&](size_t b, int worker) {
-        if (memory.exceeded() || !workers[worker].mesh(blocks[b], progress, mesh.chunks[b])) return;
-        memory.add(bytesOf(mesh.chunks[b]));
+        if (memory.exceeded() || !workers[worker].mesh(blocks[b], progress, chunks[b])) return;
+        memory.add(bytesOf(chunks[b]));
         tick(progress);
     });
     if (cancelled(progress)) return cancelledError();
@@ -64,10 +63,17 @@ Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, cons
     counts += counted;
     for (const eval::Tally& tally : tallies)
         for (const auto& [operation, points] : tally) (*options.tally)[operation] += points;
+    std::erase_if(chunks, [](const Chunk& c) { return c.triangles.empty(); });
+    return chunks;
+}
 
+Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options,
+                        Progress* progress, Counts& counts) {
+    auto chunks = meshBlocks(blocks, grid, options, progress, counts);
+    if (!chunks.ok()) return chunks.error();
+    Mesh mesh{std::move(*chunks)};
     const Stopwatch linking;
     if (progress) progress->begin("polygonize", 1);
-    std::erase_if(mesh.chunks, [](const Chunk& c) { return c.triangles.empty(); });
     if (Status status = link(mesh.chunks, options.threads); !status) return status.error();
     tick(progress);
     counts.polygonizeSeconds += linking.seconds();

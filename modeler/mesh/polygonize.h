@@ -18,6 +18,11 @@ struct PolygonizeOptions {
     eval::Tally* tally = nullptr;              ///< adds up the operations that samples and vertices took
 };
 
+/// The first half of `polygonize`: the chunks of those blocks that hold surface, in the blocks' order, each by itself;
+/// `link` (chunk.h) is the other half.
+Result<std::vector<Chunk>> meshBlocks(const std::vector<Block>& blocks, const Grid& grid,
+                                      const PolygonizeOptions& options, Progress* progress, Counts& counts);
+
 Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options,
                         Progress* progress, Counts& counts);
 

@@ -13,14 +13,15 @@
 namespace sgm::mesh {
 namespace {
 
-constexpr int splits = 4;  ///< per axis, so that one batch of intervals is 64 children
+constexpr int splits = regionSplits;
 
 /// A cube of blocks on the way down: blocks [index · size, (index + 1) · size) of its level.
 using Region = Block;
 
-/// Splits one region into those children that may hold surface, each with its tape shortened to it.
-std::vector<Region> split(const Region& region, int childCells, const Grid& grid, eval::Workspace& workspace,
-                          Counts& counts) {
+/// Splits one region into those children that may hold surface and that the filter wants, each with its tape shortened
+/// to it.
+std::vector<Region> split(const Region& region, int childCells, const Grid& grid, const RegionFilter& filter,
+                          eval::Workspace& workspace, Counts& counts) {
     std::array<CellRange, splits * splits * splits> children;
     std::array<Box3f, splits * splits * splits> boxes;
     size_t n = 0;
@@ -37,9 +38,11 @@ std::vector<Region> split(const Region& region, int childCells, const Grid& grid
     counts.intervalEvaluations += n;
 
     std::vector<Region> kept;
-    for (size_t c = 0; c < n; ++c)
-        if (mayHoldSurface(ranges[c], children[c], grid))
-            kept.push_back({children[c].lo / childCells, eval::shorten(region.tape, c, workspace)});
+    for (size_t c = 0; c < n; ++c) {
+        if (!mayHoldSurface(ranges[c], children[c], grid)) continue;
+        Region child{children[c].lo / childCells, eval::shorten(region.tape, c, workspace)};
+        if (!filter || filter(child.index, childCells / blockCells, child.tape)) kept.push_back(std::move(child));
+    }
     return kept;
 }
 
@@ -97,7 +100,7 @@ Status checkGrid(const Grid& grid) {
 }
 
 Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress,
-                                     Counts& counts) {
+                                     Counts& counts, const RegionFilter& filter) {
     const auto start = std::chrono::steady_clock::now();
     if (Status status = checkGrid(grid); !status) return status.error();
     const int blocksAlong = (maxComponent(grid.cells) + blockCells - 1) / blockCells;
@@ -112,7 +115,8 @@ Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, i
         std::vector<std::vector<Region>> children(regions.size());
         std::vector<Counts> counted(workspaces.size());
         parallelFor(regions.size(), threads, progress, [&](size_t i, int worker) {
-            children[i] = split(regions[i], size / splits * blockCells, grid, workspaces[worker], counted[worker]);
+            children[i] =
+                split(regions[i], size / splits * blockCells, grid, filter, workspaces[worker], counted[worker]);
             tick(progress);
         });
         if (cancelled(progress)) return cancelledError();

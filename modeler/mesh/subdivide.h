@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "modeler/core/progress.h"
@@ -13,8 +14,9 @@
 
 namespace sgm::mesh {
 
-inline constexpr int blockCells = 32;  ///< SG-M III-G
-inline constexpr int brickCells = 8;   ///< an OpenVDB leaf
+inline constexpr int blockCells = 32;   ///< SG-M III-G
+inline constexpr int brickCells = 8;    ///< an OpenVDB leaf
+inline constexpr int regionSplits = 4;  ///< parts of a region along an axis: 64 children make one batch of intervals
 
 /// Where samples lie: corner (i, j, k) is at origin + cell · (i, j, k), computed in float32 so that neighbours agree.
 struct Grid {
@@ -51,10 +53,14 @@ struct Counts {
     Counts& operator+=(const Counts& o);
 };
 
-/// Blocks that may hold surface, ordered by (z, y, x). Error::Cancelled when `progress` says so, Error::Input for a
-/// box without end and for cells that aren't positive or that float32 can't resolve at the grid's place, Error::Budget
-/// for more than 2¹⁵ cells along an axis.
+/// Asked of a region that may hold surface, a cube of `blocks` blocks along its edge, with the tape shortened to it:
+/// false leaves it out with all below. Called from any thread.
+using RegionFilter = std::function<bool(Vec3i index, int blocks, const eval::Tape& tape)>;
+
+/// Blocks that may hold surface, ordered by (z, y, x), but for those that `filter` leaves out. Error::Cancelled when
+/// `progress` says so, Error::Input for a box without end and for cells that aren't positive or that float32 can't
+/// resolve at the grid's place, Error::Budget for more than 2¹⁵ cells along an axis.
 Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress,
-                                     Counts& counts);
+                                     Counts& counts, const RegionFilter& filter = nullptr);
 
 }  // namespace sgm::mesh

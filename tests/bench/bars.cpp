@@ -113,8 +113,13 @@ private:
 
 }  // namespace
 
-std::vector<Bar> judge(const std::vector<Measurement>& measurements, const Limits& limits) {
-    return Judge(measurements, limits).bars();
+std::vector<Bar> judge(const std::vector<Measurement>& measurements, const std::vector<DragResult>& drags,
+                       const Limits& limits) {
+    std::vector<Bar> bars = Judge(measurements, limits).bars();
+    for (const DragResult& d : drags)
+        bars.push_back({fmt::format("{}: dragging {} / full build at {}", d.scene, d.parameter, d.resolution), 0.05,
+                        false, d.share(), ""});
+    return bars;
 }
 
 std::string barLine(const Bar& bar) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/drag.h"
 #include "tests/bench/limits.h"
 #include "tests/bench/measure.h"
 
@@ -21,7 +22,8 @@ struct Bar {
     bool reached() const { return measured > 0 && (atLeast ? measured >= aim : measured <= aim); }
 };
 
-std::vector<Bar> judge(const std::vector<Measurement>& measurements, const Limits& limits);
+std::vector<Bar> judge(const std::vector<Measurement>& measurements, const std::vector<DragResult>& drags,
+                       const Limits& limits);
 /// "reached", "short" or "–", and the figures.
 std::string barLine(const Bar& bar);
 

@@ -17,7 +17,7 @@ struct Request {
     std::vector<std::string> files, scenes;
     std::vector<int> resolutions;
     MeasureOptions measure;
-    std::string json;
+    std::string json, drag;
     bool bars = false, cpu = false, noPeers = false, noDense = false;
 };
 
@@ -39,6 +39,9 @@ void addOptions(CLI::App& app, Request& request) {
         "Count the processor's time over the threads instead of the wall's: for machines busy with other work");
     app.add_flag("--bars", request.bars,
                  "Judge the bars of docs/performance.md; all their scenes and resolutions, unless some are given");
+    app.add_option(
+        "--drag", request.drag,
+        "Drag this parameter of the scenes: a build that keeps what the change doesn't reach, beside a full one");
     app.add_flag("--no-dense", request.noDense, "Leave the dense sweeps out");
     app.add_flag("--no-peers", request.noPeers, "Leave OpenVDB and VTK out");
     app.add_option("--json", request.json, "Write all figures to this file");
@@ -62,10 +65,16 @@ Result<std::vector<SceneEntry>> chooseScenes(const Request& request) {
     return chosen;
 }
 
-Status measureAll(const Request& request, const std::vector<SceneEntry>& scenes, const Limits& limits,
-                  std::vector<Measurement>& out) {
+/// The parameter to drag in a scene, "" for none.
+std::string dragged(const Request& request, std::string_view scene) {
+    return request.drag.empty() && request.bars && scene == "S10" ? "corner" : request.drag;
+}
+
+Status measureAll(const Request& request, const std::vector<SceneEntry>& scenes, const Limits& limits, Measured& out) {
     for (const SceneEntry& entry : scenes) {
-        const auto scene = loadScene(entry);
+        const auto grammar = loadGrammar(entry);
+        if (!grammar.ok()) return grammar.error();
+        const auto scene = makeScene(*grammar, request.measure.running);
         if (!scene.ok()) return scene.error();
         for (const int resolution : request.resolutions) {
             MeasureOptions options = request.measure;
@@ -74,7 +83,14 @@ Status measureAll(const Request& request, const std::vector<SceneEntry>& scenes,
             if (!m.ok()) return Error{m.error().kind, fmt::format("{}: {}", entry.name, m.error().message)};
             fmt::print("{}\n", tableRow(*m, limits));
             std::fflush(stdout);
-            out.push_back(*m);
+            out.scenes.push_back(*m);
+            const std::string parameter = dragged(request, entry.name);
+            if (parameter.empty()) continue;
+            const auto drag = measureDrag(*grammar, parameter, resolution, options.repeats, options.running);
+            if (!drag.ok()) return Error{drag.error().kind, fmt::format("{}: {}", entry.name, drag.error().message)};
+            fmt::print("{}\n", dragLine(*drag));
+            std::fflush(stdout);
+            out.drags.push_back(*drag);
         }
     }
     return Done{};
@@ -103,17 +119,16 @@ int main(int argc, char** argv) {
     if (!scenes.ok()) return fail(scenes.error());
     const Limits limits = measureLimits(request.measure.running);
     fmt::print("{}\n{}\n", limitsLine(limits, request.measure.running.threads), tableHeader());
-    std::vector<Measurement> measurements;
-    if (Status status = measureAll(request, *scenes, limits, measurements); !status) return fail(status.error());
-    std::vector<Bar> bars;
+    Measured measured;
+    if (Status status = measureAll(request, *scenes, limits, measured); !status) return fail(status.error());
     if (request.bars) {
-        bars = judge(measurements, limits);
+        measured.bars = judge(measured.scenes, measured.drags, limits);
         fmt::print("\n");
-        for (const Bar& bar : bars) fmt::print("{}\n", barLine(bar));
+        for (const Bar& bar : measured.bars) fmt::print("{}\n", barLine(bar));
     }
     if (request.json.empty()) return 0;
     std::ofstream file(request.json, std::ios::binary);
-    file << toJson(measurements, bars, limits, request.measure.running.threads);
+    file << toJson(measured, limits, request.measure.running.threads);
     file.close();
     return file ? 0 : fail({Error::Kind::Input, "can't write " + request.json});
 }

@@ -103,17 +103,35 @@ std::string tableRow(const Measurement& m, const Limits& limits) {
         m.bytesPerTriangle());
 }
 
-std::string toJson(const std::vector<Measurement>& measurements, const std::vector<Bar>& bars, const Limits& limits,
-                   int threads) {
-    ordered_json scenes = ordered_json::array(), judged = ordered_json::array();
-    for (const Measurement& m : measurements) scenes.push_back(sceneOf(m, limits));
-    for (const Bar& b : bars)
+std::string dragLine(const DragResult& d) {
+    const auto stages = [](const BuildSeconds& s) {
+        return fmt::format(
+            "{:.4f} s (derive {:.4f}, lower {:.4f}, compile {:.4f}, mesh {:.4f}, of it descent {:.4f} by the wall)",
+            s.total(), s.derive, s.lower, s.compile, s.mesh, s.descend);
+    };
+    return fmt::format("  {} dragged: {}, {} of {} blocks; full {}: a share of {:.3f}", d.parameter, stages(d.drag),
+                       d.blocksMade, d.blocksMade + d.blocksKept, stages(d.full), d.share());
+}
+
+std::string toJson(const Measured& measured, const Limits& limits, int threads) {
+    ordered_json scenes = ordered_json::array(), drags = ordered_json::array(), bars = ordered_json::array();
+    for (const Measurement& m : measured.scenes) scenes.push_back(sceneOf(m, limits));
+    for (const DragResult& d : measured.drags)
+        drags.push_back({{"scene", d.scene},
+                         {"resolution", d.resolution},
+                         {"parameter", d.parameter},
+                         {"full_seconds", d.full.total()},
+                         {"drag_seconds", d.drag.total()},
+                         {"share", d.share()},
+                         {"blocks_made", d.blocksMade},
+                         {"blocks_kept", d.blocksKept}});
+    for (const Bar& b : measured.bars)
         if (b.measured > 0)
-            judged.push_back({{"what", b.what},
-                              {b.atLeast ? "at_least" : "at_most", b.aim},
-                              {"measured", b.measured},
-                              {"reached", b.reached()},
-                              {"remark", b.remark}});
+            bars.push_back({{"what", b.what},
+                            {b.atLeast ? "at_least" : "at_most", b.aim},
+                            {"measured", b.measured},
+                            {"reached", b.reached()},
+                            {"remark", b.remark}});
     const ordered_json all = {{"threads", threads},
                               {"limits",
                                {{"instruction_set", instructionSet()},
@@ -122,7 +140,8 @@ std::string toJson(const std::vector<Measurement>& measurements, const std::vect
                                 {"fresh_write_gb_per_second", limits.freshWriteGBs},
                                 {"copy_gb_per_second", limits.copyGBs}}},
                               {"scenes", scenes},
-                              {"bars", judged}};
+                              {"drags", drags},
+                              {"bars", bars}};
     return all.dump(2) + "\n";
 }
 

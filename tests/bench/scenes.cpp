@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "grammar/rules/check.h"
-#include "tests/bench/stopwatch.h"
 
 namespace sgm::bench {
 namespace {
@@ -62,7 +61,7 @@ std::span<const SceneEntry> findScenes(std::string_view name) {
     return {first, last};
 }
 
-Result<Scene> loadScene(const SceneEntry& entry) {
+Result<GrammarScene> loadGrammar(const SceneEntry& entry) {
     const std::string path(entry.file);
     const auto source = readSource(path);
     if (!source) return Error{Error::Kind::Input, "can't read " + path};
@@ -80,21 +79,26 @@ Result<Scene> loadScene(const SceneEntry& entry) {
 
     derive::Options options;
     options.start = *start;
-    const Stopwatch deriving;
-    const auto derivation = derive::derive(grammar, options, nullptr);
+    for (const rules::Param& p : grammar->params) options.params.push_back(p.value);
+    return GrammarScene{std::string(entry.name), grammar, std::move(options)};
+}
+
+Result<Scene> makeScene(const GrammarScene& scene, Running running) {
+    const Stopwatch deriving(running);
+    const auto derivation = derive::derive(scene.grammar, scene.options, nullptr);
     if (!derivation.ok()) return derivation.error();
     const double deriveSeconds = deriving.seconds();
-    const Stopwatch lowering;
+    const Stopwatch lowering(running);
     auto model = lower::lower(*derivation, nullptr);
     if (!model.ok()) return model.error();
     const double lowerSeconds = lowering.seconds();
-    const Stopwatch compiling;
+    const Stopwatch compiling(running);
     eval::Tape tape = eval::compile((*model)->graph, (*model)->field, (*model)->graph.constants());
     const double compileSeconds = compiling.seconds();
     auto reference = referenceOf(derivation->tree);
     if (reference && !agrees(*reference, tape, (*model)->field.bounds)) reference.reset();
-    return Scene{std::string(entry.name), std::move(*model), std::move(tape), std::move(reference),
-                 deriveSeconds,           lowerSeconds,      compileSeconds};
+    return Scene{scene.name,    std::move(*model), std::move(tape), std::move(reference),
+                 deriveSeconds, lowerSeconds,      compileSeconds};
 }
 
 }  // namespace sgm::bench

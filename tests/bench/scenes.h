@@ -13,6 +13,7 @@
 #include "modeler/core/result.h"
 #include "modeler/eval/tape.h"
 #include "tests/bench/reference.h"
+#include "tests/bench/stopwatch.h"
 
 namespace sgm::bench {
 
@@ -28,6 +29,15 @@ std::span<const SceneEntry> sceneTable();
 /// The scenes called `name`: that very one, or all its variants (S2 gives S2-folded-3 …). Empty when there is none.
 std::span<const SceneEntry> findScenes(std::string_view name);
 
+/// A grammar with what to derive.
+struct GrammarScene {
+    std::string name;
+    std::shared_ptr<const rules::Grammar> grammar;
+    derive::Options options;  ///< start, defaults of the parameters, seed 1
+};
+/// Reads and checks. Error::Input when the file can't be read or the grammar is wrong.
+Result<GrammarScene> loadGrammar(const SceneEntry& entry);
+
 /// A field, ready to be measured.
 struct Scene {
     std::string name;
@@ -37,7 +47,7 @@ struct Scene {
     double deriveSeconds = 0, lowerSeconds = 0, compileSeconds = 0;
 };
 
-/// Reads, derives with seed 1, lowers and compiles. Error::Input when the file can't be read or the grammar is wrong.
-Result<Scene> loadScene(const SceneEntry& entry);
+/// Derives, lowers and compiles. Errors as theirs.
+Result<Scene> makeScene(const GrammarScene& scene, Running running);
 
 }  // namespace sgm::bench

@@ -300,6 +300,11 @@ TEST_F(Cli, FramesOfAnAnimationAreClosedAndGoFromEndToEnd) {
         EXPECT_NEAR(volume[4 * still], Json::parse(read(path("s.json")))["mesh"]["volume_m3"], 0.05);
     }
     EXPECT_NE(volume[0], volume[1]);
+    // Where volumes are asked for nothing is kept from frame to frame: the same bytes.
+    const Outcome whole = sgm("build examples/morphs.sgm --set steps=2 --animate become=0..1:5 --resolution 40 -o " + path("w_%02d.off") + " -o " + path("w_%02d.vdb"));
+    ASSERT_EQ(whole.code, 0) << whole.out;
+    for (const char* frame : {"1", "2", "5"})
+        EXPECT_EQ(read(path("w_0") + frame + ".off"), read(path("f_0") + frame + ".off"));
 }
 
 TEST_F(Cli, InterruptedAnimationLeavesWholeFrames) {

@@ -13,6 +13,7 @@
 #include "modeler/mesh/validate.h"
 #include "modeler/mesh/vertices.h"
 #include "tests/cpu_time.h"
+#include "tests/mesh/mesh_bytes.h"
 #include "tests/mesh/scenes.h"
 
 namespace sgm::mesh {
@@ -24,19 +25,6 @@ void expectClosed(const Mesh& mesh, const char* what, uint64_t which = 0) {
         ASSERT_EQ(f.nonmanifoldEdges, 0u) << what << ' ' << which;
         ASSERT_EQ(f.vertices, mesh.vertexCount()) << what << ' ' << which << ": vertices coincide or are unused";
     }
-}
-
-std::vector<unsigned char> bytesOf(const Mesh& mesh) {
-    std::vector<unsigned char> bytes;
-    const auto add = [&](const auto& list) {
-        const auto* p = reinterpret_cast<const unsigned char*>(list.data());
-        bytes.insert(bytes.end(), p, p + list.size() * sizeof(list[0]));
-    };
-    for (const Chunk& c : mesh.chunks) {
-        add(std::vector<Vec3i>{c.block, {static_cast<int>(c.firstVertex), 0, 0}});
-        add(c.positions), add(c.normals), add(c.triangles), add(c.origins), add(c.borrowed.vertices);
-    }
-    return bytes;
 }
 
 /// Errors of volume and area at two resolutions must shrink like the square of the cell.

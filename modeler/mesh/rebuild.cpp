@@ -1,0 +1,123 @@
+#include "modeler/mesh/rebuild.h"
+
+#include <algorithm>
+#include <iterator>
+#include <mutex>
+
+#include "modeler/core/random.h"
+#include "modeler/mesh/chunk.h"
+#include "modeler/mesh/region.h"
+
+namespace sgm::mesh {
+namespace {
+
+bool sameGrid(const Grid& a, const Grid& b) {
+    return a.origin == b.origin && a.cell_m == b.cell_m && a.cells == b.cells;
+}
+
+int levelOf(int blocks) {
+    int level = 0;
+    for (; blocks > 1; blocks /= regionSplits) ++level;
+    return level;
+}
+
+}  // namespace
+
+size_t Rebuild::RegionHash::operator()(const Region& r) const {
+    const auto word = [](int v) { return static_cast<uint64_t>(static_cast<uint32_t>(v)); };
+    return mix(word(r.level) << 60 ^ word(r.index.x) << 40 ^ word(r.index.y) << 20 ^ word(r.index.z));
+}
+
+void Rebuild::forget() {
+    regions_.clear();
+    mesh_.chunks.clear();
+    tape_ = {};
+    grid_ = {};
+}
+
+/// Takes over what lies in regions that stayed the same.
+void Rebuild::keepBelow(const Regions& before, const Regions& same, Regions& now) {
+    int top = 0;
+    for (const auto& [region, tape] : before) top = std::max(top, region.level);
+    for (const auto& [region, tape] : before)
+        for (Region above = region; above.level <= top; ++above.level) {
+            if (same.contains(above)) {
+                now.emplace(region, tape);
+                break;
+            }
+            above.index = {above.index.x / regionSplits, above.index.y / regionSplits, above.index.z / regionSplits};
+        }
+}
+
+/// The chunks of the last mesh whose blocks are still there and weren't made anew.
+std::vector<Chunk> Rebuild::takeKept(const Regions& now, const std::vector<Block>& made) {
+    const auto isMade = [&](Vec3i block) {
+        const auto at = std::lower_bound(made.begin(), made.end(), block,
+                                         [](const Block& b, Vec3i i) { return zyxLess(b.index, i); });
+        return at != made.end() && at->index == block;
+    };
+    std::vector<Chunk> chunks;
+    for (Chunk& c : mesh_.chunks)
+        if (now.contains({0, c.block}) && !isMade(c.block)) chunks.push_back(std::move(c));
+    return chunks;
+}
+
+Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts) {
+    Regions now, same;
+    std::mutex guard;
+    const RegionFilter changed = [&](Vec3i index, int blocks, const eval::Tape& shortened) {
+        const Region region{levelOf(blocks), index};
+        const eval::Fingerprint print = eval::fingerprint(shortened);
+        const auto before = regions_.find(region);
+        const bool equal = before != regions_.end() && before->second == print;
+        const std::lock_guard lock(guard);
+        (equal ? same : now).emplace(region, print);
+        return !equal;
+    };
+    const auto blocks = subdivide(tape, grid, options_.threads, progress, counts, changed);
+    if (!blocks.ok()) return blocks.error();
+    keepBelow(regions_, same, now);
+
+    auto made = meshBlocks(*blocks, grid, options_, progress, counts);
+    if (!made.ok()) return made.error();
+    std::vector<Chunk> all = takeKept(now, *blocks);
+    blocksMade_ = blocks->size();
+    blocksKept_ =
+        static_cast<size_t>(std::count_if(now.begin(), now.end(), [](const auto& r) { return r.first.level == 0; })) -
+        blocksMade_;
+    std::move(made->begin(), made->end(), std::back_inserter(all));
+    std::sort(all.begin(), all.end(), [](const Chunk& a, const Chunk& b) { return zyxLess(a.block, b.block); });
+    mesh_.chunks = std::move(all);
+    if (Status status = link(mesh_.chunks, options_.threads); !status) return status.error();
+    regions_ = std::move(now);
+    return &mesh_;
+}
+
+Result<const Mesh*> Rebuild::update(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts) {
+    if (!sameGrid(grid, grid_)) forget();
+    const eval::Fingerprint print = eval::fingerprint(tape);
+    if (print == tape_) {
+        blocksKept_ += blocksMade_;
+        blocksMade_ = 0;
+        return &mesh_;
+    }
+    auto result = run(tape, grid, progress, counts);
+    if (!result.ok()) {
+        forget();
+        return result;
+    }
+    tape_ = print;
+    grid_ = grid;
+    return result;
+}
+
+Grid gridToKeep(const Grid& previous, const Box3f& bounds, float cell_m, float room) {
+    const Vec3i last = previous.cells - Vec3i{1, 1, 1};
+    const bool fits = previous.cell_m == cell_m && minComponent(last) > 1 && !bounds.empty() &&
+                      minComponent(bounds.lo - previous.corner(1, 1, 1)) >= 0 &&
+                      minComponent(previous.corner(last.x, last.y, last.z) - bounds.hi) >= 0;
+    if (fits || bounds.empty() || !bounds.finite()) return fits ? previous : gridFor(bounds, cell_m);
+    return gridFor(bounds.inflated(room * maxComponent(bounds.size())), cell_m);
+}
+
+}  // namespace sgm::mesh
