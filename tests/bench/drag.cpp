@@ -55,21 +55,21 @@ Result<DragResult> measureDrag(const GrammarScene& start, const std::string& par
         grid = mesh::gridToKeep(grid, bounds, step == 0 ? mesh::cellFor(bounds, resolution) : grid.cell_m, 0.2f);
 
         mesh::Counts keptCounts, wholeCounts;
-        const Stopwatch again(running);
+        const Stopwatch again(running), againWall;
         const auto kept = rebuild.update(model->scene.tape, grid, nullptr, keptCounts);
         if (!kept.ok()) return kept.error();
         BuildSeconds drag = model->seconds, full = model->seconds;
         drag.mesh = again.seconds();
-        drag.descend = keptCounts.subdivideSeconds;
+        drag.descend = keptCounts.subdivideSeconds * drag.mesh / againWall.seconds();
         if (step > 0) keepBest(result.drag, drag);
 
-        const Stopwatch whole(running);
+        const Stopwatch whole(running), wholeWall;
         const auto blocks = mesh::subdivide(model->scene.tape, grid, running.threads, nullptr, wholeCounts);
         if (!blocks.ok()) return blocks.error();
         const auto mesh = mesh::polygonize(*blocks, grid, {.threads = running.threads}, nullptr, wholeCounts);
         if (!mesh.ok()) return mesh.error();
         full.mesh = whole.seconds();
-        full.descend = wholeCounts.subdivideSeconds;
+        full.descend = wholeCounts.subdivideSeconds * full.mesh / wholeWall.seconds();
         if (step > 0) keepBest(result.full, full);
         if (!equal(**kept, *mesh)) return Error{Error::Kind::Internal, "the mesh made anew in part is another one"};
     }

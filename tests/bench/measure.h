@@ -51,6 +51,13 @@ struct Measurement {
     /// What polygonize stores: a triangle's corners and its origin.
     uint64_t polygonizedBytes() const { return triangles * (sizeof(mesh::Triangle) + sizeof(OriginId)); }
     double openvdbSeconds() const { return openvdb.sampleSeconds + openvdb.meshSeconds; }
+    /// volumeToMesh after the sweeps' own loop over the blocks that aren't skipped, at its rate over the cube.
+    double openvdbByHandSeconds() const {
+        const double corners = static_cast<double>(cells.x + 1) * (cells.y + 1) * (cells.z + 1);
+        const double sampled =
+            static_cast<double>(openvdb.blocks) * mesh::blockCells * mesh::blockCells * mesh::blockCells;
+        return dense.evaluateSeconds > 0 ? dense.evaluateSeconds * sampled / corners + openvdb.meshSeconds : 0;
+    }
 };
 
 /// Errors as of subdivide and polygonize.

@@ -10,6 +10,7 @@ namespace sgm::bench {
 Result<OpenVdbResult> measureOpenVdb(const std::vector<mesh::Block>& blocks, const eval::Tape& tape,
                                      const mesh::Grid& grid, Running running) {
     OpenVdbResult result;
+    result.blocks = blocks.size();
     const Stopwatch sampling(running);
     const auto volume = volume::sample(blocks, tape, grid, 3, running.threads, nullptr);
     if (!volume.ok()) return volume.error();

@@ -14,6 +14,7 @@ struct OpenVdbResult {
     double sampleSeconds = 0;  ///< our sampling of a narrow band of three voxels into its grid, blocks skipped
     double meshSeconds = 0;    ///< openvdb::tools::volumeToMesh of that grid, no adaptivity
     uint64_t triangles = 0;    ///< a quad counts as two
+    uint64_t blocks = 0;       ///< of 32³ cells, not skipped
 };
 
 /// Error as of volume::sample.

@@ -28,6 +28,7 @@ ordered_json peersOf(const Measurement& m) {
     if (m.openvdb.triangles > 0)
         peers["openvdb"] = {{"sample_seconds", m.openvdb.sampleSeconds},
                             {"mesh_seconds", m.openvdb.meshSeconds},
+                            {"by_hand_seconds", m.openvdbByHandSeconds()},
                             {"triangles", m.openvdb.triangles}};
     if (m.vtk.seconds > 0)
         peers["vtk_flying_edges"] = {{"mesh_seconds", m.vtk.seconds}, {"triangles", m.vtk.triangles}};
@@ -79,10 +80,11 @@ std::string limitsLine(const Limits& limits, int threads) {
 std::string tableHeader() {
     return fmt::format(
         "{:12} {:>4} {:>6} | {:>7} {:>7} {:>7} {:>7} {:>5} {:>5} | {:5} {:>7} {:>7} | {:>7} {:>7} | {:>7} {:>7} | "
-        "{:>7} {:>7} {:>7} | "
+        "{:>7} {:>7} {:>7} {:>7} | "
         "{:>7} | {:>8} {:>6} {:>6} {:>5}",
         "scene", "res", "tape", "total", "descend", "sample", "join", "s/op", "j/wr", "by", "dense", "ratio", "fused",
-        "ratio", "tight", "ratio", "vdb smp", "vdb msh", "ratio", "vtk", "triangle", "ns/tri", "ev/cel", "B/tri");
+        "ratio", "tight", "ratio", "vdb smp", "vdb msh", "ratio", "by hand", "vtk", "triangle", "ns/tri", "ev/cel",
+        "B/tri");
 }
 
 std::string tableRow(const Measurement& m, const Limits& limits) {
@@ -94,20 +96,19 @@ std::string tableRow(const Measurement& m, const Limits& limits) {
     return fmt::format(
         "{:12} {:>4} {:>6} | {:>7.4f} {:>7.4f} {:>7.4f} {:>7.4f} {:>5.1f} {:>5.1f} | {:5} {:>7} {:>7} | {:>7} {:>7} | "
         "{:>7} {:>7} | "
-        "{:>7} {:>7} {:>7} | {:>7} | {:>8} {:>6.1f} {:>6.2f} {:>5.0f}",
+        "{:>7} {:>7} {:>7} {:>7} | {:>7} | {:>8} {:>6.1f} {:>6.2f} {:>5.0f}",
         m.scene, m.resolution, m.tapeLength, m.totalSeconds, m.counts.subdivideSeconds, m.counts.sampleSeconds,
         m.counts.polygonizeSeconds, m.sampleOverLeast(), polygonizeOverWrite(m, limits),
         m.handWritten ? "hand" : "tape", sweep(m.dense), ratio(m.dense.seconds), sweep(m.fused), ratio(m.fused.seconds),
         sweep(m.tight), ratio(m.tight.seconds), seconds(m.openvdb.sampleSeconds), seconds(m.openvdb.meshSeconds),
-        ratio(m.openvdbSeconds()), seconds(m.vtk.seconds), m.triangles, m.nsPerTriangle(), m.evaluationsPerCell(),
-        m.bytesPerTriangle());
+        ratio(m.openvdbSeconds()), ratio(m.openvdbByHandSeconds()), seconds(m.vtk.seconds), m.triangles,
+        m.nsPerTriangle(), m.evaluationsPerCell(), m.bytesPerTriangle());
 }
 
 std::string dragLine(const DragResult& d) {
     const auto stages = [](const BuildSeconds& s) {
-        return fmt::format(
-            "{:.4f} s (derive {:.4f}, lower {:.4f}, compile {:.4f}, mesh {:.4f}, of it descent {:.4f} by the wall)",
-            s.total(), s.derive, s.lower, s.compile, s.mesh, s.descend);
+        return fmt::format("{:.4f} s (derive {:.4f}, lower {:.4f}, compile {:.4f}, mesh {:.4f}, of it descent {:.4f})",
+                           s.total(), s.derive, s.lower, s.compile, s.mesh, s.descend);
     };
     return fmt::format("  {} dragged: {}, {} of {} blocks; full {}: a share of {:.3f}", d.parameter, stages(d.drag),
                        d.blocksMade, d.blocksMade + d.blocksKept, stages(d.full), d.share());
