@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -156,16 +155,13 @@ Status buildFrames(const BuildRequest& request) {
     if (!bounds.ok()) return bounds.error();
     const mesh::Grid grid = gridOver(*bounds, request.grid);
     mesh::Rebuild rebuild({.threads = request.grid.threads});
-    const bool wantsBlocks = std::any_of(request.outputs.begin(), request.outputs.end(), [](const std::string& output) {
-        return exporter::findExporter(fs::path(output).extension().string())->wantsVolume;
-    });
     const auto still = options->params;
     for (int frame = 0; frame < animation->frames; ++frame) {
         Stages stages;
         options->params = animation->values(still, frame);
         const auto model = makeModel(grammar, *options, stages, watch.progress());
         if (!model.ok()) return model.error();
-        auto meshed = wantsBlocks ? makeMesh(*model, grid, request.grid.threads, stages, watch.progress())
+        auto meshed = wantsVolume(request.out) ? makeMesh(*model, grid, request.grid.threads, stages, watch.progress())
                                   : makeMesh(*model, grid, rebuild, stages, watch.progress());
         if (!meshed.ok()) return meshed.error();
         if (!request.quiet) fmt::print("frame {} of {}, {}: ", frame + 1, animation->frames, animation->text(*grammar, frame));

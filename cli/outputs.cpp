@@ -85,6 +85,10 @@ Status checkOutputs(const OutputRequest& request) {
     return Done{};
 }
 
+bool wantsVolume(const OutputRequest& request) {
+    return std::any_of(request.files.begin(), request.files.end(), [](const std::string& file) { return formatOf(file)->wantsVolume; });
+}
+
 Status writeOutputs(const OutputRequest& request, const Model& model, const MeshedModel& meshed, exporter::ExportInput input, int threads) {
     std::optional<volume::Volume> level;
     for (const std::string& file : request.files) {

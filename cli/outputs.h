@@ -22,6 +22,9 @@ std::vector<std::string> allFiles(const OutputRequest& request);
 /// Error::Usage for endings, options and values that no format takes; Error::Input for folders that aren't there.
 Status checkOutputs(const OutputRequest& request);
 
+/// True when one of the files holds a volume, for which `writeOutputs` needs the blocks.
+bool wantsVolume(const OutputRequest& request);
+
 /// Writes every file. `input` has the mesh and what is known of the model.
 Status writeOutputs(const OutputRequest& request, const Model& model, const MeshedModel& meshed, exporter::ExportInput input, int threads);
 
