@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "cli/animation.h"
+#include "cli/cave.h"
 #include "cli/commands.h"
 #include "cli/files.h"
 #include "cli/floating.h"
@@ -27,11 +29,20 @@ struct BuildRequest {
     GridRequest grid;
     OutputRequest out;
     std::vector<std::string> animations;  ///< "NAME=FROM..TO:FRAMES"
-    std::string report;
+    std::string report, agent = ".3,1.8", floor;
     int smooth = 0;
     double simplify = 1;
-    bool judge = false, quiet = false;
+    bool judge = false, cave = false, inward = false, quiet = false;
 };
+
+/// Whether the floor can be written, before the work.
+Status checkFloor(const BuildRequest& request) {
+    if (request.floor.empty()) return Done{};
+    const auto* format = exporter::findExporter(fs::path(request.floor).extension().string());
+    if (format && format->wantsVolume)
+        return Error{Error::Kind::Usage, fmt::format("--floor {}: a floor is a mesh; '{}' holds volumes", request.floor, format->extension)};
+    return checkOutputs(OutputRequest{.files = {request.floor}, .options = {}, .proxy = {}});
+}
 
 Result<mesh::Mesh> edited(mesh::Mesh mesh, const BuildRequest& request, Stages& stages, Progress* progress) {
     if (request.smooth > 0) {
@@ -59,6 +70,23 @@ exporter::ExportInput exportInput(const BuildRequest& request, const Model& mode
     return input;
 }
 
+/// Surveys the cave and writes its walkable floor where that is wanted.
+Result<volume::Cave> survey(const BuildRequest& request, const Model& model, const MeshedModel& meshed, exporter::ExportInput input) {
+    constexpr int band = 3;  // voxels
+    const auto agent = parseAgent(request.agent);
+    if (!agent.ok()) return agent.error();
+    const auto level = volume::sample(meshed.blocks, model.tape, meshed.grid, band, request.grid.threads, input.progress);
+    if (!level.ok()) return level.error();
+    auto cave = volume::surveyCave(*level, *agent, request.inward, input.progress);
+    if (!cave.ok() || request.floor.empty()) return cave;
+    const mesh::Mesh floor = volume::walkableFloor(*input.mesh, *cave);
+    if (floor.triangleCount() == 0) return Error{Error::Kind::Input, fmt::format("--floor {}: the agent can stand nowhere", request.floor)};
+    input.mesh = &floor;
+    input.name += "-floor";
+    if (const Status written = exporter::write(input, request.floor); !written.ok()) return written.error();
+    return cave;
+}
+
 void say(const BuildRequest& request, const Model& model, const mesh::MeshFigures& f, const Support& support, const Stages& stages) {
     double total = 0;
     for (const auto& stage : stages) total += stage.second;
@@ -66,6 +94,7 @@ void say(const BuildRequest& request, const Model& model, const mesh::MeshFigure
                model.derivation.tree.bonds.size(), model.derivation.classic + model.derivation.morphic, f.triangles, f.components,
                f.components == 1 ? "" : "s", f.volume_m3, total);
     for (const std::string& file : allFiles(request.out)) fmt::print("wrote {}\n", file);
+    if (!request.floor.empty()) fmt::print("wrote {}\n", request.floor);
     sayFloating(model, support);
 }
 
@@ -87,20 +116,34 @@ Status deliver(const BuildRequest& request, const Model& model, MeshedModel mesh
     if (!mesh.ok()) return mesh.error();
     if (request.judge)
         if (const Status s = judged(*mesh, stages); !s.ok()) return s;
+    mesh::MeshFigures figures;  // of the solid, before it is turned inside out
+    Support support;
+    if (!request.quiet || !request.report.empty()) {
+        figures = mesh::measure(*mesh);
+        support = supportOf(model, *mesh, meshed.grid.cell_m);
+    }
+    if (request.inward) mesh::turnInsideOut(*mesh);
 
     exporter::ExportInput input = exportInput(request, model, *mesh);
     input.progress = progress;
     const Status written = timed(stages, "write", [&] { return writeOutputs(request.out, model, meshed, input, request.grid.threads); });
-    if (!written.ok() || (request.quiet && request.report.empty())) return written;
-    const mesh::MeshFigures figures = mesh::measure(*mesh);
-    const Support support = supportOf(model, *mesh, meshed.grid.cell_m);
+    if (!written.ok()) return written;
+    std::optional<volume::Cave> cave;
+    if (request.cave || !request.floor.empty()) {
+        auto surveyed = timed(stages, "cave", [&] { return survey(request, model, meshed, input); });
+        if (!surveyed.ok()) return surveyed.error();
+        cave = std::move(*surveyed);
+    }
     if (!request.report.empty())
-        if (const Status s = writeText(request.report, reportJson(model, meshed, figures, support, stages, request.grid.threads)); !s.ok()) return s;
-    if (!request.quiet) say(request, model, figures, support, stages);
+        if (const Status s = writeText(request.report, reportJson(model, meshed, figures, support, cave, stages, request.grid.threads)); !s.ok()) return s;
+    if (request.quiet) return Done{};
+    say(request, model, figures, support, stages);
+    if (cave && request.cave) fmt::print("{}", caveTable(*cave));
     return Done{};
 }
 
 Status buildOne(const BuildRequest& request) {
+    if (const auto agent = parseAgent(request.agent); !agent.ok()) return agent.error();
     Stages stages;
     Watch watch(request.quiet);
     const auto model = makeModel(request.model, stages, watch.progress());
@@ -113,7 +156,7 @@ Status buildOne(const BuildRequest& request) {
 /// The request of one frame: its files by name.
 Result<BuildRequest> requestOf(const BuildRequest& request, int frame) {
     BuildRequest one = request;
-    std::vector<std::string*> names{&one.out.proxy, &one.report};
+    std::vector<std::string*> names{&one.out.proxy, &one.report, &one.floor};
     for (std::string& file : one.out.files) names.push_back(&file);
     for (std::string* name : names) {
         if (name->empty()) continue;
@@ -173,6 +216,7 @@ Status buildFrames(const BuildRequest& request) {
 
 int build(const BuildRequest& request) {
     Status done = checkOutputs(request.out);
+    if (done.ok()) done = checkFloor(request);
     if (done.ok()) done = request.animations.empty() ? buildOne(request) : buildFrames(request);
     return done.ok() ? 0 : fail(done.error());
 }
@@ -187,6 +231,10 @@ void addBuild(CLI::App& app, int& exitCode) {
     addOutputOptions(*command, request->out);
     command->add_option("--animate", request->animations, "Run a parameter through frames, NAME=FROM..TO:FRAMES; -o needs a number: roof_%04d.glb")->allow_extra_args(false);
     command->add_option("--report", request->report, "Write the figures of this build as JSON");
+    command->add_flag("--cave", request->cave, "Report on the air in the rock: spaces, rooms, passages, entrances, floors, ways");
+    command->add_option("--agent", request->agent, "Who walks through the cave: RADIUS,HEIGHT[,SLOPE] in metres and degrees")->capture_default_str();
+    command->add_option("--floor", request->floor, "Write the floor on which the agent can stand, as a mesh");
+    command->add_flag("--inward", request->inward, "Write the surface facing inward: the model is a hollow, seen from inside");
     command->add_option("--smooth", request->smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
     command->add_option("--simplify", request->simplify, "Decimate to this share of the triangles")->check(CLI::Range(0.001, 1.0));
     command->add_flag("--judge", request->judge, "Let CGAL judge the mesh before it is written: closed, outward, no self-intersection");
@@ -195,7 +243,8 @@ void addBuild(CLI::App& app, int& exitCode) {
         "Examples:\n  sgm build examples/grotto.sgm -o grotto.glb -o grotto.vdb --resolution 256\n"
         "  sgm build examples/cumulus.sgm -o cumulus.vdb --export grids=fog --export wisps=.6 --proxy shadow.glb\n"
         "  sgm build examples/tower.sgm --set floors=12 --seed 7 -o tower.obj --report tower.json\n"
-        "  sgm build examples/tower.sgm --animate peak=0..1:48 -o roof_%04d.glb");
+        "  sgm build examples/tower.sgm --animate peak=0..1:48 -o roof_%04d.glb\n"
+        "  sgm build examples/grotto.sgm --start Void --inward --cave -o grotto.glb --floor floor.glb");
     command->callback([request, &exitCode] { exitCode = build(*request); });
 }
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/cave.h"
 #include "modeler/core/parallel.h"
 
 namespace sgm::cli {
@@ -62,7 +63,7 @@ uint64_t peakMemory_bytes() {
 }  // namespace
 
 std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Support& support,
-                       const Stages& stages, int threads) {
+                       const std::optional<volume::Cave>& cave, const Stages& stages, int threads) {
     const derive::Derivation& d = model.derivation;
     Json json;
     for (const auto& [name, seconds] : stages) json["stages"][name] = seconds;
@@ -74,6 +75,7 @@ std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh
     json["mesh"] = meshFigures(figures);
     json["pieces"] = support.pieces;
     json["floating"] = floatingFigures(model, support);
+    if (cave) json["cave"] = caveJson(*cave);
     json["peak_memory_bytes"] = peakMemory_bytes();
     json["threads"] = threadCount(threads);
     json["seed"] = d.seed;

@@ -2,16 +2,19 @@
 // Enters: what each stage made and counted. Leaves: text. Assumes a mesh was made.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "cli/floating.h"
 #include "cli/pipeline.h"
 #include "modeler/mesh/validate.h"
+#include "modeler/volume/cave.h"
 
 namespace sgm::cli {
 
-/// stages, shapes, terminals, bonds, rules_applied, field, mesh, pieces, floating, peak_memory_bytes, threads, seed.
+/// stages, shapes, terminals, bonds, rules_applied, field, mesh, pieces, floating, cave where it was surveyed,
+/// peak_memory_bytes, threads, seed.
 std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Support& support,
-                       const Stages& stages, int threads);
+                       const std::optional<volume::Cave>& cave, const Stages& stages, int threads);
 
 }  // namespace sgm::cli

@@ -83,6 +83,8 @@ private:
     bool placeHead(const rules::Element& e, Frame& frame, Target& target, uint64_t key, bool followed);
     bool placeGrown(const rules::Element& e, Frame& frame, const Target& target, uint64_t key);
     void annotate(const rules::Element& e, Frame& frame, uint64_t key);
+    /// Grows the element on `host`; it becomes a child of `target`'s node.
+    bool placeOn(ShapeId host, const rules::Element& e, Frame& frame, const Target& target, uint64_t key);
     ShapeId hostOf(const ElementFacts& facts, const Frame& frame, const Target& target, const Place& place) const;
     std::vector<uint32_t> openJoints(const rules::Attribute& at, ShapeId host, const Place& place);
     uint32_t jointNamed(const rules::Expr& expr, ShapeId host, const Place& place);

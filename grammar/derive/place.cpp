@@ -134,10 +134,24 @@ uint32_t Interpreter::theirJoint(const ElementFacts& facts, const Joint& ours, c
 }
 
 bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& target, uint64_t key) {
+    const ElementFacts& facts = factsOf(e);
+    Place place = frame.place;
+    place.key = key;
+    if (!facts.on || facts.on->host != Attribute::Host::Each) return placeOn(hostOf(facts, frame, target, place), e, frame, target, key);
+    const ShapeTree& tree = builder_.tree();
+    const auto symbol = static_cast<rules::SymbolId>(facts.on->args[0].value.num());
+    std::vector<ShapeId> hosts;  // those that stand now: what grows on them may carry the name too
+    for (ShapeId s = frame.links->root; s != none; s = tree.next(s, frame.links->root))
+        if (tree.shapes[s].symbol == symbol) hosts.push_back(s);
+    for (const ShapeId host : hosts)
+        if (!placeOn(host, e, frame, target, combine(key, tree.shapes[host].key))) return false;
+    return true;
+}
+
+bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Target& target, uint64_t key) {
     ElementFacts& facts = factsOf(e);
     Place place = frame.place;
     place.key = key;
-    const ShapeId host = hostOf(facts, frame, target, place);
     const bool whole = frame.wholeContent && !facts.at && !facts.on;
     place.scope = whole ? contentBox(host) : builder_.tree().shapes[host].scope;
     place.valuesAt = builder_.tree().shapes[host].valuesAt;

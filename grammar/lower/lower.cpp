@@ -19,12 +19,17 @@ using derive::ShapeTree;
 using field::Owned;
 using rules::Operator;
 
-/// What a node holds so far: terms of one pending n-ary sum, or of one pending blend.
-struct Content {
-    ShapeId shape = none;  ///< the node whose content this is
+/// Parts of one pending n-ary sum, or of one pending blend.
+struct Parts {
     std::vector<Owned> terms;
-    double blend_m = 0;    ///< > 0: the terms are those of a blend with this radius
+    double blend_m = 0;  ///< > 0: the terms are those of a blend with this radius
     uint64_t blendKey = 0;
+};
+
+/// What a node holds so far. Cuts in a row are gathered, for a − b − c = a − (b + c) and one sum of many parts is cheap.
+struct Content : Parts {
+    ShapeId shape = none;  ///< the node whose content this is
+    Parts cuts;            ///< taken from the terms when anything else comes
 };
 
 /// Walks the tree once, without recursion. A child that only adds to what stands, and is itself a plain sum, pours its
@@ -40,6 +45,8 @@ private:
     void leave(ShapeId id);
     void join(Content& content, ShapeId id, Owned part);
     Owned take(Content& content);
+    Owned takeParts(Parts& parts);
+    void settle(Content& content);
     OriginId ownerOf(ShapeId id);
     Owned displaced(Owned part, ShapeId id);
     bool pours(ShapeId id) const;
@@ -88,6 +95,22 @@ OriginId Lowering::ownerOf(ShapeId id) {
 }
 
 Owned Lowering::take(Content& content) {
+    const Owned stands = takeParts(content);
+    if (content.cuts.terms.empty()) return stands;
+    const double blend_m = content.cuts.blend_m;
+    if (blend_m <= 0) return {field::difference(stands, takeParts(content.cuts)), 0};
+    const field::Num radius = model_.graph.slot({content.cuts.blendKey, hashText("blend")}, static_cast<float>(blend_m));
+    const field::Field cut = field::difference(stands, content.cuts.terms, radius, blend_m);
+    content.cuts = {};
+    return {cut, 0};
+}
+
+/// One part in place of the terms and the cuts.
+void Lowering::settle(Content& content) {
+    if (!content.terms.empty()) content.terms = {take(content)};
+}
+
+Owned Lowering::takeParts(Parts& content) {
     Owned result{field::nothing(model_.graph), 0};
     if (content.terms.size() == 1) result = content.terms[0];
     else if (content.blend_m > 0)
@@ -103,13 +126,13 @@ Owned Lowering::take(Content& content) {
 void Lowering::join(Content& content, ShapeId id, Owned part) {
     const Shape& s = tree_.shapes[id];
     if (isSum(s)) {
-        if (content.blend_m > 0) content.terms = {take(content)};
+        if (content.blend_m > 0 || !content.cuts.terms.empty()) settle(content);
         content.terms.push_back(part);
         return;
     }
     if (s.op == Operator::Sum || s.op == Operator::None) {
-        if (content.blend_m != s.blend_m) {
-            if (!content.terms.empty()) content.terms = {take(content)};
+        if (content.blend_m != s.blend_m || !content.cuts.terms.empty()) {
+            settle(content);
             content.blend_m = s.blend_m;
             content.blendKey = s.key;
         }
@@ -117,10 +140,20 @@ void Lowering::join(Content& content, ShapeId id, Owned part) {
         return;
     }
     const bool empty = content.terms.empty();
-    const Owned stands = take(content);
     if (empty && s.op != Operator::Morph) return;  // nothing to cut from, nothing to share
-    if (s.op == Operator::Difference) content.terms = {{field::difference(stands, part), 0}};
-    else if (s.op == Operator::Intersection) content.terms = {{field::intersection(stands, part), 0}};
+    if (s.op == Operator::Difference) {
+        const bool alone = !part.field.bounds.finite() && s.blend_m <= 0;  // a half-space has no place in a hierarchy
+        if (alone || content.cuts.blend_m != s.blend_m) settle(content);
+        if (alone) {
+            content.terms = {{field::difference(content.terms[0], part), 0}};
+            return;
+        }
+        if (content.cuts.terms.empty()) content.cuts.blend_m = s.blend_m, content.cuts.blendKey = s.key;
+        content.cuts.terms.push_back(part);
+        return;
+    }
+    const Owned stands = take(content);
+    if (s.op == Operator::Intersection) content.terms = {{field::intersection(stands, part), 0}};
     else if (empty) content.terms = {part};
     else {
         const field::Num t = model_.graph.slot({s.key, hashText("by")}, static_cast<float>(s.amount));
@@ -147,11 +180,11 @@ Owned Lowering::displaced(Owned part, ShapeId id) {
 
 void Lowering::enter(ShapeId id) {
     materials_.enter(id);
-    if (!pours(id)) open_.push_back({id, {}, 0, 0});
+    if (!pours(id)) open_.push_back({{}, id, {}});
     if (const derive::SolidValue* solid = tree_.solidOf(id)) {
         const field::Field f = lowerSolid(model_.graph, *solid, tree_.shapes[id].scope, tree_.shapes[id].key);
         Content& content = open_.back();
-        if (content.blend_m > 0) content.terms = {take(content)};
+        if (content.blend_m > 0 || !content.cuts.terms.empty()) settle(content);
         content.terms.push_back({f, ownerOf(id)});
     }
 }

@@ -76,11 +76,12 @@ bool isCalled(const Written& e, std::string_view word) {
 
 }  // namespace
 
-/// A joint by name, or a value that is a direction.
+/// A joint by name, or a value that is a direction: a local, or one that `with` sets.
 Expr Checker::joint(Place& place, const Written& e) {
     const bool local =
         std::any_of(place.locals.begin(), place.locals.end(), [&](const auto& l) { return l.name == e.text; });
-    if (e.kind == Written::Kind::Name && axisNumber(e.text) < 0 && !local) {
+    const bool inherited = withNames_.contains(e.text) && !jointNames_.contains(e.text);
+    if (e.kind == Written::Kind::Name && axisNumber(e.text) < 0 && !local && !inherited) {
         Expr word = makeConstant(e.span, makeWord(e.text));
         if (jointNames_.contains(e.text)) return word;
         std::vector<std::string> known(jointNames_.begin(), jointNames_.end());
@@ -132,8 +133,17 @@ void Checker::hostArgument(Place& place, const Written& e, Attribute& out) {
         diagnostics_.error(e.span, "'any' takes one direction", "write 'any(+x)' or 'any(d)'");
         return;
     }
+    if (isCalled(e, "each")) {
+        out.host = Attribute::Host::Each;
+        const bool named = e.args.size() == 1 && e.args[0].kind == Written::Kind::Name;
+        const auto symbol = named ? symbols_.find(e.args[0].text) : symbols_.end();
+        if (symbol != symbols_.end()) out.args.push_back(makeConstant(e.span, Value::number(symbol->second)));
+        else if (named) unknown(e.args[0].span, e.args[0].text, fmt::format("no shape is called '{}'", e.args[0].text), nearest(e.args[0].text, symbolNames(false)));
+        else diagnostics_.error(e.span, "'each' takes the name of shapes", "write 'each(Cell)'");
+        return;
+    }
     if (e.kind != Written::Kind::Error)
-        diagnostics_.error(e.span, fmt::format("'on' takes 'last' or 'any(d)', not '{}'", e.span.text()));
+        diagnostics_.error(e.span, fmt::format("'on' takes 'last', 'any(d)' or 'each(Name)', not '{}'", e.span.text()));
 }
 
 void Checker::noiseArgument(Place& place, const Written& e, Attribute& out) {

@@ -109,8 +109,8 @@ void Checker::agreement(const Place& place, const Element& element) {
     if (element.op != Operator::Morph)
         say(Id::By, "'by' says how far a morph goes, but this shape isn't joined by 'morph'",
             "write 'morph' before the shape");
-    if (element.op == Operator::Difference || element.op == Operator::Intersection)
-        say(Id::Blend, "only what is added melts: a cut keeps its edge", "leave 'blend' out, or add the shape with '+'");
+    if (element.op == Operator::Intersection)
+        say(Id::Blend, "what is shared keeps its edge", "leave 'blend' out, or cut with '-' what lies outside");
     if (element.op == Operator::Morph) say(Id::Blend, "a morph has no edge that could be blended", "leave 'blend' out");
     newcomerJoint(element);
 }

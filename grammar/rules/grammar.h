@@ -133,8 +133,8 @@ struct Attribute {
     /// At, To: which joints are asked for. For `free(…)` the candidates (empty = all); else one.
     bool free = false;
     std::vector<Expr> joints;  ///< each evaluates to an Axis or a Word (a named joint)
-    /// On: `last`, or `any(d)` with args[0] = d.
-    enum class Host : uint8_t { Matched, Last, Any } host = Host::Matched;
+    /// On: `last`; `any(d)` with args[0] = d; `each(Name)` with args[0] = its symbol.
+    enum class Host : uint8_t { Matched, Last, Any, Each } host = Host::Matched;
     /// Displace: args = amplitude, frequency, octaves.
     bool fbm = false;
 };

@@ -11,7 +11,7 @@
 namespace sgm::rules {
 namespace {
 
-constexpr std::array<std::string_view, 17> taken{"axes", "sides", "last", "any",    "free",  "centre",
+constexpr std::array<std::string_view, 18> taken{"axes", "sides", "last", "any",    "free",  "centre", "each",
                                                  "nil",  "scope", "i",    "true",   "false", "morph",
                                                  "x",    "y",     "z",    "billow", "fbm"};
 

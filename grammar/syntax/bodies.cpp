@@ -133,7 +133,7 @@ std::string_view nounOf(ArgumentType type) {
         case ArgumentType::Joint:
             return "a joint";
         case ArgumentType::Shape:
-            return "'last' or 'any(…)'";
+            return "'last', 'any(…)' or 'each(…)'";
         case ArgumentType::Noise:
             return "'billow(…)' or 'fbm(…)'";
         case ArgumentType::Solid:

@@ -27,7 +27,8 @@ constexpr Argument shiftArguments[] = {
     {"shift", Type::Vector,
      "moves the mating point (S_J) along x, y, z of the matched scope: shares of the newcomer's half-size, or metres"}};
 constexpr Argument onArguments[] = {
-    {"host", Type::Shape, "last: the newest shape of the chain; any(d): one placed toward d in the step before"}};
+    {"host", Type::Shape,
+     "last: the newest shape of the chain; any(d): one placed toward d in the step before; each(Name): all of that name"}};
 constexpr Argument byArguments[] = {
     {"amount", Type::Number, "a of the morph (eq. 14): 0 keeps what stands, 1 gives the newcomer"}};
 constexpr Argument blendArguments[] = {
@@ -68,7 +69,7 @@ constexpr std::array<Operation, 27> table = {{
      "+ sphere at +x to centre shift -.3..0.3", shiftArguments},
     {Id::On, "on", "Chooses the host among the shapes of a chain.", "+ sphere on last at +y", onArguments},
     {Id::By, "by", "Says how far a morph goes.", "morph torus by .2", byArguments},
-    {Id::Blend, "blend", "Melts the newcomer into what stands.", "+ sphere at +x blend .25m", blendArguments},
+    {Id::Blend, "blend", "Melts the newcomer, or the edge of a cut, into what stands.", "+ sphere at +x blend .25m", blendArguments},
     {Id::Displace, "displace", "Moves the surface along itself by noise.", "sphere displace billow(.05m, 2.2/m)",
      displaceArguments},
     {Id::Color, "color", "Sets the colour of the surface.", "cube color #c8b090", colorArguments},

@@ -134,6 +134,13 @@ Field difference(Owned a, Owned b) {
             std::max(a.field.lipschitz, b.field.lipschitz), a.field.growth};
 }
 
+Field difference(Owned a, std::span<const Owned> cuts, Num radius, double radiusValue) {
+    std::vector<Owned> operands{{{-a.field.value, a.field.bounds, a.field.lipschitz, a.field.growth}, a.origin}};
+    operands.insert(operands.end(), cuts.begin(), cuts.end());
+    return {-blend(radius.graph(), operands, radius, radiusValue).value, a.field.bounds,
+            std::max(a.field.lipschitz, maxLipschitz(cuts)), a.field.growth};
+}
+
 Field intersection(Owned a, Owned b) {
     const float growth = std::min(a.field.growth, b.field.growth) * 0.70710f;
     return {ownedMax(a.field.value, a.origin, b.field.value, b.origin), commonBox(a.field.bounds, b.field.bounds),

@@ -24,6 +24,8 @@ Field nothing(Graph& graph);
 Field sum(Graph& graph, std::span<const Owned> parts);
 /// max(a, −b): cuts b from a; the wall of the cut belongs to b's origin.
 Field difference(Owned a, Owned b);
+/// Cuts whose edges are melted off: −blend(−a, cuts…); exactly the sharp cuts beyond `radius`, never more solid than they.
+Field difference(Owned a, std::span<const Owned> cuts, Num radius, double radiusValue);
 /// max(a, b).
 Field intersection(Owned a, Owned b);
 /// Order-free n-ary melt of bounded support: solves Σ max(0, c − fᵢ)² = k², f = c − k; 1-Lipschitz, exactly min beyond k.

@@ -66,4 +66,11 @@ Result<Mesh> simplify(const Mesh& mesh, double ratio, Progress* progress) {
     return fromOpenMesh(half, false);
 }
 
+void turnInsideOut(Mesh& mesh) {
+    for (Chunk& chunk : mesh.chunks) {
+        for (Triangle& t : chunk.triangles) std::swap(t.y, t.z);
+        for (Vec3f& n : chunk.normals) n = -n;
+    }
+}
+
 }  // namespace sgm::mesh

@@ -1,5 +1,5 @@
 // Editing a mesh through OpenMesh: smoothing and decimation that keep it closed and keep its origins.
-// Enters: a Mesh. Leaves: a Mesh of one chunk. Assumes a closed manifold mesh from polygonize.
+// Enters: a Mesh. Leaves: a Mesh, of one chunk when OpenMesh made it. Assumes a closed manifold mesh from polygonize.
 #pragma once
 
 #include "modeler/core/progress.h"
@@ -14,5 +14,8 @@ Result<Mesh> smooth(const Mesh& mesh, int passes, Progress* progress);
 /// Quadric decimation to `ratio` in (0, 1] of the triangles; topology is kept and no face may turn by more than 60°, so
 /// it may stop earlier. Normals are recomputed from faces. Error::Usage for another ratio, Error::Cancelled.
 Result<Mesh> simplify(const Mesh& mesh, double ratio, Progress* progress);
+
+/// Turns the surface round: triangles are wound and normals point the other way, as for a room seen from inside.
+void turnInsideOut(Mesh& mesh);
 
 }  // namespace sgm::mesh

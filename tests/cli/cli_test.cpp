@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -451,6 +452,83 @@ TEST_F(Cli, ProxyIsASecondCoarseMesh) {
     EXPECT_LT(fs::file_size(path("p.off")), fs::file_size(path("a.off")) / 10);
     EXPECT_EQ(sgm("build examples/joints.sgm --proxy " + path("p.vdb")).code, 2);
     EXPECT_EQ(sgm("build examples/joints.sgm --proxy-tolerance 1").code, 2) << "of no proxy";
+}
+
+const char* const threeRooms = R"(start Rock -> cube size (24, 8, 12) - Air
+rule Air -> cube size (4, 3, 4) move (-8, 0, 0) + cube size (4, 3, 4) + cube size (4, 3, 4) move (8, 0, 0)
+            + cube size (6, 2.4, 2) move (-4, -.3, 0) + cube size (6, 2.4, .5) move (4, -.3, 0)
+start Void -> Air
+)";
+
+TEST_F(Cli, TheCaveReportTellsRoomsAndPassages) {
+    const Outcome run = sgm("build " + grammar(threeRooms) + " --cave --agent .5,1.8 --cell .15 --report " + path("r.json") + " --floor " + path("f.obj"));
+    ASSERT_EQ(run.code, 0) << run.out;
+    EXPECT_NE(run.out.find("too narrow"), std::string::npos) << run.out;
+    const Json cave = Json::parse(read(path("r.json")))["cave"];
+    EXPECT_EQ(cave["spaces"].size(), 1u);
+    EXPECT_EQ(cave["rooms"].size(), 3u);
+    ASSERT_EQ(cave["passages"].size(), 2u);
+    EXPECT_NE(cave["passages"][0]["passable"], cave["passages"][1]["passable"]);
+    EXPECT_NEAR(cave["narrowest_m"].get<double>(), 0.25, 0.15);
+    EXPECT_EQ(cave["walkable"]["parts"], 2);
+    EXPECT_NE(read(path("f.obj")).find("\nf "), std::string::npos);
+}
+
+TEST_F(Cli, WithoutCaveThereIsNoSurvey) {
+    ASSERT_EQ(sgm("build " + grammar(threeRooms) + " --cell .4 -q --report " + path("r.json")).code, 0);
+    EXPECT_FALSE(Json::parse(read(path("r.json"))).contains("cave"));
+}
+
+TEST_F(Cli, AHollowFacesInward) {
+    const std::string file = grammar(threeRooms);
+    ASSERT_EQ(sgm("build " + file + " --start Void --cell .3 -q -o " + path("out.obj")).code, 0);
+    ASSERT_EQ(sgm("build " + file + " --start Void --cell .3 -q --inward --cave --agent .5,1.8 --report " + path("r.json") + " -o " + path("in.obj")).code, 0);
+    const Json report = Json::parse(read(path("r.json")));
+    EXPECT_EQ(report["cave"]["rooms"].size(), 3u);
+    EXPECT_TRUE(report["cave"]["entrances"].empty());
+    // The signed volume under each file's faces.
+    const auto volume = [&](const std::string& name) {
+        std::istringstream lines(read(path(name)));
+        std::vector<std::array<double, 3>> v;
+        double sum = 0;
+        for (std::string line; std::getline(lines, line);) {
+            std::istringstream words(line);
+            std::string kind;
+            words >> kind;
+            if (kind == "v") {
+                auto& p = v.emplace_back();
+                words >> p[0] >> p[1] >> p[2];
+            } else if (kind == "f") {
+                size_t at[3];
+                std::string corner;
+                for (size_t& i : at) words >> corner, i = std::stoul(corner) - 1;
+                const auto &a = v[at[0]], &b = v[at[1]], &c = v[at[2]];
+                sum += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6;
+            }
+        }
+        return sum;
+    };
+    const double outward = volume("out.obj");
+    EXPECT_GT(outward, 100);
+    EXPECT_NEAR(volume("in.obj"), -outward, 1e-3 * outward);
+}
+
+TEST_F(Cli, AFloatingStalactiteIsReported) {
+    const std::string hanging = "start Rock -> cube size (8, 6, 8) - cube size (6, 4, 6) + cone size (1, 2, 1) turn (180deg, 0deg, 0deg) move (0, ";
+    const Outcome floats = sgm("build " + grammar(hanging + ".5, 0)\n") + " --cell .1");
+    EXPECT_EQ(floats.code, 0);
+    EXPECT_NE(floats.out.find("floats"), std::string::npos) << floats.out;
+    const Outcome attached = sgm("build " + grammar(hanging + "1.1, 0)\n") + " --cell .1");
+    EXPECT_EQ(attached.out.find("floats"), std::string::npos) << attached.out;
+}
+
+TEST_F(Cli, WrongCaveOptionsAreTwo) {
+    const std::string file = grammar(threeRooms);
+    EXPECT_EQ(sgm("build " + file + " --cave --agent tall").code, 2);
+    EXPECT_EQ(sgm("build " + file + " --cave --agent 1,1 --cell .4").code, 2);
+    EXPECT_EQ(sgm("build " + file + " --floor " + path("f.vdb")).code, 2);
+    EXPECT_EQ(sgm("build " + file + " --floor " + path("f.obj") + " --agent .3,40 --cell .4").code, 1);
+    EXPECT_FALSE(fs::exists(path("f.obj")));
 }
 
 }  // namespace

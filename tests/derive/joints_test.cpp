@@ -132,5 +132,29 @@ TEST(Bonds, AClosedJointIsCountedWhereNothingGrew) {
     EXPECT_NE(derive::toText(d, true).find("test.sgm:3:24: its joint was closed once, so nothing grew there"), std::string::npos) << derive::toText(d, true);
 }
 
+TEST(OnEach, GrowsOnEveryShapeOfTheName) {
+    const auto d = derived(R"(grammar 1
+start Row -> cube size 2 with n = 0 : Cell
+rule Cell repeat 4 -> + cube size 2 at +x with n = i : Cell
+  finally - Hole on each(Cell) with n = n move (0, 1, 0)
+rule Hole -> sphere size (1 + n)
+)");
+    std::vector<Vec3d> places;
+    for (const auto& s : d.tree.shapes)
+        if (s.op == rules::Operator::Difference) places.push_back(s.scope.centre);
+    ASSERT_EQ(places.size(), 5u);
+    for (size_t k = 0; k < 5; ++k) expectNear(places[k], {2.0 * static_cast<double>(k), 1, 0});
+    // A value passed on is the host's.
+    std::vector<double> sizes;
+    for (const auto& s : d.tree.shapes)
+        if (s.solid != derive::none && s.parent != derive::none && d.tree.labels[s.label] == "sphere") sizes.push_back(s.scope.size.x);
+    EXPECT_EQ(sizes, (std::vector<double>{1, 2, 3, 4, 5}));
+}
+
+TEST(OnEach, NothingOfTheNameIsNoError) {
+    const auto d = derived("grammar 1\nstart S -> cube - sphere on each(Knob)\nrule Knob -> cube\nstart T -> Knob\n");
+    EXPECT_EQ(d.terminals(), 1u);
+}
+
 }  // namespace
 }  // namespace sgm

@@ -46,6 +46,23 @@ TEST(Order, ConsecutiveBlendsAreOneMelt) {
     }
 }
 
+TEST(Order, AMeltedCutIsTheSharpOneFarFromItsEdge) {
+    const std::string head = "grammar 1\nstart S -> cube size 4 - cube size 2 move (0, 2, 0)";
+    const Lowered melted(head + " blend .5m\n"), sharp(head + "\n");
+    int moved = 0;
+    for (float x = -3; x < 3; x += 0.17f)
+        for (float y = -1; y < 3; y += 0.13f) {
+            const float m = melted.value({x, y, 0.1f}), s = sharp.value({x, y, 0.1f});
+            EXPECT_GE(m, s - 1e-6f);  // a melt takes the edge off
+            moved += m > s + 1e-3f;
+        }
+    EXPECT_GT(moved, 5);
+    EXPECT_GT(melted.value({1.01f, 1.98f, 0}), 0);  // the edge, in the rock by 1 cm before
+    EXPECT_LT(sharp.value({1.01f, 1.98f, 0}), 0);
+    EXPECT_EQ(melted.value({0, -1.5f, 0}), sharp.value({0, -1.5f, 0}));
+    EXPECT_EQ(melted.owner({1.0f, 1.4f, 0}).symbol, sharp.owner({1.0f, 1.4f, 0}).symbol);
+}
+
 TEST(Order, DisplacementMovesTheWholeContent) {
     const Lowered plain("grammar 1\nstart S -> (cube size 2 + sphere size 2 at +y)\n");
     const Lowered rough("grammar 1\nstart S -> (cube size 2 + sphere size 2 at +y) displace billow(.1m, 2/m)\n");
