@@ -37,7 +37,17 @@ void link(Air& air) {
     for (size_t i = 0; i < air.size(); ++i) at.setValue(coordOf(air.voxels[i]), static_cast<int32_t>(i));
     air.next.resize(air.size());
     for (size_t i = 0; i < air.size(); ++i)
-        for (size_t d = 0; d < 6; ++d) air.next[i][d] = static_cast<uint32_t>(at.getValue(coordOf(air.voxels[i]) + steps[d]));
+        for (size_t d = 0; d < 6; ++d)
+            air.next[i][d] = static_cast<uint32_t>(at.getValue(coordOf(air.voxels[i]) + steps[d]));
+}
+
+/// How far below an air voxel the rock begins, in voxels 0 … 1: from the depths of the two rock voxels below it, which
+/// no wall beside the air comes near; where the rock is too thin for that, between the voxel's clearance and the first
+/// depth.
+float depthOfFloor(float clearance, float depth, float deeper, float voxel_m) {
+    const float growth = deeper - depth;
+    if (growth > 0.3f * voxel_m) return std::clamp(1 - depth / growth, 0.0f, 1.0f);
+    return clearance / (clearance + std::max(depth, 1e-6f * voxel_m));
 }
 
 void measure(Air& air, const FloatGrid& distance, const CoordBBox& box, bool hollow) {
@@ -55,8 +65,9 @@ void measure(Air& air, const FloatGrid& distance, const CoordBBox& box, bool hol
             if (c[axis] == box.min()[axis]) air.rim[i] |= static_cast<uint8_t>(2u << 2 * axis);
         }
         if (air.next[i][3] != nowhere || (air.rim[i] & 8)) continue;
-        const float below = std::min(sign * at.getValue(c + steps[3]), -1e-6f * air.voxel_m);
-        air.floor_m[i] = air.place(i).y - air.voxel_m * own / (own - below);
+        air.floor_m[i] =
+            air.place(i).y - air.voxel_m * depthOfFloor(own, -sign * at.getValue(c + steps[3]),
+                                                        -sign * at.getValue(c + steps[3] + steps[3]), air.voxel_m);
     }
     // A distance can't grow faster than the way: takes away single voxels at the surface that the sweep left far.
     for (size_t i = 0; i < air.size(); ++i)
@@ -87,7 +98,8 @@ Result<Air> airOf(const Volume& level, bool hollow, Progress* progress) {
     const openvdb::Vec3d origin = grid.transform().indexToWorld(Coord(0, 0, 0));
     air.origin = Vec3d{origin.x(), origin.y(), origin.z()}.as<float>();
     air.voxel_m = level.voxel_m();
-    for (auto v = space->cbeginValueOn(); v; ++v) air.voxels.push_back({v.getCoord().x(), v.getCoord().y(), v.getCoord().z()});
+    for (auto v = space->cbeginValueOn(); v; ++v)
+        air.voxels.push_back({v.getCoord().x(), v.getCoord().y(), v.getCoord().z()});
     std::sort(air.voxels.begin(), air.voxels.end(),
               [](Vec3i a, Vec3i b) { return std::tie(a.x, a.z, a.y) < std::tie(b.x, b.z, b.y); });
     link(air);

@@ -56,19 +56,15 @@ Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Pr
 
 mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave) {
     const float upright = static_cast<float>(std::cos(cave.agent.slope_rad)) - 0.05f;
-    mesh::Mesh floor;
-    std::vector<uint32_t> numberOf(mesh.vertexCount(), nowhere);
     std::vector<const Vec3f*> position(mesh.vertexCount()), normal(mesh.vertexCount());
     for (const mesh::Chunk& c : mesh.chunks)
         for (size_t i = 0; i < c.positions.size(); ++i)
             position[c.firstVertex + i] = &c.positions[i], normal[c.firstVertex + i] = &c.normals[i];
-    uint32_t vertices = 0;
-    for (const mesh::Chunk& c : mesh.chunks) {
-        mesh::Chunk kept;
-        kept.block = c.block;
-        kept.firstVertex = vertices;
+    mesh::Chunk kept;
+    std::vector<uint32_t> numberOf(mesh.vertexCount(), nowhere);
+    for (const mesh::Chunk& c : mesh.chunks)
         for (size_t t = 0; t < c.triangles.size(); ++t) {
-            const mesh::Triangle& tri = c.triangles[t];
+            const mesh::Triangle tri = c.inMesh(c.triangles[t]);
             const Vec3f a = *position[tri.x], b = *position[tri.y], d = *position[tri.z];
             const Vec3f n = normalized(cross(b - a, d - a));
             if (n.y < upright || !standsAt(cave, (a + b + d) / 3.0f)) continue;
@@ -76,7 +72,7 @@ mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave) {
             for (int corner = 0; corner < 3; ++corner) {
                 uint32_t& number = numberOf[tri[corner]];
                 if (number == nowhere) {
-                    number = vertices++;
+                    number = static_cast<uint32_t>(kept.positions.size());
                     kept.positions.push_back(*position[tri[corner]]);
                     kept.normals.push_back(*normal[tri[corner]]);
                 }
@@ -85,8 +81,8 @@ mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave) {
             kept.triangles.push_back(own);
             kept.origins.push_back(c.origins[t]);
         }
-        floor.chunks.push_back(std::move(kept));
-    }
+    mesh::Mesh floor;
+    floor.chunks.push_back(std::move(kept));
     return floor;
 }
 

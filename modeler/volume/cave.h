@@ -27,7 +27,8 @@ struct Room {
     uint32_t space = 0;
 };
 
-/// The widest way between two rooms that touch. The rooms of a space and its passages make a tree: of all ways the best.
+/// The widest way between two rooms that touch. The rooms of a space and its passages make a tree: of all ways the
+/// best.
 struct Passage {
     uint32_t rooms[2] = {0, 0};
     Vec3f at;            ///< its narrowest place
@@ -38,7 +39,7 @@ struct Passage {
 /// An opening in the sides of the rock's bounding box.
 struct Entrance {
     Vec3f at;
-    uint32_t face = 0;       ///< 0 … 5: +x -x +y -y +z -z, the side with most of it
+    uint32_t face = 0;  ///< 0 … 5: +x -x +y -y +z -z, the side with most of it
     double area_m2 = 0;
     float radius_m = 0;      ///< of the largest ball in the opening
     float bottleneck_m = 0;  ///< narrowest place on the best way from here to the largest room of its space
@@ -75,20 +76,21 @@ struct Cave {
     } headroom;              ///< over floors not too steep, under a roof, where the agent's ball fits
     double walkable_m2 = 0;  ///< floor on which the agent can stand
     uint32_t walkParts = 0;  ///< parts of that floor with no walk between them
-    double reachable_m2 = 0; ///< of it, what can be walked to from an entrance; from the largest part where none has floor
-    double longestPath_m = 0;  ///< longest shortest way of the agent's ball through the air, along the grid
-    double longestWalk_m = 0;  ///< longest shortest walk on the reachable floor
+    double reachable_m2 =
+        0;  ///< of it, what can be walked to from an entrance; from the largest part where none has floor
+    double longestPath_m = 0;         ///< longest shortest way of the agent's ball through the air, along the grid
+    double longestWalk_m = 0;         ///< longest shortest walk on the reachable floor
     std::vector<FloorCell> walkable;  ///< ordered by (x, z, y)
 
-    /// Narrowest place on the best ways between the rooms and entrances of the largest space; infinite with one room and
-    /// no entrance.
+    /// Narrowest place on the best ways between the rooms and entrances of the largest space; infinite with one room
+    /// and no entrance.
     float narrowest_m() const;
 };
 
 /// Surveys the air; `hollow` as in `airOf`. Error::Usage for an agent that can't be, Error::Cancelled.
 Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Progress* progress);
 
-/// The triangles of `mesh` that are floor the agent can stand on: a sheet with borders. Chunks without any stay, empty.
+/// The triangles of `mesh` that are floor the agent can stand on: a sheet with borders, in one chunk.
 mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave);
 
 }  // namespace sgm::volume

@@ -455,7 +455,7 @@ TEST_F(Cli, ProxyIsASecondCoarseMesh) {
 }
 
 const char* const threeRooms = R"(start Rock -> cube size (24, 8, 12) - Air
-rule Air -> cube size (4, 3, 4) move (-8, 0, 0) + cube size (4, 3, 4) + cube size (4, 3, 4) move (8, 0, 0)
+rule Air -> cube size (4, 3, 4) + cube size (4, 3, 4) move (-8, 0, 0) + cube size (4, 3, 4) move (8, 0, 0)
             + cube size (6, 2.4, 2) move (-4, -.3, 0) + cube size (6, 2.4, .5) move (4, -.3, 0)
 start Void -> Air
 )";
@@ -481,8 +481,8 @@ TEST_F(Cli, WithoutCaveThereIsNoSurvey) {
 
 TEST_F(Cli, AHollowFacesInward) {
     const std::string file = grammar(threeRooms);
-    ASSERT_EQ(sgm("build " + file + " --start Void --cell .3 -q -o " + path("out.obj")).code, 0);
-    ASSERT_EQ(sgm("build " + file + " --start Void --cell .3 -q --inward --cave --agent .5,1.8 --report " + path("r.json") + " -o " + path("in.obj")).code, 0);
+    ASSERT_EQ(sgm("build " + file + " --start Void --cell .2 -q -o " + path("out.obj")).code, 0);
+    ASSERT_EQ(sgm("build " + file + " --start Void --cell .2 -q --inward --cave --agent .5,1.8 --report " + path("r.json") + " -o " + path("in.obj")).code, 0);
     const Json report = Json::parse(read(path("r.json")));
     EXPECT_EQ(report["cave"]["rooms"].size(), 3u);
     EXPECT_TRUE(report["cave"]["entrances"].empty());

@@ -148,6 +148,7 @@ rule Hole -> sphere size (1 + n)
     std::vector<double> sizes;
     for (const auto& s : d.tree.shapes)
         if (s.solid != derive::none && s.parent != derive::none && d.tree.labels[s.label] == "sphere") sizes.push_back(s.scope.size.x);
+    std::sort(sizes.begin(), sizes.end());
     EXPECT_EQ(sizes, (std::vector<double>{1, 2, 3, 4, 5}));
 }
 
