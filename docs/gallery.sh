@@ -32,13 +32,13 @@ inside grotto examples/grotto.sgm --set cut=5m
 
 caves=examples/caves
 draw regular   $caves/regular.sgm --camera 15,28,27,0,-2,0
-draw irregular $caves/irregular.sgm --seed 4 --camera 26,14,56,2,-2,0
+draw irregular $caves/irregular.sgm --seed 3 --camera 26,14,56,2,-2,0
 draw branching $caves/branching.sgm --camera 24,50,44,0,-2,1
 draw halls     $caves/halls.sgm --camera 24,58,50,0,-2,1
-draw dripstone $caves/dripstone.sgm --camera 14,9,52,1,-1,0
-draw mine      $caves/mine.sgm --camera 24,50,44,0,-2,1
+draw dripstone $caves/dripstone.sgm --camera 10,6,66,1,-1,0
+draw mine      $caves/mine.sgm --camera 40,62,56,2,-4,2
 inside regular   $caves/regular.sgm --set open=none
-inside irregular $caves/irregular.sgm --seed 4 --set open=none
+inside irregular $caves/irregular.sgm --seed 3 --set open=none
 inside branching $caves/branching.sgm --set open=none
 inside halls     $caves/halls.sgm --set open=none
 inside dripstone $caves/dripstone.sgm --set open=none
