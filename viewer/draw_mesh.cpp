@@ -95,7 +95,7 @@ Result<MeshPicture> upload(const mesh::Mesh& mesh, const Provenance& provenance)
     picture.triangles = TriangleBuffers::of(positions, normals, triangles);
     picture.triangleCount = triangles.size();
     picture.materialOfTriangle = TexelBuffer::of(materials, 1);
-    picture.materials = uploadMaterials(provenance);
+    picture.materials = uploadMaterials(provenance.materials);
     struct Wanted {
         Program& program;
         std::string_view vertex, fragment;

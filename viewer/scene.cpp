@@ -60,9 +60,9 @@ void setScene(const Program& program, const Box3f& bounds, const PictureOptions&
     program.set("lampReach", static_cast<float>(options.camera.lamp_m));
 }
 
-Buffer uploadMaterials(const Provenance& provenance) {
+Buffer uploadMaterials(const std::vector<Material>& materials) {
     std::vector<std::array<float, 4>> rows;
-    for (const Material& m : provenance.materials) {
+    for (const Material& m : materials) {
         rows.push_back({m.color.x, m.color.y, m.color.z, m.roughness});
         rows.push_back({m.metallic, 0, 0, 0});
     }

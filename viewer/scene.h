@@ -21,7 +21,7 @@ Vec3f sunDirection();
 void setScene(const Program& program, const Box3f& bounds, const PictureOptions& options);
 
 /// Two rows of four floats a material: colour and roughness; metallic.
-Buffer uploadMaterials(const Provenance& provenance);
+Buffer uploadMaterials(const std::vector<Material>& materials);
 
 /// Error::Input when a picture of this size, with these samples and bounds, can't be drawn.
 Status checkPicture(const Box3f& bounds, const PictureOptions& options);

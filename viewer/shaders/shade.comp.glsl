@@ -5,6 +5,7 @@ layout(std430, binding = 2) readonly buffer Hits { vec4 hits[]; };
 layout(std430, binding = 3) readonly buffer MaterialOfJob { uint materialOfJob[]; };
 layout(std430, binding = 4) readonly buffer Materials { vec4 materials[]; };  // two a material: colour, roughness; metallic
 layout(std430, binding = 5) writeonly buffer Colors { vec4 colors[]; };       // display light, 0 … 1, linear
+layout(std430, binding = 6) writeonly buffer Surfaces { vec4 surfaces[]; };   // normal, share of open sky
 uniform uint firstJob, jobCount;
 
 /// Tetrahedral differences; the cell's tape is exact a little beyond the cell.
@@ -82,6 +83,7 @@ float daylightAt(vec3 p, vec3 normal) {
 
 vec3 colorOf(uint job) {
     vec4 hit = hits[job];
+    surfaces[job] = vec4(0.0);
     if (hit.w == hitSky) return skyColor(hit.xyz);
     vec3 toEye = normalize(eye - hit.xyz);
     float distance = length(eye - hit.xyz);
@@ -91,6 +93,7 @@ vec3 colorOf(uint job) {
     float sunlight = 0.0;
     if ((lampReach == 0.0 || side > 0.0) && dot(normal, sunDirection) > 0.0) sunlight = sunlightAt(start);
     float openness = opennessAt(hit.xyz, normal);
+    surfaces[job] = vec4(normal, openness);
     if (hit.w == hitGround) return shadeGround(hit.xyz, toEye, distance, sunlight, openness);
     uint m = materialOfJob[job] * 2u;
     Surface s = Surface(hit.xyz, normal, materials[m].rgb, materials[m].a, materials[m + 1u].x);

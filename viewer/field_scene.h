@@ -1,0 +1,88 @@
+// A field on the GPU, ready for rays: one fixed shader interprets the shortened tapes of cells (viewer/cells.h), so that
+// a new field costs an upload and no compile.
+// Enters: a tape, bounds and materials. Leaves: what each ray met and its light. Assumes a current GL 4.3 context for
+// all but `prepareField`.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "modeler/core/progress.h"
+#include "modeler/eval/glsl.h"
+#include "viewer/cells.h"
+#include "viewer/gpu.h"
+#include "viewer/pixels.h"
+
+namespace sgm::viewer {
+
+/// Everything about a field that needs no GPU, so that any thread can make it.
+struct PreparedField {
+    eval::Tape tape;
+    Box3f bounds;                      ///< of the solid, metres
+    Box3f box;                         ///< what the cells cover
+    CellTree tree;
+    std::vector<uint32_t> words, nodes;  ///< the cells' tapes and the tree, as the shaders read them
+    uint32_t registers = 0;              ///< of the longest tape
+    std::vector<Material> materials;
+    std::vector<uint32_t> materialOf;  ///< by OriginId
+};
+
+/// Cuts space into cells. Error::Cancelled when `progress` says so.
+Result<PreparedField> prepareField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance, int threads,
+                                   Progress* progress);
+
+/// The two shaders, kept while they know every op of the fields that come.
+struct FieldPrograms {
+    Program trace, shade;
+    uint32_t registers = 0;
+    eval::OpSet ops;
+
+    /// True when the field can be drawn without a compile.
+    bool cover(const PreparedField& field) const;
+    /// Compiles for this field and those covered so far; nothing when they cover it.
+    Status extendTo(const PreparedField& field);
+};
+
+enum class HitKind { Sky, Object, Ground };
+
+/// What a batch of rays met, an entry a job.
+struct Rays {
+    std::vector<std::array<float, 4>> hits;      ///< position in metres (for the sky: direction), HitKind
+    std::vector<std::array<float, 4>> surfaces;  ///< unit normal, share of open sky 0 … 1; 0 for the sky
+    std::vector<std::array<float, 4>> colors;    ///< display light 0 … 1, linear, and 1
+    std::vector<OriginId> origins;               ///< of objects, else 0
+
+    HitKind kind(size_t i) const { return static_cast<HitKind>(static_cast<int>(hits[i][3])); }
+    Vec3f position(size_t i) const { return {hits[i][0], hits[i][1], hits[i][2]}; }
+};
+
+/// A prepared field in GPU memory.
+class FieldScene {
+public:
+    /// `programs` must cover the field and outlive the scene.
+    FieldScene(std::shared_ptr<const PreparedField> field, const FieldPrograms& programs, int threads);
+    /// Sets camera, picture size and ground.
+    void look(const PictureOptions& options);
+    /// Traces and lights up to 2¹⁸ jobs of the picture last looked at, in pieces of some 15 ms.
+    Result<Rays> draw(std::span<const Job> jobs, Progress* progress);
+    const PreparedField& field() const { return *field_; }
+
+private:
+    Status runInPieces(const Program& program, size_t count, size_t& piece, Progress* progress);
+    std::vector<OriginId> originsOf(const Rays& rays) const;
+
+    std::shared_ptr<const PreparedField> field_;
+    const FieldPrograms* programs_;
+    TexelBuffer words_, nodes_;
+    Buffer materials_;
+    int threads_;
+    size_t tracePiece_ = 2048, shadePiece_ = 2048;  ///< jobs a dispatch, by the time the last ones took
+};
+
+/// The most jobs of one FieldScene::draw.
+inline constexpr size_t mostJobs = size_t(1) << 18;
+
+}  // namespace sgm::viewer
