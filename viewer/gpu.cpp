@@ -90,6 +90,17 @@ Framebuffer makeFramebuffer() {
     return Framebuffer(id);
 }
 
+/// Sampled linearly, its border repeated.
+Texture makeTexture(GLenum format, int width, int height) {
+    GLuint id = 0;
+    glGenTextures(1, &id);
+    glBindTexture(GL_TEXTURE_2D, id);
+    glTexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+    return Texture(id);
+}
+
 }  // namespace
 
 namespace detail {
@@ -192,9 +203,9 @@ Result<ColorTarget> ColorTarget::create(int width, int height, int samples) {
     target.height = height;
     target.color = makeRenderbuffer(GL_RGBA16F, width, height, samples);
     target.depth = makeRenderbuffer(GL_DEPTH_COMPONENT32F, width, height, samples);
-    target.resolvedColor = makeRenderbuffer(GL_RGBA16F, width, height, 0);
-    target.resolved = makeFramebuffer();
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target.resolvedColor.id());
+    target.resolved = makeTexture(GL_RGBA16F, width, height);
+    target.resolvedFramebuffer = makeFramebuffer();
+    glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, target.resolved.id(), 0);
     target.framebuffer = makeFramebuffer();
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target.color.id());
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target.depth.id());
@@ -209,12 +220,16 @@ void ColorTarget::bind() const {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-std::vector<float> ColorTarget::read() const {
-    std::vector<float> pixels(size_t(width) * size_t(height) * 4);
+void ColorTarget::resolve() const {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer.id());
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved.id());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolvedFramebuffer.id());
     glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved.id());
+}
+
+std::vector<float> ColorTarget::read() const {
+    resolve();
+    std::vector<float> pixels(size_t(width) * size_t(height) * 4);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, resolvedFramebuffer.id());
     glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, pixels.data());
     return pixels;
 }
@@ -252,19 +267,22 @@ void MapStack::bindTexture(uint32_t unit) const {
 }
 
 TriangleBuffers TriangleBuffers::of(std::span<const Vec3f> positions, std::span<const Vec3f> normals,
-                                    std::span<const Vec3<uint32_t>> triangles) {
+                                    std::span<const float> numbers, std::span<const Vec3<uint32_t>> triangles) {
     TriangleBuffers buffers;
     buffers.positions_ = Buffer::of(positions);
     buffers.normals_ = Buffer::of(normals);
+    buffers.numbers_ = Buffer::of(numbers);
     buffers.indices_ = Buffer::of(triangles);
     GLuint id = 0;
     glGenVertexArrays(1, &id);
     buffers.array_ = VertexArray(id);
     glBindVertexArray(id);
-    for (GLuint attribute = 0; attribute < 2; ++attribute) {
-        glBindBuffer(GL_ARRAY_BUFFER, attribute == 0 ? buffers.positions_.id() : buffers.normals_.id());
-        glVertexAttribPointer(attribute, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
-        glEnableVertexAttribArray(attribute);
+    GLuint attribute = 0;
+    for (const auto& [buffer, components] :
+         {std::pair{&buffers.positions_, 3}, std::pair{&buffers.normals_, 3}, std::pair{&buffers.numbers_, 1}}) {
+        glBindBuffer(GL_ARRAY_BUFFER, buffer->id());
+        glVertexAttribPointer(attribute, components, GL_FLOAT, GL_FALSE, 0, nullptr);
+        glEnableVertexAttribArray(attribute++);
     }
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.indices_.id());
     return buffers;
@@ -287,5 +305,18 @@ void ScreenTriangle::draw() const {
 }
 
 void setDepthTest(bool on) { on ? glEnable(GL_DEPTH_TEST) : glDisable(GL_DEPTH_TEST); }
+
+WireDrawing::WireDrawing() {
+    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    glEnable(GL_POLYGON_OFFSET_LINE);
+    glPolygonOffset(-1, -1);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+}
+WireDrawing::~WireDrawing() {
+    glDisable(GL_BLEND);
+    glDisable(GL_POLYGON_OFFSET_LINE);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
 
 }  // namespace sgm::viewer

@@ -132,14 +132,16 @@ void finish();
 
 /// A colour target with depth and several samples a pixel, resolved when it is read.
 struct ColorTarget {
-    Framebuffer framebuffer, resolved;
-    Renderbuffer color, depth, resolvedColor;
+    Framebuffer framebuffer, resolvedFramebuffer;
+    Renderbuffer color, depth;
+    Texture resolved;  ///< the mean of each pixel's samples, after `resolve`
     int width = 0, height = 0;
 
     /// `samples` is lowered to what the driver offers. Error::Internal when it refuses the format.
     static Result<ColorTarget> create(int width, int height, int samples);
     /// Draws go here until the next bind.
     void bind() const;
+    void resolve() const;
     /// The mean of each pixel's samples as RGBA, bottom row first.
     std::vector<float> read() const;
 };
@@ -159,16 +161,16 @@ struct MapStack {
     void bindTexture(uint32_t unit) const;
 };
 
-/// Positions and normals with indices; `draw` sends triangles [first, first + count).
+/// Positions, normals and a number a vertex with indices; `draw` sends triangles [first, first + count).
 class TriangleBuffers {
 public:
     static TriangleBuffers of(std::span<const Vec3f> positions, std::span<const Vec3f> normals,
-                              std::span<const Vec3<uint32_t>> triangles);
+                              std::span<const float> numbers, std::span<const Vec3<uint32_t>> triangles);
     void draw(size_t first, size_t count) const;
 
 private:
     VertexArray array_;
-    Buffer positions_, normals_, indices_;
+    Buffer positions_, normals_, numbers_, indices_;
 };
 
 /// One triangle that covers the target; its vertices are made in the shader.
@@ -183,5 +185,14 @@ private:
 
 /// Whether nearer fragments hide farther ones.
 void setDepthTest(bool on);
+
+/// While it lives, triangles are drawn as their edges, blended over what is there and a little nearer to the eye.
+class WireDrawing {
+public:
+    WireDrawing();
+    ~WireDrawing();
+    WireDrawing(const WireDrawing&) = delete;
+    WireDrawing& operator=(const WireDrawing&) = delete;
+};
 
 }  // namespace sgm::viewer

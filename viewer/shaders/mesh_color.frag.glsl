@@ -1,18 +1,55 @@
-// A triangle of the mesh: its origin's material under the scene's light. Seen from behind it turns its normal to the eye.
+// A triangle of the mesh: its origin's material under the scene's light, or a colour that tells something of it. Seen
+// from behind it turns its normal to the eye; behind a section it is the cut.
 in vec3 worldPosition, worldNormal;
+in float meanCurvature;
 out vec4 color;
 layout(std430, binding = 4) readonly buffer Materials { vec4 materials[]; };  // two a material: colour, roughness; metallic
-uniform usamplerBuffer materialOfTriangle;
+uniform usamplerBuffer ownerOfTriangle;  // material, rule, component
 uniform int firstTriangle;
+uniform int meshLook;  // as viewer::MeshLook
+uniform vec3 sectionNormal;  // zero without a section
+uniform float sectionOffset;
+uniform int wire;
+const int lookMaterials = 0, lookNormals = 1, lookCurvature = 2, lookOrigin = 3;
 
-void main() {
-    vec3 toEye = normalize(eye - worldPosition);
-    float distance = length(eye - worldPosition);
-    vec3 normal = normalize(worldNormal) * (gl_FrontFacing ? 1.0 : -1.0);
-    int m = int(texelFetch(materialOfTriangle, firstTriangle + gl_PrimitiveID).x) * 2;
+/// Colours that differ much from one number to the next: hues a golden ratio apart.
+vec3 distinct(uint n) {
+    vec3 hue = clamp(abs(mod(6.0 * fract(0.08 + 0.61803399 * float(n)) + vec3(0.0, 4.0, 2.0), 6.0) - 3.0) - 1.0, 0.0, 1.0);
+    return mix(vec3(0.62), hue, 0.62) * (n % 3u == 1u ? 0.62 : 0.9);
+}
+
+/// Hollow blue, flat grey, bulging red.
+vec3 curvatureColor(float k) {
+    float s = k / (abs(k) + 12.0 / sceneSize);
+    return mix(vec3(0.62), s > 0.0 ? vec3(0.80, 0.10, 0.05) : vec3(0.05, 0.20, 0.75), abs(s));
+}
+
+/// Plain light from the eye, for colours that tell something.
+vec3 told(vec3 told, vec3 normal, vec3 toEye) { return told * (0.25 + 0.75 * max(dot(normal, toEye), 0.0)); }
+
+vec3 materialLight(int triangle, vec3 normal, vec3 toEye) {
+    int m = int(texelFetch(ownerOfTriangle, triangle).x) * 2;
     Surface s = Surface(worldPosition, normal, materials[m].rgb, materials[m].a, materials[m + 1].x);
     vec3 start = worldPosition + normal * (1.5e-3 * mapSpan);
     float sunlight = lampReach == 0.0 && dot(normal, sunDirection) > 0.0 ? sunlightAt(start) : 0.0;
     vec3 light = shade(s, toEye, sunlight, opennessAt(start, normal), lampReach == 0.0 ? 1.0 : 0.12);
-    color = vec4(tonemap(hazed(light, distance, skyColor(-toEye))), 1.0);
+    return tonemap(hazed(light, length(eye - worldPosition), skyColor(-toEye)));
+}
+
+void main() {
+    if (dot(sectionNormal, worldPosition) > sectionOffset && sectionNormal != vec3(0.0)) discard;
+    if (wire != 0) {
+        color = vec4(0.01, 0.015, 0.02, 0.45);
+        return;
+    }
+    vec3 toEye = normalize(eye - worldPosition);
+    vec3 normal = normalize(worldNormal) * (gl_FrontFacing ? 1.0 : -1.0);
+    int triangle = 3 * (firstTriangle + gl_PrimitiveID);
+    vec3 display;
+    if (!gl_FrontFacing && sectionNormal != vec3(0.0)) display = vec3(0.55, 0.16, 0.09);
+    else if (meshLook == lookMaterials) display = materialLight(triangle, normal, toEye);
+    else if (meshLook == lookNormals) display = 0.5 + 0.5 * normal;
+    else if (meshLook == lookCurvature) display = told(curvatureColor(meanCurvature), normal, toEye);
+    else display = told(distinct(texelFetch(ownerOfTriangle, triangle + (meshLook == lookOrigin ? 1 : 2)).x), normal, toEye);
+    color = vec4(display, 1.0);
 }

@@ -1,0 +1,231 @@
+// The mesh by rasterisation, under the same light as the field: soft sun shadow from one depth map, sky visibility from
+// many (a depth map a direction). Drawn in batches of triangles, so that no draw takes long.
+#include "viewer/mesh_scene.h"
+
+#include <cmath>
+#include <map>
+
+#include "modeler/mesh/components.h"
+#include "viewer/scene.h"
+#include "viewer/shader_text.h"
+
+namespace sgm::viewer {
+namespace {
+
+constexpr size_t batchTriangles = 1u << 17;  // a draw
+constexpr int sunMapEdge = 2048, skyMapEdge = 256;
+constexpr size_t mostSkyMaps = 40;  // as in visibility.glsl
+
+/// Metres across a map that takes in all of the object from any side.
+double mapSpan(const Box3f& bounds) { return 1.02 * length(bounds.size().as<double>()); }
+
+/// Four rows as a matrix by columns.
+Matrix4 matrixOf(const std::array<std::array<double, 4>, 4>& rows) {
+    Matrix4 matrix;
+    for (size_t r = 0; r < 4; ++r)
+        for (size_t c = 0; c < 4; ++c) matrix[c * 4 + r] = static_cast<float>(rows[r][c]);
+    return matrix;
+}
+
+/// Looks along −`towardsLight` at a ball of diameter `span`: all of it maps to lo … hi in the three components.
+Matrix4 lightMatrix(Vec3d towardsLight, Vec3d centre, double span, double lo, double hi) {
+    const Vec3d right =
+        normalized(cross(std::abs(towardsLight.y) > 0.99 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}, towardsLight));
+    const Vec3d up = cross(towardsLight, right);
+    const double scale = (hi - lo) / span, middle = (hi + lo) / 2;
+    const auto row = [&](Vec3d axis) {
+        const Vec3d a = axis * scale;
+        return std::array<double, 4>{a.x, a.y, a.z, middle - dot(a, centre)};
+    };
+    return matrixOf({row(right), row(up), row(-towardsLight), {0, 0, 0, 1}});
+}
+
+/// Directions spread evenly over the sphere (Fibonacci's lattice).
+Vec3d skyDirection(size_t i, size_t count) {
+    const double y = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(count), r = std::sqrt(1 - y * y);
+    const double angle = static_cast<double>(i) * 2.39996322972865332;
+    return {r * std::cos(angle), y, r * std::sin(angle)};
+}
+
+/// Clip space of one tile of the picture: x0, y0 its lower left pixel from the bottom left.
+Matrix4 tileMatrix(const View& view, const PictureOptions& options, double near, double far, int x0, int y0, int width,
+                   int height) {
+    const double right2 = dot(view.right, view.right), up2 = dot(view.up, view.up);
+    const Vec3d x = view.right / right2, y = view.up / up2, z = view.forward;
+    // Picture coordinates −1 … 1 become the tile's by a scale and a shift, before the division by depth.
+    const double sx = static_cast<double>(options.width) / width, sy = static_cast<double>(options.height) / height;
+    const double tx = sx - 1 - 2.0 * x0 / width, ty = sy - 1 - 2.0 * y0 / height;
+    const Vec3d cx = x * sx + z * tx, cy = y * sy + z * ty, cz = z * ((far + near) / (far - near));
+    const auto row = [&](Vec3d a, double w) { return std::array<double, 4>{a.x, a.y, a.z, w - dot(a, view.eye)}; };
+    return matrixOf({row(cx, 0), row(cy, 0), row(cz, -2 * far * near / (far - near)), row(z, 0)});
+}
+
+/// Mean over a vertex's edges of the normal curvature along them: (n_j − n_i)·(p_j − p_i) / |p_j − p_i|².
+std::vector<float> curvaturesOf(const PreparedMesh& mesh) {
+    std::vector<float> sums(mesh.positions.size(), 0.0f), counts(mesh.positions.size(), 0.0f);
+    for (const Vec3<uint32_t>& t : mesh.triangles)
+        for (int side = 0; side < 3; ++side) {
+            const uint32_t a = t[side], b = t[(side + 1) % 3];
+            const Vec3f along = mesh.positions[b] - mesh.positions[a];
+            const float k = dot(mesh.normals[b] - mesh.normals[a], along) / std::max(dot(along, along), 1e-20f);
+            for (const uint32_t v : {a, b}) {
+                sums[v] += k;
+                counts[v] += 1;
+            }
+        }
+    for (size_t v = 0; v < sums.size(); ++v) sums[v] /= std::max(counts[v], 1.0f);
+    return sums;
+}
+
+/// Numbers the connected components in the order of their first triangles.
+void findComponents(PreparedMesh& mesh) {
+    mesh::Components groups(mesh.positions.size());
+    for (const Vec3<uint32_t>& t : mesh.triangles) {
+        groups.join(t.x, t.y);
+        groups.join(t.y, t.z);
+    }
+    std::map<uint32_t, uint32_t> numbers;
+    for (size_t i = 0; i < mesh.triangles.size(); ++i)
+        mesh.owners[i].component =
+            numbers.emplace(groups.find(mesh.triangles[i].x), static_cast<uint32_t>(numbers.size())).first->second;
+    mesh.components = static_cast<uint32_t>(numbers.size());
+}
+
+/// By OriginId: the rule that made it, numbered in the order of the parts.
+std::vector<uint32_t> rulesOf(const Provenance& provenance) {
+    std::map<std::string, uint32_t> numbers;
+    std::vector<uint32_t> rules;
+    for (const Part& part : provenance.parts)
+        rules.push_back(numbers.emplace(part.rule, static_cast<uint32_t>(numbers.size())).first->second);
+    return rules;
+}
+
+}  // namespace
+
+Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& provenance) {
+    PreparedMesh prepared;
+    const std::vector<uint32_t> rules = rulesOf(provenance);
+    for (const mesh::Chunk& chunk : mesh.chunks) {
+        prepared.positions.insert(prepared.positions.end(), chunk.positions.begin(), chunk.positions.end());
+        prepared.normals.insert(prepared.normals.end(), chunk.normals.begin(), chunk.normals.end());
+        for (const mesh::Triangle& t : chunk.triangles) prepared.triangles.push_back(chunk.inMesh(t));
+        for (const OriginId origin : chunk.origins) {
+            const OriginId part = origin < provenance.parts.size() ? origin : 0;
+            prepared.owners.push_back({provenance.parts[part].material, rules[part], 0});
+        }
+    }
+    if (prepared.normals.size() != prepared.positions.size() || prepared.owners.size() != prepared.triangles.size())
+        return Error{Error::Kind::Internal, "the mesh has no normal for every vertex or no origin for every triangle"};
+    prepared.bounds = mesh.bounds();
+    prepared.materials = provenance.materials;
+    prepared.curvatures = curvaturesOf(prepared);
+    findComponents(prepared);
+    return prepared;
+}
+
+Result<MeshScene> MeshScene::create(const PreparedMesh& mesh) {
+    static_assert(sizeof(PreparedMesh::Owner) == 3 * sizeof(uint32_t));
+    MeshScene scene;
+    scene.bounds_ = mesh.bounds;
+    scene.triangles_ = TriangleBuffers::of(mesh.positions, mesh.normals, mesh.curvatures, mesh.triangles);
+    scene.triangleCount_ = mesh.triangles.size();
+    const auto* words = reinterpret_cast<const uint32_t*>(mesh.owners.data());
+    scene.owners_ = TexelBuffer::of({words, mesh.owners.size() * 3}, 1);
+    scene.materials_ = uploadMaterials(mesh.materials);
+    struct Wanted {
+        Program& program;
+        std::string_view vertex, fragment;
+    };
+    for (const Wanted& wanted :
+         {Wanted{scene.depth_, "mesh", "depth"}, Wanted{scene.blur_, "screen", "blur_depth"},
+          Wanted{scene.color_, "mesh", "mesh_color"}, Wanted{scene.backdrop_, "screen", "backdrop"}}) {
+        Result<Program> made = Program::draw(shaderText(wanted.vertex), shaderText(wanted.fragment));
+        if (!made) return made.error();
+        wanted.program = std::move(*made);
+    }
+    return scene;
+}
+
+/// All triangles, in batches.
+Status MeshScene::drawTriangles(const Program& program, Progress* progress) const {
+    program.use();
+    for (size_t first = 0; first < triangleCount_; first += batchTriangles) {
+        if (cancelled(progress)) return cancelledError();
+        program.set("firstTriangle", static_cast<int>(first));
+        triangles_.draw(first, std::min(batchTriangles, triangleCount_ - first));
+        finish();
+        tick(progress);
+    }
+    return Done{};
+}
+
+Status MeshScene::drawMap(const MapStack& map, Vec3d towardsLight, Progress* progress) const {
+    setDepthTest(true);
+    map.bindCleared(0);
+    depth_.set("clipFromWorld", lightMatrix(towardsLight, bounds_.centre().as<double>(), mapSpan(bounds_), -1, 1));
+    return drawTriangles(depth_, progress);
+}
+
+Status MeshScene::light(const PictureOptions& options, Progress* progress) {
+    const Vec3d centre = bounds_.centre().as<double>(), sun = sunDirection().as<double>();
+    const double span = mapSpan(bounds_);
+    // Inside a hollow no sky is seen: the lamp does it alone.
+    const bool lamp = options.camera.lamp_m > 0;
+    const size_t skyCount =
+        lamp ? 0 : std::clamp<size_t>((size_t(24) << 20) / std::max<size_t>(triangleCount_, 1), 12, mostSkyMaps);
+    if (progress) progress->begin("light", (skyCount + 1) * (triangleCount_ / batchTriangles + 1));
+    sunMap_ = MapStack::create(MapStack::Kind::Depth, sunMapEdge, 1);
+    skyMaps_ = MapStack::create(MapStack::Kind::Number, skyMapEdge, std::max(1, static_cast<int>(skyCount)));
+    const MapStack skyDepth = MapStack::create(MapStack::Kind::Depth, skyMapEdge, 1);
+    if (Status s = drawMap(sunMap_, sun, progress); !s) return s;
+    const ScreenTriangle screen;
+    std::vector<Matrix4> matrices(mostSkyMaps, Matrix4{});
+    for (size_t i = 0; i < skyCount; ++i) {
+        if (Status s = drawMap(skyDepth, skyDirection(i, skyCount), progress); !s) return s;
+        setDepthTest(false);
+        skyMaps_.bindCleared(static_cast<int>(i));
+        skyDepth.bindTexture(0);
+        blur_.use();
+        screen.draw();
+        matrices[i] = lightMatrix(skyDirection(i, skyCount), centre, span, 0, 1);
+    }
+    for (const Program* program : {&color_, &backdrop_}) {
+        program->set("ownerOfTriangle", 0);
+        program->set("sunMap", 1);
+        program->set("skyMaps", 2);
+        program->set("sunFromWorld", lightMatrix(sun, centre, span, 0, 1));
+        program->set("skyFromWorld", std::span<const Matrix4>(matrices));
+        program->set("skyCount", static_cast<int>(skyCount));
+        program->set("mapSpan", static_cast<float>(span));
+    }
+    return Done{};
+}
+
+Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureOptions& options, const MeshStyle& style,
+                       Progress* progress) const {
+    const View view = viewOf(options.camera, options.width, options.height);
+    const double size = length(bounds_.size().as<double>()), away = length(bounds_.centre().as<double>() - view.eye);
+    const double near = std::max(away - size / 2, 1e-3 * size), far = near + 2 * size + away;
+    for (const Program* program : {&color_, &backdrop_}) setScene(*program, bounds_, options);
+    owners_.bind(0);
+    sunMap_.bindTexture(1);
+    skyMaps_.bindTexture(2);
+    materials_.bindStorage(4);
+    target.bind();
+    setDepthTest(false);
+    backdrop_.use();
+    backdrop_.set("tileCorner", Vec3f{static_cast<float>(x0), static_cast<float>(y0), 0});
+    ScreenTriangle().draw();
+    setDepthTest(true);
+    color_.set("clipFromWorld", tileMatrix(view, options, near, far, x0, y0, target.width, target.height));
+    color_.set("meshLook", static_cast<int>(style.look));
+    color_.set("sectionNormal", style.section ? style.section->normal : Vec3f{});
+    color_.set("sectionOffset", style.section ? style.section->offset : 0.0f);
+    color_.set("wire", 0);
+    if (Status s = drawTriangles(color_, progress); !s || !style.wireframe) return s;
+    color_.set("wire", 1);
+    const WireDrawing wires;
+    return drawTriangles(color_, progress);
+}
+
+}  // namespace sgm::viewer

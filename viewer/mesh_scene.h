@@ -1,0 +1,71 @@
+// A mesh on the GPU under the field's light: soft sun shadow from one depth map, sky visibility from many.
+// Enters: a mesh and whose its triangles are. Leaves: draws into a target. Assumes a current GL 4.3 context for all but
+// `prepareMesh`, and objects of at most 2³² triangles.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "viewer/gpu.h"
+#include "viewer/offscreen.h"
+
+namespace sgm::viewer {
+
+/// What the mesh's colour says.
+enum class MeshLook { Materials, Normals, Curvature, Origin, Components };
+
+/// Everything on the side of a plane that its normal points to is cut away.
+struct Section {
+    Vec3f normal{1, 0, 0};  ///< unit
+    float offset = 0;       ///< metres along the normal from the origin
+};
+
+struct MeshStyle {
+    MeshLook look = MeshLook::Materials;
+    bool wireframe = false;
+    std::optional<Section> section;
+};
+
+/// Everything about a mesh that needs no GPU, so that any thread can make it.
+struct PreparedMesh {
+    /// Whose a triangle is: index of its material, of its rule among all rules, of its connected component.
+    struct Owner {
+        uint32_t material, rule, component;
+    };
+    std::vector<Vec3f> positions, normals;
+    std::vector<float> curvatures;  ///< mean curvature at vertices, 1/m, positive on a ball
+    std::vector<Vec3<uint32_t>> triangles;
+    std::vector<Owner> owners;  ///< by triangle
+    std::vector<Material> materials;
+    Box3f bounds;
+    uint32_t components = 0;
+};
+/// Error::Internal when a vertex lacks its normal or a triangle its origin.
+Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& provenance);
+
+/// A prepared mesh in GPU memory.
+class MeshScene {
+public:
+    static Result<MeshScene> create(const PreparedMesh& mesh);
+    /// Draws the maps of shadow and sky: once a mesh, and again when the ground or the lamp come or go.
+    Status light(const PictureOptions& options, Progress* progress);
+    /// The part of the picture whose lower left pixel, from the bottom left, is (x0, y0), as large as `target`.
+    Status draw(const ColorTarget& target, int x0, int y0, const PictureOptions& options, const MeshStyle& style,
+                Progress* progress) const;
+    size_t triangleCount() const { return triangleCount_; }
+    const Box3f& bounds() const { return bounds_; }
+
+private:
+    Status drawTriangles(const Program& program, Progress* progress) const;
+    Status drawMap(const MapStack& map, Vec3d towardsLight, Progress* progress) const;
+
+    Box3f bounds_;
+    TriangleBuffers triangles_;
+    size_t triangleCount_ = 0;
+    TexelBuffer owners_;
+    Buffer materials_;
+    Program depth_, blur_, color_, backdrop_;
+    MapStack sunMap_, skyMaps_;
+};
+
+}  // namespace sgm::viewer
