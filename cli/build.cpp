@@ -29,19 +29,25 @@ struct BuildRequest {
     GridRequest grid;
     OutputRequest out;
     std::vector<std::string> animations;  ///< "NAME=FROM..TO:FRAMES"
-    std::string report, agent = ".3,1.8", floor;
+    std::string report, agent, floor;  ///< agent as `parseAgent` reads it, "" for the usual one
     int smooth = 0;
     double simplify = 1;
     bool judge = false, cave = false, inward = false, quiet = false;
 };
 
-/// Whether the floor can be written, before the work.
-Status checkFloor(const BuildRequest& request) {
-    if (request.floor.empty()) return Done{};
-    const auto* format = exporter::findExporter(fs::path(request.floor).extension().string());
-    if (format && format->wantsVolume)
-        return Error{Error::Kind::Usage, fmt::format("--floor {}: a floor is a mesh; '{}' holds volumes", request.floor, format->extension)};
-    return checkOutputs(OutputRequest{.files = {request.floor}, .options = {}, .proxy = {}});
+bool surveys(const BuildRequest& request) { return request.cave || !request.floor.empty(); }
+
+/// Whether the blocks are needed, from which a level set is sampled.
+bool wantsLevelSet(const BuildRequest& request) { return wantsVolume(request.out) || surveys(request); }
+
+/// What can be refused before the work.
+Status checkRequest(const BuildRequest& request) {
+    if (const Status s = checkOutputs(request.out); !s.ok()) return s;
+    if (const Status s = request.floor.empty() ? Done{} : checkMeshFile("--floor", request.floor); !s.ok()) return s;
+    if (request.agent.empty()) return Done{};
+    if (!surveys(request)) return Error{Error::Kind::Usage, "--agent walks through a cave: add --cave or --floor FILE"};
+    if (const auto agent = parseAgent(request.agent); !agent.ok()) return agent.error();
+    return Done{};
 }
 
 Result<mesh::Mesh> edited(mesh::Mesh mesh, const BuildRequest& request, Stages& stages, Progress* progress) {
@@ -71,13 +77,10 @@ exporter::ExportInput exportInput(const BuildRequest& request, const Model& mode
 }
 
 /// Surveys the cave and writes its walkable floor where that is wanted.
-Result<volume::Cave> survey(const BuildRequest& request, const Model& model, const MeshedModel& meshed, exporter::ExportInput input) {
-    constexpr int band = 3;  // voxels
-    const auto agent = parseAgent(request.agent);
+Result<volume::Cave> survey(const BuildRequest& request, exporter::ExportInput input) {
+    const auto agent = request.agent.empty() ? volume::Agent{} : parseAgent(request.agent);
     if (!agent.ok()) return agent.error();
-    const auto level = volume::sample(meshed.blocks, model.tape, meshed.grid, band, request.grid.threads, input.progress);
-    if (!level.ok()) return level.error();
-    auto cave = volume::surveyCave(*level, *agent, request.inward, input.progress);
+    auto cave = volume::surveyCave(*input.volume, *agent, request.inward, input.progress);
     if (!cave.ok() || request.floor.empty()) return cave;
     const mesh::Mesh floor = volume::walkableFloor(*input.mesh, *cave);
     if (floor.triangleCount() == 0) return Error{Error::Kind::Input, fmt::format("--floor {}: the agent can stand nowhere", request.floor)};
@@ -126,11 +129,20 @@ Status deliver(const BuildRequest& request, const Model& model, MeshedModel mesh
 
     exporter::ExportInput input = exportInput(request, model, *mesh);
     input.progress = progress;
-    const Status written = timed(stages, "write", [&] { return writeOutputs(request.out, model, meshed, input, request.grid.threads); });
+    std::optional<volume::Volume> level;
+    if (wantsLevelSet(request)) {
+        auto sampled = timed(stages, "level set", [&] {
+            return volume::sample(meshed.blocks, model.tape, meshed.grid, volume::usualHalfWidth, request.grid.threads, progress);
+        });
+        if (!sampled.ok()) return sampled.error();
+        level = std::move(*sampled);
+        input.volume = &*level;
+    }
+    const Status written = timed(stages, "write", [&] { return writeOutputs(request.out, model, input, request.grid.threads); });
     if (!written.ok()) return written;
     std::optional<volume::Cave> cave;
-    if (request.cave || !request.floor.empty()) {
-        auto surveyed = timed(stages, "cave", [&] { return survey(request, model, meshed, input); });
+    if (surveys(request)) {
+        auto surveyed = timed(stages, "cave", [&] { return survey(request, input); });
         if (!surveyed.ok()) return surveyed.error();
         cave = std::move(*surveyed);
     }
@@ -143,7 +155,6 @@ Status deliver(const BuildRequest& request, const Model& model, MeshedModel mesh
 }
 
 Status buildOne(const BuildRequest& request) {
-    if (const auto agent = parseAgent(request.agent); !agent.ok()) return agent.error();
     Stages stages;
     Watch watch(request.quiet);
     const auto model = makeModel(request.model, stages, watch.progress());
@@ -204,7 +215,7 @@ Status buildFrames(const BuildRequest& request) {
         options->params = animation->values(still, frame);
         const auto model = makeModel(grammar, *options, stages, watch.progress());
         if (!model.ok()) return model.error();
-        auto meshed = wantsVolume(request.out) ? makeMesh(*model, grid, request.grid.threads, stages, watch.progress())
+        auto meshed = wantsLevelSet(request) ? makeMesh(*model, grid, request.grid.threads, stages, watch.progress())
                                   : makeMesh(*model, grid, rebuild, stages, watch.progress());
         if (!meshed.ok()) return meshed.error();
         if (!request.quiet) fmt::print("frame {} of {}, {}: ", frame + 1, animation->frames, animation->text(*grammar, frame));
@@ -215,8 +226,7 @@ Status buildFrames(const BuildRequest& request) {
 }
 
 int build(const BuildRequest& request) {
-    Status done = checkOutputs(request.out);
-    if (done.ok()) done = checkFloor(request);
+    Status done = checkRequest(request);
     if (done.ok()) done = request.animations.empty() ? buildOne(request) : buildFrames(request);
     return done.ok() ? 0 : fail(done.error());
 }
@@ -232,7 +242,7 @@ void addBuild(CLI::App& app, int& exitCode) {
     command->add_option("--animate", request->animations, "Run a parameter through frames, NAME=FROM..TO:FRAMES; -o needs a number: roof_%04d.glb")->allow_extra_args(false);
     command->add_option("--report", request->report, "Write the figures of this build as JSON");
     command->add_flag("--cave", request->cave, "Report on the air in the rock: spaces, rooms, passages, entrances, floors, ways");
-    command->add_option("--agent", request->agent, "Who walks through the cave: RADIUS,HEIGHT[,SLOPE] in metres and degrees")->capture_default_str();
+    command->add_option("--agent", request->agent, "Who walks through the cave: RADIUS,HEIGHT[,SLOPE] in metres and degrees")->default_str(".3,1.8,45");
     command->add_option("--floor", request->floor, "Write the floor on which the agent can stand, as a mesh");
     command->add_flag("--inward", request->inward, "Write the surface facing inward: the model is a hollow, seen from inside");
     command->add_option("--smooth", request->smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));

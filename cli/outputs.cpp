@@ -5,18 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 
 #include "modeler/mesh/proxy.h"
-#include "modeler/volume/volume.h"
 
 namespace sgm::cli {
 namespace {
 
 namespace fs = std::filesystem;
 using exporter::Exporter;
-
-constexpr int bandVoxels = 3;  ///< half-width of the level set, OpenVDB's usual
 
 const Exporter* formatOf(const std::string& file) { return exporter::findExporter(fs::path(file).extension().string()); }
 
@@ -73,11 +69,17 @@ std::vector<std::string> allFiles(const OutputRequest& request) {
     return files;
 }
 
+Status checkMeshFile(const char* option, const std::string& file) {
+    if (const Status s = checkFile(file); !s.ok()) return s;
+    if (!formatOf(file)->wantsVolume) return Done{};
+    return Error{Error::Kind::Usage, fmt::format("{} {}: this is a mesh; '{}' holds volumes", option, file, formatOf(file)->extension)};
+}
+
 Status checkOutputs(const OutputRequest& request) {
-    for (const std::string& file : allFiles(request))
+    for (const std::string& file : request.files)
         if (const Status s = checkFile(file); !s.ok()) return s;
-    if (!request.proxy.empty() && formatOf(request.proxy)->wantsVolume)
-        return Error{Error::Kind::Usage, fmt::format("--proxy {}: a proxy is a mesh", request.proxy)};
+    if (!request.proxy.empty())
+        if (const Status s = checkMeshFile("--proxy", request.proxy); !s.ok()) return s;
     for (const std::string& text : request.options)
         if (const Status s = checkOption(request, text); !s.ok()) return s;
     for (const std::string& file : allFiles(request))
@@ -89,16 +91,9 @@ bool wantsVolume(const OutputRequest& request) {
     return std::any_of(request.files.begin(), request.files.end(), [](const std::string& file) { return formatOf(file)->wantsVolume; });
 }
 
-Status writeOutputs(const OutputRequest& request, const Model& model, const MeshedModel& meshed, exporter::ExportInput input, int threads) {
-    std::optional<volume::Volume> level;
+Status writeOutputs(const OutputRequest& request, const Model& model, exporter::ExportInput input, int threads) {
     for (const std::string& file : request.files) {
         const Exporter& row = *formatOf(file);
-        if (row.wantsVolume && !level) {
-            auto sampled = volume::sample(meshed.blocks, model.tape, meshed.grid, bandVoxels, threads, input.progress);
-            if (!sampled.ok()) return sampled.error();
-            level = std::move(*sampled);
-            input.volume = &*level;
-        }
         input.options = optionsFor(request, row);
         if (const Status written = exporter::write(input, file); !written.ok()) return written;
     }

@@ -22,10 +22,13 @@ std::vector<std::string> allFiles(const OutputRequest& request);
 /// Error::Usage for endings, options and values that no format takes; Error::Input for folders that aren't there.
 Status checkOutputs(const OutputRequest& request);
 
-/// True when one of the files holds a volume, for which `writeOutputs` needs the blocks.
+/// Error::Usage unless `file`, which `option` names, has the ending of a mesh format; Error::Input for a missing folder.
+Status checkMeshFile(const char* option, const std::string& file);
+
+/// True when one of the files holds a volume.
 bool wantsVolume(const OutputRequest& request);
 
-/// Writes every file. `input` has the mesh and what is known of the model.
-Status writeOutputs(const OutputRequest& request, const Model& model, const MeshedModel& meshed, exporter::ExportInput input, int threads);
+/// Writes every file. `input` has the mesh, the level set where one of the files wants it, and what is known of the model.
+Status writeOutputs(const OutputRequest& request, const Model& model, exporter::ExportInput input, int threads);
 
 }  // namespace sgm::cli

@@ -60,26 +60,18 @@ void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace)
 }
 
 void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
-                      Workspace& workspace, OriginId* owners) {
+                      Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
     if (w.tally) count(tape, points.n, true, *w.tally);
     float* const out[] = {value, dx, dy, dz};
-    const auto store = [&](const StepContext& c, size_t first, size_t n) {
+    runBlocks(tape, points, w.kernels.gradients, 4, w, nothingBefore, [&](const StepContext& c, size_t first, size_t n) {
         for (size_t plane = 0; plane < 4; ++plane) storeResult(tape, c, 4, plane, out[plane] + first, n);
-    };
-    if (!owners) return runBlocks(tape, points, w.kernels.gradients, 4, w, nothingBefore, store);
-    OwnerPass pass(tape, 4, w);
-    runBlocks(
-        tape, points, w.kernels.gradients, 4, w, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
-        [&](const StepContext& c, size_t first, size_t n) {
-            store(c, first, n);
-            pass.store(owners + first, n);
-        });
+    });
 }
 
 void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
-    OwnerPass pass(tape, 1, w);
+    OwnerPass pass(tape, w);
     runBlocks(
         tape, points, w.kernels.values, 1, w, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
         [&](const StepContext&, size_t first, size_t n) { pass.store(out + first, n); });

@@ -49,10 +49,9 @@ struct Points {
 /// out[i] = f(x[i], y[i], z[i]).
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace);
 
-/// Values and their exact derivatives by x, y, z (at a kink, those of the chosen operand), and in the same pass what
-/// evaluateOrigin gives, unless `owners` is null.
+/// Values and their exact derivatives by x, y, z (at a kink, those of the chosen operand).
 void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
-                      Workspace& workspace, OriginId* owners = nullptr);
+                      Workspace& workspace);
 
 /// Whose surface each point lies on: walks min, max, blend and morph down the operand they take; ties go to the first.
 void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& workspace);

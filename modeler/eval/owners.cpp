@@ -4,9 +4,8 @@ namespace sgm::eval {
 
 using field::ops::Owner;
 
-OwnerPass::OwnerPass(const Tape& tape, size_t planes, Workspace::Impl& workspace)
+OwnerPass::OwnerPass(const Tape& tape, Workspace::Impl& workspace)
     : tape_(tape),
-      planes_(planes),
       kernels_(workspace.kernels),
       rows_(workspace.owners.get((tape.registerCount() + size_t{1}) * maxBlock)),
       taken_(rowOf(tape.registerCount())),
@@ -20,7 +19,7 @@ void OwnerPass::gather(const Instruction& in, const Source* sources, const StepC
         if (isConstant(s))
             operands_.push_back({nullptr, c.constants[indexOf(s)], {nullptr, own}});
         else
-            operands_.push_back({eval::rowOf(c, s, planes_, 0), 0.0f, own != 0 ? Owners{nullptr, own} : owners_[s]});
+            operands_.push_back({eval::rowOf(c, s, 1, 0), 0.0f, own != 0 ? Owners{nullptr, own} : owners_[s]});
     }
 }
 

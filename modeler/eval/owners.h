@@ -1,6 +1,6 @@
 // Owners ride forward beside the values: each instruction passes on the owner of the operand it takes.
 // Enters: a tape's instructions and register rows, block by block. Leaves: whose surface each point lies on. Assumes
-// blocks of at most maxBlock points, and operands that are still in their registers.
+// blocks of at most maxBlock points, one float a value, and operands that are still in their registers.
 #pragma once
 
 #include <array>
@@ -14,8 +14,7 @@ namespace sgm::eval {
 
 class OwnerPass {
 public:
-    /// `planes` floats a value in the registers.
-    OwnerPass(const Tape& tape, size_t planes, Workspace::Impl& workspace);
+    OwnerPass(const Tape& tape, Workspace::Impl& workspace);
 
     /// To be called before each instruction runs.
     void operator()(const Instruction& in, const StepContext& c);
@@ -43,7 +42,6 @@ private:
     void takeBest(uint32_t first, size_t n, MoveOwners move);
 
     const Tape& tape_;
-    const size_t planes_;
     const Kernels& kernels_;
     float* const rows_;           // by register
     float* const taken_;          // of the instruction at work

@@ -43,15 +43,15 @@ void link(Air& air) {
 
 /// How far below an air voxel the rock begins, in voxels 0 … 1: from the depths of the two rock voxels below it, which
 /// no wall beside the air comes near; where the rock is too thin for that, between the voxel's clearance and the first
-/// depth.
+/// depth. All three as sampled: distances swept anew are rough in the corner between floor and wall.
 float depthOfFloor(float clearance, float depth, float deeper, float voxel_m) {
     const float growth = deeper - depth;
     if (growth > 0.3f * voxel_m) return std::clamp(1 - depth / growth, 0.0f, 1.0f);
     return clearance / (clearance + std::max(depth, 1e-6f * voxel_m));
 }
 
-void measure(Air& air, const FloatGrid& distance, const CoordBBox& box, bool hollow) {
-    const FloatGrid::ConstAccessor at = distance.getConstAccessor();
+void measure(Air& air, const FloatGrid& level, const FloatGrid& distance, const CoordBBox& box, bool hollow) {
+    const FloatGrid::ConstAccessor at = distance.getConstAccessor(), sampled = level.getConstAccessor();
     const float sign = hollow ? -1 : 1;
     air.clearance_m.resize(air.size());
     air.rim.assign(air.size(), 0);
@@ -66,8 +66,8 @@ void measure(Air& air, const FloatGrid& distance, const CoordBBox& box, bool hol
         }
         if (air.next[i][3] != nowhere || (air.rim[i] & 8)) continue;
         air.floor_m[i] =
-            air.place(i).y - air.voxel_m * depthOfFloor(own, -sign * at.getValue(c + steps[3]),
-                                                        -sign * at.getValue(c + steps[3] + steps[3]), air.voxel_m);
+            air.place(i).y - air.voxel_m * depthOfFloor(sign * sampled.getValue(c), -sign * sampled.getValue(c + steps[3]),
+                                                        -sign * sampled.getValue(c + steps[3] + steps[3]), air.voxel_m);
     }
     // A distance can't grow faster than the way: takes away single voxels at the surface that the sweep left far.
     for (size_t i = 0; i < air.size(); ++i)
@@ -105,7 +105,7 @@ Result<Air> airOf(const Volume& level, bool hollow, Progress* progress) {
     link(air);
     tick(progress);
     if (cancelled(progress)) return cancelledError();
-    if (air.size() > 0) measure(air, *distances(grid, *space), box, hollow);
+    if (air.size() > 0) measure(air, grid, *distances(grid, *space), box, hollow);
     tick(progress);
     if (cancelled(progress)) return cancelledError();
     return air;

@@ -37,6 +37,8 @@ private:
     std::shared_ptr<Impl> impl_;
 };
 
+constexpr int usualHalfWidth = 3;  ///< of a level set, in voxels: what OpenVDB's own tools expect
+
 /// Samples `whole` at the grid's corners into a level set of `halfWidth` voxels (1 … 32) to each side: in the blocks,
 /// which hold the surface, and in all that touch them. Beyond the band voxels are inactive and inside and outside tiled
 /// by sign. Equal bytes at any thread count. Error::Usage for another width, the errors of mesh::subdivide for the

@@ -1,44 +1,21 @@
 // The clouds that ship (SG-M, section III-C), measured on their meshes: whole for every seed, and true to their names.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
+#include "tests/cli/program.h"
+
+namespace sgm::cli {
 namespace {
 
-namespace fs = std::filesystem;
-using Json = nlohmann::json;
-
-/// A file that is gone when the test ends.
-struct Passing {
-    std::string path;
-    Passing() {
-        std::string name = (fs::temp_directory_path() / "sgm-cloud-XXXXXX").string();
-        close(mkstemp(name.data()));
-        path = name;
+class Clouds : public Cli {
+protected:
+    Json cloud(const std::string& name, int seed, const std::string& more) const {
+        return built("examples/clouds/" + name + ".sgm --seed " + std::to_string(seed) + " " + more);
     }
-    ~Passing() { fs::remove(path); }
+    /// Of all area that faces down, the share in the mesh's lowest tenth of a metre.
+    double flatShare(const std::string& name, const std::string& more) const;
 };
-
-/// The report of `sgm build ARGUMENTS`; null where it failed.
-Json built(const std::string& arguments) {
-    const Passing report;
-    const std::string command = SGM_PROGRAM " build " + arguments + " -q --report " + report.path;
-    if (std::system(command.c_str()) != 0) return nullptr;
-    return Json::parse(std::ifstream(report.path));
-}
-
-Json cloud(const std::string& name, int seed, const std::string& more) {
-    return built("examples/clouds/" + name + ".sgm --seed " + std::to_string(seed) + " " + more);
-}
 
 /// Extents of a mesh along x, y, z, metres.
 std::array<double, 3> extents(const Json& report) {
@@ -53,7 +30,7 @@ struct Named {
 };
 void PrintTo(const Named& c, std::ostream* out) { *out << c.name; }
 
-class EveryCloud : public testing::TestWithParam<Named> {};
+class EveryCloud : public Clouds, public testing::WithParamInterface<Named> {};
 
 TEST_P(EveryCloud, IsWholeAndAsWideAsItsNameSaysForEverySeed) {
     for (int seed = 1; seed <= 10; ++seed) {
@@ -71,10 +48,8 @@ INSTANTIATE_TEST_SUITE_P(Clouds, EveryCloud,
                                          Named{"ball", .7, 1.4}),
                          [](const auto& info) { return std::string(info.param.name); });
 
-/// Of all area that faces down, the share in the mesh's lowest tenth of a metre.
-double flatShare(const std::string& name, const std::string& more) {
-    const Passing file;
-    const std::string mesh = file.path + ".off";
+double Clouds::flatShare(const std::string& name, const std::string& more) const {
+    const std::string mesh = path("cloud.off");
     const Json report = cloud(name, 3, "--resolution 48 -o " + mesh + more);
     std::ifstream off(mesh);
     std::string word;
@@ -91,18 +66,17 @@ double flatShare(const std::string& name, const std::string& more) {
         below += down;
         if (std::max({p[a][1], p[b][1], p[c][1]}) < lowest + .1) flat += down;
     }
-    fs::remove(mesh);
     return flat / below;
 }
 
-TEST(Clouds, BasesAreFlat) {
+TEST_F(Clouds, BasesAreFlat) {
     for (const std::string name : {"humilis", "mediocris", "congestus", "bank"}) {
         EXPECT_GT(flatShare(name, ""), .25) << name;
         EXPECT_LT(flatShare(name, " --set base=none"), .02) << name;
     }
 }
 
-TEST(Clouds, EveryParameterMatters) {
+TEST_F(Clouds, EveryParameterMatters) {
     const struct {
         const char *name, *other, *context;
     } cases[] = {{"reach", "(1,2,3,1,0,2)", ""},
@@ -125,11 +99,9 @@ TEST(Clouds, EveryParameterMatters) {
                  {"mist", "60m", ""},
                  {"puffed", "20m", ""},
                  {"puffs", ".01/m", ""}};
-    const Passing list, bare;
-    std::ofstream(bare.path) << "grammar 1\nuse \"std/cloud.sgm\"\nstart Sky -> Cloud\n";
-    ASSERT_EQ(std::system((SGM_PROGRAM " params --json " + bare.path + " > " + list.path).c_str()), 0);
-    EXPECT_EQ(Json::parse(std::ifstream(list.path)).size(), std::size(cases)) << "a parameter without a case";
-    const std::string start = bare.path + " --set reach='(2,2,2,1,2,2)' --cell 40 ";
+    const std::string bare = grammar("use \"std/cloud.sgm\"\nstart Sky -> Cloud\n");
+    EXPECT_EQ(Json::parse(sgm("params --json " + bare).out).size(), std::size(cases)) << "a parameter without a case";
+    const std::string start = bare + " --set reach='(2,2,2,1,2,2)' --cell 40 ";
     for (const auto& c : cases) {
         const std::string with = start + c.context;
         const Json before = built(with), after = built(with + " --set " + c.name + "='" + c.other + "'");
@@ -139,3 +111,4 @@ TEST(Clouds, EveryParameterMatters) {
 }
 
 }  // namespace
+}  // namespace sgm::cli

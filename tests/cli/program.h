@@ -1,0 +1,67 @@
+// The program as its user meets it: `sgm` as built, run from the repository root, and a folder for what it writes.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+namespace sgm::cli {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+struct Outcome {
+    int code = -1;
+    std::string out;  ///< stdout and stderr together
+};
+
+/// Runs `sgm ARGUMENTS`; `before` is shell text that stands in front, as "printf 'R0\\n' | ".
+inline Outcome sgm(const std::string& arguments, const std::string& before = "") {
+    Outcome run;
+    FILE* pipe = popen((before + SGM_PROGRAM " " + arguments + " 2>&1").c_str(), "r");
+    char buffer[4096];
+    for (size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) run.out.append(buffer, n);
+    const int status = pclose(pipe);
+    run.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return run;
+}
+
+inline std::string read(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+/// A folder of its own for each test, removed afterwards.
+class Cli : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string name = (fs::temp_directory_path() / "sgm-test-XXXXXX").string();
+        folder_ = mkdtemp(name.data());
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    std::string grammar(const std::string& text) const {
+        const std::string file = path("test.sgm");
+        std::ofstream(file) << "grammar 1\n" << text;
+        return file;
+    }
+    /// What `sgm build ARGUMENTS` reports as JSON; null where it failed.
+    Json built(const std::string& arguments) const {
+        const std::string file = path("report.json");
+        const Outcome run = sgm("build " + arguments + " -q --report " + file);
+        EXPECT_EQ(run.code, 0) << run.out;
+        return run.code == 0 ? Json::parse(read(file)) : Json();
+    }
+    fs::path folder_;
+};
+
+}  // namespace sgm::cli
