@@ -10,7 +10,6 @@
 #include "cli/animation.h"
 #include "cli/cave.h"
 #include "cli/commands.h"
-#include "cli/files.h"
 #include "cli/floating.h"
 #include "cli/outputs.h"
 #include "cli/pipeline.h"
@@ -19,6 +18,7 @@
 #include "modeler/export/exporter.h"
 #include "modeler/mesh/edit.h"
 #include "modeler/mesh/validate.h"
+#include "viewer/document/files.h"
 
 namespace sgm::cli {
 namespace fs = std::filesystem;
@@ -147,7 +147,7 @@ Status deliver(const BuildRequest& request, const Model& model, MeshedModel mesh
         cave = std::move(*surveyed);
     }
     if (!request.report.empty())
-        if (const Status s = writeText(request.report, reportJson(model, meshed, figures, support, cave, stages, request.grid.threads)); !s.ok()) return s;
+        if (const Status s = viewer::writeText(request.report, reportJson(model, meshed, figures, support, cave, stages, request.grid.threads)); !s.ok()) return s;
     if (request.quiet) return Done{};
     say(request, model, figures, support, stages);
     if (cave && request.cave) fmt::print("{}", caveTable(*cave));

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/files.h"
 #include "cli/pipeline.h"
 #include "cli/watch.h"
 #include "grammar/syntax/parser.h"
+#include "viewer/document/files.h"
 
 namespace sgm::cli {
 namespace {
@@ -31,10 +31,10 @@ int runGrammarChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t see
 }
 
 int checkOne(const std::string& file, const CheckRequest& request, nlohmann::json& found) {
-    const auto source = readSource(file);
+    const auto source = viewer::readSource(file);
     if (!source.ok()) return fail(source.error());
     syntax::Diagnostics diagnostics;
-    const auto grammar = rules::load(*source, fileLoader(), diagnostics);
+    const auto grammar = rules::load(*source, viewer::fileLoader(), diagnostics);
     const int code = grammar ? runGrammarChecks(grammar, request.seed, diagnostics) : 0;
     if (request.json) {
         for (auto& entry : nlohmann::json::parse(syntax::toJson(diagnostics))) found.push_back(std::move(entry));

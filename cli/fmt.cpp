@@ -5,17 +5,17 @@
 #include <cstdio>
 
 #include "cli/commands.h"
-#include "cli/files.h"
 #include "cli/pipeline.h"
 #include "grammar/syntax/parser.h"
 #include "grammar/syntax/printer.h"
+#include "viewer/document/files.h"
 
 namespace sgm::cli {
 namespace {
 
 /// 0 when the file is (now) in canonical layout.
 int formatOne(const std::string& file, bool checkOnly) {
-    const auto source = readSource(file);
+    const auto source = viewer::readSource(file);
     if (!source.ok()) return fail(source.error());
     syntax::Diagnostics diagnostics;
     syntax::parse(*source, diagnostics);
@@ -27,7 +27,7 @@ int formatOne(const std::string& file, bool checkOnly) {
         fmt::print("{} is not formatted; run `sgm fmt {}`\n", file, file);
         return 1;
     }
-    const Status written = writeText(file, text);
+    const Status written = viewer::writeText(file, text);
     if (!written.ok()) return fail(written.error());
     fmt::print("formatted {}\n", file);
     return 0;

@@ -2,18 +2,13 @@
 // Enters: what the user asked for. Leaves: each stage's product. Assumes stages are called in order.
 #pragma once
 
-#include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "grammar/derive/derive.h"
-#include "grammar/lower/lower.h"
-#include "modeler/eval/tape.h"
 #include "modeler/mesh/polygonize.h"
 #include "modeler/mesh/rebuild.h"
+#include "viewer/document/model.h"
 
 namespace CLI {
 class App;
@@ -21,13 +16,15 @@ class App;
 
 namespace sgm::cli {
 
-/// Which model: the options that every command about a model takes.
-struct ModelRequest {
-    std::string file, start, derive, style;
-    std::vector<std::string> settings;  ///< "NAME=VALUE"
-    uint64_t seed = 1;
-    uint64_t shapeBudget = derive::Budget{}.shapes;
-    double secondsBudget = derive::Budget{}.seconds;
+using viewer::makeModel;
+using viewer::Model;
+using viewer::optionsFor;
+using viewer::Stages;
+using viewer::timed;
+
+/// Which model of which file: the options that every command about a model takes.
+struct ModelRequest : viewer::ModelChoice {
+    std::string file;
 };
 /// Adds FILE, --start, --derive, --set, --style, --seed and the budgets.
 void addModelOptions(CLI::App& command, ModelRequest& request);
@@ -40,28 +37,10 @@ struct GridRequest {
 };
 void addGridOptions(CLI::App& command, GridRequest& request);
 
-/// Seconds by stage, in order.
-using Stages = std::vector<std::pair<std::string, double>>;
-
-/// Runs `work` and appends its seconds to `stages` under `name`.
-template <class Work>
-auto timed(Stages& stages, const char* name, Work&& work);
-double secondsNow();
-
 /// Parse and check. Prints diagnostics to stderr; null when there were errors.
 std::shared_ptr<const rules::Grammar> loadGrammar(const std::string& file, Stages& stages);
 
-/// Resolves --start, --style and --set against the grammar; Error::Usage for unknown names, Error::Input for bad values.
-Result<derive::Options> optionsFor(const rules::Grammar& grammar, const ModelRequest& request);
-
-/// A field ready to draw or mesh.
-struct Model {
-    derive::Derivation derivation;
-    std::unique_ptr<lower::Model> lowered;
-    eval::Tape tape;
-};
-Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Stages& stages, Progress* progress);
-/// The same from the file on.
+/// A model from the file on.
 Result<Model> makeModel(const ModelRequest& request, Stages& stages, Progress* progress);
 
 /// A mesh with the grid and blocks it came from.
@@ -81,13 +60,5 @@ Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Sta
 
 /// Prints "sgm: …" to stderr and gives the exit code: 1 input, 2 usage, 3 budget, 130 cancelled.
 int fail(const Error& error);
-
-template <class Work>
-auto timed(Stages& stages, const char* name, Work&& work) {
-    const double start = secondsNow();
-    auto result = work();
-    stages.emplace_back(name, secondsNow() - start);
-    return result;
-}
 
 }  // namespace sgm::cli

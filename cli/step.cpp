@@ -8,12 +8,12 @@
 #include <iostream>
 
 #include "cli/commands.h"
-#include "cli/files.h"
 #include "cli/pipeline.h"
 #include "cli/watch.h"
 #include "grammar/derive/print.h"
 #include "grammar/derive/session.h"
 #include "grammar/derive/way.h"
+#include "viewer/document/files.h"
 
 namespace sgm::cli {
 namespace {
@@ -137,12 +137,12 @@ Result<std::string> Dialogue::wayLine(const std::string& name) const {
 Status Dialogue::save(const std::string& name) {
     const auto line = wayLine(name);
     if (!line.ok()) return line.error();
-    const auto now = readSource(request_.file);
+    const auto now = viewer::readSource(request_.file);
     if (!now.ok()) return now.error();
     if ((*now)->text() != grammar_->sources[0]->text()) return refusal(fmt::format("'{}' was changed by another program: nothing was saved", request_.file));
     const std::string text = derive::fileWithWay(*grammar_, name, *line);
     syntax::Diagnostics diagnostics;
-    const auto changed = rules::load(std::make_shared<const syntax::Source>(request_.file, text), fileLoader(), diagnostics);
+    const auto changed = rules::load(std::make_shared<const syntax::Source>(request_.file, text), viewer::fileLoader(), diagnostics);
     if (!changed) return refusal(fmt::format("can't save this way as '{}': {}", name, diagnostics.all()[0].message));
     ModelRequest again = request_;
     again.derive = name;
@@ -152,7 +152,7 @@ Status Dialogue::save(const std::string& name) {
     if (!derived.ok()) return derived.error();
     if (!here.ok()) return here.error();
     if (derive::toText(*derived, false) != derive::toText(*here, false)) return refusal("can't save this way: a 'derive' line would lead to another tree");
-    if (const Status s = writeText(request_.file, text); !s.ok()) return s;
+    if (const Status s = viewer::writeText(request_.file, text); !s.ok()) return s;
     grammar_ = changed;
     fmt::print("saved; run it with: sgm tree {} --derive {}{}\n", request_.file, name, request_.seed == 1 ? "" : fmt::format(" --seed {}", request_.seed));
     return Done{};

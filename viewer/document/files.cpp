@@ -1,4 +1,4 @@
-#include "cli/files.h"
+#include "viewer/document/files.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "modeler/core/atomic_file.h"
 
-namespace sgm::cli {
+namespace sgm::viewer {
 namespace fs = std::filesystem;
 
 namespace {
@@ -66,4 +66,4 @@ Status writeText(const fs::path& path, const std::string& text) {
     });
 }
 
-}  // namespace sgm::cli
+}  // namespace sgm::viewer

@@ -1,5 +1,5 @@
 // Reading grammar files, and finding what `use` names.
-// Enters: paths. Leaves: sources. Assumes it and the viewer are the only ones that read the disk.
+// Enters: paths. Leaves: sources. Assumes that only cli/ and viewer/ read the disk.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 #include "grammar/rules/check.h"
 #include "modeler/core/result.h"
 
-namespace sgm::cli {
+namespace sgm::viewer {
 
 /// The file's text as a source named as the user wrote it; Error::Input when it can't be read.
 Result<syntax::SourcePtr> readSource(const std::filesystem::path& path);
@@ -19,4 +19,4 @@ rules::Loader fileLoader();
 /// Writes text beside `path` and renames it into place.
 Status writeText(const std::filesystem::path& path, const std::string& text);
 
-}  // namespace sgm::cli
+}  // namespace sgm::viewer

@@ -1,0 +1,197 @@
+#include "viewer/document/document.h"
+
+#include <fmt/format.h>
+
+#include "grammar/syntax/parser.h"
+#include "viewer/document/files.h"
+
+namespace sgm::viewer {
+namespace fs = std::filesystem;
+
+Document::Document(std::string text) : saved_(text) { setText(std::move(text)); }
+
+Result<Document> Document::open(const fs::path& path) {
+    const auto stamp = stampOf(path);
+    const auto source = readSource(path);
+    if (!source.ok()) return source.error();
+    Document document{std::string((*source)->text())};
+    document.path_ = path;
+    document.stamp_ = stamp;
+    document.setText(document.text_);  // its source is called like the file from now on
+    return document;
+}
+
+Document Document::recovered(const fs::path& path, std::string text) {
+    auto opened = path.empty() ? Result<Document>(Document()) : open(path);
+    Document document = opened.ok() ? std::move(*opened) : Document();
+    document.path_ = path;
+    if (!opened.ok()) document.saved_.reset();
+    (void)document.apply(difference(document.text_, text), "Recover unsaved work");
+    return document;
+}
+
+std::optional<Document::Stamp> Document::stampOf(const fs::path& path) {
+    std::error_code failed;
+    const auto time = fs::last_write_time(path, failed);
+    if (failed) return std::nullopt;
+    const uintmax_t size = fs::file_size(path, failed);
+    return failed ? std::nullopt : std::optional(Stamp{time, size});
+}
+
+void Document::setText(std::string text) {
+    text_ = std::move(text);
+    ++revision_;
+    const std::string name = path_.empty() ? "untitled.sgm" : path_.string();
+    auto problems = std::make_shared<syntax::Diagnostics>();
+    ast_ = std::make_shared<const syntax::Ast>(syntax::parse(std::make_shared<const syntax::Source>(name, text_), *problems));
+    problems_ = std::move(problems);
+}
+
+void Document::push(Entry entry) {
+    history_.resize(at_);
+    history_.push_back(std::move(entry));
+    at_ = history_.size();
+}
+
+Status Document::apply(const TextEdit& edit, std::string label) {
+    if (edit.begin > edit.end || edit.end > text_.size())
+        return Error{Error::Kind::Input, fmt::format("'{}' was made for another text", label)};
+    if (edit.empty() || std::string_view(text_).substr(edit.begin, edit.end - edit.begin) == edit.replacement) return Done{};
+    if (drag_) {
+        if (drag_->label.empty()) drag_->label = std::move(label);
+    } else {
+        push({edit, inverse(text_, edit), choice_, choice_, std::move(label)});
+    }
+    setText(applied(text_, edit));
+    return Done{};
+}
+
+/// A keystroke joins the one before it when it goes on where that one ended, on the same line.
+bool Document::joins(const TextEdit& edit) const {
+    if (drag_ || at_ == 0 || at_ != history_.size() || !history_.back().typed) return false;
+    const TextEdit& last = history_.back().forward;
+    const bool typesOn = edit.begin == edit.end && edit.begin == last.begin + last.replacement.size() && !last.replacement.empty() &&
+                         edit.replacement.find('\n') == std::string::npos;
+    const bool erasesOn = edit.replacement.empty() && last.replacement.empty() && edit.end == last.begin;
+    return typesOn || erasesOn;
+}
+
+void Document::type(std::string text) {
+    const TextEdit edit = difference(text_, text);
+    if (edit.empty()) return;
+    if (joins(edit)) {
+        Entry& last = history_.back();
+        const std::string before = applied(text_, last.backward);
+        last.forward = difference(before, text);
+        last.backward = inverse(before, last.forward);
+        setText(std::move(text));
+        return;
+    }
+    (void)apply(edit, "Type");
+    if (!drag_) history_.back().typed = true;
+}
+
+void Document::choose(Choice choice, std::string label) {
+    Choice same = choice;
+    same.selection = choice_.selection;
+    if (same != choice_) {
+        ++revision_;
+        if (!drag_) push({{}, {}, choice_, choice, std::move(label)});
+        else if (drag_->label.empty()) drag_->label = std::move(label);
+    }
+    choice_ = std::move(choice);
+}
+
+void Document::beginDrag() {
+    if (!drag_) drag_ = Drag{text_, {}, choice_};
+}
+
+void Document::endDrag() {
+    if (!drag_) return;
+    const Drag drag = *std::exchange(drag_, std::nullopt);
+    const TextEdit edit = difference(drag.text, text_);
+    Choice same = drag.choice;
+    same.selection = choice_.selection;
+    if (!edit.empty() || same != choice_) push({edit, inverse(drag.text, edit), drag.choice, choice_, drag.label});
+}
+
+void Document::undo() {
+    endDrag();
+    if (!canUndo()) return;
+    const Entry& entry = history_[--at_];
+    choice_ = entry.before;
+    setText(applied(text_, entry.backward));
+}
+
+void Document::redo() {
+    endDrag();
+    if (!canRedo()) return;
+    const Entry& entry = history_[at_++];
+    choice_ = entry.after;
+    setText(applied(text_, entry.forward));
+}
+
+Status Document::write(const fs::path& path) {
+    if (const Status written = writeText(path, text_); !written.ok()) return written;
+    saved_ = text_;
+    stamp_ = stampOf(path);
+    return Done{};
+}
+
+Status Document::save(bool overwrite) {
+    if (path_.empty()) return Error{Error::Kind::Input, "the grammar has no file yet: save it under a name"};
+    if (!overwrite && saved_ && stampOf(path_) != stamp_) {
+        const auto now = readSource(path_);
+        if (now.ok() && (*now)->text() != *saved_)
+            return Error{Error::Kind::Input, fmt::format("'{}' was changed by another program: nothing was saved", path_.string())};
+    }
+    return write(path_);
+}
+
+Status Document::saveAs(const fs::path& path) {
+    if (const Status written = write(path); !written.ok()) return written;
+    path_ = path;
+    setText(text_);
+    return Done{};
+}
+
+Document::Outside Document::poll() {
+    if (path_.empty()) return Outside::Same;
+    const auto stamp = stampOf(path_);
+    if (stamp && stamp == stamp_) return Outside::Same;
+    const auto now = readSource(path_);
+    if (!now.ok()) {
+        if (!saved_) return Outside::Same;  // said once
+        saved_.reset();
+        stamp_.reset();
+        return Outside::Gone;
+    }
+    if (saved_ == (*now)->text()) {
+        stamp_ = stamp;
+        return Outside::Same;
+    }
+    if (dirty() && (*now)->text() != text_) return Outside::Conflict;
+    (void)takeOutside();
+    return Outside::Reloaded;
+}
+
+Status Document::takeOutside() {
+    const auto stamp = stampOf(path_);
+    const auto now = readSource(path_);
+    if (!now.ok()) return now.error();
+    endDrag();
+    saved_ = (*now)->text();
+    stamp_ = stamp;
+    return apply(difference(text_, *saved_), "Changed by another program");
+}
+
+Status Document::keepMine() {
+    const auto stamp = stampOf(path_);
+    const auto now = readSource(path_);
+    if (!now.ok()) return now.error();
+    saved_ = (*now)->text();
+    stamp_ = stamp;
+    return Done{};
+}
+
+}  // namespace sgm::viewer

@@ -1,0 +1,150 @@
+// Edits of rules as a whole and of what stands before their arrows.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "viewer/document/nodes.h"
+
+namespace sgm::viewer::edits {
+namespace {
+
+using syntax::Expr;
+using syntax::SourceSpan;
+
+/// The lines a rule stands in, from its word to the line end behind it, comments in its last line with it.
+struct Lines {
+    uint32_t begin = 0, end = 0;  ///< without the last line end
+};
+
+Lines linesOf(const Ast& ast, const RuleDecl& rule) {
+    const std::string_view text = ast.source->text();
+    return {lineBegin(text, rule.span.begin), lineEnd(text, rule.span.end)};
+}
+
+/// The same with the comment lines right above.
+Lines linesWithComments(const Ast& ast, const RuleDecl& rule) {
+    const std::string_view text = ast.source->text();
+    Lines lines = linesOf(ast, rule);
+    while (lines.begin > 0) {
+        const uint32_t above = lineBegin(text, lines.begin - 1);
+        if (text.substr(above, 2) != "//") break;
+        lines.begin = above;
+    }
+    return lines;
+}
+
+TextEdit removalOf(std::string_view text, Lines lines) {
+    if (lines.end == text.size() && lines.begin > 0) return {lines.begin - 1, lines.end, {}};
+    uint32_t end = std::min<uint32_t>(lines.end + 1, static_cast<uint32_t>(text.size()));
+    const bool gap = lines.begin >= 2 && text.substr(lines.begin - 2, 2) == "\n\n" && text.substr(end, 1) == "\n";
+    if (gap) ++end;  // of two empty lines one is enough
+    return {lines.begin, end, {}};
+}
+
+/// Whole lines put in behind the line that ends at `end`.
+TextEdit insertion(std::string_view text, uint32_t end, std::string lines) {
+    if (end == text.size()) return {end, end, (text.empty() || text.back() == '\n' ? "" : "\n") + std::move(lines) + "\n"};
+    return {end + 1, end + 1, std::move(lines) + "\n"};
+}
+
+std::string freeName(const Ast& ast, const std::string& name) {
+    const auto taken = [&](const std::string& wanted) {
+        return std::any_of(ast.rules.begin(), ast.rules.end(), [&](const RuleDecl& r) { return r.name.text == wanted; });
+    };
+    for (char letter = 'b'; letter <= 'z'; ++letter)
+        if (!taken(name + letter)) return name + letter;
+    int number = 2;
+    while (taken(fmt::format("{}_{}", name, number))) ++number;
+    return fmt::format("{}_{}", name, number);
+}
+
+/// Sets, changes or takes out "WORD VALUE" before the arrow; `value` is empty to take it out.
+Edit setPart(const Ast& ast, const RuleDecl& rule, std::string_view word, const SourceSpan* present, std::string_view value) {
+    const std::string_view text = ast.source->text();
+    if (present && !value.empty()) return tried(ast, {present->begin, present->end, std::string(value)});
+    if (present) return tried(ast, removal(text, beginBefore(ast, present->begin), present->end));
+    if (value.empty()) return TextEdit{};
+    const uint32_t at = endBefore(ast, beginBefore(ast, rule.body.span.begin));  // behind the last token before the arrow
+    return tried(ast, {at, at, fmt::format(" {} {}", word, value)});
+}
+
+Edit setPart(const Ast& ast, const RuleDecl& rule, std::string_view word, const std::optional<Expr>& present, std::string_view value) {
+    if (value.empty()) return setPart(ast, rule, word, present ? &present->span : nullptr, value);
+    const auto written = asExpression(value);
+    if (!written.ok()) return written.error();
+    return setPart(ast, rule, word, present ? &present->span : nullptr, *written);
+}
+
+}  // namespace
+
+Edit addRule(const Ast& ast, std::string_view symbol, std::string_view body, const RuleDecl* after) {
+    const auto name = asName(symbol);
+    if (!name.ok()) return name.error();
+    const std::string_view text = ast.source->text();
+    if (!after)
+        for (const RuleDecl& rule : ast.rules)
+            if (rule.symbol.text == *name) after = &rule;
+    if (!after && !ast.rules.empty()) after = &ast.rules.back();
+    const uint32_t end = after ? linesOf(ast, *after).end : static_cast<uint32_t>(text.size());
+    return tried(ast, insertion(text, end, fmt::format("rule {} -> {}", *name, body)));
+}
+
+Edit removeRule(const Ast& ast, const RuleDecl& rule) { return tried(ast, removalOf(ast.source->text(), linesOf(ast, rule))); }
+
+Edit duplicateRule(const Ast& ast, const RuleDecl& rule) {
+    const Lines lines = linesOf(ast, rule);
+    const std::string_view text = ast.source->text();
+    std::string copy(text.substr(lines.begin, lines.end - lines.begin));
+    if (!rule.name.empty()) copy.replace(rule.name.span.begin - lines.begin, rule.name.text.size(), freeName(ast, rule.name.text));
+    return tried(ast, insertion(text, lines.end, std::move(copy)));
+}
+
+Edit moveRule(const Ast& ast, const RuleDecl& rule, const RuleDecl* before) {
+    if (before == &rule) return TextEdit{};
+    const std::string_view text = ast.source->text();
+    const Lines lines = linesWithComments(ast, rule);
+    std::string moved(text.substr(lines.begin, lines.end - lines.begin));
+    TextEdit put;
+    if (before) {
+        const uint32_t at = linesWithComments(ast, *before).begin;
+        if (at > lines.begin && at <= lines.end + 1) return TextEdit{};  // it stands there
+        put = {at, at, std::move(moved) + "\n"};
+    } else {
+        if (&ast.rules.back() == &rule) return TextEdit{};
+        put = insertion(text, linesOf(ast, ast.rules.back()).end, std::move(moved));
+    }
+    return tried(ast, merged(text, {removalOf(text, lines), put}));
+}
+
+Edit setName(const Ast& ast, const RuleDecl& rule, std::string_view name) {
+    if (name.empty()) {
+        if (rule.name.empty()) return TextEdit{};
+        return tried(ast, {rule.name.span.begin, rule.symbol.span.begin, {}});
+    }
+    const auto written = asName(name);
+    if (!written.ok()) return written.error();
+    const auto same = std::find_if(ast.rules.begin(), ast.rules.end(), [&](const RuleDecl& r) { return &r != &rule && r.name.text == *written; });
+    if (same != ast.rules.end()) return refused(fmt::format("another rule is called '{}'", *written));
+    if (!rule.name.empty()) return tried(ast, {rule.name.span.begin, rule.name.span.end, *written});
+    return tried(ast, {rule.symbol.span.begin, rule.symbol.span.begin, *written + ": "});
+}
+
+Edit setSymbol(const Ast& ast, const RuleDecl& rule, std::string_view symbol) {
+    const auto written = asName(symbol);
+    if (!written.ok()) return written.error();
+    return tried(ast, {rule.symbol.span.begin, rule.symbol.span.end, *written});
+}
+
+Edit setGuard(const Ast& ast, const RuleDecl& rule, std::string_view condition) { return setPart(ast, rule, "when", rule.when, condition); }
+Edit setWeight(const Ast& ast, const RuleDecl& rule, std::string_view weight) { return setPart(ast, rule, "weight", rule.weight, weight); }
+Edit setRepeat(const Ast& ast, const RuleDecl& rule, std::string_view count) { return setPart(ast, rule, "repeat", rule.repeat, count); }
+
+Edit setBeside(const Ast& ast, const RuleDecl& rule, std::string_view symbol) {
+    if (!symbol.empty()) {
+        const auto written = asName(symbol);
+        if (!written.ok()) return written.error();
+    }
+    return setPart(ast, rule, "beside", rule.beside.empty() ? nullptr : &rule.beside.span, symbol);
+}
+
+}  // namespace sgm::viewer::edits

@@ -1,0 +1,164 @@
+// Edits of parameter values and styles.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "viewer/document/nodes.h"
+
+namespace sgm::viewer::edits {
+namespace {
+
+using syntax::ParamDecl;
+using syntax::Setting;
+using syntax::StyleDecl;
+using syntax::UseDecl;
+
+/// The style of that name that counts for the start: its own, or one for any start; where it is asked for by name, any.
+const StyleDecl* styleFor(const Ast& ast, std::string_view name, std::string_view start) {
+    const StyleDecl* found = nullptr;
+    for (const StyleDecl& style : ast.styles)
+        if (style.name.text == name && (style.start.text == start || (style.start.empty() && !found))) found = &style;
+    for (const StyleDecl& style : ast.styles)
+        if (!found && name != "default" && style.name.text == name) found = &style;
+    return found;
+}
+
+/// The style of just this name and start.
+const StyleDecl* exactStyle(const Ast& ast, std::string_view name, std::string_view start) {
+    for (const StyleDecl& style : ast.styles)
+        if (style.name.text == name && style.start.text == start) return &style;
+    return nullptr;
+}
+
+const Setting* find(const std::vector<Setting>& settings, std::string_view name) {
+    for (const Setting& s : settings)
+        if (s.name.text == name) return &s;
+    return nullptr;
+}
+
+TextEdit over(syntax::SourceSpan span, std::string text) { return {span.begin, span.end, std::move(text)}; }
+
+/// " name = value" into the braces of a declaration that ends with '}', behind what stands there.
+TextEdit intoBraces(const Ast& ast, syntax::SourceSpan declaration, const std::vector<Setting>& settings, std::string text) {
+    const uint32_t brace = declaration.end - 1;
+    const uint32_t at = settings.empty() ? endBefore(ast, brace) : settings.back().span.end;
+    const bool tight = settings.empty() && at == brace;
+    return {at, at, " " + std::move(text) + (tight ? " " : "")};
+}
+
+std::string settingText(const NamedValue& v) { return v.name + " = " + v.value; }
+
+/// Where one value is written. Values that are new to the same braces are gathered in `added`.
+class Values {
+public:
+    Values(const Ast& ast, std::string_view start, std::string_view style) : ast_(ast), start_(start), style_(style) {}
+
+    Status set(const NamedValue& value) {
+        if (!style_.empty()) {
+            const StyleDecl* style = styleFor(ast_, style_, start_);
+            if (!style) return refused(fmt::format("there is no style '{}'", style_));
+            return write(style->span, style->settings, value);
+        }
+        if (const StyleDecl* style = styleFor(ast_, "default", start_))
+            if (const Setting* s = find(style->settings, value.name)) return edits_.push_back(over(s->value.span, value.value)), Done{};
+        for (auto use = ast_.uses.rbegin(); use != ast_.uses.rend(); ++use)
+            if (const Setting* s = find(use->settings, value.name)) return edits_.push_back(over(s->value.span, value.value)), Done{};
+        for (const ParamDecl& param : ast_.params)
+            if (param.name.text == value.name) return edits_.push_back(over(param.value.span, value.value)), Done{};
+        if (ast_.uses.empty()) return refused(fmt::format("there is no parameter '{}'", value.name));
+        const UseDecl& use = ast_.uses.front();
+        if (!use.settings.empty() || use.span.text().back() == '}') return write(use.span, use.settings, value);
+        afterUse_ += (afterUse_.empty() ? "" : " ") + settingText(value);
+        return Done{};
+    }
+
+    Edit whole() {
+        if (!afterUse_.empty()) {
+            const uint32_t end = ast_.uses.front().span.end;
+            edits_.push_back({end, end, " { " + afterUse_ + " }"});
+        }
+        for (const auto& [span, settings, text] : added_) edits_.push_back(intoBraces(ast_, span, *settings, text));
+        return tried(ast_, merged(ast_.source->text(), std::move(edits_)));
+    }
+
+private:
+    struct Added {
+        syntax::SourceSpan span;
+        const std::vector<Setting>* settings;
+        std::string text;
+    };
+
+    Status write(syntax::SourceSpan span, const std::vector<Setting>& settings, const NamedValue& value) {
+        if (const Setting* s = find(settings, value.name)) return edits_.push_back(over(s->value.span, value.value)), Done{};
+        for (Added& added : added_)
+            if (added.settings == &settings) return added.text += " " + settingText(value), Done{};
+        added_.push_back({span, &settings, settingText(value)});
+        return Done{};
+    }
+
+    const Ast& ast_;
+    std::string_view start_, style_;
+    std::vector<TextEdit> edits_;
+    std::vector<Added> added_;
+    std::string afterUse_;
+};
+
+std::string styleText(std::string_view name, std::string_view start, const std::vector<NamedValue>& values) {
+    constexpr size_t widest = 100;
+    const std::string head = fmt::format("style {}{} {{", name, start.empty() ? "" : fmt::format(" for {}", start));
+    std::string text = head;
+    for (const NamedValue& v : values) text += " " + settingText(v);
+    text += " }";
+    if (text.size() <= widest) return text;
+    text = head;
+    std::string line = "   ";
+    for (const NamedValue& v : values) {
+        if (line.size() + settingText(v).size() > widest) {
+            text += "\n" + line;
+            line = "   ";
+        }
+        line += " " + settingText(v);
+    }
+    return text + "\n" + line + "\n  }";
+}
+
+}  // namespace
+
+Edit setValues(const Ast& ast, std::string_view start, std::string_view style, const std::vector<NamedValue>& values) {
+    Values written(ast, start, style);
+    for (const NamedValue& value : values) {
+        const auto text = asExpression(value.value);
+        if (!text.ok()) return text.error();
+        if (const Status s = written.set({value.name, *text}); !s.ok()) return s.error();
+    }
+    return written.whole();
+}
+
+Edit saveStyle(const Ast& ast, std::string_view name, std::string_view start, const std::vector<NamedValue>& values) {
+    const auto known = asName(name);
+    if (!known.ok()) return known.error();
+    const std::string line = styleText(*known, start, values);
+    if (const StyleDecl* same = exactStyle(ast, *known, start)) return tried(ast, over(same->span, line));
+    const std::string_view text = ast.source->text();
+    if (!ast.styles.empty()) {
+        const uint32_t end = lineEnd(text, ast.styles.back().span.end);
+        return tried(ast, {end, end, "\n" + line});
+    }
+    const auto end = static_cast<uint32_t>(text.size());
+    return tried(ast, {end, end, (text.empty() || text.back() == '\n' ? "\n" : "\n\n") + line + "\n"});
+}
+
+Edit removeSetting(const Ast& ast, std::string_view start, std::string_view style, std::string_view param) {
+    const StyleDecl* found = styleFor(ast, style, start);
+    const Setting* setting = found ? find(found->settings, param) : nullptr;
+    if (!setting) return refused(fmt::format("style '{}' doesn't set '{}'", style, param));
+    return tried(ast, removal(ast.source->text(), setting->span.begin, setting->span.end));
+}
+
+Edit removeStyle(const Ast& ast, std::string_view name, std::string_view start) {
+    const StyleDecl* found = exactStyle(ast, name, start);
+    if (!found) return refused(fmt::format("there is no style '{}'", name));
+    return tried(ast, removal(ast.source->text(), found->span.begin, found->span.end));
+}
+
+}  // namespace sgm::viewer::edits

@@ -1,0 +1,259 @@
+#include "viewer/document/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sgm::viewer {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double patience_s = 1;  ///< a request that is overtaken may run on for so long
+constexpr float keptCells = 1.25f;  ///< the lattice of a mesh is kept while its cells are within this factor of what is wished
+
+bool sameOptions(const derive::Options& a, const derive::Options& b) {
+    return a.start == b.start && a.derive == b.derive && a.params == b.params && a.seed == b.seed && a.budget.shapes == b.budget.shapes &&
+           a.budget.seconds == b.budget.seconds;
+}
+
+bool sameInstructions(const eval::Tape& a, const eval::Tape& b) {
+    const auto same = [](const eval::Instruction& i, const eval::Instruction& j) {
+        return i.op == j.op && i.count == j.count && i.out == j.out && i.a == j.a && i.b == j.b && i.data == j.data && i.origins == j.origins;
+    };
+    const auto equal = [](auto x, auto y) { return std::equal(x.begin(), x.end(), y.begin(), y.end()); };
+    return std::equal(a.code().begin(), a.code().end(), b.code().begin(), b.code().end(), same) && equal(a.sources(), b.sources()) &&
+           equal(a.origins(), b.origins()) && a.constants().size() == b.constants().size() && a.result() == b.result();
+}
+
+Change changeOf(const Shown* before, const eval::Tape& now) {
+    if (!before || !sameInstructions(before->model.tape, now)) return Change::Structure;
+    const auto then = before->model.tape.constants();
+    const bool same = std::equal(then.begin(), then.end(), now.constants().begin()) && before->model.tape.lipschitz() == now.lipschitz();
+    return same ? Change::Nothing : Change::Numbers;
+}
+
+fs::file_time_type timeOf(const fs::path& path) {
+    std::error_code failed;
+    const auto time = fs::last_write_time(path, failed);
+    return failed ? fs::file_time_type::min() : time;
+}
+
+/// The choice in the words of `optionsFor`; what the grammar doesn't know any more is left out, with a warning.
+ModelChoice wordsOf(const Choice& choice, const rules::Grammar& grammar, std::vector<Problem>& problems) {
+    const auto known = [&](const auto& list, const std::string& name, const char* what, auto nameOf) {
+        if (name.empty() || std::any_of(list.begin(), list.end(), [&](const auto& row) { return nameOf(row) == name; })) return name;
+        problems.push_back({syntax::Severity::Warning, {}, 0, 0, 0, 0, fmt::format("there is no {} '{}' any more", what, name), {}});
+        return std::string();
+    };
+    ModelChoice words;
+    words.seed = choice.seed;
+    words.start = known(grammar.starts, choice.start, "start", [&](const rules::Start& s) { return grammar.symbols[s.symbol].name; });
+    words.style = known(grammar.styles, choice.style, "style", [](const rules::Style& s) { return s.name; });
+    words.derive = known(grammar.derives, choice.way, "derive way", [](const rules::Derive& d) { return d.name; });
+    return words;
+}
+
+}  // namespace
+
+ShowRequest requestOf(const Document& document) {
+    ShowRequest request;
+    request.ast = document.ast();
+    request.syntaxProblems = document.syntaxProblems();
+    request.choice = document.choice();
+    request.revision = document.revision();
+    return request;
+}
+
+Session::Session(std::function<void()> wake, rules::Loader loader)
+    : wake_(std::move(wake)), loader_(std::move(loader)), worker_([this] { work(); }) {}
+
+Session::~Session() {
+    {
+        const std::lock_guard lock(mutex_);
+        quit_ = true;
+        if (running_) running_->cancel();
+    }
+    wanted_.notify_one();
+    worker_.join();
+}
+
+void Session::show(ShowRequest request) {
+    {
+        const std::lock_guard lock(mutex_);
+        pending_ = std::move(request);
+        if (running_ && (meshing_ || since_.seconds() > patience_s)) running_->cancel();
+    }
+    wanted_.notify_one();
+}
+
+void Session::cancel() {
+    const std::lock_guard lock(mutex_);
+    pending_.reset();
+    if (running_) running_->cancel();
+}
+
+bool Session::poll() {
+    const std::lock_guard lock(mutex_);
+    if (pending_ && running_ && since_.seconds() > patience_s) running_->cancel();
+    if (!fresh_) return false;
+    fresh_ = false;
+    News news = std::exchange(news_, News{});
+    if (news.model) model_ = std::move(news.model);
+    if (news.mesh) mesh_ = std::move(news.mesh);
+    if (news.problems) problems_ = std::move(*news.problems);
+    if (news.used) used_ = std::move(*news.used);
+    attempted_ = std::max(attempted_, news.attempted);
+    return true;
+}
+
+bool Session::busy() const {
+    const std::lock_guard lock(mutex_);
+    return running_ || pending_;
+}
+
+std::string_view Session::stage() const {
+    const std::lock_guard lock(mutex_);
+    return running_ ? running_->stage() : "";
+}
+
+double Session::fraction() const {
+    const std::lock_guard lock(mutex_);
+    return running_ ? running_->fraction() : 0;
+}
+
+bool Session::usedFilesChanged() const {
+    return std::any_of(used_.begin(), used_.end(), [](const UsedFile& used) { return timeOf(used.path) != used.time; });
+}
+
+void Session::work() {
+    for (;;) {
+        ShowRequest request;
+        std::shared_ptr<Progress> progress;
+        {
+            std::unique_lock lock(mutex_);
+            running_.reset();
+            meshing_ = false;
+            wanted_.wait(lock, [this] { return pending_ || quit_; });
+            if (quit_) return;
+            request = *std::exchange(pending_, std::nullopt);
+            running_ = progress = std::make_shared<Progress>();
+            since_ = Stopwatch();
+        }
+        attempt(request, *progress);
+    }
+}
+
+bool Session::superseded() {
+    const std::lock_guard lock(mutex_);
+    return pending_ || quit_;
+}
+
+void Session::publish(News news) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (news.model) news_.model = std::move(news.model);
+        if (news.mesh) news_.mesh = std::move(news.mesh);
+        if (news.problems) news_.problems = std::move(news.problems);
+        if (news.used) news_.used = std::move(news.used);
+        news_.attempted = std::max(news_.attempted, news.attempted);
+        fresh_ = true;
+    }
+    if (wake_) wake_();
+}
+
+void Session::attempt(const ShowRequest& request, Progress& progress) {
+    Stages stages;
+    std::vector<Problem> problems;
+    News news;
+    news.attempted = request.revision;
+    bool good = checked(request, stages, problems);
+    news.used = usedByCheck_;
+    if (good) {
+        auto shown = made(request, std::move(stages), problems, progress);
+        good = shown.ok();
+        if (good) {
+            if (*shown != shown_) news.model = *shown;
+            shown_ = *shown;
+        } else if (shown.error().kind != Error::Kind::Cancelled) {
+            problems.push_back(problemOf(shown.error()));
+        } else if (superseded()) {
+            return;
+        } else {
+            problems.push_back({syntax::Severity::Warning, {}, 0, 0, 0, 0, "cancelled: what is shown was made before", {}});
+        }
+    }
+    news.problems = std::move(problems);
+    publish(std::move(news));
+    if (good && request.meshResolution > 0) meshIt(request, progress);
+}
+
+/// Parsed text to a grammar, unless neither the text nor a file it uses has changed. Adds what is wrong to `problems`.
+bool Session::checked(const ShowRequest& request, Stages& stages, std::vector<Problem>& problems) {
+    const bool unchanged = request.ast == ast_ && std::none_of(usedByCheck_.begin(), usedByCheck_.end(), [](const UsedFile& used) { return timeOf(used.path) != used.time; });
+    if (!unchanged) {
+        std::vector<syntax::SourcePtr> sources;  // diagnostics point into them
+        usedByCheck_.clear();
+        const rules::Loader noting = [&](const std::string& name, const syntax::Source& from, std::string& why) {
+            const syntax::SourcePtr source = loader_ ? loader_(name, from, why) : nullptr;
+            if (source) {
+                sources.push_back(source);
+                usedByCheck_.push_back({source->name(), timeOf(source->name())});
+            }
+            return source;
+        };
+        syntax::Diagnostics diagnostics = request.syntaxProblems;
+        ast_ = request.ast;
+        grammar_ = timed(stages, "check", [&] { return rules::check(*request.ast, noting, diagnostics); });
+        checkProblems_ = problemsOf(diagnostics);
+    }
+    problems = checkProblems_;
+    return grammar_ != nullptr;
+}
+
+/// The model of the request: the last one where nothing it is made from has changed.
+Result<std::shared_ptr<const Shown>> Session::made(const ShowRequest& request, Stages stages, std::vector<Problem>& problems, Progress& progress) {
+    auto options = optionsFor(*grammar_, wordsOf(request.choice, *grammar_, problems));
+    if (!options.ok()) return options.error();
+    options->budget = request.budget;
+    if (shown_ && shown_->grammar == grammar_ && handShown_ == request.byHand && sameOptions(shown_->options, *options)) return shown_;
+    auto model = request.byHand ? makeModel(derive::Derivation(*request.byHand), stages, &progress) : makeModel(grammar_, *options, stages, &progress);
+    if (!model.ok()) return model.error();
+    handShown_ = request.byHand;
+    const Change change = changeOf(shown_.get(), model->tape);
+    return std::make_shared<const Shown>(Shown{request.revision, grammar_, std::move(*options), std::move(*model), request.byHand != nullptr, change, std::move(stages)});
+}
+
+void Session::meshIt(const ShowRequest& request, Progress& progress) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (pending_ || quit_) return;
+        meshing_ = true;
+    }
+    if (meshed_ && meshed_->of == shown_ && meshResolution_ == request.meshResolution) return;
+    const Box3f& bounds = shown_->model.lowered->field.bounds;
+    const float wished_m = mesh::cellFor(bounds, request.meshResolution), before_m = meshed_ ? meshed_->grid.cell_m : 0;
+    const bool keep = meshResolution_ == request.meshResolution && before_m < wished_m * keptCells && before_m * keptCells > wished_m;
+    auto meshed = std::make_shared<Meshed>();
+    meshed->of = shown_;
+    meshed->grid = mesh::gridToKeep(meshed_ ? meshed_->grid : mesh::Grid{}, bounds, keep ? before_m : wished_m);
+    const auto mesh = rebuild_.update(shown_->model.tape, meshed->grid, &progress, meshed->counts);
+    if (!mesh.ok()) {
+        if (mesh.error().kind == Error::Kind::Cancelled) return;
+        News news;
+        news.problems = checkProblems_;
+        news.problems->push_back(problemOf(mesh.error()));
+        publish(std::move(news));
+        return;
+    }
+    meshed->mesh = std::make_shared<const mesh::Mesh>(**mesh);
+    meshed->blocksMade = rebuild_.blocksMade();
+    meshed->blocksKept = rebuild_.blocksKept();
+    meshed->stages = {{"subdivide", meshed->counts.subdivideSeconds}, {"sample", meshed->counts.sampleSeconds}, {"polygonize", meshed->counts.polygonizeSeconds}};
+    meshed_ = meshed;
+    meshResolution_ = request.meshResolution;
+    News news;
+    news.mesh = std::move(meshed);
+    publish(std::move(news));
+}
+
+}  // namespace sgm::viewer

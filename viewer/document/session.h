@@ -1,0 +1,156 @@
+// What the window shows of a document, kept up to date on a worker: text → Grammar → Derivation → Field → Tape (→ Mesh).
+// Enters: requests, the newest counts. Leaves: immutable models, problems, times. Assumes that one thread (the window's)
+// calls it, every frame `poll`. Stages run again from the first that changed. A text with problems leaves the last good
+// model standing; so does a request that was cancelled.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "grammar/rules/check.h"
+#include "modeler/mesh/rebuild.h"
+#include "viewer/document/document.h"
+#include "viewer/document/files.h"
+#include "viewer/document/model.h"
+#include "viewer/document/problems.h"
+
+namespace sgm::viewer {
+
+/// What a model's field has to do with the one shown before.
+enum class Change : uint8_t {
+    Nothing,    ///< the same tape, bit for bit: nothing to upload or to mesh again; materials and spans may differ
+    Numbers,    ///< the same instructions with other constants: upload numbers, compile nothing
+    Structure,  ///< another tape
+};
+
+/// A good model. Immutable; shapes point into sources that `grammar` holds.
+struct Shown {
+    uint64_t revision = 0;  ///< of the document it was made from
+    std::shared_ptr<const rules::Grammar> grammar;
+    derive::Options options;
+    Model model;
+    bool byHand = false;    ///< its derivation came from the Step panel
+    Change change = Change::Structure;
+    Stages stages;          ///< seconds of what ran: check, derive, lower, compile
+};
+
+/// Its mesh, which comes later.
+struct Meshed {
+    std::shared_ptr<const Shown> of;
+    mesh::Grid grid;
+    std::shared_ptr<const mesh::Mesh> mesh;
+    mesh::Counts counts;
+    size_t blocksMade = 0, blocksKept = 0;
+    Stages stages;  ///< subdivide, sample, polygonize
+};
+
+/// What to show.
+struct ShowRequest {
+    std::shared_ptr<const syntax::Ast> ast;  ///< of Document
+    syntax::Diagnostics syntaxProblems;      ///< the parser's word on it
+    Choice choice;
+    uint64_t revision = 0;
+    /// Set by the Step panel: shown instead of deriving.
+    std::shared_ptr<const derive::Derivation> byHand;
+    /// Cells along the longest side of the model's bounds; 0: no mesh is wanted.
+    int meshResolution = 0;
+    derive::Budget budget;
+};
+/// The request that shows a document as it stands.
+ShowRequest requestOf(const Document& document);
+
+class Session {
+public:
+    /// `wake` is called from the worker when `poll` would find something new (glfwPostEmptyEvent).
+    explicit Session(std::function<void()> wake = nullptr, rules::Loader loader = fileLoader());
+    ~Session();
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    /// Asks for a model. A request that still waits is forgotten; one that runs may end first, so that a slider that is
+    /// dragged shows a frame now and then, unless it only meshes or has run for longer than a second.
+    void show(ShowRequest request);
+    /// Stops what runs and forgets what waits.
+    void cancel();
+    /// Takes over what the worker has finished. True when model, mesh or problems are new.
+    bool poll();
+
+    /// The last good model, or null. Changes in `poll` alone, as all below.
+    const std::shared_ptr<const Shown>& model() const { return model_; }
+    /// The mesh of a model (see `of`: perhaps of an earlier one), or null.
+    const std::shared_ptr<const Meshed>& mesh() const { return mesh_; }
+    /// Of the last request that was tried: the parser's, the checker's and what went wrong later.
+    const std::vector<Problem>& problems() const { return problems_; }
+    /// The revision that `problems` speaks of.
+    uint64_t attempted() const { return attempted_; }
+
+    /// Something runs or waits.
+    bool busy() const;
+    /// What runs, for the Progress panel: a stage's name and the share of it that is done, 0 … 1.
+    std::string_view stage() const;
+    double fraction() const;
+
+    /// True when a file that the grammar uses has changed on disk since it was read: ask for the model again.
+    bool usedFilesChanged() const;
+
+private:
+    struct UsedFile {
+        std::filesystem::path path;
+        std::filesystem::file_time_type time;
+    };
+    /// What an attempt gives, taken over by `poll`. Null: as before.
+    struct News {
+        std::shared_ptr<const Shown> model;
+        std::shared_ptr<const Meshed> mesh;
+        std::optional<std::vector<Problem>> problems;
+        std::optional<std::vector<UsedFile>> used;
+        uint64_t attempted = 0;
+    };
+
+    void work();
+    void attempt(const ShowRequest& request, Progress& progress);
+    bool checked(const ShowRequest& request, Stages& stages, std::vector<Problem>& problems);
+    Result<std::shared_ptr<const Shown>> made(const ShowRequest& request, Stages stages, std::vector<Problem>& problems, Progress& progress);
+    void meshIt(const ShowRequest& request, Progress& progress);
+    void publish(News news);
+    bool superseded();
+
+    std::function<void()> wake_;
+    rules::Loader loader_;
+
+    // The window's.
+    std::shared_ptr<const Shown> model_;
+    std::shared_ptr<const Meshed> mesh_;
+    std::vector<Problem> problems_;
+    std::vector<UsedFile> used_;
+    uint64_t attempted_ = 0;
+
+    // Shared.
+    mutable std::mutex mutex_;
+    std::condition_variable wanted_;
+    std::optional<ShowRequest> pending_;
+    std::shared_ptr<Progress> running_;  ///< of the request that runs, or null
+    bool meshing_ = false, quit_ = false;
+    Stopwatch since_;  ///< the running request began
+    News news_;
+    bool fresh_ = false;
+
+    // The worker's: the last products, to begin from the first stage that changed.
+    std::shared_ptr<const syntax::Ast> ast_;
+    std::shared_ptr<const rules::Grammar> grammar_;
+    std::vector<Problem> checkProblems_;
+    std::vector<UsedFile> usedByCheck_;
+    std::shared_ptr<const Shown> shown_;
+    std::shared_ptr<const derive::Derivation> handShown_;
+    std::shared_ptr<const Meshed> meshed_;
+    int meshResolution_ = 0;
+    mesh::Rebuild rebuild_;
+
+    std::thread worker_;
+};
+
+}  // namespace sgm::viewer
