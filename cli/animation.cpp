@@ -6,6 +6,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include "grammar/rules/check.h"
 #include "grammar/rules/evaluate.h"
@@ -93,8 +94,9 @@ Result<Animation> readAnimation(const rules::Grammar& grammar, const std::vector
     return animation;
 }
 
-Result<std::string> frameName(const std::string& pattern, int frame) {
-    const Error wrong{Error::Kind::Usage, fmt::format("'{}': with --animate the name needs one number, as in roof_%04d.glb", pattern)};
+Result<std::string> frameName(const std::string& pattern, int frame, const char* option) {
+    const Error wrong{Error::Kind::Usage, fmt::format("'{}': with {} the name needs one number, as in roof_%04d{}", pattern, option,
+                                                      std::filesystem::path(pattern).extension().string())};
     std::string name;
     int numbers = 0;
     for (size_t i = 0; i < pattern.size(); ++i) {

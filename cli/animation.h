@@ -32,8 +32,8 @@ struct Animation {
 /// frames that differ; Error::Input for values that the parameter doesn't take.
 Result<Animation> readAnimation(const rules::Grammar& grammar, const std::vector<std::string>& texts);
 
-/// The file of a frame: "roof_%04d.glb" gives "roof_0001.glb" for frame 0; "%%" is a percent sign. Error::Usage unless
-/// the pattern has one number.
-Result<std::string> frameName(const std::string& pattern, int frame);
+/// The file of a frame: "roof_%04d.glb" gives "roof_0001.glb" for frame 0; "%%" is a percent sign. Error::Usage, which
+/// names the `option` that asks for frames, unless the pattern has one number.
+Result<std::string> frameName(const std::string& pattern, int frame, const char* option = "--animate");
 
 }  // namespace sgm::cli

@@ -1,22 +1,29 @@
-// sgm render: a picture of the field or its mesh, without a window.
+// sgm render: pictures of the field or its mesh, without a window.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <functional>
+#include <nlohmann/json.hpp>
 
+#include "cli/animation.h"
 #include "cli/commands.h"
 #include "cli/pipeline.h"
 #include "cli/watch.h"
+#include "modeler/core/conventions.h"
 #include "viewer/offscreen.h"
 
 namespace sgm::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct RenderRequest {
     ModelRequest model;
     GridRequest grid{.resolution = 256};
     std::string output, size = "960x720", view = "field", camera;
-    int samples = 4;
+    std::vector<std::string> layers;
+    int samples = 4, turntable = 0;  ///< turntable: how many pictures around the model, 0 for one
     bool noGround = false, quiet = false;
 };
 
@@ -30,8 +37,9 @@ Result<viewer::PictureOptions> parseSize(const std::string& text) {
 }
 
 /// "ex,ey,ez,ax,ay,az": where the eye is and what it looks at, metres; "inside"; or nothing for the default frame.
-Result<viewer::Camera> parseCamera(const std::string& text, const Model& model, const Box3f& bounds, double aspect) {
-    if (text.empty()) return viewer::frame(model.tape, bounds, aspect);
+Result<viewer::Camera> parseCamera(const RenderRequest& request, const Model& model, const Box3f& bounds, double aspect) {
+    const std::string& text = request.camera;
+    if (text.empty()) return request.turntable > 0 ? viewer::frameTurning(model.tape, bounds, aspect) : viewer::frame(model.tape, bounds, aspect);
     if (text == "inside") return viewer::inside(model.tape, bounds);
     viewer::Camera c;
     int used = 0;
@@ -41,34 +49,102 @@ Result<viewer::Camera> parseCamera(const std::string& text, const Model& model, 
     return c;
 }
 
-Result<viewer::Image> draw(const RenderRequest& request, const Model& model, const Box3f& bounds, const viewer::PictureOptions& options,
-                           Progress* progress) {
+bool isExr(const RenderRequest& request) { return fs::path(request.output).extension() == ".exr"; }
+
+/// What can be refused before the work.
+Status checkRequest(const RenderRequest& request) {
+    const auto wrong = [](std::string why) -> Status { return Error{Error::Kind::Usage, std::move(why)}; };
+    const fs::path output = request.output;
+    if (output.extension() != ".png" && output.extension() != ".exr")
+        return wrong(fmt::format("'{}': pictures are .png, or .exr for floats", request.output));
+    if (std::error_code ignored; output.has_parent_path() && !fs::is_directory(output.parent_path(), ignored))
+        return Error{Error::Kind::Input, fmt::format("'{}': the folder '{}' does not exist", request.output, output.parent_path().string())};
+    if (!request.layers.empty() && !isExr(request)) return wrong(fmt::format("--aov: layers need a file that holds floats: -o {}", fs::path(output).replace_extension(".exr").string()));
+    if (isExr(request) && request.view != "field") return wrong(fmt::format("'{}': layers are of the field; with --view {} write a .png", request.output, request.view));
+    if (request.turntable == 0) return Done{};
+    const auto name = frameName(request.output, 0, "--turntable");
+    return name.ok() ? Status(Done{}) : Status(name.error());
+}
+
+/// Draws a picture, and its layers unless null.
+using Painter = std::function<Result<viewer::Image>(const viewer::PictureOptions&, Progress*, viewer::Layers*)>;
+
+/// What every picture of the model shares is done here.
+Result<Painter> painterOf(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
     const Provenance& provenance = model.lowered->provenance;
-    if (request.view == "field") return viewer::drawField(model.tape, bounds, provenance, options, progress);
+    if (request.view == "field") {
+        const auto painter = viewer::FieldPainter::create(model.tape, bounds, provenance, request.grid.threads, progress);
+        if (!painter.ok()) return painter.error();
+        return Painter([p = *painter](const auto& options, Progress* progress, viewer::Layers* layers) mutable { return p.draw(options, progress, layers); });
+    }
     Stages stages;
     const auto meshed = makeMesh(model, request.grid, stages, progress);
     if (!meshed.ok()) return meshed.error();
-    return viewer::drawMesh(meshed->mesh, provenance, options, progress);
+    const auto painter = viewer::MeshPainter::create(meshed->mesh, provenance);
+    if (!painter.ok()) return painter.error();
+    return Painter([p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress); });
 }
 
-int render(const RenderRequest& request) {
+/// What the numbers of a file with layers mean.
+std::map<std::string, std::string> metadataOf(const RenderRequest& request, const Provenance& provenance) {
+    nlohmann::ordered_json origins = nlohmann::ordered_json::object();
+    for (size_t id = 1; id < provenance.parts.size(); ++id) {
+        const Part& part = provenance.parts[id];
+        origins[std::to_string(id)] = {{"shape", part.path}, {"symbol", part.symbol}, {"rule", part.rule}, {"line", part.line}};
+    }
+    return {{"model", request.model.file}, {"seed", std::to_string(request.model.seed)}, {"units", "metres, Y up"}, {"origins", origins.dump()}};
+}
+
+Status drawOne(const RenderRequest& request, Painter& paint, const viewer::PictureOptions& options, const Provenance& provenance, const std::string& file, Progress* progress) {
+    viewer::Layers layers;
+    const auto image = paint(options, progress, isExr(request) ? &layers : nullptr);
+    if (!image.ok()) return image.error();
+    const Status written = isExr(request) ? viewer::writeExr(layers, request.layers, metadataOf(request, provenance), file) : viewer::writePng(*image, file);
+    if (written.ok() && !request.quiet) fmt::print("wrote {}\n", file);
+    std::fflush(stdout);
+    return written;
+}
+
+/// The camera after a share of a turn: around the model, or from inside it around where the eye stands.
+viewer::Camera cameraAfter(const RenderRequest& request, viewer::Camera camera, int picture) {
+    const double angle = 2 * pi * picture / request.turntable;
+    if (request.camera != "inside") return viewer::turned(camera, angle);
+    std::swap(camera.eye, camera.at);
+    camera = viewer::turned(camera, angle);
+    std::swap(camera.eye, camera.at);
+    return camera;
+}
+
+Status drawAll(const RenderRequest& request) {
     auto options = parseSize(request.size);
-    if (!options.ok()) return fail(options.error());
+    if (!options.ok()) return options.error();
     Stages stages;
     Watch watch(request.quiet);
     const auto model = makeModel(request.model, stages, watch.progress());
-    if (!model.ok()) return fail(model.error());
+    if (!model.ok()) return model.error();
     const Box3f bounds = viewer::tighten(model->tape, model->lowered->field.bounds);
-    const auto camera = parseCamera(request.camera, *model, bounds, static_cast<double>(options->width) / options->height);
-    if (!camera.ok()) return fail(camera.error());
+    const auto camera = parseCamera(request, *model, bounds, static_cast<double>(options->width) / options->height);
+    if (!camera.ok()) return camera.error();
     options->camera = *camera;
     options->samples = request.samples;
+    options->threads = request.grid.threads;
     options->ground = !request.noGround && request.camera != "inside";
-    const auto image = draw(request, *model, bounds, *options, watch.progress());
-    if (!image.ok()) return fail(image.error());
-    if (const Status s = viewer::writePng(*image, request.output); !s.ok()) return fail(s.error());
-    if (!request.quiet) fmt::print("wrote {}\n", request.output);
-    return 0;
+    auto paint = painterOf(request, *model, bounds, watch.progress());
+    if (!paint.ok()) return paint.error();
+    const Provenance& provenance = model->lowered->provenance;
+    if (request.turntable == 0) return drawOne(request, *paint, *options, provenance, request.output, watch.progress());
+    for (int i = 0; i < request.turntable; ++i) {
+        options->camera = cameraAfter(request, *camera, i);
+        const auto name = frameName(request.output, i, "--turntable");
+        if (const Status s = drawOne(request, *paint, *options, provenance, *name, watch.progress()); !s.ok()) return s;
+    }
+    return Done{};
+}
+
+int render(const RenderRequest& request) {
+    Status done = checkRequest(request);
+    if (done.ok()) done = drawAll(request);
+    return done.ok() ? 0 : fail(done.error());
 }
 
 }  // namespace
@@ -78,14 +154,18 @@ void addRender(CLI::App& app, int& exitCode) {
     auto request = std::make_shared<RenderRequest>();
     addModelOptions(*command, request->model);
     addGridOptions(*command, request->grid);
-    command->add_option("-o,--output", request->output, "Picture to write (.png)")->required();
+    command->add_option("-o,--output", request->output, "Picture to write (.png, or .exr for floats)")->required();
     command->add_option("--size", request->size, "Pixels, WxH")->capture_default_str();
     command->add_option("--view", request->view, "What is drawn")->check(CLI::IsMember({"field", "mesh"}))->capture_default_str();
     command->add_option("--camera", request->camera, "x,y,z,x,y,z: the eye and what it looks at; or 'inside' for a cave");
+    command->add_option("--aov", request->layers, "Layers beside the colour of an .exr: depth, normal, position, origin, ao; metres, ids of shapes with their names in the file")
+        ->delimiter(',')->allow_extra_args(false)->check(CLI::IsMember(viewer::layerNames()));
+    command->add_option("--turntable", request->turntable, "Draw this many pictures around the model; -o needs a number: turn_%04d.png")->check(CLI::Range(1, 10'000));
     command->add_option("--samples", request->samples, "Samples a pixel, for smooth edges")->check(CLI::Range(1, 64))->capture_default_str();
     command->add_flag("--no-ground", request->noGround, "Leave out the ground");
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
-    command->footer("Examples:\n  sgm render examples/cumulus.sgm -o cumulus.png --size 640x640\n  sgm render examples/grotto.sgm -o in.png --camera inside");
+    command->footer("Examples:\n  sgm render examples/cumulus.sgm -o cumulus.png --size 640x640\n  sgm render examples/grotto.sgm -o in.png --camera inside\n"
+        "  sgm render examples/tower.sgm -o tower.exr --aov depth,normal,origin\n  sgm render examples/tower.sgm -o turn_%04d.png --turntable 36");
     command->callback([request, &exitCode] { exitCode = render(*request); });
 }
 

@@ -1,5 +1,7 @@
 #include <cmath>
+#include <map>
 
+#include "modeler/core/conventions.h"
 #include "viewer/offscreen.h"
 #include "viewer/samples.h"
 
@@ -35,6 +37,15 @@ Camera framePoints(const std::vector<Vec3d>& points, const Box3d& box, double as
     return camera;
 }
 
+/// Places on a coarse grid that hold the solid or nearly so; none where the bounds are no box.
+std::vector<Vec3d> solidPoints(const eval::Tape& tape, const Box3f& bounds) {
+    std::vector<Vec3d> points;
+    if (bounds.empty() || !bounds.finite() || !(maxComponent(bounds.size()) > 0)) return points;
+    const Samples grid = sample(tape, bounds);
+    for (const Vec3f& place : grid.placesBelow(0.3f * grid.cell)) points.push_back(place.as<double>());
+    return points;
+}
+
 }  // namespace
 
 Camera frame(const Box3f& bounds, double aspect) {
@@ -47,11 +58,29 @@ Camera frame(const Box3f& bounds, double aspect) {
 }
 
 Camera frame(const eval::Tape& tape, const Box3f& bounds, double aspect) {
-    if (bounds.empty() || !bounds.finite() || !(maxComponent(bounds.size()) > 0)) return frame(bounds, aspect);
-    const Samples grid = sample(tape, bounds);
-    std::vector<Vec3d> points;
-    for (const Vec3f& place : grid.placesBelow(0.3f * grid.cell)) points.push_back(place.as<double>());
+    const std::vector<Vec3d> points = solidPoints(tape, bounds);
     return points.empty() ? frame(bounds, aspect) : framePoints(points, bounds.as<double>(), aspect);
+}
+
+Camera frameTurning(const eval::Tape& tape, const Box3f& bounds, double aspect) {
+    const Vec3d axis = bounds.as<double>().centre();
+    std::map<double, double> radiusAt;  // by height: what turns sweeps rings
+    for (const Vec3d& p : solidPoints(tape, bounds)) {
+        double& radius = radiusAt[p.y];
+        radius = std::max(radius, std::hypot(p.x - axis.x, p.z - axis.z));
+    }
+    std::vector<Vec3d> points;
+    for (const auto& [height, radius] : radiusAt)
+        for (int i = 0; i < 64; ++i)
+            points.push_back({axis.x + radius * std::cos(i * pi / 32), height, axis.z + radius * std::sin(i * pi / 32)});
+    return points.empty() ? frame(bounds, aspect) : framePoints(points, bounds.as<double>(), aspect);
+}
+
+Camera turned(Camera camera, double angle) {
+    const Vec3d out = camera.eye - camera.at;
+    const double c = std::cos(angle), s = std::sin(angle);
+    camera.eye = camera.at + Vec3d{c * out.x + s * out.z, out.y, c * out.z - s * out.x};
+    return camera;
 }
 
 }  // namespace sgm::viewer

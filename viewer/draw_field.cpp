@@ -1,12 +1,13 @@
-// A whole picture of a field without a window. Pixels on edges are sampled again.
+// Whole pictures of a field without a window. Pixels on edges are sampled again.
 #include "viewer/field_scene.h"
 #include "viewer/scene.h"
 
 namespace sgm::viewer {
 namespace {
 
-/// Adds the display light of every job to its pixel.
-Status addJobs(const std::vector<Job>& jobs, FieldScene& scene, PixelSums& sums, Progress* progress) {
+/// Adds the display light of every job to its pixel, and what its ray met to the layers.
+Status addJobs(const std::vector<Job>& jobs, FieldScene& scene, PixelSums& sums, const View& view, Layers* layers,
+               Progress* progress) {
     if (progress) progress->begin("draw", jobs.size() * 2);
     for (size_t first = 0; first < jobs.size(); first += mostJobs) {
         const std::span chunk = std::span(jobs).subspan(first, std::min(mostJobs, jobs.size() - first));
@@ -14,31 +15,75 @@ Status addJobs(const std::vector<Job>& jobs, FieldScene& scene, PixelSums& sums,
         if (!rays) return rays.error();
         for (size_t i = 0; i < chunk.size(); ++i)
             for (size_t c = 0; c < 4; ++c) sums.rgba[sums.index(chunk[i]) + c] += rays->colors[i][c];
+        for (size_t i = 0; layers && i < chunk.size(); ++i) {
+            if (rays->kind(i) == HitKind::Sky) continue;
+            const size_t pixel = sums.index(chunk[i]) / 4;
+            const auto& [x, y, z, openness] = rays->surfaces[i];
+            layers->position[pixel] = rays->position(i);
+            layers->depth[pixel] = static_cast<float>(dot(rays->position(i).as<double>() - view.eye, view.forward));
+            layers->normal[pixel] = {x, y, z};
+            layers->ao[pixel] = openness;
+            layers->origin[pixel] = static_cast<float>(rays->origins[i]);
+        }
     }
     return Done{};
 }
 
+Layers emptyLayers(int width, int height) {
+    const size_t count = size_t(width) * size_t(height);
+    const std::vector<Vec3f> none(count, Vec3f{});
+    return {width, height, none, std::vector<float>(count, Layers::farAway), none, none, std::vector<float>(count, 0.0f),
+            std::vector<float>(count, 1.0f)};
+}
+
 }  // namespace
+
+struct FieldPainter::Parts {
+    GpuContext gpu;
+    FieldPrograms programs;
+    std::optional<FieldScene> scene;
+    int threads = 0;
+};
+
+Result<FieldPainter> FieldPainter::create(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
+                                          int threads, Progress* progress) {
+    if (Status status = checkBounds(bounds); !status) return status.error();
+    Result<GpuContext> gpu = GpuContext::create();
+    if (!gpu) return gpu.error();
+    Result<PreparedField> prepared = prepareField(tape, bounds, provenance, threads, progress);
+    if (!prepared) return prepared.error();
+    auto parts = std::shared_ptr<Parts>(new Parts{std::move(*gpu), {}, {}, threads});
+    if (Status status = parts->programs.extendTo(*prepared); !status) return status.error();
+    parts->scene.emplace(std::make_shared<const PreparedField>(std::move(*prepared)), parts->programs, threads);
+    return FieldPainter(std::move(parts));
+}
+
+Result<Image> FieldPainter::draw(const PictureOptions& options, Progress* progress, Layers* layers) {
+    FieldScene& scene = *parts_->scene;
+    if (Status status = checkPicture(scene.field().bounds, options); !status) return status.error();
+    scene.look(options);
+    const View view = viewOf(options.camera, options.width, options.height);
+    if (layers) *layers = emptyLayers(options.width, options.height);
+    PixelSums sums(options.width, options.height);
+    const std::vector<Job> first = firstSamples(options.width, options.height);
+    if (Status status = addJobs(first, scene, sums, view, layers, progress); !status) return status.error();
+    if (options.samples > 1) {
+        const std::vector<Job> more = edgeSamples(first, sums, options.samples);
+        if (Status status = addJobs(more, scene, sums, view, nullptr, progress); !status) return status.error();
+    }
+    for (size_t i = 0; layers && i < layers->color.size(); ++i) {
+        const float* sum = &sums.rgba[i * 4];
+        layers->color[i] = Vec3f{sum[0], sum[1], sum[2]} / sum[3];
+    }
+    return sums.image();
+}
 
 Result<Image> drawField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
                         const PictureOptions& options, Progress* progress) {
     if (Status status = checkPicture(bounds, options); !status) return status.error();
-    const Result<GpuContext> gpu = GpuContext::create();
-    if (!gpu) return gpu.error();
-    Result<PreparedField> prepared = prepareField(tape, bounds, provenance, options.threads, progress);
-    if (!prepared) return prepared.error();
-    FieldPrograms programs;
-    if (Status status = programs.extendTo(*prepared); !status) return status.error();
-    FieldScene scene(std::make_shared<const PreparedField>(std::move(*prepared)), programs, options.threads);
-    scene.look(options);
-
-    PixelSums sums(options.width, options.height);
-    const std::vector<Job> first = firstSamples(options.width, options.height);
-    if (Status status = addJobs(first, scene, sums, progress); !status) return status.error();
-    if (options.samples > 1)
-        if (Status status = addJobs(edgeSamples(first, sums, options.samples), scene, sums, progress); !status)
-            return status.error();
-    return sums.image();
+    Result<FieldPainter> painter = FieldPainter::create(tape, bounds, provenance, options.threads, progress);
+    if (!painter) return painter.error();
+    return painter->draw(options, progress);
 }
 
 }  // namespace sgm::viewer

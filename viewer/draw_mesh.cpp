@@ -1,4 +1,4 @@
-// A whole picture of a mesh without a window, tile by tile, so that no target gets too large for the driver.
+// Whole pictures of a mesh without a window, tile by tile, so that no target gets too large for the driver.
 #include "viewer/mesh_scene.h"
 #include "viewer/scene.h"
 
@@ -9,23 +9,36 @@ constexpr int tileEdge = 1024;  // pixels
 
 }  // namespace
 
-Result<Image> drawMesh(const mesh::Mesh& mesh, const Provenance& provenance, const PictureOptions& options,
-                       Progress* progress) {
-    if (Status status = checkPicture(mesh.bounds(), options); !status) return status.error();
+struct MeshPainter::Parts {
+    GpuContext gpu;
+    MeshScene scene;
+    bool lit = false;
+};
+
+Result<MeshPainter> MeshPainter::create(const mesh::Mesh& mesh, const Provenance& provenance) {
+    if (Status status = checkBounds(mesh.bounds()); !status) return status.error();
     const Result<PreparedMesh> prepared = prepareMesh(mesh, provenance);
     if (!prepared) return prepared.error();
-    const Result<GpuContext> gpu = GpuContext::create();
+    Result<GpuContext> gpu = GpuContext::create();
     if (!gpu) return gpu.error();
     Result<MeshScene> scene = MeshScene::create(*prepared);
     if (!scene) return scene.error();
-    if (Status status = scene->light(options, progress); !status) return status.error();
+    return MeshPainter(std::shared_ptr<Parts>(new Parts{std::move(*gpu), std::move(*scene)}));
+}
+
+Result<Image> MeshPainter::draw(const PictureOptions& options, Progress* progress) {
+    MeshScene& scene = parts_->scene;
+    if (Status status = checkPicture(scene.bounds(), options); !status) return status.error();
+    if (!parts_->lit)
+        if (Status status = scene.light(options, progress); !status) return status.error();
+    parts_->lit = true;
     std::vector<float> pixels(size_t(options.width) * size_t(options.height) * 4);
     for (int y0 = 0; y0 < options.height; y0 += tileEdge)
         for (int x0 = 0; x0 < options.width; x0 += tileEdge) {
             const int width = std::min(tileEdge, options.width - x0), height = std::min(tileEdge, options.height - y0);
             const Result<ColorTarget> target = ColorTarget::create(width, height, options.samples);
             if (!target) return target.error();
-            if (Status s = scene->draw(*target, x0, y0, options, {}, progress); !s) return s.error();
+            if (Status s = scene.draw(*target, x0, y0, options, {}, progress); !s) return s.error();
             const std::vector<float> tile = target->read();
             for (int y = 0; y < height; ++y) {
                 const size_t row = size_t(options.height - 1 - (y0 + y)) * size_t(options.width) + size_t(x0);
@@ -34,6 +47,14 @@ Result<Image> drawMesh(const mesh::Mesh& mesh, const Provenance& provenance, con
             }
         }
     return encode(pixels, options.width, options.height);
+}
+
+Result<Image> drawMesh(const mesh::Mesh& mesh, const Provenance& provenance, const PictureOptions& options,
+                       Progress* progress) {
+    if (Status status = checkPicture(mesh.bounds(), options); !status) return status.error();
+    Result<MeshPainter> painter = MeshPainter::create(mesh, provenance);
+    if (!painter) return painter.error();
+    return painter->draw(options, progress);
 }
 
 }  // namespace sgm::viewer

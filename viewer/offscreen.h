@@ -2,8 +2,12 @@
 // Enters: a model's tape or mesh, a camera. Leaves: RGB pixels. Assumes a GL 4.3 driver (software is fine).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "modeler/core/progress.h"
@@ -26,6 +30,10 @@ Camera frame(const Box3f& bounds, double aspect);
 Camera frame(const eval::Tape& tape, const Box3f& bounds, double aspect);
 /// The part of `bounds` that may hold the solid; found on a grid, exact to about a cell.
 Box3f tighten(const eval::Tape& tape, const Box3f& bounds);
+/// The same for a solid seen from all sides in turn: it stays whole in every picture.
+Camera frameTurning(const eval::Tape& tape, const Box3f& bounds, double aspect);
+/// The camera, gone around the vertical axis through the place it looks at: by `angle` radians to its right.
+Camera turned(Camera camera, double angle);
 /// Stands inside the largest hollow of the field, looking along its longest free direction with a lamp (`--camera
 /// inside`). A field without a hollow is taken as the hollow itself: the camera stands in its solid, which is then
 /// drawn inside out.
@@ -44,15 +52,63 @@ struct PictureOptions {
     int threads = 0;     ///< for the work beside the GPU's; 0 = all
 };
 
-/// Sphere tracing with the Lipschitz bound in one fixed shader that interprets per-tile shortened tapes.
+/// What the rays through the pixels' centres met, a value a pixel, top row first. Lengths in metres, object frame.
+struct Layers {
+    int width = 0, height = 0;
+    std::vector<Vec3f> color;     ///< display light, linear, 0 … 1; smoothed like the picture
+    std::vector<float> depth;     ///< from the eye along the viewing direction; `farAway` for the sky
+    std::vector<Vec3f> normal;    ///< unit; 0 for the sky
+    std::vector<Vec3f> position;  ///< 0 for the sky
+    std::vector<float> origin;    ///< OriginId; 0 for sky and ground
+    std::vector<float> ao;        ///< share of open sky, 0 … 1; 1 for the sky
+
+    static constexpr float farAway = 1e10f;  ///< metres; what Blender writes where nothing is
+};
+
+/// The names of the layers that a file can hold beside the colour: depth, normal, position, origin, ao.
+const std::vector<std::string>& layerNames();
+
+/// A field ready for pictures from any side: what no camera changes is done once. Keeps a GPU context of its own, so
+/// that only one painter may live at a time.
+class FieldPainter {
+public:
+    static Result<FieldPainter> create(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
+                                       int threads, Progress* progress);
+    /// Fills `layers` too unless null.
+    Result<Image> draw(const PictureOptions& options, Progress* progress, Layers* layers = nullptr);
+
+private:
+    struct Parts;
+    explicit FieldPainter(std::shared_ptr<Parts> parts) : parts_(std::move(parts)) {}
+    std::shared_ptr<Parts> parts_;
+};
+
+/// The same for a mesh.
+class MeshPainter {
+public:
+    static Result<MeshPainter> create(const mesh::Mesh& mesh, const Provenance& provenance);
+    Result<Image> draw(const PictureOptions& options, Progress* progress);
+
+private:
+    struct Parts;
+    explicit MeshPainter(std::shared_ptr<Parts> parts) : parts_(std::move(parts)) {}
+    std::shared_ptr<Parts> parts_;
+};
+
+/// One picture by sphere tracing with the Lipschitz bound in one fixed shader that interprets per-cell shortened tapes.
 Result<Image> drawField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
                         const PictureOptions& options, Progress* progress);
-/// The mesh with the same camera, light and materials.
+/// One picture of the mesh with the same camera, light and materials.
 Result<Image> drawMesh(const mesh::Mesh& mesh, const Provenance& provenance, const PictureOptions& options,
                        Progress* progress);
 
 /// PNG by libpng, written beside `path` and renamed into place.
 Status writePng(const Image& image, const std::filesystem::path& path);
+
+/// OpenEXR 2.0 with 32-bit floats: R, G, B and those of the layers, as depth.Z, normal.X, origin.V; `metadata` as text
+/// attributes. Written beside `path` and renamed into place. Error::Usage for a name that no layer has.
+Status writeExr(const Layers& layers, const std::vector<std::string>& names,
+                const std::map<std::string, std::string>& metadata, const std::filesystem::path& path);
 
 /// Values of the GLSL interpreter at points, read back; for tests that compare with the CPU.
 Result<std::vector<float>> evaluateOnGpu(const eval::Tape& tape, const std::vector<Vec3f>& points);

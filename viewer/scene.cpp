@@ -69,13 +69,23 @@ Buffer uploadMaterials(const std::vector<Material>& materials) {
     return Buffer::of<std::array<float, 4>>(rows);
 }
 
+namespace {
+
+Status refuse(const char* why) { return Error{Error::Kind::Input, why}; }
+
+}  // namespace
+
+Status checkBounds(const Box3f& bounds) {
+    if (bounds.empty() || !bounds.finite() || !(length(bounds.size()) > 0))
+        return refuse("there is nothing to draw: the model is empty or has no bounds");
+    return Done{};
+}
+
 Status checkPicture(const Box3f& bounds, const PictureOptions& options) {
-    const auto refuse = [](const char* why) -> Status { return Error{Error::Kind::Input, why}; };
     if (options.width < 1 || options.height < 1 || options.width > 16384 || options.height > 16384)
         return refuse("a picture is 1 to 16384 pixels wide and high");
     if (options.samples < 1 || options.samples > 64) return refuse("a picture takes 1 to 64 samples a pixel");
-    if (bounds.empty() || !bounds.finite() || !(length(bounds.size()) > 0))
-        return refuse("there is nothing to draw: the model is empty or has no bounds");
+    if (Status status = checkBounds(bounds); !status) return status;
     if (!(length(options.camera.at - options.camera.eye) > 0))
         return refuse("the camera looks at the place where it stands");
     return Done{};

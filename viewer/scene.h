@@ -23,6 +23,9 @@ void setScene(const Program& program, const Box3f& bounds, const PictureOptions&
 /// Two rows of four floats a material: colour and roughness; metallic.
 Buffer uploadMaterials(const std::vector<Material>& materials);
 
+/// Error::Input when there is nothing that could be drawn.
+Status checkBounds(const Box3f& bounds);
+
 /// Error::Input when a picture of this size, with these samples and bounds, can't be drawn.
 Status checkPicture(const Box3f& bounds, const PictureOptions& options);
 

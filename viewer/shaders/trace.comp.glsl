@@ -37,7 +37,7 @@ float trace(vec3 origin, vec3 direction) {
         if (stride > 0.0) slope = mix(slope, (next - free) / stride, 0.4);
         t += stride;
         free = next;
-        if (value < max(tolerance, 0.2 * pixelAngle * t)) return max(t + min(free, 0.0), 0.0);
+        if (value < max(tolerance, 0.2 * pixelAngle * t)) return max(t + free, 0.0);  // one more safe step, or back out
         stride = max(free, 2.0 * free / (1.0 - min(slope, 0.6)));
         if (t + stride > span.y) stride = free;  // the long step would leave the box, perhaps past a last surface
     }

@@ -1,0 +1,80 @@
+// `sgm render`: what it writes and what it refuses. Pictures themselves are tested in tests/viewer.
+#include <csignal>
+
+#include "tests/cli/program.h"
+
+namespace sgm::cli {
+namespace {
+
+class Render : public Cli {
+protected:
+    void SetUp() override {
+        Cli::SetUp();
+        file_ = grammar("start A -> cube size (1, 2, 1) color #c04020");
+        const Outcome run = sgm("render " + file_ + " --size 8x8 -q -o " + path("probe.png"));
+        if (run.code != 0) GTEST_SKIP() << "nothing can be drawn here: " << run.out;
+    }
+    size_t filesLike(const std::string& start) const {
+        size_t count = 0;
+        for (const auto& entry : fs::directory_iterator(folder_)) count += entry.path().filename().string().starts_with(start) ? 1 : 0;
+        return count;
+    }
+    std::string file_;
+};
+
+TEST_F(Render, LayersGoIntoAnExr) {
+    const Outcome run = sgm("render " + file_ + " --size 40x30 -o " + path("a.exr") + " --aov depth,origin");
+    EXPECT_EQ(run.code, 0) << run.out;
+    const std::string bytes = read(path("a.exr"));
+    EXPECT_EQ(bytes.substr(0, 4), "\x76\x2f\x31\x01");
+    for (const char* name : {"depth.Z", "origin.V", "\"shape\":", "metres, Y up"}) EXPECT_NE(bytes.find(name), std::string::npos) << name;
+    EXPECT_EQ(bytes.find("normal.X"), std::string::npos);
+}
+
+TEST_F(Render, RefusesWhatItCannotWrite) {
+    const auto refused = [&](const std::string& arguments, const std::string& mend) {
+        const Outcome run = sgm("render " + file_ + " --size 8x8 " + arguments);
+        EXPECT_EQ(run.code, 2) << arguments << '\n' << run.out;
+        EXPECT_NE(run.out.find(mend), std::string::npos) << run.out;
+    };
+    refused("-o " + path("a.png") + " --aov depth", "a.exr");
+    refused("-o " + path("a.jpg"), ".png");
+    refused("-o " + path("a.exr") + " --view mesh", ".png");
+    refused("-o " + path("a.exr") + " --aov colour", "depth");
+    refused("-o " + path("a.png") + " --turntable 4", "%04d");
+    refused("-o " + path("a_%04d.png") + " --turntable 0", "1");
+    EXPECT_EQ(sgm("render " + file_ + " -o " + path("no/folder.png")).code, 1);
+}
+
+TEST_F(Render, TurntableGoesAroundTheModel) {
+    const Outcome run = sgm("render " + file_ + " --size 48x48 --samples 1 --turntable 4 -o " + path("turn_%02d.png"));
+    EXPECT_EQ(run.code, 0) << run.out;
+    EXPECT_EQ(filesLike("turn_"), 4u);
+    // Every side has another light; all are whole.
+    for (int i = 1; i <= 4; ++i)
+        for (int j = 1; j < i; ++j)
+            EXPECT_NE(read(path("turn_0" + std::to_string(i) + ".png")), read(path("turn_0" + std::to_string(j) + ".png")));
+}
+
+TEST_F(Render, AnInterruptLeavesWholePictures) {
+    const std::string name = path("turn_%04d.png");
+    FILE* pipe = popen((SGM_PROGRAM " render " + file_ + " --size 64x64 --turntable 10000 -o " + name + " & echo $!; wait $!; echo code $?").c_str(), "r");
+    ASSERT_TRUE(pipe);
+    char line[4096];
+    ASSERT_TRUE(fgets(line, sizeof line, pipe));
+    const pid_t pid = std::atoi(line);
+    ASSERT_TRUE(fgets(line, sizeof line, pipe)) << "the first picture is written";
+    kill(pid, SIGTERM);
+    std::string rest;
+    while (fgets(line, sizeof line, pipe)) rest += line;
+    pclose(pipe);
+    EXPECT_NE(rest.find("code 130"), std::string::npos) << rest;
+    EXPECT_EQ(filesLike(".sgm-"), 0u) << "no temporary files";
+    for (const auto& entry : fs::directory_iterator(folder_))
+        if (entry.path().extension() == ".png") {
+            EXPECT_NE(read(entry.path()).find("IEND"), std::string::npos);
+        }
+}
+
+}  // namespace
+}  // namespace sgm::cli
