@@ -64,18 +64,6 @@ Result<mesh::Mesh> edited(mesh::Mesh mesh, const BuildRequest& request, Stages& 
     return mesh;
 }
 
-exporter::ExportInput exportInput(const BuildRequest& request, const Model& model, const mesh::Mesh& mesh) {
-    exporter::ExportInput input;
-    input.mesh = &mesh;
-    input.provenance = &model.lowered->provenance;
-    input.name = fs::path(request.model.file).stem();
-    input.extras["grammar"] = fs::path(request.model.file).filename();
-    input.extras["seed"] = fmt::format("{}", request.model.seed);
-    const auto& params = model.derivation.grammar->params;
-    for (size_t i = 0; i < params.size(); ++i) input.extras["param " + params[i].name] = rules::toText(model.derivation.params[i]);
-    return input;
-}
-
 /// Surveys the cave and writes its walkable floor where that is wanted.
 Result<volume::Cave> survey(const BuildRequest& request, exporter::ExportInput input) {
     const auto agent = request.agent.empty() ? volume::Agent{} : parseAgent(request.agent);
@@ -127,7 +115,8 @@ Status deliver(const BuildRequest& request, const Model& model, MeshedModel mesh
     }
     if (request.inward) mesh::turnInsideOut(*mesh);
 
-    exporter::ExportInput input = exportInput(request, model, *mesh);
+    exporter::ExportInput input = viewer::exportInput(model, request.model.file);
+    input.mesh = &*mesh;
     input.progress = progress;
     std::optional<volume::Volume> level;
     if (wantsLevelSet(request)) {

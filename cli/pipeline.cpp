@@ -54,37 +54,6 @@ mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request) {
     return mesh::gridFor(bounds, request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution));
 }
 
-Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int threads, Stages& stages, Progress* progress) {
-    MeshedModel made;
-    made.grid = grid;
-    auto blocks = timed(stages, "subdivide", [&] { return mesh::subdivide(model.tape, made.grid, threads, progress, made.counts); });
-    if (!blocks.ok()) return blocks.error();
-    made.blocks = std::move(*blocks);
-    const mesh::PolygonizeOptions options{.threads = threads};
-    Stages whole;
-    auto mesh = timed(whole, "polygonize", [&] { return mesh::polygonize(made.blocks, made.grid, options, progress, made.counts); });
-    if (!mesh.ok()) return mesh.error();
-    made.mesh = std::move(*mesh);
-    // polygonize samples and makes triangles; its wall time is shared out by the time its workers counted for each.
-    const double counted = made.counts.sampleSeconds + made.counts.polygonizeSeconds;
-    const double share = counted > 0 ? made.counts.sampleSeconds / counted : 0;
-    stages.emplace_back("sample", whole[0].second * share);
-    stages.emplace_back("polygonize", whole[0].second * (1 - share));
-    return made;
-}
-
-Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::Rebuild& rebuild, Stages& stages, Progress* progress) {
-    MeshedModel made;
-    made.grid = grid;
-    const auto mesh = rebuild.update(model.tape, grid, progress, made.counts);
-    if (!mesh.ok()) return mesh.error();
-    made.mesh = **mesh;
-    stages.emplace_back("subdivide", made.counts.subdivideSeconds);
-    stages.emplace_back("sample", made.counts.sampleSeconds);
-    stages.emplace_back("polygonize", made.counts.polygonizeSeconds);
-    return made;
-}
-
 Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress) {
     return makeMesh(model, gridOver(model.lowered->field.bounds, request), request.threads, stages, progress);
 }

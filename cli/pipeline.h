@@ -6,9 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "modeler/mesh/polygonize.h"
-#include "modeler/mesh/rebuild.h"
-#include "viewer/document/model.h"
+#include "viewer/document/meshing.h"
 
 namespace CLI {
 class App;
@@ -16,7 +14,9 @@ class App;
 
 namespace sgm::cli {
 
+using viewer::makeMesh;
 using viewer::makeModel;
+using viewer::MeshedModel;
 using viewer::Model;
 using viewer::optionsFor;
 using viewer::Stages;
@@ -43,19 +43,9 @@ std::shared_ptr<const rules::Grammar> loadGrammar(const std::string& file, Stage
 /// A model from the file on.
 Result<Model> makeModel(const ModelRequest& request, Stages& stages, Progress* progress);
 
-/// A mesh with the grid and blocks it came from.
-struct MeshedModel {
-    mesh::Grid grid;
-    std::vector<mesh::Block> blocks;
-    mesh::Mesh mesh;
-    mesh::Counts counts;
-};
-Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int threads, Stages& stages, Progress* progress);
-/// The same, taking what didn't change from the last mesh of `rebuild`; without blocks, which only volumes want.
-Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::Rebuild& rebuild, Stages& stages, Progress* progress);
 /// The grid that is asked for over these bounds.
 mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request);
-/// The same over the model's own bounds.
+/// The mesh of the model over its own bounds.
 Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress);
 
 /// Prints "sgm: …" to stderr and gives the exit code: 1 input, 2 usage, 3 budget, 130 cancelled.

@@ -14,6 +14,7 @@
 #include "grammar/derive/session.h"
 #include "grammar/derive/way.h"
 #include "viewer/document/files.h"
+#include "viewer/document/stepper.h"
 
 namespace sgm::cli {
 namespace {
@@ -135,25 +136,15 @@ Result<std::string> Dialogue::wayLine(const std::string& name) const {
 
 /// Writes the way into the file, unless the file has changed since, or the line wouldn't lead to this very tree.
 Status Dialogue::save(const std::string& name) {
-    const auto line = wayLine(name);
-    if (!line.ok()) return line.error();
     const auto now = viewer::readSource(request_.file);
     if (!now.ok()) return now.error();
     if ((*now)->text() != grammar_->sources[0]->text()) return refusal(fmt::format("'{}' was changed by another program: nothing was saved", request_.file));
-    const std::string text = derive::fileWithWay(*grammar_, name, *line);
-    syntax::Diagnostics diagnostics;
-    const auto changed = rules::load(std::make_shared<const syntax::Source>(request_.file, text), viewer::fileLoader(), diagnostics);
-    if (!changed) return refusal(fmt::format("can't save this way as '{}': {}", name, diagnostics.all()[0].message));
-    ModelRequest again = request_;
-    again.derive = name;
-    auto options = optionsFor(*changed, again);
+    const auto options = optionsFor(*grammar_, request_);
     if (!options.ok()) return options.error();
-    const auto derived = derive::derive(changed, *options, nullptr), here = session_.derivation();
-    if (!derived.ok()) return derived.error();
-    if (!here.ok()) return here.error();
-    if (derive::toText(*derived, false) != derive::toText(*here, false)) return refusal("can't save this way: a 'derive' line would lead to another tree");
-    if (const Status s = viewer::writeText(request_.file, text); !s.ok()) return s;
-    grammar_ = changed;
+    const auto saved = viewer::withWay(session_, *grammar_, *options, name, viewer::fileLoader());
+    if (!saved.ok()) return saved.error();
+    if (const Status s = viewer::writeText(request_.file, saved->text); !s.ok()) return s;
+    grammar_ = saved->grammar;
     fmt::print("saved; run it with: sgm tree {} --derive {}{}\n", request_.file, name, request_.seed == 1 ? "" : fmt::format(" --seed {}", request_.seed));
     return Done{};
 }

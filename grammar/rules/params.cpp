@@ -48,14 +48,6 @@ std::string outOfRange(const Param& param, const Value& value) {
     return {};
 }
 
-/// A component as other programs show it.
-double shown(const Value& v, size_t i) {
-    const Unit unit = v.units[std::min(i, v.units.size() - 1)];
-    // Through text: 0.3 % stays 0.3, 12 degrees stay 12.
-    const double raw = unit == Unit::Angle ? degrees(v.n[i]) : unit == Unit::Share ? v.n[i] * 100 : v.n[i];
-    return std::stod(fmt::format("{:.12g}", raw));
-}
-
 nlohmann::ordered_json jsonOf(const Value& v) {
     const auto one = [&](size_t i) -> nlohmann::ordered_json {
         if (v.integer) return static_cast<int64_t>(shown(v, i));
@@ -76,43 +68,6 @@ nlohmann::ordered_json jsonOf(const Value& v) {
         }
         default:
             return toText(v);
-    }
-}
-
-std::string_view kindName(const Value& v) {
-    switch (v.kind) {
-        case Value::Kind::Number:
-            return v.integer ? "integer" : "real";
-        case Value::Kind::Vector:
-            return "vector";
-        case Value::Kind::Bool:
-            return "boolean";
-        case Value::Kind::Color:
-            return "color";
-        case Value::Kind::Word:
-            return "choice";
-        case Value::Kind::Text:
-            return "text";
-        case Value::Kind::Rotation:
-            return "rotation";
-        case Value::Kind::Axis:
-            return "axis";
-    }
-    return {};
-}
-
-std::string_view unitName(Unit unit) {
-    switch (unit) {
-        case Unit::Metre:
-            return "m";
-        case Unit::Angle:
-            return "deg";
-        case Unit::Share:
-            return "%";
-        case Unit::PerMetre:
-            return "/m";
-        default:
-            return "";
     }
 }
 
@@ -180,6 +135,50 @@ const Style* findStyle(const Grammar& grammar, const std::string& name, uint32_t
     for (const Style& s : grammar.styles)
         if (s.name == name && (s.start == start || (s.start == none && !found))) found = &s;
     return found;
+}
+
+double shown(const Value& v, size_t i) {
+    const Unit unit = v.units[std::min(i, v.units.size() - 1)];
+    // Through text: 0.3 % stays 0.3, 12 degrees stay 12.
+    const double raw = unit == Unit::Angle ? degrees(v.n[i]) : unit == Unit::Share ? v.n[i] * 100 : v.n[i];
+    return std::stod(fmt::format("{:.12g}", raw));
+}
+
+std::string_view kindName(const Value& v) {
+    switch (v.kind) {
+        case Value::Kind::Number:
+            return v.integer ? "integer" : "real";
+        case Value::Kind::Vector:
+            return "vector";
+        case Value::Kind::Bool:
+            return "boolean";
+        case Value::Kind::Color:
+            return "color";
+        case Value::Kind::Word:
+            return "choice";
+        case Value::Kind::Text:
+            return "text";
+        case Value::Kind::Rotation:
+            return "rotation";
+        case Value::Kind::Axis:
+            return "axis";
+    }
+    return {};
+}
+
+std::string_view unitName(Unit unit) {
+    switch (unit) {
+        case Unit::Metre:
+            return "m";
+        case Unit::Angle:
+            return "deg";
+        case Unit::Share:
+            return "%";
+        case Unit::PerMetre:
+            return "/m";
+        default:
+            return "";
+    }
 }
 
 std::string paramsJson(const Grammar& grammar) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "grammar/rules/grammar.h"
 #include "modeler/core/result.h"
@@ -23,6 +24,13 @@ const Style* findStyle(const Grammar& grammar, const std::string& name, uint32_t
 
 /// What the parameters are before the user changes any: their defaults, or what `style default` says for this start.
 std::vector<Value> valuesOf(const Grammar& grammar, uint32_t start);
+
+/// A component of a value as people read it: metres, degrees, percent.
+double shown(const Value& value, size_t component);
+/// "integer", "real", "vector", "choice", "color", "boolean", "text", "rotation", "axis".
+std::string_view kindName(const Value& value);
+/// "m", "deg", "%", "/m", or "".
+std::string_view unitName(Unit unit);
 
 /// The parameters as JSON for other programs' panels: a list of {name, kind (integer, real, vector, choice, color,
 /// boolean, text), unit, default (for the first start), minimum, maximum, choices, label, group, key, file, line}; members that don't apply

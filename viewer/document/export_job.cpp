@@ -1,0 +1,76 @@
+#include "viewer/document/export_job.h"
+
+#include <fmt/format.h>
+
+#include "viewer/document/meshing.h"
+
+namespace sgm::viewer {
+namespace fs = std::filesystem;
+namespace {
+
+Status write(const Shown& shown, const ExportRequest& request, const exporter::Exporter& format, Progress& progress) {
+    const Box3f& bounds = shown.model.lowered->field.bounds;
+    const float cell_m = request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
+    Stages stages;
+    const auto meshed = makeMesh(shown.model, mesh::gridFor(bounds, cell_m), request.threads, stages, &progress);
+    if (!meshed.ok()) return meshed.error();
+    exporter::ExportInput input = exportInput(shown.model, shown.grammar->sources[0]->name());
+    input.mesh = &meshed->mesh;
+    input.options = request.options;
+    input.progress = &progress;
+    std::optional<volume::Volume> level;
+    if (format.wantsVolume) {
+        auto sampled = levelSet(shown.model, *meshed, request.threads, &progress);
+        if (!sampled.ok()) return sampled.error();
+        input.volume = &level.emplace(std::move(*sampled));
+    }
+    return exporter::write(input, request.file);
+}
+
+}  // namespace
+
+std::vector<ExportRow> exportRows(const exporter::Exporter& format) {
+    std::vector<ExportRow> rows;
+    for (const exporter::ExportOption& option : format.options) {
+        ExportRow row{std::string(option.name), std::string(option.doc), std::string(option.fallback), {}, option.lo < option.hi, option.lo, option.hi};
+        for (size_t begin = 0; begin < option.choices.size();) {
+            const size_t end = std::min(option.choices.find('|', begin), option.choices.size());
+            row.choices.emplace_back(option.choices.substr(begin, end - begin));
+            begin = end + 1;
+        }
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+ExportJob::~ExportJob() {
+    cancel();
+    if (thread_.joinable()) thread_.join();
+}
+
+Status ExportJob::start(std::shared_ptr<const Shown> shown, ExportRequest request, std::function<void()> wake) {
+    if (thread_.joinable()) return Error{Error::Kind::Input, "another export is under way"};
+    if (!shown) return Error{Error::Kind::Input, "there is no model to export yet"};
+    const exporter::Exporter* format = exporter::findExporter(request.file.extension().string());
+    if (!format) return Error{Error::Kind::Usage, fmt::format("'{}': no format has the ending '{}'", request.file.string(), request.file.extension().string())};
+    if (const Status s = exporter::checkOptions(*format, request.options); !s.ok()) return s;
+    const fs::path folder = request.file.parent_path();
+    if (std::error_code ignored; !folder.empty() && !fs::is_directory(folder, ignored))
+        return Error{Error::Kind::Input, fmt::format("'{}': the folder '{}' does not exist", request.file.string(), folder.string())};
+    progress_ = std::make_shared<Progress>();
+    done_ = false;
+    thread_ = std::thread([this, shown = std::move(shown), request = std::move(request), format, wake = std::move(wake), progress = progress_] {
+        outcome_ = write(*shown, request, *format, *progress);
+        done_ = true;
+        if (wake) wake();
+    });
+    return Done{};
+}
+
+std::optional<Status> ExportJob::take() {
+    if (!done_ || !thread_.joinable()) return std::nullopt;
+    thread_.join();
+    return std::exchange(outcome_, std::nullopt);
+}
+
+}  // namespace sgm::viewer

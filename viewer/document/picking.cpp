@@ -1,0 +1,108 @@
+#include "viewer/document/picking.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "viewer/document/nodes.h"
+
+namespace sgm::viewer {
+
+using derive::Derivation;
+using derive::none;
+using derive::ShapeId;
+using derive::ShapeTree;
+
+Picked about(const Derivation& derivation, ShapeId shape) {
+    const derive::Shape& s = derivation.tree.shapes[shape];
+    Picked picked{shape, derivation.tree.path(shape, true), derivation.tree.labels[s.label], {}, s.span, derivation.grammar->starts[derivation.start].span};
+    if (s.madeBy != none) {
+        const rules::Rule& rule = derivation.grammar->rules[derivation.steps[s.madeBy].rule];
+        picked.rule = rule.name;
+        picked.ruleText = rule.span;
+    }
+    return picked;
+}
+
+std::optional<Picked> pick(const Shown& shown, OriginId origin) {
+    const auto& shapeOf = shown.model.lowered->shapeOf;
+    // Surface that no operand owns is the root's.
+    const ShapeId shape = origin == 0 ? 0 : origin < shapeOf.size() ? shapeOf[origin] : none;
+    if (shape == none || shape >= shown.model.derivation.tree.shapes.size()) return std::nullopt;
+    return about(shown.model.derivation, shape);
+}
+
+ShapeId selected(const ShapeTree& tree, const std::string& path) { return path.empty() || tree.shapes.empty() ? none : tree.find(path); }
+
+std::vector<ShapeId> shapesAt(const Derivation& derivation, uint32_t offset) {
+    const ShapeTree& tree = derivation.tree;
+    const syntax::Source* file = derivation.grammar->sources[0].get();
+    const auto holds = [&](syntax::SourceSpan span) { return span.source == file && span.begin <= offset && offset < span.end; };
+    const auto length = [](syntax::SourceSpan span) { return span.end - span.begin; };
+    syntax::SourceSpan least;
+    for (const derive::Shape& s : tree.shapes)
+        if (!s.dead && holds(s.span) && (!least.source || length(s.span) < length(least))) least = s.span;
+    std::vector<ShapeId> found;
+    for (ShapeId id = 0; id != none; id = tree.next(id)) {
+        const derive::Shape& s = tree.shapes[id];
+        const bool made = least.source ? s.span.source == file && s.span.begin == least.begin && s.span.end == least.end
+                                       : s.madeBy != none && holds(derivation.grammar->rules[derivation.steps[s.madeBy].rule].span);
+        if (made) found.push_back(id);
+    }
+    return found;
+}
+
+std::vector<OriginId> originsOf(const Shown& shown, ShapeId shape) {
+    const ShapeTree& tree = shown.model.derivation.tree;
+    const auto& shapeOf = shown.model.lowered->shapeOf;
+    std::vector<bool> below(tree.shapes.size(), false);
+    for (ShapeId id = shape; id != none; id = tree.next(id, shape)) below[id] = true;
+    std::vector<OriginId> origins;
+    if (shape == 0) origins.push_back(0);
+    for (OriginId o = 1; o < shapeOf.size(); ++o)
+        if (shapeOf[o] != none && below[shapeOf[o]]) origins.push_back(o);
+    return origins;
+}
+
+bool isCurrent(const Document& document, const Shown& shown) { return shown.grammar->sources[0]->text() == document.text(); }
+
+const syntax::Element* elementOf(const Document& document, const Shown& shown, ShapeId shape) {
+    const syntax::SourceSpan span = shown.model.derivation.tree.shapes[shape].span;
+    if (!isCurrent(document, shown) || span.source != shown.grammar->sources[0].get()) return nullptr;
+    const syntax::Element* found = nullptr;
+    edits::forBodies(*document.ast(), [&](const syntax::Body& body) {
+        for (const auto& chain : body.siblings)
+            for (const syntax::Element& e : chain)
+                if (e.span.begin == span.begin && e.span.end == span.end) found = &e;
+    });
+    return found;
+}
+
+namespace {
+
+/// The shape on which `shape` was put: that of its bond as a newcomer, else the one it lies in.
+ShapeId hostOf(const ShapeTree& tree, ShapeId shape) {
+    for (const derive::Bond& bond : tree.bonds)
+        if (bond.shape[1] == shape) return bond.shape[0];
+    return tree.shapes[shape].parent;
+}
+
+/// A shape and the content that fills it exactly have the same joints.
+bool samePlace(const ShapeTree& tree, ShapeId a, ShapeId b) { return a == b || (tree.shapes[a].body != none && tree.shapes[a].body == tree.shapes[b].body); }
+
+}  // namespace
+
+edits::Edit attach(const Document& document, const Shown& shown, ShapeId moved, ShapeId host, uint32_t joint) {
+    const Derivation& derivation = shown.model.derivation;
+    const ShapeTree& tree = derivation.tree;
+    if (!isCurrent(document, shown)) return edits::refused("the text has changed since this model was made");
+    const syntax::Element* element = elementOf(document, shown, moved);
+    if (!element) return edits::refused(fmt::format("'{}' was made by another file: '{}'", tree.path(moved), tree.shapes[moved].span.source ? tree.shapes[moved].span.source->name() : ""));
+    if (moved == 0 || element->op == syntax::Operator::None) return edits::refused(fmt::format("'{}' is the content of its shape and joined to nothing", tree.path(moved)));
+    const ShapeId stands = hostOf(tree, moved);
+    if (!samePlace(tree, stands, host))
+        return edits::refused(fmt::format("'{}' grows on '{}': its rule can't join it to '{}'", tree.path(moved), tree.path(stands), tree.path(host)));
+    return edits::attach(*document.ast(), *element, tree.joint(host, joint).name);
+}
+
+}  // namespace sgm::viewer

@@ -1,0 +1,129 @@
+#include "viewer/document/stepper.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "grammar/derive/print.h"
+#include "grammar/derive/way.h"
+#include "grammar/rules/params.h"
+#include "viewer/document/nodes.h"
+
+namespace sgm::viewer {
+
+using derive::none;
+using derive::ShapeId;
+using edits::refused;
+
+Result<Stepper> Stepper::begin(std::shared_ptr<const rules::Grammar> grammar, derive::Options options) {
+    auto session = derive::Session::begin(grammar, options);
+    if (!session.ok()) return session.error();
+    Stepper stepper(std::move(*session), options);
+    stepper.list();
+    if (options.derive.empty()) return stepper;
+    const auto way = std::find_if(grammar->derives.begin(), grammar->derives.end(), [&](const rules::Derive& d) { return d.name == options.derive; });
+    if (way == grammar->derives.end()) return Error{Error::Kind::Usage, fmt::format("the grammar has no derive way '{}'", options.derive)};
+    for (const rules::Derive::Step& step : way->steps) {
+        const auto shape = stepper.session_.meant(step.rule, step.place);
+        if (!shape.ok()) return shape.error();
+        if (const Status done = stepper.apply(*shape, step.rule); !done.ok()) return done.error();
+    }
+    return stepper;
+}
+
+void Stepper::list() {
+    rows_.clear();
+    const derive::ShapeTree& tree = session_.tree();
+    const rules::Grammar& grammar = session_.grammar();
+    for (const ShapeId s : session_.live()) {
+        StepRow row{s, tree.path(s), grammar.symbols[tree.shapes[s].symbol].name, tree.shapes[s].scope.size, {}};
+        for (const uint32_t r : session_.rulesFor(s)) row.rules.push_back({r, grammar.rules[r].name, grammar.rules[r].span});
+        rows_.push_back(std::move(row));
+    }
+}
+
+Status Stepper::listed(Status done) {
+    list();
+    return done;
+}
+
+const StepRow* Stepper::rowOf(ShapeId shape) const {
+    const auto& shapes = session_.tree().shapes;
+    for (; shape < shapes.size(); shape = shapes[shape].parent) {
+        const auto row = std::find_if(rows_.begin(), rows_.end(), [&](const StepRow& r) { return r.shape == shape; });
+        if (row != rows_.end()) return &*row;
+    }
+    return nullptr;
+}
+
+Status Stepper::apply(ShapeId shape, uint32_t rule, Progress* progress) { return listed(session_.apply({rule, shape}, progress)); }
+
+Status Stepper::apply(const std::string& step) {
+    const auto& rules = session_.grammar().rules;
+    const size_t end = std::min(step.find(" at "), step.size());
+    const std::string name = step.substr(0, end), place = end == step.size() ? "" : step.substr(end + 4);
+    for (uint32_t r = 0; r < rules.size(); ++r) {
+        if (rules[r].name != name) continue;
+        const auto shape = session_.meant(r, place);
+        return shape.ok() ? apply(*shape, r) : Status(shape.error());
+    }
+    return refused(fmt::format("no rule is called '{}'", name));
+}
+
+Status Stepper::applyRest(Progress* progress) { return listed(session_.applyRest(progress)); }
+Status Stepper::undo() { return listed(session_.undo()); }
+Status Stepper::redo() { return listed(session_.redo()); }
+
+Result<std::shared_ptr<const derive::Derivation>> Stepper::derivation() const {
+    auto made = session_.derivation();
+    if (!made.ok()) return made.error();
+    return std::make_shared<const derive::Derivation>(std::move(*made));
+}
+
+Result<std::string> Stepper::way(const std::string& name) const {
+    if (!session_.canUndo()) return refused("no rule was applied yet, so there is no way to save");
+    const auto steps = session_.way();
+    if (!steps.ok()) return steps.error();
+    return derive::wayText(session_.grammar(), name, *steps);
+}
+
+Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& grammar, derive::Options options, const std::string& name, const rules::Loader& loader) {
+    if (!session.canUndo()) return refused("no rule was applied yet, so there is no way to save");
+    const auto steps = session.way();
+    if (!steps.ok()) return steps.error();
+    std::string text = derive::fileWithWay(grammar, name, derive::wayText(grammar, name, *steps));
+    syntax::Diagnostics problems;
+    const auto changed = rules::load(std::make_shared<const syntax::Source>(grammar.sources[0]->name(), text), loader, problems);
+    if (!changed) return refused(fmt::format("can't save this way as '{}': {}", name, problems.all()[0].message));
+    options.derive = name;
+    const auto derived = derive::derive(changed, options, nullptr), here = session.derivation();
+    if (!derived.ok()) return derived.error();
+    if (!here.ok()) return here.error();
+    if (derive::toText(*derived, false) != derive::toText(*here, false)) return refused("can't save this way: a 'derive' line would lead to another tree");
+    return WithWay{std::move(text), changed};
+}
+
+edits::Edit Stepper::save(const syntax::Ast& ast, const std::string& name, const rules::Loader& loader) const {
+    if (ast.source->text() != session_.grammar().sources[0]->text()) return refused("the text has changed since this way was begun");
+    const auto saved = withWay(session_, session_.grammar(), options_, name, loader);
+    if (!saved.ok()) return saved.error();
+    return difference(ast.source->text(), saved->text);
+}
+
+Result<size_t> Stepper::follow(std::shared_ptr<const rules::Grammar> grammar, derive::Options options) {
+    const auto steps = session_.way();
+    if (!steps.ok()) return steps.error();
+    options.derive.clear();
+    auto begun = begin(grammar, options);
+    if (!begun.ok()) return begun.error();
+    size_t kept = 0;
+    for (const rules::Derive::Step& step : *steps) {
+        const std::string& name = session_.grammar().rules[step.rule].name;
+        if (!begun->apply(step.place.empty() ? name : name + " at " + step.place).ok()) break;
+        ++kept;
+    }
+    *this = std::move(*begun);
+    return kept;
+}
+
+}  // namespace sgm::viewer
