@@ -1,4 +1,4 @@
-// sgm render: pictures of the field or its mesh, without a window.
+// sgm render: pictures of the field, its mesh or fog, without a window.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +11,7 @@
 #include "cli/pipeline.h"
 #include "cli/watch.h"
 #include "modeler/core/conventions.h"
+#include "modeler/volume/fog.h"
 #include "viewer/offscreen.h"
 
 namespace sgm::cli {
@@ -23,6 +24,7 @@ struct RenderRequest {
     GridRequest grid{.resolution = 256};
     std::string output, size = "960x720", view = "field", camera;
     std::vector<std::string> layers;
+    double extinction = 0;
     int samples = 4, turntable = 0;  ///< turntable: how many pictures around the model, 0 for one
     bool noGround = false, quiet = false;
 };
@@ -61,6 +63,7 @@ Status checkRequest(const RenderRequest& request) {
         return Error{Error::Kind::Input, fmt::format("'{}': the folder '{}' does not exist", request.output, output.parent_path().string())};
     if (!request.layers.empty() && !isExr(request)) return wrong(fmt::format("--aov: layers need a file that holds floats: -o {}", fs::path(output).replace_extension(".exr").string()));
     if (isExr(request) && request.view != "field") return wrong(fmt::format("'{}': layers are of the field; with --view {} write a .png", request.output, request.view));
+    if (request.extinction > 0 && request.view != "fog") return wrong("--extinction is of fog: add --view fog");
     if (request.turntable == 0) return Done{};
     const auto name = frameName(request.output, 0, "--turntable");
     return name.ok() ? Status(Done{}) : Status(name.error());
@@ -68,6 +71,26 @@ Status checkRequest(const RenderRequest& request) {
 
 /// Draws a picture, and its layers unless null.
 using Painter = std::function<Result<viewer::Image>(const viewer::PictureOptions&, Progress*, viewer::Layers*)>;
+
+/// Fog whose edge, which billows may eat, is a fifteenth of the model's least side deep.
+Result<Painter> fogPainter(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
+    const mesh::Grid grid = gridOver(bounds, request.grid);
+    mesh::Counts counts;
+    const auto blocks = mesh::subdivide(model.tape, grid, request.grid.threads, progress, counts);
+    if (!blocks.ok()) return blocks.error();
+    const auto level = volume::sample(*blocks, model.tape, grid, volume::usualHalfWidth, request.grid.threads, progress);
+    if (!level.ok()) return level.error();
+    const Vec3f size = bounds.size();
+    const float edge_m = std::min({size.x, size.y, size.z}) / 15;
+    const auto fog = volume::fog(*level, {.edge_m = static_cast<double>(edge_m)}, progress);
+    if (!fog.ok()) return fog.error();
+    const auto dense = volume::dense(*fog, 1);
+    if (!dense.ok()) return dense.error();
+    const viewer::FogLook look{static_cast<float>(request.extinction), 9 * edge_m};
+    const auto painter = viewer::FogPainter::create(*dense, bounds, look, request.grid.threads, progress);
+    if (!painter.ok()) return painter.error();
+    return Painter([p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress); });
+}
 
 /// What every picture of the model shares is done here.
 Result<Painter> painterOf(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
@@ -77,6 +100,7 @@ Result<Painter> painterOf(const RenderRequest& request, const Model& model, cons
         if (!painter.ok()) return painter.error();
         return Painter([p = *painter](const auto& options, Progress* progress, viewer::Layers* layers) mutable { return p.draw(options, progress, layers); });
     }
+    if (request.view == "fog") return fogPainter(request, model, bounds, progress);
     Stages stages;
     const auto meshed = makeMesh(model, request.grid, stages, progress);
     if (!meshed.ok()) return meshed.error();
@@ -156,15 +180,17 @@ void addRender(CLI::App& app, int& exitCode) {
     addGridOptions(*command, request->grid);
     command->add_option("-o,--output", request->output, "Picture to write (.png, or .exr for floats)")->required();
     command->add_option("--size", request->size, "Pixels, WxH")->capture_default_str();
-    command->add_option("--view", request->view, "What is drawn")->check(CLI::IsMember({"field", "mesh"}))->capture_default_str();
+    command->add_option("--view", request->view, "What is drawn: the field, its mesh, or fog in its place")->check(CLI::IsMember({"field", "mesh", "fog"}))->capture_default_str();
     command->add_option("--camera", request->camera, "x,y,z,x,y,z: the eye and what it looks at; or 'inside' for a cave");
     command->add_option("--aov", request->layers, "Layers beside the colour of an .exr: depth, normal, position, origin, ao; metres, ids of shapes with their names in the file")
         ->delimiter(',')->allow_extra_args(false)->check(CLI::IsMember(viewer::layerNames()));
     command->add_option("--turntable", request->turntable, "Draw this many pictures around the model; -o needs a number: turn_%04d.png")->check(CLI::Range(1, 10'000));
+    command->add_option("--extinction", request->extinction, "Of fog, per metre (default: 180 over the model's diagonal)")->check(CLI::Range(1e-6, 1e6));
     command->add_option("--samples", request->samples, "Samples a pixel, for smooth edges")->check(CLI::Range(1, 64))->capture_default_str();
     command->add_flag("--no-ground", request->noGround, "Leave out the ground");
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
     command->footer("Examples:\n  sgm render examples/cumulus.sgm -o cumulus.png --size 640x640\n  sgm render examples/grotto.sgm -o in.png --camera inside\n"
+        "  sgm render examples/cumulus.sgm -o sky.png --view fog --no-ground\n"
         "  sgm render examples/tower.sgm -o tower.exr --aov depth,normal,origin\n  sgm render examples/tower.sgm -o turn_%04d.png --turntable 36");
     command->callback([request, &exitCode] { exitCode = render(*request); });
 }

@@ -92,7 +92,7 @@ void FieldScene::look(const PictureOptions& options) {
 }
 
 /// Every piece takes about 15 ms, so that no draw holds the screen and nothing waits long for a cancel.
-Status FieldScene::runInPieces(const Program& program, size_t count, size_t& piece, Progress* progress) {
+Status runInPieces(const Program& program, size_t count, size_t& piece, Progress* progress) {
     program.use();
     for (size_t first = 0; first < count;) {
         if (cancelled(progress)) return cancelledError();

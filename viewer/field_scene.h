@@ -71,7 +71,6 @@ public:
     const PreparedField& field() const { return *field_; }
 
 private:
-    Status runInPieces(const Program& program, size_t count, size_t& piece, Progress* progress);
     std::vector<OriginId> originsOf(const Rays& rays) const;
 
     std::shared_ptr<const PreparedField> field_;
@@ -81,6 +80,10 @@ private:
     int threads_;
     size_t tracePiece_ = 2048, shadePiece_ = 2048;  ///< jobs a dispatch, by the time the last ones took
 };
+
+/// Runs `program` over jobs [0, count), which it reads as firstJob and jobCount, in dispatches of `piece` jobs: some 15 ms
+/// each, by the time the last ones took.
+Status runInPieces(const Program& program, size_t count, size_t& piece, Progress* progress);
 
 /// The most jobs of one FieldScene::draw.
 inline constexpr size_t mostJobs = size_t(1) << 18;

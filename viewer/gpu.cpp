@@ -187,6 +187,41 @@ void TexelBuffer::bind(uint32_t unit) const {
     glBindTexture(GL_TEXTURE_BUFFER, texture_.id());
 }
 
+namespace {
+
+Texture makeVolume(GLenum stored, GLenum format, GLenum type, const void* values, Vec3i count, VolumeTexture::Edge edge) {
+    GLuint id = 0;
+    glGenTextures(1, &id);
+    glBindTexture(GL_TEXTURE_3D, id);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexStorage3D(GL_TEXTURE_3D, 1, stored, count.x, count.y, count.z);
+    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, count.x, count.y, count.z, format, type, values);
+    const GLint filter = edge == VolumeTexture::Edge::Nearest ? GL_NEAREST : GL_LINEAR;
+    const GLint wrap = edge == VolumeTexture::Edge::Repeat ? GL_REPEAT : GL_CLAMP_TO_EDGE;
+    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, filter);
+    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, filter);
+    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+        glTexParameteri(GL_TEXTURE_3D, axis, wrap);
+    return Texture(id);
+}
+
+}  // namespace
+
+VolumeTexture VolumeTexture::of(std::span<const uint8_t> values, Vec3i count, Edge edge) {
+    VolumeTexture made;
+    made.texture_ = makeVolume(GL_R8, GL_RED, GL_UNSIGNED_BYTE, values.data(), count, edge);
+    return made;
+}
+VolumeTexture VolumeTexture::of(std::span<const uint16_t> rgba, Vec3i count, Edge edge) {
+    VolumeTexture made;
+    made.texture_ = makeVolume(GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, rgba.data(), count, edge);
+    return made;
+}
+void VolumeTexture::bind(uint32_t unit) const {
+    glActiveTexture(GL_TEXTURE0 + unit);
+    glBindTexture(GL_TEXTURE_3D, texture_.id());
+}
+
 void dispatch(size_t count) {
     glDispatchCompute(static_cast<GLuint>((count + 63) / 64), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);

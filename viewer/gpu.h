@@ -124,6 +124,19 @@ private:
     Texture texture_;
 };
 
+/// Numbers on a grid that shaders read between 0 and 1, x fastest.
+class VolumeTexture {
+public:
+    enum class Edge { Clamp, Repeat, Nearest };  ///< beyond its ends; Nearest clamps and doesn't interpolate
+    static VolumeTexture of(std::span<const uint8_t> values, Vec3i count, Edge edge = Edge::Clamp);
+    /// Four numbers a voxel.
+    static VolumeTexture of(std::span<const uint16_t> rgba, Vec3i count, Edge edge = Edge::Clamp);
+    void bind(uint32_t unit) const;
+
+private:
+    Texture texture_;
+};
+
 /// Runs the program in use over `count` invocations of local size 64; it must compare its index with `count`.
 void dispatch(size_t count);
 

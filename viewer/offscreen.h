@@ -16,6 +16,7 @@
 #include "modeler/core/vec.h"
 #include "modeler/eval/tape.h"
 #include "modeler/mesh/mesh.h"
+#include "modeler/volume/dense.h"
 
 namespace sgm::viewer {
 
@@ -92,6 +93,26 @@ public:
 private:
     struct Parts;
     explicit MeshPainter(std::shared_ptr<Parts> parts) : parts_(std::move(parts)) {}
+    std::shared_ptr<Parts> parts_;
+};
+
+struct FogLook {
+    float extinction_per_m = 0;  ///< deep inside; 0: 180 over the model's diagonal, so that a cloud is white and whole
+    float lump_m = 1;            ///< size of the tile of billows that shape the edge
+};
+
+/// The same for fog: sunlight scattered once by Beer's law and Henyey and Greenstein's phase function, several times by
+/// octaves of it, and the light of the sky.
+class FogPainter {
+public:
+    /// `grid` rises from 0 at the surface to 1 at the depth to which billows may eat the edge.
+    static Result<FogPainter> create(const volume::Dense& grid, const Box3f& bounds, const FogLook& look, int threads,
+                                     Progress* progress);
+    Result<Image> draw(const PictureOptions& options, Progress* progress);
+
+private:
+    struct Parts;
+    explicit FogPainter(std::shared_ptr<Parts> parts) : parts_(std::move(parts)) {}
     std::shared_ptr<Parts> parts_;
 };
 

@@ -6,6 +6,7 @@ const std::vector<Shader>& shaders() {
     static const std::vector<Shader> table{
         {"trace", "comp", true, {"view", "sky", "light", "ground", "cells", "jobs", "trace"}},
         {"shade", "comp", true, {"view", "sky", "light", "ground", "tonemap", "cells", "jobs", "shade"}},
+        {"fog", "comp", false, {"view", "sky", "light", "ground", "tonemap", "jobs", "fog"}},
         {"evaluate", "comp", true, {"evaluate"}},
         {"mesh", "vert", false, {"mesh"}},
         {"screen", "vert", false, {"screen"}},

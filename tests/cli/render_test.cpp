@@ -46,6 +46,14 @@ TEST_F(Render, RefusesWhatItCannotWrite) {
     EXPECT_EQ(sgm("render " + file_ + " -o " + path("no/folder.png")).code, 1);
 }
 
+TEST_F(Render, FogIsOneOfTheViews) {
+    const Outcome run = sgm("render " + file_ + " --view fog --resolution 24 --size 40x30 -o " + path("a.png"));
+    EXPECT_EQ(run.code, 0) << run.out;
+    EXPECT_NE(read(path("a.png")).find("IEND"), std::string::npos);
+    EXPECT_EQ(sgm("render " + file_ + " --extinction 2 -o " + path("b.png")).code, 2);
+    EXPECT_EQ(sgm("render " + file_ + " --view fog --extinction 0 -o " + path("b.png")).code, 2);
+}
+
 TEST_F(Render, TurntableGoesAroundTheModel) {
     const Outcome run = sgm("render " + file_ + " --size 48x48 --samples 1 --turntable 4 -o " + path("turn_%02d.png"));
     EXPECT_EQ(run.code, 0) << run.out;

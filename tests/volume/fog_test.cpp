@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "modeler/volume/dense.h"
 #include "modeler/volume/fog.h"
 #include "tests/volume/scratch.h"
 #include "tests/volume/shapes.h"
@@ -111,6 +112,19 @@ TEST(Fog, HasTheSameBytesEveryTime) {
         if (first.empty()) first = contentOf(folder / "a.vdb");
         EXPECT_TRUE(contentOf(folder / "a.vdb") == first);
     }
+}
+
+TEST(Fog, IsReadAsAnArrayThatHoldsAllOfIt) {
+    const Volume f = fogOf(ballLevelSet(), {.edge_m = 0.3});
+    const auto array = dense(f, 2);
+    ASSERT_TRUE(array.ok());
+    EXPECT_FLOAT_EQ(array->voxel_m, voxel_m);
+    double sum = 0;
+    for (const float value : array->values) sum += static_cast<double>(value);
+    EXPECT_NEAR(sum * std::pow(double(voxel_m), 3), f.integral_m3(), 1e-4 * f.integral_m3());
+    for (const Vec3i at : {Vec3i{20, 36, 30}, Vec3i{5, 33, 40}, Vec3i{0, 0, 0}})
+        EXPECT_EQ(array->values[array->index(at.x, at.y, at.z)], f.at(array->low + at.as<float>() * voxel_m));
+    EXPECT_EQ(array->values[0], 0) << "the border";
 }
 
 TEST(Fog, RefusesWhatMakesNone) {
