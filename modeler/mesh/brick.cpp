@@ -1,27 +1,9 @@
 #include "modeler/mesh/brick.h"
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 namespace sgm::mesh {
 namespace {
 
 constexpr uint16_t allCells = 0xff;
-
-/// Signs of the nine samples from `f` on.
-uint32_t signs(const float* f) {
-#if defined(__SSE2__)
-    const __m128 zero = _mm_setzero_ps();
-    const int low = _mm_movemask_ps(_mm_cmplt_ps(_mm_loadu_ps(f), zero));
-    const int high = _mm_movemask_ps(_mm_cmplt_ps(_mm_loadu_ps(f + 4), zero));
-    return static_cast<uint32_t>(low | high << 4 | (f[8] < 0) << 8);
-#else
-    uint32_t bits = 0;
-    for (int i = 0; i < brickCorners; ++i) bits |= static_cast<uint32_t>(f[i] < 0) << i;
-    return bits;
-#endif
-}
 
 /// Which edges along each axis a brick on the low sides `lowSides` of its block takes care of.
 std::array<BitRows, 3> handledEdges(int lowSides) {
@@ -48,11 +30,20 @@ const BitRows& handledEdges(int axis, int lowSides) {
 
 }  // namespace
 
+const BrickLoops& brickLoops() {
+#if defined(SGM_X86_KERNELS)
+    static const BrickLoops& best = eval::bestIsa() == eval::Isa::Avx512 ? avx512::brickLoops
+                                    : eval::bestIsa() == eval::Isa::Avx2 ? avx2::brickLoops
+                                                                         : portable::brickLoops;
+    return best;
+#else
+    return portable::brickLoops;
+#endif
+}
+
 BitRows insideRows(const float* corner) {
     BitRows rows{};
-    for (int k = 0; k < brickCorners; ++k)
-        for (int j = 0; j < brickCorners; ++j)
-            rows[j + brickCorners * k] = static_cast<uint16_t>(signs(corner + blockCorners * (j + blockCorners * k)));
+    brickLoops().inside(corner, blockCorners, blockCorners * blockCorners, rows.data());
     return rows;
 }
 

@@ -1,6 +1,7 @@
 #include "modeler/mesh/chunk.h"
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 
 #include "modeler/core/stopwatch.h"
@@ -16,10 +17,13 @@ constexpr uint32_t placeMask = (1u << placeBits) - 1;
 /// Way from a corner's number to that of the next one along an axis.
 constexpr std::array<int, 3> stride{1, blockCorners, blockCorners* blockCorners};
 
-/// The cases with the places of a triangle's edges, counted from the cell's low corner.
+/// Place of the edge that runs along `axis` from a corner up: the edges of a cell lie close to each other.
+constexpr int edgePlace(int corner, int axis) { return 3 * corner + axis; }
+
+/// The cases with the places of a triangle's edges, counted from that of the cell's low corner.
 struct PlacedCase {
-    std::array<int32_t, 15> edges;
-    uint32_t triangles;
+    std::array<int16_t, 15> edges;
+    uint16_t triangles;
 };
 
 const std::array<PlacedCase, 256>& placedCases() {
@@ -30,12 +34,30 @@ const std::array<PlacedCase, 256>& placedCases() {
             all[c].triangles = cell.triangles;
             for (int i = 0; i < 3 * cell.triangles; ++i) {
                 const int e = cell.edges[i], low = edgeCorner(e);
-                all[c].edges[i] = edgeAxis(e) * cornersPerBlock + cornerNumber(low & 1, low >> 1 & 1, low >> 2);
+                all[c].edges[i] =
+                    static_cast<int16_t>(edgePlace(cornerNumber(low & 1, low >> 1 & 1, low >> 2), edgeAxis(e)));
             }
         }
         return all;
     }();
     return table;
+}
+
+/// Triangles of each case, by themselves in few lines of cache.
+const std::array<uint8_t, 256>& triangleCounts() {
+    static const auto table = [] {
+        std::array<uint8_t, 256> all{};
+        for (size_t c = 0; c < all.size(); ++c) all[c] = caseTable()[c].triangles;
+        return all;
+    }();
+    return table;
+}
+
+/// `from` in memory of its own, as large as it is.
+template <class T>
+void copyTo(PageVector<T>& to, const PageVector<T>& from) {
+    to.resize(from.size());
+    if (!from.empty()) std::memcpy(to.data(), from.data(), from.size() * sizeof(T));
 }
 
 OriginId majority(OriginId a, OriginId b, OriginId c) {
@@ -80,10 +102,10 @@ std::optional<OriginId> onlyOwner(const eval::Tape& tape) {
 
 void BlockMesher::clear() {
     positions_.clear(), normals_.clear(), origins_.clear(), borrowedOrigins_.clear();
-    cells_.clear(), bricks_.clear();
+    bricks_.clear();
     for (auto& list : borrowed_) list.clear();
     for (auto& list : lent_) list.clear();
-    vertices_ = 0, triangles_ = 0;
+    vertices_ = 0, cellCount_ = 0, triangles_ = 0, flat_ = false;
 }
 
 bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chunk) {
@@ -99,9 +121,9 @@ bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chun
 
     const Stopwatch joining;
     chunk.block = block.index;
-    chunk.positions = positions_;
-    chunk.normals = normals_;
-    for (size_t i = 0; i < normals_.size(); ++i)
+    copyTo(chunk.positions, positions_);
+    copyTo(chunk.normals, normals_);
+    for (size_t i = 0; flat_ && i < normals_.size(); ++i)
         if (normals_[i] == Vec3f{}) chunk.faceted.push_back(static_cast<uint32_t>(i));
     listSeams(chunk);
     writeTriangles(chunk);
@@ -136,7 +158,7 @@ void BlockMesher::addEdges(const BitRows& inside, Vec3i brick, std::optional<Ori
     edges_.axisBegin[axis] = n;
     forEachBit(cutRows(inside, axis, lowSides), [&](int row, int i) {
         const RowPlace place = rowPlaces[row];
-        const int corner = brickFirst + place.corner + i, edge = axis * cornersPerBlock + corner;
+        const int corner = brickFirst + place.corner + i, edge = edgePlace(corner, axis);
         // An edge lies between the sides of its own axis.
         const int sides = (axis == 0 ? 0 : xSides[i]) | (axis == 1 ? 0 : ySides[place.j]) << 1 |
                           (axis == 2 ? 0 : zSides[place.k]) << 2;
@@ -153,6 +175,7 @@ void BlockMesher::addEdges(const BitRows& inside, Vec3i brick, std::optional<Ori
 void BlockMesher::addVertices(const eval::Tape& tape, std::optional<OriginId> owner) {
     counts_.refinementEvaluations += findVertices(tape, refineSteps_, workspace_, openEdges_, edges_);
     const size_t n = edges_.size();
+    flat_ = flat_ || (n > 0 && edges_.flat > 0);
     found_.resize(n);
     if (owner)
         std::fill(found_.begin(), found_.end(), *owner);
@@ -176,17 +199,21 @@ void BlockMesher::addBrick(int number, const eval::Tape& tape) {
     const int corner = brickCorner(brick);
     const BitRows inside = insideRows(samples_.values() + corner);
     const std::optional<OriginId> owner = onlyOwner(tape);
-    const size_t before = cells_.size();
-    const auto& cases = placedCases();
+    const uint8_t* const triangles = triangleCounts().data();
+    Cell* const firstCell = cells_.data() + cellCount_;
+    Cell* cell = firstCell;
+    size_t made = 0;
     forEachBit(surfaceRows(inside), [&](int row, int i) {
-        const uint32_t c = caseOf(inside, row, i);
-        cells_.push_back(
-            {static_cast<uint16_t>(corner + cornerNumber(i, rowJ(row), rowK(row))), static_cast<uint8_t>(c)});
-        triangles_ += cases[c].triangles;
+        const auto c = static_cast<uint8_t>(caseOf(inside, row, i));
+        *cell++ = {static_cast<uint16_t>(corner + rowPlaces[row].corner + i), c};
+        made += triangles[c];
     });
-    counts_.surfaceCells += cells_.size() - before;
-    if (cells_.size() == before) return;
-    bricks_.push_back({cells_.size(), owner});
+    const auto count = static_cast<size_t>(cell - firstCell);
+    if (count == 0) return;
+    counts_.surfaceCells += count;
+    cellCount_ += count;
+    triangles_ += made;
+    bricks_.push_back({cellCount_, owner});
     size_t edges = 0;
     edges_.reserve(3 * brickRows * brickCorners);
     addEdges<0>(inside, brick, owner, edges);
@@ -225,7 +252,7 @@ void BlockMesher::writeTriangles(Chunk& chunk) const {
     for (const Brick& brick : bricks_)
         for (; c < brick.cellsEnd; ++c) {
             const PlacedCase& cell = cases[cells_[c].inside];
-            const uint32_t* const at = number + cells_[c].corner;
+            const uint32_t* const at = number + edgePlace(cells_[c].corner, 0);
             for (uint32_t t = 0; t < cell.triangles; ++t) {
                 const Triangle corners{at[cell.edges[3 * t]], at[cell.edges[3 * t + 1]], at[cell.edges[3 * t + 2]]};
                 *triangle++ = corners;

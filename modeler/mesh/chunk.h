@@ -61,15 +61,17 @@ private:
     BlockSamples samples_;
     CutEdges edges_;
     std::vector<CutEdges> openEdges_;
-    PageVector<uint32_t> number_ = PageVector<uint32_t>(3 * cornersPerBlock);  ///< of the vertex on an edge
+    PageVector<uint32_t> number_ =
+        PageVector<uint32_t>(3 * cornersPerBlock);  ///< of the vertex on an edge, see edgePlace
     PageVector<Vec3f> positions_, normals_;
     PageVector<OriginId> origins_, borrowedOrigins_, found_;
-    PageVector<Cell> cells_;
+    PageVector<Cell> cells_ = PageVector<Cell>(blockCells * blockCells * blockCells);  ///< the first cellCount_ count
     std::vector<Brick> bricks_;
     std::array<std::vector<Borrowed>, seamKinds> borrowed_;
     std::array<std::vector<uint32_t>, seamKinds> lent_;
     uint32_t vertices_ = 0;
-    size_t triangles_ = 0;
+    size_t cellCount_ = 0, triangles_ = 0;
+    bool flat_ = false;  ///< some vertex has no normal
     Counts counts_;
 };
 

@@ -62,7 +62,8 @@ size_t step(size_t n, const float* __restrict base, const float* __restrict span
     return static_cast<size_t>(open);
 }
 
-void normalize(float* __restrict x, float* __restrict y, float* __restrict z, size_t n) {
+size_t normalize(float* __restrict x, float* __restrict y, float* __restrict z, size_t n) {
+    int without = 0;
     for (size_t i = 0; i < n; ++i) {
         const float squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
         const bool usable = (squared > 1e-30f) & (squared < 1e30f);
@@ -70,7 +71,27 @@ void normalize(float* __restrict x, float* __restrict y, float* __restrict z, si
         x[i] = usable ? x[i] * scale : 0.0f;
         y[i] = usable ? y[i] * scale : 0.0f;
         z[i] = usable ? z[i] * scale : 0.0f;
+        without += usable ? 0 : 1;
     }
+    return static_cast<size_t>(without);
+}
+
+/// Without a branch: which entries are open follows no pattern.
+size_t listOpen(const float* __restrict f, size_t begin, size_t end, uint32_t* __restrict list) {
+    size_t n = 0;
+    for (size_t i = begin; i < end; ++i) {
+        list[n] = static_cast<uint32_t>(i);
+        n += f[i] != 0.0f;
+    }
+    return n;
+}
+
+void pick(const float* __restrict from, const uint32_t* __restrict list, size_t n, float* __restrict to) {
+    for (size_t i = 0; i < n; ++i) to[i] = from[list[i]];
+}
+
+void putBack(const float* __restrict from, const uint32_t* __restrict list, size_t n, float* __restrict to) {
+    for (size_t i = 0; i < n; ++i) to[list[i]] = from[i];
 }
 
 void interpolateAll(const EdgeArrays& e, size_t n) {
@@ -83,7 +104,7 @@ size_t stepAll(const EdgeArrays& e, size_t n) {
 }  // namespace
 
 namespace SGM_ISA {
-const EdgeLoops loops{interpolateAll, stepAll, normalize};
+const EdgeLoops loops{interpolateAll, stepAll, normalize, listOpen, pick, putBack};
 }  // namespace SGM_ISA
 
 }  // namespace sgm::mesh

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace sgm::mesh {
 
@@ -29,8 +30,14 @@ struct EdgeLoops {
     /// Narrows the brackets by t and f and moves each vertex by Newton's step, or to the middle where that would leave
     /// the bracket. Sets f to 1 where the vertex has to be looked at again, else to 0; returns how many have to.
     size_t (*step)(const EdgeArrays& e, size_t n);
-    /// Scales (x, y, z) to unit length, to zero where it has no direction.
-    void (*normalize)(float* x, float* y, float* z, size_t n);
+    /// Scales (x, y, z) to unit length, to zero where it has no direction; returns how many have none.
+    size_t (*normalize)(float* x, float* y, float* z, size_t n);
+    /// Lists those of [begin, end) whose f isn't 0; returns how many. The list needs room for end − begin.
+    size_t (*listOpen)(const float* f, size_t begin, size_t end, uint32_t* list);
+    /// to[i] = from[list[i]]
+    void (*pick)(const float* from, const uint32_t* list, size_t n, float* to);
+    /// to[list[i]] = from[i]
+    void (*putBack)(const float* from, const uint32_t* list, size_t n, float* to);
 };
 
 namespace portable {

@@ -22,14 +22,6 @@ uint8_t sampledBelow(uint64_t active, Vec3i brick) {
     return result;
 }
 
-/// `from` to `to`, nine floats and some more.
-void copyRow(const float* from, float* to) {
-    for (int i = 0; i < 12; ++i) to[i] = from[i];
-}
-void fillRow(float value, float* to) {
-    for (int i = 0; i < 12; ++i) to[i] = value;
-}
-
 }  // namespace
 
 void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts) {
@@ -71,14 +63,14 @@ void BlockSamples::gather(Vec3i brick) {
         for (int j = 0; j < corners.y; ++j) {
             const int low = (j == 0 ? 2 : 0) | (k == 0 ? 4 : 0);
             if (below >> low & 1) continue;
-            const int skip = below >> (low | 1) & 1;
-            copyRow(coordinates_[0].data() + first.x + skip, x_.data() + points_);
-            fillRow(coordinates_[1][first.y + j], y_.data() + points_);
-            fillRow(coordinates_[2][first.z + k], z_.data() + points_);
-            const Row row{cornerNumber(first.x + skip, first.y + j, first.z + k), corners.x - skip};
-            rows_[rowCount_++] = row;
-            points_ += static_cast<size_t>(row.count);
+            const int skip = below >> (low | 1) & 1, count = corners.x - skip;
+            const Vec3i at = first + Vec3i{skip, j, k};
+            rows_[rowCount_++] = {static_cast<uint16_t>(cornerNumber(at.x, at.y, at.z)), static_cast<uint8_t>(at.x),
+                                  static_cast<uint8_t>(at.y), static_cast<uint8_t>(at.z), static_cast<uint8_t>(count)};
+            points_ += static_cast<size_t>(count);
         }
+    brickLoops().gather(rows_.data(), rowCount_, coordinates(0), coordinates(1), coordinates(2), x_.data(), y_.data(),
+                        z_.data());
 }
 
 void BlockSamples::sealBorder(Vec3i brick) {
@@ -103,13 +95,7 @@ const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Co
     gather(brickAt(brick));
     eval::evaluate(tape, {x_.data(), y_.data(), z_.data(), points_}, f_.data(), workspace);
     counts.pointEvaluations += points_;
-    const float* f = f_.data();
-    for (size_t r = 0; r < rowCount_; ++r) {
-        const Row row = rows_[r];
-        float* const to = values_.data() + row.corner;
-        for (int i = 0; i < row.count; ++i) to[i] = f[i];
-        f += row.count;
-    }
+    brickLoops().scatter(rows_.data(), rowCount_, f_.data(), values_.data());
     sealBorder(brickAt(brick));
     return tape;
 }

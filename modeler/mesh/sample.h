@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "modeler/core/pages.h"
+#include "modeler/mesh/brick_loops.h"
 #include "modeler/mesh/region.h"
 
 namespace sgm::mesh {
@@ -50,22 +51,17 @@ private:
     void gather(Vec3i brick);
     void sealBorder(Vec3i brick);
 
-    /// A brick's corners that it has to evaluate, as rows along x of the block's values.
-    struct Row {
-        int corner, count;
-    };
-    static constexpr int padding = 16;  ///< rows are copied in whole vectors
-    static constexpr int maxBatch = brickCorners * brickCorners * brickCorners + padding;
+    static constexpr int maxBatch = brickCorners * brickCorners * brickCorners + rowPadding;
 
     const Block* block_ = nullptr;
     uint64_t active_ = 0;
     std::array<uint8_t, bricksPerBlock> region_{};  ///< of a brick, in the last evaluateRanges
     eval::Tape tape_;
     Vec3i last_;  ///< the highest corner in the grid, counted from the block's first
-    PageVector<float> values_ = PageVector<float>(cornersPerBlock);
-    std::array<std::array<float, blockCorners + padding>, 3> coordinates_{};
+    PageVector<float> values_ = PageVector<float>(cornersPerBlock + rowPadding);
+    std::array<std::array<float, blockCorners + rowPadding>, 3> coordinates_{};
     std::array<float, maxBatch> x_, y_, z_, f_;
-    std::array<Row, brickCorners * brickCorners> rows_;
+    std::array<CornerRow, brickCorners * brickCorners> rows_;  ///< corners that the brick has to evaluate
     size_t points_ = 0, rowCount_ = 0;
 };
 

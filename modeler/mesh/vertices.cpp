@@ -44,30 +44,25 @@ void evaluate(const eval::Tape& tape, CutEdges& e, eval::Workspace& workspace) {
 }
 
 /// The `count` entries that a step left open; their slots say which they were.
-void pickOpen(const CutEdges& from, size_t count, CutEdges& to) {
-    to.reserve(count);
+void pickOpen(const EdgeLoops& loops, const CutEdges& from, size_t count, CutEdges& to) {
+    to.reserve(count + 1);
     size_t n = 0;
     forEachAxis(from, [&](int axis, size_t begin, size_t end) {
         to.axisBegin[axis] = n;
-        for (size_t i = begin; i < end; ++i) {
-            if (from.f[i] == 0.0f) continue;
-            to.x[n] = from.x[i], to.y[n] = from.y[i], to.z[n] = from.z[i];
-            to.base[n] = from.base[i], to.span[n] = from.span[i], to.t[n] = from.t[i];
-            to.tIn[n] = from.tIn[i], to.fIn[n] = from.fIn[i];
-            to.tOut[n] = from.tOut[i], to.fOut[n] = from.fOut[i];
-            to.slot[n++] = static_cast<uint32_t>(i);
-        }
+        n += loops.listOpen(from.f.data(), begin, end, to.slot.data() + n);
     });
     to.axisBegin[3] = n;
+    constexpr PageVector<float> CutEdges::*picked[] = {&CutEdges::x,    &CutEdges::y,   &CutEdges::z,   &CutEdges::base,
+                                                       &CutEdges::span, &CutEdges::t,   &CutEdges::tIn, &CutEdges::fIn,
+                                                       &CutEdges::tOut, &CutEdges::fOut};
+    for (const auto list : picked) loops.pick((from.*list).data(), to.slot.data(), n, (to.*list).data());
 }
 
 /// Hands positions and derivatives back to where the entries were picked from.
-void putBack(const CutEdges& from, CutEdges& to) {
-    for (size_t i = 0; i < from.size(); ++i) {
-        const size_t at = from.slot[i];
-        to.x[at] = from.x[i], to.y[at] = from.y[i], to.z[at] = from.z[i];
-        to.dx[at] = from.dx[i], to.dy[at] = from.dy[i], to.dz[at] = from.dz[i];
-    }
+void putBack(const EdgeLoops& loops, const CutEdges& from, CutEdges& to) {
+    constexpr PageVector<float> CutEdges::*found[] = {&CutEdges::x,  &CutEdges::y,  &CutEdges::z,
+                                                      &CutEdges::dx, &CutEdges::dy, &CutEdges::dz};
+    for (const auto list : found) loops.putBack((from.*list).data(), from.slot.data(), from.size(), (to.*list).data());
 }
 
 }  // namespace
@@ -96,16 +91,16 @@ uint64_t findVertices(const eval::Tape& tape, size_t refineSteps, eval::Workspac
         const size_t open = loops.step(arraysOf(*list), list->size());
         moveToPlace(*list);
         if (open == 0) break;
-        pickOpen(*list, open, scratch[s]);
+        pickOpen(loops, *list, open, scratch[s]);
         list = &scratch[s];
     }
     // Each list was picked from the one before.
     while (list != &edges) {
         CutEdges& from = *list;
         list = list == scratch.data() ? &edges : list - 1;
-        putBack(from, *list);
+        putBack(loops, from, *list);
     }
-    loops.normalize(edges.dx.data(), edges.dy.data(), edges.dz.data(), edges.size());
+    edges.flat = loops.normalize(edges.dx.data(), edges.dy.data(), edges.dz.data(), edges.size());
     return evaluations;
 }
 

@@ -23,6 +23,7 @@ struct CutEdges {
     PageVector<float> base, span, slope, tIn, fIn, tOut, fOut, t, f, place;
     PageVector<uint32_t> slot;          ///< the caller's
     std::array<size_t, 4> axisBegin{};  ///< entries [axisBegin[a], axisBegin[a + 1]) lie along axis a
+    size_t flat = 0;                    ///< entries whose normal is zero
 
     size_t size() const { return axisBegin[3]; }
     /// Makes room for n entries; never shrinks.
