@@ -248,18 +248,24 @@ void BlockMesher::writeTriangles(Chunk& chunk) const {
     OriginId* origin = chunk.origins.data();
     const uint32_t* const number = number_.data();
     const auto& cases = placedCases();
-    size_t c = 0;
-    for (const Brick& brick : bricks_)
-        for (; c < brick.cellsEnd; ++c) {
-            const PlacedCase& cell = cases[cells_[c].inside];
-            const uint32_t* const at = number + edgePlace(cells_[c].corner, 0);
-            for (uint32_t t = 0; t < cell.triangles; ++t) {
-                const Triangle corners{at[cell.edges[3 * t]], at[cell.edges[3 * t + 1]], at[cell.edges[3 * t + 2]]};
-                *triangle++ = corners;
-                *origin++ = brick.owner ? *brick.owner
-                                        : majority(originOf(corners.x), originOf(corners.y), originOf(corners.z));
-            }
+    const Cell* cell = cells_.data();
+    for (const Brick& brick : bricks_) {
+        const Triangle* const first = triangle;
+        for (const Cell* const end = cells_.data() + brick.cellsEnd; cell != end; ++cell) {
+            const PlacedCase& placed = cases[cell->inside];
+            const uint32_t* const at = number + edgePlace(cell->corner, 0);
+            for (const int16_t *e = placed.edges.data(), *last = e + 3 * placed.triangles; e != last; e += 3)
+                *triangle++ = {at[e[0]], at[e[1]], at[e[2]]};
         }
+        const auto count = static_cast<size_t>(triangle - first);
+        if (brick.owner)
+            std::fill_n(origin, count, *brick.owner);
+        else
+            std::transform(first, static_cast<const Triangle*>(triangle), origin, [this](const Triangle& t) {
+                return majority(originOf(t.x), originOf(t.y), originOf(t.z));
+            });
+        origin += count;
+    }
 }
 
 }  // namespace sgm::mesh
