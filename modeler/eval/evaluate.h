@@ -67,10 +67,11 @@ struct Regions {
 void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& workspace);
 
 /// The tape with everything dropped that can't matter in region `index` of the last evaluateRanges on this workspace
-/// (which must have been of this very tape). Inside the region it returns the same bits as `tape`, and the same owners;
-/// derivatives agree up to rounding.
-Tape shorten(const Tape& tape, size_t index, Workspace& workspace);
+/// (which must have been of this very tape). Inside the region it returns the same bits as `tape` wherever those lie in
+/// what `care` tells apart, with the same owners and derivatives up to rounding; elsewhere some number on the same
+/// side.
+Tape shorten(const Tape& tape, size_t index, Workspace& workspace, Care care = {});
 /// The same in the memory of another tape than `tape`: nothing is allocated in steady state.
-void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into);
+void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, Care care = {});
 
 }  // namespace sgm::eval

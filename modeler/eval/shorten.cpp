@@ -48,14 +48,14 @@ void operandsLeft(const field::OpTraits& row, const Instruction& in, const Sourc
 
 }  // namespace
 
-void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into) {
+void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, Care care) {
     Workspace::Impl& w = workspace.impl();
     assert(w.links.follows(tape) && index < maxBoxes && &into != &tape);
     const float* const bounds = w.bounds.get(w.links.boundRows() * maxBoxes) + index;
     TapeBuilder& b = w.builder;
     b.begin(tape.size() + 3);
     for (uint32_t axis = 0; axis < 3; ++axis) b.bindInput(axis, axis);
-    b.result({w.links.result(), tape.origins()[0]});
+    b.result({w.links.result(), tape.origins()[0], care});
     for (uint32_t value = b.nextLive(static_cast<uint32_t>(tape.size()) + 3); value != TapeBuilder::none;
          value = b.nextLive(value)) {
         const size_t i = value - 3;
@@ -71,8 +71,8 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into) {
             else
                 b.define(value, in.op, in.data, w.uses.data(), w.uses.size(), origins != nullptr);
         } else if (in.op == field::codeOf<field::ops::Neg>) {
-            const Care care = b.care(value);
-            const TapeBuilder::Use negated{values[0], origins ? origins[0] : 0, {-care.most, -care.least}};
+            const Care own = b.care(value);
+            const TapeBuilder::Use negated{values[0], origins ? origins[0] : 0, {-own.most, -own.least}};
             b.define(value, in.op, in.data, &negated, 1, origins != nullptr);
         } else {
             b.define(value, in, values, origins);
@@ -81,9 +81,9 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into) {
     b.finish(tape.sharedConstants(), tape.lipschitz(), into);
 }
 
-Tape shorten(const Tape& tape, size_t index, Workspace& workspace) {
+Tape shorten(const Tape& tape, size_t index, Workspace& workspace, Care care) {
     Tape result;
-    shorten(tape, index, workspace, result);
+    shorten(tape, index, workspace, result, care);
     return result;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -29,6 +30,14 @@ struct Instruction {
     Source b = 0;          ///< second operand
     uint32_t data = 0;     ///< structural integer of the op (KIFS passes)
     uint32_t origins = 0;  ///< 1 + index of this instruction's operand origins in Tape::origins(), 0 for none
+};
+
+/// What the consumers of a value tell apart: any two numbers above `most` are the same to them, and any two below
+/// `least`.
+struct Care {
+    float least = -std::numeric_limits<float>::infinity();
+    float most = std::numeric_limits<float>::infinity();
+    friend bool operator==(const Care&, const Care&) = default;
 };
 
 /// An immutable program; registers are reused, so run it forward. Registers 0, 1, 2 hold x, y, z at the start.

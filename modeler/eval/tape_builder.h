@@ -11,13 +11,6 @@
 
 namespace sgm::eval {
 
-/// What the consumers of a value tell apart: any two numbers above `most` are the same to them, and any two below
-/// `least`.
-struct Care {
-    float least = -std::numeric_limits<float>::infinity();
-    float most = std::numeric_limits<float>::infinity();
-};
-
 /// Scratch is kept between tapes: nothing but the tape itself is allocated in steady state.
 class TapeBuilder {
 public:

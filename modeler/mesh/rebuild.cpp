@@ -94,7 +94,8 @@ Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progr
 }
 
 Result<const Mesh*> Rebuild::update(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts) {
-    if (!sameGrid(grid, grid_)) forget();
+    const eval::Care care = careOf(tape, grid);
+    if (!sameGrid(grid, grid_) || !(care == care_)) forget();
     const eval::Fingerprint print = eval::fingerprint(tape);
     if (print == tape_) {
         blocksKept_ += blocksMade_;
@@ -108,6 +109,7 @@ Result<const Mesh*> Rebuild::update(const eval::Tape& tape, const Grid& grid, Pr
     }
     tape_ = print;
     grid_ = grid;
+    care_ = care;
     return result;
 }
 

@@ -17,8 +17,8 @@ public:
     explicit Rebuild(PolygonizeOptions options = {}) : options_(options) {}
 
     /// The mesh of `tape` on `grid`, valid until the next call. Nothing is kept when the grid is another one than in
-    /// the last call (see `gridToKeep`), nor after an error. Errors as of subdivide and polygonize; the memory
-    /// budget counts what is made anew.
+    /// the last call (see `gridToKeep`), when the field's Lipschitz constant doubled, nor after an error. Errors as of
+    /// subdivide and polygonize; the memory budget counts what is made anew.
     Result<const Mesh*> update(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts);
 
     /// Blocks of the last mesh that were meshed anew.
@@ -45,6 +45,7 @@ private:
 
     PolygonizeOptions options_;
     Grid grid_;
+    eval::Care care_;
     eval::Fingerprint tape_;
     Regions regions_;  ///< all that may hold surface, blocks (level 0) and above
     Mesh mesh_;

@@ -2,6 +2,7 @@
 // Enters: a cube's index and edge, the grid. Leaves: cells, box, verdict. Assumes ranges that enclose the field.
 #pragma once
 
+#include <cmath>
 #include <tuple>
 
 #include "modeler/core/result.h"
@@ -39,6 +40,18 @@ inline bool mayHoldSurface(eval::Range range, const CellRange& cells, const Grid
     if (range.lo >= 0) return false;
     const bool touchesBorder = minComponent(cells.lo) == 0 || minComponent(grid.cells - cells.hi) == 0;
     return !(range.hi < 0) || touchesBorder;
+}
+
+/// What the mesher tells apart of the field's values. On an edge that the surface cuts they stay within Lipschitz
+/// constant · cell of 0, and vertices lie on those edges; of all other values only the sign counts. The constant is
+/// rounded up to a power of two, so that small changes of it change nothing, and a quarter more is for rounding.
+inline eval::Care careOf(const eval::Tape& tape, const Grid& grid) {
+    const float lipschitz = tape.lipschitz();
+    if (!(lipschitz > 0) || !std::isfinite(lipschitz)) return {};
+    int exponent = 0;
+    const bool isPower = std::frexp(lipschitz, &exponent) == 0.5f;
+    const float most = 1.25f * std::ldexp(grid.cell_m, isPower ? exponent - 1 : exponent);
+    return {-most, most};
 }
 
 /// Error::Input for a box without end and for cells that float32 can't resolve or that aren't positive, Error::Budget

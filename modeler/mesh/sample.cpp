@@ -26,6 +26,7 @@ uint8_t sampledBelow(uint64_t active, Vec3i brick) {
 
 void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts) {
     block_ = &block;
+    care_ = careOf(block.tape, grid);
     const Vec3i first = block.index * blockCells;
     last_ = grid.cells - first;
     for (int i = 0; i < blockCorners; ++i) {
@@ -90,7 +91,7 @@ void BlockSamples::sealBorder(Vec3i brick) {
 
 const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Counts& counts) {
     const bool whole = block_->tape.size() <= shortEnough;
-    if (!whole) eval::shorten(block_->tape, region_[brick], workspace, tape_);
+    if (!whole) eval::shorten(block_->tape, region_[brick], workspace, tape_, care_);
     const eval::Tape& tape = whole ? block_->tape : tape_;
     gather(brickAt(brick));
     eval::evaluate(tape, {x_.data(), y_.data(), z_.data(), points_}, f_.data(), workspace);

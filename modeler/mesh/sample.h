@@ -54,6 +54,7 @@ private:
     static constexpr int maxBatch = brickCorners * brickCorners * brickCorners + rowPadding;
 
     const Block* block_ = nullptr;
+    eval::Care care_;
     uint64_t active_ = 0;
     std::array<uint8_t, bricksPerBlock> region_{};  ///< of a brick, in the last evaluateRanges
     eval::Tape tape_;

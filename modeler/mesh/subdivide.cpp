@@ -40,7 +40,7 @@ std::vector<Region> split(const Region& region, int childCells, const Grid& grid
     std::vector<Region> kept;
     for (size_t c = 0; c < n; ++c) {
         if (!mayHoldSurface(ranges[c], children[c], grid)) continue;
-        Region child{children[c].lo / childCells, eval::shorten(region.tape, c, workspace)};
+        Region child{children[c].lo / childCells, eval::shorten(region.tape, c, workspace, careOf(region.tape, grid))};
         if (!filter || filter(child.index, childCells / blockCells, child.tape)) kept.push_back(std::move(child));
     }
     return kept;

@@ -1,7 +1,8 @@
 // The descent from the whole box to the blocks that hold surface.
-// Enters: a tape, a grid. Leaves: blocks in ascending order, each with its own shortened tape. Assumes the grid's box
-// holds the surface with a layer of outside around it; corners on the grid's border count as outside whatever the field
-// says, so what sticks out is cut off flat there and the mesh still closes.
+// Enters: a tape, a grid. Leaves: blocks in ascending order, each with its own shortened tape. Assumes that the tape's
+// Lipschitz constant is one, and that the grid's box holds the surface with a layer of outside around it; corners on
+// the grid's border count as outside whatever the field says, so what sticks out is cut off flat there and the mesh
+// still closes.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +39,8 @@ Grid gridFor(const Box3f& bounds, float cell_m);
 float cellFor(const Box3f& bounds, int resolution);
 
 struct Block {
-    Vec3i index;  ///< block coordinates: cells [32·index, 32·index + 32)
-    eval::Tape tape;
+    Vec3i index;      ///< block coordinates: cells [32·index, 32·index + 32)
+    eval::Tape tape;  ///< shortened to the block, as far as the surface goes: far from it only the sign is the field's
 };
 
 /// What the descent and the sampling counted, for the report; vertex refinement apart, normals not counted.

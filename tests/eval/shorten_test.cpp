@@ -110,6 +110,29 @@ TEST(Shorten, APartIsDroppedForANearerOneElsewhereInTheTree) {
     EXPECT_EQ(balls, 2u);  // those at 0 and 0.6, whose ranges meet
 }
 
+TEST(Shorten, ValuesBeyondWhatIsToldApartKeepTheirSide) {
+    Graph graph;
+    const Num row = spheres(graph, 0, 64), root = max(row, -(row + 0.2f));  // shells
+    const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
+    Workspace w;
+    Draws draws{5};
+    const Box3f box{{20, -3, -3}, {26, 3, 3}};
+    const Care care{-0.1f, 0.3f};
+    Range range;
+    evaluateRanges(tape, {&box, 1}, &range, w);
+    const Tape exact = shorten(tape, 0, w), near = shorten(tape, 0, w, care);
+    EXPECT_LT(near.size(), exact.size());
+    const Cloud cloud = pointsIn(box, 2000, draws);
+    const std::vector<float> expected = values(tape, cloud), got = values(near, cloud);
+    for (size_t i = 0; i < cloud.size(); ++i)
+        if (expected[i] > care.most)
+            EXPECT_GT(got[i], care.most);
+        else if (expected[i] < care.least)
+            EXPECT_LT(got[i], care.least);
+        else
+            EXPECT_TRUE(sameBits(expected[i], got[i])) << expected[i] << " but " << got[i];
+}
+
 TEST(Shorten, NothingIsCopiedWhenOperandsHaveOwners) {
     Graph graph;
     const Num s = spheres(graph, 0, 1), t = spheres(graph, 10, 1), u = spheres(graph, 20, 1);

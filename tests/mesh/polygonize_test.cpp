@@ -54,6 +54,31 @@ TEST(Polygonize, TorusConvergesAtSecondOrder) {
     EXPECT_EQ(measure(*meshOf(s, 60).mesh).euler, 0);
 }
 
+TEST(Polygonize, WhatIsFarFromTheSurfaceIsDroppedAndNothingShows) {
+    // Without a Lipschitz constant all values have to be told apart.
+    for (uint64_t key = 0; key < 6; ++key) {
+        Scene s = cloudScene(60, 0.1f, key);
+        const field::Field hole = ball(s.graph, {0.5f, 0.5f, 0.5f}, 0.3f),
+                           slab = box(s.graph, {0.4f, 0.5f, 0.5f}, {0.1f, 0.7f, 0.1f});
+        const field::Owned holes[] = {{hole, 100}, {slab, 101}};
+        s.field = field::difference({s.field, 0}, {field::sum(s.graph, holes), 0});
+        if (key % 2 == 1) s.field.value = s.field.value * 3.0f, s.field.lipschitz = 3;
+        const Meshed known = meshOf(s, 40);
+        s.field.lipschitz = std::numeric_limits<float>::infinity();
+        const Meshed unknown = meshOf(s, 40);
+        ASSERT_TRUE(known.mesh.ok() && unknown.mesh.ok());
+        EXPECT_EQ(bytesOf(*known.mesh), bytesOf(*unknown.mesh)) << key;
+        size_t length[2] = {};
+        for (const bool all : {false, true}) {
+            s.field.lipschitz = all ? std::numeric_limits<float>::infinity() : key % 2 == 1 ? 3.0f : 1.0f;
+            Counts counts;
+            const auto blocks = subdivide(s.tape(), known.grid, 1, nullptr, counts);
+            for (const Block& b : *blocks) length[all] += b.tape.size();
+        }
+        EXPECT_LT(2 * length[false], length[true]);
+    }
+}
+
 TEST(Polygonize, BoxIsExactUpToItsBevelledEdges) {
     // Faces are met exactly; what is lost lies within a cell of the 12 edges, so it goes with cell².
     Scene s;
