@@ -12,7 +12,9 @@ namespace {
 
 constexpr size_t hugePage = size_t{2} << 20;
 constexpr size_t regionBytes = 4 * hugePage;
-constexpr size_t mostFreeRegions = 32;
+constexpr size_t mostFreeRegions = 512;
+/// Free regions beyond these are the system's to take back, should it need memory.
+constexpr size_t mostHeldRegions = 32;
 constexpr size_t lineBytes = 64;
 /// Larger pieces get a mapping of their own.
 constexpr size_t largest = regionBytes / 4;
@@ -55,7 +57,7 @@ public:
     }
     void put(Region* region) {
         const std::lock_guard lock(mutex_);
-        if (count_ == mostFreeRegions) {
+        if (count_ == mostFreeRegions || (count_ >= mostHeldRegions && !offer(region))) {
             munmap(region, regionBytes);
             return;
         }
@@ -73,6 +75,16 @@ public:
     }
 
 private:
+    /// Leaves a region's pages to the system until they are written again; false where it knows no such thing.
+    static bool offer(Region* region) {
+#if defined(MADV_FREE)
+        return madvise(region, regionBytes, MADV_FREE) == 0;
+#else
+        static_cast<void>(region);
+        return false;
+#endif
+    }
+
     std::mutex mutex_;
     Region* first_ = nullptr;
     size_t count_ = 0;

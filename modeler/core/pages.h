@@ -18,7 +18,7 @@ void* allocatePages(size_t bytes);
 void freePages(void* memory, size_t bytes) noexcept;
 }  // namespace detail
 
-/// Gives regions that nothing lies in back to the system. Up to 256 MiB of them are kept otherwise.
+/// Gives regions that nothing lies in back to the system. Otherwise up to 4 GiB stay, all but 256 MiB its to reclaim.
 void releasePages() noexcept;
 
 /// For std::vector: a `resize` leaves new elements as the memory was, to be written once.

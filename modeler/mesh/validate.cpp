@@ -53,28 +53,50 @@ std::vector<uint32_t> weldMap(const std::vector<Vec3f>& positions) {
     return map;
 }
 
-/// Edges of all triangles as (low vertex, high vertex) in one key, and whether the triangle runs upwards along it.
-struct DirectedEdge {
-    uint64_t key;
-    bool upwards;
+/// The edges at each lower vertex, by their upper ends: in the front of a vertex's part those that their triangle runs
+/// up along, in its back the others. A counting sort, whose parts lie about as the mesh does.
+struct EdgesByVertex {
+    std::vector<size_t> start;    ///< of each vertex's part
+    std::vector<uint32_t> ups;    ///< how many run up
+    std::vector<uint32_t> upper;  ///< ends
 };
 
+EdgesByVertex edgesByVertex(const Flat& flat) {
+    const size_t vertices = flat.positions.size();
+    EdgesByVertex edges{std::vector<size_t>(vertices + 1), std::vector<uint32_t>(vertices),
+                        std::vector<uint32_t>(3 * flat.triangles.size())};
+    const auto forEach = [&](auto&& visit) {
+        for (const Triangle& t : flat.triangles)
+            for (int i = 0; i < 3; ++i) visit(t[i], t[(i + 1) % 3]);
+    };
+    forEach([&](uint32_t a, uint32_t b) { ++edges.start[std::min(a, b) + size_t{1}]; });
+    std::partial_sum(edges.start.begin(), edges.start.end(), edges.start.begin());
+    std::vector<uint32_t> downs(vertices);
+    forEach([&](uint32_t a, uint32_t b) {
+        if (a < b)
+            edges.upper[edges.start[a] + edges.ups[a]++] = b;
+        else
+            edges.upper[edges.start[b + size_t{1}] - ++downs[b]] = a;
+    });
+    return edges;
+}
+
 void countEdges(const Flat& flat, MeshFigures& figures, uint64_t& edges) {
-    std::vector<DirectedEdge> all;
-    all.reserve(flat.triangles.size() * 3);
-    for (const Triangle& t : flat.triangles)
-        for (int i = 0; i < 3; ++i) {
-            const uint64_t a = t[i], b = t[(i + 1) % 3];
-            all.push_back({std::min(a, b) << 32 | std::max(a, b), a < b});
+    EdgesByVertex all = edgesByVertex(flat);
+    for (size_t v = 0; v < all.ups.size(); ++v) {
+        uint32_t *up = all.upper.data() + all.start[v], *const upEnd = up + all.ups[v],
+                 *down = upEnd, *const downEnd = all.upper.data() + all.start[v + 1];
+        std::sort(up, upEnd);
+        std::sort(down, downEnd);
+        while (up != upEnd || down != downEnd) {
+            const uint32_t end = down == downEnd || (up != upEnd && *up < *down) ? *up : *down;
+            size_t upwards = 0, count = 0;
+            for (; up != upEnd && *up == end; ++up) ++upwards, ++count;
+            for (; down != downEnd && *down == end; ++down) ++count;
+            ++edges;
+            if (count == 1) ++figures.boundaryEdges;
+            if (count > 2 || (count == 2 && upwards != 1)) ++figures.nonmanifoldEdges;
         }
-    radixSort(all, [](const DirectedEdge& e) { return e.key; });
-    for (size_t i = 0, next; i < all.size(); i = next) {
-        size_t upwards = 0;
-        for (next = i; next < all.size() && all[next].key == all[i].key; ++next) upwards += all[next].upwards ? 1 : 0;
-        const size_t count = next - i;
-        ++edges;
-        if (count == 1) ++figures.boundaryEdges;
-        if (count > 2 || (count == 2 && upwards != 1)) ++figures.nonmanifoldEdges;
     }
 }
 

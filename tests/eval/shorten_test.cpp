@@ -112,7 +112,7 @@ TEST(Shorten, APartIsDroppedForANearerOneElsewhereInTheTree) {
 
 TEST(Shorten, ValuesBeyondWhatIsToldApartKeepTheirSide) {
     Graph graph;
-    const Num row = spheres(graph, 0, 64), root = max(row, -(row + 0.2f));  // shells
+    const Num root = max(graph.y() - 0.1f, -spheres(graph, 0, 64));
     const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
     Workspace w;
     Draws draws{5};
