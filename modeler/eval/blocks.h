@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 
 #include "modeler/eval/workspace.h"
 
@@ -38,8 +39,13 @@ inline void loadPoints(const Points& points, size_t first, size_t n, const StepC
     const float* from[] = {points.x + first, points.y + first, points.z + first};
     for (uint32_t axis = 0; axis < 3; ++axis) {
         loadRow(from[axis], n, rowOf(c, axis, planes, 0), c.count);
-        for (size_t d = 1; d < planes; ++d)
-            std::fill_n(rowOf(c, axis, planes, d), c.count, d == axis + 1 ? 1.0f : 0.0f);
+        for (size_t d = 1; d < planes; ++d) {
+            float* const row = rowOf(c, axis, planes, d);
+            if (d == axis + 1)
+                std::fill_n(row, c.count, 1.0f);
+            else
+                std::memset(row, 0, c.count * sizeof(float));
+        }
     }
 }
 

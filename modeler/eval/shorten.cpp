@@ -14,11 +14,21 @@ namespace {
 
 using field::ops::Owner;
 
+/// What of the result matters, as far as operands can show it. Of a blend f = c − k with the least operand m, where
+/// m − k ≤ f ≤ m and an operand counts below m + k alone: those above most + 2k don't where f ≤ most, and elsewhere
+/// leave f above it. The rest is for rounding.
+Care careOfResult(const Tape& tape, const Instruction& in, const Source* values, Care care) {
+    if (field::traits(in.op).selects) return care;
+    if (in.op != field::codeOf<field::ops::Blend> || !isConstant(values[0])) return {};
+    const float twice = 2 * tape.constants()[indexOf(values[0])];
+    if (!(twice >= 0)) return {};
+    return {care.least, care.most + twice + 1e-5f * (std::abs(care.most) + twice)};
+}
+
 /// What matters of the operands of an op that chooses, and with it what may be dropped. `reach` is the op's own, NaN
 /// where an operand is unknown: then nothing may be dropped, since a NaN takes sides by its place.
-Care careOfOperands(const field::OpTraits& row, float reach, Care care) {
+Care careOfOperands(const field::OpTraits& row, float reach, Care outer) {
     if (std::isnan(reach)) return {};
-    const Care outer = row.selects ? care : Care{};
     if (row.owner == Owner::Least) return {outer.least, std::min(outer.most, reach)};
     return {std::max(outer.least, reach), outer.most};
 }
@@ -35,10 +45,10 @@ const OriginId* ownersOf(const Tape& tape, const Instruction& in) {
 
 /// The operands that are left of an instruction that chooses, with what of them matters.
 void operandsLeft(const field::OpTraits& row, const Instruction& in, const Source* values, const OriginId* origins,
-                  const float* bounds, Care care, std::vector<TapeBuilder::Use>& uses) {
+                  const float* bounds, Care outer, std::vector<TapeBuilder::Use>& uses) {
     const auto use = [&](uint32_t k, Care c) { uses.push_back({values[k], origins ? origins[k] : 0, c}); };
     uses.clear();
-    const Care inner = careOfOperands(row, bounds[in.count * maxBoxes], care);
+    const Care inner = careOfOperands(row, bounds[in.count * maxBoxes], outer);
     for (uint32_t k = 0; k < row.firstChoice; ++k) use(k, {});
     for (uint32_t k = row.firstChoice; k < in.count; ++k)
         if (!beyond(row, bounds[k * maxBoxes], inner)) use(k, inner);
@@ -64,8 +74,8 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
         const Source* const values = w.links.operands(i);
         const OriginId* const origins = ownersOf(tape, in);
         if (row.chooses) {
-            operandsLeft(row, in, values, origins, bounds + size_t{w.links.bounds(i)} * maxBoxes, b.care(value),
-                         w.uses);
+            operandsLeft(row, in, values, origins, bounds + size_t{w.links.bounds(i)} * maxBoxes,
+                         careOfResult(tape, in, values, b.care(value)), w.uses);
             if (w.uses.size() == row.firstChoice + 1u)
                 b.alias(value, w.uses.back());
             else

@@ -110,27 +110,44 @@ TEST(Shorten, APartIsDroppedForANearerOneElsewhereInTheTree) {
     EXPECT_EQ(balls, 2u);  // those at 0 and 0.6, whose ranges meet
 }
 
-TEST(Shorten, ValuesBeyondWhatIsToldApartKeepTheirSide) {
-    Graph graph;
-    const Num root = max(graph.y() - 0.1f, -spheres(graph, 0, 64));
-    const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
+/// Shortened to a box, a tape keeps its bits within what is told apart, and its side beyond.
+void expectSides(const Tape& tape, const Box3f& box, Care care) {
     Workspace w;
     Draws draws{5};
-    const Box3f box{{20, -3, -3}, {26, 3, 3}};
-    const Care care{-0.1f, 0.3f};
     Range range;
     evaluateRanges(tape, {&box, 1}, &range, w);
     const Tape exact = shorten(tape, 0, w), near = shorten(tape, 0, w, care);
-    EXPECT_LT(near.size(), exact.size());
+    const auto operands = [](const Tape& t) {
+        size_t n = 0;
+        for (const Instruction& in : t.code()) n += in.count;
+        return n;
+    };
+    EXPECT_LT(operands(near), operands(exact));
     const Cloud cloud = pointsIn(box, 2000, draws);
     const std::vector<float> expected = values(tape, cloud), got = values(near, cloud);
-    for (size_t i = 0; i < cloud.size(); ++i)
+    for (size_t i = 0; i < cloud.size(); ++i) {
         if (expected[i] > care.most)
             EXPECT_GT(got[i], care.most);
         else if (expected[i] < care.least)
             EXPECT_LT(got[i], care.least);
         else
             EXPECT_TRUE(sameBits(expected[i], got[i])) << expected[i] << " but " << got[i];
+    }
+}
+
+TEST(Shorten, ValuesBeyondWhatIsToldApartKeepTheirSide) {
+    Graph graph;
+    const Num holes = max(graph.y() - 0.1f, -spheres(graph, 0, 64));
+    expectSides(compile(graph, {holes, {}, 1, 1}, graph.constants()), {{20, -3, -3}, {26, 3, 3}}, {-0.1f, 0.3f});
+}
+
+TEST(Shorten, PartsOfABlendThatAreFarFromWhatIsToldApartAreDropped) {
+    Graph graph;
+    std::vector<field::Operand> operands{{graph.slot(0.2f).id(), 0}};
+    for (int i = 0; i < 64; ++i) operands.push_back({spheres(graph, i, 1).id(), 0});
+    const Num melt = graph.apply(codeOf<ops::Blend>, operands);
+    expectSides(compile(graph, {melt, {}, 1, 1}, graph.constants()), {{20, 1, 1}, {26, 4, 4}}, {-0.1f, 0.1f});
+    expectSides(compile(graph, {melt, {}, 1, 1}, graph.constants()), {{20, -3, -3}, {26, 3, 3}}, {-0.1f, 0.1f});
 }
 
 TEST(Shorten, NothingIsCopiedWhenOperandsHaveOwners) {
