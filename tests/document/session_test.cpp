@@ -1,27 +1,246 @@
-// The session: what is recomputed, what is kept when a text is broken.
+// The session: what is computed again, and what stays when a text is broken.
 #include "viewer/document/session.h"
 
-#include "tests/document/texts.h"
+#include "modeler/mesh/validate.h"
+#include "tests/document/scratch.h"
+#include "tests/document/shown.h"
 
 namespace sgm::viewer {
 namespace {
 
-/// Polls until the session has nothing to do.
-void settle(Session& session) {
-    while (session.busy()) {
-        session.poll();
-        std::this_thread::yield();
+constexpr const char* chain =
+    "grammar 1\n"
+    "param n = 4 in 1..40\n"
+    "param wide = 2.5 in 1..9.0\n"
+    "param paint = #aabbcc\n"
+    "start A -> cube size (wide, 3, 3) color paint : B\n"
+    "rule B repeat n -> + sphere size 1.5 at free(+x, +z) : B\n"
+    "start Other -> cone\n"
+    "style Wide { wide = 7.0 }\n"
+    "derive none: B#1\n";
+
+class Sessions : public testing::Test {
+protected:
+    void change(std::string_view from, std::string_view to) {
+        document.type(replaced(document.text(), from, to));
+        show(session, document);
     }
-    session.poll();
+    bool stageRan(const char* name) const {
+        for (const auto& [stage, seconds] : session.model()->stages)
+            if (stage == name) return true;
+        return false;
+    }
+
+    Document document{chain};
+    Session session;
+};
+
+TEST_F(Sessions, ShowAModelAndTellWhatChanged) {
+    show(session, document);
+    ASSERT_TRUE(session.model());
+    EXPECT_EQ(session.model()->change, Change::Structure);
+    EXPECT_EQ(session.model()->model.derivation.steps.size(), 4u);
+    EXPECT_EQ(session.attempted(), document.revision());
+    for (const char* stage : {"check", "derive", "lower", "compile"}) EXPECT_TRUE(stageRan(stage)) << stage;
+
+    change("wide = 2.5", "wide = 2.6");
+    EXPECT_EQ(session.model()->change, Change::Numbers);
+    change("wide = 2.6", "wide = 2.6 // the same");
+    EXPECT_EQ(session.model()->change, Change::Nothing);
+    EXPECT_EQ(session.model()->grammar->sources[0]->text(), document.text()) << "its spans are of the present text";
+    change("#aabbcc", "#ff0000");
+    EXPECT_EQ(session.model()->change, Change::Nothing) << "colours aren't in the field";
+    change("n = 4", "n = 5");
+    EXPECT_EQ(session.model()->change, Change::Structure);
+    change("+ sphere", "- sphere");
+    EXPECT_EQ(session.model()->change, Change::Structure);
 }
 
-TEST(Sessions, ShowAModel) {
-    Session session;
-    Document document("grammar 1\nparam a = 2 in 1..9\nstart A -> cube size a\n");
-    session.show(requestOf(document));
-    settle(session);
-    ASSERT_TRUE(session.model());
+TEST_F(Sessions, BeginAtTheFirstStageThatChanged) {
+    show(session, document);
+    const auto first = session.model();
+    show(session, document);
+    EXPECT_EQ(session.model(), first) << "nothing changed";
+
+    Choice choice = document.choice();
+    choice.seed = 9;
+    document.choose(choice, "Seed");
+    show(session, document);
+    EXPECT_NE(session.model(), first);
+    EXPECT_EQ(session.model()->grammar, first->grammar) << "the text is the same";
+    EXPECT_FALSE(stageRan("check"));
+    EXPECT_TRUE(stageRan("derive"));
+    EXPECT_EQ(session.model()->model.derivation.seed, 9u);
+
+    const auto again = session.model();
+    choice.locked = {"n"};
+    document.choose(choice, "Lock");
+    show(session, document);
+    EXPECT_EQ(session.model(), again) << "a lock changes no model";
+    EXPECT_EQ(session.attempted(), document.revision());
+}
+
+TEST_F(Sessions, FollowStartStyleAndWay) {
+    Choice choice;
+    choice.style = "Wide";
+    document.choose(choice, "Style");
+    show(session, document);
+    EXPECT_EQ(session.model()->model.derivation.tree.shapes[0].scope.size.x, 1.0);
+    EXPECT_EQ(session.model()->options.params[1].num(), 7.0);
+    choice.way = "none";
+    document.choose(choice, "Way");
+    show(session, document);
+    EXPECT_EQ(session.model()->model.derivation.steps.size(), 4u);
+    choice.start = "Other";
+    choice.way = "";
+    document.choose(choice, "Start");
+    show(session, document);
+    EXPECT_EQ(session.model()->model.derivation.tree.labels[0], "Other");
+    // What is chosen may vanish from the text.
+    change("start Other -> cone\n", "");
+    EXPECT_EQ(session.model()->model.derivation.tree.labels[0], "A");
+    ASSERT_EQ(session.problems().size(), 1u);
+    EXPECT_EQ(session.problems()[0].severity, syntax::Severity::Warning);
+    EXPECT_EQ(session.problems()[0].message, "there is no start 'Other' any more");
+}
+
+TEST_F(Sessions, ABrokenTextKeepsTheLastModel) {
+    show(session, document);
+    const auto good = session.model();
+    change("rule B repeat n ->", "rule B repeat ->");
+    EXPECT_EQ(session.model(), good);
+    EXPECT_EQ(session.attempted(), document.revision());
+    ASSERT_FALSE(session.problems().empty());
+    EXPECT_EQ(session.problems()[0].line, 6u);
+
+    change("rule B repeat ->", "rule B repeat m ->");  // reads well, means nothing
+    EXPECT_EQ(session.model(), good);
+    ASSERT_FALSE(session.problems().empty());
+    EXPECT_EQ(session.problems()[0].line, 6u);
+    EXPECT_EQ(session.problems()[0].column, 15u);
+
+    change("repeat m", "repeat n");
     EXPECT_TRUE(session.problems().empty());
+    EXPECT_NE(session.model(), good);
+    const auto better = session.model();
+    change("size 1.5 at", "size (wide - 5m) at");  // shows only while deriving
+    EXPECT_EQ(session.model(), better);
+    ASSERT_EQ(session.problems().size(), 1u);
+    EXPECT_EQ(session.problems()[0].line, 6u) << session.problems()[0].message;
+    EXPECT_EQ(session.problems()[0].file, "untitled.sgm");
+}
+
+TEST_F(Sessions, BudgetsEndInProblems) {
+    ShowRequest request = requestOf(document);
+    request.budget.shapes = 5;
+    session.show(request);
+    settle(session);
+    EXPECT_FALSE(session.model());
+    ASSERT_FALSE(session.problems().empty());
+    EXPECT_NE(session.problems().back().message.find("budget of 5 shapes"), std::string::npos);
+}
+
+TEST_F(Sessions, TheNewestRequestCounts) {
+    for (int n = 1; n <= 30; ++n) {
+        document.type(replaced(document.text(), n == 1 ? "n = 4 in" : "n = " + std::to_string(n - 1) + " in",
+                               "n = " + std::to_string(n) + " in"));
+        session.show(requestOf(document));
+    }
+    settle(session);
+    EXPECT_EQ(session.model()->revision, document.revision());
+    EXPECT_EQ(session.model()->model.derivation.steps.size(), 30u);
+}
+
+TEST_F(Sessions, MeshWhenAskedAndKeepWhatStays) {
+    ShowRequest request = requestOf(document);
+    request.meshResolution = 40;
+    session.show(request);
+    settle(session);
+    ASSERT_TRUE(session.mesh());
+    const auto first = session.mesh();
+    EXPECT_EQ(first->of, session.model());
+    EXPECT_GT(mesh::measure(*first->mesh).triangles, 100u);
+    change("#aabbcc", "#ff0000");
+    EXPECT_EQ(session.mesh(), first) << "nobody asked";
+    request = requestOf(document);
+    request.meshResolution = 40;
+    session.show(request);
+    settle(session);
+    EXPECT_EQ(session.mesh()->of, session.model());
+    EXPECT_EQ(session.mesh()->blocksMade, 0u);
+    EXPECT_EQ(session.mesh()->mesh->triangleCount(), first->mesh->triangleCount());
+    change("n = 4", "n = 5");
+    request = requestOf(document);
+    request.meshResolution = 40;
+    session.show(request);
+    settle(session);
+    EXPECT_EQ(session.mesh()->grid.cell_m, first->grid.cell_m) << "the lattice stays where it can";
+}
+
+TEST(LongSessions, CanBeCancelledAndOvertaken) {
+    Document document(
+        "grammar 1\nparam n = 200000 in 1..200000\nstart A -> cube : B\nrule B repeat n -> + cube at +x : B\n");
+    Document brief("grammar 1\nstart A -> cube\n");
+    Session session;
+    show(session, brief);
+    const auto before = session.model();
+    const auto begin = [&] {
+        session.show(requestOf(document));
+        while (session.stage() != std::string_view("derive")) std::this_thread::yield();
+    };
+    begin();
+    session.cancel();
+    settle(session);
+    EXPECT_EQ(session.model(), before);
+    ASSERT_EQ(session.problems().size(), 1u);
+    EXPECT_NE(session.problems()[0].message.find("cancelled"), std::string::npos);
+    begin();
+    ShowRequest request = requestOf(brief);
+    request.revision = 99;
+    session.show(request);
+    settle(session);
+    EXPECT_EQ(session.attempted(), 99u);
+    EXPECT_EQ(session.model()->model.derivation.steps.size(), 0u);
+    EXPECT_TRUE(session.problems().empty());
+    begin();  // and may go while it works
+}
+
+TEST(UsedFiles, AreReadAgainWhenTheyChange) {
+    const Scratch scratch;
+    scratch.write("part.sgm", "grammar 1\nparam n = 2 in 1..9\nrule B repeat n -> + cube at +x : B\n");
+    const auto path = scratch.write("main.sgm", "grammar 1\nuse \"part.sgm\"\nstart A -> cube : B\n");
+    const Document document = *Document::open(path);
+    Session session;
+    show(session, document);
+    ASSERT_TRUE(session.model());
+    EXPECT_EQ(session.model()->model.derivation.steps.size(), 2u);
+    EXPECT_FALSE(session.usedFilesChanged());
+    scratch.write("part.sgm", "grammar 1\nparam n = 5 in 1..9\nrule B repeat n -> + cube at +x : B\n");
+    std::filesystem::last_write_time(scratch.folder / "part.sgm",
+                                     std::filesystem::file_time_type::clock::now() + std::chrono::seconds(2));
+    EXPECT_TRUE(session.usedFilesChanged());
+    show(session, document);
+    EXPECT_EQ(session.model()->model.derivation.steps.size(), 5u);
+    EXPECT_FALSE(session.usedFilesChanged());
+    // Broken and mended again, the text of the document never changing.
+    scratch.write("part.sgm", "grammar 1\nrule B repeat -> cube\n");
+    std::filesystem::last_write_time(scratch.folder / "part.sgm",
+                                     std::filesystem::file_time_type::clock::now() + std::chrono::seconds(4));
+    EXPECT_TRUE(session.usedFilesChanged());
+    show(session, document);
+    EXPECT_EQ(session.model()->model.derivation.steps.size(), 5u);
+    ASSERT_FALSE(session.problems().empty());
+    EXPECT_EQ(session.problems()[0].file, (scratch.folder / "part.sgm").string());
+}
+
+TEST(Problems, TellPlacesOfLaterErrors) {
+    const Problem p = problemOf({Error::Kind::Budget, "a/b:c.sgm:12:7: the budget of 5 shapes is spent: at 'A'"});
+    EXPECT_EQ(p.file, "a/b:c.sgm");
+    EXPECT_EQ(p.line, 12u);
+    EXPECT_EQ(p.column, 7u);
+    EXPECT_EQ(p.message, "the budget of 5 shapes is spent: at 'A'");
+    EXPECT_EQ(problemOf({Error::Kind::Input, "nothing: no place"}).message, "nothing: no place");
+    EXPECT_EQ(problemOf({Error::Kind::Input, "nothing: no place"}).line, 0u);
 }
 
 }  // namespace

@@ -23,8 +23,9 @@ public:
     }
 
     TextColour of(std::string_view word) const {
-        if (word == "grammar" || word == "joint" || word == "facing" || word == "group" || word == "key" || word == "of" || word == "axiom" ||
-            word == "true" || word == "false" || syntax::isReserved(word) || syntax::findDeclaration(word))
+        if (word == "grammar" || word == "joint" || word == "facing" || word == "group" || word == "key" ||
+            word == "of" || word == "axiom" || word == "true" || word == "false" || syntax::isReserved(word) ||
+            syntax::findDeclaration(word))
             return TextColour::Keyword;
         if (params_.contains(word)) return TextColour::Parameter;
         if (terminals_.contains(word)) return TextColour::Terminal;
@@ -39,15 +40,23 @@ private:
 
 TextColour colourOf(const Token& token, std::string_view text, const Names& names) {
     switch (token.kind) {
-        case Token::Kind::Word: return names.of(text);
-        case Token::Kind::Comment: return TextColour::Comment;
-        case Token::Kind::Number: return TextColour::Number;
-        case Token::Kind::Text: return TextColour::Text;
-        case Token::Kind::Color: return TextColour::Hex;
-        case Token::Kind::Symbol: return TextColour::Sign;
-        case Token::Kind::Unknown: return TextColour::Wrong;
+        case Token::Kind::Word:
+            return names.of(text);
+        case Token::Kind::Comment:
+            return TextColour::Comment;
+        case Token::Kind::Number:
+            return TextColour::Number;
+        case Token::Kind::Text:
+            return TextColour::Text;
+        case Token::Kind::Color:
+            return TextColour::Hex;
+        case Token::Kind::Symbol:
+            return TextColour::Sign;
+        case Token::Kind::Unknown:
+            return TextColour::Wrong;
         case Token::Kind::Blank:
-        case Token::Kind::End: break;
+        case Token::Kind::End:
+            break;
     }
     return TextColour::Plain;
 }
@@ -64,7 +73,8 @@ std::vector<std::vector<Coloured>> colours(const syntax::Ast& ast) {
         const auto place = source.place(token.begin);
         // No token but blanks goes over a line's end.
         const uint32_t begin = place.column - 1;
-        coloured[place.line - 1].push_back({begin, begin + token.end - token.begin, colourOf(token, textOf(source, token), names)});
+        coloured[place.line - 1].push_back(
+            {begin, begin + token.end - token.begin, colourOf(token, textOf(source, token), names)});
     }
     return coloured;
 }

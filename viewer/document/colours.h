@@ -1,5 +1,6 @@
 // The Text panel's syntax colours.
-// Enters: a source's text and what its names mean. Leaves: stretches of each line. Assumes nothing: any text has colours.
+// Enters: a source's text and what its names mean. Leaves: stretches of each line. Assumes nothing: any text has
+// colours.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +19,11 @@ enum class TextColour : uint8_t {
     Terminal,     ///< declared by `terminal`
     Parameter,    ///< declared by `param`
     Number,
-    Text,         ///< "…"
-    Hex,          ///< #rrggbb
+    Text,  ///< "…"
+    Hex,   ///< #rrggbb
     Comment,
-    Sign,         ///< + - & -> | { } …
-    Wrong,        ///< no token of the language
+    Sign,   ///< + - & -> | { } …
+    Wrong,  ///< no token of the language
 };
 
 /// Bytes [begin, end) of a line have a colour.

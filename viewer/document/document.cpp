@@ -43,7 +43,8 @@ void Document::setText(std::string text) {
     ++revision_;
     const std::string name = path_.empty() ? "untitled.sgm" : path_.string();
     auto problems = std::make_shared<syntax::Diagnostics>();
-    ast_ = std::make_shared<const syntax::Ast>(syntax::parse(std::make_shared<const syntax::Source>(name, text_), *problems));
+    ast_ = std::make_shared<const syntax::Ast>(
+        syntax::parse(std::make_shared<const syntax::Source>(name, text_), *problems));
     problems_ = std::move(problems);
 }
 
@@ -56,7 +57,8 @@ void Document::push(Entry entry) {
 Status Document::apply(const TextEdit& edit, std::string label) {
     if (edit.begin > edit.end || edit.end > text_.size())
         return Error{Error::Kind::Input, fmt::format("'{}' was made for another text", label)};
-    if (edit.empty() || std::string_view(text_).substr(edit.begin, edit.end - edit.begin) == edit.replacement) return Done{};
+    if (edit.empty() || std::string_view(text_).substr(edit.begin, edit.end - edit.begin) == edit.replacement)
+        return Done{};
     if (drag_) {
         if (drag_->label.empty()) drag_->label = std::move(label);
     } else {
@@ -70,8 +72,8 @@ Status Document::apply(const TextEdit& edit, std::string label) {
 bool Document::joins(const TextEdit& edit) const {
     if (drag_ || at_ == 0 || at_ != history_.size() || !history_.back().typed) return false;
     const TextEdit& last = history_.back().forward;
-    const bool typesOn = edit.begin == edit.end && edit.begin == last.begin + last.replacement.size() && !last.replacement.empty() &&
-                         edit.replacement.find('\n') == std::string::npos;
+    const bool typesOn = edit.begin == edit.end && edit.begin == last.begin + last.replacement.size() &&
+                         !last.replacement.empty() && edit.replacement.find('\n') == std::string::npos;
     const bool erasesOn = edit.replacement.empty() && last.replacement.empty() && edit.end == last.begin;
     return typesOn || erasesOn;
 }
@@ -96,8 +98,10 @@ void Document::choose(Choice choice, std::string label) {
     same.selection = choice_.selection;
     if (same != choice_) {
         ++revision_;
-        if (!drag_) push({{}, {}, choice_, choice, std::move(label)});
-        else if (drag_->label.empty()) drag_->label = std::move(label);
+        if (!drag_)
+            push({{}, {}, choice_, choice, std::move(label)});
+        else if (drag_->label.empty())
+            drag_->label = std::move(label);
     }
     choice_ = std::move(choice);
 }
@@ -143,7 +147,8 @@ Status Document::save(bool overwrite) {
     if (!overwrite && saved_ && stampOf(path_) != stamp_) {
         const auto now = readSource(path_);
         if (now.ok() && (*now)->text() != *saved_)
-            return Error{Error::Kind::Input, fmt::format("'{}' was changed by another program: nothing was saved", path_.string())};
+            return Error{Error::Kind::Input,
+                         fmt::format("'{}' was changed by another program: nothing was saved", path_.string())};
     }
     return write(path_);
 }

@@ -1,6 +1,7 @@
 // The document: a grammar's text, its history and its file.
 // Enters: edits of the text. Leaves: the text with its syntax tree, always of one another. Assumes one thread (the
-// window's). A GUI edit is a minimal text edit, so comments and layout survive; what was undone comes back byte for byte.
+// window's). A GUI edit is a minimal text edit, so comments and layout survive; what was undone comes back byte for
+// byte.
 #pragma once
 
 #include <filesystem>
@@ -18,9 +19,9 @@ namespace sgm::viewer {
 
 /// What is chosen besides the text: it decides which model of the grammar is shown, and is undone with the text.
 struct Choice {
-    std::string start;             ///< symbol; "" for the first `start`
-    std::string style;             ///< "" for none
-    std::string way;               ///< of a `derive` line; "" derives automatically
+    std::string start;  ///< symbol; "" for the first `start`
+    std::string style;  ///< "" for none
+    std::string way;    ///< of a `derive` line; "" derives automatically
     uint64_t seed = 1;
     std::set<std::string> locked;  ///< parameters that a re-roll leaves alone
     std::string selection;         ///< path of the selected shape in the tree, "Cave/Cell[3]"; "" for none
@@ -33,7 +34,8 @@ public:
     explicit Document(std::string text = "grammar 1\n");
     /// Error::Input when the file can't be read.
     static Result<Document> open(const std::filesystem::path& path);
-    /// A document whose unsaved text was recovered: `text` is one edit of what the file holds now, or all of a new document.
+    /// A document whose unsaved text was recovered: `text` is one edit of what the file holds now, or all of a new
+    /// document.
     static Document recovered(const std::filesystem::path& path, std::string text);
 
     const std::string& text() const { return text_; }
@@ -67,8 +69,12 @@ public:
     bool canUndo() const { return at_ > 0; }
     bool canRedo() const { return at_ < history_.size(); }
     /// What undo would take back, "" where there is nothing.
-    std::string_view undoLabel() const { return canUndo() ? std::string_view(history_[at_ - 1].label) : std::string_view(); }
-    std::string_view redoLabel() const { return canRedo() ? std::string_view(history_[at_].label) : std::string_view(); }
+    std::string_view undoLabel() const {
+        return canUndo() ? std::string_view(history_[at_ - 1].label) : std::string_view();
+    }
+    std::string_view redoLabel() const {
+        return canRedo() ? std::string_view(history_[at_].label) : std::string_view();
+    }
     /// Takes the last entry back, or does it again, with the selection of that time. Ends a drag.
     void undo();
     void redo();

@@ -16,11 +16,16 @@ using Kind = Element::Kind;
 
 std::string_view sign(Operator op) {
     switch (op) {
-        case Operator::None: return "";
-        case Operator::Sum: return "+";
-        case Operator::Difference: return "-";
-        case Operator::Intersection: return "&";
-        case Operator::Morph: return "morph";
+        case Operator::None:
+            return "";
+        case Operator::Sum:
+            return "+";
+        case Operator::Difference:
+            return "-";
+        case Operator::Intersection:
+            return "&";
+        case Operator::Morph:
+            return "morph";
     }
     return "";
 }
@@ -59,7 +64,9 @@ const Attribute* find(const Element& element, Operation::Id id) {
     return nullptr;
 }
 
-TextEdit removalOf(const Ast& ast, const Attribute& attribute) { return removal(ast.source->text(), attribute.span.begin, attribute.span.end); }
+TextEdit removalOf(const Ast& ast, const Attribute& attribute) {
+    return removal(ast.source->text(), attribute.span.begin, attribute.span.end);
+}
 
 /// Where an attribute that is new to the element goes: behind the last one, before `: Name`.
 uint32_t attributesEnd(const Ast& ast, const Element& element) {
@@ -81,7 +88,8 @@ Edit attributeEdit(const Ast& ast, const Element& element, Operation::Id id, std
     const Attribute* present = find(element, id);
     // A shape may set several values: `with` changes the one of this name, or adds one.
     if (id == Operation::Id::With) present = nullptr;
-    if (present && !present->args.empty()) return TextEdit{present->args.front().span.begin, present->args.back().span.end, *arguments};
+    if (present && !present->args.empty())
+        return TextEdit{present->args.front().span.begin, present->args.back().span.end, *arguments};
     if (present) return TextEdit{present->span.begin, present->span.end, fmt::format("{} {}", row.name, *arguments)};
     const uint32_t at = attributesEnd(ast, element);
     return TextEdit{at, at, fmt::format(" {} {}", row.name, *arguments)};
@@ -105,14 +113,19 @@ Edit removeElement(const Ast& ast, const Element& element) {
         const Element& next = chain[1];
         if (element.op != Operator::None || isControl(next)) return tried(ast, gone);
         if (next.op != Operator::Sum) return refused(fmt::format("what '{}' works on would be missing", sign(next.op)));
-        return tried(ast, {element.span.begin, next.span.begin + static_cast<uint32_t>(next.span.text().size() - operand(next).size()), {}});
+        return tried(ast, {element.span.begin,
+                           next.span.begin + static_cast<uint32_t>(next.span.text().size() - operand(next).size()),
+                           {}});
     }
     if (place.body->siblings.size() > 1) {
         const bool first = place.sibling == 0;
-        const auto comma = first ? tokenFrom(ast, element.span.end) : syntax::SourceSpan{ast.source.get(), beginBefore(ast, element.span.begin), endBefore(ast, element.span.begin)};
+        const auto comma = first ? tokenFrom(ast, element.span.end)
+                                 : syntax::SourceSpan{ast.source.get(), beginBefore(ast, element.span.begin),
+                                                      endBefore(ast, element.span.begin)};
         return tried(ast, merged(text, {gone, {comma.begin, comma.end, {}}}));
     }
-    if (element.op != Operator::None || isControl(element)) return refused("it is all that this body does: delete what the body belongs to");
+    if (element.op != Operator::None || isControl(element))
+        return refused("it is all that this body does: delete what the body belongs to");
     return tried(ast, {element.span.begin, element.span.end, "nil"});
 }
 
@@ -133,7 +146,9 @@ Edit moveElement(const Ast& ast, const Element& element, int by) {
     // The first of a chain is the content: whoever comes there leaves its operator to the other.
     const bool content = first.op == Operator::None && !isControl(first) && at == 0;
     if (content && (isControl(second) || second.op != Operator::Sum))
-        return refused(isControl(second) ? "a loop or a choice can't be the content of a shape" : fmt::format("what follows '{}' can't be the content of a shape", sign(second.op)));
+        return refused(isControl(second)
+                           ? "a loop or a choice can't be the content of a shape"
+                           : fmt::format("what follows '{}' can't be the content of a shape", sign(second.op)));
     const std::string_view text = ast.source->text();
     const std::string_view between = text.substr(first.span.end, second.span.begin - first.span.end);
     std::string swapped = withOperator(second, content ? Operator::None : second.op);
@@ -149,7 +164,8 @@ Edit setOperator(const Ast& ast, const Element& element, Operator op) {
     if (op == element.op) return TextEdit{};
     if (op == Operator::None && place.index > 0) return refused("only the first of a chain has no operator");
     const auto head = static_cast<uint32_t>(element.span.text().size() - operand(element).size());
-    const TextEdit change{element.span.begin, element.span.begin + head, op == Operator::None ? "" : fmt::format("{} ", sign(op))};
+    const TextEdit change{element.span.begin, element.span.begin + head,
+                          op == Operator::None ? "" : fmt::format("{} ", sign(op))};
     const Attribute* by = find(element, Operation::Id::By);
     if (by && op != Operator::Morph) return tried(ast, merged(ast.source->text(), {change, removalOf(ast, *by)}));
     return tried(ast, change);
@@ -182,12 +198,14 @@ Edit setAttribute(const Ast& ast, const Element& element, Operation::Id id, std:
 
 Edit removeAttribute(const Ast& ast, const Element& element, Operation::Id id) {
     const Attribute* present = find(element, id);
-    if (!present) return refused(fmt::format("there is no '{}' to take out", syntax::operations()[static_cast<size_t>(id)].name));
+    if (!present)
+        return refused(fmt::format("there is no '{}' to take out", syntax::operations()[static_cast<size_t>(id)].name));
     return tried(ast, removalOf(ast, *present));
 }
 
 Edit attach(const Ast& ast, const Element& element, std::string_view joint) {
-    if (element.op == Operator::None) return refused("the content of a shape is joined to nothing: give it an operator first");
+    if (element.op == Operator::None)
+        return refused("the content of a shape is joined to nothing: give it an operator first");
     const Edit at = attributeEdit(ast, element, Operation::Id::At, joint);
     const Attribute* to = find(element, Operation::Id::To);
     const bool face = to && !to->args.empty() && to->args[0].text != "centre" && to->args[0].text.size() == 2;

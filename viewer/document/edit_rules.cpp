@@ -43,13 +43,15 @@ TextEdit removalOf(std::string_view text, Lines lines) {
 
 /// Whole lines put in behind the line that ends at `end`.
 TextEdit insertion(std::string_view text, uint32_t end, std::string lines) {
-    if (end == text.size()) return {end, end, (text.empty() || text.back() == '\n' ? "" : "\n") + std::move(lines) + "\n"};
+    if (end == text.size())
+        return {end, end, (text.empty() || text.back() == '\n' ? "" : "\n") + std::move(lines) + "\n"};
     return {end + 1, end + 1, std::move(lines) + "\n"};
 }
 
 std::string freeName(const Ast& ast, const std::string& name) {
     const auto taken = [&](const std::string& wanted) {
-        return std::any_of(ast.rules.begin(), ast.rules.end(), [&](const RuleDecl& r) { return r.name.text == wanted; });
+        return std::any_of(ast.rules.begin(), ast.rules.end(),
+                           [&](const RuleDecl& r) { return r.name.text == wanted; });
     };
     for (char letter = 'b'; letter <= 'z'; ++letter)
         if (!taken(name + letter)) return name + letter;
@@ -59,16 +61,19 @@ std::string freeName(const Ast& ast, const std::string& name) {
 }
 
 /// Sets, changes or takes out "WORD VALUE" before the arrow; `value` is empty to take it out.
-Edit setPart(const Ast& ast, const RuleDecl& rule, std::string_view word, const SourceSpan* present, std::string_view value) {
+Edit setPart(const Ast& ast, const RuleDecl& rule, std::string_view word, const SourceSpan* present,
+             std::string_view value) {
     const std::string_view text = ast.source->text();
     if (present && !value.empty()) return tried(ast, {present->begin, present->end, std::string(value)});
     if (present) return tried(ast, removal(text, beginBefore(ast, present->begin), present->end));
     if (value.empty()) return TextEdit{};
-    const uint32_t at = endBefore(ast, beginBefore(ast, rule.body.span.begin));  // behind the last token before the arrow
+    const uint32_t at =
+        endBefore(ast, beginBefore(ast, rule.body.span.begin));  // behind the last token before the arrow
     return tried(ast, {at, at, fmt::format(" {} {}", word, value)});
 }
 
-Edit setPart(const Ast& ast, const RuleDecl& rule, std::string_view word, const std::optional<Expr>& present, std::string_view value) {
+Edit setPart(const Ast& ast, const RuleDecl& rule, std::string_view word, const std::optional<Expr>& present,
+             std::string_view value) {
     if (value.empty()) return setPart(ast, rule, word, present ? &present->span : nullptr, value);
     const auto written = asExpression(value);
     if (!written.ok()) return written.error();
@@ -89,28 +94,30 @@ Edit addRule(const Ast& ast, std::string_view symbol, std::string_view body, con
     return tried(ast, insertion(text, end, fmt::format("rule {} -> {}", *name, body)));
 }
 
-Edit removeRule(const Ast& ast, const RuleDecl& rule) { return tried(ast, removalOf(ast.source->text(), linesOf(ast, rule))); }
+Edit removeRule(const Ast& ast, const RuleDecl& rule) {
+    return tried(ast, removalOf(ast.source->text(), linesOf(ast, rule)));
+}
 
 Edit duplicateRule(const Ast& ast, const RuleDecl& rule) {
     const Lines lines = linesOf(ast, rule);
     const std::string_view text = ast.source->text();
     std::string copy(text.substr(lines.begin, lines.end - lines.begin));
-    if (!rule.name.empty()) copy.replace(rule.name.span.begin - lines.begin, rule.name.text.size(), freeName(ast, rule.name.text));
+    if (!rule.name.empty())
+        copy.replace(rule.name.span.begin - lines.begin, rule.name.text.size(), freeName(ast, rule.name.text));
     return tried(ast, insertion(text, lines.end, std::move(copy)));
 }
 
 Edit moveRule(const Ast& ast, const RuleDecl& rule, const RuleDecl* before) {
-    if (before == &rule) return TextEdit{};
+    if (before == &rule || (before ? before == &rule + 1 : &ast.rules.back() == &rule))
+        return TextEdit{};  // it stands there
     const std::string_view text = ast.source->text();
     const Lines lines = linesWithComments(ast, rule);
     std::string moved(text.substr(lines.begin, lines.end - lines.begin));
     TextEdit put;
     if (before) {
         const uint32_t at = linesWithComments(ast, *before).begin;
-        if (at > lines.begin && at <= lines.end + 1) return TextEdit{};  // it stands there
         put = {at, at, std::move(moved) + "\n"};
     } else {
-        if (&ast.rules.back() == &rule) return TextEdit{};
         put = insertion(text, linesOf(ast, ast.rules.back()).end, std::move(moved));
     }
     return tried(ast, merged(text, {removalOf(text, lines), put}));
@@ -123,7 +130,8 @@ Edit setName(const Ast& ast, const RuleDecl& rule, std::string_view name) {
     }
     const auto written = asName(name);
     if (!written.ok()) return written.error();
-    const auto same = std::find_if(ast.rules.begin(), ast.rules.end(), [&](const RuleDecl& r) { return &r != &rule && r.name.text == *written; });
+    const auto same = std::find_if(ast.rules.begin(), ast.rules.end(),
+                                   [&](const RuleDecl& r) { return &r != &rule && r.name.text == *written; });
     if (same != ast.rules.end()) return refused(fmt::format("another rule is called '{}'", *written));
     if (!rule.name.empty()) return tried(ast, {rule.name.span.begin, rule.name.span.end, *written});
     return tried(ast, {rule.symbol.span.begin, rule.symbol.span.begin, *written + ": "});
@@ -135,9 +143,15 @@ Edit setSymbol(const Ast& ast, const RuleDecl& rule, std::string_view symbol) {
     return tried(ast, {rule.symbol.span.begin, rule.symbol.span.end, *written});
 }
 
-Edit setGuard(const Ast& ast, const RuleDecl& rule, std::string_view condition) { return setPart(ast, rule, "when", rule.when, condition); }
-Edit setWeight(const Ast& ast, const RuleDecl& rule, std::string_view weight) { return setPart(ast, rule, "weight", rule.weight, weight); }
-Edit setRepeat(const Ast& ast, const RuleDecl& rule, std::string_view count) { return setPart(ast, rule, "repeat", rule.repeat, count); }
+Edit setGuard(const Ast& ast, const RuleDecl& rule, std::string_view condition) {
+    return setPart(ast, rule, "when", rule.when, condition);
+}
+Edit setWeight(const Ast& ast, const RuleDecl& rule, std::string_view weight) {
+    return setPart(ast, rule, "weight", rule.weight, weight);
+}
+Edit setRepeat(const Ast& ast, const RuleDecl& rule, std::string_view count) {
+    return setPart(ast, rule, "repeat", rule.repeat, count);
+}
 
 Edit setBeside(const Ast& ast, const RuleDecl& rule, std::string_view symbol) {
     if (!symbol.empty()) {

@@ -39,7 +39,8 @@ const Setting* find(const std::vector<Setting>& settings, std::string_view name)
 TextEdit over(syntax::SourceSpan span, std::string text) { return {span.begin, span.end, std::move(text)}; }
 
 /// " name = value" into the braces of a declaration that ends with '}', behind what stands there.
-TextEdit intoBraces(const Ast& ast, syntax::SourceSpan declaration, const std::vector<Setting>& settings, std::string text) {
+TextEdit intoBraces(const Ast& ast, syntax::SourceSpan declaration, const std::vector<Setting>& settings,
+                    std::string text) {
     const uint32_t brace = declaration.end - 1;
     const uint32_t at = settings.empty() ? endBefore(ast, brace) : settings.back().span.end;
     const bool tight = settings.empty() && at == brace;
@@ -60,9 +61,11 @@ public:
             return write(style->span, style->settings, value);
         }
         if (const StyleDecl* style = styleFor(ast_, "default", start_))
-            if (const Setting* s = find(style->settings, value.name)) return edits_.push_back(over(s->value.span, value.value)), Done{};
+            if (const Setting* s = find(style->settings, value.name))
+                return edits_.push_back(over(s->value.span, value.value)), Done{};
         for (auto use = ast_.uses.rbegin(); use != ast_.uses.rend(); ++use)
-            if (const Setting* s = find(use->settings, value.name)) return edits_.push_back(over(s->value.span, value.value)), Done{};
+            if (const Setting* s = find(use->settings, value.name))
+                return edits_.push_back(over(s->value.span, value.value)), Done{};
         for (const ParamDecl& param : ast_.params)
             if (param.name.text == value.name) return edits_.push_back(over(param.value.span, value.value)), Done{};
         if (ast_.uses.empty()) return refused(fmt::format("there is no parameter '{}'", value.name));
@@ -89,7 +92,8 @@ private:
     };
 
     Status write(syntax::SourceSpan span, const std::vector<Setting>& settings, const NamedValue& value) {
-        if (const Setting* s = find(settings, value.name)) return edits_.push_back(over(s->value.span, value.value)), Done{};
+        if (const Setting* s = find(settings, value.name))
+            return edits_.push_back(over(s->value.span, value.value)), Done{};
         for (Added& added : added_)
             if (added.settings == &settings) return added.text += " " + settingText(value), Done{};
         added_.push_back({span, &settings, settingText(value)});

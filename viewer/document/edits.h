@@ -1,8 +1,8 @@
 // The verbs of the Rules and Parameters panels, each a minimal edit of the text at the span of what it changes.
 // Enters: a syntax tree and a node of it. Leaves: one TextEdit of its source; comments and layout around it stay.
 // Assumes that the node belongs to the tree. Every edit is tried before it is given: one that would leave the text
-// unreadable is refused with the parser's words (Error::Input), and so are verbs that make no sense where they are asked
-// for. What a text means is for `check` to judge: a rule for an unknown shape can be written.
+// unreadable is refused with the parser's words (Error::Input), and so are verbs that make no sense where they are
+// asked for. What a text means is for `check` to judge: a rule for an unknown shape can be written.
 #pragma once
 
 #include <string>
@@ -77,8 +77,9 @@ struct NamedValue {
     std::string name, value;
 };
 /// Where the panel writes a value: into the style called `style`, or, where that is "", to where the value comes from
-/// for `start`: its default style, then any default style, then a `use { … }`, then the `param` itself. A parameter of a
-/// used file is set in the first `use { … }`. One edit for all; the values of other parameters stay as they are written.
+/// for `start`: its default style, then any default style, then a `use { … }`, then the `param` itself. A parameter of
+/// a used file is set in the first `use { … }`. One edit for all; the values of other parameters stay as they are
+/// written.
 Edit setValues(const Ast& ast, std::string_view start, std::string_view style, const std::vector<NamedValue>& values);
 /// A style with these values: "style NAME for START { … }", in place of the one of that name, or behind the last one.
 Edit saveStyle(const Ast& ast, std::string_view name, std::string_view start, const std::vector<NamedValue>& values);

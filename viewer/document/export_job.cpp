@@ -10,7 +10,8 @@ namespace {
 
 Status write(const Shown& shown, const ExportRequest& request, const exporter::Exporter& format, Progress& progress) {
     const Box3f& bounds = shown.model.lowered->field.bounds;
-    const float cell_m = request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
+    const float cell_m =
+        request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
     Stages stages;
     const auto meshed = makeMesh(shown.model, mesh::gridFor(bounds, cell_m), request.threads, stages, &progress);
     if (!meshed.ok()) return meshed.error();
@@ -32,7 +33,13 @@ Status write(const Shown& shown, const ExportRequest& request, const exporter::E
 std::vector<ExportRow> exportRows(const exporter::Exporter& format) {
     std::vector<ExportRow> rows;
     for (const exporter::ExportOption& option : format.options) {
-        ExportRow row{std::string(option.name), std::string(option.doc), std::string(option.fallback), {}, option.lo < option.hi, option.lo, option.hi};
+        ExportRow row{std::string(option.name),
+                      std::string(option.doc),
+                      std::string(option.fallback),
+                      {},
+                      option.lo < option.hi,
+                      option.lo,
+                      option.hi};
         for (size_t begin = 0; begin < option.choices.size();) {
             const size_t end = std::min(option.choices.find('|', begin), option.choices.size());
             row.choices.emplace_back(option.choices.substr(begin, end - begin));
@@ -52,14 +59,18 @@ Status ExportJob::start(std::shared_ptr<const Shown> shown, ExportRequest reques
     if (thread_.joinable()) return Error{Error::Kind::Input, "another export is under way"};
     if (!shown) return Error{Error::Kind::Input, "there is no model to export yet"};
     const exporter::Exporter* format = exporter::findExporter(request.file.extension().string());
-    if (!format) return Error{Error::Kind::Usage, fmt::format("'{}': no format has the ending '{}'", request.file.string(), request.file.extension().string())};
+    if (!format)
+        return Error{Error::Kind::Usage, fmt::format("'{}': no format has the ending '{}'", request.file.string(),
+                                                     request.file.extension().string())};
     if (const Status s = exporter::checkOptions(*format, request.options); !s.ok()) return s;
     const fs::path folder = request.file.parent_path();
     if (std::error_code ignored; !folder.empty() && !fs::is_directory(folder, ignored))
-        return Error{Error::Kind::Input, fmt::format("'{}': the folder '{}' does not exist", request.file.string(), folder.string())};
+        return Error{Error::Kind::Input,
+                     fmt::format("'{}': the folder '{}' does not exist", request.file.string(), folder.string())};
     progress_ = std::make_shared<Progress>();
     done_ = false;
-    thread_ = std::thread([this, shown = std::move(shown), request = std::move(request), format, wake = std::move(wake), progress = progress_] {
+    thread_ = std::thread([this, shown = std::move(shown), request = std::move(request), format, wake = std::move(wake),
+                           progress = progress_] {
         outcome_ = write(*shown, request, *format, *progress);
         done_ = true;
         if (wake) wake();

@@ -30,8 +30,8 @@ std::vector<ExportRow> exportRows(const exporter::Exporter& format);
 struct ExportRequest {
     std::filesystem::path file;  ///< the format by its ending
     exporter::ExportOptions options;
-    int resolution = 128;        ///< cells along the longest side
-    double cell_m = 0;           ///< > 0 wins over resolution
+    int resolution = 128;  ///< cells along the longest side
+    double cell_m = 0;     ///< > 0 wins over resolution
     int threads = 0;
 };
 

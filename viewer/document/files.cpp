@@ -33,11 +33,14 @@ bool leadsOutside(const fs::path& relative) {
 
 Result<syntax::SourcePtr> readSource(const fs::path& path) {
     std::error_code ignored;
-    if (fs::is_directory(path, ignored)) return Error{Error::Kind::Input, fmt::format("'{}' is a folder, not a grammar file", path.string())};
+    if (fs::is_directory(path, ignored))
+        return Error{Error::Kind::Input, fmt::format("'{}' is a folder, not a grammar file", path.string())};
     std::ifstream file(path, std::ios::binary);
     std::ostringstream text;
     if (file) text << file.rdbuf();
-    if (!file) return Error{Error::Kind::Input, fmt::format("can't read '{}': {}", path.string(), std::strerror(errno ? errno : EIO))};
+    if (!file)
+        return Error{Error::Kind::Input,
+                     fmt::format("can't read '{}': {}", path.string(), std::strerror(errno ? errno : EIO))};
     return std::make_shared<const syntax::Source>(path.string(), text.str());
 }
 
@@ -49,7 +52,8 @@ rules::Loader fileLoader() {
             return nullptr;
         }
         const bool isStandard = name.starts_with("std/");
-        const fs::path path = isStandard ? standardLibrary() / name.substr(4) : fs::path(from.name()).parent_path() / wanted;
+        const fs::path path =
+            isStandard ? standardLibrary() / name.substr(4) : fs::path(from.name()).parent_path() / wanted;
         Result<syntax::SourcePtr> source = readSource(path);
         if (source.ok()) return *source;
         why = source.error().message;

@@ -4,15 +4,18 @@
 
 namespace sgm::viewer {
 
-Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int threads, Stages& stages, Progress* progress) {
+Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int threads, Stages& stages,
+                             Progress* progress) {
     MeshedModel made;
     made.grid = grid;
-    auto blocks = timed(stages, "subdivide", [&] { return mesh::subdivide(model.tape, made.grid, threads, progress, made.counts); });
+    auto blocks = timed(stages, "subdivide",
+                        [&] { return mesh::subdivide(model.tape, made.grid, threads, progress, made.counts); });
     if (!blocks.ok()) return blocks.error();
     made.blocks = std::move(*blocks);
     const mesh::PolygonizeOptions options{.threads = threads};
     Stages whole;
-    auto mesh = timed(whole, "polygonize", [&] { return mesh::polygonize(made.blocks, made.grid, options, progress, made.counts); });
+    auto mesh = timed(whole, "polygonize",
+                      [&] { return mesh::polygonize(made.blocks, made.grid, options, progress, made.counts); });
     if (!mesh.ok()) return mesh.error();
     made.mesh = std::move(*mesh);
     // polygonize samples and makes triangles; its wall time is shared out by the time its workers counted for each.
@@ -23,7 +26,8 @@ Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int thr
     return made;
 }
 
-Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::Rebuild& rebuild, Stages& stages, Progress* progress) {
+Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::Rebuild& rebuild, Stages& stages,
+                             Progress* progress) {
     MeshedModel made;
     made.grid = grid;
     const auto mesh = rebuild.update(model.tape, grid, progress, made.counts);
@@ -47,7 +51,8 @@ exporter::ExportInput exportInput(const Model& model, const std::filesystem::pat
     input.extras["grammar"] = grammarFile.filename();
     input.extras["seed"] = fmt::format("{}", model.derivation.seed);
     const auto& params = model.derivation.grammar->params;
-    for (size_t i = 0; i < params.size(); ++i) input.extras["param " + params[i].name] = rules::toText(model.derivation.params[i]);
+    for (size_t i = 0; i < params.size(); ++i)
+        input.extras["param " + params[i].name] = rules::toText(model.derivation.params[i]);
     return input;
 }
 

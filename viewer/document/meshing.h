@@ -19,14 +19,17 @@ struct MeshedModel {
     mesh::Mesh mesh;
     mesh::Counts counts;
 };
-Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int threads, Stages& stages, Progress* progress);
+Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int threads, Stages& stages,
+                             Progress* progress);
 /// The same, taking what didn't change from the last mesh of `rebuild`; without blocks, which only volumes want.
-Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::Rebuild& rebuild, Stages& stages, Progress* progress);
+Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::Rebuild& rebuild, Stages& stages,
+                             Progress* progress);
 
 /// The level set of the model for formats that hold volumes.
 Result<volume::Volume> levelSet(const Model& model, const MeshedModel& meshed, int threads, Progress* progress);
 
-/// What a file says of the model it holds: names, materials, seed, parameters. `mesh` or `volume` is the caller's to set.
+/// What a file says of the model it holds: names, materials, seed, parameters. `mesh` or `volume` is the caller's to
+/// set.
 exporter::ExportInput exportInput(const Model& model, const std::filesystem::path& grammarFile);
 
 }  // namespace sgm::viewer

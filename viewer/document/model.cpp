@@ -17,7 +17,8 @@ Result<uint32_t> find(const List& list, const std::string& wanted, const char* w
         if (names.back() == wanted) return i;
     }
     const std::string near = syntax::didYouMean(wanted, names);
-    return Error{Error::Kind::Usage, fmt::format("no {} is called '{}'{}", what, wanted, near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near))};
+    return Error{Error::Kind::Usage, fmt::format("no {} is called '{}'{}", what, wanted,
+                                                 near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near))};
 }
 
 Status applyStyle(const rules::Grammar& grammar, const std::string& name, derive::Options& options) {
@@ -33,8 +34,10 @@ Status applyStyle(const rules::Grammar& grammar, const std::string& name, derive
 
 Status applySetting(const rules::Grammar& grammar, const std::string& text, derive::Options& options) {
     const size_t equals = text.find('=');
-    if (equals == std::string::npos) return Error{Error::Kind::Usage, fmt::format("write --set NAME=VALUE instead of '{}'", text)};
-    const auto param = find(grammar.params, text.substr(0, equals), "parameter", [](const rules::Param& p) { return p.name; });
+    if (equals == std::string::npos)
+        return Error{Error::Kind::Usage, fmt::format("write --set NAME=VALUE instead of '{}'", text)};
+    const auto param =
+        find(grammar.params, text.substr(0, equals), "parameter", [](const rules::Param& p) { return p.name; });
     if (!param.ok()) return param.error();
     Result<rules::Value> value = rules::parseValue(grammar.params[*param], text.substr(equals + 1));
     if (!value.ok()) return Error{Error::Kind::Input, fmt::format("--set {}: {}", text, value.error().message)};
@@ -50,15 +53,19 @@ Result<derive::Options> optionsFor(const rules::Grammar& grammar, const ModelCho
     options.derive = choice.derive;
     options.budget.shapes = choice.shapeBudget;
     options.budget.seconds = choice.secondsBudget;
-    if (grammar.starts.empty()) return Error{Error::Kind::Input, fmt::format("{}: no `start`, so there is nothing to build", grammar.sources[0]->name())};
+    if (grammar.starts.empty())
+        return Error{Error::Kind::Input,
+                     fmt::format("{}: no `start`, so there is nothing to build", grammar.sources[0]->name())};
     if (!choice.start.empty()) {
-        const auto start = find(grammar.starts, choice.start, "start", [&](const rules::Start& s) { return grammar.symbols[s.symbol].name; });
+        const auto start = find(grammar.starts, choice.start, "start",
+                                [&](const rules::Start& s) { return grammar.symbols[s.symbol].name; });
         if (!start.ok()) return start.error();
         options.start = *start;
     }
     options.params = rules::valuesOf(grammar, options.start);
     if (!choice.derive.empty()) {
-        const auto way = find(grammar.derives, choice.derive, "derive way", [](const rules::Derive& d) { return d.name; });
+        const auto way =
+            find(grammar.derives, choice.derive, "derive way", [](const rules::Derive& d) { return d.name; });
         if (!way.ok()) return way.error();
     }
     if (!choice.style.empty())
@@ -68,7 +75,8 @@ Result<derive::Options> optionsFor(const rules::Grammar& grammar, const ModelCho
     return options;
 }
 
-Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Stages& stages, Progress* progress) {
+Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Stages& stages,
+                        Progress* progress) {
     auto derivation = timed(stages, "derive", [&] { return derive::derive(grammar, options, progress); });
     if (!derivation.ok()) return derivation.error();
     return makeModel(std::move(*derivation), stages, progress);
@@ -78,7 +86,8 @@ Result<Model> makeModel(derive::Derivation derivation, Stages& stages, Progress*
     auto lowered = timed(stages, "lower", [&] { return lower::lower(derivation, progress); });
     if (!lowered.ok()) return lowered.error();
     const lower::Model& model = **lowered;
-    eval::Tape tape = timed(stages, "compile", [&] { return eval::compile(model.graph, model.field, model.graph.constants()); });
+    eval::Tape tape =
+        timed(stages, "compile", [&] { return eval::compile(model.graph, model.field, model.graph.constants()); });
     return Model{std::move(derivation), std::move(*lowered), std::move(tape)};
 }
 

@@ -1,6 +1,7 @@
 // From a checked grammar to a field that can be drawn or meshed, stage by stage with times: what the window and the
 // commands share.
-// Enters: a Grammar and what is chosen of it. Leaves: a Model. Assumes nothing; long stages report and can be cancelled.
+// Enters: a Grammar and what is chosen of it. Leaves: a Model. Assumes nothing; long stages report and can be
+// cancelled.
 #pragma once
 
 #include <memory>
@@ -46,7 +47,8 @@ struct Model {
     eval::Tape tape;
 };
 /// Stages "derive", "lower", "compile". Errors as of those doors.
-Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Stages& stages, Progress* progress);
+Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Stages& stages,
+                        Progress* progress);
 /// The last two stages, for a derivation that was made otherwise.
 Result<Model> makeModel(derive::Derivation derivation, Stages& stages, Progress* progress);
 

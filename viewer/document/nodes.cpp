@@ -58,21 +58,29 @@ bool calculates(const Expr& e) {
             return e.text == "not" || calculates(e.args[0]);
         case Expr::Kind::Range:
         case Expr::Kind::Ramp:
-            return std::any_of(e.args.begin(), e.args.end(), [&](const Expr& arg) { return arg.span.begin == e.span.begin || &arg != &e.args[0] ? calculates(arg) && arg.span.text().substr(0, 1) != "(" : false; });
+            return std::any_of(e.args.begin(), e.args.end(), [&](const Expr& arg) {
+                return arg.span.begin == e.span.begin || &arg != &e.args[0]
+                           ? calculates(arg) && arg.span.text().substr(0, 1) != "("
+                           : false;
+            });
         default:
             return false;
     }
 }
 
 /// Spans its own parentheses: its first operand begins behind them.
-bool parenthesised(const Expr& e) { return !e.args.empty() && e.args[0].span.begin > e.span.begin && e.span.text().substr(0, 1) == "("; }
+bool parenthesised(const Expr& e) {
+    return !e.args.empty() && e.args[0].span.begin > e.span.begin && e.span.text().substr(0, 1) == "(";
+}
 
 /// Reads `text` as one expression without comments or line ends.
 Result<Expr> readAlone(std::string_view text, syntax::SourcePtr& source) {
     source = std::make_shared<const syntax::Source>("value", std::string(text));
     const std::vector<Token> tokens = syntax::lex(*source);
-    const bool comments = std::any_of(tokens.begin(), tokens.end(), [](const Token& t) { return t.kind == Token::Kind::Comment; });
-    if (comments || text.find('\n') != std::string_view::npos) return refused(fmt::format("'{}' can't stand here: no comment, no line end", text));
+    const bool comments =
+        std::any_of(tokens.begin(), tokens.end(), [](const Token& t) { return t.kind == Token::Kind::Comment; });
+    if (comments || text.find('\n') != std::string_view::npos)
+        return refused(fmt::format("'{}' can't stand here: no comment, no line end", text));
     Diagnostics problems;
     Expr e = syntax::parseExpression(source, problems);
     if (problems.hasErrors()) return refused(fmt::format("'{}' can't be read: {}", text, problems.all()[0].message));
@@ -81,11 +89,13 @@ Result<Expr> readAlone(std::string_view text, syntax::SourcePtr& source) {
 
 std::string_view trimmed(std::string_view text) {
     const size_t begin = text.find_first_not_of(" \t\r\n");
-    return begin == std::string_view::npos ? std::string_view() : text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
+    return begin == std::string_view::npos ? std::string_view()
+                                           : text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
 }
 
 size_t errorsOf(const Diagnostics& problems) {
-    return static_cast<size_t>(std::count_if(problems.all().begin(), problems.all().end(), [](const auto& d) { return d.severity == syntax::Severity::Error; }));
+    return static_cast<size_t>(std::count_if(problems.all().begin(), problems.all().end(),
+                                             [](const auto& d) { return d.severity == syntax::Severity::Error; }));
 }
 
 }  // namespace
@@ -125,7 +135,9 @@ uint32_t lineBegin(std::string_view text, uint32_t offset) {
     return before == std::string_view::npos ? 0 : static_cast<uint32_t>(before + 1);
 }
 
-uint32_t lineEnd(std::string_view text, uint32_t offset) { return static_cast<uint32_t>(std::min(text.find('\n', offset), text.size())); }
+uint32_t lineEnd(std::string_view text, uint32_t offset) {
+    return static_cast<uint32_t>(std::min(text.find('\n', offset), text.size()));
+}
 
 bool beginsLine(std::string_view text, uint32_t offset) {
     const uint32_t begin = lineBegin(text, offset);
@@ -156,7 +168,8 @@ Edit tried(const Ast& ast, TextEdit edit) {
     syntax::parse(ast.source, before);
     syntax::parse(std::make_shared<const syntax::Source>(ast.source->name(), applied(ast.source->text(), edit)), after);
     if (errorsOf(after) <= errorsOf(before)) return edit;
-    const auto first = std::find_if(after.all().begin(), after.all().end(), [](const auto& d) { return d.severity == syntax::Severity::Error; });
+    const auto first = std::find_if(after.all().begin(), after.all().end(),
+                                    [](const auto& d) { return d.severity == syntax::Severity::Error; });
     return refused(first->mend.empty() ? first->message : fmt::format("{} ({})", first->message, first->mend));
 }
 

@@ -21,14 +21,18 @@ constexpr double keySteps = 20;
 Kind kindOf(const rules::Param& p) {
     if (!p.choices.empty()) return Kind::Choice;
     switch (p.value.kind) {
-        case Value::Kind::Bool: return Kind::Truth;
-        case Value::Kind::Color: return Kind::Color;
+        case Value::Kind::Bool:
+            return Kind::Truth;
+        case Value::Kind::Color:
+            return Kind::Color;
         case Value::Kind::Number:
-        case Value::Kind::Vector: return p.value.integer ? Kind::Integer : Kind::Real;
+        case Value::Kind::Vector:
+            return p.value.integer ? Kind::Integer : Kind::Real;
         case Value::Kind::Word:
         case Value::Kind::Text:
         case Value::Kind::Rotation:
-        case Value::Kind::Axis: return Kind::Text;
+        case Value::Kind::Axis:
+            return Kind::Text;
     }
     return Kind::Text;
 }
@@ -85,7 +89,8 @@ std::vector<ParamRow> paramRows(const rules::Grammar& grammar, const derive::Opt
         } else if (row.kind == Kind::Color) {
             row.color = {value.n[0], value.n[1], value.n[2]};
         } else {
-            row.word = value.kind == Value::Kind::Text || value.kind == Value::Kind::Word ? value.text : rules::toText(value);
+            row.word =
+                value.kind == Value::Kind::Text || value.kind == Value::Kind::Word ? value.text : rules::toText(value);
         }
         rows.push_back(std::move(row));
     }
@@ -94,17 +99,23 @@ std::vector<ParamRow> paramRows(const rules::Grammar& grammar, const derive::Opt
 
 std::string valueText(const ParamRow& row) {
     switch (row.kind) {
-        case Kind::Truth: return row.number[0] != 0 ? "true" : "false";
-        case Kind::Color: return fmt::format("#{:06x}", rules::hexFromLinear({row.color[0], row.color[1], row.color[2]}));
-        case Kind::Choice: return row.word;
-        case Kind::Text: return fmt::format("\"{}\"", row.word);
+        case Kind::Truth:
+            return row.number[0] != 0 ? "true" : "false";
+        case Kind::Color:
+            return fmt::format("#{:06x}", rules::hexFromLinear({row.color[0], row.color[1], row.color[2]}));
+        case Kind::Choice:
+            return row.word;
+        case Kind::Text:
+            return fmt::format("\"{}\"", row.word);
         case Kind::Integer:
-        case Kind::Real: break;
+        case Kind::Real:
+            break;
     }
     std::vector<std::string> parts;
     for (size_t i = 0; i < row.number.size(); ++i) parts.push_back(numberText(row, i));
     // Without a point anywhere it would be read as a whole number.
-    const bool whole = std::all_of(parts.begin(), parts.end(), [](const std::string& t) { return t.find_first_of(".e") == std::string::npos; });
+    const bool whole = std::all_of(parts.begin(), parts.end(),
+                                   [](const std::string& t) { return t.find_first_of(".e") == std::string::npos; });
     if (row.kind == Kind::Real && row.unit.empty() && whole) parts[0] += ".0";
     return parts.size() == 1 ? parts[0] : fmt::format("({})", fmt::join(parts, ", "));
 }
@@ -112,14 +123,17 @@ std::string valueText(const ParamRow& row) {
 edits::Edit setParams(const syntax::Ast& ast, const Choice& choice, const std::vector<ParamRow>& rows) {
     std::vector<edits::NamedValue> values;
     for (const ParamRow& row : rows) values.push_back({row.name, valueText(row)});
-    const std::string start = !choice.start.empty() ? choice.start : ast.starts.empty() ? "" : ast.starts[0].symbol.text;
+    const std::string start = !choice.start.empty() ? choice.start
+                              : ast.starts.empty()  ? ""
+                                                    : ast.starts[0].symbol.text;
     return edits::setValues(ast, start, choice.style, values);
 }
 
 ParamRow stepped(ParamRow row, bool back) {
     if (row.kind == Kind::Truth) row.number[0] = row.number[0] == 0;
     if (row.kind == Kind::Choice && !row.choices.empty()) {
-        const auto at = static_cast<size_t>(std::find(row.choices.begin(), row.choices.end(), row.word) - row.choices.begin());
+        const auto at =
+            static_cast<size_t>(std::find(row.choices.begin(), row.choices.end(), row.word) - row.choices.begin());
         row.word = row.choices[(at + (back ? row.choices.size() - 1 : 1)) % row.choices.size()];
     }
     if (row.kind != Kind::Integer && row.kind != Kind::Real) return row;
@@ -132,7 +146,8 @@ ParamRow stepped(ParamRow row, bool back) {
 }
 
 const ParamRow* rowOfKey(const std::vector<ParamRow>& rows, char key) {
-    const auto row = std::find_if(rows.begin(), rows.end(), [&](const ParamRow& r) { return key != 0 && r.key == key; });
+    const auto row =
+        std::find_if(rows.begin(), rows.end(), [&](const ParamRow& r) { return key != 0 && r.key == key; });
     return row == rows.end() ? nullptr : &*row;
 }
 
@@ -145,8 +160,10 @@ std::vector<ParamRow> rerolled(std::vector<ParamRow> rows, uint64_t seed) {
         if ((row.kind != Kind::Integer && row.kind != Kind::Real) || row.lo.empty()) continue;
         for (size_t i = 0; i < row.number.size(); ++i) {
             const uint64_t draw = combine(key, i);
-            row.number[i] = row.kind == Kind::Integer ? row.lo[i] + static_cast<double>(pick(draw, static_cast<uint64_t>(row.hi[i] - row.lo[i]) + 1))
-                                                      : uniform(draw, row.lo[i], row.hi[i]);
+            row.number[i] =
+                row.kind == Kind::Integer
+                    ? row.lo[i] + static_cast<double>(pick(draw, static_cast<uint64_t>(row.hi[i] - row.lo[i]) + 1))
+                    : uniform(draw, row.lo[i], row.hi[i]);
         }
     }
     return rows;

@@ -22,16 +22,16 @@ struct ParamRow {
         Text,     ///< `word`
     };
     Kind kind = Kind::Real;
-    std::string name, label, group;   ///< label: the name where none is given
-    std::string unit;                 ///< "m", "deg", "%", "/m", ""
-    char key = 0;                     ///< hotkey, lower case; shift reverses; 0 for none
-    std::vector<double> number;       ///< one, or one a component
-    std::vector<double> lo, hi;       ///< range of each; empty where there is none
+    std::string name, label, group;  ///< label: the name where none is given
+    std::string unit;                ///< "m", "deg", "%", "/m", ""
+    char key = 0;                    ///< hotkey, lower case; shift reverses; 0 for none
+    std::vector<double> number;      ///< one, or one a component
+    std::vector<double> lo, hi;      ///< range of each; empty where there is none
     std::vector<std::string> choices;
-    std::string word;                 ///< Choice, Text
-    std::array<double, 3> color{};    ///< Color: linear rgb, 0 … 1
-    bool locked = false;              ///< a re-roll leaves it alone
-    syntax::SourceSpan span;          ///< of its declaration
+    std::string word;               ///< Choice, Text
+    std::array<double, 3> color{};  ///< Color: linear rgb, 0 … 1
+    bool locked = false;            ///< a re-roll leaves it alone
+    syntax::SourceSpan span;        ///< of its declaration
 };
 
 /// The parameters with the values they have in this choice.

@@ -15,7 +15,12 @@ using derive::ShapeTree;
 
 Picked about(const Derivation& derivation, ShapeId shape) {
     const derive::Shape& s = derivation.tree.shapes[shape];
-    Picked picked{shape, derivation.tree.path(shape, true), derivation.tree.labels[s.label], {}, s.span, derivation.grammar->starts[derivation.start].span};
+    Picked picked{shape,
+                  derivation.tree.path(shape, true),
+                  derivation.tree.labels[s.label],
+                  {},
+                  s.span,
+                  derivation.grammar->starts[derivation.start].span};
     if (s.madeBy != none) {
         const rules::Rule& rule = derivation.grammar->rules[derivation.steps[s.madeBy].rule];
         picked.rule = rule.name;
@@ -32,12 +37,16 @@ std::optional<Picked> pick(const Shown& shown, OriginId origin) {
     return about(shown.model.derivation, shape);
 }
 
-ShapeId selected(const ShapeTree& tree, const std::string& path) { return path.empty() || tree.shapes.empty() ? none : tree.find(path); }
+ShapeId selected(const ShapeTree& tree, const std::string& path) {
+    return path.empty() || tree.shapes.empty() ? none : tree.find(path);
+}
 
 std::vector<ShapeId> shapesAt(const Derivation& derivation, uint32_t offset) {
     const ShapeTree& tree = derivation.tree;
     const syntax::Source* file = derivation.grammar->sources[0].get();
-    const auto holds = [&](syntax::SourceSpan span) { return span.source == file && span.begin <= offset && offset < span.end; };
+    const auto holds = [&](syntax::SourceSpan span) {
+        return span.source == file && span.begin <= offset && offset < span.end;
+    };
     const auto length = [](syntax::SourceSpan span) { return span.end - span.begin; };
     syntax::SourceSpan least;
     for (const derive::Shape& s : tree.shapes)
@@ -45,8 +54,9 @@ std::vector<ShapeId> shapesAt(const Derivation& derivation, uint32_t offset) {
     std::vector<ShapeId> found;
     for (ShapeId id = 0; id != none; id = tree.next(id)) {
         const derive::Shape& s = tree.shapes[id];
-        const bool made = least.source ? s.span.source == file && s.span.begin == least.begin && s.span.end == least.end
-                                       : s.madeBy != none && holds(derivation.grammar->rules[derivation.steps[s.madeBy].rule].span);
+        const bool made =
+            least.source ? s.span.source == file && s.span.begin == least.begin && s.span.end == least.end
+                         : s.madeBy != none && holds(derivation.grammar->rules[derivation.steps[s.madeBy].rule].span);
         if (made) found.push_back(id);
     }
     return found;
@@ -64,7 +74,9 @@ std::vector<OriginId> originsOf(const Shown& shown, ShapeId shape) {
     return origins;
 }
 
-bool isCurrent(const Document& document, const Shown& shown) { return shown.grammar->sources[0]->text() == document.text(); }
+bool isCurrent(const Document& document, const Shown& shown) {
+    return shown.grammar->sources[0]->text() == document.text();
+}
 
 const syntax::Element* elementOf(const Document& document, const Shown& shown, ShapeId shape) {
     const syntax::SourceSpan span = shown.model.derivation.tree.shapes[shape].span;
@@ -88,7 +100,9 @@ ShapeId hostOf(const ShapeTree& tree, ShapeId shape) {
 }
 
 /// A shape and the content that fills it exactly have the same joints.
-bool samePlace(const ShapeTree& tree, ShapeId a, ShapeId b) { return a == b || (tree.shapes[a].body != none && tree.shapes[a].body == tree.shapes[b].body); }
+bool samePlace(const ShapeTree& tree, ShapeId a, ShapeId b) {
+    return a == b || (tree.shapes[a].body != none && tree.shapes[a].body == tree.shapes[b].body);
+}
 
 }  // namespace
 
@@ -97,11 +111,16 @@ edits::Edit attach(const Document& document, const Shown& shown, ShapeId moved, 
     const ShapeTree& tree = derivation.tree;
     if (!isCurrent(document, shown)) return edits::refused("the text has changed since this model was made");
     const syntax::Element* element = elementOf(document, shown, moved);
-    if (!element) return edits::refused(fmt::format("'{}' was made by another file: '{}'", tree.path(moved), tree.shapes[moved].span.source ? tree.shapes[moved].span.source->name() : ""));
-    if (moved == 0 || element->op == syntax::Operator::None) return edits::refused(fmt::format("'{}' is the content of its shape and joined to nothing", tree.path(moved)));
+    if (!element)
+        return edits::refused(
+            fmt::format("'{}' was made by another file: '{}'", tree.path(moved),
+                        tree.shapes[moved].span.source ? tree.shapes[moved].span.source->name() : ""));
+    if (moved == 0 || element->op == syntax::Operator::None)
+        return edits::refused(fmt::format("'{}' is the content of its shape and joined to nothing", tree.path(moved)));
     const ShapeId stands = hostOf(tree, moved);
     if (!samePlace(tree, stands, host))
-        return edits::refused(fmt::format("'{}' grows on '{}': its rule can't join it to '{}'", tree.path(moved), tree.path(stands), tree.path(host)));
+        return edits::refused(fmt::format("'{}' grows on '{}': its rule can't join it to '{}'", tree.path(moved),
+                                          tree.path(stands), tree.path(host)));
     return edits::attach(*document.ast(), *element, tree.joint(host, joint).name);
 }
 

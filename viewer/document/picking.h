@@ -24,8 +24,8 @@ std::optional<Picked> pick(const Shown& shown, OriginId origin);
 /// The shape that a selection means in this tree, or none.
 derive::ShapeId selected(const derive::ShapeTree& tree, const std::string& path);
 
-/// The shapes that the text at `offset` of the document made, in tree order: of the smallest element around it that made
-/// any; in a rule's head all that the rule made.
+/// The shapes that the text at `offset` of the document made, in tree order: of the smallest element around it that
+/// made any; in a rule's head all that the rule made.
 std::vector<derive::ShapeId> shapesAt(const derive::Derivation& derivation, uint32_t offset);
 /// The origins under which the shape, or anything below it, owns surface: what to light up in the view.
 std::vector<OriginId> originsOf(const Shown& shown, derive::ShapeId shape);
@@ -39,6 +39,7 @@ const syntax::Element* elementOf(const Document& document, const Shown& shown, d
 /// Joins `moved` at a joint of `host`: what dropping a shape on a joint asks for. Error::Input, in words, where the
 /// grammar can't say so: the element is joined to another shape than `host`, it is the content of its shape, it stands
 /// in a used file.
-edits::Edit attach(const Document& document, const Shown& shown, derive::ShapeId moved, derive::ShapeId host, uint32_t joint);
+edits::Edit attach(const Document& document, const Shown& shown, derive::ShapeId moved, derive::ShapeId host,
+                   uint32_t joint);
 
 }  // namespace sgm::viewer

@@ -1,5 +1,6 @@
 // The Problems panel: what is wrong with the grammar, as plain rows.
-// Enters: diagnostics, and errors of later stages. Leaves: rows that outlive the sources they point at. Assumes nothing.
+// Enters: diagnostics, and errors of later stages. Leaves: rows that outlive the sources they point at. Assumes
+// nothing.
 #pragma once
 
 #include <string>
@@ -12,10 +13,10 @@ namespace sgm::viewer {
 
 struct Problem {
     syntax::Severity severity = syntax::Severity::Error;
-    std::string file;                    ///< as the source is named; "" where no place is known
-    uint32_t line = 0, column = 0;       ///< from 1; 0 where no place is known
-    uint32_t endLine = 0, endColumn = 0; ///< behind the last byte
-    std::string message, mend;           ///< mend: what to write instead, "" where nobody knows
+    std::string file;                     ///< as the source is named; "" where no place is known
+    uint32_t line = 0, column = 0;        ///< from 1; 0 where no place is known
+    uint32_t endLine = 0, endColumn = 0;  ///< behind the last byte
+    std::string message, mend;            ///< mend: what to write instead, "" where nobody knows
     friend bool operator==(const Problem&, const Problem&) = default;
 };
 

@@ -52,13 +52,15 @@ std::optional<Abandoned> read(const fs::path& kept) {
     text.remove_prefix(static_cast<size_t>(end - text.data()) + 1);
     if (length > text.size()) return std::nullopt;
     std::error_code ignored;
-    return Abandoned{kept, std::string(text.substr(0, length)), std::string(text.substr(length)), fs::last_write_time(kept, ignored)};
+    return Abandoned{kept, std::string(text.substr(0, length)), std::string(text.substr(length)),
+                     fs::last_write_time(kept, ignored)};
 }
 
 }  // namespace
 
 fs::path recoveryFolder() {
-    if (const char* state = std::getenv("XDG_STATE_HOME"); state && fs::path(state).is_absolute()) return fs::path(state) / "sgm";
+    if (const char* state = std::getenv("XDG_STATE_HOME"); state && fs::path(state).is_absolute())
+        return fs::path(state) / "sgm";
     const char* home = std::getenv("HOME");
     return fs::path(home && *home ? home : ".") / ".local/state/sgm";
 }
@@ -70,7 +72,9 @@ std::vector<Abandoned> abandonedWork(const fs::path& folder) {
         if (entry->path().extension() != ending || !isAbandoned(entry->path())) continue;
         if (auto work = read(entry->path())) found.push_back(std::move(*work));
     }
-    std::sort(found.begin(), found.end(), [](const Abandoned& a, const Abandoned& b) { return a.time != b.time ? a.time > b.time : a.kept < b.kept; });
+    std::sort(found.begin(), found.end(), [](const Abandoned& a, const Abandoned& b) {
+        return a.time != b.time ? a.time > b.time : a.kept < b.kept;
+    });
     return found;
 }
 

@@ -1,6 +1,7 @@
 // Unsaved work, kept beside the window so that a crash costs nothing.
-// Enters: documents as they change. Leaves: a file a document in the state folder, and after a crash the offer to go on.
-// Assumes POSIX: a lock (flock) ends with its process, however that ends, so a living program's work is never offered.
+// Enters: documents as they change. Leaves: a file a document in the state folder, and after a crash the offer to go
+// on. Assumes POSIX: a lock (flock) ends with its process, however that ends, so a living program's work is never
+// offered.
 #pragma once
 
 #include <condition_variable>

@@ -23,8 +23,10 @@ std::string oneLine(SourceSpan span) {
     std::string line;
     for (const syntax::Token& token : syntax::lex(alone)) {
         if (token.kind == syntax::Token::Kind::Comment) continue;
-        if (token.kind != syntax::Token::Kind::Blank) line += textOf(alone, token);
-        else if (!line.empty() && line.back() != ' ') line += ' ';
+        if (token.kind != syntax::Token::Kind::Blank)
+            line += textOf(alone, token);
+        else if (!line.empty() && line.back() != ' ')
+            line += ' ';
     }
     while (!line.empty() && line.back() == ' ') line.pop_back();
     return line;
@@ -52,8 +54,10 @@ std::string headOf(const Element& e) {
             break;
     }
     std::string text(sign(e.op));
-    if (e.kind == Element::Kind::Group) text += "( )";
-    else if (e.solid) text += oneLine(e.solid->span);
+    if (e.kind == Element::Kind::Group)
+        text += "( )";
+    else if (e.solid)
+        text += oneLine(e.solid->span);
     if (!e.live.empty()) text += " : " + e.live.text;
     return text;
 }
@@ -61,7 +65,8 @@ std::string headOf(const Element& e) {
 std::string headOf(const syntax::Attribute& a) {
     std::string text = a.name.text;
     for (const Expr& arg : a.args) text += ' ' + oneLine(arg.span);
-    if (a.id == syntax::Operation::Id::With && a.args.size() == 2) text = "with " + a.args[0].text + " = " + oneLine(a.args[1].span);
+    if (a.id == syntax::Operation::Id::With && a.args.size() == 2)
+        text = "with " + a.args[0].text + " = " + oneLine(a.args[1].span);
     return text;
 }
 
@@ -127,7 +132,9 @@ private:
     }
     void cases(const std::vector<Case>& list, uint32_t depth) {
         for (const Case& c : list) {
-            const std::string label = c.repeated ? "{ }*" : c.tag.empty() ? oneLine(c.label) + ":" : "tag " + c.tag.text + ":";
+            const std::string label = c.repeated      ? "{ }*"
+                                      : c.tag.empty() ? oneLine(c.label) + ":"
+                                                      : "tag " + c.tag.text + ":";
             RuleRow& row = add(Kind::Case, depth, c.span, label);
             if (c.label) row.expression = &*c.label;
             if (c.body) body(*c.body, depth + 1);
@@ -158,7 +165,8 @@ size_t rowAt(const std::vector<RuleRow>& rows, uint32_t offset) {
     for (size_t i = 0; i < rows.size(); ++i) {
         const SourceSpan span = rows[i].span;
         const bool holds = span.begin <= offset && offset < span.end;
-        if (holds && (found == rows.size() || span.end - span.begin <= rows[found].span.end - rows[found].span.begin)) found = i;
+        if (holds && (found == rows.size() || span.end - span.begin <= rows[found].span.end - rows[found].span.begin))
+            found = i;
     }
     return found;
 }

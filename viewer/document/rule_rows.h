@@ -1,6 +1,6 @@
 // The Rules panel: the grammar's rule tree as rows, each with its node, so that a click can change it (edits.h).
-// Enters: a syntax tree. Leaves: rows in the order of the text, a row's parts below it and one deeper. Assumes that rows
-// are used no longer than the tree lives: they point into it.
+// Enters: a syntax tree. Leaves: rows in the order of the text, a row's parts below it and one deeper. Assumes that
+// rows are used no longer than the tree lives: they point into it.
 #pragma once
 
 #include <string>
@@ -22,16 +22,16 @@ struct RuleRow {
     };
     Kind kind = Kind::Rule;
     uint32_t depth = 0;
-    uint32_t sibling = 0;      ///< Element: in which of the body's chains, from 0; a comma stands between two
-    bool first = false;        ///< Element: of its chain
-    std::string text;          ///< in one line, without what has rows of its own: "+ sphere : A"
-    std::string word;          ///< Part, Attribute: "when", "at"
-    syntax::SourceSpan span;   ///< of the whole node
-    const syntax::RuleDecl* rule = nullptr;        ///< the rule it belongs to; null in a start
-    const syntax::StartDecl* start = nullptr;      ///< the start it belongs to; null in a rule
+    uint32_t sibling = 0;     ///< Element: in which of the body's chains, from 0; a comma stands between two
+    bool first = false;       ///< Element: of its chain
+    std::string text;         ///< in one line, without what has rows of its own: "+ sphere : A"
+    std::string word;         ///< Part, Attribute: "when", "at"
+    syntax::SourceSpan span;  ///< of the whole node
+    const syntax::RuleDecl* rule = nullptr;    ///< the rule it belongs to; null in a start
+    const syntax::StartDecl* start = nullptr;  ///< the start it belongs to; null in a rule
     const syntax::Element* element = nullptr;
     const syntax::Attribute* attribute = nullptr;
-    const syntax::Expr* expression = nullptr;      ///< what `setExpression` would change: of a Part, a Case's label
+    const syntax::Expr* expression = nullptr;  ///< what `setExpression` would change: of a Part, a Case's label
 };
 
 /// Starts and rules in the order of the text, with all that stands in them.

@@ -9,26 +9,30 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double patience_s = 1;  ///< a request that is overtaken may run on for so long
-constexpr float keptCells = 1.25f;  ///< the lattice of a mesh is kept while its cells are within this factor of what is wished
+constexpr float keptCells =
+    1.25f;  ///< the lattice of a mesh is kept while its cells are within this factor of what is wished
 
 bool sameOptions(const derive::Options& a, const derive::Options& b) {
-    return a.start == b.start && a.derive == b.derive && a.params == b.params && a.seed == b.seed && a.budget.shapes == b.budget.shapes &&
-           a.budget.seconds == b.budget.seconds;
+    return a.start == b.start && a.derive == b.derive && a.params == b.params && a.seed == b.seed &&
+           a.budget.shapes == b.budget.shapes && a.budget.seconds == b.budget.seconds;
 }
 
 bool sameInstructions(const eval::Tape& a, const eval::Tape& b) {
     const auto same = [](const eval::Instruction& i, const eval::Instruction& j) {
-        return i.op == j.op && i.count == j.count && i.out == j.out && i.a == j.a && i.b == j.b && i.data == j.data && i.origins == j.origins;
+        return i.op == j.op && i.count == j.count && i.out == j.out && i.a == j.a && i.b == j.b && i.data == j.data &&
+               i.origins == j.origins;
     };
     const auto equal = [](auto x, auto y) { return std::equal(x.begin(), x.end(), y.begin(), y.end()); };
-    return std::equal(a.code().begin(), a.code().end(), b.code().begin(), b.code().end(), same) && equal(a.sources(), b.sources()) &&
-           equal(a.origins(), b.origins()) && a.constants().size() == b.constants().size() && a.result() == b.result();
+    return std::equal(a.code().begin(), a.code().end(), b.code().begin(), b.code().end(), same) &&
+           equal(a.sources(), b.sources()) && equal(a.origins(), b.origins()) &&
+           a.constants().size() == b.constants().size() && a.result() == b.result();
 }
 
 Change changeOf(const Shown* before, const eval::Tape& now) {
     if (!before || !sameInstructions(before->model.tape, now)) return Change::Structure;
     const auto then = before->model.tape.constants();
-    const bool same = std::equal(then.begin(), then.end(), now.constants().begin()) && before->model.tape.lipschitz() == now.lipschitz();
+    const bool same = std::equal(then.begin(), then.end(), now.constants().begin()) &&
+                      before->model.tape.lipschitz() == now.lipschitz();
     return same ? Change::Nothing : Change::Numbers;
 }
 
@@ -41,13 +45,16 @@ fs::file_time_type timeOf(const fs::path& path) {
 /// The choice in the words of `optionsFor`; what the grammar doesn't know any more is left out, with a warning.
 ModelChoice wordsOf(const Choice& choice, const rules::Grammar& grammar, std::vector<Problem>& problems) {
     const auto known = [&](const auto& list, const std::string& name, const char* what, auto nameOf) {
-        if (name.empty() || std::any_of(list.begin(), list.end(), [&](const auto& row) { return nameOf(row) == name; })) return name;
-        problems.push_back({syntax::Severity::Warning, {}, 0, 0, 0, 0, fmt::format("there is no {} '{}' any more", what, name), {}});
+        if (name.empty() || std::any_of(list.begin(), list.end(), [&](const auto& row) { return nameOf(row) == name; }))
+            return name;
+        problems.push_back(
+            {syntax::Severity::Warning, {}, 0, 0, 0, 0, fmt::format("there is no {} '{}' any more", what, name), {}});
         return std::string();
     };
     ModelChoice words;
     words.seed = choice.seed;
-    words.start = known(grammar.starts, choice.start, "start", [&](const rules::Start& s) { return grammar.symbols[s.symbol].name; });
+    words.start = known(grammar.starts, choice.start, "start",
+                        [&](const rules::Start& s) { return grammar.symbols[s.symbol].name; });
     words.style = known(grammar.styles, choice.style, "style", [](const rules::Style& s) { return s.name; });
     words.derive = known(grammar.derives, choice.way, "derive way", [](const rules::Derive& d) { return d.name; });
     return words;
@@ -179,7 +186,8 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
         } else if (superseded()) {
             return;
         } else {
-            problems.push_back({syntax::Severity::Warning, {}, 0, 0, 0, 0, "cancelled: what is shown was made before", {}});
+            problems.push_back(
+                {syntax::Severity::Warning, {}, 0, 0, 0, 0, "cancelled: what is shown was made before", {}});
         }
     }
     news.problems = std::move(problems);
@@ -189,7 +197,9 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
 
 /// Parsed text to a grammar, unless neither the text nor a file it uses has changed. Adds what is wrong to `problems`.
 bool Session::checked(const ShowRequest& request, Stages& stages, std::vector<Problem>& problems) {
-    const bool unchanged = request.ast == ast_ && std::none_of(usedByCheck_.begin(), usedByCheck_.end(), [](const UsedFile& used) { return timeOf(used.path) != used.time; });
+    const bool unchanged =
+        request.ast == ast_ && std::none_of(usedByCheck_.begin(), usedByCheck_.end(),
+                                            [](const UsedFile& used) { return timeOf(used.path) != used.time; });
     if (!unchanged) {
         std::vector<syntax::SourcePtr> sources;  // diagnostics point into them
         usedByCheck_.clear();
@@ -211,16 +221,20 @@ bool Session::checked(const ShowRequest& request, Stages& stages, std::vector<Pr
 }
 
 /// The model of the request: the last one where nothing it is made from has changed.
-Result<std::shared_ptr<const Shown>> Session::made(const ShowRequest& request, Stages stages, std::vector<Problem>& problems, Progress& progress) {
+Result<std::shared_ptr<const Shown>> Session::made(const ShowRequest& request, Stages stages,
+                                                   std::vector<Problem>& problems, Progress& progress) {
     auto options = optionsFor(*grammar_, wordsOf(request.choice, *grammar_, problems));
     if (!options.ok()) return options.error();
     options->budget = request.budget;
-    if (shown_ && shown_->grammar == grammar_ && handShown_ == request.byHand && sameOptions(shown_->options, *options)) return shown_;
-    auto model = request.byHand ? makeModel(derive::Derivation(*request.byHand), stages, &progress) : makeModel(grammar_, *options, stages, &progress);
+    if (shown_ && shown_->grammar == grammar_ && handShown_ == request.byHand && sameOptions(shown_->options, *options))
+        return shown_;
+    auto model = request.byHand ? makeModel(derive::Derivation(*request.byHand), stages, &progress)
+                                : makeModel(grammar_, *options, stages, &progress);
     if (!model.ok()) return model.error();
     handShown_ = request.byHand;
     const Change change = changeOf(shown_.get(), model->tape);
-    return std::make_shared<const Shown>(Shown{request.revision, grammar_, std::move(*options), std::move(*model), request.byHand != nullptr, change, std::move(stages)});
+    return std::make_shared<const Shown>(Shown{request.revision, grammar_, std::move(*options), std::move(*model),
+                                               request.byHand != nullptr, change, std::move(stages)});
 }
 
 void Session::meshIt(const ShowRequest& request, Progress& progress) {
@@ -232,7 +246,8 @@ void Session::meshIt(const ShowRequest& request, Progress& progress) {
     if (meshed_ && meshed_->of == shown_ && meshResolution_ == request.meshResolution) return;
     const Box3f& bounds = shown_->model.lowered->field.bounds;
     const float wished_m = mesh::cellFor(bounds, request.meshResolution), before_m = meshed_ ? meshed_->grid.cell_m : 0;
-    const bool keep = meshResolution_ == request.meshResolution && before_m < wished_m * keptCells && before_m * keptCells > wished_m;
+    const bool keep =
+        meshResolution_ == request.meshResolution && before_m < wished_m * keptCells && before_m * keptCells > wished_m;
     auto meshed = std::make_shared<Meshed>();
     meshed->of = shown_;
     meshed->grid = mesh::gridToKeep(meshed_ ? meshed_->grid : mesh::Grid{}, bounds, keep ? before_m : wished_m);
@@ -248,7 +263,9 @@ void Session::meshIt(const ShowRequest& request, Progress& progress) {
     meshed->mesh = std::make_shared<const mesh::Mesh>(**mesh);
     meshed->blocksMade = rebuild_.blocksMade();
     meshed->blocksKept = rebuild_.blocksKept();
-    meshed->stages = {{"subdivide", meshed->counts.subdivideSeconds}, {"sample", meshed->counts.sampleSeconds}, {"polygonize", meshed->counts.polygonizeSeconds}};
+    meshed->stages = {{"subdivide", meshed->counts.subdivideSeconds},
+                      {"sample", meshed->counts.sampleSeconds},
+                      {"polygonize", meshed->counts.polygonizeSeconds}};
     meshed_ = meshed;
     meshResolution_ = request.meshResolution;
     News news;

@@ -1,7 +1,7 @@
-// What the window shows of a document, kept up to date on a worker: text → Grammar → Derivation → Field → Tape (→ Mesh).
-// Enters: requests, the newest counts. Leaves: immutable models, problems, times. Assumes that one thread (the window's)
-// calls it, every frame `poll`. Stages run again from the first that changed. A text with problems leaves the last good
-// model standing; so does a request that was cancelled.
+// What the window shows of a document, kept up to date on a worker: text → Grammar → Derivation → Field → Tape (→
+// Mesh). Enters: requests, the newest counts. Leaves: immutable models, problems, times. Assumes that one thread (the
+// window's) calls it, every frame `poll`. Stages run again from the first that changed. A text with problems leaves the
+// last good model standing; so does a request that was cancelled.
 #pragma once
 
 #include <condition_variable>
@@ -33,9 +33,9 @@ struct Shown {
     std::shared_ptr<const rules::Grammar> grammar;
     derive::Options options;
     Model model;
-    bool byHand = false;    ///< its derivation came from the Step panel
+    bool byHand = false;  ///< its derivation came from the Step panel
     Change change = Change::Structure;
-    Stages stages;          ///< seconds of what ran: check, derive, lower, compile
+    Stages stages;  ///< seconds of what ran: check, derive, lower, compile
 };
 
 /// Its mesh, which comes later.
@@ -114,7 +114,8 @@ private:
     void work();
     void attempt(const ShowRequest& request, Progress& progress);
     bool checked(const ShowRequest& request, Stages& stages, std::vector<Problem>& problems);
-    Result<std::shared_ptr<const Shown>> made(const ShowRequest& request, Stages stages, std::vector<Problem>& problems, Progress& progress);
+    Result<std::shared_ptr<const Shown>> made(const ShowRequest& request, Stages stages, std::vector<Problem>& problems,
+                                              Progress& progress);
     void meshIt(const ShowRequest& request, Progress& progress);
     void publish(News news);
     bool superseded();

@@ -13,7 +13,9 @@ using derive::ShapeId;
 using derive::ShapeTree;
 
 bool contains(std::string_view text, std::string_view wanted) {
-    const auto alike = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b)); };
+    const auto alike = [](char a, char b) {
+        return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+    };
     return std::search(text.begin(), text.end(), wanted.begin(), wanted.end(), alike) != text.end();
 }
 
@@ -48,7 +50,8 @@ std::vector<ShapeRow> shapeRows(const derive::Derivation& derivation, const Shap
     if (filters)
         for (ShapeId id = 0; id != none; id = tree.next(id))
             if (matches(id))
-                for (ShapeId above = id; above != none && !holds[above]; above = tree.shapes[above].parent) holds[above] = true;
+                for (ShapeId above = id; above != none && !holds[above]; above = tree.shapes[above].parent)
+                    holds[above] = true;
     for (ShapeId id = 0; id != none;) {
         const derive::Shape& s = tree.shapes[id];
         const bool open = filters || !folded.contains(s.key);
@@ -59,7 +62,8 @@ std::vector<ShapeRow> shapeRows(const derive::Derivation& derivation, const Shap
 }
 
 void reveal(const ShapeTree& tree, ShapeId shape, Folded& folded) {
-    for (ShapeId above = tree.shapes[shape].parent; above != none; above = tree.shapes[above].parent) folded.erase(tree.shapes[above].key);
+    for (ShapeId above = tree.shapes[shape].parent; above != none; above = tree.shapes[above].parent)
+        folded.erase(tree.shapes[above].key);
 }
 
 bool isTerminal(const derive::Derivation& derivation, ShapeId shape) {
@@ -93,7 +97,8 @@ std::vector<JointMark> jointMarks(const ShapeTree& tree, ShapeId shape) {
         const derive::Joint joint = tree.joint(shape, j);
         const bool bonded = joint.bond != none;
         const bool pointless = joint.direction == Vec3d{};
-        marks.push_back({shape, j, joint.name, joint.point, joint.direction, bonded ? !tree.bonds[joint.bond].directed : pointless, bonded});
+        marks.push_back({shape, j, joint.name, joint.point, joint.direction,
+                         bonded ? !tree.bonds[joint.bond].directed : pointless, bonded});
     }
     return marks;
 }
@@ -103,7 +108,11 @@ std::vector<BondMark> bondMarks(const ShapeTree& tree, size_t most) {
     for (const derive::Bond& bond : tree.bonds) {
         if (marks.size() == most) break;
         const Vec3d at = tree.joint(bond.shape[0], bond.joint[0]).point + bond.shift;
-        marks.push_back({{bond.shape[0], bond.shape[1]}, tree.shapes[bond.shape[0]].scope.centre, tree.shapes[bond.shape[1]].scope.centre, at, !bond.directed});
+        marks.push_back({{bond.shape[0], bond.shape[1]},
+                         tree.shapes[bond.shape[0]].scope.centre,
+                         tree.shapes[bond.shape[1]].scope.centre,
+                         at,
+                         !bond.directed});
     }
     return marks;
 }

@@ -1,6 +1,6 @@
 // The Shapes panel and what is drawn over the view: the derived tree as rows, joints and bonds in space (figure 11).
-// Enters: a derivation. Leaves: light rows (a tree may have hundreds of thousands) and, for those that are seen, labels.
-// Assumes that rows are made anew for another derivation.
+// Enters: a derivation. Leaves: light rows (a tree may have hundreds of thousands) and, for those that are seen,
+// labels. Assumes that rows are made anew for another derivation.
 #pragma once
 
 #include <string>
@@ -15,12 +15,12 @@ struct ShapeRow {
     derive::ShapeId shape = 0;
     uint32_t depth = 0;
     bool hasChildren = false;
-    bool open = true;      ///< its children have rows
-    bool matches = true;   ///< false: shown only because something below it matches the filter
+    bool open = true;     ///< its children have rows
+    bool matches = true;  ///< false: shown only because something below it matches the filter
 };
 
 struct ShapeFilter {
-    std::string text;            ///< part of a label or of the rule that made it, capitals alike; "" for all
+    std::string text;  ///< part of a label or of the rule that made it, capitals alike; "" for all
     bool liveOnly = false;
     friend bool operator==(const ShapeFilter&, const ShapeFilter&) = default;
 };

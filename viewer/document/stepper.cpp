@@ -21,8 +21,10 @@ Result<Stepper> Stepper::begin(std::shared_ptr<const rules::Grammar> grammar, de
     Stepper stepper(std::move(*session), options);
     stepper.list();
     if (options.derive.empty()) return stepper;
-    const auto way = std::find_if(grammar->derives.begin(), grammar->derives.end(), [&](const rules::Derive& d) { return d.name == options.derive; });
-    if (way == grammar->derives.end()) return Error{Error::Kind::Usage, fmt::format("the grammar has no derive way '{}'", options.derive)};
+    const auto way = std::find_if(grammar->derives.begin(), grammar->derives.end(),
+                                  [&](const rules::Derive& d) { return d.name == options.derive; });
+    if (way == grammar->derives.end())
+        return Error{Error::Kind::Usage, fmt::format("the grammar has no derive way '{}'", options.derive)};
     for (const rules::Derive::Step& step : way->steps) {
         const auto shape = stepper.session_.meant(step.rule, step.place);
         if (!shape.ok()) return shape.error();
@@ -37,7 +39,8 @@ void Stepper::list() {
     const rules::Grammar& grammar = session_.grammar();
     for (const ShapeId s : session_.live()) {
         StepRow row{s, tree.path(s), grammar.symbols[tree.shapes[s].symbol].name, tree.shapes[s].scope.size, {}};
-        for (const uint32_t r : session_.rulesFor(s)) row.rules.push_back({r, grammar.rules[r].name, grammar.rules[r].span});
+        for (const uint32_t r : session_.rulesFor(s))
+            row.rules.push_back({r, grammar.rules[r].name, grammar.rules[r].span});
         rows_.push_back(std::move(row));
     }
 }
@@ -56,7 +59,9 @@ const StepRow* Stepper::rowOf(ShapeId shape) const {
     return nullptr;
 }
 
-Status Stepper::apply(ShapeId shape, uint32_t rule, Progress* progress) { return listed(session_.apply({rule, shape}, progress)); }
+Status Stepper::apply(ShapeId shape, uint32_t rule, Progress* progress) {
+    return listed(session_.apply({rule, shape}, progress));
+}
 
 Status Stepper::apply(const std::string& step) {
     const auto& rules = session_.grammar().rules;
@@ -87,24 +92,28 @@ Result<std::string> Stepper::way(const std::string& name) const {
     return derive::wayText(session_.grammar(), name, *steps);
 }
 
-Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& grammar, derive::Options options, const std::string& name, const rules::Loader& loader) {
+Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& grammar, derive::Options options,
+                        const std::string& name, const rules::Loader& loader) {
     if (!session.canUndo()) return refused("no rule was applied yet, so there is no way to save");
     const auto steps = session.way();
     if (!steps.ok()) return steps.error();
     std::string text = derive::fileWithWay(grammar, name, derive::wayText(grammar, name, *steps));
     syntax::Diagnostics problems;
-    const auto changed = rules::load(std::make_shared<const syntax::Source>(grammar.sources[0]->name(), text), loader, problems);
+    const auto changed =
+        rules::load(std::make_shared<const syntax::Source>(grammar.sources[0]->name(), text), loader, problems);
     if (!changed) return refused(fmt::format("can't save this way as '{}': {}", name, problems.all()[0].message));
     options.derive = name;
     const auto derived = derive::derive(changed, options, nullptr), here = session.derivation();
     if (!derived.ok()) return derived.error();
     if (!here.ok()) return here.error();
-    if (derive::toText(*derived, false) != derive::toText(*here, false)) return refused("can't save this way: a 'derive' line would lead to another tree");
+    if (derive::toText(*derived, false) != derive::toText(*here, false))
+        return refused("can't save this way: a 'derive' line would lead to another tree");
     return WithWay{std::move(text), changed};
 }
 
 edits::Edit Stepper::save(const syntax::Ast& ast, const std::string& name, const rules::Loader& loader) const {
-    if (ast.source->text() != session_.grammar().sources[0]->text()) return refused("the text has changed since this way was begun");
+    if (ast.source->text() != session_.grammar().sources[0]->text())
+        return refused("the text has changed since this way was begun");
     const auto saved = withWay(session_, session_.grammar(), options_, name, loader);
     if (!saved.ok()) return saved.error();
     return difference(ast.source->text(), saved->text);

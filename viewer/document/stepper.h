@@ -53,15 +53,16 @@ public:
     Result<std::shared_ptr<const derive::Derivation>> derivation() const;
     /// The way so far as a line, "derive NAME: R0 => R2"; Error::Input where a line can't say it, or nothing was done.
     Result<std::string> way(const std::string& name) const;
-    /// The edit that writes that line into the text: in place of the way of that name, else behind the last one. Refused
-    /// unless running the line gives this very tree. `ast` must be what the grammar was checked from.
+    /// The edit that writes that line into the text: in place of the way of that name, else behind the last one.
+    /// Refused unless running the line gives this very tree. `ast` must be what the grammar was checked from.
     edits::Edit save(const syntax::Ast& ast, const std::string& name, const rules::Loader& loader = fileLoader()) const;
 
     /// The same way in another text of the grammar, as far as its rules still match. The number of steps kept.
     Result<size_t> follow(std::shared_ptr<const rules::Grammar> grammar, derive::Options options);
 
 private:
-    Stepper(derive::Session session, derive::Options options) : session_(std::move(session)), options_(std::move(options)) {}
+    Stepper(derive::Session session, derive::Options options)
+        : session_(std::move(session)), options_(std::move(options)) {}
     void list();
     Status listed(Status done);
 
@@ -75,8 +76,9 @@ struct WithWay {
     std::string text;
     std::shared_ptr<const rules::Grammar> grammar;
 };
-/// The text of `grammar` with the session's way in it, tried: running it must give the session's very tree. `grammar` is
-/// the session's own or one that differs from it in `derive` lines alone. What `sgm step` and the panel save.
-Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& grammar, derive::Options options, const std::string& name, const rules::Loader& loader);
+/// The text of `grammar` with the session's way in it, tried: running it must give the session's very tree. `grammar`
+/// is the session's own or one that differs from it in `derive` lines alone. What `sgm step` and the panel save.
+Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& grammar, derive::Options options,
+                        const std::string& name, const rules::Loader& loader);
 
 }  // namespace sgm::viewer

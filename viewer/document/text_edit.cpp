@@ -5,14 +5,16 @@
 namespace sgm::viewer {
 
 std::string applied(std::string_view text, const TextEdit& edit) {
-    const size_t begin = std::min<size_t>(edit.begin, text.size()), end = std::clamp<size_t>(edit.end, begin, text.size());
+    const size_t begin = std::min<size_t>(edit.begin, text.size()),
+                 end = std::clamp<size_t>(edit.end, begin, text.size());
     std::string result;
     result.reserve(text.size() - (end - begin) + edit.replacement.size());
     return result.append(text.substr(0, begin)).append(edit.replacement).append(text.substr(end));
 }
 
 TextEdit inverse(std::string_view before, const TextEdit& edit) {
-    return {edit.begin, edit.begin + static_cast<uint32_t>(edit.replacement.size()), std::string(before.substr(edit.begin, edit.end - edit.begin))};
+    return {edit.begin, edit.begin + static_cast<uint32_t>(edit.replacement.size()),
+            std::string(before.substr(edit.begin, edit.end - edit.begin))};
 }
 
 TextEdit difference(std::string_view before, std::string_view after) {
@@ -20,12 +22,14 @@ TextEdit difference(std::string_view before, std::string_view after) {
     size_t head = 0, tail = 0;
     while (head < shorter && before[head] == after[head]) ++head;
     while (tail < shorter - head && before[before.size() - 1 - tail] == after[after.size() - 1 - tail]) ++tail;
-    return {static_cast<uint32_t>(head), static_cast<uint32_t>(before.size() - tail), std::string(after.substr(head, after.size() - tail - head))};
+    return {static_cast<uint32_t>(head), static_cast<uint32_t>(before.size() - tail),
+            std::string(after.substr(head, after.size() - tail - head))};
 }
 
 TextEdit merged(std::string_view text, std::vector<TextEdit> edits) {
     if (edits.empty()) return {};
-    std::stable_sort(edits.begin(), edits.end(), [](const TextEdit& a, const TextEdit& b) { return a.begin < b.begin; });
+    std::stable_sort(edits.begin(), edits.end(),
+                     [](const TextEdit& a, const TextEdit& b) { return a.begin < b.begin; });
     TextEdit all{edits.front().begin, edits.front().begin, {}};
     for (const TextEdit& edit : edits) {
         all.replacement += text.substr(all.end, edit.begin - all.end);

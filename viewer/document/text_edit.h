@@ -1,5 +1,6 @@
 // A change of text as a value: what an edit does, what undo keeps.
-// Enters: texts. Leaves: edits, and texts with edits in them. Assumes bytes; an edit fits the text that it was made for.
+// Enters: texts. Leaves: edits, and texts with edits in them. Assumes bytes; an edit fits the text that it was made
+// for.
 #pragma once
 
 #include <cstdint>
