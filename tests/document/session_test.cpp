@@ -41,7 +41,7 @@ TEST_F(Sessions, ShowAModelAndTellWhatChanged) {
     EXPECT_EQ(session.model()->change, Change::Structure);
     EXPECT_EQ(session.model()->model.derivation.steps.size(), 4u);
     EXPECT_EQ(session.attempted(), document.revision());
-    for (const char* stage : {"check", "derive", "lower", "compile"}) EXPECT_TRUE(stageRan(stage)) << stage;
+    for (const char* stage : {"parse", "check", "derive", "lower", "compile"}) EXPECT_TRUE(stageRan(stage)) << stage;
 
     change("wide = 2.5", "wide = 2.6");
     EXPECT_EQ(session.model()->change, Change::Numbers);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "grammar/syntax/parser.h"
+#include "modeler/core/stopwatch.h"
 #include "viewer/document/files.h"
 
 namespace sgm::viewer {
@@ -43,9 +44,11 @@ void Document::setText(std::string text) {
     ++revision_;
     const std::string name = path_.empty() ? "untitled.sgm" : path_.string();
     auto problems = std::make_shared<syntax::Diagnostics>();
+    const Stopwatch watch;
     ast_ = std::make_shared<const syntax::Ast>(
         syntax::parse(std::make_shared<const syntax::Source>(name, text_), *problems));
     problems_ = std::move(problems);
+    parseSeconds_ = watch.seconds();
 }
 
 void Document::push(Entry entry) {

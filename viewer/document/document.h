@@ -45,6 +45,8 @@ public:
     const std::shared_ptr<const syntax::Ast>& ast() const { return ast_; }
     /// What the parser says of the present text.
     const syntax::Diagnostics& syntaxProblems() const { return *problems_; }
+    /// How long the parser took for it.
+    double parseSeconds() const { return parseSeconds_; }
     const Choice& choice() const { return choice_; }
     /// Changes whenever text or choice does; the selection doesn't count.
     uint64_t revision() const { return revision_; }
@@ -127,6 +129,7 @@ private:
     std::vector<Entry> history_;
     size_t at_ = 0;  ///< entries before it are done, the others undone
     uint64_t revision_ = 0;
+    double parseSeconds_ = 0;
 
     struct Drag {
         std::string text, label;

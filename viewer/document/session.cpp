@@ -68,6 +68,7 @@ ShowRequest requestOf(const Document& document) {
     request.syntaxProblems = document.syntaxProblems();
     request.choice = document.choice();
     request.revision = document.revision();
+    request.parseSeconds = document.parseSeconds();
     return request;
 }
 
@@ -105,8 +106,9 @@ bool Session::poll() {
     if (!fresh_) return false;
     fresh_ = false;
     News news = std::exchange(news_, News{});
-    if (news.model) model_ = std::move(news.model);
-    if (news.mesh) mesh_ = std::move(news.mesh);
+    if (news.model) retired_.push_back(std::exchange(model_, std::move(news.model)));
+    if (news.mesh) retired_.push_back(std::exchange(mesh_, std::move(news.mesh)));
+    wanted_.notify_one();
     if (news.problems) problems_ = std::move(*news.problems);
     if (news.used) used_ = std::move(*news.used);
     attempted_ = std::max(attempted_, news.attempted);
@@ -134,19 +136,24 @@ bool Session::usedFilesChanged() const {
 
 void Session::work() {
     for (;;) {
-        ShowRequest request;
+        std::optional<ShowRequest> request;
+        std::vector<std::shared_ptr<const void>> retired;
         std::shared_ptr<Progress> progress;
         {
             std::unique_lock lock(mutex_);
             running_.reset();
             meshing_ = false;
-            wanted_.wait(lock, [this] { return pending_ || quit_; });
+            wanted_.wait(lock, [this] { return pending_ || quit_ || !retired_.empty(); });
             if (quit_) return;
-            request = *std::exchange(pending_, std::nullopt);
-            running_ = progress = std::make_shared<Progress>();
-            since_ = Stopwatch();
+            retired.swap(retired_);
+            request = std::exchange(pending_, std::nullopt);
+            if (request) {
+                running_ = progress = std::make_shared<Progress>();
+                since_ = Stopwatch();
+            }
         }
-        attempt(request, *progress);
+        retired.clear();
+        if (request) attempt(*request, *progress);
     }
 }
 
@@ -213,6 +220,7 @@ bool Session::checked(const ShowRequest& request, Stages& stages, std::vector<Pr
         };
         syntax::Diagnostics diagnostics = request.syntaxProblems;
         ast_ = request.ast;
+        stages.emplace_back("parse", request.parseSeconds);
         grammar_ = timed(stages, "check", [&] { return rules::check(*request.ast, noting, diagnostics); });
         checkProblems_ = problemsOf(diagnostics);
     }

@@ -35,7 +35,7 @@ struct Shown {
     Model model;
     bool byHand = false;  ///< its derivation came from the Step panel
     Change change = Change::Structure;
-    Stages stages;  ///< seconds of what ran: check, derive, lower, compile
+    Stages stages;  ///< seconds of what ran: parse, check, derive, lower, compile
 };
 
 /// Its mesh, which comes later.
@@ -52,6 +52,7 @@ struct Meshed {
 struct ShowRequest {
     std::shared_ptr<const syntax::Ast> ast;  ///< of Document
     syntax::Diagnostics syntaxProblems;      ///< the parser's word on it
+    double parseSeconds = 0;                 ///< for the report of times
     Choice choice;
     uint64_t revision = 0;
     /// Set by the Step panel: shown instead of deriving.
@@ -139,6 +140,7 @@ private:
     Stopwatch since_;  ///< the running request began
     News news_;
     bool fresh_ = false;
+    std::vector<std::shared_ptr<const void>> retired_;  ///< what the window let go: large trees are freed by the worker
 
     // The worker's: the last products, to begin from the first stage that changed.
     std::shared_ptr<const syntax::Ast> ast_;
