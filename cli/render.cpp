@@ -26,7 +26,7 @@ struct RenderRequest {
     std::vector<std::string> layers;
     double extinction = 0;
     int samples = 4, turntable = 0;  ///< turntable: how many pictures around the model, 0 for one
-    bool noGround = false, quiet = false;
+    bool noGround = false, stats = false, quiet = false;
 };
 
 Result<viewer::PictureOptions> parseSize(const std::string& text) {
@@ -64,13 +64,19 @@ Status checkRequest(const RenderRequest& request) {
     if (!request.layers.empty() && !isExr(request)) return wrong(fmt::format("--aov: layers need a file that holds floats: -o {}", fs::path(output).replace_extension(".exr").string()));
     if (isExr(request) && request.view != "field") return wrong(fmt::format("'{}': layers are of the field; with --view {} write a .png", request.output, request.view));
     if (request.extinction > 0 && request.view != "fog") return wrong("--extinction is of fog: add --view fog");
+    if (request.stats && (request.view != "field" || request.turntable > 0)) return wrong("--stats counts evaluations of the field for one picture: leave out --view and --turntable");
     if (request.turntable == 0) return Done{};
     const auto name = frameName(request.output, 0, "--turntable");
     return name.ok() ? Status(Done{}) : Status(name.error());
 }
 
-/// Draws a picture, and its layers unless null.
-using Painter = std::function<Result<viewer::Image>(const viewer::PictureOptions&, Progress*, viewer::Layers*)>;
+/// What draws pictures of a view.
+struct Painter {
+    /// Draws a picture, and its layers unless null.
+    std::function<Result<viewer::Image>(const viewer::PictureOptions&, Progress*, viewer::Layers*)> draw;
+    /// What the latest picture cost; null for views that don't count.
+    std::function<viewer::DrawCost()> cost;
+};
 
 /// Fog whose edge, which billows may eat, is a fifteenth of the model's least side deep.
 Result<Painter> fogPainter(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
@@ -89,7 +95,7 @@ Result<Painter> fogPainter(const RenderRequest& request, const Model& model, con
     const viewer::FogLook look{static_cast<float>(request.extinction), 9 * edge_m};
     const auto painter = viewer::FogPainter::create(*dense, bounds, look, request.grid.threads, progress);
     if (!painter.ok()) return painter.error();
-    return Painter([p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress); });
+    return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress); }, {}};
 }
 
 /// What every picture of the model shares is done here.
@@ -98,7 +104,8 @@ Result<Painter> painterOf(const RenderRequest& request, const Model& model, cons
     if (request.view == "field") {
         const auto painter = viewer::FieldPainter::create(model.tape, bounds, provenance, request.grid.threads, progress);
         if (!painter.ok()) return painter.error();
-        return Painter([p = *painter](const auto& options, Progress* progress, viewer::Layers* layers) mutable { return p.draw(options, progress, layers); });
+        return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers* layers) mutable { return p.draw(options, progress, layers); },
+                       [p = *painter] { return p.cost(); }};
     }
     if (request.view == "fog") return fogPainter(request, model, bounds, progress);
     Stages stages;
@@ -106,7 +113,7 @@ Result<Painter> painterOf(const RenderRequest& request, const Model& model, cons
     if (!meshed.ok()) return meshed.error();
     const auto painter = viewer::MeshPainter::create(meshed->mesh, provenance);
     if (!painter.ok()) return painter.error();
-    return Painter([p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress); });
+    return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress); }, {}};
 }
 
 /// What the numbers of a file with layers mean.
@@ -119,9 +126,22 @@ std::map<std::string, std::string> metadataOf(const RenderRequest& request, cons
     return {{"model", request.model.file}, {"seed", std::to_string(request.model.seed)}, {"units", "metres, Y up"}, {"origins", origins.dump()}};
 }
 
-Status drawOne(const RenderRequest& request, Painter& paint, const viewer::PictureOptions& options, const Provenance& provenance, const std::string& file, Progress* progress) {
+/// Evaluations of the field beside those of plain sphere tracing for the same samples, and seconds.
+void printStatistics(const viewer::DrawCost& cost, const Model& model, const Box3f& bounds, const viewer::PictureOptions& options, const Stages& stages) {
+    const double pixels = static_cast<double>(options.width) * options.height, samples = static_cast<double>(cost.samples) / pixels;
+    const double hits = static_cast<double>(cost.hitEvaluations) / pixels, light = static_cast<double>(cost.lightEvaluations) / pixels, all = std::max(hits + light, 1e-9);
+    const double plain = viewer::plainEvaluations(model.tape, bounds, options, cost.probes) * samples;
+    const double length = static_cast<double>(cost.instructions) / pixels / all, whole = static_cast<double>(model.tape.size());
+    fmt::print("samples a pixel       {:9.2f}\n", samples);
+    fmt::print("evaluations a pixel   {:9.2f}  of {:.0f} instructions ({:.2f} for hits, {:.2f} for normals and light)\n", hits + light, length, hits, light);
+    fmt::print("plain sphere tracing  {:9.2f}  of {:.0f}: {:.1f} times the evaluations, {:.0f} times the instructions\n", plain, whole, plain / all, plain * whole / (all * length));
+    for (const auto& [stage, seconds] : stages) fmt::print("{:<21} {:9.3f} s\n", stage, seconds);
+    fmt::print("cells, upload         {:9.3f} s\ndraw                  {:9.3f} s  ({:.3f} s of the processor's time)\n", cost.prepareSeconds, cost.drawSeconds, cost.drawProcessorSeconds);
+}
+
+Status drawOne(const RenderRequest& request, const Painter& paint, const viewer::PictureOptions& options, const Provenance& provenance, const std::string& file, Progress* progress) {
     viewer::Layers layers;
-    const auto image = paint(options, progress, isExr(request) ? &layers : nullptr);
+    const auto image = paint.draw(options, progress, isExr(request) ? &layers : nullptr);
     if (!image.ok()) return image.error();
     const Status written = isExr(request) ? viewer::writeExr(layers, request.layers, metadataOf(request, provenance), file) : viewer::writePng(*image, file);
     if (written.ok() && !request.quiet) fmt::print("wrote {}\n", file);
@@ -153,10 +173,14 @@ Status drawAll(const RenderRequest& request) {
     options->samples = request.samples;
     options->threads = request.grid.threads;
     options->ground = !request.noGround && request.camera != "inside";
-    auto paint = painterOf(request, *model, bounds, watch.progress());
+    const auto paint = painterOf(request, *model, bounds, watch.progress());
     if (!paint.ok()) return paint.error();
     const Provenance& provenance = model->lowered->provenance;
-    if (request.turntable == 0) return drawOne(request, *paint, *options, provenance, request.output, watch.progress());
+    if (request.turntable == 0) {
+        const Status drawn = drawOne(request, *paint, *options, provenance, request.output, watch.progress());
+        if (drawn.ok() && request.stats) printStatistics(paint->cost(), *model, bounds, *options, stages);
+        return drawn;
+    }
     for (int i = 0; i < request.turntable; ++i) {
         options->camera = cameraAfter(request, *camera, i);
         const auto name = frameName(request.output, i, "--turntable");
@@ -188,6 +212,7 @@ void addRender(CLI::App& app, int& exitCode) {
     command->add_option("--extinction", request->extinction, "Of fog, per metre (default: 180 over the model's diagonal)")->check(CLI::Range(1e-6, 1e6));
     command->add_option("--samples", request->samples, "Samples a pixel, for smooth edges")->check(CLI::Range(1, 64))->capture_default_str();
     command->add_flag("--no-ground", request->noGround, "Leave out the ground");
+    command->add_flag("--stats", request->stats, "Print how often the field was evaluated a pixel, beside plain sphere tracing, and the times");
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
     command->footer("Examples:\n  sgm render examples/cumulus.sgm -o cumulus.png --size 640x640\n  sgm render examples/grotto.sgm -o in.png --camera inside\n"
         "  sgm render examples/cumulus.sgm -o sky.png --view fog --no-ground\n"

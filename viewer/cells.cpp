@@ -10,6 +10,8 @@ namespace {
 
 /// A tape this short isn't worth another cut.
 constexpr size_t shortTape = 12;
+/// One this long is worth it wherever there may be surface.
+constexpr size_t longTape = 40;
 
 /// A cell to be cut: where it is, and its tape.
 struct Pending {
@@ -22,6 +24,7 @@ struct Pending {
 struct Children {
     std::array<CellState, 64> states;
     std::array<Vec3f, 64> lows;
+    std::array<eval::Range, 64> ranges;
     std::vector<eval::Tape> tapes;  ///< of the near ones, in order
 };
 
@@ -29,7 +32,7 @@ struct Children {
 Children childrenOf(const Pending& cell, float edge, float margin, eval::Workspace& workspace) {
     Children children;
     std::array<Box3f, 64> boxes;
-    std::array<eval::Range, 64> ranges;
+    std::array<eval::Range, 64>& ranges = children.ranges;
     for (int i = 0; i < 64; ++i) {
         const Vec3f step{static_cast<float>(i & 3), static_cast<float>(i >> 2 & 3), static_cast<float>(i >> 4)};
         const Vec3f low = cell.low + step * edge;
@@ -74,7 +77,7 @@ Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float
     std::vector<Pending> pending;
     pending.push_back({0, tree.low, tape});
     float edge = tree.edge;
-    for (int level = 0; level < CellTree::depth && !pending.empty(); ++level) {
+    for (int level = 0; level < CellTree::surfaceDepth && !pending.empty(); ++level) {
         edge /= 4;
         if (progress) progress->begin("cells", pending.size());
         std::vector<Children> children(pending.size());
@@ -94,11 +97,18 @@ Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float
                 if (state == CellState::Near) {
                     eval::Tape& shortened = children[i].tapes[taken++];
                     index = static_cast<uint32_t>(tree.tapes.size());
-                    if (level + 1 < CellTree::depth && shortened.size() > shortTape)
+                    const eval::Range range = children[i].ranges[c];
+                    const bool deeper = level + 1 < CellTree::depth
+                                            ? shortened.size() > shortTape
+                                            : level + 1 < CellTree::surfaceDepth && shortened.size() > longTape &&
+                                                  range.lo <= 0 && range.hi >= 0;
+                    if (deeper)
                         next.push_back(
                             {static_cast<uint32_t>(tree.nodes.size()), children[i].lows[c], std::move(shortened)});
-                    else
+                    else {
                         tree.tapes.push_back(std::move(shortened));
+                        tree.ranges.push_back(range);
+                    }
                 }
                 tree.nodes.push_back(uint32_t(state) << 30 | index);
             }

@@ -9,6 +9,7 @@
 
 #include "modeler/core/progress.h"
 #include "modeler/core/result.h"
+#include "modeler/eval/evaluate.h"
 #include "modeler/eval/tape.h"
 
 namespace sgm::viewer {
@@ -23,12 +24,14 @@ enum class CellState : uint32_t {
 
 /// The tree; node n's 64 words start at nodes[64·n], in the order x + 4y + 16z.
 struct CellTree {
-    static constexpr int depth = 3;  ///< at most 64 cells along an edge of the root
+    static constexpr int depth = 3;         ///< usually at most 64 cells along an edge of the root,
+    static constexpr int surfaceDepth = 4;  ///< 256 where there may be surface among many parts
     Vec3f low;                       ///< the root cube's corner, metres
     float edge = 1;                  ///< of the root cube, metres
     float margin = 0;                ///< metres
     std::vector<uint32_t> nodes;
     std::vector<eval::Tape> tapes;  ///< of near leaves; each is exact a 32nd of its cell's edge beyond the cell
+    std::vector<eval::Range> ranges;  ///< of the field in the same leaves
 
     static constexpr CellState stateOf(uint32_t word) { return CellState(word >> 30); }
     static constexpr uint32_t indexOf(uint32_t word) { return word & 0x3fffffffu; }

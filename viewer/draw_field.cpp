@@ -1,4 +1,7 @@
 // Whole pictures of a field without a window. Pixels on edges are sampled again.
+#include <chrono>
+#include <ctime>
+
 #include "viewer/field_scene.h"
 #include "viewer/scene.h"
 
@@ -7,12 +10,17 @@ namespace {
 
 /// Adds the display light of every job to its pixel, and what its ray met to the layers.
 Status addJobs(const std::vector<Job>& jobs, FieldScene& scene, PixelSums& sums, const View& view, Layers* layers,
-               Progress* progress) {
+               DrawCost& cost, Progress* progress) {
     if (progress) progress->begin("draw", jobs.size() * 2);
     for (size_t first = 0; first < jobs.size(); first += mostJobs) {
         const std::span chunk = std::span(jobs).subspan(first, std::min(mostJobs, jobs.size() - first));
         const Result<Rays> rays = scene.draw(chunk, progress);
         if (!rays) return rays.error();
+        for (const Job& job : chunk)
+            if (cost.samples++ % 64 == 0) cost.probes.push_back(job.place());
+        cost.hitEvaluations += rays->evaluations[0];
+        cost.lightEvaluations += rays->evaluations[1];
+        cost.instructions += rays->instructions;
         for (size_t i = 0; i < chunk.size(); ++i)
             for (size_t c = 0; c < 4; ++c) sums.rgba[sums.index(chunk[i]) + c] += rays->colors[i][c];
         for (size_t i = 0; layers && i < chunk.size(); ++i) {
@@ -29,6 +37,10 @@ Status addJobs(const std::vector<Job>& jobs, FieldScene& scene, PixelSums& sums,
     return Done{};
 }
 
+double secondsNow() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 Layers emptyLayers(int width, int height) {
     const size_t count = size_t(width) * size_t(height);
     const std::vector<Vec3f> none(count, Vec3f{});
@@ -42,41 +54,52 @@ struct FieldPainter::Parts {
     GpuContext gpu;
     FieldPrograms programs;
     std::optional<FieldScene> scene;
-    int threads = 0;
+    DrawCost cost;
 };
 
 Result<FieldPainter> FieldPainter::create(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
                                           int threads, Progress* progress) {
     if (Status status = checkBounds(bounds); !status) return status.error();
+    const double start = secondsNow();
     Result<GpuContext> gpu = GpuContext::create();
     if (!gpu) return gpu.error();
     Result<PreparedField> prepared = prepareField(tape, bounds, provenance, threads, progress);
     if (!prepared) return prepared.error();
-    auto parts = std::shared_ptr<Parts>(new Parts{std::move(*gpu), {}, {}, threads});
+    auto parts = std::shared_ptr<Parts>(new Parts{std::move(*gpu), {}, {}, {}});
     if (Status status = parts->programs.extendTo(*prepared); !status) return status.error();
     parts->scene.emplace(std::make_shared<const PreparedField>(std::move(*prepared)), parts->programs, threads);
+    parts->cost.prepareSeconds = secondsNow() - start;
     return FieldPainter(std::move(parts));
 }
 
 Result<Image> FieldPainter::draw(const PictureOptions& options, Progress* progress, Layers* layers) {
     FieldScene& scene = *parts_->scene;
     if (Status status = checkPicture(scene.field().bounds, options); !status) return status.error();
+    const double start = secondsNow();
+    const std::clock_t processor = std::clock();
+    const double prepared = parts_->cost.prepareSeconds;
+    parts_->cost = {};
+    parts_->cost.prepareSeconds = prepared;
     scene.look(options);
     const View view = viewOf(options.camera, options.width, options.height);
     if (layers) *layers = emptyLayers(options.width, options.height);
     PixelSums sums(options.width, options.height);
     const std::vector<Job> first = firstSamples(options.width, options.height);
-    if (Status status = addJobs(first, scene, sums, view, layers, progress); !status) return status.error();
+    if (Status status = addJobs(first, scene, sums, view, layers, parts_->cost, progress); !status) return status.error();
     if (options.samples > 1) {
         const std::vector<Job> more = edgeSamples(first, sums, options.samples);
-        if (Status status = addJobs(more, scene, sums, view, nullptr, progress); !status) return status.error();
+        if (Status status = addJobs(more, scene, sums, view, nullptr, parts_->cost, progress); !status) return status.error();
     }
     for (size_t i = 0; layers && i < layers->color.size(); ++i) {
         const float* sum = &sums.rgba[i * 4];
         layers->color[i] = Vec3f{sum[0], sum[1], sum[2]} / sum[3];
     }
+    parts_->cost.drawSeconds = secondsNow() - start;
+    parts_->cost.drawProcessorSeconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
     return sums.image();
 }
+
+const DrawCost& FieldPainter::cost() const { return parts_->cost; }
 
 Result<Image> drawField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
                         const PictureOptions& options, Progress* progress) {

@@ -2,6 +2,7 @@
 // says whose surface each hit is; the GPU finds the hits and lights them.
 #include "viewer/field_scene.h"
 
+#include <bit>
 #include <chrono>
 
 #include "modeler/core/parallel.h"
@@ -45,8 +46,11 @@ Result<PreparedField> prepareField(const eval::Tape& tape, const Box3f& bounds, 
     if (!tree) return tree.error();
     field.tree = std::move(*tree);
     std::vector<uint32_t> starts;
-    for (const eval::Tape& shortened : field.tree.tapes) {
+    for (size_t i = 0; i < field.tree.tapes.size(); ++i) {
+        const eval::Tape& shortened = field.tree.tapes[i];
         starts.push_back(eval::appendTape(shortened, field.words));
+        // The last word of a tape's first texel is free: how near the surface may be from inside the cell.
+        field.words[size_t(starts.back()) * 4 + 3] = std::bit_cast<uint32_t>(field.tree.ranges[i].lo);
         field.registers = std::max(field.registers, shortened.registerCount());
     }
     field.nodes = field.tree.nodes;
@@ -151,8 +155,10 @@ Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
     nodes_.bind(1);
     jobBuffer.bindStorage(1);
     hits.bindStorage(2);
-    if (Status s = runInPieces(programs_->trace, jobs.size(), tracePiece_, progress); !s) return s.error();
     Rays rays;
+    const Buffer counts = Buffer::of<uint32_t>(std::array<uint32_t, 3>{});
+    counts.bindStorage(7);
+    if (Status s = runInPieces(programs_->trace, jobs.size(), tracePiece_, progress); !s) return s.error();
     rays.hits = hits.read<Vec4>(jobs.size());
     rays.origins = originsOf(rays);
     std::vector<uint32_t> materials;
@@ -165,6 +171,9 @@ Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
     if (Status s = runInPieces(programs_->shade, jobs.size(), shadePiece_, progress); !s) return s.error();
     rays.colors = colors.read<Vec4>(jobs.size());
     rays.surfaces = surfaces.read<Vec4>(jobs.size());
+    const std::vector<uint32_t> counted = counts.read<uint32_t>(3);
+    std::copy_n(counted.begin(), 2, rays.evaluations);
+    rays.instructions = counted[2];
     return rays;
 }
 

@@ -55,6 +55,9 @@ struct Rays {
     std::vector<std::array<float, 4>> colors;    ///< display light 0 … 1, linear, and 1
     std::vector<OriginId> origins;               ///< of objects, else 0
 
+    uint32_t evaluations[2] = {0, 0};            ///< of the field on the GPU: for hits, for normals and light
+    uint32_t instructions = 0;                   ///< of the tapes they ran
+
     HitKind kind(size_t i) const { return static_cast<HitKind>(static_cast<int>(hits[i][3])); }
     Vec3f position(size_t i) const { return {hits[i][0], hits[i][1], hits[i][2]}; }
 };

@@ -69,6 +69,21 @@ struct Layers {
 /// The names of the layers that a file can hold beside the colour: depth, normal, position, origin, ao.
 const std::vector<std::string>& layerNames();
 
+/// In pixels from the top left corner.
+struct PicturePlace {
+    double x, y;
+};
+
+/// What a picture of a field cost.
+struct DrawCost {
+    uint64_t samples = 0;
+    uint64_t hitEvaluations = 0, lightEvaluations = 0;  ///< of the field by shortened tapes, for all samples
+    uint64_t instructions = 0;                           ///< of those tapes
+    std::vector<PicturePlace> probes;                           ///< every 64th sample's place in the picture, pixels
+    double prepareSeconds = 0, drawSeconds = 0;          ///< once a field; this picture
+    double drawProcessorSeconds = 0;                     ///< of all threads, the software GL's too
+};
+
 /// A field ready for pictures from any side: what no camera changes is done once. Keeps a GPU context of its own, so
 /// that only one painter may live at a time.
 class FieldPainter {
@@ -77,6 +92,8 @@ public:
                                        int threads, Progress* progress);
     /// Fills `layers` too unless null.
     Result<Image> draw(const PictureOptions& options, Progress* progress, Layers* layers = nullptr);
+    /// Of the latest picture.
+    const DrawCost& cost() const;
 
 private:
     struct Parts;
@@ -115,6 +132,12 @@ private:
     explicit FogPainter(std::shared_ptr<Parts> parts) : parts_(std::move(parts)) {}
     std::shared_ptr<Parts> parts_;
 };
+
+/// How often plain sphere tracing (Hart 1996) of the whole field evaluates it for a sample, hits, normals, shadow and
+/// occlusion as `FieldPainter` asks for them: steps of |f|/L along every ray through the bounds, no cells, no longer
+/// strides. Counted on the CPU, as a mean over the places.
+double plainEvaluations(const eval::Tape& tape, const Box3f& bounds, const PictureOptions& options,
+                        const std::vector<PicturePlace>& places);
 
 /// One picture by sphere tracing with the Lipschitz bound in one fixed shader that interprets per-cell shortened tapes.
 Result<Image> drawField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,

@@ -2,6 +2,7 @@
 // Enters: a picture's size, or its pixels. Leaves: jobs for FieldScene. Assumes at most 65,535 pixels a side.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +16,11 @@ struct Job {
     uint32_t sample;
     size_t x() const { return pixel & 0xffffu; }
     size_t y() const { return pixel >> 16; }
+    /// As `samplePosition` of the shaders (jobs.glsl), pixels from the top left.
+    PicturePlace place() const {
+        const double u = 0.5 + sample * 0.7548776662, v = 0.5 + sample * 0.5698402910;
+        return {static_cast<double>(x()) + u - std::floor(u), static_cast<double>(y()) + v - std::floor(v)};
+    }
 };
 
 /// The sum of the samples of every pixel: display light and their count, four floats a pixel, top row first.

@@ -54,6 +54,13 @@ TEST_F(Render, FogIsOneOfTheViews) {
     EXPECT_EQ(sgm("render " + file_ + " --view fog --extinction 0 -o " + path("b.png")).code, 2);
 }
 
+TEST_F(Render, StatisticsStandBesidePlainSphereTracing) {
+    const Outcome run = sgm("render " + file_ + " --size 40x30 --stats -o " + path("a.png"));
+    EXPECT_EQ(run.code, 0) << run.out;
+    for (const char* line : {"evaluations a pixel", "plain sphere tracing", "samples a pixel", "draw"}) EXPECT_NE(run.out.find(line), std::string::npos) << line;
+    EXPECT_EQ(sgm("render " + file_ + " --view mesh --stats -o " + path("a.png")).code, 2);
+}
+
 TEST_F(Render, TurntableGoesAroundTheModel) {
     const Outcome run = sgm("render " + file_ + " --size 48x48 --samples 1 --turntable 4 -o " + path("turn_%02d.png"));
     EXPECT_EQ(run.code, 0) << run.out;

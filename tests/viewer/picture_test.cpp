@@ -200,6 +200,35 @@ TEST_F(Picture, InsideASolidDrawsItFromWithin) {
     for (size_t i = 0; i < image->rgb.size(); i += 3) ASSERT_GE(image->rgb[i], image->rgb[i + 2]);
 }
 
+TEST_F(Picture, NeedsFewEvaluationsOfShortTapes) {
+    Scene scene;
+    for (int i = 0; i < 64; ++i)
+        scene.add("sphere", {3.0 * (i % 4), 3.0 * (i / 4 % 4), 3.0 * (i / 16)}, {1, 1, 1}, red);
+    const field::Field field = scene.sum();
+    const eval::Tape tape = scene.compile(field);
+    auto painter = FieldPainter::create(tape, field.bounds, scene.provenance, 0, nullptr);
+    ASSERT_TRUE(painter.ok()) << painter.error().message;
+    const PictureOptions options = optionsAt(frame(field.bounds, 1), true);
+    ASSERT_TRUE(painter->draw(options, nullptr).ok());
+    const DrawCost& cost = painter->cost();
+    EXPECT_GT(cost.samples, size_t(edge) * edge);
+    EXPECT_EQ(cost.probes.size(), (cost.samples + 63) / 64);
+    const double evaluations = double(cost.hitEvaluations + cost.lightEvaluations), plain = plainEvaluations(tape, field.bounds, options, cost.probes);
+    EXPECT_LT(evaluations, plain * double(cost.samples));
+    EXPECT_LT(double(cost.instructions) * 30, plain * double(cost.samples) * double(tape.size()));
+}
+
+TEST_F(Picture, PlainSphereTracingOfABallCountsItsSteps) {
+    RedBall ball;
+    const eval::Tape tape = ball.scene.compile(ball.field);
+    const PictureOptions options = optionsAt(ball.camera, false);
+    // Straight at the ball: into the bounds, a step to the surface; 4 for the normal, 4 for occlusion; out towards the sun.
+    const double middle = plainEvaluations(tape, ball.field.bounds, options, {{edge / 2.0, edge / 2.0}});
+    EXPECT_GE(middle, 10);
+    EXPECT_LE(middle, 18);
+    EXPECT_EQ(plainEvaluations(tape, ball.field.bounds, options, {{1, 1}}), 0) << "misses the bounds";
+}
+
 TEST_F(Picture, CanBeCancelled) {
     RedBall ball;
     Progress progress;

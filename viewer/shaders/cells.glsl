@@ -9,11 +9,22 @@ uniform float margin;          // no surface is nearer than this from a far cell
 
 const uint cellOutside = 0u, cellNear = 1u, cellInside = 2u, cellNode = 3u;
 
+layout(std430, binding = 7) buffer Counts { uint counts[]; };  // evaluations for hits, for light; their instructions
+uint evaluations = 0u, instructions = 0u;  // of this invocation
+
+/// The field at p by the tape of a near cell; counted.
+float fieldBy(uint tape, vec3 p) {
+    ++evaluations;
+    instructions += texelFetch(tapes, int(tape)).x - tape - 1u;
+    return evaluateField(tape, p);
+}
+
 struct Cell {
     uint state;   // never cellNode
     uint tape;    // of a near cell
     vec3 low;     // metres
     float edge;   // metres
+    float least;  // of the field in the cell: what lies farther than a ray asks for needs no evaluation
 };
 
 Cell cellAt(vec3 p) {
@@ -29,7 +40,10 @@ Cell cellAt(vec3 p) {
     }
     uint state = word >> 30;
     if (side < 0.0 && state != cellNear) state = cellInside - state;
-    return Cell(state, word & 0x3fffffffu, rootLow + low * rootEdge, edge * rootEdge);
+    uint tape = word & 0x3fffffffu;
+    float least = state == cellOutside ? margin : -margin;
+    if (state == cellNear && side > 0.0) least = uintBitsToFloat(texelFetch(tapes, int(tape)).w);
+    return Cell(state, tape, rootLow + low * rootEdge, edge * rootEdge, least);
 }
 
 /// Distance along the ray from p to where it leaves the cell.
@@ -49,11 +63,12 @@ vec3 inverseOf(vec3 direction) {
     return 1.0 / mix(direction, vec3(1e-9), lessThan(abs(direction), vec3(1e-9)));
 }
 
-/// Distance bound at p: exact near the surface, ±margin elsewhere.
-float distanceAt(vec3 p) {
+/// Distance bound at p: exact near the surface, ±margin elsewhere. Where it is at least `enough`, that may be all it says.
+float distanceAt(vec3 p, float enough) {
     if (any(lessThan(p, boundsLow)) || any(greaterThan(p, boundsHigh)))
         return margin;
     Cell cell = cellAt(p);
+    if (cell.least >= enough) return cell.least;
     if (cell.state != cellNear) return cell.state == cellInside ? -margin : margin;
-    return side * evaluateField(cell.tape, p);
+    return side * fieldBy(cell.tape, p);
 }

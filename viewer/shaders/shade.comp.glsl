@@ -15,7 +15,7 @@ vec3 normalAt(vec3 p, float h) {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; ++i) {
         vec3 corner = vec3(float(((i + 3) >> 1) & 1), float((i >> 1) & 1), float(i & 1)) * 2.0 - 1.0;
-        sum += corner * evaluateField(cell.tape, p + corner * h);
+        sum += corner * fieldBy(cell.tape, p + corner * h);
     }
     return side * normalize(sum + vec3(0.0, 1e-20, 0.0));
 }
@@ -30,12 +30,13 @@ float discSeen(vec3 p, vec3 direction, float radius) {
     for (int step = 0; step < 128 && t + stride <= span.y && clearance > -1.0; ++step) {
         vec3 q = p + (t + stride) * direction;
         Cell cell = cellAt(q);
-        if (cell.state == cellOutside) {
+        // Nothing of the cell comes into the disc.
+        if (cell.least >= margin || cell.least >= radius * (t + stride + 2.0 * cell.edge)) {
             t += stride + cellExit(cell, q, inverseDirection);
             free = stride = 0.0;
             continue;
         }
-        float value = cell.state == cellInside ? -margin : side * evaluateField(cell.tape, q);
+        float value = cell.state == cellInside ? -margin : side * fieldBy(cell.tape, q);
         float next = abs(value) * inverseLipschitz;
         float disc = min(radius * (t + stride), margin), least = max(0.25 * disc, 6e-4 * sceneSize);
         if (stride > max(free + next, least)) {
@@ -60,7 +61,8 @@ float opennessAt(vec3 p, vec3 normal) {
     float reach = 0.07 * sceneSize;
     for (int i = 0; i < 4; ++i) {
         float w = 1.0;
-        float free = clamp(distanceAt(p + normal * reach) / min(reach, margin), -0.2, 1.0);
+        float enough = min(reach, margin);
+        float free = clamp(distanceAt(p + normal * reach, enough) / enough, -0.2, 1.0);
         hidden += w * (1.0 - free);
         weight += w;
         reach *= 0.4;
@@ -105,4 +107,6 @@ void main() {
     if (gl_GlobalInvocationID.x >= jobCount) return;
     uint i = firstJob + gl_GlobalInvocationID.x;
     colors[i] = vec4(tonemap(colorOf(i)), 1.0);
+    atomicAdd(counts[1], evaluations);
+    atomicAdd(counts[2], instructions);
 }
