@@ -46,6 +46,8 @@ public:
         of("S3: bytes a triangle at 512", 60, false, "S3", 512, [](const auto& m) { return m.bytesPerTriangle(); });
         of("S3: GB at 1024", 1.5, false, "S3", 1024,
            [](const auto& m) { return 1e-9 * static_cast<double>(m.peakBytes); });
+        of("S5: GB at 2048", 4, false, "S5", 2048,
+           [](const auto& m) { return 1e-9 * static_cast<double>(m.peakBytes); });
         return std::move(bars_);
     }
 
