@@ -64,9 +64,10 @@ void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, 
     Workspace::Impl& w = workspace.impl();
     if (w.tally) count(tape, points.n, true, *w.tally);
     float* const out[] = {value, dx, dy, dz};
-    runBlocks(tape, points, w.kernels.gradients, 4, w, nothingBefore, [&](const StepContext& c, size_t first, size_t n) {
-        for (size_t plane = 0; plane < 4; ++plane) storeResult(tape, c, 4, plane, out[plane] + first, n);
-    });
+    runBlocks(tape, points, w.kernels.gradients, 4, w, nothingBefore,
+              [&](const StepContext& c, size_t first, size_t n) {
+                  for (size_t plane = 0; plane < 4; ++plane) storeResult(tape, c, 4, plane, out[plane] + first, n);
+              });
 }
 
 void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& workspace) {
@@ -95,6 +96,9 @@ void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& wo
     for (size_t i = 0; i < tape.size(); ++i) {
         const Instruction& in = tape.code()[i];
         c.bounds = bounds + size_t{w.links.bounds(i)} * maxBoxes;
+        if (needsRange(in))
+            for (size_t end = 0; end < 2; ++end)
+                std::copy_n(rowOf(c, in.b, 2, end), c.count, c.bounds + end * maxBoxes);
         w.kernels.ranges[static_cast<size_t>(in.op)](in, c);
     }
     constexpr float infinity = std::numeric_limits<float>::infinity();

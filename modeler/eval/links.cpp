@@ -1,7 +1,5 @@
 #include "modeler/eval/links.h"
 
-#include "modeler/field/ops.h"
-
 namespace sgm::eval {
 
 void Links::follow(const Tape& tape) {
@@ -25,6 +23,7 @@ void Links::follow(const Tape& tape) {
             if (in.count > 1) values_.push_back(valueOf(in.b));
         }
         if (row.chooses) boundRows_ += in.count + 1;
+        if (needsRange(in)) boundRows_ += 2;
         holder_[in.out] = static_cast<uint32_t>(i) + 3;
     }
     result_ = valueOf(tape.result());

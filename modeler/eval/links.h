@@ -6,8 +6,14 @@
 #include <vector>
 
 #include "modeler/eval/tape.h"
+#include "modeler/field/ops.h"
 
 namespace sgm::eval {
+
+/// True for a difference of two values: what of the first one matters hangs on the range of the second.
+inline bool needsRange(const Instruction& in) {
+    return in.op == field::codeOf<field::ops::Sub> && !isConstant(in.a) && !isConstant(in.b);
+}
 
 /// x, y, z are values 0, 1, 2 and instruction i makes value 3 + i; constants as in Source.
 class Links {
@@ -16,9 +22,10 @@ public:
     void follow(const Tape& tape);
     /// The operands of instruction i, as many as it has.
     const Source* operands(size_t i) const { return values_.data() + first_[i]; }
-    /// Its first row of bounds, if it chooses (evaluateRanges).
+    /// Its first row of bounds, if it chooses or `needsRange` (evaluateRanges).
     uint32_t bounds(size_t i) const { return bounds_[i]; }
-    /// Rows of bounds of all instructions that choose: one an operand and one for the reach.
+    /// Rows of bounds of all instructions: where they choose one an operand and one for the reach, where they need a
+    /// range its two ends.
     uint32_t boundRows() const { return boundRows_; }
     Source result() const { return result_; }
     /// True for the tape followed last.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #include "modeler/eval/workspace.h"
 #include "modeler/field/ops.h"
@@ -36,6 +37,57 @@ Care careOfOperands(const field::OpTraits& row, float reach, Care outer) {
 /// True where no value of the operand is told apart. Strict: at a tie ±0 could differ.
 bool beyond(const field::OpTraits& row, float bound, Care care) {
     return row.owner == Owner::Least ? bound > care.most : bound < care.least;
+}
+
+/// An operand of an instruction that doesn't choose, and what of its values matters; of the other operands all does.
+struct Passed {
+    uint32_t operand;
+    Care care;
+};
+
+/// `care` with both ends moved or scaled, and a little wider: the operation rounds.
+template <class Move>
+Care moved(Care care, float by, Move&& move) {
+    const auto slack = [&](float end) { return 1e-6f * (std::abs(end) + std::abs(by)); };
+    const float least = move(care.least), most = move(care.most);
+    const Care all;
+    return {least - slack(least) <= most ? least - slack(least) : all.least,
+            most + slack(most) >= least ? most + slack(most) : all.most};
+}
+
+/// Sums with, differences from, and products and quotients by a positive number pass on what their result's consumers
+/// tell apart; a difference of two values does so to the first one, by the range [lo, hi] of the second.
+std::optional<Passed> passedOn(const Tape& tape, const Instruction& in, const Source* values, const float* range,
+                               Care care) {
+    namespace ops = field::ops;
+    using field::codeOf;
+    if (care == Care{}) return {};
+    if (in.op == codeOf<ops::Neg>) return Passed{0, {-care.most, -care.least}};
+    const auto number = [&](uint32_t k) { return tape.constants()[indexOf(values[k])]; };
+    const bool numberLast = in.count == 2 && isConstant(values[1]),
+               numberFirst = in.count == 2 && isConstant(values[0]);
+    if (in.op == codeOf<ops::Add> && (numberFirst || numberLast)) {
+        const float n = number(numberLast ? 1 : 0);
+        return Passed{numberLast ? 0u : 1u, moved(care, n, [n](float end) { return end - n; })};
+    }
+    if (in.op == codeOf<ops::Sub> && numberLast) {
+        const float n = number(1);
+        return Passed{0, moved(care, n, [n](float end) { return end + n; })};
+    }
+    if (needsRange(in)) {
+        const float lo = range[0], hi = range[maxBoxes];
+        if (!(lo <= hi)) return {};
+        return Passed{0, {moved(care, lo, [lo](float end) { return end + lo; }).least, moved(care, hi, [hi](float end) {
+                                                                                           return end + hi;
+                                                                                       }).most}};
+    }
+    const bool product = in.op == codeOf<ops::Mul>, quotient = in.op == codeOf<ops::Div> && numberLast;
+    if ((product && (numberFirst || numberLast)) || quotient) {
+        const float n = number(numberLast ? 1 : 0);
+        if (!(n > 0) || !std::isfinite(n)) return {};
+        return Passed{numberLast ? 0u : 1u, moved(care, 0, [=](float end) { return quotient ? end * n : end / n; })};
+    }
+    return {};
 }
 
 /// The owners of an instruction's operands, or null.
@@ -80,10 +132,12 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
                 b.alias(value, w.uses.back());
             else
                 b.define(value, in.op, in.data, w.uses.data(), w.uses.size(), origins != nullptr);
-        } else if (in.op == field::codeOf<field::ops::Neg>) {
-            const Care own = b.care(value);
-            const TapeBuilder::Use negated{values[0], origins ? origins[0] : 0, {-own.most, -own.least}};
-            b.define(value, in.op, in.data, &negated, 1, origins != nullptr);
+        } else if (const auto passed =
+                       passedOn(tape, in, values, bounds + size_t{w.links.bounds(i)} * maxBoxes, b.care(value))) {
+            w.uses.clear();
+            for (uint32_t k = 0; k < in.count; ++k)
+                w.uses.push_back({values[k], origins ? origins[k] : 0, k == passed->operand ? passed->care : Care{}});
+            b.define(value, in.op, in.data, w.uses.data(), w.uses.size(), origins != nullptr);
         } else {
             b.define(value, in, values, origins);
         }

@@ -141,6 +141,15 @@ TEST(Shorten, ValuesBeyondWhatIsToldApartKeepTheirSide) {
     expectSides(compile(graph, {holes, {}, 1, 1}, graph.constants()), {{20, -3, -3}, {26, 3, 3}}, {-0.1f, 0.3f});
 }
 
+TEST(Shorten, WhatIsToldApartGoesThroughSumsAndScales) {
+    Graph graph;
+    const Num row = spheres(graph, 0, 64), wave = graph.slot(0.05f) * sin(graph.x() * graph.slot(3.0f));
+    const Box3f box{{20, -3, -3}, {26, 3, 3}};
+    for (const Num root : {row - graph.slot(0.1f), row + graph.slot(0.2f), row * graph.slot(3.0f), row - wave,
+                           (row - wave) / graph.slot(1.5f), graph.slot(0.7f) * (graph.slot(-0.1f) + row)})
+        expectSides(compile(graph, {root, {}, 1, 1}, graph.constants()), box, {-0.1f, 0.3f});
+}
+
 TEST(Shorten, PartsOfABlendThatAreFarFromWhatIsToldApartAreDropped) {
     Graph graph;
     std::vector<field::Operand> operands{{graph.slot(0.2f).id(), 0}};
