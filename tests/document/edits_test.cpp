@@ -78,7 +78,10 @@ TEST_F(Edits, ReorderRules) {
 }
 
 TEST_F(Edits, NamesAndSymbols) {
-    expectReplaced(edits::setName(ast, rule(0), "Rise"), "rule Up: Storey", "rule Rise: Storey");
+    const Edit renamed = edits::setName(ast, rule(0), "Rise");
+    ASSERT_TRUE(renamed.ok());
+    EXPECT_EQ(applied(tower, *renamed), replaced(replaced(tower, "rule Up: Storey", "rule Rise: Storey"),
+                                                 "derive once: Up", "derive once: Rise"));
     expectReplaced(edits::setName(ast, rule(0), ""), "rule Up: Storey", "rule Storey");
     expectReplaced(edits::setName(ast, rule(1), "W"), "rule Wing when", "rule W: Wing when");
     expectRefused(edits::setName(ast, rule(1), "Up"), "another rule is called 'Up'");

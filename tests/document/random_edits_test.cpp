@@ -119,6 +119,10 @@ private:
                 return edits::setRepeat(now, now.rules[i], set(rules[i].repeat));
             default: {
                 const std::string name = draw(2) ? "N" + std::to_string(draw(1000)) : "";
+                for (syntax::DeriveDecl& way : expected.derives)
+                    for (auto& step : way.steps)
+                        if (!name.empty() && !rules[i].name.empty() && step.rule.text == rules[i].name.text)
+                            step.rule.text = name;
                 rules[i].name.text = name;
                 return edits::setName(now, now.rules[i], name);
             }

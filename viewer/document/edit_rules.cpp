@@ -133,7 +133,14 @@ Edit setName(const Ast& ast, const RuleDecl& rule, std::string_view name) {
     const auto same = std::find_if(ast.rules.begin(), ast.rules.end(),
                                    [&](const RuleDecl& r) { return &r != &rule && r.name.text == *written; });
     if (same != ast.rules.end()) return refused(fmt::format("another rule is called '{}'", *written));
-    if (!rule.name.empty()) return tried(ast, {rule.name.span.begin, rule.name.span.end, *written});
+    if (!rule.name.empty()) {
+        std::vector<TextEdit> renamed{{rule.name.span.begin, rule.name.span.end, *written}};
+        for (const syntax::DeriveDecl& way : ast.derives)
+            for (const auto& step : way.steps)
+                if (step.rule.text == rule.name.text)
+                    renamed.push_back({step.rule.span.begin, step.rule.span.end, *written});
+        return tried(ast, merged(ast.source->text(), std::move(renamed)));
+    }
     return tried(ast, {rule.symbol.span.begin, rule.symbol.span.begin, *written + ": "});
 }
 

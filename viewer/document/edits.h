@@ -31,7 +31,7 @@ Edit duplicateRule(const Ast& ast, const RuleDecl& rule);
 /// Puts the rule before another, or behind the last (null); comments right above it go with it. Order matters among the
 /// rules of one symbol.
 Edit moveRule(const Ast& ast, const RuleDecl& rule, const RuleDecl* before);
-/// Names the rule; "" takes its name away. `derive` lines that use the name are not followed.
+/// Names the rule; `derive` lines follow from one name to another. "" takes its name away.
 Edit setName(const Ast& ast, const RuleDecl& rule, std::string_view name);
 /// The shape the rule matches.
 Edit setSymbol(const Ast& ast, const RuleDecl& rule, std::string_view symbol);
