@@ -33,6 +33,8 @@ vec3 reflected(Surface s, vec3 toEye, vec3 toLight) {
 /// What a mirror shows: the sky, and below the horizon the ground.
 vec3 environmentColor(vec3 direction) {
     vec3 sky = skyColor(vec3(direction.x, max(direction.y, 0.0), direction.z));
+    // Haze and thin cloud brighten what is mirrored, or metal looks as if it stood in a blue room.
+    sky = mix(sky, vec3(1.25 * dot(sky, vec3(0.2126, 0.7152, 0.0722)) + 0.18), 0.5);
     vec3 below = hasGround != 0 ? vec3(0.48, 0.47, 0.44) : skyColor(direction);
     return mix(below, sky, smoothstep(-0.06, 0.02, direction.y));
 }

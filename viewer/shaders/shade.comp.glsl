@@ -62,12 +62,13 @@ float opennessAt(vec3 p, vec3 normal) {
     for (int i = 0; i < 4; ++i) {
         float w = 1.0;
         float enough = min(reach, margin);
-        float free = clamp(distanceAt(p + normal * reach, enough) / enough, -0.2, 1.0);
+        float free = clamp(distanceAt(p + normal * reach, enough) / enough, 0.0, 1.0);
         hidden += w * (1.0 - free);
         weight += w;
         reach *= 0.4;
     }
-    return clamp(1.0 - 0.95 * hidden / weight, 0.03, 1.0);
+    // A little stays even where things touch: light creeps in.
+    return mix(0.08, 1.0, 1.0 - hidden / weight);
 }
 
 /// Share of the day that comes into a hollow to p: wide discs of the upper sky.
