@@ -23,6 +23,19 @@ void count(const Tape& tape, size_t points, bool gradient, Tally& tally) {
     for (const Instruction& in : tape.code()) tally[{in.op, in.count, in.data, gradient}] += points;
 }
 
+/// Copies the two rows that `needsRange` speaks of, see Links::boundRows.
+void keepRange(const Tape& tape, const Instruction& in, const StepContext& c) {
+    for (uint32_t row = 0; row < 2; ++row) {
+        float* const to = c.bounds + row * maxBoxes;
+        const bool difference = in.op == field::codeOf<field::ops::Sub>;
+        const Source source = difference ? in.b : tape.sources()[in.a + row];
+        if (isConstant(source))
+            std::fill_n(to, c.count, tape.constants()[indexOf(source)]);
+        else
+            std::copy_n(rowOf(c, source, 2, difference ? row : 0), c.count, to);
+    }
+}
+
 }  // namespace
 
 Isa bestIsa() {
@@ -96,9 +109,7 @@ void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& wo
     for (size_t i = 0; i < tape.size(); ++i) {
         const Instruction& in = tape.code()[i];
         c.bounds = bounds + size_t{w.links.bounds(i)} * maxBoxes;
-        if (needsRange(in))
-            for (size_t end = 0; end < 2; ++end)
-                std::copy_n(rowOf(c, in.b, 2, end), c.count, c.bounds + end * maxBoxes);
+        if (needsRange(in)) keepRange(tape, in, c);
         w.kernels.ranges[static_cast<size_t>(in.op)](in, c);
     }
     constexpr float infinity = std::numeric_limits<float>::infinity();

@@ -10,9 +10,10 @@
 
 namespace sgm::eval {
 
-/// True for a difference of two values: what of the first one matters hangs on the range of the second.
+/// True where what of an operand matters hangs on the range of another: differences of two values, and morphs.
 inline bool needsRange(const Instruction& in) {
-    return in.op == field::codeOf<field::ops::Sub> && !isConstant(in.a) && !isConstant(in.b);
+    return (in.op == field::codeOf<field::ops::Sub> && !isConstant(in.a) && !isConstant(in.b)) ||
+           in.op == field::codeOf<field::ops::Morph>;
 }
 
 /// x, y, z are values 0, 1, 2 and instruction i makes value 3 + i; constants as in Source.
@@ -24,8 +25,8 @@ public:
     const Source* operands(size_t i) const { return values_.data() + first_[i]; }
     /// Its first row of bounds, if it chooses or `needsRange` (evaluateRanges).
     uint32_t bounds(size_t i) const { return bounds_[i]; }
-    /// Rows of bounds of all instructions: where they choose one an operand and one for the reach, where they need a
-    /// range its two ends.
+    /// Rows of bounds of all instructions: where they choose one an operand and one for the reach; both ends of a
+    /// difference's second operand; the low ends of a morph's two.
     uint32_t boundRows() const { return boundRows_; }
     Source result() const { return result_; }
     /// True for the tape followed last.

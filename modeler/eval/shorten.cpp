@@ -3,6 +3,7 @@
 // Beyond the choice of one instruction we also pass down what the consumers tell apart (Care): a part of a union that
 // is farther than another part of the whole is dropped even where its own neighbours are farther still.
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <optional>
@@ -39,13 +40,10 @@ bool beyond(const field::OpTraits& row, float bound, Care care) {
     return row.owner == Owner::Least ? bound > care.most : bound < care.least;
 }
 
-/// An operand of an instruction that doesn't choose, and what of its values matters; of the other operands all does.
-struct Passed {
-    uint32_t operand;
-    Care care;
-};
+/// What of its first three operands matters to an instruction that doesn't choose; of others all does.
+using Cares = std::array<Care, 3>;
 
-/// `care` with both ends moved or scaled, and a little wider: the operation rounds.
+/// `care` with both ends sent through `move`, and a little wider: the operation rounds numbers as large as `by`.
 template <class Move>
 Care moved(Care care, float by, Move&& move) {
     const auto slack = [&](float end) { return 1e-6f * (std::abs(end) + std::abs(by)); };
@@ -55,39 +53,54 @@ Care moved(Care care, float by, Move&& move) {
             most + slack(most) >= least ? most + slack(most) : all.most};
 }
 
-/// Sums with, differences from, and products and quotients by a positive number pass on what their result's consumers
-/// tell apart; a difference of two values does so to the first one, by the range [lo, hi] of the second.
-std::optional<Passed> passedOn(const Tape& tape, const Instruction& in, const Source* values, const float* range,
-                               Care care) {
+/// A difference of two values a − b, from the range of b: a counts between least + lo and most + hi.
+std::optional<Cares> throughDifference(const float* range, Care care) {
+    const float lo = range[0], hi = range[maxBoxes];
+    if (!(lo <= hi)) return {};
+    const auto plus = [](float n) { return [n](float end) { return end + n; }; };
+    return Cares{Care{moved(care, lo, plus(lo)).least, moved(care, hi, plus(hi)).most}};
+}
+
+/// A morph a (1 − t) + b t by a number t: neither counts above what the other at its lowest leaves it. Both may be
+/// above at once, for the two at their lowest stay below `most`; from below the same would hold for but one of them.
+std::optional<Cares> throughMorph(const float* range, float t, Care care) {
+    const float s = 1 - t, a = range[0], b = range[maxBoxes], most = care.most;
+    if (!(t > 0 && t < 1) || !(a * s + b * t <= most)) return {};
+    const auto left = [most](float own, float others, float other) {
+        const float end = (most - others * other) / own;
+        return end + 1e-5f * (std::abs(end) + (std::abs(most) + std::abs(other)) / own);
+    };
+    return Cares{Care{Care{}.least, left(s, t, b)}, Care{Care{}.least, left(t, s, a)}};
+}
+
+/// What an instruction's operands pass on of what its result's consumers tell apart; nothing where all of it matters.
+/// `range`: the rows of Links::bounds.
+std::optional<Cares> passedOn(const Tape& tape, const Instruction& in, const Source* values, const float* range,
+                              Care care) {
     namespace ops = field::ops;
     using field::codeOf;
-    if (care == Care{}) return {};
-    if (in.op == codeOf<ops::Neg>) return Passed{0, {-care.most, -care.least}};
+    const auto is = [&](field::OpCode op) { return in.op == op; };
     const auto number = [&](uint32_t k) { return tape.constants()[indexOf(values[k])]; };
-    const bool numberLast = in.count == 2 && isConstant(values[1]),
-               numberFirst = in.count == 2 && isConstant(values[0]);
-    if (in.op == codeOf<ops::Add> && (numberFirst || numberLast)) {
-        const float n = number(numberLast ? 1 : 0);
-        return Passed{numberLast ? 0u : 1u, moved(care, n, [n](float end) { return end - n; })};
-    }
-    if (in.op == codeOf<ops::Sub> && numberLast) {
-        const float n = number(1);
-        return Passed{0, moved(care, n, [n](float end) { return end + n; })};
-    }
-    if (needsRange(in)) {
-        const float lo = range[0], hi = range[maxBoxes];
-        if (!(lo <= hi)) return {};
-        return Passed{0, {moved(care, lo, [lo](float end) { return end + lo; }).least, moved(care, hi, [hi](float end) {
-                                                                                           return end + hi;
-                                                                                       }).most}};
-    }
-    const bool product = in.op == codeOf<ops::Mul>, quotient = in.op == codeOf<ops::Div> && numberLast;
-    if ((product && (numberFirst || numberLast)) || quotient) {
-        const float n = number(numberLast ? 1 : 0);
-        if (!(n > 0) || !std::isfinite(n)) return {};
-        return Passed{numberLast ? 0u : 1u, moved(care, 0, [=](float end) { return quotient ? end * n : end / n; })};
-    }
-    return {};
+    if (care == Care{}) return {};
+    if (is(codeOf<ops::Neg>)) return Cares{Care{-care.most, -care.least}};
+    if (is(codeOf<ops::Morph>)) return isConstant(values[2]) ? throughMorph(range, number(2), care) : std::nullopt;
+    if (needsRange(in)) return throughDifference(range, care);
+    if (in.count != 2 || isConstant(values[0]) == isConstant(values[1])) return {};
+    const uint32_t fixed = isConstant(values[1]) ? 1 : 0;
+    const float n = number(fixed);
+    Cares cares;
+    Care& passed = cares[1 - fixed];
+    if (is(codeOf<ops::Add>))
+        passed = moved(care, n, [n](float end) { return end - n; });
+    else if (is(codeOf<ops::Sub>) && fixed == 1)
+        passed = moved(care, n, [n](float end) { return end + n; });
+    else if (is(codeOf<ops::Mul>) && n > 0)
+        passed = moved(care, 0, [n](float end) { return end / n; });
+    else if (is(codeOf<ops::Div>) && fixed == 1 && n > 0)
+        passed = moved(care, 0, [n](float end) { return end * n; });
+    else
+        return {};
+    return cares;
 }
 
 /// The owners of an instruction's operands, or null.
@@ -136,7 +149,7 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
                        passedOn(tape, in, values, bounds + size_t{w.links.bounds(i)} * maxBoxes, b.care(value))) {
             w.uses.clear();
             for (uint32_t k = 0; k < in.count; ++k)
-                w.uses.push_back({values[k], origins ? origins[k] : 0, k == passed->operand ? passed->care : Care{}});
+                w.uses.push_back({values[k], origins ? origins[k] : 0, (*passed)[k]});
             b.define(value, in.op, in.data, w.uses.data(), w.uses.size(), origins != nullptr);
         } else {
             b.define(value, in, values, origins);

@@ -150,6 +150,18 @@ TEST(Shorten, WhatIsToldApartGoesThroughSumsAndScales) {
         expectSides(compile(graph, {root, {}, 1, 1}, graph.constants()), box, {-0.1f, 0.3f});
 }
 
+TEST(Shorten, WhatIsToldApartGoesThroughMorphs) {
+    Graph graph;
+    const Num row = spheres(graph, 0, 64), others = spheres(graph, -3, 64);
+    const Num slanted = min(others, graph.y() + graph.x() * graph.slot(0.1f));
+    for (const float t : {0.01f, 0.5f, 0.9f})
+        for (const Num to : {others, slanted}) {
+            const field::Operand operands[] = {{row.id(), 0}, {to.id(), 0}, {graph.slot(t).id(), 0}};
+            const Num root = graph.apply(codeOf<ops::Morph>, operands);
+            expectSides(compile(graph, {root, {}, 1, 1}, graph.constants()), {{20, -3, -3}, {26, 3, 3}}, {-0.1f, 0.1f});
+        }
+}
+
 TEST(Shorten, PartsOfABlendThatAreFarFromWhatIsToldApartAreDropped) {
     Graph graph;
     std::vector<field::Operand> operands{{graph.slot(0.2f).id(), 0}};
