@@ -39,6 +39,7 @@ std::string listed(std::string_view choices) {
 std::string parameterText(const field::PrimitiveParameter& p) {
     using Kind = field::ParameterKind;
     if (p.kind == Kind::Choice) return fmt::format("one of {}", listed(p.choices));
+    if (p.kind == Kind::File) return "a file's name, in quotes";
     if (p.kind == Kind::Rotation) return "a rotation: rotX(a), rotY(a), rotZ(a)";
     const bool angle = p.kind == Kind::Angle;
     const double unit = angle ? 180 / 3.14159265358979323846 : 1;

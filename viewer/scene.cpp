@@ -54,6 +54,7 @@ void setScene(const Program& program, const Box3f& bounds, const PictureOptions&
     program.set("sunDirection", sunDirection());
     program.set("sceneSize", size);
     program.set("sceneCentre", bounds.centre());
+    program.set("sceneHalf", bounds.size() * 0.5f);
     program.set("groundHeight", bounds.lo.y);
     program.set("hasGround", options.ground ? 1 : 0);
     program.set("lampPosition", lampPosition(options.camera, view).as<float>());

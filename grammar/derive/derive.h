@@ -21,7 +21,7 @@ struct Step {
     ShapeId shape = none;         ///< the matched one
     uint32_t generation = 0;      ///< from 1
     uint32_t chainIndex = 0;      ///< i of a repeat, 0 otherwise
-    bool morphic = false;         ///< R_M; else R_C
+    bool morphic = false;         ///< R_M: its body morphs, or made a roof(a) with 0 < a < 1; else R_C
     bool closing = false;         ///< the `finally` of a chain
     ShapeId firstMade = 0;        ///< it made the shapes firstMade … firstMade + madeCount − 1
     uint32_t madeCount = 0;

@@ -1,4 +1,6 @@
 // Matching and applying rules: single applications, chains of `repeat`, and their `finally`.
+#include <algorithm>
+
 #include "grammar/derive/interpreter.h"
 #include "modeler/core/random.h"
 
@@ -14,6 +16,12 @@ bool asksForCount(const rules::Expr& e) {
     for (const rules::Expr& arg : e.args)
         if (asksForCount(arg)) return true;
     return false;
+}
+
+/// A primitive that is a morph by itself, and at neither end of it.
+bool morphs(const SolidValue& solid) {
+    if (solid.kind == rules::Solid::Kind::Primitive && solid.primitive->morphs && solid.args[0].num() > 0 && solid.args[0].num() < 1) return true;
+    return std::any_of(solid.parts.begin(), solid.parts.end(), morphs);
 }
 
 }  // namespace
@@ -99,11 +107,14 @@ bool Interpreter::runLogged(const rules::Body& body, const Frame& frame, Step st
     const auto index = static_cast<uint32_t>(d.steps.size());
     step.shape = frame.matched;
     step.firstMade = static_cast<ShapeId>(d.tree.shapes.size());
-    ++(step.morphic ? d.morphic : d.classic);
     d.steps.push_back(step);
     builder_.at(step.rule, step.shape, index);
     const bool good = builder_.work() && runBody(body, frame, 0);
-    d.steps[index].madeCount = static_cast<uint32_t>(d.tree.shapes.size()) - step.firstMade;
+    Step& done = d.steps[index];
+    done.madeCount = static_cast<uint32_t>(d.tree.shapes.size()) - step.firstMade;
+    for (ShapeId id = step.firstMade; id < d.tree.shapes.size() && !done.morphic; ++id)
+        if (const SolidValue* solid = d.tree.solidOf(id)) done.morphic = morphs(*solid);
+    ++(done.morphic ? d.morphic : d.classic);
     return good;
 }
 

@@ -182,7 +182,8 @@ void Lowering::enter(ShapeId id) {
     materials_.enter(id);
     if (!pours(id)) open_.push_back({{}, id, {}});
     if (const derive::SolidValue* solid = tree_.solidOf(id)) {
-        const field::Field f = lowerSolid(model_.graph, *solid, tree_.shapes[id].scope, tree_.shapes[id].key);
+        const field::Field f = lowerSolid(model_.graph, *solid, tree_.shapes[id].scope, tree_.shapes[id].key,
+                                          d_.grammar->meshes);
         Content& content = open_.back();
         if (content.blend_m > 0 || !content.cuts.terms.empty()) settle(content);
         content.terms.push_back({f, ownerOf(id)});

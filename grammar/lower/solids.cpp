@@ -20,9 +20,11 @@ using rules::Operator;
 struct Frame {
     field::Point p, half;
     derive::Scope scope;
+    std::span<const field::SampledGridPtr> meshes;
 };
 
 size_t componentsOf(field::ParameterKind kind) {
+    if (kind == field::ParameterKind::File) return 0;
     if (kind == field::ParameterKind::Rotation) return 9;
     return kind == field::ParameterKind::Vector ? 3 : 1;
 }
@@ -39,7 +41,11 @@ Argument argumentOf(Graph& graph, const field::PrimitiveParameter& parameter, co
 
 Field primitive(Graph& graph, const SolidValue& solid, const Frame& frame, uint64_t key) {
     std::vector<Argument> arguments;
-    for (size_t i = 0; i < solid.args.size(); ++i) arguments.push_back(argumentOf(graph, solid.primitive->parameters[i], solid.args[i], key));
+    for (size_t i = 0; i < solid.args.size(); ++i) {
+        arguments.push_back(argumentOf(graph, solid.primitive->parameters[i], solid.args[i], key));
+        if (solid.primitive->parameters[i].kind == field::ParameterKind::File)
+            arguments.back().grid = frame.meshes[static_cast<size_t>(solid.args[i].num())];
+    }
     Field f = solid.primitive->build({frame.p, frame.half, frame.scope.half(), arguments});
     f.bounds = field::toWorld(f.bounds, {frame.scope.centre, frame.scope.axes});
     return f;
@@ -72,10 +78,11 @@ Field build(Graph& graph, const SolidValue& solid, const Frame& frame, uint64_t 
 
 }  // namespace
 
-Field lowerSolid(Graph& graph, const SolidValue& solid, const derive::Scope& scope, uint64_t key) {
+Field lowerSolid(Graph& graph, const SolidValue& solid, const derive::Scope& scope, uint64_t key,
+                 std::span<const field::SampledGridPtr> meshes) {
     const Vec3d h = scope.half();
     const auto half = [&](std::string_view name, double value) { return graph.slot({key, hashText(name)}, static_cast<float>(value)); };
-    const Frame frame{field::toLocal(graph.position(), {scope.centre, scope.axes}, key), {half("size.x", h.x), half("size.y", h.y), half("size.z", h.z)}, scope};
+    const Frame frame{field::toLocal(graph.position(), {scope.centre, scope.axes}, key), {half("size.x", h.x), half("size.y", h.y), half("size.z", h.z)}, scope, meshes};
     return build(graph, solid, frame, key);
 }
 

@@ -56,8 +56,8 @@ void sortInto(syntax::Diagnostics& out, const syntax::Diagnostics& found,
 }
 
 /// Everything behind the names, and what follows from it all.
-void fill(Grammar& grammar, const Files& files, const syntax::Diagnostics& unread, syntax::Diagnostics& diagnostics) {
-    Checker checker(grammar, diagnostics);
+void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax::Diagnostics& unread, syntax::Diagnostics& diagnostics) {
+    Checker checker(grammar, diagnostics, load.mesh);
     checker.excuse(unread, files.missing);
     const auto each = [&](void (Checker::*step)(const syntax::Ast&)) {
         for (const syntax::Ast& part : files.asts) (checker.*step)(part);
@@ -89,7 +89,7 @@ std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load,
     for (size_t i = 0; i + 1 < files.asts.size(); ++i) grammar->sources.push_back(files.asts[i].source);
 
     syntax::Diagnostics found;
-    fill(*grammar, files, diagnostics, found);
+    fill(*grammar, files, load, diagnostics, found);
     sortInto(diagnostics, withoutEchoes(found, diagnostics), grammar->sources);
     return diagnostics.hasErrors() ? nullptr : grammar;
 }

@@ -4,16 +4,29 @@
 
 #include <functional>
 #include <memory>
+#include <type_traits>
 
 #include "grammar/rules/grammar.h"
 #include "modeler/core/result.h"
 
 namespace sgm::rules {
 
-/// Gives the source behind `use "name"` of `from`, or null with `why` set. Files are read by cli/ and viewer/ only. A
-/// file is known by its source's name(). Diagnostics point into the source: whoever loads keeps it for as long as they
-/// are read.
-using Loader = std::function<syntax::SourcePtr(const std::string& name, const syntax::Source& from, std::string& why)>;
+/// Reads what a grammar names: files are read by cli/ and viewer/ only. Both give null with `why` set where they can't.
+struct Loader {
+    using Use = std::function<syntax::SourcePtr(const std::string& name, const syntax::Source& from, std::string& why)>;
+    using Mesh = std::function<field::SampledGridPtr(const std::string& name, const syntax::Source& from, std::string& why)>;
+
+    Loader() = default;
+    /// One that reads grammars alone.
+    template <class Fn>
+    requires(std::is_constructible_v<Use, Fn>) Loader(Fn fn) : use(std::move(fn)) {}
+
+    /// The source behind `use "name"` of `from`. A file is known by its source's name(). Diagnostics point into the source:
+    /// whoever loads keeps it for as long as they are read.
+    Use use;
+    /// The distances to the mesh behind `mesh("name")` of `from`.
+    Mesh mesh;
+};
 
 /// Null when `diagnostics` has errors. Reports everything wrong in one run, in the order of the text, used files first:
 /// unknown names with "did you mean", units, ranges, unused parameters and unreachable rules (warnings), rules that

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "grammar/rules/check.h"
 #include "grammar/rules/grammar.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/type.h"
@@ -60,7 +61,8 @@ struct Place {
 
 class Checker {
 public:
-    Checker(Grammar& grammar, syntax::Diagnostics& diagnostics) : grammar_(grammar), diagnostics_(diagnostics) {}
+    Checker(Grammar& grammar, syntax::Diagnostics& diagnostics, Loader::Mesh loadMesh = {})
+        : grammar_(grammar), diagnostics_(diagnostics), loadMesh_(std::move(loadMesh)) {}
 
     /// Names that stand in a line that couldn't be read may be declared there, and any name in a file that is missing:
     /// nothing is said of them.
@@ -127,6 +129,7 @@ private:
     Solid morphSolid(Place& place, const syntax::Expr& e);
     Solid combination(Place& place, const syntax::Expr& e);
     Expr primitiveArgument(Place& place, const syntax::Expr& e, const field::Primitive& row, size_t index);
+    Expr fileArgument(const syntax::Expr& e, const field::Primitive& row);
     Expr choiceArgument(Place& place, const syntax::Expr& e, const field::PrimitiveParameter& parameter);
     Solid terminalSolid(const syntax::Name& name);
     void bounded(const Solid& solid, std::string_view verb);
@@ -187,6 +190,8 @@ private:
     std::set<std::string> jointNames_;  ///< declared by a terminal or a primitive
     std::set<std::string> excused_;
     bool anythingExcused_ = false;   ///< a used file is missing, and nobody knows what it declares
+    Loader::Mesh loadMesh_;
+    std::map<std::pair<const syntax::Source*, std::string>, size_t> files_;  ///< read so far: places in Grammar::meshes
     std::set<std::string> unbuilt_;  ///< maps and lsystems: named once, refused once
     std::set<SymbolId> ruled_;       ///< have a rule
     std::set<SymbolId> placed_;      ///< stand in a start, a body or behind a colon

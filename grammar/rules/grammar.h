@@ -259,6 +259,7 @@ struct Grammar {
     std::vector<Derive> derives;
     std::vector<Style> styles;
     std::vector<Check> checks;
+    std::vector<field::SampledGridPtr> meshes;  ///< of a solid's File argument, by its n[0]
 };
 
 }  // namespace sgm::rules

@@ -29,6 +29,7 @@ Want wantOf(ParameterKind kind) {
         case ParameterKind::Rotation:
             return Want::Rotation;
         case ParameterKind::Choice:
+        case ParameterKind::File:
             return Want::Anything;
     }
     return Want::Anything;
@@ -106,10 +107,29 @@ Expr Checker::choiceArgument(Place& place, const Written& e, const field::Primit
     return result;
 }
 
+/// The name of a file, read here; each file once.
+Expr Checker::fileArgument(const Written& e, const field::Primitive& row) {
+    Value file;
+    file.kind = Value::Kind::Text;
+    file.text = e.text;
+    if (e.kind != Written::Kind::Text) {
+        diagnostics_.error(e.span, fmt::format("'{}' takes the name of a file in quotes, not '{}'", row.name, e.span.text()),
+                           fmt::format("write '{}(\"statue.obj\")'", row.name));
+        return makeConstant(e.span, file);
+    }
+    std::string why = "no files can be read here";
+    const auto known = files_.try_emplace({e.span.source, e.text}, grammar_.meshes.size());
+    if (known.second) grammar_.meshes.push_back(loadMesh_ ? loadMesh_(e.text, *e.span.source, why) : nullptr);
+    file.n[0] = static_cast<double>(known.first->second);
+    if (known.second && !grammar_.meshes.back()) diagnostics_.error(e.span, fmt::format("can't use \"{}\": {}", e.text, why));
+    return makeConstant(e.span, file);
+}
+
 Expr Checker::primitiveArgument(Place& place, const Written& e, const field::Primitive& row, size_t index) {
     const field::PrimitiveParameter& parameter = row.parameters[index];
     const std::string what = fmt::format("'{}' of '{}'", parameter.name, row.name);
     place.enter(fmt::format("{}.{}", row.name, parameter.name));
+    if (parameter.kind == ParameterKind::File) return fileArgument(e, row);
     if (parameter.kind == ParameterKind::Choice) return choiceArgument(place, e, parameter);
     Expr expr = expression(place, e, wantOf(parameter.kind), what);
     const auto value = fold(expr, defaults_);
@@ -154,6 +174,9 @@ Solid Checker::primitiveSolid(Place& place, const Written& e, const field::Primi
         given[index] = true;
         solid.args[index] = primitiveArgument(place, e.args[i], row, index);
     }
+    for (size_t i = 0; i < given.size() && e.args.empty(); ++i)
+        if (row.parameters[i].kind == ParameterKind::File)
+            diagnostics_.error(e.span, fmt::format("'{}' takes the name of a file", row.name), fmt::format("write '{}(\"statue.obj\")'", row.name));
     return solid;
 }
 
@@ -252,10 +275,6 @@ Solid Checker::solid(Place& place, const Written& e) {
     switch (e.kind) {
         case Written::Kind::Call:
             if (e.text == "morph") return morphSolid(place, e);
-            if (e.text == "mesh") {
-                diagnostics_.error(e.span, "'mesh(…)' is not supported yet");
-                return nil;
-            }
             return namedSolid(place, e);
         case Written::Kind::Name:
             return namedSolid(place, e);

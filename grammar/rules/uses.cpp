@@ -28,7 +28,7 @@ public:
 private:
     void follow(const syntax::UseDecl& use, const syntax::Source& from) {
         std::string why = "it can't be found";
-        const syntax::SourcePtr source = load_ ? load_(use.file.text, from, why) : nullptr;
+        const syntax::SourcePtr source = load_.use ? load_.use(use.file.text, from, why) : nullptr;
         if (!source) {
             files_.missing = true;
             diagnostics_.error(use.file.span, fmt::format("can't use \"{}\": {}", use.file.text, why));

@@ -39,12 +39,14 @@ private:
     std::unordered_map<uint32_t, uint32_t> index_;
 };
 
-float foldedValue(const Node& n, std::span<const float> args) {
+float foldedValue(const Graph& graph, const Node& n, std::span<const float> args) {
     return field::visitOp(n.op, [&]<class Row>() -> float {
         if constexpr (Row::arity == 1)
             return Row::apply(args[0]);
         else if constexpr (Row::arity == 2)
             return Row::apply(args[0], args[1]);
+        else if constexpr (field::traitsOf<Row>().readsGrid)
+            return Row::apply(args, graph.grids()[n.data]->words().data());
         else if constexpr (Row::arity == ops::variadic)
             return Row::apply(args, n.data);
         else
@@ -92,7 +94,7 @@ private:
         args_.clear();
         for (const field::Operand& o : operands)
             if (fateOf(o.node).kind == Fate::Constant) args_.push_back(fateOf(o.node).value);
-        if (args_.size() == operands.size()) return constant(foldedValue(n, args_));
+        if (args_.size() == operands.size()) return constant(foldedValue(graph_, n, args_));
         if (args_.size() == 1 && operands.size() == 2) {
             const bool second = fateOf(operands[1].node).kind == Fate::Constant;
             if ((second || field::traits(n.op).commutative) && field::keepsFirst(n.op, args_[0])) {
@@ -168,7 +170,8 @@ private:
             builder.define(ordered_[i], n.op, n.data, uses.data(), uses.size(), listed);
         }
         Tape tape;
-        builder.finish(std::make_shared<const std::vector<float>>(constants_.take()), lipschitz, tape);
+        const auto grids = graph_.grids().empty() ? nullptr : std::make_shared<const Grids>(graph_.grids());
+        builder.finish(std::make_shared<const std::vector<float>>(constants_.take()), grids, lipschitz, tape);
         return tape;
     }
 
@@ -183,6 +186,10 @@ private:
 };
 
 }  // namespace
+
+Grids::Grids(std::vector<field::SampledGridPtr> all) : list(std::move(all)) {
+    for (const field::SampledGridPtr& grid : list) words.push_back(grid->words().data());
+}
 
 Tape compile(const field::Graph& graph, const field::Field& field, std::span<const float> constants) {
     return Compiler(graph, field.value.id(), constants).run(field.lipschitz);

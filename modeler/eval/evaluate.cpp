@@ -61,6 +61,7 @@ StepContext Workspace::Impl::context(const Tape& tape, size_t planes, size_t str
             stride,
             tape.constants().data(),
             tape.sources().data(),
+            tape.grids() ? tape.grids()->words.data() : nullptr,
             arguments.get(argumentFloats),
             nullptr};
 }

@@ -37,6 +37,7 @@ Fingerprint fingerprint(const Tape& tape) {
         const int arity = field::traits(in.op).arity;
         hash.add(static_cast<uint32_t>(in.op), in.count);
         hash.add(in.out, in.data);
+        if (field::traits(in.op).readsGrid) hash.add(tape.grids()->list[in.data]->hash());
         hash.add(in.origins);
         if (arity == field::ops::variadic)
             for (uint32_t k = 0; k < in.count; ++k) addSource(tape.sources()[in.a + k]);

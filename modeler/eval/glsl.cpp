@@ -19,6 +19,8 @@ using field::OpCode;
 //   z  second operand; of a listed op the number of operands
 //   w  the op's structural integer
 // A listed operand is a texel too: y register or float, x non-zero for a float.
+// Before the first tape of a buffer lie its grids, the words of each from a texel on; `data` of an op that reads one is that
+// texel.
 // A tape starts with a texel (end of code, result is a float, result, 0).
 constexpr uint32_t aIsFloat = 1u << 8, bIsFloat = 1u << 9, isHeavy = 1u << 10;
 
@@ -88,6 +90,20 @@ uint32_t wordOf(const Tape& tape, Source source) {
     return isConstant(source) ? std::bit_cast<uint32_t>(tape.constants()[indexOf(source)]) : indexOf(source);
 }
 
+/// The texel of grid `number` when the grids lie at the buffer's start.
+uint32_t texelOfGrid(const Grids& grids, uint32_t number) {
+    size_t texel = 0;
+    for (uint32_t i = 0; i < number; ++i) texel += (grids.list[i]->words().size() + 3) / 4;
+    return static_cast<uint32_t>(texel);
+}
+
+void appendGrids(const Grids& grids, std::vector<uint32_t>& buffer) {
+    for (const auto& grid : grids.list) {
+        for (const float word : grid->words()) buffer.push_back(std::bit_cast<uint32_t>(word));
+        buffer.resize((buffer.size() + 3) / 4 * 4);
+    }
+}
+
 }  // namespace
 
 OpSet opsOf(const Tape& tape) {
@@ -108,6 +124,7 @@ float arg(uint texel) {{
   uvec4 q = texelFetch(tapes, int(texel));
   return q.x != 0u ? uintBitsToFloat(q.y) : registers[q.y & registerMask];
 }}
+float word(uint texel, uint i) {{ return uintBitsToFloat(texelFetch(tapes, int(texel + (i >> 2)))[i & 3u]); }}
 )",
                                    registers - 1, registers);
     text += functions(ops) + R"(float evaluateField(uint tapeStart, vec3 p) {
@@ -126,6 +143,7 @@ float arg(uint texel) {{
 }
 
 uint32_t appendTape(const Tape& tape, std::vector<uint32_t>& buffer) {
+    if (buffer.empty() && tape.grids()) appendGrids(*tape.grids(), buffer);
     const auto start = static_cast<uint32_t>(buffer.size() / 4);
     const auto end = start + 1 + static_cast<uint32_t>(tape.size());
     append(buffer, end, isConstant(tape.result()), wordOf(tape, tape.result()), 0);
@@ -137,7 +155,8 @@ uint32_t appendTape(const Tape& tape, std::vector<uint32_t>& buffer) {
             append(buffer, x | flags, wordOf(tape, i.a), wordOf(tape, i.b), i.data);
             continue;
         }
-        append(buffer, x, end + static_cast<uint32_t>(lists.size() / 4), i.count, i.data);
+        append(buffer, x, end + static_cast<uint32_t>(lists.size() / 4), i.count,
+               field::traits(i.op).readsGrid ? texelOfGrid(*tape.grids(), i.data) : i.data);
         for (uint32_t k = 0; k < i.count; ++k) {
             const Source source = tape.sources()[i.a + k];
             append(lists, isConstant(source), wordOf(tape, source), 0, 0);

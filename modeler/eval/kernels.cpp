@@ -72,7 +72,7 @@ template <class Row, class F>
 struct Body<Row, Interval<F>> {
     /// Unknown where an operand is.
     static Interval<F> call(auto... args) { return bare(args...).where((known(args) & ...)); }
-    static Interval<F> call(std::span<const Interval<F>> args, uint32_t data) {
+    static Interval<F> call(std::span<const Interval<F>> args, auto data) {
         auto mask = known(args[0]);
         for (const Interval<F>& a : args) mask = mask & known(a);
         return bare(args, data).where(mask);
@@ -86,6 +86,15 @@ private:
             return Row::apply(args...);
     }
 };
+
+/// What a variadic row's functions take after its operands: the words of a grid, or the instruction's own integer.
+template <class Row>
+auto dataOf(const Instruction& in, const StepContext& c) {
+    if constexpr (field::traitsOf<Row>().readsGrid)
+        return c.grids[in.data];
+    else
+        return in.data;
+}
 
 template <class V>
 float* rowOf(const StepContext& c, uint32_t reg) {
@@ -144,12 +153,12 @@ void stepOver(const Instruction& in, const StepContext& c) {
         for (uint32_t k = 0; k < in.count; ++k) args[k] = loadAt<V>(sources[k], c, i);
         const std::span<const V> all(args, in.count);
         if constexpr (chooses) keepBounds<Row>(all, in.data, i, c);
-        Planes<V>::store(Body<Row, V>::call(all, in.data), out + i, c.stride);
+        Planes<V>::store(Body<Row, V>::call(all, dataOf<Row>(in, c)), out + i, c.stride);
     }
 }
 
 template <class Row, class V>
-V callWithNumbers(std::span<const V> args, uint32_t data) {
+V callWithNumbers(std::span<const V> args, auto data) {
     if constexpr (std::is_same_v<V, Dual<Float>> && requires { Row::gradientByNumbers(args, data); })
         return Row::gradientByNumbers(args, data);
     else
@@ -171,7 +180,7 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
     float* const out = rowOf<V>(c, in.out);
     for (size_t i = 0; i < c.count; i += Float::size) {
         for (size_t k = 0; k < moving; ++k) args[k] = Planes<V>::load(rows[k] + i, c.stride);
-        Planes<V>::store(callWithNumbers<Row>(std::span<const V>(args, count), in.data), out + i, c.stride);
+        Planes<V>::store(callWithNumbers<Row>(std::span<const V>(args, count), dataOf<Row>(in, c)), out + i, c.stride);
     }
     return true;
 }

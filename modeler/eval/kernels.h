@@ -25,6 +25,7 @@ struct StepContext {
     size_t count;   ///< floats of a row in use, a multiple of vectorFloats
     const float* constants;
     const Source* sources;
+    const float* const* grids;  ///< words of the tape's grids, by number
     void* arguments;  ///< argumentBytes for each operand of the longest instruction
     float* bounds;    ///< ranges: rows of the instruction's operands and reach, where it chooses
 };

@@ -155,7 +155,7 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
             b.define(value, in, values, origins);
         }
     }
-    b.finish(tape.sharedConstants(), tape.lipschitz(), into);
+    b.finish(tape.sharedConstants(), tape.grids(), tape.lipschitz(), into);
 }
 
 Tape shorten(const Tape& tape, size_t index, Workspace& workspace, Care care) {

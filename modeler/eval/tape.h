@@ -12,6 +12,7 @@
 #include "modeler/core/provenance.h"
 #include "modeler/core/vec.h"
 #include "modeler/field/field.h"
+#include "modeler/field/sampled_grid.h"
 
 namespace sgm::eval {
 
@@ -28,7 +29,7 @@ struct Instruction {
     uint32_t out;          ///< register
     Source a = 0;          ///< first operand; for a variadic op its first place in Tape::sources()
     Source b = 0;          ///< second operand
-    uint32_t data = 0;     ///< structural integer of the op (KIFS passes)
+    uint32_t data = 0;     ///< structural integer of the op (KIFS passes, the number of a grid)
     uint32_t origins = 0;  ///< 1 + index of this instruction's operand origins in Tape::origins(), 0 for none
 };
 
@@ -38,6 +39,13 @@ struct Care {
     float least = -std::numeric_limits<float>::infinity();
     float most = std::numeric_limits<float>::infinity();
     friend bool operator==(const Care&, const Care&) = default;
+};
+
+/// The grids of a graph, by number, and their words as kernels read them.
+struct Grids {
+    explicit Grids(std::vector<field::SampledGridPtr> list);
+    std::vector<field::SampledGridPtr> list;
+    std::vector<const float*> words;
 };
 
 /// An immutable program; registers are reused, so run it forward. Registers 0, 1, 2 hold x, y, z at the start.
@@ -56,6 +64,8 @@ public:
     size_t size() const { return code_.size(); }
     /// The constants, as shared by all shortened forms.
     const std::shared_ptr<const std::vector<float>>& sharedConstants() const { return constants_; }
+    /// What ops that read a grid read, shared likewise; null where there is none.
+    const std::shared_ptr<const Grids>& grids() const { return grids_; }
     /// Global Lipschitz constant of the field.
     float lipschitz() const { return lipschitz_; }
 
@@ -65,6 +75,7 @@ private:
     std::vector<Source> sources_;
     std::vector<OriginId> origins_{0};
     std::shared_ptr<const std::vector<float>> constants_;  ///< shared by a tape and all its shortened forms
+    std::shared_ptr<const Grids> grids_;
     uint32_t registers_ = 3;
     uint32_t longest_ = 0;
     Source result_ = 0;

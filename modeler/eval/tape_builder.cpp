@@ -127,13 +127,15 @@ void TapeBuilder::alias(uint32_t key, Use same) {
     }
 }
 
-void TapeBuilder::finish(const std::shared_ptr<const std::vector<float>>& constants, float lipschitz, Tape& into) {
+void TapeBuilder::finish(const std::shared_ptr<const std::vector<float>>& constants,
+                         const std::shared_ptr<const Grids>& grids, float lipschitz, Tape& into) {
     for (const uint32_t key : inputs_) values_[key] = {};
     inputs_.clear();
     into.code_.assign(code_.rbegin(), code_.rend());
     into.sources_ = sources_;
     into.origins_ = origins_;
     if (into.constants_ != constants) into.constants_ = constants;  // the count of owners is shared between threads
+    if (into.grids_ != grids) into.grids_ = grids;
     into.registers_ = registers_;
     into.longest_ = longest_;
     into.result_ = result_;

@@ -41,7 +41,8 @@ public:
     /// The live value `key` is the same as `same`: no instruction unless `same` already has a register of its own.
     void alias(uint32_t key, Use same);
     /// The tape, in order, in the memory `into` has.
-    void finish(const std::shared_ptr<const std::vector<float>>& constants, float lipschitz, Tape& into);
+    void finish(const std::shared_ptr<const std::vector<float>>& constants, const std::shared_ptr<const Grids>& grids,
+                float lipschitz, Tape& into);
 
 private:
     /// Where a live value is, and the one place that says who owns it (`none` when several consumers read it).

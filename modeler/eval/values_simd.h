@@ -81,6 +81,11 @@ struct Lanes {
 };
 
 template <class A>
+Lanes<A> gather(const float* table, LaneInts<A> at) {
+    return Lanes<A>(Lanes<A>::Batch::gather(table, xsimd::bitwise_cast<xsimd::batch<int32_t, A>>(at.v)));
+}
+
+template <class A>
 Lanes<A> toFloat(LaneInts<A> a) {
     return Lanes<A>(xsimd::batch_cast<float>(xsimd::bitwise_cast<xsimd::batch<int32_t, A>>(a.v)));
 }

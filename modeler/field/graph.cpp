@@ -60,6 +60,12 @@ Num Graph::slot(SlotKey key, float value) {
 
 Num Graph::slot(float value) { return addSlot({}, value); }
 
+uint32_t Graph::grid(const SampledGridPtr& samples) {
+    const auto at = static_cast<uint32_t>(std::find(grids_.begin(), grids_.end(), samples) - grids_.begin());
+    if (at == grids_.size()) grids_.push_back(samples);
+    return at;
+}
+
 Num Graph::addSlot(SlotKey key, float value) {
     constants_.push_back(value);
     slotKeys_.push_back(key);

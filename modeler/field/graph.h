@@ -12,6 +12,7 @@
 
 #include "modeler/core/provenance.h"
 #include "modeler/field/hash_index.h"
+#include "modeler/field/sampled_grid.h"
 
 namespace sgm::field {
 
@@ -30,7 +31,8 @@ struct SlotKey {
 };
 
 /// One node. Leaves have no operands: Input (`data` 0, 1, 2 = x, y, z), Literal (`data` = float bits),
-/// Slot (`data` = SlotId). Other ops may keep a structural integer in `data` (the passes of a KIFS).
+/// Slot (`data` = SlotId). Other ops may keep a structural integer in `data` (the passes of a KIFS, the
+/// number of a grid).
 struct Node {
     OpCode op;
     uint32_t data = 0;
@@ -86,6 +88,9 @@ public:
     Num apply(OpCode op, std::span<const Operand> operands, uint32_t data = 0);
     Num apply(OpCode op, std::initializer_list<Num> operands, uint32_t data = 0);
 
+    /// The number of a grid in this graph: the `data` of ops that read one. The same grid keeps its number.
+    uint32_t grid(const SampledGridPtr& samples);
+
     const Node& node(NodeId id) const { return nodes_[id]; }
     std::span<const Operand> operands(NodeId id) const {
         return {operands_.data() + nodes_[id].first, nodes_[id].count};
@@ -93,6 +98,8 @@ public:
     size_t nodeCount() const { return nodes_.size(); }
     /// Present values of all slots, by SlotId: what `compile` binds and the GPU gets as a buffer.
     std::span<const float> constants() const { return constants_; }
+    /// By number.
+    const std::vector<SampledGridPtr>& grids() const { return grids_; }
     /// Key of each slot, by SlotId.
     std::span<const SlotKey> slotKeys() const { return slotKeys_; }
 
@@ -104,6 +111,7 @@ private:
     std::vector<Operand> operands_;
     std::vector<float> constants_;
     std::vector<SlotKey> slotKeys_;
+    std::vector<SampledGridPtr> grids_;
     HashIndex nodeIndex_, slotIndex_;
 };
 

@@ -19,10 +19,13 @@
 //                                        the bits stay the same without it or with any other number beyond it. With one
 //                                        operand left the op is that operand, bit for bit. Operands before `firstChoice`
 //                                        are never dropped
+//   readsGrid = true                     `data` is the number of a SampledGrid in the graph, and every function above that
+//                                        takes `uint32_t data` takes the grid's words, `const float* grid`, in its place
 //   selects = true                       the result is one of the operands, so that what the consumer of the result
 //                                        doesn't care for needn't be told apart in the operands either
 //   glsl                                 body of `float op_NAME(uint first, uint count, uint data)`, in which operand i is
-//                                        `arg(first + i)`; needed by variadic rows: a loop can't become one expression
+//                                        `arg(first + i)`; needed by variadic rows: a loop can't become one expression.
+//                                        word(data, i) is the i-th word of the grid
 #pragma once
 
 #include <array>
@@ -37,6 +40,7 @@
 #include "modeler/field/kifs.h"
 #include "modeler/field/noise.h"
 #include "modeler/field/ops_math.h"
+#include "modeler/field/sampled_op.h"
 #include "modeler/field/solid_ops.h"
 #include "modeler/field/values.h"
 
@@ -296,7 +300,8 @@ struct TypeList {
 };
 using OpTable = TypeList<ops::Input, ops::Literal, ops::Slot, ops::Copy, ops::Add, ops::Sub, ops::Mul, ops::Div,
                          ops::Neg, ops::Abs, ops::Sqrt, ops::Square, ops::Floor, ops::Mod, ops::Min, ops::Max,
-                         ops::Morph, ops::Sin, ops::Cos, ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend, ops::Ball, ops::Box>;
+                         ops::Morph, ops::Sin, ops::Cos, ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend, ops::Ball, ops::Box,
+                         ops::Sampled>;
 
 namespace detail {
 template <class Row, class... Rows>
@@ -335,6 +340,7 @@ struct OpTraits {
     bool commutative;
     bool chooses;  ///< has a reach
     bool selects;
+    bool readsGrid;
     uint32_t firstChoice;  ///< operands before it are never dropped
     ops::Owner owner;
     std::string_view glsl;  ///< empty where the body is made from apply
@@ -342,9 +348,10 @@ struct OpTraits {
 
 template <class Row>
 constexpr OpTraits traitsOf() {
-    OpTraits t{Row::name, Row::arity, false, false, false, 0, ops::Owner::First, {}};
+    OpTraits t{Row::name, Row::arity, false, false, false, false, 0, ops::Owner::First, {}};
     if constexpr (requires { Row::commutative; }) t.commutative = Row::commutative;
     if constexpr (requires { Row::selects; }) t.selects = Row::selects;
+    if constexpr (requires { Row::readsGrid; }) t.readsGrid = Row::readsGrid;
     if constexpr (requires { Row::firstChoice; }) t.firstChoice = Row::firstChoice;
     if constexpr (requires { Row::owner; }) t.owner = Row::owner;
     if constexpr (requires { Row::glsl; }) t.glsl = Row::glsl;

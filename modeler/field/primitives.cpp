@@ -33,6 +33,10 @@ constexpr PrimitiveParameter kifsParameters[] = {
      "squared radius (4 at least) beyond which passes stop; 0 never. No distance bound"},
 };
 
+constexpr PrimitiveParameter meshParameters[] = {
+    {"file", Kind::File, 0, 0, 0, "a closed mesh (.obj, .ply, .stl) in the grammar's own folder"},
+};
+
 constexpr PrimitiveJoint apex[] = {{"apex", {0, 1, 0}, {0, 1, 0}}};
 constexpr PrimitiveJoint ridge[] = {{"ridge", {0, 1, 0}, {0, 1, 0}}};
 
@@ -58,9 +62,11 @@ constexpr Primitive table[] = {
     {"wedge", "Ramp: the scope below the plane from its upper -x edge to its lower +x edge.", {}, solids::wedge},
     {"capsule", "Segment along y with round ends of the scope's least half-size.", {}, solids::capsule},
     {"roof", "Pyramid sides morphed to an ellipsoid, cut at the foot (the scope's bottom face).", roofParameters,
-     solids::roof, true, apex},
+     solids::roof, true, apex, true},
     {"kifs", "Kaleidoscopic fractal filling the scope and cut by it (McGraw, algorithm 1).", kifsParameters,
      solids::kifs},
+    {"mesh", "Mesh from a file, stretched to fill the scope; sampled 128 times along its longest side.", meshParameters,
+     solids::mesh},
     {"halfspace",
      "Everything below the scope's middle plane y = 0. Unbounded: may only cut.",
      {},

@@ -13,7 +13,7 @@
 namespace sgm::field {
 
 /// How a primitive parameter is read and shown.
-enum class ParameterKind { Share, Length, Angle, Count, Vector, Rotation, Choice };
+enum class ParameterKind { Share, Length, Angle, Count, Vector, Rotation, Choice, File };
 
 /// One typed parameter of a primitive.
 struct PrimitiveParameter {
@@ -26,10 +26,12 @@ struct PrimitiveParameter {
 };
 
 /// A value with the node(s) that carry it (slots, or expressions over them) and its present number(s) for bounds.
-/// A Share/Length/Angle/Count/Choice uses [0]; a Vector three; a Rotation nine (matrix by columns, world from local).
+/// A Share/Length/Angle/Count/Choice uses [0]; a Vector three; a Rotation nine (matrix by columns, world from local);
+/// a File what was read from it.
 struct Argument {
     Num node[9];
     double value[9]{};
+    SampledGridPtr grid;
 };
 
 /// What a primitive is built from.
@@ -55,6 +57,7 @@ struct Primitive {
     Field (*build)(const PrimitiveInput&);
     bool bounded = true;  ///< false: fills half of space, may only cut
     std::span<const PrimitiveJoint> joints{};
+    bool morphs = false;  ///< its first parameter is the share of a morph
 };
 
 /// The table, in the order of docs/reference.md.

@@ -26,6 +26,9 @@ Field halfspace(const PrimitiveInput& in);
 // solid_kifs.cpp
 Field kifs(const PrimitiveInput& in);  ///< (center, scale, fold, turn, passes, terminal, form, bailout)
 
+// solid_mesh.cpp
+Field mesh(const PrimitiveInput& in);  ///< (file)
+
 /// The scope's box about the origin; a solid whose field is a maximum with the cube's or the ellipsoid's has f ≥ 0 outside
 /// it in every bit, because −, ÷ and √ round monotonically.
 Box3f scopeBox(const PrimitiveInput& in);

@@ -9,6 +9,7 @@
 //   toInt(v) → IntOf<V>                    for |v| ≤ 2³⁰ (clamped beyond) and v already whole (see floor)
 //   toFloat(i) → V                         of a signed 32-bit number, exact below 2²⁴
 //   powerOfTwo(v) → V                      2ᵛ for whole v in [−126, 127]
+//   gather(table, i) → V                   table[i], for i below 2³¹
 // IntOf<V> is 32 bits, made from a uint32_t, wraps, and has + − × ^ & | and << >> by an int (>> shifts in zeros).
 // Interval has no masks and no integers: rows that need them give their own `interval`.
 #pragma once
@@ -32,6 +33,7 @@ inline uint32_t toInt(float v) {
     return static_cast<uint32_t>(static_cast<int32_t>(max(min(v, limit), -limit)));
 }
 inline float toFloat(uint32_t i) { return static_cast<float>(static_cast<int32_t>(i)); }
+inline float gather(const float* table, uint32_t i) { return table[i]; }
 inline float powerOfTwo(float v) { return std::bit_cast<float>((toInt(v) + 127u) << 23); }
 
 /// The companions of a value type: specialised beside each of them.

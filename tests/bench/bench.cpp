@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "modeler/core/parallel.h"
+#include "tests/bench/gallery.h"
 #include "tests/bench/report.h"
 
 namespace {
@@ -17,7 +18,7 @@ struct Request {
     std::vector<std::string> files, scenes;
     std::vector<int> resolutions;
     MeasureOptions measure;
-    std::string json, drag;
+    std::string json, drag, gallery;
     bool bars = false, cpu = false, noPeers = false, noDense = false;
 };
 
@@ -42,6 +43,8 @@ void addOptions(CLI::App& app, Request& request) {
     app.add_option(
         "--drag", request.drag,
         "Drag this parameter of the scenes: a build that keeps what the change doesn't reach, beside a full one");
+    app.add_option("--gallery", request.gallery,
+                   "Measure the objects of this list (docs/gallery.txt) instead, and print the page's section");
     app.add_flag("--no-dense", request.noDense, "Leave the dense sweeps out");
     app.add_flag("--no-peers", request.noPeers, "Leave OpenVDB and VTK out");
     app.add_option("--json", request.json, "Write all figures to this file");
@@ -130,6 +133,12 @@ int main(int argc, char** argv) {
     request.measure.peers = !request.noPeers;
     request.measure.dense = !request.noDense;
 
+    if (!request.gallery.empty()) {
+        const auto section = galleryTimes(request.gallery, request.measure);
+        if (!section.ok()) return fail(section.error());
+        fmt::print("{}", *section);
+        return 0;
+    }
     const auto scenes = chooseScenes(request);
     if (!scenes.ok()) return fail(scenes.error());
     const Limits limits = measureLimits(request.measure.running);

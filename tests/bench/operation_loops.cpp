@@ -42,6 +42,17 @@ V number(float f) {
     return v;
 }
 
+/// A grid of a single cell, header and samples.
+constexpr float grid[] = {0, 0, 0, 1, 1, 1, -1, 1, 1, 1, 2, 4, 1, -1, 1, 1, 1, 1, 1, 1};
+
+template <class Row>
+auto dataOf(const eval::Operation& operation) {
+    if constexpr (field::traitsOf<Row>().readsGrid)
+        return static_cast<const float*>(grid);
+    else
+        return operation.data;
+}
+
 template <class Row, class V>
 V call(auto... args) {
     if constexpr (std::is_same_v<V, Dual> && requires { Row::gradientByNumbers(args...); })
@@ -77,7 +88,7 @@ double measured([[maybe_unused]] const eval::Operation& operation) {
         const double seconds = leastOf([&] {
             for (int c = 0; c < chains; ++c) {
                 opaque(args[0]);
-                V out = call<Row, V>(std::span<const V>(args, n), operation.data);
+                V out = call<Row, V>(std::span<const V>(args, n), dataOf<Row>(operation));
                 opaque(out);
             }
         });

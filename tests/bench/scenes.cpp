@@ -5,6 +5,8 @@
 #include <sstream>
 
 #include "grammar/rules/check.h"
+#include "grammar/rules/params.h"
+#include "modeler/mesh/distances.h"
 
 namespace sgm::bench {
 namespace {
@@ -66,10 +68,15 @@ Result<GrammarScene> loadGrammar(const SceneEntry& entry) {
     const auto source = readSource(path);
     if (!source) return Error{Error::Kind::Input, "can't read " + path};
     const std::string folder = path.substr(0, path.rfind('/') + 1);
-    const rules::Loader loader = [&](const std::string& name, const syntax::Source&, std::string& why) {
+    rules::Loader loader([&](const std::string& name, const syntax::Source&, std::string& why) {
         auto used = readUsed(name, folder);
         if (!used) why = "not found";
         return used;
+    });
+    loader.mesh = [&](const std::string& name, const syntax::Source&, std::string& why) {
+        const auto grid = mesh::readDistances(folder + name);
+        if (!grid.ok()) why = grid.error().message;
+        return grid.ok() ? *grid : nullptr;
     };
     syntax::Diagnostics diagnostics;
     const auto grammar = rules::load(source, loader, diagnostics);
@@ -79,14 +86,16 @@ Result<GrammarScene> loadGrammar(const SceneEntry& entry) {
 
     derive::Options options;
     options.start = *start;
-    for (const rules::Param& p : grammar->params) options.params.push_back(p.value);
+    options.params = rules::valuesOf(*grammar, *start);
     return GrammarScene{std::string(entry.name), grammar, std::move(options)};
 }
 
 Result<Scene> makeScene(const GrammarScene& scene, Running running) {
     const Stopwatch deriving(running);
-    const auto derivation = derive::derive(scene.grammar, scene.options, nullptr);
+    auto derivation = derive::derive(scene.grammar, scene.options, nullptr);
     if (!derivation.ok()) return derivation.error();
+    if (!scene.noise)
+        for (derive::Extras& x : derivation->tree.extras) x.displace.clear();
     const double deriveSeconds = deriving.seconds();
     const Stopwatch lowering(running);
     auto model = lower::lower(*derivation, nullptr);

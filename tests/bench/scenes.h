@@ -33,7 +33,8 @@ std::span<const SceneEntry> findScenes(std::string_view name);
 struct GrammarScene {
     std::string name;
     std::shared_ptr<const rules::Grammar> grammar;
-    derive::Options options;  ///< start, defaults of the parameters, seed 1
+    derive::Options options;  ///< start, what its parameters are before a user changes any, seed 1
+    bool noise = true;        ///< false: nothing is displaced
 };
 /// Reads and checks. Error::Input when the file can't be read or the grammar is wrong.
 Result<GrammarScene> loadGrammar(const SceneEntry& entry);

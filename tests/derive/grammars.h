@@ -9,6 +9,7 @@
 #include "grammar/derive/derive.h"
 #include "grammar/derive/print.h"
 #include "grammar/rules/check.h"
+#include "tests/field/sampled.h"
 
 namespace sgm::testing_ {
 
@@ -23,12 +24,13 @@ inline std::string fileText(const std::string& path) {
 inline std::shared_ptr<const rules::Grammar> grammarOf(const std::string& text) {
     syntax::Diagnostics diagnostics;
     const auto source = std::make_shared<const syntax::Source>("test.sgm", text);
-    const rules::Loader fromGrammar = [](const std::string& name, const syntax::Source&, std::string& why) {
+    rules::Loader fromGrammar([](const std::string& name, const syntax::Source&, std::string& why) {
         const std::string used = fileText("grammar/" + name);
         if (!used.empty()) return syntax::SourcePtr(std::make_shared<const syntax::Source>(name, used));
         why = "there is no such file";
         return syntax::SourcePtr();
-    };
+    });
+    fromGrammar.mesh = [](const std::string&, const syntax::Source&, std::string&) { return field::test::sampledTorus(16); };
     auto grammar = rules::load(source, fromGrammar, diagnostics);
     for (const auto& d : diagnostics.all())
         if (d.severity == syntax::Severity::Error) ADD_FAILURE() << syntax::render(d);

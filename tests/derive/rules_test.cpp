@@ -55,6 +55,15 @@ TEST(Chains, HouseStacksStoreysAndPutsTheRoofOnTheLast) {
     EXPECT_EQ(derived(house, convex).terminals(), 7u * 5 + 1);
 }
 
+/// A roof is a morph of pyramid and ellipsoid, but for its two ends.
+TEST(Rules, ARoofBetweenItsEndsIsAMorphicRule) {
+    for (const auto& [peak, morphic] : {std::pair("0", 0u), {"0.4", 1u}, {"1", 0u}, {".2..0.3", 1u}}) {
+        const auto only = derived("grammar 1\nstart S -> cube : A\nrule A -> + roof(" + std::string(peak) + ") at +y\n");
+        EXPECT_EQ(only.morphic, morphic) << peak;
+        EXPECT_EQ(only.classic, 1u - morphic) << peak;
+    }
+}
+
 TEST(Chains, AnyDrawsAmongTheStepBefore) {
     const auto d = derived("grammar 1\nstart S -> cube : A\nrule A repeat 3 -> for k in 1..2 { + cube size .5 on any(+x) at +x to centre : A }\n");
     for (const derive::Bond& b : d.tree.bonds) {

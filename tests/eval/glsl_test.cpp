@@ -60,6 +60,7 @@ std::vector<Num> sampleNodes(field::Graph& g, field::OpCode op) {
         if (row.name == "box") operands.pop_back();
         return {g.apply(op, operands)};
     }
+    if (row.readsGrid) return {g.apply(op, {a, b, g.z()}, g.grid(field::test::sampledTorus(5))), g.apply(op, {b, a, g.z() * 0.3f}, g.grid(field::test::sampledTorus(9)))};
     std::vector<Num> nodes;
     if (row.name == "noise")
         for (const bool fbm : {false, true})

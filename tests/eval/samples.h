@@ -10,6 +10,7 @@
 #include "modeler/core/random.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/field/ops.h"
+#include "tests/field/sampled.h"
 
 namespace sgm::eval::testing {
 
@@ -92,6 +93,8 @@ inline float walk(const Graph& graph, Num root, float x, float y, float z) {
                 return Row::apply(args[0]);
             else if constexpr (Row::arity == 2)
                 return Row::apply(args[0], args[1]);
+            else if constexpr (field::traitsOf<Row>().readsGrid)
+                return Row::apply(std::span<const float>(args), graph.grids()[n.data]->words().data());
             else if constexpr (Row::arity == ops::variadic)
                 return Row::apply(std::span<const float>(args), n.data);
             else if constexpr (std::is_same_v<Row, ops::Input>)
@@ -112,7 +115,7 @@ struct Example {
         bool varies = true;  ///< false: a slot, as a parameter is
     };
     std::vector<Operand> operands;
-    uint32_t data = 0;
+    uint32_t data = 0;  ///< of a row that reads a grid: 0, its graph's only one
     bool tight = true;  ///< the interval of a point is a point, but for rounding
 };
 
@@ -142,6 +145,8 @@ std::vector<Example> examplesOf() {
     else if constexpr (std::is_same_v<Row, ops::Noise>)
         return {{{{-r, r}, {-r, r}, {-r, r}}, ops::Noise::pack(false, 1, 7)},
                 {{{-r, r}, {0, 1}, {5, 9}}, ops::Noise::pack(true, 3, 8)}};
+    else if constexpr (std::is_same_v<Row, ops::Sampled>)
+        return {{{{-2, 2}, {-2, 2}, {-1, 1}}}, {{{-1, 1}, {0.9f, 0.9f, false}, {-0.3f, 0.3f}}}};
     else if constexpr (std::is_same_v<Row, ops::Blend>)
         return {{{{0.3f, 0.3f, false}, {-r, r}, {-r, r}}},
                 {{{0, 2, false}, {-1, 1}, {-1, 1}, {-1, 0}, {0.5f, 0.5f, false}}},
@@ -165,6 +170,7 @@ std::vector<Example> examplesOf() {
 
 /// A random expression of up to `size` ops, rich in min and max, with owners on their operands.
 inline Num randomExpression(Graph& graph, size_t size, Draws& draws) {
+    graph.grid(field::test::sampledTorus());
     std::vector<Num> pool{graph.x(), graph.y(), graph.z()};
     for (int i = 0; i < 4; ++i) pool.push_back(graph.slot(draws.real(-2, 2)));
     for (int i = 0; i < 3; ++i) pool.push_back(graph.literal(draws.real(-2, 2)));

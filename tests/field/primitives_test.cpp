@@ -13,7 +13,9 @@ std::vector<Argument> randomArguments(Graph& graph, const Primitive& row, Draws&
     std::vector<Argument> list;
     for (const PrimitiveParameter& p : row.parameters) {
         const double a = draw.uniform(p.lo, p.hi);
-        if (p.kind == ParameterKind::Rotation)
+        if (p.kind == ParameterKind::File)
+            list.push_back(fileArgument());
+        else if (p.kind == ParameterKind::Rotation)
             list.push_back(argument(graph, draw.uniform(0, 1) < 0.3 ? Mat3{} : draw.rotation()));
         else if (p.kind == ParameterKind::Vector)
             list.push_back(argument(graph, {a, draw.uniform(p.lo, p.hi), draw.uniform(p.lo, p.hi)}));

@@ -11,6 +11,7 @@
 #include "modeler/core/random.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/field/primitives.h"
+#include "tests/field/sampled.h"
 
 namespace sgm::field::test {
 
@@ -69,11 +70,19 @@ inline Argument argument(Graph& graph, const Mat3& m) {
     return argument(graph, {m.x.x, m.x.y, m.x.z, m.y.x, m.y.y, m.y.z, m.z.x, m.z.y, m.z.z});
 }
 
+/// An argument that was read from a file.
+inline Argument fileArgument() {
+    Argument a;
+    a.grid = sampledTorus();
+    return a;
+}
+
 /// The row's defaults.
 inline std::vector<Argument> defaults(Graph& graph, const Primitive& row) {
     std::vector<Argument> list;
     for (const PrimitiveParameter& p : row.parameters)
-        list.push_back(p.kind == ParameterKind::Rotation ? argument(graph, Mat3{})
+        list.push_back(p.kind == ParameterKind::File       ? fileArgument()
+                       : p.kind == ParameterKind::Rotation ? argument(graph, Mat3{})
                        : p.kind == ParameterKind::Vector ? argument(graph, {p.fallback, p.fallback, p.fallback})
                                                          : argument(graph, {p.fallback}));
     return list;

@@ -25,8 +25,7 @@ std::vector<std::string> grammars() {
 /// Names are relative to the folder, so that the expected text doesn't depend on where the tests run.
 std::string said(const std::string& name) {
     std::vector<syntax::SourcePtr> kept;
-    const Loader loader = [&](const std::string& wanted, const syntax::Source& from,
-                              std::string& why) -> syntax::SourcePtr {
+    Loader loader([&](const std::string& wanted, const syntax::Source& from, std::string& why) -> syntax::SourcePtr {
         const fs::path path = (fs::path(from.name()).parent_path() / wanted).lexically_normal();
         if (*path.begin() == "..")
             why = "a grammar may only use files in its own folder or in std/";
@@ -36,6 +35,10 @@ std::string said(const std::string& name) {
             kept.push_back(std::make_shared<const syntax::Source>(path.string(), readText((folder / path).string())));
             return kept.back();
         }
+        return nullptr;
+    });
+    loader.mesh = [](const std::string&, const syntax::Source&, std::string& why) {
+        why = "there is no such file";
         return nullptr;
     };
     const auto source =

@@ -9,6 +9,7 @@
 #include "modeler/field/combine.h"
 #include "modeler/field/domain.h"
 #include "modeler/field/primitives.h"
+#include "tests/field/sampled.h"
 
 namespace sgm::viewer::test {
 
@@ -30,6 +31,7 @@ struct Scene {
         std::vector<field::Argument> arguments;
         for (const field::PrimitiveParameter& parameter : row.parameters) {
             field::Argument argument;
+            if (parameter.kind == field::ParameterKind::File) argument.grid = field::test::sampledTorus();
             for (int i = 0; i < 9; ++i) {
                 const bool turn = parameter.kind == field::ParameterKind::Rotation;
                 argument.value[i] = turn ? (i % 4 == 0 ? 1.0 : 0.0) : parameter.fallback;

@@ -5,9 +5,12 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <map>
+#include <optional>
 #include <sstream>
 
 #include "modeler/core/atomic_file.h"
+#include "modeler/mesh/distances.h"
 
 namespace sgm::viewer {
 namespace fs = std::filesystem;
@@ -29,6 +32,37 @@ bool leadsOutside(const fs::path& relative) {
     return false;
 }
 
+/// Where a name that stands in `from` lies, or nothing with `why` set.
+std::optional<fs::path> pathOf(const std::string& name, const syntax::Source& from, std::string& why) {
+    const fs::path wanted(name);
+    if (leadsOutside(wanted)) {
+        why = "a grammar may only use files in its own folder or in std/";
+        return {};
+    }
+    return name.starts_with("std/") ? standardLibrary() / name.substr(4) : fs::path(from.name()).parent_path() / wanted;
+}
+
+/// Meshes read so far. A text is checked again at every edit, and distances take a good part of a second.
+class Meshes {
+public:
+    Result<field::SampledGridPtr> operator()(const fs::path& path) {
+        std::error_code failed;
+        const auto time = fs::last_write_time(path, failed);
+        Read& read = known_[path.string()];
+        if (!failed && read.grid && read.time == time) return read.grid;
+        auto grid = mesh::readDistances(path);
+        read = {time, grid.ok() ? *grid : nullptr};
+        return grid;
+    }
+
+private:
+    struct Read {
+        fs::file_time_type time;
+        field::SampledGridPtr grid;
+    };
+    std::map<std::string, Read> known_;
+};
+
 }  // namespace
 
 Result<syntax::SourcePtr> readSource(const fs::path& path) {
@@ -45,20 +79,23 @@ Result<syntax::SourcePtr> readSource(const fs::path& path) {
 }
 
 rules::Loader fileLoader() {
-    return [](const std::string& name, const syntax::Source& from, std::string& why) -> syntax::SourcePtr {
-        const fs::path wanted(name);
-        if (leadsOutside(wanted)) {
-            why = "a grammar may only use files in its own folder or in std/";
-            return nullptr;
-        }
-        const bool isStandard = name.starts_with("std/");
-        const fs::path path =
-            isStandard ? standardLibrary() / name.substr(4) : fs::path(from.name()).parent_path() / wanted;
-        Result<syntax::SourcePtr> source = readSource(path);
+    rules::Loader loader([](const std::string& name, const syntax::Source& from, std::string& why) -> syntax::SourcePtr {
+        const auto path = pathOf(name, from, why);
+        if (!path) return nullptr;
+        Result<syntax::SourcePtr> source = readSource(*path);
         if (source.ok()) return *source;
         why = source.error().message;
         return nullptr;
+    });
+    loader.mesh = [meshes = Meshes()](const std::string& name, const syntax::Source& from, std::string& why) mutable -> field::SampledGridPtr {
+        const auto path = pathOf(name, from, why);
+        if (!path) return nullptr;
+        const auto grid = meshes(*path);
+        if (grid.ok()) return *grid;
+        why = grid.error().message;
+        return nullptr;
     };
+    return loader;
 }
 
 Status writeText(const fs::path& path, const std::string& text) {

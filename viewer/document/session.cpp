@@ -210,13 +210,18 @@ bool Session::checked(const ShowRequest& request, Stages& stages, std::vector<Pr
     if (!unchanged) {
         std::vector<syntax::SourcePtr> sources;  // diagnostics point into them
         usedByCheck_.clear();
-        const rules::Loader noting = [&](const std::string& name, const syntax::Source& from, std::string& why) {
-            const syntax::SourcePtr source = loader_ ? loader_(name, from, why) : nullptr;
+        rules::Loader noting([&](const std::string& name, const syntax::Source& from, std::string& why) {
+            const syntax::SourcePtr source = loader_.use ? loader_.use(name, from, why) : nullptr;
             if (source) {
                 sources.push_back(source);
                 usedByCheck_.push_back({source->name(), timeOf(source->name())});
             }
             return source;
+        });
+        noting.mesh = [&](const std::string& name, const syntax::Source& from, std::string& why) {
+            const std::string path = (std::filesystem::path(from.name()).parent_path() / name).string();
+            usedByCheck_.push_back({path, timeOf(path)});
+            return loader_.mesh ? loader_.mesh(name, from, why) : nullptr;
         };
         syntax::Diagnostics diagnostics = request.syntaxProblems;
         ast_ = request.ast;

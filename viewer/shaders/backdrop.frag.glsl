@@ -9,8 +9,8 @@ void main() {
     vec3 light = skyColor(direction);
     if (t >= 0.0) {
         vec3 p = eye + t * direction;
-        vec3 up = vec3(0.0, 1.0, 0.0);
-        light = shadeGround(p, -direction, t, sunlightAt(p), opennessAt(p, up));
+        float away = length(max(abs(p - sceneCentre) - sceneHalf, vec3(0.0)).xz);
+        light = shadeGround(p, -direction, t, sunlightAt(p), opennessAt(p, vec3(0.0, 1.0, 0.0), away));
     }
     color = vec4(tonemap(light), 1.0);
 }

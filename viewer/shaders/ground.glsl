@@ -1,7 +1,7 @@
 // The ground: a pale plane that takes shadow and melts into the horizon.
 uniform float groundHeight;   // metres
 uniform float sceneSize;      // diagonal of the bounds, metres
-uniform vec3 sceneCentre;
+uniform vec3 sceneCentre, sceneHalf;  // of the bounds
 
 const vec3 groundColor = vec3(0.42, 0.41, 0.36);
 

@@ -57,7 +57,8 @@ vec3 shade(Surface s, vec3 toEye, float sunlight, float openness, float daylight
         vec3 toLamp = lampPosition - s.position;
         float distance2 = dot(toLamp, toLamp) / (lampReach * lampReach);
         vec3 lamp = vec3(8.6, 7.0, 5.3) * open / (0.4 + 3.0 * distance2);
-        light = light * daylight + reflected(s, toEye, normalize(toLamp)) * lamp;
+        // What the walls around throw back comes from everywhere: no side of a bulge is black.
+        light = light * daylight + reflected(s, toEye, normalize(toLamp)) * lamp + s.color * (1.0 - s.metallic) * 0.035 * lamp;
     }
     return light;
 }

@@ -36,16 +36,21 @@ float sunlightAt(vec3 p) {
     return open / 32.0;
 }
 
-/// Share of the sky over `normal` that p sees, weighted by the cosine.
-float opennessAt(vec3 p, vec3 normal) {
+/// Share of the sky over `normal` that p sees, weighted by the cosine. A direction stands for a patch of sky, so what is
+/// `away` metres from p or farther casts a soft shadow, not a sharp one: each direction is asked at a place of its own within
+/// that softness, level with p, other ones at every pixel (interleaved gradient noise: Jimenez 2014).
+float opennessAt(vec3 p, vec3 normal, float away) {
     if (skyCount == 0) return 0.85;
     float open = 0.0, all = 1e-4;
+    float softness = away * sqrt(2.0 / float(skyCount));
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
     for (int i = 0; i < skyCount; ++i) {
         mat4 m = skyFromWorld[i];
         // The third row points away from the light.
         float cosine = -dot(normal, normalize(vec3(m[0].z, m[1].z, m[2].z)));
         if (cosine <= 0.0) continue;
-        vec3 at = (m * vec4(p, 1.0)).xyz;
+        float turn = 6.2831853 * fract(noise + 0.61803399 * float(i)), far = softness * sqrt(fract(noise * 7.0 + 0.75487767 * float(i)));
+        vec3 at = (m * vec4(p + far * vec3(cos(turn), 0.0, sin(turn)), 1.0)).xyz;
         float seen = 1.0;
         if (!outsideMap(at))
             seen = min(exp(log(texture(skyMaps, vec3(at.xy, float(i))).x) - skySharpness * (min(at.z, 1.0) - 0.01)), 1.0);

@@ -1,0 +1,210 @@
+#include "modeler/mesh/distances.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "modeler/mesh/read.h"
+
+namespace sgm::mesh {
+namespace {
+
+constexpr uint32_t nobody = std::numeric_limits<uint32_t>::max();
+/// Cells around the mesh. Not whole, so that walls along the axes lie between nodes.
+constexpr float margin = 2.37f;
+
+/// Triangles with vertices at the same place made one.
+struct Soup {
+    std::vector<Vec3f> positions;
+    std::vector<Triangle> triangles;
+};
+
+Soup welded(const Mesh& mesh) {
+    Soup soup;
+    for (const Chunk& c : mesh.chunks) {
+        soup.positions.insert(soup.positions.end(), c.positions.begin(), c.positions.end());
+        for (const Triangle& t : c.triangles) soup.triangles.push_back(c.inMesh(t));
+    }
+    const auto key = [&](uint32_t v) { return std::tuple(soup.positions[v].x, soup.positions[v].y, soup.positions[v].z); };
+    std::vector<uint32_t> order(soup.positions.size()), first(soup.positions.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+    for (size_t i = 0; i < order.size(); ++i)
+        first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+    for (Triangle& t : soup.triangles) t = {first[t.x], first[t.y], first[t.z]};
+    return soup;
+}
+
+/// The middle of an edge that isn't run through as often one way as the other.
+std::optional<Vec3f> hole(const Soup& soup) {
+    std::vector<std::array<uint32_t, 3>> edges;  // lower vertex, higher vertex, 1 when run downward
+    for (const Triangle& t : soup.triangles)
+        for (int i = 0; i < 3; ++i)
+            if (const uint32_t a = t[i], b = t[(i + 1) % 3]; a != b) edges.push_back({std::min(a, b), std::max(a, b), a > b});
+    std::sort(edges.begin(), edges.end());
+    for (size_t i = 0; i < edges.size();) {
+        int balance = 0;
+        const auto [a, b, unused] = edges[i];
+        for (; i < edges.size() && edges[i][0] == a && edges[i][1] == b; ++i) balance += edges[i][2] ? 1 : -1;
+        if (balance != 0) return (soup.positions[a] + soup.positions[b]) * 0.5f;
+    }
+    return {};
+}
+
+/// Square of the distance from p to a triangle (Ericson, "Real-Time Collision Detection", 5.1.5).
+float squaredDistance(Vec3f p, Vec3f a, Vec3f b, Vec3f c) {
+    const Vec3f ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+    const auto off = [&](Vec3f q) { return dot(p - q, p - q); };
+    const float d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+    if (d1 <= 0 && d2 <= 0) return off(a);
+    if (d3 >= 0 && d4 <= d3) return off(b);
+    if (d6 >= 0 && d5 <= d6) return off(c);
+    const float va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return off(a + ab * (d1 / (d1 - d3)));
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return off(a + ac * (d2 / (d2 - d6)));
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return off(b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))));
+    const float sum = va + vb + vc;
+    return sum > 0 ? off(a + ab * (vb / sum) + ac * (vc / sum)) : std::min({off(a), off(b), off(c)});
+}
+
+/// Distances in cells on a grid of nodes; positions are in cells from the first node.
+class Nodes {
+public:
+    Nodes(Soup soup, Vec3i count)
+        : soup_(std::move(soup)), count_(count), squared_(size(), std::numeric_limits<float>::infinity()), nearest_(size(), nobody) {}
+
+    std::vector<float> signedDistances() {
+        for (uint32_t t = 0; t < soup_.triangles.size(); ++t) seed(t, corners(t));
+        for (int pass = 0; pass < 2; ++pass)
+            for (int way = 0; way < 8; ++way) sweep(way);
+        const std::vector<int> windings = this->windings();
+        std::vector<float> distances(size());
+        for (size_t i = 0; i < size(); ++i) distances[i] = (windings[i] != 0 ? -1.0f : 1.0f) * std::sqrt(squared_[i]);
+        return distances;
+    }
+
+private:
+    using Corners = std::array<Vec3f, 3>;
+
+    size_t size() const { return static_cast<size_t>(count_.x) * static_cast<size_t>(count_.y) * static_cast<size_t>(count_.z); }
+    size_t at(int i, int j, int k) const {
+        return (static_cast<size_t>(k) * static_cast<size_t>(count_.y) + static_cast<size_t>(j)) * static_cast<size_t>(count_.x) + static_cast<size_t>(i);
+    }
+    Corners corners(uint32_t t) const {
+        const Triangle& v = soup_.triangles[t];
+        return {soup_.positions[v.x], soup_.positions[v.y], soup_.positions[v.z]};
+    }
+
+    void offer(int i, int j, int k, uint32_t triangle) {
+        const size_t node = at(i, j, k);
+        if (nearest_[node] == triangle) return;
+        const Corners c = corners(triangle);
+        const float d = squaredDistance(Vec3i{i, j, k}.as<float>(), c[0], c[1], c[2]);
+        if (d < squared_[node]) squared_[node] = d, nearest_[node] = triangle;
+    }
+
+    /// Offers a triangle to the nodes around it; a long one piece by piece, so that it isn't offered to its whole box.
+    void seed(uint32_t triangle, const Corners& c) {
+        constexpr float longest = 8;
+        const Vec3f lo = min(min(c[0], c[1]), c[2]), hi = max(max(c[0], c[1]), c[2]);
+        if (maxComponent(hi - lo) > longest) {
+            const Vec3f ab = (c[0] + c[1]) * 0.5f, bc = (c[1] + c[2]) * 0.5f, ca = (c[2] + c[0]) * 0.5f;
+            for (const Corners& piece : {Corners{c[0], ab, ca}, Corners{ab, c[1], bc}, Corners{ca, bc, c[2]}, Corners{ab, bc, ca}}) seed(triangle, piece);
+            return;
+        }
+        for (int k = static_cast<int>(lo.z) - 1; k <= static_cast<int>(hi.z) + 2; ++k)
+            for (int j = static_cast<int>(lo.y) - 1; j <= static_cast<int>(hi.y) + 2; ++j)
+                for (int i = static_cast<int>(lo.x) - 1; i <= static_cast<int>(hi.x) + 2; ++i) offer(i, j, k, triangle);
+    }
+
+    /// Hands nearest triangles on, from the corner of the grid that `way` names to the opposite one.
+    void sweep(int way) {
+        const Vec3i step{way & 1 ? -1 : 1, way & 2 ? -1 : 1, way & 4 ? -1 : 1};
+        const auto first = [&](int axis) { return step[axis] > 0 ? 1 : count_[axis] - 2; };
+        const auto end = [&](int axis) { return step[axis] > 0 ? count_[axis] : -1; };
+        for (int k = first(2); k != end(2); k += step.z)
+            for (int j = first(1); j != end(1); j += step.y)
+                for (int i = first(0); i != end(0); i += step.x)
+                    for (int from = 1; from < 8; ++from) {
+                        const size_t before = at(from & 1 ? i - step.x : i, from & 2 ? j - step.y : j, from & 4 ? k - step.z : k);
+                        if (nearest_[before] != nobody) offer(i, j, k, nearest_[before]);
+                    }
+    }
+
+    /// How often the mesh winds around each node: crossings along the row before it, each counted with its sense.
+    std::vector<int> windings() const {
+        std::vector<int> result(size(), 0);
+        for (uint32_t t = 0; t < soup_.triangles.size(); ++t) cross(corners(t), result);
+        for (int k = 0; k < count_.z; ++k)
+            for (int j = 0; j < count_.y; ++j)
+                for (int i = 1; i < count_.x; ++i) result[at(i, j, k)] += result[at(i - 1, j, k)];
+        return result;
+    }
+
+    /// Enters the rows along x that cross a triangle, at the first node behind it.
+    void cross(const Corners& c, std::vector<int>& result) const {
+        const Vec3f lo = min(min(c[0], c[1]), c[2]), hi = max(max(c[0], c[1]), c[2]);
+        for (int k = static_cast<int>(lo.z); k <= static_cast<int>(hi.z) + 1; ++k)
+            for (int j = static_cast<int>(lo.y); j <= static_cast<int>(hi.y) + 1; ++j) {
+                const double s0 = side(c[1], c[2], j, k), s1 = side(c[2], c[0], j, k), s2 = side(c[0], c[1], j, k);
+                const bool positive = s0 > 0;
+                if ((s1 > 0) != positive || (s2 > 0) != positive) continue;
+                const double x = (s0 * c[0].x + s1 * c[1].x + s2 * c[2].x) / (s0 + s1 + s2);
+                const int behind = std::clamp(static_cast<int>(std::ceil(x)), 0, count_.x - 1);
+                result[at(behind, j, k)] += positive ? -1 : 1;
+            }
+    }
+
+    /// Twice the area that row (j, k) spans with an edge, seen along x. Never 0, and the opposite when the edge is run the
+    /// other way: of two triangles at an edge, a row meets one.
+    static double side(Vec3f a, Vec3f b, int j, int k) {
+        const bool swapped = std::tie(b.y, b.z, b.x) < std::tie(a.y, a.z, a.x);
+        if (swapped) std::swap(a, b);
+        const double area = (double{a.y} - j) * (double{b.z} - k) - (double{a.z} - k) * (double{b.y} - j);
+        const double never0 = area != 0 ? area : std::numeric_limits<double>::min();
+        return swapped ? -never0 : never0;
+    }
+
+    Soup soup_;
+    Vec3i count_;
+    std::vector<float> squared_;
+    std::vector<uint32_t> nearest_;
+};
+
+}  // namespace
+
+Result<field::SampledGridPtr> toDistances(const Mesh& mesh, int cells) {
+    Soup soup = welded(mesh);
+    const Box3f bounds = mesh.bounds();
+    if (bounds.empty() || !(minComponent(bounds.size()) > 1e-4f * maxComponent(bounds.size())))
+        return Error{Error::Kind::Input, "is flat: only a closed mesh has an inside"};
+    if (const auto at = hole(soup))
+        return Error{Error::Kind::Input, fmt::format("is open near ({:.4g}, {:.4g}, {:.4g}): close its holes and let its faces look outward", at->x, at->y, at->z)};
+    const float cell_m = maxComponent(bounds.size()) / static_cast<float>(cells);
+    const Vec3f low = bounds.lo - Vec3f{margin, margin, margin} * cell_m;
+    Vec3i count;
+    for (int axis = 0; axis < 3; ++axis) count[axis] = static_cast<int>(std::ceil(bounds.size()[axis] / cell_m + 2 * margin)) + 1;
+    for (Vec3f& p : soup.positions) p = (p - low) / cell_m;
+    std::vector<float> distances = Nodes(std::move(soup), count).signedDistances();
+    if (*std::min_element(distances.begin(), distances.end()) >= 0)
+        return Error{Error::Kind::Input, fmt::format("is too thin: it must be thicker somewhere than 1/{} of its longest side", cells)};
+    for (float& d : distances) d *= cell_m;
+    return std::make_shared<const field::SampledGrid>(low, cell_m, count, distances, bounds);
+}
+
+Result<field::SampledGridPtr> readDistances(const std::filesystem::path& path) {
+    const auto mesh = readMesh(path);
+    if (!mesh.ok()) return mesh.error();
+    auto grid = toDistances(*mesh);
+    if (!grid.ok()) return Error{grid.error().kind, fmt::format("'{}' {}", path.string(), grid.error().message)};
+    return grid;
+}
+
+}  // namespace sgm::mesh

@@ -1,0 +1,24 @@
+// The signed distance to a closed mesh, as samples (Bridson, "Fluid Simulation for Computer Graphics", 2008: exact near the
+// triangles, then the nearest triangle handed on from node to node; signs by counting crossings along rows).
+// Enters: triangles. Leaves: a SampledGrid. Assumes finite coordinates.
+#pragma once
+
+#include <filesystem>
+
+#include "modeler/core/result.h"
+#include "modeler/field/sampled_grid.h"
+#include "modeler/mesh/mesh.h"
+
+namespace sgm::mesh {
+
+/// Samples along the longest side.
+inline constexpr int distanceCells = 128;
+
+/// Negative where the mesh winds around a node: shells within shells, turned inside out, are hollows, and shells that
+/// overlap are one solid. Error::Input when the mesh is open (with the place of a hole), flat, or inside out.
+Result<field::SampledGridPtr> toDistances(const Mesh& mesh, int cells = distanceCells);
+
+/// Those to the mesh in a file (read.h). Messages begin with the file's name.
+Result<field::SampledGridPtr> readDistances(const std::filesystem::path& path);
+
+}  // namespace sgm::mesh

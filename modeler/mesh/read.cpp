@@ -1,0 +1,66 @@
+#include "modeler/mesh/read.h"
+
+#include <fmt/format.h>
+
+#include <OpenMesh/Core/IO/MeshIO.hh>
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "modeler/mesh/openmesh.h"
+
+namespace sgm::mesh {
+namespace {
+
+/// OpenMesh complains to a stream of its own of what we say ourselves.
+class Quiet {
+public:
+    Quiet() {
+        omerr().disable();
+        omlog().disable();
+    }
+    ~Quiet() {
+        omerr().enable();
+        omlog().enable();
+    }
+};
+
+Error unreadable(const std::filesystem::path& path, const std::string& why) {
+    return {Error::Kind::Input, fmt::format("'{}' {}", path.string(), why)};
+}
+
+std::string lowerCase(std::string text) {
+    for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c);
+    return text;
+}
+
+}  // namespace
+
+Result<Mesh> readMesh(const std::filesystem::path& path) {
+    constexpr const char* known[] = {".obj", ".ply", ".stl", ".off"};
+    const std::string ending = lowerCase(path.extension().string());
+    if (std::find(std::begin(known), std::end(known), ending) == std::end(known))
+        return unreadable(path, "is no mesh that can be read: save it as .obj, .ply, .stl or .off");
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) return unreadable(path, "is a folder, not a mesh");
+    if (!std::ifstream(path)) return unreadable(path, fmt::format("can't be read: {}", std::strerror(errno ? errno : EIO)));
+
+    HalfEdgeMesh read;
+    OpenMesh::IO::Options options;
+    bool good = false;
+    try {
+        const Quiet quiet;
+        good = OpenMesh::IO::read_mesh(read, path.string(), options);
+    } catch (const std::exception&) {  // a count in the file that no memory holds
+    }
+    if (!good || read.n_faces() == 0) return unreadable(path, "holds no triangles: it is damaged or cut short");
+    Mesh mesh = fromOpenMesh(read, false);
+    const auto finite = [](const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); };
+    const auto& positions = mesh.chunks[0].positions;
+    if (!std::all_of(positions.begin(), positions.end(), finite)) return unreadable(path, "has a coordinate that is no number");
+    return mesh;
+}
+
+}  // namespace sgm::mesh

@@ -1,0 +1,35 @@
+// Meshes from files, through the whole program.
+#include "tests/cli/program.h"
+
+namespace sgm::cli {
+namespace {
+
+class Meshes : public Cli {};
+
+TEST_F(Meshes, WhatWasExportedIsTheSameSolidAgain) {
+    const Json was = built(grammar("start A -> cube size (3, 2, 1) - sphere size (1, 1, 2) + sphere size 1 move (0, 1, 0)\n") + " --resolution 96 -o " + path("first.obj"))["mesh"];
+    const double height = was["bounds"][1][1].get<double>() - was["bounds"][0][1].get<double>();
+    const Json again = built(grammar("start A -> mesh(\"first.obj\") size (3, " + std::to_string(height) + ", 1)\n") + " --resolution 96")["mesh"];
+    ASSERT_FALSE(again.is_null());
+    EXPECT_NEAR(again["volume_m3"].get<double>(), was["volume_m3"].get<double>(), 0.02);
+    EXPECT_EQ(again["boundary_edges"], 0);
+    EXPECT_EQ(again["euler"], was["euler"]);
+}
+
+TEST_F(Meshes, SayWhereTheFileIsNamedAndWhatToMend) {
+    const std::string missing = grammar("start A -> mesh(\"nowhere.obj\")\n");
+    for (const std::string& command : {"check " + missing, "build -q " + missing + " -o " + path("x.glb")}) {
+        const Outcome run = sgm(command);
+        EXPECT_EQ(run.code, 1) << command;
+        EXPECT_NE(run.out.find("test.sgm:2:17: error: can't use \"nowhere.obj\""), std::string::npos) << run.out;
+    }
+    std::ofstream(path("open.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n";
+    const Outcome open = sgm("check " + grammar("start A -> mesh(\"open.obj\")\n"));
+    EXPECT_EQ(open.code, 1);
+    EXPECT_NE(open.out.find("is open near"), std::string::npos) << open.out;
+    EXPECT_NE(open.out.find("close its holes"), std::string::npos);
+    EXPECT_EQ(sgm("check " + grammar("start A -> mesh(\"../secret.obj\")\n")).code, 1);
+}
+
+}  // namespace
+}  // namespace sgm::cli
