@@ -82,8 +82,7 @@ public:
 
     std::vector<float> signedDistances() {
         for (uint32_t t = 0; t < soup_.triangles.size(); ++t) seed(t, corners(t));
-        for (int pass = 0; pass < 2; ++pass)
-            for (int way = 0; way < 8; ++way) sweep(way);
+        for (int way = 0; way < 8; ++way) sweep(way);
         const std::vector<int> windings = this->windings();
         std::vector<float> distances(size());
         for (size_t i = 0; i < size(); ++i) distances[i] = (windings[i] != 0 ? -1.0f : 1.0f) * std::sqrt(squared_[i]);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 
 #include "modeler/mesh/openmesh.h"
 
@@ -31,6 +32,30 @@ Error unreadable(const std::filesystem::path& path, const std::string& why) {
     return {Error::Kind::Input, fmt::format("'{}' {}", path.string(), why)};
 }
 
+/// True where the file's head promises more things than the file has bytes: OpenMesh would believe it.
+bool promisesTooMuch(const std::filesystem::path& path, const std::string& ending) {
+    std::error_code failed;
+    const auto bytes = static_cast<double>(std::filesystem::file_size(path, failed));
+    std::ifstream file(path, std::ios::binary);
+    if (ending == ".stl") {
+        char head[84] = {};
+        uint32_t triangles = 0;
+        file.read(head, sizeof head);
+        std::memcpy(&triangles, head + 80, sizeof triangles);
+        const bool isText = std::memcmp(head, "solid", 5) == 0;
+        return !isText && 84 + 50.0 * triangles > bytes;
+    }
+    double most = 0, count = 0;
+    int lines = 0;
+    std::string word, element;
+    for (std::string line; lines++ < 1000 && std::getline(file, line) && !line.starts_with("end_header");) {
+        std::istringstream words(line);
+        if (ending == ".ply" && words >> word >> element >> count && word == "element") most = std::max(most, count);
+        if (ending == ".off" && lines <= 2 && words >> count) most = std::max(most, count);
+    }
+    return most > bytes;
+}
+
 std::string lowerCase(std::string text) {
     for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c);
     return text;
@@ -47,6 +72,7 @@ Result<Mesh> readMesh(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path, ignored)) return unreadable(path, "is a folder, not a mesh");
     if (!std::ifstream(path)) return unreadable(path, fmt::format("can't be read: {}", std::strerror(errno ? errno : EIO)));
 
+    if (promisesTooMuch(path, ending)) return unreadable(path, "is damaged or cut short");
     HalfEdgeMesh read;
     OpenMesh::IO::Options options;
     bool good = false;

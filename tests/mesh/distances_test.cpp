@@ -81,7 +81,9 @@ TEST(Distances, OfAnOctahedronAcrossTheRows) {
     ASSERT_TRUE(grid.ok());
     eachSample(**grid, [](Vec3f p, float d) {
         const float planes = (std::abs(p.x) + std::abs(p.y) + std::abs(p.z) - 1) / std::sqrt(3.0f);
-        if (planes < 0) ASSERT_NEAR(d, planes, 1e-5);
+        if (planes < 0) {
+            ASSERT_NEAR(d, planes, 1e-5);
+        }
         ASSERT_EQ(d < 0, planes < 0);
         ASSERT_GE(d, planes - 1e-5);
     });
@@ -119,6 +121,7 @@ TEST(ReadMesh, TakesPolygonsAndRefusesTheRest) {
     EXPECT_EQ(pyramid->triangleCount(), 6u);
     EXPECT_TRUE(toDistances(*pyramid, 20).ok());
     for (const auto& [name, text] : {std::pair("cut.stl", std::string("solid cut\n")), {"none.obj", corners}, {"wild.ply", std::string("ply\nformat ascii 1.0\nelement vertex 99999999999\n")},
+                                     {"wild.stl", std::string(80, 'x') + "\xff\xff\xff\x7f"}, {"wild.off", "OFF\n999999999 999999999 0\n"},
                                      {"nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}, {"scene.fbx", std::string("x")}}) {
         const auto bad = write(name, text);
         ASSERT_FALSE(bad.ok()) << name;

@@ -13,8 +13,7 @@ namespace sgm::viewer {
 Result<syntax::SourcePtr> readSource(const std::filesystem::path& path);
 
 /// Finds "std/…" in the standard library shipped with the program and other names beside the file that uses them;
-/// refuses names that lead outside these two folders. A loader reads a mesh once, until its
-/// file changes.
+/// refuses names that lead outside these two folders. A loader reads a mesh again only when its file has changed.
 rules::Loader fileLoader();
 
 /// Writes text beside `path` and renames it into place.
