@@ -32,7 +32,9 @@ Soup welded(const Mesh& mesh) {
         soup.positions.insert(soup.positions.end(), c.positions.begin(), c.positions.end());
         for (const Triangle& t : c.triangles) soup.triangles.push_back(c.inMesh(t));
     }
-    const auto key = [&](uint32_t v) { return std::tuple(soup.positions[v].x, soup.positions[v].y, soup.positions[v].z); };
+    const auto key = [&](uint32_t v) {
+        return std::tuple(soup.positions[v].x, soup.positions[v].y, soup.positions[v].z);
+    };
     std::vector<uint32_t> order(soup.positions.size()), first(soup.positions.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
@@ -47,7 +49,8 @@ std::optional<Vec3f> hole(const Soup& soup) {
     std::vector<std::array<uint32_t, 3>> edges;  // lower vertex, higher vertex, 1 when run downward
     for (const Triangle& t : soup.triangles)
         for (int i = 0; i < 3; ++i)
-            if (const uint32_t a = t[i], b = t[(i + 1) % 3]; a != b) edges.push_back({std::min(a, b), std::max(a, b), a > b});
+            if (const uint32_t a = t[i], b = t[(i + 1) % 3]; a != b)
+                edges.push_back({std::min(a, b), std::max(a, b), a > b});
     std::sort(edges.begin(), edges.end());
     for (size_t i = 0; i < edges.size();) {
         int balance = 0;
@@ -62,7 +65,8 @@ std::optional<Vec3f> hole(const Soup& soup) {
 float squaredDistance(Vec3f p, Vec3f a, Vec3f b, Vec3f c) {
     const Vec3f ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
     const auto off = [&](Vec3f q) { return dot(p - q, p - q); };
-    const float d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+    const float d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+                d6 = dot(ac, cp);
     if (d1 <= 0 && d2 <= 0) return off(a);
     if (d3 >= 0 && d4 <= d3) return off(b);
     if (d6 >= 0 && d5 <= d6) return off(c);
@@ -78,7 +82,10 @@ float squaredDistance(Vec3f p, Vec3f a, Vec3f b, Vec3f c) {
 class Nodes {
 public:
     Nodes(Soup soup, Vec3i count)
-        : soup_(std::move(soup)), count_(count), squared_(size(), std::numeric_limits<float>::infinity()), nearest_(size(), nobody) {}
+        : soup_(std::move(soup)),
+          count_(count),
+          squared_(size(), std::numeric_limits<float>::infinity()),
+          nearest_(size(), nobody) {}
 
     std::vector<float> signedDistances() {
         for (uint32_t t = 0; t < soup_.triangles.size(); ++t) seed(t, corners(t));
@@ -92,9 +99,13 @@ public:
 private:
     using Corners = std::array<Vec3f, 3>;
 
-    size_t size() const { return static_cast<size_t>(count_.x) * static_cast<size_t>(count_.y) * static_cast<size_t>(count_.z); }
+    size_t size() const {
+        return static_cast<size_t>(count_.x) * static_cast<size_t>(count_.y) * static_cast<size_t>(count_.z);
+    }
     size_t at(int i, int j, int k) const {
-        return (static_cast<size_t>(k) * static_cast<size_t>(count_.y) + static_cast<size_t>(j)) * static_cast<size_t>(count_.x) + static_cast<size_t>(i);
+        return (static_cast<size_t>(k) * static_cast<size_t>(count_.y) + static_cast<size_t>(j)) *
+                   static_cast<size_t>(count_.x) +
+               static_cast<size_t>(i);
     }
     Corners corners(uint32_t t) const {
         const Triangle& v = soup_.triangles[t];
@@ -115,7 +126,9 @@ private:
         const Vec3f lo = min(min(c[0], c[1]), c[2]), hi = max(max(c[0], c[1]), c[2]);
         if (maxComponent(hi - lo) > longest) {
             const Vec3f ab = (c[0] + c[1]) * 0.5f, bc = (c[1] + c[2]) * 0.5f, ca = (c[2] + c[0]) * 0.5f;
-            for (const Corners& piece : {Corners{c[0], ab, ca}, Corners{ab, c[1], bc}, Corners{ca, bc, c[2]}, Corners{ab, bc, ca}}) seed(triangle, piece);
+            for (const Corners& piece :
+                 {Corners{c[0], ab, ca}, Corners{ab, c[1], bc}, Corners{ca, bc, c[2]}, Corners{ab, bc, ca}})
+                seed(triangle, piece);
             return;
         }
         for (int k = static_cast<int>(lo.z) - 1; k <= static_cast<int>(hi.z) + 2; ++k)
@@ -132,7 +145,8 @@ private:
             for (int j = first(1); j != end(1); j += step.y)
                 for (int i = first(0); i != end(0); i += step.x)
                     for (int from = 1; from < 8; ++from) {
-                        const size_t before = at(from & 1 ? i - step.x : i, from & 2 ? j - step.y : j, from & 4 ? k - step.z : k);
+                        const size_t before =
+                            at(from & 1 ? i - step.x : i, from & 2 ? j - step.y : j, from & 4 ? k - step.z : k);
                         if (nearest_[before] != nobody) offer(i, j, k, nearest_[before]);
                     }
     }
@@ -161,8 +175,8 @@ private:
             }
     }
 
-    /// Twice the area that row (j, k) spans with an edge, seen along x. Never 0, and the opposite when the edge is run the
-    /// other way: of two triangles at an edge, a row meets one.
+    /// Twice the area that row (j, k) spans with an edge, seen along x. Never 0, and the opposite when the edge is run
+    /// the other way: of two triangles at an edge, a row meets one.
     static double side(Vec3f a, Vec3f b, int j, int k) {
         const bool swapped = std::tie(b.y, b.z, b.x) < std::tie(a.y, a.z, a.x);
         if (swapped) std::swap(a, b);
@@ -185,15 +199,20 @@ Result<field::SampledGridPtr> toDistances(const Mesh& mesh, int cells) {
     if (bounds.empty() || !(minComponent(bounds.size()) > 1e-4f * maxComponent(bounds.size())))
         return Error{Error::Kind::Input, "is flat: only a closed mesh has an inside"};
     if (const auto at = hole(soup))
-        return Error{Error::Kind::Input, fmt::format("is open near ({:.4g}, {:.4g}, {:.4g}): close its holes and let its faces look outward", at->x, at->y, at->z)};
+        return Error{
+            Error::Kind::Input,
+            fmt::format("is open near ({:.4g}, {:.4g}, {:.4g}): close its holes and let its faces look outward", at->x,
+                        at->y, at->z)};
     const float cell_m = maxComponent(bounds.size()) / static_cast<float>(cells);
     const Vec3f low = bounds.lo - Vec3f{margin, margin, margin} * cell_m;
     Vec3i count;
-    for (int axis = 0; axis < 3; ++axis) count[axis] = static_cast<int>(std::ceil(bounds.size()[axis] / cell_m + 2 * margin)) + 1;
+    for (int axis = 0; axis < 3; ++axis)
+        count[axis] = static_cast<int>(std::ceil(bounds.size()[axis] / cell_m + 2 * margin)) + 1;
     for (Vec3f& p : soup.positions) p = (p - low) / cell_m;
     std::vector<float> distances = Nodes(std::move(soup), count).signedDistances();
     if (*std::min_element(distances.begin(), distances.end()) >= 0)
-        return Error{Error::Kind::Input, fmt::format("is too thin: it must be thicker somewhere than 1/{} of its longest side", cells)};
+        return Error{Error::Kind::Input,
+                     fmt::format("is too thin: it must be thicker somewhere than 1/{} of its longest side", cells)};
     for (float& d : distances) d *= cell_m;
     return std::make_shared<const field::SampledGrid>(low, cell_m, count, distances, bounds);
 }

@@ -1,5 +1,5 @@
-// The signed distance to a closed mesh, as samples (Bridson, "Fluid Simulation for Computer Graphics", 2008: exact near the
-// triangles, then the nearest triangle handed on from node to node; signs by counting crossings along rows).
+// The signed distance to a closed mesh, as samples (Bridson, "Fluid Simulation for Computer Graphics", 2008: exact near
+// the triangles, then the nearest triangle handed on from node to node; signs by counting crossings along rows).
 // Enters: triangles. Leaves: a SampledGrid. Assumes finite coordinates.
 #pragma once
 

@@ -70,7 +70,8 @@ Result<Mesh> readMesh(const std::filesystem::path& path) {
         return unreadable(path, "is no mesh that can be read: save it as .obj, .ply, .stl or .off");
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) return unreadable(path, "is a folder, not a mesh");
-    if (!std::ifstream(path)) return unreadable(path, fmt::format("can't be read: {}", std::strerror(errno ? errno : EIO)));
+    if (!std::ifstream(path))
+        return unreadable(path, fmt::format("can't be read: {}", std::strerror(errno ? errno : EIO)));
 
     if (promisesTooMuch(path, ending)) return unreadable(path, "is damaged or cut short");
     HalfEdgeMesh read;
@@ -85,7 +86,8 @@ Result<Mesh> readMesh(const std::filesystem::path& path) {
     Mesh mesh = fromOpenMesh(read, false);
     const auto finite = [](const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); };
     const auto& positions = mesh.chunks[0].positions;
-    if (!std::all_of(positions.begin(), positions.end(), finite)) return unreadable(path, "has a coordinate that is no number");
+    if (!std::all_of(positions.begin(), positions.end(), finite))
+        return unreadable(path, "has a coordinate that is no number");
     return mesh;
 }
 

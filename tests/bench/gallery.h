@@ -9,8 +9,8 @@
 
 namespace sgm::bench {
 
-/// Markdown: every cave, cloud and building of the list at 256 cells, the times from field to mesh and the goals (a tenth of
-/// the times in SG-M, table 1). Error::Input when the list or a grammar can't be read.
+/// Markdown: every cave, cloud and building of the list at 256 cells, the times from field to mesh and the goals (a
+/// tenth of the times in SG-M, table 1). Error::Input when the list or a grammar can't be read.
 Result<std::string> galleryTimes(const std::string& list, const MeasureOptions& options);
 
 }  // namespace sgm::bench

@@ -7,9 +7,12 @@ namespace {
 class Meshes : public Cli {};
 
 TEST_F(Meshes, WhatWasExportedIsTheSameSolidAgain) {
-    const Json was = built(grammar("start A -> cube size (3, 2, 1) - sphere size (1, 1, 2) + sphere size 1 move (0, 1, 0)\n") + " --resolution 96 -o " + path("first.obj"))["mesh"];
+    const Json was =
+        built(grammar("start A -> cube size (3, 2, 1) - sphere size (1, 1, 2) + sphere size 1 move (0, 1, 0)\n") +
+              " --resolution 96 -o " + path("first.obj"))["mesh"];
     const double height = was["bounds"][1][1].get<double>() - was["bounds"][0][1].get<double>();
-    const Json again = built(grammar("start A -> mesh(\"first.obj\") size (3, " + std::to_string(height) + ", 1)\n") + " --resolution 96")["mesh"];
+    const Json again = built(grammar("start A -> mesh(\"first.obj\") size (3, " + std::to_string(height) + ", 1)\n") +
+                             " --resolution 96")["mesh"];
     ASSERT_FALSE(again.is_null());
     EXPECT_NEAR(again["volume_m3"].get<double>(), was["volume_m3"].get<double>(), 0.02);
     EXPECT_EQ(again["boundary_edges"], 0);

@@ -20,7 +20,8 @@ inline SampledGridPtr sampledTorus(int perMetre = 8) {
                 const Vec3f p = low + Vec3i{i, j, k}.as<float>() * cell;
                 distances.push_back(std::hypot(std::hypot(p.x, p.y) - 1, p.z) - 0.4f);
             }
-    return std::make_shared<const SampledGrid>(low, cell, nodes, distances, Box3f{{-1.4f, -1.4f, -0.4f}, {1.4f, 1.4f, 0.4f}});
+    return std::make_shared<const SampledGrid>(low, cell, nodes, distances,
+                                               Box3f{{-1.4f, -1.4f, -0.4f}, {1.4f, 1.4f, 0.4f}});
 }
 
 }  // namespace sgm::field::test

@@ -9,7 +9,8 @@ namespace {
 
 /// The grid's own frame.
 Field bare(Graph& graph, const SampledGridPtr& grid) {
-    return {graph.apply(codeOf<ops::Sampled>, {graph.x(), graph.y(), graph.z()}, graph.grid(grid)), grid->bounds(), grid->lipschitz(), 0.7f};
+    return {graph.apply(codeOf<ops::Sampled>, {graph.x(), graph.y(), graph.z()}, graph.grid(grid)), grid->bounds(),
+            grid->lipschitz(), 0.7f};
 }
 
 double torus(Vec3f p) { return std::hypot(std::hypot(double{p.x}, double{p.y}) - 1, double{p.z}) - 0.4; }
@@ -56,7 +57,8 @@ TEST(Sampled, LipschitzConstantIsTheSteepestSlope) {
     const SampledGrid grid({0, 0, 0}, 0.5f, {4, 4, 4}, ramp, {{0, 0, 0}, {1, 1, 1}});
     EXPECT_NEAR(grid.lipschitz(), 5, 1e-2);
     std::vector<float> flat(64, 2.0f);
-    EXPECT_EQ(SampledGrid({0, 0, 0}, 0.5f, {4, 4, 4}, flat, {{0, 0, 0}, {1, 1, 1}}).lipschitz(), 1) << "beyond the grid";
+    EXPECT_EQ(SampledGrid({0, 0, 0}, 0.5f, {4, 4, 4}, flat, {{0, 0, 0}, {1, 1, 1}}).lipschitz(), 1)
+        << "beyond the grid";
 }
 
 TEST(Sampled, AGraphNumbersEachGridOnce) {

@@ -26,13 +26,16 @@ TEST(Meshes, AreCombinedLikeAnySolid) {
     const Lowered cut("grammar 1\nstart S -> cube size 4 - " + ring + size + "\n");
     EXPECT_FALSE(cut.inside({1, 0, 0}));
     EXPECT_TRUE(cut.inside({0, 0, 0}));
-    const Lowered both("grammar 1\nstart S -> " + ring + size + " + sphere size 1 + " + ring + size + " move (3, 0, 0) blend .2m\n");
+    const Lowered both("grammar 1\nstart S -> " + ring + size + " + sphere size 1 + " + ring + size +
+                       " move (3, 0, 0) blend .2m\n");
     EXPECT_TRUE(both.inside({0, 0, 0}));
     EXPECT_TRUE(both.inside({4, 0, 0}));
     // Eq. 14 both ways: as a solid, and on what stands.
     const Lowered solid("grammar 1\nstart S -> morph(" + ring + ", sphere, .25)" + size + "\n");
-    const Lowered onto("grammar 1\nstart S -> cube size 2 + cube size 1 move (1, 0, 0) morph " + ring + size + " by .5\n");
-    const Lowered stands("grammar 1\nstart S -> cube size 2 + cube size 1 move (1, 0, 0)\n"), ball("grammar 1\nstart S -> sphere" + size + "\n");
+    const Lowered onto("grammar 1\nstart S -> cube size 2 + cube size 1 move (1, 0, 0) morph " + ring + size +
+                       " by .5\n");
+    const Lowered stands("grammar 1\nstart S -> cube size 2 + cube size 1 move (1, 0, 0)\n"),
+        ball("grammar 1\nstart S -> sphere" + size + "\n");
     for (const Vec3f p : places) {
         EXPECT_NEAR(solid.value(p), 0.75 * torus(p) + 0.25 * ball.value(p), 0.03);
         EXPECT_NEAR(onto.value(p), 0.5 * torus(p) + 0.5 * stands.value(p), 0.03);
@@ -41,7 +44,9 @@ TEST(Meshes, AreCombinedLikeAnySolid) {
 
 /// From a cube to the mesh along a chain.
 TEST(Meshes, StandAtTheEndOfAMorphThatRunsThrough) {
-    const Lowered row("grammar 1\nstart S -> cube : A\nrule A repeat 3 -> + morph(cube, mesh(\"ring.obj\"), 0 ~> 1) size (2.8, 2.8, .8) move ((i * 5) * 1m, 0, 0) : A\n");
+    const Lowered row(
+        "grammar 1\nstart S -> cube : A\nrule A repeat 3 -> + morph(cube, mesh(\"ring.obj\"), 0 ~> 1) size (2.8, 2.8, "
+        ".8) move ((i * 5) * 1m, 0, 0) : A\n");
     EXPECT_TRUE(row.inside({5, 0, 0}));
     EXPECT_FALSE(row.inside({15, 0, 0}));
     EXPECT_TRUE(row.inside({16, 0, 0}));

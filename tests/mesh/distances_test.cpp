@@ -29,8 +29,20 @@ void eachSample(const SampledGrid& grid, Fn&& fn) {
 /// Adds a box; inside out where `inverted`.
 void addBox(Chunk& c, Vec3f lo, Vec3f hi, bool inverted = false) {
     const auto base = static_cast<uint32_t>(c.positions.size());
-    for (uint32_t i = 0; i < 8; ++i) c.positions.push_back({i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z});
-    for (const Vec3<uint32_t> t : {Vec3<uint32_t>{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}}) {
+    for (uint32_t i = 0; i < 8; ++i)
+        c.positions.push_back({i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z});
+    for (const Vec3<uint32_t> t : {Vec3<uint32_t>{0, 2, 1},
+                                   {1, 2, 3},
+                                   {4, 5, 6},
+                                   {5, 7, 6},
+                                   {0, 1, 4},
+                                   {1, 5, 4},
+                                   {2, 6, 3},
+                                   {3, 6, 7},
+                                   {0, 4, 2},
+                                   {2, 4, 6},
+                                   {1, 3, 5},
+                                   {3, 7, 5}}) {
         const Vec3<uint32_t> from{base + t.x, base + t.y, base + t.z};
         c.triangles.push_back(inverted ? Vec3<uint32_t>{from.x, from.z, from.y} : from);
         c.origins.push_back(0);
@@ -48,7 +60,9 @@ TEST(Distances, OfABoxAreExactEverywhere) {
     const auto grid = toDistances(mesh, 48);
     ASSERT_TRUE(grid.ok());
     EXPECT_EQ((*grid)->bounds(), mesh.bounds());
-    eachSample(**grid, [](Vec3f p, float d) { ASSERT_NEAR(d, boxDistance(p, {-1, 2, 0}, {3, 3, 1.5f}), 1e-5) << p.x << ' ' << p.y << ' ' << p.z; });
+    eachSample(**grid, [](Vec3f p, float d) {
+        ASSERT_NEAR(d, boxDistance(p, {-1, 2, 0}, {3, 3, 1.5f}), 1e-5) << p.x << ' ' << p.y << ' ' << p.z;
+    });
 }
 
 /// A shell turned inside out is a hollow; one that overlaps adds to the solid.
@@ -62,7 +76,8 @@ TEST(Distances, CountHowOftenTheMeshWindsAround) {
     ASSERT_TRUE(grid.ok());
     eachSample(**grid, [](Vec3f p, float d) {
         const bool hollow = boxDistance(p, {1, 1, 1}, {2, 3, 3}) < 0;
-        const bool inside = (boxDistance(p, {0, 0, 0}, {4, 4, 4}) < 0 && !hollow) || boxDistance(p, {3, 3, 3}, {6, 5, 5}) < 0;
+        const bool inside =
+            (boxDistance(p, {0, 0, 0}, {4, 4, 4}) < 0 && !hollow) || boxDistance(p, {3, 3, 3}, {6, 5, 5}) < 0;
         ASSERT_EQ(d < 0, inside) << p.x << ' ' << p.y << ' ' << p.z;
     });
 }
@@ -120,9 +135,13 @@ TEST(ReadMesh, TakesPolygonsAndRefusesTheRest) {
     ASSERT_TRUE(pyramid.ok());
     EXPECT_EQ(pyramid->triangleCount(), 6u);
     EXPECT_TRUE(toDistances(*pyramid, 20).ok());
-    for (const auto& [name, text] : {std::pair("cut.stl", std::string("solid cut\n")), {"none.obj", corners}, {"wild.ply", std::string("ply\nformat ascii 1.0\nelement vertex 99999999999\n")},
-                                     {"wild.stl", std::string(80, 'x') + "\xff\xff\xff\x7f"}, {"wild.off", "OFF\n999999999 999999999 0\n"},
-                                     {"nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}, {"scene.fbx", std::string("x")}}) {
+    for (const auto& [name, text] : {std::pair("cut.stl", std::string("solid cut\n")),
+                                     {"none.obj", corners},
+                                     {"wild.ply", std::string("ply\nformat ascii 1.0\nelement vertex 99999999999\n")},
+                                     {"wild.stl", std::string(80, 'x') + "\xff\xff\xff\x7f"},
+                                     {"wild.off", "OFF\n999999999 999999999 0\n"},
+                                     {"nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+                                     {"scene.fbx", std::string("x")}}) {
         const auto bad = write(name, text);
         ASSERT_FALSE(bad.ok()) << name;
         EXPECT_EQ(bad.error().message.rfind("'", 0), 0u) << bad.error().message;
