@@ -231,4 +231,9 @@ std::string format(const Source& source) {
     return write(Layout(source, tokens).lines());
 }
 
+std::string_view sign(Operator op) {
+    constexpr std::string_view signs[] = {"", "+", "-", "&", "morph"};
+    return signs[static_cast<size_t>(op)];
+}
+
 }  // namespace sgm::syntax

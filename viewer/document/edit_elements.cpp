@@ -14,34 +14,18 @@ using syntax::Operation;
 using syntax::Operator;
 using Kind = Element::Kind;
 
-std::string_view sign(Operator op) {
-    switch (op) {
-        case Operator::None:
-            return "";
-        case Operator::Sum:
-            return "+";
-        case Operator::Difference:
-            return "-";
-        case Operator::Intersection:
-            return "&";
-        case Operator::Morph:
-            return "morph";
-    }
-    return "";
-}
-
 bool isControl(const Element& e) { return e.kind != Kind::Shape && e.kind != Kind::Group; }
 
 /// The element's text without its operator.
 std::string_view operand(const Element& e) {
     std::string_view text = e.span.text();
-    text.remove_prefix(sign(e.op).size());
+    text.remove_prefix(syntax::sign(e.op).size());
     return text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
 }
 
 /// The element's text with another operator.
 std::string withOperator(const Element& e, Operator op) {
-    return op == Operator::None ? std::string(operand(e)) : fmt::format("{} {}", sign(op), operand(e));
+    return op == Operator::None ? std::string(operand(e)) : fmt::format("{} {}", syntax::sign(op), operand(e));
 }
 
 Error notHere() { return refused("this element is not part of the text any more"); }
@@ -112,7 +96,8 @@ Edit removeElement(const Ast& ast, const Element& element) {
     if (chain.size() > 1) {
         const Element& next = chain[1];
         if (element.op != Operator::None || isControl(next)) return tried(ast, gone);
-        if (next.op != Operator::Sum) return refused(fmt::format("what '{}' works on would be missing", sign(next.op)));
+        if (next.op != Operator::Sum)
+            return refused(fmt::format("what '{}' works on would be missing", syntax::sign(next.op)));
         return tried(ast, {element.span.begin,
                            next.span.begin + static_cast<uint32_t>(next.span.text().size() - operand(next).size()),
                            {}});
@@ -148,7 +133,7 @@ Edit moveElement(const Ast& ast, const Element& element, int by) {
     if (content && (isControl(second) || second.op != Operator::Sum))
         return refused(isControl(second)
                            ? "a loop or a choice can't be the content of a shape"
-                           : fmt::format("what follows '{}' can't be the content of a shape", sign(second.op)));
+                           : fmt::format("what follows '{}' can't be the content of a shape", syntax::sign(second.op)));
     const std::string_view text = ast.source->text();
     const std::string_view between = text.substr(first.span.end, second.span.begin - first.span.end);
     std::string swapped = withOperator(second, content ? Operator::None : second.op);
@@ -165,7 +150,7 @@ Edit setOperator(const Ast& ast, const Element& element, Operator op) {
     if (op == Operator::None && place.index > 0) return refused("only the first of a chain has no operator");
     const auto head = static_cast<uint32_t>(element.span.text().size() - operand(element).size());
     const TextEdit change{element.span.begin, element.span.begin + head,
-                          op == Operator::None ? "" : fmt::format("{} ", sign(op))};
+                          op == Operator::None ? "" : fmt::format("{} ", syntax::sign(op))};
     const Attribute* by = find(element, Operation::Id::By);
     if (by && op != Operator::Morph) return tried(ast, merged(ast.source->text(), {change, removalOf(ast, *by)}));
     return tried(ast, change);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "grammar/syntax/lexer.h"
+#include "grammar/syntax/printer.h"
 
 namespace sgm::viewer {
 namespace {
@@ -34,11 +35,6 @@ std::string oneLine(SourceSpan span) {
 
 std::string oneLine(const std::optional<Expr>& e) { return e ? oneLine(e->span) : std::string(); }
 
-std::string_view sign(syntax::Operator op) {
-    constexpr std::string_view signs[] = {"", "+ ", "- ", "& ", "morph "};
-    return signs[static_cast<size_t>(op)];
-}
-
 std::string headOf(const Element& e) {
     switch (e.kind) {
         case Element::Kind::For:
@@ -53,7 +49,8 @@ std::string headOf(const Element& e) {
         case Element::Kind::Shape:
             break;
     }
-    std::string text(sign(e.op));
+    std::string text(syntax::sign(e.op));
+    if (!text.empty()) text += ' ';
     if (e.kind == Element::Kind::Group)
         text += "( )";
     else if (e.solid)

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "grammar/syntax/printer.h"
+
 namespace sgm::viewer {
 namespace {
 
@@ -72,12 +74,11 @@ bool isTerminal(const derive::Derivation& derivation, ShapeId shape) {
 }
 
 ShapeLabel labelOf(const derive::Derivation& derivation, ShapeId shape) {
-    constexpr std::string_view signs[] = {"", "+", "-", "&", "morph"};
     const derive::Shape& s = derivation.tree.shapes[shape];
     ShapeLabel label;
     label.name = derivation.tree.labels[s.label];
     if (s.occurrence > 1) label.name += fmt::format("[{}]", s.occurrence);
-    label.sign = signs[static_cast<size_t>(s.op)];
+    label.sign = syntax::sign(s.op);
     label.terminal = isTerminal(derivation, shape);
     label.live = s.live;
     if (s.madeBy == none) {
