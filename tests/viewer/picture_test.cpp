@@ -131,6 +131,19 @@ TEST_F(Picture, GroundTakesTheShadow) {
     }
 }
 
+TEST_F(Picture, TheSunStandsInTheSky) {
+    RedBall ball;
+    const Vec3d sun = sunDirection().as<double>();
+    ball.camera = {sun * 3, sun * 9};
+    for (const auto& image : {ball.draw(false), ball.draw(true)}) {
+        ASSERT_TRUE(image.ok()) << image.error().message;
+        const auto middle = colorAt(*image, ball.camera, sun * 9), corner = std::array<int, 3>{image->rgb[0], image->rgb[1], image->rgb[2]};
+        EXPECT_GT(middle[0], 240);
+        EXPECT_GT(middle[2], 220);
+        EXPECT_LT(corner[0] + 40, middle[0]);
+    }
+}
+
 TEST_F(Picture, TwoRunsGiveTheSameBytes) {
     RedBall ball;
     ball.camera = frame(ball.field.bounds, 1);

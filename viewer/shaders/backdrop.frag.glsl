@@ -6,7 +6,7 @@ void main() {
     vec2 fromBottom = gl_FragCoord.xy + tileCorner.xy;
     vec3 direction = viewDirection(vec2(fromBottom.x, pictureSize.y - fromBottom.y));
     float t = groundDistance(eye, direction);
-    vec3 light = skyColor(direction);
+    vec3 light = skySeen(direction);
     if (t >= 0.0) {
         vec3 p = eye + t * direction;
         float away = length(max(abs(p - sceneCentre) - sceneHalf, vec3(0.0)).xz);

@@ -112,7 +112,7 @@ void main() {
     vec2 pixel = samplePosition(jobs[i]);
     vec3 direction = viewDirection(pixel);
     float below = groundDistance(eye, direction), far = 1e30;
-    vec3 behind = skyColor(direction);
+    vec3 behind = skySeen(direction);
     if (below >= 0.0) {
         vec3 p = eye + below * direction;
         behind = shadeGround(p, -direction, below, sunlightBelow(p), 0.9);

@@ -87,7 +87,7 @@ float daylightAt(vec3 p, vec3 normal) {
 vec3 colorOf(uint job) {
     vec4 hit = hits[job];
     surfaces[job] = vec4(0.0);
-    if (hit.w == hitSky) return skyColor(hit.xyz);
+    if (hit.w == hitSky) return skySeen(hit.xyz);
     vec3 toEye = normalize(eye - hit.xyz);
     float distance = length(eye - hit.xyz);
     vec3 normal = vec3(0.0, 1.0, 0.0);

@@ -21,3 +21,9 @@ vec3 ambientColor(vec3 normal) {
     vec3 below = hasGround != 0 ? vec3(0.26, 0.225, 0.185) : vec3(0.44, 0.56, 0.74);
     return mix(below, above, 0.5 + 0.5 * normal.y);
 }
+
+/// The sky as the eye sees it: with the sun's disc and the glow of the air about it.
+vec3 skySeen(vec3 direction) {
+    float away2 = 2.0 * (1.0 - dot(direction, sunDirection));  // the angle to the sun, squared
+    return skyColor(direction) + vec3(1.0, 0.92, 0.78) * (9.0 * smoothstep(1.9e-4, 1.1e-4, away2) + 0.5 * exp(-110.0 * away2));
+}
