@@ -3,11 +3,13 @@
 #   ./run.sh                      models examples/grotto.sgm into out/ and says where the results are
 #   ./run.sh ARGUMENTS…           runs `sgm ARGUMENTS…`, e.g. ./run.sh build examples/tower.sgm -o tower.glb
 #   ./run.sh bench [ARGUMENTS…]   measures field → mesh beside a dense sweep, OpenVDB and the machine (docs/performance.md)
+#   ./run.sh view FILE            opens the window about a grammar
 #   ./run.sh gallery [NAME…]      draws the pictures of docs/ and README, and measures the times on the gallery's page
 cd "$(dirname "$0")"
 . cmake/setup.sh
 case "${1:-}" in
   bench) build bench && shift && exec build/release/tests/bench/bench "$@" ;;
+  view) build sgm sgm-viewer ;;
   gallery) build sgm bench && shift && exec docs/gallery.sh "$@" ;;
 esac
 build sgm

@@ -10,6 +10,7 @@ namespace sgm::cli {
 
 void addBuild(CLI::App& app, int& exitCode);
 void addRender(CLI::App& app, int& exitCode);
+void addView(CLI::App& app, int& exitCode);
 void addCheck(CLI::App& app, int& exitCode);
 void addStep(CLI::App& app, int& exitCode);
 void addTree(CLI::App& app, int& exitCode);

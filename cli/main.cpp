@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
     using namespace sgm::cli;
     addBuild(app, exitCode);
     addRender(app, exitCode);
+    addView(app, exitCode);
     addCheck(app, exitCode);
     addStep(app, exitCode);
     addTree(app, exitCode);

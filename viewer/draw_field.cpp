@@ -21,8 +21,7 @@ Status addJobs(const std::vector<Job>& jobs, FieldScene& scene, PixelSums& sums,
         cost.hitEvaluations += rays->evaluations[0];
         cost.lightEvaluations += rays->evaluations[1];
         cost.instructions += rays->instructions;
-        for (size_t i = 0; i < chunk.size(); ++i)
-            for (size_t c = 0; c < 4; ++c) sums.rgba[sums.index(chunk[i]) + c] += rays->colors[i][c];
+        sums.add(chunk, rays->colors);
         for (size_t i = 0; layers && i < chunk.size(); ++i) {
             if (rays->kind(i) == HitKind::Sky) continue;
             const size_t pixel = sums.index(chunk[i]) / 4;

@@ -12,7 +12,6 @@ constexpr int tileEdge = 1024;  // pixels
 struct MeshPainter::Parts {
     GpuContext gpu;
     MeshScene scene;
-    bool lit = false;
 };
 
 Result<MeshPainter> MeshPainter::create(const mesh::Mesh& mesh, const Provenance& provenance) {
@@ -29,9 +28,7 @@ Result<MeshPainter> MeshPainter::create(const mesh::Mesh& mesh, const Provenance
 Result<Image> MeshPainter::draw(const PictureOptions& options, Progress* progress) {
     MeshScene& scene = parts_->scene;
     if (Status status = checkPicture(scene.bounds(), options); !status) return status.error();
-    if (!parts_->lit)
-        if (Status status = scene.light(options, progress); !status) return status.error();
-    parts_->lit = true;
+    if (Status status = scene.light(progress); !status) return status.error();
     std::vector<float> pixels(size_t(options.width) * size_t(options.height) * 4);
     for (int y0 = 0; y0 < options.height; y0 += tileEdge)
         for (int x0 = 0; x0 < options.width; x0 += tileEdge) {

@@ -87,11 +87,12 @@ FieldScene::FieldScene(std::shared_ptr<const PreparedField> field, const FieldPr
       materials_(uploadMaterials(field_->materials)),
       threads_(threads) {}
 
-void FieldScene::look(const PictureOptions& options) {
+void FieldScene::look(const PictureOptions& options, double fine) {
     const float side = valueAt(field_->tape, options.camera.eye.as<float>()) < 0 ? -1.0f : 1.0f;
     for (const Program* program : {&programs_->trace, &programs_->shade}) {
         setScene(*program, field_->bounds, options);
         setCells(*program, *field_, side);
+        if (fine != 1) program->set("pixelAngle", static_cast<float>(viewOf(options.camera, options.width, options.height).pixelAngle / fine));
     }
 }
 
@@ -108,7 +109,7 @@ Status runInPieces(const Program& program, size_t count, size_t& piece, Progress
         finish();
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
         const double wanted = static_cast<double>(n) * std::clamp(0.015 / std::max(took.count(), 1e-4), 0.25, 4.0);
-        if (n == piece || wanted < static_cast<double>(piece))
+        if (n == piece || took.count() > 0.02)
             piece = std::clamp(static_cast<size_t>(wanted) / 64 * 64, size_t(256), mostJobs);
         first += n;
         tick(progress, n);

@@ -67,8 +67,9 @@ class FieldScene {
 public:
     /// `programs` must cover the field and outlive the scene.
     FieldScene(std::shared_ptr<const PreparedField> field, const FieldPrograms& programs, int threads);
-    /// Sets camera, picture size and ground.
-    void look(const PictureOptions& options);
+    /// Sets camera, picture size and ground. `fine` scales how exactly surfaces are found: above 1 finer than the
+    /// picture's pixels ask for.
+    void look(const PictureOptions& options, double fine = 1);
     /// Traces and lights up to 2¹⁸ jobs of the picture last looked at, in pieces of some 15 ms.
     Result<Rays> draw(std::span<const Job> jobs, Progress* progress);
     const PreparedField& field() const { return *field_; }

@@ -269,6 +269,38 @@ std::vector<float> ColorTarget::read() const {
     return pixels;
 }
 
+void DisplayTexture::resize(int width, int height) {
+    if (width == width_ && height == height_) return;
+    width_ = width;
+    height_ = height;
+    texture_ = makeTexture(GL_RGBA8, width, height);
+    framebuffer_ = makeFramebuffer();
+    glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture_.id(), 0);
+}
+void DisplayTexture::write(std::span<const uint8_t> rgba, int low, int high) {
+    glBindTexture(GL_TEXTURE_2D, texture_.id());
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, low, width_, high - low, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+}
+void DisplayTexture::encode(const ColorTarget& target, const Program& encode) {
+    resize(target.width, target.height);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+    glViewport(0, 0, width_, height_);
+    setDepthTest(false);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, target.resolved.id());
+    encode.use();
+    encode.set("light", 0);
+    ScreenTriangle().draw();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+std::vector<uint8_t> DisplayTexture::read() const {
+    std::vector<uint8_t> bytes(size_t(width_) * size_t(height_) * 3);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
+    return bytes;
+}
+
 MapStack MapStack::create(Kind kind, int edge, int layers) {
     MapStack maps;
     maps.kind = kind;

@@ -159,6 +159,27 @@ struct ColorTarget {
     std::vector<float> read() const;
 };
 
+/// An RGBA texture of display colours (8 bits, sRGB) for the screen.
+class DisplayTexture {
+public:
+    /// Nothing where it has this size already.
+    void resize(int width, int height);
+    /// Rows [low, high) from the top, four bytes a pixel.
+    void write(std::span<const uint8_t> rgba, int low, int high);
+    /// Makes all of it, top row first, of a resolved target of the same size; `encode` is the shader of that name.
+    void encode(const ColorTarget& target, const Program& encode);
+    uint32_t id() const { return texture_.id(); }
+    int width() const { return width_; }
+    int height() const { return height_; }
+    /// RGB, top row first.
+    std::vector<uint8_t> read() const;
+
+private:
+    Texture texture_;
+    Framebuffer framebuffer_;
+    int width_ = 0, height_ = 0;
+};
+
 /// A stack of square maps with one number a pixel: depths, or blurred functions of them.
 struct MapStack {
     enum class Kind { Depth, Number };

@@ -132,6 +132,10 @@ Result<MeshScene> MeshScene::create(const PreparedMesh& mesh) {
     const auto* words = reinterpret_cast<const uint32_t*>(mesh.owners.data());
     scene.owners_ = TexelBuffer::of({words, mesh.owners.size() * 3}, 1);
     scene.materials_ = uploadMaterials(mesh.materials);
+    scene.skyCount_ = std::clamp<size_t>((size_t(24) << 20) / std::max<size_t>(scene.triangleCount_, 1), 12, mostSkyMaps);
+    scene.sunMap_ = MapStack::create(MapStack::Kind::Depth, sunMapEdge, 1);
+    scene.skyMaps_ = MapStack::create(MapStack::Kind::Number, skyMapEdge, static_cast<int>(scene.skyCount_));
+    scene.skyDepth_ = MapStack::create(MapStack::Kind::Depth, skyMapEdge, 1);
     struct Wanted {
         Program& program;
         std::string_view vertex, fragment;
@@ -166,39 +170,42 @@ Status MeshScene::drawMap(const MapStack& map, Vec3d towardsLight, Progress* pro
     return drawTriangles(depth_, progress);
 }
 
-Status MeshScene::light(const PictureOptions& options, Progress* progress) {
+Status MeshScene::light(Progress* progress) {
+    if (progress) progress->begin("light", (skyCount_ + 1) * (triangleCount_ / batchTriangles + 1));
+    for (;;) {
+        const Result<bool> all = lightMore(progress);
+        if (!all) return all.error();
+        if (*all) return Done{};
+    }
+}
+
+Result<bool> MeshScene::lightMore(Progress* progress) {
     const Vec3d centre = bounds_.centre().as<double>(), sun = sunDirection().as<double>();
     const double span = mapSpan(bounds_);
-    // Inside a hollow no sky is seen: the lamp does it alone.
-    const bool lamp = options.camera.lamp_m > 0;
-    const size_t skyCount =
-        lamp ? 0 : std::clamp<size_t>((size_t(24) << 20) / std::max<size_t>(triangleCount_, 1), 12, mostSkyMaps);
-    if (progress) progress->begin("light", (skyCount + 1) * (triangleCount_ / batchTriangles + 1));
-    sunMap_ = MapStack::create(MapStack::Kind::Depth, sunMapEdge, 1);
-    skyMaps_ = MapStack::create(MapStack::Kind::Number, skyMapEdge, std::max(1, static_cast<int>(skyCount)));
-    const MapStack skyDepth = MapStack::create(MapStack::Kind::Depth, skyMapEdge, 1);
-    if (Status s = drawMap(sunMap_, sun, progress); !s) return s;
-    const ScreenTriangle screen;
-    std::vector<Matrix4> matrices(mostSkyMaps, Matrix4{});
-    for (size_t i = 0; i < skyCount; ++i) {
-        if (Status s = drawMap(skyDepth, skyDirection(i, skyCount), progress); !s) return s;
+    if (mapsDrawn_ > skyCount_) return true;
+    if (mapsDrawn_ == 0) {
+        if (Status s = drawMap(sunMap_, sun, progress); !s) return s.error();
+    } else {
+        const size_t sky = mapsDrawn_ - 1;
+        if (Status s = drawMap(skyDepth_, skyDirection(sky, skyCount_), progress); !s) return s.error();
         setDepthTest(false);
-        skyMaps_.bindCleared(static_cast<int>(i));
-        skyDepth.bindTexture(0);
+        skyMaps_.bindCleared(static_cast<int>(sky));
+        skyDepth_.bindTexture(0);
         blur_.use();
-        screen.draw();
-        matrices[i] = lightMatrix(skyDirection(i, skyCount), centre, span, 0, 1);
+        ScreenTriangle().draw();
     }
+    if (++mapsDrawn_ != 1 && mapsDrawn_ <= skyCount_) return false;
+    std::vector<Matrix4> matrices(mostSkyMaps, Matrix4{});
+    for (size_t i = 0; i < skyCount_; ++i) matrices[i] = lightMatrix(skyDirection(i, skyCount_), centre, span, 0, 1);
     for (const Program* program : {&color_, &backdrop_}) {
         program->set("ownerOfTriangle", 0);
         program->set("sunMap", 1);
         program->set("skyMaps", 2);
         program->set("sunFromWorld", lightMatrix(sun, centre, span, 0, 1));
         program->set("skyFromWorld", std::span<const Matrix4>(matrices));
-        program->set("skyCount", static_cast<int>(skyCount));
         program->set("mapSpan", static_cast<float>(span));
     }
-    return Done{};
+    return mapsDrawn_ > skyCount_;
 }
 
 Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureOptions& options, const MeshStyle& style,
@@ -206,7 +213,12 @@ Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureO
     const View view = viewOf(options.camera, options.width, options.height);
     const double size = length(bounds_.size().as<double>()), away = length(bounds_.centre().as<double>() - view.eye);
     const double near = std::max(away - size / 2, 1e-3 * size), far = near + 2 * size + away;
-    for (const Program* program : {&color_, &backdrop_}) setScene(*program, bounds_, options);
+    // Inside a hollow no sky is seen: the lamp does it alone.
+    const bool sky = mapsDrawn_ > skyCount_ && options.camera.lamp_m == 0;
+    for (const Program* program : {&color_, &backdrop_}) {
+        setScene(*program, bounds_, options);
+        program->set("skyCount", sky ? static_cast<int>(skyCount_) : 0);
+    }
     owners_.bind(0);
     sunMap_.bindTexture(1);
     skyMaps_.bindTexture(2);

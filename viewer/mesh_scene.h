@@ -18,12 +18,14 @@ enum class MeshLook { Materials, Normals, Curvature, Origin, Components };
 struct Section {
     Vec3f normal{1, 0, 0};  ///< unit
     float offset = 0;       ///< metres along the normal from the origin
+    friend bool operator==(const Section&, const Section&) = default;
 };
 
 struct MeshStyle {
     MeshLook look = MeshLook::Materials;
     bool wireframe = false;
     std::optional<Section> section;
+    friend bool operator==(const MeshStyle&, const MeshStyle&) = default;
 };
 
 /// Everything about a mesh that needs no GPU, so that any thread can make it.
@@ -47,8 +49,10 @@ Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& prove
 class MeshScene {
 public:
     static Result<MeshScene> create(const PreparedMesh& mesh);
-    /// Draws the maps of shadow and sky: once a mesh, and again when the ground or the lamp come or go.
-    Status light(const PictureOptions& options, Progress* progress);
+    /// Draws all maps of shadow and sky.
+    Status light(Progress* progress);
+    /// Draws the next map: first the sun's, then those of the sky, which count once all are there. True when none is left.
+    Result<bool> lightMore(Progress* progress);
     /// The part of the picture whose lower left pixel, from the bottom left, is (x0, y0), as large as `target`.
     Status draw(const ColorTarget& target, int x0, int y0, const PictureOptions& options, const MeshStyle& style,
                 Progress* progress) const;
@@ -65,7 +69,8 @@ private:
     TexelBuffer owners_;
     Buffer materials_;
     Program depth_, blur_, color_, backdrop_;
-    MapStack sunMap_, skyMaps_;
+    MapStack sunMap_, skyMaps_, skyDepth_;
+    size_t skyCount_ = 0, mapsDrawn_ = 0;
 };
 
 }  // namespace sgm::viewer

@@ -24,6 +24,7 @@ struct Camera {
     Vec3d eye, at;             ///< metres, object frame
     double fieldOfView = 0.7;  ///< vertical, radians
     double lamp_m = 0;         ///< reach of a warm lamp beside the eye, metres; 0 for none
+    friend bool operator==(const Camera&, const Camera&) = default;
 };
 /// Frames `bounds` three-quarter from above: the box takes 84 % of the tighter side of the picture, centred.
 Camera frame(const Box3f& bounds, double aspect);
@@ -51,6 +52,7 @@ struct PictureOptions {
     bool ground = true;  ///< a plane under the object that takes its shadow
     int samples = 4;     ///< for a pixel on an edge, 1 … 64
     int threads = 0;     ///< for the work beside the GPU's; 0 = all
+    friend bool operator==(const PictureOptions&, const PictureOptions&) = default;
 };
 
 /// What the rays through the pixels' centres met, a value a pixel, top row first. Lengths in metres, object frame.

@@ -7,11 +7,30 @@
 
 namespace sgm::viewer {
 
+void PixelSums::add(std::span<const Job> jobs, std::span<const std::array<float, 4>> colors) {
+    for (size_t i = 0; i < jobs.size(); ++i)
+        for (size_t c = 0; c < 4; ++c) rgba[index(jobs[i]) + c] += colors[i][c];
+}
+
 Image PixelSums::image() const {
     std::vector<float> means = rgba;
     for (size_t i = 0; i < means.size(); i += 4)
         for (size_t c = 0; c < 3; ++c) means[i + c] /= std::max(means[i + 3], 1.0f);
     return encode(means, width, height);
+}
+
+std::vector<uint8_t> PixelSums::bytes(int low, int high) const {
+    std::vector<uint8_t> bytes(size_t(width) * size_t(high - low) * 4, 0);
+    uint8_t* to = bytes.data();
+    for (int y = low; y < high; ++y)
+        for (int x = 0; x < width; ++x, to += 4) {
+            const float* sum = &rgba[(size_t(y) * size_t(width) + size_t(x)) * 4];
+            if (sum[3] == 0) continue;
+            const std::array<uint8_t, 3> rgb = encodePixel({sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]}, x, y);
+            std::copy(rgb.begin(), rgb.end(), to);
+            to[3] = 255;
+        }
+    return bytes;
 }
 
 std::vector<Job> firstSamples(int width, int height) {

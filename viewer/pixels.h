@@ -2,8 +2,10 @@
 // Enters: a picture's size, or its pixels. Leaves: jobs for FieldScene. Assumes at most 65,535 pixels a side.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "viewer/offscreen.h"
@@ -31,8 +33,12 @@ struct PixelSums {
     PixelSums() = default;
     PixelSums(int width, int height) : width(width), height(height), rgba(size_t(width) * size_t(height) * 4, 0.0f) {}
     size_t index(Job job) const { return (job.y() * size_t(width) + job.x()) * 4; }
+    /// Adds a colour a job.
+    void add(std::span<const Job> jobs, std::span<const std::array<float, 4>> colors);
     /// Means as 8-bit sRGB.
     Image image() const;
+    /// The same for rows [low, high) as RGBA, transparent where there is no sample yet.
+    std::vector<uint8_t> bytes(int low, int high) const;
 };
 
 /// Every pixel once, in blocks of 8 × 8 so that neighbours run together.

@@ -92,13 +92,19 @@ Status checkPicture(const Box3f& bounds, const PictureOptions& options) {
     return Done{};
 }
 
+std::array<uint8_t, 3> encodePixel(Vec3f light, int x, int y) {
+    const double threshold = thresholdAt(x, y);
+    return {srgb(light.x, threshold), srgb(light.y, threshold), srgb(light.z, threshold)};
+}
+
 Image encode(const std::vector<float>& rgba, int width, int height) {
     Image image{width, height, {}};
     image.rgb.reserve(rgba.size() / 4 * 3);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const size_t at = (size_t(y) * size_t(width) + size_t(x)) * 4;
-            for (size_t c = 0; c < 3; ++c) image.rgb.push_back(srgb(rgba[at + c], thresholdAt(x, y)));
+            const std::array<uint8_t, 3> rgb = encodePixel({rgba[at], rgba[at + 1], rgba[at + 2]}, x, y);
+            image.rgb.insert(image.rgb.end(), rgb.begin(), rgb.end());
         }
     return image;
 }

@@ -29,6 +29,9 @@ Status checkBounds(const Box3f& bounds);
 /// Error::Input when a picture of this size, with these samples and bounds, can't be drawn.
 Status checkPicture(const Box3f& bounds, const PictureOptions& options);
 
+/// 8 bits of sRGB of a pixel's display light; its place decides which way a level between two goes.
+std::array<uint8_t, 3> encodePixel(Vec3f light, int x, int y);
+
 /// 8 bits of sRGB from display light 0 … 1, four floats a pixel.
 Image encode(const std::vector<float>& rgba, int width, int height);
 

@@ -11,6 +11,7 @@ const std::vector<Shader>& shaders() {
         {"mesh", "vert", false, {"mesh"}},
         {"screen", "vert", false, {"screen"}},
         {"depth", "frag", false, {"depth"}},
+        {"encode", "frag", false, {"encode"}},
         {"blur_depth", "frag", false, {"blur_depth"}},
         {"mesh_color", "frag", false, {"view", "sky", "light", "ground", "tonemap", "visibility", "mesh_color"}},
         {"backdrop", "frag", false, {"view", "sky", "light", "ground", "tonemap", "visibility", "backdrop"}},

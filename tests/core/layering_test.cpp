@@ -101,6 +101,17 @@ TEST(Layering, HeavyHeadersStayInSources) {
     }
 }
 
+/// The window's packages stay in its folder, so that pictures need no display; and what a document is knows no window.
+TEST(Layering, OnlyTheWindowKnowsWindows) {
+    for (const Include& include : includesUnder(folders)) {
+        const bool window = include.from.starts_with("viewer/window/");
+        EXPECT_TRUE(window || (!include.to.starts_with("GLFW/") && !include.to.starts_with("imgui")))
+            << include.from << " includes " << include.to;
+        const bool door = include.to == "viewer/window/app.h";
+        EXPECT_TRUE(window || door || !include.to.starts_with("viewer/window/")) << include.from << " includes " << include.to;
+    }
+}
+
 TEST(Layering, OnlyCliAndViewerPrint) {
     const std::regex prints("std::cout|std::cerr|\\bf?printf\\(|fmt::print");
     for (const std::string& folder : {std::string("modeler"), std::string("grammar")})

@@ -1,0 +1,275 @@
+#include "tests/viewer/window/hands.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include "viewer/offscreen.h"
+
+namespace sgm::viewer::test {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+bool isInstalled(const std::string& program) { return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0; }
+
+/// Starts a program; `prepare` runs in the child before it.
+pid_t spawn(const std::vector<std::string>& words, const std::function<void()>& prepare) {
+    std::vector<char*> arguments;
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    const pid_t child = fork();
+    if (child != 0) return child;
+    prepare();
+    execvp(arguments[0], arguments.data());
+    _exit(127);
+}
+
+void silence() {
+    const int nowhere = open("/dev/null", O_WRONLY);
+    dup2(nowhere, 1);
+    dup2(nowhere, 2);
+}
+
+std::string contentOf(const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    return text.str();
+}
+
+/// The screen that Xvfb keeps in a file of X's own dump format (XWD): a header of big-endian words, colours, rows of BGRX.
+Image screenOf(const fs::path& dump) {
+    const std::string bytes = contentOf(dump);
+    const auto word = [&](size_t i) {
+        uint32_t value = 0;
+        for (size_t b = 0; b < 4; ++b) value = value << 8 | static_cast<uint8_t>(bytes[i * 4 + b]);
+        return size_t(value);
+    };
+    if (bytes.size() < 100) return {};
+    const size_t width = word(4), height = word(5), row = word(12), begin = word(0) + word(19) * 12;
+    Image image{static_cast<int>(width), static_cast<int>(height), {}};
+    for (size_t y = 0; y < height; ++y)
+        for (size_t x = 0; x < width; ++x)
+            for (const size_t c : {2u, 1u, 0u}) image.rgb.push_back(static_cast<uint8_t>(bytes.at(begin + y * row + x * 4 + c)));
+    return image;
+}
+
+}  // namespace
+
+pid_t Hands::server_ = 0;
+std::string Hands::display_;
+fs::path Hands::screen_;
+
+void Hands::SetUpTestSuite() {
+    if (!isInstalled("Xvfb") || !isInstalled("xdotool")) return;
+    screen_ = fs::temp_directory_path() / ("sgm_screen_" + std::to_string(getpid()));
+    fs::create_directories(screen_);
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    server_ = spawn({"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-fbdir", screen_.string()}, silence);
+    close(ends[1]);
+    // The number of the display comes once the server is ready.
+    std::string number;
+    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
+    close(ends[0]);
+    if (!number.empty()) display_ = ":" + number;
+}
+
+void Hands::TearDownTestSuite() {
+    if (server_ <= 0) return;
+    ::kill(server_, SIGTERM);
+    waitpid(server_, nullptr, 0);
+    fs::remove_all(screen_);
+}
+
+void Hands::SetUp() {
+    if (display_.empty()) GTEST_SKIP() << "no window can be driven here: Xvfb or xdotool isn't installed";
+    folder = fs::temp_directory_path() / ("sgm_window_" + std::to_string(getpid()));
+    fs::create_directories(folder);
+}
+
+void Hands::TearDown() {
+    if (display_.empty()) return;
+    if (HasFailure()) shoot("failed");
+    kill();
+    fs::remove_all(folder);
+}
+
+void Hands::open(const std::string& example) {
+    file = folder / fs::path(example).filename();
+    fs::copy_file(example, file, fs::copy_options::overwrite_existing);
+    start();
+}
+
+void Hands::openText(const std::string& text) {
+    file = folder / "test.sgm";
+    std::ofstream(file) << text;
+    start();
+}
+
+void Hands::start() {
+    fs::remove(folder / "report.json");
+    program_ = spawn({SGM_VIEWER, file.string(), "--report", (folder / "report.json").string()}, [&] {
+        setenv("DISPLAY", display_.c_str(), 1);
+        setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+        setenv("XDG_STATE_HOME", (folder / "state").c_str(), 1);
+        const int log = ::open((folder / "log").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+        dup2(log, 1);
+        dup2(log, 2);
+    });
+    until("a window", [](const auto&) { return true; });
+    // Without a window manager nobody else gives it the keys.
+    tool({"search", "--sync", "--onlyvisible", "--name", "- sgm$", "windowfocus", "sleep", "0.1"});
+    until("a model", [](const auto& s) { return s["shapes"] > 0 && !s["busy"]; });
+}
+
+void Hands::kill() {
+    if (program_ <= 0) return;
+    ::kill(program_, SIGKILL);
+    waitpid(program_, nullptr, 0);
+    program_ = 0;
+}
+
+nlohmann::json Hands::report() const {
+    const auto parsed = nlohmann::json::parse(contentOf(folder / "report.json"), nullptr, false);
+    return parsed.is_object() ? parsed : nlohmann::json{{"frame", 0}, {"widgets", nlohmann::json::object()}, {"state", {{"shapes", 0}, {"busy", true}}}};
+}
+
+nlohmann::json Hands::until(const std::string& what, const std::function<bool(const nlohmann::json&)>& holds, double seconds) {
+    for (double waited = 0; waited < seconds; waited += 0.05) {
+        const nlohmann::json now = state();
+        if (now.contains("text") && holds(now)) return now;
+        if (program_ > 0 && waitpid(program_, nullptr, WNOHANG) == program_) {
+            program_ = 0;
+            throw std::runtime_error("the program ended:\n" + contentOf(folder / "log"));
+        }
+        std::this_thread::sleep_for(50ms);
+    }
+    throw std::runtime_error("waited in vain for " + what + "\n" + report().dump(1));
+}
+
+/// What was just sent needs frames to be seen, and a busy machine takes its time for them.
+void Hands::frames(uint64_t count) const {
+    const auto frame = report()["frame"].get<uint64_t>();
+    for (int turn = 0; turn < 60 && report()["frame"].get<uint64_t>() < frame + count; ++turn) std::this_thread::sleep_for(20ms);
+}
+
+nlohmann::json Hands::settled() {
+    frames(2);
+    return until("an idle program", [](const auto& s) { return !s["busy"]; });
+}
+
+void Hands::tool(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> words{"xdotool"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    const pid_t child = spawn(words, [&] {
+        setenv("DISPLAY", display_.c_str(), 1);
+        silence();
+    });
+    waitpid(child, nullptr, 0);
+}
+
+std::pair<int, int> Hands::placeOf(const std::string& widget, double x, double y) {
+    nlohmann::json box;
+    until("the widget " + widget, [&](const auto&) { return !(box = report()["widgets"].value(widget, nlohmann::json())).is_null(); });
+    return {static_cast<int>(box[0].get<double>() + x * box[2].get<double>()), static_cast<int>(box[1].get<double>() + y * box[3].get<double>())};
+}
+
+void Hands::point(const std::string& widget, double x, double y) {
+    const auto [px, py] = placeOf(widget, x, y);
+    tool({"mousemove", std::to_string(px), std::to_string(py)});
+    frames(2);
+}
+
+void Hands::click(const std::string& widget, double x, double y, int button) {
+    point(widget, x, y);
+    tool({"mousedown", std::to_string(button)});
+    frames(1);
+    tool({"mouseup", std::to_string(button)});
+    settled();
+}
+
+void Hands::drag(const std::string& widget, double fromX, double fromY, double toX, double toY, int button) {
+    const auto [x, y] = placeOf(widget, toX, toY);
+    point(widget, fromX, fromY);
+    const std::string b = std::to_string(button);
+    const auto [fx, fy] = placeOf(widget, fromX, fromY);
+    tool({"mousedown", b});
+    frames(1);
+    tool({"mousemove", std::to_string((x + fx) / 2), std::to_string((y + fy) / 2)});
+    frames(1);
+    tool({"mousemove", std::to_string(x), std::to_string(y)});
+    frames(2);
+    tool({"mouseup", b});
+    settled();
+}
+
+void Hands::hold(const std::string& widget, const std::function<void()>& look) {
+    point(widget);
+    tool({"mousedown", "1"});
+    frames(1);
+    tool({"mousemove_relative", "12", "6"});
+    look();
+    point(widget);
+    tool({"mouseup", "1"});
+    settled();
+}
+
+void Hands::dragTo(const std::string& from, int x, int y) {
+    point(from);
+    tool({"mousedown", "1"});
+    frames(1);
+    tool({"mousemove_relative", "12", "6"});
+    frames(1);
+    tool({"mousemove", std::to_string(x - 4), std::to_string(y)});
+    frames(1);
+    tool({"mousemove", std::to_string(x), std::to_string(y)});
+    frames(2);
+    tool({"mouseup", "1"});
+    settled();
+}
+
+void Hands::wheel(const std::string& widget, int clicks) {
+    point(widget);
+    tool({"click", "--repeat", std::to_string(std::abs(clicks)), "--delay", "60", clicks > 0 ? "4" : "5", "sleep", "0.1"});
+    settled();
+}
+
+void Hands::key(const std::string& keys) {
+    tool({"key", keys});
+    settled();
+}
+
+void Hands::type(const std::string& text) {
+    tool({"type", "--delay", "25", text});
+    settled();
+}
+
+void Hands::fill(const std::string& field, const std::string& text) {
+    click(field, 0.3);
+    key("ctrl+a");
+    type(text);
+    key("Return");
+}
+
+void Hands::shoot(const std::string& name) const {
+    const fs::path pictures = "build/window";
+    fs::create_directories(pictures);
+    const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+    const Status written = writePng(screenOf(screen_ / "Xvfb_screen0"), pictures / (test + "-" + name + ".png"));
+    EXPECT_TRUE(written.ok());
+}
+
+std::string Hands::fileText() const { return contentOf(file); }
+
+}  // namespace sgm::viewer::test

@@ -1,0 +1,72 @@
+// A person at the window: a display of its own (Xvfb), the program, real clicks and keys (xdotool), and what the program
+// reports of its widgets and its state. Pictures of every step are kept under build/window/.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/types.h>
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace sgm::viewer::test {
+
+class Hands : public testing::Test {
+protected:
+    static void SetUpTestSuite();
+    static void TearDownTestSuite();
+    void SetUp() override;
+    void TearDown() override;
+
+    /// Starts the program with a copy of an example in this test's folder, and waits for its first picture.
+    void open(const std::string& example);
+    /// The same with a text of the test's own.
+    void openText(const std::string& text);
+    void start();
+    void kill();
+
+    /// What the program last reported.
+    nlohmann::json report() const;
+    nlohmann::json state() const { return report()["state"]; }
+    std::string text() const { return state()["text"]; }
+    /// Waits until the state is so; throws after 30 s, saying what it waited for.
+    nlohmann::json until(const std::string& what, const std::function<bool(const nlohmann::json& state)>& holds, double seconds = 30);
+    /// Until every pixel is final.
+    void drawn() { until("the whole picture", [](const auto& s) { return s["drawn"] == true && !s["busy"]; }, 120); }
+    /// Until nothing is computed any more.
+    nlohmann::json settled();
+    bool has(const std::string& widget) const { return report()["widgets"].contains(widget); }
+
+    /// Rests on a place of a widget, given in shares of its width and height.
+    void point(const std::string& widget, double x = 0.5, double y = 0.5);
+    void click(const std::string& widget, double x = 0.5, double y = 0.5, int button = 1);
+    /// Presses at one place of a widget, moves to another and lets go.
+    void drag(const std::string& widget, double fromX, double fromY, double toX, double toY, int button = 1);
+    /// Looks at what shows while a widget is held and dragged; lets go of it where it was.
+    void hold(const std::string& widget, const std::function<void()>& look);
+    void dragTo(const std::string& from, int x, int y);
+    void wheel(const std::string& widget, int clicks);
+    void key(const std::string& keys);
+    void type(const std::string& text);
+    /// Replaces what a text field holds.
+    void fill(const std::string& field, const std::string& text);
+    /// Keeps a picture of the screen as build/window/TEST-NAME.png.
+    void shoot(const std::string& name) const;
+
+    std::string fileText() const;
+    std::filesystem::path folder, file;
+
+private:
+    void frames(uint64_t count) const;
+    void tool(const std::vector<std::string>& arguments) const;
+    std::pair<int, int> placeOf(const std::string& widget, double x, double y);
+
+    pid_t program_ = 0;
+    static pid_t server_;
+    static std::string display_;
+    static std::filesystem::path screen_;
+};
+
+}  // namespace sgm::viewer::test

@@ -1,0 +1,248 @@
+#include "viewer/window/app.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "modeler/core/stopwatch.h"
+#include "viewer/window/bars.h"
+#include "viewer/window/benchmark.h"
+#include "viewer/window/panels.h"
+#include "viewer/window/style.h"
+#include "viewer/window/viewport.h"
+#include "viewer/window/widgets.h"
+#include "viewer/window/window.h"
+
+namespace sgm::viewer {
+namespace {
+
+constexpr int settlingFrames = 3;       // after an event, until ImGui's hover and layout have settled
+constexpr double shownEvery = 0.06;     // seconds between pictures of a view that refines itself
+constexpr double listenFor = 0.5;       // seconds between looks at the file while nothing happens
+
+/// Columns and rows of the window.
+class Workspace {
+public:
+    Workspace(Workbench& bench, std::function<void()> wake) : bench_(bench), export_(std::move(wake)) {}
+    /// Something in a panel works and wants to show how far it is.
+    bool working() const { return export_.running(); }
+    void show();
+
+private:
+    bool begin(const char* name, ImVec2 low, ImVec2 size);
+    void left(ImVec2 low, ImVec2 size);
+    void right(ImVec2 low, ImVec2 size);
+    void splitter(const char* name, float x, float y, float height, float& width, float sign);
+
+    Workbench& bench_;
+    Bars bars_;
+    ParametersPanel parameters_;
+    ShapesPanel shapes_;
+    RulesPanel rules_;
+    TextPanel text_;
+    StepPanel step_;
+    ExportPanel export_;
+    float left_ = 296, right_ = 396;  // before the screen's scale
+};
+
+bool Workspace::begin(const char* name, ImVec2 low, ImVec2 size) {
+    ImGui::SetNextWindowPos(low);
+    ImGui::SetNextWindowSize(size);
+    return ImGui::Begin(name, nullptr,
+                        ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                            ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
+                            ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoNavFocus);
+}
+
+void Workspace::splitter(const char* name, float x, float y, float height, float& width, float sign) {
+    constexpr float grab = 6;
+    if (begin(name, {x - grab / 2, y}, {grab, height})) {
+        ImGui::SetCursorScreenPos({x - grab / 2, y});
+        ImGui::InvisibleButton(name, {grab, height});
+        if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
+            ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+            ImGui::GetWindowDrawList()->AddLine({x, y}, {x, y + height}, tint::accent, 2);
+        }
+        if (ImGui::IsItemActive()) width = std::clamp(width + sign * ImGui::GetIO().MouseDelta.x, 200.0f, 640.0f);
+    }
+    ImGui::End();
+}
+
+void Workspace::left(ImVec2 low, ImVec2 size) {
+    const float above = size.y * 0.5f;
+    if (begin("Parameters", low, {size.x, above})) parameters_.show(bench_);
+    ImGui::End();
+    if (begin("Shapes", {low.x, low.y + above}, {size.x, size.y - above})) shapes_.show(bench_);
+    ImGui::End();
+    ImGui::GetForegroundDrawList()->AddLine({low.x, low.y + above}, {low.x + size.x, low.y + above}, ImGui::GetColorU32(ImGuiCol_Border));
+}
+
+void Workspace::right(ImVec2 low, ImVec2 size) {
+    bench_.typing = false;
+    if (begin("Right", low, size) && ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_NoTooltip)) {
+        const auto tab = [&](const char* name, auto&& panel, bool wanted = false) {
+            const bool open = ImGui::BeginTabItem(name, nullptr, wanted ? ImGuiTabItemFlags_SetSelected : 0);
+            bench_.report.mark(std::string("tab.") + name);
+            if (!open) return false;
+            panel.show(bench_);
+            ImGui::EndTabItem();
+            return true;
+        };
+        // What was selected elsewhere is shown in the text, unless rules are being worked on.
+        tab("Rules", rules_);
+        if (!tab("Text", text_)) text_.leave();
+        tab("Step", step_);
+        tab("Export", export_);
+        ImGui::EndTabBar();
+    }
+    ImGui::End();
+}
+
+void Workspace::show() {
+    const ImGuiIO& io = ImGui::GetIO();
+    const float bar = ImGui::GetFrameHeight() + 14, status = ImGui::GetFrameHeight() + 6, height = io.DisplaySize.y - bar - status;
+    const float problems = bench_.session.problems().empty() ? 0 : std::min(ImGui::GetFrameHeight() * 4.5f, height / 3);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_MenuBarBg));
+    if (begin("Bar", {0, 0}, {io.DisplaySize.x, bar})) bars_.top(bench_);
+    ImGui::End();
+    if (begin("Status", {0, io.DisplaySize.y - status}, {io.DisplaySize.x, status})) bars_.status(bench_);
+    ImGui::End();
+    ImGui::PopStyleColor();
+    left({0, bar}, {left_, height});
+    right({io.DisplaySize.x - right_, bar}, {right_, height});
+    const float x = left_ + 1, width = io.DisplaySize.x - left_ - right_ - 2;
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    if (begin("View", {x, bar}, {width, height - problems})) viewport(bench_);
+    ImGui::End();
+    ImGui::PopStyleVar();
+    if (problems > 0) {
+        if (begin("Problems", {x, bar + height - problems}, {width, problems})) problemsPanel(bench_);
+        ImGui::End();
+    }
+    splitter("##left", left_, bar, height, left_, 1);
+    splitter("##right", io.DisplaySize.x - right_, bar, height, right_, -1);
+    ImGui::PopStyleVar();
+    if (!io.WantTextInput || bench_.typing) {
+        bars_.keys(bench_);
+        if (!bench_.typing) {
+            parameters_.keys(bench_);
+            viewKeys(bench_);
+        }
+    }
+    bars_.dialogs(bench_);
+}
+
+/// What a test may know.
+void describe(const Workbench& bench, nlohmann::json& state) {
+    state["busy"] = bench.busy();
+    state["drawn"] = (bench.look.pane == Pane::Mesh || bench.field.finished()) && (bench.look.pane == Pane::Field || bench.mesh.finished());
+    state["text"] = bench.document.text();
+    state["dirty"] = bench.document.dirty();
+    state["undo"] = bench.document.undoLabel();
+    state["redo"] = bench.document.redoLabel();
+    state["notice"] = bench.notice;
+    state["problems"] = nlohmann::json::array();
+    for (const Problem& p : bench.session.problems()) state["problems"].push_back({{"line", p.line}, {"message", p.message}});
+    state["selection"] = bench.selected() == derive::none ? "" : bench.tree()->path(bench.selected(), true);
+    state["hover"] = bench.hover ? bench.hover->text : "";
+    state["shapes"] = bench.tree() ? bench.tree()->shapes.size() : 0;
+    const Camera camera = bench.orbit.camera();
+    state["eye"] = {camera.eye.x, camera.eye.y, camera.eye.z};
+    state["at"] = {camera.at.x, camera.at.y, camera.at.z};
+    state["pane"] = static_cast<int>(bench.look.pane);
+    state["triangles"] = bench.mesh.triangleCount();
+    state["stepping"] = bench.stepper.has_value();
+    state["locked"] = bench.document.choice().locked;
+    state["seed"] = bench.document.choice().seed;
+    state["question"] = bench.question ? bench.question->text : "";
+}
+
+/// Draws a little more of what is shown; true when something was drawn.
+Result<bool> refine(Workbench& bench) {
+    bool drew = false;
+    if (bench.look.pane != Pane::Mesh && bench.field.hasField() && !bench.field.finished()) {
+        if (const Status s = bench.field.step(); !s) return s.error();
+        drew = true;
+    }
+    if (bench.look.pane != Pane::Field && !bench.mesh.finished()) {
+        if (const Status s = bench.mesh.step(); !s) return s.error();
+        drew = true;
+    }
+    return drew;
+}
+
+std::string titleOf(const Document& document) {
+    const std::string name = document.path().empty() ? "untitled" : document.path().filename().string();
+    return fmt::format("{}{} - sgm", document.dirty() ? "*" : "", name);
+}
+
+int fail(const Error& error) {
+    fmt::print(stderr, "sgm-viewer: {}\n", error.message);
+    return 1;
+}
+
+}  // namespace
+
+int runApp(const AppOptions& options) {
+    Result<std::unique_ptr<Window>> opened = Window::open("sgm", options.width, options.height);
+    if (!opened) return fail(opened.error());
+    Window& window = **opened;
+    Report report(options.report);
+    Workbench bench(report, &Window::wake);
+    if (!options.file.empty())
+        if (const Status s = bench.open(options.file); !s) return fail(s.error());
+    if (!options.benchmark) bench.offerAbandoned();
+    Workspace workspace(bench, &Window::wake);
+    Benchmark benchmark;
+    int wanted = settlingFrames;
+    bool refining = false;
+    double frameSeconds = 0;  // that the last frame took
+    Stopwatch sinceShown, sinceLook;
+    for (;;) {
+        const bool working = bench.busy() || workspace.working() || options.benchmark;
+        window.listen(wanted > 0 || refining || options.benchmark ? 0 : working ? shownEvery : listenFor);
+        const Stopwatch turn;
+        const double drawnBefore = bench.field.times().drawn;
+        if (window.closing() && bench.mayClose()) return 0;
+        if (window.stirred() | bench.poll()) wanted = settlingFrames;
+        for (const std::filesystem::path& path : window.dropped()) bench.drop(path);
+        if (sinceLook.seconds() > listenFor) {
+            if (bench.lookAtFiles()) wanted = settlingFrames;
+            sinceLook = {};
+        }
+        const Result<bool> drew = refine(bench);
+        if (!drew) return fail(drew.error());
+        const Result<bool> taken = bench.takePictures();
+        if (!taken) bench.say(taken.error().message, true);
+        if (!taken || *taken) wanted = settlingFrames;
+        const bool ended = refining && !*drew;
+        refining = *drew;
+        double showing = 0;
+        // Where frames are dear, most of the time still goes to the picture.
+        if (wanted > 0 || ended || ((refining || working) && sinceShown.seconds() >= std::max(shownEvery, 3 * frameSeconds))) {
+            if (wanted > 0) --wanted;
+            sinceShown = {};
+            window.setTitle(titleOf(bench.document));
+            window.beginFrame();
+            workspace.show();
+            const Stopwatch show;
+            window.endFrame();
+            showing = show.seconds();
+            frameSeconds = turn.seconds();
+            bench.refresh();
+            describe(bench, report.state());
+            if (window.pending()) report.state()["busy"] = true;
+            report.write();
+        }
+        if (bench.leaving) return 0;
+        if (options.benchmark && !benchmark.go(bench, turn.seconds(), bench.field.times().drawn - drawnBefore + showing)) {
+            benchmark.print(bench, window.driver());
+            return bench.shown() ? 0 : 1;
+        }
+    }
+}
+
+}  // namespace sgm::viewer

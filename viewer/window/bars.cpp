@@ -1,0 +1,264 @@
+#include "viewer/window/bars.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <array>
+
+#include "viewer/window/style.h"
+#include "viewer/window/widgets.h"
+
+namespace sgm::viewer {
+namespace {
+
+using namespace widgets;
+
+void gap() {
+    ImGui::SameLine(0, 14);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddLine({at.x, at.y + 3}, {at.x, at.y + ImGui::GetFrameHeight() - 3}, ImGui::GetColorU32(ImGuiCol_Border));
+    ImGui::SameLine(0, 15);
+}
+
+}  // namespace
+
+void Bars::top(Workbench& bench) {
+    Report& report = bench.report;
+    const Document& document = bench.document;
+    ImGui::AlignTextToFramePadding();
+    ImGui::PushFont(strongFont());
+    ImGui::TextUnformatted(document.path().empty() ? "untitled" : document.path().filename().c_str());
+    ImGui::PopFont();
+    ImGui::SameLine(0, 4);
+    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(tint::selected), "%s", document.dirty() ? "•" : " ");
+    ImGui::SameLine(0, 10);
+    if (quietButton(report, "bar.open", "Open", "Open a grammar (Ctrl+O), or drop it on the window")) opening_ = true;
+    ImGui::SameLine(0, 2);
+    if (quietButton(report, "bar.save", "Save", "Write the file (Ctrl+S)", document.dirty())) document.path().empty() ? void(naming_ = true) : bench.save();
+    ImGui::SameLine(0, 2);
+    const std::string undo = fmt::format("Take back: {} (Ctrl+Z)", document.undoLabel()), redo = fmt::format("Do again: {} (Ctrl+Y)", document.redoLabel());
+    if (quietButton(report, "bar.undo", "Undo", document.canUndo() ? undo.c_str() : nullptr, document.canUndo())) bench.undo();
+    ImGui::SameLine(0, 2);
+    if (quietButton(report, "bar.redo", "Redo", document.canRedo() ? redo.c_str() : nullptr, document.canRedo())) bench.redo();
+    gap();
+    int pane = static_cast<int>(bench.look.pane);
+    constexpr std::array panes{"Field", "Mesh", "Split"};
+    if (oneOf(report, "pane", panes, pane)) bench.look.pane = static_cast<Pane>(pane);
+    gap();
+    lookControls(bench);
+    if (bench.look.pane != Pane::Field) {
+        gap();
+        meshControls(bench);
+    }
+}
+
+void Bars::lookControls(Workbench& bench) {
+    Report& report = bench.report;
+    static const std::vector<std::string> joints{"No joints", "Its joints", "All joints"};
+    int shown = static_cast<int>(bench.look.joints);
+    if (choice(report, "look.joints", joints, shown, ImGui::GetFontSize() * 7)) bench.look.joints = static_cast<JointsShown>(shown);
+    hint("Joints of the selected shape or of all: red joins to a centre, green face to face, bonded ones filled");
+    ImGui::SameLine();
+    toggle(report, "look.ground", "Ground", bench.look.ground);
+    ImGui::SameLine();
+    const bool within = bench.orbit.lamp_m > 0;
+    if (button(report, "look.inside", within ? "Outside" : "Inside", "Stand in the largest hollow with a lamp, or leave it", bench.field.hasField()))
+        within ? bench.frameAll() : bench.stepInside();
+    ImGui::SameLine();
+    if (quietButton(report, "bar.help", "?", "Keys and buttons (H)")) help_ = !help_;
+}
+
+void Bars::meshControls(Workbench& bench) {
+    Report& report = bench.report;
+    static const std::vector<std::string> looks{"Materials", "Normals", "Curvature", "Rules", "Components"};
+    int look = static_cast<int>(bench.look.mesh.look);
+    if (choice(report, "mesh.look", looks, look, ImGui::GetFontSize() * 7)) bench.look.mesh.look = static_cast<MeshLook>(look);
+    ImGui::SameLine();
+    static const std::vector<std::string> sizes{"64", "128", "192", "256", "384"};
+    int size = 0;
+    for (int i = 0; i < static_cast<int>(sizes.size()); ++i)
+        if (std::stoi(sizes[size_t(i)]) == bench.look.meshResolution) size = i;
+    if (choice(report, "mesh.cells", sizes, size, ImGui::GetFontSize() * 4)) bench.look.meshResolution = std::stoi(sizes[size_t(size)]);
+    hint("Cells along the longest side");
+    ImGui::SameLine();
+    toggle(report, "mesh.wire", "Wire", bench.look.mesh.wireframe);
+    ImGui::SameLine();
+    toggle(report, "mesh.section", "Section", bench.look.section, "Cut the mesh open along an axis");
+    if (!bench.look.section) return;
+    ImGui::SameLine();
+    constexpr std::array axes{"x", "y", "z"};
+    oneOf(report, "section.axis", axes, bench.look.sectionAxis);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6);
+    ImGui::SliderFloat("##section", &bench.look.sectionShare, 0, 1, "");
+    report.mark("section.share");
+}
+
+void Bars::status(Workbench& bench) {
+    const float right = ImGui::GetWindowWidth();
+    ImGui::SetCursorPosY((ImGui::GetWindowHeight() - ImGui::GetFrameHeight()) / 2);
+    ImGui::AlignTextToFramePadding();
+    if (bench.busy()) {
+        const std::string stage(bench.session.busy() ? bench.session.stage() : "cells");
+        ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 3);
+        ImGui::ProgressBar(bench.session.busy() ? static_cast<float>(bench.session.fraction()) : 0.5f, {ImGui::GetFontSize() * 10, ImGui::GetFrameHeight() - 6}, stage.c_str());
+        ImGui::SameLine();
+        ImGui::SetCursorPosY(ImGui::GetCursorPosY() - 3);
+        if (button(bench.report, "progress.cancel", "Cancel", "Keep the model as it is")) bench.session.cancel();
+        ImGui::SameLine();
+    }
+    ImGui::PushStyleColor(ImGuiCol_Text, bench.noticeIsProblem ? tint::error : tint::faint);
+    ImGui::TextUnformatted(bench.hover && !bench.noticeIsProblem ? bench.hover->text.c_str() : bench.notice.c_str());
+    ImGui::PopStyleColor();
+    std::string facts;
+    if (bench.shown()) {
+        double seconds = bench.cellSeconds;
+        for (const auto& [stage, took] : bench.shown()->stages) seconds += took;
+        facts = fmt::format("{} shapes  ·  {} steps  ·  {:.0f} ms", bench.tree()->shapes.size(), bench.shown()->model.derivation.steps.size(), seconds * 1000);
+        if (bench.wantsMesh() && bench.mesh.hasMesh()) facts += fmt::format("  ·  {} triangles", bench.mesh.triangleCount());
+    }
+    ImGui::SameLine(right - ImGui::CalcTextSize(facts.c_str()).x - 12);
+    faint(facts);
+}
+
+void Bars::keys(Workbench& bench) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+    if (pressed(GLFW_KEY_ESCAPE)) {
+        help_ = false;
+        bench.turntable.reset();
+    }
+    if (io.KeyCtrl) {
+        if (pressed(GLFW_KEY_S)) bench.document.path().empty() ? void(naming_ = true) : bench.save();
+        if (pressed(GLFW_KEY_O)) opening_ = true;
+        if (ImGui::IsKeyPressed(GLFW_KEY_Z)) io.KeyShift ? bench.redo() : bench.undo();
+        if (ImGui::IsKeyPressed(GLFW_KEY_Y)) bench.redo();
+        return;
+    }
+    if (bench.typing) return;
+    const auto free = [&](int key) { return pressed(key) && bench.hotkeys.find(static_cast<char>(std::tolower(key))) == std::string::npos; };
+    if (free(GLFW_KEY_H)) help_ = !help_;
+    if (free(GLFW_KEY_P)) bench.pictureWanted = true;
+    if (free(GLFW_KEY_T)) bench.startTurntable(36);
+}
+
+void Bars::dialogs(Workbench& bench) {
+    if (help_) cheatSheet(bench);
+    openDialog(bench);
+    saveDialog(bench);
+    questions(bench);
+}
+
+void Bars::cheatSheet(Workbench& bench) {
+    const bool blender = bench.look.hands == Hands::Blender;
+    const std::pair<const char*, const char*> rows[] = {
+        {blender ? "MMB drag" : "LMB drag", "Turn"}, {blender ? "Shift MMB" : "MMB drag", "Move"}, {blender ? "Ctrl MMB" : "RMB drag", "Nearer, farther"},
+        {"Wheel", "Nearer, farther"}, {"Click", "Select what is there, and its text"}, {"F", "Frame the selection"}, {"A", "Frame all"}, {"Home", "All, from the usual side"},
+        {"1 - 7", "Front, back, right, left, top, bottom, three-quarter"}, {"P", "Picture of the view beside the file"}, {"T", "Turntable: 36 pictures"},
+        {"Ctrl+S  Ctrl+O", "Save, open"}, {"Ctrl+Z  Ctrl+Y", "Undo, redo"}, {"H", "This sheet"}};
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    if (ImGui::Begin("Keys and buttons", &help_, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
+        if (ImGui::BeginTable("keys", 2)) {
+            const auto row = [](const char* key, const char* what) {
+                ImGui::TableNextColumn();
+                ImGui::PushFont(strongFont());
+                ImGui::TextUnformatted(key);
+                ImGui::PopFont();
+                ImGui::TableNextColumn();
+                ImGui::TextUnformatted(what);
+            };
+            for (const auto& [key, what] : rows) row(key, what);
+            if (bench.shown())
+                for (const rules::Param& param : bench.shown()->grammar->params)
+                    if (!param.key.empty()) row(param.key.c_str(), fmt::format("{} (Shift reverses)", param.label.empty() ? param.name : param.label).c_str());
+            ImGui::EndTable();
+        }
+        int hands = static_cast<int>(bench.look.hands);
+        constexpr std::array presets{"Usual hands", "Blender's"};
+        if (oneOf(bench.report, "hands", presets, hands)) bench.look.hands = static_cast<Hands>(hands);
+        bench.report.mark("help", ImGui::GetWindowPos(), {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
+    }
+    ImGui::End();
+}
+
+void Bars::openDialog(Workbench& bench) {
+    namespace fs = std::filesystem;
+    if (std::exchange(opening_, false)) {
+        const fs::path here = bench.document.path().empty() ? fs::current_path() : fs::absolute(bench.document.path()).parent_path();
+        folder_ = here.lexically_normal().string();
+        ImGui::OpenPopup("Open a grammar");
+    }
+    ImGui::SetNextWindowSize({ImGui::GetFontSize() * 34, ImGui::GetFontSize() * 30});
+    if (!ImGui::BeginPopupModal("Open a grammar", nullptr, ImGuiWindowFlags_NoSavedSettings)) return;
+    field(bench.report, "open.folder", folder_);
+    std::error_code failed;
+    std::vector<fs::path> folders, files;
+    if (fs::is_directory(folder_, failed))
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder_, failed)) {
+            if (entry.path().filename().string().starts_with('.')) continue;
+            if (entry.is_directory(failed)) folders.push_back(entry.path());
+            else if (entry.path().extension() == ".sgm") files.push_back(entry.path());
+        }
+    std::sort(folders.begin(), folders.end());
+    std::sort(files.begin(), files.end());
+    if (ImGui::BeginChild("files", {0, -ImGui::GetFrameHeightWithSpacing() - 4}, true)) {
+        const fs::path parent = fs::path(folder_).parent_path();
+        if (ImGui::Selectable("..", false, ImGuiSelectableFlags_DontClosePopups)) folder_ = parent.string();
+        for (const fs::path& path : folders)
+            if (ImGui::Selectable((path.filename().string() + "/").c_str(), false, ImGuiSelectableFlags_DontClosePopups)) folder_ = path.string();
+        for (const fs::path& path : files) {
+            if (ImGui::Selectable(path.filename().c_str())) bench.drop(path);
+            bench.report.mark("open." + path.filename().string());
+        }
+    }
+    ImGui::EndChild();
+    if (button(bench.report, "open.cancel", "Cancel") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE)) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
+void Bars::saveDialog(Workbench& bench) {
+    if (std::exchange(naming_, false)) {
+        name_ = (std::filesystem::current_path() / "untitled.sgm").string();
+        ImGui::OpenPopup("Save as");
+    }
+    ImGui::SetNextWindowSize({ImGui::GetFontSize() * 34, 0});
+    if (!ImGui::BeginPopupModal("Save as", nullptr, ImGuiWindowFlags_NoSavedSettings)) return;
+    field(bench.report, "save.name", name_);
+    if (button(bench.report, "save.save", "Save")) {
+        const Status s = bench.document.saveAs(name_);
+        s ? bench.say("Saved " + name_) : bench.say(s.error().message, true);
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::SameLine();
+    if (button(bench.report, "save.cancel", "Cancel")) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
+void Bars::questions(Workbench& bench) {
+    if (bench.question && !ImGui::IsPopupOpen("Question")) ImGui::OpenPopup("Question");
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    if (!ImGui::BeginPopupModal("Question", nullptr, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize)) return;
+    if (bench.question) {
+        ImGui::PushTextWrapPos(ImGui::GetFontSize() * 28);
+        ImGui::TextUnformatted(bench.question->text.c_str());
+        ImGui::PopTextWrapPos();
+        ImGui::Dummy({0, 4});
+        const auto answers = bench.question->answers;
+        for (size_t i = 0; i < answers.size(); ++i) {
+            if (i > 0) ImGui::SameLine();
+            if (!button(bench.report, "answer." + answers[i].first, answers[i].first.c_str())) continue;
+            bench.question.reset();
+            if (answers[i].second) answers[i].second();
+            ImGui::CloseCurrentPopup();
+            break;
+        }
+    } else {
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+}
+
+}  // namespace sgm::viewer

@@ -1,0 +1,30 @@
+// The bar at the top with what concerns all of the window, the line at the bottom, and the dialogs.
+// Enters: the workbench. Leaves: its verbs called. Assumes a frame of ImGui.
+#pragma once
+
+#include "viewer/window/workbench.h"
+
+namespace sgm::viewer {
+
+class Bars {
+public:
+    void top(Workbench& bench);
+    void status(Workbench& bench);
+    /// Open, save, undo, help, pictures. Call once a frame, when no text takes keys.
+    void keys(Workbench& bench);
+    /// What stands over the window: the cheat sheet, a file to open, a question. Call once a frame, outside windows.
+    void dialogs(Workbench& bench);
+
+private:
+    void lookControls(Workbench& bench);
+    void meshControls(Workbench& bench);
+    void openDialog(Workbench& bench);
+    void saveDialog(Workbench& bench);
+    void questions(Workbench& bench);
+    void cheatSheet(Workbench& bench);
+
+    bool help_ = false, opening_ = false, naming_ = false;
+    std::string folder_, name_;
+};
+
+}  // namespace sgm::viewer

@@ -1,0 +1,38 @@
+// How fast the window answers, measured in the window itself: stages to the first picture, a slider that is dragged, rules
+// that come and go, and the gaps between looks at the person's hands.
+// Enters: the workbench, once a turn of the loop. Leaves: a table on stdout. Assumes a grammar that can be shown.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "modeler/core/stopwatch.h"
+#include "viewer/window/workbench.h"
+
+namespace sgm::viewer {
+
+class Benchmark {
+public:
+    /// To be called at the end of every turn; `turn` is what it took without waiting for events, `drawing` how much of
+    /// that was drawing, seconds. False when all is measured.
+    bool go(Workbench& bench, double turn, double drawing);
+    void print(const Workbench& bench, const std::string& driver) const;
+
+private:
+    enum class Phase { Load, Drag, Structure };
+    struct Change {
+        double coarse = 0;  ///< seconds from the edit to its coarse picture
+        int compiles = 0;
+    };
+    bool begin(Workbench& bench);
+
+    Phase phase_ = Phase::Load;
+    std::vector<Change> drags_, structures_;
+    std::vector<std::pair<std::string, double>> first_;  ///< seconds by stage
+    double gap_ = 0;                                     ///< longest, drawing excluded
+    Stopwatch since_;
+    int compiles_ = 0;
+    bool waiting_ = false;
+};
+
+}  // namespace sgm::viewer

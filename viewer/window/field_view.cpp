@@ -1,0 +1,154 @@
+#include "viewer/window/field_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "modeler/core/stopwatch.h"
+#include "viewer/scene.h"
+
+namespace sgm::viewer {
+namespace {
+
+constexpr double coarseSeconds = 0.05, batchSeconds = 0.018;
+
+/// Every pixel once, tile by tile, the tiles from the middle outwards.
+std::vector<Job> fromTheMiddle(int width, int height) {
+    constexpr uint32_t tile = 32;
+    std::vector<Job> jobs = firstSamples(width, height);
+    const auto away = [&](const Job& job) {
+        const double x = static_cast<double>(job.x() / tile * tile + tile / 2) - width / 2.0,
+                     y = static_cast<double>(job.y() / tile * tile + tile / 2) - height / 2.0;
+        return std::pair(x * x + y * y, job.y() / tile * 4096 + job.x() / tile);
+    };
+    std::stable_sort(jobs.begin(), jobs.end(), [&](const Job& a, const Job& b) { return away(a) < away(b); });
+    return jobs;
+}
+
+}  // namespace
+
+Status FieldView::setField(std::shared_ptr<const PreparedField> field) {
+    const bool known = programs_.cover(*field);
+    scene_.reset();
+    Stopwatch watch;
+    if (Status s = programs_.extendTo(*field); !s) return s;
+    times_.compile = watch.seconds();
+    watch = {};
+    scene_.emplace(std::move(field), programs_, look_.threads);
+    times_.upload = watch.seconds();
+    if (!known) {
+        // Drivers compile at the first draw: let that be one ray.
+        const Job job{0, 0};
+        scene_->look(PictureOptions{.camera = frame(scene_->field().bounds, 1)});
+        watch = {};
+        if (const Result<Rays> ray = scene_->draw({&job, 1}, nullptr); !ray) return ray.error();
+        times_.compile += watch.seconds();
+        ++times_.compiles;
+    }
+    times_.drawn += times_.compile + times_.upload;
+    restart();
+    return Done{};
+}
+
+void FieldView::setLook(const PictureOptions& options) {
+    if (options == look_ && phase_ != Phase::Idle) return;
+    if (options.width != look_.width || options.height != look_.height) first_.clear();
+    look_ = options;
+    restart();
+}
+
+void FieldView::restart() {
+    phase_ = scene_ && look_.width > 0 && look_.height > 0 ? Phase::Coarse : Phase::Idle;
+}
+
+double FieldView::share() const {
+    if (phase_ < Phase::First) return 0;
+    const double done = jobs_.empty() ? 1 : static_cast<double>(next_) / static_cast<double>(jobs_.size());
+    return phase_ == Phase::First ? 0.8 * done : phase_ == Phase::Edges ? 0.8 + 0.2 * done : 1;
+}
+
+Status FieldView::drawCoarse() {
+    const double pixels = static_cast<double>(look_.width) * look_.height;
+    const double scale = std::clamp(std::sqrt(pixels * secondsPerRay_ / coarseSeconds), 1.0, 10.0);
+    PictureOptions small = look_;
+    small.width = std::max(1, static_cast<int>(std::ceil(look_.width / scale)));
+    small.height = std::max(1, static_cast<int>(std::ceil(look_.height / scale)));
+    // A block's surface is as exact as a pixel's, lest edges get dark rims.
+    scene_->look(small, scale);
+    const std::vector<Job> jobs = firstSamples(small.width, small.height);
+    PixelSums sums(small.width, small.height);
+    const Stopwatch watch;
+    for (size_t first = 0; first < jobs.size(); first += mostJobs) {
+        const std::span chunk = std::span(jobs).subspan(first, std::min(mostJobs, jobs.size() - first));
+        const Result<Rays> rays = scene_->draw(chunk, nullptr);
+        if (!rays) return rays.error();
+        sums.add(chunk, rays->colors);
+    }
+    times_.coarse = watch.seconds();
+    times_.full = 0;
+    secondsPerRay_ = 0.5 * secondsPerRay_ + 0.5 * watch.seconds() / static_cast<double>(jobs.size());
+    coarse_.resize(small.width, small.height);
+    coarse_.write(sums.bytes(0, small.height), 0, small.height);
+
+    scene_->look(look_);
+    fine_.resize(look_.width, look_.height);
+    sums_ = PixelSums(look_.width, look_.height);
+    fine_.write(sums_.bytes(0, look_.height), 0, look_.height);
+    if (first_.empty()) first_ = fromTheMiddle(look_.width, look_.height);
+    jobs_ = first_;
+    next_ = 0;
+    phase_ = Phase::First;
+    return Done{};
+}
+
+Status FieldView::drawBatch() {
+    const std::span chunk = std::span(jobs_).subspan(next_, std::min(batch_, jobs_.size() - next_));
+    const Stopwatch watch;
+    const Result<Rays> rays = scene_->draw(chunk, nullptr);
+    if (!rays) return rays.error();
+    sums_.add(chunk, rays->colors);
+    int low = look_.height, high = 0;
+    for (const Job& job : chunk) {
+        low = std::min(low, static_cast<int>(job.y()));
+        high = std::max(high, static_cast<int>(job.y()) + 1);
+    }
+    fine_.write(sums_.bytes(low, high), low, high);
+    times_.full += watch.seconds();
+    const double wanted = static_cast<double>(chunk.size()) * std::clamp(batchSeconds / watch.seconds(), 0.25, 2.0);
+    if (chunk.size() == batch_) batch_ = std::clamp(static_cast<size_t>(wanted), size_t(256), mostJobs);
+    next_ += chunk.size();
+    return Done{};
+}
+
+Status FieldView::step() {
+    const Stopwatch watch;
+    const Status done = drawMore();
+    times_.drawn += watch.seconds();
+    return done;
+}
+
+Status FieldView::drawMore() {
+    if (phase_ == Phase::Idle || phase_ == Phase::Finished) return Done{};
+    if (phase_ == Phase::Coarse) return drawCoarse();
+    if (next_ < jobs_.size())
+        if (Status s = drawBatch(); !s) return s;
+    if (next_ < jobs_.size()) return Done{};
+    if (phase_ == Phase::First && look_.samples > 1) {
+        jobs_ = edgeSamples(first_, sums_, look_.samples);
+        next_ = 0;
+        phase_ = Phase::Edges;
+    } else {
+        phase_ = Phase::Finished;
+    }
+    return Done{};
+}
+
+std::optional<Pick> FieldView::pick(int x, int y) {
+    if (!scene_ || x < 0 || y < 0 || x >= look_.width || y >= look_.height) return std::nullopt;
+    scene_->look(look_);
+    const Job job{static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16, 0};
+    const Result<Rays> rays = scene_->draw({&job, 1}, nullptr);
+    if (!rays) return std::nullopt;
+    return Pick{rays->kind(0), rays->position(0), rays->origins[0]};
+}
+
+}  // namespace sgm::viewer

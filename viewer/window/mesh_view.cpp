@@ -1,0 +1,58 @@
+#include "viewer/window/mesh_view.h"
+
+#include "viewer/shader_text.h"
+
+namespace sgm::viewer {
+
+Status MeshView::setMesh(const PreparedMesh& mesh) {
+    Result<MeshScene> scene = MeshScene::create(mesh);
+    if (!scene) return scene.error();
+    if (encode_.id() == 0) {
+        Result<Program> made = Program::draw(shaderText("screen"), shaderText("encode"));
+        if (!made) return made.error();
+        encode_ = std::move(*made);
+    }
+    scene_.emplace(std::move(*scene));
+    drawn_ = smooth_ = lit_ = false;
+    // The sun's shadow belongs to the first picture; the sky's comes bit by bit.
+    const Result<bool> all = scene_->lightMore(nullptr);
+    if (!all) return all.error();
+    lit_ = *all;
+    return Done{};
+}
+
+void MeshView::setLook(const PictureOptions& options, const MeshStyle& style) {
+    if (drawn_ && options == look_ && style == style_) return;
+    look_ = options;
+    style_ = style;
+    drawn_ = smooth_ = false;
+}
+
+Status MeshView::draw(int samples) {
+    std::optional<ColorTarget>& target = targets_[samples > 1];
+    if (!target || target->width != look_.width || target->height != look_.height) {
+        Result<ColorTarget> made = ColorTarget::create(look_.width, look_.height, samples);
+        if (!made) return made.error();
+        target.emplace(std::move(*made));
+    }
+    if (Status s = scene_->draw(*target, 0, 0, look_, style_, nullptr); !s) return s;
+    target->resolve();
+    texture_.encode(*target, encode_);
+    drawn_ = true;
+    smooth_ = samples > 1;
+    return Done{};
+}
+
+Status MeshView::step() {
+    if (!scene_ || look_.width < 1 || look_.height < 1) return Done{};
+    if (!drawn_) return draw(1);
+    if (!lit_) {
+        const Result<bool> all = scene_->lightMore(nullptr);
+        if (!all) return all.error();
+        lit_ = *all;
+        return Done{};
+    }
+    return smooth_ ? Status(Done{}) : draw(std::max(look_.samples, 2));
+}
+
+}  // namespace sgm::viewer

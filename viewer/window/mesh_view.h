@@ -1,0 +1,38 @@
+// A view of a mesh: drawn at once, its light completed map by map, smoothed when nothing moves.
+// Enters: a prepared mesh, a look, a style. Leaves: a texture. Assumes a current GL context.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "viewer/mesh_scene.h"
+
+namespace sgm::viewer {
+
+class MeshView {
+public:
+    Status setMesh(const PreparedMesh& mesh);
+    void setLook(const PictureOptions& options, const MeshStyle& style);
+    bool hasMesh() const { return scene_.has_value(); }
+    /// Draws what changed, else completes the light, else draws with smooth edges.
+    Status step();
+    bool finished() const { return !scene_ || (drawn_ && smooth_ && lit_); }
+    bool visible() const { return scene_ && drawn_; }
+    uint32_t texture() const { return texture_.id(); }
+    size_t triangleCount() const { return scene_ ? scene_->triangleCount() : 0; }
+    /// The picture so far; whole when `finished`.
+    Image image() const { return {texture_.width(), texture_.height(), texture_.read()}; }
+
+private:
+    Status draw(int samples);
+
+    std::optional<MeshScene> scene_;
+    Program encode_;
+    PictureOptions look_;
+    MeshStyle style_;
+    DisplayTexture texture_;
+    std::optional<ColorTarget> targets_[2];  ///< one sample a pixel; several
+    bool drawn_ = false, smooth_ = false, lit_ = false;
+};
+
+}  // namespace sgm::viewer

@@ -1,0 +1,29 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "viewer/window/panels.h"
+#include "viewer/window/style.h"
+
+namespace sgm::viewer {
+
+void problemsPanel(Workbench& bench) {
+    const std::vector<Problem>& problems = bench.session.problems();
+    ImGui::BeginChild("rows");
+    for (size_t i = 0; i < problems.size(); ++i) {
+        const Problem& p = problems[i];
+        ImGui::PushID(static_cast<int>(i));
+        const bool isError = p.severity == syntax::Severity::Error;
+        ImGui::PushStyleColor(ImGuiCol_Text, isError ? tint::error : tint::warning);
+        ImGui::TextUnformatted(isError ? "error" : "warning");
+        ImGui::PopStyleColor();
+        ImGui::SameLine();
+        const std::string place = p.line ? fmt::format("line {}: ", p.line) : std::string();
+        const std::string text = place + p.message + (p.mend.empty() ? "" : "  -  " + p.mend);
+        if (ImGui::Selectable(text.c_str()) && p.line) bench.revealPlace(p);
+        bench.report.mark(fmt::format("problem.{}", i));
+        ImGui::PopID();
+    }
+    ImGui::EndChild();
+}
+
+}  // namespace sgm::viewer

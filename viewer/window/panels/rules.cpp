@@ -1,0 +1,242 @@
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <array>
+#include <cctype>
+
+#include "viewer/window/panels.h"
+#include "viewer/window/style.h"
+#include "viewer/window/widgets.h"
+
+namespace sgm::viewer {
+namespace {
+
+using namespace widgets;
+using syntax::Element;
+using syntax::Operation;
+using syntax::Operator;
+using Kind = RuleRow::Kind;
+
+std::string textOf(const std::optional<syntax::Expr>& e) { return e ? std::string(e->span.text()) : std::string(); }
+
+/// What stands behind an attribute's name.
+std::string argumentsOf(const syntax::Attribute& attribute) {
+    const std::string_view all = attribute.span.text();
+    const size_t from = all.find_first_not_of(" \t\n", attribute.name.text.size());
+    return from == std::string_view::npos ? "" : std::string(all.substr(from));
+}
+
+ImU32 colorOf(const RuleRow& row) {
+    switch (row.kind) {
+        case Kind::Start:
+        case Kind::Rule: return tint::text;
+        case Kind::Element:
+            if (row.element->kind != Element::Kind::Shape) return tint::accent;
+            if (row.element->solid && row.element->solid->text.size() && std::isupper(static_cast<unsigned char>(row.element->solid->text[0]))) return tint::nonTerminal;
+            return row.element->live.empty() ? tint::terminal : tint::nonTerminal;
+        default: return tint::faint;
+    }
+}
+
+/// What an example of an operation gives it: the text up to the first blank outside parentheses.
+std::string firstArgument(std::string_view text) {
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    int open = 0;
+    size_t end = 0;
+    for (; end < text.size() && (open > 0 || text[end] != ' '); ++end) open += text[end] == '(' ? 1 : text[end] == ')' ? -1 : 0;
+    return std::string(text.substr(0, end));
+}
+
+void label(const char* text, float& left) {
+    left = ImGui::GetCursorPosX() + ImGui::GetFontSize() * 5;
+    ImGui::AlignTextToFramePadding();
+    faint(text);
+    ImGui::SameLine(left);
+}
+
+}  // namespace
+
+void RulesPanel::show(Workbench& bench) {
+    if (listed_ != bench.document.ast()) {
+        listed_ = bench.document.ast();
+        rows_ = ruleRows(*listed_);
+    }
+    if (bench.revealRule) {
+        const size_t row = rowAt(rows_, *bench.revealRule);
+        if (row < rows_.size()) at_ = rows_[row].span.begin, kind_ = rows_[row].kind;
+        bench.revealRule.reset();
+        scroll_ = true;
+    }
+    size_t selected = rows_.size();
+    if (at_)
+        for (size_t i = rows_.size(); i-- > 0;)
+            if (rows_[i].span.begin == *at_ && (rows_[i].kind == kind_ || selected == rows_.size())) selected = i;
+    const float below = selected < rows_.size() ? ImGui::GetContentRegionAvail().y * 0.46f : ImGui::GetFrameHeightWithSpacing() * 1.3f;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(8, 2));
+    if (ImGui::BeginChild("rows", {0, -below})) {
+        ImGuiListClipper clipper;
+        clipper.Begin(static_cast<int>(rows_.size()), ImGui::GetTextLineHeight() + 6);
+        while (clipper.Step())
+            for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) row(bench, size_t(i));
+        if (std::exchange(scroll_, false)) ImGui::SetScrollY(std::max(0.0f, (ImGui::GetTextLineHeight() + 6) * static_cast<float>(selected) - ImGui::GetWindowHeight() / 3));
+    }
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+    ImGui::Separator();
+    if (ImGui::BeginChild("inspector")) {
+        if (selected < rows_.size()) inspector(bench, rows_[selected]);
+        const float width = ImGui::CalcTextSize("Add rule").x + 2 * ImGui::GetStyle().FramePadding.x;
+        field(bench.report, "rule.new", newRule_, "Name -> body", ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
+        ImGui::SameLine();
+        const size_t arrow = newRule_.find("->");
+        if (button(bench.report, "rule.add", "Add rule", "A new rule, behind the selected one or the last of its shape", arrow != std::string::npos)) {
+            std::string symbol = newRule_.substr(0, arrow);
+            while (!symbol.empty() && symbol.back() == ' ') symbol.pop_back();
+            const syntax::RuleDecl* after = selected < rows_.size() ? rows_[selected].rule : nullptr;
+            const size_t body = std::min(newRule_.find_first_not_of(' ', arrow + 2), newRule_.size());
+            bench.edit(edits::addRule(*listed_, symbol, newRule_.substr(body), after), "Add rule for " + symbol);
+        }
+    }
+    ImGui::EndChild();
+}
+
+void RulesPanel::row(Workbench& bench, size_t index) {
+    const RuleRow& row = rows_[index];
+    ImGui::PushID(static_cast<int>(index));
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const bool isHead = row.depth == 0, selected = at_ && *at_ == row.span.begin && kind_ == row.kind;
+    if (ImGui::Selectable("##row", selected, 0, {0, ImGui::GetTextLineHeight() + 4})) {
+        at_ = row.span.begin;
+        kind_ = row.kind;
+        bench.reveal = {row.span.begin, row.span.end};
+        bench.selectText(row.span.begin);
+    }
+    bench.report.mark(fmt::format("rule.{}.{}", listed_->source->place(row.span.begin).line, row.text));
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    ImFont* font = isHead ? strongFont() : codeFont();
+    const float x = low.x + 4 + static_cast<float>(row.depth) * 14;
+    const std::string text = (row.kind == Kind::Element && row.first && row.sibling > 0 ? ", " : "") + row.text;
+    list.AddText(font, font->FontSize, {x, low.y + 2}, colorOf(row), text.c_str());
+    ImGui::PopID();
+}
+
+template <class Commit>
+void RulesPanel::part(Workbench& bench, const char* name, const std::string& value, Commit commit) {
+    float left = 0;
+    label(name, left);
+    const std::string id = std::string("edit.") + name;
+    std::string text = holding_ == id ? held_ : value;
+    ImGui::PushFont(codeFont());
+    const bool done = field(bench.report, id, text);
+    ImGui::PopFont();
+    if (ImGui::IsItemActive()) {
+        holding_ = id;
+        held_ = text;
+    } else if (holding_ == id) {
+        holding_.clear();
+    }
+    if (done && text != value) bench.edit(commit(text), fmt::format("Change {}", name));
+}
+
+void RulesPanel::inspector(Workbench& bench, const RuleRow& row) {
+    const syntax::Ast& ast = *listed_;
+    if (row.kind == Kind::Element || row.kind == Kind::Attribute) elementInspector(bench, row);
+    else if (row.rule) ruleInspector(bench, row);
+    else if (row.start) part(bench, "body", std::string(row.start->body.span.text()), [&](const std::string& t) { return edits::setBody(ast, row.start->body, t); });
+    if (row.kind == Kind::Case && row.expression) part(bench, "label", std::string(row.expression->span.text()), [&](const std::string& t) { return edits::setExpression(ast, *row.expression, t); });
+}
+
+void RulesPanel::ruleInspector(Workbench& bench, const RuleRow& row) {
+    const syntax::Ast& ast = *listed_;
+    const syntax::RuleDecl& rule = *row.rule;
+    const std::string called = rule.name.empty() ? rule.symbol.text : rule.name.text;
+    if (button(bench.report, "rule.duplicate", "Duplicate")) bench.edit(edits::duplicateRule(ast, rule), "Duplicate rule " + called);
+    ImGui::SameLine();
+    if (button(bench.report, "rule.delete", "Delete")) bench.edit(edits::removeRule(ast, rule), "Delete rule " + called);
+    const auto at = static_cast<size_t>(&rule - ast.rules.data());
+    ImGui::SameLine();
+    if (button(bench.report, "rule.up", "Up", nullptr, at > 0)) bench.edit(edits::moveRule(ast, rule, &ast.rules[at - 1]), "Move rule " + called);
+    ImGui::SameLine();
+    if (button(bench.report, "rule.down", "Down", nullptr, at + 1 < ast.rules.size()))
+        bench.edit(edits::moveRule(ast, rule, at + 2 < ast.rules.size() ? &ast.rules[at + 2] : nullptr), "Move rule " + called);
+    part(bench, "name", rule.name.text, [&](const std::string& t) { return edits::setName(ast, rule, t); });
+    part(bench, "shape", rule.symbol.text, [&](const std::string& t) { return edits::setSymbol(ast, rule, t); });
+    part(bench, "when", textOf(rule.when), [&](const std::string& t) { return edits::setGuard(ast, rule, t); });
+    part(bench, "repeat", textOf(rule.repeat), [&](const std::string& t) { return edits::setRepeat(ast, rule, t); });
+    part(bench, "weight", textOf(rule.weight), [&](const std::string& t) { return edits::setWeight(ast, rule, t); });
+    part(bench, "beside", rule.beside.text, [&](const std::string& t) { return edits::setBeside(ast, rule, t); });
+}
+
+void RulesPanel::elementInspector(Workbench& bench, const RuleRow& row) {
+    const syntax::Ast& ast = *listed_;
+    const Element& element = *row.element;
+    constexpr std::array operators{"content", "+", "-", "&", "morph"};
+    int op = static_cast<int>(element.op);
+    if (oneOf(bench.report, "op", operators, op))
+        bench.edit(edits::setOperator(ast, element, static_cast<Operator>(op)), fmt::format("{} becomes {}", operators[static_cast<size_t>(element.op)], operators[size_t(op)]));
+    if (button(bench.report, "element.duplicate", "Duplicate")) bench.edit(edits::duplicateElement(ast, element), "Duplicate a shape");
+    ImGui::SameLine();
+    if (button(bench.report, "element.delete", "Delete")) bench.edit(edits::removeElement(ast, element), "Delete a shape");
+    ImGui::SameLine();
+    if (button(bench.report, "element.up", "Up")) bench.edit(edits::moveElement(ast, element, -1), "Move a shape");
+    ImGui::SameLine();
+    if (button(bench.report, "element.down", "Down")) bench.edit(edits::moveElement(ast, element, 1), "Move a shape");
+    if (element.kind == Element::Kind::Shape) {
+        part(bench, "solid", textOf(element.solid), [&](const std::string& t) { return edits::setSolid(ast, element, t); });
+        part(bench, "live", element.live.text, [&](const std::string& t) { return edits::setLive(ast, element, t); });
+    } else if (element.over) {
+        part(bench, "over", textOf(element.over), [&](const std::string& t) { return edits::setExpression(ast, *element.over, t); });
+    }
+    attributes(bench, element);
+}
+
+void RulesPanel::attributes(Workbench& bench, const Element& element) {
+    const syntax::Ast& ast = *listed_;
+    const auto find = [&](Operation::Id id) -> const syntax::Attribute* {
+        for (const auto* list : {&element.before, &element.after})
+            for (const syntax::Attribute& a : *list)
+                if (a.id == id) return &a;
+        return nullptr;
+    };
+    // Joints have a row of buttons: retargeting one is what hands do most.
+    if (element.op != Operator::None) {
+        const syntax::Attribute* at = find(Operation::Id::At);
+        constexpr std::array joints{"+x", "-x", "+y", "-y", "+z", "-z", "centre"};
+        int joint = -1;
+        for (size_t i = 0; i < joints.size(); ++i)
+            if (at && argumentsOf(*at) == joints[i]) joint = static_cast<int>(i);
+        float left = 0;
+        label("joint", left);
+        if (oneOf(bench.report, "joint", joints, joint)) bench.edit(edits::setAttribute(ast, element, Operation::Id::At, joints[size_t(joint)]), fmt::format("Join at {}", joints[size_t(joint)]));
+    }
+    std::vector<std::string> more{"Add …"};
+    std::vector<Operation::Id> ids{Operation::Id::Size};
+    for (const Operation& operation : syntax::operations()) {
+        if (!operation.supported || operation.block) continue;
+        const syntax::Attribute* there = find(operation.id);
+        if (!there) {
+            if (operation.arguments.empty()) continue;
+            more.emplace_back(operation.name);
+            ids.push_back(operation.id);
+            continue;
+        }
+        const std::string name(operation.name);
+        part(bench, name.c_str(), argumentsOf(*there), [&](const std::string& t) {
+            return t.empty() ? edits::removeAttribute(ast, element, operation.id) : edits::setAttribute(ast, element, operation.id, t);
+        });
+        hint(std::string(operation.doc).c_str());
+    }
+    float left = 0;
+    label("more", left);
+    int chosen = 0;
+    if (!choice(bench.report, "attribute.add", more, chosen)) return;
+    // The row's own example shows how its argument is written.
+    const Operation& operation = *syntax::findOperation(more[size_t(chosen)]);
+    std::string_view example = operation.example;
+    const size_t from = example.find(operation.name);
+    example = from == std::string_view::npos ? std::string_view("1") : example.substr(from + operation.name.size());
+    bench.edit(edits::setAttribute(ast, element, ids[size_t(chosen)], firstArgument(example)), fmt::format("Add {}", operation.name));
+}
+
+}  // namespace sgm::viewer

@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <nlohmann/json.hpp>
+
+#include "viewer/window/panels.h"
+#include "viewer/window/style.h"
+
+namespace sgm::viewer {
+namespace {
+
+/// Problems of the document's own file, as far as they are about its present text.
+std::vector<LineNote> notesOf(const Workbench& bench) {
+    std::vector<LineNote> notes;
+    const std::string& name = bench.document.ast()->source->name();
+    for (const Problem& p : bench.session.problems()) {
+        if (p.file != name || p.line == 0) continue;
+        const uint32_t end = p.endLine == p.line ? p.endColumn - 1 : ~uint32_t(0) >> 1;
+        notes.push_back({p.line - 1, p.column - 1, end, p.message + (p.mend.empty() ? "" : "  (" + p.mend + ")"),
+                         p.severity == syntax::Severity::Error ? tint::error : tint::warning});
+    }
+    return notes;
+}
+
+}  // namespace
+
+void TextPanel::show(Workbench& bench) {
+    if (colored_ != bench.document.ast()) {
+        colored_ = bench.document.ast();
+        colors_ = colours(*colored_);
+    }
+    if (bench.reveal) {
+        editor_.reveal(bench.reveal->first, bench.reveal->second);
+        bench.reveal.reset();
+    }
+    const std::optional<std::string> typed = editor_.show(bench.report, bench.document.text(), colors_, notesOf(bench));
+    bench.typing = editor_.active();
+    const auto [begin, end] = editor_.selection();
+    if (bench.report.active()) bench.report.state()["textSelection"] = bench.document.text().substr(std::min<size_t>(begin, bench.document.text().size()), end - begin);
+    if (typed) bench.document.type(*typed);
+    else if (editor_.clicked()) bench.selectText(editor_.caret());
+}
+
+}  // namespace sgm::viewer

@@ -1,0 +1,177 @@
+#include "viewer/window/viewport.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "viewer/window/overlay.h"
+#include "viewer/window/style.h"
+
+namespace sgm::viewer {
+namespace {
+
+constexpr float clickSlack = 4;  // pixels a click may wander
+
+ImTextureID textureOf(uint32_t id) { return reinterpret_cast<ImTextureID>(static_cast<intptr_t>(id)); }
+
+enum class Grip { None, Turn, Move, Approach };
+
+/// What the pressed buttons do to the camera.
+Grip gripOf(Hands hands) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto down = [](int button) { return ImGui::IsMouseDragging(button, clickSlack); };
+    if (hands == Hands::Blender) {
+        if (!down(ImGuiMouseButton_Middle)) return Grip::None;
+        return io.KeyShift ? Grip::Move : io.KeyCtrl ? Grip::Approach : Grip::Turn;
+    }
+    // With Alt the same buttons mean the same, as hands trained on Maya expect.
+    if (down(ImGuiMouseButton_Left)) return io.KeyShift ? Grip::Move : Grip::Turn;
+    if (down(ImGuiMouseButton_Middle)) return Grip::Move;
+    return down(ImGuiMouseButton_Right) ? Grip::Approach : Grip::None;
+}
+
+void moveCamera(Workbench& bench, float height) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const double x = io.MouseDelta.x / height, y = io.MouseDelta.y / height;
+    switch (gripOf(bench.look.hands)) {
+        case Grip::Turn: bench.orbit.turn(x, y); break;
+        case Grip::Move: bench.orbit.move(x, y); break;
+        case Grip::Approach: bench.orbit.approach(std::exp(2.5 * (y - x))); break;
+        case Grip::None: break;
+    }
+}
+
+/// What lies under a place of the picture.
+std::optional<Hover> hoverAt(Workbench& bench, ImVec2 low, ImVec2 mouse) {
+    const auto pick = bench.field.pick(static_cast<int>(mouse.x - low.x), static_cast<int>(mouse.y - low.y));
+    return pick ? bench.hoverOf(*pick) : std::nullopt;
+}
+
+/// A shape that is dragged here from the Shapes panel is joined at the joint under the pointer.
+void takeShape(Workbench& bench, const Projection& project, ImDrawList& list) {
+    const ImGuiPayload* dragged = ImGui::GetDragDropPayload();
+    if (!dragged || !dragged->IsDataType("shape") || !bench.tree()) return;
+    const std::vector<ScreenJoint> joints = screenJoints(*bench.tree(), everyOwner(*bench.tree()), project);
+    drawJoints(joints, list);
+    for (const ScreenJoint& joint : joints) {
+        const float r = ImGui::GetFontSize() * 0.3f;
+        bench.report.mark(fmt::format("joint.{}.{}", bench.tree()->path(joint.mark.shape, true), joint.mark.name), {joint.at.x - r, joint.at.y - r}, {joint.at.x + r, joint.at.y + r});
+    }
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const ScreenJoint* nearest = nearestJoint(joints, mouse, ImGui::GetFontSize());
+    if (nearest) list.AddCircle(nearest->at, ImGui::GetFontSize() * 0.5f, tint::selected, 0, 2.5f);
+    if (!ImGui::BeginDragDropTarget()) return;
+    if (const ImGuiPayload* dropped = ImGui::AcceptDragDropPayload("shape", ImGuiDragDropFlags_AcceptNoDrawDefaultRect); dropped && nearest)
+        bench.attach(*static_cast<const derive::ShapeId*>(dropped->Data), nearest->mark.shape, nearest->mark.joint);
+    ImGui::EndDragDropTarget();
+}
+
+PictureOptions optionsFor(const Workbench& bench, ImVec2 size) {
+    PictureOptions options;
+    options.width = static_cast<int>(size.x);
+    options.height = static_cast<int>(size.y);
+    options.camera = bench.orbit.camera(size.x / size.y);
+    options.ground = bench.look.ground && bench.orbit.lamp_m == 0;
+    return options;
+}
+
+void showField(Workbench& bench, ImVec2 low, ImVec2 size) {
+    bench.field.setLook(optionsFor(bench, size));
+    // A camera that moves always has a picture, if a coarse one.
+    if (!bench.field.visible())
+        if (const Status s = bench.field.step(); !s) bench.say(s.error().message, true);
+    if (!bench.field.visible()) return;
+    const ImVec2 high(low.x + size.x, low.y + size.y);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddImage(textureOf(bench.field.coarse()), low, high);
+    list.AddImage(textureOf(bench.field.fine()), low, high);
+}
+
+void showMesh(Workbench& bench, ImVec2 low, ImVec2 size) {
+    bench.mesh.setLook(optionsFor(bench, size), bench.meshStyle());
+    if (!bench.mesh.visible())
+        if (const Status s = bench.mesh.step(); !s) bench.say(s.error().message, true);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    if (bench.mesh.visible()) list.AddImage(textureOf(bench.mesh.texture()), low, ImVec2(low.x + size.x, low.y + size.y));
+    if (bench.mesh.hasMesh()) return;
+    const char* text = bench.busy() ? "Meshing…" : "No mesh";
+    const ImVec2 half = ImGui::CalcTextSize(text);
+    list.AddText(ImVec2(low.x + (size.x - half.x) / 2, low.y + (size.y - half.y) / 2), tint::faint, text);
+}
+
+/// One picture with its hands and overlays; `name` is what the report calls it.
+void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMesh) {
+    ImGui::SetCursorScreenPos(low);
+    ImGui::InvisibleButton(name, size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);
+    bench.report.mark(name);
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool hovered = ImGui::IsItemHovered();
+    if (ImGui::IsItemActive()) moveCamera(bench, size.y);
+    if (hovered && io.MouseWheel != 0) bench.orbit.approach(std::pow(0.85, io.MouseWheel));
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.PushClipRect(low, ImVec2(low.x + size.x, low.y + size.y), true);
+    isMesh ? showMesh(bench, low, size) : showField(bench, low, size);
+    const Projection project(bench.orbit.camera(size.x / size.y), low, size);
+    if (bench.tree() && bench.selected() != derive::none) drawScope(bench, bench.selected(), project, list);
+    drawBonds(bench, project, list);
+    drawAxes(project, list);
+    takeShape(bench, project, list);
+    list.PopClipRect();
+    const bool moving = io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
+    if (!hovered || ImGui::IsAnyMouseDown()) {
+        if (!hovered && bench.look.pane != Pane::Split) bench.hover.reset();
+    } else if (moving || !bench.hover) {
+        bench.hover = hoverAt(bench, low, io.MousePos);
+    }
+    const ImVec2 wandered = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0);
+    const bool click = hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && std::hypot(wandered.x, wandered.y) < clickSlack;
+    if (click) {
+        bench.hover = hoverAt(bench, low, io.MousePos);
+        bench.select(bench.hover ? bench.hover->shape : derive::none);
+    }
+    if (hovered && bench.hover && !ImGui::IsAnyMouseDown()) {
+        ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(10, 6));
+        ImGui::BeginTooltip();
+        ImGui::TextUnformatted(bench.hover->text.c_str());
+        ImGui::EndTooltip();
+        ImGui::PopStyleVar();
+    }
+}
+
+}  // namespace
+
+void viewport(Workbench& bench) {
+    const ImVec2 low = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    const ImVec2 size(std::floor(std::max(room.x, 32.0f)), std::floor(std::max(room.y, 32.0f)));
+    if (bench.look.pane == Pane::Split) {
+        const float half = std::floor((size.x - 2) / 2);
+        view(bench, "view.field", low, {half, size.y}, false);
+        view(bench, "view.mesh", {low.x + half + 2, low.y}, {half, size.y}, true);
+    } else {
+        const bool isMesh = bench.look.pane == Pane::Mesh;
+        // Picking asks the field, so its look follows even where it isn't shown.
+        if (isMesh) bench.field.setLook(optionsFor(bench, size));
+        view(bench, isMesh ? "view.mesh" : "view.field", low, size, isMesh);
+    }
+}
+
+void viewKeys(Workbench& bench) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.KeyCtrl || io.KeyAlt || io.KeySuper) return;
+    // The grammar's own keys go first.
+    const auto pressed = [&](int key) { return ImGui::IsKeyPressed(key, false) && bench.hotkeys.find(static_cast<char>(std::tolower(key & 127))) == std::string::npos; };
+    if (pressed(GLFW_KEY_F)) bench.frameSelection();
+    if (pressed(GLFW_KEY_A)) bench.frameAll();
+    if (ImGui::IsKeyPressed(GLFW_KEY_HOME, false)) {
+        bench.orbit.look(StandardView::ThreeQuarter);
+        bench.frameAll();
+    }
+    for (int view = 1; view <= 7; ++view)
+        if (pressed(GLFW_KEY_0 + view) || pressed(GLFW_KEY_KP_0 + view)) bench.orbit.look(static_cast<StandardView>(view));
+}
+
+}  // namespace sgm::viewer

@@ -1,0 +1,106 @@
+#include "viewer/window/widgets.h"
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "viewer/window/style.h"
+
+namespace sgm::viewer::widgets {
+
+void hint(const char* text) {
+    if (!text || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+bool button(Report& report, const std::string& name, const char* label, const char* text, bool enabled) {
+    ImGui::BeginDisabled(!enabled);
+    ImGui::PushID(name.c_str());
+    const bool pressed = ImGui::Button(label);
+    ImGui::PopID();
+    ImGui::EndDisabled();
+    report.mark(name);
+    hint(text);
+    return pressed;
+}
+
+bool quietButton(Report& report, const std::string& name, const char* label, const char* text, bool enabled) {
+    ImGui::PushStyleColor(ImGuiCol_Button, 0);
+    const bool pressed = button(report, name, label, text, enabled);
+    ImGui::PopStyleColor();
+    return pressed;
+}
+
+bool oneOf(Report& report, const std::string& name, std::span<const char* const> labels, int& value) {
+    const int before = value;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(1, 0));
+    for (int i = 0; i < static_cast<int>(labels.size()); ++i) {
+        if (i > 0) ImGui::SameLine();
+        if (i == before) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_HeaderActive));
+        const bool pressed = button(report, name + "." + labels[size_t(i)], labels[size_t(i)]);
+        if (i == before) ImGui::PopStyleColor();
+        if (pressed) value = i;
+    }
+    ImGui::PopStyleVar();
+    return value != before;
+}
+
+bool toggle(Report& report, const std::string& name, const char* label, bool& value, const char* text) {
+    ImGui::PushID(name.c_str());
+    const bool changed = ImGui::Checkbox(label, &value);
+    ImGui::PopID();
+    report.mark(name);
+    hint(text);
+    return changed;
+}
+
+bool choice(Report& report, const std::string& name, std::span<const std::string> items, int& value, float width) {
+    bool changed = false;
+    const bool known = value >= 0 && value < static_cast<int>(items.size());
+    ImGui::SetNextItemWidth(width > 0 ? width : -FLT_MIN);
+    ImGui::PushID(name.c_str());
+    const bool open = ImGui::BeginCombo("##choice", known ? items[size_t(value)].c_str() : "");
+    if (!open) report.mark(name);
+    if (open) {
+        for (int i = 0; i < static_cast<int>(items.size()); ++i) {
+            ImGui::PushID(i);
+            if (ImGui::Selectable(items[size_t(i)].c_str(), i == value) && i != value) {
+                value = i;
+                changed = true;
+            }
+            report.mark(name + "." + items[size_t(i)]);
+            ImGui::PopID();
+        }
+        ImGui::EndCombo();
+    }
+    ImGui::PopID();
+    return changed;
+}
+
+bool field(Report& report, const std::string& name, std::string& text, const char* empty, float width) {
+    ImGui::SetNextItemWidth(width > 0 ? width : -FLT_MIN);
+    ImGui::PushID(name.c_str());
+    ImGui::InputTextWithHint("##field", empty ? empty : "", &text, ImGuiInputTextFlags_AutoSelectAll);
+    const bool changed = ImGui::IsItemDeactivatedAfterEdit();
+    ImGui::PopID();
+    report.mark(name);
+    return changed;
+}
+
+void heading(const char* text) {
+    ImGui::Dummy(ImVec2(0, 2));
+    ImGui::PushFont(strongFont());
+    ImGui::TextUnformatted(text);
+    ImGui::PopFont();
+}
+
+void faint(const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, tint::faint);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+}
+
+}  // namespace sgm::viewer::widgets

@@ -1,0 +1,30 @@
+// The widgets of the panels: ImGui's, marked in the report under a name.
+// Enters: a report and a name such as "bar.save". Leaves: what was pressed. Assumes a frame of ImGui.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "viewer/window/report.h"
+
+namespace sgm::viewer::widgets {
+
+/// A button; `hint` explains it while the pointer rests on it.
+bool button(Report& report, const std::string& name, const char* label, const char* hint = nullptr, bool enabled = true);
+/// A button that is only its text.
+bool quietButton(Report& report, const std::string& name, const char* label, const char* hint = nullptr, bool enabled = true);
+/// One of several, side by side. True when another was chosen.
+bool oneOf(Report& report, const std::string& name, std::span<const char* const> labels, int& value);
+bool toggle(Report& report, const std::string& name, const char* label, bool& value, const char* hint = nullptr);
+/// A combo box of `width` pixels (0: what is left). Its items are reported as NAME.ITEM while it is open.
+bool choice(Report& report, const std::string& name, std::span<const std::string> items, int& value, float width = 0);
+/// A line of text; true when it was ended with Enter or left, changed.
+bool field(Report& report, const std::string& name, std::string& text, const char* hint = nullptr, float width = 0);
+/// A heading within a panel.
+void heading(const char* text);
+/// `text` in the faint colour, cut with … at the right edge.
+void faint(const std::string& text);
+/// Explains the widget just made while the pointer rests on it.
+void hint(const char* text);
+
+}  // namespace sgm::viewer::widgets

@@ -1,0 +1,295 @@
+#include "viewer/window/workbench.h"
+
+#include <fmt/format.h>
+
+#include "modeler/core/conventions.h"
+
+namespace sgm::viewer {
+
+Workbench::Workbench(Report& report, std::function<void()> wake)
+    : report(report), session(wake), preparer(std::move(wake)) {}
+
+Status Workbench::open(const std::filesystem::path& path) {
+    Result<Document> opened = Document::open(path);
+    if (!opened) return opened.error();
+    document = std::move(*opened);
+    selected_ = derive::none;
+    endSteps();
+    framed_ = false;
+    asked_ = ~uint64_t(0);
+    refresh();
+    return Done{};
+}
+
+void Workbench::edit(const edits::Edit& edit, const std::string& label) {
+    if (!edit) return say(edit.error().message, true);
+    if (const Status s = document.apply(*edit, label); !s) return say(s.error().message, true);
+    say(label);
+}
+
+void Workbench::undo() {
+    if (!document.canUndo()) return;
+    say(fmt::format("Undone: {}", document.undoLabel()));
+    document.undo();
+    resolveSelection();
+}
+
+void Workbench::redo() {
+    if (!document.canRedo()) return;
+    say(fmt::format("Done again: {}", document.redoLabel()));
+    document.redo();
+    resolveSelection();
+}
+
+void Workbench::save(bool overwrite) {
+    const Status s = document.save(overwrite);
+    s ? say(fmt::format("Saved {}", document.path().string())) : say(s.error().message, true);
+}
+
+void Workbench::refresh() {
+    recovery_.keep(document);
+    followSteps();
+    const int resolution = wantsMesh() ? look.meshResolution : 0;
+    if (asked_ == document.revision() && askedResolution_ == resolution && askedByHand_ == byHand_.get()) return;
+    ShowRequest request = requestOf(document);
+    request.meshResolution = resolution;
+    request.byHand = byHand_;
+    asked_ = document.revision();
+    askedResolution_ = resolution;
+    askedByHand_ = byHand_.get();
+    session.show(std::move(request));
+    settled_ = false;
+}
+
+bool Workbench::poll() {
+    const bool settled = !working();
+    const auto model = session.model();
+    const auto meshed = session.mesh();
+    bool news = session.poll();
+    if (session.model() != model && session.model()) {
+        resolveSelection();
+        hover.reset();
+        preparer.prepare(session.model());
+    }
+    if (session.mesh() != meshed && session.mesh()) preparer.prepare(session.mesh());
+    Preparer::Ready ready = preparer.poll();
+    if (ready.field.field) {
+        if (const Status s = field.setField(ready.field.field); !s) say(s.error().message, true);
+        cellSeconds = ready.field.seconds;
+        if (!framed_) {
+            orbit = Orbit::from(frame(ready.field.of->model.tape, ready.field.field->bounds, 1));
+            framed_ = true;
+        }
+        news = true;
+    }
+    if (ready.mesh.mesh) {
+        if (const Status s = mesh.setMesh(*ready.mesh.mesh); !s) say(s.error().message, true);
+        news = true;
+    }
+    if (!ready.problem.empty()) say(ready.problem, true);
+    settled_ = settled && !working();
+    return news;
+}
+
+void Workbench::select(derive::ShapeId shape, bool quiet) {
+    selected_ = shape;
+    document.select(shape == derive::none ? "" : tree()->path(shape, true));
+    if (shape == derive::none || quiet) return;
+    const syntax::SourceSpan span = tree()->shapes[shape].span;
+    if (span.source && span.source == shown()->grammar->sources.front().get()) {
+        reveal = {span.begin, span.end};
+        revealRule = span.begin;
+    }
+}
+
+void Workbench::revealPlace(const Problem& problem) {
+    const syntax::Source& source = *document.ast()->source;
+    if (problem.file != source.name() || !problem.line) return say(fmt::format("{}:{}: {}", problem.file, problem.line, problem.message), true);
+    const std::string_view line = source.line(problem.line);
+    const auto start = static_cast<uint32_t>(line.data() - source.text().data());
+    const uint32_t begin = start + std::min<uint32_t>(problem.column - 1, static_cast<uint32_t>(line.size()));
+    const uint32_t end = problem.endLine == problem.line ? start + problem.endColumn - 1 : start + static_cast<uint32_t>(line.size());
+    reveal = {begin, std::max(begin, end)};
+}
+
+void Workbench::resolveSelection() {
+    selected_ = tree() ? viewer::selected(*tree(), document.choice().selection) : derive::none;
+}
+
+void Workbench::selectText(uint32_t offset) {
+    if (!shown() || !isCurrent(document, *shown())) return;
+    const std::vector<derive::ShapeId> made = shapesAt(shown()->model.derivation, offset);
+    if (made.empty()) return;
+    const auto present = std::find(made.begin(), made.end(), selected_);
+    select(present == made.end() || present + 1 == made.end() ? made.front() : present[1], true);
+    if (made.size() > 1) say(fmt::format("One of {} shapes that this text made; click again for the next", made.size()));
+}
+
+std::optional<Hover> Workbench::hoverOf(const Pick& pick) const {
+    if (pick.kind != HitKind::Object || !shown()) return std::nullopt;
+    const auto picked = viewer::pick(*shown(), pick.origin);
+    if (!picked) return std::nullopt;
+    Hover hover{pick.position, picked->shape, fmt::format("{}  ·  {}", picked->symbol, picked->rule.empty() ? "start" : "rule " + picked->rule)};
+    if (picked->element.source)
+        hover.text += fmt::format("  ·  {}:{}", std::filesystem::path(picked->element.source->name()).filename().string(), picked->element.source->place(picked->element.begin).line);
+    return hover;
+}
+
+void Workbench::attach(derive::ShapeId moved, derive::ShapeId host, uint32_t joint) {
+    edit(viewer::attach(document, *shown(), moved, host, joint), fmt::format("Join at {}", tree()->joint(host, joint).name));
+}
+
+void Workbench::beginSteps(const std::string& way) {
+    if (!shown()) return;
+    derive::Options options = shown()->options;
+    options.derive = way;
+    Result<Stepper> begun = Stepper::begin(shown()->grammar, options);
+    if (!begun) return say(begun.error().message, true);
+    stepper.emplace(std::move(*begun));
+    steppedAt_ = document.revision();
+    stepped(Done{}, "Pick a live shape, then a rule");
+}
+
+void Workbench::stepped(const Status& done, const std::string& what) {
+    if (!done) return say(done.error().message, true);
+    Result<std::shared_ptr<const derive::Derivation>> derivation = stepper->derivation();
+    if (!derivation) return say(derivation.error().message, true);
+    byHand_ = *derivation;
+    say(what);
+}
+
+void Workbench::endSteps() {
+    stepper.reset();
+    byHand_ = nullptr;
+}
+
+void Workbench::followSteps() {
+    if (!stepper || steppedAt_ == document.revision()) return;
+    byHand_ = nullptr;  // the automatic model of the new text comes first, and brings its grammar
+    if (!shown() || shown()->revision != document.revision() || shown()->byHand) return;
+    const Result<size_t> kept = stepper->follow(shown()->grammar, shown()->options);
+    steppedAt_ = document.revision();
+    kept ? stepped(Done{}, fmt::format("{} steps hold in the new text", *kept)) : say(kept.error().message, true);
+}
+
+Box3d Workbench::bounds() const {
+    if (!shown()) return {{-1, -1, -1}, {1, 1, 1}};
+    return field.hasField() ? field.bounds().as<double>() : shown()->model.lowered->field.bounds.as<double>();
+}
+
+Box3d Workbench::boundsOf(derive::ShapeId shape) const {
+    Box3d box;
+    const derive::ShapeTree& shapes = *tree();
+    for (derive::ShapeId id = shape; id != derive::none; id = shapes.next(id, shape))
+        for (int corner = 0; corner < 8; ++corner)
+            box = hull(box, shapes.shapes[id].scope.point({corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0}));
+    return box;
+}
+
+void Workbench::frameAll() {
+    orbit.lamp_m = 0;
+    orbit.fieldOfView = Camera{}.fieldOfView;
+    orbit.frame(bounds());
+}
+
+void Workbench::frameSelection() {
+    if (selected_ == derive::none) return frameAll();
+    orbit.frame(boundsOf(selected_));
+}
+
+MeshStyle Workbench::meshStyle() const {
+    MeshStyle style = look.mesh;
+    if (look.section) {
+        const Box3d box = bounds();
+        Section section{{0, 0, 0}, 0};
+        section.normal[look.sectionAxis] = 1;
+        section.offset = static_cast<float>(box.lo[look.sectionAxis] + box.size()[look.sectionAxis] * look.sectionShare);
+        style.section = section;
+    }
+    return style;
+}
+
+void Workbench::stepInside() {
+    if (shown() && field.hasField()) orbit = Orbit::from(inside(shown()->model.tape, field.bounds()));
+}
+
+void Workbench::startTurntable(int count) {
+    turntable = Turntable{0, count, orbit.yaw};
+}
+
+Result<bool> Workbench::takePictures() {
+    const bool whole = look.pane == Pane::Mesh ? mesh.visible() && mesh.finished() : field.finished();
+    if (!whole || (!pictureWanted && !turntable)) return false;
+    const std::filesystem::path stem = document.path().empty() ? "untitled" : std::filesystem::path(document.path()).replace_extension();
+    std::string name;
+    if (turntable) {
+        name = fmt::format("{}-turn-{:03}.png", stem.string(), turntable->next);
+    } else {
+        for (int n = 1; name.empty() || std::filesystem::exists(name); ++n) name = fmt::format("{}-{}.png", stem.string(), n);
+    }
+    if (const Status s = writePng(look.pane == Pane::Mesh ? mesh.image() : field.image(), name); !s) return s.error();
+    say("Wrote " + name);
+    if (!turntable) {
+        pictureWanted = false;
+        return true;
+    }
+    const int next = ++turntable->next;
+    orbit.yaw = turntable->yaw + 2 * pi * next / turntable->count;
+    if (next == turntable->count) turntable.reset();
+    return true;
+}
+
+void Workbench::offerAbandoned() {
+    const std::vector<Abandoned> left = abandonedWork();
+    if (left.empty()) return;
+    const Abandoned work = left.front();
+    const std::string name = work.document.empty() ? "a grammar without a name" : work.document.filename().string();
+    question = Question{fmt::format("The window was closed by force; unsaved work on {} was kept.", name),
+                        {{"Go on with it", [this, work] {
+                              document = Document::recovered(work.document, work.text);
+                              selected_ = derive::none;
+                              framed_ = false;
+                              asked_ = ~uint64_t(0);
+                              recovery_.keep(document);
+                              discard(work);
+                          }},
+                         {"Throw it away", [work] { discard(work); }},
+                         {"Later", {}}}};
+}
+
+void Workbench::drop(const std::filesystem::path& path) {
+    const auto go = [this, path] {
+        if (const Status s = open(path); !s) say(s.error().message, true);
+    };
+    if (!document.dirty()) return go();
+    question = Question{fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
+                        {{"Save and open", [this, go] { save(); if (!document.dirty()) go(); }}, {"Open without saving", go}, {"Stay", {}}}};
+}
+
+bool Workbench::mayClose() {
+    if (!document.dirty()) return true;
+    question = Question{fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
+                        {{"Save and close", [this] { save(); leaving = !document.dirty(); }}, {"Close without saving", [this] { leaving = true; }}, {"Stay", {}}}};
+    return false;
+}
+
+bool Workbench::lookAtFiles() {
+    if (session.usedFilesChanged()) asked_ = ~uint64_t(0);
+    switch (document.poll()) {
+        case Document::Outside::Same: return asked_ == ~uint64_t(0);
+        case Document::Outside::Reloaded: say("The file was changed by another program, and is read again"); break;
+        case Document::Outside::Gone: say("The file can't be read any more; save to write it again", true); break;
+        case Document::Outside::Conflict:
+            if (question) return false;
+            question = Question{"Another program has changed the file, and so have you.",
+                                {{"Take the file", [this] { (void)document.takeOutside(); }}, {"Keep mine", [this] { (void)document.keepMine(); }}}};
+    }
+    return true;
+}
+
+void Workbench::say(std::string text, bool problem) {
+    notice = std::move(text);
+    noticeIsProblem = problem;
+}
+
+}  // namespace sgm::viewer

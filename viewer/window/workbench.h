@@ -1,0 +1,161 @@
+// What the panels share: the document, what is computed of it, what is looked at and what is selected; and the verbs.
+// Enters: hands. Leaves: a document that changes by edits alone. Assumes one thread (the window's) and a GL context.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "viewer/document/document.h"
+#include "viewer/document/edits.h"
+#include "viewer/document/picking.h"
+#include "viewer/document/recovery.h"
+#include "viewer/document/session.h"
+#include "viewer/document/stepper.h"
+#include "viewer/window/field_view.h"
+#include "viewer/window/mesh_view.h"
+#include "viewer/window/orbit.h"
+#include "viewer/window/preparer.h"
+#include "viewer/window/report.h"
+
+namespace sgm::viewer {
+
+enum class Pane { Field, Mesh, Split };
+enum class Hands { Usual, Blender };
+enum class JointsShown { None, Selected, All };
+
+/// How the model is looked at; not part of the document.
+struct Look {
+    Pane pane = Pane::Field;
+    MeshStyle mesh;
+    int sectionAxis = 0;         ///< 0 x, 1 y, 2 z
+    float sectionShare = 0.5f;   ///< of the bounds, from low to high
+    bool section = false;
+    int meshResolution = 128;    ///< cells along the longest side
+    bool ground = true;
+    JointsShown joints = JointsShown::Selected;
+    Hands hands = Hands::Usual;
+};
+
+/// Something the person must decide before it goes on.
+struct Question {
+    std::string text;
+    std::vector<std::pair<std::string, std::function<void()>>> answers;  ///< an empty function only closes it
+};
+
+/// Pictures from all around, one a turn of 360° / count.
+struct Turntable {
+    int next = 0, count = 36;
+    double yaw = 0;  ///< of the first, radians
+};
+
+/// What the pointer is over in the view.
+struct Hover {
+    Vec3f position;  ///< metres
+    derive::ShapeId shape = derive::none;
+    std::string text;  ///< "Cell · rule Cell · grotto.sgm:24"
+};
+
+class Workbench {
+public:
+    Workbench(Report& report, std::function<void()> wake);
+
+    // --- The document ---
+    Status open(const std::filesystem::path& path);
+    /// Nothing but a notice where the edit was refused.
+    void edit(const edits::Edit& edit, const std::string& label);
+    void undo();
+    void redo();
+    void save(bool overwrite = false);
+    /// Asks whether to go on with work that a crash left behind.
+    void offerAbandoned();
+    /// Opens another file; asks first where the present text isn't saved.
+    void drop(const std::filesystem::path& path);
+    /// True when nothing is unsaved; else asks, and `leaving` tells later.
+    bool mayClose();
+    /// Takes what other programs changed, or asks. True when something has changed.
+    bool lookAtFiles();
+    /// Asks the session for what the document says now; cheap where nothing changed.
+    void refresh();
+    /// Takes over what the workers have finished. True when something is new.
+    bool poll();
+    /// Something is computed, or has been and waits for `poll`.
+    bool busy() const { return !settled_ || working(); }
+
+    // --- The selection ---
+    /// A shape of the shown model, or none. The text that made it is revealed unless `quiet`.
+    void select(derive::ShapeId shape, bool quiet = false);
+    derive::ShapeId selected() const { return selected_; }
+    const Shown* shown() const { return session.model().get(); }
+    const derive::ShapeTree* tree() const { return shown() ? &shown()->model.derivation.tree : nullptr; }
+    std::optional<Hover> hoverOf(const Pick& pick) const;
+    /// Joins a shape at a joint of another: what dropping it there asks for.
+    void attach(derive::ShapeId moved, derive::ShapeId host, uint32_t joint);
+
+    // --- The derivation by hand ---
+    void beginSteps(const std::string& way);
+    /// Shows the derivation after a step, or says why there was none.
+    void stepped(const Status& done, const std::string& what);
+    void endSteps();
+
+    /// Selects what the text at this byte made; asked again for the same, the next of several.
+    void selectText(uint32_t offset);
+    /// Shows the line of the document that a problem is in.
+    void revealPlace(const Problem& problem);
+
+    // --- The view ---
+    Box3d bounds() const;
+    /// Bounds of a shape and all below it, metres.
+    Box3d boundsOf(derive::ShapeId shape) const;
+    void frameAll();
+    void frameSelection();
+    void stepInside();
+    void startTurntable(int count);
+    /// Writes pictures that were asked for, once the view is whole. True when the view moves on.
+    Result<bool> takePictures();
+    MeshStyle meshStyle() const;
+    bool wantsMesh() const { return look.pane != Pane::Field; }
+    /// One sentence at the bottom of the window.
+    void say(std::string text, bool problem = false);
+
+    Report& report;
+    Document document;
+    Session session;
+    Preparer preparer;
+    FieldView field;
+    MeshView mesh;
+    Orbit orbit;
+    Look look;
+    std::optional<Hover> hover;
+    std::string notice;
+    bool noticeIsProblem = false;
+    std::optional<std::pair<uint32_t, uint32_t>> reveal;  ///< bytes of the text to show, taken by the Text panel
+    std::optional<uint32_t> revealRule;                   ///< a byte of the rule to show, taken by the Rules panel
+    std::optional<Stepper> stepper;  ///< while a person derives by hand
+    std::string hotkeys;             ///< of the grammar's parameters: they go before the view's
+    bool typing = false;             ///< the text takes keys
+    std::optional<Question> question;
+    std::optional<Turntable> turntable;
+    bool pictureWanted = false;
+    bool leaving = false;  ///< the window may close
+    double cellSeconds = 0;  ///< that the last field took to be prepared
+
+private:
+    void resolveSelection();
+
+    bool working() const { return session.busy() || preparer.busy(); }
+    /// Leads the steps over to a new text.
+    void followSteps();
+
+    Recovery recovery_;
+    std::shared_ptr<const derive::Derivation> byHand_;  ///< shown instead of deriving
+    uint64_t steppedAt_ = 0;                            ///< the revision that the steps belong to
+    derive::ShapeId selected_ = derive::none;
+    uint64_t asked_ = ~uint64_t(0);  ///< the revision the session was last asked for
+    int askedResolution_ = 0;
+    const derive::Derivation* askedByHand_ = nullptr;
+    bool settled_ = false;  ///< all that was computed has been taken over
+    bool framed_ = false;  ///< the camera has been set for this file
+};
+
+}  // namespace sgm::viewer
