@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <unordered_map>
-
 #include "grammar/lower/materials.h"
 #include "grammar/lower/solids.h"
 #include "modeler/core/random.h"
@@ -36,7 +34,7 @@ struct Content : Parts {
 /// terms into its parent's, so that thousands of parts meet in one n-ary sum.
 class Lowering {
 public:
-    Lowering(const derive::Derivation& d, Model& model) : d_(d), tree_(d.tree), model_(model), materials_(d) {}
+    Lowering(const derive::Derivation& d, Model& model) : d_(d), tree_(d.tree), model_(model), materials_(d), owners_(d.tree.shapes.size()) {}
 
     Status run(Progress* progress);
 
@@ -59,7 +57,7 @@ private:
     Materials materials_;
     std::vector<Content> open_;
     std::vector<bool> plain_;  ///< by shape: its content is nothing but a sum
-    std::unordered_map<ShapeId, OriginId> owners_;
+    std::vector<OriginId> owners_;  ///< by shape; 0: not asked for
 };
 
 std::vector<bool> Lowering::plainSums() const {
@@ -77,8 +75,8 @@ bool Lowering::pours(ShapeId id) const { return tree_.shapes[id].parent != none 
 
 /// Who owns surface: the part is made when it is first asked for.
 OriginId Lowering::ownerOf(ShapeId id) {
-    const auto [at, fresh] = owners_.try_emplace(id, static_cast<OriginId>(model_.provenance.parts.size()));
-    if (!fresh) return at->second;
+    if (owners_[id] != 0) return owners_[id];
+    owners_[id] = static_cast<OriginId>(model_.provenance.parts.size());
     const Shape& s = tree_.shapes[id];
     Part part;
     part.path = tree_.path(id);
@@ -91,7 +89,7 @@ OriginId Lowering::ownerOf(ShapeId id) {
     part.material = materials_.of(id);
     model_.provenance.parts.push_back(std::move(part));
     model_.shapeOf.push_back(id);
-    return at->second;
+    return owners_[id];
 }
 
 Owned Lowering::take(Content& content) {

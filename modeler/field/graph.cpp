@@ -13,11 +13,21 @@
 namespace sgm::field {
 namespace {
 
+// Graphs of many shapes are far larger than the caches: what is built together has hashes that lie together.
+
+/// Near those of nodes whose newest operand is as old.
 uint64_t hashOf(OpCode op, std::span<const Operand> operands, uint32_t data) {
     uint64_t h = mix(static_cast<uint64_t>(op) << 32 | data);
-    for (const Operand& o : operands) h = combine(h, static_cast<uint64_t>(o.origin) << 32 | o.node);
-    return h;
+    uint64_t newest = 0;
+    for (const Operand& o : operands) {
+        h = combine(h, static_cast<uint64_t>(o.origin) << 32 | o.node);
+        newest = std::max<uint64_t>(newest, o.node);
+    }
+    return operands.empty() ? h : 2 * newest + (h & 31);
 }
+
+/// Near those of the other numbers of its shape.
+uint64_t hashOf(const SlotKey& key) { return (mix(key.path) & ~uint64_t{31}) | (key.attribute & 31); }
 
 bool isLiteral(const Node& n) { return n.op == codeOf<ops::Literal>; }
 float literalOf(const Node& n) { return std::bit_cast<float>(n.data); }
@@ -48,14 +58,14 @@ Num Graph::z() { return {this, insert(codeOf<ops::Input>, {}, 2)}; }
 Num Graph::literal(float value) { return {this, insert(codeOf<ops::Literal>, {}, std::bit_cast<uint32_t>(value))}; }
 
 Num Graph::slot(SlotKey key, float value) {
-    const uint64_t h = combine(key.path, key.attribute);
+    const uint64_t h = hashOf(key);
     const SlotId known = slotIndex_.find(h, [&](SlotId id) { return slotKeys_[id] == key; });
     if (known == HashIndex::none) {
         slotIndex_.insert(h, static_cast<SlotId>(constants_.size()));
         return addSlot(key, value);
     }
     constants_[known] = value;
-    return {this, insert(codeOf<ops::Slot>, {}, known)};
+    return {this, slotNodes_[known]};
 }
 
 Num Graph::slot(float value) { return addSlot({}, value); }
@@ -69,7 +79,8 @@ uint32_t Graph::grid(const SampledGridPtr& samples) {
 Num Graph::addSlot(SlotKey key, float value) {
     constants_.push_back(value);
     slotKeys_.push_back(key);
-    return {this, insert(codeOf<ops::Slot>, {}, static_cast<SlotId>(constants_.size() - 1))};
+    slotNodes_.push_back(append(codeOf<ops::Slot>, {}, static_cast<SlotId>(constants_.size() - 1)));
+    return {this, slotNodes_.back()};
 }
 
 Num Graph::apply(OpCode op, std::span<const Operand> operands, uint32_t data) {
@@ -113,11 +124,14 @@ NodeId Graph::insert(OpCode op, std::span<const Operand> operands, uint32_t data
         return n.op == op && n.data == data && std::equal(seen.begin(), seen.end(), operands.begin(), operands.end());
     });
     if (known != HashIndex::none) return known;
-    const auto id = static_cast<NodeId>(nodes_.size());
+    nodeIndex_.insert(h, static_cast<NodeId>(nodes_.size()));
+    return append(op, operands, data);
+}
+
+NodeId Graph::append(OpCode op, std::span<const Operand> operands, uint32_t data) {
     nodes_.push_back({op, data, static_cast<uint32_t>(operands_.size()), static_cast<uint32_t>(operands.size())});
     operands_.insert(operands_.end(), operands.begin(), operands.end());
-    nodeIndex_.insert(h, id);
-    return id;
+    return static_cast<NodeId>(nodes_.size() - 1);
 }
 
 Num operator+(Num a, Num b) { return binary(codeOf<ops::Add>, a, b); }

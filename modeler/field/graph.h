@@ -105,12 +105,14 @@ public:
 
 private:
     NodeId insert(OpCode op, std::span<const Operand> operands, uint32_t data);
+    NodeId append(OpCode op, std::span<const Operand> operands, uint32_t data);
     Num addSlot(SlotKey key, float value);
 
     std::vector<Node> nodes_;
     std::vector<Operand> operands_;
     std::vector<float> constants_;
     std::vector<SlotKey> slotKeys_;
+    std::vector<NodeId> slotNodes_;  ///< by SlotId
     std::vector<SampledGridPtr> grids_;
     HashIndex nodeIndex_, slotIndex_;
 };
