@@ -14,6 +14,7 @@ void addView(CLI::App& app, int& exitCode);
 void addCheck(CLI::App& app, int& exitCode);
 void addStep(CLI::App& app, int& exitCode);
 void addTree(CLI::App& app, int& exitCode);
+void addMutate(CLI::App& app, int& exitCode);
 void addParams(CLI::App& app, int& exitCode);
 void addFmt(CLI::App& app, int& exitCode);
 void addReference(CLI::App& app, int& exitCode);

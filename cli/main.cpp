@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
     addCheck(app, exitCode);
     addStep(app, exitCode);
     addTree(app, exitCode);
+    addMutate(app, exitCode);
     addParams(app, exitCode);
     addFmt(app, exitCode);
     addReference(app, exitCode);

@@ -8,6 +8,7 @@
 
 #include "cli/animation.h"
 #include "cli/commands.h"
+#include "cli/ids.h"
 #include "cli/pipeline.h"
 #include "cli/watch.h"
 #include "modeler/core/conventions.h"
@@ -108,6 +109,8 @@ Result<Painter> painterOf(const RenderRequest& request, const Model& model, cons
                        [p = *painter] { return p.cost(); }};
     }
     if (request.view == "fog") return fogPainter(request, model, bounds, progress);
+    if (request.view == "ids")
+        return Painter([&model, bounds](const auto& options, Progress* progress, viewer::Layers*) { return drawIds(model, bounds, options, progress); });
     Stages stages;
     const auto meshed = makeMesh(model, request.grid, stages, progress);
     if (!meshed.ok()) return meshed.error();
@@ -204,7 +207,8 @@ void addRender(CLI::App& app, int& exitCode) {
     addGridOptions(*command, request->grid);
     command->add_option("-o,--output", request->output, "Picture to write (.png, or .exr for floats)")->required();
     command->add_option("--size", request->size, "Pixels, WxH")->capture_default_str();
-    command->add_option("--view", request->view, "What is drawn: the field, its mesh, or fog in its place")->check(CLI::IsMember({"field", "mesh", "fog"}))->capture_default_str();
+    command->add_option("--view", request->view, "What is drawn: the field, its mesh, fog in its place, or the facade ids and storeys of what is clad")
+        ->check(CLI::IsMember({"field", "mesh", "fog", "ids"}))->capture_default_str();
     command->add_option("--camera", request->camera, "x,y,z,x,y,z: the eye and what it looks at; or 'inside' for a cave");
     command->add_option("--aov", request->layers, "Layers beside the colour of an .exr: depth, normal, position, origin, ao; metres, ids of shapes with their names in the file")
         ->delimiter(',')->allow_extra_args(false)->check(CLI::IsMember(viewer::layerNames()));

@@ -159,11 +159,17 @@ void Interpreter::readAttribute(const Attribute& a, const Place& place, Looks& o
         case Id::Metal: out.metal = static_cast<float>(std::clamp(number(a.args[0], place), 0.0, 1.0)); break;
         case Id::Tag: out.extras.tags.push_back(a.args[0].value.text); break;
         case Id::With: out.extras.values.emplace_back(a.args[0].value.text, evaluate(a.args[1], place)); break;
+        case Id::Clad: {
+            const bool named = a.symbol != rules::none;
+            out.extras.clad = {{valueOf(*a.pattern, place), named ? grammar_.symbols[a.symbol].name : "", named ? grammar_.symbols[a.symbol].material : none}};
+            break;
+        }
         // Read before, with the joints or the scope.
         case Id::Size: case Id::Turn: case Id::At: case Id::To: case Id::On:
+        // Put into the pattern of `clad` by the checker.
+        case Id::Thickness: case Id::Tile: case Id::Mirror:
         // Refused by the checker.
-        case Id::Split: case Id::Inset: case Id::Clad: case Id::Thickness: case Id::Tile: case Id::Mirror: case Id::Footprint:
-        case Id::Extrude: case Id::Faces: case Id::Roof: case Id::Balcony: break;
+        case Id::Split: case Id::Inset: case Id::Footprint: case Id::Extrude: case Id::Faces: case Id::Roof: case Id::Balcony: break;
     }
 }
 
@@ -199,8 +205,7 @@ Shape Interpreter::shapeOf(const Element& e, Looks& looks, const Place& place, u
     s.amount = looks.amount;
     s.blend_m = looks.blend_m;
     s.span = e.span;
-    const Extras& x = looks.extras;
-    if (!x.displace.empty() || !x.values.empty() || !x.tags.empty()) {
+    if (!looks.extras.empty()) {
         s.extras = static_cast<uint32_t>(builder_.tree().extras.size());
         builder_.tree().extras.push_back(std::move(looks.extras));
     }

@@ -90,7 +90,6 @@ private:
     uint32_t jointNamed(const rules::Expr& expr, ShapeId host, const Place& place);
     uint32_t theirJoint(const ElementFacts& facts, const Joint& ours, const Mat3& axes, const Place& place);
     rules::Joint jointShares(uint32_t joint, uint32_t jointSet) const;
-    Scope contentBox(ShapeId root) const;
     void remember(const rules::Element& e, const Frame& frame, ShapeId id, uint32_t ours);
 
     // split.cpp

@@ -42,10 +42,11 @@ void Interpreter::annotate(const Element& e, Frame& frame, uint64_t key) {
     looks.scope = frame.place.scope;
     for (const auto* list : {&e.prefix, &e.attributes})
         for (const Attribute& a : *list)
-            if (a.id == Id::Displace || a.id == Id::With || a.id == Id::Tag) readAttribute(a, place, looks);
+            if (a.id == Id::Displace || a.id == Id::Clad || a.id == Id::With || a.id == Id::Tag) readAttribute(a, place, looks);
     const Extras& x = looks.extras;
-    if (x.displace.empty() && x.values.empty() && x.tags.empty()) return;
+    if (x.empty()) return;
     Extras& all = builder_.extras(frame.node);
+    if (!x.clad.empty()) all.clad = x.clad;
     all.displace.insert(all.displace.end(), x.displace.begin(), x.displace.end());
     all.values.insert(all.values.end(), x.values.begin(), x.values.end());
     all.tags.insert(all.tags.end(), x.tags.begin(), x.tags.end());
@@ -153,7 +154,7 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
     Place place = frame.place;
     place.key = key;
     const bool whole = frame.wholeContent && !facts.at && !facts.on;
-    place.scope = whole ? contentBox(host) : builder_.tree().shapes[host].scope;
+    place.scope = whole ? builder_.tree().contentBox(host) : builder_.tree().shapes[host].scope;
     place.valuesAt = builder_.tree().shapes[host].valuesAt;
 
     uint32_t oursIndex = centreJoint;
@@ -202,25 +203,6 @@ void Interpreter::remember(const Element& e, const Frame& frame, ShapeId id, uin
     const bool own = e.live == builder_.tree().shapes[links.root].symbol;
     if (own || !links.ownSymbol) links.newest = id;
     links.ownSymbol = links.ownSymbol || own;
-}
-
-/// The box, in the root's axes, around every solid of its content.
-Scope Interpreter::contentBox(ShapeId root) const {
-    const ShapeTree& tree = builder_.tree();
-    const Scope& own = tree.shapes[root].scope;
-    const Mat3 localFromWorld = own.axes.transposed();
-    Box3d box;
-    for (ShapeId s = root; s != none; s = tree.next(s, root)) {
-        if (tree.shapes[s].solid == none) continue;
-        const Scope& scope = tree.shapes[s].scope;
-        const Mat3 axes = localFromWorld * scope.axes;
-        const Vec3d centre = localFromWorld * (scope.centre - own.centre), h = scope.half();
-        Vec3d reach;
-        for (int i = 0; i < 3; ++i) reach[i] = std::abs(axes.x[i]) * h.x + std::abs(axes.y[i]) * h.y + std::abs(axes.z[i]) * h.z;
-        box = hull(box, Box3d{centre - reach, centre + reach});
-    }
-    if (box.empty()) return own;
-    return {own.centre + own.axes * box.centre(), own.axes, box.size()};
 }
 
 }  // namespace sgm::derive

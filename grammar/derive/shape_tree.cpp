@@ -129,4 +129,24 @@ ShapeId ShapeTree::find(std::string_view path) const {
     return at;
 }
 
+Scope ShapeTree::contentBox(ShapeId root) const {
+    const Scope& own = shapes[root].scope;
+    const Mat3 localFromWorld = own.axes.transposed();
+    Box3d box;
+    for (ShapeId s = root; s != none;) {
+        const bool cuts = s != root && shapes[s].op == rules::Operator::Difference;
+        if (!cuts && shapes[s].solid != none) {
+            const Scope& scope = shapes[s].scope;
+            const Mat3 axes = localFromWorld * scope.axes;
+            const Vec3d centre = localFromWorld * (scope.centre - own.centre), h = scope.half();
+            Vec3d reach;
+            for (int i = 0; i < 3; ++i) reach[i] = std::abs(axes.x[i]) * h.x + std::abs(axes.y[i]) * h.y + std::abs(axes.z[i]) * h.z;
+            box = hull(box, Box3d{centre - reach, centre + reach});
+        }
+        s = next(s, root, cuts);
+    }
+    if (box.empty()) return own;
+    return {own.centre + own.axes * box.centre(), own.axes, box.size()};
+}
+
 }  // namespace sgm::derive

@@ -66,11 +66,20 @@ struct Displacement {
     int octaves = 2;
 };
 
+/// What dresses a shape: an `ornament` and how it looks.
+struct Cladding {
+    SolidValue ornament;
+    std::string name;          ///< of its terminal, "" for none
+    uint32_t material = none;  ///< index into Derivation::materials; none: the shape's own
+};
+
 /// What few shapes have.
 struct Extras {
+    std::vector<Cladding> clad;          ///< at most one; acts on the node's whole content, before noise
     std::vector<Displacement> displace;  ///< acts on the node's whole content
     std::vector<std::pair<std::string, rules::Value>> values;  ///< `with`
     std::vector<std::string> tags;
+    bool empty() const { return clad.empty() && displace.empty() && values.empty() && tags.empty(); }
 };
 
 /// A node of the shape tree. Its field is its own solid combined with its children in order.
@@ -132,6 +141,8 @@ struct ShapeTree {
     /// "Cave/Cell[3]": labels from the root, occurrences from 2 on in brackets; the middle of very deep paths is elided
     /// unless `whole`.
     std::string path(ShapeId id, bool whole = false) const;
+    /// The box, in the shape's axes, around every solid of its content; what only cuts doesn't count.
+    Scope contentBox(ShapeId id) const;
     /// The shape at a path; where no child matches a part, the n-th descendant of that label in tree order.
     ShapeId find(std::string_view path) const;
     /// The next shape in tree order (a node, then its children), or none; skips the children of `id` when `over`.

@@ -46,6 +46,7 @@ private:
     Owned takeParts(Parts& parts);
     void settle(Content& content);
     OriginId ownerOf(ShapeId id);
+    Owned dressed(Owned part, ShapeId id);
     Owned displaced(Owned part, ShapeId id);
     bool pours(ShapeId id) const;
     bool isSum(const Shape& s) const { return (s.op == Operator::Sum || s.op == Operator::None) && s.blend_m <= 0; }
@@ -64,7 +65,7 @@ std::vector<bool> Lowering::plainSums() const {
     std::vector<bool> plain(tree_.shapes.size(), true);
     for (ShapeId s = 0; s < tree_.shapes.size(); ++s) {
         const Shape& shape = tree_.shapes[s];
-        if (const auto* x = tree_.extrasOf(s); x && !x->displace.empty()) plain[s] = false;
+        if (const auto* x = tree_.extrasOf(s); x && !(x->displace.empty() && x->clad.empty())) plain[s] = false;
         if (shape.parent != none && !isSum(shape)) plain[shape.parent] = false;
     }
     return plain;
@@ -159,6 +160,25 @@ void Lowering::join(Content& content, ShapeId id, Owned part) {
     }
 }
 
+/// Cladding is a part of its own, named after its terminal.
+Owned Lowering::dressed(Owned part, ShapeId id) {
+    const auto* x = tree_.extrasOf(id);
+    if (!x || x->clad.empty() || part.field.bounds.empty()) return part;
+    const derive::Cladding& clad = x->clad[0];
+    OriginId ornament = ownerOf(id);
+    if (!clad.name.empty()) {
+        Part own = model_.provenance.parts[ornament];
+        own.path += "/" + clad.name;
+        own.symbol = clad.name;
+        if (clad.material != none) own.material = clad.material;
+        ornament = static_cast<OriginId>(model_.provenance.parts.size());
+        model_.provenance.parts.push_back(std::move(own));
+        model_.shapeOf.push_back(id);
+    }
+    const derive::Scope box = tree_.contentBox(id);
+    return {lowerClad(model_.graph, {part.field, part.origin, ornament}, clad.ornament, box, combine(tree_.shapes[id].key, hashText("clad"))), 0};
+}
+
 Owned Lowering::displaced(Owned part, ShapeId id) {
     const auto* x = tree_.extrasOf(id);
     if (!x || x->displace.empty() || part.field.bounds.empty()) return part;
@@ -190,7 +210,7 @@ void Lowering::enter(ShapeId id) {
 
 void Lowering::leave(ShapeId id) {
     if (pours(id)) return;
-    Owned part = displaced(take(open_.back()), id);
+    Owned part = displaced(dressed(take(open_.back()), id), id);
     open_.pop_back();
     if (open_.empty()) model_.field = field::sum(model_.graph, std::span(&part, 1));  // one part alone keeps its owner
     else if (!part.field.bounds.empty()) join(open_.back(), id, part);

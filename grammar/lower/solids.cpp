@@ -1,5 +1,6 @@
 #include "grammar/lower/solids.h"
 
+#include <algorithm>
 #include <string>
 
 #include "modeler/core/random.h"
@@ -26,26 +27,39 @@ struct Frame {
 size_t componentsOf(field::ParameterKind kind) {
     if (kind == field::ParameterKind::File) return 0;
     if (kind == field::ParameterKind::Rotation) return 9;
+    if (kind == field::ParameterKind::PerId) return 4;
     return kind == field::ParameterKind::Vector ? 3 : 1;
 }
 
-Argument argumentOf(Graph& graph, const field::PrimitiveParameter& parameter, const rules::Value& value, uint64_t key) {
+/// The parameter's numbers, without nodes.
+Argument numbersOf(const field::PrimitiveParameter& parameter, const rules::Value& value) {
     Argument a;
-    const uint64_t attribute = hashText(parameter.name);
     for (size_t i = 0; i < componentsOf(parameter.kind); ++i) {
-        a.value[i] = value.n[value.count > 1 ? std::min<size_t>(i, value.count - 1u) : 0];
-        a.node[i] = graph.slot({key, combine(attribute, i)}, static_cast<float>(a.value[i]));
+        const double given = value.n[value.count > 1 ? std::min<size_t>(i, value.count - 1u) : 0];
+        const bool bounded = parameter.kind != field::ParameterKind::Rotation;  // what draws and parameters come to
+        a.value[i] = bounded ? std::clamp(given, parameter.lo, parameter.hi) : given;
     }
     return a;
 }
 
-Field primitive(Graph& graph, const SolidValue& solid, const Frame& frame, uint64_t key) {
+Argument argumentOf(Graph& graph, const field::PrimitiveParameter& parameter, const rules::Value& value, uint64_t key) {
+    Argument a = numbersOf(parameter, value);
+    const uint64_t attribute = hashText(parameter.name);
+    for (size_t i = 0; i < componentsOf(parameter.kind); ++i) a.node[i] = graph.slot({key, combine(attribute, i)}, static_cast<float>(a.value[i]));
+    return a;
+}
+
+std::vector<Argument> argumentsOf(Graph& graph, const SolidValue& solid, uint64_t key) {
     std::vector<Argument> arguments;
-    for (size_t i = 0; i < solid.args.size(); ++i) {
-        arguments.push_back(argumentOf(graph, solid.primitive->parameters[i], solid.args[i], key));
+    for (size_t i = 0; i < solid.args.size(); ++i) arguments.push_back(argumentOf(graph, solid.primitive->parameters[i], solid.args[i], key));
+    return arguments;
+}
+
+Field primitive(Graph& graph, const SolidValue& solid, const Frame& frame, uint64_t key) {
+    std::vector<Argument> arguments = argumentsOf(graph, solid, key);
+    for (size_t i = 0; i < arguments.size(); ++i)
         if (solid.primitive->parameters[i].kind == field::ParameterKind::File)
-            arguments.back().grid = frame.meshes[static_cast<size_t>(solid.args[i].num())];
-    }
+            arguments[i].grid = frame.meshes[static_cast<size_t>(solid.args[i].num())];
     Field f = solid.primitive->build({frame.p, frame.half, frame.scope.half(), arguments});
     f.bounds = field::toWorld(f.bounds, {frame.scope.centre, frame.scope.axes});
     return f;
@@ -76,14 +90,36 @@ Field build(Graph& graph, const SolidValue& solid, const Frame& frame, uint64_t 
     return field::nothing(graph);
 }
 
+Frame frameOf(Graph& graph, const derive::Scope& scope, uint64_t key, std::span<const field::SampledGridPtr> meshes) {
+    const Vec3d h = scope.half();
+    const auto half = [&](std::string_view name, double value) { return graph.slot({key, hashText(name)}, static_cast<float>(value)); };
+    return {field::toLocal(graph.position(), {scope.centre, scope.axes}, key), {half("size.x", h.x), half("size.y", h.y), half("size.z", h.z)}, scope, meshes};
+}
+
 }  // namespace
 
 Field lowerSolid(Graph& graph, const SolidValue& solid, const derive::Scope& scope, uint64_t key,
                  std::span<const field::SampledGridPtr> meshes) {
-    const Vec3d h = scope.half();
-    const auto half = [&](std::string_view name, double value) { return graph.slot({key, hashText(name)}, static_cast<float>(value)); };
-    const Frame frame{field::toLocal(graph.position(), {scope.centre, scope.axes}, key), {half("size.x", h.x), half("size.y", h.y), half("size.z", h.z)}, scope, meshes};
-    return build(graph, solid, frame, key);
+    return build(graph, solid, frameOf(graph, scope, key, meshes), key);
+}
+
+Field lowerClad(Graph& graph, const field::Clad& what, const SolidValue& ornament, const derive::Scope& scope, uint64_t key) {
+    const Frame frame = frameOf(graph, scope, key, {});
+    const std::vector<Argument> arguments = argumentsOf(graph, ornament, key);
+    return field::clad({frame.p, frame.half, scope.half(), arguments}, what, scope.axes.y);
+}
+
+std::optional<field::FacadeCell> facadeCellAt(const derive::ShapeTree& tree, derive::ShapeId shape, Vec3d p) {
+    for (; shape != derive::none; shape = tree.shapes[shape].parent) {
+        const auto* x = tree.extrasOf(shape);
+        if (!x || x->clad.empty()) continue;
+        const SolidValue& ornament = x->clad[0].ornament;
+        std::vector<Argument> arguments;
+        for (size_t i = 0; i < ornament.args.size(); ++i) arguments.push_back(numbersOf(ornament.primitive->parameters[i], ornament.args[i]));
+        const derive::Scope box = tree.contentBox(shape);
+        return field::facadeCell(arguments, box.half(), box.axes.transposed() * (p - box.centre));
+    }
+    return std::nullopt;
 }
 
 }  // namespace sgm::lower

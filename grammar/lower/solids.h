@@ -2,10 +2,11 @@
 // Enters: a SolidValue, the scope it fills, the stream key that names its slots. Leaves: a Field. Assumes checked values.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "grammar/derive/shape_tree.h"
-#include "modeler/field/field.h"
+#include "modeler/field/facade.h"
 
 namespace sgm::lower {
 
@@ -13,5 +14,10 @@ namespace sgm::lower {
 /// parts of morphs and combinations add their position to the key. `meshes` are the grammar's.
 field::Field lowerSolid(field::Graph& graph, const derive::SolidValue& solid, const derive::Scope& scope, uint64_t key,
                         std::span<const field::SampledGridPtr> meshes);
+/// `what` dressed with an ornament that lies in `scope`.
+field::Field lowerClad(field::Graph& graph, const field::Clad& what, const derive::SolidValue& ornament, const derive::Scope& scope, uint64_t key);
+
+/// In which cell of its facade a place on a shape is: that of the nearest clad shape, itself or above; none without one.
+std::optional<field::FacadeCell> facadeCellAt(const derive::ShapeTree& tree, derive::ShapeId shape, Vec3d p);
 
 }  // namespace sgm::lower

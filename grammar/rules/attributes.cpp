@@ -218,6 +218,10 @@ Attribute Checker::attribute(Place& place, const syntax::Attribute& written) {
         withArguments(place, written, out);
         return out;
     }
+    if (row.id == Id::Clad) {
+        clad(place, written, out);
+        return out;
+    }
     for (size_t i = 0; i < written.args.size() && i < row.arguments.size(); ++i) {
         const Written& arg = written.args[i];
         switch (row.arguments[i].type) {
@@ -247,6 +251,7 @@ Attribute Checker::attribute(Place& place, const syntax::Attribute& written) {
 std::vector<Attribute> Checker::attributes(Place& place, const std::vector<syntax::Attribute>& written) {
     std::vector<Attribute> result;
     std::vector<Id> seen;
+    std::vector<const syntax::Attribute*> fittings;  // of a cladding, which may stand after them
     bool refused = false;
     for (const syntax::Attribute& a : written) {
         if (!syntax::operations()[static_cast<size_t>(a.id)].supported) {
@@ -258,8 +263,11 @@ std::vector<Attribute> Checker::attributes(Place& place, const std::vector<synta
         if (!many && std::find(seen.begin(), seen.end(), a.id) != seen.end())
             diagnostics_.error(a.span, fmt::format("'{}' is given twice", a.name.text), "say it once");
         seen.push_back(a.id);
-        result.push_back(attribute(place, a));
+        if (a.id == Id::Thickness || a.id == Id::Tile || a.id == Id::Mirror) fittings.push_back(&a);
+        else result.push_back(attribute(place, a));
     }
+    const auto clad = std::find_if(result.begin(), result.end(), [](const Attribute& a) { return a.id == Id::Clad; });
+    for (const syntax::Attribute* a : fittings) fit(place, *a, clad == result.end() ? nullptr : &*clad);
     return result;
 }
 

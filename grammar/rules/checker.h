@@ -126,6 +126,8 @@ private:
     Solid solid(Place& place, const syntax::Expr& e);
     Solid namedSolid(Place& place, const syntax::Expr& e);
     Solid primitiveSolid(Place& place, const syntax::Expr& e, const field::Primitive& row);
+    static Solid solidOfRow(SourceSpan span, const field::Primitive& row);
+    void inRange(const Expr& expr, const field::Primitive& row, size_t index);
     Solid morphSolid(Place& place, const syntax::Expr& e);
     Solid combination(Place& place, const syntax::Expr& e);
     Expr primitiveArgument(Place& place, const syntax::Expr& e, const field::Primitive& row, size_t index);
@@ -145,6 +147,10 @@ private:
     void noiseArgument(Place& place, const syntax::Expr& e, Attribute& out);
     void withArguments(Place& place, const syntax::Attribute& written, Attribute& out);
     void sensible(const Attribute& attribute);
+
+    // clad.cpp
+    void clad(Place& place, const syntax::Attribute& written, Attribute& out);
+    void fit(Place& place, const syntax::Attribute& written, Attribute* clad);
 
     // splits.cpp
     const syntax::Attribute* splitOf(const syntax::Element& written);

@@ -137,6 +137,9 @@ struct Attribute {
     enum class Host : uint8_t { Matched, Last, Any, Each } host = Host::Matched;
     /// Displace: args = amplitude, frequency, octaves.
     bool fbm = false;
+    /// Clad: an `ornament` with the thickness, tile and mirror said beside it, and the terminal it was named by.
+    std::shared_ptr<Solid> pattern;
+    SymbolId symbol = none;
 };
 
 struct Choice {

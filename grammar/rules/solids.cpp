@@ -26,6 +26,8 @@ Want wantOf(ParameterKind kind) {
             return Want::Count;
         case ParameterKind::Vector:
             return Want::Triple;
+        case ParameterKind::PerId:
+            return Want::PerId;
         case ParameterKind::Rotation:
             return Want::Rotation;
         case ParameterKind::Choice:
@@ -125,6 +127,30 @@ Expr Checker::fileArgument(const Written& e, const field::Primitive& row) {
     return makeConstant(e.span, file);
 }
 
+/// Numbers that are known already and outside the parameter's range.
+void Checker::inRange(const Expr& expr, const field::Primitive& row, size_t index) {
+    const field::PrimitiveParameter& parameter = row.parameters[index];
+    const auto value = fold(expr, defaults_);
+    if (!value || parameter.kind == ParameterKind::Rotation || value->kind == Value::Kind::Word) return;
+    for (size_t i = 0; i < value->count; ++i)
+        if (value->n[i] < parameter.lo || value->n[i] > parameter.hi) {
+            diagnostics_.error(expr.span, fmt::format("'{}' of '{}' is {}, but must be {} … {}", parameter.name, row.name,
+                                                      toText(*value), toText(plainValue(parameter.kind, parameter.lo)),
+                                                      toText(plainValue(parameter.kind, parameter.hi))));
+            break;
+        }
+}
+
+/// Every parameter at its default.
+Solid Checker::solidOfRow(SourceSpan span, const field::Primitive& row) {
+    Solid solid;
+    solid.kind = Solid::Kind::Primitive;
+    solid.span = span;
+    solid.primitive = &row;
+    for (const auto& parameter : row.parameters) solid.args.push_back(makeConstant(span, fallbackOf(parameter)));
+    return solid;
+}
+
 Expr Checker::primitiveArgument(Place& place, const Written& e, const field::Primitive& row, size_t index) {
     const field::PrimitiveParameter& parameter = row.parameters[index];
     const std::string what = fmt::format("'{}' of '{}'", parameter.name, row.name);
@@ -132,24 +158,12 @@ Expr Checker::primitiveArgument(Place& place, const Written& e, const field::Pri
     if (parameter.kind == ParameterKind::File) return fileArgument(e, row);
     if (parameter.kind == ParameterKind::Choice) return choiceArgument(place, e, parameter);
     Expr expr = expression(place, e, wantOf(parameter.kind), what);
-    const auto value = fold(expr, defaults_);
-    if (!value || parameter.kind == ParameterKind::Rotation || value->kind == Value::Kind::Word) return expr;
-    for (size_t i = 0; i < value->count; ++i)
-        if (value->n[i] < parameter.lo || value->n[i] > parameter.hi) {
-            diagnostics_.error(e.span, fmt::format("{} is {}, but must be {} … {}", what, toText(*value),
-                                                   toText(plainValue(parameter.kind, parameter.lo)),
-                                                   toText(plainValue(parameter.kind, parameter.hi))));
-            break;
-        }
+    inRange(expr, row, index);
     return expr;
 }
 
 Solid Checker::primitiveSolid(Place& place, const Written& e, const field::Primitive& row) {
-    Solid solid;
-    solid.kind = Solid::Kind::Primitive;
-    solid.span = e.span;
-    solid.primitive = &row;
-    for (const auto& parameter : row.parameters) solid.args.push_back(makeConstant(e.span, fallbackOf(parameter)));
+    Solid solid = solidOfRow(e.span, row);
     std::vector<bool> given(row.parameters.size(), false);
     for (size_t i = 0; i < e.args.size(); ++i) {
         size_t index = i;

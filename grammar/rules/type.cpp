@@ -92,6 +92,8 @@ std::string_view describe(Want want) {
             return "a number, a length or (x, y, z) of them";
         case Want::Triple:
             return "three numbers (x, y, z)";
+        case Want::PerId:
+            return "one plain number, or four: one for each facade id";
         case Want::Color:
             return "a colour (#rrggbb)";
         case Want::Rotation:
@@ -153,6 +155,8 @@ bool fits(const Type& type, Want want) {
             return (one || three) && everyUnit(v, measure);
         case Want::Triple:
             return three && everyUnit(v, measure);
+        case Want::PerId:
+            return (one || (v.kind == Value::Kind::Vector && v.count == 4)) && everyUnit(v, plain);
         case Want::Color:
             return v.kind == Value::Kind::Color;
         case Want::Rotation:

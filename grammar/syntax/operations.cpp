@@ -43,11 +43,11 @@ constexpr Argument withArguments[] = {{"name", Type::Name, "the value's name, fo
                                       {"value", Type::Number, "its value, of any type"}};
 constexpr Argument splitArguments[] = {{"axis", Type::Axis, "x, y or z of the scope"}};
 constexpr Argument insetArguments[] = {{"width", Type::Length, "metres from each edge of the face"}};
-constexpr Argument cladArguments[] = {{"pattern", Type::Solid, "the solid whose folds dress the surface"}};
+constexpr Argument cladArguments[] = {{"pattern", Type::Solid, "an ornament, a kifs, or a terminal that is one; its colour is the terminal's"}};
 constexpr Argument thicknessArguments[] = {
-    {"thickness", Type::Length, "metres of the cladding outside the inner solid"}};
-constexpr Argument tileArguments[] = {{"period", Type::Vector, "metres after which the pattern repeats, along and up"}};
-constexpr Argument mirrorArguments[] = {{"plane", Type::Vector, "shares of a tile where the pattern is mirrored"}};
+    {"thickness", Type::Vector, "metres of the walls' cladding outside the inner solid, or two: of the walls and below the top"}};
+constexpr Argument tileArguments[] = {{"period", Type::Vector, "metres after which the pattern repeats, along and up (bay and storey)"}};
+constexpr Argument mirrorArguments[] = {{"r", Type::Vector, "three shares of half a bay, at which the pattern is folded one after the other"}};
 constexpr Argument footprintArguments[] = {{"lsystem", Type::Name, "the lsystem that draws the outline"}};
 constexpr Argument extrudeArguments[] = {{"height", Type::Length, "metres the outline is raised"}};
 constexpr Argument roofArguments[] = {{"kind", Type::Name, "hip, gable or flat"},
@@ -82,13 +82,12 @@ constexpr std::array<Operation, 27> table = {{
      "split x { 1m: wall | { ~2.4m: Tile }* | 1m: wall }", splitArguments, true, true},
     {Id::Inset, "inset", "Cuts a face into its rim and the rest.", "inset .12m { rim: frame | rest: glass }",
      insetArguments, true, false},
-    {Id::Clad, "clad", "Dresses a solid with a pattern: inner + (outer & pattern).", "cube clad ornate thickness .4m",
-     cladArguments, false, false},
-    {Id::Thickness, "thickness", "How far cladding stands out.", "cube clad ornate thickness .4m", thicknessArguments,
-     false, false},
-    {Id::Tile, "tile", "Repeats a cladding.", "cube clad ornate tile (6m, 3m)", tileArguments, false, false},
+    {Id::Clad, "clad", "Dresses all that a shape holds: inner + (outer & pattern), where outer is what it holds and inner is that less the thickness.", "cube clad ornate thickness .4m",
+     cladArguments},
+    {Id::Thickness, "thickness", "How thick a cladding is.", "cube clad ornate thickness (.4m, .1m)", thicknessArguments},
+    {Id::Tile, "tile", "Repeats a cladding.", "cube clad ornate tile (6m, 3m)", tileArguments},
     {Id::Mirror, "mirror", "Mirrors a cladding inside its tile.", "cube clad ornate mirror (.25, .125, .4)",
-     mirrorArguments, false, false},
+     mirrorArguments},
     {Id::Footprint, "footprint", "Takes the outline an lsystem draws as the shape's base.", "footprint Plan extrude 9m",
      footprintArguments, false, false},
     {Id::Extrude, "extrude", "Raises the base into a prism.", "footprint Plan extrude (floors * 3m)", extrudeArguments,

@@ -1,6 +1,7 @@
 #include "modeler/field/domain.h"
 
 #include "modeler/core/random.h"
+#include "modeler/field/ops.h"
 #include "modeler/field/solids.h"
 
 namespace sgm::field {
@@ -62,6 +63,27 @@ Box3f toWorld(const Box3f& local, const Frame& frame) {
     for (int i = 0; i < 3; ++i)
         size = std::max(size, std::abs(frame.centre[i]) + (std::isfinite(reach[i]) ? reach[i] : 0.0));
     return Box3d{low, high}.inflated(size * 1e-6).as<float>();
+}
+
+Num substitute(Num value, Point p) {
+    Graph& g = value.graph();
+    std::vector<bool> used(value.id() + 1, false);
+    used[value.id()] = true;
+    for (NodeId id = value.id() + 1; id-- > 0;)  // operands come before what is made of them
+        if (used[id])
+            for (const Operand& o : g.operands(id)) used[o.node] = true;
+    std::vector<NodeId> now(value.id() + 1);
+    std::vector<Operand> operands;
+    for (NodeId id = 0; id <= value.id(); ++id) {
+        if (!used[id]) continue;
+        now[id] = id;
+        const Node node = g.node(id);
+        if (node.op == codeOf<ops::Input>) now[id] = (node.data == 0 ? p.x : node.data == 1 ? p.y : p.z).id();
+        operands.assign(g.operands(id).begin(), g.operands(id).end());
+        for (Operand& o : operands) o.node = now[o.node];
+        if (!operands.empty()) now[id] = g.apply(node.op, operands, node.data).id();
+    }
+    return {&g, now[value.id()]};
 }
 
 Point mirror(Point p, bool x, bool y, bool z) { return {x ? abs(p.x) : p.x, y ? abs(p.y) : p.y, z ? abs(p.z) : p.z}; }

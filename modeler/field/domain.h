@@ -19,6 +19,8 @@ struct Frame {
 Point toLocal(Point p, const Frame& frame, uint64_t path);
 /// The bounds of `local` (a box in the frame's axes) in the object's frame.
 Box3f toWorld(const Box3f& local, const Frame& frame);
+/// `value` with x, y, z replaced by `p`: the same formula asked at another place. Numbers keep their slots. O(nodes of value).
+Num substitute(Num value, Point p);
 /// |x| in each axis whose flag is set: mirror about the local planes. Continuous and 1-Lipschitz: a field of it keeps its
 /// lipschitz and growth, and its bounds become `mirrored`.
 Point mirror(Point p, bool x, bool y, bool z);

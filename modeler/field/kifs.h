@@ -69,8 +69,13 @@ struct Kifs {
 
     template <class V>
     static V apply(std::span<const V> args, uint32_t data) {
-        const Form form = unpack(data);
-        State<V> at = start(args);
+        return distance(args[position], args[position + 1], args[position + 2], args, unpack(data));
+    }
+
+    /// The value at (x, y, z); of `args` only the parameters are read, at their places.
+    template <class V>
+    static V distance(const V& x, const V& y, const V& z, std::span<const V> args, const Form& form) {
+        State<V> at{x, y, z, V(1.0f)};
         walk(at, args, form, [](uint32_t) { return Unkept{}; });
         return terminal(at, args, form);
     }

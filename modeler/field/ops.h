@@ -36,6 +36,7 @@
 #include <utility>
 
 #include "modeler/field/blend_op.h"
+#include "modeler/field/facade_op.h"
 #include "modeler/field/graph.h"
 #include "modeler/field/kifs.h"
 #include "modeler/field/noise.h"
@@ -301,7 +302,7 @@ struct TypeList {
 using OpTable = TypeList<ops::Input, ops::Literal, ops::Slot, ops::Copy, ops::Add, ops::Sub, ops::Mul, ops::Div,
                          ops::Neg, ops::Abs, ops::Sqrt, ops::Square, ops::Floor, ops::Mod, ops::Min, ops::Max,
                          ops::Morph, ops::Sin, ops::Cos, ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend, ops::Ball, ops::Box,
-                         ops::Sampled>;
+                         ops::Sampled, ops::Facade>;
 
 namespace detail {
 template <class Row, class... Rows>

@@ -1,5 +1,8 @@
 #include "modeler/field/primitives.h"
 
+#include <algorithm>
+#include <array>
+
 #include "modeler/core/conventions.h"
 #include "modeler/field/solids.h"
 
@@ -17,7 +20,8 @@ constexpr PrimitiveParameter roofParameters[] = {
     {"round", Kind::Share, 0, 0, 1, "0 is the pyramid's sides, 1 an ellipsoid over the same foot"},
 };
 
-constexpr PrimitiveParameter kifsParameters[] = {
+/// The fractal itself: what `kifs` and `ornament` begin with.
+constexpr PrimitiveParameter fractalParameters[] = {
     {"center", Kind::Vector, 1, 0.05, 2,
      "centre of scaling; its largest component reaches the scope's faces. All 1: the Menger sponge"},
     {"scale", Kind::Share, 3, 1.2, 6, "scale of a pass: 3 is the sponge, 3.5 sparse"},
@@ -27,11 +31,40 @@ constexpr PrimitiveParameter kifsParameters[] = {
     {"passes", Kind::Count, 5, 1, 12, "passes of the loop: each adds details one scale smaller"},
     {"terminal", Kind::Choice, 0, 0, 1, "what the last copies are: balls as in the paper, or crisper cubes",
      "ball|cube"},
+};
+template <size_t N>
+constexpr std::array<PrimitiveParameter, std::size(fractalParameters) + N> fractalAnd(const PrimitiveParameter (&more)[N]) {
+    std::array<PrimitiveParameter, std::size(fractalParameters) + N> all{};
+    std::copy(std::begin(fractalParameters), std::end(fractalParameters), all.begin());
+    std::copy(std::begin(more), std::end(more), all.begin() + std::size(fractalParameters));
+    return all;
+}
+
+constexpr auto kifsParameters = fractalAnd({
     {"form", Kind::Choice, 0, 0, 1,
      "last fold: continuous, or with the jump the paper prints (no distance bound when turned)", "continuous|jump"},
     {"bailout", Kind::Share, 0, 0, 1e6,
      "squared radius (4 at least) beyond which passes stop; 0 never. No distance bound"},
-};
+});
+constexpr auto ornamentParameters = fractalAnd({
+    {"bay", Kind::Length, 4, 0.05, 1000, "period along the walls (w)"},
+    {"storey", Kind::Length, 3, 0.05, 1000, "height of a storey (h)"},
+    {"mirror", Kind::Vector, 0.25, 0, 1,
+     "r of the three folds in half a bay: each mirrors it about itself and beyond twice itself counts the facade id up"},
+    {"zoom", Kind::PerId, 1.5, -20, 20, "scale of the fractal's coordinates in the parts of facade id 0, 1, 2, 3"},
+    {"pan", Kind::PerId, 0.5, -20, 20, "shift of the fractal's coordinates there; nearer 0 is deeper in the fractal"},
+    {"rise", Kind::Share, 1, 0.05, 4, "how far up the fractal a storey reaches (s_y)"},
+    {"wall", Kind::Length, 0.4, 0.001, 100, "between the outer and the inner shell, where it clads a solid"},
+    {"top", Kind::Length, 0.1, 0, 100, "the same below the top, at most as much as the wall"},
+    {"fit", Kind::Choice, 0, 0, 1,
+     "whole: bays and storeys as long as divides the scope, from its corner; free: as said, bays from its middle",
+     "whole|free"},
+    {"round", Kind::Length, 0, 0, 10000, "> 0: bays run along the circle of this radius about y (eqs. 5, 6)"},
+    {"core", Kind::Length, 0, 0, 10000, "round: radius inside which nothing is carved; 0 is half of round"},
+    {"along", Kind::Length, 0, 0, 10000, "round: metres of facade to a radian (s_theta); 0 is round, true to length"},
+    {"across", Kind::Share, 1, 0.05, 20, "round: scale across the wall (s_r)"},
+    {"swing", Kind::Angle, 0, -2 * pi, 2 * pi, "round: turns the bays about y (c_theta); they begin towards +z"},
+});
 
 constexpr PrimitiveParameter meshParameters[] = {
     {"file", Kind::File, 0, 0, 0, "a closed mesh (.obj, .ply, .stl) in the grammar's own folder"},
@@ -67,6 +100,9 @@ constexpr Primitive table[] = {
      solids::kifs},
     {"mesh", "Mesh from a file, stretched to fill the scope; sampled 128 times along its longest side.", meshParameters,
      solids::mesh},
+    {"ornament",
+     "Storeys and mirrored bays of a fractal filling the scope (McGraw, eq. 4, algorithm 2). What `clad` dresses with.",
+     ornamentParameters, solids::ornament},
     {"halfspace",
      "Everything below the scope's middle plane y = 0. Unbounded: may only cut.",
      {},

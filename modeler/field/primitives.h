@@ -13,7 +13,8 @@
 namespace sgm::field {
 
 /// How a primitive parameter is read and shown.
-enum class ParameterKind { Share, Length, Angle, Count, Vector, Rotation, Choice, File };
+/// PerId: four numbers, one for each facade id; one number serves all.
+enum class ParameterKind { Share, Length, Angle, Count, Vector, Rotation, Choice, File, PerId };
 
 /// One typed parameter of a primitive.
 struct PrimitiveParameter {
@@ -26,7 +27,7 @@ struct PrimitiveParameter {
 };
 
 /// A value with the node(s) that carry it (slots, or expressions over them) and its present number(s) for bounds.
-/// A Share/Length/Angle/Count/Choice uses [0]; a Vector three; a Rotation nine (matrix by columns, world from local);
+/// A Share/Length/Angle/Count/Choice uses [0]; a Vector three; PerId four; a Rotation nine (matrix by columns, world from local);
 /// a File what was read from it.
 struct Argument {
     Num node[9];

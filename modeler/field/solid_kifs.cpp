@@ -15,18 +15,23 @@ bool isIdentity(const Argument& rotation) {
 }
 
 ops::Kifs::Form formOf(std::span<const Argument> arguments) {
-    return {.passes = static_cast<uint32_t>(std::clamp(arguments[Passes].value[0], 1.0, 12.0)),
-            .cube = arguments[Terminal].value[0] > 0.5,
-            .jump = arguments[Form].value[0] > 0.5,
-            .bails = arguments[Bailout].value[0] > 0,
-            .folds = !isIdentity(arguments[Fold]),
-            .turns = !isIdentity(arguments[Turn])};
+    ops::Kifs::Form form = kifsForm(arguments);
+    form.jump = arguments[Form].value[0] > 0.5;
+    form.bails = arguments[Bailout].value[0] > 0;
+    return form;
 }
 
 /// The bailout is a squared radius; below 4 the terminal ball itself would be cut off.
 Num safeBailout(Num squaredRadius) { return max(squaredRadius, 4.0f); }
 
 }  // namespace
+
+ops::Kifs::Form kifsForm(std::span<const Argument> arguments) {
+    return {.passes = static_cast<uint32_t>(std::clamp(arguments[Passes].value[0], 1.0, 12.0)),
+            .cube = arguments[Terminal].value[0] > 0.5,
+            .folds = !isIdentity(arguments[Fold]),
+            .turns = !isIdentity(arguments[Turn])};
+}
 
 // The fractal's cube [−max c, max c]³ (c the centre of scaling) fills the scope and is cut by it: terminal balls and turned
 // branches reach over. Scaled coordinates are made good by the least scale; the maximum with the box gives growth 1.

@@ -4,6 +4,7 @@
 // by the half-sizes is multiplied by the least scale, so that it stays 1-Lipschitz (f(p/s)·min s).
 #pragma once
 
+#include "modeler/field/kifs.h"
 #include "modeler/field/primitives.h"
 
 namespace sgm::field::solids {
@@ -25,6 +26,11 @@ Field halfspace(const PrimitiveInput& in);
 
 // solid_kifs.cpp
 Field kifs(const PrimitiveInput& in);  ///< (center, scale, fold, turn, passes, terminal, form, bailout)
+/// Of a row that begins with the parameters of `kifs` up to `terminal`: the continuous form.
+ops::Kifs::Form kifsForm(std::span<const Argument> arguments);
+
+// facade.cpp
+Field ornament(const PrimitiveInput& in);  ///< (FacadeParameter, modeler/field/facade.h)
 
 // solid_mesh.cpp
 Field mesh(const PrimitiveInput& in);  ///< (file)

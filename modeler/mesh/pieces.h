@@ -20,4 +20,17 @@ struct Piece {
 /// stands; one cell is a sensible slack. O(n log n).
 std::vector<Piece> pieces(const Mesh& mesh, float slack_m);
 
+/// Which solids of a mesh stay: all; those that stand and aren't crumbs of less than a thousandth of the greatest one; or
+/// the greatest one alone.
+enum class Keep { All, Grounded, Largest };
+/// What was taken away.
+struct Dropped {
+    uint64_t pieces = 0;    ///< solids
+    double volume_m3 = 0;   ///< of theirs
+    uint64_t cavities = 0;  ///< surfaces around air that no way leads to: filled
+    double filled_m3 = 0;
+};
+/// Takes away what doesn't stay, and the closed cavities of what does. Nothing with Keep::All. Vertices are numbered anew.
+Dropped keepOnly(Mesh& mesh, Keep keep, float slack_m);
+
 }  // namespace sgm::mesh

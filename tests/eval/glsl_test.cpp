@@ -82,6 +82,24 @@ std::vector<Num> sampleNodes(field::Graph& g, field::OpCode op) {
             nodes.push_back(g.apply(op, operands, field::ops::Kifs::pack(form)));
         }
     }
+    if (row.name == "facade") {
+        using Op = field::ops::Facade;
+        std::vector<field::Operand> operands;
+        for (const Num n : {a, b, g.z(), g.x() * 0.2f, g.z() * 0.2f + 0.2f}) operands.push_back({n.id(), 0});
+        const Mat3 turn = Mat3::rotation({0, 1, 0.3}, 0.2);
+        std::vector<float> numbers{0.93f, 0.93f, 0.33f, 3};
+        for (int rotation = 0; rotation < 2; ++rotation)
+            for (const Vec3d& column : {turn.x, turn.y, turn.z})
+                for (int i = 0; i < 3; ++i) numbers.push_back(static_cast<float>(column[i]));
+        for (const float v : {1.3f, 1.1f, 1.0f, 0.8f, 0.25f, 0.125f, 0.4f, 0.9f, 3.0f, 0.9f, 0.4f, 0.05f, 1e-4f, 1e-5f, 0.0f,
+                              1.0f, 0.0f, 0.5f, 1.4f, 0.1f, 0.75f, 1.8f, 0.2f, Op::noBay})
+            numbers.push_back(v);
+        numbers.resize(Op::operandCount - Op::moving, 0);
+        for (const float v : numbers) operands.push_back({g.literal(v).id(), 0});
+        field::ops::Kifs::Form form;
+        form.passes = 3;
+        nodes.push_back(g.apply(op, operands, Op::pack(form)));
+    }
     return nodes;
 }
 

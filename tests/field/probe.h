@@ -83,6 +83,8 @@ inline std::vector<Argument> defaults(Graph& graph, const Primitive& row) {
     for (const PrimitiveParameter& p : row.parameters)
         list.push_back(p.kind == ParameterKind::File       ? fileArgument()
                        : p.kind == ParameterKind::Rotation ? argument(graph, Mat3{})
+                       : p.kind == ParameterKind::PerId
+                           ? argument(graph, {p.fallback, p.fallback, p.fallback, p.fallback})
                        : p.kind == ParameterKind::Vector ? argument(graph, {p.fallback, p.fallback, p.fallback})
                                                          : argument(graph, {p.fallback}));
     return list;

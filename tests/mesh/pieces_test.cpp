@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "modeler/mesh/validate.h"
 #include "tests/mesh/scenes.h"
 
 namespace sgm::mesh {
@@ -37,6 +38,31 @@ TEST(Pieces, ABallInACavityFloatsAndTheCavityIsNoPiece) {
         EXPECT_NEAR(p.bounds.lo.y, 4, 0.02);
     }
     EXPECT_EQ(floating, 1u);  // the box beside the rock stands on the same ground
+}
+
+TEST(Pieces, KeepLeavesClosedSolidsAndFillsCavities) {
+    Scene s;
+    auto& g = s.graph;
+    const field::Field rock = field::difference({box(g, {0, 4, 0}, {4, 4, 4}), 1}, {ball(g, {0, 4, 0}, 3), 1});
+    const field::Owned parts[] = {{rock, 1}, {ball(g, {0, 5, 0}, 1), 2}, {box(g, {7, 1, 0}, {1, 1, 1}), 3}, {ball(g, {7, 0.2f, 3}, 0.2f), 4}};
+    s.field = field::sum(g, parts);
+    const Mesh whole = meshed(s);
+    for (const Keep keep : {Keep::All, Keep::Grounded, Keep::Largest}) {
+        Mesh mesh = whole;
+        const Dropped dropped = keepOnly(mesh, keep, 0.125f);
+        const MeshFigures f = measure(mesh);
+        EXPECT_EQ(f.boundaryEdges + f.nonmanifoldEdges, 0u);
+        EXPECT_EQ(f.components, keep == Keep::All ? 5u : keep == Keep::Grounded ? 2u : 1u);
+        EXPECT_EQ(dropped.cavities, keep == Keep::All ? 0u : 1u);
+        EXPECT_EQ(dropped.pieces, keep == Keep::All ? 0u : keep == Keep::Grounded ? 2u : 3u) << "the ball in the air, the crumb, the box";
+        if (keep == Keep::Largest) { EXPECT_NEAR(f.volume_m3, 512, 1); }
+        uint32_t next = 0;
+        for (const Chunk& c : mesh.chunks) {
+            EXPECT_EQ(c.firstVertex, next);
+            next += static_cast<uint32_t>(c.positions.size());
+            EXPECT_EQ(c.normals.size(), c.positions.size());
+        }
+    }
 }
 
 TEST(Pieces, WhatTouchesIsOne) {

@@ -1,0 +1,213 @@
+// sgm mutate: a contact sheet of variations of a model, and the chosen one written back as a style.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <map>
+
+#include "cli/commands.h"
+#include "cli/variations.h"
+#include "cli/watch.h"
+#include "grammar/rules/params.h"
+#include "grammar/syntax/parser.h"
+#include "modeler/core/random.h"
+#include "viewer/document/files.h"
+#include "viewer/offscreen.h"
+
+namespace sgm::cli {
+namespace {
+
+using viewer::edits::NamedValue;
+
+struct MutateRequest {
+    ModelRequest model;
+    std::string output, size = "320x320", save;
+    std::vector<std::string> lock;
+    int rows = 3, columns = 4, pick = -1, resolution = 96, threads = 0;
+    double spread = 0.35;
+    bool quiet = false;
+};
+
+/// A variation that is good to look at; the first one is the model as it is.
+struct Variation {
+    std::vector<NamedValue> values;
+    Model model;
+};
+
+viewer::ModelChoice with(const MutateRequest& request, const std::vector<NamedValue>& values) {
+    viewer::ModelChoice choice = request.model;
+    for (const NamedValue& v : values) choice.settings.push_back(v.name + "=" + v.value);
+    return choice;
+}
+
+/// The model, or why it isn't one worth showing.
+struct Tried {
+    std::optional<Model> model;
+    std::string why;
+};
+Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const rules::Grammar>& grammar, const std::vector<NamedValue>& values, Progress* progress) {
+    const auto options = optionsFor(*grammar, with(request, values));
+    if (!options.ok()) return options.error();
+    Stages stages;
+    auto model = makeModel(grammar, *options, stages, progress);
+    if (!model.ok()) {
+        if (model.error().kind == Error::Kind::Cancelled) return model.error();
+        return Tried{{}, "empty"};
+    }
+    GridRequest grid;
+    grid.resolution = request.resolution;
+    grid.threads = request.threads;
+    const auto meshed = makeMesh(*model, grid, stages, progress);
+    if (!meshed.ok()) return meshed.error();
+    if (const auto why = degenerate(meshed->mesh, meshed->grid.cell_m)) return Tried{{}, *why};
+    return Tried{std::move(*model), {}};
+}
+
+/// Good variations until the sheet is full; a candidate is known by its number, so that the same sheet comes again.
+Result<std::vector<Variation>> search(const MutateRequest& request, const std::shared_ptr<const rules::Grammar>& grammar, size_t wanted, Progress* progress) {
+    std::vector<Variation> found;
+    std::map<std::string, int> rejected;
+    const std::set<std::string> locked(request.lock.begin(), request.lock.end());
+    const size_t most = 8 * wanted + 16;
+    for (size_t k = 0; found.size() < wanted && k < most; ++k) {
+        std::vector<NamedValue> values;
+        if (k > 0) values = variation(*grammar, request.model, locked, request.spread, combine(request.model.seed, k));
+        auto one = tried(request, grammar, values, progress);
+        if (!one.ok()) return one.error();
+        if (one->model) found.push_back({std::move(values), std::move(*one->model)});
+        else ++rejected[one->why];
+    }
+    if (!request.quiet)
+        for (const auto& [why, count] : rejected) fmt::print("rejected {}: {}\n", count, why);
+    if (found.empty()) return Error{Error::Kind::Input, fmt::format("none of {} variations is worth a look: all are empty, dust, floating or featureless", most)};
+    return found;
+}
+
+/// A number in the picture's corner, of squares three by five to a digit.
+void stamp(viewer::Image& image, int x, int y, int number) {
+    constexpr uint16_t digits[] = {0x7b6f, 0x2492, 0x73e7, 0x73cf, 0x5bc9, 0x79cf, 0x79ef, 0x7249, 0x7bef, 0x7bcf};
+    const int dot = std::max(1, image.width / 700);
+    const std::string text = std::to_string(number);
+    for (size_t k = 0; k < text.size(); ++k)
+        for (int bit = 0; bit < 15; ++bit) {
+            if (!(digits[text[k] - '0'] >> (14 - bit) & 1)) continue;
+            for (int i = 0; i < 2 * dot; ++i)
+                for (int j = 0; j < 2 * dot; ++j) {
+                    const int px = x + (static_cast<int>(k) * 4 + bit % 3) * 2 * dot + i, py = y + bit / 3 * 2 * dot + j;
+                    for (int c = 0; c < 3; ++c) image.rgb[(static_cast<size_t>(py) * static_cast<size_t>(image.width) + static_cast<size_t>(px)) * 3 + static_cast<size_t>(c)] = 20;
+                }
+        }
+}
+
+Result<viewer::Image> sheet(const MutateRequest& request, const std::vector<Variation>& found, viewer::PictureOptions options, Progress* progress) {
+    viewer::Image all{request.columns * options.width, request.rows * options.height, {}};
+    all.rgb.assign(static_cast<size_t>(all.width) * static_cast<size_t>(all.height) * 3, 255);
+    const double aspect = static_cast<double>(options.width) / options.height;
+    for (size_t k = 0; k < found.size(); ++k) {
+        const Model& model = found[k].model;
+        const Box3f bounds = viewer::tighten(model.tape, model.lowered->field.bounds);
+        options.camera = viewer::frame(model.tape, bounds, aspect);
+        const auto image = viewer::drawField(model.tape, bounds, model.lowered->provenance, options, progress);
+        if (!image.ok()) return image.error();
+        const int left = static_cast<int>(k) % request.columns * options.width, top = static_cast<int>(k) / request.columns * options.height;
+        for (int y = 0; y < options.height; ++y)
+            std::copy_n(image->rgb.begin() + static_cast<ptrdiff_t>(y) * options.width * 3, static_cast<ptrdiff_t>(options.width) * 3,
+                        all.rgb.begin() + (static_cast<ptrdiff_t>(top + y) * all.width + left) * 3);
+        stamp(all, left + 8, top + 8, static_cast<int>(k));
+    }
+    return all;
+}
+
+/// The chosen one's values as a style of the file.
+Status saveChoice(const MutateRequest& request, const rules::Grammar& grammar, const std::vector<Variation>& found) {
+    if (request.pick >= static_cast<int>(found.size())) return Error{Error::Kind::Usage, fmt::format("--pick {}: the sheet has 0 … {}", request.pick, found.size() - 1)};
+    const auto source = viewer::readSource(request.model.file);
+    if (!source.ok()) return source.error();
+    syntax::Diagnostics diagnostics;
+    const syntax::Ast ast = syntax::parse(*source, diagnostics);
+    std::vector<NamedValue> values;
+    const auto add = [&](const NamedValue& v) {
+        std::erase_if(values, [&](const NamedValue& w) { return w.name == v.name; });
+        values.push_back(v);
+    };
+    const auto options = optionsFor(grammar, request.model);
+    if (!options.ok()) return options.error();
+    const auto fresh = rules::valuesOf(grammar, options->start);
+    for (size_t i = 0; i < fresh.size(); ++i)  // what --style and --set changed belongs to it too
+        if (options->params[i] != fresh[i]) add({grammar.params[i].name, rules::toText(options->params[i])});
+    for (const NamedValue& v : found[static_cast<size_t>(request.pick)].values) add(v);
+    const std::string start = grammar.symbols[grammar.starts[options->start].symbol].name;
+    const auto edit = viewer::edits::saveStyle(ast, request.save, start, values);
+    if (!edit.ok()) return edit.error();
+    return viewer::writeText(request.model.file, viewer::applied((*source)->text(), *edit));
+}
+
+Status checkRequest(const MutateRequest& request, const rules::Grammar& grammar) {
+    if ((request.pick >= 0) != !request.save.empty()) return Error{Error::Kind::Usage, "--pick NUMBER and --save NAME go together: which one, and the style it becomes"};
+    for (const std::string& name : request.lock)
+        if (std::none_of(grammar.params.begin(), grammar.params.end(), [&](const rules::Param& p) { return p.name == name; }))
+            return Error{Error::Kind::Usage, fmt::format("--lock {}: no parameter is called so", name)};
+    return Done{};
+}
+
+Status mutated(const MutateRequest& request) {
+    viewer::PictureOptions options;
+    int used = 0;
+    if (std::sscanf(request.size.c_str(), "%dx%d%n", &options.width, &options.height, &used) != 2 || used != static_cast<int>(request.size.size()) ||
+        std::min(options.width, options.height) < 32 || std::max(options.width, options.height) > 4096)
+        return Error{Error::Kind::Usage, fmt::format("--size {}: write WIDTHxHEIGHT of one picture in pixels, as 320x240", request.size)};
+    Stages stages;
+    const auto grammar = loadGrammar(request.model.file, stages);
+    if (!grammar) return Error{Error::Kind::Input, ""};
+    if (const Status s = checkRequest(request, *grammar); !s.ok()) return s;
+    Watch watch(request.quiet);
+    const size_t wanted = static_cast<size_t>(request.rows) * static_cast<size_t>(request.columns);
+    const auto found = search(request, grammar, wanted, watch.progress());
+    if (!found.ok()) return found.error();
+    if (!request.output.empty()) {
+        options.threads = request.threads;
+        options.samples = 3;
+        const auto image = sheet(request, *found, options, watch.progress());
+        if (!image.ok()) return image.error();
+        if (const Status s = viewer::writePng(*image, request.output); !s.ok()) return s;
+        if (!request.quiet) fmt::print("wrote {}\n", request.output);
+    }
+    if (!request.quiet)
+        for (size_t k = 0; k < found->size(); ++k) {
+            std::string text;
+            for (const NamedValue& v : (*found)[k].values) text += fmt::format(" {}={}", v.name, v.value);
+            fmt::print("{}:{}\n", k, text.empty() ? " as it is" : text);
+        }
+    if (request.pick < 0) return Done{};
+    if (const Status s = saveChoice(request, *grammar, *found); !s.ok()) return s;
+    if (!request.quiet) fmt::print("wrote style {} into {}\n", request.save, request.model.file);
+    return Done{};
+}
+
+int mutate(const MutateRequest& request) {
+    const Status done = mutated(request);
+    return done.ok() ? 0 : fail(done.error());
+}
+
+}  // namespace
+
+void addMutate(CLI::App& app, int& exitCode) {
+    CLI::App* command = app.add_subcommand("mutate", "Draw a sheet of variations of a model; write the chosen one back as a style");
+    auto request = std::make_shared<MutateRequest>();
+    addModelOptions(*command, request->model);
+    command->add_option("-o,--output", request->output, "Sheet to write (.png)");
+    command->add_option("--rows", request->rows, "Rows of the sheet")->check(CLI::Range(1, 20))->capture_default_str();
+    command->add_option("--cols", request->columns, "Columns of the sheet")->check(CLI::Range(1, 20))->capture_default_str();
+    command->add_option("--size", request->size, "Pixels of one picture, WxH")->capture_default_str();
+    command->add_option("--lock", request->lock, "Leave a parameter as it is; may be given again")->allow_extra_args(false);
+    command->add_option("--spread", request->spread, "How far values go: 0 not at all, 1 anywhere in their ranges")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+    command->add_option("--resolution", request->resolution, "Cells along the longest side of the mesh that is judged")->check(CLI::Range(16, 1024))->capture_default_str();
+    command->add_option("--threads", request->threads, "Threads (0: all)")->check(CLI::Range(0, 1024))->capture_default_str();
+    command->add_option("--pick", request->pick, "Number of the variation to keep")->check(CLI::NonNegativeNumber);
+    command->add_option("--save", request->save, "Name of the style it becomes");
+    command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
+    command->footer("Examples:\n  sgm mutate examples/kifs/mcgraw.sgm --rows 3 --cols 4 --lock mass -o sheet.png\n  sgm mutate mine.sgm --pick 7 --save Lucky");
+    command->callback([request, &exitCode] { exitCode = mutate(*request); });
+}
+
+}  // namespace sgm::cli

@@ -1,0 +1,26 @@
+// Variations of a grammar's parameters, and which of them are worth showing.
+// Enters: a grammar and what is chosen of it. Leaves: settings as text, and verdicts. Assumes the choice resolves.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cli/pipeline.h"
+#include "modeler/mesh/pieces.h"
+#include "viewer/document/edits.h"
+
+namespace sgm::cli {
+
+/// Values for every parameter that may vary: drawn by `seed` alone, `spread` (0 … 1) of the way from the present ones to
+/// any in their ranges; words and switches change with that chance. Rounded as a slider would, so that what is written
+/// into a text gives the very same model.
+std::vector<viewer::edits::NamedValue> variation(const rules::Grammar& grammar, const viewer::ModelChoice& choice,
+                                                 const std::set<std::string>& locked, double spread, uint64_t seed);
+
+/// Why a model isn't worth a look: nothing solid; mostly crumbs; parts in the air; or a few bare planes. Empty for a good
+/// one. `cell_m` is that of the mesh.
+std::optional<std::string> degenerate(const mesh::Mesh& mesh, float cell_m);
+
+}  // namespace sgm::cli

@@ -1,0 +1,82 @@
+// `sgm mutate`: degenerate variations are left out, the same sheet comes again, and the chosen one written back as a style
+// is the same model. And what goes with facades: --keep and --view ids.
+#include "tests/cli/program.h"
+
+namespace sgm::cli {
+namespace {
+
+/// A grammar whose word `kind` makes one sound model and one degenerate.
+std::string planted(const std::string& bad) {
+    return "param kind = good of good, bad\nparam width = 4 in 2..8.0\n"
+           "start House -> Part\nrule Part when kind == bad -> " + bad + "\nrule Part -> sphere size (width, 3, 3)\n";
+}
+
+TEST_F(Cli, MutateLeavesDegeneratesOut) {
+    const std::pair<const char*, const char*> degenerates[] = {
+        {"cube size .4 & cube size .4 move (9, 0, 0)", "empty"},
+        {"sphere size .4 for k in 1..12 { + sphere size .4 move (k, k % 2, 0) }", "dust"},
+        {"sphere size 3 + sphere size 2 move (0, 6, 0)", "floating"},
+        {"cube size 4 + cube size (8, 4, 2)", "featureless"}};
+    for (const auto& [bad, why] : degenerates) {
+        SCOPED_TRACE(why);
+        const Outcome run = sgm("mutate " + grammar(planted(bad)) + " --rows 2 --cols 3 --spread .6 --resolution 40");
+        EXPECT_EQ(run.code, 0) << run.out;
+        EXPECT_NE(run.out.find(std::string(": ") + why), std::string::npos) << run.out;
+        EXPECT_EQ(run.out.find("kind=bad"), std::string::npos) << run.out;
+        EXPECT_NE(run.out.find("5: width="), std::string::npos) << run.out;
+    }
+}
+
+TEST_F(Cli, MutateWritesTheChosenOneBack) {
+    const std::string file = grammar("param width = 4 in 2..8.0\nparam rounds = .5 in 0..1.0\nparam high = 3m in 1m..9m  // kept\n"
+                                     "start House -> morph(cube, sphere, rounds) size (width, high, 3)\n");
+    const std::string before = read(file), command = "mutate " + file + " --rows 1 --cols 4 --resolution 32 --lock high";
+    const Outcome list = sgm(command);
+    ASSERT_EQ(list.code, 0) << list.out;
+    EXPECT_EQ(read(file), before) << "nothing is written without --pick";
+    EXPECT_EQ(list.out.find("high="), std::string::npos) << "a locked parameter stays";
+    const size_t line = list.out.find("3: ");
+    ASSERT_NE(line, std::string::npos);
+    std::string settings;
+    std::istringstream words(list.out.substr(line + 3, list.out.find('\n', line) - line - 3));
+    for (std::string word; words >> word;) settings += " --set " + word;
+    ASSERT_EQ(sgm("build " + file + settings + " --resolution 32 -o " + path("a.ply")).code, 0);
+
+    const Outcome kept = sgm(command + " --pick 3 --save Lucky");
+    ASSERT_EQ(kept.code, 0) << kept.out;
+    EXPECT_EQ(read(file).substr(0, before.size()), before) << "comments and layout stay";
+    const Outcome again = sgm("build " + file + " --style Lucky --resolution 32 -o " + path("b.ply"));
+    ASSERT_EQ(again.code, 0) << again.out;
+    EXPECT_EQ(read(path("a.ply")), read(path("b.ply")));
+}
+
+TEST_F(Cli, MutateSaysWhatIsWrong) {
+    const std::string file = grammar("param width = 4 in 2..8.0\nstart House -> sphere size (width, 3, 3)\n");
+    EXPECT_EQ(sgm("mutate " + file + " --pick 1").code, 2);
+    EXPECT_EQ(sgm("mutate " + file + " --rows 1 --cols 2 --pick 7 --save A").code, 2);
+    EXPECT_EQ(sgm("mutate " + file + " --lock nothing").code, 2);
+    const Outcome none = sgm("mutate " + grammar("param width = 4 in 2..8.0\nstart House -> cube size (width, 3, 3)\n") + " --resolution 24 --rows 1 --cols 1");
+    EXPECT_EQ(none.code, 1);
+    EXPECT_NE(none.out.find("featureless"), std::string::npos) << none.out;
+}
+
+TEST_F(Cli, KeepLeavesOutWhatFloats) {
+    const std::string file = grammar("start House -> cube size 4 + sphere size 2 move (0, 6, 0)\n");
+    EXPECT_EQ(built(file + " --resolution 40")["mesh"]["components"], 2);
+    EXPECT_EQ(built(file + " --resolution 40 --keep grounded")["mesh"]["components"], 1);
+    EXPECT_EQ(built(file + " --resolution 40 --keep largest")["mesh"]["components"], 1);
+    EXPECT_EQ(sgm("build " + file + " --keep grounded -o " + path("a.vdb")).code, 2);
+    EXPECT_EQ(sgm("build " + file + " --keep some").code, 2);
+}
+
+TEST_F(Cli, IdsAreDrawnOfWhatIsClad) {
+    const std::string size = " --size 64x64 --samples 1 --view ids -o " + path("ids.png");
+    EXPECT_EQ(sgm("render " + grammar("use \"std/kifs.sgm\"\nstart House -> Box size (12, 8, 8) clad palazzo\n") + size).code, 0);
+    EXPECT_TRUE(fs::exists(path("ids.png")));
+    const Outcome bare = sgm("render " + grammar("start House -> cube\n") + size);
+    EXPECT_EQ(bare.code, 1);
+    EXPECT_NE(bare.out.find("nothing is clad"), std::string::npos) << bare.out;
+}
+
+}  // namespace
+}  // namespace sgm::cli
