@@ -110,7 +110,7 @@ Result<Painter> painterOf(const RenderRequest& request, const Model& model, cons
     }
     if (request.view == "fog") return fogPainter(request, model, bounds, progress);
     if (request.view == "ids")
-        return Painter([&model, bounds](const auto& options, Progress* progress, viewer::Layers*) { return drawIds(model, bounds, options, progress); });
+        return Painter{[&model, bounds](const auto& options, Progress* progress, viewer::Layers*) { return drawIds(model, bounds, options, progress); }, {}};
     Stages stages;
     const auto meshed = makeMesh(model, request.grid, stages, progress);
     if (!meshed.ok()) return meshed.error();
