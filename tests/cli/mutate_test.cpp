@@ -19,11 +19,11 @@ TEST_F(Cli, MutateLeavesDegeneratesOut) {
         {"cube size 4 + cube size (8, 4, 2)", "featureless"}};
     for (const auto& [bad, why] : degenerates) {
         SCOPED_TRACE(why);
-        const Outcome run = sgm("mutate " + grammar(planted(bad)) + " --rows 2 --cols 3 --spread .6 --resolution 40");
+        const Outcome run = sgm("mutate " + grammar(planted(bad)) + " --rows 2 --cols 4 --spread 1");
         EXPECT_EQ(run.code, 0) << run.out;
         EXPECT_NE(run.out.find(std::string(": ") + why), std::string::npos) << run.out;
         EXPECT_EQ(run.out.find("kind=bad"), std::string::npos) << run.out;
-        EXPECT_NE(run.out.find("5: width="), std::string::npos) << run.out;
+        EXPECT_NE(run.out.find("7: width="), std::string::npos) << run.out;
     }
 }
 
