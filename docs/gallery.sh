@@ -23,6 +23,13 @@ draw() {
   echo "docs/pictures/$name-*.png"
 }
 
+# small NAME OPTIONS: NAME.png
+small() {
+  # shellcheck disable=SC2086
+  "$sgm" render $2 --size 320x320 -q -o "docs/pictures/$1.png"
+  echo "docs/pictures/$1.png"
+}
+
 # The last section of the page is what bench prints.
 times() {
   local page=docs/gallery.md fresh
@@ -43,7 +50,9 @@ while IFS='|' read -r family name options inside; do
   name=${name// /}
   render=field
   case $family in "#"*) continue ;; cloud*) render=fog ;; esac
-  case " $* " in "  " | *" $name "*) draw "$name" "$options" "${inside:-}" "$render"; known=$((known + 1)) ;; esac
+  case " $* " in "  " | *" $name "*) ;; *) continue ;; esac
+  known=$((known + 1))
+  case $family in kifs*) small "$name" "$options" ;; *) draw "$name" "$options" "${inside:-}" "$render" ;; esac
 done <docs/gallery.txt
 [ $# -eq 0 ] && times
 [ $# -eq 0 ] || [ $known -eq $# ] || { echo "gallery: not all of '$*' are in docs/gallery.txt" >&2; exit 2; }
