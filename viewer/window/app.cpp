@@ -234,7 +234,9 @@ int runApp(const AppOptions& options) {
             frameSeconds = turn.seconds();
             bench.refresh();
             describe(bench, report.state());
-            if (window.pending()) report.state()["busy"] = true;
+            const Window::Given& given = window.given();
+            report.state()["still"] = wanted == 0 && !window.pending();
+            report.state()["input"] = {{"x", given.x}, {"y", given.y}, {"buttons", given.buttons}, {"keys", given.keys}, {"releases", given.releases}, {"wheel", given.wheel}};
             report.write();
         }
         if (bench.leaving) return 0;

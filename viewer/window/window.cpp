@@ -45,9 +45,6 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
     window->window_ = made;
     glfwSetWindowUserPointer(made, window.get());
     // ImGui's callbacks, installed below, call these in turn.
-    glfwSetMouseButtonCallback(made, [](GLFWwindow* w, int, int, int) { self(w).stirred_ = true; });
-    glfwSetScrollCallback(made, [](GLFWwindow* w, double, double) { self(w).stirred_ = true; });
-    glfwSetCursorPosCallback(made, [](GLFWwindow* w, double, double) { self(w).stirred_ = true; });
     glfwSetCursorEnterCallback(made, [](GLFWwindow* w, int) { self(w).stirred_ = true; });
     glfwSetWindowFocusCallback(made, [](GLFWwindow* w, int) { self(w).stirred_ = true; });
     glfwSetFramebufferSizeCallback(made, [](GLFWwindow* w, int, int) { self(w).stirred_ = true; });
@@ -63,14 +60,18 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
     glfwGetWindowContentScale(made, &scaleX, &scaleY);
     dress(scaleX);
     ImGui_ImplGlfw_InitForOpenGL(made, true);
+    // These replace ImGui's, which know the state at the frame alone.
+    using Kind = Event::Kind;
     glfwSetKeyCallback(made, [](GLFWwindow* w, int key, int, int action, int) {
-        self(w).stirred_ = true;
-        if (key >= 0 && key < IM_ARRAYSIZE(ImGuiIO::KeysDown) && action != GLFW_REPEAT) self(w).keys_.push_back({key, action == GLFW_PRESS, 0});
+        if (key >= 0 && key < IM_ARRAYSIZE(ImGuiIO::KeysDown) && action != GLFW_REPEAT) self(w).receive({.kind = Kind::Key, .code = key, .down = action == GLFW_PRESS});
     });
-    glfwSetCharCallback(made, [](GLFWwindow* w, unsigned letter) {
-        self(w).stirred_ = true;
-        self(w).keys_.push_back({0, true, letter});
+    glfwSetCharCallback(made, [](GLFWwindow* w, unsigned letter) { self(w).receive({.kind = Kind::Letter, .letter = letter}); });
+    glfwSetCursorPosCallback(made, [](GLFWwindow* w, double x, double y) { self(w).receive({.kind = Kind::Move, .x = x, .y = y}); });
+    glfwSetMouseButtonCallback(made, [](GLFWwindow* w, int button, int action, int) {
+        if (button >= 0 && button < ImGuiMouseButton_COUNT) self(w).receive({.kind = Kind::Button, .code = button, .down = action == GLFW_PRESS});
     });
+    glfwSetScrollCallback(made, [](GLFWwindow* w, double x, double y) { self(w).receive({.kind = Kind::Wheel, .x = x, .y = y}); });
+    glfwGetCursorPos(made, &window->given_.x, &window->given_.y);
     ImGui_ImplOpenGL3_Init("#version 430 core");
     return window;
 }
@@ -94,42 +95,73 @@ bool Window::closing() {
 void Window::wake() { glfwPostEmptyEvent(); }
 void Window::setTitle(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
-void Window::giveKeys() {
+void Window::receive(Event event) {
+    stirred_ = true;
+    input_.push_back(event);
+}
+
+void Window::giveInput() {
+    using Kind = Event::Kind;
     ImGuiIO& io = ImGui::GetIO();
-    bool command = false;    // a key that stands for more than its letter: what follows belongs to the next frame
-    std::vector<int> seen;   // went down in this frame
-    const auto isModifier = [](int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; };
-    while (!keys_.empty()) {
-        const KeyEvent event = keys_.front();
-        if (event.letter != 0) {
-            if (command) break;
-            io.AddInputCharacter(event.letter);
-        } else if (event.down) {
-            if (command) break;
-            const bool isLetter = event.key < 256 && !io.KeysDown[GLFW_KEY_LEFT_CONTROL] && !io.KeysDown[GLFW_KEY_RIGHT_CONTROL];
-            command = !isLetter && !isModifier(event.key);
-            seen.push_back(event.key);
-            io.KeysDown[event.key] = true;
-        } else {
-            // A text takes letters, so their keys may come and go; elsewhere they are commands and stay down for a frame.
-            const bool letterOfText = io.WantTextInput && event.key < 256;
-            if (!letterOfText && std::find(seen.begin(), seen.end(), event.key) != seen.end()) break;
-            io.KeysDown[event.key] = false;
-        }
-        keys_.pop_front();
-    }
-    if (!keys_.empty()) stirred_ = true;
     const auto either = [&](int left, int right) { return io.KeysDown[left] || io.KeysDown[right]; };
+    const auto isModifier = [](int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; };
+    bool command = false;     // a key that stands for more than its letter
+    bool button = false;      // of the mouse; its wheel holds nothing up, for it turns while the pointer moves
+    bool letters = false;
+    std::vector<int> turned;  // keys that went down or up
+    /// False where the event must wait for the next frame.
+    const auto give = [&](const Event& event) {
+        // Whatever follows a command or a click might change what it means: a modifier let go, a pointer moved on.
+        if (command || (button && event.kind != Kind::Wheel)) return false;
+        switch (event.kind) {
+            case Kind::Letter:
+                io.AddInputCharacter(event.letter);
+                letters = true;
+                return true;
+            case Kind::Move:
+                given_.x = event.x;
+                given_.y = event.y;
+                return true;
+            case Kind::Button:
+                if (letters || !turned.empty()) return false;
+                given_.buttons = event.down ? given_.buttons | 1u << event.code : given_.buttons & ~(1u << event.code);
+                button = true;
+                return true;
+            case Kind::Wheel:
+                io.MouseWheelH += static_cast<float>(event.x);
+                io.MouseWheel += static_cast<float>(event.y);
+                given_.wheel += event.y;
+                return true;
+            case Kind::Key: break;
+        }
+        const bool isLetter = event.code < 256 && !either(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+        // A text takes letters, so their keys may come and go; elsewhere they are commands and stay for a frame.
+        const bool ofText = io.WantTextInput && (isLetter || isModifier(event.code));
+        if (!ofText && (event.down ? std::find(turned.begin(), turned.end(), event.code) != turned.end() : !turned.empty())) return false;
+        const bool commands = event.down && !isLetter && !isModifier(event.code);
+        if (commands && letters) return false;
+        command = commands;
+        turned.push_back(event.code);
+        if (io.KeysDown[event.code] != event.down) event.down ? ++given_.keys : --given_.keys;
+        if (!event.down) ++given_.releases;
+        io.KeysDown[event.code] = event.down;
+        return true;
+    };
+    while (!input_.empty() && give(input_.front())) input_.pop_front();
+    if (!input_.empty()) stirred_ = true;
     io.KeyCtrl = either(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
     io.KeyShift = either(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
     io.KeyAlt = either(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
     io.KeySuper = either(GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER);
+    // ImGui's own look at the pointer says whether it is ours at all.
+    if (ImGui::IsMousePosValid(&io.MousePos)) io.MousePos = {static_cast<float>(given_.x), static_cast<float>(given_.y)};
+    for (int i = 0; i < ImGuiMouseButton_COUNT; ++i) io.MouseDown[i] = given_.buttons >> i & 1;
 }
 
 void Window::beginFrame() {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
-    giveKeys();
+    giveInput();
     ImGui::NewFrame();
 }
 

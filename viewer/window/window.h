@@ -2,6 +2,7 @@
 // Enters: a title and a size. Leaves: events and frames. Assumes the main thread and one window.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -31,8 +32,17 @@ public:
     std::vector<std::filesystem::path> dropped();
     /// The person asked to close it, since the last call.
     bool closing();
-    /// Keys wait for the next frame.
-    bool pending() const { return !keys_.empty(); }
+    /// Input waits for the next frame.
+    bool pending() const { return !input_.empty(); }
+    /// What frames have been given so far.
+    struct Given {
+        double x = 0, y = 0;    ///< the pointer, pixels of the window
+        unsigned buttons = 0;   ///< that are down, a bit each
+        unsigned keys = 0;      ///< that are down
+        uint64_t releases = 0;  ///< of keys
+        double wheel = 0;       ///< clicks, up is positive
+    };
+    const Given& given() const { return given_; }
     /// Ends a `listen` from any thread.
     static void wake();
 
@@ -45,17 +55,21 @@ public:
 
 private:
     Window() = default;
-    struct KeyEvent {
-        int key;          ///< GLFW's
-        bool down;
-        unsigned letter;  ///< UTF-32 where it is a letter that was typed, else 0
+    struct Event {
+        enum class Kind { Key, Letter, Move, Button, Wheel } kind;
+        int code = 0;         ///< GLFW's of a key or a button
+        bool down = false;
+        unsigned letter = 0;  ///< UTF-32
+        double x = 0, y = 0;
     };
-    /// Gives ImGui the keys of one frame, in their order: a command's press and release never fall into the same frame,
-    /// however slow frames are.
-    void giveKeys();
+    void receive(Event event);
+    /// Gives ImGui the input of one frame in its order. What would hide an earlier event waits for the next frame, so that
+    /// a slow frame loses no click and no command.
+    void giveInput();
 
     GLFWwindow* window_ = nullptr;
-    std::deque<KeyEvent> keys_;  ///< not yet given
+    std::deque<Event> input_;  ///< not yet given
+    Given given_;
     bool stirred_ = true;
     std::vector<std::filesystem::path> dropped_;
 };

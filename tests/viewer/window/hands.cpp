@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -46,6 +47,12 @@ std::string contentOf(const fs::path& path) {
     text << std::ifstream(path, std::ios::binary).rdbuf();
     return text.str();
 }
+
+/// The program's bit of one of X's buttons: left, middle, right there; left, right, middle here.
+unsigned bitOf(int button) { return button == 2 ? 4 : button == 3 ? 2 : 1; }
+
+/// Keys in a chord such as "ctrl+z".
+uint64_t keysIn(const std::string& chord) { return static_cast<uint64_t>(std::count(chord.begin(), chord.end(), '+') + 1); }
 
 /// The screen that Xvfb keeps in a file of X's own dump format (XWD): a header of big-endian words, colours, rows of BGRX.
 Image screenOf(const fs::path& dump) {
@@ -142,31 +149,42 @@ void Hands::kill() {
 
 nlohmann::json Hands::report() const {
     const auto parsed = nlohmann::json::parse(contentOf(folder / "report.json"), nullptr, false);
-    return parsed.is_object() ? parsed : nlohmann::json{{"frame", 0}, {"widgets", nlohmann::json::object()}, {"state", {{"shapes", 0}, {"busy", true}}}};
+    return parsed.is_object() ? parsed : nlohmann::json{{"frame", 0}, {"widgets", nlohmann::json::object()}, {"state", {{"shapes", 0}, {"busy", true}, {"still", false}}}};
 }
 
 nlohmann::json Hands::until(const std::string& what, const std::function<bool(const nlohmann::json&)>& holds, double seconds) {
-    for (double waited = 0; waited < seconds; waited += 0.05) {
+    for (double waited = 0; waited < seconds; waited += 0.01) {
         const nlohmann::json now = state();
         if (now.contains("text") && holds(now)) return now;
         if (program_ > 0 && waitpid(program_, nullptr, WNOHANG) == program_) {
             program_ = 0;
             throw std::runtime_error("the program ended:\n" + contentOf(folder / "log"));
         }
-        std::this_thread::sleep_for(50ms);
+        std::this_thread::sleep_for(10ms);
     }
     throw std::runtime_error("waited in vain for " + what + "\n" + report().dump(1));
 }
 
-/// What was just sent needs frames to be seen, and a busy machine takes its time for them.
-void Hands::frames(uint64_t count) const {
-    const auto frame = report()["frame"].get<uint64_t>();
-    for (int turn = 0; turn < 60 && report()["frame"].get<uint64_t>() < frame + count; ++turn) std::this_thread::sleep_for(20ms);
+nlohmann::json Hands::settled() {
+    return until("an idle program", [](const auto& s) { return !s["busy"] && s["still"]; });
 }
 
-nlohmann::json Hands::settled() {
-    frames(2);
-    return until("an idle program", [](const auto& s) { return !s["busy"]; });
+void Hands::send(const std::vector<std::string>& arguments, const std::function<bool(const nlohmann::json&)>& taken) {
+    tool(arguments);
+    until("what xdotool sends to be taken", [&](const auto& s) { return taken(s["input"]) && s["still"]; });
+}
+
+void Hands::move(int x, int y) {
+    send({"mousemove", std::to_string(x), std::to_string(y)}, [&](const auto& input) { return input["x"] == x && input["y"] == y; });
+}
+
+void Hands::press(int button) {
+    send({"mousedown", std::to_string(button)}, [&](const auto& input) { return (input["buttons"].template get<unsigned>() & bitOf(button)) != 0; });
+}
+
+void Hands::release(int button) {
+    send({"mouseup", std::to_string(button)}, [&](const auto& input) { return (input["buttons"].template get<unsigned>() & bitOf(button)) == 0; });
+    settled();
 }
 
 void Hands::tool(const std::vector<std::string>& arguments) const {
@@ -187,71 +205,71 @@ std::pair<int, int> Hands::placeOf(const std::string& widget, double x, double y
 
 void Hands::point(const std::string& widget, double x, double y) {
     const auto [px, py] = placeOf(widget, x, y);
-    tool({"mousemove", std::to_string(px), std::to_string(py)});
-    frames(2);
+    move(px, py);
 }
 
 void Hands::click(const std::string& widget, double x, double y, int button) {
     point(widget, x, y);
-    tool({"mousedown", std::to_string(button)});
-    frames(1);
-    tool({"mouseup", std::to_string(button)});
-    settled();
+    press(button);
+    release(button);
 }
 
 void Hands::drag(const std::string& widget, double fromX, double fromY, double toX, double toY, int button) {
-    const auto [x, y] = placeOf(widget, toX, toY);
-    point(widget, fromX, fromY);
-    const std::string b = std::to_string(button);
     const auto [fx, fy] = placeOf(widget, fromX, fromY);
-    tool({"mousedown", b});
-    frames(1);
-    tool({"mousemove", std::to_string((x + fx) / 2), std::to_string((y + fy) / 2)});
-    frames(1);
-    tool({"mousemove", std::to_string(x), std::to_string(y)});
-    frames(2);
-    tool({"mouseup", b});
-    settled();
+    const auto [x, y] = placeOf(widget, toX, toY);
+    move(fx, fy);
+    press(button);
+    move((x + fx) / 2, (y + fy) / 2);
+    move(x, y);
+    release(button);
 }
 
 void Hands::hold(const std::string& widget, const std::function<void()>& look) {
-    point(widget);
-    tool({"mousedown", "1"});
-    frames(1);
-    tool({"mousemove_relative", "12", "6"});
+    const auto [x, y] = placeOf(widget, 0.5, 0.5);
+    move(x, y);
+    press(1);
+    move(x + 12, y + 6);
     look();
-    point(widget);
-    tool({"mouseup", "1"});
-    settled();
+    move(x, y);
+    release(1);
 }
 
 void Hands::dragTo(const std::string& from, int x, int y) {
-    point(from);
-    tool({"mousedown", "1"});
-    frames(1);
-    tool({"mousemove_relative", "12", "6"});
-    frames(1);
-    tool({"mousemove", std::to_string(x - 4), std::to_string(y)});
-    frames(1);
-    tool({"mousemove", std::to_string(x), std::to_string(y)});
-    frames(2);
-    tool({"mouseup", "1"});
-    settled();
+    const auto [fx, fy] = placeOf(from, 0.5, 0.5);
+    move(fx, fy);
+    press(1);
+    move(fx + 12, fy + 6);
+    move(x - 4, y);
+    move(x, y);
+    release(1);
 }
 
 void Hands::wheel(const std::string& widget, int clicks) {
     point(widget);
-    tool({"click", "--repeat", std::to_string(std::abs(clicks)), "--delay", "60", clicks > 0 ? "4" : "5", "sleep", "0.1"});
+    const double wanted = state()["input"]["wheel"].get<double>() + clicks;
+    send({"click", "--repeat", std::to_string(std::abs(clicks)), "--delay", "10", clicks > 0 ? "4" : "5"}, [&](const auto& input) { return input["wheel"] == wanted; });
+    settled();
+}
+
+void Hands::burst(const std::string& widget, const std::vector<std::string>& keys) {
+    const auto [x, y] = placeOf(widget, 0.5, 0.5);
+    std::vector<std::string> words{"mousemove", std::to_string(x), std::to_string(y), "mousedown", "1", "mouseup", "1", "key", "--delay", "4"};  // GLFW takes one press of a key a millisecond
+    words.insert(words.end(), keys.begin(), keys.end());
+    uint64_t wanted = state()["input"]["releases"];
+    for (const std::string& k : keys) wanted += keysIn(k);
+    send(words, [&](const auto& input) { return input["releases"] >= wanted && input["keys"] == 0 && input["buttons"] == 0; });
     settled();
 }
 
 void Hands::key(const std::string& keys) {
-    tool({"key", keys});
+    const uint64_t wanted = state()["input"]["releases"].get<uint64_t>() + keysIn(keys);
+    send({"key", keys}, [&](const auto& input) { return input["releases"] >= wanted && input["keys"] == 0; });
     settled();
 }
 
 void Hands::type(const std::string& text) {
-    tool({"type", "--delay", "25", text});
+    const uint64_t wanted = state()["input"]["releases"].get<uint64_t>() + text.size();
+    send({"type", "--delay", "5", text}, [&](const auto& input) { return input["releases"] >= wanted && input["keys"] == 0; });
     settled();
 }
 

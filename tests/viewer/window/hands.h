@@ -50,6 +50,8 @@ protected:
     void wheel(const std::string& widget, int clicks);
     void key(const std::string& keys);
     void type(const std::string& text);
+    /// A click and then commands, all sent at once.
+    void burst(const std::string& widget, const std::vector<std::string>& keys);
     /// Replaces what a text field holds.
     void fill(const std::string& field, const std::string& text);
     /// Keeps a picture of the screen as build/window/TEST-NAME.png.
@@ -59,7 +61,11 @@ protected:
     std::filesystem::path folder, file;
 
 private:
-    void frames(uint64_t count) const;
+    /// Sends input, and waits until the program has taken it and its widgets have come to rest.
+    void send(const std::vector<std::string>& arguments, const std::function<bool(const nlohmann::json& input)>& taken);
+    void move(int x, int y);
+    void press(int button);
+    void release(int button);
     void tool(const std::vector<std::string>& arguments) const;
     std::pair<int, int> placeOf(const std::string& widget, double x, double y);
 

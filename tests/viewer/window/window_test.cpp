@@ -183,6 +183,50 @@ TEST_F(Window, TextIsTyped) {
     EXPECT_EQ(text(), pair);
 }
 
+TEST_F(Window, RulesAreChangedByClicks) {
+    openText(pair);
+    click("rule.8.R1: Ball");
+    click("rule.duplicate");
+    EXPECT_EQ(changedLines(pair, text()), std::vector{-1}) << "a line more";
+    key("ctrl+z");
+    click("rule.8.R1: Ball");
+    click("rule.up");
+    EXPECT_EQ(lineOf(text(), 7), lineOf(pair, 8));
+    key("ctrl+z");
+    click("rule.8.R1: Ball");
+    fill("edit.when", "wide > 1.5m");
+    EXPECT_EQ(lineOf(text(), 8), "rule R1: Ball when wide > 1.5m -> + cylinder size 1 at +y : Cap");
+    fill("edit.weight", "3");
+    EXPECT_EQ(lineOf(text(), 8), "rule R1: Ball when wide > 1.5m weight 3 -> + cylinder size 1 at +y : Cap");
+    fill("edit.repeat", "2");
+    EXPECT_NE(lineOf(text(), 8).find("repeat 2"), std::string::npos);
+    while (state()["undo"] != "") key("ctrl+z");
+    EXPECT_EQ(text(), pair);
+    click("rule.7.+ sphere : Ball");
+    click("op.morph");
+    EXPECT_NE(lineOf(text(), 7).find("morph sphere"), std::string::npos);
+    key("ctrl+z");
+    fill("edit.solid", "cylinder");
+    EXPECT_EQ(lineOf(text(), 7), "rule R0: Base -> + cylinder size 1.5 at +x : Ball   // the ball");
+    click("attribute.add");
+    click("attribute.add.shift");
+    EXPECT_NE(lineOf(text(), 7).find(" shift "), std::string::npos);
+    shoot("rules");
+    key("ctrl+z");
+    key("ctrl+z");
+    click("element.delete");
+    EXPECT_FALSE(std::string(state()["notice"]).empty());
+    while (state()["undo"] != "") key("ctrl+z");
+    fill("rule.new", "Cap -> sphere");
+    click("rule.add");
+    EXPECT_NE(text().find("rule Cap -> sphere\n"), std::string::npos);
+    click("rule.9.R1: Ball");  // the new one stands before it
+    click("rule.delete");
+    EXPECT_EQ(text().find("rule R1"), std::string::npos);
+    while (state()["undo"] != "") key("ctrl+z");
+    EXPECT_EQ(text(), pair);
+}
+
 TEST_F(Window, AShapeIsDraggedOntoAJoint) {
     openText(pair);
     // Joints show while something is dragged.
@@ -216,6 +260,16 @@ TEST_F(Window, ParametersLocksStylesAndKeys) {
     while (state()["undo"] != "") key("ctrl+z");
     EXPECT_EQ(text(), pair);
     EXPECT_EQ(state()["seed"], 1);
+}
+
+TEST_F(Window, AFastHandLosesNothing) {
+    openText(pair);
+    // All of it falls into few frames.
+    burst("param.round", {"ctrl+z", "ctrl+y", "ctrl+z", "ctrl+y", "ctrl+z"});
+    EXPECT_EQ(text(), pair);
+    EXPECT_EQ(state()["redo"], "Set round");
+    burst("param.round", {"ctrl+z", "ctrl+y"});
+    EXPECT_EQ(lineOf(text(), 4), "param round = true \"Round\"   // a switch");
 }
 
 TEST_F(Window, ADerivationByHandIsKept) {
