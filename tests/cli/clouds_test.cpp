@@ -45,7 +45,7 @@ TEST_P(EveryCloud, IsWholeAndAsWideAsItsNameSaysForEverySeed) {
 INSTANTIATE_TEST_SUITE_P(Clouds, EveryCloud,
                          testing::Values(Named{"plain", .5, 3}, Named{"humilis", 2, 6}, Named{"mediocris", 1, 2},
                                          Named{"congestus", .4, 1}, Named{"bank", 2.5, 6}, Named{"ring", 2, 4},
-                                         Named{"ball", .7, 1.4}),
+                                         Named{"ball", .7, 1.4}, Named{"lens", 2.5, 4}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 double Clouds::flatShare(const std::string& name, const std::string& more) const {
