@@ -73,9 +73,7 @@ Result<Image> FogPainter::draw(const PictureOptions& options, Progress* progress
             jobBuffer.bindStorage(1);
             colors.bindStorage(5);
             if (Status s = runInPieces(parts_->program, chunk.size(), parts_->piece, progress); !s) return s;
-            const auto light = colors.read<std::array<float, 4>>(chunk.size());
-            for (size_t i = 0; i < chunk.size(); ++i)
-                for (size_t c = 0; c < 4; ++c) sums.rgba[sums.index(chunk[i]) + c] += light[i][c];
+            sums.add(chunk, colors.read<std::array<float, 4>>(chunk.size()));
         }
         return Done{};
     };

@@ -49,7 +49,7 @@ TEST_F(Cli, InterruptedAnimationLeavesWholeFrames) {
     ASSERT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 130);
     EXPECT_TRUE(fs::exists(path("f_0003.off")));
-    for (const auto& entry : fs::directory_iterator(folder_)) {
+    for (const auto& entry : fs::directory_iterator(scratch_.path())) {
         ASSERT_EQ(entry.path().extension(), ".off") << entry.path();
         std::istringstream text(read(entry.path()));
         std::string word;
@@ -63,7 +63,7 @@ TEST_F(Cli, InterruptedAnimationLeavesWholeFrames) {
 TEST_F(Cli, AnimationsThatMeanNothingAreWrongUsage) {
     const auto said = [&](const std::string& more) {
         const Outcome run = sgm("build examples/morphs.sgm --resolution 16 " + more);
-        EXPECT_TRUE(fs::is_empty(folder_)) << more;
+        EXPECT_TRUE(fs::is_empty(scratch_.path())) << more;
         return std::to_string(run.code) + run.out.substr(run.out.find(':') + 1);
     };
     const std::string out = " -o " + path("f_%d.off");

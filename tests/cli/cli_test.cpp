@@ -134,7 +134,7 @@ TEST_F(Cli, KilledInTheMiddleOfWritingLeavesTheOldFile) {
     // Kill as soon as anything is being written beside the target.
     bool writing = false;
     for (int i = 0; i < 60000 && !writing && waitpid(child, nullptr, WNOHANG) == 0; ++i) {
-        for (const auto& entry : fs::directory_iterator(folder_)) writing |= entry.path().string() != out;
+        for (const auto& entry : fs::directory_iterator(scratch_.path())) writing |= entry.path().string() != out;
         std::this_thread::sleep_for(std::chrono::microseconds(500));
     }
     ASSERT_TRUE(writing) << "the writer finished before it was seen";
@@ -166,7 +166,7 @@ TEST_F(Cli, InterruptCancelsWith130AndLeavesNothing) {
     waitpid(child, &status, 0);
     ASSERT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 130);
-    EXPECT_TRUE(fs::is_empty(folder_));
+    EXPECT_TRUE(fs::is_empty(scratch_.path()));
 }
 
 TEST_F(Cli, FormatterIsIdempotentAndExamplesAreFormatted) {

@@ -12,6 +12,8 @@
 #include <sstream>
 #include <string>
 
+#include "tests/scratch.h"
+
 namespace sgm::cli {
 
 namespace fs = std::filesystem;
@@ -33,27 +35,13 @@ inline Outcome sgm(const std::string& arguments, const std::string& before = "")
     return run;
 }
 
-inline std::string read(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
+inline std::string read(const fs::path& path) { return contentOf(path); }
 
 /// A folder of its own for each test, removed afterwards.
 class Cli : public testing::Test {
 protected:
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "sgm-test-XXXXXX").string();
-        folder_ = mkdtemp(name.data());
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-    std::string path(const std::string& name) const { return (folder_ / name).string(); }
-    std::string grammar(const std::string& text) const {
-        const std::string file = path("test.sgm");
-        std::ofstream(file) << "grammar 1\n" << text;
-        return file;
-    }
+    std::string path(const std::string& name) const { return (scratch_ / name).string(); }
+    std::string grammar(const std::string& text) const { return scratch_.write("test.sgm", "grammar 1\n" + text).string(); }
     /// What `sgm build ARGUMENTS` reports as JSON; null where it failed.
     Json built(const std::string& arguments) const {
         const std::string file = path("report.json");
@@ -61,7 +49,7 @@ protected:
         EXPECT_EQ(run.code, 0) << run.out;
         return run.code == 0 ? Json::parse(read(file)) : Json();
     }
-    fs::path folder_;
+    Scratch scratch_;
 };
 
 }  // namespace sgm::cli

@@ -16,7 +16,7 @@ protected:
     }
     size_t filesLike(const std::string& start) const {
         size_t count = 0;
-        for (const auto& entry : fs::directory_iterator(folder_)) count += entry.path().filename().string().starts_with(start) ? 1 : 0;
+        for (const auto& entry : fs::directory_iterator(scratch_.path())) count += entry.path().filename().string().starts_with(start) ? 1 : 0;
         return count;
     }
     std::string file_;
@@ -85,7 +85,7 @@ TEST_F(Render, AnInterruptLeavesWholePictures) {
     pclose(pipe);
     EXPECT_NE(rest.find("code 130"), std::string::npos) << rest;
     EXPECT_EQ(filesLike(".sgm-"), 0u) << "no temporary files";
-    for (const auto& entry : fs::directory_iterator(folder_))
+    for (const auto& entry : fs::directory_iterator(scratch_.path()))
         if (entry.path().extension() == ".png") {
             EXPECT_NE(read(entry.path()).find("IEND"), std::string::npos);
         }

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/document/scratch.h"
+#include "tests/scratch.h"
 #include "tests/document/texts.h"
 
 namespace sgm::viewer {
@@ -129,12 +129,12 @@ TEST(Documents, SaveAndOpen) {
     EXPECT_EQ(scratch.read("a.sgm"), document->text());
     document->undo();
     EXPECT_TRUE(document->dirty());
-    ASSERT_TRUE(document->saveAs(scratch.folder / "b.sgm").ok());
+    ASSERT_TRUE(document->saveAs(scratch / "b.sgm").ok());
     EXPECT_EQ(scratch.read("b.sgm"), tower);
-    EXPECT_EQ(document->ast()->source->name(), (scratch.folder / "b.sgm").string());
-    EXPECT_FALSE(document->saveAs(scratch.folder / "none" / "c.sgm").ok());
-    EXPECT_EQ(document->path(), scratch.folder / "b.sgm");
-    EXPECT_FALSE(Document::open(scratch.folder / "none.sgm").ok());
+    EXPECT_EQ(document->ast()->source->name(), (scratch / "b.sgm").string());
+    EXPECT_FALSE(document->saveAs(scratch / "none" / "c.sgm").ok());
+    EXPECT_EQ(document->path(), scratch / "b.sgm");
+    EXPECT_FALSE(Document::open(scratch / "none.sgm").ok());
     EXPECT_FALSE(Document().save().ok());
 }
 

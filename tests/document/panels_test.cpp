@@ -1,7 +1,7 @@
 // What the panels show: rules, shapes, parameters, colours, export options.
 #include <algorithm>
 
-#include "tests/document/scratch.h"
+#include "tests/scratch.h"
 #include "tests/document/shown.h"
 #include "viewer/document/colours.h"
 #include "viewer/document/export_job.h"
@@ -268,7 +268,7 @@ TEST(Exports, WriteFilesOrSayWhyNot) {
     const auto model = shown(Document(tower));
     ExportJob job;
     const auto run = [&](const std::string& name, exporter::ExportOptions options) -> Status {
-        const Status begun = job.start(model, {scratch.folder / name, std::move(options), 24});
+        const Status begun = job.start(model, {scratch / name, std::move(options), 24});
         if (!begun.ok()) return begun;
         for (;;) {
             if (auto done = job.take()) return *done;
@@ -276,20 +276,20 @@ TEST(Exports, WriteFilesOrSayWhyNot) {
         }
     };
     EXPECT_TRUE(run("a.glb", {{"uv", "none"}}).ok());
-    EXPECT_GT(std::filesystem::file_size(scratch.folder / "a.glb"), 1000u);
+    EXPECT_GT(std::filesystem::file_size(scratch / "a.glb"), 1000u);
     EXPECT_TRUE(run("a.vdb", {}).ok());
-    EXPECT_TRUE(std::filesystem::exists(scratch.folder / "a.vdb"));
+    EXPECT_TRUE(std::filesystem::exists(scratch / "a.vdb"));
     EXPECT_EQ(run("a.xyz", {}).error().kind, Error::Kind::Usage);
     EXPECT_EQ(run("a.glb", {{"up", "z"}}).error().kind, Error::Kind::Usage);
     EXPECT_EQ(run("none/a.glb", {}).error().kind, Error::Kind::Input);
-    EXPECT_FALSE(job.start(nullptr, {scratch.folder / "b.glb", {}}).ok());
-    ASSERT_TRUE(job.start(model, {scratch.folder / "c.stl", {}, 512}).ok());
+    EXPECT_FALSE(job.start(nullptr, {scratch / "b.glb", {}}).ok());
+    ASSERT_TRUE(job.start(model, {scratch / "c.stl", {}, 512}).ok());
     job.cancel();
-    EXPECT_FALSE(job.start(model, {scratch.folder / "d.stl", {}}).ok()) << "one at a time";
+    EXPECT_FALSE(job.start(model, {scratch / "d.stl", {}}).ok()) << "one at a time";
     std::optional<Status> done;
     while (!(done = job.take())) std::this_thread::yield();
     EXPECT_EQ(done->error().kind, Error::Kind::Cancelled);
-    EXPECT_FALSE(std::filesystem::exists(scratch.folder / "c.stl"));
+    EXPECT_FALSE(std::filesystem::exists(scratch / "c.stl"));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include <cstdlib>
 
-#include "tests/document/scratch.h"
+#include "tests/scratch.h"
 #include "tests/document/texts.h"
 
 namespace sgm::viewer {
@@ -21,7 +21,7 @@ size_t filesIn(const std::filesystem::path& folder) {
 TEST(Recoveries, SurviveAKill) {
     const Scratch scratch;
     const auto path = scratch.write("a.sgm", tower);
-    const auto state = scratch.folder / "state";
+    const auto state = scratch / "state";
     int ready[2];
     ASSERT_EQ(pipe(ready), 0);
     const pid_t child = fork();
@@ -65,10 +65,10 @@ TEST(Recoveries, GoAwayWithTheirReason) {
     const Scratch scratch;
     Document document(tower);
     {
-        Recovery recovery(scratch.folder);
+        Recovery recovery(scratch.path());
         recovery.keep(document);
         ASSERT_TRUE(recovery.flush().ok());
-        EXPECT_EQ(filesIn(scratch.folder), 0u) << "nothing is unsaved";
+        EXPECT_EQ(filesIn(scratch.path()), 0u) << "nothing is unsaved";
         document.type("grammar 1\n// new\n");
         recovery.keep(document);
         ASSERT_TRUE(recovery.flush().ok());
@@ -79,12 +79,12 @@ TEST(Recoveries, GoAwayWithTheirReason) {
         EXPECT_FALSE(std::filesystem::exists(recovery.file()));
         document.redo();
         recovery.keep(document);
-        Recovery second(scratch.folder);
+        Recovery second(scratch.path());
         second.keep(document);
         ASSERT_TRUE(recovery.flush().ok() && second.flush().ok());
         EXPECT_NE(recovery.file(), second.file());
     }
-    EXPECT_EQ(filesIn(scratch.folder), 0u);
+    EXPECT_EQ(filesIn(scratch.path()), 0u);
 }
 
 TEST(Recoveries, SayWhenTheDiskRefuses) {
@@ -92,10 +92,10 @@ TEST(Recoveries, SayWhenTheDiskRefuses) {
     scratch.write("state", "a file where the folder should be");
     Document document(tower);
     document.type("grammar 1\n");
-    Recovery recovery(scratch.folder / "state");
+    Recovery recovery(scratch / "state");
     recovery.keep(document);
     EXPECT_FALSE(recovery.flush().ok());
-    std::filesystem::remove(scratch.folder / "state");
+    std::filesystem::remove(scratch / "state");
     recovery.keep(document);
     EXPECT_TRUE(recovery.flush().ok()) << "it is tried again";
 }
@@ -105,11 +105,11 @@ TEST(Recoveries, LeaveStrangeFilesAlone) {
     scratch.write("1-0.recovery", "sgm-recovery 99999\nshort");
     scratch.write("2-0.recovery", "something else");
     scratch.write("3-0.recovery", "sgm-recovery 0\ngrammar 1\n");
-    const auto found = abandonedWork(scratch.folder);
+    const auto found = abandonedWork(scratch.path());
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].text, "grammar 1\n");
     EXPECT_TRUE(found[0].document.empty());
-    EXPECT_TRUE(abandonedWork(scratch.folder / "none").empty());
+    EXPECT_TRUE(abandonedWork(scratch / "none").empty());
 }
 
 TEST(Recoveries, FollowTheDesktopsRules) {

@@ -2,7 +2,7 @@
 #include "viewer/document/session.h"
 
 #include "modeler/mesh/validate.h"
-#include "tests/document/scratch.h"
+#include "tests/scratch.h"
 #include "tests/document/shown.h"
 
 namespace sgm::viewer {
@@ -216,7 +216,7 @@ TEST(UsedFiles, AreReadAgainWhenTheyChange) {
     EXPECT_EQ(session.model()->model.derivation.steps.size(), 2u);
     EXPECT_FALSE(session.usedFilesChanged());
     scratch.write("part.sgm", "grammar 1\nparam n = 5 in 1..9\nrule B repeat n -> + cube at +x : B\n");
-    std::filesystem::last_write_time(scratch.folder / "part.sgm",
+    std::filesystem::last_write_time(scratch / "part.sgm",
                                      std::filesystem::file_time_type::clock::now() + std::chrono::seconds(2));
     EXPECT_TRUE(session.usedFilesChanged());
     show(session, document);
@@ -224,13 +224,13 @@ TEST(UsedFiles, AreReadAgainWhenTheyChange) {
     EXPECT_FALSE(session.usedFilesChanged());
     // Broken and mended again, the text of the document never changing.
     scratch.write("part.sgm", "grammar 1\nrule B repeat -> cube\n");
-    std::filesystem::last_write_time(scratch.folder / "part.sgm",
+    std::filesystem::last_write_time(scratch / "part.sgm",
                                      std::filesystem::file_time_type::clock::now() + std::chrono::seconds(4));
     EXPECT_TRUE(session.usedFilesChanged());
     show(session, document);
     EXPECT_EQ(session.model()->model.derivation.steps.size(), 5u);
     ASSERT_FALSE(session.problems().empty());
-    EXPECT_EQ(session.problems()[0].file, (scratch.folder / "part.sgm").string());
+    EXPECT_EQ(session.problems()[0].file, (scratch / "part.sgm").string());
 }
 
 TEST(Problems, TellPlacesOfLaterErrors) {

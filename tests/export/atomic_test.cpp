@@ -15,7 +15,7 @@
 #include "tests/cpu_time.h"
 #include "tests/export/hand_made.h"
 #include "tests/export/read_back.h"
-#include "tests/volume/scratch.h"
+#include "tests/scratch.h"
 
 namespace sgm::exporter {
 namespace {

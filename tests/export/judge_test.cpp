@@ -8,7 +8,7 @@
 #include "modeler/export/exporter.h"
 #include "tests/export/hand_made.h"
 #include "tests/export/read_back.h"
-#include "tests/volume/scratch.h"
+#include "tests/scratch.h"
 
 namespace sgm::exporter {
 namespace {

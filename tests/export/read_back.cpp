@@ -8,7 +8,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "tests/volume/scratch.h"
+#include "tests/scratch.h"
 
 namespace sgm::exporter {
 namespace {

@@ -7,7 +7,7 @@
 #include "modeler/eval/tape.h"
 #include "modeler/export/exporter.h"
 #include "modeler/field/field.h"
-#include "tests/volume/scratch.h"
+#include "tests/scratch.h"
 
 namespace sgm::exporter {
 namespace {

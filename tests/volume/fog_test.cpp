@@ -6,7 +6,7 @@
 
 #include "modeler/volume/dense.h"
 #include "modeler/volume/fog.h"
-#include "tests/volume/scratch.h"
+#include "tests/scratch.h"
 #include "tests/volume/shapes.h"
 
 namespace sgm::volume {

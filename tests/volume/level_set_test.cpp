@@ -12,7 +12,7 @@
 #include "modeler/mesh/validate.h"
 #include "modeler/volume/volume.h"
 #include "tests/cpu_time.h"
-#include "tests/volume/scratch.h"
+#include "tests/scratch.h"
 
 namespace sgm::volume {
 namespace {

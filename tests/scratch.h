@@ -30,6 +30,12 @@ public:
     Scratch& operator=(const Scratch&) = delete;
     const std::filesystem::path& path() const { return path_; }
     std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    /// Makes or overwrites a file.
+    std::filesystem::path write(const std::string& name, const std::string& text) const {
+        std::ofstream(path_ / name, std::ios::binary) << text;
+        return path_ / name;
+    }
+    std::string read(const std::string& name) const { return contentOf(path_ / name); }
     /// Files in the folder.
     size_t fileCount() const {
         size_t n = 0;
