@@ -3,6 +3,7 @@
 #   ./run.sh gallery            all of it
 #   ./run.sh gallery NAME…      the pictures of these objects of docs/gallery.txt
 #   ./run.sh gallery times      the times alone: on a calm machine
+#   ./run.sh gallery blender    two models in Blender (apt-get install blender), for docs/programs.md
 cd "$(dirname "$0")/.."
 set -eu
 sgm=build/release/cli/sgm
@@ -41,10 +42,17 @@ times() {
   echo "$page"
 }
 
-if [ "$*" = times ]; then
-  times
-  exit
-fi
+blender() {
+  local models
+  models=$(mktemp -d)
+  "$sgm" build examples/buildings/palace.sgm --resolution 256 -q -o "$models/palace.glb"
+  "$sgm" build examples/cumulus.sgm --resolution 160 --export grids=fog --export edge=60 --export wisps=.6 -q -o "$models/cumulus.vdb"
+  command blender -b --factory-startup --python docs/blender.py -- "$models"/palace.glb "$models"/cumulus.vdb docs/pictures/blender.png >/dev/null
+  rm -r "$models"
+  echo docs/pictures/blender.png
+}
+
+case $* in times | blender) "$*"; exit ;; esac
 known=0
 while IFS='|' read -r family name options inside; do
   name=${name// /}

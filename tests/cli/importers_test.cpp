@@ -1,0 +1,98 @@
+// What the programs that sgm writes for make of its files: Blender and Godot, where they are installed.
+#include "tests/cli/program.h"
+
+namespace sgm::cli {
+namespace {
+
+/// Runs a program that prints "FACTS {…}" for every file, and keeps them by the file's name.
+std::map<std::string, Json> factsFrom(const std::string& command) {
+    std::map<std::string, Json> facts;
+    std::string printed;
+    FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+    char buffer[4096];
+    for (size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) printed.append(buffer, n);
+    pclose(pipe);
+    std::istringstream lines(printed);
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with("FACTS ")) {
+            const Json found = Json::parse(line.substr(6));
+            facts[found["file"]] = found;
+        }
+    EXPECT_FALSE(facts.empty()) << printed;
+    return facts;
+}
+
+bool installed(const std::string& program) {
+    return std::system(("command -v " + program + " > /dev/null").c_str()) == 0;
+}
+
+class Importers : public Cli {
+protected:
+    /// The tower at 64 cells as every one of `files`.
+    void build(std::initializer_list<const char*> files) {
+        std::string arguments = "examples/tower.sgm --resolution 64";
+        for (const char* file : files) arguments += " -o " + path(file);
+        report_ = built(arguments)["mesh"];
+        const auto& lo = report_["bounds"][0];
+        const auto& hi = report_["bounds"][1];
+        for (size_t axis = 0; axis < 3; ++axis) size_[axis] = hi[axis].get<double>() - lo[axis].get<double>();
+    }
+
+    Json report_;
+    double size_[3] = {};
+};
+
+TEST_F(Importers, BlenderSeesClosedUprightMeshes) {
+    if (!installed("blender")) GTEST_SKIP() << "blender isn't installed";
+    build({"tower.glb", "tower.gltf", "tower.obj", "tower.ply", "tower.stl", "tower.vdb"});
+    std::string command = "blender -b --factory-startup --python tests/cli/importers/blender.py --";
+    for (const char* kind : {"glb", "gltf", "obj", "ply", "stl", "vdb"}) command += " " + path("tower.") + kind;
+    std::map<std::string, Json> facts = factsFrom(command);
+    for (const std::string kind : {"glb", "gltf", "obj", "ply", "stl"}) {
+        SCOPED_TRACE(kind);
+        const Json& found = facts["tower." + kind];
+        ASSERT_FALSE(found.is_null());
+        EXPECT_EQ(found["triangles"], report_["triangles"]);
+        EXPECT_EQ(found["open"], 0);
+        EXPECT_NEAR(found["volume"], report_["volume_m3"].get<double>(), 1e-3 * report_["volume_m3"].get<double>());
+        if (kind == "stl") continue;  // holds neither
+        EXPECT_EQ(found["charts"], 1);
+        EXPECT_EQ(found["materials"].size(), kind == "ply" ? 0u : 5u);  // a .ply holds colours
+    }
+    EXPECT_EQ(facts["tower.vdb"]["grids"], Json({"level_set"}));
+    // Blender's z is up; it turns what is said to be y up.
+    for (const char* kind : {"glb", "gltf", "obj"})
+        EXPECT_NEAR(facts[std::string("tower.") + kind]["size"][2], size_[1], 1e-3) << kind;
+}
+
+TEST_F(Importers, BlenderTakesZUpWhereAFormatDoesntSay) {
+    if (!installed("blender")) GTEST_SKIP() << "blender isn't installed";
+    const std::string ply = path("tower.ply"), stl = path("tower.stl");
+    report_ = built("examples/tower.sgm --resolution 32 --export up=z -o " + ply + " -o " + stl)["mesh"];
+    const double height = report_["bounds"][1][1].get<double>() - report_["bounds"][0][1].get<double>();
+    for (const auto& [file, found] :
+         factsFrom("blender -b --factory-startup --python tests/cli/importers/blender.py -- " + ply + " " + stl))
+        EXPECT_NEAR(found["size"][2], height, 1e-3) << file;
+}
+
+TEST_F(Importers, GodotSeesEveryMaterial) {
+    if (!installed("godot3-server")) GTEST_SKIP() << "godot3-server isn't installed";
+    build({"tower.glb", "tower.obj"});
+    scratch_.write("project.godot", "config_version=4\n[application]\nconfig/name=\"tower\"\n");
+    const std::string folder = path("");
+    const std::string godot = "HOME=" + folder + " timeout 60 godot3-server --path " + folder + " ";
+    // The editor imports what it finds; Godot 3.2 doesn't always end by --quit.
+    const std::string import =
+        godot + "--editor --quit > /dev/null 2>&1 & while kill -0 $! 2> /dev/null; do sleep .2; ls " + folder +
+        "/.import/*.scn " + folder + "/.import/*.mesh > /dev/null 2>&1 && kill $!; done; true";
+    ASSERT_NE(std::system(import.c_str()), -1);
+    fs::copy("tests/cli/importers/godot.gd", path("godot.gd"));
+    for (const auto& [file, found] : factsFrom(godot + "-s godot.gd")) {
+        EXPECT_EQ(found["triangles"], report_["triangles"]) << file;
+        EXPECT_EQ(found["surfaces"], 5) << file;
+        for (size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(found["size"][axis], size_[axis], 1e-3) << file;
+    }
+}
+
+}  // namespace
+}  // namespace sgm::cli
