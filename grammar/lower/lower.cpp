@@ -182,8 +182,6 @@ Owned Lowering::dressed(Owned part, ShapeId id) {
 Owned Lowering::displaced(Owned part, ShapeId id) {
     const auto* x = tree_.extrasOf(id);
     if (!x || x->displace.empty() || part.field.bounds.empty()) return part;
-    // Owners are found along minima and maxima, which noise hides: the displaced surface is the shape's.
-    if (part.origin == 0) part.origin = ownerOf(id);
     const Shape& s = tree_.shapes[id];
     for (size_t i = 0; i < x->displace.size(); ++i) {
         const derive::Displacement& n = x->displace[i];

@@ -98,6 +98,14 @@ TEST(Owners, SurfaceTellsItsShapeAndLine) {
     EXPECT_EQ(one.model->provenance.parts[0].symbol, "sphere");
 }
 
+TEST(Owners, ARoughenedSurfaceIsStillItsPartsOwn) {
+    const Lowered d("grammar 1\nterminal wall color #ff0000\nterminal glass color #0000ff\n"
+                    "start S -> (wall size 2 + glass size 1 at +y - cube size (4, .2, 4) move (0, .5, 0)) displace fbm(.05m, 2/m)\n");
+    EXPECT_EQ(d.owner({1, 0, 0}).symbol, "wall");
+    EXPECT_EQ(d.owner({0.5f, 1.5f, 0}).symbol, "glass");
+    EXPECT_EQ(d.owner({0, 0.4f, 0}).symbol, "cube");
+}
+
 TEST(Slots, AChangedNumberKeepsTheStructure) {
     const std::string text = "grammar 1\nparam r = 1 in .5..2\nstart S -> cube : A\nrule A repeat 5 -> + morph(sphere, cube, r / 2) size r at free() : A\n";
     derive::Options other;
