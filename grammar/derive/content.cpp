@@ -173,10 +173,10 @@ void Interpreter::readAttribute(const Attribute& a, const Place& place, Looks& o
     }
 }
 
-/// The terminal's material, changed by colour, roughness and metalness where given.
+/// The material of the terminal, or of the first in a solid, changed by colour, roughness and metalness where given.
 uint32_t Interpreter::materialOf(const Looks& looks, const Element& e) {
     const bool terminal = e.content.kind == Content::Kind::Symbol && grammar_.symbols[e.content.symbol].terminal;
-    const uint32_t base = terminal ? grammar_.symbols[e.content.symbol].material : rules::none;
+    const uint32_t base = terminal ? grammar_.symbols[e.content.symbol].material : e.content.solid.material;
     if (!looks.color && !looks.rough && !looks.metal) return base;
     auto& materials = builder_.derivation().materials;
     Material m = base == rules::none ? materials[0] : materials[base];

@@ -135,7 +135,7 @@ private:
     Expr choiceArgument(Place& place, const syntax::Expr& e, const field::PrimitiveParameter& parameter);
     Solid terminalSolid(const syntax::Name& name);
     void bounded(const Solid& solid, std::string_view verb);
-    Solid limited(Solid solid);
+    Solid composed(Solid solid);
     std::string unknownSolid(std::string_view word) const;
 
     // attributes.cpp

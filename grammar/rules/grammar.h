@@ -97,6 +97,7 @@ struct Solid {
     std::vector<Solid> parts;      ///< Morph: two. Combination: parts with `op` between
     Operator op = Operator::None;  ///< Combination
     Expr amount;                   ///< Morph: a in 0 … 1 (eq. 14)
+    uint32_t material = none;      ///< of the first terminal in it that has a look, index into Grammar::materials
 };
 
 struct Body;

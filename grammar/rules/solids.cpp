@@ -201,8 +201,10 @@ void Checker::bounded(const Solid& solid, std::string_view verb) {
                            fmt::format("write '- {0}' or '& {0}' after a solid", solid.primitive->name));
 }
 
-/// Terminals made of terminals can double at every step.
-Solid Checker::limited(Solid solid) {
+/// A solid of parts looks like the first that has a look. Terminals made of terminals can double at every step.
+Solid Checker::composed(Solid solid) {
+    for (const Solid& part : solid.parts)
+        if (solid.material == none) solid.material = part.material;
     constexpr size_t most = 1000;
     if (partsOf(solid) <= most) return solid;
     diagnostics_.error(solid.span, fmt::format("a solid has at most {} parts", most), "build it with rules");
@@ -230,7 +232,7 @@ Solid Checker::morphSolid(Place& place, const Written& e) {
         diagnostics_.error(e.args[2].span,
                            fmt::format("the share of a morph is {}, but must be 0 … 1", toText(*value)));
     place.morphs = true;
-    return limited(std::move(result));
+    return composed(std::move(result));
 }
 
 Solid Checker::combination(Place& place, const Written& e) {
@@ -241,7 +243,7 @@ Solid Checker::combination(Place& place, const Written& e) {
     for (const Written& part : e.args) result.parts.push_back(solid(place, part));
     bounded(result.parts[0], "cut or added to");
     if (result.op == Operator::Sum) bounded(result.parts[1], "added");
-    return limited(std::move(result));
+    return composed(std::move(result));
 }
 
 Solid Checker::terminalSolid(const syntax::Name& name) {
@@ -273,7 +275,9 @@ Solid Checker::namedSolid(Place& place, const Written& e) {
     if (symbol != symbols_.end() && grammar_.symbols[symbol->second].terminal) {
         if (e.kind == Written::Kind::Call)
             diagnostics_.error(e.span, fmt::format("the terminal '{}' takes no parameters", e.text));
-        return terminalSolid({e.text, e.span});
+        Solid result = terminalSolid({e.text, e.span});
+        if (const uint32_t own = grammar_.symbols[symbol->second].material; own != none) result.material = own;
+        return result;
     }
     if (isNonTerminal(e.text))
         diagnostics_.error(e.span,

@@ -106,6 +106,15 @@ TEST(Owners, ARoughenedSurfaceIsStillItsPartsOwn) {
     EXPECT_EQ(d.owner({0, 0.4f, 0}).symbol, "cube");
 }
 
+TEST(Owners, AMorphLooksLikeTheFirstOfItsSolidsThatHasALook) {
+    const Lowered d("grammar 1\nterminal wall color #ff0000\nterminal glass color #0000ff\n"
+                    "start S -> cube size 2 + morph(sphere, wall, .5) size 2 at +x + (glass + wall) size 2 at -x\n");
+    const auto material = [&](Vec3f p) { return d.model->provenance.materials[d.owner(p).material].name; };
+    EXPECT_EQ(material({2, 1, 0}), "wall");
+    EXPECT_EQ(material({-2, 1, 0}), "glass");
+    EXPECT_NE(material({0, 1, 0}), "wall");
+}
+
 TEST(Slots, AChangedNumberKeepsTheStructure) {
     const std::string text = "grammar 1\nparam r = 1 in .5..2\nstart S -> cube : A\nrule A repeat 5 -> + morph(sphere, cube, r / 2) size r at free() : A\n";
     derive::Options other;
