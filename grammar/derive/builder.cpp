@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <tuple>
+
 namespace sgm::derive {
 
 namespace {
@@ -51,6 +53,7 @@ bool TreeBuilder::work() {
 }
 
 ShapeId TreeBuilder::add(Shape shape) {
+    if (runsAgain()) return addAgain(shape);
     ShapeTree& t = tree();
     const auto id = static_cast<ShapeId>(t.shapes.size());
     if (!work()) return none;
@@ -90,12 +93,44 @@ ShapeId TreeBuilder::add(Shape shape) {
 }
 
 Extras& TreeBuilder::extras(ShapeId id) {
+    if (runsAgain()) deviate();
+    if (recording_) recording_->annotated(id);
     Shape& s = tree().shapes[id];
     if (s.extras == none) {
         s.extras = static_cast<uint32_t>(tree().extras.size());
         tree().extras.emplace_back();
     }
     return tree().extras[s.extras];
+}
+
+uint32_t TreeBuilder::beginStep(Step step) {
+    auto& steps = derivation_.steps;
+    step.firstMade = nextShape();
+    if (!runsAgain()) {
+        steps.push_back(step);
+        return static_cast<uint32_t>(steps.size() - 1);
+    }
+    const uint32_t index = recording_->nextStep();
+    const auto told = [](const Step& s) { return std::tie(s.rule, s.shape, s.generation, s.chainIndex, s.closing, s.firstMade); };
+    if (index != none && told(steps[index]) == told(step)) return index;
+    deviate();
+    return 0;
+}
+
+void TreeBuilder::endStep(uint32_t index, bool morphic) {
+    Step& step = derivation_.steps[index];
+    const uint32_t made = nextShape() - step.firstMade;
+    if (runsAgain()) {
+        if (made != step.madeCount || morphic != step.morphic) deviate();
+        return;
+    }
+    step.madeCount = made;
+    step.morphic = morphic;
+    ++(morphic ? derivation_.morphic : derivation_.classic);
+}
+
+ShapeId TreeBuilder::nextShape() const {
+    return runsAgain() ? recording_->shapesMade() : static_cast<ShapeId>(derivation_.tree.shapes.size());
 }
 
 uint32_t& TreeBuilder::firstBondAt(ShapeId id, uint32_t joint) {
@@ -112,6 +147,11 @@ void TreeBuilder::linkBond(uint32_t index, int end) {
 }
 
 void TreeBuilder::bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
+    if (runsAgain()) bondAgain(a, jointA, b, jointB);
+    else join(a, jointA, b, jointB);
+}
+
+void TreeBuilder::join(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
     const Joint ja = tree().joint(a, jointA), jb = tree().joint(b, jointB);
     const auto index = static_cast<uint32_t>(tree().bonds.size());
     tree().bonds.push_back({{a, b}, {jointA, jointB}, jb.point - ja.point, isDirected(ja) && isDirected(jb), {none, none}});
@@ -124,14 +164,18 @@ void TreeBuilder::bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
 }
 
 void TreeBuilder::meetNeighbours(ShapeId id) {
-    if (tree().bodies[tree().shapes[id].body].owner != id) return;
+    if (!ownsBody(id)) return;
+    if (runsAgain()) return meetAgain(id);
     meeting_.clear();
     for (uint32_t j = 0; j < tree().jointCount(id); ++j)
         if (const Joint joint = tree().joint(id, j); isDirected(joint)) meeting_.push_back({j, joint, joints_.expect(joint)});
     for (const auto& [j, joint, spot] : meeting_) {
         const auto partner = joints_.add(tree(), {id, j}, joint, spot);
+        if (partner && recording_) recording_->met({id, j}, *partner);
         if (!partner || tree().closed(id, j) || tree().closed(partner->shape, partner->joint)) continue;
-        if (tree().shapes[partner->shape].body != tree().shapes[id].body) bond(partner->shape, partner->joint, id, j);
+        if (tree().shapes[partner->shape].body == tree().shapes[id].body) continue;
+        if (recording_) recording_->bondedByMeeting(tree().bonds.size());
+        join(partner->shape, partner->joint, id, j);
     }
 }
 
@@ -150,7 +194,9 @@ void TreeBuilder::release(ShapeId id) {
 }
 
 void TreeBuilder::clearContent(ShapeId id) {
+    if (runsAgain()) return;
     ShapeTree& t = tree();
+    if (recording_ && t.shapes[id].solid != none) recording_->cleared(id);
     t.shapes[id].solid = none;
     for (ShapeId s = t.next(id, id); s != none; s = t.next(s, id)) {
         Shape& dead = t.shapes[s];
@@ -229,6 +275,7 @@ void TreeBuilder::finish() {
         for (const Shape& s : tree().shapes) ownerOf.push_back(tree().bodies[s.body].owner);
         const auto newId = sweepShapes();
         sweepBonds(std::exchange(tree().bonds, {}), newId, ownerOf);
+        if (recording_) recording_->unfit();
     }
     numberOccurrences();
 }

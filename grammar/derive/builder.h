@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "grammar/derive/derive.h"
-#include "grammar/derive/joints.h"
+#include "grammar/derive/recording.h"
 
 namespace sgm::derive {
 
@@ -26,6 +26,17 @@ public:
     /// Takes the solid and the children away: a rule replaces them.
     void clearContent(ShapeId id);
     Extras& extras(ShapeId id);
+    /// Puts a solid, or what few shapes have, into its list: the index.
+    uint32_t put(SolidValue solid, bool shared);
+    uint32_t put(Extras extras);
+    /// Gives a solid that several shapes share another value.
+    void replace(uint32_t solid, SolidValue value);
+    /// Logs a step that begins: its index in the log.
+    uint32_t beginStep(Step step);
+    /// The step made what was added since, and morphs or not.
+    void endStep(uint32_t step, bool morphic);
+    /// The next shape's id.
+    ShapeId nextShape() const;
     /// Removes what is dead and numbers occurrences; ids change.
     void finish();
 
@@ -38,6 +49,35 @@ public:
     void resume(Progress* progress) { progress_ = progress, begin_ = std::chrono::steady_clock::now(), work_ = 0; }
     /// Ends the derivation with a sentence located at `span` and the present rule, path and seed.
     void fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span);
+    /// From now on notes all that another run with other numbers has to know; null for nobody.
+    void record(Recording* recording) { recording_ = recording; }
+    Recording* recording() const { return recording_; }
+    /// Begins a piece of the recording, if there is one; the last one ends.
+    void beginPiece(Piece piece);
+    void endPiece();
+    size_t jointsIndexed() const { return joints_.size(); }
+    /// Whom to tell from now on; time counts from now.
+    void watch(Progress* progress) { progress_ = progress, begin_ = std::chrono::steady_clock::now(); }
+    /// Where the lists end.
+    Piece::Place end() const;
+    /// Runs a piece again with numbers that changed: what it makes goes where it is already. False when it takes another
+    /// course; then the derivation is of no use any more.
+    template <class Run>
+    bool again(size_t piece, Run&& run) {
+        Piece& p = recording_->enter(piece);
+        work_ -= p.work;
+        const uint64_t before = work_;
+        const bool same = run(p) && !failed() && recording_->complete();
+        p.work = work_ - before;
+        return same && !failed();
+    }
+    /// After the last piece: whether those that stayed where they are meet whom they met, and bonds' shifts.
+    bool settleMeetings();
+
+    bool runsAgain() const { return recording_ && recording_->again(); }
+    /// A second run takes another course.
+    void deviate();
+
     /// What is being run, for messages and the log.
     void at(uint32_t rule, ShapeId shape, uint32_t step) { rule_ = rule, shape_ = shape, step_ = step; }
 
@@ -48,6 +88,12 @@ public:
     std::vector<ShapeId> takeLive() { return std::exchange(live_, {}); }
 
 private:
+    ShapeId addAgain(const Shape& made);
+    void bondAgain(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
+    void meetAgain(ShapeId id);
+    void join(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
+    bool ownsBody(ShapeId id) const { return derivation_.tree.bodies[derivation_.tree.shapes[id].body].owner == id; }
+
     void poll();
     void linkBond(uint32_t bond, int end);
     uint32_t& firstBondAt(ShapeId id, uint32_t joint);
@@ -71,9 +117,12 @@ private:
     std::vector<ShapeId> live_;
     std::optional<Error> failure_;
     uint64_t work_ = 0;
+    uint64_t pieceBegan_ = 0;  ///< work when the piece began
     uint64_t deadCount_ = 0;
     uint32_t rule_ = none, step_ = none;
     ShapeId shape_ = 0;
+    Recording* recording_ = nullptr;
+    uint8_t extrasChange_ = 0;  ///< of the extras put last, while pieces run again
 };
 
 }  // namespace sgm::derive

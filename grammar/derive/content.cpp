@@ -39,6 +39,18 @@ bool isConstant(const Solid& solid) {
     return true;
 }
 
+/// The parameters of a constant solid, as Piece::params.
+uint64_t paramsOf(const Solid& solid) {
+    uint64_t set = 0;
+    const auto add = [&](const rules::Expr& x) {
+        if (x.kind == rules::Expr::Kind::Param) set |= uint64_t{1} << x.index % 64;
+    };
+    add(solid.amount);
+    for (const auto& arg : solid.args) add(arg);
+    for (const Solid& part : solid.parts) set |= paramsOf(part);
+    return set;
+}
+
 /// Metres of a component that may be a share of `whole`.
 double metres(const Vector& v, int i, double whole) { return v.unit[i] == rules::Unit::Share ? v.n[i] * whole : v.n[i]; }
 
@@ -97,11 +109,19 @@ SolidValue Interpreter::valueOf(const Solid& solid, const Place& place) const {
 uint32_t Interpreter::solidOf(const Element& e, ElementFacts& facts, const Place& place) {
     const Solid* solid = ownSolid(e, grammar_);
     if (!solid || solid->kind == Solid::Kind::Nil) return none;
-    if (facts.solid != none) return facts.solid;
-    auto& solids = builder_.tree().solids;
-    solids.push_back(valueOf(*solid, place));
-    const auto index = static_cast<uint32_t>(solids.size() - 1);
-    if (facts.constantSolid) facts.solid = index;
+    Recording* const recording = builder_.recording();
+    if (facts.solid != none) {
+        if (!recording) return facts.solid;
+        if (facts.solidTurn != recording->turn()) builder_.replace(facts.solid, valueOf(*solid, place));
+        facts.solidTurn = recording->turn();
+        recording->readsParams(facts.solidParams);
+        return facts.solid;
+    }
+    const uint32_t index = builder_.put(valueOf(*solid, place), facts.constantSolid);
+    if (facts.constantSolid) {
+        facts.solid = index;
+        if (recording) facts.solidParams = paramsOf(*solid);
+    }
     return index;
 }
 
@@ -186,7 +206,10 @@ uint32_t Interpreter::materialOf(const Looks& looks, const Element& e) {
     if (looks.metal) m.metallic = *looks.metal;
     const std::array<float, 6> key{static_cast<float>(base == rules::none ? factsOf(e).label : base + 1e6f), m.color.x, m.color.y, m.color.z, m.roughness, m.metallic};
     const auto [at, fresh] = mixedMaterials_.try_emplace(key, static_cast<uint32_t>(materials.size()));
-    if (fresh) materials.push_back(std::move(m));
+    if (fresh) {
+        materials.push_back(std::move(m));
+        if (builder_.recording()) builder_.recording()->freshMaterial();
+    }
     return at->second;
 }
 
@@ -206,8 +229,7 @@ Shape Interpreter::shapeOf(const Element& e, Looks& looks, const Place& place, u
     s.blend_m = looks.blend_m;
     s.span = e.span;
     if (!looks.extras.empty()) {
-        s.extras = static_cast<uint32_t>(builder_.tree().extras.size());
-        builder_.tree().extras.push_back(std::move(looks.extras));
+        s.extras = builder_.put(std::move(looks.extras));
     }
     if (e.live != rules::none) s.chainRule = chainRule_;
     return s;

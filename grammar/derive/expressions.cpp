@@ -19,13 +19,21 @@ uint64_t drawKey(const Expr& range, const Place& place, uint64_t component) {
     return combine(combine(place.key, range.draw), component);
 }
 
+/// Who wants to know what is read, or null.
+Recording* noting(const Place& place) { return place.builder ? place.builder->recording() : nullptr; }
+
 /// The value where it stands already, without a copy; null when it must be computed.
 const Value* stored(const Expr& expr, const Place& place) {
     switch (expr.kind) {
         case Kind::Constant: return &expr.value;
-        case Kind::Param: return &place.params[expr.index];
-        case Kind::Local: return &place.locals[expr.index];
+        case Kind::Param:
+            if (Recording* r = noting(place)) r->readsParam(expr.index);
+            return &place.params[expr.index];
+        case Kind::Local:
+            if (Recording* r = noting(place)) r->readsLocal();
+            return &place.locals[expr.index];
         case Kind::Inherited:
+            if (Recording* r = noting(place)) r->readsValues();
             for (ShapeId s = place.valuesAt; s != none;) {
                 for (const auto& [name, value] : place.tree->extrasOf(s)->values)
                     if (name == expr.value.text) return &value;
@@ -59,6 +67,7 @@ const Expr& chosen(const Expr& expr, const Place& place) {
 Value called(const Expr& expr, const Place& place) {
     const Fn fn = static_cast<Fn>(expr.index);
     if (fn == Fn::Count) {
+        if (Recording* r = noting(place)) r->readsWorld();
         const auto symbol = static_cast<size_t>(expr.args[0].value.num());
         return Value::number(symbol < place.counts.size() ? static_cast<double>(place.counts[symbol]) : 0);
     }

@@ -39,6 +39,8 @@ private:
         uint64_t hash = 0;
         uint32_t label = 0, jointSet = 0, solid = none, closed = none;
         bool constantSolid = false;
+        uint64_t solidParams = 0;  ///< those that the constant solid reads, as Piece::params
+        uint32_t solidTurn = 0;    ///< in which run it was made (Recording::turn)
         const rules::Attribute *at = nullptr, *to = nullptr, *on = nullptr, *size = nullptr, *turn = nullptr;
     };
     /// The shapes of a chain that `on` speaks of.

@@ -110,6 +110,28 @@ std::optional<JointIndex::Entry> JointIndex::add(const ShapeTree& tree, Entry en
     return partner;
 }
 
+void JointIndex::move(Entry entry, Spot spot) {
+    const size_t mask = slots_.size() - 1;
+    for (size_t i = spot.cell & mask; slots_[i].entry.shape != none; i = (i + 1) & mask)
+        if (slots_[i].cell == spot.cell && slots_[i].entry == entry) return;
+    if (++used_ * 2 > slots_.size()) grow();
+    insert({spot.cell, entry});
+}
+
+std::vector<uint64_t> JointIndex::cellsFacing(const Joint& joint) {
+    std::vector<uint64_t> cells;
+    forCells(offset(joint.point), -joint.direction, [&](uint64_t cell) { cells.push_back(cell); });
+    return cells;
+}
+
+std::optional<JointIndex::Entry> JointIndex::partner(const ShapeTree& tree, Entry entry, const Joint& joint) const {
+    std::optional<Entry> newest;
+    forFacing(tree, joint, [&](Entry e) {
+        if (e < entry && (!newest || *newest < e)) newest = e;
+    });
+    return newest;
+}
+
 uint32_t opposedFace(const Mat3& axes, Vec3d direction) {
     uint32_t best = 0;
     double least = 2;

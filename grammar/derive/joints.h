@@ -2,6 +2,7 @@
 // Enters: joints and scopes. Leaves: partners, and the scope a mated newcomer takes. Assumes unit directions.
 #pragma once
 
+#include <compare>
 #include <optional>
 #include <vector>
 
@@ -22,6 +23,8 @@ public:
     struct Entry {
         ShapeId shape = none;
         uint32_t joint = 0;
+        friend bool operator==(const Entry&, const Entry&) = default;
+        friend auto operator<=>(const Entry&, const Entry&) = default;
     };
     /// Where a joint belongs.
     struct Spot {
@@ -33,6 +36,22 @@ public:
     Spot expect(const Joint& joint) const;
     /// Adds the joint and returns the newest living one that faces it, if any.
     std::optional<Entry> add(const ShapeTree& tree, Entry entry, const Joint& joint, Spot spot);
+    /// For a joint that moved: enters its new spot. The old one may stay, for a joint is found only where it stands.
+    void move(Entry entry, Spot spot);
+    /// Calls f with every entry that faces the joint, some of them twice.
+    template <class F>
+    void forFacing(const ShapeTree& tree, const Joint& joint, F f) const {
+        for (const uint64_t cell : cellsFacing(joint)) {
+            const size_t mask = slots_.size() - 1;
+            for (size_t i = cell & mask; slots_[i].entry.shape != none; i = (i + 1) & mask) {
+                const Entry e = slots_[i].entry;
+                if (slots_[i].cell == cell && faceEachOther(joint, tree.joint(e.shape, e.joint))) f(e);
+            }
+        }
+    }
+    /// The newest that faces the joint among those entered before `entry`.
+    std::optional<Entry> partner(const ShapeTree& tree, Entry entry, const Joint& joint) const;
+    size_t size() const { return used_; }
     uint64_t memory() const { return slots_.capacity() * sizeof(Slot); }
 
 private:
@@ -40,6 +59,7 @@ private:
         uint64_t cell = 0;  ///< hash of the cell and the direction
         Entry entry;        ///< of no shape: the slot is empty
     };
+    static std::vector<uint64_t> cellsFacing(const Joint& joint);
     void grow();
     void insert(Slot slot);
     void search(const ShapeTree& tree, uint64_t cell, const Joint& joint, std::optional<Entry>& newest) const;

@@ -113,8 +113,11 @@ std::vector<uint32_t> Interpreter::openJoints(const Attribute& at, ShapeId host,
     if (at.free && at.joints.empty())
         for (uint32_t j = 0; j < tree.jointCount(host); ++j)
             if (tree.joint(host, j).direction != Vec3d{}) joints.push_back(j);
+    Recording* const recording = builder_.recording();
+    const std::vector<uint32_t> asked = recording ? joints : std::vector<uint32_t>();
     const auto taken = [&](uint32_t j) { return at.free ? tree.joint(host, j).bond != none : tree.closed(host, j); };
     joints.erase(std::remove_if(joints.begin(), joints.end(), taken), joints.end());
+    if (recording && !recording->answer(asked, joints)) builder_.deviate();
     return joints;
 }
 
@@ -140,6 +143,7 @@ bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& targe
     place.key = key;
     if (!facts.on || facts.on->host != Attribute::Host::Each) return placeOn(hostOf(facts, frame, target, place), e, frame, target, key);
     const ShapeTree& tree = builder_.tree();
+    if (builder_.recording()) builder_.recording()->readsWorld();
     const auto symbol = static_cast<rules::SymbolId>(facts.on->args[0].value.num());
     std::vector<ShapeId> hosts;  // those that stand now: what grows on them may carry the name too
     for (ShapeId s = frame.links->root; s != none; s = tree.next(s, frame.links->root))
@@ -154,6 +158,7 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
     Place place = frame.place;
     place.key = key;
     const bool whole = frame.wholeContent && !facts.at && !facts.on;
+    if (whole && builder_.recording()) builder_.recording()->readsWorld();
     place.scope = whole ? builder_.tree().contentBox(host) : builder_.tree().shapes[host].scope;
     place.valuesAt = builder_.tree().shapes[host].valuesAt;
 
@@ -162,6 +167,7 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
         const auto open = openJoints(*facts.at, host, place);
         if (builder_.failed()) return false;
         if (open.empty()) {  // nothing grows where a bond has closed the joint
+            if (builder_.runsAgain()) return true;
             auto& closed = builder_.derivation().closed;
             if (facts.closed == none) {
                 facts.closed = static_cast<uint32_t>(closed.size());

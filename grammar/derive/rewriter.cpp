@@ -55,8 +55,11 @@ std::vector<Rewriter::Decision> Rewriter::decide(std::vector<ShapeId>& waiting) 
     for (const ShapeId s : waiting) {
         const Shape& shape = builder_.tree().shapes[s];
         if (!shape.live) continue;
+        builder_.beginPiece({.kind = Piece::Kind::Choice, .shape = s});
         if (!builder_.work()) return {};
-        if (const uint32_t rule = choose(s); rule != none) decisions.push_back({shape.key, {rule, s}});
+        const uint32_t rule = choose(s);
+        if (Recording* r = builder_.recording()) r->now().rule = rule;
+        if (rule != none) decisions.push_back({shape.key, {rule, s}});
         else if (mayMatchLater(s)) later.push_back(s);
     }
     std::sort(decisions.begin(), decisions.end(), [](const Decision& a, const Decision& b) {
@@ -76,7 +79,7 @@ void Rewriter::automatic() {
             const Application& a = d.application;
             if (!builder_.tree().shapes[a.shape].live) continue;
             // A lower key may have taken the joint: the shape then waits for the next generation.
-            if (interpreter_.matches(a.rule, a.shape)) apply(a, generation);
+            if (stillMatches(a)) apply(a, generation);
             else waiting.push_back(a.shape);
             if (builder_.failed()) return;
         }
@@ -85,7 +88,31 @@ void Rewriter::automatic() {
     }
 }
 
+void Rewriter::start(const rules::Start& start, uint64_t seed) {
+    builder_.beginPiece({.kind = Piece::Kind::Start});
+    interpreter_.start(start, seed);
+}
+
+bool Rewriter::stillMatches(Application a) {
+    builder_.beginPiece({.kind = Piece::Kind::Match, .rule = a.rule, .shape = a.shape});
+    const bool matched = interpreter_.matches(a.rule, a.shape);
+    if (Recording* r = builder_.recording()) r->now().matched = matched;
+    return matched;
+}
+
+bool Rewriter::repeat(const Piece& piece) {
+    const Derivation& d = builder_.derivation();
+    switch (piece.kind) {
+        case Piece::Kind::Start: interpreter_.start(grammar_.starts[d.start], d.seed); return true;
+        case Piece::Kind::Choice: return builder_.work() && choose(piece.shape) == piece.rule;
+        case Piece::Kind::Match: return interpreter_.matches(piece.rule, piece.shape) == piece.matched;
+        case Piece::Kind::Application: interpreter_.apply(piece.rule, piece.shape, piece.generation); return true;
+    }
+    return false;
+}
+
 void Rewriter::apply(Application a, uint32_t generation) {
+    builder_.beginPiece({.kind = Piece::Kind::Application, .rule = a.rule, .shape = a.shape, .generation = generation});
     applied_.push_back(a);
     interpreter_.apply(a.rule, a.shape, generation);
 }

@@ -22,13 +22,15 @@ public:
         : builder_(builder), grammar_(*builder.derivation().grammar), interpreter_(builder, params) {}
 
     /// Runs the start's body.
-    void start(const rules::Start& start, uint64_t seed) { interpreter_.start(start, seed); }
+    void start(const rules::Start& start, uint64_t seed);
     /// Rewrites every live shape until none is matched.
     void automatic();
     /// Applies the steps of a way; fails at the first that doesn't fit.
     void along(const rules::Derive& way);
     /// Applies one rule.
     void apply(Application application);
+    /// Runs a piece of a recording again; false when a rule is chosen or matched otherwise.
+    bool repeat(const Piece& piece);
 
     /// May the rule rewrite the shape as things stand: alive, matched, guard and all?
     bool usable(Application application);
@@ -50,6 +52,7 @@ private:
     bool mayMatchLater(ShapeId shape) const;
     std::vector<Decision> decide(std::vector<ShapeId>& waiting);
     void apply(Application application, uint32_t generation);
+    bool stillMatches(Application application);
 
     TreeBuilder& builder_;
     const rules::Grammar& grammar_;

@@ -46,8 +46,9 @@ void Interpreter::start(const rules::Start& start, uint64_t seed) {
     Shape root;
     root.symbol = start.symbol;
     root.key = combine(mix(seed), hashText(grammar_.symbols[start.symbol].name));
-    root.label = static_cast<uint32_t>(labels_.try_emplace(grammar_.symbols[start.symbol].name, 0).first->second);
-    builder_.tree().labels.push_back(grammar_.symbols[start.symbol].name);
+    const auto [label, fresh] = labels_.try_emplace(grammar_.symbols[start.symbol].name, 0);
+    if (fresh) builder_.tree().labels.push_back(label->first);
+    root.label = label->second;
     root.span = start.span;
     builder_.at(none, none, none);
     const ShapeId id = builder_.add(root);
@@ -60,6 +61,7 @@ void Interpreter::start(const rules::Start& start, uint64_t seed) {
 }
 
 bool Interpreter::isBeside(ShapeId shape, rules::SymbolId symbol) const {
+    if (builder_.recording()) builder_.recording()->readsWorld();
     const ShapeTree& tree = builder_.tree();
     const uint32_t body = tree.shapes[shape].body;
     for (uint32_t i = tree.bodies[body].firstBond; i != none;) {
@@ -103,19 +105,15 @@ bool Interpreter::matches(uint32_t index, ShapeId id) {
 }
 
 bool Interpreter::runLogged(const rules::Body& body, const Frame& frame, Step step) {
-    Derivation& d = builder_.derivation();
-    const auto index = static_cast<uint32_t>(d.steps.size());
     step.shape = frame.matched;
-    step.firstMade = static_cast<ShapeId>(d.tree.shapes.size());
-    d.steps.push_back(step);
+    const uint32_t index = builder_.beginStep(step);
     builder_.at(step.rule, step.shape, index);
     const bool good = builder_.work() && runBody(body, frame, 0);
-    Step& done = d.steps[index];
-    done.madeCount = static_cast<uint32_t>(d.tree.shapes.size()) - step.firstMade;
-    for (ShapeId id = step.firstMade; id < d.tree.shapes.size() && !done.morphic; ++id)
-        if (const SolidValue* solid = d.tree.solidOf(id)) done.morphic = morphs(*solid);
-    ++(done.morphic ? d.morphic : d.classic);
-    return good;
+    bool morphic = step.morphic;
+    for (ShapeId id = builder_.derivation().steps[index].firstMade; id < builder_.nextShape() && !morphic; ++id)
+        if (const SolidValue* solid = builder_.tree().solidOf(id)) morphic = morphs(*solid);
+    builder_.endStep(index, morphic);
+    return good && !builder_.failed();
 }
 
 void Interpreter::apply(uint32_t index, ShapeId id, uint32_t generation) {

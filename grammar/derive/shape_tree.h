@@ -58,12 +58,14 @@ struct SolidValue {
     std::vector<SolidValue> parts;   ///< Morph: two; Combination: in order
     rules::Operator op = rules::Operator::None;
     double amount = 0;               ///< Morph: a in 0 … 1
+    friend bool operator==(const SolidValue&, const SolidValue&) = default;
 };
 
 struct Displacement {
     bool fbm = false;
     double amplitude_m = 0, frequency = 1;
     int octaves = 2;
+    friend bool operator==(const Displacement&, const Displacement&) = default;
 };
 
 /// What dresses a shape: an `ornament` and how it looks.
@@ -71,6 +73,7 @@ struct Cladding {
     SolidValue ornament;
     std::string name;          ///< of its terminal, "" for none
     uint32_t material = none;  ///< index into Derivation::materials; none: the shape's own
+    friend bool operator==(const Cladding&, const Cladding&) = default;
 };
 
 /// What few shapes have.

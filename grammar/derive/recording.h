@@ -1,0 +1,119 @@
+// What a derivation read and which answers it got, kept so that it can be brought to other parameter values in place.
+// Enters: notes while rules run; then the same pieces of work again, those whose numbers changed. Leaves: which shapes
+// changed, or that the derivation takes another course. Assumes that a derivation takes the same course while every
+// question about the world (which rule, which joints are open, who meets whom) gets the answer it got: so only the
+// pieces that read a changed number run again, and each must put the same shapes with the same bonds.
+#pragma once
+
+#include <span>
+
+#include "grammar/derive/joints.h"
+
+namespace sgm::derive {
+
+/// A piece of work: the start's body, the choice of a rule, a rule matched once more, or its application.
+struct Piece {
+    enum class Kind : uint8_t { Start, Choice, Match, Application };
+    Kind kind = Kind::Start;
+    uint32_t rule = none;       ///< the one chosen, matched or applied
+    ShapeId shape = none;
+    uint32_t generation = 0;
+    bool matched = false;       ///< what a Match answered
+    bool inherits = false;      ///< it read values that `with` sets
+    bool readsWorld = false;    ///< it asked for counts, neighbours or what stands below its shape
+    uint64_t params = 0;        ///< bit i % 64 for every parameter i that it read
+    uint64_t work = 0;          ///< turns it took of the budget
+    /// Where in the lists begins what it made and what it was answered; it ends where the next piece begins.
+    struct Place {
+        size_t shape = 0, solid = 0, extras = 0, bond = 0, step = 0, answer = 0;
+    } from{};
+};
+
+class Recording {
+public:
+    /// A face that met another when it was put, open or not: `at` met `partner`.
+    struct Meeting {
+        JointIndex::Entry at, partner;
+    };
+
+    /// Begins a piece, with the lists as long as `from` says.
+    void begin(Piece piece);
+    /// The piece begun last, to note what came of it.
+    Piece& now() { return pieces_[running_]; }
+    std::span<const Piece> pieces() const { return pieces_; }
+    /// Nothing more is made: `end` is where the lists end.
+    void finish(const Piece::Place& end);
+    /// False where something was read that a second run can't tell: the derivation must then start over.
+    bool fit() const { return fit_; }
+    void unfit() { fit_ = false; }
+
+    void readsParam(uint32_t index) { now().params |= uint64_t{1} << index % 64; }
+    void readsParams(uint64_t set) { now().params |= set; }
+    void readsValues() { now().inherits = true; }
+    void readsWorld() { now().readsWorld = true; }
+    /// Locals are known to applications alone: a choice would find those of whatever ran before.
+    void readsLocal() { fit_ = fit_ && (now().kind == Piece::Kind::Start || now().kind == Piece::Kind::Application); }
+
+    /// The joints that are open of those asked for. Notes `open` the first time; again, `open` becomes what it was
+    /// then. False where others were asked for then.
+    bool answer(const std::vector<uint32_t>& asked, std::vector<uint32_t>& open);
+    void met(JointIndex::Entry at, JointIndex::Entry partner) { meetings_.push_back({at, partner}); }
+    void bondedByMeeting(size_t bond) { set(byMeeting_, bond); }
+    /// A material that wasn't there: when pieces run again, the list would have another order.
+    void freshMaterial() { fit_ = fit_ && !again_; }
+    void sharedSolid(size_t solid) { set(shared_, solid); }
+    void annotated(ShapeId id) { set(annotated_, id); }
+    void cleared(ShapeId id) { set(cleared_, id); }
+    bool isAnnotated(ShapeId id) const { return has(annotated_, id); }
+    bool isCleared(ShapeId id) const { return has(cleared_, id); }
+    std::span<const Meeting> meetings() const { return meetings_; }
+    /// Whom the joint met, if anyone.
+    std::optional<JointIndex::Entry> partnerOf(JointIndex::Entry at) const;
+
+    /// True while pieces run again.
+    bool again() const { return again_; }
+    /// Begins a second run; what changed in the last one is forgotten.
+    void beginAgain(size_t shapes);
+    void endAgain() { again_ = false; }
+    /// Which second run this is, from 1.
+    uint32_t turn() const { return turn_; }
+    Piece& enter(size_t piece);
+    /// True when the piece made as much as the first time.
+    bool complete();
+    /// The next of its kind that the piece made the first time; `none` when it made no more.
+    uint32_t nextShape() { return next(at_.shape, end_.shape); }
+    uint32_t nextStep() { return next(at_.step, end_.step); }
+    uint32_t nextExtras() { return next(at_.extras, end_.extras); }
+    /// Passes over those that several shapes share, and over bonds of faces that merely met.
+    uint32_t nextSolid();
+    uint32_t nextBond();
+    uint32_t shapesMade() const { return static_cast<uint32_t>(at_.shape); }
+
+    /// What a second run finds changed of a shape.
+    enum Change : uint8_t { Looks = 1, Moved = 2, Turned = 4, Values = 8, Below = 16 };
+    void change(const ShapeTree& tree, ShapeId id, uint8_t what);
+    bool has(ShapeId id, Change what) const { return (changes_[id] & what) != 0; }
+    std::span<const ShapeId> changed() const { return changed_; }
+    void solidDiffers(uint32_t solid) { set(differing_, solid); }
+    bool solidDiffered(uint32_t solid) const { return has(differing_, solid); }
+
+private:
+    static void set(std::vector<bool>& flags, size_t at);
+    static bool has(const std::vector<bool>& flags, size_t at) { return at < flags.size() && flags[at]; }
+    static uint32_t next(size_t& at, size_t end) { return at < end ? static_cast<uint32_t>(at++) : none; }
+
+    std::vector<Piece> pieces_;
+    Piece::Place last_, at_, end_;
+    size_t running_ = 0;
+    /// Answers: how many were asked for, who, how many were open, who.
+    std::vector<uint32_t> answers_;
+    std::vector<Meeting> meetings_;  ///< in the order of `at`
+    std::vector<bool> byMeeting_, shared_, annotated_, cleared_;
+    bool fit_ = true, again_ = false;
+    uint32_t turn_ = 0;
+    std::vector<uint8_t> changes_;  ///< by shape
+    std::vector<ShapeId> changed_, marked_;
+    std::vector<bool> differing_;  ///< by solid
+};
+
+}  // namespace sgm::derive
