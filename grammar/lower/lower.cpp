@@ -2,70 +2,18 @@
 
 #include <fmt/format.h>
 
-#include "grammar/lower/materials.h"
+#include "grammar/lower/lowering.h"
 #include "grammar/lower/solids.h"
 #include "modeler/core/random.h"
-#include "modeler/field/combine.h"
 
 namespace sgm::lower {
-namespace {
-
-using derive::none;
-using derive::Shape;
-using derive::ShapeId;
-using derive::ShapeTree;
-using field::Owned;
-using rules::Operator;
-
-/// Parts of one pending n-ary sum, or of one pending blend.
-struct Parts {
-    std::vector<Owned> terms;
-    double blend_m = 0;  ///< > 0: the terms are those of a blend with this radius
-    uint64_t blendKey = 0;
-};
-
-/// What a node holds so far. Cuts in a row are gathered, for a − b − c = a − (b + c) and one sum of many parts is cheap.
-struct Content : Parts {
-    ShapeId shape = none;  ///< the node whose content this is
-    Parts cuts;            ///< taken from the terms when anything else comes
-};
-
-/// Walks the tree once, without recursion. A child that only adds to what stands, and is itself a plain sum, pours its
-/// terms into its parent's, so that thousands of parts meet in one n-ary sum.
-class Lowering {
-public:
-    Lowering(const derive::Derivation& d, Model& model) : d_(d), tree_(d.tree), model_(model), materials_(d), owners_(d.tree.shapes.size()) {}
-
-    Status run(Progress* progress);
-
-private:
-    void enter(ShapeId id);
-    void leave(ShapeId id);
-    void join(Content& content, ShapeId id, Owned part);
-    Owned take(Content& content);
-    Owned takeParts(Parts& parts);
-    void settle(Content& content);
-    OriginId ownerOf(ShapeId id);
-    Owned dressed(Owned part, ShapeId id);
-    Owned displaced(Owned part, ShapeId id);
-    bool pours(ShapeId id) const;
-    bool isSum(const Shape& s) const { return (s.op == Operator::Sum || s.op == Operator::None) && s.blend_m <= 0; }
-    std::vector<bool> plainSums() const;
-
-    const derive::Derivation& d_;
-    const ShapeTree& tree_;
-    Model& model_;
-    Materials materials_;
-    std::vector<Content> open_;
-    std::vector<bool> plain_;  ///< by shape: its content is nothing but a sum
-    std::vector<OriginId> owners_;  ///< by shape; 0: not asked for
-};
 
 std::vector<bool> Lowering::plainSums() const {
     std::vector<bool> plain(tree_.shapes.size(), true);
     for (ShapeId s = 0; s < tree_.shapes.size(); ++s) {
         const Shape& shape = tree_.shapes[s];
-        if (const auto* x = tree_.extrasOf(s); x && !(x->displace.empty() && x->clad.empty())) plain[s] = false;
+        const auto* x = tree_.extrasOf(s);
+        if (x && !(x->displace.empty() && x->clad.empty())) plain[s] = false;
         if (shape.parent != none && !isSum(shape)) plain[shape.parent] = false;
     }
     return plain;
@@ -127,6 +75,7 @@ void Lowering::join(Content& content, ShapeId id, Owned part) {
     if (isSum(s)) {
         if (content.blend_m > 0 || !content.cuts.terms.empty()) settle(content);
         content.terms.push_back(part);
+        content.from.push_back(id);
         return;
     }
     if (s.op == Operator::Sum || s.op == Operator::None) {
@@ -194,67 +143,100 @@ Owned Lowering::displaced(Owned part, ShapeId id) {
     return part;
 }
 
+/// The shape's own solid.
+Owned Lowering::solidOf(ShapeId id) {
+    const Shape& s = tree_.shapes[id];
+    return {lowerSolid(model_.graph, *tree_.solidOf(id), s.scope, s.key, d_.grammar->meshes), ownerOf(id)};
+}
+
 void Lowering::enter(ShapeId id) {
-    materials_.enter(id);
-    if (!pours(id)) open_.push_back({{}, id, {}});
-    if (const derive::SolidValue* solid = tree_.solidOf(id)) {
-        const field::Field f = lowerSolid(model_.graph, *solid, tree_.shapes[id].scope, tree_.shapes[id].key,
-                                          d_.grammar->meshes);
-        Content& content = open_.back();
-        if (content.blend_m > 0 || !content.cuts.terms.empty()) settle(content);
-        content.terms.push_back({f, ownerOf(id)});
-    }
+    if (!again_) materials_.enter(id);
+    if (!pours(id)) open_.push_back({{}, id, {}, {}});
+    if (tree_.shapes[id].solid == none) return;
+    const Owned part = solidOf(id);
+    Content& content = open_.back();
+    if (content.blend_m > 0 || !content.cuts.terms.empty()) settle(content);
+    content.terms.push_back(part);
+    content.from.push_back(id);
 }
 
 void Lowering::leave(ShapeId id) {
     if (pours(id)) return;
-    Owned part = displaced(dressed(take(open_.back()), id), id);
+    Owned part = displaced(dressed(whole(open_.back(), id), id), id);
     open_.pop_back();
-    if (open_.empty()) model_.field = field::sum(model_.graph, std::span(&part, 1));  // one part alone keeps its owner
-    else if (!part.field.bounds.empty()) join(open_.back(), id, part);
+    if (keeps_) known_[id] = part;
+    if (id == 0) model_.field = field::sum(model_.graph, std::span(&part, 1));  // one part alone keeps its owner
+    else if (!open_.empty()) hand(id, part);
+}
+
+/// All that the node holds; a large plain sum is kept.
+Owned Lowering::whole(Content& content, ShapeId id) {
+    constexpr size_t many = 16;
+    if (!keeps_ || !plain_[id] || content.terms.size() < many) return take(content);
+    KeptSum& kept = sums_[id];
+    kept.from = std::move(content.from);
+    for (uint32_t i = 0; i < kept.from.size(); ++i) termOf_[kept.from[i]] = i;
+    kept.sum = field::MovingSum(std::move(content.terms));
+    return {kept.sum.field(), 0};
+}
+
+/// Gives a finished child to the node that is open.
+void Lowering::hand(ShapeId id, const Owned& part) {
+    if (!part.field.bounds.empty()) join(open_.back(), id, part);
     else if (tree_.shapes[id].op == Operator::Intersection) take(open_.back());  // nothing is shared with ε
+}
+
+/// Enters and leaves the shapes below `top`, and itself; the second time parts below it are known.
+Status Lowering::walk(ShapeId top, Progress* progress) {
+    uint32_t visited = 0;
+    for (ShapeId s = top;;) {
+        const bool known = again_ && s != top && !pours(s);
+        if (known) hand(s, known_[s]);
+        else enter(s);
+        if (progress) progress->tick();
+        if (++visited % 256 == 0 && cancelled(progress)) return Error{Error::Kind::Cancelled, "cancelled while lowering"};
+        if (!known && tree_.shapes[s].firstChild != none) {
+            s = tree_.shapes[s].firstChild;
+            continue;
+        }
+        if (!known) leave(s);
+        while (s != top && tree_.shapes[s].nextSibling == none) leave(s = tree_.shapes[s].parent);
+        if (s == top) return Done{};
+        s = tree_.shapes[s].nextSibling;
+    }
 }
 
 Status Lowering::run(Progress* progress) {
     plain_ = plainSums();
-    if (progress) progress->begin("lower", tree_.shapes.size());
-    uint32_t visited = 0;
-    for (ShapeId s = 0; s != none;) {
-        enter(s);
-        if (progress) progress->tick();
-        if (++visited % 256 == 0 && cancelled(progress)) return Error{Error::Kind::Cancelled, "cancelled while lowering"};
-        if (tree_.shapes[s].firstChild != none) {
-            s = tree_.shapes[s].firstChild;
-            continue;
-        }
-        for (;; s = tree_.shapes[s].parent) {
-            leave(s);
-            if (s == 0 || tree_.shapes[s].nextSibling != none) break;
-        }
-        s = s == 0 ? none : tree_.shapes[s].nextSibling;
+    if (keeps_) {
+        known_.resize(tree_.shapes.size());
+        termOf_.resize(tree_.shapes.size(), none);
+        for (const Shape& s : tree_.shapes) joins_.push_back(isSum(s));
     }
-    return Done{};
+    if (progress) progress->begin("lower", tree_.shapes.size());
+    model_.provenance.materials = d_.materials;
+    model_.shapeOf.push_back(none);
+    if (const Status done = walk(0, progress); !done.ok()) return done;
+    nameTheWhole();
+    const bool nothing = model_.field.bounds.empty();
+    if (!nothing && model_.field.bounds.finite()) return Done{};
+    const std::string path = tree_.path(0);
+    const std::string what = nothing ? fmt::format("nothing solid is left of '{}'", path) : fmt::format("'{}' has no end: a half-space may only cut", path);
+    return Error{Error::Kind::Input, syntax::placeText(tree_.shapes[0].span) + what};
 }
 
-}  // namespace
+/// Surface that no operand owns (a field of a single part) is the root's, with the first part's look.
+void Lowering::nameTheWhole() {
+    auto& parts = model_.provenance.parts;
+    Part all = parts.size() > 1 ? parts[1] : Part{};
+    if (parts.size() > 2) all.path = tree_.path(0), all.symbol = tree_.labels[0], all.rule.clear();
+    parts[0] = std::move(all);
+}
 
 Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress) {
     auto model = std::make_unique<Model>();
-    model->provenance.materials = derivation.materials;
-    model->shapeOf.push_back(none);
-    Lowering lowering(derivation, *model);
-    const Status done = lowering.run(progress);
-    if (!done.ok()) return done.error();
-    const bool nothing = model->field.bounds.empty();
-    if (nothing || !model->field.bounds.finite()) {
-        const std::string path = derivation.tree.path(0);
-        const std::string what = nothing ? fmt::format("nothing solid is left of '{}'", path) : fmt::format("'{}' has no end: a half-space may only cut", path);
-        return Error{Error::Kind::Input, syntax::placeText(derivation.tree.shapes[0].span) + what};
-    }
-    // Surface that no operand owns (a field of a single part) is the root's, with the first part's look.
-    Part whole = model->provenance.parts.size() > 1 ? model->provenance.parts[1] : Part{};
-    if (model->provenance.parts.size() > 2) whole.path = derivation.tree.path(0), whole.symbol = derivation.tree.labels[0], whole.rule.clear();
-    model->provenance.parts[0] = std::move(whole);
+    Lowering lowering(derivation, *model, false);
+    if (const Status done = lowering.run(progress); !done.ok()) return done.error();
     return model;
 }
 

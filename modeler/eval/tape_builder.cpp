@@ -142,4 +142,9 @@ void TapeBuilder::finish(const std::shared_ptr<const std::vector<float>>& consta
     into.lipschitz_ = lipschitz;
 }
 
+void TapeBuilder::rebind(Tape& tape, std::shared_ptr<const std::vector<float>> constants, float lipschitz) {
+    tape.constants_ = std::move(constants);
+    tape.lipschitz_ = lipschitz;
+}
+
 }  // namespace sgm::eval

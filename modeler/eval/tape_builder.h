@@ -44,6 +44,9 @@ public:
     void finish(const std::shared_ptr<const std::vector<float>>& constants, const std::shared_ptr<const Grids>& grids,
                 float lipschitz, Tape& into);
 
+    /// Gives a tape other numbers, in a table of the same order.
+    static void rebind(Tape& tape, std::shared_ptr<const std::vector<float>> constants, float lipschitz);
+
 private:
     /// Where a live value is, and the one place that says who owns it (`none` when several consumers read it).
     struct Value {

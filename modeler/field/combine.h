@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "modeler/field/field.h"
 
@@ -22,6 +23,30 @@ Field nothing(Graph& graph);
 /// a descent are cheap for thousands of parts. Order doesn't change the value. Empty list: nothing(). Give all parts at
 /// once: a chain of sums of two is right but deep.
 Field sum(Graph& graph, std::span<const Owned> parts);
+/// The sum of parts that move without becoming others: one node as long as the hierarchy over their boxes stays.
+class MovingSum {
+public:
+    MovingSum() = default;
+    /// At least two parts.
+    explicit MovingSum(std::vector<Owned> parts);
+    /// As `sum` of the parts gives it.
+    const Field& field() const { return field_; }
+    const Owned& part(uint32_t i) const { return parts_[i]; }
+    /// The part is the same node with other bounds.
+    void change(uint32_t i, const Field& to);
+    /// After changes: brings the bounds up to them. False where `sum` would group the parts otherwise now.
+    bool settle();
+
+private:
+    bool stands(size_t first, size_t last) const;
+
+    std::vector<Owned> parts_;
+    std::vector<uint32_t> order_, placeOf_;  ///< parts as the hierarchy has them, from left to right
+    std::vector<uint32_t> changed_;          ///< places, to be settled
+    std::vector<Vec3f> centres_;
+    Field field_;
+};
+
 /// max(a, −b): cuts b from a; the wall of the cut belongs to b's origin.
 Field difference(Owned a, Owned b);
 /// Cuts whose edges are melted off: −blend(−a, cuts…); exactly the sharp cuts beyond `radius`, never more solid than they.

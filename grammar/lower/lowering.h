@@ -1,0 +1,98 @@
+// The walk from shapes to fields, and what it leaves for a second one.
+// Enters: a derivation. Leaves: graph, field and parts in the model. Assumes parents before their children. The doors are
+// lower.h, for a model once, and relowering.h, for one that follows its derivation.
+#pragma once
+
+#include <set>
+#include <unordered_map>
+
+#include "grammar/lower/lower.h"
+#include "grammar/lower/materials.h"
+#include "modeler/field/combine.h"
+
+namespace sgm::lower {
+
+using derive::none;
+using derive::Shape;
+using derive::ShapeId;
+using derive::ShapeTree;
+using field::Owned;
+using rules::Operator;
+
+/// Parts of one pending n-ary sum, or of one pending blend.
+struct Parts {
+    std::vector<Owned> terms;
+    double blend_m = 0;  ///< > 0: the terms are those of a blend with this radius
+    uint64_t blendKey = 0;
+};
+
+/// A plain sum of many parts, kept: which shape gave each, and how they were grouped.
+struct KeptSum {
+    std::vector<ShapeId> from;  ///< by term
+    field::MovingSum sum;
+};
+
+/// What a node holds so far. Cuts in a row are gathered, for a − b − c = a − (b + c) and one sum of many parts is cheap.
+struct Content : Parts {
+    ShapeId shape = none;       ///< the node whose content this is
+    std::vector<ShapeId> from;  ///< who gave each term, while they are a plain sum
+    Parts cuts;                 ///< taken from the terms when anything else comes
+};
+
+/// Walks the tree once, without recursion. A child that only adds to what stands, and is itself a plain sum, pours its
+/// terms into its parent's, so that thousands of parts meet in one n-ary sum.
+class Lowering {
+public:
+    /// With `keeps`, `again` may follow.
+    Lowering(const derive::Derivation& d, Model& model, bool keeps)
+        : d_(d), tree_(d.tree), model_(model), materials_(d), owners_(d.tree.shapes.size()), keeps_(keeps) {}
+
+    Status run(Progress* progress);
+    /// After `run`, when the derivation changed in place: the parts that hold one of these shapes, again. False where the
+    /// field has another structure now; then the model is of no use any more.
+    bool again(std::span<const ShapeId> changed);
+
+private:
+    Status walk(ShapeId top, Progress* progress);
+    void hand(ShapeId id, const Owned& part);
+    Owned whole(Content& content, ShapeId id);
+    Owned solidOf(ShapeId id);
+    void nameTheWhole();
+
+    // relowering.cpp
+    using Dirty = std::set<ShapeId, std::greater<>>;
+    ShapeId partOf(ShapeId id) const;
+    bool changeTerm(ShapeId part, ShapeId from, const Owned& to);
+    bool mark(ShapeId changed, Dirty& dirty);
+    bool againPart(ShapeId part, Dirty& dirty);
+    void enter(ShapeId id);
+    void leave(ShapeId id);
+    void join(Content& content, ShapeId id, Owned part);
+    Owned take(Content& content);
+    Owned takeParts(Parts& parts);
+    void settle(Content& content);
+    OriginId ownerOf(ShapeId id);
+    Owned dressed(Owned part, ShapeId id);
+    Owned displaced(Owned part, ShapeId id);
+    bool pours(ShapeId id) const;
+    bool isSum(const Shape& s) const { return (s.op == Operator::Sum || s.op == Operator::None) && s.blend_m <= 0; }
+    std::vector<bool> plainSums() const;
+
+    const derive::Derivation& d_;
+    const ShapeTree& tree_;
+    Model& model_;
+    Materials materials_;
+    std::vector<Content> open_;
+    std::vector<bool> plain_;  ///< by shape: its content is nothing but a sum
+    std::vector<OriginId> owners_;  ///< by shape; 0: not asked for
+
+    // For a second run.
+    const bool keeps_;
+    bool again_ = false;            ///< parts below the top of a walk are known
+    std::vector<bool> joins_;       ///< by shape: isSum
+    std::vector<Owned> known_;      ///< by shape: the part it is, unless it pours
+    std::unordered_map<ShapeId, KeptSum> sums_;  ///< by the shape whose content it is
+    std::vector<uint32_t> termOf_;  ///< by shape: its place among the terms of a kept sum, or none
+};
+
+}  // namespace sgm::lower

@@ -1,0 +1,92 @@
+// What `compile` knows of a graph's nodes on the way, kept for when their numbers change.
+// Enters: a graph, a node, numbers. Leaves: a tape. Assumes the graph outlives it, with the same nodes. Nothing recurses:
+// node ids are in topological order (operands first), so passes are loops over ids. The doors are tape.h, for a tape once,
+// and recompiler.h, for one that follows its numbers.
+#pragma once
+
+#include <bit>
+#include <optional>
+#include <unordered_map>
+
+#include "modeler/eval/tape_builder.h"
+#include "modeler/field/ops.h"
+
+namespace sgm::eval {
+
+using field::NodeId;
+
+/// What a node turned out to be: a number, another node, or an instruction.
+struct Fate {
+    enum Kind : uint8_t { Unreached, Constant, Same, Instruction } kind = Unreached;
+    NodeId same = 0;    ///< Same
+    float value = 0;    ///< Constant
+    uint32_t need = 0;  ///< registers to compute it (Sethi & Ullman 1970), for Instruction
+};
+
+/// Numbers of a tape, each once: told by their bits, or by the node they come from, so that one may change alone.
+class Constants {
+public:
+    explicit Constants(bool byNode) : byNode_(byNode) {}
+    Source source(NodeId node, float value) {
+        const uint32_t key = byNode_ ? node : std::bit_cast<uint32_t>(value);
+        const auto [at, isNew] = index_.try_emplace(key, static_cast<uint32_t>(values_.size()));
+        if (isNew) values_.push_back(value);
+        return at->second | constantBit;
+    }
+    /// The number's place in the table, by node; none for a node that no instruction reads.
+    uint32_t placeOf(NodeId node) const {
+        const auto at = index_.find(node);
+        return at == index_.end() ? TapeBuilder::none : at->second;
+    }
+    std::vector<float> take() { return std::move(values_); }
+
+private:
+    const bool byNode_;
+    std::vector<float> values_;
+    std::unordered_map<uint32_t, uint32_t> index_;
+};
+
+class Compiler {
+public:
+    Compiler(const field::Graph& graph, NodeId root, std::span<const float> constants, bool byNode)
+        : graph_(graph), root_(root), slots_(constants), fates_(size_t{root} + 1), constants_(byNode) {}
+
+    Tape run(float lipschitz);
+
+    // For when numbers change.
+    NodeId root() const { return root_; }
+    const Fate& fate(NodeId id) const { return fates_[id]; }
+    /// The node's number, from those of its operands; only for a node that is one.
+    float number(NodeId id);
+    void setNumber(NodeId id, float value) { fates_[id].value = value; }
+    void bind(std::span<const float> constants) { slots_ = constants; }
+    /// The operand whose value is the node's own, since the other one is a number that changes nothing, as 0 in a sum.
+    std::optional<NodeId> passesOn(NodeId id) const;
+    /// As of Constants.
+    uint32_t placeOf(NodeId id) const { return constants_.placeOf(id); }
+
+private:
+    void reach();
+    void decide(NodeId id);
+    std::span<const NodeId> heavyFirst(NodeId id);
+    uint32_t need(std::span<const NodeId> heavy) const;
+    void order();
+    Tape write(float lipschitz);
+    TapeBuilder::Use useOf(const field::Operand& o);
+
+    /// The node that stands for `id`.
+    NodeId standIn(NodeId id) const { return fates_[id].kind == Fate::Same ? fates_[id].same : id; }
+    const Fate& fateOf(NodeId id) const { return fates_[standIn(id)]; }
+    bool isInput(NodeId id) const { return graph_.node(id).op == field::codeOf<field::ops::Input>; }
+
+    const field::Graph& graph_;
+    const NodeId root_;
+    std::span<const float> slots_;
+    std::vector<Fate> fates_;
+    std::vector<float> args_;
+    std::vector<NodeId> sorted_, ordered_;
+    Constants constants_;
+    bool owned_ = false;  ///< someone owns something
+};
+
+}  // namespace sgm::eval
