@@ -173,11 +173,10 @@ void Lowering::leave(ShapeId id) {
 Owned Lowering::whole(Content& content, ShapeId id) {
     constexpr size_t many = 16;
     if (!keeps_ || !plain_[id] || content.terms.size() < many) return take(content);
-    KeptSum& kept = sums_[id];
-    kept.from = std::move(content.from);
-    for (uint32_t i = 0; i < kept.from.size(); ++i) termOf_[kept.from[i]] = i;
-    kept.sum = field::MovingSum(std::move(content.terms));
-    return {kept.sum.field(), 0};
+    for (uint32_t i = 0; i < content.from.size(); ++i) termOf_[content.from[i]] = i;
+    const field::Field sum = field::sum(model_.graph, content.terms);
+    sums_[id] = {std::move(content.terms), sum.value};
+    return {sum, 0};
 }
 
 /// Gives a finished child to the node that is open.

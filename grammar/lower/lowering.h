@@ -26,10 +26,10 @@ struct Parts {
     uint64_t blendKey = 0;
 };
 
-/// A plain sum of many parts, kept: which shape gave each, and how they were grouped.
+/// A plain sum of many parts, kept.
 struct KeptSum {
-    std::vector<ShapeId> from;  ///< by term
-    field::MovingSum sum;
+    std::vector<Owned> terms;
+    field::Num value;
 };
 
 /// What a node holds so far. Cuts in a row are gathered, for a − b − c = a − (b + c) and one sum of many parts is cheap.

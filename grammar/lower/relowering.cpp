@@ -23,11 +23,10 @@ ShapeId Lowering::partOf(ShapeId id) const {
 
 /// Puts a part in its place in the kept sum; false where it had none, or was another node.
 bool Lowering::changeTerm(ShapeId part, ShapeId from, const Owned& to) {
-    field::MovingSum& sum = sums_.at(part).sum;
-    const uint32_t i = termOf_[from];
-    if (i == none) return to.field.bounds.empty();
-    if (!sameNode(sum.part(i), to) || to.field.bounds.empty()) return false;
-    sum.change(i, to.field);
+    if (termOf_[from] == none) return to.field.bounds.empty();
+    Owned& known = sums_.at(part).terms[termOf_[from]];
+    if (!sameNode(known, to) || to.field.bounds.empty()) return false;
+    known = to;
     return true;
 }
 
@@ -47,8 +46,7 @@ bool Lowering::mark(ShapeId id, Dirty& dirty) {
 bool Lowering::againPart(ShapeId id, Dirty& dirty) {
     const Owned before = known_[id];
     if (const auto kept = sums_.find(id); kept != sums_.end()) {
-        if (!kept->second.sum.settle()) return false;
-        known_[id] = {kept->second.sum.field(), 0};
+        known_[id] = {field::summed(kept->second.value, kept->second.terms), 0};
         if (id == 0) model_.field = known_[id].field;
     } else if (!walk(id, nullptr).ok()) {
         return false;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <vector>
 
 #include "modeler/field/ops.h"
 
@@ -32,52 +32,12 @@ Box3f levelBox(const Box3f& box, double level, float growth) {
     return box.inflated(static_cast<float>(level / growth * (1 + 1e-6)));
 }
 
-/// A min tree top-down by median splits of the parts' boxes on their widest axis (Goldsmith & Salmon 1987 call it an
-/// object hierarchy). The order is total, so the tree depends on the parts alone; its depth is ⌈log₂ n⌉.
-
-/// The box's centre; 0 in an axis where it has none (unbounded or empty).
-Vec3f anchor(const Box3f& box) {
-    Vec3f c = box.empty() ? Vec3f{} : box.centre();
-    for (int i = 0; i < 3; ++i)
-        if (!std::isfinite(c[i])) c[i] = 0;
-    return c;
-}
-
-std::vector<Vec3f> anchors(std::span<const Owned> parts) {
-    std::vector<Vec3f> centres;
-    centres.reserve(parts.size());
-    for (const Owned& part : parts) centres.push_back(anchor(part.field.bounds));
-    return centres;
-}
-
-/// The order of parts along the axis on which those of `order` lie farthest apart.
-class Along {
-public:
-    Along(std::span<const Vec3f> centres, std::span<const uint32_t> order) : centres_(centres) {
-        Box3f box;
-        for (const uint32_t i : order) box = hull(box, centres[i]);
-        const Vec3f s = box.size();
-        axis_ = s.x >= s.y && s.x >= s.z ? 0 : s.y >= s.z ? 1 : 2;
-    }
-    bool operator()(uint32_t a, uint32_t b) const {
-        const float ca = centres_[a][axis_], cb = centres_[b][axis_];
-        return ca != cb ? ca < cb : a < b;
-    }
-
-private:
-    std::span<const Vec3f> centres_;
-    int axis_ = 0;
-};
-
-constexpr size_t middleOf(size_t first, size_t last) { return first + (last - first) / 2; }
-
-Operand hierarchy(std::span<const Owned> parts, std::span<const Vec3f> centres, std::span<uint32_t> order) {
-    if (order.size() == 1) return {parts[order[0]].field.value.id(), parts[order[0]].origin};
-    const size_t middle = middleOf(0, order.size());
-    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(middle), order.end(), Along(centres, order));
-    const Operand low = hierarchy(parts, centres, order.first(middle)), high = hierarchy(parts, centres, order.subspan(middle));
+/// A balanced min tree in the parts' order.
+Operand minTree(std::span<const Owned> parts) {
+    if (parts.size() == 1) return {parts[0].field.value.id(), parts[0].origin};
+    const Operand low = minTree(parts.first(parts.size() / 2)), high = minTree(parts.subspan(parts.size() / 2));
     const Operand halves[] = {low, high};
-    return {parts.front().field.value.graph().apply(codeOf<ops::Min>, halves).id(), 0};
+    return {parts[0].field.value.graph().apply(codeOf<ops::Min>, halves).id(), 0};
 }
 
 /// What both boxes share; an axis in which they don't meet shrinks to the middle of the gap. In each axis a point is at
@@ -122,44 +82,13 @@ Field sum(Graph& graph, std::span<const Owned> parts) {
     if (parts.empty()) return nothing(graph);
     if (parts.size() == 1)
         return {owned(parts[0]), parts[0].field.bounds, parts[0].field.lipschitz, parts[0].field.growth};
-    return MovingSum({parts.begin(), parts.end()}).field();
+    return summed(Num(&graph, minTree(parts).node), parts);
 }
 
-MovingSum::MovingSum(std::vector<Owned> parts)
-    : parts_(std::move(parts)), order_(parts_.size()), placeOf_(parts_.size()), centres_(anchors(parts_)) {
-    std::iota(order_.begin(), order_.end(), 0u);
-    field_.value = Num(&parts_[0].field.value.graph(), hierarchy(parts_, centres_, order_).node);
-    for (uint32_t i = 0; i < order_.size(); ++i) placeOf_[order_[i]] = i;
-    settle();
-}
-
-void MovingSum::change(uint32_t i, const Field& to) {
-    parts_[i].field = to;
-    centres_[i] = anchor(to.bounds);
-    changed_.push_back(placeOf_[i]);
-}
-
-/// True when a split of these places would give the halves they have, all the way down.
-bool MovingSum::stands(size_t first, size_t last) const {
-    const auto touched = std::lower_bound(changed_.begin(), changed_.end(), first);
-    if (last - first == 1 || touched == changed_.end() || *touched >= last) return true;
-    const auto order = std::span(order_).subspan(first, last - first);
-    const Along before(centres_, order);
-    const size_t middle = middleOf(first, last);
-    const auto low = order.first(middle - first), high = order.subspan(middle - first);
-    return before(*std::max_element(low.begin(), low.end(), before), *std::min_element(high.begin(), high.end(), before)) &&
-           stands(first, middle) && stands(middle, last);
-}
-
-bool MovingSum::settle() {
-    std::sort(changed_.begin(), changed_.end());
-    if (!stands(0, order_.size())) return false;
-    changed_.clear();
-    field_.bounds = {};
-    for (const Owned& part : parts_) field_.bounds = hull(field_.bounds, part.field.bounds);
-    field_.lipschitz = maxLipschitz(parts_);
-    field_.growth = minGrowth(parts_);
-    return true;
+Field summed(Num value, std::span<const Owned> parts) {
+    Box3f bounds;
+    for (const Owned& part : parts) bounds = hull(bounds, part.field.bounds);
+    return {value, bounds, maxLipschitz(parts), minGrowth(parts)};
 }
 
 Field difference(Owned a, Owned b) {

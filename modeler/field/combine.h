@@ -4,7 +4,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "modeler/field/field.h"
 
@@ -19,34 +18,13 @@ struct Owned {
 /// The empty solid ε (`nil`): positive everywhere.
 Field nothing(Graph& graph);
 
-/// Sum, SG-M eq. 13 (min under definition 4), as a balanced tree over a bounding hierarchy, so that the first levels of
-/// a descent are cheap for thousands of parts. Order doesn't change the value. Empty list: nothing(). Give all parts at
-/// once: a chain of sums of two is right but deep.
+/// Sum, SG-M eq. 13 (min under definition 4), as a balanced tree in the order of the parts: where two share a surface the
+/// first owns it. The tree hangs on nothing but their order, so that moving a part changes numbers alone; what a region can
+/// drop doesn't hang on it (eval::shorten compares each part with the nearest of all). Empty list: nothing(). Give all
+/// parts at once: a chain of sums of two is right but deep.
 Field sum(Graph& graph, std::span<const Owned> parts);
-/// The sum of parts that move without becoming others: one node as long as the hierarchy over their boxes stays.
-class MovingSum {
-public:
-    MovingSum() = default;
-    /// At least two parts.
-    explicit MovingSum(std::vector<Owned> parts);
-    /// As `sum` of the parts gives it.
-    const Field& field() const { return field_; }
-    const Owned& part(uint32_t i) const { return parts_[i]; }
-    /// The part is the same node with other bounds.
-    void change(uint32_t i, const Field& to);
-    /// After changes: brings the bounds up to them. False where `sum` would group the parts otherwise now.
-    bool settle();
-
-private:
-    bool stands(size_t first, size_t last) const;
-
-    std::vector<Owned> parts_;
-    std::vector<uint32_t> order_, placeOf_;  ///< parts as the hierarchy has them, from left to right
-    std::vector<uint32_t> changed_;          ///< places, to be settled
-    std::vector<Vec3f> centres_;
-    Field field_;
-};
-
+/// The sum of two or more parts whose value is known already, when only their bounds have changed.
+Field summed(Num value, std::span<const Owned> parts);
 /// max(a, −b): cuts b from a; the wall of the cut belongs to b's origin.
 Field difference(Owned a, Owned b);
 /// Cuts whose edges are melted off: −blend(−a, cuts…); exactly the sharp cuts beyond `radius`, never more solid than they.

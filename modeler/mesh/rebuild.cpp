@@ -32,6 +32,7 @@ void Rebuild::forget() {
     regions_.clear();
     mesh_.chunks.clear();
     tape_ = {};
+    numbers_.reset();
     grid_ = {};
 }
 
@@ -62,10 +63,21 @@ std::vector<Chunk> Rebuild::takeKept(const Regions& now, const std::vector<Block
     return chunks;
 }
 
-Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts) {
+Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts,
+                                 const eval::NumbersChanged* changed) {
     Regions now, same;
     std::mutex guard;
-    const RegionFilter changed = [&](Vec3i index, int blocks, const eval::Tape& shortened) {
+    RegionFilter filter;
+    if (const auto parts = changed ? eval::changedParts(tape, *changed) : std::nullopt)
+        filter.skips = [&, parts, care = careOf(tape, grid)](std::span<const Vec3i> indices, int blocks,
+                                                            std::span<const Box3f> boxes, eval::Workspace& workspace) {
+            const uint64_t far = eval::unreached(*parts, boxes, care, workspace);
+            const std::lock_guard lock(guard);
+            for (size_t i = 0; i < indices.size(); ++i)
+                if (far >> i & 1) same.emplace(Region{levelOf(blocks), indices[i]}, eval::Fingerprint{});
+            return far;
+        };
+    filter.wants = [&](Vec3i index, int blocks, const eval::Tape& shortened) {
         const Region region{levelOf(blocks), index};
         const eval::Fingerprint print = eval::fingerprint(shortened);
         const auto before = regions_.find(region);
@@ -74,7 +86,7 @@ Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progr
         (equal ? same : now).emplace(region, print);
         return !equal;
     };
-    const auto blocks = subdivide(tape, grid, options_.threads, progress, counts, changed);
+    const auto blocks = subdivide(tape, grid, options_.threads, progress, counts, filter);
     if (!blocks.ok()) return blocks.error();
     keepBelow(regions_, same, now);
 
@@ -93,21 +105,26 @@ Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progr
     return &mesh_;
 }
 
-Result<const Mesh*> Rebuild::update(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts) {
+const Mesh* Rebuild::keepAll() {
+    blocksKept_ += blocksMade_;
+    blocksMade_ = 0;
+    return &mesh_;
+}
+
+Result<const Mesh*> Rebuild::update(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts,
+                                    const eval::NumbersChanged* changed) {
     const eval::Care care = careOf(tape, grid);
     if (!sameGrid(grid, grid_) || !(care == care_)) forget();
-    const eval::Fingerprint print = eval::fingerprint(tape);
-    if (print == tape_) {
-        blocksKept_ += blocksMade_;
-        blocksMade_ = 0;
-        return &mesh_;
-    }
-    auto result = run(tape, grid, progress, counts);
+    if (!changed || !numbers_ || changed->before != numbers_) changed = nullptr;
+    const eval::Fingerprint print = changed ? eval::Fingerprint{} : eval::fingerprint(tape);
+    if (changed ? changed->places.empty() : print == tape_) return keepAll();
+    auto result = run(tape, grid, progress, counts, changed);
     if (!result.ok()) {
         forget();
         return result;
     }
     tape_ = print;
+    numbers_ = tape.sharedConstants();
     grid_ = grid;
     care_ = care;
     return result;

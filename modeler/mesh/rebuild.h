@@ -2,11 +2,13 @@
 // Enters: the tape of the moment, and a grid. Leaves: the mesh that `subdivide` and `polygonize` would give, byte for
 // byte. Assumes one caller at a time. A region of the descent is told by its tape, shortened to it: where that is the
 // same as the last time, so is all that would be found below, and neither the descent nor the sampling goes there
-// again. For a single mesh call `subdivide` and `polygonize`.
+// again. Where only numbers changed, not even the tape is asked: only the parts that read them, whether they come near.
+// For a single mesh call `subdivide` and `polygonize`.
 #pragma once
 
 #include <unordered_map>
 
+#include "modeler/eval/changed_parts.h"
 #include "modeler/eval/fingerprint.h"
 #include "modeler/mesh/polygonize.h"
 
@@ -19,7 +21,10 @@ public:
     /// The mesh of `tape` on `grid`, valid until the next call. Nothing is kept when the grid is another one than in
     /// the last call (see `gridToKeep`), when the field's Lipschitz constant doubled, nor after an error. Errors as of
     /// subdivide and polygonize; the memory budget counts what is made anew.
-    Result<const Mesh*> update(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts);
+    /// `changed` tells which numbers are new when the code is that of the last call's tape, and spares what asking the
+    /// whole tape costs.
+    Result<const Mesh*> update(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts,
+                               const eval::NumbersChanged* changed = nullptr);
 
     /// Blocks of the last mesh that were meshed anew.
     size_t blocksMade() const { return blocksMade_; }
@@ -38,7 +43,9 @@ private:
     };
     using Regions = std::unordered_map<Region, eval::Fingerprint, RegionHash>;
 
-    Result<const Mesh*> run(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts);
+    Result<const Mesh*> run(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts,
+                            const eval::NumbersChanged* changed);
+    const Mesh* keepAll();
     void forget();
     static void keepBelow(const Regions& before, const Regions& same, Regions& now);
     std::vector<Chunk> takeKept(const Regions& now, const std::vector<Block>& made);
@@ -46,7 +53,8 @@ private:
     PolygonizeOptions options_;
     Grid grid_;
     eval::Care care_;
-    eval::Fingerprint tape_;
+    eval::Fingerprint tape_;  ///< of the last tape, where it was asked for
+    std::shared_ptr<const std::vector<float>> numbers_;  ///< the last tape's constants
     Regions regions_;  ///< all that may hold surface, blocks (level 0) and above
     Mesh mesh_;
     size_t blocksMade_ = 0, blocksKept_ = 0;

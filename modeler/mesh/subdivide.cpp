@@ -18,30 +18,54 @@ constexpr int splits = regionSplits;
 /// A cube of blocks on the way down: blocks [index · size, (index + 1) · size) of its level.
 using Region = Block;
 
-/// Splits one region into those children that may hold surface and that the filter wants, each with its tape shortened
-/// to it.
-std::vector<Region> split(const Region& region, int childCells, const Grid& grid, const RegionFilter& filter,
-                          eval::Workspace& workspace, Counts& counts) {
-    std::array<CellRange, splits * splits * splits> children;
+/// The parts of a region that have cells, in order.
+struct Children {
+    std::array<Vec3i, splits * splits * splits> indices;
+    std::array<CellRange, splits * splits * splits> cells;
     std::array<Box3f, splits * splits * splits> boxes;
     size_t n = 0;
-    for (int k = 0; k < splits; ++k)
-        for (int j = 0; j < splits; ++j)
-            for (int i = 0; i < splits; ++i) {
-                const CellRange cells = cellsOf(region.index * splits + Vec3i{i, j, k}, childCells, grid);
-                if (cells.empty()) continue;
-                children[n] = cells;
-                boxes[n++] = boxOf(cells, grid);
-            }
+
+    Children(Vec3i region, int childCells, const Grid& grid) {
+        for (int k = 0; k < splits; ++k)
+            for (int j = 0; j < splits; ++j)
+                for (int i = 0; i < splits; ++i) {
+                    const Vec3i index = region * splits + Vec3i{i, j, k};
+                    const CellRange range = cellsOf(index, childCells, grid);
+                    if (range.empty()) continue;
+                    indices[n] = index;
+                    cells[n] = range;
+                    boxes[n++] = boxOf(range, grid);
+                }
+    }
+    void leaveOut(uint64_t which) {
+        size_t left = 0;
+        for (size_t i = 0; i < n; ++i) {
+            if (which >> i & 1) continue;
+            indices[left] = indices[i], cells[left] = cells[i], boxes[left] = boxes[i];
+            ++left;
+        }
+        n = left;
+    }
+};
+
+/// Splits one region into those children that may hold surface and that the filter wants, each with its tape shortened
+/// to it.
+std::vector<Region> split(const eval::Tape& tape, Vec3i index, int childCells, const Grid& grid,
+                          const RegionFilter& filter, eval::Workspace& workspace, Counts& counts) {
+    const int blocks = childCells / blockCells;
+    Children children(index, childCells, grid);
+    if (filter.skips)
+        children.leaveOut(filter.skips({children.indices.data(), children.n}, blocks, {children.boxes.data(), children.n}, workspace));
+    if (children.n == 0) return {};
     std::array<eval::Range, splits * splits * splits> ranges;
-    eval::evaluateRanges(region.tape, {boxes.data(), n}, ranges.data(), workspace);
-    counts.intervalEvaluations += n;
+    eval::evaluateRanges(tape, {children.boxes.data(), children.n}, ranges.data(), workspace);
+    counts.intervalEvaluations += children.n;
 
     std::vector<Region> kept;
-    for (size_t c = 0; c < n; ++c) {
-        if (!mayHoldSurface(ranges[c], children[c], grid)) continue;
-        Region child{children[c].lo / childCells, eval::shorten(region.tape, c, workspace, careOf(region.tape, grid))};
-        if (!filter || filter(child.index, childCells / blockCells, child.tape)) kept.push_back(std::move(child));
+    for (size_t c = 0; c < children.n; ++c) {
+        if (!mayHoldSurface(ranges[c], children.cells[c], grid)) continue;
+        Region child{children.indices[c], eval::shorten(tape, c, workspace, careOf(tape, grid))};
+        if (!filter.wants || filter.wants(child.index, blocks, child.tape)) kept.push_back(std::move(child));
     }
     return kept;
 }
@@ -107,16 +131,21 @@ Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, i
     int size = splits;
     while (size < blocksAlong) size *= splits;
 
-    std::vector<Region> regions;
-    if (minComponent(grid.cells) > 0) regions.push_back({{0, 0, 0}, tape});
     std::vector<eval::Workspace> workspaces(static_cast<size_t>(threadCount(threads)));
+    std::vector<Region> regions;
+    if (minComponent(grid.cells) > 0) {
+        if (progress) progress->begin("subdivide", 1);
+        size /= splits;
+        regions = split(tape, {0, 0, 0}, size * blockCells, grid, filter, workspaces[0], counts);
+        tick(progress);
+    }
     for (; size > 1; size /= splits) {
         if (progress) progress->begin("subdivide", regions.size());
         std::vector<std::vector<Region>> children(regions.size());
         std::vector<Counts> counted(workspaces.size());
         parallelFor(regions.size(), threads, progress, [&](size_t i, int worker) {
-            children[i] =
-                split(regions[i], size / splits * blockCells, grid, filter, workspaces[worker], counted[worker]);
+            children[i] = split(regions[i].tape, regions[i].index, size / splits * blockCells, grid, filter,
+                                workspaces[worker], counted[worker]);
             tick(progress);
         });
         if (cancelled(progress)) return cancelledError();
@@ -124,6 +153,7 @@ Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, i
         for (std::vector<Region>& some : children) std::move(some.begin(), some.end(), std::back_inserter(regions));
         for (const Counts& c : counted) counts += c;
     }
+    if (cancelled(progress)) return cancelledError();
     std::sort(regions.begin(), regions.end(), [](const Block& a, const Block& b) { return zyxLess(a.index, b.index); });
     counts.subdivideSeconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return regions;

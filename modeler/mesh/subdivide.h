@@ -7,11 +7,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "modeler/core/progress.h"
 #include "modeler/core/result.h"
-#include "modeler/eval/tape.h"
+#include "modeler/eval/evaluate.h"
 
 namespace sgm::mesh {
 
@@ -54,14 +55,18 @@ struct Counts {
     Counts& operator+=(const Counts& o);
 };
 
-/// Asked of a region that may hold surface, a cube of `blocks` blocks along its edge, with the tape shortened to it:
-/// false leaves it out with all below. Called from any thread.
-using RegionFilter = std::function<bool(Vec3i index, int blocks, const eval::Tape& tape)>;
+/// Which regions to look at, cubes of `blocks` blocks along an edge. Called from any thread.
+struct RegionFilter {
+    /// Asked before anything is known of at most 64 regions: bit i leaves region i out with all below. None where empty.
+    std::function<uint64_t(std::span<const Vec3i> indices, int blocks, std::span<const Box3f> boxes, eval::Workspace&)> skips;
+    /// Asked of a region that may hold surface, with the tape shortened to it: false leaves it out likewise.
+    std::function<bool(Vec3i index, int blocks, const eval::Tape& tape)> wants;
+};
 
 /// Blocks that may hold surface, ordered by (z, y, x), but for those that `filter` leaves out. Error::Cancelled when
 /// `progress` says so, Error::Input for a box without end and for cells that aren't positive or that float32 can't
 /// resolve at the grid's place, Error::Budget for more than 2¹⁵ cells along an axis.
 Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress,
-                                     Counts& counts, const RegionFilter& filter = nullptr);
+                                     Counts& counts, const RegionFilter& filter = {});
 
 }  // namespace sgm::mesh

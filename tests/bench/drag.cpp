@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "modeler/mesh/rebuild.h"
+#include "grammar/incremental/pipeline.h"
 
 namespace sgm::bench {
 namespace {
@@ -21,17 +21,40 @@ void keepBest(BuildSeconds& best, const BuildSeconds& now) {
     if (best.total() == 0 || now.total() < best.total()) best = now;
 }
 
-/// A model with the time it took so far.
-struct Timed {
-    Scene scene;
-    BuildSeconds seconds;
-};
+/// From the grammar to the mesh with what was kept.
+Result<const mesh::Mesh*> follow(incremental::Pipeline& pipeline, const GrammarScene& scene, mesh::Grid& grid,
+                                 int resolution, Running running, BuildSeconds& seconds) {
+    const Stopwatch deriving(running);
+    if (const Status done = pipeline.derive(scene.grammar, scene.options, nullptr); !done) return done.error();
+    seconds.derive = deriving.seconds();
+    const Stopwatch lowering(running);
+    if (const Status done = pipeline.lower(nullptr); !done) return done.error();
+    seconds.lower = lowering.seconds();
+    const Stopwatch compiling(running);
+    pipeline.compile();
+    seconds.compile = compiling.seconds();
+    const Box3f bounds = pipeline.model().field.bounds;
+    grid = mesh::gridToKeep(grid, bounds, grid.cells.x == 0 ? mesh::cellFor(bounds, resolution) : grid.cell_m, 0.2f);
+    mesh::Counts counts;
+    const Stopwatch meshing(running), wall;
+    const auto mesh = pipeline.mesh(grid, nullptr, counts);
+    seconds.mesh = meshing.seconds();
+    seconds.descend = counts.subdivideSeconds * seconds.mesh / wall.seconds();
+    return mesh;
+}
 
-Result<Timed> build(const GrammarScene& scene, Running running) {
-    auto made = makeScene(scene, running);
+/// From the grammar to the mesh, from the start.
+Result<mesh::Mesh> build(const GrammarScene& scene, const mesh::Grid& grid, Running running, BuildSeconds& seconds) {
+    const auto made = makeScene(scene, running);
     if (!made.ok()) return made.error();
-    const BuildSeconds seconds{made->deriveSeconds, made->lowerSeconds, made->compileSeconds, 0, 0};
-    return Timed{std::move(*made), seconds};
+    mesh::Counts counts;
+    const Stopwatch meshing(running), wall;
+    const auto blocks = mesh::subdivide(made->tape, grid, running.threads, nullptr, counts);
+    if (!blocks.ok()) return blocks.error();
+    auto mesh = mesh::polygonize(*blocks, grid, {.threads = running.threads}, nullptr, counts);
+    seconds = {made->deriveSeconds, made->lowerSeconds, made->compileSeconds, meshing.seconds(), 0};
+    seconds.descend = counts.subdivideSeconds * seconds.mesh / wall.seconds();
+    return mesh;
 }
 
 }  // namespace
@@ -45,36 +68,22 @@ Result<DragResult> measureDrag(const GrammarScene& start, const std::string& par
     GrammarScene scene = start;
     rules::Value& value = scene.options.params[static_cast<size_t>(param - params.begin())];
     DragResult result{scene.name, parameter, resolution, {}, {}, 0, 0};
-    mesh::Rebuild rebuild({.threads = running.threads});
+    incremental::Pipeline pipeline({.threads = running.threads});
     mesh::Grid grid;
     for (int step = 0; step <= steps; ++step) {
         value.n[0] = param->lo->n[0] + (param->hi->n[0] - param->lo->n[0]) * (step + 0.5) / (steps + 1);
-        auto model = build(scene, running);
-        if (!model.ok()) return model.error();
-        const Box3f bounds = model->scene.model->field.bounds;
-        grid = mesh::gridToKeep(grid, bounds, step == 0 ? mesh::cellFor(bounds, resolution) : grid.cell_m, 0.2f);
-
-        mesh::Counts keptCounts, wholeCounts;
-        const Stopwatch again(running), againWall;
-        const auto kept = rebuild.update(model->scene.tape, grid, nullptr, keptCounts);
+        BuildSeconds drag, full;
+        const auto kept = follow(pipeline, scene, grid, resolution, running, drag);
         if (!kept.ok()) return kept.error();
-        BuildSeconds drag = model->seconds, full = model->seconds;
-        drag.mesh = again.seconds();
-        drag.descend = keptCounts.subdivideSeconds * drag.mesh / againWall.seconds();
-        if (step > 0) keepBest(result.drag, drag);
-
-        const Stopwatch whole(running), wholeWall;
-        const auto blocks = mesh::subdivide(model->scene.tape, grid, running.threads, nullptr, wholeCounts);
-        if (!blocks.ok()) return blocks.error();
-        const auto mesh = mesh::polygonize(*blocks, grid, {.threads = running.threads}, nullptr, wholeCounts);
+        const auto mesh = build(scene, grid, running, full);
         if (!mesh.ok()) return mesh.error();
-        full.mesh = whole.seconds();
-        full.descend = wholeCounts.subdivideSeconds * full.mesh / wholeWall.seconds();
-        if (step > 0) keepBest(result.full, full);
         if (!equal(**kept, *mesh)) return Error{Error::Kind::Internal, "the mesh made anew in part is another one"};
+        if (step == 0) continue;
+        keepBest(result.drag, drag);
+        keepBest(result.full, full);
     }
-    result.blocksMade = rebuild.blocksMade();
-    result.blocksKept = rebuild.blocksKept();
+    result.blocksMade = pipeline.rebuild().blocksMade();
+    result.blocksKept = pipeline.rebuild().blocksKept();
     return result;
 }
 

@@ -173,33 +173,41 @@ TEST(Combine, NothingIsNeutral) {
     for (const float v : Probe(graph, intersection({solid, 0}, {none, 0}))(points)) EXPECT_GT(v, 1e20f);
 }
 
-TEST(Combine, SumIsABalancedTreeOfNearParts) {
+TEST(Combine, SumIsABalancedTreeInTheOrderOfItsParts) {
     constexpr int n = 100000;
     Graph graph;
-    std::vector<Owned> parts;
+    std::vector<Owned> parts, moved;
     Draws draw(3);
+    const auto boxAt = [](float at) { return Box3f{{at, 0, 0}, {at + 1, 1, 1}}; };
     for (int i = 0; i < n; ++i) {
         const Num x = graph.slot(static_cast<float>(i));
-        const float at = static_cast<float>(draw.uniform(0, 1000));
-        parts.push_back({Field{x, {{at, 0, 0}, {at + 1, 1, 1}}}, 0});
+        parts.push_back({Field{x, boxAt(static_cast<float>(draw.uniform(0, 1000)))}, 0});
+        moved.push_back({Field{x, boxAt(static_cast<float>(draw.uniform(0, 1000)))}, 0});
     }
     const Field all = sum(graph, parts);
-    // Depth, and the extent of each subtree along x: a node's two halves may touch but not interleave.
-    std::vector<int> depth(graph.nodeCount(), 0);
-    std::vector<float> lo(graph.nodeCount()), hi(graph.nodeCount());
-    for (const Owned& part : parts) lo[part.field.value.id()] = hi[part.field.value.id()] = part.field.bounds.lo.x;
+    // Depth, and which parts each subtree holds: those of a node's first half come before those of its second.
+    std::vector<int> depth(graph.nodeCount(), 0), first(graph.nodeCount()), last(graph.nodeCount());
+    for (int i = 0; i < n; ++i) first[parts[i].field.value.id()] = last[parts[i].field.value.id()] = i;
     size_t joins = 0;
     for (NodeId i = 0; i < graph.nodeCount(); ++i) {
         if (graph.node(i).op != codeOf<ops::Min>) continue;
         const NodeId a = graph.operands(i)[0].node, b = graph.operands(i)[1].node;
-        EXPECT_TRUE(hi[a] <= lo[b] || hi[b] <= lo[a]);
+        ASSERT_EQ(last[a] + 1, first[b]);
         depth[i] = 1 + std::max(depth[a], depth[b]);
-        lo[i] = std::min(lo[a], lo[b]);
-        hi[i] = std::max(hi[a], hi[b]);
+        first[i] = first[a];
+        last[i] = last[b];
         ++joins;
     }
     EXPECT_EQ(joins, n - 1u);
     EXPECT_EQ(depth[all.value.id()], 17);  // ⌈log₂ 100,000⌉
+
+    const size_t nodes = graph.nodeCount();
+    EXPECT_EQ(sum(graph, moved).value.id(), all.value.id()) << "moving parts changes numbers alone";
+    EXPECT_EQ(graph.nodeCount(), nodes);
+    const Field again = summed(all.value, moved), whole = sum(graph, moved);
+    EXPECT_EQ(again.bounds, whole.bounds);
+    EXPECT_EQ(again.lipschitz, whole.lipschitz);
+    EXPECT_EQ(again.growth, whole.growth);
 }
 
 /// Σ max(0, c − fᵢ)² = k² by bisection in double.
