@@ -171,6 +171,18 @@ TEST(RoundTrip, PlyFacesCarryTheirOrigin) {
         }
 }
 
+TEST(RoundTrip, PlyOfTheShapeAlone) {
+    Fixture f;
+    const ReadBack all = readBack(f.write("a.ply"));
+    f.input.options = {{"attributes", "none"}};
+    const std::string bytes = contentOf(f.write("b.ply"));
+    const size_t shape = f.mesh.vertexCount() * 12 + f.mesh.triangleCount() * 13;
+    EXPECT_EQ(bytes.size(), bytes.find("end_header\n") + 11 + shape);
+    const ReadBack bare = readBack(f.folder / "b.ply");
+    EXPECT_EQ(bare.positions, all.positions);
+    EXPECT_EQ(bare.triangles, all.triangles);
+}
+
 TEST(RoundTrip, TextureChartsAreInMetresAndNeverMirrored) {
     Fixture f;
     const ReadBack r = readBack(f.write("a.glb"));

@@ -46,7 +46,7 @@ TEST_F(Write, NamesWhatIsWrong) {
     EXPECT_EQ(errorOf(folder / "missing/a.ply"), "cannot write '" + (folder / "missing/a.ply").string() +
                                                      "': there is no folder '" + (folder / "missing").string() + "'");
     input.options = {{"color", "red"}};
-    EXPECT_EQ(errorOf(folder / "a.ply"), ".ply has no option 'color'; it has: up, unit");
+    EXPECT_EQ(errorOf(folder / "a.ply"), ".ply has no option 'color'; it has: up, unit, attributes");
     input.options = {{"up", "x"}};
     EXPECT_EQ(errorOf(folder / "a.ply"), "option 'up' of .ply is one of y|z, not 'x'");
     input.options = {};
