@@ -7,6 +7,7 @@
 
 #include "modeler/core/parallel.h"
 #include "tests/bench/gallery.h"
+#include "tests/bench/kifs.h"
 #include "tests/bench/report.h"
 
 namespace {
@@ -19,7 +20,7 @@ struct Request {
     std::vector<int> resolutions;
     MeasureOptions measure;
     std::string json, drag, gallery;
-    bool bars = false, cpu = false, noPeers = false, noDense = false;
+    bool bars = false, cpu = false, noPeers = false, noDense = false, kifs = false;
 };
 
 void addOptions(CLI::App& app, Request& request) {
@@ -45,6 +46,7 @@ void addOptions(CLI::App& app, Request& request) {
         "Drag this parameter of the scenes: a build that keeps what the change doesn't reach, beside a full one");
     app.add_option("--gallery", request.gallery,
                    "Measure the objects of this list (docs/gallery.txt) instead, and print the page's section");
+    app.add_flag("--kifs", request.kifs, "Measure the folding of fractals and what the shells of facades save instead");
     app.add_flag("--no-dense", request.noDense, "Leave the dense sweeps out");
     app.add_flag("--no-peers", request.noPeers, "Leave OpenVDB and VTK out");
     app.add_option("--json", request.json, "Write all figures to this file");
@@ -133,8 +135,8 @@ int main(int argc, char** argv) {
     request.measure.peers = !request.noPeers;
     request.measure.dense = !request.noDense;
 
-    if (!request.gallery.empty()) {
-        const auto section = galleryTimes(request.gallery, request.measure);
+    if (!request.gallery.empty() || request.kifs) {
+        const auto section = request.kifs ? kifsTables(request.measure.running.clock) : galleryTimes(request.gallery, request.measure);
         if (!section.ok()) return fail(section.error());
         fmt::print("{}", *section);
         return 0;

@@ -5,6 +5,7 @@
 
 #include "modeler/core/conventions.h"
 #include "tests/field/probe.h"
+#include "tests/trace.h"
 
 namespace sgm::field::test {
 namespace {
@@ -100,6 +101,17 @@ TEST(Facade, BaysFollowTheFoldsOfAlgorithm2) {
     }
 }
 
+/// min(inner, max(outer, d_KIFS)) over a box as the paper has it, the map's jumps and all.
+double paperValue(const Ornament& o, Vec3d half, Vec3d p, double* toSeam = nullptr) {
+    const double h = o.value(P::Storey), w = o.value(P::Bay), up = (p.y + half.y) / h, v = up - std::floor(up);
+    double seamX, seamZ;
+    const Vec3d q{mapped(o, p.x, w, seamX), o.value(P::Rise) * v, mapped(o, p.z, w, seamZ)};
+    if (toSeam) *toSeam = std::min({seamX, seamZ, v * h, (1 - v) * h});
+    const double outer = std::max({std::abs(p.x) - half.x, std::abs(p.y) - half.y, std::abs(p.z) - half.z});
+    const double inner = std::max({std::abs(p.x) - half.x + 0.4, std::abs(p.z) - half.z + 0.4, p.y - half.y + 0.1});
+    return std::min(inner, std::max(outer, fractal(o, q)));
+}
+
 /// The sign is that of g(f₁, f₂, f₃) as the paper has it, except within the slack beside a seam.
 TEST(Facade, IsThePapersSolid) {
     Ornament o;
@@ -111,20 +123,33 @@ TEST(Facade, IsThePapersSolid) {
     for (int i = 0; i < 40000; ++i) {
         Vec3d p = draw.in(Box3d{-half, half});
         if (i % 2) p[(i / 2) % 2 * 2] = (i % 4 < 2 ? -1 : 1) * (half[(i / 2) % 2 * 2] - draw.uniform(0, 0.45));
-        const double h = o.value(P::Storey), w = o.value(P::Bay);
-        double seamX, seamZ;
-        const double up = (p.y + half.y) / h, v = up - std::floor(up);
-        const Vec3d q{mapped(o, p.x, w, seamX), o.value(P::Rise) * v, mapped(o, p.z, w, seamZ)};
-        const double d = fractal(o, q), outer = std::max({std::abs(p.x) - half.x, std::abs(p.y) - half.y, std::abs(p.z) - half.z});
-        const double inner = std::max({std::abs(p.x) - half.x + 0.4, std::abs(p.z) - half.z + 0.4, p.y - half.y + 0.1});
-        const double paper = std::min(inner, std::max(outer, d));
-        if (std::abs(paper) < 1e-4 || std::min({seamX, seamZ, v * h, (1 - v) * h}) < 2e-3 || std::abs(p.y + half.y) < 0.01) continue;
+        double toSeam;
+        const double paper = paperValue(o, half, p, &toSeam);
+        if (std::abs(paper) < 1e-4 || toSeam < 2e-3 || std::abs(p.y + half.y) < 0.01) continue;
         ++compared;
         full += paper < 0;
         ASSERT_EQ(probe(p.as<float>()) < 0, paper < 0) << p.x << ' ' << p.y << ' ' << p.z << ": " << paper;
     }
     EXPECT_GT(compared, 30000);
     EXPECT_LT(full, compared);
+}
+
+/// What the least over the cells is for: with the paper's own formulas steps go through walls.
+TEST(Facade, RaysFindItsSurfaceAndMissThePapers) {
+    Ornament o;
+    const Vec3d half{6, 4.5, 4};
+    o.put(P::Fit, {1}), o.put(P::Bay, {1});  // as the paper has it: the map stretches four times
+    const sgm::test::Picture picture(Box3d{-half, half}.as<float>(), 640, 8);
+    Probe ours(o.graph, o.clad("cube", half));
+    const size_t missed = sgm::test::wrongRays(picture, 1, [&](const float* x, const float* y, const float* z, size_t n, float* out) {
+        eval::Workspace workspace;
+        eval::evaluate(ours.tape(), {x, y, z, n}, out, workspace);
+    });
+    const size_t papers = sgm::test::wrongRays(picture, 1, [&](const float* x, const float* y, const float* z, size_t n, float* out) {
+        for (size_t i = 0; i < n; ++i) out[i] = static_cast<float>(paperValue(o, half, {x[i], y[i], z[i]}));
+    });
+    EXPECT_LE(double(missed), 1e-3 * double(picture.ways.size()));
+    EXPECT_GT(double(papers), 0.02 * double(picture.ways.size()));
 }
 
 /// Pairs of points on both sides of bays' and storeys' borders.

@@ -3,10 +3,6 @@
 
 #include "grammar/lower/solids.h"
 #include "modeler/core/random.h"
-#include "modeler/mesh/pieces.h"
-#include "modeler/mesh/polygonize.h"
-#include "modeler/mesh/subdivide.h"
-#include "modeler/mesh/validate.h"
 #include "tests/lower/lowered.h"
 
 namespace sgm {
@@ -114,59 +110,6 @@ TEST(Clad, BandsOfStoreysAndPatternsThatChangeAlongAChain) {
         EXPECT_GT(out, 0);
     }
 }
-
-/// Meshes of the presets: closed, and with `keep` one solid that is nearly all of it.
-class Presets : public testing::TestWithParam<const char*> {};
-TEST_P(Presets, StandInOnePiece) {
-    const Lowered model(text("Box size (16, 8, 12) clad " + std::string(GetParam())));
-    ASSERT_TRUE(model.model);
-    const mesh::Grid grid = mesh::gridFor(model.model->field.bounds, mesh::cellFor(model.model->field.bounds, 96));
-    mesh::Counts counts;
-    const auto blocks = mesh::subdivide(model.tape(), grid, 2, nullptr, counts);
-    mesh::Mesh mesh = *mesh::polygonize(*blocks, grid, {.threads = 2}, nullptr, counts);
-    const double all = mesh::measure(mesh).volume_m3;
-    const mesh::Dropped dropped = mesh::keepOnly(mesh, mesh::Keep::Grounded, grid.cell_m);
-    const mesh::MeshFigures figures = mesh::measure(mesh);
-    EXPECT_EQ(figures.components, 1u);
-    EXPECT_NEAR(figures.volume_m3, all - dropped.volume_m3 + dropped.filled_m3, 1e-3 * all);
-    EXPECT_GE(figures.volume_m3, 0.95 * all);
-}
-/// From a place in the air a step of |f| in any direction meets no surface, and f changes no faster than its bound says.
-TEST_P(Presets, KeepTheirDistance) {
-    const Lowered model(text("Box size (16, 8, 12) clad " + std::string(GetParam())));
-    ASSERT_TRUE(model.model);
-    const float bound = model.model->field.lipschitz;
-    std::vector<Vec3f> from, way;
-    eachPlace(model, 12000, [&](Vec3f p) {
-        const auto draw = [&, key = from.size()](uint64_t k) { return static_cast<float>(uniform(combine(key, k), -1, 1)); };
-        const Vec3f d{draw(10), draw(11), draw(12)};
-        if (from.size() % 2) p[2 * static_cast<int>(from.size() / 2 % 2)] *= 1.02f;  // more of them beside the walls
-        from.push_back(p);
-        way.push_back(d * (1 / std::max(length(d), 0.01f)));
-    });
-    const auto valuesAt = [&](auto place) {
-        std::vector<float> x, y, z, f(from.size());
-        for (size_t i = 0; i < from.size(); ++i) {
-            const Vec3f p = place(i);
-            x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
-        }
-        eval::Workspace workspace;
-        eval::evaluate(model.tape(), {x.data(), y.data(), z.data(), x.size()}, f.data(), workspace);
-        return f;
-    };
-    const std::vector<float> f = valuesAt([&](size_t i) { return from[i]; });
-    for (const float share : {0.3f, 0.7f, 0.98f}) {
-        const auto there = valuesAt([&](size_t i) { return from[i] + way[i] * (share * std::abs(f[i]) / bound); });
-        for (size_t i = 0; i < from.size(); ++i)
-            if (std::abs(f[i]) > 1e-3f) { ASSERT_EQ(there[i] < 0, f[i] < 0) << i << ' ' << f[i] << ' ' << there[i]; }
-    }
-    for (const float apart : {1e-3f, 1e-2f, 1e-1f}) {
-        const auto there = valuesAt([&](size_t i) { return from[i] + way[i] * apart; });
-        for (size_t i = 0; i < from.size(); ++i) ASSERT_LE(std::abs(there[i] - f[i]), bound * apart * 1.0001f + 2e-5f) << i;
-    }
-}
-INSTANTIATE_TEST_SUITE_P(Clad, Presets, testing::Values("palazzo", "colonnade", "filigree", "arcade", "tracery", "lancets", "abbey", "piers", "lierne", "loggia",
-                                         "ruin", "bastion", "curtain", "grid", "casement", "lattice", "screen", "decks"));
 
 }  // namespace
 }  // namespace sgm
