@@ -18,6 +18,7 @@
 #include "modeler/export/exporter.h"
 #include "modeler/mesh/edit.h"
 #include "modeler/mesh/validate.h"
+#include "modeler/volume/keep.h"
 #include "viewer/document/files.h"
 
 namespace sgm::cli {
@@ -44,7 +45,6 @@ bool wantsLevelSet(const BuildRequest& request) { return wantsVolume(request.out
 /// What can be refused before the work.
 Status checkRequest(const BuildRequest& request) {
     if (const Status s = checkOutputs(request.out); !s.ok()) return s;
-    if (request.keep != "all" && wantsLevelSet(request)) return Error{Error::Kind::Usage, "--keep is for meshes: leave out .vdb, --cave and --floor"};
     if (const Status s = request.floor.empty() ? Done{} : checkMeshFile("--floor", request.floor); !s.ok()) return s;
     if (request.agent.empty()) return Done{};
     if (!surveys(request)) return Error{Error::Kind::Usage, "--agent walks through a cave: add --cave or --floor FILE"};
@@ -103,10 +103,13 @@ Status judged(const mesh::Mesh& mesh, Stages& stages) {
     return Done{};
 }
 
+mesh::Keep keepOf(const BuildRequest& request) {
+    return request.keep == "all" ? mesh::Keep::All : request.keep == "grounded" ? mesh::Keep::Grounded : mesh::Keep::Largest;
+}
+
 /// Takes crumbs and what floats away where that is wanted.
 void keepOnly(const BuildRequest& request, MeshedModel& meshed) {
-    const mesh::Keep keep = request.keep == "all" ? mesh::Keep::All : request.keep == "grounded" ? mesh::Keep::Grounded : mesh::Keep::Largest;
-    const mesh::Dropped dropped = mesh::keepOnly(meshed.mesh, keep, meshed.grid.cell_m);
+    const mesh::Dropped dropped = mesh::keepOnly(meshed.mesh, keepOf(request), meshed.grid.cell_m);
     if (!request.quiet && dropped.pieces + dropped.cavities > 0)
         fmt::print("left out {} piece{} of {:.4g} m³, filled {} cavit{} of {:.4g} m³\n", dropped.pieces, dropped.pieces == 1 ? "" : "s", dropped.volume_m3,
                    dropped.cavities, dropped.cavities == 1 ? "y" : "ies", dropped.filled_m3);
@@ -136,6 +139,7 @@ Status deliver(const BuildRequest& request, const Model& model, MeshedModel mesh
             return volume::sample(meshed.blocks, model.tape, meshed.grid, volume::usualHalfWidth, request.grid.threads, progress);
         });
         if (!sampled.ok()) return sampled.error();
+        if (const Status s = volume::keepOnly(*sampled, keepOf(request), meshed.grid.cell_m, progress); !s.ok()) return s;
         level = std::move(*sampled);
         input.volume = &*level;
     }
@@ -246,7 +250,7 @@ void addBuild(CLI::App& app, int& exitCode) {
     command->add_option("--agent", request->agent, "Who walks through the cave: RADIUS,HEIGHT[,SLOPE] in metres and degrees")->default_str(".3,1.8,45");
     command->add_option("--floor", request->floor, "Write the floor on which the agent can stand, as a mesh");
     command->add_flag("--inward", request->inward, "Write the surface facing inward: the model is a hollow, seen from inside");
-    command->add_option("--keep", request->keep, "Which separate solids the mesh has: all, those that stand and aren't crumbs, or the largest one; the latter two fill closed cavities")
+    command->add_option("--keep", request->keep, "Which separate solids stay: all, those that stand and aren't crumbs, or the largest one; the latter two fill closed cavities")
         ->check(CLI::IsMember({"all", "grounded", "largest"}))->capture_default_str();
     command->add_option("--smooth", request->smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
     command->add_option("--simplify", request->simplify, "Decimate to this share of the triangles")->check(CLI::Range(0.001, 1.0));

@@ -140,8 +140,6 @@ void keepVertices(Mesh& mesh, const std::vector<bool>& stays) {
     std::erase_if(mesh.chunks, [](const Chunk& c) { return c.positions.empty() && c.triangles.empty(); });
 }
 
-bool stands(const Piece& piece, const Piece& greatest) { return !piece.floats && piece.volume_m3 >= 1e-3 * greatest.volume_m3; }
-
 }  // namespace
 
 std::vector<Piece> pieces(const Mesh& mesh, float slack_m) {
@@ -149,6 +147,18 @@ std::vector<Piece> pieces(const Mesh& mesh, float slack_m) {
     std::erase_if(found, [](const Piece& p) { return p.volume_m3 <= 0; });
     judgeSupport(found, slack_m);
     return found;
+}
+
+std::vector<bool> staying(std::vector<Piece> solids, Keep keep, float slack_m) {
+    std::vector<bool> stays(solids.size(), keep == Keep::All);
+    if (keep == Keep::All || solids.empty()) return stays;
+    judgeSupport(solids, slack_m);
+    const auto less = [](const Piece& a, const Piece& b) { return a.volume_m3 < b.volume_m3; };
+    const auto greatest = std::max_element(solids.begin(), solids.end(), less);
+    for (size_t i = 0; i < solids.size(); ++i)
+        stays[i] = keep == Keep::Grounded && !solids[i].floats && solids[i].volume_m3 >= 1e-3 * greatest->volume_m3;
+    stays[static_cast<size_t>(greatest - solids.begin())] = true;
+    return stays;
 }
 
 Dropped keepOnly(Mesh& mesh, Keep keep, float slack_m) {
@@ -162,16 +172,13 @@ Dropped keepOnly(Mesh& mesh, Keep keep, float slack_m) {
             solidOf[i] = solids.size();
             solids.push_back(surfaces.pieces[i]);
         }
-    judgeSupport(solids, slack_m);
-    size_t greatest = 0;
-    for (size_t i = 1; i < solids.size(); ++i)
-        if (solids[i].volume_m3 > solids[greatest].volume_m3) greatest = i;
+    const std::vector<bool> solidStays = staying(solids, keep, slack_m);
     std::vector<bool> pieceStays(surfaces.pieces.size(), false);
     for (size_t i = 0; i < surfaces.pieces.size(); ++i) {
         if (solidOf[i] == surfaces.pieces.size()) {
             ++dropped.cavities;
             dropped.filled_m3 -= surfaces.pieces[i].volume_m3;
-        } else if (keep == Keep::Largest ? solidOf[i] == greatest : stands(solids[solidOf[i]], solids[greatest])) {
+        } else if (solidStays[solidOf[i]]) {
             pieceStays[i] = true;
         } else {
             ++dropped.pieces;

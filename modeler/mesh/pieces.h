@@ -23,6 +23,8 @@ std::vector<Piece> pieces(const Mesh& mesh, float slack_m);
 /// Which solids of a mesh stay: all; those that stand and aren't crumbs of less than a thousandth of the greatest one; or
 /// the greatest one alone.
 enum class Keep { All, Grounded, Largest };
+/// Whether each of a model's solids stays; of a piece, volume and bounds count.
+std::vector<bool> staying(std::vector<Piece> solids, Keep keep, float slack_m);
 /// What was taken away.
 struct Dropped {
     uint64_t pieces = 0;    ///< solids
