@@ -40,31 +40,52 @@ std::vector<viewer::edits::NamedValue> variation(const rules::Grammar& grammar, 
 
 namespace {
 
-/// Share of the surface on its sixteen largest planes.
-double shareOnFewPlanes(const mesh::Mesh& mesh, float cell_m) {
-    constexpr size_t few = 16;
-    std::map<std::array<int, 4>, double> areas;
-    double all = 0;
-    const Vec3f middle = mesh.bounds().centre();
-    std::vector<Vec3f> at;
-    for (const mesh::Chunk& c : mesh.chunks) at.insert(at.end(), c.positions.begin(), c.positions.end());
+struct Plane {
+    Vec3d normal;  ///< times the area
+    double along = 0, area = 0;
+    bool holds(Vec3d p, double slack) const { return std::abs(dot(normal, p) - along) < slack * area; }
+};
+
+/// The planes with most of the surface.
+std::vector<Plane> largestPlanes(const mesh::Mesh& mesh, const std::vector<Vec3f>& at, float cell_m, size_t few) {
+    std::map<std::array<int, 4>, Plane> planes;
     for (const mesh::Chunk& c : mesh.chunks)
         for (const mesh::Triangle& local : c.triangles) {
             const mesh::Triangle t = c.inMesh(local);
-            const Vec3f n = cross(at[t.y] - at[t.x], at[t.z] - at[t.x]);
-            const float size = length(n);
+            const Vec3d p = at[t.x].as<double>(), n = cross(at[t.y].as<double>() - p, at[t.z].as<double>() - p);
+            const double size = length(n);
             if (size <= 0) continue;
-            const auto step = [](float v, float by) { return static_cast<int>(std::lround(v / by)); };
-            const float along = dot(n, at[t.x] - middle) / size;
-            areas[{step(n.x / size, 0.1f), step(n.y / size, 0.1f), step(n.z / size, 0.1f), step(along, cell_m)}] += size;
-            all += size;
+            const auto step = [](double v, double by) { return static_cast<int>(std::lround(v / by)); };
+            Plane& plane = planes[{step(n.x / size, 0.1), step(n.y / size, 0.1), step(n.z / size, 0.1), step(dot(n, p) / size, cell_m)}];
+            plane.normal += n, plane.along += dot(n, p), plane.area += size;
         }
-    std::vector<double> largest;
-    for (const auto& entry : areas) largest.push_back(entry.second);
-    std::sort(largest.begin(), largest.end(), std::greater<>());
-    double sum = 0;
-    for (size_t i = 0; i < std::min(few, largest.size()); ++i) sum += largest[i];
-    return all > 0 ? sum / all : 1;
+    std::vector<Plane> sorted;
+    for (const auto& entry : planes) sorted.push_back(entry.second);
+    std::sort(sorted.begin(), sorted.end(), [](const Plane& a, const Plane& b) { return a.area > b.area; });
+    sorted.resize(std::min(few, sorted.size()));
+    return sorted;
+}
+
+/// Share of the surface whose corners lie on the two dozen largest planes. Where cells cut an edge off, the corners of the
+/// cut do: so coarse meshes and fine ones are judged alike.
+double shareOnFewPlanes(const mesh::Mesh& mesh, float cell_m) {
+    std::vector<Vec3f> at;
+    const Vec3f middle = mesh.bounds().centre();
+    for (const mesh::Chunk& c : mesh.chunks)
+        for (const Vec3f& p : c.positions) at.push_back(p - middle);
+    const std::vector<Plane> planes = largestPlanes(mesh, at, cell_m, 24);
+    std::vector<bool> plain;
+    for (const Vec3f& p : at)
+        plain.push_back(std::any_of(planes.begin(), planes.end(), [&](const Plane& q) { return q.holds(p.as<double>(), 0.1 * cell_m); }));
+    double all = 0, bare = 0;
+    for (const mesh::Chunk& c : mesh.chunks)
+        for (const mesh::Triangle& local : c.triangles) {
+            const mesh::Triangle t = c.inMesh(local);
+            const double size = length(cross(at[t.y] - at[t.x], at[t.z] - at[t.x]));
+            all += size;
+            if (plain[t.x] && plain[t.y] && plain[t.z]) bare += size;
+        }
+    return all > 0 ? bare / all : 1;
 }
 
 }  // namespace

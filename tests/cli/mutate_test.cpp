@@ -50,6 +50,14 @@ TEST_F(Cli, MutateWritesTheChosenOneBack) {
     EXPECT_EQ(read(path("a.ply")), read(path("b.ply")));
 }
 
+TEST_F(Cli, MutateJudgesAlikeAtAnyResolution) {
+    const std::string bare = grammar("param width = 4 in 2..8.0\nstart House -> cube size (width, 3, 3) + cube size (3, 3, width) + cube size (1.7, 5, 1.3) turn 20deg\n");
+    for (const char* cells : {"24", "64", "160"})
+        EXPECT_NE(sgm("mutate " + bare + " --rows 1 --cols 1 --resolution " + cells).out.find("featureless"), std::string::npos) << cells;
+    const std::string clad = grammar("use \"std/kifs.sgm\"\nparam width = 12m in 8m..16m\nstart House -> Box size (width, 8, 8) clad casement\n");
+    for (const char* cells : {"24", "64", "160"}) EXPECT_EQ(sgm("mutate " + clad + " --rows 1 --cols 1 --resolution " + cells).out, "0: as it is\n") << cells;
+}
+
 TEST_F(Cli, MutateSaysWhatIsWrong) {
     const std::string file = grammar("param width = 4 in 2..8.0\nstart House -> sphere size (width, 3, 3)\n");
     EXPECT_EQ(sgm("mutate " + file + " --pick 1").code, 2);
