@@ -24,10 +24,12 @@ draw() {
   echo "docs/pictures/$name-*.png"
 }
 
-# small NAME OPTIONS: NAME.png
+# small NAME OPTIONS: NAME.png, of 320 pixels unless the options say otherwise
 small() {
+  local size="--size 320x320"
+  case $2 in *--size*) size= ;; esac
   # shellcheck disable=SC2086
-  "$sgm" render $2 --size 320x320 -q -o "docs/pictures/$1.png"
+  "$sgm" render $2 $size -q -o "docs/pictures/$1.png"
   echo "docs/pictures/$1.png"
 }
 

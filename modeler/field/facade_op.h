@@ -48,44 +48,48 @@ struct Facade {
     static constexpr float noBay = 3;
     static constexpr uint32_t pack(const Kifs::Form& form) { return Kifs::pack(form); }
 
+    /// The operands from the fractal on have to be constants here, as modeler/field/facade.cpp makes them: fetching them from
+    /// registers too took a third of a picture's time.
     static constexpr std::string_view glsl = R"(
-float most = arg(first + 37u);
-if (arg(first + 3u) >= most || arg(first + 4u) <= -arg(first + 38u)) return most;
-vec3 c = vec3(arg(first + 5u), arg(first + 6u), arg(first + 7u));
-float s = arg(first + 8u), h = c.z * (s - 1.0) * 0.5;
+#define number(texel) uintBitsToFloat(texelFetch(tapes, int(texel)).y)
+float most = number(first + 37u);
+if (arg(first + 3u) >= most || arg(first + 4u) <= -number(first + 38u)) return most;
+vec3 c = vec3(number(first + 5u), number(first + 6u), number(first + 7u));
+float s = number(first + 8u), h = c.z * (s - 1.0) * 0.5;
 mat3 r2 = mat3(1.0), r1 = mat3(1.0);
 for (uint i = 0u; i < 9u; ++i) {
-    if ((data & 2048u) != 0u) r2[i / 3u][i % 3u] = arg(first + 9u + i);
-    if ((data & 4096u) != 0u) r1[i / 3u][i % 3u] = arg(first + 18u + i);
+    if ((data & 2048u) != 0u) r2[i / 3u][i % 3u] = number(first + 9u + i);
+    if ((data & 4096u) != 0u) r1[i / 3u][i % 3u] = number(first + 18u + i);
 }
-vec2 period = vec2(arg(first + 27u), arg(first + 28u));
-vec2 reach = period * vec2(arg(first + 29u), arg(first + 30u)) * 0.5;
+vec2 period = vec2(number(first + 27u), number(first + 28u));
+vec2 reach = period * vec2(number(first + 29u), number(first + 30u)) * 0.5;
 vec2 raw = abs(fract(vec2(arg(first), arg(first + 2u)) / period) * 2.0 - 1.0), u = raw;
-for (uint i = 0u; i < 3u; ++i) u = abs(abs(u - arg(first + 31u + i)) - arg(first + 31u + i));
-float height = arg(first + 34u), last = arg(first + 35u) - 1.0, rise = arg(first + 36u), slack = arg(first + 39u);
+for (uint i = 0u; i < 3u; ++i) u = abs(abs(u - number(first + 31u + i)) - number(first + 31u + i));
+float height = number(first + 34u), last = number(first + 35u) - 1.0, rise = number(first + 36u), slack = number(first + 39u);
 float up = arg(first + 1u) / height, level = min(max(floor(up), 0.0), last), v = up - level;
 float below = level > 0.0 ? v : 1e4, above = level < last ? 1.0 - v : 1e4;
 float edge = min(below, above) * height, beyond = below < above ? v + 1.0 : v - 1.0;
 uint bays = 1u;
-while (bays < 14u && arg(first + 41u + 3u * bays) < 2.0) ++bays;
 uvec2 own = uvec2(0u);
-for (uint i = 1u; i < bays; ++i) {
-    float from = arg(first + 41u + 3u * i);
-    own = uvec2(raw.x >= from ? i : own.x, raw.y >= from ? i : own.y);
+for (; bays < 14u; ++bays) {
+    float from = number(first + 41u + 3u * bays);
+    if (from >= 2.0) break;
+    own = uvec2(raw.x >= from ? bays : own.x, raw.y >= from ? bays : own.y);
 }
+// The own cell first, then those whose slab is nearer than the best so far: over the rows of bays, storeys of each in turn.
 float best = most;
-for (uint turn = 0u; turn <= 2u * bays * bays; ++turn) {  // the own cell first
-    bool here = turn == 0u;
-    uvec2 bay = here ? own : uvec2((turn - 1u) / 2u % bays, (turn - 1u) / 2u / bays);
-    bool over = !here && (turn & 1u) == 0u;
+bool here = true, over = false;
+uvec2 bay = own;
+vec2 off = vec2(0.0);
+for (int axis = 0; axis < 2; ++axis) {
+    uint at = first + 41u + 3u * own[axis];
+    off[axis] = max((own[axis] == 0u ? -1e4 : number(at)) - raw[axis], raw[axis] - (own[axis] + 1u == bays ? 1e4 : number(at + 3u))) * reach[axis];
+}
+float border = min(min(-off.x, -off.y), edge) - slack, slab = max(max(off.x, off.y), -edge) - slack;
+for (uint next = 0u;;) {
     uvec2 at = first + 41u + 3u * bay;
-    vec2 from = vec2(bay.x == 0u ? -1e4 : arg(at.x), bay.y == 0u ? -1e4 : arg(at.y));
-    vec2 to = vec2(bay.x + 1u == bays ? 1e4 : arg(at.x + 3u), bay.y + 1u == bays ? 1e4 : arg(at.y + 3u));
-    vec2 off = max(from - raw, raw - to) * reach;
-    float slab = max(max(off.x, off.y), over ? edge : -edge) - slack;
-    if (!here && (slab >= best || (!over && bay == own))) continue;
-    vec2 zoom = vec2(arg(at.x + 1u), arg(at.y + 1u));
-    vec2 across = zoom * u + vec2(arg(at.x + 2u), arg(at.y + 2u));
+    vec2 zoom = vec2(number(at.x + 1u), number(at.y + 1u));
+    vec2 across = zoom * u + vec2(number(at.x + 2u), number(at.y + 2u));
     vec3 p = vec3(across.x, rise * (over ? beyond : v), across.y);
     float scales = 1.0;
     for (uint pass = 0u; pass < (data & 255u); ++pass) {
@@ -102,7 +106,25 @@ for (uint turn = 0u; turn <= 2u * bays * bays; ++turn) {  // the own cell first
     float d = (data & 256u) != 0u ? max(max(q.x, q.y), q.z) - max(max(c.x, c.y), c.z) : length(p) - 2.0;
     vec2 k = abs(zoom) / reach;
     best = min(best, max(d / (scales * max(max(k.x, k.y), rise / height)), slab));
-    if (here && best <= min(min(-off.x, -off.y), edge) - slack) return best;  // nothing else is so near
+    if (here && best <= border) return best;  // nothing else is so near
+    here = false;
+    bool found = false;
+    while (!found && next < 2u * bays * bays) {
+        uint column = next % (2u * bays);
+        bay = uvec2(column / 2u, next / (2u * bays));
+        over = (next & 1u) == 0u;
+        at = first + 41u + 3u * bay;
+        if (column == 0u) off.y = max((bay.y == 0u ? -1e4 : number(at.y)) - raw.y, raw.y - (bay.y + 1u == bays ? 1e4 : number(at.y + 3u))) * reach.y;
+        if (off.y - slack >= best) {
+            next += 2u * bays - column;
+            continue;
+        }
+        if (over) off.x = max((bay.x == 0u ? -1e4 : number(at.x)) - raw.x, raw.x - (bay.x + 1u == bays ? 1e4 : number(at.x + 3u))) * reach.x;
+        slab = max(max(off.x, off.y), over ? edge : -edge) - slack;
+        found = slab < best && (over || bay != own);
+        ++next;
+    }
+    if (!found) return best;
 }
 return best;)";
 

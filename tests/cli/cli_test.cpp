@@ -170,7 +170,7 @@ TEST_F(Cli, InterruptCancelsWith130AndLeavesNothing) {
 }
 
 TEST_F(Cli, FormatterIsIdempotentAndExamplesAreFormatted) {
-    for (const auto& entry : fs::directory_iterator("examples")) {
+    for (const auto& entry : fs::recursive_directory_iterator("examples")) {
         if (entry.path().extension() != ".sgm") continue;
         const Outcome run = sgm("fmt --check " + entry.path().string());
         EXPECT_EQ(run.code, 0) << run.out;

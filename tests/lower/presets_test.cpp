@@ -1,6 +1,6 @@
 // Every pattern of grammar/std/kifs.sgm on a box: its distances hold, rays find its surface, its mesh is one solid.
 // Environment, for longer runs than the suite's: SGM_POINTS, points over all patterns (1000000); SGM_RAYS, pixels along a
-// side of the traced picture, all of them (640, every fourth); SGM_CELLS, a list of cells along the box ("256 512").
+// side of the traced picture, all of them (640, every eighth); SGM_CELLS, a list of cells along the box ("256 512").
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -182,7 +182,7 @@ TEST_P(Presets, RaysFindWhatFineStepsFind) {
     const Lowered model = on(usual);
     ASSERT_TRUE(model.model);
     const std::string all = environment("SGM_RAYS", "");
-    const test::Picture picture(model.model->field.bounds, all.empty() ? 640 : std::stoi(all), all.empty() ? 4 : 1);
+    const test::Picture picture(model.model->field.bounds, all.empty() ? 640 : std::stoi(all), all.empty() ? 8 : 1);
     const size_t wrong = test::wrongRays(picture, model.model->field.lipschitz, [&](const float* x, const float* y, const float* z, size_t n, float* out) {
         constexpr size_t some = 4096;
         parallelFor((n + some - 1) / some, 2, nullptr, [&](size_t k, int) {
@@ -199,7 +199,7 @@ TEST_P(Presets, RaysFindWhatFineStepsFind) {
 TEST_P(Presets, StandInOnePiece) {
     const std::string cells = environment("SGM_CELLS", "");
     const bool whole = !cells.empty();
-    const Vec3d size = whole ? usual : Vec3d{8, 8, 6};
+    const Vec3d size = whole ? usual : Vec3d{8, 4, 6};
     const Lowered model = on(size);
     ASSERT_TRUE(model.model);
     const double wall = number(model, field::FacadeParameter::Wall), top = number(model, field::FacadeParameter::Top);
