@@ -37,7 +37,7 @@ measured() {
   TIMEFORMAT='%U %S'
   seconds=$({ time "$@" >"$work/log" 2>&1; } 2>&1 | awk '{ printf "%.2f", $1 + $2 }')
   triangles=$(head -c 2000 "$file" | grep -a '^element face' | cut -d' ' -f3)
-  echo "| $name | $seconds | $triangles | $(($(stat -c %s "$file") / triangles)) |"
+  echo "| $name | $seconds | $triangles | $((($(stat -c %s "$file") + triangles - 1) / triangles)) |"
 }
 
 settings sponge 7 1.01 </dev/null
