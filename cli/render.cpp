@@ -12,7 +12,7 @@
 #include "cli/pipeline.h"
 #include "cli/watch.h"
 #include "modeler/core/conventions.h"
-#include "modeler/volume/fog.h"
+#include "viewer/fog_scene.h"
 #include "viewer/offscreen.h"
 
 namespace sgm::cli {
@@ -79,22 +79,12 @@ struct Painter {
     std::function<viewer::DrawCost()> cost;
 };
 
-/// Fog whose edge, which billows may eat, is a fifteenth of the model's least side deep.
 Result<Painter> fogPainter(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
-    const mesh::Grid grid = gridOver(bounds, request.grid);
-    mesh::Counts counts;
-    const auto blocks = mesh::subdivide(model.tape, grid, request.grid.threads, progress, counts);
-    if (!blocks.ok()) return blocks.error();
-    const auto level = volume::sample(*blocks, model.tape, grid, volume::usualHalfWidth, request.grid.threads, progress);
-    if (!level.ok()) return level.error();
-    const Vec3f size = bounds.size();
-    const float edge_m = std::min({size.x, size.y, size.z}) / 15;
-    const auto fog = volume::fog(*level, {.edge_m = static_cast<double>(edge_m)}, progress);
-    if (!fog.ok()) return fog.error();
-    const auto dense = volume::dense(*fog, 1);
-    if (!dense.ok()) return dense.error();
-    const viewer::FogLook look{static_cast<float>(request.extinction), 9 * edge_m};
-    const auto painter = viewer::FogPainter::create(*dense, bounds, look, request.grid.threads, progress);
+    const auto grid = viewer::fogGrid(model.tape, gridOver(bounds, request.grid), bounds, request.grid.threads, progress);
+    if (!grid.ok()) return grid.error();
+    viewer::FogLook look = viewer::usualFog(*grid);
+    look.extinction_per_m = static_cast<float>(request.extinction);
+    const auto painter = viewer::FogPainter::create(grid->dense, bounds, look, request.grid.threads, progress);
     if (!painter.ok()) return painter.error();
     return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress); }, {}};
 }
@@ -114,7 +104,7 @@ Result<Painter> painterOf(const RenderRequest& request, const Model& model, cons
     Stages stages;
     const auto meshed = makeMesh(model, request.grid, stages, progress);
     if (!meshed.ok()) return meshed.error();
-    const auto painter = viewer::MeshPainter::create(meshed->mesh, provenance);
+    const auto painter = viewer::MeshPainter::create(meshed->mesh, provenance, progress);
     if (!painter.ok()) return painter.error();
     return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress); }, {}};
 }

@@ -51,7 +51,6 @@ Layers emptyLayers(int width, int height) {
 
 struct FieldPainter::Parts {
     GpuContext gpu;
-    FieldPrograms programs;
     std::optional<FieldScene> scene;
     DrawCost cost;
 };
@@ -64,16 +63,17 @@ Result<FieldPainter> FieldPainter::create(const eval::Tape& tape, const Box3f& b
     if (!gpu) return gpu.error();
     Result<PreparedField> prepared = prepareField(tape, bounds, provenance, threads, progress);
     if (!prepared) return prepared.error();
-    auto parts = std::shared_ptr<Parts>(new Parts{std::move(*gpu), {}, {}, {}});
-    if (Status status = parts->programs.extendTo(*prepared); !status) return status.error();
-    parts->scene.emplace(std::make_shared<const PreparedField>(std::move(*prepared)), parts->programs, threads);
+    auto parts = std::shared_ptr<Parts>(new Parts{std::move(*gpu), {}, {}});
+    auto programs = programsFor(*prepared, nullptr);
+    if (!programs) return programs.error();
+    parts->scene.emplace(std::move(*prepared), std::move(*programs), threads);
     parts->cost.prepareSeconds = secondsNow() - start;
     return FieldPainter(std::move(parts));
 }
 
 Result<Image> FieldPainter::draw(const PictureOptions& options, Progress* progress, Layers* layers) {
     FieldScene& scene = *parts_->scene;
-    if (Status status = checkPicture(scene.field().bounds, options); !status) return status.error();
+    if (Status status = checkPicture(scene.field()->bounds, options); !status) return status.error();
     const double start = secondsNow();
     const std::clock_t processor = std::clock();
     const double prepared = parts_->cost.prepareSeconds;

@@ -14,21 +14,22 @@ struct MeshPainter::Parts {
     MeshScene scene;
 };
 
-Result<MeshPainter> MeshPainter::create(const mesh::Mesh& mesh, const Provenance& provenance) {
+Result<MeshPainter> MeshPainter::create(const mesh::Mesh& mesh, const Provenance& provenance, Progress* progress) {
     if (Status status = checkBounds(mesh.bounds()); !status) return status.error();
     const Result<PreparedMesh> prepared = prepareMesh(mesh, provenance);
     if (!prepared) return prepared.error();
     Result<GpuContext> gpu = GpuContext::create();
     if (!gpu) return gpu.error();
-    Result<MeshScene> scene = MeshScene::create(*prepared);
-    if (!scene) return scene.error();
-    return MeshPainter(std::shared_ptr<Parts>(new Parts{std::move(*gpu), std::move(*scene)}));
+    auto programs = MeshPrograms::create();
+    if (!programs) return programs.error();
+    auto parts = std::shared_ptr<Parts>(new Parts{std::move(*gpu), MeshScene(*prepared, std::move(*programs))});
+    if (Status status = parts->scene.light(progress); !status) return status.error();
+    return MeshPainter(std::move(parts));
 }
 
 Result<Image> MeshPainter::draw(const PictureOptions& options, Progress* progress) {
     MeshScene& scene = parts_->scene;
     if (Status status = checkPicture(scene.bounds(), options); !status) return status.error();
-    if (Status status = scene.light(progress); !status) return status.error();
     std::vector<float> pixels(size_t(options.width) * size_t(options.height) * 4);
     for (int y0 = 0; y0 < options.height; y0 += tileEdge)
         for (int x0 = 0; x0 < options.width; x0 += tileEdge) {
@@ -49,7 +50,7 @@ Result<Image> MeshPainter::draw(const PictureOptions& options, Progress* progres
 Result<Image> drawMesh(const mesh::Mesh& mesh, const Provenance& provenance, const PictureOptions& options,
                        Progress* progress) {
     if (Status status = checkPicture(mesh.bounds(), options); !status) return status.error();
-    Result<MeshPainter> painter = MeshPainter::create(mesh, provenance);
+    Result<MeshPainter> painter = MeshPainter::create(mesh, provenance, progress);
     if (!painter) return painter.error();
     return painter->draw(options, progress);
 }

@@ -26,6 +26,7 @@ float valueAt(const eval::Tape& tape, Vec3f p) {
 void setCells(const Program& program, const PreparedField& field, float side) {
     program.set("tapes", 0);
     program.set("tree", 1);
+    program.set("tapeWords", 2);
     program.set("rootLow", field.tree.low);
     program.set("rootEdge", field.tree.edge);
     program.set("boundsLow", field.box.lo);
@@ -41,7 +42,7 @@ Result<PreparedField> prepareField(const eval::Tape& tape, const Box3f& bounds, 
                                    Progress* progress) {
     // Soft shadows and occlusion ask for exact distances up to the margin, and no further.
     const float margin = 0.03f * length(bounds.size());
-    PreparedField field{tape, bounds, bounds.inflated(margin), {}, {}, {}, tape.registerCount(), provenance.materials, {}};
+    PreparedField field{tape, bounds, bounds.inflated(margin), {}, {}, {}, 0, provenance.materials, {}};
     Result<CellTree> tree = cutIntoCells(tape, field.box, margin, threads, progress);
     if (!tree) return tree.error();
     field.tree = std::move(*tree);
@@ -66,26 +67,38 @@ bool FieldPrograms::cover(const PreparedField& field) const {
     return trace.id() != 0 && field.registers <= registers && (eval::opsOf(field.tape) & ~ops).none();
 }
 
-Status FieldPrograms::extendTo(const PreparedField& field) {
-    if (cover(field)) return Done{};
-    registers = std::max(registers, field.registers);
-    ops |= eval::opsOf(field.tape);
-    const std::string interpreter = eval::interpreterGlsl(registers, ops);
-    for (auto [stage, into] : {std::pair{"trace", &trace}, std::pair{"shade", &shade}}) {
+Result<std::shared_ptr<const FieldPrograms>> programsFor(const PreparedField& field,
+                                                         std::shared_ptr<const FieldPrograms> before) {
+    if (before && before->cover(field)) return before;
+    const auto programs = std::make_shared<FieldPrograms>();
+    programs->registers = std::max(before ? before->registers : 0, field.registers);
+    programs->ops = (before ? before->ops : eval::OpSet()) | eval::opsOf(field.tape);
+    const std::string interpreter = eval::interpreterGlsl(programs->registers, programs->ops);
+    for (auto [stage, into] : {std::pair{"trace", &programs->trace}, std::pair{"shade", &programs->shade}}) {
         Result<Program> made = Program::compute(shaderText(stage, interpreter));
         if (!made) return made.error();
         *into = std::move(*made);
     }
-    return Done{};
+    return std::shared_ptr<const FieldPrograms>(programs);
 }
 
-FieldScene::FieldScene(std::shared_ptr<const PreparedField> field, const FieldPrograms& programs, int threads)
-    : field_(std::move(field)),
-      programs_(&programs),
-      words_(TexelBuffer::of(field_->words, 4)),
-      nodes_(TexelBuffer::of(field_->nodes, 1)),
-      materials_(uploadMaterials(field_->materials)),
-      threads_(threads) {}
+FieldScene::FieldScene(PreparedField field, std::shared_ptr<const FieldPrograms> programs, int threads)
+    : programs_(std::move(programs)),
+      words_(TexelBuffer::of(field.words, 4)),
+      single_(words_.as(1)),
+      nodes_(TexelBuffer::of(field.nodes, 1)),
+      materials_(uploadMaterials(field.materials)),
+      threads_(threads) {
+    field.words = field.nodes = {};
+    field_ = std::make_shared<const PreparedField>(std::move(field));
+}
+
+Status FieldScene::warmUp() {
+    const Job job{0, 0};
+    look(PictureOptions{.camera = frame(field_->bounds, 1)});
+    const Result<Rays> ray = draw({&job, 1}, nullptr);
+    return ray ? Status(Done{}) : ray.error();
+}
 
 void FieldScene::look(const PictureOptions& options, double fine) {
     const float side = valueAt(field_->tape, options.camera.eye.as<float>()) < 0 ? -1.0f : 1.0f;
@@ -154,6 +167,7 @@ Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
     const Buffer hits = room(), colors = room(), surfaces = room();
     words_.bind(0);
     nodes_.bind(1);
+    single_.bind(2);
     jobBuffer.bindStorage(1);
     hits.bindStorage(2);
     Rays rays;

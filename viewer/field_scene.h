@@ -42,9 +42,10 @@ struct FieldPrograms {
 
     /// True when the field can be drawn without a compile.
     bool cover(const PreparedField& field) const;
-    /// Compiles for this field and those covered so far; nothing when they cover it.
-    Status extendTo(const PreparedField& field);
 };
+/// Programs for this field and those that `before` covers (null: none): `before` itself where it covers the field.
+Result<std::shared_ptr<const FieldPrograms>> programsFor(const PreparedField& field,
+                                                         std::shared_ptr<const FieldPrograms> before);
 
 enum class HitKind { Sky, Object, Ground };
 
@@ -65,21 +66,24 @@ struct Rays {
 /// A prepared field in GPU memory.
 class FieldScene {
 public:
-    /// `programs` must cover the field and outlive the scene.
-    FieldScene(std::shared_ptr<const PreparedField> field, const FieldPrograms& programs, int threads);
+    /// `programs` must cover the field.
+    FieldScene(PreparedField field, std::shared_ptr<const FieldPrograms> programs, int threads);
+    /// Draws one ray from anywhere: drivers finish compiling at a program's first draw.
+    Status warmUp();
     /// Sets camera, picture size and ground. `fine` scales how exactly surfaces are found: above 1 finer than the
     /// picture's pixels ask for.
     void look(const PictureOptions& options, double fine = 1);
     /// Traces and lights up to 2¹⁸ jobs of the picture last looked at, in pieces of some 15 ms.
     Result<Rays> draw(std::span<const Job> jobs, Progress* progress);
-    const PreparedField& field() const { return *field_; }
+    /// Without `words` and `nodes`, which only the GPU has from now on.
+    const std::shared_ptr<const PreparedField>& field() const { return field_; }
 
 private:
     std::vector<OriginId> originsOf(const Rays& rays) const;
 
     std::shared_ptr<const PreparedField> field_;
-    const FieldPrograms* programs_;
-    TexelBuffer words_, nodes_;
+    std::shared_ptr<const FieldPrograms> programs_;
+    TexelBuffer words_, single_, nodes_;  // the tapes by instruction and by word; the tree
     Buffer materials_;
     int threads_;
     size_t tracePiece_ = 2048, shadePiece_ = 2048;  ///< jobs a dispatch, by the time the last ones took

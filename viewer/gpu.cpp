@@ -174,12 +174,17 @@ void Buffer::read(void* bytes, size_t size) const {
 
 TexelBuffer TexelBuffer::of(std::span<const uint32_t> words, int wordsPerTexel) {
     TexelBuffer texels;
-    texels.buffer_ = Buffer::of(words);
+    texels.buffer_ = std::make_shared<const Buffer>(Buffer::of(words));
+    return texels.as(wordsPerTexel);
+}
+TexelBuffer TexelBuffer::as(int wordsPerTexel) const {
+    TexelBuffer texels;
+    texels.buffer_ = buffer_;
     GLuint id = 0;
     glGenTextures(1, &id);
     texels.texture_ = Texture(id);
     glBindTexture(GL_TEXTURE_BUFFER, id);
-    glTexBuffer(GL_TEXTURE_BUFFER, wordsPerTexel == 1 ? GL_R32UI : GL_RGBA32UI, texels.buffer_.id());
+    glTexBuffer(GL_TEXTURE_BUFFER, wordsPerTexel == 1 ? GL_R32UI : GL_RGBA32UI, texels.buffer_->id());
     return texels;
 }
 void TexelBuffer::bind(uint32_t unit) const {
@@ -315,13 +320,13 @@ MapStack MapStack::create(Kind kind, int edge, int layers) {
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, filter);
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    maps.framebuffer = makeFramebuffer();
-    glDrawBuffer(kind == Kind::Depth ? GL_NONE : GL_COLOR_ATTACHMENT0);
     return maps;
 }
 
 void MapStack::bindCleared(int layer) const {
+    if (!framebuffer.id()) framebuffer = makeFramebuffer();
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+    glDrawBuffer(kind == Kind::Depth ? GL_NONE : GL_COLOR_ATTACHMENT0);
     glFramebufferTextureLayer(GL_FRAMEBUFFER, kind == Kind::Depth ? GL_DEPTH_ATTACHMENT : GL_COLOR_ATTACHMENT0,
                               texture.id(), 0, layer);
     glViewport(0, 0, edge, edge);
@@ -340,22 +345,35 @@ TriangleBuffers TriangleBuffers::of(std::span<const Vec3f> positions, std::span<
     buffers.normals_ = Buffer::of(normals);
     buffers.numbers_ = Buffer::of(numbers);
     buffers.indices_ = Buffer::of(triangles);
+    return buffers;
+}
+
+TriangleBuffers TriangleBuffers::of(Buffer positions, Buffer normals, Buffer numbers, Buffer indices) {
+    TriangleBuffers buffers;
+    buffers.positions_ = std::move(positions);
+    buffers.normals_ = std::move(normals);
+    buffers.numbers_ = std::move(numbers);
+    buffers.indices_ = std::move(indices);
+    return buffers;
+}
+
+void TriangleBuffers::describe() const {
     GLuint id = 0;
     glGenVertexArrays(1, &id);
-    buffers.array_ = VertexArray(id);
+    array_ = VertexArray(id);
     glBindVertexArray(id);
     GLuint attribute = 0;
     for (const auto& [buffer, components] :
-         {std::pair{&buffers.positions_, 3}, std::pair{&buffers.normals_, 3}, std::pair{&buffers.numbers_, 1}}) {
+         {std::pair{&positions_, 3}, std::pair{&normals_, 3}, std::pair{&numbers_, 1}}) {
         glBindBuffer(GL_ARRAY_BUFFER, buffer->id());
         glVertexAttribPointer(attribute, components, GL_FLOAT, GL_FALSE, 0, nullptr);
         glEnableVertexAttribArray(attribute++);
     }
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.indices_.id());
-    return buffers;
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.id());
 }
 
 void TriangleBuffers::draw(size_t first, size_t count) const {
+    if (!array_.id()) describe();
     glBindVertexArray(array_.id());
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * 3), GL_UNSIGNED_INT,
                    reinterpret_cast<const void*>(first * 3 * sizeof(uint32_t)));

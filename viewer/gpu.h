@@ -116,11 +116,13 @@ class TexelBuffer {
 public:
     /// `wordsPerTexel` 1 (R32UI) or 4 (RGBA32UI).
     static TexelBuffer of(std::span<const uint32_t> words, int wordsPerTexel);
+    /// The same memory in other texels.
+    TexelBuffer as(int wordsPerTexel) const;
     /// Makes it the texture of a unit.
     void bind(uint32_t unit) const;
 
 private:
-    Buffer buffer_;
+    std::shared_ptr<const Buffer> buffer_;
     Texture texture_;
 };
 
@@ -184,7 +186,7 @@ private:
 struct MapStack {
     enum class Kind { Depth, Number };
     Texture texture;  ///< a 2D array; depths 0 … 1 unfiltered, numbers filtered linearly
-    Framebuffer framebuffer;
+    mutable Framebuffer framebuffer;  ///< made in the context that first draws, for contexts don't share them
     Kind kind = Kind::Depth;
     int edge = 0;  ///< pixels
 
@@ -200,10 +202,14 @@ class TriangleBuffers {
 public:
     static TriangleBuffers of(std::span<const Vec3f> positions, std::span<const Vec3f> normals,
                               std::span<const float> numbers, std::span<const Vec3<uint32_t>> triangles);
+    /// Of what a shader has made.
+    static TriangleBuffers of(Buffer positions, Buffer normals, Buffer numbers, Buffer indices);
     void draw(size_t first, size_t count) const;
 
 private:
-    VertexArray array_;
+    void describe() const;
+
+    mutable VertexArray array_;  // made in the context that first draws, for contexts don't share them
     Buffer positions_, normals_, numbers_, indices_;
 };
 

@@ -123,31 +123,51 @@ Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& prove
     return prepared;
 }
 
-Result<MeshScene> MeshScene::create(const PreparedMesh& mesh) {
-    static_assert(sizeof(PreparedMesh::Owner) == 3 * sizeof(uint32_t));
-    MeshScene scene;
-    scene.bounds_ = mesh.bounds;
-    scene.triangles_ = TriangleBuffers::of(mesh.positions, mesh.normals, mesh.curvatures, mesh.triangles);
-    scene.triangleCount_ = mesh.triangles.size();
-    const auto* words = reinterpret_cast<const uint32_t*>(mesh.owners.data());
-    scene.owners_ = TexelBuffer::of({words, mesh.owners.size() * 3}, 1);
-    scene.materials_ = uploadMaterials(mesh.materials);
-    scene.skyCount_ = std::clamp<size_t>((size_t(24) << 20) / std::max<size_t>(scene.triangleCount_, 1), 12, mostSkyMaps);
-    scene.sunMap_ = MapStack::create(MapStack::Kind::Depth, sunMapEdge, 1);
-    scene.skyMaps_ = MapStack::create(MapStack::Kind::Number, skyMapEdge, static_cast<int>(scene.skyCount_));
-    scene.skyDepth_ = MapStack::create(MapStack::Kind::Depth, skyMapEdge, 1);
+Result<std::shared_ptr<const MeshPrograms>> MeshPrograms::create() {
+    const auto programs = std::make_shared<MeshPrograms>();
     struct Wanted {
         Program& program;
         std::string_view vertex, fragment;
     };
     for (const Wanted& wanted :
-         {Wanted{scene.depth_, "mesh", "depth"}, Wanted{scene.blur_, "screen", "blur_depth"},
-          Wanted{scene.color_, "mesh", "mesh_color"}, Wanted{scene.backdrop_, "screen", "backdrop"}}) {
+         {Wanted{programs->depth, "mesh", "depth"}, Wanted{programs->blur, "screen", "blur_depth"},
+          Wanted{programs->color, "mesh", "mesh_color"}, Wanted{programs->backdrop, "screen", "backdrop"}}) {
         Result<Program> made = Program::draw(shaderText(wanted.vertex), shaderText(wanted.fragment));
         if (!made) return made.error();
         wanted.program = std::move(*made);
     }
-    return scene;
+    return std::shared_ptr<const MeshPrograms>(programs);
+}
+
+MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs)
+    : programs_(std::move(programs)),
+      bounds_(mesh.bounds),
+      triangles_(TriangleBuffers::of(mesh.positions, mesh.normals, mesh.curvatures, mesh.triangles)),
+      triangleCount_(mesh.triangles.size()),
+      materials_(uploadMaterials(mesh.materials)),
+      skyCount_(std::clamp<size_t>((size_t(24) << 20) / std::max<size_t>(triangleCount_, 1), 12, mostSkyMaps)) {
+    static_assert(sizeof(PreparedMesh::Owner) == 3 * sizeof(uint32_t));
+    const auto* words = reinterpret_cast<const uint32_t*>(mesh.owners.data());
+    owners_ = TexelBuffer::of({words, mesh.owners.size() * 3}, 1);
+    makeMaps();
+}
+
+MeshScene::MeshScene(GpuTriangles triangles, const Box3f& bounds, const Material& material, std::shared_ptr<const MeshPrograms> programs)
+    : programs_(std::move(programs)),
+      bounds_(bounds),
+      triangleCount_(triangles.count),
+      materials_(uploadMaterials({material})),
+      skyCount_(12) {
+    const std::vector<float> flat(triangleCount_ * 3 + 1, 0.0f);
+    owners_ = TexelBuffer::of(std::vector<uint32_t>(triangleCount_ * 3 + 1, 0u), 1);
+    triangles_ = TriangleBuffers::of(std::move(triangles.positions), std::move(triangles.normals), Buffer::of<float>(flat), std::move(triangles.indices));
+    makeMaps();
+}
+
+void MeshScene::makeMaps() {
+    sunMap_ = MapStack::create(MapStack::Kind::Depth, sunMapEdge, 1);
+    skyMaps_ = MapStack::create(MapStack::Kind::Number, skyMapEdge, static_cast<int>(skyCount_));
+    skyDepth_ = MapStack::create(MapStack::Kind::Depth, skyMapEdge, 1);
 }
 
 /// All triangles, in batches.
@@ -166,8 +186,9 @@ Status MeshScene::drawTriangles(const Program& program, Progress* progress) cons
 Status MeshScene::drawMap(const MapStack& map, Vec3d towardsLight, Progress* progress) const {
     setDepthTest(true);
     map.bindCleared(0);
-    depth_.set("clipFromWorld", lightMatrix(towardsLight, bounds_.centre().as<double>(), mapSpan(bounds_), -1, 1));
-    return drawTriangles(depth_, progress);
+    const Program& depth = programs_->depth;
+    depth.set("clipFromWorld", lightMatrix(towardsLight, bounds_.centre().as<double>(), mapSpan(bounds_), -1, 1));
+    return drawTriangles(depth, progress);
 }
 
 Status MeshScene::light(Progress* progress) {
@@ -180,32 +201,33 @@ Status MeshScene::light(Progress* progress) {
 }
 
 Result<bool> MeshScene::lightMore(Progress* progress) {
-    const Vec3d centre = bounds_.centre().as<double>(), sun = sunDirection().as<double>();
-    const double span = mapSpan(bounds_);
     if (mapsDrawn_ > skyCount_) return true;
     if (mapsDrawn_ == 0) {
-        if (Status s = drawMap(sunMap_, sun, progress); !s) return s.error();
+        if (Status s = drawMap(sunMap_, sunDirection().as<double>(), progress); !s) return s.error();
     } else {
         const size_t sky = mapsDrawn_ - 1;
         if (Status s = drawMap(skyDepth_, skyDirection(sky, skyCount_), progress); !s) return s.error();
         setDepthTest(false);
         skyMaps_.bindCleared(static_cast<int>(sky));
         skyDepth_.bindTexture(0);
-        blur_.use();
+        programs_->blur.use();
         ScreenTriangle().draw();
     }
-    if (++mapsDrawn_ != 1 && mapsDrawn_ <= skyCount_) return false;
+    return ++mapsDrawn_ > skyCount_;
+}
+
+void MeshScene::setLight(const Program& program, bool sky) const {
+    const Vec3d centre = bounds_.centre().as<double>();
+    const double span = mapSpan(bounds_);
     std::vector<Matrix4> matrices(mostSkyMaps, Matrix4{});
     for (size_t i = 0; i < skyCount_; ++i) matrices[i] = lightMatrix(skyDirection(i, skyCount_), centre, span, 0, 1);
-    for (const Program* program : {&color_, &backdrop_}) {
-        program->set("ownerOfTriangle", 0);
-        program->set("sunMap", 1);
-        program->set("skyMaps", 2);
-        program->set("sunFromWorld", lightMatrix(sun, centre, span, 0, 1));
-        program->set("skyFromWorld", std::span<const Matrix4>(matrices));
-        program->set("mapSpan", static_cast<float>(span));
-    }
-    return mapsDrawn_ > skyCount_;
+    program.set("ownerOfTriangle", 0);
+    program.set("sunMap", 1);
+    program.set("skyMaps", 2);
+    program.set("sunFromWorld", lightMatrix(sunDirection().as<double>(), centre, span, 0, 1));
+    program.set("skyFromWorld", std::span<const Matrix4>(matrices));
+    program.set("mapSpan", static_cast<float>(span));
+    program.set("skyCount", sky ? static_cast<int>(skyCount_) : 0);
 }
 
 Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureOptions& options, const MeshStyle& style,
@@ -215,9 +237,10 @@ Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureO
     const double near = std::max(away - size / 2, 1e-3 * size), far = near + 2 * size + away;
     // Inside a hollow no sky is seen: the lamp does it alone.
     const bool sky = mapsDrawn_ > skyCount_ && options.camera.lamp_m == 0;
-    for (const Program* program : {&color_, &backdrop_}) {
+    const Program &color = programs_->color, &backdrop = programs_->backdrop;
+    for (const Program* program : {&color, &backdrop}) {
         setScene(*program, bounds_, options);
-        program->set("skyCount", sky ? static_cast<int>(skyCount_) : 0);
+        setLight(*program, sky);
     }
     owners_.bind(0);
     sunMap_.bindTexture(1);
@@ -225,19 +248,19 @@ Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureO
     materials_.bindStorage(4);
     target.bind();
     setDepthTest(false);
-    backdrop_.use();
-    backdrop_.set("tileCorner", Vec3f{static_cast<float>(x0), static_cast<float>(y0), 0});
+    backdrop.use();
+    backdrop.set("tileCorner", Vec3f{static_cast<float>(x0), static_cast<float>(y0), 0});
     ScreenTriangle().draw();
     setDepthTest(true);
-    color_.set("clipFromWorld", tileMatrix(view, options, near, far, x0, y0, target.width, target.height));
-    color_.set("meshLook", static_cast<int>(style.look));
-    color_.set("sectionNormal", style.section ? style.section->normal : Vec3f{});
-    color_.set("sectionOffset", style.section ? style.section->offset : 0.0f);
-    color_.set("wire", 0);
-    if (Status s = drawTriangles(color_, progress); !s || !style.wireframe) return s;
-    color_.set("wire", 1);
+    color.set("clipFromWorld", tileMatrix(view, options, near, far, x0, y0, target.width, target.height));
+    color.set("meshLook", static_cast<int>(style.look));
+    color.set("sectionNormal", style.section ? style.section->normal : Vec3f{});
+    color.set("sectionOffset", style.section ? style.section->offset : 0.0f);
+    color.set("wire", 0);
+    if (Status s = drawTriangles(color, progress); !s || !style.wireframe) return s;
+    color.set("wire", 1);
     const WireDrawing wires;
-    return drawTriangles(color_, progress);
+    return drawTriangles(color, progress);
 }
 
 }  // namespace sgm::viewer

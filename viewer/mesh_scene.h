@@ -3,9 +3,11 @@
 // `prepareMesh`, and objects of at most 2³² triangles.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "viewer/blocks_scene.h"
 #include "viewer/gpu.h"
 #include "viewer/offscreen.h"
 
@@ -45,10 +47,18 @@ struct PreparedMesh {
 /// Error::Internal when a vertex lacks its normal or a triangle its origin.
 Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& provenance);
 
-/// A prepared mesh in GPU memory.
+/// The shaders that draw meshes.
+struct MeshPrograms {
+    Program depth, blur, color, backdrop;
+    static Result<std::shared_ptr<const MeshPrograms>> create();
+};
+
+/// A prepared mesh in GPU memory. May be made in one context and drawn in another that shares with it.
 class MeshScene {
 public:
-    static Result<MeshScene> create(const PreparedMesh& mesh);
+    MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs);
+    /// Of triangles that a shader has made: all of one material, rule and component, without curvature.
+    MeshScene(GpuTriangles triangles, const Box3f& bounds, const Material& material, std::shared_ptr<const MeshPrograms> programs);
     /// Draws all maps of shadow and sky.
     Status light(Progress* progress);
     /// Draws the next map: first the sun's, then those of the sky, which count once all are there. True when none is left.
@@ -60,15 +70,17 @@ public:
     const Box3f& bounds() const { return bounds_; }
 
 private:
+    void makeMaps();
     Status drawTriangles(const Program& program, Progress* progress) const;
     Status drawMap(const MapStack& map, Vec3d towardsLight, Progress* progress) const;
+    void setLight(const Program& program, bool sky) const;
 
+    std::shared_ptr<const MeshPrograms> programs_;
     Box3f bounds_;
     TriangleBuffers triangles_;
     size_t triangleCount_ = 0;
     TexelBuffer owners_;
     Buffer materials_;
-    Program depth_, blur_, color_, backdrop_;
     MapStack sunMap_, skyMaps_, skyDepth_;
     size_t skyCount_ = 0, mapsDrawn_ = 0;
 };

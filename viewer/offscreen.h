@@ -106,7 +106,7 @@ private:
 /// The same for a mesh.
 class MeshPainter {
 public:
-    static Result<MeshPainter> create(const mesh::Mesh& mesh, const Provenance& provenance);
+    static Result<MeshPainter> create(const mesh::Mesh& mesh, const Provenance& provenance, Progress* progress);
     Result<Image> draw(const PictureOptions& options, Progress* progress);
 
 private:
@@ -158,5 +158,11 @@ Status writeExr(const Layers& layers, const std::vector<std::string>& names,
 
 /// Values of the GLSL interpreter at points, read back; for tests that compare with the CPU.
 Result<std::vector<float>> evaluateOnGpu(const eval::Tape& tape, const std::vector<Vec3f>& points);
+/// The same for several tapes by one shader: a list of values for each.
+struct GpuQuery {
+    const eval::Tape* tape;
+    std::vector<Vec3f> points;
+};
+Result<std::vector<std::vector<float>>> evaluateOnGpu(const std::vector<GpuQuery>& queries);
 
 }  // namespace sgm::viewer

@@ -25,11 +25,33 @@ Samples sample(const eval::Tape& tape, const Box3f& bounds) {
     grid.cell = maxComponent(bounds.size()) / Samples::edge;
     for (int axis = 0; axis < 3; ++axis)
         grid.count[axis] = std::max(1, static_cast<int>(std::ceil(bounds.size()[axis] / grid.cell - 1e-3f)));
-    std::vector<Vec3f> points;
-    for (int k = 0; k < grid.count.z; ++k)
-        for (int j = 0; j < grid.count.y; ++j)
-            for (int i = 0; i < grid.count.x; ++i) points.push_back(grid.at(i, j, k));
-    grid.values = valuesAt(tape, points);
+    grid.values.resize(size_t(grid.count.x) * size_t(grid.count.y) * size_t(grid.count.z));
+    // By parts of 10³ samples, each with its own shortened tape.
+    constexpr int splits = 4, edge = Samples::edge / splits;
+    std::vector<Box3f> boxes;
+    std::vector<std::vector<size_t>> members;
+    for (int part = 0; part < splits * splits * splits; ++part) {
+        const Vec3i lo{part % splits * edge, part / splits % splits * edge, part / splits / splits * edge};
+        const Vec3i hi{std::min(lo.x + edge, grid.count.x), std::min(lo.y + edge, grid.count.y), std::min(lo.z + edge, grid.count.z)};
+        if (lo.x >= hi.x || lo.y >= hi.y || lo.z >= hi.z) continue;
+        boxes.push_back(hull(Box3f{grid.at(lo.x, lo.y, lo.z), grid.at(lo.x, lo.y, lo.z)},
+                             Box3f{grid.at(hi.x - 1, hi.y - 1, hi.z - 1), grid.at(hi.x - 1, hi.y - 1, hi.z - 1)}).inflated(grid.cell / 4));
+        members.emplace_back();
+        for (int k = lo.z; k < hi.z; ++k)
+            for (int j = lo.y; j < hi.y; ++j)
+                for (int i = lo.x; i < hi.x; ++i) members.back().push_back(grid.index(i, j, k));
+    }
+    eval::Workspace workspace;
+    std::vector<eval::Range> ranges(boxes.size());
+    evaluateRanges(tape, {boxes.data(), boxes.size()}, ranges.data(), workspace);
+    std::vector<eval::Tape> tapes;
+    for (size_t part = 0; part < boxes.size(); ++part) tapes.push_back(shorten(tape, part, workspace));
+    for (size_t part = 0; part < boxes.size(); ++part) {
+        std::vector<Vec3f> points;
+        for (const size_t i : members[part]) points.push_back(grid.at(static_cast<int>(i) % grid.count.x, static_cast<int>(i) / grid.count.x % grid.count.y, static_cast<int>(i) / grid.count.x / grid.count.y));
+        const std::vector<float> values = valuesAt(tapes[part], points);
+        for (size_t k = 0; k < values.size(); ++k) grid.values[members[part][k]] = values[k];
+    }
     return grid;
 }
 

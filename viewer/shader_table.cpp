@@ -8,6 +8,8 @@ const std::vector<Shader>& shaders() {
         {"shade", "comp", true, {"view", "sky", "light", "ground", "tonemap", "cells", "jobs", "shade"}},
         {"fog", "comp", false, {"view", "sky", "light", "ground", "tonemap", "jobs", "fog"}},
         {"evaluate", "comp", true, {"evaluate"}},
+        {"corners", "comp", true, {"corners"}},
+        {"triangles", "comp", false, {"triangles"}},
         {"mesh", "vert", false, {"mesh"}},
         {"screen", "vert", false, {"screen"}},
         {"depth", "frag", false, {"depth"}},

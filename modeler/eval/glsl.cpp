@@ -15,14 +15,15 @@ using field::OpCode;
 
 // An instruction is one texel:
 //   x  op in bits 0–7, flags, output register in bits 16–31
-//   y  first operand: a register, or the float itself; of a listed op the texel of its first operand
+//   y  first operand: a register, or the float itself; of a listed op the word of its first operand
 //   z  second operand; of a listed op the number of operands
 //   w  the op's structural integer
-// A listed operand is a texel too: y register or float, x non-zero for a float.
+// A listed operand is a word, a float or a register in the low half of a NaN that no constant is; lists begin with a texel.
 // Before the first tape of a buffer lie its grids, the words of each from a texel on; `data` of an op that reads one is that
 // texel.
 // A tape starts with a texel (end of code, result is a float, result, 0).
 constexpr uint32_t aIsFloat = 1u << 8, bIsFloat = 1u << 9, isHeavy = 1u << 10;
+constexpr uint32_t registerNan = 0x7fc00000u, otherNan = 0x7fe00000u;
 
 /// Ops with long bodies are kept apart: the interpreter visits them once each, not at every instruction.
 bool heavy(OpCode op) {
@@ -90,6 +91,13 @@ uint32_t wordOf(const Tape& tape, Source source) {
     return isConstant(source) ? std::bit_cast<uint32_t>(tape.constants()[indexOf(source)]) : indexOf(source);
 }
 
+/// The same in a list.
+uint32_t listedWordOf(const Tape& tape, Source source) {
+    const uint32_t word = wordOf(tape, source);
+    if (!isConstant(source)) return registerNan | word;
+    return (word & 0x7fffffffu) > 0x7f800000u ? otherNan : word;
+}
+
 /// The texel of grid `number` when the grids lie at the buffer's start.
 uint32_t texelOfGrid(const Grids& grids, uint32_t number) {
     size_t texel = 0;
@@ -117,16 +125,16 @@ std::string interpreterGlsl(uint32_t maxRegisters, const OpSet& ops) {
     // A power of two, so that an operand word that isn't a register can be masked into range.
     const uint32_t registers = std::bit_ceil(std::max(maxRegisters, 4u));
     const std::string longCases = cases(ops, true);
-    std::string text = fmt::format(R"(uniform usamplerBuffer tapes;
+    std::string text = fmt::format(R"(uniform usamplerBuffer tapes, tapeWords;
 const uint registerMask = {}u;
 float registers[{}];
-float arg(uint texel) {{
-  uvec4 q = texelFetch(tapes, int(texel));
-  return q.x != 0u ? uintBitsToFloat(q.y) : registers[q.y & registerMask];
+float arg(uint at) {{
+  uint w = texelFetch(tapeWords, int(at)).x;
+  return (w >> 16) == {}u ? registers[w & 65535u & registerMask] : uintBitsToFloat(w);
 }}
-float word(uint texel, uint i) {{ return uintBitsToFloat(texelFetch(tapes, int(texel + (i >> 2)))[i & 3u]); }}
+float word(uint texel, uint i) {{ return uintBitsToFloat(texelFetch(tapeWords, int(texel * 4u + i)).x); }}
 )",
-                                   registers - 1, registers);
+                                   registers - 1, registers, registerNan >> 16);
     text += functions(ops) + R"(float evaluateField(uint tapeStart, vec3 p) {
   uvec4 head = texelFetch(tapes, int(tapeStart));
   registers[0] = p.x; registers[1] = p.y; registers[2] = p.z;
@@ -155,12 +163,10 @@ uint32_t appendTape(const Tape& tape, std::vector<uint32_t>& buffer) {
             append(buffer, x | flags, wordOf(tape, i.a), wordOf(tape, i.b), i.data);
             continue;
         }
-        append(buffer, x, end + static_cast<uint32_t>(lists.size() / 4), i.count,
+        append(buffer, x, end * 4 + static_cast<uint32_t>(lists.size()), i.count,
                field::traits(i.op).readsGrid ? texelOfGrid(*tape.grids(), i.data) : i.data);
-        for (uint32_t k = 0; k < i.count; ++k) {
-            const Source source = tape.sources()[i.a + k];
-            append(lists, isConstant(source), wordOf(tape, source), 0, 0);
-        }
+        for (uint32_t k = 0; k < i.count; ++k) lists.push_back(listedWordOf(tape, tape.sources()[i.a + k]));
+        lists.resize((lists.size() + 3) / 4 * 4);
     }
     buffer.insert(buffer.end(), lists.begin(), lists.end());
     return start;

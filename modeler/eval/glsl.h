@@ -1,7 +1,8 @@
 // The op table as GLSL: one interpreter for every field.
 // Enters: nothing but the op table; tapes become texels for its buffer. Leaves: GLSL functions and buffer contents.
 // Assumes GLSL 4.30 and a buffer texture of RGBA32UI texels called `tapes` (on software GL a third faster than a
-// storage buffer); the interpreter's opcode switch is generated from the table.
+// storage buffer), with the same words one by one as `tapeWords` (R32UI); the interpreter's opcode switch is generated
+// from the table.
 #pragma once
 
 #include <bitset>

@@ -77,6 +77,27 @@ TEST_F(Edits, ReorderRules) {
     EXPECT_TRUE(edits::moveRule(ast, rule(2), nullptr)->empty());
 }
 
+TEST(Ways, GoOnMeaningTheSameRules) {
+    const std::string text =
+        "grammar 1\nstart A -> cube : Cell\nrule Cell -> cone\nrule Up: Cell -> sphere\nrule Cell -> cube\nderive w: Cell#1 => Up => Cell#2\n";
+    const syntax::Ast ast = parsed(text);
+    const auto wayAfter = [&](const Edit& edit) {
+        EXPECT_TRUE(edit.ok()) << edit.error().message;
+        const std::string now = applied(text, *edit);
+        return now.substr(now.find("derive w: ") + 10);
+    };
+    EXPECT_EQ(wayAfter(edits::addRule(ast, "Cell", "torus", &ast.rules[0])), "Cell#1 => Up => Cell#3\n");
+    EXPECT_EQ(wayAfter(edits::addRule(ast, "Other", "torus", &ast.rules[0])), "Cell#1 => Up => Cell#2\n");
+    EXPECT_EQ(wayAfter(edits::duplicateRule(ast, ast.rules[0])), "Cell#1 => Up => Cell#3\n");
+    EXPECT_EQ(wayAfter(edits::moveRule(ast, ast.rules[2], &ast.rules[0])), "Cell#2 => Up => Cell#1\n");
+    EXPECT_EQ(wayAfter(edits::moveRule(ast, ast.rules[0], nullptr)), "Cell#2 => Up => Cell#1\n");
+    EXPECT_EQ(wayAfter(edits::setName(ast, ast.rules[0], "First")), "First => Up => Cell#1\n");
+    EXPECT_EQ(wayAfter(edits::setName(ast, ast.rules[1], "")), "Cell#1 => Cell#2 => Cell#3\n");
+    EXPECT_EQ(wayAfter(edits::setSymbol(ast, ast.rules[0], "Other")), "Other#1 => Up => Cell#1\n");
+    // A rule that is gone leaves a number that no rule has.
+    EXPECT_EQ(wayAfter(edits::removeRule(ast, ast.rules[0])), "Cell#2 => Up => Cell#1\n");
+}
+
 TEST_F(Edits, NamesAndSymbols) {
     const Edit renamed = edits::setName(ast, rule(0), "Rise");
     ASSERT_TRUE(renamed.ok());

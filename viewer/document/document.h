@@ -68,6 +68,8 @@ public:
     void beginDrag();
     void endDrag();
 
+    bool dragging() const { return drag_.has_value(); }
+
     bool canUndo() const { return at_ > 0; }
     bool canRedo() const { return at_ < history_.size(); }
     /// What undo would take back, "" where there is nothing.

@@ -48,6 +48,12 @@ TextEdit insertion(std::string_view text, uint32_t end, std::string lines) {
     return {end + 1, end + 1, std::move(lines) + "\n"};
 }
 
+/// Its place among the rules of the text.
+std::ptrdiff_t placeOf(const Ast& ast, const RuleDecl& rule) {
+    const auto same = [&](const RuleDecl& r) { return r.span.begin == rule.span.begin; };
+    return std::find_if(ast.rules.begin(), ast.rules.end(), same) - ast.rules.begin();
+}
+
 std::string freeName(const Ast& ast, const std::string& name) {
     const auto taken = [&](const std::string& wanted) {
         return std::any_of(ast.rules.begin(), ast.rules.end(),
@@ -91,11 +97,15 @@ Edit addRule(const Ast& ast, std::string_view symbol, std::string_view body, con
             if (rule.symbol.text == *name) after = &rule;
     if (!after && !ast.rules.empty()) after = &ast.rules.back();
     const uint32_t end = after ? linesOf(ast, *after).end : static_cast<uint32_t>(text.size());
-    return tried(ast, insertion(text, end, fmt::format("rule {} -> {}", *name, body)));
+    std::vector<ListedRule> rules = listed(ast);
+    rules.insert(rules.begin() + (after ? placeOf(ast, *after) + 1 : 0), {nullptr, *name, {}});
+    return withWays(ast, insertion(text, end, fmt::format("rule {} -> {}", *name, body)), rules);
 }
 
 Edit removeRule(const Ast& ast, const RuleDecl& rule) {
-    return tried(ast, removalOf(ast.source->text(), linesOf(ast, rule)));
+    std::vector<ListedRule> rules = listed(ast);
+    rules.erase(rules.begin() + placeOf(ast, rule));
+    return withWays(ast, removalOf(ast.source->text(), linesOf(ast, rule)), rules);
 }
 
 Edit duplicateRule(const Ast& ast, const RuleDecl& rule) {
@@ -104,7 +114,9 @@ Edit duplicateRule(const Ast& ast, const RuleDecl& rule) {
     std::string copy(text.substr(lines.begin, lines.end - lines.begin));
     if (!rule.name.empty())
         copy.replace(rule.name.span.begin - lines.begin, rule.name.text.size(), freeName(ast, rule.name.text));
-    return tried(ast, insertion(text, lines.end, std::move(copy)));
+    std::vector<ListedRule> rules = listed(ast);
+    rules.insert(rules.begin() + placeOf(ast, rule) + 1, {nullptr, rule.symbol.text, rule.name.empty() ? "" : freeName(ast, rule.name.text)});
+    return withWays(ast, insertion(text, lines.end, std::move(copy)), rules);
 }
 
 Edit moveRule(const Ast& ast, const RuleDecl& rule, const RuleDecl* before) {
@@ -120,34 +132,37 @@ Edit moveRule(const Ast& ast, const RuleDecl& rule, const RuleDecl* before) {
     } else {
         put = insertion(text, linesOf(ast, ast.rules.back()).end, std::move(moved));
     }
-    return tried(ast, merged(text, {removalOf(text, lines), put}));
+    std::vector<ListedRule> rules = listed(ast);
+    const ListedRule taken = rules[static_cast<size_t>(placeOf(ast, rule))];
+    rules.insert(rules.begin() + (before ? placeOf(ast, *before) : static_cast<std::ptrdiff_t>(rules.size())), {taken.rule, taken.symbol, taken.name});
+    rules.erase(rules.begin() + placeOf(ast, rule) + (before && before < &rule ? 1 : 0));
+    return withWays(ast, merged(text, {removalOf(text, lines), put}), rules);
 }
 
 Edit setName(const Ast& ast, const RuleDecl& rule, std::string_view name) {
+    std::vector<ListedRule> rules = listed(ast);
+    std::string& called = rules[static_cast<size_t>(placeOf(ast, rule))].name;
     if (name.empty()) {
         if (rule.name.empty()) return TextEdit{};
-        return tried(ast, {rule.name.span.begin, rule.symbol.span.begin, {}});
+        called.clear();
+        return withWays(ast, {rule.name.span.begin, rule.symbol.span.begin, {}}, rules);
     }
     const auto written = asName(name);
     if (!written.ok()) return written.error();
     const auto same = std::find_if(ast.rules.begin(), ast.rules.end(),
                                    [&](const RuleDecl& r) { return &r != &rule && r.name.text == *written; });
     if (same != ast.rules.end()) return refused(fmt::format("another rule is called '{}'", *written));
-    if (!rule.name.empty()) {
-        std::vector<TextEdit> renamed{{rule.name.span.begin, rule.name.span.end, *written}};
-        for (const syntax::DeriveDecl& way : ast.derives)
-            for (const auto& step : way.steps)
-                if (step.rule.text == rule.name.text)
-                    renamed.push_back({step.rule.span.begin, step.rule.span.end, *written});
-        return tried(ast, merged(ast.source->text(), std::move(renamed)));
-    }
-    return tried(ast, {rule.symbol.span.begin, rule.symbol.span.begin, *written + ": "});
+    called = *written;
+    if (!rule.name.empty()) return withWays(ast, {rule.name.span.begin, rule.name.span.end, *written}, rules);
+    return withWays(ast, {rule.symbol.span.begin, rule.symbol.span.begin, *written + ": "}, rules);
 }
 
 Edit setSymbol(const Ast& ast, const RuleDecl& rule, std::string_view symbol) {
     const auto written = asName(symbol);
     if (!written.ok()) return written.error();
-    return tried(ast, {rule.symbol.span.begin, rule.symbol.span.end, *written});
+    std::vector<ListedRule> rules = listed(ast);
+    rules[static_cast<size_t>(placeOf(ast, rule))].symbol = *written;
+    return withWays(ast, {rule.symbol.span.begin, rule.symbol.span.end, *written}, rules);
 }
 
 Edit setGuard(const Ast& ast, const RuleDecl& rule, std::string_view condition) {

@@ -21,6 +21,7 @@ using syntax::RuleDecl;
 using Edit = Result<TextEdit>;
 
 // --- Rules ---
+// `derive` lines follow: a rule keeps being called in them, by its name or as "Cell#2" by its number among the nameless.
 
 /// A new rule "rule SYMBOL -> BODY", behind `after`, or else behind the last rule of that symbol, else of all.
 Edit addRule(const Ast& ast, std::string_view symbol, std::string_view body, const RuleDecl* after = nullptr);
@@ -31,7 +32,7 @@ Edit duplicateRule(const Ast& ast, const RuleDecl& rule);
 /// Puts the rule before another, or behind the last (null); comments right above it go with it. Order matters among the
 /// rules of one symbol.
 Edit moveRule(const Ast& ast, const RuleDecl& rule, const RuleDecl* before);
-/// Names the rule; `derive` lines follow from one name to another. "" takes its name away.
+/// Names the rule; "" takes its name away.
 Edit setName(const Ast& ast, const RuleDecl& rule, std::string_view name);
 /// The shape the rule matches.
 Edit setSymbol(const Ast& ast, const RuleDecl& rule, std::string_view symbol);

@@ -40,6 +40,16 @@ TextEdit removal(std::string_view text, uint32_t begin, uint32_t end);
 /// The edit, if the text can still be read after it as well as before.
 Edit tried(const Ast& ast, TextEdit edit);
 
+/// A rule as `derive` lines tell it from others; `rule` is null for one that the text doesn't have yet.
+struct ListedRule {
+    const RuleDecl* rule;
+    std::string symbol, name;
+};
+/// The rules of the text, in order.
+std::vector<ListedRule> listed(const Ast& ast);
+/// `tried` for an edit after which the rules are `now`: `derive` lines go on meaning the same ones.
+Edit withWays(const Ast& ast, TextEdit edit, const std::vector<ListedRule>& now);
+
 /// `text` as one expression that may stand where an attribute's argument does (in parentheses where it calculates), or
 /// anywhere. Error::Input when it is none.
 Result<std::string> asArgument(std::string_view text);

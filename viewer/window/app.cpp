@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "modeler/core/stopwatch.h"
 #include "viewer/window/bars.h"
 #include "viewer/window/benchmark.h"
 #include "viewer/window/panels.h"
@@ -61,6 +60,7 @@ void Workspace::splitter(const char* name, float x, float y, float height, float
     if (begin(name, {x - grab / 2, y}, {grab, height})) {
         ImGui::SetCursorScreenPos({x - grab / 2, y});
         ImGui::InvisibleButton(name, {grab, height});
+        bench_.report.mark(name + 2);  // without "##"
         if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
             ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
             ImGui::GetWindowDrawList()->AddLine({x, y}, {x, y + height}, tint::accent, 2);
@@ -138,7 +138,7 @@ void Workspace::show() {
 /// What a test may know.
 void describe(const Workbench& bench, nlohmann::json& state) {
     state["busy"] = bench.busy();
-    state["drawn"] = (bench.look.pane == Pane::Mesh || bench.field.finished()) && (bench.look.pane == Pane::Field || bench.mesh.finished());
+    state["drawn"] = bench.drawn();
     state["text"] = bench.document.text();
     state["dirty"] = bench.document.dirty();
     state["undo"] = bench.document.undoLabel();
@@ -157,6 +157,14 @@ void describe(const Workbench& bench, nlohmann::json& state) {
     state["stepping"] = bench.stepper.has_value();
     state["locked"] = bench.document.choice().locked;
     state["seed"] = bench.document.choice().seed;
+    const Look& look = bench.look;
+    state["look"] = {{"mesh", static_cast<int>(look.mesh.look)}, {"wire", look.mesh.wireframe}, {"section", look.section}, {"axis", look.sectionAxis},
+                     {"share", look.sectionShare}, {"cells", look.meshResolution}, {"ground", look.ground}, {"joints", static_cast<int>(look.joints)}, {"hands", static_cast<int>(look.hands)}};
+    state["preview"] = bench.previewed;
+    state["lamp"] = bench.orbit.lamp_m;
+    state["fog"] = bench.field.drawsFog();
+    state["turning"] = bench.turntable.has_value();
+    state["choice"] = {{"start", bench.document.choice().start}, {"style", bench.document.choice().style}, {"way", bench.document.choice().way}};
     state["question"] = bench.question ? bench.question->text : "";
 }
 
@@ -167,7 +175,7 @@ Result<bool> refine(Workbench& bench) {
         if (const Status s = bench.field.step(); !s) return s.error();
         drew = true;
     }
-    if (bench.look.pane != Pane::Field && !bench.mesh.finished()) {
+    if (bench.wantsMesh() && !bench.mesh.finished()) {
         if (const Status s = bench.mesh.step(); !s) return s.error();
         drew = true;
     }
@@ -191,7 +199,9 @@ int runApp(const AppOptions& options) {
     if (!opened) return fail(opened.error());
     Window& window = **opened;
     Report report(options.report);
-    Workbench bench(report, &Window::wake);
+    Result<std::unique_ptr<SharedContext>> shared = window.share();
+    if (!shared) return fail(shared.error());
+    Workbench bench(report, std::move(*shared), &Window::wake);
     if (!options.file.empty())
         if (const Status s = bench.open(options.file); !s) return fail(s.error());
     if (!options.benchmark) bench.offerAbandoned();
@@ -204,8 +214,8 @@ int runApp(const AppOptions& options) {
     for (;;) {
         const bool working = bench.busy() || workspace.working() || options.benchmark;
         window.listen(wanted > 0 || refining || options.benchmark ? 0 : working ? shownEvery : listenFor);
-        const Stopwatch turn;
-        const double drawnBefore = bench.field.times().drawn;
+        const SpentWatch turn;
+        const Spent drawnBefore = bench.field.times().drawn;
         if (window.closing() && bench.mayClose()) return 0;
         if (window.stirred() | bench.poll()) wanted = settlingFrames;
         for (const std::filesystem::path& path : window.dropped()) bench.drop(path);
@@ -220,7 +230,7 @@ int runApp(const AppOptions& options) {
         if (!taken || *taken) wanted = settlingFrames;
         const bool ended = refining && !*drew;
         refining = *drew;
-        double showing = 0;
+        Spent showing;
         // Where frames are dear, most of the time still goes to the picture.
         if (wanted > 0 || ended || ((refining || working) && sinceShown.seconds() >= std::max(shownEvery, 3 * frameSeconds))) {
             if (wanted > 0) --wanted;
@@ -228,10 +238,10 @@ int runApp(const AppOptions& options) {
             window.setTitle(titleOf(bench.document));
             window.beginFrame();
             workspace.show();
-            const Stopwatch show;
+            const SpentWatch show;
             window.endFrame();
-            showing = show.seconds();
-            frameSeconds = turn.seconds();
+            showing = show.spent();
+            frameSeconds = turn.spent().wall;
             bench.refresh();
             describe(bench, report.state());
             const Window::Given& given = window.given();
@@ -240,7 +250,7 @@ int runApp(const AppOptions& options) {
             report.write();
         }
         if (bench.leaving) return 0;
-        if (options.benchmark && !benchmark.go(bench, turn.seconds(), bench.field.times().drawn - drawnBefore + showing)) {
+        if (options.benchmark && !benchmark.go(bench, turn.spent() - showing - (bench.field.times().drawn - drawnBefore))) {
             benchmark.print(bench, window.driver());
             return bench.shown() ? 0 : 1;
         }

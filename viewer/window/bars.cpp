@@ -43,11 +43,11 @@ void Bars::top(Workbench& bench) {
     if (quietButton(report, "bar.redo", "Redo", document.canRedo() ? redo.c_str() : nullptr, document.canRedo())) bench.redo();
     gap();
     int pane = static_cast<int>(bench.look.pane);
-    constexpr std::array panes{"Field", "Mesh", "Split"};
+    constexpr std::array panes{"Field", "Fog", "Mesh", "Split"};
     if (oneOf(report, "pane", panes, pane)) bench.look.pane = static_cast<Pane>(pane);
     gap();
     lookControls(bench);
-    if (bench.look.pane != Pane::Field) {
+    if (bench.wantsMesh()) {
         gap();
         meshControls(bench);
     }
@@ -100,12 +100,13 @@ void Bars::status(Workbench& bench) {
     ImGui::SetCursorPosY((ImGui::GetWindowHeight() - ImGui::GetFrameHeight()) / 2);
     ImGui::AlignTextToFramePadding();
     if (bench.busy()) {
-        const std::string stage(bench.session.busy() ? bench.session.stage() : "cells");
+        const bool deriving = bench.session.busy();
+        const std::string stage(deriving ? bench.session.stage() : bench.preparer.stage());
         ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 3);
-        ImGui::ProgressBar(bench.session.busy() ? static_cast<float>(bench.session.fraction()) : 0.5f, {ImGui::GetFontSize() * 10, ImGui::GetFrameHeight() - 6}, stage.c_str());
+        ImGui::ProgressBar(static_cast<float>(deriving ? bench.session.fraction() : bench.preparer.fraction()), {ImGui::GetFontSize() * 10, ImGui::GetFrameHeight() - 6}, stage.c_str());
         ImGui::SameLine();
         ImGui::SetCursorPosY(ImGui::GetCursorPosY() - 3);
-        if (button(bench.report, "progress.cancel", "Cancel", "Keep the model as it is")) bench.session.cancel();
+        if (button(bench.report, "progress.cancel", "Cancel", "Keep the model as it is")) bench.cancel();
         ImGui::SameLine();
     }
     ImGui::PushStyleColor(ImGuiCol_Text, bench.noticeIsProblem ? tint::error : tint::faint);
@@ -113,7 +114,7 @@ void Bars::status(Workbench& bench) {
     ImGui::PopStyleColor();
     std::string facts;
     if (bench.shown()) {
-        double seconds = bench.cellSeconds;
+        double seconds = bench.fieldTimes.prepare;
         for (const auto& [stage, took] : bench.shown()->stages) seconds += took;
         facts = fmt::format("{} shapes  ·  {} steps  ·  {:.0f} ms", bench.tree()->shapes.size(), bench.shown()->model.derivation.steps.size(), seconds * 1000);
         if (bench.wantsMesh() && bench.mesh.hasMesh()) facts += fmt::format("  ·  {} triangles", bench.mesh.triangleCount());

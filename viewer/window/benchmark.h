@@ -1,4 +1,4 @@
-// How fast the window answers, measured in the window itself: stages to the first picture, a slider that is dragged, rules
+// How fast the window answers, measured in the window itself: stages to the first picture, a slider that is dragged, shapes
 // that come and go, and the gaps between looks at the person's hands.
 // Enters: the workbench, once a turn of the loop. Leaves: a table on stdout. Assumes a grammar that can be shown.
 #pragma once
@@ -13,9 +13,9 @@ namespace sgm::viewer {
 
 class Benchmark {
 public:
-    /// To be called at the end of every turn; `turn` is what it took without waiting for events, `drawing` how much of
-    /// that was drawing, seconds. False when all is measured.
-    bool go(Workbench& bench, double turn, double drawing);
+    /// To be called at the end of every turn, with what it took without waiting for events and without drawing. False
+    /// when all is measured.
+    bool go(Workbench& bench, const Spent& turn);
     void print(const Workbench& bench, const std::string& driver) const;
 
 private:
@@ -29,7 +29,7 @@ private:
     Phase phase_ = Phase::Load;
     std::vector<Change> drags_, structures_;
     std::vector<std::pair<std::string, double>> first_;  ///< seconds by stage
-    double gap_ = 0;                                     ///< longest, drawing excluded
+    Spent gap_;     ///< the longest on each clock
     Stopwatch since_;
     int compiles_ = 0;
     bool waiting_ = false;

@@ -26,27 +26,32 @@ std::vector<Job> fromTheMiddle(int width, int height) {
 
 }  // namespace
 
-Status FieldView::setField(std::shared_ptr<const PreparedField> field) {
-    const bool known = programs_.cover(*field);
-    scene_.reset();
-    Stopwatch watch;
-    if (Status s = programs_.extendTo(*field); !s) return s;
-    times_.compile = watch.seconds();
-    watch = {};
-    scene_.emplace(std::move(field), programs_, look_.threads);
-    times_.upload = watch.seconds();
-    if (!known) {
-        // Drivers compile at the first draw: let that be one ray.
-        const Job job{0, 0};
-        scene_->look(PictureOptions{.camera = frame(scene_->field().bounds, 1)});
-        watch = {};
-        if (const Result<Rays> ray = scene_->draw({&job, 1}, nullptr); !ray) return ray.error();
-        times_.compile += watch.seconds();
-        ++times_.compiles;
-    }
-    times_.drawn += times_.compile + times_.upload;
-    restart();
-    return Done{};
+std::shared_ptr<const PreparedField> FieldView::setField(std::unique_ptr<FieldScene> scene) {
+    std::swap(scene_, scene);
+    if (!drawsFog()) restart();
+    return scene ? scene->field() : nullptr;
+}
+
+void FieldView::setFog(std::unique_ptr<FogScene> fog) {
+    fog_ = std::move(fog);
+    if (drawsFog()) restart();
+}
+
+void FieldView::showFog(bool fog) {
+    if (fog == fogWanted_) return;
+    fogWanted_ = fog;
+    if (fog_) restart();
+}
+
+void FieldView::point(const PictureOptions& options, double fine) {
+    drawsFog() ? fog_->look(options) : scene_->look(options, fine);
+}
+
+Result<std::vector<std::array<float, 4>>> FieldView::colorsOf(std::span<const Job> jobs) {
+    if (drawsFog()) return fog_->draw(jobs, nullptr);
+    Result<Rays> rays = scene_->draw(jobs, nullptr);
+    if (!rays) return rays.error();
+    return std::move(rays->colors);
 }
 
 void FieldView::setLook(const PictureOptions& options) {
@@ -68,28 +73,29 @@ double FieldView::share() const {
 
 Status FieldView::drawCoarse() {
     const double pixels = static_cast<double>(look_.width) * look_.height;
-    const double scale = std::clamp(std::sqrt(pixels * secondsPerRay_ / coarseSeconds), 1.0, 10.0);
+    double& perRay = secondsPerRay_[drawsFog()];
+    const double scale = std::clamp(std::sqrt(pixels * perRay / coarseSeconds), 1.0, 10.0);
     PictureOptions small = look_;
     small.width = std::max(1, static_cast<int>(std::ceil(look_.width / scale)));
     small.height = std::max(1, static_cast<int>(std::ceil(look_.height / scale)));
     // A block's surface is as exact as a pixel's, lest edges get dark rims.
-    scene_->look(small, scale);
+    point(small, scale);
     const std::vector<Job> jobs = firstSamples(small.width, small.height);
     PixelSums sums(small.width, small.height);
     const Stopwatch watch;
     for (size_t first = 0; first < jobs.size(); first += mostJobs) {
         const std::span chunk = std::span(jobs).subspan(first, std::min(mostJobs, jobs.size() - first));
-        const Result<Rays> rays = scene_->draw(chunk, nullptr);
-        if (!rays) return rays.error();
-        sums.add(chunk, rays->colors);
+        const auto colors = colorsOf(chunk);
+        if (!colors) return colors.error();
+        sums.add(chunk, *colors);
     }
     times_.coarse = watch.seconds();
     times_.full = 0;
-    secondsPerRay_ = 0.5 * secondsPerRay_ + 0.5 * watch.seconds() / static_cast<double>(jobs.size());
+    perRay = 0.5 * perRay + 0.5 * watch.seconds() / static_cast<double>(jobs.size());
     coarse_.resize(small.width, small.height);
     coarse_.write(sums.bytes(0, small.height), 0, small.height);
 
-    scene_->look(look_);
+    point(look_);
     fine_.resize(look_.width, look_.height);
     sums_ = PixelSums(look_.width, look_.height);
     fine_.write(sums_.bytes(0, look_.height), 0, look_.height);
@@ -103,9 +109,9 @@ Status FieldView::drawCoarse() {
 Status FieldView::drawBatch() {
     const std::span chunk = std::span(jobs_).subspan(next_, std::min(batch_, jobs_.size() - next_));
     const Stopwatch watch;
-    const Result<Rays> rays = scene_->draw(chunk, nullptr);
-    if (!rays) return rays.error();
-    sums_.add(chunk, rays->colors);
+    const auto colors = colorsOf(chunk);
+    if (!colors) return colors.error();
+    sums_.add(chunk, *colors);
     int low = look_.height, high = 0;
     for (const Job& job : chunk) {
         low = std::min(low, static_cast<int>(job.y()));
@@ -120,9 +126,9 @@ Status FieldView::drawBatch() {
 }
 
 Status FieldView::step() {
-    const Stopwatch watch;
+    const SpentWatch watch;
     const Status done = drawMore();
-    times_.drawn += watch.seconds();
+    times_.drawn += watch.spent();
     return done;
 }
 

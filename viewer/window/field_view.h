@@ -1,5 +1,5 @@
-// A view of a field that gets better by itself: coarse at once, then every pixel from the middle outwards, then edges.
-// Enters: a prepared field and a look. Leaves: two textures, one over the other. Assumes a current GL context; every
+// A view of a field, or of fog in its place, that gets better by itself: coarse at once, then every pixel from the middle
+// outwards, then edges. Enters: scenes and a look. Leaves: two textures, one over the other. Assumes a current GL context; every
 // `step` takes about 20 ms, but for the coarse picture, whose pixels are chosen to take about 50 ms together.
 #pragma once
 
@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "viewer/field_scene.h"
+#include "viewer/fog_scene.h"
+#include "viewer/window/spent.h"
 
 namespace sgm::viewer {
 
@@ -18,24 +20,26 @@ struct Pick {
     OriginId origin = 0;  ///< of an object
 };
 
-/// What the last field and its picture took, seconds, and how often shaders were compiled so far.
+/// What drawing took, seconds.
 struct FieldTimes {
-    double compile = 0, upload = 0;  ///< of the last field
-    double coarse = 0, full = 0;     ///< drawing of the last picture; full without the coarse one
-    double drawn = 0;                ///< all drawing and compiling so far
-    int compiles = 0;
+    double coarse = 0, full = 0;  ///< of the last picture; full without the coarse one
+    Spent drawn;                  ///< all so far
 };
 
 class FieldView {
 public:
     const FieldTimes& times() const { return times_; }
-    /// Compiles where the field has ops that no earlier one had. The picture starts again.
-    Status setField(std::shared_ptr<const PreparedField> field);
+    /// The picture starts again; gives what the last one was of.
+    std::shared_ptr<const PreparedField> setField(std::unique_ptr<FieldScene> scene);
+    void setFog(std::unique_ptr<FogScene> fog);
+    /// Draws fog rather than the field, as soon as there is any.
+    void showFog(bool fog);
+    bool drawsFog() const { return fogWanted_ && fog_; }
     /// Starts the picture again, unless it is of this look already.
     void setLook(const PictureOptions& options);
-    bool hasField() const { return scene_.has_value(); }
+    bool hasField() const { return scene_ != nullptr; }
     /// Of the solid; only with a field.
-    Box3f bounds() const { return scene_->field().bounds; }
+    Box3f bounds() const { return scene_->field()->bounds; }
     /// Draws a little more; Error::Internal when the driver fails.
     Status step();
     /// All pixels are final.
@@ -55,19 +59,23 @@ public:
 private:
     enum class Phase { Idle, Coarse, First, Edges, Finished };
     void restart();
+    /// Sets the picture for `colorsOf`.
+    void point(const PictureOptions& options, double fine = 1);
+    Result<std::vector<std::array<float, 4>>> colorsOf(std::span<const Job> jobs);
     Status drawMore();
     Status drawCoarse();
     Status drawBatch();
 
-    FieldPrograms programs_;
-    std::optional<FieldScene> scene_;
+    std::unique_ptr<FieldScene> scene_;
+    std::unique_ptr<FogScene> fog_;
+    bool fogWanted_ = false;
     PictureOptions look_;
     Phase phase_ = Phase::Idle;
     std::vector<Job> jobs_, first_;
     size_t next_ = 0, batch_ = 2048;
     PixelSums sums_;
     DisplayTexture coarse_, fine_;
-    double secondsPerRay_ = 4e-6;
+    double secondsPerRay_[2] = {4e-6, 4e-6};  ///< of the field, of fog
     FieldTimes times_;
 };
 

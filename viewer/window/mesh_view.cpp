@@ -4,15 +4,13 @@
 
 namespace sgm::viewer {
 
-Status MeshView::setMesh(const PreparedMesh& mesh) {
-    Result<MeshScene> scene = MeshScene::create(mesh);
-    if (!scene) return scene.error();
+Status MeshView::setMesh(std::unique_ptr<MeshScene> scene) {
     if (encode_.id() == 0) {
         Result<Program> made = Program::draw(shaderText("screen"), shaderText("encode"));
         if (!made) return made.error();
         encode_ = std::move(*made);
     }
-    scene_.emplace(std::move(*scene));
+    scene_ = std::move(scene);
     drawn_ = smooth_ = lit_ = false;
     // The sun's shadow belongs to the first picture; the sky's comes bit by bit.
     const Result<bool> all = scene_->lightMore(nullptr);

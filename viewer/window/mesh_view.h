@@ -11,9 +11,9 @@ namespace sgm::viewer {
 
 class MeshView {
 public:
-    Status setMesh(const PreparedMesh& mesh);
+    Status setMesh(std::unique_ptr<MeshScene> scene);
     void setLook(const PictureOptions& options, const MeshStyle& style);
-    bool hasMesh() const { return scene_.has_value(); }
+    bool hasMesh() const { return scene_ != nullptr; }
     /// Draws what changed, else completes the light, else draws with smooth edges.
     Status step();
     bool finished() const { return !scene_ || (drawn_ && smooth_ && lit_); }
@@ -26,7 +26,7 @@ public:
 private:
     Status draw(int samples);
 
-    std::optional<MeshScene> scene_;
+    std::unique_ptr<MeshScene> scene_;
     Program encode_;
     PictureOptions look_;
     MeshStyle style_;

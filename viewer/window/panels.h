@@ -2,6 +2,8 @@
 // Enters: the workbench. Leaves: edits. Assumes a frame of ImGui.
 #pragma once
 
+#include <imgui.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,7 +30,14 @@ private:
     void row(Workbench& bench, ParamRow row);
     bool control(Workbench& bench, ParamRow& row);
 
+    /// Writes the row's value into the text.
+    void set(Workbench& bench, const ParamRow& row);
+    /// `rows_` as the text has them, though the model may still be an earlier one.
+    void list(Workbench& bench);
+
     std::vector<ParamRow> rows_;
+    std::vector<ParamRow> ahead_;   ///< what was set since the shown model
+    uint64_t aheadRevision_ = 0;    ///< of the document, when the last of them was
     std::optional<ParamRow> held_;  ///< what a hand holds; the model follows it
     std::string styleName_;
 };
@@ -56,6 +65,7 @@ public:
 
 private:
     void row(Workbench& bench, size_t index);
+    void dragRule(const RuleRow& row, ImVec2 low);
     void inspector(Workbench& bench, const RuleRow& row);
     void ruleInspector(Workbench& bench, const RuleRow& row);
     void elementInspector(Workbench& bench, const RuleRow& row);
@@ -69,6 +79,11 @@ private:
     std::optional<uint32_t> at_;  ///< first byte of the selected row's node
     RuleRow::Kind kind_ = RuleRow::Kind::Rule;
     bool scroll_ = false;        ///< the selected row is to be seen
+    /// Where a rule that is dragged would go.
+    struct Drop {
+        size_t rule, before;  ///< of the syntax tree
+    };
+    std::optional<Drop> drop_;
     std::string holding_, held_;  ///< the field that takes keys, and its text
     std::string newRule_ = "Name -> sphere";
 };

@@ -5,76 +5,237 @@
 #include "modeler/core/stopwatch.h"
 
 namespace sgm::viewer {
-namespace {
 
-Result<ReadyField> readied(std::shared_ptr<const Shown> model, Progress& progress) {
-    const Stopwatch watch;
-    const lower::Model& lowered = *model->model.lowered;
-    const eval::Tape& tape = model->model.tape;
-    Result<PreparedField> field = prepareField(tape, tighten(tape, lowered.field.bounds), lowered.provenance, 0, &progress);
-    if (!field) return field.error();
-    return ReadyField{std::move(model), std::make_shared<const PreparedField>(std::move(*field)), watch.seconds()};
-}
-
-Result<ReadyMesh> readied(std::shared_ptr<const Meshed> meshed) {
-    Result<PreparedMesh> mesh = prepareMesh(*meshed->mesh, meshed->of->model.lowered->provenance);
-    if (!mesh) return mesh.error();
-    return ReadyMesh{std::move(meshed), std::make_shared<const PreparedMesh>(std::move(*mesh))};
-}
-
-}  // namespace
-
-Preparer::Preparer(std::function<void()> wake) : wake_(std::move(wake)), worker_([this] { work(); }) {}
+Preparer::Preparer(std::unique_ptr<SharedContext> context, std::function<void()> wake)
+    : context_(std::move(context)), wake_(std::move(wake)), worker_([this] { work(); }) {}
 
 Preparer::~Preparer() {
     {
         const std::lock_guard lock(mutex_);
         quit_ = true;
-        progress_.cancel();
+        if (running_) running_->cancel();
     }
-    wanted_.notify_one();
+    changed_.notify_one();
     worker_.join();
 }
 
-void Preparer::prepare(std::shared_ptr<const Shown> model) {
-    const std::lock_guard lock(mutex_);
-    model_ = std::move(model);
-    wanted_.notify_one();
+void Preparer::ask(const std::function<void(Wanted&)>& how) {
+    {
+        const std::lock_guard lock(mutex_);
+        how(wanted_);
+    }
+    changed_.notify_one();
+}
+void Preparer::prepare(std::shared_ptr<const Shown> model, bool withCamera) {
+    ask([&](Wanted& wanted) {
+        wanted.model = std::move(model);
+        wanted.withCamera = withCamera;
+    });
+}
+void Preparer::lookInside(std::shared_ptr<const Shown> model) {
+    ask([&](Wanted& wanted) { wanted.inside = std::move(model); });
+}
+void Preparer::prepareFog(std::shared_ptr<const Shown> model, int resolution) {
+    ask([&](Wanted& wanted) {
+        wanted.fog = std::move(model);
+        wanted.fogResolution = resolution;
+    });
+}
+void Preparer::preview(std::shared_ptr<const Shown> model, int resolution) {
+    ask([&](Wanted& wanted) {
+        wanted.preview = std::move(model);
+        wanted.previewResolution = resolution;
+    });
 }
 void Preparer::prepare(std::shared_ptr<const Meshed> mesh) {
-    const std::lock_guard lock(mutex_);
-    mesh_ = std::move(mesh);
-    wanted_.notify_one();
+    ask([&](Wanted& wanted) { wanted.mesh = std::move(mesh); });
 }
 
-Preparer::Ready Preparer::poll() {
+void Preparer::retire(std::shared_ptr<const PreparedField> field) {
+    if (field) ask([&](Wanted& wanted) { wanted.retired.push_back(std::move(field)); });
+}
+
+void Preparer::cancel() {
     const std::lock_guard lock(mutex_);
-    return std::exchange(ready_, {});
+    wanted_.model = wanted_.fog = wanted_.inside = wanted_.preview = nullptr;
+    wanted_.mesh = nullptr;
+    if (running_) running_->cancel();
+}
+
+Preparer::News Preparer::poll() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(news_, {});
 }
 bool Preparer::busy() const {
     const std::lock_guard lock(mutex_);
-    return running_ || model_ || mesh_;
+    return running_ || wanted_.any();
+}
+std::string_view Preparer::stage() const {
+    const std::lock_guard lock(mutex_);
+    return running_ ? running_->stage() : "";
+}
+double Preparer::fraction() const {
+    const std::lock_guard lock(mutex_);
+    return running_ ? running_->fraction() : 0;
+}
+
+template <class Scene>
+void Preparer::give(Ready<Scene> News::*where, Ready<Scene> ready) {
+    finish();  // so that the window's context finds all of it
+    const std::lock_guard lock(mutex_);
+    news_.*where = std::move(ready);
+    if constexpr (std::is_same_v<Scene, MeshScene>) news_.meshIsPreview = false;
+}
+
+Status Preparer::makeField(std::shared_ptr<const Shown> model, bool withCamera, Progress& progress) {
+    Ready<FieldScene> ready;
+    Stopwatch watch;
+    const lower::Model& lowered = *model->model.lowered;
+    const eval::Tape& tape = model->model.tape;
+    Result<PreparedField> field = prepareField(tape, tighten(tape, lowered.field.bounds), lowered.provenance, 0, &progress);
+    if (!field) return field.error();
+    ready.times.prepare = watch.seconds();
+    if (withCamera) ready.camera = frame(tape, field->bounds, 1);
+    watch = {};
+    auto programs = programsFor(*field, fieldPrograms_);
+    if (!programs) return programs.error();
+    const double made = watch.seconds();
+    watch = {};
+    ready.scene = std::make_unique<FieldScene>(std::move(*field), *programs, 0);
+    finish();
+    ready.times.upload = watch.seconds();
+    if (*programs != fieldPrograms_) {
+        watch = {};
+        if (Status s = ready.scene->warmUp(); !s) return s;
+        ready.times.compile = made + watch.seconds();
+        fieldPrograms_ = *programs;
+    }
+    ready.of = std::move(model);
+    give(&News::field, std::move(ready));
+    return Done{};
+}
+
+Status Preparer::makeFog(std::shared_ptr<const Shown> model, int resolution, Progress& progress) {
+    Ready<FogScene> ready;
+    Stopwatch watch;
+    const eval::Tape& tape = model->model.tape;
+    const Box3f bounds = tighten(tape, model->model.lowered->field.bounds);
+    const Result<FogGrid> grid = fogGrid(tape, mesh::gridFor(bounds, mesh::cellFor(bounds, resolution)), bounds, 0, &progress);
+    if (!grid) return grid.error();
+    const Result<PreparedFog> fog = viewer::prepareFog(grid->dense, bounds, usualFog(*grid), 0, &progress);
+    if (!fog) return fog.error();
+    ready.times.prepare = watch.seconds();
+    if (!fogPrograms_) {
+        watch = {};
+        auto programs = FogPrograms::create();
+        if (!programs) return programs.error();
+        fogPrograms_ = *programs;
+        ready.times.compile = watch.seconds();
+    }
+    watch = {};
+    ready.scene = std::make_unique<FogScene>(*fog, fogPrograms_);
+    ready.times.upload = watch.seconds();
+    ready.of = std::move(model);
+    give(&News::fog, std::move(ready));
+    return Done{};
+}
+
+Status Preparer::findInside(const Shown& model) {
+    const eval::Tape& tape = model.model.tape;
+    const Camera found = inside(tape, tighten(tape, model.model.lowered->field.bounds));
+    const std::lock_guard lock(mutex_);
+    news_.inside = found;
+    return Done{};
+}
+
+Status Preparer::ensureMeshPrograms(ReadyTimes& times) {
+    if (meshPrograms_) return Done{};
+    const Stopwatch watch;
+    auto programs = MeshPrograms::create();
+    if (!programs) return programs.error();
+    meshPrograms_ = *programs;
+    times.compile += watch.seconds();
+    return Done{};
+}
+
+Status Preparer::makeMesh(std::shared_ptr<const Meshed> meshed) {
+    Ready<MeshScene> ready;
+    Stopwatch watch;
+    const Result<PreparedMesh> mesh = prepareMesh(*meshed->mesh, meshed->of->model.lowered->provenance);
+    if (!mesh) return mesh.error();
+    ready.times.prepare = watch.seconds();
+    if (Status s = ensureMeshPrograms(ready.times); !s) return s;
+    watch = {};
+    ready.scene = std::make_unique<MeshScene>(*mesh, meshPrograms_);
+    ready.times.upload = watch.seconds();
+    ready.of = meshed->of;
+    give(&News::mesh, std::move(ready));
+    return Done{};
+}
+
+Status Preparer::makePreview(std::shared_ptr<const Shown> model, int resolution, Progress& progress) {
+    Ready<MeshScene> ready;
+    const lower::Model& lowered = *model->model.lowered;
+    const Box3f& bounds = lowered.field.bounds;
+    const Stopwatch watch;
+    const Result<PreparedBlocks> blocks = prepareBlocks(model->model.tape, mesh::gridFor(bounds, mesh::cellFor(bounds, resolution)), 0, &progress);
+    if (!blocks) return blocks.error();
+    auto programs = programsFor(*blocks, blockPrograms_);
+    if (!programs) return programs.error();
+    blockPrograms_ = *programs;
+    Result<GpuTriangles> triangles = polygonizeOnGpu(*blocks, *blockPrograms_, &progress);
+    if (!triangles) return triangles.error();
+    ready.times.prepare = watch.seconds();
+    if (Status s = ensureMeshPrograms(ready.times); !s) return s;
+    const auto& materials = lowered.provenance.materials;
+    ready.scene = std::make_unique<MeshScene>(std::move(*triangles), bounds, materials.empty() ? Material{} : materials.back(), meshPrograms_);
+    ready.of = std::move(model);
+    give(&News::mesh, std::move(ready));
+    const std::lock_guard lock(mutex_);
+    news_.meshIsPreview = true;
+    return Done{};
 }
 
 void Preparer::work() {
+    context_->take();
     std::unique_lock lock(mutex_);
-    for (;;) {
-        wanted_.wait(lock, [&] { return quit_ || model_ || mesh_; });
-        if (quit_) return;
-        auto model = std::exchange(model_, nullptr);
-        auto mesh = model ? nullptr : std::exchange(mesh_, nullptr);
-        running_ = true;
+    while (!quit_) {
+        changed_.wait(lock, [&] { return quit_ || wanted_.any() || !wanted_.retired.empty(); });
+        if (quit_) break;
+        auto retired = std::exchange(wanted_.retired, {});
+        if (!retired.empty()) {
+            lock.unlock();
+            retired.clear();
+            lock.lock();
+            continue;
+        }
+        auto model = std::exchange(wanted_.model, nullptr);
+        auto mesh = model ? nullptr : std::exchange(wanted_.mesh, nullptr);
+        auto preview = model || mesh ? nullptr : std::exchange(wanted_.preview, nullptr);
+        auto within = model || mesh || preview ? nullptr : std::exchange(wanted_.inside, nullptr);
+        auto fog = model || mesh || preview || within ? nullptr : std::exchange(wanted_.fog, nullptr);
+        const int fogResolution = wanted_.fogResolution, previewResolution = wanted_.previewResolution;
+        const bool withCamera = wanted_.withCamera;
+        const auto progress = running_ = std::make_shared<Progress>();
         lock.unlock();
-        Result<ReadyField> field = model ? readied(std::move(model), progress_) : Result(ReadyField{});
-        Result<ReadyMesh> meshed = mesh ? readied(std::move(mesh)) : Result(ReadyMesh{});
+        const Status done = model     ? makeField(std::move(model), withCamera, *progress)
+                            : mesh    ? makeMesh(std::move(mesh))
+                            : preview ? makePreview(std::move(preview), previewResolution, *progress)
+                            : within  ? findInside(*within)
+                                      : makeFog(std::move(fog), fogResolution, *progress);
         lock.lock();
-        running_ = false;
-        if (!field) ready_.problem = field.error().message;
-        else if (field->field) ready_.field = std::move(*field);
-        if (!meshed) ready_.problem = meshed.error().message;
-        else if (meshed->mesh) ready_.mesh = std::move(*meshed);
+        running_ = nullptr;
+        if (!done && done.error().kind != Error::Kind::Cancelled) news_.problem = done.error().message;
         wake_();
     }
+    lock.unlock();
+    fieldPrograms_ = nullptr;
+    fogPrograms_ = nullptr;
+    meshPrograms_ = nullptr;
+    blockPrograms_ = nullptr;
+    news_ = {};
+    wanted_ = {};
+    context_->giveBack();
 }
 
 }  // namespace sgm::viewer

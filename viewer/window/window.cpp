@@ -84,6 +84,18 @@ Window::~Window() {
     glfwTerminate();
 }
 
+SharedContext::~SharedContext() { glfwDestroyWindow(hidden_); }
+void SharedContext::take() const { glfwMakeContextCurrent(hidden_); }
+void SharedContext::giveBack() const { glfwMakeContextCurrent(nullptr); }
+
+Result<std::unique_ptr<SharedContext>> Window::share() const {
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+    GLFWwindow* hidden = glfwCreateWindow(1, 1, "sgm worker", nullptr, window_);
+    glfwWindowHint(GLFW_VISIBLE, GLFW_TRUE);
+    if (!hidden) return cannotOpen("the driver offers no second context");
+    return std::make_unique<SharedContext>(hidden);
+}
+
 void Window::listen(double seconds) { seconds > 0 ? glfwWaitEventsTimeout(seconds) : glfwPollEvents(); }
 bool Window::stirred() { return std::exchange(stirred_, false); }
 std::vector<std::filesystem::path> Window::dropped() { return std::exchange(dropped_, {}); }

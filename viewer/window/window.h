@@ -16,6 +16,21 @@ struct GLFWwindow;
 
 namespace sgm::viewer {
 
+/// A context of OpenGL for another thread, whose buffers, textures and programs are the window's too.
+class SharedContext {
+public:
+    explicit SharedContext(GLFWwindow* hidden) : hidden_(hidden) {}
+    ~SharedContext();
+    SharedContext(const SharedContext&) = delete;
+    SharedContext& operator=(const SharedContext&) = delete;
+    /// Takes it on this thread, and gives it back before the thread ends.
+    void take() const;
+    void giveBack() const;
+
+private:
+    GLFWwindow* hidden_;
+};
+
 class Window {
 public:
     /// Error::Internal where there is no display or no OpenGL 4.5.
@@ -45,6 +60,9 @@ public:
     const Given& given() const { return given_; }
     /// Ends a `listen` from any thread.
     static void wake();
+
+    /// Dies before the window. Error::Internal where the driver refuses a second context.
+    Result<std::unique_ptr<SharedContext>> share() const;
 
     void setTitle(const std::string& title);
     /// Between these two ImGui may be used; `endFrame` shows what it made.

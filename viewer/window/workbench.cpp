@@ -6,8 +6,10 @@
 
 namespace sgm::viewer {
 
-Workbench::Workbench(Report& report, std::function<void()> wake)
-    : report(report), session(wake), preparer(std::move(wake)) {}
+constexpr int fogVoxels = 96, previewCells = 64;  // along the longest side
+
+Workbench::Workbench(Report& report, std::unique_ptr<SharedContext> shared, std::function<void()> wake)
+    : report(report), session(wake), preparer(std::move(shared), std::move(wake)) {}
 
 Status Workbench::open(const std::filesystem::path& path) {
     Result<Document> opened = Document::open(path);
@@ -49,7 +51,13 @@ void Workbench::save(bool overwrite) {
 void Workbench::refresh() {
     recovery_.keep(document);
     followSteps();
-    const int resolution = wantsMesh() ? look.meshResolution : 0;
+    field.showFog(look.pane == Pane::Fog);
+    if (look.pane == Pane::Fog && session.model() && askedFog_ != session.model()) {
+        preparer.prepareFog(askedFog_ = session.model(), fogVoxels);
+        settled_ = false;
+    }
+    // While a hand drags, the GPU's own mesh does.
+    const int resolution = wantsMesh() && !document.dragging() ? look.meshResolution : 0;
     if (asked_ == document.revision() && askedResolution_ == resolution && askedByHand_ == byHand_.get()) return;
     ShowRequest request = requestOf(document);
     request.meshResolution = resolution;
@@ -69,26 +77,47 @@ bool Workbench::poll() {
     if (session.model() != model && session.model()) {
         resolveSelection();
         hover.reset();
-        preparer.prepare(session.model());
+        preparer.prepare(session.model(), !framed_);
+        if (wantsMesh() && document.dragging()) preparer.preview(session.model(), previewCells);
     }
     if (session.mesh() != meshed && session.mesh()) preparer.prepare(session.mesh());
-    Preparer::Ready ready = preparer.poll();
-    if (ready.field.field) {
-        if (const Status s = field.setField(ready.field.field); !s) say(s.error().message, true);
-        cellSeconds = ready.field.seconds;
-        if (!framed_) {
-            orbit = Orbit::from(frame(ready.field.of->model.tape, ready.field.field->bounds, 1));
+    Preparer::News ready = preparer.poll();
+    if (ready.field.scene) {
+        fieldTimes = ready.field.times;
+        compiles += fieldTimes.compile > 0;
+        preparer.retire(field.setField(std::move(ready.field.scene)));
+        if (!framed_ && ready.field.camera) {
+            orbit = Orbit::from(*ready.field.camera);
             framed_ = true;
         }
         news = true;
     }
-    if (ready.mesh.mesh) {
-        if (const Status s = mesh.setMesh(*ready.mesh.mesh); !s) say(s.error().message, true);
+    if (ready.inside) {
+        orbit = Orbit::from(*ready.inside);
+        news = true;
+    }
+    if (ready.fog.scene) {
+        field.setFog(std::move(ready.fog.scene));
+        news = true;
+    }
+    if (ready.mesh.scene) {
+        if (const Status s = mesh.setMesh(std::move(ready.mesh.scene)); !s) say(s.error().message, true);
+        previewed = ready.meshIsPreview;
         news = true;
     }
     if (!ready.problem.empty()) say(ready.problem, true);
     settled_ = settled && !working();
     return news;
+}
+
+bool Workbench::drawn() const {
+    return (look.pane == Pane::Mesh || field.finished()) && (!wantsMesh() || mesh.finished());
+}
+
+void Workbench::cancel() {
+    session.cancel();
+    preparer.cancel();
+    say("Cancelled: what is shown was made before");
 }
 
 void Workbench::select(derive::ShapeId shape, bool quiet) {
@@ -210,7 +239,9 @@ MeshStyle Workbench::meshStyle() const {
 }
 
 void Workbench::stepInside() {
-    if (shown() && field.hasField()) orbit = Orbit::from(inside(shown()->model.tape, field.bounds()));
+    if (!shown()) return;
+    preparer.lookInside(session.model());
+    settled_ = false;
 }
 
 void Workbench::startTurntable(int count) {

@@ -20,7 +20,7 @@
 
 namespace sgm::viewer {
 
-enum class Pane { Field, Mesh, Split };
+enum class Pane { Field, Fog, Mesh, Split };
 enum class Hands { Usual, Blender };
 enum class JointsShown { None, Selected, All };
 
@@ -58,7 +58,8 @@ struct Hover {
 
 class Workbench {
 public:
-    Workbench(Report& report, std::function<void()> wake);
+    /// `shared` is a context for the worker that uploads.
+    Workbench(Report& report, std::unique_ptr<SharedContext> shared, std::function<void()> wake);
 
     // --- The document ---
     Status open(const std::filesystem::path& path);
@@ -114,7 +115,11 @@ public:
     /// Writes pictures that were asked for, once the view is whole. True when the view moves on.
     Result<bool> takePictures();
     MeshStyle meshStyle() const;
-    bool wantsMesh() const { return look.pane != Pane::Field; }
+    bool wantsMesh() const { return look.pane == Pane::Mesh || look.pane == Pane::Split; }
+    /// All that the window shows is whole.
+    bool drawn() const;
+    /// Stops what runs; what is shown stays.
+    void cancel();
     /// One sentence at the bottom of the window.
     void say(std::string text, bool problem = false);
 
@@ -138,7 +143,9 @@ public:
     std::optional<Turntable> turntable;
     bool pictureWanted = false;
     bool leaving = false;  ///< the window may close
-    double cellSeconds = 0;  ///< that the last field took to be prepared
+    bool previewed = false;  ///< the mesh shown is the GPU's, of a model that a hand is changing
+    ReadyTimes fieldTimes;  ///< that the last field took
+    int compiles = 0;       ///< of shaders for fields, so far
 
 private:
     void resolveSelection();
@@ -153,6 +160,7 @@ private:
     derive::ShapeId selected_ = derive::none;
     uint64_t asked_ = ~uint64_t(0);  ///< the revision the session was last asked for
     int askedResolution_ = 0;
+    std::shared_ptr<const Shown> askedFog_;
     const derive::Derivation* askedByHand_ = nullptr;
     bool settled_ = false;  ///< all that was computed has been taken over
     bool framed_ = false;  ///< the camera has been set for this file

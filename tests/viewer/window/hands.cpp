@@ -267,6 +267,20 @@ void Hands::key(const std::string& keys) {
     settled();
 }
 
+void Hands::holding(const std::string& key, const std::function<void()>& act) {
+    send({"keydown", key}, [](const auto& input) { return input["keys"] == 1; });
+    act();
+    send({"keyup", key}, [](const auto& input) { return input["keys"] == 0; });
+}
+
+void Hands::keys(const std::vector<std::string>& keys) {
+    std::vector<std::string> words{"key", "--delay", "4"};
+    words.insert(words.end(), keys.begin(), keys.end());
+    const uint64_t wanted = state()["input"]["releases"].get<uint64_t>() + keys.size();
+    send(words, [&](const auto& input) { return input["releases"] >= wanted && input["keys"] == 0; });
+    settled();
+}
+
 void Hands::type(const std::string& text) {
     const uint64_t wanted = state()["input"]["releases"].get<uint64_t>() + text.size();
     send({"type", "--delay", "5", text}, [&](const auto& input) { return input["releases"] >= wanted && input["keys"] == 0; });

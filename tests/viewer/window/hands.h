@@ -47,8 +47,17 @@ protected:
     /// Looks at what shows while a widget is held and dragged; lets go of it where it was.
     void hold(const std::string& widget, const std::function<void()>& look);
     void dragTo(const std::string& from, int x, int y);
+    void dragTo(const std::string& from, std::pair<int, int> place) { dragTo(from, place.first, place.second); }
+    /// A place of a widget on the screen, in shares of its width and height.
+    std::pair<int, int> placeOf(const std::string& widget, double x, double y);
     void wheel(const std::string& widget, int clicks);
     void key(const std::string& keys);
+    /// Acts while a key is down.
+    void holding(const std::string& key, const std::function<void()>& act);
+    /// Presses keys one after the other, faster than a model is made.
+    void keys(const std::vector<std::string>& keys);
+    /// Drops a file on the window as a file manager does.
+    void dropFile(const std::filesystem::path& file);
     void type(const std::string& text);
     /// A click and then commands, all sent at once.
     void burst(const std::string& widget, const std::vector<std::string>& keys);
@@ -67,7 +76,6 @@ private:
     void press(int button);
     void release(int button);
     void tool(const std::vector<std::string>& arguments) const;
-    std::pair<int, int> placeOf(const std::string& widget, double x, double y);
 
     pid_t program_ = 0;
     static pid_t server_;

@@ -46,7 +46,7 @@ void ParametersPanel::show(Workbench& bench) {
     ImGui::PopFont();
     if (!bench.shown()) return faint("They come with the first model.");
     choices(bench);
-    rows_ = paramRows(*bench.shown()->grammar, bench.shown()->options, bench.document.choice());
+    list(bench);
     if (ImGui::BeginChild("rows")) {
         std::string group;
         for (const ParamRow& r : rows_) {
@@ -57,6 +57,23 @@ void ParametersPanel::show(Workbench& bench) {
         styles(bench);
     }
     ImGui::EndChild();
+}
+
+void ParametersPanel::list(Workbench& bench) {
+    rows_ = paramRows(*bench.shown()->grammar, bench.shown()->options, bench.document.choice());
+    if (aheadRevision_ != bench.document.revision() || bench.shown()->revision == aheadRevision_) ahead_.clear();
+    for (const ParamRow& row : ahead_)
+        for (ParamRow& r : rows_)
+            if (r.name == row.name) r = row;
+}
+
+void ParametersPanel::set(Workbench& bench, const ParamRow& row) {
+    const bool goesOn = aheadRevision_ == bench.document.revision();
+    bench.edit(setParams(*bench.document.ast(), bench.document.choice(), {row}), "Set " + row.name);
+    if (!goesOn) ahead_.clear();
+    std::erase_if(ahead_, [&](const ParamRow& r) { return r.name == row.name; });
+    ahead_.push_back(row);
+    aheadRevision_ = bench.document.revision();
 }
 
 void ParametersPanel::choices(Workbench& bench) {
@@ -184,7 +201,7 @@ void ParametersPanel::row(Workbench& bench, ParamRow row) {
     const bool active = held_.has_value();
     if (control(bench, row)) {
         if (row.kind == ParamRow::Kind::Integer || row.kind == ParamRow::Kind::Real) held_ = row;
-        bench.edit(setParams(*bench.document.ast(), bench.document.choice(), {row}), "Set " + row.name);
+        set(bench, row);
     }
     if (active && !ImGui::IsMouseDown(0) && !ImGui::GetIO().WantTextInput) held_.reset();
     ImGui::SameLine(left + width - ImGui::GetFrameHeight() * 0.8f);
@@ -219,7 +236,9 @@ void ParametersPanel::keys(Workbench& bench) {
     for (const ImWchar c : io.InputQueueCharacters) {
         if (c > 127) continue;
         const ParamRow* row = rowOfKey(rows_, static_cast<char>(std::tolower(c)));
-        if (row) bench.edit(setParams(*bench.document.ast(), bench.document.choice(), {stepped(*row, std::isupper(c))}), "Set " + row->name);
+        if (!row) continue;
+        set(bench, stepped(*row, std::isupper(c)));
+        list(bench);  // the next letter steps on from here
     }
 }
 

@@ -83,6 +83,10 @@ void RulesPanel::show(Workbench& bench) {
     }
     ImGui::EndChild();
     ImGui::PopStyleVar();
+    if (const auto drop = std::exchange(drop_, std::nullopt); drop && drop->rule < listed_->rules.size()) {
+        const syntax::RuleDecl* before = drop->before < listed_->rules.size() ? &listed_->rules[drop->before] : nullptr;
+        bench.edit(edits::moveRule(*listed_, listed_->rules[drop->rule], before), "Move rule " + listed_->rules[drop->rule].symbol.text);
+    }
     ImGui::Separator();
     if (ImGui::BeginChild("inspector")) {
         if (selected < rows_.size()) inspector(bench, rows_[selected]);
@@ -113,12 +117,33 @@ void RulesPanel::row(Workbench& bench, size_t index) {
         bench.selectText(row.span.begin);
     }
     bench.report.mark(fmt::format("rule.{}.{}", listed_->source->place(row.span.begin).line, row.text));
+    if (row.kind == Kind::Rule) dragRule(row, low);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     ImFont* font = isHead ? strongFont() : codeFont();
     const float x = low.x + 4 + static_cast<float>(row.depth) * 14;
     const std::string text = (row.kind == Kind::Element && row.first && row.sibling > 0 ? ", " : "") + row.text;
     list.AddText(font, font->FontSize, {x, low.y + 2}, colorOf(row), text.c_str());
     ImGui::PopID();
+}
+
+/// Rules are dragged by their head rows, above the upper half of another or below its lower half.
+void RulesPanel::dragRule(const RuleRow& row, ImVec2 low) {
+    const auto at = static_cast<size_t>(row.rule - listed_->rules.data());
+    if (ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceNoDisableHover)) {
+        ImGui::SetDragDropPayload("rule", &at, sizeof at);
+        ImGui::TextUnformatted(row.text.c_str());
+        ImGui::EndDragDropSource();
+    }
+    if (!ImGui::BeginDragDropTarget()) return;
+    constexpr ImGuiDragDropFlags quiet = ImGuiDragDropFlags_AcceptBeforeDelivery | ImGuiDragDropFlags_AcceptNoDrawDefaultRect;
+    if (const ImGuiPayload* dragged = ImGui::AcceptDragDropPayload("rule", quiet)) {
+        const float height = ImGui::GetTextLineHeight() + 6;
+        const bool below = ImGui::GetIO().MousePos.y > low.y + height / 2;
+        const float y = low.y + (below ? height : 0) - 1;
+        ImGui::GetWindowDrawList()->AddLine({low.x, y}, {low.x + ImGui::GetContentRegionAvail().x, y}, tint::accent, 2);
+        if (dragged->IsDelivery()) drop_ = Drop{*static_cast<const size_t*>(dragged->Data), at + below};
+    }
+    ImGui::EndDragDropTarget();
 }
 
 template <class Commit>
