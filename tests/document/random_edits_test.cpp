@@ -1,5 +1,6 @@
 // A thousand edits by chance through the panels' calls: text and tree agree after every one, and undoing all restores
 // the bytes. What the tree should be is found without the text: the same change is made to a syntax tree of its own.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -70,7 +71,32 @@ private:
         return changeElement();
     }
 
+    /// How a `derive` line calls a rule.
+    static std::string called(const std::vector<RuleDecl>& rules, const RuleDecl& rule) {
+        if (!rule.name.empty()) return rule.name.text;
+        int number = 0;
+        for (const RuleDecl* r = rules.data(); r <= &rule; ++r) number += r->name.empty() && r->symbol.text == rule.symbol.text;
+        return rule.symbol.text + "#" + std::to_string(number);
+    }
+
+    /// `derive` lines go on meaning the same rules, which are known again by a number kept in their spans.
     Edit changeRule() {
+        for (size_t k = 0; k < expected.rules.size(); ++k) expected.rules[k].span.begin = static_cast<uint32_t>(k) + 1;
+        const std::vector<RuleDecl> before = expected.rules;
+        Edit edit = changeRuleAlone();
+        for (syntax::DeriveDecl& way : expected.derives)
+            for (auto& step : way.steps) {
+                const auto was = std::find_if(before.begin(), before.end(), [&](const RuleDecl& r) { return called(before, r) == step.rule.text; });
+                if (was == before.end()) continue;
+                const auto is = std::find_if(expected.rules.begin(), expected.rules.end(), [&](const RuleDecl& r) { return r.span.begin == was->span.begin; });
+                if (is != expected.rules.end()) step.rule.text = called(expected.rules, *is);
+                else if (was->name.empty())
+                    step.rule.text = was->symbol.text + "#" + std::to_string(std::count_if(before.begin(), before.end(), [&](const RuleDecl& r) { return r.name.empty() && r.symbol.text == was->symbol.text; }));
+            }
+        return edit;
+    }
+
+    Edit changeRuleAlone() {
         const Ast& now = *document.ast();
         const size_t i = draw(now.rules.size()), j = draw(now.rules.size());
         std::vector<RuleDecl>& rules = expected.rules;
@@ -91,6 +117,7 @@ private:
                 RuleDecl copy = rules[i];
                 if (edit.ok() && !copy.name.empty())
                     copy.name.text = parsed(applied(document.text(), *edit)).rules[i + 1].name.text;
+                copy.span.begin = 0;
                 for (const RuleDecl& r : rules) EXPECT_TRUE(copy.name.empty() || r.name.text != copy.name.text);
                 rules.insert(at(i + 1), std::move(copy));
                 return edit;
@@ -109,6 +136,7 @@ private:
                 const std::string symbol = now.rules[i].symbol.text;
                 const Edit edit = edits::addRule(now, symbol, "+ sphere at +y : " + symbol, &now.rules[i]);
                 rules.insert(at(i + 1), kept("grammar 1\nrule " + symbol + " -> + sphere at +y : " + symbol).rules[0]);
+                rules[i + 1].span.begin = 0;
                 return edit;
             }
             case 4:
@@ -119,10 +147,6 @@ private:
                 return edits::setRepeat(now, now.rules[i], set(rules[i].repeat));
             default: {
                 const std::string name = draw(2) ? "N" + std::to_string(draw(1000)) : "";
-                for (syntax::DeriveDecl& way : expected.derives)
-                    for (auto& step : way.steps)
-                        if (!name.empty() && !rules[i].name.empty() && step.rule.text == rules[i].name.text)
-                            step.rule.text = name;
                 rules[i].name.text = name;
                 return edits::setName(now, now.rules[i], name);
             }
