@@ -10,7 +10,7 @@ cd "$(dirname "$0")"
 case "${1:-}" in
   bench) build bench && shift && exec build/release/tests/bench/bench "$@" ;;
   view) build sgm sgm-viewer ;;
-  gallery) build sgm bench && shift && exec docs/gallery.sh "$@" ;;
+  gallery) build sgm sgm-viewer bench && shift && exec docs/gallery.sh "$@" ;;
 esac
 build sgm
 sgm=build/release/cli/sgm

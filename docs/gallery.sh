@@ -3,6 +3,7 @@
 #   ./run.sh gallery            all of it
 #   ./run.sh gallery NAME…      the pictures of these objects of docs/gallery.txt
 #   ./run.sh gallery times      the times alone: on a calm machine
+#   ./run.sh gallery window     the picture of the window (apt-get install xvfb xdotool imagemagick)
 #   ./run.sh gallery blender    two models in Blender (apt-get install blender), for docs/programs.md
 cd "$(dirname "$0")/.."
 set -eu
@@ -54,7 +55,26 @@ blender() {
   echo docs/pictures/blender.png
 }
 
-case $* in times | blender) "$*"; exit ;; esac
+# The window with a shape selected, on a display of its own.
+window() {
+  local report
+  report=$(mktemp)
+  LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s "-screen 0 1280x800x24" bash -c '
+    set -eu
+    settled() { until grep -q "\"drawn\": true" "$1" && grep -q "\"busy\": false" "$1"; do sleep 0.3; done; }
+    build/release/cli/sgm-viewer examples/grotto.sgm --report "$1" &
+    settled "$1"
+    xdotool mousemove 600 430 click 1 mousemove 1000 770
+    sleep 1
+    settled "$1"
+    sleep 1
+    import -window root docs/pictures/window.png
+    kill %1' _ "$report"
+  rm "$report"
+  echo docs/pictures/window.png
+}
+
+case $* in times | window | blender) "$*"; exit ;; esac
 known=0
 while IFS='|' read -r family name options inside; do
   name=${name// /}

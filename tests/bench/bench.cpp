@@ -8,6 +8,7 @@
 #include "modeler/core/parallel.h"
 #include "tests/bench/gallery.h"
 #include "tests/bench/kifs.h"
+#include "tests/bench/pictures.h"
 #include "tests/bench/report.h"
 
 namespace {
@@ -20,7 +21,7 @@ struct Request {
     std::vector<int> resolutions;
     MeasureOptions measure;
     std::string json, drag, gallery;
-    bool bars = false, cpu = false, noPeers = false, noDense = false, kifs = false;
+    bool bars = false, cpu = false, noPeers = false, noDense = false, kifs = false, pictures = false;
 };
 
 void addOptions(CLI::App& app, Request& request) {
@@ -47,6 +48,8 @@ void addOptions(CLI::App& app, Request& request) {
     app.add_option("--gallery", request.gallery,
                    "Measure the objects of this list (docs/gallery.txt) instead, and print the page's section");
     app.add_flag("--kifs", request.kifs, "Measure the folding of fractals and what the shells of facades save instead");
+    app.add_flag("--pictures", request.pictures,
+                 "Measure pictures of fields at 640 x 640 instead, and judge what the window asks of itself");
     app.add_flag("--no-dense", request.noDense, "Leave the dense sweeps out");
     app.add_flag("--no-peers", request.noPeers, "Leave OpenVDB and VTK out");
     app.add_option("--json", request.json, "Write all figures to this file");
@@ -139,6 +142,13 @@ int main(int argc, char** argv) {
         const auto section = request.kifs ? kifsTables(request.measure.running.clock) : galleryTimes(request.gallery, request.measure);
         if (!section.ok()) return fail(section.error());
         fmt::print("{}", *section);
+        return 0;
+    }
+    if (request.pictures) {
+        const auto pictures = measurePictures(request.measure.repeats, request.measure.running);
+        if (!pictures.ok()) return fail(pictures.error());
+        fmt::print("{}\n", pictureTable(*pictures));
+        for (const Bar& bar : judge(*pictures)) fmt::print("{}\n", barLine(bar));
         return 0;
     }
     const auto scenes = chooseScenes(request);

@@ -19,7 +19,7 @@ rule Base -> + sphere size wide at +y : Ball
 rule Ball -> + cylinder at +y : Cap
 rule Ball weight 2 -> + cone at +y
 style Low for Hall { tall = 2.0 }
-derive one: Base => Ball#1
+derive one: Base#1 => Ball#1
 )";
 
 std::string lineOf(const std::string& text, int number) {
@@ -34,7 +34,7 @@ TEST_F(Verbs, RulesAndShapes) {
     dragTo("rule.9.Ball weight 2", placeOf("rule.8.Ball", 0.4, 0.2));
     EXPECT_EQ(lineOf(text(), 8), lineOf(hall, 9));
     EXPECT_EQ(lineOf(text(), 9), lineOf(hall, 8));
-    EXPECT_EQ(lineOf(text(), 11), "derive one: Base => Ball#2");
+    EXPECT_EQ(lineOf(text(), 11), "derive one: Base#1 => Ball#2");
     shoot("reordered");
     key("ctrl+z");
     dragTo("rule.7.Base", placeOf("rule.9.Ball weight 2", 0.4, 0.9));
@@ -192,6 +192,15 @@ TEST_F(Verbs, TheView) {
     until("a turntable", [&](const auto&) { return fs::exists(folder / "test-turn-001.png"); }, 120);
     key("Escape");
     EXPECT_EQ(state()["turning"], false);
+}
+
+TEST_F(Verbs, AMeshFollowsTheHand) {
+    openText(hall);
+    click("pane.Split");
+    const int before = until("a mesh", [](const auto& s) { return s["triangles"] > 1000 && !s["busy"] && s["preview"] == false; })["triangles"];
+    hold("param.tall", [&] { until("the GPU's mesh", [](const auto& s) { return s["preview"] == true; }, 60); });
+    const auto after = until("the real mesh", [](const auto& s) { return s["preview"] == false && !s["busy"]; });
+    EXPECT_GT(after["triangles"], before / 2);
 }
 
 TEST_F(Verbs, EveryFormatIsExported) {
