@@ -30,7 +30,8 @@ public:
     void show();
 
 private:
-    bool begin(const char* name, ImVec2 low, ImVec2 size);
+    /// `above`: over all others.
+    bool begin(const char* name, ImVec2 low, ImVec2 size, bool above = false);
     void left(ImVec2 low, ImVec2 size);
     void right(ImVec2 low, ImVec2 size);
     void splitter(const char* name, float x, float y, float height, float& width, float sign);
@@ -46,18 +47,19 @@ private:
     float left_ = 296, right_ = 396;  // before the screen's scale
 };
 
-bool Workspace::begin(const char* name, ImVec2 low, ImVec2 size) {
+bool Workspace::begin(const char* name, ImVec2 low, ImVec2 size, bool above) {
     ImGui::SetNextWindowPos(low);
     ImGui::SetNextWindowSize(size);
     return ImGui::Begin(name, nullptr,
                         ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
-                            ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
+                            (above ? 0 : ImGuiWindowFlags_NoBringToFrontOnFocus) | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
                             ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoNavFocus);
 }
 
 void Workspace::splitter(const char* name, float x, float y, float height, float& width, float sign) {
     constexpr float grab = 6;
-    if (begin(name, {x - grab / 2, y}, {grab, height})) {
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));  // it would hide all of so narrow a window
+    if (begin(name, {x - grab / 2, y}, {grab, height}, true)) {
         ImGui::SetCursorScreenPos({x - grab / 2, y});
         ImGui::InvisibleButton(name, {grab, height});
         bench_.report.mark(name + 2);  // without "##"
@@ -68,6 +70,7 @@ void Workspace::splitter(const char* name, float x, float y, float height, float
         if (ImGui::IsItemActive()) width = std::clamp(width + sign * ImGui::GetIO().MouseDelta.x, 200.0f, 640.0f);
     }
     ImGui::End();
+    ImGui::PopStyleVar();
 }
 
 void Workspace::left(ImVec2 low, ImVec2 size) {

@@ -210,7 +210,10 @@ void Bars::openDialog(Workbench& bench) {
         for (const fs::path& path : folders)
             if (ImGui::Selectable((path.filename().string() + "/").c_str(), false, ImGuiSelectableFlags_DontClosePopups)) folder_ = path.string();
         for (const fs::path& path : files) {
-            if (ImGui::Selectable(path.filename().c_str())) bench.drop(path);
+            if (ImGui::Selectable(path.filename().c_str())) {
+                bench.drop(path);
+                ImGui::CloseCurrentPopup();
+            }
             bench.report.mark("open." + path.filename().string());
         }
     }

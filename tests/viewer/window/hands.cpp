@@ -214,6 +214,11 @@ void Hands::click(const std::string& widget, double x, double y, int button) {
     release(button);
 }
 
+void Hands::poke(const std::string& widget, double x) {
+    const auto [px, py] = placeOf(widget, x, 0.5);
+    tool({"mousemove", std::to_string(px), std::to_string(py), "mousedown", "1", "mouseup", "1"});
+}
+
 void Hands::drag(const std::string& widget, double fromX, double fromY, double toX, double toY, int button) {
     const auto [fx, fy] = placeOf(widget, fromX, fromY);
     const auto [x, y] = placeOf(widget, toX, toY);

@@ -42,6 +42,8 @@ protected:
     /// Rests on a place of a widget, given in shares of its width and height.
     void point(const std::string& widget, double x = 0.5, double y = 0.5);
     void click(const std::string& widget, double x = 0.5, double y = 0.5, int button = 1);
+    /// A click that waits for nothing, for a program at work.
+    void poke(const std::string& widget, double x = 0.5);
     /// Presses at one place of a widget, moves to another and lets go.
     void drag(const std::string& widget, double fromX, double fromY, double toX, double toY, int button = 1);
     /// Looks at what shows while a widget is held and dragged; lets go of it where it was.

@@ -14,8 +14,8 @@ param wide = 2m in 1m..4m "Width" group Size key w
 param tall = 3.0 in 1.0..5.0 "Height" group Size
 param count = 2 in 1..9 "Columns" key n
 
-start Hall -> cube size (4, tall, 4) : Base - cube size (3, 2.5, 3) : Void
-rule Base -> + sphere size wide at +y : Ball
+start Hall -> cube size (4, tall, 4) : Base
+rule Base -> + sphere size wide at +y : Ball + cylinder size (1, .2 * count, 1) at +x : Post
 rule Ball -> + cylinder at +y : Cap
 rule Ball weight 2 -> + cone at +y
 style Low for Hall { tall = 2.0 }
@@ -31,24 +31,24 @@ std::string lineOf(const std::string& text, int number) {
 TEST_F(Verbs, RulesAndShapes) {
     openText(hall);
     // A rule is dragged above another by its head row; the derive line goes on meaning the same rule.
-    dragTo("rule.9.Ball weight 2", placeOf("rule.8.Ball", 0.4, 0.2));
+    dragTo("rule.9.Ball", placeOf("rule.8.Ball", 0.4, 0.2));
     EXPECT_EQ(lineOf(text(), 8), lineOf(hall, 9));
     EXPECT_EQ(lineOf(text(), 9), lineOf(hall, 8));
     EXPECT_EQ(lineOf(text(), 11), "derive one: Base#1 => Ball#2");
     shoot("reordered");
     key("ctrl+z");
-    dragTo("rule.7.Base", placeOf("rule.9.Ball weight 2", 0.4, 0.9));
+    dragTo("rule.7.Base", placeOf("rule.9.Ball", 0.4, 0.9));
     EXPECT_EQ(lineOf(text(), 9), lineOf(hall, 7)) << "below the last one";
     key("ctrl+z");
     EXPECT_EQ(text(), hall);
 
     click("rule.7.+ sphere : Ball");
     fill("edit.solid", "morph(sphere, cube, .5)");
-    EXPECT_EQ(lineOf(text(), 7), "rule Base -> + morph(sphere, cube, .5) size wide at +y : Ball");
+    EXPECT_NE(lineOf(text(), 7).find("-> + morph(sphere, cube, .5) size wide at +y : Ball"), std::string::npos);
     click("attribute.add");
     click("attribute.add.shift");
     fill("edit.shift", "(.2, 0, 0)");
-    EXPECT_EQ(lineOf(text(), 7), "rule Base -> + morph(sphere, cube, .5) size wide at +y shift (.2, 0, 0) : Ball");
+    EXPECT_NE(lineOf(text(), 7).find("size wide at +y shift (.2, 0, 0) : Ball"), std::string::npos) << lineOf(text(), 7);
     while (state()["undo"] != "") key("ctrl+z");
     EXPECT_EQ(text(), hall);
 
@@ -60,12 +60,12 @@ TEST_F(Verbs, RulesAndShapes) {
     EXPECT_TRUE(has("shape.Hall/Base/Ball"));
     click("shapes.filter");
     type("Ball");
-    EXPECT_FALSE(has("shape.Hall/Void"));
+    EXPECT_FALSE(has("shape.Hall/Base/Post"));
     EXPECT_TRUE(has("shape.Hall/Base/Ball"));
     key("ctrl+a");
     key("BackSpace");
     key("Escape");
-    EXPECT_TRUE(has("shape.Hall/Void"));
+    EXPECT_TRUE(has("shape.Hall/Base/Post"));
     click("look.joints");
     click("look.joints.All joints");
     EXPECT_EQ(state()["look"]["joints"], 2);
@@ -82,7 +82,7 @@ TEST_F(Verbs, RulesAndShapes) {
 
     // A problem leads to its line.
     click("tab.Text");
-    click("line.7", 0.99);
+    click("line.9", 0.99);
     type(" colr red");
     until("a problem", [](const auto& s) { return !s["problems"].empty(); });
     key("Escape");
@@ -208,11 +208,13 @@ TEST_F(Verbs, EveryFormatIsExported) {
     click("tab.Export");
     click("export.format");
     std::vector<std::string> formats;
-    for (const auto& [name, box] : report()["widgets"].items())
+    const nlohmann::json widgets = report()["widgets"];
+    for (const auto& [name, box] : widgets.items())
         if (name.starts_with("export.format..")) formats.push_back(name);
     EXPECT_GE(formats.size(), 7u);
-    key("Escape");
-    drag("export.cells", 0.5, 0.5, 0.02, 0.5);
+    ASSERT_FALSE(formats.empty());
+    click(formats.front());
+    drag("export.cells", 0.5, 0.5, 0.05, 0.5);
     for (const std::string& format : formats) {
         click("export.format");
         click(format);
@@ -243,11 +245,10 @@ TEST_F(Verbs, FilesAreOpened) {
 TEST_F(Verbs, WorkIsCancelled) {
     openText("grammar 1\nparam n = 1 in 1..60000\nstart A -> cube : B\nrule B repeat n -> + sphere size .9 ~> .2 on any(+x) at free(+x, +y, +z) : B\n");
     const int shapes = state()["shapes"];
-    drag("param.n", 0.0, 0.5, 0.98, 0.5);
-    click("progress.cancel");
-    until("rest", [](const auto& s) { return !s["busy"]; });
-    EXPECT_TRUE(std::string(state()["notice"]).starts_with("Cancelled") || !state()["problems"].empty()) << state().dump(1);
-    EXPECT_GE(state()["shapes"], shapes);
+    poke("param.n", 0.97);
+    until("work", [&](const auto& s) { return s["busy"] == true && has("progress.cancel"); });
+    poke("progress.cancel");
+    until("rest", [](const auto& s) { return !s["busy"] && std::string(s["notice"]).starts_with("Cancelled"); });
     key("ctrl+z");
     until("the small model", [&](const auto& s) { return s["shapes"] == shapes && !s["busy"]; });
 }
