@@ -51,7 +51,7 @@ struct Facade {
     /// The operands from the fractal on have to be constants here, as modeler/field/facade.cpp makes them: fetching them from
     /// registers too took a third of a picture's time.
     static constexpr std::string_view glsl = R"(
-#define number(texel) uintBitsToFloat(texelFetch(tapes, int(texel)).y)
+#define number(at) uintBitsToFloat(texelFetch(tapeWords, int(at)).x)
 float most = number(first + 37u);
 if (arg(first + 3u) >= most || arg(first + 4u) <= -number(first + 38u)) return most;
 vec3 c = vec3(number(first + 5u), number(first + 6u), number(first + 7u));
