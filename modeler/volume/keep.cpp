@@ -167,6 +167,7 @@ Status keepOnly(Volume& level, mesh::Keep keep, float slack_m, Progress* progres
     if (keep == mesh::Keep::All || grid.tree().leafCount() == 0) return Done{};
     if (progress) progress->begin("keep", 3);
     const openvdb::BoolGrid::Ptr inside = openvdb::tools::sdfInteriorMask(grid);
+    if (inside->tree().empty()) return Done{};
     if (inside->evalActiveVoxelBoundingBox().volume() > mostVoxels)
         return Error{Error::Kind::Budget, "more than 2^28 voxels to look for what floats: choose a larger --cell"};
     inside->tree().voxelizeActiveTiles();

@@ -60,6 +60,18 @@ TEST(Keep, AgreesWithTheMesh) {
     }
 }
 
+/// A band without a voxel inside: thinner than a voxel.
+TEST(Keep, NothingInsideIsNothingToTakeOut) {
+    KnownSolid sheet;
+    sheet.field.value = abs(sheet.graph->y() - 0.013f) - 1e-4f;
+    sheet.field.bounds = {{-0.5f, -0.1f, -0.5f}, {0.5f, 0.1f, 0.5f}};
+    sheet.field.value = max(sheet.field.value, max(abs(sheet.graph->x()), abs(sheet.graph->z())) - 0.5f);
+    Volume level = *levelSetOf(sheet, 0.05f);
+    const uint64_t before = level.activeVoxels();
+    ASSERT_TRUE(keepOnly(level, mesh::Keep::Grounded, level.voxel_m(), nullptr).ok());
+    EXPECT_EQ(level.activeVoxels(), before);
+}
+
 /// Parts that hang together only around corners of leaves, in every direction.
 TEST(Keep, WaysAcrossLeavesAreFound) {
     KnownSolid solid;
