@@ -59,18 +59,18 @@ blender() {
 window() {
   local report
   report=$(mktemp)
-  LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s "-screen 0 1280x800x24" bash -c '
+  LIBGL_ALWAYS_SOFTWARE=1 XDG_STATE_HOME=$report.state xvfb-run -a -s "-screen 0 1280x800x24" bash -c '
     set -eu
     settled() { until grep -q "\"drawn\": true" "$1" && grep -q "\"busy\": false" "$1"; do sleep 0.3; done; }
-    build/release/cli/sgm-viewer examples/grotto.sgm --report "$1" &
+    build/release/cli/sgm-viewer examples/tower.sgm --report "$1" &
     settled "$1"
-    xdotool mousemove 600 430 click 1 mousemove 1000 770
+    xdotool mousemove 590 340 click 1 mousemove 1000 770
     sleep 1
     settled "$1"
     sleep 1
     import -window root docs/pictures/window.png
     kill %1' _ "$report"
-  rm "$report"
+  rm -rf "$report" "$report.state"
   echo docs/pictures/window.png
 }
 

@@ -44,7 +44,7 @@ private:
     TextPanel text_;
     StepPanel step_;
     ExportPanel export_;
-    float left_ = 296, right_ = 396;  // before the screen's scale
+    float left_ = 0, right_ = 0;  // pixels; 0 before the first frame
 };
 
 bool Workspace::begin(const char* name, ImVec2 low, ImVec2 size, bool above) {
@@ -52,7 +52,7 @@ bool Workspace::begin(const char* name, ImVec2 low, ImVec2 size, bool above) {
     ImGui::SetNextWindowSize(size);
     return ImGui::Begin(name, nullptr,
                         ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
-                            (above ? 0 : ImGuiWindowFlags_NoBringToFrontOnFocus) | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
+                            (above ? ImGuiWindowFlags_NoBackground : ImGuiWindowFlags_NoBringToFrontOnFocus) | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
                             ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoNavFocus);
 }
 
@@ -105,6 +105,10 @@ void Workspace::right(ImVec2 low, ImVec2 size) {
 
 void Workspace::show() {
     const ImGuiIO& io = ImGui::GetIO();
+    if (left_ == 0) {
+        left_ = std::clamp(io.DisplaySize.x * 0.22f, 296.0f, 430.0f);
+        right_ = std::clamp(io.DisplaySize.x * 0.26f, 396.0f, 520.0f);
+    }
     const float bar = ImGui::GetFrameHeight() + 14, status = ImGui::GetFrameHeight() + 6, height = io.DisplaySize.y - bar - status;
     const float problems = bench_.session.problems().empty() ? 0 : std::min(ImGui::GetFrameHeight() * 4.5f, height / 3);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));

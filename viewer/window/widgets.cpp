@@ -36,7 +36,7 @@ bool quietButton(Report& report, const std::string& name, const char* label, con
 
 bool oneOf(Report& report, const std::string& name, std::span<const char* const> labels, int& value) {
     const int before = value;
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(1, 0));
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(1, ImGui::GetStyle().ItemSpacing.y));
     for (int i = 0; i < static_cast<int>(labels.size()); ++i) {
         if (i > 0) ImGui::SameLine();
         if (i == before) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_HeaderActive));
@@ -95,6 +95,18 @@ void heading(const char* text) {
     ImGui::PushFont(strongFont());
     ImGui::TextUnformatted(text);
     ImGui::PopFont();
+}
+
+std::string shortened(const std::string& text, float width) {
+    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+    std::string kept = text;
+    const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
+    do {
+        while (!kept.empty() && continues(kept.back())) kept.pop_back();
+        if (!kept.empty()) kept.pop_back();
+        while (!kept.empty() && kept.back() == ' ') kept.pop_back();
+    } while (!kept.empty() && ImGui::CalcTextSize((kept + "…").c_str()).x > width);
+    return kept + "…";
 }
 
 void faint(const std::string& text) {

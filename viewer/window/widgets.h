@@ -22,7 +22,9 @@ bool choice(Report& report, const std::string& name, std::span<const std::string
 bool field(Report& report, const std::string& name, std::string& text, const char* hint = nullptr, float width = 0);
 /// A heading within a panel.
 void heading(const char* text);
-/// `text` in the faint colour, cut with … at the right edge.
+/// The text, its end replaced by "…" where it is wider than `width` pixels.
+std::string shortened(const std::string& text, float width);
+/// `text` in the faint colour.
 void faint(const std::string& text);
 /// Explains the widget just made while the pointer rests on it.
 void hint(const char* text);

@@ -190,11 +190,8 @@ void ParametersPanel::row(Workbench& bench, ParamRow row) {
     ImGui::PushID(row.name.c_str());
     const float width = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX();
     ImGui::AlignTextToFramePadding();
-    const ImVec2 at = ImGui::GetCursorScreenPos();
     const float labelWidth = width * 0.46f;
-    ImGui::PushClipRect(at, {at.x + labelWidth - 6, at.y + ImGui::GetFrameHeight()}, true);
-    ImGui::TextUnformatted(row.label.c_str());
-    ImGui::PopClipRect();
+    ImGui::TextUnformatted(shortened(row.label, labelWidth - 6).c_str());
     const std::string why = fmt::format("{} ({}){}", row.label, row.name, row.key ? fmt::format(", key {}", row.key) : "");
     hint(why.c_str());
     ImGui::SameLine(left + labelWidth);
