@@ -4,24 +4,39 @@
 // before and now, `shorten` makes of the whole tape what it made before (see `unreached`).
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "modeler/eval/evaluate.h"
+#include "modeler/eval/links.h"
 #include "modeler/eval/recompiler.h"
+#include "modeler/eval/tape_builder.h"
 
 namespace sgm::eval {
 
-struct ChangedPart {
-    Tape before, now;
+class Workspace;
+
+class ChangedParts {
+public:
+    /// Looks for the parts. False where they are so much of the tape that to ask them costs more than it saves. What is
+    /// known of the code is kept: use a new object for other code.
+    bool find(const Tape& tape, const NumbersChanged& changed);
+    /// Bit i is set where every part stays above care.most in box i (at most 64). There minima take nothing from a part,
+    /// nor does it narrow what they pass down: its greatest value is above all they care for. So the whole tape,
+    /// shortened to the box, is the same as with the old numbers.
+    uint64_t unreached(std::span<const Box3f> boxes, Care care, Workspace& workspace) const;
+
+private:
+    struct Part {
+        Tape before, now;
+    };
+    void mark(const Tape& tape, const NumbersChanged& changed);
+    void descend(const Tape& tape);
+    void extract(const Tape& tape, uint32_t value, Tape& into);
+
+    Links links_;
+    TapeBuilder builder_;
+    std::vector<uint8_t> numbers_, values_;  ///< by place in the table, and by value as in Links: does it hang on a change?
+    std::vector<uint32_t> found_, stack_;    ///< changed values below the topmost minima
+    std::vector<Part> parts_;                ///< the first found_.size() of them
 };
-
-/// Nothing where the parts are so much of the tape that to ask them costs more than it saves.
-std::optional<std::vector<ChangedPart>> changedParts(const Tape& tape, const NumbersChanged& changed);
-
-/// Bit i is set where every part stays above care.most in box i (at most 64). There minima take nothing from a part, nor
-/// does it narrow what they pass down: its greatest value is above all they care for. So the whole tape, shortened to the
-/// box, is the same as with the old numbers.
-uint64_t unreached(const std::vector<ChangedPart>& parts, std::span<const Box3f> boxes, Care care, Workspace& workspace);
 
 }  // namespace sgm::eval

@@ -68,10 +68,11 @@ Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progr
     Regions now, same;
     std::mutex guard;
     RegionFilter filter;
-    if (const auto parts = changed ? eval::changedParts(tape, *changed) : std::nullopt)
-        filter.skips = [&, parts, care = careOf(tape, grid)](std::span<const Vec3i> indices, int blocks,
-                                                            std::span<const Box3f> boxes, eval::Workspace& workspace) {
-            const uint64_t far = eval::unreached(*parts, boxes, care, workspace);
+    if (!changed) parts_ = {};
+    if (changed && parts_.find(tape, *changed))
+        filter.skips = [&, care = careOf(tape, grid)](std::span<const Vec3i> indices, int blocks,
+                                                      std::span<const Box3f> boxes, eval::Workspace& workspace) {
+            const uint64_t far = parts_.unreached(boxes, care, workspace);
             const std::lock_guard lock(guard);
             for (size_t i = 0; i < indices.size(); ++i)
                 if (far >> i & 1) same.emplace(Region{levelOf(blocks), indices[i]}, eval::Fingerprint{});
@@ -86,7 +87,7 @@ Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progr
         (equal ? same : now).emplace(region, print);
         return !equal;
     };
-    const auto blocks = subdivide(tape, grid, options_.threads, progress, counts, filter);
+    const auto blocks = subdivide(tape, grid, options_.threads, progress, counts, filter, &scratch_);
     if (!blocks.ok()) return blocks.error();
     keepBelow(regions_, same, now);
 

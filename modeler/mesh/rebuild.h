@@ -57,6 +57,8 @@ private:
     std::shared_ptr<const std::vector<float>> numbers_;  ///< the last tape's constants
     Regions regions_;  ///< all that may hold surface, blocks (level 0) and above
     Mesh mesh_;
+    eval::ChangedParts parts_;
+    std::vector<eval::Workspace> scratch_;
     size_t blocksMade_ = 0, blocksKept_ = 0;
 };
 

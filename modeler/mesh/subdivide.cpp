@@ -124,14 +124,17 @@ Status checkGrid(const Grid& grid) {
 }
 
 Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress,
-                                     Counts& counts, const RegionFilter& filter) {
+                                     Counts& counts, const RegionFilter& filter,
+                                     std::vector<eval::Workspace>* scratch) {
     const auto start = std::chrono::steady_clock::now();
     if (Status status = checkGrid(grid); !status) return status.error();
     const int blocksAlong = (maxComponent(grid.cells) + blockCells - 1) / blockCells;
     int size = splits;
     while (size < blocksAlong) size *= splits;
 
-    std::vector<eval::Workspace> workspaces(static_cast<size_t>(threadCount(threads)));
+    std::vector<eval::Workspace> own;
+    std::vector<eval::Workspace>& workspaces = scratch ? *scratch : own;
+    workspaces.resize(std::max(workspaces.size(), static_cast<size_t>(threadCount(threads))));
     std::vector<Region> regions;
     if (minComponent(grid.cells) > 0) {
         if (progress) progress->begin("subdivide", 1);

@@ -65,8 +65,10 @@ struct RegionFilter {
 
 /// Blocks that may hold surface, ordered by (z, y, x), but for those that `filter` leaves out. Error::Cancelled when
 /// `progress` says so, Error::Input for a box without end and for cells that aren't positive or that float32 can't
-/// resolve at the grid's place, Error::Budget for more than 2¹⁵ cells along an axis.
+/// resolve at the grid's place, Error::Budget for more than 2¹⁵ cells along an axis. `scratch`: memory to be used again
+/// from call to call.
 Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, int threads, Progress* progress,
-                                     Counts& counts, const RegionFilter& filter = {});
+                                     Counts& counts, const RegionFilter& filter = {},
+                                     std::vector<eval::Workspace>* scratch = nullptr);
 
 }  // namespace sgm::mesh
