@@ -15,6 +15,7 @@
 #include "cli/pipeline.h"
 #include "cli/report.h"
 #include "cli/watch.h"
+#include "grammar/incremental/pipeline.h"
 #include "modeler/export/exporter.h"
 #include "modeler/mesh/edit.h"
 #include "modeler/mesh/validate.h"
@@ -186,14 +187,13 @@ Result<BuildRequest> requestOf(const BuildRequest& request, int frame) {
 /// All frames stand in one grid, so that what doesn't move has the same vertices in each: the box around them all.
 Result<Box3f> boundsOfFrames(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, const Animation& animation, Progress* progress) {
     Box3f bounds;
+    incremental::Pipeline pipeline;
     for (int frame = 0; frame < animation.frames; ++frame) {
         derive::Options at = options;
         at.params = animation.values(options.params, frame);
-        const auto derivation = derive::derive(grammar, at, progress);
-        if (!derivation.ok()) return derivation.error();
-        const auto lowered = lower::lower(*derivation, progress);
-        if (!lowered.ok()) return lowered.error();
-        bounds = hull(bounds, (*lowered)->field.bounds);
+        if (const Status done = pipeline.derive(grammar, at, progress); !done.ok()) return done.error();
+        if (const Status done = pipeline.lower(progress); !done.ok()) return done.error();
+        bounds = hull(bounds, pipeline.model().field.bounds);
     }
     return bounds;
 }
