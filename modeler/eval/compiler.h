@@ -60,7 +60,7 @@ public:
     float number(NodeId id);
     void setNumber(NodeId id, float value) { fates_[id].value = value; }
     void bind(std::span<const float> constants) { slots_ = constants; }
-    /// The operand whose value is the node's own, since the other one is a number that changes nothing, as 0 in a sum.
+    /// The operand whose value is the node's own, since the other one is a number that changes nothing, as 1 in a product.
     std::optional<NodeId> passesOn(NodeId id) const;
     /// As of Constants.
     uint32_t placeOf(NodeId id) const { return constants_.placeOf(id); }

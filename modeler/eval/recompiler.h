@@ -1,6 +1,6 @@
 // A tape that follows the numbers of its graph.
 // Enters: a graph and a field; again after slots changed. Leaves: a tape of the same code with other numbers. Assumes
-// that nodes stay as they are; where a number decides on the code (a sum with 0), the tape starts over.
+// that nodes stay as they are; where a number decides on the code (a product with 1), the tape starts over.
 #pragma once
 
 #include <memory>
