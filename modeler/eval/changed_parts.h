@@ -1,7 +1,7 @@
 // Which parts of a tape changed with its numbers, each as a tape of its own.
-// Enters: a tape, and which of its constants changed. Leaves: those operands of its topmost minima that read one, with the
-// numbers of before and of now. Assumes the code stayed. Where such a part is farther from the surface than anyone cares,
-// before and now, `shorten` makes of the whole tape what it made before (see `unreached`).
+// Enters: a tape, and which of its constants changed. Leaves: those operands of its topmost minima that read one, with
+// the numbers of before and of now. Assumes the code stayed. Where such a part is farther from the surface than anyone
+// cares, before and now, `shorten` makes of the whole tape what it made before (see `unreached`).
 #pragma once
 
 #include <vector>
@@ -19,8 +19,8 @@ public:
     /// Looks for the parts. False where they are so much of the tape that to ask them costs more than it saves. What is
     /// known of the code is kept: use a new object for other code.
     bool find(const Tape& tape, const NumbersChanged& changed);
-    /// Bit i is set where every part stays above care.most in box i (at most 64). There minima take nothing from a part,
-    /// nor does it narrow what they pass down: its greatest value is above all they care for. So the whole tape,
+    /// Bit i is set where every part stays above care.most in box i (at most 64). There minima take nothing from a
+    /// part, nor does it narrow what they pass down: its greatest value is above all they care for. So the whole tape,
     /// shortened to the box, is the same as with the old numbers.
     uint64_t unreached(std::span<const Box3f> boxes, Care care, Workspace& workspace) const;
 
@@ -34,9 +34,10 @@ private:
 
     Links links_;
     TapeBuilder builder_;
-    std::vector<uint8_t> numbers_, values_;  ///< by place in the table, and by value as in Links: does it hang on a change?
-    std::vector<uint32_t> found_, stack_;    ///< changed values below the topmost minima
-    std::vector<Part> parts_;                ///< the first found_.size() of them
+    std::vector<uint8_t> numbers_,
+        values_;  ///< by place in the table, and by value as in Links: does it hang on a change?
+    std::vector<uint32_t> found_, stack_;  ///< changed values below the topmost minima
+    std::vector<Part> parts_;              ///< the first found_.size() of them
 };
 
 }  // namespace sgm::eval

@@ -71,17 +71,19 @@ void Compiler::decide(NodeId id) {
     const auto operands = graph_.operands(id);
     if (isInput(id)) return;
     const auto isNumber = [&](const field::Operand& o) { return fateOf(o.node).kind == Fate::Constant; };
-    if (std::all_of(operands.begin(), operands.end(), isNumber)) fate = {Fate::Constant, 0, number(id), 0};
-    else if (const auto same = passesOn(id)) fate = {Fate::Same, *same, 0, 0};
-    else fate.need = need(heavyFirst(id));
+    if (std::all_of(operands.begin(), operands.end(), isNumber))
+        fate = {Fate::Constant, 0, number(id), 0};
+    else if (const auto same = passesOn(id))
+        fate = {Fate::Same, *same, 0, 0};
+    else
+        fate.need = need(heavyFirst(id));
 }
 
 /// Operands that are instructions, those that need most registers first: the order that keeps fewest of them busy.
 std::span<const NodeId> Compiler::heavyFirst(NodeId id) {
     sorted_.clear();
     for (const field::Operand& o : graph_.operands(id))
-        if (fateOf(o.node).kind == Fate::Instruction && !isInput(standIn(o.node)))
-            sorted_.push_back(standIn(o.node));
+        if (fateOf(o.node).kind == Fate::Instruction && !isInput(standIn(o.node))) sorted_.push_back(standIn(o.node));
     const auto heavier = [&](NodeId a, NodeId b) {
         return fates_[a].need != fates_[b].need ? fates_[a].need > fates_[b].need : a < b;
     };
@@ -91,8 +93,7 @@ std::span<const NodeId> Compiler::heavyFirst(NodeId id) {
 
 uint32_t Compiler::need(std::span<const NodeId> heavy) const {
     uint32_t most = 1;
-    for (size_t i = 0; i < heavy.size(); ++i)
-        most = std::max(most, fates_[heavy[i]].need + static_cast<uint32_t>(i));
+    for (size_t i = 0; i < heavy.size(); ++i) most = std::max(most, fates_[heavy[i]].need + static_cast<uint32_t>(i));
     return most;
 }
 

@@ -1,7 +1,7 @@
 // What `compile` knows of a graph's nodes on the way, kept for when their numbers change.
-// Enters: a graph, a node, numbers. Leaves: a tape. Assumes the graph outlives it, with the same nodes. Nothing recurses:
-// node ids are in topological order (operands first), so passes are loops over ids. The doors are tape.h, for a tape once,
-// and recompiler.h, for one that follows its numbers.
+// Enters: a graph, a node, numbers. Leaves: a tape. Assumes the graph outlives it, with the same nodes. Nothing
+// recurses: node ids are in topological order (operands first), so passes are loops over ids. The doors are tape.h, for
+// a tape once, and recompiler.h, for one that follows its numbers.
 #pragma once
 
 #include <bit>
@@ -60,7 +60,8 @@ public:
     float number(NodeId id);
     void setNumber(NodeId id, float value) { fates_[id].value = value; }
     void bind(std::span<const float> constants) { slots_ = constants; }
-    /// The operand whose value is the node's own, since the other one is a number that changes nothing, as 1 in a product.
+    /// The operand whose value is the node's own, since the other one is a number that changes nothing, as 1 in a
+    /// product.
     std::optional<NodeId> passesOn(NodeId id) const;
     /// As of Constants.
     uint32_t placeOf(NodeId id) const { return constants_.placeOf(id); }

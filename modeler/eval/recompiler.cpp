@@ -60,7 +60,8 @@ void Recompiler::startOver(const field::Graph& graph, const field::Field& field)
 
 /// Sends changed slots through the numbers that are made of them, up to the instructions that read them.
 bool Recompiler::rebind(const field::Graph& graph, const field::Field& field) {
-    if (field.value.id() != state_->compiler.root() || graph.constants().size() != state_->constants.size()) return false;
+    if (field.value.id() != state_->compiler.root() || graph.constants().size() != state_->constants.size())
+        return false;
     if (state_->firstReader.empty()) state_->index(graph);
     Compiler& compiler = state_->compiler;
     std::priority_queue<NodeId, std::vector<NodeId>, std::greater<>> dirty;  // operands first
@@ -88,8 +89,10 @@ bool Recompiler::rebind(const field::Graph& graph, const field::Field& field) {
         for (uint32_t r = state_->firstReader[id]; r < state_->firstReader[id + 1]; ++r) {
             const NodeId reader = state_->readers[r];
             const Fate& fate = compiler.fate(reader);
-            if (fate.kind == Fate::Constant) dirty.push(reader);
-            else if (compiler.passesOn(reader).has_value() != (fate.kind == Fate::Same)) return false;
+            if (fate.kind == Fate::Constant)
+                dirty.push(reader);
+            else if (compiler.passesOn(reader).has_value() != (fate.kind == Fate::Same))
+                return false;
         }
     }
     std::sort(changed_.places.begin(), changed_.places.end());

@@ -25,8 +25,8 @@ public:
 
     /// Compiles as `compile`. The graph has to outlive this, or the next call.
     void startOver(const field::Graph& graph, const field::Field& field);
-    /// The same graph and field node with other constants: gives the tape that `compile` gives, but for the order of its
-    /// table of constants.
+    /// The same graph and field node with other constants: gives the tape that `compile` gives, but for the order of
+    /// its table of constants.
     void follow(const field::Graph& graph, const field::Field& field);
     /// Changes in place with the next call; copies keep.
     const Tape& tape() const;

@@ -18,10 +18,10 @@ struct Owned {
 /// The empty solid ε (`nil`): positive everywhere.
 Field nothing(Graph& graph);
 
-/// Sum, SG-M eq. 13 (min under definition 4), as a balanced tree in the order of the parts: where two share a surface the
-/// first owns it. The tree hangs on nothing but their order, so that moving a part changes numbers alone; what a region can
-/// drop doesn't hang on it (eval::shorten compares each part with the nearest of all). Empty list: nothing(). Give all
-/// parts at once: a chain of sums of two is right but deep.
+/// Sum, SG-M eq. 13 (min under definition 4), as a balanced tree in the order of the parts: where two share a surface
+/// the first owns it. The tree hangs on nothing but their order, so that moving a part changes numbers alone; what a
+/// region can drop doesn't hang on it (eval::shorten compares each part with the nearest of all). Empty list:
+/// nothing(). Give all parts at once: a chain of sums of two is right but deep.
 Field sum(Graph& graph, std::span<const Owned> parts);
 /// The sum of two or more parts whose value is known already, when only their bounds have changed.
 Field summed(Num value, std::span<const Owned> parts);

@@ -53,7 +53,7 @@ private:
     PolygonizeOptions options_;
     Grid grid_;
     eval::Care care_;
-    eval::Fingerprint tape_;  ///< of the last tape, where it was asked for
+    eval::Fingerprint tape_;                             ///< of the last tape, where it was asked for
     std::shared_ptr<const std::vector<float>> numbers_;  ///< the last tape's constants
     Regions regions_;  ///< all that may hold surface, blocks (level 0) and above
     Mesh mesh_;

@@ -55,7 +55,8 @@ std::vector<Region> split(const eval::Tape& tape, Vec3i index, int childCells, c
     const int blocks = childCells / blockCells;
     Children children(index, childCells, grid);
     if (filter.skips)
-        children.leaveOut(filter.skips({children.indices.data(), children.n}, blocks, {children.boxes.data(), children.n}, workspace));
+        children.leaveOut(filter.skips({children.indices.data(), children.n}, blocks,
+                                       {children.boxes.data(), children.n}, workspace));
     if (children.n == 0) return {};
     std::array<eval::Range, splits * splits * splits> ranges;
     eval::evaluateRanges(tape, {children.boxes.data(), children.n}, ranges.data(), workspace);

@@ -57,8 +57,10 @@ struct Counts {
 
 /// Which regions to look at, cubes of `blocks` blocks along an edge. Called from any thread.
 struct RegionFilter {
-    /// Asked before anything is known of at most 64 regions: bit i leaves region i out with all below. None where empty.
-    std::function<uint64_t(std::span<const Vec3i> indices, int blocks, std::span<const Box3f> boxes, eval::Workspace&)> skips;
+    /// Asked before anything is known of at most 64 regions: bit i leaves region i out with all below. None where
+    /// empty.
+    std::function<uint64_t(std::span<const Vec3i> indices, int blocks, std::span<const Box3f> boxes, eval::Workspace&)>
+        skips;
     /// Asked of a region that may hold surface, with the tape shortened to it: false leaves it out likewise.
     std::function<bool(Vec3i index, int blocks, const eval::Tape& tape)> wants;
 };

@@ -1,5 +1,5 @@
-// A tape that follows its numbers is the one that `compile` gives, and where no changed part comes near, whatever is made
-// of it stays.
+// A tape that follows its numbers is the one that `compile` gives, and where no changed part comes near, whatever is
+// made of it stays.
 #include "modeler/eval/recompiler.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,8 @@ Field balls(Graph& g, const std::vector<Vec3f>& centres, float radius) {
         const Num away = field::length(p);
         Num f = away - n(3, radius);
         if (i % 3 == 0) f = field::max(f, n(4, radius / 2) - away);
-        parts.push_back({{f, {c - Vec3f{radius, radius, radius}, c + Vec3f{radius, radius, radius}}, 1, 1}, static_cast<OriginId>(i + 1)});
+        parts.push_back({{f, {c - Vec3f{radius, radius, radius}, c + Vec3f{radius, radius, radius}}, 1, 1},
+                         static_cast<OriginId>(i + 1)});
     }
     return field::sum(g, parts);
 }
@@ -37,7 +38,8 @@ Field balls(Graph& g, const std::vector<Vec3f>& centres, float radius) {
 std::vector<Vec3f> scattered(size_t count) {
     std::vector<Vec3f> centres;
     for (size_t i = 0; i < count; ++i)
-        centres.push_back({static_cast<float>(uniform(3 * i, -8, 8)), static_cast<float>(uniform(3 * i + 1, -8, 8)), static_cast<float>(uniform(3 * i + 2, -8, 8))});
+        centres.push_back({static_cast<float>(uniform(3 * i, -8, 8)), static_cast<float>(uniform(3 * i + 1, -8, 8)),
+                           static_cast<float>(uniform(3 * i + 2, -8, 8))});
     return centres;
 }
 
@@ -81,7 +83,9 @@ TEST(Recompiler, NumbersMadeOfNumbersChangeToo) {
 
 TEST(Recompiler, StartsOverWhereANumberComesToChangeNothing) {
     Graph g;
-    const auto made = [&](float a) { return Field{g.x() * numberOf(g, 1, 0, a) - numberOf(g, 1, 1, 3), {{-1, -1, -1}, {1, 1, 1}}, 1, 1}; };
+    const auto made = [&](float a) {
+        return Field{g.x() * numberOf(g, 1, 0, a) - numberOf(g, 1, 1, 3), {{-1, -1, -1}, {1, 1, 1}}, 1, 1};
+    };
     Recompiler recompiler;
     recompiler.startOver(g, made(3));
     for (const auto& [a, whole] : {std::pair{2.f, false}, {1.f, true}, {1.f, false}, {5.f, true}, {4.f, false}}) {
@@ -102,13 +106,15 @@ TEST(ChangedParts, WhereNoneComesNearTheShortenedTapeStays) {
     size_t far = 0, near = 0, alike = 0;
     for (uint64_t round = 0; round < 24; ++round) {
         const Tape then = recompiler.tape();
-        for (uint64_t k = 0; k < 3; ++k) centres[pick(round * 3 + k, 60)].x += static_cast<float>(uniform(round, -1, 1));
+        for (uint64_t k = 0; k < 3; ++k)
+            centres[pick(round * 3 + k, 60)].x += static_cast<float>(uniform(round, -1, 1));
         recompiler.follow(g, balls(g, centres, 1));
         ASSERT_FALSE(recompiler.whole());
         ASSERT_TRUE(parts.find(recompiler.tape(), recompiler.changed()));
         std::vector<Box3f> boxes;
         for (int i = 0; i < 64; ++i) {
-            const Vec3f lo{static_cast<float>(i % 4) * 5 - 10, static_cast<float>(i / 4 % 4) * 5 - 10, static_cast<float>(i / 16) * 5 - 10};
+            const Vec3f lo{static_cast<float>(i % 4) * 5 - 10, static_cast<float>(i / 4 % 4) * 5 - 10,
+                           static_cast<float>(i / 16) * 5 - 10};
             boxes.push_back({lo, lo + Vec3f{5, 5, 5}});
         }
         const uint64_t unreached = parts.unreached(boxes, care, asked);
@@ -117,7 +123,8 @@ TEST(ChangedParts, WhereNoneComesNearTheShortenedTapeStays) {
         evaluateRanges(recompiler.tape(), {boxes.data(), 64}, ranges.data(), now);
         for (size_t i = 0; i < 64; ++i) {
             if (ranges[i].lo >= 0) continue;  // the descent doesn't go there
-            const bool same = fingerprint(shorten(then, i, before, care)) == fingerprint(shorten(recompiler.tape(), i, now, care));
+            const bool same =
+                fingerprint(shorten(then, i, before, care)) == fingerprint(shorten(recompiler.tape(), i, now, care));
             const bool away = (unreached >> i & 1) != 0;
             EXPECT_TRUE(same || !away) << "round " << round << ", box " << i;
             ++(away ? far : near);
