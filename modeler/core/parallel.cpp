@@ -1,12 +1,10 @@
 #include "modeler/core/parallel.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
+#include <atomic>
+#include <system_error>
 #include <thread>
+#include <vector>
 
 namespace sgm {
 
@@ -18,22 +16,22 @@ int threadCount(int wanted) {
 namespace detail {
 
 void parallelFor(size_t count, int threads, const Progress* progress, void* context, void (*body)(void*, size_t, int)) {
-    if (threads == 1 || count <= 1) {
-        for (size_t i = 0; i < count && !cancelled(progress); ++i) body(context, i, 0);
-        return;
+    std::atomic<size_t> next{0};
+    const auto work = [&](int worker) {
+        while (!cancelled(progress)) {
+            const size_t i = next.fetch_add(1, std::memory_order_relaxed);
+            if (i >= count) break;
+            body(context, i, worker);
+        }
+    };
+    std::vector<std::jthread> others;  // joined at the end
+    try {
+        for (int worker = 1; worker < threads && static_cast<size_t>(worker) < count; ++worker)
+            others.emplace_back(work, worker);
+    } catch (const std::system_error&) {
+        // The system gives no more threads: those there are do the work.
     }
-    // Lets more threads run than the machine has cores: tests of determinism ask for that.
-    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
-    tbb::task_arena arena(threads);
-    arena.execute([&] {
-        tbb::parallel_for(
-            tbb::blocked_range<size_t>(0, count, 1),
-            [&](const tbb::blocked_range<size_t>& range) {
-                for (size_t i = range.begin(); i != range.end() && !cancelled(progress); ++i)
-                    body(context, i, tbb::this_task_arena::current_thread_index());
-            },
-            tbb::simple_partitioner());
-    });
+    work(0);
 }
 
 }  // namespace detail

@@ -1,6 +1,7 @@
 // Parallel loops on a chosen number of threads.
 // Enters: a count and a body. Leaves: nothing; the body writes only to its own index's slot, so that order can't show.
-// Assumes the body doesn't throw. TBB does the stealing; its headers stay in parallel.cpp.
+// Assumes the body doesn't throw, and takes long enough to be worth a step of an atomic counter; the threads live as long
+// as the loop.
 #pragma once
 
 #include <cstddef>
