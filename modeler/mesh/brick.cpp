@@ -3,29 +3,61 @@
 namespace sgm::mesh {
 namespace {
 
-constexpr uint16_t allCells = 0xff;
+/// Edges along each axis, by axis and mask of sides.
+using EdgeTable = std::array<std::array<BitRows, 8>, 3>;
 
-/// Which edges along each axis a brick on the low sides `lowSides` of its block takes care of.
-std::array<BitRows, 3> handledEdges(int lowSides) {
-    const bool withX = lowSides & 1, withY = lowSides & 2, withZ = lowSides & 4;
-    const auto acrossX = static_cast<uint16_t>(withX ? 0x1ff : 0x1fe);
-    std::array<BitRows, 3> handled{};
-    for (int row = 0; row < brickRows; ++row) {
-        const int j = rowJ(row), k = rowK(row);
-        if ((j > 0 || withY) && (k > 0 || withZ)) handled[0][row] = allCells;
-        if (j < brickCells && (k > 0 || withZ)) handled[1][row] = acrossX;
-        if ((j > 0 || withY) && k < brickCells) handled[2][row] = acrossX;
-    }
-    return handled;
+/// Edges on low sides of the block: that of an axis in the mask `sides` is the brick's own low side, and on another low
+/// side of the brick a lower brick takes care of them.
+EdgeTable makeLowEdges() {
+    EdgeTable table{};
+    for (int axis = 0; axis < 3; ++axis)
+        for (int sides = 0; sides < 8; ++sides)
+            for (int row = 0; row < brickRows; ++row)
+                for (int i = 0; i < brickCorners; ++i) {
+                    const std::array<int, 3> at{i, rowJ(row), rowK(row)};
+                    bool onLow = false, lower = at[axis] == brickCells;
+                    for (int other = 0; other < 3; ++other) {
+                        if (other == axis || at[other] > 0) continue;
+                        (sides >> other & 1 ? onLow : lower) = true;
+                    }
+                    if (onLow && !lower) table[axis][sides][row] |= static_cast<uint16_t>(1 << i);
+                }
+    return table;
 }
 
-const BitRows& handledEdges(int axis, int lowSides) {
-    static const auto table = [] {
-        std::array<std::array<BitRows, 3>, 8> all;
-        for (int sides = 0; sides < 8; ++sides) all[sides] = handledEdges(sides);
-        return all;
-    }();
-    return table[lowSides][axis];
+/// Own edges on the high sides of the block that the brick touches.
+EdgeTable makeHighEdges() {
+    EdgeTable table{};
+    for (int axis = 0; axis < 3; ++axis)
+        for (int sides = 0; sides < 8; ++sides)
+            for (int row = 0; row < brickRows; ++row)
+                for (int i = 0; i < brickCorners; ++i) {
+                    const std::array<int, 3> at{i, rowJ(row), rowK(row)};
+                    bool onHigh = false, own = at[axis] < brickCells;
+                    for (int other = 0; other < 3; ++other) {
+                        if (other == axis) continue;
+                        own = own && at[other] > 0;
+                        onHigh = onHigh || ((sides >> other & 1) && at[other] == brickCells);
+                    }
+                    if (onHigh && own) table[axis][sides][row] |= static_cast<uint16_t>(1 << i);
+                }
+    return table;
+}
+
+BitRows cutAmong(const BitRows& inside, int axis, const BitRows& edges) {
+    const int up = axis == 0 ? 0 : axis == 1 ? 1 : brickCorners;
+    const int shift = axis == 0 ? 1 : 0;
+    BitRows cut{};
+    for (int row = 0; row < brickRows; ++row)
+        cut[row] = static_cast<uint16_t>((inside[row] ^ inside[row + up] >> shift) & edges[row]);
+    return cut;
+}
+
+/// Eight rows from (j, k) on, a byte each.
+uint64_t eightRows(const std::array<uint8_t, paddedRows>& bytes, int j, int k) {
+    uint64_t word;
+    std::memcpy(&word, bytes.data() + j + brickCorners * k, sizeof word);
+    return word;
 }
 
 }  // namespace
@@ -41,33 +73,44 @@ const BrickLoops& brickLoops() {
 #endif
 }
 
-BitRows insideRows(const float* corner) {
-    BitRows rows{};
+BrickSigns::BrickSigns(const float* corner) {
     brickLoops().inside(corner, blockCorners, blockCorners * blockCorners, rows.data());
-    return rows;
+    for (int row = 0; row < paddedRows; ++row) {
+        low[row] = static_cast<uint8_t>(rows[row]);
+        high[row] = static_cast<uint8_t>(rows[row] >> 1);
+    }
 }
 
-BitRows cutRows(const BitRows& inside, int axis, int lowSides) {
-    const BitRows& handled = handledEdges(axis, lowSides);
-    const int up = axis == 0 ? 0 : axis == 1 ? 1 : brickCorners;
-    const int shift = axis == 0 ? 1 : 0;
-    BitRows cut{};
-    for (int row = 0; row < brickRows; ++row)
-        cut[row] = static_cast<uint16_t>((inside[row] ^ inside[row + up] >> shift) & handled[row]);
-    return cut;
+BitCube surfaceCells(const BrickSigns& signs) {
+    std::array<uint64_t, brickCorners> any, all;  // of the corners in each layer
+    for (int k = 0; k < brickCorners; ++k) {
+        const uint64_t a = eightRows(signs.low, 0, k), b = eightRows(signs.high, 0, k), c = eightRows(signs.low, 1, k),
+                       d = eightRows(signs.high, 1, k);
+        any[k] = a | b | c | d;
+        all[k] = a & b & c & d;
+    }
+    BitCube cells;
+    for (int k = 0; k < brickCells; ++k) cells.layers[k] = (any[k] | any[k + 1]) & ~(all[k] & all[k + 1]);
+    return cells;
 }
 
-BitRows surfaceRows(const BitRows& inside) {
-    BitRows mixed{};
+BitCube ownCuts(const BrickSigns& signs, int axis) {
+    BitCube cuts;
     for (int k = 0; k < brickCells; ++k)
-        for (int j = 0; j < brickCells; ++j) {
-            const int row = j + brickCorners * k;
-            const int a = inside[row], b = inside[row + 1], c = inside[row + brickCorners],
-                      d = inside[row + brickCorners + 1];
-            const int any = a | b | c | d, all = a & b & c & d;
-            mixed[row] = static_cast<uint16_t>((any | any >> 1) & ~(all & all >> 1) & allCells);
-        }
-    return mixed;
+        cuts.layers[k] = axis == 0   ? eightRows(signs.low, 1, k + 1) ^ eightRows(signs.high, 1, k + 1)
+                         : axis == 1 ? eightRows(signs.high, 0, k + 1) ^ eightRows(signs.high, 1, k + 1)
+                                     : eightRows(signs.high, 1, k) ^ eightRows(signs.high, 1, k + 1);
+    return cuts;
+}
+
+BitRows cutsOnLowSides(const BrickSigns& signs, int axis, int sides) {
+    static const EdgeTable edges = makeLowEdges();
+    return cutAmong(signs.rows, axis, edges[axis][sides]);
+}
+
+BitRows cutsOnHighSides(const BrickSigns& signs, int axis, int sides) {
+    static const EdgeTable edges = makeHighEdges();
+    return cutAmong(signs.rows, axis, edges[axis][sides]);
 }
 
 }  // namespace sgm::mesh

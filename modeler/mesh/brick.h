@@ -1,6 +1,7 @@
-// A brick's surface as rows of bits: which corners are inside, which grid edges and cells the surface crosses.
-// Enters: samples. Leaves: bits, 16 a row of corners along x, so that whole brick takes a few vector operations.
-// Assumes brick corners were sampled. A vertex belongs to the lowest brick that touches its grid edge.
+// A brick's surface as bits: which corners are inside, which grid edges and cells the surface crosses.
+// Enters: samples. Leaves: bits, 64 a word, so that a whole brick takes a few operations. Assumes the brick's corners
+// were sampled. A vertex belongs to the lowest brick that touches its grid edge; so a brick owns 8³ edges along each
+// axis, those that don't lie on its low sides.
 #pragma once
 
 #include <array>
@@ -22,15 +23,27 @@ using BitRows = std::array<uint16_t, paddedRows>;
 constexpr int rowJ(int row) { return row % brickCorners; }
 constexpr int rowK(int row) { return row / brickCorners; }
 
-/// Bit i of row (j, k): corner (i, j, k) of the brick has f < 0. `corner` is the sample at its low corner.
-BitRows insideRows(const float* corner);
+/// Which corners of a brick have f < 0.
+struct BrickSigns {
+    BitRows rows{};
+    std::array<uint8_t, paddedRows> low, high;  ///< bits 0 … 7 and 1 … 8 of each row
 
-/// The brick's grid edges along `axis` that the surface cuts, by their low corners. Edges on the brick's low sides
-/// belong to the brick below, save along the axes in the mask `lowSides`, where there is none in the block.
-BitRows cutRows(const BitRows& inside, int axis, int lowSides);
+    /// `corner` is the block's sample at the brick's low corner.
+    explicit BrickSigns(const float* corner);
+};
 
-/// The brick's cells that hold surface, by their low corners.
-BitRows surfaceRows(const BitRows& inside);
+/// The cells that hold surface: bit i + 8 j of word k is cell (i, j, k).
+BitCube surfaceCells(const BrickSigns& signs);
+
+/// The edges along `axis` that the surface cuts and the brick owns: bit i + 8 j of word k is the edge up from corner
+/// (i, j, k) + firstOwn(axis).
+BitCube ownCuts(const BrickSigns& signs, int axis);
+constexpr Vec3i firstOwn(int axis) { return {axis == 0 ? 0 : 1, axis == 1 ? 0 : 1, axis == 2 ? 0 : 1}; }
+
+/// Cut edges on the sides of the block that a brick touches, by their low corners. `sides` is a mask of axes. On low
+/// sides: those that other blocks own and no lower brick takes care of. On high sides: own ones.
+BitRows cutsOnLowSides(const BrickSigns& signs, int axis, int sides);
+BitRows cutsOnHighSides(const BrickSigns& signs, int axis, int sides);
 
 /// The corners of cell (i, row) that are inside, as a case of marching cubes.
 inline uint32_t caseOf(const BitRows& inside, int row, int i) {

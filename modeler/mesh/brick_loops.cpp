@@ -20,9 +20,15 @@ void gather(const CornerRow* rows, size_t n, const float* __restrict xs, const f
         const float* const from = xs + rows[r].i;
         const float yHere = ys[rows[r].j], zHere = zs[rows[r].k];
         const size_t count = rows[r].count;
-        for (int i = 0; i < copied; ++i) x[i] = from[i];
-        for (int i = 0; i < copied; ++i) y[i] = yHere;
-        for (int i = 0; i < copied; ++i) z[i] = zHere;
+        if (count == corners - 1) {  // most rows: a lower brick has the first corner
+            for (int i = 0; i < corners - 1; ++i) x[i] = from[i];
+            for (int i = 0; i < corners - 1; ++i) y[i] = yHere;
+            for (int i = 0; i < corners - 1; ++i) z[i] = zHere;
+        } else {
+            for (int i = 0; i < copied; ++i) x[i] = from[i];
+            for (int i = 0; i < copied; ++i) y[i] = yHere;
+            for (int i = 0; i < copied; ++i) z[i] = zHere;
+        }
         x += count, y += count, z += count;
     }
 }
@@ -64,10 +70,72 @@ void inside(const float* corner, size_t rowStride, size_t layerStride, uint16_t*
     }
 }
 
+#if defined(__AVX512F__)
+
+/// Sixteen bits at a time, without a branch: where the surface lies follows no pattern.
+size_t list(const BitCube& bits, uint32_t origin, uint32_t* __restrict codes) {
+    const __m512i twoRows = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 256, 257, 258, 259, 260, 261, 262, 263);
+    size_t n = 0;
+    for (uint32_t k = 0; k < 8; ++k)
+        for (uint32_t j = 0; j < 8; j += 2) {
+            const auto mask = static_cast<__mmask16>(bits.layers[k] >> 8 * j);
+            const __m512i here = _mm512_set1_epi32(static_cast<int>(origin + (j << 8 | k << 16)));
+            _mm512_storeu_si512(codes + n, _mm512_maskz_compress_epi32(mask, _mm512_add_epi32(twoRows, here)));
+            n += static_cast<size_t>(__builtin_popcount(mask));
+        }
+    _mm512_storeu_si512(codes + n, _mm512_setzero_si512());
+    return n;
+}
+
+#else
+
+size_t list(const BitCube& bits, uint32_t origin, uint32_t* __restrict codes) {
+    size_t n = 0;
+    for (uint32_t k = 0; k < 8; ++k)
+        for (uint64_t rest = bits.layers[k]; rest != 0; rest &= rest - 1) {
+            const auto bit = static_cast<uint32_t>(__builtin_ctzll(rest));
+            codes[n++] = origin + ((bit & 7) | (bit & 56) << 5 | k << 16);
+        }
+    for (size_t i = n; i < n + rowPadding; ++i) codes[i] = 0;
+    return n;
+}
+
+#endif
+
+void joinByPlaces(const SurfaceCell* cells, size_t n, const uint32_t* __restrict number, const PlacedCase* cases,
+                  uint32_t* __restrict to) {
+    for (const SurfaceCell* const end = cells + n; cells != end; ++cells) {
+        const PlacedCase& placed = cases[cells->inside];
+        const uint32_t* const at = number + 3 * cells->corner;
+        for (const int16_t *e = placed.edges, *const last = e + 3 * placed.triangles; e != last; ++e) *to++ = at[*e];
+    }
+}
+
+void join(const SurfaceCell* cells, size_t n, const uint32_t* __restrict number, [[maybe_unused]] size_t rowStride,
+          [[maybe_unused]] size_t layerStride, const PlacedCase* cases, uint32_t* __restrict to) {
+#if defined(__AVX512F__)
+    // All that a cell's triangles can ask for lies in four vectors of eight: one permutation makes them. A whole vector
+    // is stored, and the next cells write over what is too much; the last ones would not.
+    constexpr size_t last = 5;
+    const size_t row = 3 * rowStride, layer = 3 * layerStride;
+    for (; n > last; --n, ++cells) {
+        const PlacedCase& placed = cases[cells->inside];
+        const uint32_t* const at = number + 3 * cells->corner;
+        const auto eight = [&](size_t by) { return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(at + by)); };
+        const __m512i low = _mm512_inserti64x4(_mm512_castsi256_si512(eight(0)), eight(row), 1);
+        const __m512i high = _mm512_inserti64x4(_mm512_castsi256_si512(eight(layer)), eight(layer + row), 1);
+        const __m512i lanes = _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(placed.lanes)));
+        _mm512_storeu_si512(to, _mm512_permutex2var_epi32(low, lanes, high));
+        to += 3 * placed.triangles;
+    }
+#endif
+    joinByPlaces(cells, n, number, cases, to);
+}
+
 }  // namespace
 
 namespace SGM_ISA {
-const BrickLoops brickLoops{gather, scatter, inside};
+const BrickLoops brickLoops{gather, scatter, inside, list, join};
 }  // namespace SGM_ISA
 
 }  // namespace sgm::mesh

@@ -1,6 +1,6 @@
-// The loops over a brick's corners, compiled for each instruction set.
-// Enters: rows of corners, coordinates and samples. Leaves: points in one batch, samples by corner, rows of bits.
-// Assumes arrays don't overlap and may be read and written `rowPadding` floats beyond a row's start.
+// The loops over a brick's corners and cells, compiled for each instruction set.
+// Enters: rows of corners, coordinates, samples, bits. Leaves: points in one batch, samples by corner, bits, lists,
+// triangles. Assumes arrays don't overlap and may be read and written `rowPadding` entries beyond their end.
 #pragma once
 
 #include <cstddef>
@@ -11,22 +11,47 @@ namespace sgm::mesh {
 /// Floats that a row of at most nine is copied as.
 inline constexpr int rowPadding = 16;
 
-/// Corners of a block next to each other along x.
+/// Corners of a brick next to each other along x.
 struct CornerRow {
-    uint16_t corner;  ///< number of the first one in the block
-    uint8_t i, j, k;  ///< its coordinates in the block
+    uint16_t corner;  ///< number of the first one, counted from the brick's low corner
+    uint8_t i, j, k;  ///< its coordinates in the brick
     uint8_t count;    ///< 0 … 9
+};
+
+/// Bits in eight words of 8 × 8: bit i + 8 j of word k.
+struct BitCube {
+    uint64_t layers[8];
+};
+
+/// A cell with surface, by its low corner.
+struct SurfaceCell {
+    uint16_t corner;
+    uint16_t inside;  ///< which corners are, a case of marching cubes
+};
+
+/// A case of marching cubes, for numbers of vertices kept three a corner (one an axis) in rows of corners.
+struct PlacedCase {
+    int16_t edges[15];  ///< of its triangles, by their places counted from the cell's low corner
+    uint16_t triangles;
+    uint8_t lanes[16];  ///< the same among the first eight places of the cell's four rows
 };
 
 struct BrickLoops {
     /// Writes the rows' coordinates one after the other.
     void (*gather)(const CornerRow* rows, size_t n, const float* xs, const float* ys, const float* zs, float* x,
                    float* y, float* z);
-    /// Writes values, one row after the other, to where they belong in the block.
+    /// Writes values, one row after the other, to where they belong.
     void (*scatter)(const CornerRow* rows, size_t n, const float* f, float* values);
     /// Bit i of bits[j + 9k]: corner (i, j, k) has f < 0, counted from `corner`; rows and layers are `rowStride` and
     /// `layerStride` floats apart.
     void (*inside)(const float* corner, size_t rowStride, size_t layerStride, uint16_t* bits);
+    /// Lists the bits set, ascending, as codeOf(i, j, k) + `origin`; returns how many. The list's last vector is filled
+    /// up with zeros.
+    size_t (*list)(const BitCube& bits, uint32_t origin, uint32_t* codes);
+    /// Joins vertices, cell by cell; `number` holds three numbers a corner, rows and layers are so many corners apart.
+    /// Writes the cells' triangles, three numbers each, and nothing beside them.
+    void (*join)(const SurfaceCell* cells, size_t n, const uint32_t* number, size_t rowStride, size_t layerStride,
+                 const PlacedCase* cases, uint32_t* triangles);
 };
 
 namespace portable {

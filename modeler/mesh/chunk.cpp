@@ -10,34 +10,32 @@
 namespace sgm::mesh {
 namespace {
 
-/// A borrowed vertex's slot: its place in the list of its kind of seam, and above that the kind.
-constexpr int placeBits = 24;
-constexpr uint32_t placeMask = (1u << placeBits) - 1;
-
-/// Way from a corner's number to that of the next one along an axis.
-constexpr std::array<int, 3> stride{1, blockCorners, blockCorners* blockCorners};
-
 /// Place of the edge that runs along `axis` from a corner up: the edges of a cell lie close to each other.
 constexpr int edgePlace(int corner, int axis) { return 3 * corner + axis; }
 
-/// The cases with the places of a triangle's edges, counted from that of the cell's low corner.
-struct PlacedCase {
-    std::array<int16_t, 15> edges;
-    uint16_t triangles;
-};
+/// The corner with a code.
+constexpr int cornerOf(uint32_t code) {
+    return cornerNumber(static_cast<int>(code & 255), static_cast<int>(code >> 8 & 255), static_cast<int>(code >> 16));
+}
+constexpr uint32_t codeAt(Vec3i at) {
+    return codeOf(static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.y), static_cast<uint32_t>(at.z));
+}
+
+PlacedCase placedCase(const CellCase& cell) {
+    PlacedCase placed{};
+    placed.triangles = cell.triangles;
+    for (int i = 0; i < 3 * cell.triangles; ++i) {
+        const int axis = edgeAxis(cell.edges[i]), low = edgeCorner(cell.edges[i]), row = low >> 1;
+        placed.edges[i] = static_cast<int16_t>(edgePlace(cornerNumber(low & 1, row & 1, row >> 1), axis));
+        placed.lanes[i] = static_cast<uint8_t>(8 * row + edgePlace(low & 1, axis));
+    }
+    return placed;
+}
 
 const std::array<PlacedCase, 256>& placedCases() {
     static const auto table = [] {
         std::array<PlacedCase, 256> all{};
-        for (size_t c = 0; c < all.size(); ++c) {
-            const CellCase& cell = caseTable()[c];
-            all[c].triangles = cell.triangles;
-            for (int i = 0; i < 3 * cell.triangles; ++i) {
-                const int e = cell.edges[i], low = edgeCorner(e);
-                all[c].edges[i] =
-                    static_cast<int16_t>(edgePlace(cornerNumber(low & 1, low >> 1 & 1, low >> 2), edgeAxis(e)));
-            }
-        }
+        for (size_t c = 0; c < all.size(); ++c) all[c] = placedCase(caseTable()[c]);
         return all;
     }();
     return table;
@@ -65,26 +63,14 @@ OriginId majority(OriginId a, OriginId b, OriginId c) {
     return b == c ? b : std::min({a, b, c});
 }
 
-/// Where a brick's rows begin, counted from its low corner.
-struct RowPlace {
-    uint16_t corner;
-    uint8_t j, k;
-};
-constexpr auto rowPlaces = [] {
-    std::array<RowPlace, brickRows> places{};
-    for (int row = 0; row < brickRows; ++row)
-        places[row] = {static_cast<uint16_t>(cornerNumber(0, rowJ(row), rowK(row))), static_cast<uint8_t>(rowJ(row)),
-                       static_cast<uint8_t>(rowK(row))};
-    return places;
-}();
+/// The sides of a block that a brick touches, as a mask of axes.
+int lowSidesOf(Vec3i brick) { return (brick.x == 0 ? 1 : 0) | (brick.y == 0 ? 2 : 0) | (brick.z == 0 ? 4 : 0); }
+int highSidesOf(Vec3i brick) { return lowSidesOf(Vec3i{1, 1, 1} * (bricksAlong - 1) - brick); }
 
-/// Whether a coordinate in the block lies on the low side (1), on the high side (8) or between (0): shifted by the axis
-/// these make two masks of axes.
-constexpr auto sideOf = [] {
-    std::array<uint8_t, blockCorners> sides{};
-    sides.front() = 1, sides.back() = 8;
-    return sides;
-}();
+/// The sides at coordinate `side` on which an edge along `axis` lies, as a mask of axes.
+int sidesAt(int side, Vec3i at, int axis) {
+    return ((at.x == side ? 1 : 0) | (at.y == side ? 2 : 0) | (at.z == side ? 4 : 0)) & ~(1 << axis);
+}
 
 /// Who owns all that a tape can show; nothing where it depends on the place.
 std::optional<OriginId> onlyOwner(const eval::Tape& tape) {
@@ -131,96 +117,135 @@ bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chun
     return true;
 }
 
-/// Numbers a vertex on the block's border. On low sides (a mask of axes) a lower block owns it: its slot holds the kind
-/// of seam and the place in that list. Else it is lent to every block that meets this one there.
-uint32_t BlockMesher::borderVertex(int edge, int lowSides, int highSides, OriginId owner) {
-    if (lowSides != 0) {
-        std::vector<Borrowed>& list = borrowed_[lowSides - 1];
-        list.push_back({static_cast<uint32_t>(edge), owner});
-        return borrowedBit | static_cast<uint32_t>(lowSides - 1) << placeBits | static_cast<uint32_t>(list.size() - 1);
-    }
-    for (int kind = highSides; kind > 0; kind = (kind - 1) & highSides) lent_[kind - 1].push_back(vertices_);
-    return vertices_++;
+EdgeEnds BlockMesher::edgeEnds() const {
+    return {{samples_.coordinates(0), samples_.coordinates(1), samples_.coordinates(2)},
+            samples_.values(),
+            {1, blockCorners, blockCorners * blockCorners}};
 }
 
-/// The brick's cut edges along one axis, numbered. Those that other blocks own are looked for only where their origin
-/// is asked. `n` counts entries.
-template <int axis>
-void BlockMesher::addEdges(const BitRows& inside, Vec3i brick, std::optional<OriginId> owner, size_t& n) {
-    const Vec3i first = brick * brickCells;
-    const int lowSides = (brick.x == 0 ? 1 : 0) | (brick.y == 0 ? 2 : 0) | (brick.z == 0 ? 4 : 0);
-    const int brickFirst = brickCorner(brick);
-    const float* const values = samples_.values();
-    const float *const xs = samples_.coordinates(0) + first.x, *const ys = samples_.coordinates(1) + first.y,
-                       *const zs = samples_.coordinates(2) + first.z;
-    const uint8_t *const xSides = sideOf.data() + first.x, *const ySides = sideOf.data() + first.y,
-                         *const zSides = sideOf.data() + first.z;
-    edges_.axisBegin[axis] = n;
-    forEachBit(cutRows(inside, axis, lowSides), [&](int row, int i) {
-        const RowPlace place = rowPlaces[row];
-        const int corner = brickFirst + place.corner + i, edge = edgePlace(corner, axis);
-        // An edge lies between the sides of its own axis.
-        const int sides = (axis == 0 ? 0 : xSides[i]) | (axis == 1 ? 0 : ySides[place.j]) << 1 |
-                          (axis == 2 ? 0 : zSides[place.k]) << 2;
-        const int low = sides & 7;
-        const uint32_t slot = sides != 0 ? borderVertex(edge, low, sides >> 3, owner.value_or(0)) : vertices_++;
-        number_[edge] = slot;
-        if (low != 0 && owner) return;
-        const float* const along = axis == 0 ? xs + i : axis == 1 ? ys + place.j : zs + place.k;
-        edges_.set(n++, {xs[i], ys[place.j], zs[place.k]}, along[0], along[1] - along[0], values[corner],
-                   values[corner + stride[axis]], slot);
-    });
+/// The brick's cells with surface; returns how many.
+size_t BlockMesher::addCells(const BrickSigns& signs, Vec3i brick) {
+    const size_t count = brickLoops().list(surfaceCells(signs), 0, codes_.data());
+    const int corner = brickCorner(brick);
+    const uint8_t* const triangles = triangleCounts().data();
+    SurfaceCell* const cells = cells_.data() + cellCount_;
+    size_t made = 0;
+    for (size_t c = 0; c < count; ++c) {
+        const uint32_t code = codes_[c], row = (code >> 8 & 255) + brickCorners * (code >> 16);
+        const uint32_t inside = caseOf(signs.rows, static_cast<int>(row), static_cast<int>(code & 255));
+        cells[c] = {static_cast<uint16_t>(corner + cornerOf(code)), static_cast<uint16_t>(inside)};
+        made += triangles[inside];
+    }
+    cellCount_ += count;
+    triangles_ += made;
+    counts_.surfaceCells += count;
+    return count;
+}
+
+/// The brick's own edges that the surface cuts, one after the other as their vertices are numbered from vertices_ on.
+void BlockMesher::addOwnEdges(const BrickSigns& signs, Vec3i brick) {
+    edges_.reserve(3 * brickCells * brickCells * brickCells);
+    size_t n = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (axis == 1) edges_.arrays.yBegin = n;
+        if (axis == 2) edges_.arrays.zBegin = n;
+        uint32_t* const codes = edges_.list.data() + n;
+        const size_t count =
+            brickLoops().list(ownCuts(signs, axis), codeAt(brick * brickCells + firstOwn(axis)), codes);
+        edgeLoops().place(edgeEnds(), codes, count, axis, n, edges_.arrays);
+        const auto first = static_cast<uint32_t>(vertices_ + n);
+        for (uint32_t e = 0; e < count; ++e) number_[edgePlace(cornerOf(codes[e]), axis)] = first + e;
+        n += count;
+    }
+    edges_.size = n;
+}
+
+/// Lists own vertices on high sides of the block for every block that meets this one there.
+void BlockMesher::lend(const BrickSigns& signs, Vec3i brick) {
+    const int sides = highSidesOf(brick);
+    for (int axis = 0; axis < 3; ++axis) {
+        if ((sides & ~(1 << axis)) == 0) continue;
+        forEachBit(cutsOnHighSides(signs, axis, sides), [&](int row, int i) {
+            const Vec3i at = brick * brickCells + Vec3i{i, rowJ(row), rowK(row)};
+            const uint32_t vertex = number_[edgePlace(cornerNumber(at.x, at.y, at.z), axis)];
+            const int on = sidesAt(blockCells, at, axis);
+            for (int kind = on; kind > 0; kind = (kind - 1) & on) lent_[kind - 1].push_back(vertex);
+        });
+    }
+}
+
+/// Lists cut edges on low sides of the block: lower blocks own them. Their places are looked for only where that tells
+/// their origin.
+void BlockMesher::borrow(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner) {
+    const int sides = lowSidesOf(brick);
+    size_t n = 0;
+    borrowedPlaces_.clear();
+    borrowedEdges_.reserve(3 * brickRows * brickCorners);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (axis == 1) borrowedEdges_.arrays.yBegin = n;
+        if (axis == 2) borrowedEdges_.arrays.zBegin = n;
+        if ((sides & ~(1 << axis)) == 0) continue;
+        uint32_t* const codes = borrowedEdges_.list.data() + n;
+        size_t count = 0;
+        forEachBit(cutsOnLowSides(signs, axis, sides), [&](int row, int i) {
+            const Vec3i at = brick * brickCells + Vec3i{i, rowJ(row), rowK(row)};
+            const int edge = edgePlace(cornerNumber(at.x, at.y, at.z), axis), kind = sidesAt(0, at, axis) - 1;
+            if (!owner) {
+                borrowedPlaces_.emplace_back(kind, borrowed_[kind].size());
+                codes[count++] = codeAt(at);
+            }
+            borrowed_[kind].push_back({static_cast<uint32_t>(edge), owner.value_or(0)});
+        });
+        std::fill(codes + count, codes + wholeVectors(count), 0u);
+        edgeLoops().place(edgeEnds(), codes, count, axis, n, borrowedEdges_.arrays);
+        n += count;
+    }
+    borrowedEdges_.size = n;
+}
+
+/// Whose surface each vertex lies on; valid until the next call.
+const OriginId* BlockMesher::originsOf(const eval::Tape& tape, const CutEdges& edges) {
+    found_.resize(edges.size);
+    eval::evaluateOrigin(tape, {edges.arrays.x, edges.arrays.y, edges.arrays.z, edges.size}, found_.data(), workspace_);
+    return found_.data();
+}
+
+void BlockMesher::findBorrowed(const eval::Tape& tape) {
+    if (borrowedEdges_.size == 0) return;
+    counts_.refinementEvaluations += findVertices(tape, refineSteps_, workspace_, openEdges_, borrowedEdges_);
+    const OriginId* const found = originsOf(tape, borrowedEdges_);
+    for (size_t e = 0; e < borrowedPlaces_.size(); ++e)
+        borrowed_[borrowedPlaces_[e].first][borrowedPlaces_[e].second].origin = found[e];
 }
 
 void BlockMesher::addVertices(const eval::Tape& tape, std::optional<OriginId> owner) {
+    const size_t n = edges_.size, first = vertices_;
+    if (n == 0) return;
     counts_.refinementEvaluations += findVertices(tape, refineSteps_, workspace_, openEdges_, edges_);
-    const size_t n = edges_.size();
-    flat_ = flat_ || (n > 0 && edges_.flat > 0);
-    found_.resize(n);
-    if (owner)
-        std::fill(found_.begin(), found_.end(), *owner);
-    else
-        eval::evaluateOrigin(tape, {edges_.x.data(), edges_.y.data(), edges_.z.data(), n}, found_.data(), workspace_);
+    flat_ = flat_ || edges_.flat > 0;
+    vertices_ += static_cast<uint32_t>(n);
     positions_.resize(vertices_), normals_.resize(vertices_), origins_.resize(vertices_);
-    for (size_t i = 0; i < n; ++i) {
-        const uint32_t slot = edges_.slot[i];
-        if (slot & borrowedBit) {
-            borrowed_[(slot & ~borrowedBit) >> placeBits][slot & placeMask].origin = found_[i];
-            continue;
-        }
-        positions_[slot] = {edges_.x[i], edges_.y[i], edges_.z[i]};
-        normals_[slot] = {edges_.dx[i], edges_.dy[i], edges_.dz[i]};
-        origins_[slot] = found_[i];
-    }
+    const EdgeArrays& e = edges_.arrays;
+    edgeLoops().interleave(e.x, e.y, e.z, n, &positions_[first].x);
+    edgeLoops().interleave(e.dx, e.dy, e.dz, n, &normals_[first].x);
+    if (owner)
+        std::fill_n(origins_.data() + first, n, *owner);
+    else
+        std::copy_n(originsOf(tape, edges_), n, origins_.data() + first);
 }
 
 void BlockMesher::addBrick(int number, const eval::Tape& tape) {
     const Vec3i brick = brickAt(number);
-    const int corner = brickCorner(brick);
-    const BitRows inside = insideRows(samples_.values() + corner);
+    const BrickSigns signs(samples_.values() + brickCorner(brick));
+    if (addCells(signs, brick) == 0) return;
     const std::optional<OriginId> owner = onlyOwner(tape);
-    const uint8_t* const triangles = triangleCounts().data();
-    Cell* const firstCell = cells_.data() + cellCount_;
-    Cell* cell = firstCell;
-    size_t made = 0;
-    forEachBit(surfaceRows(inside), [&](int row, int i) {
-        const auto c = static_cast<uint8_t>(caseOf(inside, row, i));
-        *cell++ = {static_cast<uint16_t>(corner + rowPlaces[row].corner + i), c};
-        made += triangles[c];
-    });
-    const auto count = static_cast<size_t>(cell - firstCell);
-    if (count == 0) return;
-    counts_.surfaceCells += count;
-    cellCount_ += count;
-    triangles_ += made;
-    bricks_.push_back({cellCount_, owner});
-    size_t edges = 0;
-    edges_.reserve(3 * brickRows * brickCorners);
-    addEdges<0>(inside, brick, owner, edges);
-    addEdges<1>(inside, brick, owner, edges);
-    addEdges<2>(inside, brick, owner, edges);
-    edges_.axisBegin[3] = edges;
+    bricks_.push_back({triangles_, owner});
+    addOwnEdges(signs, brick);
+    if (highSidesOf(brick) != 0) lend(signs, brick);
     addVertices(tape, owner);
+    if (lowSidesOf(brick) == 0) return;
+    borrow(signs, brick, owner);
+    findBorrowed(tape);
 }
 
 /// Puts the lists of the seams one after the other, and numbers borrowed edges by their place there.
@@ -240,31 +265,25 @@ void BlockMesher::listSeams(Chunk& chunk) {
     chunk.lent.begin.back() = static_cast<uint32_t>(chunk.lent.vertices.size());
 }
 
-/// Joins vertices cell by cell. A triangle takes the origin of most of its vertices, the lowest where all three differ.
+/// Joins vertices. A triangle takes the origin of most of its vertices, the lowest where all three differ.
 void BlockMesher::writeTriangles(Chunk& chunk) const {
     chunk.triangles.resize(triangles_);
     chunk.origins.resize(triangles_);
-    Triangle* triangle = chunk.triangles.data();
+    if (triangles_ == 0) return;
+    brickLoops().join(cells_.data(), cellCount_, number_.data(), blockCorners, blockCorners * blockCorners,
+                      placedCases().data(), &chunk.triangles[0].x);
+    const Triangle *first = chunk.triangles.data(), *const begin = first;
     OriginId* origin = chunk.origins.data();
-    const uint32_t* const number = number_.data();
-    const auto& cases = placedCases();
-    const Cell* cell = cells_.data();
     for (const Brick& brick : bricks_) {
-        const Triangle* const first = triangle;
-        for (const Cell* const end = cells_.data() + brick.cellsEnd; cell != end; ++cell) {
-            const PlacedCase& placed = cases[cell->inside];
-            const uint32_t* const at = number + edgePlace(cell->corner, 0);
-            for (const int16_t *e = placed.edges.data(), *last = e + 3 * placed.triangles; e != last; e += 3)
-                *triangle++ = {at[e[0]], at[e[1]], at[e[2]]};
-        }
-        const auto count = static_cast<size_t>(triangle - first);
+        const Triangle* const end = begin + brick.trianglesEnd;
+        const auto count = static_cast<size_t>(end - first);
         if (brick.owner)
             std::fill_n(origin, count, *brick.owner);
         else
-            std::transform(first, static_cast<const Triangle*>(triangle), origin, [this](const Triangle& t) {
-                return majority(originOf(t.x), originOf(t.y), originOf(t.z));
-            });
+            std::transform(first, end, origin,
+                           [this](const Triangle& t) { return majority(originOf(t.x), originOf(t.y), originOf(t.z)); });
         origin += count;
+        first = end;
     }
 }
 

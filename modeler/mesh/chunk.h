@@ -27,14 +27,9 @@ public:
     const Counts& counts() const { return counts_; }
 
 private:
-    /// A cell with surface, by its low corner.
-    struct Cell {
-        uint16_t corner;
-        uint8_t inside;  ///< which corners are, a case of marching cubes
-    };
-    /// A brick with surface, its cells up to `cellsEnd`.
+    /// A brick with surface, its triangles up to `trianglesEnd`.
     struct Brick {
-        size_t cellsEnd;
+        size_t trianglesEnd;
         std::optional<OriginId> owner;  ///< of all its triangles, where that is one
     };
     /// A cut edge of another block.
@@ -45,10 +40,14 @@ private:
 
     void clear();
     void addBrick(int number, const eval::Tape& tape);
-    template <int axis>
-    void addEdges(const BitRows& inside, Vec3i brick, std::optional<OriginId> owner, size_t& n);
-    uint32_t borderVertex(int edge, int lowSides, int highSides, OriginId owner);
+    size_t addCells(const BrickSigns& signs, Vec3i brick);
+    void addOwnEdges(const BrickSigns& signs, Vec3i brick);
+    void lend(const BrickSigns& signs, Vec3i brick);
+    void borrow(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner);
     void addVertices(const eval::Tape& tape, std::optional<OriginId> owner);
+    void findBorrowed(const eval::Tape& tape);
+    EdgeEnds edgeEnds() const;
+    const OriginId* originsOf(const eval::Tape& tape, const CutEdges& edges);
     void listSeams(Chunk& chunk);
     void writeTriangles(Chunk& chunk) const;
     OriginId originOf(uint32_t corner) const {
@@ -59,13 +58,16 @@ private:
     const size_t refineSteps_;
     eval::Workspace workspace_;
     BlockSamples samples_;
-    CutEdges edges_;
+    CutEdges edges_, borrowedEdges_;
     std::vector<CutEdges> openEdges_;
-    PageVector<uint32_t> number_ =
-        PageVector<uint32_t>(3 * cornersPerBlock);  ///< of the vertex on an edge, see edgePlace
+    std::vector<std::pair<int, size_t>> borrowedPlaces_;  ///< of borrowedEdges_: kind of seam, place in its list
+    PageVector<uint32_t> codes_ = PageVector<uint32_t>(brickCells * brickCells * brickCells + rowPadding);
+    /// Of the vertex on an edge, see edgePlace; the last ones are read and never used.
+    PageVector<uint32_t> number_ = PageVector<uint32_t>(3 * cornersPerBlock + rowPadding);
     PageVector<Vec3f> positions_, normals_;
     PageVector<OriginId> origins_, borrowedOrigins_, found_;
-    PageVector<Cell> cells_ = PageVector<Cell>(blockCells * blockCells * blockCells);  ///< the first cellCount_ count
+    PageVector<SurfaceCell> cells_ =
+        PageVector<SurfaceCell>(blockCells * blockCells * blockCells);  ///< the first cellCount_ count
     std::vector<Brick> bricks_;
     std::array<std::vector<Borrowed>, seamKinds> borrowed_;
     std::array<std::vector<uint32_t>, seamKinds> lent_;

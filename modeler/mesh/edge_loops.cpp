@@ -1,9 +1,22 @@
 // Compiled once for each instruction set (CMakeLists.txt), with SGM_ISA the namespace of its table. Nothing here may
-// use an inline function from a header: the linker might keep the copy this machine can't run.
+// use an inline function that doesn't depend on Arch: the linker might keep the copy this machine can't run.
 #include "modeler/mesh/edge_loops.h"
+
+#include "modeler/eval/values_simd.h"
 
 namespace sgm::mesh {
 namespace {
+
+#if defined(__AVX512BW__)
+using Arch = xsimd::avx512bw;
+#elif defined(__AVX2__)
+using Arch = xsimd::avx2;
+#else
+using Arch = xsimd::default_arch;
+#endif
+using Float = eval::Lanes<Arch>;
+using Mask = Float::Mask;
+static_assert(edgeVector % Float::size == 0);
 
 /// Newton's step and the secant agree when they differ by less than this share of the edge: the margin that vertices
 /// are moved by anyway. On a smooth field the vertex is then far closer to the root, for Newton's error goes with the
@@ -12,99 +25,204 @@ constexpr float agreement = edgeMargin;
 /// A longer step may have crossed a crease, beyond which the normal is another.
 constexpr float longStep = 0x1.0p-4f;
 
-inline float magnitude(float a) { return a < 0 ? -a : a; }
+/// As wholeVectors: the compiler sees that no entries are left over.
+inline size_t whole(size_t n) { return (n + edgeVector - 1) / edgeVector * edgeVector; }
 
 /// Sends a NaN (from infinite values) to the margin.
-inline float withinEdge(float t) {
-    const float low = t > edgeMargin ? t : edgeMargin;
-    return low < 1.0f - edgeMargin ? low : 1.0f - edgeMargin;
+inline Float withinEdge(Float t) {
+    const Float least = edgeMargin, most = 1.0f - edgeMargin;
+    const Float low = select(t > least, t, least);
+    return select(low < most, low, most);
 }
 
-// Compilers take a promise that arrays don't overlap from parameters only.
-void interpolate(size_t n, const float* __restrict base, const float* __restrict span, float* __restrict tIn,
-                 float* __restrict fIn, float* __restrict tOut, float* __restrict fOut, float* __restrict ts,
-                 float* __restrict place) {
-    for (size_t i = 0; i < n; ++i) {
-        const float low = fIn[i], high = fOut[i];
-        const bool inside = low < 0;
-        const float t0 = inside ? 0.0f : 1.0f, f0 = inside ? low : high, f1 = inside ? high : low;
-        const float t1 = 1.0f - t0, t = withinEdge(t0 + (t1 - t0) * (f0 / (f0 - f1)));
-        tIn[i] = t0, fIn[i] = f0;
-        tOut[i] = t1, fOut[i] = f1;
-        ts[i] = t;
-        place[i] = base[i] + t * span[i];
+/// 0, 1, 2, …: numbers of entries, which floats hold exactly.
+inline Float ascending() {
+    alignas(64) float numbers[Float::size];
+    for (size_t i = 0; i < Float::size; ++i) numbers[i] = static_cast<float>(i);
+    return Float::load(numbers);
+}
+
+inline size_t sum(Float v) {
+    alignas(64) float lanes[Float::size];
+    v.store(lanes);
+    float total = 0;
+    for (const float lane : lanes) total += lane;
+    return static_cast<size_t>(total);
+}
+
+/// Which of the entries from `first` on lie along x and along z.
+struct Axes {
+    Mask x, z;
+    Axes(const EdgeArrays& e, Float number)
+        : x(number < Float(static_cast<float>(e.yBegin))), z(number >= Float(static_cast<float>(e.zBegin))) {}
+};
+
+/// Moves entries from i on to `at`, along their edges.
+inline void moveTo(const EdgeArrays& e, size_t i, Axes along, Float at) {
+    select(along.x, at, Float::load(e.x + i)).store(e.x + i);
+    select(along.x | along.z, Float::load(e.y + i), at).store(e.y + i);
+    select(along.z, at, Float::load(e.z + i)).store(e.z + i);
+}
+
+// Compilers take a promise that arrays don't overlap from parameters only, and forget it where they inline.
+
+template <int axis>
+void placeAlong(size_t n, const uint32_t* __restrict codes, const EdgeEnds& ends, float* __restrict x,
+                float* __restrict y, float* __restrict z, float* __restrict base, float* __restrict span,
+                float* __restrict fLow, float* __restrict fHigh) {
+    const float* __restrict xs = ends.coordinates[0];
+    const float* __restrict ys = ends.coordinates[1];
+    const float* __restrict zs = ends.coordinates[2];
+    const float* __restrict along = ends.coordinates[axis];
+    const float* __restrict low = ends.values;
+    const float* __restrict high = ends.values + ends.strides[axis];
+    const auto row = static_cast<int32_t>(ends.strides[1]), layer = static_cast<int32_t>(ends.strides[2]);
+    for (size_t e = 0; e < n; ++e) {
+        const auto code = static_cast<int32_t>(codes[e]);
+        const int32_t i = code & 255, j = code >> 8 & 255, k = code >> 16;
+        const int32_t corner = i + j * row + k * layer, at = axis == 0 ? i : axis == 1 ? j : k;
+        x[e] = xs[i];
+        y[e] = ys[j];
+        z[e] = zs[k];
+        base[e] = along[at];
+        span[e] = along[at + 1] - along[at];
+        fLow[e] = low[corner];
+        fHigh[e] = high[corner];
     }
 }
 
-size_t step(size_t n, const float* __restrict base, const float* __restrict span, const float* __restrict slope,
-            float* __restrict tIn, float* __restrict fIn, float* __restrict tOut, float* __restrict fOut,
-            float* __restrict ts, float* __restrict fs, float* __restrict place) {
-    int open = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const float t = ts[i], f = fs[i];
-        const bool inside = f < 0;
-        const float t0 = inside ? t : tIn[i], f0 = inside ? f : fIn[i];
-        const float t1 = inside ? tOut[i] : t, f1 = inside ? fOut[i] : f;
-        const float secant = t0 + (t1 - t0) * (f0 / (f0 - f1));
-        const float newton = t - f / (slope[i] * span[i]);
-        const float low = t0 < t1 ? t0 : t1, high = t0 < t1 ? t1 : t0;
-        const bool kept = (newton >= low) & (newton <= high);
-        const float apart = magnitude(newton - secant), way = magnitude(newton - t);
-        const bool done = (kept & (apart <= agreement) & (way <= longStep)) | (high - low <= agreement);
-        tIn[i] = t0, fIn[i] = f0;
-        tOut[i] = t1, fOut[i] = f1;
-        const float moved = withinEdge(kept ? newton : 0.5f * (t0 + t1));
-        ts[i] = moved;
-        place[i] = base[i] + moved * span[i];
-        fs[i] = done ? 0.0f : 1.0f;
-        open += done ? 0 : 1;
-    }
-    return static_cast<size_t>(open);
+void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, int axis, size_t begin, const EdgeArrays& e) {
+    const auto along = axis == 0 ? placeAlong<0> : axis == 1 ? placeAlong<1> : placeAlong<2>;
+    along(whole(n), codes, ends, e.x + begin, e.y + begin, e.z + begin, e.base + begin, e.span + begin, e.fIn + begin,
+          e.fOut + begin);
 }
 
-size_t normalize(float* __restrict x, float* __restrict y, float* __restrict z, size_t n) {
-    int without = 0;
-    for (size_t i = 0; i < n; ++i) {
-        const float squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
-        const bool usable = (squared > 1e-30f) & (squared < 1e30f);
-        const float length = __builtin_sqrtf(usable ? squared : 1.0f), scale = usable ? 1.0f / length : 0.0f;
-        x[i] = usable ? x[i] * scale : 0.0f;
-        y[i] = usable ? y[i] * scale : 0.0f;
-        z[i] = usable ? z[i] * scale : 0.0f;
-        without += usable ? 0 : 1;
+void interpolate(const EdgeArrays& e, size_t n) {
+    Float number = ascending();
+    for (size_t i = 0; i < n; i += Float::size, number = number + Float(static_cast<float>(Float::size))) {
+        const Float low = Float::load(e.fIn + i), high = Float::load(e.fOut + i);
+        const Mask inside = low < Float(0.0f);
+        const Float t0 = select(inside, Float(0.0f), Float(1.0f)), t1 = Float(1.0f) - t0;
+        const Float f0 = select(inside, low, high), f1 = select(inside, high, low);
+        const Float t = withinEdge(t0 + (t1 - t0) * (f0 / (f0 - f1)));
+        t0.store(e.tIn + i), f0.store(e.fIn + i);
+        t1.store(e.tOut + i), f1.store(e.fOut + i);
+        t.store(e.t + i);
+        moveTo(e, i, Axes(e, number), Float::load(e.base + i) + t * Float::load(e.span + i));
     }
-    return static_cast<size_t>(without);
+}
+
+size_t step(const EdgeArrays& e, size_t n) {
+    Float open = 0.0f, number = ascending();
+    const Float end = static_cast<float>(n);
+    for (size_t i = 0; i < n; i += Float::size, number = number + Float(static_cast<float>(Float::size))) {
+        const Axes along(e, number);
+        const Float t = Float::load(e.t + i), f = Float::load(e.f + i), span = Float::load(e.span + i);
+        const Float slope =
+            select(along.x, Float::load(e.dx + i), select(along.z, Float::load(e.dz + i), Float::load(e.dy + i)));
+        const Mask inside = f < Float(0.0f);
+        const Float t0 = select(inside, t, Float::load(e.tIn + i)), f0 = select(inside, f, Float::load(e.fIn + i));
+        const Float t1 = select(inside, Float::load(e.tOut + i), t), f1 = select(inside, Float::load(e.fOut + i), f);
+        const Float secant = t0 + (t1 - t0) * (f0 / (f0 - f1));
+        const Float newton = t - f / (slope * span);
+        const Float low = min(t0, t1), high = max(t0, t1);
+        const Mask kept = (newton >= low) & (newton <= high);
+        const Float apart = abs(newton - secant), way = abs(newton - t);
+        const Mask done = (kept & (apart <= Float(agreement)) & (way <= Float(longStep))) |
+                          (high - low <= Float(agreement)) | (number >= end);
+        t0.store(e.tIn + i), f0.store(e.fIn + i);
+        t1.store(e.tOut + i), f1.store(e.fOut + i);
+        const Float moved = withinEdge(select(kept, newton, Float(0.5f) * (t0 + t1)));
+        moved.store(e.t + i);
+        moveTo(e, i, along, Float::load(e.base + i) + moved * span);
+        const Float again = select(done, Float(0.0f), Float(1.0f));
+        again.store(e.open + i);
+        open = open + again;
+    }
+    return sum(open);
+}
+
+size_t normalize(const EdgeArrays& e, size_t n) {
+    Float without = 0.0f, number = ascending();
+    const Float end = static_cast<float>(n);
+    for (size_t i = 0; i < n; i += Float::size, number = number + Float(static_cast<float>(Float::size))) {
+        const Float x = Float::load(e.dx + i), y = Float::load(e.dy + i), z = Float::load(e.dz + i);
+        const Float squared = x * x + y * y + z * z, zero = 0.0f, one = 1.0f;
+        const Mask usable = (squared > Float(1e-30f)) & (squared < Float(1e30f));
+        const Float scale = one / sqrt(select(usable, squared, one));
+        select(usable, x * scale, zero).store(e.dx + i);
+        select(usable, y * scale, zero).store(e.dy + i);
+        select(usable, z * scale, zero).store(e.dz + i);
+        without = without + select(usable | (number >= end), zero, one);
+    }
+    return sum(without);
 }
 
 /// Without a branch: which entries are open follows no pattern.
-size_t listOpen(const float* __restrict f, size_t begin, size_t end, uint32_t* __restrict list) {
-    size_t n = 0;
-    for (size_t i = begin; i < end; ++i) {
-        list[n] = static_cast<uint32_t>(i);
-        n += f[i] != 0.0f;
+size_t listOpen(const float* __restrict open, size_t n, uint32_t* __restrict list) {
+    size_t listed = 0;
+#if defined(__AVX512F__)
+    __m512i at = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    for (size_t i = 0; i < n; i += edgeVector, at = _mm512_add_epi32(at, _mm512_set1_epi32(edgeVector))) {
+        // `step` left nothing open beyond the last entry.
+        const __mmask16 mask = _mm512_cmp_ps_mask(_mm512_loadu_ps(open + i), _mm512_setzero_ps(), _CMP_NEQ_OQ);
+        _mm512_storeu_si512(list + listed, _mm512_maskz_compress_epi32(mask, at));
+        listed += static_cast<size_t>(__builtin_popcount(mask));
     }
-    return n;
+#else
+    for (size_t i = 0; i < n; ++i) {
+        list[listed] = static_cast<uint32_t>(i);
+        listed += open[i] != 0.0f;
+    }
+#endif
+    for (size_t i = listed; i < whole(listed); ++i) list[i] = 0;
+    return listed;
 }
 
-void pick(const float* __restrict from, const uint32_t* __restrict list, size_t n, float* __restrict to) {
-    for (size_t i = 0; i < n; ++i) to[i] = from[list[i]];
+void pickArray(const float* __restrict from, const uint32_t* __restrict list, size_t n, float* __restrict to) {
+    for (size_t i = 0; i < n; ++i) to[i] = from[static_cast<int32_t>(list[i])];
 }
 
-void putBack(const float* __restrict from, const uint32_t* __restrict list, size_t n, float* __restrict to) {
+void pick(const EdgeArrays& from, const uint32_t* list, size_t n, const EdgeArrays& to) {
+    const size_t count = whole(n);
+    pickArray(from.x, list, count, to.x);
+    pickArray(from.y, list, count, to.y);
+    pickArray(from.z, list, count, to.z);
+    pickArray(from.base, list, count, to.base);
+    pickArray(from.span, list, count, to.span);
+    pickArray(from.t, list, count, to.t);
+    pickArray(from.tIn, list, count, to.tIn);
+    pickArray(from.fIn, list, count, to.fIn);
+    pickArray(from.tOut, list, count, to.tOut);
+    pickArray(from.fOut, list, count, to.fOut);
+}
+
+void putBackArray(const float* __restrict from, const uint32_t* __restrict list, size_t n, float* __restrict to) {
     for (size_t i = 0; i < n; ++i) to[list[i]] = from[i];
 }
 
-void interpolateAll(const EdgeArrays& e, size_t n) {
-    interpolate(n, e.base, e.span, e.tIn, e.fIn, e.tOut, e.fOut, e.t, e.place);
+void putBack(const EdgeArrays& from, const uint32_t* list, size_t n, const EdgeArrays& to) {
+    putBackArray(from.x, list, n, to.x);
+    putBackArray(from.y, list, n, to.y);
+    putBackArray(from.z, list, n, to.z);
+    putBackArray(from.dx, list, n, to.dx);
+    putBackArray(from.dy, list, n, to.dy);
+    putBackArray(from.dz, list, n, to.dz);
 }
-size_t stepAll(const EdgeArrays& e, size_t n) {
-    return step(n, e.base, e.span, e.slope, e.tIn, e.fIn, e.tOut, e.fOut, e.t, e.f, e.place);
+
+void interleave(const float* __restrict x, const float* __restrict y, const float* __restrict z, size_t n,
+                float* __restrict points) {
+    for (size_t i = 0; i < n; ++i) {
+        points[3 * i] = x[i];
+        points[3 * i + 1] = y[i];
+        points[3 * i + 2] = z[i];
+    }
 }
 
 }  // namespace
 
 namespace SGM_ISA {
-const EdgeLoops loops{interpolateAll, stepAll, normalize, listOpen, pick, putBack};
+const EdgeLoops loops{place, interpolate, step, normalize, listOpen, pick, putBack, interleave};
 }  // namespace SGM_ISA
 
 }  // namespace sgm::mesh

@@ -1,6 +1,7 @@
 // The loops over a brick's cut edges, compiled for each instruction set.
-// Enters: arrays of n entries. Leaves: the same arrays moved on. Assumes arrays don't overlap; nothing else, so that
-// they are plain loops for the compiler's vectors, and every instruction set gives the same bits.
+// Enters: arrays of n entries. Leaves: the same arrays moved on. Assumes arrays don't overlap and have room for whole
+// vectors: entries from n up to the next multiple of `edgeVector` are read and written too, and hold anything. Plain
+// loops for the compiler's vectors, and every instruction set gives the same bits.
 #pragma once
 
 #include <cstddef>
@@ -11,33 +12,53 @@ namespace sgm::mesh {
 /// Vertices keep this share of a cell away from the ends of their edge, so that no two ever meet at a corner.
 inline constexpr float edgeMargin = 0x1.0p-10f;
 
-/// One entry an edge.
+/// Floats of the longest vector.
+inline constexpr size_t edgeVector = 16;
+constexpr size_t wholeVectors(size_t n) { return (n + edgeVector - 1) / edgeVector * edgeVector; }
+
+/// A grid point of a block as one number, a byte a coordinate. Sums of two are sums of points.
+constexpr uint32_t codeOf(uint32_t i, uint32_t j, uint32_t k) { return i | j << 8 | k << 16; }
+
+/// One entry an edge, grouped by axis: those from `yBegin` on lie along y, those from `zBegin` on along z.
 struct EdgeArrays {
-    const float* base;   ///< moving coordinate of the low end, metres
-    const float* span;   ///< the way to the high end, metres
-    const float* slope;  ///< derivative along the edge where last evaluated
-    float *tIn, *fIn;    ///< end of the bracket that is inside: share of the edge, value
-    float *tOut, *fOut;  ///< the other end
-    float* t;            ///< share of the edge
-    float* f;            ///< value where last evaluated
-    float* place;        ///< moving coordinate, metres
+    float *x, *y, *z;     ///< where the field is evaluated and, at last, the vertex; metres
+    float *dx, *dy, *dz;  ///< derivatives where last evaluated; at last the normal
+    float* f;             ///< value where last evaluated
+    float* base;          ///< moving coordinate of the low end, metres
+    float* span;          ///< the way to the high end, metres
+    float *tIn, *fIn;     ///< end of the bracket that is inside: share of the edge, value
+    float *tOut, *fOut;   ///< the other end
+    float* t;             ///< share of the edge
+    float* open;          ///< 1 where the vertex has to be looked at again, else 0
+    size_t yBegin, zBegin;
+};
+
+/// Where the edges of a block begin and end.
+struct EdgeEnds {
+    const float* coordinates[3];  ///< metres, by grid point along each axis
+    const float* values;          ///< samples by corner, `strides` apart along the axes
+    uint32_t strides[3];
 };
 
 struct EdgeLoops {
+    /// Writes entries [begin, begin + n), edges along `axis` from the grid points `codes` up: places, spans, samples.
+    void (*place)(const EdgeEnds& ends, const uint32_t* codes, size_t n, int axis, size_t begin, const EdgeArrays& e);
     /// Makes brackets of the samples at the low ends (in fIn) and high ends (in fOut), and goes where the line between
     /// them is zero (SG-M III-G).
     void (*interpolate)(const EdgeArrays& e, size_t n);
     /// Narrows the brackets by t and f and moves each vertex by Newton's step, or to the middle where that would leave
-    /// the bracket. Sets f to 1 where the vertex has to be looked at again, else to 0; returns how many have to.
+    /// the bracket. Tells in `open` which have to be looked at again; returns how many.
     size_t (*step)(const EdgeArrays& e, size_t n);
-    /// Scales (x, y, z) to unit length, to zero where it has no direction; returns how many have none.
-    size_t (*normalize)(float* x, float* y, float* z, size_t n);
-    /// Lists those of [begin, end) whose f isn't 0; returns how many. The list needs room for end − begin.
-    size_t (*listOpen)(const float* f, size_t begin, size_t end, uint32_t* list);
-    /// to[i] = from[list[i]]
-    void (*pick)(const float* from, const uint32_t* list, size_t n, float* to);
-    /// to[list[i]] = from[i]
-    void (*putBack)(const float* from, const uint32_t* list, size_t n, float* to);
+    /// Scales (dx, dy, dz) to unit length, to zero where it has no direction; returns how many have none.
+    size_t (*normalize)(const EdgeArrays& e, size_t n);
+    /// Lists the open entries, in order; returns how many. The list needs room for whole vectors, the rest is 0.
+    size_t (*listOpen)(const float* open, size_t n, uint32_t* list);
+    /// Takes over the n listed entries but for f, open and derivatives: they become entries 0 … n − 1.
+    void (*pick)(const EdgeArrays& from, const uint32_t* list, size_t n, const EdgeArrays& to);
+    /// Hands places and derivatives back to where the entries were picked from.
+    void (*putBack)(const EdgeArrays& from, const uint32_t* list, size_t n, const EdgeArrays& to);
+    /// Writes n points (x, y, z) one after the other.
+    void (*interleave)(const float* x, const float* y, const float* z, size_t n, float* points);
 };
 
 namespace portable {

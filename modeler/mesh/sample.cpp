@@ -55,49 +55,65 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
     }
 }
 
-void BlockSamples::gather(Vec3i brick) {
-    const Vec3i first = brick * brickCells;
-    const Vec3i corners = min(Vec3i{brickCorners, brickCorners, brickCorners}, last_ + Vec3i{1, 1, 1} - first);
-    const uint8_t below = sampledBelow(active_, brick);
-    points_ = rowCount_ = 0;
+void BlockSamples::Rows::list(Vec3i corners, uint8_t below) {
+    count = points = 0;
     for (int k = 0; k < corners.z; ++k)
         for (int j = 0; j < corners.y; ++j) {
             const int low = (j == 0 ? 2 : 0) | (k == 0 ? 4 : 0);
             if (below >> low & 1) continue;
-            const int skip = below >> (low | 1) & 1, count = corners.x - skip;
-            const Vec3i at = first + Vec3i{skip, j, k};
-            rows_[rowCount_++] = {static_cast<uint16_t>(cornerNumber(at.x, at.y, at.z)), static_cast<uint8_t>(at.x),
-                                  static_cast<uint8_t>(at.y), static_cast<uint8_t>(at.z), static_cast<uint8_t>(count)};
-            points_ += static_cast<size_t>(count);
+            const int skip = below >> (low | 1) & 1, along = corners.x - skip;
+            rows[count++] = {static_cast<uint16_t>(cornerNumber(skip, j, k)), static_cast<uint8_t>(skip),
+                             static_cast<uint8_t>(j), static_cast<uint8_t>(k), static_cast<uint8_t>(along)};
+            points += static_cast<size_t>(along);
         }
-    brickLoops().gather(rows_.data(), rowCount_, coordinates(0), coordinates(1), coordinates(2), x_.data(), y_.data(),
-                        z_.data());
 }
 
+const BlockSamples::Rows& BlockSamples::rowsOf(Vec3i brick) {
+    const Vec3i corners = last_ + Vec3i{1, 1, 1} - brick * brickCells;
+    const uint8_t below = sampledBelow(active_, brick);
+    const bool whole = minComponent(corners) >= brickCorners;
+    Rows& rows = whole ? wholeBricks_[below] : cutOff_;
+    if (!whole || rows.count == 0) rows.list(min(Vec3i{brickCorners, brickCorners, brickCorners}, corners), below);
+    return rows;
+}
+
+/// Corners on the grid's border are outside at least, those beyond its end 0.
 void BlockSamples::sealBorder(Vec3i brick) {
-    const Vec3i first = brick * brickCells;
-    if (minComponent(block_->index * blockCells + first) > 0 && minComponent(last_ - first) > brickCells) return;
-    for (int k = first.z; k <= first.z + brickCells; ++k)
-        for (int j = first.y; j <= first.y + brickCells; ++j)
-            for (int i = first.x; i <= first.x + brickCells; ++i) {
-                float& f = values_[cornerNumber(i, j, k)];
-                const Vec3i global = block_->index * blockCells + Vec3i{i, j, k}, toEnd = last_ - Vec3i{i, j, k};
-                if (minComponent(toEnd) < 0)
-                    f = 0;
-                else if (minComponent(global) == 0 || minComponent(toEnd) == 0)
-                    f = std::max(0.0f, f);
+    const Vec3i first = brick * brickCells, end = last_ - first;
+    if (minComponent(block_->index * blockCells + first) > 0 && minComponent(end) > brickCells) return;
+    float* const values = values_.data() + brickCorner(brick);
+    const auto plane = [&](int axis, int at, auto&& change) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        for (int a = 0; a < brickCorners; ++a)
+            for (int b = 0; b < brickCorners; ++b) {
+                Vec3i corner;
+                corner[axis] = at, corner[u] = a, corner[v] = b;
+                float& f = values[cornerNumber(corner.x, corner.y, corner.z)];
+                f = change(f);
             }
+    };
+    const auto outside = [](float f) { return std::max(0.0f, f); };
+    for (int axis = 0; axis < 3; ++axis) {
+        if (block_->index[axis] * blockCells + first[axis] == 0) plane(axis, 0, outside);
+        if (end[axis] <= brickCells) plane(axis, end[axis], outside);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+        for (int at = end[axis] + 1; at <= brickCells; ++at) plane(axis, at, [](float) { return 0.0f; });
 }
 
 const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Counts& counts) {
     const bool whole = block_->tape.size() <= shortEnough;
     if (!whole) eval::shorten(block_->tape, region_[brick], workspace, tape_, care_);
     const eval::Tape& tape = whole ? block_->tape : tape_;
-    gather(brickAt(brick));
-    eval::evaluate(tape, {x_.data(), y_.data(), z_.data(), points_}, f_.data(), workspace);
-    counts.pointEvaluations += points_;
-    brickLoops().scatter(rows_.data(), rowCount_, f_.data(), values_.data());
-    sealBorder(brickAt(brick));
+    const Vec3i at = brickAt(brick), first = at * brickCells;
+    const Rows& rows = rowsOf(at);
+    const BrickLoops& loops = brickLoops();
+    loops.gather(rows.rows.data(), rows.count, coordinates(0) + first.x, coordinates(1) + first.y,
+                 coordinates(2) + first.z, x_.data(), y_.data(), z_.data());
+    eval::evaluate(tape, {x_.data(), y_.data(), z_.data(), rows.points}, f_.data(), workspace);
+    counts.pointEvaluations += rows.points;
+    loops.scatter(rows.rows.data(), rows.count, f_.data(), values_.data() + brickCorner(at));
+    sealBorder(at);
     return tape;
 }
 

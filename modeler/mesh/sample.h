@@ -48,7 +48,15 @@ public:
     const float* coordinates(int axis) const { return coordinates_[axis].data(); }
 
 private:
-    void gather(Vec3i brick);
+    /// Corners that a brick has to evaluate.
+    struct Rows {
+        std::array<CornerRow, brickCorners * brickCorners> rows;
+        size_t count = 0, points = 0;
+        /// Those of a brick of so many corners, but for those on low sides that `below` names, see sampledBelow.
+        void list(Vec3i corners, uint8_t below);
+    };
+
+    const Rows& rowsOf(Vec3i brick);
     void sealBorder(Vec3i brick);
 
     static constexpr int maxBatch = brickCorners * brickCorners * brickCorners + rowPadding;
@@ -62,8 +70,8 @@ private:
     PageVector<float> values_ = PageVector<float>(cornersPerBlock + rowPadding);
     std::array<std::array<float, blockCorners + rowPadding>, 3> coordinates_{};
     std::array<float, maxBatch> x_, y_, z_, f_;
-    std::array<CornerRow, brickCorners * brickCorners> rows_;  ///< corners that the brick has to evaluate
-    size_t points_ = 0, rowCount_ = 0;
+    std::vector<Rows> wholeBricks_ = std::vector<Rows>(256);  ///< by `below`, listed when first asked for
+    Rows cutOff_;                                             ///< of a brick that the grid's end cuts off
 };
 
 }  // namespace sgm::mesh

@@ -8,7 +8,7 @@
 #include "modeler/core/random.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/mesh/brick_loops.h"
-#include "modeler/mesh/edge_loops.h"
+#include "modeler/mesh/vertices.h"
 
 namespace sgm::mesh {
 namespace {
@@ -73,18 +73,120 @@ TEST(Loops, BitsTellWhichCornersAreInside) {
     }
 }
 
+TEST(Loops, BitsAreListedInOrder) {
+    BitCube bits{};
+    std::vector<uint32_t> expected;
+    for (uint32_t c = 0; c < 512; ++c) {
+        if (c / 64 == 3 || uniform(combine(7, c), 0, 1) < 0.6) continue;
+        bits.layers[c / 64] |= 1ull << c % 64;
+        expected.push_back(codeOf(8, 16, 24) + codeOf(c & 7, c >> 3 & 7, c >> 6));
+    }
+    for (const Loops& l : loopsHere()) {
+        std::vector<uint32_t> codes(512 + rowPadding, 1u);
+        ASSERT_EQ(l.bricks->list(bits, codeOf(8, 16, 24), codes.data()), expected.size());
+        for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(codes[i], expected[i]);
+        for (size_t i = expected.size(); i < wholeVectors(expected.size()); ++i) EXPECT_EQ(codes[i], 0u);
+    }
+}
+
+TEST(Loops, TrianglesAreJoinedFromTheCellsRows) {
+    constexpr size_t rowStride = 10, layerStride = 100;
+    std::vector<uint32_t> number(3 * 10 * layerStride);
+    for (size_t i = 0; i < number.size(); ++i) number[i] = static_cast<uint32_t>(1000 + i);
+    std::array<PlacedCase, 6> cases{};
+    for (size_t c = 1; c < cases.size(); ++c) {
+        cases[c].triangles = static_cast<uint16_t>(c);
+        for (size_t v = 0; v < 3 * c; ++v) {
+            const size_t row = (v + c) % 4, place = v * 5 % 6;
+            cases[c].lanes[v] = static_cast<uint8_t>(8 * row + place);
+            cases[c].edges[v] = static_cast<int16_t>(3 * ((row & 1) * rowStride + (row >> 1) * layerStride) + place);
+        }
+    }
+    for (const size_t n : {0, 1, 5, 6, 40}) {
+        std::vector<SurfaceCell> cells;
+        std::vector<uint32_t> expected;
+        for (size_t c = 0; c < n; ++c) {
+            const SurfaceCell cell{static_cast<uint16_t>(13 * c), static_cast<uint16_t>(1 + c % 5)};
+            cells.push_back(cell);
+            for (size_t v = 0; v < 3u * cases[cell.inside].triangles; ++v)
+                expected.push_back(number[3u * cell.corner + static_cast<size_t>(cases[cell.inside].edges[v])]);
+        }
+        for (const Loops& l : loopsHere()) {
+            std::vector<uint32_t> triangles(expected.size() + 16, 7u);
+            l.bricks->join(cells.data(), n, number.data(), rowStride, layerStride, cases.data(), triangles.data());
+            for (size_t i = 0; i < triangles.size(); ++i)
+                EXPECT_EQ(triangles[i], i < expected.size() ? expected[i] : 7u) << n << ' ' << i;
+        }
+    }
+}
+
+/// Cut edges with anything in their arrays, and the arrays by number.
+struct RandomEdges {
+    CutEdges edges;
+    std::vector<float*> rows;
+    RandomEdges(size_t n, uint64_t key) {
+        edges.reserve(n);
+        const EdgeArrays& a = edges.arrays;
+        rows = {a.x, a.y, a.z, a.dx, a.dy, a.dz, a.f, a.base, a.span, a.tIn, a.fIn, a.tOut, a.fOut, a.t, a.open};
+        for (size_t r = 0; r < rows.size(); ++r)
+            for (size_t i = 0; i < wholeVectors(n); ++i)
+                rows[r][i] = static_cast<float>(uniform(combine(combine(key, r), i), r == 8 ? 0.1 : -1, 1));
+        edges.arrays.yBegin = n / 4, edges.arrays.zBegin = n / 2 + 1;
+    }
+};
+
+TEST(Loops, EdgesMoveTheSameWay) {
+    constexpr size_t n = 203;
+    RandomEdges expected(n, 5);
+    portable::loops.interpolate(expected.edges.arrays, n);
+    const size_t open = portable::loops.step(expected.edges.arrays, n);
+    const size_t flat = portable::loops.normalize(expected.edges.arrays, n);
+    EXPECT_GT(open, 0u);
+    EXPECT_LT(open, n);
+    for (const Loops& l : loopsHere()) {
+        RandomEdges here(n, 5);
+        l.edges->interpolate(here.edges.arrays, n);
+        EXPECT_EQ(l.edges->step(here.edges.arrays, n), open);
+        EXPECT_EQ(l.edges->normalize(here.edges.arrays, n), flat);
+        for (size_t r = 0; r < here.rows.size(); ++r)
+            for (size_t i = 0; i < n; ++i) ASSERT_EQ(here.rows[r][i], expected.rows[r][i]) << r << ' ' << i;
+    }
+}
+
 TEST(Loops, OpenEntriesAreListedPickedAndPutBack) {
     constexpr size_t n = 203;
-    Samples f = randomSamples(3);
-    for (size_t i = 0; i < n; ++i)
-        if (f[i] < 0.2f) f[i] = 0;
     for (const Loops& l : loopsHere()) {
-        std::vector<uint32_t> list(n + 1);
-        const size_t open = l.edges->listOpen(f.data(), 5, n, list.data());
-        Samples picked{}, back{};
-        l.edges->pick(f.data(), list.data(), open, picked.data());
-        l.edges->putBack(picked.data(), list.data(), open, back.data());
-        for (size_t i = 0; i < n; ++i) EXPECT_EQ(back[i], i < 5 ? 0.0f : f[i]) << i;
+        RandomEdges from(n, 3), to(n, 4), back(n, 6);
+        float* const open = from.edges.arrays.open;
+        for (size_t i = 0; i < wholeVectors(n); ++i) open[i] = i < n && open[i] > 0.2f ? 1.0f : 0.0f;
+        uint32_t* const list = to.edges.list.data();
+        const size_t count = l.edges->listOpen(open, n, list);
+        l.edges->pick(from.edges.arrays, list, count, to.edges.arrays);
+        l.edges->putBack(to.edges.arrays, list, count, back.edges.arrays);
+        const RandomEdges before(n, 6);
+        size_t c = 0;
+        for (size_t i = 0; i < n; ++i) {
+            if (open[i] == 0) {
+                EXPECT_EQ(back.edges.arrays.x[i], before.edges.arrays.x[i]);
+                continue;
+            }
+            EXPECT_EQ(list[c], i);
+            EXPECT_EQ(to.edges.arrays.fOut[c], from.edges.arrays.fOut[i]);
+            EXPECT_EQ(back.edges.arrays.x[i], from.edges.arrays.x[i]);
+            EXPECT_EQ(back.edges.arrays.dz[i], to.edges.arrays.dz[c]);
+            ++c;
+        }
+        EXPECT_EQ(c, count);
+    }
+}
+
+TEST(Loops, PointsAreInterleaved) {
+    const Samples from = randomSamples(8);
+    for (const Loops& l : loopsHere()) {
+        Samples points{};
+        l.edges->interleave(from.data(), from.data() + 100, from.data() + 200, 37, points.data());
+        for (size_t i = 0; i < points.size(); ++i)
+            EXPECT_EQ(points[i], i < 3 * 37 ? from[i / 3 + 100 * (i % 3)] : 0.0f) << i;
     }
 }
 
