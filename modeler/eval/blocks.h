@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
 
 #include "modeler/eval/workspace.h"
 
@@ -22,39 +21,18 @@ inline size_t blockSize(const Tape& tape, size_t planes) {
     return std::clamp(fits, vectorFloats, maxBlock);
 }
 
-/// `n` coordinates and, up to `count`, the last one again.
-inline void loadRow(const float* from, size_t n, float* row, size_t count) {
-    std::copy_n(from, n, row);  // not memcpy: with n bounded, GCC makes that a slow rep movs
-    std::fill(row + n, row + count, from[n - 1]);
-}
-
 /// Row `plane` of a register.
 inline float* rowOf(const StepContext& c, uint32_t reg, size_t planes, size_t plane) {
     return c.registers + (reg * planes + plane) * c.stride;
 }
 
-/// Puts points [first, first + n) into registers 0, 1, 2 as values of `planes` planes (derivatives 1 where they are
-/// due).
-inline void loadPoints(const Points& points, size_t first, size_t n, const StepContext& c, size_t planes) {
-    const float* from[] = {points.x + first, points.y + first, points.z + first};
-    for (uint32_t axis = 0; axis < 3; ++axis) {
-        loadRow(from[axis], n, rowOf(c, axis, planes, 0), c.count);
-        for (size_t d = 1; d < planes; ++d) {
-            float* const row = rowOf(c, axis, planes, d);
-            if (d == axis + 1)
-                std::fill_n(row, c.count, 1.0f);
-            else
-                std::memset(row, 0, c.count * sizeof(float));
-        }
-    }
-}
-
 /// Copies a plane of the result to `out`.
-inline void storeResult(const Tape& tape, const StepContext& c, size_t planes, size_t plane, float* out, size_t n) {
+inline void storeResult(const Tape& tape, const StepContext& c, StoreRow store, size_t planes, size_t plane, float* out,
+                        size_t n) {
     if (isConstant(tape.result()))
         std::fill_n(out, n, plane == 0 ? tape.constants()[indexOf(tape.result())] : 0.0f);
     else
-        std::copy_n(rowOf(c, tape.result(), planes, plane), n, out);
+        store(rowOf(c, tape.result(), planes, plane), n, out);
 }
 
 /// Runs a tape over points in blocks; `before(in, context)` sees each instruction's operands, `done` each block's
@@ -67,7 +45,8 @@ void runBlocks(const Tape& tape, const Points& points, const Step* steps, size_t
     for (size_t first = 0; first < points.n; first += block) {
         const size_t n = std::min(block, points.n - first);
         c.count = roundedUp(n);
-        loadPoints(points, first, n, c, planes);
+        const float* const from[] = {points.x + first, points.y + first, points.z + first};
+        (planes == 1 ? w.kernels.loadValues : w.kernels.loadGradients)(from, n, c);
         for (const Instruction& in : tape.code()) {
             before(in, c);
             steps[static_cast<size_t>(in.op)](in, c);

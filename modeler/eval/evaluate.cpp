@@ -69,8 +69,9 @@ StepContext Workspace::Impl::context(const Tape& tape, size_t planes, size_t str
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
     if (w.tally) count(tape, points.n, false, *w.tally);
-    runBlocks(tape, points, w.kernels.values, 1, w, nothingBefore,
-              [&](const StepContext& c, size_t first, size_t n) { storeResult(tape, c, 1, 0, out + first, n); });
+    runBlocks(tape, points, w.kernels.values, 1, w, nothingBefore, [&](const StepContext& c, size_t first, size_t n) {
+        storeResult(tape, c, w.kernels.store, 1, 0, out + first, n);
+    });
 }
 
 void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
@@ -80,7 +81,8 @@ void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, 
     float* const out[] = {value, dx, dy, dz};
     runBlocks(tape, points, w.kernels.gradients, 4, w, nothingBefore,
               [&](const StepContext& c, size_t first, size_t n) {
-                  for (size_t plane = 0; plane < 4; ++plane) storeResult(tape, c, 4, plane, out[plane] + first, n);
+                  for (size_t plane = 0; plane < 4; ++plane)
+                      storeResult(tape, c, w.kernels.store, 4, plane, out[plane] + first, n);
               });
 }
 

@@ -223,6 +223,28 @@ void moveOwners(const float* values, const float* owners, float one, size_t n, f
     }
 }
 
+template <class V>
+void loadPoints(const float* const from[3], size_t n, const StepContext& c) {
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+        const float* const coordinates = from[axis];
+        float* const row = rowOf<V>(c, axis);
+        size_t i = 0;
+        for (; i + Float::size <= n; i += Float::size)
+            Float(Float::Batch::load_unaligned(coordinates + i)).store(row + i);
+        for (; i < c.count; ++i) row[i] = coordinates[i < n ? i : n - 1];
+        for (size_t d = 1; d < Planes<V>::count; ++d) {
+            const Float derivative = d == axis + 1 ? 1.0f : 0.0f;
+            for (i = 0; i < c.count; i += Float::size) derivative.store(row + d * c.stride + i);
+        }
+    }
+}
+
+void store(const float* row, size_t n, float* to) {
+    size_t i = 0;
+    for (; i + Float::size <= n; i += Float::size) Float::load(row + i).v.store_unaligned(to + i);
+    for (; i < n; ++i) to[i] = row[i];
+}
+
 template <class V, class... Rows>
 const Step* steps(field::TypeList<Rows...>) {
     static constexpr Step table[] = {step<Rows, V>...};
@@ -235,7 +257,7 @@ namespace SGM_ISA {
 Kernels kernels() {
     constexpr field::OpTable rows;
     return {steps<Float>(rows), steps<Dual<Float>>(rows), steps<Interval<Float>>(rows), moveOwners<true>,
-            moveOwners<false>};
+            moveOwners<false>,  loadPoints<Float>,        loadPoints<Dual<Float>>,      store};
 }
 }  // namespace SGM_ISA
 

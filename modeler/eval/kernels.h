@@ -26,8 +26,8 @@ struct StepContext {
     const float* constants;
     const Source* sources;
     const float* const* grids;  ///< words of the tape's grids, by number
-    void* arguments;  ///< argumentBytes for each operand of the longest instruction
-    float* bounds;    ///< ranges: rows of the instruction's operands and reach, where it chooses
+    void* arguments;            ///< argumentBytes for each operand of the longest instruction
+    float* bounds;              ///< ranges: rows of the instruction's operands and reach, where it chooses
 };
 
 using Step = void (*)(const Instruction&, const StepContext&);
@@ -36,12 +36,20 @@ using Step = void (*)(const Instruction&, const StepContext&);
 /// operand's place. Owners are kept as the bits of floats; where `owners` is null, `one` is everybody's.
 using MoveOwners = void (*)(const float* values, const float* owners, float one, size_t n, float* best, float* taken);
 
+/// Puts n ≥ 1 points into registers 0, 1, 2, and the last one again up to c.count. Derivatives are 1 where they are
+/// due.
+using LoadPoints = void (*)(const float* const from[3], size_t n, const StepContext& c);
+/// Copies n floats of an aligned row.
+using StoreRow = void (*)(const float* row, size_t n, float* to);
+
 /// The steps of every op for one instruction set, by OpCode.
 struct Kernels {
     const Step* values;
     const Step* gradients;  ///< Dual: rows value, dx, dy, dz
     const Step* ranges;     ///< Interval: rows lo, hi; ops that choose also write `bounds`
     MoveOwners toLesser, toGreater;
+    LoadPoints loadValues, loadGradients;
+    StoreRow store;
 };
 
 namespace portable {

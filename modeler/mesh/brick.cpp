@@ -44,12 +44,17 @@ EdgeTable makeHighEdges() {
     return table;
 }
 
-BitRows cutAmong(const BitRows& inside, int axis, const BitRows& edges) {
+SparseRows cutAmong(const BitRows& inside, int axis, const BitRows& edges) {
     const int up = axis == 0 ? 0 : axis == 1 ? 1 : brickCorners;
     const int shift = axis == 0 ? 1 : 0;
-    BitRows cut{};
+    SparseRows cut{};
     for (int row = 0; row < brickRows; ++row)
-        cut[row] = static_cast<uint16_t>((inside[row] ^ inside[row + up] >> shift) & edges[row]);
+        cut.rows[row] = static_cast<uint16_t>((inside[row] ^ inside[row + up] >> shift) & edges[row]);
+    for (int group = 0; group < paddedRows / 4; ++group) {
+        uint64_t word;
+        std::memcpy(&word, cut.rows.data() + 4 * group, sizeof word);
+        cut.groups |= static_cast<uint32_t>(word != 0) << group;
+    }
     return cut;
 }
 
@@ -103,12 +108,12 @@ BitCube ownCuts(const BrickSigns& signs, int axis) {
     return cuts;
 }
 
-BitRows cutsOnLowSides(const BrickSigns& signs, int axis, int sides) {
+SparseRows cutsOnLowSides(const BrickSigns& signs, int axis, int sides) {
     static const EdgeTable edges = makeLowEdges();
     return cutAmong(signs.rows, axis, edges[axis][sides]);
 }
 
-BitRows cutsOnHighSides(const BrickSigns& signs, int axis, int sides) {
+SparseRows cutsOnHighSides(const BrickSigns& signs, int axis, int sides) {
     static const EdgeTable edges = makeHighEdges();
     return cutAmong(signs.rows, axis, edges[axis][sides]);
 }

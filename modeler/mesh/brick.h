@@ -40,26 +40,26 @@ BitCube surfaceCells(const BrickSigns& signs);
 BitCube ownCuts(const BrickSigns& signs, int axis);
 constexpr Vec3i firstOwn(int axis) { return {axis == 0 ? 0 : 1, axis == 1 ? 0 : 1, axis == 2 ? 0 : 1}; }
 
+/// Rows of bits, and which groups of four rows have any.
+struct SparseRows {
+    BitRows rows;
+    uint32_t groups = 0;
+};
+
 /// Cut edges on the sides of the block that a brick touches, by their low corners. `sides` is a mask of axes. On low
 /// sides: those that other blocks own and no lower brick takes care of. On high sides: own ones.
-BitRows cutsOnLowSides(const BrickSigns& signs, int axis, int sides);
-BitRows cutsOnHighSides(const BrickSigns& signs, int axis, int sides);
-
-/// The corners of cell (i, row) that are inside, as a case of marching cubes.
-inline uint32_t caseOf(const BitRows& inside, int row, int i) {
-    const uint32_t a = inside[row], b = inside[row + 1], c = inside[row + brickCorners],
-                   d = inside[row + brickCorners + 1];
-    return (a >> i & 3) | (b >> i & 3) << 2 | (c >> i & 3) << 4 | (d >> i & 3) << 6;
-}
+SparseRows cutsOnLowSides(const BrickSigns& signs, int axis, int sides);
+SparseRows cutsOnHighSides(const BrickSigns& signs, int axis, int sides);
 
 /// Calls visit(row, i) for each bit set, ascending.
 template <class Visit>
-void forEachBit(const BitRows& rows, Visit&& visit) {
+void forEachBit(const SparseRows& sparse, Visit&& visit) {
     static_assert(std::endian::native == std::endian::little);
     constexpr int rowsAWord = 4, bitsARow = 16;
-    for (int first = 0; first < brickRows; first += rowsAWord) {
+    for (uint32_t groups = sparse.groups; groups != 0; groups &= groups - 1) {
+        const int first = rowsAWord * std::countr_zero(groups);
         uint64_t word;
-        std::memcpy(&word, rows.data() + first, sizeof word);
+        std::memcpy(&word, sparse.rows.data() + first, sizeof word);
         for (; word != 0; word &= word - 1) {
             const int bit = std::countr_zero(word);
             visit(first + bit / bitsARow, bit % bitsARow);

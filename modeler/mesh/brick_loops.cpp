@@ -70,33 +70,96 @@ void inside(const float* corner, size_t rowStride, size_t layerStride, uint16_t*
     }
 }
 
-#if defined(__AVX512F__)
+#if defined(__AVX512BW__)
 
-/// Sixteen bits at a time, without a branch: where the surface lies follows no pattern.
+/// The words of a row of bytes: corner c of eight cells, in the layer of row j = c >> 1 & 1 and of k + (c >> 2).
+struct CellCorners {
+    uint64_t words[8];
+    CellCorners(const uint8_t* low, const uint8_t* high, int k) {
+        for (int c = 0; c < 8; ++c)
+            __builtin_memcpy(&words[c], (c & 1 ? high : low) + (c >> 1 & 1) + corners * (k + (c >> 2)), 8);
+    }
+};
+
+/// Calls visit(k, j, mask) for bits (0 … 7, j), (0 … 7, j + 1) of each word k where there are any: most often there are
+/// none, and which follows no pattern.
+template <class Visit>
+inline void forEachTwoRows(const BitCube& bits, Visit&& visit) {
+    const __m512i words = _mm512_loadu_si512(bits.layers);
+    alignas(64) uint16_t rows[32];
+    _mm512_store_si512(rows, words);
+    for (uint32_t rest = _mm512_test_epi16_mask(words, words); rest != 0; rest &= rest - 1) {
+        const auto at = static_cast<uint32_t>(__builtin_ctz(rest));
+        visit(at >> 2, at % 4 * 2, rows[at]);
+    }
+}
+
 size_t list(const BitCube& bits, uint32_t origin, uint32_t* __restrict codes) {
     const __m512i twoRows = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 256, 257, 258, 259, 260, 261, 262, 263);
     size_t n = 0;
-    for (uint32_t k = 0; k < 8; ++k)
-        for (uint32_t j = 0; j < 8; j += 2) {
-            const auto mask = static_cast<__mmask16>(bits.layers[k] >> 8 * j);
-            const __m512i here = _mm512_set1_epi32(static_cast<int>(origin + (j << 8 | k << 16)));
-            _mm512_storeu_si512(codes + n, _mm512_maskz_compress_epi32(mask, _mm512_add_epi32(twoRows, here)));
-            n += static_cast<size_t>(__builtin_popcount(mask));
-        }
+    forEachTwoRows(bits, [&](uint32_t k, uint32_t j, __mmask16 mask) {
+        const __m512i here = _mm512_set1_epi32(static_cast<int>(origin + (j << 8 | k << 16)));
+        _mm512_storeu_si512(codes + n, _mm512_maskz_compress_epi32(mask, _mm512_add_epi32(twoRows, here)));
+        n += static_cast<size_t>(__builtin_popcount(mask));
+    });
     _mm512_storeu_si512(codes + n, _mm512_setzero_si512());
+    return n;
+}
+
+/// Cases of 64 cells at a time, a byte each.
+size_t cells(const BitCube& bits, const uint8_t* low, const uint8_t* high, int corner, int rowStride, int layerStride,
+             SurfaceCell* __restrict list) {
+    alignas(64) uint8_t cases[8][64];
+    for (int k = 0; k < 8; ++k) {
+        const CellCorners at(low, high, k);
+        __m512i sum = _mm512_setzero_si512();
+        for (int c = 0; c < 8; ++c)
+            sum = _mm512_or_si512(sum, _mm512_maskz_set1_epi8(at.words[c], static_cast<char>(1 << c)));
+        _mm512_store_si512(cases[k], sum);
+    }
+    const __m512i column = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7);
+    const __m512i twoRows = _mm512_mask_add_epi32(column, 0xff00, column, _mm512_set1_epi32(rowStride));
+    size_t n = 0;
+    forEachTwoRows(bits, [&](uint32_t k, uint32_t j, __mmask16 mask) {
+        const int first = corner + static_cast<int>(j) * rowStride + static_cast<int>(k) * layerStride;
+        const __m128i here = _mm_load_si128(reinterpret_cast<const __m128i*>(cases[k] + 8 * j));
+        const __m512i pairs = _mm512_or_si512(_mm512_add_epi32(twoRows, _mm512_set1_epi32(first)),
+                                              _mm512_slli_epi32(_mm512_cvtepu8_epi32(here), 16));
+        _mm512_storeu_si512(list + n, _mm512_maskz_compress_epi32(mask, pairs));
+        n += static_cast<size_t>(__builtin_popcount(mask));
+    });
     return n;
 }
 
 #else
 
+/// Calls visit(i, j, k) for every bit.
+template <class Visit>
+inline void forEachBit(const BitCube& bits, Visit&& visit) {
+    for (int k = 0; k < 8; ++k)
+        for (uint64_t rest = bits.layers[k]; rest != 0; rest &= rest - 1) {
+            const int bit = __builtin_ctzll(rest);
+            visit(bit & 7, bit >> 3, k);
+        }
+}
+
 size_t list(const BitCube& bits, uint32_t origin, uint32_t* __restrict codes) {
     size_t n = 0;
-    for (uint32_t k = 0; k < 8; ++k)
-        for (uint64_t rest = bits.layers[k]; rest != 0; rest &= rest - 1) {
-            const auto bit = static_cast<uint32_t>(__builtin_ctzll(rest));
-            codes[n++] = origin + ((bit & 7) | (bit & 56) << 5 | k << 16);
-        }
+    forEachBit(bits, [&](int i, int j, int k) { codes[n++] = origin + static_cast<uint32_t>(i | j << 8 | k << 16); });
     for (size_t i = n; i < n + rowPadding; ++i) codes[i] = 0;
+    return n;
+}
+
+size_t cells(const BitCube& bits, const uint8_t* low, const uint8_t* high, int corner, int rowStride, int layerStride,
+             SurfaceCell* __restrict list) {
+    size_t n = 0;
+    forEachBit(bits, [&](int i, int j, int k) {
+        const int row = j + corners * k;
+        const auto sides = [&](int r) { return (low[r] >> i & 1) | (high[r] >> i & 1) << 1; };
+        const int inside = sides(row) | sides(row + 1) << 2 | sides(row + corners) << 4 | sides(row + corners + 1) << 6;
+        list[n++] = {static_cast<uint16_t>(corner + i + j * rowStride + k * layerStride),
+                     static_cast<uint16_t>(inside)};
+    });
     return n;
 }
 
@@ -135,7 +198,7 @@ void join(const SurfaceCell* cells, size_t n, const uint32_t* __restrict number,
 }  // namespace
 
 namespace SGM_ISA {
-const BrickLoops brickLoops{gather, scatter, inside, list, join};
+const BrickLoops brickLoops{gather, scatter, inside, list, cells, join};
 }  // namespace SGM_ISA
 
 }  // namespace sgm::mesh

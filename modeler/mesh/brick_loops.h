@@ -48,6 +48,11 @@ struct BrickLoops {
     /// Lists the bits set, ascending, as codeOf(i, j, k) + `origin`; returns how many. The list's last vector is filled
     /// up with zeros.
     size_t (*list)(const BitCube& bits, uint32_t origin, uint32_t* codes);
+    /// Lists the cells among the 8³ of a brick that `bits` names, ascending, with their cases; returns how many. Bits 0
+    /// … 7 and 1 … 8 of the rows of corners are in `low` and `high`, row j + 9k; the brick's low corner is `corner`,
+    /// rows and layers are so many corners apart. The list needs room for `rowPadding` more.
+    size_t (*cells)(const BitCube& bits, const uint8_t* low, const uint8_t* high, int corner, int rowStride,
+                    int layerStride, SurfaceCell* cells);
     /// Joins vertices, cell by cell; `number` holds three numbers a corner, rows and layers are so many corners apart.
     /// Writes the cells' triangles, three numbers each, and nothing beside them.
     void (*join)(const SurfaceCell* cells, size_t n, const uint32_t* number, size_t rowStride, size_t layerStride,

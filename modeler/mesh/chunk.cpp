@@ -125,19 +125,12 @@ EdgeEnds BlockMesher::edgeEnds() const {
 
 /// The brick's cells with surface; returns how many.
 size_t BlockMesher::addCells(const BrickSigns& signs, Vec3i brick) {
-    const size_t count = brickLoops().list(surfaceCells(signs), 0, codes_.data());
-    const int corner = brickCorner(brick);
-    const uint8_t* const triangles = triangleCounts().data();
     SurfaceCell* const cells = cells_.data() + cellCount_;
-    size_t made = 0;
-    for (size_t c = 0; c < count; ++c) {
-        const uint32_t code = codes_[c], row = (code >> 8 & 255) + brickCorners * (code >> 16);
-        const uint32_t inside = caseOf(signs.rows, static_cast<int>(row), static_cast<int>(code & 255));
-        cells[c] = {static_cast<uint16_t>(corner + cornerOf(code)), static_cast<uint16_t>(inside)};
-        made += triangles[inside];
-    }
+    const size_t count = brickLoops().cells(surfaceCells(signs), signs.low.data(), signs.high.data(),
+                                            brickCorner(brick), blockCorners, blockCorners * blockCorners, cells);
+    const uint8_t* const triangles = triangleCounts().data();
+    for (size_t c = 0; c < count; ++c) triangles_ += triangles[cells[c].inside];
     cellCount_ += count;
-    triangles_ += made;
     counts_.surfaceCells += count;
     return count;
 }

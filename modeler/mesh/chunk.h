@@ -61,13 +61,12 @@ private:
     CutEdges edges_, borrowedEdges_;
     std::vector<CutEdges> openEdges_;
     std::vector<std::pair<int, size_t>> borrowedPlaces_;  ///< of borrowedEdges_: kind of seam, place in its list
-    PageVector<uint32_t> codes_ = PageVector<uint32_t>(brickCells * brickCells * brickCells + rowPadding);
     /// Of the vertex on an edge, see edgePlace; the last ones are read and never used.
     PageVector<uint32_t> number_ = PageVector<uint32_t>(3 * cornersPerBlock + rowPadding);
     PageVector<Vec3f> positions_, normals_;
     PageVector<OriginId> origins_, borrowedOrigins_, found_;
     PageVector<SurfaceCell> cells_ =
-        PageVector<SurfaceCell>(blockCells * blockCells * blockCells);  ///< the first cellCount_ count
+        PageVector<SurfaceCell>(blockCells * blockCells * blockCells + rowPadding);  ///< the first cellCount_ count
     std::vector<Brick> bricks_;
     std::array<std::vector<Borrowed>, seamKinds> borrowed_;
     std::array<std::vector<uint32_t>, seamKinds> lent_;
