@@ -41,7 +41,9 @@ template <class Before, class DoneBlock>
 void runBlocks(const Tape& tape, const Points& points, const Step* steps, size_t planes, Workspace::Impl& w,
                Before&& before, DoneBlock&& done) {
     const size_t block = blockSize(tape, planes);
-    StepContext c = w.context(tape, planes, std::min(block, roundedUp(points.n)));
+    const bool inPlace = planes == 1 && w.roomStride > 0 && points.x == w.registers.get(0);
+    StepContext c = w.context(tape, planes, inPlace ? w.roomStride : std::min(block, roundedUp(points.n)));
+    w.roomStride = 0;
     for (size_t first = 0; first < points.n; first += block) {
         const size_t n = std::min(block, points.n - first);
         c.count = roundedUp(n);

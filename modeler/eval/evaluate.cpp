@@ -66,6 +66,15 @@ StepContext Workspace::Impl::context(const Tape& tape, size_t planes, size_t str
             nullptr};
 }
 
+PointRoom roomForPoints(const Tape& tape, size_t n, Workspace& workspace) {
+    Workspace::Impl& w = workspace.impl();
+    w.roomStride = 0;
+    if (n > blockSize(tape, 1)) return {nullptr, nullptr, nullptr};
+    w.roomStride = roundedUp(n) + vectorFloats;
+    const StepContext c = w.context(tape, 1, w.roomStride);
+    return {rowOf(c, 0, 1, 0), rowOf(c, 1, 1, 0), rowOf(c, 2, 1, 0)};
+}
+
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
     if (w.tally) count(tape, points.n, false, *w.tally);

@@ -46,6 +46,14 @@ struct Points {
     size_t n;
 };
 
+/// Where points may be written so that `evaluate` needn't copy them.
+struct PointRoom {
+    float *x, *y, *z;
+};
+/// Room for n points of this tape, and 16 floats more each that anything may be written to; null pointers where it
+/// doesn't take so many at a time. Valid for the workspace's next `evaluate`, if that is the next use of it.
+PointRoom roomForPoints(const Tape& tape, size_t n, Workspace& workspace);
+
 /// out[i] = f(x[i], y[i], z[i]).
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace);
 

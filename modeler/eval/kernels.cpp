@@ -223,15 +223,29 @@ void moveOwners(const float* values, const float* owners, float one, size_t n, f
     }
 }
 
+/// The n < Float::size floats at `from`, then `rest`.
+inline Float loadSome(const float* from, size_t n, float rest) {
+#if defined(__AVX512F__)
+    const auto mask = static_cast<__mmask16>((1u << n) - 1);
+    return Float(Float::Batch(_mm512_mask_loadu_ps(_mm512_set1_ps(rest), mask, from)));
+#else
+    alignas(64) float row[Float::size];
+    for (size_t i = 0; i < Float::size; ++i) row[i] = i < n ? from[i] : rest;
+    return Float::load(row);
+#endif
+}
+
 template <class V>
 void loadPoints(const float* const from[3], size_t n, const StepContext& c) {
     for (uint32_t axis = 0; axis < 3; ++axis) {
         const float* const coordinates = from[axis];
         float* const row = rowOf<V>(c, axis);
-        size_t i = 0;
+        size_t i = coordinates == row ? n / Float::size * Float::size : 0;
         for (; i + Float::size <= n; i += Float::size)
             Float(Float::Batch::load_unaligned(coordinates + i)).store(row + i);
-        for (; i < c.count; ++i) row[i] = coordinates[i < n ? i : n - 1];
+        const Float last = coordinates[n - 1];
+        if (i < n) loadSome(coordinates + i, n - i, coordinates[n - 1]).store(row + i), i += Float::size;
+        for (; i < c.count; i += Float::size) last.store(row + i);
         for (size_t d = 1; d < Planes<V>::count; ++d) {
             const Float derivative = d == axis + 1 ? 1.0f : 0.0f;
             for (i = 0; i < c.count; i += Float::size) derivative.store(row + d * c.stride + i);
@@ -242,7 +256,11 @@ void loadPoints(const float* const from[3], size_t n, const StepContext& c) {
 void store(const float* row, size_t n, float* to) {
     size_t i = 0;
     for (; i + Float::size <= n; i += Float::size) Float::load(row + i).v.store_unaligned(to + i);
+#if defined(__AVX512F__)
+    _mm512_mask_storeu_ps(to + i, static_cast<__mmask16>((1u << (n - i)) - 1), _mm512_load_ps(row + i));
+#else
     for (; i < n; ++i) to[i] = row[i];
+#endif
 }
 
 template <class V, class... Rows>

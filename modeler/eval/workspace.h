@@ -31,6 +31,7 @@ struct Workspace::Impl {
     Kernels kernels;
     Tally* tally = nullptr;  ///< where operations are counted, if at all
     AlignedFloats registers, arguments;
+    size_t roomStride = 0;  ///< of the registers that roomForPoints handed out
     Links links;                    ///< of the last evaluateRanges
     AlignedFloats bounds;  ///< rows of maxBoxes floats, see Links::bounds
     AlignedFloats owners;  ///< registers of owners, as bits

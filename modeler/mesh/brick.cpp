@@ -1,5 +1,7 @@
 #include "modeler/mesh/brick.h"
 
+#include <algorithm>
+
 namespace sgm::mesh {
 namespace {
 
@@ -47,7 +49,8 @@ EdgeTable makeHighEdges() {
 SparseRows cutAmong(const BitRows& inside, int axis, const BitRows& edges) {
     const int up = axis == 0 ? 0 : axis == 1 ? 1 : brickCorners;
     const int shift = axis == 0 ? 1 : 0;
-    SparseRows cut{};
+    SparseRows cut;
+    std::fill(cut.rows.begin() + brickRows, cut.rows.end(), uint16_t{0});
     for (int row = 0; row < brickRows; ++row)
         cut.rows[row] = static_cast<uint16_t>((inside[row] ^ inside[row + up] >> shift) & edges[row]);
     for (int group = 0; group < paddedRows / 4; ++group) {
@@ -79,6 +82,7 @@ const BrickLoops& brickLoops() {
 }
 
 BrickSigns::BrickSigns(const float* corner) {
+    std::fill(rows.begin() + brickRows, rows.end(), uint16_t{0});
     brickLoops().inside(corner, blockCorners, blockCorners * blockCorners, rows.data());
     for (int row = 0; row < paddedRows; ++row) {
         low[row] = static_cast<uint8_t>(rows[row]);

@@ -25,7 +25,7 @@ constexpr int rowK(int row) { return row / brickCorners; }
 
 /// Which corners of a brick have f < 0.
 struct BrickSigns {
-    BitRows rows{};
+    BitRows rows;
     std::array<uint8_t, paddedRows> low, high;  ///< bits 0 … 7 and 1 … 8 of each row
 
     /// `corner` is the block's sample at the brick's low corner.

@@ -14,22 +14,33 @@ constexpr int corners = 9;
 constexpr int copied = 12;
 static_assert(copied <= rowPadding);
 
+void gatherRow(CornerRow row, const float* __restrict xs, float y0, float z0, float* __restrict x, float* __restrict y,
+               float* __restrict z) {
+    for (int i = 0; i < copied; ++i) x[i] = xs[row.i + i];
+    for (int i = 0; i < copied; ++i) y[i] = y0;
+    for (int i = 0; i < copied; ++i) z[i] = z0;
+}
+
 void gather(const CornerRow* rows, size_t n, const float* __restrict xs, const float* __restrict ys,
             const float* __restrict zs, float* __restrict x, float* __restrict y, float* __restrict z) {
     for (size_t r = 0; r < n; ++r) {
-        const float* const from = xs + rows[r].i;
-        const float yHere = ys[rows[r].j], zHere = zs[rows[r].k];
-        const size_t count = rows[r].count;
-        if (count == corners - 1) {  // most rows: a lower brick has the first corner
-            for (int i = 0; i < corners - 1; ++i) x[i] = from[i];
-            for (int i = 0; i < corners - 1; ++i) y[i] = yHere;
-            for (int i = 0; i < corners - 1; ++i) z[i] = zHere;
-        } else {
-            for (int i = 0; i < copied; ++i) x[i] = from[i];
-            for (int i = 0; i < copied; ++i) y[i] = yHere;
-            for (int i = 0; i < copied; ++i) z[i] = zHere;
+#if defined(__AVX512F__)
+        // Most rows lack the first corner, which a lower brick has: two of them make a vector.
+        const auto rest = [&](size_t row) { return rows[row].i == 1 && rows[row].count == corners - 1; };
+        if (r + 1 < n && rest(r) && rest(r + 1)) {
+            const auto both = [](const float* from, int a, int b) {
+                return _mm512_mask_blend_ps(0xff00, _mm512_set1_ps(from[a]), _mm512_set1_ps(from[b]));
+            };
+            const __m512 eight = _mm512_castps256_ps512(_mm256_loadu_ps(xs + 1));
+            _mm512_storeu_ps(x, _mm512_shuffle_f32x4(eight, eight, 0x44));
+            _mm512_storeu_ps(y, both(ys, rows[r].j, rows[r + 1].j));
+            _mm512_storeu_ps(z, both(zs, rows[r].k, rows[r + 1].k));
+            x += 16, y += 16, z += 16, ++r;
+            continue;
         }
-        x += count, y += count, z += count;
+#endif
+        gatherRow(rows[r], xs, ys[rows[r].j], zs[rows[r].k], x, y, z);
+        x += rows[r].count, y += rows[r].count, z += rows[r].count;
     }
 }
 

@@ -13,10 +13,6 @@ namespace {
 /// Place of the edge that runs along `axis` from a corner up: the edges of a cell lie close to each other.
 constexpr int edgePlace(int corner, int axis) { return 3 * corner + axis; }
 
-/// The corner with a code.
-constexpr int cornerOf(uint32_t code) {
-    return cornerNumber(static_cast<int>(code & 255), static_cast<int>(code >> 8 & 255), static_cast<int>(code >> 16));
-}
 constexpr uint32_t codeAt(Vec3i at) {
     return codeOf(static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.y), static_cast<uint32_t>(at.z));
 }
@@ -117,9 +113,10 @@ bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chun
     return true;
 }
 
-EdgeEnds BlockMesher::edgeEnds() const {
-    return {{samples_.coordinates(0), samples_.coordinates(1), samples_.coordinates(2)},
-            samples_.values(),
+EdgeEnds BlockMesher::edgeEnds(Vec3i brick) const {
+    const Vec3i first = brick * brickCells;
+    return {{samples_.coordinates(0) + first.x, samples_.coordinates(1) + first.y, samples_.coordinates(2) + first.z},
+            samples_.values() + brickCorner(brick),
             {1, blockCorners, blockCorners * blockCorners}};
 }
 
@@ -142,15 +139,13 @@ void BlockMesher::addOwnEdges(const BrickSigns& signs, Vec3i brick) {
     for (int axis = 0; axis < 3; ++axis) {
         if (axis == 1) edges_.arrays.yBegin = n;
         if (axis == 2) edges_.arrays.zBegin = n;
-        uint32_t* const codes = edges_.list.data() + n;
-        const size_t count =
-            brickLoops().list(ownCuts(signs, axis), codeAt(brick * brickCells + firstOwn(axis)), codes);
-        edgeLoops().place(edgeEnds(), codes, count, axis, n, edges_.arrays);
-        const auto first = static_cast<uint32_t>(vertices_ + n);
-        for (uint32_t e = 0; e < count; ++e) number_[edgePlace(cornerOf(codes[e]), axis)] = first + e;
-        n += count;
+        n += brickLoops().list(ownCuts(signs, axis), codeAt(firstOwn(axis)), edges_.list.data() + n);
     }
     edges_.size = n;
+    uint32_t* const places = edges_.list.data();
+    edgeLoops().place(edgeEnds(brick), places, n, edges_.arrays, places);
+    uint32_t* const number = number_.data() + edgePlace(brickCorner(brick), 0);
+    for (size_t e = 0; e < n; ++e) number[places[e]] = static_cast<uint32_t>(vertices_ + e);
 }
 
 /// Lists own vertices on high sides of the block for every block that meets this one there.
@@ -174,26 +169,24 @@ void BlockMesher::borrow(const BrickSigns& signs, Vec3i brick, std::optional<Ori
     size_t n = 0;
     borrowedPlaces_.clear();
     borrowedEdges_.reserve(3 * brickRows * brickCorners);
+    uint32_t* const codes = borrowedEdges_.list.data();
     for (int axis = 0; axis < 3; ++axis) {
         if (axis == 1) borrowedEdges_.arrays.yBegin = n;
         if (axis == 2) borrowedEdges_.arrays.zBegin = n;
         if ((sides & ~(1 << axis)) == 0) continue;
-        uint32_t* const codes = borrowedEdges_.list.data() + n;
-        size_t count = 0;
         forEachBit(cutsOnLowSides(signs, axis, sides), [&](int row, int i) {
-            const Vec3i at = brick * brickCells + Vec3i{i, rowJ(row), rowK(row)};
+            const Vec3i inBrick{i, rowJ(row), rowK(row)}, at = brick * brickCells + inBrick;
             const int edge = edgePlace(cornerNumber(at.x, at.y, at.z), axis), kind = sidesAt(0, at, axis) - 1;
             if (!owner) {
                 borrowedPlaces_.emplace_back(kind, borrowed_[kind].size());
-                codes[count++] = codeAt(at);
+                codes[n++] = codeAt(inBrick);
             }
             borrowed_[kind].push_back({static_cast<uint32_t>(edge), owner.value_or(0)});
         });
-        std::fill(codes + count, codes + wholeVectors(count), 0u);
-        edgeLoops().place(edgeEnds(), codes, count, axis, n, borrowedEdges_.arrays);
-        n += count;
     }
     borrowedEdges_.size = n;
+    std::fill(codes + n, codes + wholeVectors(n), 0u);
+    if (n > 0) edgeLoops().place(edgeEnds(brick), codes, n, borrowedEdges_.arrays, codes);
 }
 
 /// Whose surface each vertex lies on; valid until the next call.

@@ -46,7 +46,7 @@ private:
     void borrow(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner);
     void addVertices(const eval::Tape& tape, std::optional<OriginId> owner);
     void findBorrowed(const eval::Tape& tape);
-    EdgeEnds edgeEnds() const;
+    EdgeEnds edgeEnds(Vec3i brick) const;
     const OriginId* originsOf(const eval::Tape& tape, const CutEdges& edges);
     void listSeams(Chunk& chunk);
     void writeTriangles(Chunk& chunk) const;

@@ -64,38 +64,67 @@ inline void moveTo(const EdgeArrays& e, size_t i, Axes along, Float at) {
     select(along.z, at, Float::load(e.z + i)).store(e.z + i);
 }
 
-// Compilers take a promise that arrays don't overlap from parameters only, and forget it where they inline.
+#if defined(__AVX512F__)
 
-template <int axis>
-void placeAlong(size_t n, const uint32_t* __restrict codes, const EdgeEnds& ends, float* __restrict x,
-                float* __restrict y, float* __restrict z, float* __restrict base, float* __restrict span,
-                float* __restrict fLow, float* __restrict fHigh) {
-    const float* __restrict xs = ends.coordinates[0];
-    const float* __restrict ys = ends.coordinates[1];
-    const float* __restrict zs = ends.coordinates[2];
-    const float* __restrict along = ends.coordinates[axis];
-    const float* __restrict low = ends.values;
-    const float* __restrict high = ends.values + ends.strides[axis];
-    const auto row = static_cast<int32_t>(ends.strides[1]), layer = static_cast<int32_t>(ends.strides[2]);
-    for (size_t e = 0; e < n; ++e) {
-        const auto code = static_cast<int32_t>(codes[e]);
-        const int32_t i = code & 255, j = code >> 8 & 255, k = code >> 16;
-        const int32_t corner = i + j * row + k * layer, at = axis == 0 ? i : axis == 1 ? j : k;
-        x[e] = xs[i];
-        y[e] = ys[j];
-        z[e] = zs[k];
-        base[e] = along[at];
-        span[e] = along[at + 1] - along[at];
-        fLow[e] = low[corner];
-        fHigh[e] = high[corner];
+/// Coordinates by permutation: all of a brick's fit into a vector.
+void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArrays& e, uint32_t* places) {
+    const __m512 xs = _mm512_loadu_ps(ends.coordinates[0]), ys = _mm512_loadu_ps(ends.coordinates[1]),
+                 zs = _mm512_loadu_ps(ends.coordinates[2]);
+    const auto number = [](size_t v) { return _mm512_set1_epi32(static_cast<int>(v)); };
+    const __m512i row = number(ends.strides[1]), layer = number(ends.strides[2]), byte = number(255), one = number(1);
+    const __m512i yBegin = number(e.yBegin), zBegin = number(e.zBegin);
+    __m512i entry = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    for (size_t at = 0; at < n; at += edgeVector, entry = _mm512_add_epi32(entry, number(edgeVector))) {
+        const __mmask16 notX = _mm512_cmpge_epi32_mask(entry, yBegin), alongZ = _mm512_cmpge_epi32_mask(entry, zBegin);
+        const auto ofAxis = [&](auto blend, auto x, auto y, auto z) { return blend(alongZ, blend(notX, x, y), z); };
+        const auto floats = [](__mmask16 m, __m512 a, __m512 b) { return _mm512_mask_blend_ps(m, a, b); };
+        const auto ints = [](__mmask16 m, __m512i a, __m512i b) { return _mm512_mask_blend_epi32(m, a, b); };
+        const __m512i code = _mm512_loadu_si512(codes + at);
+        const __m512i i = _mm512_and_si512(code, byte), j = _mm512_and_si512(_mm512_srli_epi32(code, 8), byte),
+                      k = _mm512_srli_epi32(code, 16);
+        const __m512 x = _mm512_permutexvar_ps(i, xs), y = _mm512_permutexvar_ps(j, ys),
+                     z = _mm512_permutexvar_ps(k, zs);
+        const __m512 low = ofAxis(floats, x, y, z);
+        const __m512 high = ofAxis(floats, _mm512_permutexvar_ps(_mm512_add_epi32(i, one), xs),
+                                   _mm512_permutexvar_ps(_mm512_add_epi32(j, one), ys),
+                                   _mm512_permutexvar_ps(_mm512_add_epi32(k, one), zs));
+        const __m512i corner =
+            _mm512_add_epi32(i, _mm512_add_epi32(_mm512_mullo_epi32(j, row), _mm512_mullo_epi32(k, layer)));
+        const __m512i other = _mm512_add_epi32(corner, ofAxis(ints, one, row, layer));
+        const __m512i axis = ofAxis(ints, number(0), one, number(2));
+        _mm512_store_ps(e.x + at, x);
+        _mm512_store_ps(e.y + at, y);
+        _mm512_store_ps(e.z + at, z);
+        _mm512_store_ps(e.base + at, low);
+        _mm512_store_ps(e.span + at, _mm512_sub_ps(high, low));
+        _mm512_store_ps(e.fIn + at, _mm512_i32gather_ps(corner, ends.values, 4));
+        _mm512_store_ps(e.fOut + at, _mm512_i32gather_ps(other, ends.values, 4));
+        _mm512_storeu_si512(places + at, _mm512_add_epi32(_mm512_mullo_epi32(corner, number(3)), axis));
     }
 }
 
-void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, int axis, size_t begin, const EdgeArrays& e) {
-    const auto along = axis == 0 ? placeAlong<0> : axis == 1 ? placeAlong<1> : placeAlong<2>;
-    along(whole(n), codes, ends, e.x + begin, e.y + begin, e.z + begin, e.base + begin, e.span + begin, e.fIn + begin,
-          e.fOut + begin);
+#else
+
+void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArrays& e, uint32_t* places) {
+    for (size_t at = 0; at < n; ++at) {
+        const uint32_t axis = at < e.yBegin ? 0 : at < e.zBegin ? 1 : 2;
+        const uint32_t i = codes[at] & 255, j = codes[at] >> 8 & 255, k = codes[at] >> 16;
+        const uint32_t corner = i + j * ends.strides[1] + k * ends.strides[2];
+        const float* const along = ends.coordinates[axis] + (axis == 0 ? i : axis == 1 ? j : k);
+        e.x[at] = ends.coordinates[0][i];
+        e.y[at] = ends.coordinates[1][j];
+        e.z[at] = ends.coordinates[2][k];
+        e.base[at] = along[0];
+        e.span[at] = along[1] - along[0];
+        e.fIn[at] = ends.values[corner];
+        e.fOut[at] = ends.values[corner + ends.strides[axis]];
+        places[at] = 3 * corner + axis;
+    }
+    for (size_t at = n; at < whole(n); ++at)  // numbers like the others
+        for (float* const to : {e.x, e.y, e.z, e.base, e.span, e.fIn, e.fOut}) to[at] = to[n - 1];
 }
+
+#endif
 
 void interpolate(const EdgeArrays& e, size_t n) {
     Float number = ascending();
@@ -184,7 +213,8 @@ void pickArray(const float* __restrict from, const uint32_t* __restrict list, si
 }
 
 void pick(const EdgeArrays& from, const uint32_t* list, size_t n, const EdgeArrays& to) {
-    const size_t count = whole(n);
+    constexpr size_t few = edgeVector / 2;  // to be gathered one by one
+    const size_t count = n <= few ? n : whole(n);
     pickArray(from.x, list, count, to.x);
     pickArray(from.y, list, count, to.y);
     pickArray(from.z, list, count, to.z);

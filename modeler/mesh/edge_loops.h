@@ -16,7 +16,7 @@ inline constexpr float edgeMargin = 0x1.0p-10f;
 inline constexpr size_t edgeVector = 16;
 constexpr size_t wholeVectors(size_t n) { return (n + edgeVector - 1) / edgeVector * edgeVector; }
 
-/// A grid point of a block as one number, a byte a coordinate. Sums of two are sums of points.
+/// A corner of a brick or a block as one number, a byte a coordinate. Sums of two are sums of points.
 constexpr uint32_t codeOf(uint32_t i, uint32_t j, uint32_t k) { return i | j << 8 | k << 16; }
 
 /// One entry an edge, grouped by axis: those from `yBegin` on lie along y, those from `zBegin` on along z.
@@ -33,16 +33,18 @@ struct EdgeArrays {
     size_t yBegin, zBegin;
 };
 
-/// Where the edges of a block begin and end.
+/// A brick's corners, and the block's samples and numbers from the brick's low corner on.
 struct EdgeEnds {
-    const float* coordinates[3];  ///< metres, by grid point along each axis
-    const float* values;          ///< samples by corner, `strides` apart along the axes
+    const float* coordinates[3];  ///< metres, by corner along each axis; `edgeVector` of them may be read
+    const float* values;          ///< by corner, `strides` apart along the axes
     uint32_t strides[3];
 };
 
 struct EdgeLoops {
-    /// Writes entries [begin, begin + n), edges along `axis` from the grid points `codes` up: places, spans, samples.
-    void (*place)(const EdgeEnds& ends, const uint32_t* codes, size_t n, int axis, size_t begin, const EdgeArrays& e);
+    /// Writes n entries, edges up from the corners `codes`: where they lie, how long they are, the samples at their
+    /// ends; and to `places` three times the corner's number, counted as the values are, plus the axis. Both may be one
+    /// list.
+    void (*place)(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArrays& e, uint32_t* places);
     /// Makes brackets of the samples at the low ends (in fIn) and high ends (in fOut), and goes where the line between
     /// them is zero (SG-M III-G).
     void (*interpolate)(const EdgeArrays& e, size_t n);

@@ -108,9 +108,11 @@ const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Co
     const Vec3i at = brickAt(brick), first = at * brickCells;
     const Rows& rows = rowsOf(at);
     const BrickLoops& loops = brickLoops();
+    eval::PointRoom to = eval::roomForPoints(tape, rows.points, workspace);
+    if (!to.x) to = {x_.data(), y_.data(), z_.data()};
     loops.gather(rows.rows.data(), rows.count, coordinates(0) + first.x, coordinates(1) + first.y,
-                 coordinates(2) + first.z, x_.data(), y_.data(), z_.data());
-    eval::evaluate(tape, {x_.data(), y_.data(), z_.data(), rows.points}, f_.data(), workspace);
+                 coordinates(2) + first.z, to.x, to.y, to.z);
+    eval::evaluate(tape, {to.x, to.y, to.z, rows.points}, f_.data(), workspace);
     counts.pointEvaluations += rows.points;
     loops.scatter(rows.rows.data(), rows.count, f_.data(), values_.data() + brickCorner(at));
     sealBorder(at);

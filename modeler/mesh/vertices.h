@@ -22,7 +22,7 @@ class CutEdges {
 public:
     size_t size = 0;
     size_t flat = 0;  ///< entries whose normal is zero
-    /// Where each lies, as a list of entries or of grid points.
+    /// Which each is: its place, or its entry in another list.
     PageVector<uint32_t> list;
 
     /// Makes room for n entries; never shrinks.
