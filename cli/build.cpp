@@ -16,6 +16,7 @@
 #include "cli/report.h"
 #include "cli/watch.h"
 #include "grammar/incremental/pipeline.h"
+#include "modeler/core/stopwatch.h"
 #include "modeler/export/exporter.h"
 #include "modeler/mesh/edit.h"
 #include "modeler/mesh/validate.h"
@@ -35,7 +36,7 @@ struct BuildRequest {
     int smooth = 0;
     double simplify = 1;
     std::string keep = "all";
-    bool judge = false, cave = false, inward = false, quiet = false;
+    bool judge = false, cave = false, inward = false, stream = false, quiet = false;
 };
 
 bool surveys(const BuildRequest& request) { return request.cave || !request.floor.empty(); }
@@ -43,10 +44,22 @@ bool surveys(const BuildRequest& request) { return request.cave || !request.floo
 /// Whether the blocks are needed, from which a level set is sampled.
 bool wantsLevelSet(const BuildRequest& request) { return wantsVolume(request.out) || surveys(request); }
 
+/// A streamed build never has the whole mesh; Error::Usage names what would need it.
+Status checkStream(const BuildRequest& request) {
+    const std::pair<bool, const char*> whole[] = {{request.smooth > 0, "--smooth"}, {request.simplify < 1, "--simplify"}, {request.keep != "all", "--keep"},
+                                                  {request.judge, "--judge"},       {surveys(request), "--cave and --floor"}, {request.inward, "--inward"},
+                                                  {!request.report.empty(), "--report"}, {!request.animations.empty(), "--animate"}};
+    for (const auto& [asked, option] : whole)
+        if (asked) return Error{Error::Kind::Usage, fmt::format("--stream never holds the whole mesh: leave out {}", option)};
+    return checkStreamed(request.out);
+}
+
 /// What can be refused before the work.
 Status checkRequest(const BuildRequest& request) {
     if (const Status s = checkOutputs(request.out); !s.ok()) return s;
     if (const Status s = request.floor.empty() ? Done{} : checkMeshFile("--floor", request.floor); !s.ok()) return s;
+    if (request.stream)
+        if (const Status s = checkStream(request); !s.ok()) return s;
     if (request.agent.empty()) return Done{};
     if (!surveys(request)) return Error{Error::Kind::Usage, "--agent walks through a cave: add --cave or --floor FILE"};
     if (const auto agent = parseAgent(request.agent); !agent.ok()) return agent.error();
@@ -160,11 +173,34 @@ Status deliver(const BuildRequest& request, const Model& model, MeshedModel mesh
     return Done{};
 }
 
+/// Meshes and writes layer by layer.
+Status stream(const BuildRequest& request, const Model& model, Progress* progress) {
+    const Stopwatch watch;
+    const mesh::Grid grid = gridOver(model.lowered->field.bounds, request.grid);
+    mesh::Counts counts;
+    const auto blocks = mesh::subdivide(model.tape, grid, request.grid.threads, progress, counts);
+    if (!blocks.ok()) return blocks.error();
+    size_t triangles = 0;
+    exporter::ExportInput input = viewer::exportInput(model, request.model.file);
+    input.progress = progress;
+    const Status written = streamOutput(request.out, input, [&](const mesh::ChunkVisitor& visit) {
+        return mesh::polygonizeInLayers(*blocks, grid, {.threads = request.grid.threads}, progress, counts, [&](const mesh::Mesh& window, const mesh::Chunk& chunk) {
+            triangles += chunk.triangles.size();
+            return visit(window, chunk);
+        });
+    });
+    if (!written.ok() || request.quiet) return written;
+    fmt::print("{} shapes, {} bonds, {} rules; {} triangles; {:.2f} s\nwrote {}\n", model.derivation.tree.shapes.size(), model.derivation.tree.bonds.size(),
+               model.derivation.classic + model.derivation.morphic, triangles, watch.seconds(), request.out.files[0]);
+    return Done{};
+}
+
 Status buildOne(const BuildRequest& request) {
     Stages stages;
     Watch watch(request.quiet);
     const auto model = makeModel(request.model, stages, watch.progress());
     if (!model.ok()) return model.error();
+    if (request.stream) return stream(request, *model, watch.progress());
     auto meshed = makeMesh(*model, request.grid, stages, watch.progress());
     if (!meshed.ok()) return meshed.error();
     return deliver(request, *model, std::move(*meshed), stages, watch.progress());
@@ -255,6 +291,7 @@ void addBuild(CLI::App& app, int& exitCode) {
     command->add_option("--smooth", request->smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
     command->add_option("--simplify", request->simplify, "Decimate to this share of the triangles")->check(CLI::Range(0.001, 1.0));
     command->add_flag("--judge", request->judge, "Let CGAL judge the mesh before it is written: closed, outward, no self-intersection");
+    command->add_flag("--stream", request->stream, "Mesh and write layer by layer, for a mesh larger than memory: one " + exporter::streamedExtensions() + " file, and nothing that needs the whole mesh");
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
     command->footer(
         "Examples:\n  sgm build examples/grotto.sgm -o grotto.glb -o grotto.vdb --resolution 256\n"

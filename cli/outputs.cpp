@@ -91,6 +91,18 @@ bool wantsVolume(const OutputRequest& request) {
     return std::any_of(request.files.begin(), request.files.end(), [](const std::string& file) { return formatOf(file)->wantsVolume; });
 }
 
+Status checkStreamed(const OutputRequest& request) {
+    if (request.files.size() != 1 || !request.proxy.empty())
+        return Error{Error::Kind::Usage, "--stream writes one file, without a proxy: give a single -o"};
+    if (formatOf(request.files[0])->stream) return Done{};
+    return Error{Error::Kind::Usage, fmt::format("--stream: {} wants the whole mesh; chunk by chunk there are {}", formatOf(request.files[0])->extension, exporter::streamedExtensions())};
+}
+
+Status streamOutput(const OutputRequest& request, exporter::ExportInput input, const exporter::ChunkSource& chunks) {
+    input.options = optionsFor(request, *formatOf(request.files[0]));
+    return exporter::writeStreamed(input, chunks, request.files[0]);
+}
+
 Status writeOutputs(const OutputRequest& request, const Model& model, exporter::ExportInput input, int threads) {
     for (const std::string& file : request.files) {
         const Exporter& row = *formatOf(file);

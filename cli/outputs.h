@@ -28,6 +28,11 @@ Status checkMeshFile(const char* option, const std::string& file);
 /// True when one of the files holds a volume.
 bool wantsVolume(const OutputRequest& request);
 
+/// Error::Usage unless there is one file, of a format that takes a mesh chunk by chunk.
+Status checkStreamed(const OutputRequest& request);
+/// Writes that file.
+Status streamOutput(const OutputRequest& request, exporter::ExportInput input, const exporter::ChunkSource& chunks);
+
 /// Writes every file. `input` has the mesh, the level set where one of the files wants it, and what is known of the model.
 Status writeOutputs(const OutputRequest& request, const Model& model, exporter::ExportInput input, int threads);
 

@@ -18,8 +18,10 @@ constexpr ExportOption gltfOptions[] = {uv};
 constexpr ExportOption texturedOptions[] = {up, unit, uv};
 constexpr ExportOption plainOptions[] = {up, unit};
 constexpr ExportOption plyOptions[] = {
-    up, unit,
-    {"attributes", "all", "all|none", "what vertices and faces carry beside the shape; none: 19 bytes a triangle, not 34"}};
+    up,
+    unit,
+    {"attributes", "all", "all|none",
+     "what vertices and faces carry beside the shape; none: 19 bytes a triangle, not 34"}};
 constexpr ExportOption volumeOptions[] = {
     {"grids", "levelset", "levelset|fog|levelset,fog", "which grids the file holds; the fog's is called density"},
     {"grid", "level_set", "", "name of the level set's grid"},
@@ -32,16 +34,18 @@ constexpr ExportOption volumeOptions[] = {
 };
 
 constexpr Exporter table[] = {
-    {".glb", "glTF 2.0, binary: normals, texture coordinates, a primitive a material", false, gltfOptions, writeGlb},
-    {".gltf", "glTF 2.0 as JSON, with its buffer inside", false, gltfOptions, writeGltf},
-    {".obj", "Wavefront OBJ, with a .mtl beside it", false, texturedOptions, writeObj},
-    {".ply", "PLY, binary: normals, texture coordinates s t, colours, an origin a face", false, plyOptions, writePly},
-    {".stl", "STL, binary: positions only", false, plainOptions, writeStl},
-    {".off", "OFF: positions and triangles as text", false, plainOptions, writeOff},
+    {".glb", "glTF 2.0, binary: normals, texture coordinates, a primitive a material", false, gltfOptions, writeGlb,
+     nullptr},
+    {".gltf", "glTF 2.0 as JSON, with its buffer inside", false, gltfOptions, writeGltf, nullptr},
+    {".obj", "Wavefront OBJ, with a .mtl beside it", false, texturedOptions, writeObj, nullptr},
+    {".ply", "PLY, binary: normals, texture coordinates s t, colours, an origin a face", false, plyOptions, writePly,
+     streamPly},
+    {".stl", "STL, binary: positions only", false, plainOptions, writeStl, streamStl},
+    {".off", "OFF: positions and triangles as text", false, plainOptions, writeOff, streamOff},
     {".usda", "OpenUSD as text: normals, display colours, a subset and preview surface a material", false,
-     texturedOptions, writeUsda},
+     texturedOptions, writeUsda, nullptr},
     {".vdb", "OpenVDB: a narrow-band level set, fog for renderers, or both; voxels in metres", true, volumeOptions,
-     writeVdb},
+     writeVdb, nullptr},
 };
 
 /// `parts`, each turned to text by `name`, with `separator` between them.
@@ -84,6 +88,28 @@ Status checkInput(const ExportInput& input, const Exporter& row, const Path& pat
     return checkOptions(row, input.options);
 }
 
+/// The format of a path.
+Result<const Exporter*> rowFor(const Path& path) {
+    if (const Exporter* const row = findExporter(path.extension().string())) return row;
+    return Error{Error::Kind::Usage, fmt::format("no format for '{}'; the extensions are {}", path.string(),
+                                                 joined(table, " ", [](const Exporter& e) { return e.extension; }))};
+}
+
+/// Replaces the file by what fill(input, temporary) writes; the input has a provenance then.
+template <class Fill>
+Status replaced(const ExportInput& input, const Path& path, Fill fill) {
+    const Provenance nobody;
+    ExportInput complete = input;
+    if (!complete.provenance) complete.provenance = &nobody;
+    try {
+        return replaceFile(path, [&](const Path& temporary) { return fill(complete, temporary); });
+    } catch (const std::bad_alloc&) {
+        return Error{Error::Kind::Budget, fmt::format("cannot write '{}': out of memory", path.string())};
+    } catch (const std::exception& e) {
+        return writeError(path, e.what());
+    }
+}
+
 }  // namespace
 
 Status checkOptions(const Exporter& row, const ExportOptions& options) {
@@ -112,22 +138,40 @@ const Exporter* findExporter(std::string_view extension) {
 }
 
 Status write(const ExportInput& input, const Path& path) {
-    const Exporter* row = findExporter(path.extension().string());
-    if (!row)
-        return Error{Error::Kind::Usage,
-                     fmt::format("no format for '{}'; the extensions are {}", path.string(),
-                                 joined(table, " ", [](const Exporter& e) { return e.extension; }))};
-    if (Status status = checkInput(input, *row, path); !status.ok()) return status;
-    const Provenance nobody;
-    ExportInput complete = input;
-    if (!complete.provenance) complete.provenance = &nobody;
-    try {
-        return replaceFile(path, [&](const Path& temporary) { return row->write(complete, temporary, path); });
-    } catch (const std::bad_alloc&) {
-        return Error{Error::Kind::Budget, fmt::format("cannot write '{}': out of memory", path.string())};
-    } catch (const std::exception& e) {
-        return writeError(path, e.what());
-    }
+    const auto row = rowFor(path);
+    if (!row.ok()) return row.error();
+    if (Status status = checkInput(input, **row, path); !status.ok()) return status;
+    return replaced(input, path, [&](const ExportInput& complete, const Path& temporary) {
+        return (*row)->write(complete, temporary, path);
+    });
+}
+
+Status writeStreamed(const ExportInput& input, const ChunkSource& chunks, const Path& path) {
+    const auto row = rowFor(path);
+    if (!row.ok()) return row.error();
+    if (!(*row)->stream)
+        return Error{Error::Kind::Usage, fmt::format("{} wants the whole mesh; chunk by chunk there are {}",
+                                                     (*row)->extension, streamedExtensions())};
+    if (Status status = checkOptions(**row, input.options); !status.ok()) return status;
+    return replaced(input, path, [&](const ExportInput& complete, const Path& temporary) -> Status {
+        uint64_t triangles = 0;
+        const ChunkSource counted = [&](const mesh::ChunkVisitor& visit) {
+            return chunks([&](const mesh::Mesh& window, const mesh::Chunk& chunk) {
+                triangles += chunk.triangles.size();
+                return visit(window, chunk);
+            });
+        };
+        if (Status status = (*row)->stream(complete, counted, temporary, path); !status.ok()) return status;
+        if (triangles == 0) return writeError(path, "the mesh has no triangles");
+        return Done{};
+    });
+}
+
+std::string streamedExtensions() {
+    std::vector<std::string_view> extensions;
+    for (const Exporter& e : table)
+        if (e.stream) extensions.push_back(e.extension);
+    return joined(extensions, " ", [](std::string_view e) { return e; });
 }
 
 }  // namespace sgm::exporter

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -12,7 +13,7 @@
 #include "modeler/core/progress.h"
 #include "modeler/core/provenance.h"
 #include "modeler/core/result.h"
-#include "modeler/mesh/mesh.h"
+#include "modeler/mesh/polygonize.h"
 #include "modeler/volume/volume.h"
 
 namespace sgm::exporter {
@@ -39,6 +40,9 @@ struct ExportInput {
     Progress* progress = nullptr;
 };
 
+/// Calls the visitor with all chunks of a mesh in order, as mesh::polygonizeInLayers does.
+using ChunkSource = std::function<Status(const mesh::ChunkVisitor& visit)>;
+
 struct Exporter {
     std::string_view extension;  ///< ".glb"
     std::string_view doc;
@@ -47,15 +51,23 @@ struct Exporter {
     /// Writes to `temporary`; `write` renames it into place.
     Status (*write)(const ExportInput& input, const std::filesystem::path& temporary,
                     const std::filesystem::path& target);
+    /// The same bytes from chunks, of which it holds none; null where the format wants the whole mesh.
+    Status (*stream)(const ExportInput& input, const ChunkSource& chunks, const std::filesystem::path& temporary,
+                     const std::filesystem::path& target);
 };
 
 /// The table, in the order of docs/reference.md.
 std::span<const Exporter> exporters();
 /// The row for ".glb" …, or null.
 const Exporter* findExporter(std::string_view extension);
+/// Extensions of the formats that take a mesh chunk by chunk: ".ply .stl …".
+std::string streamedExtensions();
 /// Error::Usage, in words, for a name that the format doesn't have and for a value that the option doesn't take.
 Status checkOptions(const Exporter& row, const ExportOptions& options);
 /// Writes `path` by its extension: all or nothing, Error::Cancelled when `input.progress` says so.
 Status write(const ExportInput& input, const std::filesystem::path& path);
+/// The same of a mesh that comes in chunks, `input.mesh` unset; the first error of `chunks` ends it. Error::Usage where
+/// the format wants the whole mesh.
+Status writeStreamed(const ExportInput& input, const ChunkSource& chunks, const std::filesystem::path& path);
 
 }  // namespace sgm::exporter

@@ -21,6 +21,9 @@ Status writeStl(const ExportInput& input, const Path& temporary, const Path& tar
 Status writeOff(const ExportInput& input, const Path& temporary, const Path& target);
 Status writeUsda(const ExportInput& input, const Path& temporary, const Path& target);
 Status writeVdb(const ExportInput& input, const Path& temporary, const Path& target);
+Status streamPly(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target);
+Status streamStl(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target);
+Status streamOff(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target);
 
 /// The value of a checked option, or `fallback` where it isn't given.
 std::string_view option(const ExportInput& input, std::string_view name, std::string_view fallback);

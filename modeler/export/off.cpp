@@ -1,36 +1,47 @@
 // OFF, the Object File Format of Geomview (Rowan, 1991): positions and triangles as text.
 #include <fmt/format.h>
 
-#include "modeler/export/formats.h"
-#include "modeler/export/out_file.h"
+#include "modeler/export/lists.h"
 
 namespace sgm::exporter {
+namespace {
 
-Status writeOff(const ExportInput& input, const Path& temporary, const Path& target) {
-    const mesh::Mesh& mesh = *input.mesh;
-    const Placement place = placementOf(input);
-    OutFile out(temporary, target, input.progress);
+class Off : public Lists {
+public:
+    explicit Off(const ExportInput& input) : place_(placementOf(input)) {}
+
     // Comments would be allowed here, but not every reader skips them.
-    out.text(fmt::format("OFF\n{} {} 0\n", mesh.vertexCount(), mesh.triangleCount()));
-    if (input.progress) input.progress->begin("write", 2 * mesh.chunks.size());
-    for (const mesh::Chunk& chunk : mesh.chunks) {
+    void header(OutFile& out, uint64_t vertices, uint64_t triangles) const override {
+        out.text(fmt::format("OFF\n{} {} 0\n", vertices, triangles));
+    }
+    void vertices(OutFile& out, const mesh::Chunk& chunk) const override {
         for (const Vec3f& p : chunk.positions) {
             if (out.failed()) break;
-            out.numbers(place.position(p), " ");
+            out.numbers(place_.position(p), " ");
             out.text("\n");
         }
-        tick(input.progress);
     }
-    for (const mesh::Chunk& chunk : mesh.chunks) {
+    void triangles(OutFile& out, const mesh::Chunk& chunk) const override {
         for (const mesh::Triangle t : chunk.triangles) {
             if (out.failed()) break;
             out.text("3 ");
             out.numbers(chunk.inMesh(t), " ");
             out.text("\n");
         }
-        tick(input.progress);
     }
-    return out.finish();
+
+private:
+    const Placement place_;
+};
+
+}  // namespace
+
+Status writeOff(const ExportInput& input, const Path& temporary, const Path& target) {
+    return writeLists(Off(input), input, temporary, target);
+}
+
+Status streamOff(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target) {
+    return streamLists(Off(input), input, chunks, temporary, target);
 }
 
 }  // namespace sgm::exporter

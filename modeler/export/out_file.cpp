@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
+#include <string>
 
 #include "modeler/core/atomic_file.h"
 
@@ -14,6 +16,17 @@ OutFile::OutFile(const std::filesystem::path& path, std::filesystem::path target
     : target_(std::move(target)), buffer_(size_t{1} << 20), progress_(progress) {
     fd_ = open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
     if (fd_ < 0) error_ = errno;
+}
+
+OutFile::OutFile(std::filesystem::path target, const Progress* progress)
+    : target_(std::move(target)), buffer_(size_t{1} << 20), progress_(progress) {
+    const std::filesystem::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
+    std::string name = (folder / ".sgm-XXXXXX").string();
+    fd_ = mkostemp(name.data(), O_CLOEXEC);
+    if (fd_ < 0)
+        error_ = errno;
+    else
+        unlink(name.c_str());
 }
 
 OutFile::~OutFile() {
@@ -42,6 +55,41 @@ void OutFile::flush() {
             error_ = errno;
     }
     used_ = 0;
+}
+
+void OutFile::append(OutFile& part) {
+    flush();
+    part.flush();
+    if (!failed()) error_ = part.error_;
+    stopped_ = stopped_ || part.stopped_;
+    for (off_t at = 0; !failed();) {
+        const ssize_t n = pread(part.fd_, buffer_.data(), buffer_.size(), at);
+        if (n == 0) break;
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) {
+            error_ = errno;
+            break;
+        }
+        at += n;
+        used_ = static_cast<size_t>(n);
+        flush();
+    }
+}
+
+void OutFile::patch(uint64_t at, const void* data, size_t size) {
+    flush();
+    const char* from = static_cast<const char*>(data);
+    while (size > 0 && !failed()) {
+        const ssize_t n = pwrite(fd_, from, size, static_cast<off_t>(at));
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) {
+            error_ = errno;
+            break;
+        }
+        from += n;
+        at += static_cast<uint64_t>(n);
+        size -= static_cast<size_t>(n);
+    }
 }
 
 Status OutFile::finish() {

@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <charconv>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <type_traits>
@@ -24,6 +25,8 @@ public:
     /// Truncates `path`; `target` is the name that error messages use. `progress` is asked at every flush whether to go
     /// on.
     OutFile(const std::filesystem::path& path, std::filesystem::path target, const Progress* progress);
+    /// A file without a name in the folder of `target`, for what is appended to another one later.
+    OutFile(std::filesystem::path target, const Progress* progress);
     ~OutFile();
     OutFile(const OutFile&) = delete;
     OutFile& operator=(const OutFile&) = delete;
@@ -52,6 +55,10 @@ public:
         text(separator);
         number(v.z);
     }
+    /// All that was written to `part` so far, and its error.
+    void append(OutFile& part);
+    /// Writes over bytes that are there already.
+    void patch(uint64_t at, const void* data, size_t size);
     /// True once nothing more is written, so that a long loop may end early.
     bool failed() const { return error_ != 0 || stopped_; }
     /// Writes what is left and closes. Call it last, once. Error::Cancelled where the progress was.

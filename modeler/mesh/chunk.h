@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "modeler/mesh/brick.h"
 #include "modeler/mesh/mesh.h"
@@ -76,8 +77,21 @@ private:
     Counts counts_;
 };
 
-/// Numbers the vertices of chunks in order of (z, y, x) across the mesh and gives those without derivative the mean of
-/// their triangles' normals. To be called again after any chunk was exchanged. Error::Budget for 2³² vertices or
+/// Counts vertices and triangles across a mesh. Chunks come in order of (z, y, x).
+struct Numbering {
+    uint64_t vertices = 0, triangles = 0;
+    /// The next chunks. Error::Budget for 2³² vertices or triangles.
+    Status add(std::span<Chunk> chunks);
+};
+
+/// Names what a chunk borrows; `chunks`, numbered and in order, hold those that lend to it.
+void nameBorrowed(std::span<const Chunk> chunks, Chunk& chunk);
+
+/// Gives vertices of `of` without derivative the mean of their triangles' normals, weighted by area. `chunks`, named
+/// and in order, hold `of`, all that borrow from it and all that lend to it.
+void setFacetedNormals(std::span<const Chunk> chunks, std::span<Chunk> of);
+
+/// All of that for a whole mesh. To be called again after any chunk was exchanged. Error::Budget for 2³² vertices or
 /// triangles.
 Status link(std::vector<Chunk>& chunks, int threads);
 

@@ -187,58 +187,81 @@ size_t normalize(const EdgeArrays& e, size_t n) {
     return sum(without);
 }
 
-/// Without a branch: which entries are open follows no pattern.
-size_t listOpen(const float* __restrict open, size_t n, uint32_t* __restrict list) {
-    size_t listed = 0;
+constexpr float* EdgeArrays::*pickedRows[] = {&EdgeArrays::x,    &EdgeArrays::y,   &EdgeArrays::z,   &EdgeArrays::base,
+                                              &EdgeArrays::span, &EdgeArrays::t,   &EdgeArrays::tIn, &EdgeArrays::fIn,
+                                              &EdgeArrays::tOut, &EdgeArrays::fOut};
+constexpr float* EdgeArrays::*foundRows[] = {&EdgeArrays::x,  &EdgeArrays::y,  &EdgeArrays::z,
+                                             &EdgeArrays::dx, &EdgeArrays::dy, &EdgeArrays::dz};
+
+// Which entries are open follows no pattern: hence no branches. `step` left nothing open beyond the last entry.
 #if defined(__AVX512F__)
-    __m512i at = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    for (size_t i = 0; i < n; i += edgeVector, at = _mm512_add_epi32(at, _mm512_set1_epi32(edgeVector))) {
-        // `step` left nothing open beyond the last entry.
-        const __mmask16 mask = _mm512_cmp_ps_mask(_mm512_loadu_ps(open + i), _mm512_setzero_ps(), _CMP_NEQ_OQ);
-        _mm512_storeu_si512(list + listed, _mm512_maskz_compress_epi32(mask, at));
-        listed += static_cast<size_t>(__builtin_popcount(mask));
+
+inline __mmask16 openOnes(const EdgeArrays& e, size_t at) {
+    return _mm512_cmp_ps_mask(_mm512_load_ps(e.open + at), _mm512_setzero_ps(), _CMP_NEQ_OQ);
+}
+inline size_t countOf(unsigned mask) { return static_cast<size_t>(__builtin_popcount(mask)); }
+/// The mask's bits for entries before `end`, of those from `at` on.
+inline unsigned before(__mmask16 mask, size_t at, size_t end) {
+    return at >= end ? 0u : end - at >= edgeVector ? mask : mask & ((1u << (end - at)) - 1);
+}
+
+size_t pick(const EdgeArrays& from, size_t n, EdgeArrays& to) {
+    size_t picked = 0;
+    to.yBegin = to.zBegin = 0;
+    for (size_t at = 0; at < n; at += edgeVector) {
+        const __mmask16 open = openOnes(from, at);
+        for (const auto row : pickedRows)
+            _mm512_storeu_ps(to.*row + picked, _mm512_maskz_compress_ps(open, _mm512_load_ps(from.*row + at)));
+        picked += countOf(open);
+        to.yBegin += countOf(before(open, at, from.yBegin));
+        to.zBegin += countOf(before(open, at, from.zBegin));
     }
+    return picked;
+}
+
+void putBack(const EdgeArrays& from, size_t n, const EdgeArrays& to) {
+    size_t taken = 0;
+    for (size_t at = 0; at < n; at += edgeVector) {
+        const __mmask16 open = openOnes(to, at);
+        for (const auto row : foundRows)
+            _mm512_store_ps(to.*row + at, _mm512_mask_expand_ps(_mm512_load_ps(to.*row + at), open,
+                                                                _mm512_loadu_ps(from.*row + taken)));
+        taken += countOf(open);
+    }
+}
+
 #else
-    for (size_t i = 0; i < n; ++i) {
-        list[listed] = static_cast<uint32_t>(i);
-        listed += open[i] != 0.0f;
+
+size_t pick(const EdgeArrays& from, size_t n, EdgeArrays& to) {
+    const auto openBefore = [&](size_t end) {
+        size_t count = 0;
+        for (size_t i = 0; i < end; ++i) count += from.open[i] != 0.0f;
+        return count;
+    };
+    to.yBegin = openBefore(from.yBegin);
+    to.zBegin = openBefore(from.zBegin);
+    size_t picked = 0;
+    for (const auto row : pickedRows) {
+        picked = 0;
+        for (size_t i = 0; i < n; ++i) {
+            (to.*row)[picked] = (from.*row)[i];
+            picked += from.open[i] != 0.0f;
+        }
     }
+    return picked;
+}
+
+void putBack(const EdgeArrays& from, size_t n, const EdgeArrays& to) {
+    for (const auto row : foundRows) {
+        size_t taken = 0;
+        for (size_t i = 0; i < n; ++i) {
+            (to.*row)[i] = to.open[i] != 0.0f ? (from.*row)[taken] : (to.*row)[i];
+            taken += to.open[i] != 0.0f;
+        }
+    }
+}
+
 #endif
-    for (size_t i = listed; i < whole(listed); ++i) list[i] = 0;
-    return listed;
-}
-
-void pickArray(const float* __restrict from, const uint32_t* __restrict list, size_t n, float* __restrict to) {
-    for (size_t i = 0; i < n; ++i) to[i] = from[static_cast<int32_t>(list[i])];
-}
-
-void pick(const EdgeArrays& from, const uint32_t* list, size_t n, const EdgeArrays& to) {
-    constexpr size_t few = edgeVector / 2;  // to be gathered one by one
-    const size_t count = n <= few ? n : whole(n);
-    pickArray(from.x, list, count, to.x);
-    pickArray(from.y, list, count, to.y);
-    pickArray(from.z, list, count, to.z);
-    pickArray(from.base, list, count, to.base);
-    pickArray(from.span, list, count, to.span);
-    pickArray(from.t, list, count, to.t);
-    pickArray(from.tIn, list, count, to.tIn);
-    pickArray(from.fIn, list, count, to.fIn);
-    pickArray(from.tOut, list, count, to.tOut);
-    pickArray(from.fOut, list, count, to.fOut);
-}
-
-void putBackArray(const float* __restrict from, const uint32_t* __restrict list, size_t n, float* __restrict to) {
-    for (size_t i = 0; i < n; ++i) to[list[i]] = from[i];
-}
-
-void putBack(const EdgeArrays& from, const uint32_t* list, size_t n, const EdgeArrays& to) {
-    putBackArray(from.x, list, n, to.x);
-    putBackArray(from.y, list, n, to.y);
-    putBackArray(from.z, list, n, to.z);
-    putBackArray(from.dx, list, n, to.dx);
-    putBackArray(from.dy, list, n, to.dy);
-    putBackArray(from.dz, list, n, to.dz);
-}
 
 void interleave(const float* __restrict x, const float* __restrict y, const float* __restrict z, size_t n,
                 float* __restrict points) {
@@ -252,7 +275,7 @@ void interleave(const float* __restrict x, const float* __restrict y, const floa
 }  // namespace
 
 namespace SGM_ISA {
-const EdgeLoops loops{place, interpolate, step, normalize, listOpen, pick, putBack, interleave};
+const EdgeLoops loops{place, interpolate, step, normalize, pick, putBack, interleave};
 }  // namespace SGM_ISA
 
 }  // namespace sgm::mesh

@@ -53,12 +53,10 @@ struct EdgeLoops {
     size_t (*step)(const EdgeArrays& e, size_t n);
     /// Scales (dx, dy, dz) to unit length, to zero where it has no direction; returns how many have none.
     size_t (*normalize)(const EdgeArrays& e, size_t n);
-    /// Lists the open entries, in order; returns how many. The list needs room for whole vectors, the rest is 0.
-    size_t (*listOpen)(const float* open, size_t n, uint32_t* list);
-    /// Takes over the n listed entries but for f, open and derivatives: they become entries 0 … n − 1.
-    void (*pick)(const EdgeArrays& from, const uint32_t* list, size_t n, const EdgeArrays& to);
-    /// Hands places and derivatives back to where the entries were picked from.
-    void (*putBack)(const EdgeArrays& from, const uint32_t* list, size_t n, const EdgeArrays& to);
+    /// Takes over the open ones of n entries, but for f, open and derivatives; returns how many. They stay in order.
+    size_t (*pick)(const EdgeArrays& from, size_t n, EdgeArrays& to);
+    /// Hands places and derivatives back to the open ones of n entries, which `from` was picked from.
+    void (*putBack)(const EdgeArrays& from, size_t n, const EdgeArrays& to);
     /// Writes n points (x, y, z) one after the other.
     void (*interleave)(const float* x, const float* y, const float* z, size_t n, float* points);
 };

@@ -10,14 +10,15 @@ namespace sgm::mesh {
 namespace {
 
 /// The chunk of block `index`, among chunks in order of (z, y, x); null where there is none.
-const Chunk* findChunk(const std::vector<Chunk>& chunks, Vec3i index) {
+const Chunk* findChunk(std::span<const Chunk> chunks, Vec3i index) {
     const auto at = std::lower_bound(chunks.begin(), chunks.end(), index,
                                      [](const Chunk& c, Vec3i i) { return zyxLess(c.block, i); });
     return at != chunks.end() && at->block == index ? &*at : nullptr;
 }
 
-/// Names what the chunk borrows.
-void nameBorrowed(const std::vector<Chunk>& chunks, Chunk& chunk) {
+}  // namespace
+
+void nameBorrowed(std::span<const Chunk> chunks, Chunk& chunk) {
     for (int kind = 0; kind < seamKinds; ++kind) {
         const uint32_t begin = chunk.borrowed.begin[kind], end = chunk.borrowed.begin[kind + 1];
         if (begin == end) continue;
@@ -29,19 +30,15 @@ void nameBorrowed(const std::vector<Chunk>& chunks, Chunk& chunk) {
     }
 }
 
-/// Gives faceted vertices the mean of their triangles' normals, weighted by area.
-void setFacetedNormals(std::vector<Chunk>& chunks) {
+void setFacetedNormals(std::span<const Chunk> chunks, std::span<Chunk> of) {
     std::vector<uint32_t> faceted;  // in the mesh, ascending
-    for (const Chunk& c : chunks)
+    for (const Chunk& c : of)
         for (const uint32_t v : c.faceted) faceted.push_back(c.firstVertex + v);
     if (faceted.empty()) return;
 
-    const auto chunkOf = [&](uint32_t vertex) -> Chunk& {
-        return *std::prev(std::upper_bound(chunks.begin(), chunks.end(), vertex,
-                                           [](uint32_t v, const Chunk& c) { return v < c.firstVertex; }));
-    };
+    const auto after = [](uint32_t v, const Chunk& c) { return v < c.firstVertex; };
     const auto position = [&](uint32_t v) {
-        const Chunk& c = chunkOf(v);
+        const Chunk& c = *std::prev(std::upper_bound(chunks.begin(), chunks.end(), v, after));
         return c.positions[v - c.firstVertex].as<double>();
     };
     std::vector<Vec3d> sums(faceted.size());
@@ -57,24 +54,27 @@ void setFacetedNormals(std::vector<Chunk>& chunks) {
         }
     for (size_t i = 0; i < faceted.size(); ++i) {
         const Vec3d n = normalized(sums[i]);
-        Chunk& c = chunkOf(faceted[i]);
+        Chunk& c = *std::prev(std::upper_bound(of.begin(), of.end(), faceted[i], after));
         c.normals[faceted[i] - c.firstVertex] = n == Vec3d{} ? Vec3f{0, 1, 0} : n.as<float>();
     }
 }
 
-}  // namespace
-
-Status link(std::vector<Chunk>& chunks, int threads) {
-    uint64_t vertices = 0, triangles = 0;
+Status Numbering::add(std::span<Chunk> chunks) {
     for (Chunk& c : chunks) {
         c.firstVertex = static_cast<uint32_t>(vertices);
         vertices += c.positions.size();
         triangles += c.triangles.size();
+        if (std::max(vertices, triangles) >= std::numeric_limits<uint32_t>::max())
+            return Error{Error::Kind::Budget, "the mesh has more than 2^32 vertices or triangles: choose larger cells"};
     }
-    if (std::max(vertices, triangles) >= std::numeric_limits<uint32_t>::max())
-        return Error{Error::Kind::Budget, "the mesh has more than 2^32 vertices or triangles: choose larger cells"};
+    return Done{};
+}
+
+Status link(std::vector<Chunk>& chunks, int threads) {
+    Numbering numbering;
+    if (Status status = numbering.add(chunks); !status) return status;
     parallelFor(chunks.size(), threads, nullptr, [&](size_t i, int) { nameBorrowed(chunks, chunks[i]); });
-    setFacetedNormals(chunks);
+    setFacetedNormals(chunks, chunks);
     return Done{};
 }
 

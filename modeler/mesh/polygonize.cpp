@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <iterator>
+#include <span>
 #include <string>
 
 #include "modeler/core/parallel.h"
@@ -33,10 +35,9 @@ uint64_t bytesOf(const Chunk& c) {
            (c.borrowed.vertices.size() + c.lent.vertices.size()) * sizeof(uint32_t);
 }
 
-}  // namespace
-
-Result<std::vector<Chunk>> meshBlocks(const std::vector<Block>& blocks, const Grid& grid,
-                                      const PolygonizeOptions& options, Progress* progress, Counts& counts) {
+/// The blocks' chunks, empty ones too; ticks for every block.
+Result<std::vector<Chunk>> chunksOf(std::span<const Block> blocks, const Grid& grid, const PolygonizeOptions& options,
+                                    Progress* progress, Counts& counts) {
     if (Status status = checkGrid(grid); !status) return status.error();
     Memory memory(options.memoryBudget_bytes);
     const auto threads = static_cast<size_t>(threadCount(options.threads));
@@ -47,8 +48,6 @@ Result<std::vector<Chunk>> meshBlocks(const std::vector<Block>& blocks, const Gr
         if (options.tally) workers[w].tallyInto(&tallies[w]);
     }
     std::vector<Chunk> chunks(blocks.size());
-
-    if (progress) progress->begin("sample", blocks.size());
     parallelFor(blocks.size(), options.threads, progress, [&](size_t b, int worker) {
         if (memory.exceeded() || !workers[worker].mesh(blocks[b], progress, chunks[b])) return;
         memory.add(bytesOf(chunks[b]));
@@ -67,6 +66,58 @@ Result<std::vector<Chunk>> meshBlocks(const std::vector<Block>& blocks, const Gr
     return chunks;
 }
 
+/// Up to three layers of chunks: one that was handed on and lends, one to be completed, one that borrows from it.
+class Layers {
+public:
+    explicit Layers(const ChunkVisitor& visit) : visit_(visit) {}
+
+    /// Takes the layer at `z`, ascending, and hands on the one below it.
+    Status add(int z, std::vector<Chunk> layer) {
+        if (z != z_ + 1)
+            if (Status status = finish(); !status) return status;
+        z_ = z;
+        if (Status status = numbering_.add(layer); !status) return status;
+        const size_t before = window_.chunks.size();
+        std::move(layer.begin(), layer.end(), std::back_inserter(window_.chunks));
+        for (size_t c = before; c < window_.chunks.size(); ++c) nameBorrowed(window_.chunks, window_.chunks[c]);
+        if (Status status = handOn(before); !status) return status;
+        window_.chunks.erase(window_.chunks.begin(), window_.chunks.begin() + static_cast<ptrdiff_t>(handedOn_));
+        handedOn_ = before - handedOn_;
+        return Done{};
+    }
+    /// Hands on what is left.
+    Status finish() {
+        if (Status status = handOn(window_.chunks.size()); !status) return status;
+        window_.chunks.clear();
+        handedOn_ = 0;
+        return Done{};
+    }
+
+private:
+    /// Completes the chunks up to `end` that weren't handed on yet.
+    Status handOn(size_t end) {
+        const auto pending = std::span(window_.chunks).subspan(handedOn_, end - handedOn_);
+        setFacetedNormals(window_.chunks, pending);
+        for (const Chunk& c : pending)
+            if (Status status = visit_(window_, c); !status) return status;
+        return Done{};
+    }
+
+    const ChunkVisitor& visit_;
+    Numbering numbering_;
+    Mesh window_;
+    size_t handedOn_ = 0;  ///< of the window's chunks
+    int z_ = -2;           ///< of the highest layer
+};
+
+}  // namespace
+
+Result<std::vector<Chunk>> meshBlocks(std::span<const Block> blocks, const Grid& grid, const PolygonizeOptions& options,
+                                      Progress* progress, Counts& counts) {
+    if (progress) progress->begin("sample", blocks.size());
+    return chunksOf(blocks, grid, options, progress, counts);
+}
+
 Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options,
                         Progress* progress, Counts& counts) {
     auto chunks = meshBlocks(blocks, grid, options, progress, counts);
@@ -78,6 +129,21 @@ Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, cons
     tick(progress);
     counts.polygonizeSeconds += linking.seconds();
     return mesh;
+}
+
+Status polygonizeInLayers(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options,
+                          Progress* progress, Counts& counts, const ChunkVisitor& visit) {
+    if (progress) progress->begin("sample", blocks.size());
+    Layers layers(visit);
+    for (auto first = blocks.begin(); first != blocks.end();) {
+        const int z = first->index.z;
+        const auto end = std::find_if(first, blocks.end(), [z](const Block& b) { return b.index.z != z; });
+        auto chunks = chunksOf({first, end}, grid, options, progress, counts);
+        if (!chunks.ok()) return chunks.error();
+        if (Status status = layers.add(z, std::move(*chunks)); !status) return status;
+        first = end;
+    }
+    return layers.finish();
 }
 
 }  // namespace sgm::mesh

@@ -3,6 +3,9 @@
 // on the same grid. Lorensen & Cline 1987 (SG-M III-G); the case table's rule stands in marching_cubes.h.
 #pragma once
 
+#include <functional>
+#include <span>
+
 #include "modeler/core/progress.h"
 #include "modeler/core/result.h"
 #include "modeler/eval/tally.h"
@@ -20,10 +23,19 @@ struct PolygonizeOptions {
 
 /// The first half of `polygonize`: the chunks of those blocks that hold surface, in the blocks' order, each by itself;
 /// `link` (chunk.h) is the other half.
-Result<std::vector<Chunk>> meshBlocks(const std::vector<Block>& blocks, const Grid& grid,
-                                      const PolygonizeOptions& options, Progress* progress, Counts& counts);
+Result<std::vector<Chunk>> meshBlocks(std::span<const Block> blocks, const Grid& grid, const PolygonizeOptions& options,
+                                      Progress* progress, Counts& counts);
 
 Result<Mesh> polygonize(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options,
                         Progress* progress, Counts& counts);
+
+/// Given the chunks of a mesh one after the other. `window` holds the chunk, complete as in a whole mesh, and all that
+/// lend to it.
+using ChunkVisitor = std::function<Status(const Mesh& window, const Chunk& chunk)>;
+
+/// As `polygonize`, for a mesh that needn't fit into memory: holds no more than three layers of blocks along z at a
+/// time. The memory budget is a layer's. Ends with the visitor's first error.
+Status polygonizeInLayers(const std::vector<Block>& blocks, const Grid& grid, const PolygonizeOptions& options,
+                          Progress* progress, Counts& counts, const ChunkVisitor& visit);
 
 }  // namespace sgm::mesh

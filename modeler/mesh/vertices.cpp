@@ -10,18 +10,6 @@ void evaluate(const eval::Tape& tape, const EdgeArrays& e, size_t n, eval::Works
     eval::evaluateGradient(tape, {e.x, e.y, e.z, n}, e.f, e.dx, e.dy, e.dz, workspace);
 }
 
-/// The `count` entries that a step left open; the list says which they were.
-void pickOpen(const EdgeLoops& loops, const CutEdges& from, size_t count, CutEdges& to) {
-    to.reserve(from.size);
-    to.size = loops.listOpen(from.arrays.open, from.size, to.list.data());
-    const auto before = [&](size_t entry) {
-        return static_cast<size_t>(std::lower_bound(to.list.data(), to.list.data() + count, entry) - to.list.data());
-    };
-    to.arrays.yBegin = before(from.arrays.yBegin);
-    to.arrays.zBegin = before(from.arrays.zBegin);
-    loops.pick(from.arrays, to.list.data(), count, to.arrays);
-}
-
 }  // namespace
 
 const EdgeLoops& edgeLoops() {
@@ -60,16 +48,17 @@ uint64_t findVertices(const eval::Tape& tape, size_t refineSteps, eval::Workspac
         evaluate(tape, list->arrays, list->size, workspace);
         if (s == refineSteps) break;  // where the last step led, only the derivative is asked
         evaluations += list->size;
-        const size_t open = loops.step(list->arrays, list->size);
-        if (open == 0) break;
-        pickOpen(loops, *list, open, scratch[s]);
-        list = &scratch[s];
+        if (loops.step(list->arrays, list->size) == 0) break;
+        CutEdges& open = scratch[s];
+        open.reserve(list->size);
+        open.size = loops.pick(list->arrays, list->size, open.arrays);
+        list = &open;
     }
     // Each list was picked from the one before.
     while (list != &edges) {
         const CutEdges& from = *list;
         list = list == scratch.data() ? &edges : list - 1;
-        loops.putBack(from.arrays, from.list.data(), from.size, list->arrays);
+        loops.putBack(from.arrays, list->size, list->arrays);
     }
     edges.flat = loops.normalize(edges.arrays, edges.size);
     return evaluations;

@@ -21,9 +21,8 @@ const EdgeLoops& edgeLoops();
 class CutEdges {
 public:
     size_t size = 0;
-    size_t flat = 0;  ///< entries whose normal is zero
-    /// Which each is: its place, or its entry in another list.
-    PageVector<uint32_t> list;
+    size_t flat = 0;            ///< entries whose normal is zero
+    PageVector<uint32_t> list;  ///< which edges they are, for the user
 
     /// Makes room for n entries; never shrinks.
     void reserve(size_t n);

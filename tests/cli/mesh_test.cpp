@@ -34,5 +34,22 @@ TEST_F(Meshes, SayWhereTheFileIsNamedAndWhatToMend) {
     EXPECT_EQ(sgm("check " + grammar("start A -> mesh(\"../secret.obj\")\n")).code, 1);
 }
 
+TEST_F(Meshes, StreamedFilesHaveTheSameBytes) {
+    const std::string file = grammar("start A -> blend(.2) { torus size (3, 1, 3) + sphere size 2 move (0, 1, 0) }\n");
+    for (const char* ending : {".ply", ".stl", ".off"}) {
+        const std::string whole = path(std::string("whole") + ending), streamed = path(std::string("streamed") + ending);
+        ASSERT_EQ(sgm("build -q " + file + " --resolution 100 -o " + whole).code, 0);
+        const Outcome run = sgm("build -q " + file + " --resolution 100 --stream -o " + streamed);
+        ASSERT_EQ(run.code, 0) << run.out;
+        EXPECT_EQ(read(streamed), read(whole)) << ending;
+    }
+    for (const std::string& refused : {" -o " + path("a.glb"), " -o " + path("a.ply") + " -o " + path("b.stl"), " -o " + path("a.ply") + " --smooth 2",
+                                      " -o " + path("a.ply") + " --report " + path("r.json")}) {
+        const Outcome run = sgm("build -q " + file + " --stream" + refused);
+        EXPECT_EQ(run.code, 2) << refused;
+        EXPECT_NE(run.out.find("--stream"), std::string::npos) << run.out;
+    }
+}
+
 }  // namespace
 }  // namespace sgm::cli

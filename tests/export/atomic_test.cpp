@@ -111,6 +111,38 @@ TEST_P(Atomic, AWriteThatIsCancelledOnItsWayStopsSoon) {
     EXPECT_EQ(contentOf(target), "the old file");
 }
 
+TEST_P(Atomic, AStreamHasTheBytesOfTheWholeOrLeavesTheOldFile) {
+    const ChunkSource all = [&](const mesh::ChunkVisitor& visit) -> Status {
+        for (const mesh::Chunk& chunk : mesh.chunks)
+            if (Status status = visit(mesh, chunk); !status.ok()) return status;
+        return Done{};
+    };
+    const ChunkSource broken = [&](const mesh::ChunkVisitor& visit) -> Status {
+        if (Status status = visit(mesh, mesh.chunks[0]); !status.ok()) return status;
+        return Error{Error::Kind::Budget, "no more"};
+    };
+    if (!findExporter(GetParam())->stream) {
+        EXPECT_EQ(writeStreamed(input, all, target).error().kind, Error::Kind::Usage);
+        return;
+    }
+    const auto none = [](const mesh::ChunkVisitor&) -> Status { return Done{}; };
+    EXPECT_EQ(writeStreamed(input, broken, target).error().message, "no more");
+    EXPECT_EQ(writeStreamed(input, none, target).error().kind, Error::Kind::Input);
+    Progress progress;
+    progress.cancel();
+    input.progress = &progress;
+    EXPECT_EQ(writeStreamed(input, all, target).error().kind, Error::Kind::Cancelled);
+    EXPECT_EQ(contentOf(target), "the old file");
+    EXPECT_EQ(folder.fileCount(), 1u) << "no temporary stays";
+
+    input.progress = nullptr;
+    const auto whole = folder / ("whole" + GetParam());
+    ASSERT_TRUE(write(input, whole).ok());
+    ASSERT_TRUE(writeStreamed(input, all, target).ok());
+    EXPECT_EQ(contentOf(target), contentOf(whole));
+    EXPECT_EQ(folder.fileCount(), 2u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Formats, Atomic, testing::Values(".glb", ".gltf", ".obj", ".ply", ".stl", ".off", ".usda"),
                          [](const auto& info) { return info.param.substr(1); });
 

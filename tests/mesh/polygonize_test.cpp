@@ -168,6 +168,32 @@ TEST(Polygonize, NormalsOfAFieldWithoutDerivativeComeFromTheFaces) {
         }
 }
 
+TEST(Polygonize, LayerByLayerTheChunksAreTheSame) {
+    Scene steps;  // without derivative: normals come from triangles, also from those of other layers
+    steps.field = {floor(field::length(steps.graph.position())) - 0.5f, {{-1, -1, -1}, {1, 1, 1}}, 100, 0};
+    Scene apart;  // with layers in between where nothing is
+    const std::array<field::Field, 2> balls{ball(apart.graph, {0, 0, -3}, 1), ball(apart.graph, {0.5f, 0, 3}, 1)};
+    apart.field = {min(balls[0].value, balls[1].value), hull(balls[0].bounds, balls[1].bounds), 1, 1};
+    const Scene cloud = cloudScene(60, 0.12f, 5);
+    for (const Scene* s : std::initializer_list<const Scene*>{&steps, &apart, &cloud}) {
+        const Grid grid = gridFor(s->field.bounds, cellFor(s->field.bounds, 150));
+        Counts counts;
+        const auto blocks = subdivide(s->tape(), grid, 2, nullptr, counts);
+        const Mesh whole = *polygonize(*blocks, grid, {.threads = 2}, nullptr, counts);
+        Mesh streamed;
+        size_t most = 0;
+        const Status done = polygonizeInLayers(*blocks, grid, {.threads = 2}, nullptr, counts,
+                                               [&](const Mesh& window, const Chunk& chunk) -> Status {
+                                                   streamed.chunks.push_back(chunk);
+                                                   most = std::max(most, window.chunks.size());
+                                                   return Done{};
+                                               });
+        ASSERT_TRUE(done.ok());
+        EXPECT_EQ(bytesOf(streamed), bytesOf(whole));
+        EXPECT_LT(most, whole.chunks.size());
+    }
+}
+
 TEST(Polygonize, CountsStayBelowTwentySamplesASurfaceCell) {
     const Meshed m = meshOf(cloudScene(60, 0.12f, 5), 200);
     ASSERT_TRUE(m.mesh.ok());
