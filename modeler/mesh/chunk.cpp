@@ -13,8 +13,9 @@ namespace {
 /// Place of the edge that runs along `axis` from a corner up: the edges of a cell lie close to each other.
 constexpr int edgePlace(int corner, int axis) { return 3 * corner + axis; }
 
-constexpr uint32_t codeAt(Vec3i at) {
-    return codeOf(static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.y), static_cast<uint32_t>(at.z));
+constexpr uint32_t codeAt(Vec3i at, int axis) {
+    return codeOf(static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.y), static_cast<uint32_t>(at.z),
+                  static_cast<uint32_t>(axis));
 }
 
 PlacedCase placedCase(const CellCase& cell) {
@@ -55,8 +56,8 @@ void copyTo(PageVector<T>& to, const PageVector<T>& from) {
 }
 
 OriginId majority(OriginId a, OriginId b, OriginId c) {
-    if (a == b || a == c) return a;
-    return b == c ? b : std::min({a, b, c});
+    const OriginId least = std::min(a, std::min(b, c)), ofTwo = b == c ? b : least;
+    return (a == b) | (a == c) ? a : ofTwo;
 }
 
 /// The sides of a block that a brick touches, as a mask of axes.
@@ -83,7 +84,7 @@ std::optional<OriginId> onlyOwner(const eval::Tape& tape) {
 }  // namespace
 
 void BlockMesher::clear() {
-    positions_.clear(), normals_.clear(), origins_.clear(), borrowedOrigins_.clear();
+    positions_.clear(), normals_.clear(), origins_.clear();
     bricks_.clear();
     for (auto& list : borrowed_) list.clear();
     for (auto& list : lent_) list.clear();
@@ -113,13 +114,6 @@ bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chun
     return true;
 }
 
-EdgeEnds BlockMesher::edgeEnds(Vec3i brick) const {
-    const Vec3i first = brick * brickCells;
-    return {{samples_.coordinates(0) + first.x, samples_.coordinates(1) + first.y, samples_.coordinates(2) + first.z},
-            samples_.values() + brickCorner(brick),
-            {1, blockCorners, blockCorners * blockCorners}};
-}
-
 /// The brick's cells with surface; returns how many.
 size_t BlockMesher::addCells(const BrickSigns& signs, Vec3i brick) {
     SurfaceCell* const cells = cells_.data() + cellCount_;
@@ -133,19 +127,46 @@ size_t BlockMesher::addCells(const BrickSigns& signs, Vec3i brick) {
 }
 
 /// The brick's own edges that the surface cuts, one after the other as their vertices are numbered from vertices_ on.
-void BlockMesher::addOwnEdges(const BrickSigns& signs, Vec3i brick) {
-    edges_.reserve(3 * brickCells * brickCells * brickCells);
+void BlockMesher::addOwnEdges(const BrickSigns& signs) {
+    edges_.reserve(3 * brickRows * brickCorners);
     size_t n = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        n += brickLoops().list(ownCuts(signs, axis), codeAt(firstOwn(axis), axis), edges_.list.data() + n);
+    edges_.size = ownEdges_ = n;
+}
+
+/// Lists cut edges on low sides of the block: lower blocks own them. Their places are looked for only where that tells
+/// their origin.
+void BlockMesher::borrow(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner) {
+    const int sides = lowSidesOf(brick);
+    borrowedPlaces_.clear();
     for (int axis = 0; axis < 3; ++axis) {
-        if (axis == 1) edges_.arrays.yBegin = n;
-        if (axis == 2) edges_.arrays.zBegin = n;
-        n += brickLoops().list(ownCuts(signs, axis), codeAt(firstOwn(axis)), edges_.list.data() + n);
+        if ((sides & ~(1 << axis)) == 0) continue;
+        forEachBit(cutsOnLowSides(signs, axis, sides), [&](int row, int i) {
+            const Vec3i inBrick{i, rowJ(row), rowK(row)}, at = brick * brickCells + inBrick;
+            const int edge = edgePlace(cornerNumber(at.x, at.y, at.z), axis), kind = sidesAt(0, at, axis) - 1;
+            if (!owner) {
+                borrowedPlaces_.emplace_back(kind, borrowed_[kind].size());
+                edges_.list[edges_.size++] = codeAt(inBrick, axis);
+            }
+            borrowed_[kind].push_back({static_cast<uint32_t>(edge), owner.value_or(0)});
+        });
     }
-    edges_.size = n;
+    uint32_t* const codes = edges_.list.data();
+    std::fill(codes + edges_.size, codes + wholeVectors(edges_.size), 0u);
+}
+
+/// Looks up where the listed edges begin and end, and numbers the brick's own.
+void BlockMesher::placeEdges(Vec3i brick) {
+    const Vec3i first = brick * brickCells;
+    const EdgeEnds ends{
+        {samples_.coordinates(0) + first.x, samples_.coordinates(1) + first.y, samples_.coordinates(2) + first.z},
+        samples_.values() + brickCorner(brick),
+        {1, blockCorners, blockCorners * blockCorners}};
     uint32_t* const places = edges_.list.data();
-    edgeLoops().place(edgeEnds(brick), places, n, edges_.arrays, places);
+    edgeLoops().place(ends, places, edges_.size, edges_.arrays, places);
     uint32_t* const number = number_.data() + edgePlace(brickCorner(brick), 0);
-    for (size_t e = 0; e < n; ++e) number[places[e]] = static_cast<uint32_t>(vertices_ + e);
+    for (size_t e = 0; e < ownEdges_; ++e) number[places[e]] = static_cast<uint32_t>(vertices_ + e);
 }
 
 /// Lists own vertices on high sides of the block for every block that meets this one there.
@@ -162,62 +183,34 @@ void BlockMesher::lend(const BrickSigns& signs, Vec3i brick) {
     }
 }
 
-/// Lists cut edges on low sides of the block: lower blocks own them. Their places are looked for only where that tells
-/// their origin.
-void BlockMesher::borrow(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner) {
-    const int sides = lowSidesOf(brick);
-    size_t n = 0;
-    borrowedPlaces_.clear();
-    borrowedEdges_.reserve(3 * brickRows * brickCorners);
-    uint32_t* const codes = borrowedEdges_.list.data();
-    for (int axis = 0; axis < 3; ++axis) {
-        if (axis == 1) borrowedEdges_.arrays.yBegin = n;
-        if (axis == 2) borrowedEdges_.arrays.zBegin = n;
-        if ((sides & ~(1 << axis)) == 0) continue;
-        forEachBit(cutsOnLowSides(signs, axis, sides), [&](int row, int i) {
-            const Vec3i inBrick{i, rowJ(row), rowK(row)}, at = brick * brickCells + inBrick;
-            const int edge = edgePlace(cornerNumber(at.x, at.y, at.z), axis), kind = sidesAt(0, at, axis) - 1;
-            if (!owner) {
-                borrowedPlaces_.emplace_back(kind, borrowed_[kind].size());
-                codes[n++] = codeAt(inBrick);
-            }
-            borrowed_[kind].push_back({static_cast<uint32_t>(edge), owner.value_or(0)});
-        });
-    }
-    borrowedEdges_.size = n;
-    std::fill(codes + n, codes + wholeVectors(n), 0u);
-    if (n > 0) edgeLoops().place(edgeEnds(brick), codes, n, borrowedEdges_.arrays, codes);
-}
-
-/// Whose surface each vertex lies on; valid until the next call.
-const OriginId* BlockMesher::originsOf(const eval::Tape& tape, const CutEdges& edges) {
-    found_.resize(edges.size);
-    eval::evaluateOrigin(tape, {edges.arrays.x, edges.arrays.y, edges.arrays.z, edges.size}, found_.data(), workspace_);
-    return found_.data();
-}
-
-void BlockMesher::findBorrowed(const eval::Tape& tape) {
-    if (borrowedEdges_.size == 0) return;
-    counts_.refinementEvaluations += findVertices(tape, refineSteps_, workspace_, openEdges_, borrowedEdges_);
-    const OriginId* const found = originsOf(tape, borrowedEdges_);
-    for (size_t e = 0; e < borrowedPlaces_.size(); ++e)
-        borrowed_[borrowedPlaces_[e].first][borrowedPlaces_[e].second].origin = found[e];
-}
-
 void BlockMesher::addVertices(const eval::Tape& tape, std::optional<OriginId> owner) {
-    const size_t n = edges_.size, first = vertices_;
-    if (n == 0) return;
     counts_.refinementEvaluations += findVertices(tape, refineSteps_, workspace_, openEdges_, edges_);
-    flat_ = flat_ || edges_.flat > 0;
+    flat_ = flat_ || (edges_.size > 0 && edges_.flat > 0);
+    const size_t first = vertices_, n = ownEdges_;
     vertices_ += static_cast<uint32_t>(n);
     positions_.resize(vertices_), normals_.resize(vertices_), origins_.resize(vertices_);
     const EdgeArrays& e = edges_.arrays;
-    edgeLoops().interleave(e.x, e.y, e.z, n, &positions_[first].x);
-    edgeLoops().interleave(e.dx, e.dy, e.dz, n, &normals_[first].x);
+    if (n > 0) {
+        edgeLoops().interleave(e.x, e.y, e.z, n, &positions_[first].x);
+        edgeLoops().interleave(e.dx, e.dy, e.dz, n, &normals_[first].x);
+    }
     if (owner)
         std::fill_n(origins_.data() + first, n, *owner);
     else
-        std::copy_n(originsOf(tape, edges_), n, origins_.data() + first);
+        findOrigins(tape);
+}
+
+/// Asks whose surface each vertex lies on, the latest own ones and those that are borrowed.
+void BlockMesher::findOrigins(const eval::Tape& tape) {
+    const size_t n = edges_.size;
+    if (n == 0) return;
+    found_.resize(n);
+    eval::evaluateOrigin(tape, {edges_.arrays.x, edges_.arrays.y, edges_.arrays.z, n}, found_.data(), workspace_);
+    std::copy_n(found_.data(), ownEdges_, origins_.data() + origins_.size() - ownEdges_);
+    for (size_t e = ownEdges_; e < n; ++e) {
+        const auto [kind, place] = borrowedPlaces_[e - ownEdges_];
+        borrowed_[static_cast<size_t>(kind)][place].origin = found_[e];
+    }
 }
 
 void BlockMesher::addBrick(int number, const eval::Tape& tape) {
@@ -226,28 +219,27 @@ void BlockMesher::addBrick(int number, const eval::Tape& tape) {
     if (addCells(signs, brick) == 0) return;
     const std::optional<OriginId> owner = onlyOwner(tape);
     bricks_.push_back({triangles_, owner});
-    addOwnEdges(signs, brick);
+    addOwnEdges(signs);
+    if (lowSidesOf(brick) != 0) borrow(signs, brick, owner);
+    placeEdges(brick);
     if (highSidesOf(brick) != 0) lend(signs, brick);
     addVertices(tape, owner);
-    if (lowSidesOf(brick) == 0) return;
-    borrow(signs, brick, owner);
-    findBorrowed(tape);
 }
 
 /// Puts the lists of the seams one after the other, and numbers borrowed edges by their place there.
 void BlockMesher::listSeams(Chunk& chunk) {
-    borrowedOrigins_.clear();
+    uint32_t borrowed = 0;
     for (int kind = 0; kind < seamKinds; ++kind) {
-        chunk.borrowed.begin[kind] = static_cast<uint32_t>(borrowedOrigins_.size());
+        chunk.borrowed.begin[kind] = borrowed;
         for (const Borrowed& b : borrowed_[kind]) {
-            number_[b.edge] = borrowedBit | static_cast<uint32_t>(borrowedOrigins_.size());
-            borrowedOrigins_.push_back(b.origin);
+            number_[b.edge] = borrowedBit | borrowed++;
+            origins_.push_back(b.origin);
         }
         chunk.lent.begin[kind] = static_cast<uint32_t>(chunk.lent.vertices.size());
         chunk.lent.vertices.insert(chunk.lent.vertices.end(), lent_[kind].begin(), lent_[kind].end());
     }
-    chunk.borrowed.vertices.resize(borrowedOrigins_.size());
-    chunk.borrowed.begin.back() = static_cast<uint32_t>(borrowedOrigins_.size());
+    chunk.borrowed.vertices.resize(borrowed);
+    chunk.borrowed.begin.back() = borrowed;
     chunk.lent.begin.back() = static_cast<uint32_t>(chunk.lent.vertices.size());
 }
 
@@ -260,14 +252,19 @@ void BlockMesher::writeTriangles(Chunk& chunk) const {
                       placedCases().data(), &chunk.triangles[0].x);
     const Triangle *first = chunk.triangles.data(), *const begin = first;
     OriginId* origin = chunk.origins.data();
+    // Without a branch: which corners are borrowed follows no pattern.
+    const auto originOf = [origins = origins_.data(), own = vertices_](uint32_t corner) {
+        return origins[(corner & ~borrowedBit) + ((0u - (corner >> 31)) & own)];
+    };
     for (const Brick& brick : bricks_) {
         const Triangle* const end = begin + brick.trianglesEnd;
         const auto count = static_cast<size_t>(end - first);
         if (brick.owner)
             std::fill_n(origin, count, *brick.owner);
         else
-            std::transform(first, end, origin,
-                           [this](const Triangle& t) { return majority(originOf(t.x), originOf(t.y), originOf(t.z)); });
+            std::transform(first, end, origin, [originOf](const Triangle& t) {
+                return majority(originOf(t.x), originOf(t.y), originOf(t.z));
+            });
         origin += count;
         first = end;
     }

@@ -42,30 +42,27 @@ private:
     void clear();
     void addBrick(int number, const eval::Tape& tape);
     size_t addCells(const BrickSigns& signs, Vec3i brick);
-    void addOwnEdges(const BrickSigns& signs, Vec3i brick);
-    void lend(const BrickSigns& signs, Vec3i brick);
+    void addOwnEdges(const BrickSigns& signs);
     void borrow(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner);
+    void placeEdges(Vec3i brick);
+    void lend(const BrickSigns& signs, Vec3i brick);
     void addVertices(const eval::Tape& tape, std::optional<OriginId> owner);
-    void findBorrowed(const eval::Tape& tape);
-    EdgeEnds edgeEnds(Vec3i brick) const;
-    const OriginId* originsOf(const eval::Tape& tape, const CutEdges& edges);
+    void findOrigins(const eval::Tape& tape);
     void listSeams(Chunk& chunk);
     void writeTriangles(Chunk& chunk) const;
-    OriginId originOf(uint32_t corner) const {
-        return corner & borrowedBit ? borrowedOrigins_[corner & ~borrowedBit] : origins_[corner];
-    }
 
     const Grid grid_;
     const size_t refineSteps_;
     eval::Workspace workspace_;
     BlockSamples samples_;
-    CutEdges edges_, borrowedEdges_;
+    CutEdges edges_;  ///< of a brick, its own first
+    size_t ownEdges_ = 0;
     std::vector<CutEdges> openEdges_;
-    std::vector<std::pair<int, size_t>> borrowedPlaces_;  ///< of borrowedEdges_: kind of seam, place in its list
+    std::vector<std::pair<int, size_t>> borrowedPlaces_;  ///< of the others: kind of seam, place in its list
     /// Of the vertex on an edge, see edgePlace; the last ones are read and never used.
     PageVector<uint32_t> number_ = PageVector<uint32_t>(3 * cornersPerBlock + rowPadding);
     PageVector<Vec3f> positions_, normals_;
-    PageVector<OriginId> origins_, borrowedOrigins_, found_;
+    PageVector<OriginId> origins_, found_;  ///< at last the origins of what is borrowed come after those of the own
     PageVector<SurfaceCell> cells_ =
         PageVector<SurfaceCell>(blockCells * blockCells * blockCells + rowPadding);  ///< the first cellCount_ count
     std::vector<Brick> bricks_;

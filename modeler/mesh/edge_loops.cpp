@@ -50,11 +50,11 @@ inline size_t sum(Float v) {
     return static_cast<size_t>(total);
 }
 
-/// Which of the entries from `first` on lie along x and along z.
+/// Which of the entries from i on lie along x and along z.
 struct Axes {
     Mask x, z;
-    Axes(const EdgeArrays& e, Float number)
-        : x(number < Float(static_cast<float>(e.yBegin))), z(number >= Float(static_cast<float>(e.zBegin))) {}
+    Axes(const EdgeArrays& e, size_t i)
+        : x(Float::load(e.axis + i) < Float(1.0f)), z(Float::load(e.axis + i) > Float(1.0f)) {}
 };
 
 /// Moves entries from i on to `at`, along their edges.
@@ -72,16 +72,15 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
                  zs = _mm512_loadu_ps(ends.coordinates[2]);
     const auto number = [](size_t v) { return _mm512_set1_epi32(static_cast<int>(v)); };
     const __m512i row = number(ends.strides[1]), layer = number(ends.strides[2]), byte = number(255), one = number(1);
-    const __m512i yBegin = number(e.yBegin), zBegin = number(e.zBegin);
-    __m512i entry = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    for (size_t at = 0; at < n; at += edgeVector, entry = _mm512_add_epi32(entry, number(edgeVector))) {
-        const __mmask16 notX = _mm512_cmpge_epi32_mask(entry, yBegin), alongZ = _mm512_cmpge_epi32_mask(entry, zBegin);
+    for (size_t at = 0; at < n; at += edgeVector) {
+        const __m512i code = _mm512_loadu_si512(codes + at), axis = _mm512_srli_epi32(code, 24);
+        const __mmask16 notX = _mm512_cmpgt_epi32_mask(axis, _mm512_setzero_si512()),
+                        alongZ = _mm512_cmpgt_epi32_mask(axis, one);
         const auto ofAxis = [&](auto blend, auto x, auto y, auto z) { return blend(alongZ, blend(notX, x, y), z); };
         const auto floats = [](__mmask16 m, __m512 a, __m512 b) { return _mm512_mask_blend_ps(m, a, b); };
         const auto ints = [](__mmask16 m, __m512i a, __m512i b) { return _mm512_mask_blend_epi32(m, a, b); };
-        const __m512i code = _mm512_loadu_si512(codes + at);
         const __m512i i = _mm512_and_si512(code, byte), j = _mm512_and_si512(_mm512_srli_epi32(code, 8), byte),
-                      k = _mm512_srli_epi32(code, 16);
+                      k = _mm512_and_si512(_mm512_srli_epi32(code, 16), byte);
         const __m512 x = _mm512_permutexvar_ps(i, xs), y = _mm512_permutexvar_ps(j, ys),
                      z = _mm512_permutexvar_ps(k, zs);
         const __m512 low = ofAxis(floats, x, y, z);
@@ -91,10 +90,10 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
         const __m512i corner =
             _mm512_add_epi32(i, _mm512_add_epi32(_mm512_mullo_epi32(j, row), _mm512_mullo_epi32(k, layer)));
         const __m512i other = _mm512_add_epi32(corner, ofAxis(ints, one, row, layer));
-        const __m512i axis = ofAxis(ints, number(0), one, number(2));
         _mm512_store_ps(e.x + at, x);
         _mm512_store_ps(e.y + at, y);
         _mm512_store_ps(e.z + at, z);
+        _mm512_store_ps(e.axis + at, _mm512_cvtepi32_ps(axis));
         _mm512_store_ps(e.base + at, low);
         _mm512_store_ps(e.span + at, _mm512_sub_ps(high, low));
         _mm512_store_ps(e.fIn + at, _mm512_i32gather_ps(corner, ends.values, 4));
@@ -107,13 +106,13 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
 
 void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArrays& e, uint32_t* places) {
     for (size_t at = 0; at < n; ++at) {
-        const uint32_t axis = at < e.yBegin ? 0 : at < e.zBegin ? 1 : 2;
-        const uint32_t i = codes[at] & 255, j = codes[at] >> 8 & 255, k = codes[at] >> 16;
+        const uint32_t i = codes[at] & 255, j = codes[at] >> 8 & 255, k = codes[at] >> 16 & 255, axis = codes[at] >> 24;
         const uint32_t corner = i + j * ends.strides[1] + k * ends.strides[2];
         const float* const along = ends.coordinates[axis] + (axis == 0 ? i : axis == 1 ? j : k);
         e.x[at] = ends.coordinates[0][i];
         e.y[at] = ends.coordinates[1][j];
         e.z[at] = ends.coordinates[2][k];
+        e.axis[at] = static_cast<float>(axis);
         e.base[at] = along[0];
         e.span[at] = along[1] - along[0];
         e.fIn[at] = ends.values[corner];
@@ -121,14 +120,13 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
         places[at] = 3 * corner + axis;
     }
     for (size_t at = n; at < whole(n); ++at)  // numbers like the others
-        for (float* const to : {e.x, e.y, e.z, e.base, e.span, e.fIn, e.fOut}) to[at] = to[n - 1];
+        for (float* const to : {e.x, e.y, e.z, e.axis, e.base, e.span, e.fIn, e.fOut}) to[at] = to[n - 1];
 }
 
 #endif
 
 void interpolate(const EdgeArrays& e, size_t n) {
-    Float number = ascending();
-    for (size_t i = 0; i < n; i += Float::size, number = number + Float(static_cast<float>(Float::size))) {
+    for (size_t i = 0; i < n; i += Float::size) {
         const Float low = Float::load(e.fIn + i), high = Float::load(e.fOut + i);
         const Mask inside = low < Float(0.0f);
         const Float t0 = select(inside, Float(0.0f), Float(1.0f)), t1 = Float(1.0f) - t0;
@@ -137,7 +135,7 @@ void interpolate(const EdgeArrays& e, size_t n) {
         t0.store(e.tIn + i), f0.store(e.fIn + i);
         t1.store(e.tOut + i), f1.store(e.fOut + i);
         t.store(e.t + i);
-        moveTo(e, i, Axes(e, number), Float::load(e.base + i) + t * Float::load(e.span + i));
+        moveTo(e, i, Axes(e, i), Float::load(e.base + i) + t * Float::load(e.span + i));
     }
 }
 
@@ -145,7 +143,7 @@ size_t step(const EdgeArrays& e, size_t n) {
     Float open = 0.0f, number = ascending();
     const Float end = static_cast<float>(n);
     for (size_t i = 0; i < n; i += Float::size, number = number + Float(static_cast<float>(Float::size))) {
-        const Axes along(e, number);
+        const Axes along(e, i);
         const Float t = Float::load(e.t + i), f = Float::load(e.f + i), span = Float::load(e.span + i);
         const Float slope =
             select(along.x, Float::load(e.dx + i), select(along.z, Float::load(e.dz + i), Float::load(e.dy + i)));
@@ -187,9 +185,9 @@ size_t normalize(const EdgeArrays& e, size_t n) {
     return sum(without);
 }
 
-constexpr float* EdgeArrays::*pickedRows[] = {&EdgeArrays::x,    &EdgeArrays::y,   &EdgeArrays::z,   &EdgeArrays::base,
-                                              &EdgeArrays::span, &EdgeArrays::t,   &EdgeArrays::tIn, &EdgeArrays::fIn,
-                                              &EdgeArrays::tOut, &EdgeArrays::fOut};
+constexpr float* EdgeArrays::*pickedRows[] = {&EdgeArrays::x,    &EdgeArrays::y,    &EdgeArrays::z,   &EdgeArrays::base,
+                                              &EdgeArrays::span, &EdgeArrays::t,    &EdgeArrays::tIn, &EdgeArrays::fIn,
+                                              &EdgeArrays::tOut, &EdgeArrays::fOut, &EdgeArrays::axis};
 constexpr float* EdgeArrays::*foundRows[] = {&EdgeArrays::x,  &EdgeArrays::y,  &EdgeArrays::z,
                                              &EdgeArrays::dx, &EdgeArrays::dy, &EdgeArrays::dz};
 
@@ -200,21 +198,13 @@ inline __mmask16 openOnes(const EdgeArrays& e, size_t at) {
     return _mm512_cmp_ps_mask(_mm512_load_ps(e.open + at), _mm512_setzero_ps(), _CMP_NEQ_OQ);
 }
 inline size_t countOf(unsigned mask) { return static_cast<size_t>(__builtin_popcount(mask)); }
-/// The mask's bits for entries before `end`, of those from `at` on.
-inline unsigned before(__mmask16 mask, size_t at, size_t end) {
-    return at >= end ? 0u : end - at >= edgeVector ? mask : mask & ((1u << (end - at)) - 1);
-}
-
-size_t pick(const EdgeArrays& from, size_t n, EdgeArrays& to) {
+size_t pick(const EdgeArrays& from, size_t n, const EdgeArrays& to) {
     size_t picked = 0;
-    to.yBegin = to.zBegin = 0;
     for (size_t at = 0; at < n; at += edgeVector) {
         const __mmask16 open = openOnes(from, at);
         for (const auto row : pickedRows)
             _mm512_storeu_ps(to.*row + picked, _mm512_maskz_compress_ps(open, _mm512_load_ps(from.*row + at)));
         picked += countOf(open);
-        to.yBegin += countOf(before(open, at, from.yBegin));
-        to.zBegin += countOf(before(open, at, from.zBegin));
     }
     return picked;
 }
@@ -232,14 +222,7 @@ void putBack(const EdgeArrays& from, size_t n, const EdgeArrays& to) {
 
 #else
 
-size_t pick(const EdgeArrays& from, size_t n, EdgeArrays& to) {
-    const auto openBefore = [&](size_t end) {
-        size_t count = 0;
-        for (size_t i = 0; i < end; ++i) count += from.open[i] != 0.0f;
-        return count;
-    };
-    to.yBegin = openBefore(from.yBegin);
-    to.zBegin = openBefore(from.zBegin);
+size_t pick(const EdgeArrays& from, size_t n, const EdgeArrays& to) {
     size_t picked = 0;
     for (const auto row : pickedRows) {
         picked = 0;

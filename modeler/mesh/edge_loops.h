@@ -16,10 +16,12 @@ inline constexpr float edgeMargin = 0x1.0p-10f;
 inline constexpr size_t edgeVector = 16;
 constexpr size_t wholeVectors(size_t n) { return (n + edgeVector - 1) / edgeVector * edgeVector; }
 
-/// A corner of a brick or a block as one number, a byte a coordinate. Sums of two are sums of points.
-constexpr uint32_t codeOf(uint32_t i, uint32_t j, uint32_t k) { return i | j << 8 | k << 16; }
+/// A corner of a brick, and an axis, as one number of a byte each. Sums of two are sums of corners.
+constexpr uint32_t codeOf(uint32_t i, uint32_t j, uint32_t k, uint32_t axis = 0) {
+    return i | j << 8 | k << 16 | axis << 24;
+}
 
-/// One entry an edge, grouped by axis: those from `yBegin` on lie along y, those from `zBegin` on along z.
+/// One entry an edge.
 struct EdgeArrays {
     float *x, *y, *z;     ///< where the field is evaluated and, at last, the vertex; metres
     float *dx, *dy, *dz;  ///< derivatives where last evaluated; at last the normal
@@ -29,8 +31,8 @@ struct EdgeArrays {
     float *tIn, *fIn;     ///< end of the bracket that is inside: share of the edge, value
     float *tOut, *fOut;   ///< the other end
     float* t;             ///< share of the edge
+    float* axis;          ///< along which it lies: 0, 1, 2
     float* open;          ///< 1 where the vertex has to be looked at again, else 0
-    size_t yBegin, zBegin;
 };
 
 /// A brick's corners, and the block's samples and numbers from the brick's low corner on.
@@ -41,9 +43,9 @@ struct EdgeEnds {
 };
 
 struct EdgeLoops {
-    /// Writes n entries, edges up from the corners `codes`: where they lie, how long they are, the samples at their
-    /// ends; and to `places` three times the corner's number, counted as the values are, plus the axis. Both may be one
-    /// list.
+    /// Writes n entries, edges up from corners along axes, by `codes`: where they lie, how long they are, the samples
+    /// at their ends; and to `places` three times the corner's number, counted as the values are, plus the axis. Both
+    /// may be one list.
     void (*place)(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArrays& e, uint32_t* places);
     /// Makes brackets of the samples at the low ends (in fIn) and high ends (in fOut), and goes where the line between
     /// them is zero (SG-M III-G).
@@ -54,7 +56,7 @@ struct EdgeLoops {
     /// Scales (dx, dy, dz) to unit length, to zero where it has no direction; returns how many have none.
     size_t (*normalize)(const EdgeArrays& e, size_t n);
     /// Takes over the open ones of n entries, but for f, open and derivatives; returns how many. They stay in order.
-    size_t (*pick)(const EdgeArrays& from, size_t n, EdgeArrays& to);
+    size_t (*pick)(const EdgeArrays& from, size_t n, const EdgeArrays& to);
     /// Hands places and derivatives back to the open ones of n entries, which `from` was picked from.
     void (*putBack)(const EdgeArrays& from, size_t n, const EdgeArrays& to);
     /// Writes n points (x, y, z) one after the other.

@@ -26,7 +26,7 @@ public:
 
     /// Makes room for n entries; never shrinks.
     void reserve(size_t n);
-    /// Valid until the next `reserve`. The user keeps yBegin and zBegin.
+    /// Valid until the next `reserve`.
     EdgeArrays arrays{};
 
 private:
