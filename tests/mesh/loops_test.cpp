@@ -89,6 +89,35 @@ TEST(Loops, BitsAreListedInOrder) {
     }
 }
 
+TEST(Loops, CellsAreListedWithTheirCases) {
+    constexpr int rowStride = 33, layerStride = 1089, corner = 100;
+    std::array<uint8_t, 96> low{}, high{};
+    const auto isIn = [](int i, int j, int k) { return uniform(combine(combine(11, i), combine(j, k)), 0, 1) < 0.5; };
+    for (int k = 0; k < 9; ++k)
+        for (int j = 0; j < 9; ++j)
+            for (int i = 0; i < 9; ++i) {
+                if (!isIn(i, j, k)) continue;
+                if (i < 8) low[j + 9 * k] |= static_cast<uint8_t>(1 << i);
+                if (i > 0) high[j + 9 * k] |= static_cast<uint8_t>(1 << (i - 1));
+            }
+    BitCube bits{};
+    for (uint32_t c = 0; c < 512; c += 1 + c % 7) bits.layers[c / 64] |= 1ull << c % 64;
+    for (const Loops& l : loopsHere()) {
+        std::vector<SurfaceCell> cells(512 + rowPadding);
+        const size_t n = l.bricks->cells(bits, low.data(), high.data(), corner, rowStride, layerStride, cells.data());
+        size_t at = 0;
+        for (int c = 0; c < 512; ++c) {
+            if (!(bits.layers[c / 64] >> c % 64 & 1)) continue;
+            const int i = c & 7, j = c >> 3 & 7, k = c >> 6;
+            int inside = 0;
+            for (int v = 0; v < 8; ++v) inside |= isIn(i + (v & 1), j + (v >> 1 & 1), k + (v >> 2)) << v;
+            EXPECT_EQ(cells[at].corner, corner + i + j * rowStride + k * layerStride);
+            EXPECT_EQ(cells[at++].inside, inside);
+        }
+        EXPECT_EQ(at, n);
+    }
+}
+
 TEST(Loops, TrianglesAreJoinedFromTheCellsRows) {
     constexpr size_t rowStride = 10, layerStride = 100;
     std::vector<uint32_t> number(3 * 10 * layerStride);
@@ -135,6 +164,34 @@ struct RandomEdges {
         for (size_t i = 0; i < wholeVectors(n); ++i) a.axis[i] = static_cast<float>(i % 3);
     }
 };
+
+TEST(Loops, EdgesArePlacedBetweenTheirEnds) {
+    const Samples at = randomSamples(9), values = randomSamples(10);
+    const EdgeEnds ends{{at.data(), at.data() + 20, at.data() + 40}, values.data(), {1, side, side * side}};
+    for (const size_t n : {1, 16, 37})
+        for (const Loops& l : loopsHere()) {
+            CutEdges edges;
+            edges.reserve(n);
+            std::vector<uint32_t> codes(wholeVectors(n)), places(wholeVectors(n));
+            for (uint32_t e = 0; e < n; ++e) codes[e] = codeOf(e % 9, e * 5 % 9, e * 7 % 9, e % 3);
+            l.edges->place(ends, codes.data(), n, edges.arrays, places.data());
+            for (uint32_t e = 0; e < n; ++e) {
+                const std::array<uint32_t, 3> corner{e % 9, e * 5 % 9, e * 7 % 9};
+                const uint32_t axis = e % 3, number = corner[0] + side * (corner[1] + side * corner[2]);
+                const float* const along = ends.coordinates[axis] + corner[axis];
+                const EdgeArrays& a = edges.arrays;
+                EXPECT_EQ(a.x[e], ends.coordinates[0][corner[0]]);
+                EXPECT_EQ(a.y[e], ends.coordinates[1][corner[1]]);
+                EXPECT_EQ(a.z[e], ends.coordinates[2][corner[2]]);
+                EXPECT_EQ(a.base[e], along[0]);
+                EXPECT_EQ(a.span[e], along[1] - along[0]);
+                EXPECT_EQ(a.fIn[e], values[number]);
+                EXPECT_EQ(a.fOut[e], values[number + ends.strides[axis]]);
+                EXPECT_EQ(a.axis[e], static_cast<float>(axis));
+                EXPECT_EQ(places[e], 3 * number + axis);
+            }
+        }
+}
 
 TEST(Loops, EdgesMoveTheSameWay) {
     constexpr size_t n = 203;
