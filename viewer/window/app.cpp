@@ -224,7 +224,8 @@ int runApp(const AppOptions& options) {
         const SpentWatch turn;
         const Spent drawnBefore = bench.field.times().drawn;
         if (window.closing() && bench.mayClose()) return 0;
-        if (window.stirred() | bench.poll()) wanted = settlingFrames;
+        const bool stirred = window.stirred(), news = bench.poll();
+        if (stirred || news) wanted = settlingFrames;
         for (const std::filesystem::path& path : window.dropped()) bench.drop(path);
         if (sinceLook.seconds() > listenFor) {
             if (bench.lookAtFiles()) wanted = settlingFrames;
