@@ -57,7 +57,7 @@ void copyTo(PageVector<T>& to, const PageVector<T>& from) {
 
 OriginId majority(OriginId a, OriginId b, OriginId c) {
     const OriginId least = std::min(a, std::min(b, c)), ofTwo = b == c ? b : least;
-    return (a == b) | (a == c) ? a : ofTwo;
+    return ((a == b) | (a == c)) ? a : ofTwo;
 }
 
 /// The sides of a block that a brick touches, as a mask of axes.

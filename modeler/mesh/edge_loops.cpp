@@ -25,9 +25,6 @@ constexpr float agreement = edgeMargin;
 /// A longer step may have crossed a crease, beyond which the normal is another.
 constexpr float longStep = 0x1.0p-4f;
 
-/// As wholeVectors: the compiler sees that no entries are left over.
-inline size_t whole(size_t n) { return (n + edgeVector - 1) / edgeVector * edgeVector; }
-
 /// Sends a NaN (from infinite values) to the margin.
 inline Float withinEdge(Float t) {
     const Float least = edgeMargin, most = 1.0f - edgeMargin;
@@ -119,7 +116,7 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
         e.fOut[at] = ends.values[corner + ends.strides[axis]];
         places[at] = 3 * corner + axis;
     }
-    for (size_t at = n; at < whole(n); ++at)  // numbers like the others
+    for (size_t at = n; at < wholeVectors(n); ++at)  // numbers like the others
         for (float* const to : {e.x, e.y, e.z, e.axis, e.base, e.span, e.fIn, e.fOut}) to[at] = to[n - 1];
 }
 
