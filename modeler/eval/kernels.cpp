@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "modeler/eval/source_arch.h"
 #include "modeler/eval/values_dual.h"
 #include "modeler/eval/values_interval.h"
 #include "modeler/eval/values_simd.h"
@@ -12,13 +13,7 @@
 namespace sgm::eval {
 namespace {
 
-#if defined(__AVX512BW__)
-using Arch = xsimd::avx512bw;
-#elif defined(__AVX2__)
-using Arch = xsimd::avx2;
-#else
-using Arch = xsimd::default_arch;
-#endif
+using Arch = SourceArch;
 using Float = Lanes<Arch>;
 static_assert(vectorFloats % Float::size == 0);
 

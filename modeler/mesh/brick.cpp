@@ -8,42 +8,39 @@ namespace {
 /// Edges along each axis, by axis and mask of sides.
 using EdgeTable = std::array<std::array<BitRows, 8>, 3>;
 
-/// Edges on low sides of the block: that of an axis in the mask `sides` is the brick's own low side, and on another low
-/// side of the brick a lower brick takes care of them.
-EdgeTable makeLowEdges() {
+/// The edges from corner `at` along `axis` for which belongs(axis, sides, at) holds.
+template <class Belongs>
+EdgeTable edgesWhere(Belongs belongs) {
     EdgeTable table{};
     for (int axis = 0; axis < 3; ++axis)
         for (int sides = 0; sides < 8; ++sides)
             for (int row = 0; row < brickRows; ++row)
-                for (int i = 0; i < brickCorners; ++i) {
-                    const std::array<int, 3> at{i, rowJ(row), rowK(row)};
-                    bool onLow = false, lower = at[axis] == brickCells;
-                    for (int other = 0; other < 3; ++other) {
-                        if (other == axis || at[other] > 0) continue;
-                        (sides >> other & 1 ? onLow : lower) = true;
-                    }
-                    if (onLow && !lower) table[axis][sides][row] |= static_cast<uint16_t>(1 << i);
-                }
+                for (int i = 0; i < brickCorners; ++i)
+                    if (belongs(axis, sides, std::array{i, rowJ(row), rowK(row)}))
+                        table[axis][sides][row] |= static_cast<uint16_t>(1 << i);
     return table;
 }
 
+/// Edges on low sides of the block: that of an axis in the mask `sides` is the brick's own low side, and on another low
+/// side of the brick a lower brick takes care of them.
+bool onLowSide(int axis, int sides, std::array<int, 3> at) {
+    bool onLow = false, lower = at[axis] == brickCells;
+    for (int other = 0; other < 3; ++other) {
+        if (other == axis || at[other] > 0) continue;
+        (sides >> other & 1 ? onLow : lower) = true;
+    }
+    return onLow && !lower;
+}
+
 /// Own edges on the high sides of the block that the brick touches.
-EdgeTable makeHighEdges() {
-    EdgeTable table{};
-    for (int axis = 0; axis < 3; ++axis)
-        for (int sides = 0; sides < 8; ++sides)
-            for (int row = 0; row < brickRows; ++row)
-                for (int i = 0; i < brickCorners; ++i) {
-                    const std::array<int, 3> at{i, rowJ(row), rowK(row)};
-                    bool onHigh = false, own = at[axis] < brickCells;
-                    for (int other = 0; other < 3; ++other) {
-                        if (other == axis) continue;
-                        own = own && at[other] > 0;
-                        onHigh = onHigh || ((sides >> other & 1) && at[other] == brickCells);
-                    }
-                    if (onHigh && own) table[axis][sides][row] |= static_cast<uint16_t>(1 << i);
-                }
-    return table;
+bool onHighSide(int axis, int sides, std::array<int, 3> at) {
+    bool onHigh = false, own = at[axis] < brickCells;
+    for (int other = 0; other < 3; ++other) {
+        if (other == axis) continue;
+        own = own && at[other] > 0;
+        onHigh = onHigh || ((sides >> other & 1) && at[other] == brickCells);
+    }
+    return onHigh && own;
 }
 
 SparseRows cutAmong(const BitRows& inside, int axis, const BitRows& edges) {
@@ -113,12 +110,12 @@ BitCube ownCuts(const BrickSigns& signs, int axis) {
 }
 
 SparseRows cutsOnLowSides(const BrickSigns& signs, int axis, int sides) {
-    static const EdgeTable edges = makeLowEdges();
+    static const EdgeTable edges = edgesWhere(onLowSide);
     return cutAmong(signs.rows, axis, edges[axis][sides]);
 }
 
 SparseRows cutsOnHighSides(const BrickSigns& signs, int axis, int sides) {
-    static const EdgeTable edges = makeHighEdges();
+    static const EdgeTable edges = edgesWhere(onHighSide);
     return cutAmong(signs.rows, axis, edges[axis][sides]);
 }
 

@@ -2,18 +2,13 @@
 // use an inline function that doesn't depend on Arch: the linker might keep the copy this machine can't run.
 #include "modeler/mesh/edge_loops.h"
 
+#include "modeler/eval/source_arch.h"
 #include "modeler/eval/values_simd.h"
 
 namespace sgm::mesh {
 namespace {
 
-#if defined(__AVX512BW__)
-using Arch = xsimd::avx512bw;
-#elif defined(__AVX2__)
-using Arch = xsimd::avx2;
-#else
-using Arch = xsimd::default_arch;
-#endif
+using Arch = eval::SourceArch;
 using Float = eval::Lanes<Arch>;
 using Mask = Float::Mask;
 static_assert(edgeVector % Float::size == 0);
@@ -116,7 +111,8 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
         e.fOut[at] = ends.values[corner + ends.strides[axis]];
         places[at] = 3 * corner + axis;
     }
-    for (size_t at = n; at < wholeVectors(n); ++at)  // numbers like the others
+    const size_t whole = (n + edgeVector - 1) / edgeVector * edgeVector;  // not by wholeVectors, an inline function
+    for (size_t at = n; at < whole; ++at)  // numbers like the others
         for (float* const to : {e.x, e.y, e.z, e.axis, e.base, e.span, e.fIn, e.fOut}) to[at] = to[n - 1];
 }
 

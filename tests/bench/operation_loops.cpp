@@ -1,5 +1,6 @@
 // Compiled once for each instruction set, with SGM_ISA the namespace. As in modeler/eval/kernels.cpp, nothing here may
 // instantiate an inline function that doesn't depend on Arch.
+#include "modeler/eval/source_arch.h"
 #include "modeler/eval/values_dual.h"
 #include "modeler/eval/values_simd.h"
 #include "modeler/field/ops.h"
@@ -8,13 +9,7 @@
 namespace sgm::bench {
 namespace {
 
-#if defined(__AVX512BW__)
-using Arch = xsimd::avx512bw;
-#elif defined(__AVX2__)
-using Arch = xsimd::avx2;
-#else
-using Arch = xsimd::default_arch;
-#endif
+using Arch = eval::SourceArch;
 using Float = eval::Lanes<Arch>;
 using Dual = eval::Dual<Float>;
 
