@@ -24,7 +24,9 @@ using openvdb::FloatGrid;
 constexpr uint64_t mostVoxels = uint64_t{1} << 28;
 constexpr uint32_t columns = 64;  ///< of a leaf, along z: column x · 8 + y
 
-/// The parts of a mask that hang together by faces. The mask has no active tiles and must outlive this.
+/// The parts of a mask that hang together by faces. The mask has no active tiles and must outlive this. OpenVDB's
+/// segmentActiveVoxels makes a tree for each, which takes five times the processor time where there is dust
+/// (mcgraw.sgm at 256 cells).
 class Parts {
 public:
     explicit Parts(const BoolTree& mask) {
