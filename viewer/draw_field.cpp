@@ -1,6 +1,7 @@
 // Whole pictures of a field without a window. Pixels on edges are sampled again.
 #include <chrono>
 #include <ctime>
+#include <optional>
 
 #include "viewer/field_scene.h"
 #include "viewer/scene.h"
@@ -11,25 +12,22 @@ namespace {
 /// Adds the display light of every job to its pixel, and what its ray met to the layers.
 Status addJobs(const std::vector<Job>& jobs, FieldScene& scene, PixelSums& sums, const View& view, Layers* layers,
                DrawCost& cost, Progress* progress) {
-    if (progress) progress->begin("draw", jobs.size() * 2);
+    if (progress) progress->begin("draw", jobs.size() * 3);
     for (size_t first = 0; first < jobs.size(); first += mostJobs) {
         const std::span chunk = std::span(jobs).subspan(first, std::min(mostJobs, jobs.size() - first));
         const Result<Rays> rays = scene.draw(chunk, progress);
         if (!rays) return rays.error();
         for (const Job& job : chunk)
             if (cost.samples++ % 64 == 0) cost.probes.push_back(job.place());
-        cost.hitEvaluations += rays->evaluations[0];
-        cost.lightEvaluations += rays->evaluations[1];
-        cost.instructions += rays->instructions;
         sums.add(chunk, rays->colors);
         for (size_t i = 0; layers && i < chunk.size(); ++i) {
-            if (rays->kind(i) == HitKind::Sky) continue;
+            const Hit& hit = rays->hits[i];
+            if (hit.kind() == HitKind::Sky) continue;
             const size_t pixel = sums.index(chunk[i]) / 4;
-            const auto& [x, y, z, openness] = rays->surfaces[i];
-            layers->position[pixel] = rays->position(i);
-            layers->depth[pixel] = static_cast<float>(dot(rays->position(i).as<double>() - view.eye, view.forward));
-            layers->normal[pixel] = {x, y, z};
-            layers->ao[pixel] = openness;
+            layers->position[pixel] = hit.position;
+            layers->depth[pixel] = static_cast<float>(dot(hit.position.as<double>() - view.eye, view.forward));
+            layers->normal[pixel] = rays->lits[i].normal;
+            layers->ao[pixel] = rays->lits[i].openness;
             layers->origin[pixel] = static_cast<float>(rays->origins[i]);
         }
     }
@@ -56,7 +54,7 @@ struct FieldPainter::Parts {
 };
 
 Result<FieldPainter> FieldPainter::create(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
-                                          int threads, Progress* progress) {
+                                          int threads, Progress* progress, TracedBy by) {
     if (Status status = checkBounds(bounds); !status) return status.error();
     const double start = secondsNow();
     Result<GpuContext> gpu = GpuContext::create();
@@ -64,7 +62,7 @@ Result<FieldPainter> FieldPainter::create(const eval::Tape& tape, const Box3f& b
     Result<PreparedField> prepared = prepareField(tape, bounds, provenance, threads, progress);
     if (!prepared) return prepared.error();
     auto parts = std::shared_ptr<Parts>(new Parts{std::move(*gpu), {}, {}});
-    auto programs = programsFor(*prepared, nullptr);
+    auto programs = programsFor(*prepared, nullptr, by);
     if (!programs) return programs.error();
     parts->scene.emplace(std::move(*prepared), std::move(*programs), threads);
     parts->cost.prepareSeconds = secondsNow() - start;
@@ -77,6 +75,7 @@ Result<Image> FieldPainter::draw(const PictureOptions& options, Progress* progre
     const double start = secondsNow();
     const std::clock_t processor = std::clock();
     const double prepared = parts_->cost.prepareSeconds;
+    const TraceCost before = scene.cost();
     parts_->cost = {};
     parts_->cost.prepareSeconds = prepared;
     scene.look(options);
@@ -93,6 +92,9 @@ Result<Image> FieldPainter::draw(const PictureOptions& options, Progress* progre
         const float* sum = &sums.rgba[i * 4];
         layers->color[i] = Vec3f{sum[0], sum[1], sum[2]} / sum[3];
     }
+    parts_->cost.hitEvaluations = scene.cost().hits - before.hits;
+    parts_->cost.lightEvaluations = scene.cost().light - before.light;
+    parts_->cost.instructions = scene.cost().instructions - before.instructions;
     parts_->cost.drawSeconds = secondsNow() - start;
     parts_->cost.drawProcessorSeconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
     return sums.image();

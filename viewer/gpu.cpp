@@ -3,6 +3,8 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
+#include <string_view>
+
 namespace sgm::viewer {
 namespace {
 
@@ -133,6 +135,12 @@ GpuContext::~GpuContext() {
 std::string GpuContext::description() const {
     const auto text = [](GLenum name) { return std::string(reinterpret_cast<const char*>(glGetString(name))); };
     return text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
+}
+
+bool softwareGl() {
+    const std::string_view renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    return renderer.starts_with("llvmpipe") || renderer.starts_with("softpipe") || renderer.find("Software Rasterizer") != renderer.npos ||
+           renderer.find("SwiftShader") != renderer.npos;
 }
 
 Result<Program> Program::compute(const std::string& source) { return link({{GL_COMPUTE_SHADER, &source}}); }

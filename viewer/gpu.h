@@ -142,6 +142,9 @@ private:
 /// Runs the program in use over `count` invocations of local size 64; it must compare its index with `count`.
 void dispatch(size_t count);
 
+/// True where the current context's driver has no GPU, and runs shaders on the processor.
+bool softwareGl();
+
 /// Waits until every command so far is done, so that work stays in short pieces.
 void finish();
 

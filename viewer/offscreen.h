@@ -86,12 +86,16 @@ struct DrawCost {
     double drawProcessorSeconds = 0;                     ///< of all threads, the software GL's too
 };
 
+/// Who walks the rays: shaders, the processor's own vectors, or what is quicker here, the processor where the driver has no
+/// GPU. The pictures are the same to the eye.
+enum class TracedBy { Best, Gpu, Processor };
+
 /// A field ready for pictures from any side: what no camera changes is done once. Keeps a GPU context of its own, so
 /// that only one painter may live at a time.
 class FieldPainter {
 public:
     static Result<FieldPainter> create(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
-                                       int threads, Progress* progress);
+                                       int threads, Progress* progress, TracedBy by = TracedBy::Best);
     /// Fills `layers` too unless null.
     Result<Image> draw(const PictureOptions& options, Progress* progress, Layers* layers = nullptr);
     /// Of the latest picture.

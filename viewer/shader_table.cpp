@@ -5,7 +5,8 @@ namespace sgm::viewer {
 const std::vector<Shader>& shaders() {
     static const std::vector<Shader> table{
         {"trace", "comp", true, {"view", "sky", "light", "ground", "cells", "jobs", "trace"}},
-        {"shade", "comp", true, {"view", "sky", "light", "ground", "tonemap", "cells", "jobs", "shade"}},
+        {"surface", "comp", true, {"view", "sky", "light", "ground", "cells", "jobs", "surface"}},
+        {"shade", "comp", false, {"view", "sky", "light", "ground", "tonemap", "jobs", "shade"}},
         {"fog", "comp", false, {"view", "sky", "light", "ground", "tonemap", "jobs", "fog"}},
         {"evaluate", "comp", true, {"evaluate"}},
         {"corners", "comp", true, {"corners"}},

@@ -17,10 +17,13 @@ struct Subject {
     double value;
 };
 
+/// Who walks the rays, and what a row says of it.
+const std::pair<viewer::TracedBy, const char*> tracers[] = {{viewer::TracedBy::Best, ""}, {viewer::TracedBy::Gpu, ", shaders"}};
+
 const Subject subjects[] = {{{"5,000 spheres", "tests/bench/cloud5000.sgm", ""}, "", 0},
                             {{"12 storeys", "examples/kifs/mcgraw.sgm", ""}, "floors", 12}};
 
-Result<PictureResult> measured(const Subject& subject, int repeats, Running running) {
+Result<PictureResult> measured(const Subject& subject, const std::pair<viewer::TracedBy, const char*>& tracer, int repeats, Running running) {
     auto grammar = loadGrammar(subject.entry);
     if (!grammar.ok()) return grammar.error();
     const auto& params = grammar->grammar->params;
@@ -29,7 +32,7 @@ Result<PictureResult> measured(const Subject& subject, int repeats, Running runn
     const auto scene = makeScene(*grammar, running);
     if (!scene.ok()) return scene.error();
     const Box3f bounds = viewer::tighten(scene->tape, scene->model->field.bounds);
-    auto painter = viewer::FieldPainter::create(scene->tape, bounds, scene->model->provenance, running.threads, nullptr);
+    auto painter = viewer::FieldPainter::create(scene->tape, bounds, scene->model->provenance, running.threads, nullptr, tracer.first);
     if (!painter.ok()) return painter.error();
     viewer::PictureOptions coarse, full;
     full.width = full.height = fullEdge;
@@ -38,7 +41,8 @@ Result<PictureResult> measured(const Subject& subject, int repeats, Running runn
     full.camera = coarse.camera = viewer::frame(scene->tape, bounds, 1);
     full.threads = coarse.threads = running.threads;
     PictureResult result;
-    result.name = subject.entry.name;
+    result.name = subject.entry.name + tracer.second;
+    result.asked = tracer.first == viewer::TracedBy::Best;
     const auto best = [](double& kept, double now) { kept = kept == 0 ? now : std::min(kept, now); };
     // The first picture finishes the driver's compile.
     if (const auto first = painter->draw(coarse, nullptr); !first.ok()) return first.error();
@@ -63,19 +67,20 @@ Result<PictureResult> measured(const Subject& subject, int repeats, Running runn
 
 Result<std::vector<PictureResult>> measurePictures(int repeats, Running running) {
     std::vector<PictureResult> results;
-    for (const Subject& subject : subjects) {
-        auto result = measured(subject, repeats, running);
-        if (!result.ok()) return Error{result.error().kind, fmt::format("{}: {}", subject.entry.name, result.error().message)};
-        results.push_back(std::move(*result));
-    }
+    for (const Subject& subject : subjects)
+        for (const auto& tracer : tracers) {
+            auto result = measured(subject, tracer, repeats, running);
+            if (!result.ok()) return Error{result.error().kind, fmt::format("{}: {}", subject.entry.name, result.error().message)};
+            results.push_back(std::move(*result));
+        }
     return results;
 }
 
 std::string pictureTable(const std::vector<PictureResult>& results) {
-    std::string table = fmt::format("{:<14} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}\n", "640 x 640", "cells s", "coarse s", "full s",
+    std::string table = fmt::format("{:<23} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}\n", "640 x 640", "cells s", "coarse s", "full s",
                                     "cpu s", "samples", "hits", "light", "plain", "ratio");
     for (const PictureResult& r : results)
-        table += fmt::format("{:<14} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:6.2f}\n", r.name, r.cellsSeconds, r.coarseSeconds,
+        table += fmt::format("{:<23} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:6.2f}\n", r.name, r.cellsSeconds, r.coarseSeconds,
                              r.fullSeconds, r.fullProcessorSeconds, r.samples, r.hits, r.light, r.plain, r.ratio());
     return table;
 }
@@ -83,6 +88,7 @@ std::string pictureTable(const std::vector<PictureResult>& results) {
 std::vector<Bar> judge(const std::vector<PictureResult>& results) {
     std::vector<Bar> bars;
     for (const PictureResult& r : results) {
+        if (!r.asked) continue;
         bars.push_back({r.name + ": full picture, s", 1.5, false, r.fullSeconds, ""});
         bars.push_back({r.name + ": coarse picture, s", 0.12, false, r.coarseSeconds, ""});
         bars.push_back({r.name + ": evaluations of plain tracing / ours", 3, true, r.ratio(), ""});

@@ -19,6 +19,7 @@ struct PictureResult {
     double fullProcessorSeconds = 0;  ///< the same of all threads
     double samples = 0;               ///< a pixel
     double hits = 0, light = 0;       ///< evaluations of the field a pixel
+    bool asked = true;                ///< the bars speak of it: drawn as sgm draws on this machine
     double plain = 0;                 ///< those of plain sphere tracing of the whole field for the same samples
 
     double ratio() const { return plain / (hits + light); }

@@ -157,6 +157,40 @@ TEST_F(Picture, TwoRunsGiveTheSameBytes) {
     EXPECT_EQ(one->rgb, three->rgb);
 }
 
+/// Pixels in which two pictures differ by more than can be seen side by side.
+size_t differentPixels(const Image& a, const Image& b) {
+    size_t different = 0;
+    for (size_t i = 0; i < a.rgb.size(); i += 3) {
+        int most = 0;
+        for (size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(int(a.rgb[i + c]) - int(b.rgb[i + c])));
+        different += most > 6 ? 1 : 0;
+    }
+    return different;
+}
+
+TEST_F(Picture, ShadersAndProcessorTraceTheSame) {
+    Scene scene;
+    for (int i = 0; i < 27; ++i)
+        scene.add(i % 2 ? "sphere" : "cube", {2.5 * (i % 3), 2.5 * (i / 3 % 3), 2.5 * (i / 9)}, {1.1, 1, 1.2}, i % 3 ? red : green);
+    const field::Field spheres = scene.sum();
+    const field::Field rock = scene.solid("cube", {0, 0, 0}, {4, 3, 3}), hollow = scene.solid("sphere", {1, 0.5, 0}, {2, 2, 2}),
+                       shaft = scene.solid("cube", {1, 3, 0}, {0.6, 6, 0.6});
+    const field::Field cave = field::difference({field::difference({rock, scene.origin({0.5f, 0.4f, 0.3f})}, {hollow, 0}), 0}, {shaft, 0});
+    for (const auto& [field, within] : {std::pair{spheres, false}, {cave, true}, {spheres, true}}) {
+        const eval::Tape tape = scene.compile(field);
+        const PictureOptions options = optionsAt(within ? inside(tape, field.bounds) : frame(tape, field.bounds, 1), !within);
+        std::vector<Image> images;
+        for (const TracedBy by : {TracedBy::Gpu, TracedBy::Processor}) {
+            auto painter = FieldPainter::create(tape, field.bounds, scene.provenance, 0, nullptr, by);
+            ASSERT_TRUE(painter.ok()) << painter.error().message;
+            const auto image = painter->draw(options, nullptr);
+            ASSERT_TRUE(image.ok()) << image.error().message;
+            images.push_back(*image);
+        }
+        EXPECT_LT(differentPixels(images[0], images[1]), size_t(edge) * edge / 200);
+    }
+}
+
 TEST_F(Picture, EdgesAreSmooth) {
     RedBall ball;
     PictureOptions options = optionsAt(ball.camera, false);

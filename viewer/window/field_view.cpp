@@ -154,7 +154,7 @@ std::optional<Pick> FieldView::pick(int x, int y) {
     const Job job{static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16, 0};
     const Result<Rays> rays = scene_->draw({&job, 1}, nullptr);
     if (!rays) return std::nullopt;
-    return Pick{rays->kind(0), rays->position(0), rays->origins[0]};
+    return Pick{rays->hits[0].kind(), rays->hits[0].position, rays->origins[0]};
 }
 
 }  // namespace sgm::viewer

@@ -1,0 +1,64 @@
+// Who walks rays through a prepared field: the GPU's shaders, or, where the driver has only a processor to run them on, that
+// processor's own vectors, which are an order of magnitude quicker there.
+// Enters: jobs of a picture. Leaves: what their rays met, and the light there. Both walk alike (trace.comp.glsl, walks.h).
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "modeler/core/progress.h"
+#include "modeler/core/result.h"
+#include "viewer/offscreen.h"
+#include "viewer/pixels.h"
+#include "viewer/prepared_field.h"
+
+namespace sgm::viewer {
+
+enum class HitKind { Sky, Object, Ground };
+
+/// What a ray met, as shaders read and write it.
+struct Hit {
+    Vec3f position;  ///< metres; for the sky the ray's direction
+    float kindNumber = 0;
+    HitKind kind() const { return static_cast<HitKind>(static_cast<int>(kindNumber)); }
+};
+
+/// How much light comes to a hit, as shaders read and write it; shares 0 … 1. All 0 for the sky.
+struct Lit {
+    Vec3f normal;      ///< unit
+    float openness;    ///< of open sky
+    float sunlight;    ///< of the sun's disc
+    float daylight;    ///< in a hollow with a lamp: of the day that gets in
+    float unused[2];
+};
+
+/// What a picture cost: evaluations of the field by shortened tapes, and the instructions of those.
+struct TraceCost {
+    uint64_t hits = 0, light = 0, instructions = 0;
+    TraceCost& operator+=(const TraceCost& other);
+};
+
+/// Walks rays through one field. Not for two threads at once.
+class Tracer {
+public:
+    virtual ~Tracer() = default;
+    /// Sets camera, picture size and ground. `fine` scales how exactly surfaces are found: above 1 finer than the
+    /// picture's pixels ask for.
+    virtual void look(const PictureOptions& options, double fine) = 0;
+    /// A hit a job. Error::Cancelled when `progress` says so, Error::Internal when the driver fails.
+    virtual Result<std::vector<Hit>> trace(std::span<const Job> jobs, Progress* progress) = 0;
+    /// The light at each hit.
+    virtual Result<std::vector<Lit>> light(std::span<const Hit> hits, Progress* progress) = 0;
+    /// All so far.
+    const TraceCost& cost() const { return cost_; }
+
+protected:
+    TraceCost cost_;
+};
+
+/// Walks on the processor, on `threads` threads (0 = all). `field` must live on.
+std::unique_ptr<Tracer> processorTracer(std::shared_ptr<const PreparedField> field, int threads);
+
+}  // namespace sgm::viewer

@@ -1,0 +1,150 @@
+#include "viewer/walks.h"
+
+#include <cmath>
+
+namespace sgm::viewer {
+
+Vec3f inverseOf(Vec3f direction) {
+    const auto one = [](float d) { return 1 / (std::abs(d) < 1e-9f ? 1e-9f : d); };
+    return {one(direction.x), one(direction.y), one(direction.z)};
+}
+
+float Cell::exit(Vec3f p, Vec3f inverseDirection) const {
+    const auto far = [&](int axis) {
+        const float a = (low[axis] - p[axis]) * inverseDirection[axis], b = (low[axis] + edge - p[axis]) * inverseDirection[axis];
+        return std::max(a, b);
+    };
+    return std::max(std::min({far(0), far(1), far(2)}), 0.0f) + edge * 1e-3f;
+}
+
+Cell CellSpace::cellAt(Vec3f p) const {
+    const CellTree& tree = field.tree;
+    Vec3f q = (p - tree.low) / tree.edge, low{};
+    for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(q[axis], 0.0f, 0.9999999f);
+    float edge = 1;
+    uint32_t word = uint32_t(CellState::Node) << 30;
+    while (CellTree::stateOf(word) == CellState::Node) {
+        edge *= 0.25f;
+        uint32_t child = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float k = std::clamp(std::floor((q[axis] - low[axis]) / edge), 0.0f, 3.0f);
+            low[axis] += k * edge;
+            child |= static_cast<uint32_t>(k) << (2 * axis);
+        }
+        word = tree.nodes[size_t(CellTree::indexOf(word)) * 64 + child];
+    }
+    Cell cell{CellTree::stateOf(word), CellTree::indexOf(word), tree.low + low * tree.edge, edge * tree.edge, 0};
+    if (side < 0 && cell.state != CellState::Near) cell.state = cell.state == CellState::Inside ? CellState::Outside : CellState::Inside;
+    cell.least = cell.state == CellState::Outside             ? margin
+                 : cell.state == CellState::Near && side > 0 ? tree.ranges[cell.tape].lo
+                                                             : -margin;
+    return cell;
+}
+
+std::array<float, 2> CellSpace::span(Vec3f origin, Vec3f inverseDirection) const {
+    float near = 0, far = INFINITY;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float a = (field.box.lo[axis] - origin[axis]) * inverseDirection[axis],
+                    b = (field.box.hi[axis] - origin[axis]) * inverseDirection[axis];
+        near = std::max(near, std::min(a, b));
+        far = std::min(far, std::max(a, b));
+    }
+    return {near, far};
+}
+
+SurfaceWalk::SurfaceWalk(const CellSpace& space, Vec3f origin, Vec3f direction, float pixelAngle)
+    : origin_(origin), direction_(direction), inverse_(inverseOf(direction)), tolerance_(2e-6f * space.size), angle_(0.2f * pixelAngle) {
+    const auto [near, far] = space.span(origin, inverse_);
+    t_ = near;
+    end_ = far;
+}
+
+bool SurfaceWalk::ask(const CellSpace& space, Question& question) {
+    for (; !ended_ && steps_ < 512 && t_ + stride_ <= end_; ++steps_) {
+        const Vec3f place = origin_ + (t_ + stride_) * direction_;
+        if (!cell_.holds(place)) cell_ = space.cellAt(place);
+        if (cell_.least > 0 && stride_ <= free_ + cell_.least * space.inverseLipschitz) {
+            t_ += stride_;
+            while (cell_.least > 0 && t_ <= end_) {
+                t_ += cell_.exit(origin_ + t_ * direction_, inverse_);
+                cell_ = space.cellAt(origin_ + t_ * direction_);
+            }
+            free_ = stride_ = 0;
+            slope_ = -1;
+            if (t_ > end_) break;
+        }
+        if (cell_.state == CellState::Near) {
+            question = {origin_ + (t_ + stride_) * direction_, cell_.tape};
+            ++steps_;
+            return true;
+        }
+        answer(space, cell_.state == CellState::Inside ? -space.margin : space.margin);
+    }
+    return false;
+}
+
+void SurfaceWalk::answer(const CellSpace& space, float value) {
+    const float next = value * space.inverseLipschitz;
+    if (stride_ > free_ + std::abs(next) && stride_ > 0) {  // a gap: back to the safe step
+        stride_ = free_;
+        slope_ = -1;
+        return;
+    }
+    if (stride_ > 0) slope_ += 0.4f * ((next - free_) / stride_ - slope_);
+    t_ += stride_;
+    free_ = next;
+    if (value < std::max(tolerance_, angle_ * t_)) {  // one more safe step, or back out
+        found_ = std::max(t_ + free_, 0.0f);
+        ended_ = true;
+        return;
+    }
+    stride_ = std::max(free_, 2 * free_ / (1 - std::min(slope_, 0.6f)));
+    if (t_ + stride_ > end_) stride_ = free_;  // the long step would leave the box, perhaps past a last surface
+}
+
+DiscWalk::DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float radius)
+    : place_(place), direction_(direction), inverse_(inverseOf(direction)), radius_(radius) {
+    const auto [near, far] = space.span(place, inverse_);
+    t_ = std::max(near, 3e-4f * space.size);
+    end_ = far;
+}
+
+bool DiscWalk::ask(const CellSpace& space, Question& question) {
+    for (; steps_ < 128 && t_ + stride_ <= end_ && clearance_ > -1; ++steps_) {
+        const Vec3f place = place_ + (t_ + stride_) * direction_;
+        if (!cell_.holds(place)) cell_ = space.cellAt(place);
+        // Nothing of the cell comes into the disc.
+        if (cell_.least >= space.margin || cell_.least >= radius_ * (t_ + stride_ + 2 * cell_.edge)) {
+            t_ += stride_ + cell_.exit(place, inverse_);
+            free_ = stride_ = 0;
+            continue;
+        }
+        if (cell_.state == CellState::Near) {
+            question = {place, cell_.tape};
+            ++steps_;
+            return true;
+        }
+        answer(space, -space.margin);
+    }
+    return false;
+}
+
+void DiscWalk::answer(const CellSpace& space, float value) {
+    const float next = std::abs(value) * space.inverseLipschitz;
+    const float disc = std::min(radius_ * (t_ + stride_), space.margin), least = std::max(0.25f * disc, 6e-4f * space.size);
+    if (stride_ > std::max(free_ + next, least)) {
+        stride_ = std::max(free_, least);
+        return;
+    }
+    clearance_ = std::min(clearance_, value / disc);
+    t_ += stride_;
+    free_ = next;
+    stride_ = std::max(free_ > 2 * disc ? 1.5f * free_ : 0.9f * free_, least);
+}
+
+float DiscWalk::seen() const {
+    const float c = std::clamp(0.5f + 0.5f * clearance_, 0.0f, 1.0f);
+    return c * c * (3 - 2 * c);
+}
+
+}  // namespace sgm::viewer
