@@ -23,11 +23,10 @@ namespace fs = std::filesystem;
 struct RenderRequest {
     ModelRequest model;
     GridRequest grid{.resolution = 256};
-    std::string output, size = "960x720", view = "field", camera;
+    std::string output, size = "960x720", view = "field", camera, rays = "best";
     std::vector<std::string> layers;
     double extinction = 0;
     int samples = 4, turntable = 0;  ///< turntable: how many pictures around the model, 0 for one
-    viewer::TracedBy rays = viewer::TracedBy::Best;
     bool noGround = false, stats = false, quiet = false;
 };
 
@@ -90,11 +89,15 @@ Result<Painter> fogPainter(const RenderRequest& request, const Model& model, con
     return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress); }, {}};
 }
 
+viewer::TracedBy tracedBy(const std::string& name) {
+    return name == "shaders" ? viewer::TracedBy::Gpu : name == "processor" ? viewer::TracedBy::Processor : viewer::TracedBy::Best;
+}
+
 /// What every picture of the model shares is done here.
 Result<Painter> painterOf(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
     const Provenance& provenance = model.lowered->provenance;
     if (request.view == "field") {
-        const auto painter = viewer::FieldPainter::create(model.tape, bounds, provenance, request.grid.threads, progress, request.rays);
+        const auto painter = viewer::FieldPainter::create(model.tape, bounds, provenance, request.grid.threads, progress, tracedBy(request.rays));
         if (!painter.ok()) return painter.error();
         return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers* layers) mutable { return p.draw(options, progress, layers); },
                        [p = *painter] { return p.cost(); }};
@@ -206,9 +209,8 @@ void addRender(CLI::App& app, int& exitCode) {
     command->add_option("--turntable", request->turntable, "Draw this many pictures around the model; -o needs a number: turn_%04d.png")->check(CLI::Range(1, 10'000));
     command->add_option("--extinction", request->extinction, "Of fog, per metre (default: 180 over the model's diagonal)")->check(CLI::Range(1e-6, 1e6));
     command->add_option("--samples", request->samples, "Samples a pixel, for smooth edges")->check(CLI::Range(1, 64))->capture_default_str();
-    command->add_option("--rays", request->rays, "Who walks the rays of a field: shaders, the processor, or best: the processor where OpenGL has no GPU")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, viewer::TracedBy>{{"best", viewer::TracedBy::Best}, {"shaders", viewer::TracedBy::Gpu}, {"processor", viewer::TracedBy::Processor}}))
-        ->default_str("best");
+    command->add_option("--rays", request->rays, "Who walks the rays of a field: shaders, the processor, or what is best here, the processor where OpenGL has no GPU")
+        ->check(CLI::IsMember({"best", "shaders", "processor"}))->capture_default_str();
     command->add_flag("--no-ground", request->noGround, "Leave out the ground");
     command->add_flag("--stats", request->stats, "Print how often the field was evaluated a pixel, beside plain sphere tracing, and the times");
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");

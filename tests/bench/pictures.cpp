@@ -41,7 +41,7 @@ Result<PictureResult> measured(const Subject& subject, const std::pair<viewer::T
     full.camera = coarse.camera = viewer::frame(scene->tape, bounds, 1);
     full.threads = coarse.threads = running.threads;
     PictureResult result;
-    result.name = subject.entry.name + tracer.second;
+    result.name = std::string(subject.entry.name) + tracer.second;
     result.asked = tracer.first == viewer::TracedBy::Best;
     const auto best = [](double& kept, double now) { kept = kept == 0 ? now : std::min(kept, now); };
     // The first picture finishes the driver's compile.
