@@ -221,44 +221,50 @@ int runApp(const AppOptions& options) {
     for (;;) {
         const bool working = bench.busy() || workspace.working() || options.benchmark;
         window.listen(wanted > 0 || refining || options.benchmark ? 0 : working ? shownEvery : listenFor);
-        const SpentWatch turn;
-        const Spent drawnBefore = bench.field.times().drawn;
+        const Stopwatch whole;
+        Turn turn;
         if (window.closing() && bench.mayClose()) return 0;
         const bool stirred = window.stirred(), news = bench.poll();
+        turn.was("taking over what workers made");
         if (stirred || news) wanted = settlingFrames;
         for (const std::filesystem::path& path : window.dropped()) bench.drop(path);
         if (sinceLook.seconds() > listenFor) {
             if (bench.lookAtFiles()) wanted = settlingFrames;
             sinceLook = {};
         }
+        turn.was("files");
         const Result<bool> drew = refine(bench);
         if (!drew) return fail(drew.error());
+        turn.drew();
         const Result<bool> taken = bench.takePictures();
         if (!taken) bench.say(taken.error().message, true);
         if (!taken || *taken) wanted = settlingFrames;
         const bool ended = refining && !*drew;
         refining = *drew;
-        Spent showing;
+        turn.was("pictures");
         // Where frames are dear, most of the time still goes to the picture.
         if (wanted > 0 || ended || ((refining || working) && sinceShown.seconds() >= std::max(shownEvery, 3 * frameSeconds))) {
             if (wanted > 0) --wanted;
             sinceShown = {};
             window.setTitle(titleOf(bench.document));
+            const Spent before = bench.field.times().drawn;
             window.beginFrame();
             workspace.show();
-            const SpentWatch show;
+            turn.was("panels", bench.field.times().drawn - before);
             window.endFrame();
-            showing = show.spent();
-            frameSeconds = turn.spent().wall;
+            turn.drew();
+            frameSeconds = whole.seconds();
             bench.refresh();
+            turn.was("asking workers");
             describe(bench, report.state());
             const Window::Given& given = window.given();
             report.state()["still"] = wanted == 0 && !window.pending();
             report.state()["input"] = {{"x", given.x}, {"y", given.y}, {"buttons", given.buttons}, {"keys", given.keys}, {"releases", given.releases}, {"wheel", given.wheel}};
             report.write();
+            turn.was("report");
         }
         if (bench.leaving) return 0;
-        if (options.benchmark && !benchmark.go(bench, turn.spent() - showing - (bench.field.times().drawn - drawnBefore))) {
+        if (options.benchmark && !benchmark.go(bench, turn)) {
             benchmark.print(bench, window.driver());
             return bench.shown() ? 0 : 1;
         }

@@ -54,8 +54,10 @@ bool Benchmark::begin(Workbench& bench) {
     return bench.document.revision() != before;
 }
 
-bool Benchmark::go(Workbench& bench, const Spent& turn) {
-    gap_ = {std::max(gap_.wall, turn.wall), std::max(gap_.processor, turn.processor)};
+bool Benchmark::go(Workbench& bench, const Turn& turn) {
+    const Spent spent = turn.spent();
+    if (spent.processor > gap_.processor) longest_ = turn.parts();
+    gap_ = {std::max(gap_.wall, spent.wall), std::max(gap_.processor, spent.processor)};
     if (!bench.shown()) return bench.session.problems().empty() || bench.busy();
     const FieldTimes& times = bench.field.times();
     if (phase_ == Phase::Load) {
@@ -88,6 +90,8 @@ void Benchmark::print(const Workbench& bench, const std::string& driver) const {
     fmt::print("  longest gap between looks at the hands, drawing excluded: {:.1f} ms; by the processor's clock, without what other "
                "programs took: {:.1f} ms\n",
                gap_.wall * 1000, gap_.processor * 1000);
+    for (const auto& [name, spent] : longest_)
+        if (spent.processor >= 5e-5) fmt::print("    {:<30} {:6.1f} ms\n", name, spent.processor * 1000);
 }
 
 }  // namespace sgm::viewer

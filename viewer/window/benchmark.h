@@ -13,9 +13,8 @@ namespace sgm::viewer {
 
 class Benchmark {
 public:
-    /// To be called at the end of every turn, with what it took without waiting for events and without drawing. False
-    /// when all is measured.
-    bool go(Workbench& bench, const Spent& turn);
+    /// To be called at the end of every turn, with what it took without waiting for events. False when all is measured.
+    bool go(Workbench& bench, const Turn& turn);
     void print(const Workbench& bench, const std::string& driver) const;
 
 private:
@@ -30,6 +29,7 @@ private:
     std::vector<Change> drags_, structures_;
     std::vector<std::pair<std::string, double>> first_;  ///< seconds by stage
     Spent gap_;     ///< the longest on each clock
+    std::vector<Turn::Part> longest_;  ///< of the turn that took the processor longest
     Stopwatch since_;
     int compiles_ = 0;
     bool waiting_ = false;

@@ -29,7 +29,10 @@ std::vector<Job> fromTheMiddle(int width, int height) {
 std::shared_ptr<const PreparedField> FieldView::setField(std::unique_ptr<FieldScene> scene) {
     std::swap(scene_, scene);
     if (!drawsFog()) restart();
-    return scene ? scene->field() : nullptr;
+    if (!scene) return nullptr;
+    auto last = scene->field();
+    scene.reset();  // here, lest it outlives the one who is to free the field
+    return last;
 }
 
 void FieldView::setFog(std::unique_ptr<FogScene> fog) {

@@ -11,11 +11,15 @@ Status MeshView::setMesh(std::unique_ptr<MeshScene> scene) {
         encode_ = std::move(*made);
     }
     scene_ = std::move(scene);
-    drawn_ = smooth_ = lit_ = false;
-    // The sun's shadow belongs to the first picture; the sky's comes bit by bit.
+    drawn_ = smooth_ = lit_ = sunlit_ = false;
+    return Done{};
+}
+
+Status MeshView::light() {
     const Result<bool> all = scene_->lightMore(nullptr);
     if (!all) return all.error();
     lit_ = *all;
+    sunlit_ = true;
     return Done{};
 }
 
@@ -43,13 +47,11 @@ Status MeshView::draw(int samples) {
 
 Status MeshView::step() {
     if (!scene_ || look_.width < 1 || look_.height < 1) return Done{};
+    // The sun's shadow belongs to the first picture; the sky's comes bit by bit.
+    if (!sunlit_)
+        if (Status s = light(); !s) return s;
     if (!drawn_) return draw(1);
-    if (!lit_) {
-        const Result<bool> all = scene_->lightMore(nullptr);
-        if (!all) return all.error();
-        lit_ = *all;
-        return Done{};
-    }
+    if (!lit_) return light();
     return smooth_ ? Status(Done{}) : draw(std::max(look_.samples, 2));
 }
 

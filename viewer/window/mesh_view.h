@@ -25,6 +25,7 @@ public:
 
 private:
     Status draw(int samples);
+    Status light();
 
     std::unique_ptr<MeshScene> scene_;
     Program encode_;
@@ -32,7 +33,7 @@ private:
     MeshStyle style_;
     DisplayTexture texture_;
     std::optional<ColorTarget> targets_[2];  ///< one sample a pixel; several
-    bool drawn_ = false, smooth_ = false, lit_ = false;
+    bool drawn_ = false, smooth_ = false, sunlit_ = false, lit_ = false;
 };
 
 }  // namespace sgm::viewer

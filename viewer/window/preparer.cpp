@@ -83,7 +83,7 @@ template <class Scene>
 void Preparer::give(Ready<Scene> News::*where, Ready<Scene> ready) {
     finish();  // so that the window's context finds all of it
     const std::lock_guard lock(mutex_);
-    news_.*where = std::move(ready);
+    std::swap(news_.*where, ready);  // what was never taken dies with `ready`, when nobody waits for the lock
     if constexpr (std::is_same_v<Scene, MeshScene>) news_.meshIsPreview = false;
 }
 
@@ -110,7 +110,6 @@ Status Preparer::makeField(std::shared_ptr<const Shown> model, bool withCamera, 
         ready.times.compile = made + watch.seconds();
         fieldPrograms_ = *programs;
     }
-    ready.of = std::move(model);
     give(&News::field, std::move(ready));
     return Done{};
 }
@@ -135,7 +134,6 @@ Status Preparer::makeFog(std::shared_ptr<const Shown> model, int resolution, Pro
     watch = {};
     ready.scene = std::make_unique<FogScene>(*fog, fogPrograms_);
     ready.times.upload = watch.seconds();
-    ready.of = std::move(model);
     give(&News::fog, std::move(ready));
     return Done{};
 }
@@ -168,7 +166,6 @@ Status Preparer::makeMesh(std::shared_ptr<const Meshed> meshed) {
     watch = {};
     ready.scene = std::make_unique<MeshScene>(*mesh, meshPrograms_);
     ready.times.upload = watch.seconds();
-    ready.of = meshed->of;
     give(&News::mesh, std::move(ready));
     return Done{};
 }
@@ -189,7 +186,6 @@ Status Preparer::makePreview(std::shared_ptr<const Shown> model, int resolution,
     if (Status s = ensureMeshPrograms(ready.times); !s) return s;
     const auto& materials = lowered.provenance.materials;
     ready.scene = std::make_unique<MeshScene>(std::move(*triangles), bounds, materials.empty() ? Material{} : materials.back(), meshPrograms_);
-    ready.of = std::move(model);
     give(&News::mesh, std::move(ready));
     const std::lock_guard lock(mutex_);
     news_.meshIsPreview = true;

@@ -27,7 +27,6 @@ struct ReadyTimes {
 /// Something to be drawn, null where there is nothing new.
 template <class Scene>
 struct Ready {
-    std::shared_ptr<const Shown> of;
     std::unique_ptr<Scene> scene;
     std::optional<Camera> camera;  ///< where it is best seen from; of fields, when asked for
     ReadyTimes times;

@@ -1,7 +1,9 @@
-// Time on two clocks: the wall's, and the processor's for this thread alone, which other programs don't disturb.
+// Time on two clocks: the wall's, and the processor's for this thread alone, which other programs don't disturb; and where a
+// turn of the window's loop spends it.
 #pragma once
 
 #include <ctime>
+#include <vector>
 
 #include "modeler/core/stopwatch.h"
 
@@ -30,6 +32,32 @@ private:
     }
     Stopwatch wall_;
     double start_ = processorNow();
+};
+
+/// Between two looks at the person's hands, part after part; without drawing.
+class Turn {
+public:
+    struct Part {
+        const char* name;
+        Spent spent;
+    };
+    /// What ran since the last call is called so; `drawn` of it was drawing.
+    void was(const char* name, const Spent& drawn = {}) {
+        parts_.push_back({name, watch_.spent() - drawn});
+        watch_ = {};
+    }
+    /// What ran since the last call was drawing.
+    void drew() { watch_ = {}; }
+    const std::vector<Part>& parts() const { return parts_; }
+    Spent spent() const {
+        Spent all;
+        for (const Part& part : parts_) all += part.spent;
+        return all;
+    }
+
+private:
+    std::vector<Part> parts_;
+    SpentWatch watch_;
 };
 
 }  // namespace sgm::viewer

@@ -73,6 +73,7 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
     glfwSetScrollCallback(made, [](GLFWwindow* w, double x, double y) { self(w).receive({.kind = Kind::Wheel, .x = x, .y = y}); });
     glfwGetCursorPos(made, &window->given_.x, &window->given_.y);
     ImGui_ImplOpenGL3_Init("#version 430 core");
+    ImGui_ImplOpenGL3_CreateDeviceObjects();  // letters and shaders: before anybody waits for an answer
     return window;
 }
 
