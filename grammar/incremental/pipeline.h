@@ -29,6 +29,8 @@ public:
     const eval::Tape& tape() const { return recompiler_.tape(); }
     /// Blocks that the last mesh made anew and kept.
     const mesh::Rebuild& rebuild() const { return rebuild_; }
+    /// Shapes that the last derivation made anew.
+    size_t shapesMade() const { return regrowth_.whole() ? derivation().tree.shapes.size() : regrowth_.changed().size(); }
     /// True when no stage up to the tape started over.
     bool followed() const { return !regrowth_.whole() && !relowering_.whole() && !recompiler_.whole(); }
 

@@ -4,6 +4,8 @@
 #include "modeler/mesh/validate.h"
 #include "tests/scratch.h"
 #include "tests/document/shown.h"
+#include "tests/mesh/mesh_bytes.h"
+#include "viewer/document/meshing.h"
 
 namespace sgm::viewer {
 namespace {
@@ -175,6 +177,97 @@ TEST_F(Sessions, MeshWhenAskedAndKeepWhatStays) {
     session.show(request);
     settle(session);
     EXPECT_EQ(session.mesh()->grid.cell_m, first->grid.cell_m) << "the lattice stays where it can";
+}
+
+class HeldSliders : public Sessions {
+protected:
+    /// A slider in a hand goes from one text to another.
+    void drag(std::string_view from, std::string_view to) {
+        const TextEdit edit = difference(document.text(), replaced(document.text(), from, to));
+        ASSERT_TRUE(document.apply(edit, "Drag").ok());
+        show(session, document);
+    }
+    /// The same model as that of a window which is opened on this text now.
+    void expectAsOpened() const {
+        Document fresh(document.text());
+        fresh.choose(document.choice(), "");
+        const auto opened = shown(fresh);
+        EXPECT_TRUE(looksLike(*session.model(), *opened));
+        const Model &ours = session.model()->model, &theirs = opened->model;
+        EXPECT_EQ(ours.lowered->shapeOf, theirs.lowered->shapeOf);
+        const auto &shapes = ours.derivation.tree.shapes, &others = theirs.derivation.tree.shapes;
+        EXPECT_TRUE(std::equal(shapes.begin(), shapes.end(), others.begin(), others.end(), [](const derive::Shape& a, const derive::Shape& b) {
+            return std::tie(a.key, a.scope, a.material, a.live, a.op) == std::tie(b.key, b.scope, b.material, b.live, b.op);
+        }));
+        EXPECT_EQ(bytesOf(ours), bytesOf(theirs));
+    }
+    static std::vector<unsigned char> bytesOf(const Model& model) {
+        const Box3f& bounds = model.lowered->field.bounds;
+        Stages stages;
+        const auto made = makeMesh(model, mesh::gridFor(bounds, mesh::cellFor(bounds, 24)), 1, stages, nullptr);
+        EXPECT_TRUE(made.ok());
+        return mesh::bytesOf(made->mesh);
+    }
+};
+
+TEST_F(HeldSliders, DeriveOnlyWhatTheyReach) {
+    document = Document("grammar 1\nparam wide = 2.5 in 1..9.0\nstart A -> cube size 3 + cone size 1.5 at -x + sphere size wide at +x + cone at +y\n");
+    show(session, document);
+    const auto taken = session.model();
+    document.beginDrag();
+    show(session, document);
+    EXPECT_EQ(session.model(), taken) << "nothing has moved yet";
+    for (const auto& [from, to] : {std::pair{"wide = 2.5", "wide = 2.75"}, {"wide = 2.75", "wide = 3.0"}, {"wide = 3.0", "wide = 8.25"}}) {
+        drag(from, to);
+        EXPECT_TRUE(session.model()->held);
+        EXPECT_FALSE(stageRan("check"));
+        EXPECT_EQ(session.model()->grammar, taken->grammar);
+        EXPECT_EQ(session.model()->shapesMade, 1u) << "of " << session.model()->model.derivation.tree.shapes.size();
+        expectAsOpened();
+    }
+    EXPECT_EQ(session.model()->change, Change::Numbers);
+    document.endDrag();
+    show(session, document);
+    EXPECT_FALSE(session.model()->held);
+    EXPECT_EQ(session.model()->shapesMade, 5u);
+    EXPECT_EQ(session.model()->change, Change::Nothing);
+    EXPECT_EQ(session.model()->grammar->sources[0]->text(), document.text()) << "its spans are of the present text";
+    expectAsOpened();
+}
+
+TEST_F(HeldSliders, FollowShapesThatComeAndGoAndStyles) {
+    document.beginDrag();
+    show(session, document);
+    for (const auto& [from, to] : {std::pair{"n = 4", "n = 7"}, {"n = 7", "n = 6"}}) {
+        drag(from, to);
+        EXPECT_TRUE(session.model()->held);
+        expectAsOpened();
+    }
+    document.endDrag();
+    Choice choice = document.choice();
+    choice.style = "Wide";
+    document.choose(choice, "Style");
+    show(session, document);
+    document.beginDrag();
+    drag("wide = 7.0 }", "wide = 6.5 }");
+    EXPECT_TRUE(session.model()->held);
+    EXPECT_EQ(session.model()->options.params[1].num(), 6.5);
+    expectAsOpened();
+}
+
+TEST_F(HeldSliders, AnythingElseIsBuiltFromTheText) {
+    show(session, document);
+    document.beginDrag();
+    drag("+ sphere", "- sphere");  // no slider's doing
+    EXPECT_FALSE(session.model()->held);
+    expectAsOpened();
+    drag("wide = 2.5", "wide = 12.0");  // beyond its range
+    EXPECT_FALSE(session.model()->held);
+    ASSERT_FALSE(session.problems().empty());
+    EXPECT_EQ(session.problems()[0].line, 3u);
+    drag("wide = 12.0", "wide = 4.0");
+    EXPECT_TRUE(session.problems().empty());
+    expectAsOpened();
 }
 
 TEST(LongSessions, CanBeCancelledAndOvertaken) {

@@ -28,12 +28,17 @@ bool sameInstructions(const eval::Tape& a, const eval::Tape& b) {
            a.constants().size() == b.constants().size() && a.result() == b.result();
 }
 
-Change changeOf(const Shown* before, const eval::Tape& now) {
-    if (!before || !sameInstructions(before->model.tape, now)) return Change::Structure;
-    const auto then = before->model.tape.constants();
-    const bool same = std::equal(then.begin(), then.end(), now.constants().begin()) &&
-                      before->model.tape.lipschitz() == now.lipschitz();
-    return same ? Change::Nothing : Change::Numbers;
+bool sameValues(const Shown& a, const Shown& b) {
+    return a.fingerprint == b.fingerprint && a.model.tape.lipschitz() == b.model.tape.lipschitz();
+}
+
+/// What every model has, however it was made.
+std::shared_ptr<const Shown> finished(Shown shown, const Shown* before) {
+    shown.fingerprint = eval::fingerprint(shown.model.tape);
+    shown.change = before && sameValues(*before, shown)                                ? Change::Nothing
+                   : before && sameInstructions(before->model.tape, shown.model.tape) ? Change::Numbers
+                                                                                       : Change::Structure;
+    return std::make_shared<const Shown>(std::move(shown));
 }
 
 fs::file_time_type timeOf(const fs::path& path) {
@@ -62,6 +67,13 @@ ModelChoice wordsOf(const Choice& choice, const rules::Grammar& grammar, std::ve
 
 }  // namespace
 
+bool looksLike(const Shown& a, const Shown& b) {
+    const Provenance &p = a.model.lowered->provenance, &q = b.model.lowered->provenance;
+    return sameValues(a, b) && p.materials == q.materials &&
+           std::equal(p.parts.begin(), p.parts.end(), q.parts.begin(), q.parts.end(),
+                      [](const Part& x, const Part& y) { return x.material == y.material; });
+}
+
 ShowRequest requestOf(const Document& document) {
     ShowRequest request;
     request.ast = document.ast();
@@ -69,6 +81,7 @@ ShowRequest requestOf(const Document& document) {
     request.choice = document.choice();
     request.revision = document.revision();
     request.parseSeconds = document.parseSeconds();
+    request.dragging = document.dragging();
     return request;
 }
 
@@ -180,10 +193,11 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
     std::vector<Problem> problems;
     News news;
     news.attempted = request.revision;
-    bool good = checked(request, stages, problems);
+    const bool follow = follows(request);
+    bool good = follow || checked(request, stages, problems);
     news.used = usedByCheck_;
     if (good) {
-        auto shown = made(request, std::move(stages), problems, progress);
+        auto shown = follow ? followed(request, problems, progress) : made(request, std::move(stages), problems, progress);
         good = shown.ok();
         if (good) {
             if (*shown != shown_) news.model = *shown;
@@ -202,12 +216,46 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
     if (good && request.meshResolution > 0) meshIt(request, progress);
 }
 
+/// No file that the grammar uses has changed since it was checked.
+bool Session::asChecked() const {
+    return std::none_of(usedByCheck_.begin(), usedByCheck_.end(), [](const UsedFile& used) { return timeOf(used.path) != used.time; });
+}
+
+/// Whether the request can be shown by the grammar of the moment the slider was taken; else that grammar is let go.
+bool Session::follows(const ShowRequest& request) {
+    const bool may = request.dragging && grammar_ && !request.byHand && asChecked();
+    if (may && following_ && withValueOf(*following_->grammar(), request.ast->source->text())) return true;
+    following_.reset();
+    if (!may || !withValueOf(*grammar_, request.ast->source->text())) return false;
+    following_.emplace(grammar_);
+    return true;
+}
+
+/// The model of a request that `follows`.
+Result<std::shared_ptr<const Shown>> Session::followed(const ShowRequest& request, std::vector<Problem>& problems, Progress& progress) {
+    problems = checkProblems_;
+    const std::optional<rules::Grammar> changed = withValueOf(*following_->grammar(), request.ast->source->text());
+    auto options = optionsFor(*changed, wordsOf(request.choice, *changed, problems));
+    if (!options.ok()) return options.error();
+    options->budget = request.budget;
+    Shown shown;
+    shown.revision = request.revision;
+    shown.grammar = following_->grammar();
+    shown.options = std::move(*options);
+    shown.held = true;
+    auto model = following_->to(shown.options, shown.stages, &progress);
+    if (!model.ok()) return model.error();
+    shown.model = std::move(*model);
+    shown.shapesMade = following_->shapesMade();
+    // What the slider stood at when it was taken is shown already.
+    if (shown_ && shown_->grammar == shown.grammar && !handShown_ && sameOptions(shown_->options, shown.options)) return shown_;
+    handShown_ = nullptr;
+    return finished(std::move(shown), shown_.get());
+}
+
 /// Parsed text to a grammar, unless neither the text nor a file it uses has changed. Adds what is wrong to `problems`.
 bool Session::checked(const ShowRequest& request, Stages& stages, std::vector<Problem>& problems) {
-    const bool unchanged =
-        request.ast == ast_ && std::none_of(usedByCheck_.begin(), usedByCheck_.end(),
-                                            [](const UsedFile& used) { return timeOf(used.path) != used.time; });
-    if (!unchanged) {
+    if (request.ast != ast_ || !asChecked()) {
         std::vector<syntax::SourcePtr> sources;  // diagnostics point into them
         usedByCheck_.clear();
         rules::Loader noting([&](const std::string& name, const syntax::Source& from, std::string& why) {
@@ -239,15 +287,21 @@ Result<std::shared_ptr<const Shown>> Session::made(const ShowRequest& request, S
     auto options = optionsFor(*grammar_, wordsOf(request.choice, *grammar_, problems));
     if (!options.ok()) return options.error();
     options->budget = request.budget;
-    if (shown_ && shown_->grammar == grammar_ && handShown_ == request.byHand && sameOptions(shown_->options, *options))
+    if (shown_ && !shown_->held && shown_->grammar == grammar_ && handShown_ == request.byHand && sameOptions(shown_->options, *options))
         return shown_;
     auto model = request.byHand ? makeModel(derive::Derivation(*request.byHand), stages, &progress)
                                 : makeModel(grammar_, *options, stages, &progress);
     if (!model.ok()) return model.error();
     handShown_ = request.byHand;
-    const Change change = changeOf(shown_.get(), model->tape);
-    return std::make_shared<const Shown>(Shown{request.revision, grammar_, std::move(*options), std::move(*model),
-                                               request.byHand != nullptr, change, std::move(stages)});
+    Shown shown;
+    shown.revision = request.revision;
+    shown.grammar = grammar_;
+    shown.options = std::move(*options);
+    shown.model = std::move(*model);
+    shown.byHand = request.byHand != nullptr;
+    shown.shapesMade = shown.model.derivation.tree.shapes.size();
+    shown.stages = std::move(stages);
+    return finished(std::move(shown), shown_.get());
 }
 
 void Session::meshIt(const ShowRequest& request, Progress& progress) {

@@ -12,9 +12,11 @@
 #include <thread>
 
 #include "grammar/rules/check.h"
+#include "modeler/eval/fingerprint.h"
 #include "modeler/mesh/rebuild.h"
 #include "viewer/document/document.h"
 #include "viewer/document/files.h"
+#include "viewer/document/following.h"
 #include "viewer/document/model.h"
 #include "viewer/document/problems.h"
 
@@ -22,7 +24,7 @@ namespace sgm::viewer {
 
 /// What a model's field has to do with the one shown before.
 enum class Change : uint8_t {
-    Nothing,    ///< the same tape, bit for bit: nothing to upload or to mesh again; materials and spans may differ
+    Nothing,    ///< the same values everywhere, bit for bit: nothing to mesh again; materials and spans may differ
     Numbers,    ///< the same instructions with other constants: upload numbers, compile nothing
     Structure,  ///< another tape
 };
@@ -34,9 +36,14 @@ struct Shown {
     derive::Options options;
     Model model;
     bool byHand = false;  ///< its derivation came from the Step panel
+    bool held = false;    ///< follows a slider in a hand: `grammar`, and with it every span, is of the text before
+    size_t shapesMade = 0;  ///< derived anew; the others were kept from the model before
     Change change = Change::Structure;
+    eval::Fingerprint fingerprint;  ///< of the tape
     Stages stages;  ///< seconds of what ran: parse, check, derive, lower, compile
 };
+/// Both are the same to the eye: surface and materials.
+bool looksLike(const Shown& a, const Shown& b);
 
 /// Its mesh, which comes later.
 struct Meshed {
@@ -55,6 +62,8 @@ struct ShowRequest {
     double parseSeconds = 0;                 ///< for the report of times
     Choice choice;
     uint64_t revision = 0;
+    /// A hand holds a slider: only what its value reaches is derived again. The text that it leaves is shown without this.
+    bool dragging = false;
     /// Set by the Step panel: shown instead of deriving.
     std::shared_ptr<const derive::Derivation> byHand;
     /// Cells along the longest side of the model's bounds; 0: no mesh is wanted.
@@ -114,7 +123,10 @@ private:
 
     void work();
     void attempt(const ShowRequest& request, Progress& progress);
+    bool asChecked() const;
+    bool follows(const ShowRequest& request);
     bool checked(const ShowRequest& request, Stages& stages, std::vector<Problem>& problems);
+    Result<std::shared_ptr<const Shown>> followed(const ShowRequest& request, std::vector<Problem>& problems, Progress& progress);
     Result<std::shared_ptr<const Shown>> made(const ShowRequest& request, Stages stages, std::vector<Problem>& problems,
                                               Progress& progress);
     void meshIt(const ShowRequest& request, Progress& progress);
@@ -147,6 +159,7 @@ private:
     std::shared_ptr<const rules::Grammar> grammar_;
     std::vector<Problem> checkProblems_;
     std::vector<UsedFile> usedByCheck_;
+    std::optional<Following> following_;  ///< while a slider is held
     std::shared_ptr<const Shown> shown_;
     std::shared_ptr<const derive::Derivation> handShown_;
     std::shared_ptr<const Meshed> meshed_;

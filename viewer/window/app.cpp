@@ -178,7 +178,7 @@ void describe(const Workbench& bench, nlohmann::json& state) {
 /// Draws a little more of what is shown; true when something was drawn.
 Result<bool> refine(Workbench& bench) {
     bool drew = false;
-    if (bench.look.pane != Pane::Mesh && bench.field.hasField() && !bench.field.finished()) {
+    if (bench.look.pane != Pane::Mesh && bench.field.hasField() && !bench.field.finished() && !bench.outdated()) {
         if (const Status s = bench.field.step(); !s) return s.error();
         drew = true;
     }
@@ -220,7 +220,7 @@ int runApp(const AppOptions& options) {
     Stopwatch sinceShown, sinceLook;
     for (;;) {
         const bool working = bench.busy() || workspace.working() || options.benchmark;
-        window.listen(wanted > 0 || refining || options.benchmark ? 0 : working ? shownEvery : listenFor);
+        window.listen(wanted > 0 || refining ? 0 : working ? shownEvery : listenFor);
         const Stopwatch whole;
         Turn turn;
         if (window.closing() && bench.mayClose()) return 0;

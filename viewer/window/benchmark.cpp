@@ -37,9 +37,11 @@ bool Benchmark::begin(Workbench& bench) {
         const std::vector<ParamRow> rows = paramRows(*bench.shown()->grammar, bench.shown()->options, bench.document.choice());
         const ParamRow* slider = firstSlider(rows);
         if (slider && drags_.size() < mostDrags) {
+            if (drags_.empty()) bench.document.beginDrag();
             bench.edit(setParams(*bench.document.ast(), bench.document.choice(), {stepped(*slider, drags_.size() % 2 == 1)}), "Drag");
             return true;
         }
+        bench.document.endDrag();
         phase_ = Phase::Structure;
     }
     if (structures_.size() >= mostStructures) return false;
@@ -56,7 +58,7 @@ bool Benchmark::begin(Workbench& bench) {
 
 bool Benchmark::go(Workbench& bench, const Turn& turn) {
     const Spent spent = turn.spent();
-    if (spent.processor > gap_.processor) longest_ = turn.parts();
+    if (spent.wall > gap_.wall) longest_ = turn.parts();
     gap_ = {std::max(gap_.wall, spent.wall), std::max(gap_.processor, spent.processor)};
     if (!bench.shown()) return bench.session.problems().empty() || bench.busy();
     const FieldTimes& times = bench.field.times();
@@ -91,7 +93,7 @@ void Benchmark::print(const Workbench& bench, const std::string& driver) const {
                "programs took: {:.1f} ms\n",
                gap_.wall * 1000, gap_.processor * 1000);
     for (const auto& [name, spent] : longest_)
-        if (spent.processor >= 5e-5) fmt::print("    {:<30} {:6.1f} ms\n", name, spent.processor * 1000);
+        if (spent.wall >= 5e-5) fmt::print("    {:<30} {:6.1f} ms, of the processor's {:.1f} ms\n", name, spent.wall * 1000, spent.processor * 1000);
 }
 
 }  // namespace sgm::viewer

@@ -29,7 +29,7 @@ private:
     std::vector<Change> drags_, structures_;
     std::vector<std::pair<std::string, double>> first_;  ///< seconds by stage
     Spent gap_;     ///< the longest on each clock
-    std::vector<Turn::Part> longest_;  ///< of the turn that took the processor longest
+    std::vector<Turn::Part> longest_;  ///< of the turn that took longest by the wall's
     Stopwatch since_;
     int compiles_ = 0;
     bool waiting_ = false;

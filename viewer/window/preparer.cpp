@@ -28,7 +28,7 @@ void Preparer::ask(const std::function<void(Wanted&)>& how) {
 }
 void Preparer::prepare(std::shared_ptr<const Shown> model, bool withCamera) {
     ask([&](Wanted& wanted) {
-        wanted.model = std::move(model);
+        wanted.retired.push_back(std::exchange(wanted.model, std::move(model)));
         wanted.withCamera = withCamera;
     });
 }
@@ -51,8 +51,8 @@ void Preparer::prepare(std::shared_ptr<const Meshed> mesh) {
     ask([&](Wanted& wanted) { wanted.mesh = std::move(mesh); });
 }
 
-void Preparer::retire(std::shared_ptr<const PreparedField> field) {
-    if (field) ask([&](Wanted& wanted) { wanted.retired.push_back(std::move(field)); });
+void Preparer::retire(std::shared_ptr<const void> retired) {
+    if (retired) ask([&](Wanted& wanted) { wanted.retired.push_back(std::move(retired)); });
 }
 
 void Preparer::cancel() {
@@ -69,6 +69,10 @@ Preparer::News Preparer::poll() {
 bool Preparer::busy() const {
     const std::lock_guard lock(mutex_);
     return running_ || wanted_.any();
+}
+bool Preparer::makesField() const {
+    const std::lock_guard lock(mutex_);
+    return makingField_ || wanted_.model;
 }
 std::string_view Preparer::stage() const {
     const std::lock_guard lock(mutex_);
@@ -212,6 +216,7 @@ void Preparer::work() {
         auto fog = model || mesh || preview || within ? nullptr : std::exchange(wanted_.fog, nullptr);
         const int fogResolution = wanted_.fogResolution, previewResolution = wanted_.previewResolution;
         const bool withCamera = wanted_.withCamera;
+        makingField_ = model != nullptr;
         const auto progress = running_ = std::make_shared<Progress>();
         lock.unlock();
         const Status done = model     ? makeField(std::move(model), withCamera, *progress)
@@ -221,6 +226,7 @@ void Preparer::work() {
                                       : makeFog(std::move(fog), fogResolution, *progress);
         lock.lock();
         running_ = nullptr;
+        makingField_ = false;
         if (!done && done.error().kind != Error::Kind::Cancelled) news_.problem = done.error().message;
         wake_();
     }

@@ -50,8 +50,8 @@ public:
     void preview(std::shared_ptr<const Shown> model, int resolution);
     /// For a mesh.
     void prepare(std::shared_ptr<const Meshed> mesh);
-    /// Frees a field that isn't drawn any more, for large ones take long.
-    void retire(std::shared_ptr<const PreparedField> field);
+    /// Frees what nobody looks at any more, for large fields and models take long.
+    void retire(std::shared_ptr<const void> retired);
     /// Stops what runs and forgets what waits.
     void cancel();
     /// What has become ready since the last call.
@@ -66,6 +66,8 @@ public:
     News poll();
     /// Something runs or waits.
     bool busy() const;
+    /// A field runs or waits.
+    bool makesField() const;
     /// What runs, and the share of it that is done, 0 … 1.
     std::string_view stage() const;
     double fraction() const;
@@ -76,7 +78,7 @@ private:
         std::shared_ptr<const Meshed> mesh;
         int fogResolution = 0, previewResolution = 0;
         bool withCamera = false;
-        std::vector<std::shared_ptr<const PreparedField>> retired;
+        std::vector<std::shared_ptr<const void>> retired;
         bool any() const { return model || fog || inside || mesh || preview; }
     };
     void ask(const std::function<void(Wanted&)>& how);
@@ -97,7 +99,7 @@ private:
     Wanted wanted_;
     News news_;
     std::shared_ptr<Progress> running_;
-    bool quit_ = false;
+    bool quit_ = false, makingField_ = false;
 
     // The worker's.
     std::shared_ptr<const FieldPrograms> fieldPrograms_;

@@ -53,17 +53,21 @@ void Workbench::refresh() {
     followSteps();
     field.showFog(look.pane == Pane::Fog);
     if (look.pane == Pane::Fog && session.model() && askedFog_ != session.model()) {
-        preparer.prepareFog(askedFog_ = session.model(), fogVoxels);
+        preparer.retire(std::exchange(askedFog_, session.model()));
+        preparer.prepareFog(askedFog_, fogVoxels);
         settled_ = false;
     }
     // While a hand drags, the GPU's own mesh does.
     const int resolution = wantsMesh() && !document.dragging() ? look.meshResolution : 0;
-    if (asked_ == document.revision() && askedResolution_ == resolution && askedByHand_ == byHand_.get()) return;
+    const bool dragging = document.dragging() && !stepper;  // steps belong to a text and its spans
+    if (asked_ == document.revision() && askedResolution_ == resolution && askedDragging_ == dragging && askedByHand_ == byHand_.get()) return;
     ShowRequest request = requestOf(document);
+    request.dragging = dragging;
     request.meshResolution = resolution;
     request.byHand = byHand_;
     asked_ = document.revision();
     askedResolution_ = resolution;
+    askedDragging_ = dragging;
     askedByHand_ = byHand_.get();
     session.show(std::move(request));
     settled_ = false;
@@ -77,7 +81,10 @@ bool Workbench::poll() {
     if (session.model() != model && session.model()) {
         resolveSelection();
         hover.reset();
-        preparer.prepare(session.model(), !framed_);
+        if (!framed_ || !prepared_ || !looksLike(*prepared_, *session.model())) {
+            preparer.retire(std::exchange(prepared_, session.model()));
+            preparer.prepare(prepared_, !framed_);
+        }
         if (wantsMesh() && document.dragging()) preparer.preview(session.model(), previewCells);
     }
     if (session.mesh() != meshed && session.mesh()) preparer.prepare(session.mesh());
@@ -117,6 +124,7 @@ bool Workbench::drawn() const {
 void Workbench::cancel() {
     session.cancel();
     preparer.cancel();
+    preparer.retire(std::exchange(prepared_, nullptr));
     say("Cancelled: what is shown was made before");
 }
 

@@ -116,6 +116,8 @@ public:
     Result<bool> takePictures();
     MeshStyle meshStyle() const;
     bool wantsMesh() const { return look.pane == Pane::Mesh || look.pane == Pane::Split; }
+    /// The field shown will make room for another: not worth a finer picture.
+    bool outdated() const { return preparer.makesField() || (session.busy() && session.attempted() != document.revision()); }
     /// All that the window shows is whole.
     bool drawn() const;
     /// Stops what runs; what is shown stays.
@@ -160,7 +162,8 @@ private:
     derive::ShapeId selected_ = derive::none;
     uint64_t asked_ = ~uint64_t(0);  ///< the revision the session was last asked for
     int askedResolution_ = 0;
-    std::shared_ptr<const Shown> askedFog_;
+    bool askedDragging_ = false;
+    std::shared_ptr<const Shown> askedFog_, prepared_;  ///< the last that the preparer was given
     const derive::Derivation* askedByHand_ = nullptr;
     bool settled_ = false;  ///< all that was computed has been taken over
     bool framed_ = false;  ///< the camera has been set for this file
