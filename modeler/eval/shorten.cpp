@@ -20,7 +20,6 @@ using field::ops::Owner;
 /// m − k ≤ f ≤ m and an operand counts below m + k alone: those above most + 2k don't where f ≤ most, and elsewhere
 /// leave f above it. The rest is for rounding.
 Care careOfResult(const Tape& tape, const Instruction& in, const Source* values, Care care) {
-    if (field::traits(in.op).selects) return care;
     if (in.op != field::codeOf<field::ops::Blend> || !isConstant(values[0])) return {};
     const float twice = 2 * tape.constants()[indexOf(values[0])];
     if (!(twice >= 0)) return {};
@@ -138,7 +137,17 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
         const field::OpTraits& row = field::traits(in.op);
         const Source* const values = w.links.operands(i);
         const OriginId* const origins = ownersOf(tape, in);
-        if (row.chooses) {
+        if (row.selects) {
+            const float* const ends = bounds + size_t{w.links.bounds(i)} * maxBoxes;
+            const Care inner = careOfOperands(row, ends[2 * maxBoxes], b.care(value));
+            const bool first = !beyond(row, ends[0], inner), second = !beyond(row, ends[maxBoxes], inner);
+            const TapeBuilder::Use operands[] = {{values[0], origins ? origins[0] : 0, inner},
+                                                 {values[1], origins ? origins[1] : 0, inner}};
+            if (first && second)
+                b.define(value, in.op, in.data, operands, 2, origins != nullptr);
+            else  // where neither is told apart, any will do
+                b.alias(value, operands[second ? 1 : 0]);
+        } else if (row.chooses) {
             operandsLeft(row, in, values, origins, bounds + size_t{w.links.bounds(i)} * maxBoxes,
                          careOfResult(tape, in, values, b.care(value)), w.uses);
             if (w.uses.size() == row.firstChoice + 1u)

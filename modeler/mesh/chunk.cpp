@@ -86,6 +86,7 @@ std::optional<OriginId> onlyOwner(const eval::Tape& tape) {
 void BlockMesher::clear() {
     positions_.clear(), normals_.clear(), origins_.clear();
     bricks_.clear();
+    owned_.bricks = owned_.alike = 0;
     for (auto& list : borrowed_) list.clear();
     for (auto& list : lent_) list.clear();
     vertices_ = 0, cellCount_ = 0, triangles_ = 0, flat_ = false;
@@ -183,27 +184,24 @@ void BlockMesher::lend(const BrickSigns& signs, Vec3i brick) {
     }
 }
 
-void BlockMesher::addVertices(const eval::Tape& tape, std::optional<OriginId> owner) {
+/// Finds where the brick's vertices lie.
+void BlockMesher::findPlaces(const eval::Tape& tape) {
     counts_.refinementEvaluations += findVertices(tape, refineSteps_, workspace_, openEdges_, edges_);
     flat_ = flat_ || (edges_.size > 0 && edges_.flat > 0);
     const size_t first = vertices_, n = ownEdges_;
     vertices_ += static_cast<uint32_t>(n);
     positions_.resize(vertices_), normals_.resize(vertices_), origins_.resize(vertices_);
+    if (n == 0) return;
     const EdgeArrays& e = edges_.arrays;
-    if (n > 0) {
-        edgeLoops().interleave(e.x, e.y, e.z, n, &positions_[first].x);
-        edgeLoops().interleave(e.dx, e.dy, e.dz, n, &normals_[first].x);
-    }
-    if (owner)
-        std::fill_n(origins_.data() + first, n, *owner);
-    else
-        findOrigins(tape);
+    edgeLoops().interleave(e.x, e.y, e.z, n, &positions_[first].x);
+    edgeLoops().interleave(e.dx, e.dy, e.dz, n, &normals_[first].x);
 }
 
-/// Asks whose surface each vertex lies on, the latest own ones and those that are borrowed.
-void BlockMesher::findOrigins(const eval::Tape& tape) {
+/// Asks whose surface each vertex lies on, the latest own ones and those that are borrowed. Returns the owner of all of
+/// them, where that is one.
+std::optional<OriginId> BlockMesher::findOrigins(const eval::Tape& tape) {
     const size_t n = edges_.size;
-    if (n == 0) return;
+    if (n == 0) return {};
     found_.resize(n);
     eval::evaluateOrigin(tape, {edges_.arrays.x, edges_.arrays.y, edges_.arrays.z, n}, found_.data(), workspace_);
     std::copy_n(found_.data(), ownEdges_, origins_.data() + origins_.size() - ownEdges_);
@@ -211,19 +209,44 @@ void BlockMesher::findOrigins(const eval::Tape& tape) {
         const auto [kind, place] = borrowedPlaces_[e - ownEdges_];
         borrowed_[static_cast<size_t>(kind)][place].origin = found_[e];
     }
+    OriginId others = 0;
+    for (size_t e = 1; e < n; ++e) others |= found_[e] ^ found_[0];
+    return others == 0 ? std::optional(found_[0]) : std::nullopt;
+}
+
+/// `owner`, which all edges of the brick have, where those on its low sides that lower bricks own have it too.
+std::optional<OriginId> BlockMesher::ownerAround(Vec3i brick, OriginId owner) const {
+    for (int offset = 1; offset < 8; ++offset) {
+        const Vec3i other = brick - Vec3i{offset & 1, offset >> 1 & 1, offset >> 2};
+        if (minComponent(other) < 0) continue;
+        const int number = brickNumber(other);
+        if (!(owned_.bricks >> number & 1)) continue;
+        if (!(owned_.alike >> number & 1) || owned_.owner[static_cast<size_t>(number)] != owner) return {};
+    }
+    return owner;
 }
 
 void BlockMesher::addBrick(int number, const eval::Tape& tape) {
     const Vec3i brick = brickAt(number);
     const BrickSigns signs(samples_.values() + brickCorner(brick));
     if (addCells(signs, brick) == 0) return;
-    const std::optional<OriginId> owner = onlyOwner(tape);
-    bricks_.push_back({triangles_, owner});
+    std::optional<OriginId> owner = onlyOwner(tape);
     addOwnEdges(signs);
     if (lowSidesOf(brick) != 0) borrow(signs, brick, owner);
     placeEdges(brick);
     if (highSidesOf(brick) != 0) lend(signs, brick);
-    addVertices(tape, owner);
+    findPlaces(tape);
+    std::optional<OriginId> edgesOwner = owner;
+    if (owner) {
+        std::fill_n(origins_.data() + origins_.size() - ownEdges_, ownEdges_, *owner);
+    } else {
+        edgesOwner = findOrigins(tape);
+        if (edgesOwner) owner = ownerAround(brick, *edgesOwner);
+    }
+    bricks_.push_back({triangles_, owner});
+    owned_.bricks |= 1ull << number;
+    owned_.alike |= uint64_t{edgesOwner.has_value()} << number;
+    owned_.owner[static_cast<size_t>(number)] = edgesOwner.value_or(0);
 }
 
 /// Puts the lists of the seams one after the other, and numbers borrowed edges by their place there.

@@ -39,6 +39,12 @@ private:
         OriginId origin;
     };
 
+    /// Bricks with surface, by number: which there are, of which all edges have one owner, and who that is.
+    struct Owned {
+        uint64_t bricks = 0, alike = 0;
+        std::array<OriginId, bricksPerBlock> owner;
+    };
+
     void clear();
     void addBrick(int number, const eval::Tape& tape);
     size_t addCells(const BrickSigns& signs, Vec3i brick);
@@ -46,8 +52,9 @@ private:
     void borrow(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner);
     void placeEdges(Vec3i brick);
     void lend(const BrickSigns& signs, Vec3i brick);
-    void addVertices(const eval::Tape& tape, std::optional<OriginId> owner);
-    void findOrigins(const eval::Tape& tape);
+    void findPlaces(const eval::Tape& tape);
+    std::optional<OriginId> findOrigins(const eval::Tape& tape);
+    std::optional<OriginId> ownerAround(Vec3i brick, OriginId owner) const;
     void listSeams(Chunk& chunk);
     void writeTriangles(Chunk& chunk) const;
 
@@ -66,6 +73,7 @@ private:
     PageVector<SurfaceCell> cells_ =
         PageVector<SurfaceCell>(blockCells * blockCells * blockCells + rowPadding);  ///< the first cellCount_ count
     std::vector<Brick> bricks_;
+    Owned owned_;
     std::array<std::vector<Borrowed>, seamKinds> borrowed_;
     std::array<std::vector<uint32_t>, seamKinds> lent_;
     uint32_t vertices_ = 0;
