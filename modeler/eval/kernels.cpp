@@ -218,6 +218,16 @@ void moveOwners(const float* values, const float* owners, float one, size_t n, f
     }
 }
 
+template <bool Lesser>
+void ownersOfTwo(const float* const values[2], const float* const owners[2], const float ones[2], size_t n,
+                 float* taken) {
+    const auto ownersAt = [&](int k, size_t i) { return owners[k] ? Float::load(owners[k] + i) : Float(ones[k]); };
+    for (size_t i = 0; i < n; i += Float::size) {
+        const Float first = Float::load(values[0] + i), second = Float::load(values[1] + i);
+        select(Lesser ? second < first : second > first, ownersAt(1, i), ownersAt(0, i)).store(taken + i);
+    }
+}
+
 /// The n < Float::size floats at `from`, then `rest`.
 inline Float loadSome(const float* from, size_t n, float rest) {
 #if defined(__AVX512F__)
@@ -269,8 +279,10 @@ const Step* steps(field::TypeList<Rows...>) {
 namespace SGM_ISA {
 Kernels kernels() {
     constexpr field::OpTable rows;
-    return {steps<Float>(rows), steps<Dual<Float>>(rows), steps<Interval<Float>>(rows), moveOwners<true>,
-            moveOwners<false>,  loadPoints<Float>,        loadPoints<Dual<Float>>,      store};
+    return {steps<Float>(rows), steps<Dual<Float>>(rows), steps<Interval<Float>>(rows),
+            moveOwners<true>,   moveOwners<false>,        ownersOfTwo<true>,
+            ownersOfTwo<false>, loadPoints<Float>,        loadPoints<Dual<Float>>,
+            store};
 }
 }  // namespace SGM_ISA
 

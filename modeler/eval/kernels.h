@@ -36,6 +36,11 @@ using Step = void (*)(const Instruction&, const StepContext&);
 /// operand's place. Owners are kept as the bits of floats; where `owners` is null, `one` is everybody's.
 using MoveOwners = void (*)(const float* values, const float* owners, float one, size_t n, float* best, float* taken);
 
+/// The same of two operands at once, of n points (likewise): the second one's owner where it beats the first. `taken`
+/// may be one of `owners`.
+using OwnersOfTwo = void (*)(const float* const values[2], const float* const owners[2], const float ones[2], size_t n,
+                             float* taken);
+
 /// Puts n ≥ 1 points into registers 0, 1, 2, and the last one again up to c.count. Derivatives are 1 where they are
 /// due.
 using LoadPoints = void (*)(const float* const from[3], size_t n, const StepContext& c);
@@ -48,6 +53,7 @@ struct Kernels {
     const Step* gradients;  ///< Dual: rows value, dx, dy, dz
     const Step* ranges;     ///< Interval: rows lo, hi; ops that choose also write `bounds`
     MoveOwners toLesser, toGreater;
+    OwnersOfTwo ofLesser, ofGreater;
     LoadPoints loadValues, loadGradients;
     StoreRow store;
 };

@@ -1,5 +1,7 @@
 #include "modeler/eval/owners.h"
 
+#include <cstring>
+
 namespace sgm::eval {
 
 using field::ops::Owner;
@@ -9,7 +11,10 @@ OwnerPass::OwnerPass(const Tape& tape, Workspace::Impl& workspace)
       kernels_(workspace.kernels),
       rows_(workspace.owners.get((tape.registerCount() + size_t{1}) * maxBlock)),
       taken_(rowOf(tape.registerCount())),
-      owners_(tape.registerCount()) {}
+      owners_(workspace.registerOwners),
+      operands_(workspace.ownedOperands) {
+    owners_.assign(tape.registerCount(), {});
+}
 
 void OwnerPass::gather(const Instruction& in, const Source* sources, const StepContext& c) {
     operands_.clear();
@@ -30,7 +35,7 @@ bool OwnerPass::alike(uint32_t first, uint32_t last) const {
     return true;
 }
 
-const float* OwnerPass::valuesOf(const Operand& o, size_t n) {
+const float* OwnerPass::valuesOf(const OwnedOperand& o, size_t n) {
     if (o.values) return o.values;
     std::fill_n(constant_.data(), n, o.constant);
     return constant_.data();
@@ -38,16 +43,27 @@ const float* OwnerPass::valuesOf(const Operand& o, size_t n) {
 
 /// The operand from `first` on that no later one beats; ties go to the first.
 void OwnerPass::takeBest(uint32_t first, size_t n, MoveOwners move) {
-    const Operand& start = operands_[first];
+    const OwnedOperand& start = operands_[first];
     std::copy_n(valuesOf(start, n), n, best_.data());
     if (start.owners.row)
         std::copy_n(start.owners.row, n, taken_);
     else
         std::fill_n(taken_, n, std::bit_cast<float>(start.owners.one));
     for (size_t k = first + 1; k < operands_.size(); ++k) {
-        const Operand& o = operands_[k];
+        const OwnedOperand& o = operands_[k];
         move(valuesOf(o, n), o.owners.row, std::bit_cast<float>(o.owners.one), n, best_.data(), taken_);
     }
+}
+
+/// The lesser or greater of two operands that both move, in one go: `taken` may be the row of either. False where it is
+/// another choice.
+bool OwnerPass::takeOfTwo(const field::OpTraits& row, size_t n, float* taken) const {
+    if (!row.selects || !operands_[0].values || !operands_[1].values) return false;
+    const float* const values[] = {operands_[0].values, operands_[1].values};
+    const float* const owners[] = {operands_[0].owners.row, operands_[1].owners.row};
+    const float ones[] = {std::bit_cast<float>(operands_[0].owners.one), std::bit_cast<float>(operands_[1].owners.one)};
+    (row.owner == Owner::Least ? kernels_.ofLesser : kernels_.ofGreater)(values, owners, ones, n, taken);
+    return true;
 }
 
 /// Fills taken_ with the owner of the operand that an instruction takes at each point.
@@ -86,8 +102,10 @@ void OwnerPass::operator()(const Instruction& in, const StepContext& c) {
         owners_[in.out] = operands_[row.firstChoice].owners;
         return;
     }
-    take(row, c.count);
-    std::copy_n(taken_, c.count, rowOf(in.out));
+    if (!takeOfTwo(row, c.count, rowOf(in.out))) {
+        take(row, c.count);
+        std::copy_n(taken_, c.count, rowOf(in.out));
+    }
     owners_[in.out] = {rowOf(in.out), 0};
 }
 
@@ -95,7 +113,10 @@ void OwnerPass::store(OriginId* out, size_t n) const {
     const Source s = tape_.result();
     const OriginId own = tape_.origins()[0];
     const Owners owners = own != 0 || isConstant(s) ? Owners{nullptr, own} : owners_[s];
-    for (size_t i = 0; i < n; ++i) out[i] = owners.at(i);
+    if (owners.row)
+        std::memcpy(out, owners.row, n * sizeof(OriginId));
+    else
+        std::fill_n(out, n, owners.one);
 }
 
 }  // namespace sgm::eval

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <bit>
-#include <vector>
 
 #include "modeler/eval/blocks.h"
 #include "modeler/field/ops.h"
@@ -23,30 +22,20 @@ public:
     void store(OriginId* out, size_t n) const;
 
 private:
-    /// Owners of a register or an operand over a block.
-    struct Owners {
-        const float* row = nullptr;  ///< their bits; null where all points have the same
-        OriginId one = 0;            ///< then that one; 0 is nobody
-        OriginId at(size_t i) const { return row ? std::bit_cast<OriginId>(row[i]) : one; }
-    };
-    struct Operand {
-        const float* values;  ///< null for a constant
-        float constant;
-        Owners owners;
-    };
     float* rowOf(uint32_t reg) { return rows_ + reg * maxBlock; }
-    const float* valuesOf(const Operand& o, size_t n);
+    const float* valuesOf(const OwnedOperand& o, size_t n);
     void gather(const Instruction& in, const Source* sources, const StepContext& c);
     bool alike(uint32_t first, uint32_t last) const;
+    bool takeOfTwo(const field::OpTraits& row, size_t n, float* taken) const;
     void take(const field::OpTraits& row, size_t n);
     void takeBest(uint32_t first, size_t n, MoveOwners move);
 
     const Tape& tape_;
     const Kernels& kernels_;
-    float* const rows_;           // by register
-    float* const taken_;          // of the instruction at work
-    std::vector<Owners> owners_;  // by register; x, y, z belong to nobody
-    std::vector<Operand> operands_;
+    float* const rows_;   // by register
+    float* const taken_;  // of the instruction at work
+    std::vector<Owners>& owners_;  // by register; x, y, z belong to nobody
+    std::vector<OwnedOperand>& operands_;
     alignas(vectorFloats * sizeof(float)) std::array<float, maxBlock> constant_, best_;
 };
 

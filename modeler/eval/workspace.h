@@ -2,6 +2,7 @@
 // Enters: sizes asked for. Leaves: aligned memory that only grows. Assumes one thread.
 #pragma once
 
+#include <bit>
 #include <vector>
 
 #include "modeler/eval/evaluate.h"
@@ -27,6 +28,20 @@ private:
     std::vector<Line> lines_;
 };
 
+/// Owners of a register or an operand over a block.
+struct Owners {
+    const float* row = nullptr;  ///< their bits; null where all points have the same
+    OriginId one = 0;            ///< then that one; 0 is nobody
+    OriginId at(size_t i) const { return row ? std::bit_cast<OriginId>(row[i]) : one; }
+};
+
+/// An operand with its owners.
+struct OwnedOperand {
+    const float* values;  ///< null for a constant
+    float constant;
+    Owners owners;
+};
+
 struct Workspace::Impl {
     Kernels kernels;
     Tally* tally = nullptr;  ///< where operations are counted, if at all
@@ -35,6 +50,8 @@ struct Workspace::Impl {
     Links links;                    ///< of the last evaluateRanges
     AlignedFloats bounds;  ///< rows of maxBoxes floats, see Links::bounds
     AlignedFloats owners;  ///< registers of owners, as bits
+    std::vector<Owners> registerOwners;
+    std::vector<OwnedOperand> ownedOperands;
     TapeBuilder builder;
     std::vector<TapeBuilder::Use> uses;
 

@@ -206,10 +206,60 @@ void join(const SurfaceCell* cells, size_t n, const uint32_t* __restrict number,
     joinByPlaces(cells, n, number, cases, to);
 }
 
+constexpr uint32_t borrowed = 0x80000000u;
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+
+/// Every third of 48 numbers, from the first, second or third on.
+inline __m512i everyThird(const __m512i numbers[3], int first) {
+    const __m512i at = _mm512_add_epi32(_mm512_set1_epi32(first),
+                                        _mm512_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21, 24, 27, 30, 33, 36, 39, 42, 45));
+    const __mmask16 late = _mm512_cmpgt_epi32_mask(at, _mm512_set1_epi32(31));
+    return _mm512_mask_permutexvar_epi32(_mm512_permutex2var_epi32(numbers[0], at, numbers[1]), late, at, numbers[2]);
+}
+
+void owners(const uint32_t* triangles, size_t n, const uint32_t* origins, uint32_t own, uint32_t* to) {
+    const __m512i number = _mm512_set1_epi32(static_cast<int>(~borrowed)), behind = _mm512_set1_epi32(static_cast<int>(own));
+    const auto firstOf = [](size_t count) { return static_cast<__mmask16>(count < 16 ? (1u << count) - 1 : 0xffffu); };
+    for (size_t t = 0; t < n; t += 16) {
+        const size_t left = n - t;
+        __m512i numbers[3];
+        for (size_t v = 0; v < 3; ++v)
+            numbers[v] = _mm512_maskz_loadu_epi32(firstOf(3 * left > 16 * v ? 3 * left - 16 * v : 0),
+                                                  triangles + 3 * t + 16 * v);
+        const __mmask16 some = firstOf(left);
+        __m512i of[3];
+        for (int c = 0; c < 3; ++c) {
+            const __m512i corner = everyThird(numbers, c), place = _mm512_and_si512(corner, number);
+            const __m512i at = _mm512_mask_add_epi32(place, _mm512_movepi32_mask(corner), place, behind);
+            of[c] = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), some, at, origins, 4);
+        }
+        const __m512i least = _mm512_min_epu32(of[0], _mm512_min_epu32(of[1], of[2]));
+        const auto same = [&](int a, int b) { return _mm512_cmpeq_epi32_mask(of[a], of[b]); };
+        const __m512i most = _mm512_mask_mov_epi32(_mm512_mask_mov_epi32(least, same(1, 2), of[1]),
+                                                   static_cast<__mmask16>(same(0, 1) | same(0, 2)), of[0]);
+        _mm512_mask_storeu_epi32(to + t, some, most);
+    }
+}
+
+#else
+
+void owners(const uint32_t* triangles, size_t n, const uint32_t* origins, uint32_t own, uint32_t* to) {
+    // Without a branch: which corners are borrowed follows no pattern.
+    const auto of = [=](uint32_t corner) { return origins[(corner & ~borrowed) + ((0u - (corner >> 31)) & own)]; };
+    for (size_t t = 0; t < n; ++t, triangles += 3) {
+        const uint32_t a = of(triangles[0]), b = of(triangles[1]), c = of(triangles[2]);
+        const uint32_t ab = a < b ? a : b, least = ab < c ? ab : c, ofTwo = b == c ? b : least;
+        to[t] = ((a == b) | (a == c)) ? a : ofTwo;
+    }
+}
+
+#endif
+
 }  // namespace
 
 namespace SGM_ISA {
-const BrickLoops brickLoops{gather, scatter, inside, list, cells, join};
+const BrickLoops brickLoops{gather, scatter, inside, list, cells, join, owners};
 }  // namespace SGM_ISA
 
 }  // namespace sgm::mesh

@@ -55,11 +55,6 @@ void copyTo(PageVector<T>& to, const PageVector<T>& from) {
     if (!from.empty()) std::memcpy(to.data(), from.data(), from.size() * sizeof(T));
 }
 
-OriginId majority(OriginId a, OriginId b, OriginId c) {
-    const OriginId least = std::min(a, std::min(b, c)), ofTwo = b == c ? b : least;
-    return ((a == b) | (a == c)) ? a : ofTwo;
-}
-
 /// The sides of a block that a brick touches, as a mask of axes.
 int lowSidesOf(Vec3i brick) { return (brick.x == 0 ? 1 : 0) | (brick.y == 0 ? 2 : 0) | (brick.z == 0 ? 4 : 0); }
 int highSidesOf(Vec3i brick) { return lowSidesOf(Vec3i{1, 1, 1} * (bricksAlong - 1) - brick); }
@@ -273,23 +268,15 @@ void BlockMesher::writeTriangles(Chunk& chunk) const {
     if (triangles_ == 0) return;
     brickLoops().join(cells_.data(), cellCount_, number_.data(), blockCorners, blockCorners * blockCorners,
                       placedCases().data(), &chunk.triangles[0].x);
-    const Triangle *first = chunk.triangles.data(), *const begin = first;
-    OriginId* origin = chunk.origins.data();
-    // Without a branch: which corners are borrowed follows no pattern.
-    const auto originOf = [origins = origins_.data(), own = vertices_](uint32_t corner) {
-        return origins[(corner & ~borrowedBit) + ((0u - (corner >> 31)) & own)];
-    };
+    OriginId* const origin = chunk.origins.data();
+    size_t first = 0;
     for (const Brick& brick : bricks_) {
-        const Triangle* const end = begin + brick.trianglesEnd;
-        const auto count = static_cast<size_t>(end - first);
+        const size_t count = brick.trianglesEnd - first;
         if (brick.owner)
-            std::fill_n(origin, count, *brick.owner);
+            std::fill_n(origin + first, count, *brick.owner);
         else
-            std::transform(first, end, origin, [originOf](const Triangle& t) {
-                return majority(originOf(t.x), originOf(t.y), originOf(t.z));
-            });
-        origin += count;
-        first = end;
+            brickLoops().owners(&chunk.triangles[first].x, count, origins_.data(), vertices_, origin + first);
+        first = brick.trianglesEnd;
     }
 }
 
