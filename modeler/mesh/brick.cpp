@@ -47,14 +47,7 @@ SparseRows cutAmong(const BitRows& inside, int axis, const BitRows& edges) {
     const int up = axis == 0 ? 0 : axis == 1 ? 1 : brickCorners;
     const int shift = axis == 0 ? 1 : 0;
     SparseRows cut;
-    std::fill(cut.rows.begin() + brickRows, cut.rows.end(), uint16_t{0});
-    for (int row = 0; row < brickRows; ++row)
-        cut.rows[row] = static_cast<uint16_t>((inside[row] ^ inside[row + up] >> shift) & edges[row]);
-    for (int group = 0; group < paddedRows / 4; ++group) {
-        uint64_t word;
-        std::memcpy(&word, cut.rows.data() + 4 * group, sizeof word);
-        cut.groups |= static_cast<uint32_t>(word != 0) << group;
-    }
+    cut.groups = brickLoops().cut(inside.data(), up, shift, edges.data(), cut.rows.data());
     return cut;
 }
 

@@ -14,8 +14,9 @@
 namespace sgm::mesh {
 
 inline constexpr int brickRows = brickCorners * brickCorners;
-/// Rows, with room for reading the row above the last one.
-inline constexpr int paddedRows = 96;
+/// Rows, with room for whole vectors and the rows above them.
+inline constexpr int paddedRows = 112;
+static_assert(paddedRows >= cutRows + brickCorners);
 /// Row j + 9 k, bit i.
 using BitRows = std::array<uint16_t, paddedRows>;
 

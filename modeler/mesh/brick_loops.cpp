@@ -81,6 +81,31 @@ void inside(const float* corner, size_t rowStride, size_t layerStride, uint16_t*
     }
 }
 
+uint32_t cut(const uint16_t* __restrict inside, int up, int shift, const uint16_t* __restrict edges,
+             uint16_t* __restrict cut) {
+    uint32_t groups = 0;
+#if defined(__AVX512BW__)
+    constexpr int atOnce = 32;
+    const __m128i by = _mm_cvtsi32_si128(shift);
+    for (int row = 0; row < cutRows; row += atOnce) {
+        const __m512i low = _mm512_loadu_si512(inside + row), high = _mm512_loadu_si512(inside + row + up);
+        const __m512i ends = _mm512_xor_si512(low, _mm512_srl_epi16(high, by));
+        const __m512i some = _mm512_and_si512(ends, _mm512_loadu_si512(edges + row));
+        _mm512_storeu_si512(cut + row, some);
+        groups |= static_cast<uint32_t>(_mm512_test_epi64_mask(some, some)) << row / 4;
+    }
+#else
+    for (int row = 0; row < cutRows; ++row)
+        cut[row] = static_cast<uint16_t>((inside[row] ^ inside[row + up] >> shift) & edges[row]);
+    for (int group = 0; group < cutRows / 4; ++group) {
+        uint64_t word;
+        __builtin_memcpy(&word, cut + 4 * group, sizeof word);
+        groups |= static_cast<uint32_t>(word != 0) << group;
+    }
+#endif
+    return groups;
+}
+
 #if defined(__AVX512BW__)
 
 /// The words of a row of bytes: corner c of eight cells, in the layer of row j = c >> 1 & 1 and of k + (c >> 2).
@@ -259,7 +284,7 @@ void owners(const uint32_t* triangles, size_t n, const uint32_t* origins, uint32
 }  // namespace
 
 namespace SGM_ISA {
-const BrickLoops brickLoops{gather, scatter, inside, list, cells, join, owners};
+const BrickLoops brickLoops{gather, scatter, inside, cut, list, cells, join, owners};
 }  // namespace SGM_ISA
 
 }  // namespace sgm::mesh

@@ -11,6 +11,9 @@ namespace sgm::mesh {
 /// Floats that a row of at most nine is copied as.
 inline constexpr int rowPadding = 16;
 
+/// Rows of bits that whole vectors make of the 9² rows of a brick.
+inline constexpr int cutRows = 96;
+
 /// Corners of a brick next to each other along x.
 struct CornerRow {
     uint16_t corner;  ///< number of the first one, counted from the brick's low corner
@@ -45,6 +48,9 @@ struct BrickLoops {
     /// Bit i of bits[j + 9k]: corner (i, j, k) has f < 0, counted from `corner`; rows and layers are `rowStride` and
     /// `layerStride` floats apart.
     void (*inside)(const float* corner, size_t rowStride, size_t layerStride, uint16_t* bits);
+    /// The edges among `edges` with one end inside: bits (inside ^ inside[row + up] >> shift) & edges of `cutRows` rows;
+    /// `up` more of them may be read. Returns which groups of four rows have any.
+    uint32_t (*cut)(const uint16_t* inside, int up, int shift, const uint16_t* edges, uint16_t* cut);
     /// Lists the bits set, ascending, as codeOf(i, j, k) + `origin`; returns how many. The list's last vector is filled
     /// up with zeros.
     size_t (*list)(const BitCube& bits, uint32_t origin, uint32_t* codes);

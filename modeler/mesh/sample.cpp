@@ -8,18 +8,39 @@ namespace {
 /// Below this a shorter tape saves less than making it costs.
 constexpr size_t shortEnough = 8;
 
+/// For the seven bricks that come before a brick in its block, by their offset's bits: which numbers they have, as a
+/// mask; none where the block ends.
+using LowerBricks = std::array<uint64_t, 8>;
+
+std::array<LowerBricks, bricksPerBlock> lowerBricks() {
+    std::array<LowerBricks, bricksPerBlock> all{};
+    for (int b = 0; b < bricksPerBlock; ++b)
+        for (int offset = 1; offset < 8; ++offset) {
+            const Vec3i other = brickAt(b) - Vec3i{offset & 1, offset >> 1 & 1, offset >> 2};
+            if (minComponent(other) >= 0) all[b][offset] = 1ull << brickNumber(other);
+        }
+    return all;
+}
+
 /// Which of a brick's low faces, edges and corner a lower active brick has sampled: bit d (x = 1, y = 2, z = 4) is set
 /// when a corner on the low sides d lies on the high sides of some active brick.
-uint8_t sampledBelow(uint64_t active, Vec3i brick) {
+uint8_t sampledBelow(uint64_t active, int brick) {
+    static const auto lower = lowerBricks();
+    constexpr uint8_t within[] = {0, 0xaa, 0xcc, 0x88, 0xf0, 0xa0, 0xc0, 0x80};  // sides that have those of an offset
     uint8_t result = 0;
-    for (int offset = 1; offset < 8; ++offset) {
-        const Vec3i other = brick - Vec3i{offset & 1, offset >> 1 & 1, offset >> 2};
-        if (minComponent(other) < 0) continue;
-        if (!(active >> brickNumber(other) & 1)) continue;
-        for (int d = offset; d < 8; ++d)
-            if ((d & offset) == offset) result |= static_cast<uint8_t>(1 << d);
-    }
+    for (int offset = 1; offset < 8; ++offset) result |= active & lower[brick][offset] ? within[offset] : uint8_t{0};
     return result;
+}
+
+/// Rows of whole bricks, by `sampledBelow`.
+const std::array<BlockSamples::Rows, 256>& wholeBricks() {
+    static const auto table = [] {
+        std::array<BlockSamples::Rows, 256> all;
+        for (int below = 0; below < 256; ++below)
+            all[below].list(Vec3i{1, 1, 1} * brickCorners, static_cast<uint8_t>(below));
+        return all;
+    }();
+    return table;
 }
 
 }  // namespace
@@ -68,13 +89,12 @@ void BlockSamples::Rows::list(Vec3i corners, uint8_t below) {
         }
 }
 
-const BlockSamples::Rows& BlockSamples::rowsOf(Vec3i brick) {
-    const Vec3i corners = last_ + Vec3i{1, 1, 1} - brick * brickCells;
+const BlockSamples::Rows& BlockSamples::rowsOf(int brick) {
+    const Vec3i corners = last_ + Vec3i{1, 1, 1} - brickAt(brick) * brickCells;
     const uint8_t below = sampledBelow(active_, brick);
-    const bool whole = minComponent(corners) >= brickCorners;
-    Rows& rows = whole ? wholeBricks_[below] : cutOff_;
-    if (!whole || rows.count == 0) rows.list(min(Vec3i{brickCorners, brickCorners, brickCorners}, corners), below);
-    return rows;
+    if (minComponent(corners) >= brickCorners) return wholeBricks()[below];
+    cutOff_.list(min(Vec3i{brickCorners, brickCorners, brickCorners}, corners), below);
+    return cutOff_;
 }
 
 /// Corners on the grid's border are outside at least, those beyond its end 0.
@@ -106,7 +126,7 @@ const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Co
     if (!whole) eval::shorten(block_->tape, region_[brick], workspace, tape_, care_);
     const eval::Tape& tape = whole ? block_->tape : tape_;
     const Vec3i at = brickAt(brick), first = at * brickCells;
-    const Rows& rows = rowsOf(at);
+    const Rows& rows = rowsOf(brick);
     const BrickLoops& loops = brickLoops();
     eval::PointRoom to = eval::roomForPoints(tape, rows.points, workspace);
     if (!to.x) to = {x_.data(), y_.data(), z_.data()};

@@ -33,6 +33,14 @@ constexpr int brickCorner(Vec3i brick) {
 /// One worker's samples, reused from block to block.
 class BlockSamples {
 public:
+    /// Corners that a brick has to evaluate.
+    struct Rows {
+        std::array<CornerRow, brickCorners * brickCorners> rows;
+        size_t count = 0, points = 0;
+        /// Those of a brick of so many corners, but for those on low sides that `below` names, see sampledBelow.
+        void list(Vec3i corners, uint8_t below);
+    };
+
     /// Goes to a block: asks the field's range in each brick.
     void enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts);
     /// Bricks that may hold surface, by number.
@@ -48,15 +56,7 @@ public:
     const float* coordinates(int axis) const { return coordinates_[axis].data(); }
 
 private:
-    /// Corners that a brick has to evaluate.
-    struct Rows {
-        std::array<CornerRow, brickCorners * brickCorners> rows;
-        size_t count = 0, points = 0;
-        /// Those of a brick of so many corners, but for those on low sides that `below` names, see sampledBelow.
-        void list(Vec3i corners, uint8_t below);
-    };
-
-    const Rows& rowsOf(Vec3i brick);
+    const Rows& rowsOf(int brick);
     void sealBorder(Vec3i brick);
 
     static constexpr int maxBatch = brickCorners * brickCorners * brickCorners + rowPadding;
@@ -70,8 +70,7 @@ private:
     PageVector<float> values_ = PageVector<float>(cornersPerBlock + rowPadding);
     std::array<std::array<float, blockCorners + rowPadding>, 3> coordinates_{};
     std::array<float, maxBatch> x_, y_, z_, f_;
-    std::vector<Rows> wholeBricks_ = std::vector<Rows>(256);  ///< by `below`, listed when first asked for
-    Rows cutOff_;                                             ///< of a brick that the grid's end cuts off
+    Rows cutOff_;  ///< of a brick that the grid's end cuts off
 };
 
 }  // namespace sgm::mesh
