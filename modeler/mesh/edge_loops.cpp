@@ -17,6 +17,8 @@ static_assert(edgeVector % Float::size == 0);
 /// are moved by anyway. On a smooth field the vertex is then far closer to the root, for Newton's error goes with the
 /// square of the step.
 constexpr float agreement = edgeMargin;
+/// Where they differ more, but by no more than this, the vertex is done if a parabola fits the bracket.
+constexpr float mostBent = 16 * agreement;
 /// A longer step may have crossed a crease, beyond which the normal is another.
 constexpr float longStep = 0x1.0p-4f;
 
@@ -132,6 +134,33 @@ void interpolate(const EdgeArrays& e, size_t n) {
     }
 }
 
+/// The parabola through where the field was last evaluated, with its slope there, and through one end of the bracket.
+/// The other end tells how well it fits.
+class Parabola {
+public:
+    Parabola(Float t, Float f, Float slope, Float tIn, Float fIn, Float tOut, Float fOut) : t_(t), slope_(slope) {
+        const Mask inside = f < Float(0.0f);
+        const Float across = select(inside, tOut, tIn) - t, fAcross = select(inside, fOut, fIn);
+        const Float behind = select(inside, tIn, tOut) - t, fBehind = select(inside, fIn, fOut);
+        // How far the tangent misses each end; over the distance's square that is how much the field bends.
+        missedAcross_ = fAcross - f - slope * across, missedBehind_ = fBehind - f - slope * behind;
+        across_ = across * across, behind_ = behind * behind;
+    }
+    /// True where the two ends' bends differ by so little that it doesn't show as far as `way`. Over a crease they do.
+    Mask fits(Float way) const {
+        return abs(missedAcross_ * behind_ - missedBehind_ * across_) * way <=
+               Float(agreement) * abs(slope_) * (across_ * behind_);
+    }
+    /// Near Newton's step.
+    Float root(Float newton) const {
+        const Float way = newton - t_;
+        return newton - way * way * missedAcross_ / (slope_ * across_);
+    }
+
+private:
+    Float t_, slope_, missedAcross_, missedBehind_, across_, behind_;
+};
+
 size_t step(const EdgeArrays& e, size_t n) {
     Float open = 0.0f, number = ascending();
     const Float end = static_cast<float>(n);
@@ -141,18 +170,24 @@ size_t step(const EdgeArrays& e, size_t n) {
         const Float slope =
             select(along.x, Float::load(e.dx + i), select(along.z, Float::load(e.dz + i), Float::load(e.dy + i)));
         const Mask inside = f < Float(0.0f);
-        const Float t0 = select(inside, t, Float::load(e.tIn + i)), f0 = select(inside, f, Float::load(e.fIn + i));
-        const Float t1 = select(inside, Float::load(e.tOut + i), t), f1 = select(inside, Float::load(e.fOut + i), f);
+        const Float tIn = Float::load(e.tIn + i), fIn = Float::load(e.fIn + i), tOut = Float::load(e.tOut + i),
+                    fOut = Float::load(e.fOut + i);
+        const Float t0 = select(inside, t, tIn), f0 = select(inside, f, fIn);
+        const Float t1 = select(inside, tOut, t), f1 = select(inside, fOut, f);
         const Float secant = t0 + (t1 - t0) * (f0 / (f0 - f1));
-        const Float newton = t - f / (slope * span);
+        const Float rise = slope * span, newton = t - f / rise;
         const Float low = min(t0, t1), high = max(t0, t1);
         const Mask kept = (newton >= low) & (newton <= high);
         const Float apart = abs(newton - secant), way = abs(newton - t);
-        const Mask done = (kept & (apart <= Float(agreement)) & (way <= Float(longStep))) |
-                          (high - low <= Float(agreement)) | (number >= end);
+        const Parabola bent(t, f, rise, tIn, fIn, tOut, fOut);
+        const Mask agreed = apart <= Float(agreement);
+        const Mask smooth = (apart <= Float(mostBent)) & bent.fits(way);
+        const Mask done = (kept & (agreed | smooth) & (way <= Float(longStep))) | (high - low <= Float(agreement)) |
+                          (number >= end);
         t0.store(e.tIn + i), f0.store(e.fIn + i);
         t1.store(e.tOut + i), f1.store(e.fOut + i);
-        const Float moved = withinEdge(select(kept, newton, Float(0.5f) * (t0 + t1)));
+        const Float root = select(agreed | !smooth, newton, bent.root(newton));
+        const Float moved = withinEdge(select(kept, root, Float(0.5f) * (t0 + t1)));
         moved.store(e.t + i);
         moveTo(e, i, along, Float::load(e.base + i) + moved * span);
         const Float again = select(done, Float(0.0f), Float(1.0f));
