@@ -9,6 +9,9 @@
 namespace sgm::mesh {
 namespace {
 
+/// Borrowed vertices that are sooner named than a thread starts.
+constexpr size_t worthAThread = 300000;
+
 /// The chunk of block `index`, among chunks in order of (z, y, x); null where there is none.
 const Chunk* findChunk(std::span<const Chunk> chunks, Vec3i index) {
     const auto at = std::lower_bound(chunks.begin(), chunks.end(), index,
@@ -73,7 +76,9 @@ Status Numbering::add(std::span<Chunk> chunks) {
 Status link(std::vector<Chunk>& chunks, int threads) {
     Numbering numbering;
     if (Status status = numbering.add(chunks); !status) return status;
-    parallelFor(chunks.size(), threads, nullptr, [&](size_t i, int) { nameBorrowed(chunks, chunks[i]); });
+    size_t borrowed = 0;
+    for (const Chunk& c : chunks) borrowed += c.borrowed.vertices.size();
+    parallelFor(chunks.size(), borrowed >= worthAThread ? threads : 1, nullptr, [&](size_t i, int) { nameBorrowed(chunks, chunks[i]); });
     setFacetedNormals(chunks, chunks);
     return Done{};
 }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "modeler/core/parallel.h"
@@ -14,19 +15,22 @@ namespace sgm::mesh {
 namespace {
 
 constexpr int splits = regionSplits;
+/// A level of the descent with fewer instructions is sooner gone through than a thread starts; a region by itself costs
+/// as much as some of them.
+constexpr size_t worthAThread = 2000, instructionsARegion = 20;
 
 /// A cube of blocks on the way down: blocks [index · size, (index + 1) · size) of its level.
 using Region = Block;
 
-/// The parts of a region that have cells, in order.
+/// Parts of a region that have cells, in order: of all, those along z from `firstLayer` to `endLayer`.
 struct Children {
     std::array<Vec3i, splits * splits * splits> indices;
     std::array<CellRange, splits * splits * splits> cells;
     std::array<Box3f, splits * splits * splits> boxes;
     size_t n = 0;
 
-    Children(Vec3i region, int childCells, const Grid& grid) {
-        for (int k = 0; k < splits; ++k)
+    Children(Vec3i region, int childCells, int firstLayer, int endLayer, const Grid& grid) {
+        for (int k = firstLayer; k < endLayer; ++k)
             for (int j = 0; j < splits; ++j)
                 for (int i = 0; i < splits; ++i) {
                     const Vec3i index = region * splits + Vec3i{i, j, k};
@@ -49,11 +53,11 @@ struct Children {
 };
 
 /// Splits one region into those children that may hold surface and that the filter wants, each with its tape shortened
-/// to it.
-std::vector<Region> split(const eval::Tape& tape, Vec3i index, int childCells, const Grid& grid,
-                          const RegionFilter& filter, eval::Workspace& workspace, Counts& counts) {
+/// to it. Part `part` of `parts`, layers of children.
+std::vector<Region> split(const eval::Tape& tape, Vec3i index, int part, int parts, int childCells,
+                          const Grid& grid, const RegionFilter& filter, eval::Workspace& workspace, Counts& counts) {
     const int blocks = childCells / blockCells;
-    Children children(index, childCells, grid);
+    Children children(index, childCells, splits * part / parts, splits * (part + 1) / parts, grid);
     if (filter.skips)
         children.leaveOut(filter.skips({children.indices.data(), children.n}, blocks,
                                        {children.boxes.data(), children.n}, workspace));
@@ -69,6 +73,18 @@ std::vector<Region> split(const eval::Tape& tape, Vec3i index, int childCells, c
         if (!filter.wants || filter.wants(child.index, blocks, child.tape)) kept.push_back(std::move(child));
     }
     return kept;
+}
+
+/// Blocks by (z, y, x); each is moved once.
+void inOrder(std::vector<Block>& blocks) {
+    std::vector<uint32_t> order(blocks.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t a, uint32_t b) { return zyxLess(blocks[a].index, blocks[b].index); });
+    std::vector<Block> ordered;
+    ordered.reserve(blocks.size());
+    for (const uint32_t b : order) ordered.push_back(std::move(blocks[b]));
+    blocks = std::move(ordered);
 }
 
 }  // namespace
@@ -137,19 +153,22 @@ Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, i
     std::vector<eval::Workspace>& workspaces = scratch ? *scratch : own;
     workspaces.resize(std::max(workspaces.size(), static_cast<size_t>(threadCount(threads))));
     std::vector<Region> regions;
-    if (minComponent(grid.cells) > 0) {
-        if (progress) progress->begin("subdivide", 1);
-        size /= splits;
-        regions = split(tape, {0, 0, 0}, size * blockCells, grid, filter, workspaces[0], counts);
-        tick(progress);
-    }
-    for (; size > 1; size /= splits) {
-        if (progress) progress->begin("subdivide", regions.size());
-        std::vector<std::vector<Region>> children(regions.size());
+    const bool any = minComponent(grid.cells) > 0;
+    for (bool whole = any; any && size > 1; size /= splits, whole = false) {
+        size_t work = whole ? tape.size() : 0;
+        for (const Region& region : regions) work += instructionsARegion + region.tape.size();
+        const int wanted = work >= worthAThread ? threads : 1;
+        const int parts = whole ? std::min(threadCount(wanted), splits) : 1;
+        const size_t tasks = whole ? static_cast<size_t>(parts) : regions.size();
+        if (progress) progress->begin("subdivide", tasks);
+        std::vector<std::vector<Region>> children(tasks);
         std::vector<Counts> counted(workspaces.size());
-        parallelFor(regions.size(), threads, progress, [&](size_t i, int worker) {
-            children[i] = split(regions[i].tape, regions[i].index, size / splits * blockCells, grid, filter,
-                                workspaces[worker], counted[worker]);
+        parallelFor(tasks, wanted, progress, [&](size_t i, int worker) {
+            const int childCells = size / splits * blockCells;
+            children[i] = whole ? split(tape, {0, 0, 0}, static_cast<int>(i), parts, childCells, grid, filter,
+                                        workspaces[worker], counted[worker])
+                                : split(regions[i].tape, regions[i].index, 0, 1, childCells, grid, filter,
+                                        workspaces[worker], counted[worker]);
             tick(progress);
         });
         if (cancelled(progress)) return cancelledError();
@@ -157,8 +176,7 @@ Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, i
         for (std::vector<Region>& some : children) std::move(some.begin(), some.end(), std::back_inserter(regions));
         for (const Counts& c : counted) counts += c;
     }
-    if (cancelled(progress)) return cancelledError();
-    std::sort(regions.begin(), regions.end(), [](const Block& a, const Block& b) { return zyxLess(a.index, b.index); });
+    inOrder(regions);
     counts.subdivideSeconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return regions;
 }
