@@ -1,8 +1,10 @@
 // The mesher's loops give the same on every instruction set that this machine has.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "modeler/core/random.h"
@@ -70,6 +72,51 @@ TEST(Loops, BitsTellWhichCornersAreInside) {
             for (size_t i = 0; i < 16; ++i)
                 EXPECT_EQ(bits[row] >> i & 1, i < 9 && f[i + side * (row % 9 + side * (row / 9))] < 0)
                     << row << ' ' << i;
+    }
+}
+
+TEST(Loops, CutEdgesHaveOneEndInside) {
+    std::array<uint16_t, 112> inside, edges;
+    for (size_t row = 0; row < inside.size(); ++row) {
+        inside[row] = static_cast<uint16_t>(combine(11, row) & 0x1ff);
+        edges[row] = static_cast<uint16_t>(combine(12, row) & combine(13, row) & (row / 4 % 3 == 0 ? 0 : 0x1ff));
+    }
+    constexpr std::pair<int, int> ways[] = {{0, 1}, {1, 0}, {9, 0}};  // rows up, bits up
+    for (const Loops& l : loopsHere())
+        for (const auto& [up, shift] : ways) {
+            std::array<uint16_t, cutRows> cut;
+            const uint32_t groups = l.bricks->cut(inside.data(), up, shift, edges.data(), cut.data());
+            for (size_t row = 0; row < cut.size(); ++row) {
+                const int other = inside[row + static_cast<size_t>(up)] >> shift;
+                EXPECT_EQ(cut[row], (inside[row] ^ other) & edges[row]) << row;
+                EXPECT_TRUE(cut[row] == 0 || (groups >> row / 4 & 1)) << row;
+            }
+            EXPECT_EQ(groups & 0x249249u, 0u);  // groups without edges
+        }
+}
+
+TEST(Loops, TrianglesBelongToMostOfTheirCorners) {
+    constexpr uint32_t own = 20, borrowed = 0x80000000u;
+    std::array<uint32_t, own + 12> origins;
+    for (size_t i = 0; i < origins.size(); ++i) origins[i] = static_cast<uint32_t>(combine(21, i) % 4);
+    for (size_t n = 0; n < 40; ++n) {
+        std::vector<uint32_t> triangles(3 * n);
+        for (size_t i = 0; i < triangles.size(); ++i) {
+            const auto any = static_cast<uint32_t>(combine(n, i) % origins.size());
+            triangles[i] = any < own ? any : borrowed | (any - own);
+        }
+        const auto of = [&](size_t i) {
+            return origins[triangles[i] & borrowed ? own + (triangles[i] & ~borrowed) : triangles[i]];
+        };
+        for (const Loops& l : loopsHere()) {
+            std::vector<uint32_t> owners(n + 1, 77);
+            l.bricks->owners(triangles.data(), n, origins.data(), own, owners.data());
+            for (size_t t = 0; t < n; ++t) {
+                const uint32_t a = of(3 * t), b = of(3 * t + 1), c = of(3 * t + 2);
+                EXPECT_EQ(owners[t], a == b || a == c ? a : b == c ? b : std::min({a, b, c}));
+            }
+            EXPECT_EQ(owners[n], 77u);  // and nothing beside them
+        }
     }
 }
 
