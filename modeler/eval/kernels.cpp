@@ -7,6 +7,7 @@
 #include "modeler/eval/source_arch.h"
 #include "modeler/eval/values_dual.h"
 #include "modeler/eval/values_interval.h"
+#include "modeler/eval/values_pair.h"
 #include "modeler/eval/values_simd.h"
 #include "modeler/field/ops.h"
 
@@ -22,13 +23,22 @@ template <class V>
 struct Planes;
 template <>
 struct Planes<Float> {
-    static constexpr size_t count = 1;
+    static constexpr size_t count = 1, floats = Float::size;
     static Float load(const float* p, size_t) { return Float::load(p); }
     static void store(Float v, float* p, size_t) { v.store(p); }
 };
 template <>
+struct Planes<Pair<Float>> {
+    static constexpr size_t count = 1, floats = 2 * Float::size;
+    static Pair<Float> load(const float* p, size_t) { return {Float::load(p), Float::load(p + Float::size)}; }
+    static void store(Pair<Float> v, float* p, size_t) {
+        v.a.store(p);
+        v.b.store(p + Float::size);
+    }
+};
+template <>
 struct Planes<Dual<Float>> {
-    static constexpr size_t count = 4;
+    static constexpr size_t count = 4, floats = Float::size;
     static Dual<Float> load(const float* p, size_t stride) {
         return {Float::load(p), Float::load(p + stride), Float::load(p + 2 * stride), Float::load(p + 3 * stride)};
     }
@@ -37,6 +47,20 @@ struct Planes<Dual<Float>> {
         v.dx.store(p + stride);
         v.dy.store(p + 2 * stride);
         v.dz.store(p + 3 * stride);
+    }
+};
+template <>
+struct Planes<Dual<Pair<Float>>> {
+    static constexpr size_t count = 4, floats = 2 * Float::size;
+    using Row = Planes<Pair<Float>>;
+    static Dual<Pair<Float>> load(const float* p, size_t stride) {
+        return {Row::load(p, 0), Row::load(p + stride, 0), Row::load(p + 2 * stride, 0), Row::load(p + 3 * stride, 0)};
+    }
+    static void store(Dual<Pair<Float>> v, float* p, size_t stride) {
+        Row::store(v.value, p, 0);
+        Row::store(v.dx, p + stride, 0);
+        Row::store(v.dy, p + 2 * stride, 0);
+        Row::store(v.dz, p + 3 * stride, 0);
     }
 };
 template <>
@@ -152,12 +176,18 @@ void stepOver(const Instruction& in, const StepContext& c) {
     }
 }
 
-template <class Row, class V>
-V callWithNumbers(std::span<const V> args, auto data) {
-    if constexpr (std::is_same_v<V, Dual<Float>> && requires { Row::gradientByNumbers(args, data); })
-        return Row::gradientByNumbers(args, data);
-    else
-        return Body<Row, V>::call(args, data);
+/// A row whose operands are numbers but for the point, from point i on for as many whole V as there are. Returns how
+/// far it came.
+template <class Row, auto path, class V>
+size_t stepByNumbers(size_t i, const float* const* rows, const auto& numbers, float* out, const StepContext& c) {
+    for (; i + Planes<V>::floats <= c.count; i += Planes<V>::floats) {
+        const auto at = [&](size_t axis) { return Planes<V>::load(rows[axis] + i, c.stride); };
+        if constexpr (Planes<V>::count == 4)
+            Planes<V>::store(Row::template gradientByNumbers<path>(at(0), at(1), at(2), numbers), out + i, c.stride);
+        else
+            Planes<V>::store(Row::template distance<path>(at(0), at(1), at(2), numbers), out + i, c.stride);
+    }
+    return i;
 }
 
 /// Operands of a known number, the moving ones in registers and the others constant: those stay in vector registers.
@@ -170,12 +200,26 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
         if (isConstant(sources[k]) != (k >= moving)) return false;
     const float* rows[moving];
     for (size_t k = 0; k < moving; ++k) rows[k] = rowOf<V>(c, sources[k]);
-    V args[count];
-    for (size_t k = moving; k < count; ++k) args[k] = V(c.constants[indexOf(sources[k])]);
     float* const out = rowOf<V>(c, in.out);
-    for (size_t i = 0; i < c.count; i += Float::size) {
-        for (size_t k = 0; k < moving; ++k) args[k] = Planes<V>::load(rows[k] + i, c.stride);
-        Planes<V>::store(callWithNumbers<Row>(std::span<const V>(args, count), dataOf<Row>(in, c)), out + i, c.stride);
+    if constexpr (!std::is_same_v<V, Interval<Float>> && requires { sizeof(typename Row::template Numbers<Float>); }) {
+        Float args[count];
+        for (size_t k = moving; k < count; ++k) args[k] = Float(c.constants[indexOf(sources[k])]);
+        using Numbers = typename Row::template Numbers<Float>;
+        const Numbers numbers(std::span<const Float>(args, count), in.data);
+        Row::visitPath(numbers.form, [&]<auto path>() {
+            using Two = std::conditional_t<std::is_same_v<V, Float>, Pair<Float>, Dual<Pair<Float>>>;
+            const typename Row::template Numbers<Pair<Float>> both(numbers);
+            const size_t i = stepByNumbers<Row, path, Two>(0, rows, both, out, c);
+            stepByNumbers<Row, path, V>(i, rows, numbers, out, c);
+        });
+    } else {
+        V args[count];
+        for (size_t k = moving; k < count; ++k) args[k] = V(c.constants[indexOf(sources[k])]);
+        for (size_t i = 0; i < c.count; i += Float::size) {
+            for (size_t k = 0; k < moving; ++k) args[k] = Planes<V>::load(rows[k] + i, c.stride);
+            Planes<V>::store(Body<Row, V>::call(std::span<const V>(args, count), dataOf<Row>(in, c)), out + i,
+                             c.stride);
+        }
     }
     return true;
 }

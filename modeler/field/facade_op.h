@@ -137,7 +137,8 @@ return best;)";
         const uint32_t count = countOf(args);
         const Along<V> x = along(args, 0, count), z = along(args, 1, count);
         const Up<V> up = levels(args);
-        const V own = cell(args, data, x, x.zoom, x.pan, z, z.zoom, z.pan, up.v);
+        const Kifs::Numbers<V> folds(args.subspan(fractal - size_t{Kifs::centreOfScale}), data);
+        const V own = cell(args, folds, x, x.zoom, x.pan, z, z.zoom, z.pan, up.v);
         V best = min(max(own, max(max(x.least, z.least), -up.edge) - args[slack]), limit);
         const V border = min(min(-x.least, -z.least), up.edge) - args[slack];
         if (!any((best > border) & open)) return select(decided, limit, best);  // no other cell is so near
@@ -153,7 +154,7 @@ return best;)";
                     if (!over) counts = counts & !inOwn;
                     if (!any(counts)) continue;
                     const V *a = &args[bays + 3 * i], *b = &args[bays + 3 * j];
-                    const V d = cell(args, data, x, a[1], a[2], z, b[1], b[2], over ? up.beyond : up.v);
+                    const V d = cell(args, folds, x, a[1], a[2], z, b[1], b[2], over ? up.beyond : up.v);
                     best = min(max(d, slab), best);  // nothing new for lanes that don't count
                 }
             }
@@ -248,12 +249,10 @@ private:
 
     /// Distance to one cell's fractal, its map continued beyond the cell; divided by the map's greatest stretch.
     template <class V>
-    static V cell(std::span<const V> args, uint32_t data, const Along<V>& x, const V& zoomX, const V& panX,
-                  const Along<V>& z, const V& zoomZ, const V& panZ, const V& v) {
+    static V cell(std::span<const V> args, const Kifs::Numbers<V>& folds, const Along<V>& x, const V& zoomX,
+                  const V& panX, const Along<V>& z, const V& zoomZ, const V& panZ, const V& v) {
         const V stretch = max(max(abs(zoomX) / x.reach, abs(zoomZ) / z.reach), args[rise] / args[storey]);
-        const std::span<const V> numbers = args.subspan(fractal - size_t{Kifs::centreOfScale});
-        return Kifs::distance(zoomX * x.u + panX, args[rise] * v, zoomZ * z.u + panZ, numbers, Kifs::unpack(data)) /
-               stretch;
+        return Kifs::distance(zoomX * x.u + panX, args[rise] * v, zoomZ * z.u + panZ, folds) / stretch;
     }
 };
 

@@ -67,43 +67,100 @@ struct Kifs {
         "float d = (data & 256u) != 0u ? max(max(q.x, q.y), q.z) - max(max(c.x, c.y), c.z) : length(p) - 2.0;\n"
         "return d / scales;";
 
+    /// Forms told apart where code is made, so that nothing is asked on the way through the passes.
+    enum class Path { Plain, Folds, Turns, Both, Leaps };
+    /// visit.operator()<path>() for the path of a form.
+    static constexpr void visitPath(const Form& form, auto&& visit) {
+        if (form.jump || form.bails)
+            visit.template operator()<Path::Leaps>();
+        else if (form.folds)
+            form.turns ? visit.template operator()<Path::Both>() : visit.template operator()<Path::Folds>();
+        else
+            form.turns ? visit.template operator()<Path::Turns>() : visit.template operator()<Path::Plain>();
+    }
+
+    template <Path path>
+    static constexpr bool folds(const Form& f) {
+        return path == Path::Leaps ? f.folds : path == Path::Folds || path == Path::Both;
+    }
+    template <Path path>
+    static constexpr bool turns(const Form& f) {
+        return path == Path::Leaps ? f.turns : path == Path::Turns || path == Path::Both;
+    }
+
+    /// What the passes take from the parameters: to be made once for all points, where those are numbers.
+    template <class V>
+    struct Numbers {
+        Form form;
+        V scale, lastFold, moveX, moveY, limit, reach, unscale;
+        V fold[9], turn[9];  ///< rotations by columns, the fold's scaled
+
+        /// Of `args` the parameters are read, at their places.
+        Numbers(std::span<const V> args, uint32_t data)
+            : form(unpack(data)), scale(args[Kifs::scale]), limit(args[bailout]) {
+            const V* const c = &args[centreOfScale];
+            const V less = scale - V(1.0f);
+            lastFold = c[2] * less * V(0.5f);  // half the distance between the two copies along z
+            moveX = c[0] * less, moveY = c[1] * less;
+            reach = form.cube ? max(max(c[0], c[1]), c[2]) : V(2.0f);
+            V scales = scale;
+            for (uint32_t i = 1; i < form.passes; ++i) scales = scales * scale;
+            unscale = V(1.0f) / scales;
+            for (size_t i = 0; form.folds && i < 9; ++i) fold[i] = args[Kifs::fold + i] * scale;
+            for (size_t i = 0; form.turns && i < 9; ++i) turn[i] = args[Kifs::turn + i];
+        }
+        /// The same for a V made of one W.
+        template <class W>
+        explicit Numbers(const Numbers<W>& n)
+            : form(n.form), scale(n.scale), lastFold(n.lastFold), moveX(n.moveX), moveY(n.moveY), limit(n.limit),
+              reach(n.reach), unscale(n.unscale) {
+            for (size_t i = 0; form.folds && i < 9; ++i) fold[i] = V(n.fold[i]);
+            for (size_t i = 0; form.turns && i < 9; ++i) turn[i] = V(n.turn[i]);
+        }
+    };
+
     template <class V>
     static V apply(std::span<const V> args, uint32_t data) {
-        return distance(args[position], args[position + 1], args[position + 2], args, unpack(data));
+        return distance(args[position], args[position + 1], args[position + 2], Numbers<V>(args, data));
     }
 
-    /// The value at (x, y, z); of `args` only the parameters are read, at their places.
+    /// The value at (x, y, z).
     template <class V>
-    static V distance(const V& x, const V& y, const V& z, std::span<const V> args, const Form& form) {
+    static V distance(const V& x, const V& y, const V& z, const Numbers<V>& numbers) {
+        V value;
+        visitPath(numbers.form, [&]<Path path>() { value = distance<path>(x, y, z, numbers); });
+        return value;
+    }
+    template <Path path, class V>
+    [[gnu::always_inline]] static V distance(const V& x, const V& y, const V& z, const Numbers<V>& numbers) {
         State<V> at{x, y, z, V(1.0f)};
-        walk(at, args, form, [](uint32_t) { return Unkept{}; });
-        return terminal(at, args, form);
+        walk<path>(at, numbers, [](uint32_t) { return Unkept{}; });
+        return terminal(at, numbers);
     }
 
-    /// Where the parameters are numbers: back through the passes from the terminal solid's normal. Each turns and reflects
-    /// it; the scaling of the passes is divided out again at the end.
-    template <class D>
-    static D gradientByNumbers(std::span<const D> args, uint32_t data) {
+    /// The same with derivatives: back through the passes from the terminal solid's normal, which each of them turns
+    /// and reflects.
+    template <Path path, class D>
+    [[gnu::always_inline]] static D gradientByNumbers(const D& x, const D& y, const D& z,
+                                                      const Numbers<typename D::Value>& numbers) {
         using V = typename D::Value;
-        constexpr uint32_t mostPasses = 16;
-        const Form form = unpack(data);
-        if (form.passes > mostPasses) return apply<D>(args, data);
-        V numbers[operandCount];
-        for (size_t i = 0; i < operandCount; ++i) numbers[i] = args[i].value;
-        const std::span<const V> all(numbers, operandCount);
+        constexpr uint32_t mostPasses = 255;
         Kept<V> kept[mostPasses];
-        State<V> at = start(all);
-        const uint32_t passes = walk(at, all, form, [&](uint32_t i) -> Kept<V>& { return kept[i]; });
-        State<V> g = normal(at, form);
+        State<V> at{x.value, y.value, z.value, V(1.0f)};
+        const uint32_t passes = walk<path>(at, numbers, [&](uint32_t i) -> Kept<V>& { return kept[i]; });
+        State<V> g = normal(at, numbers.form);
+        if (folds<path>(numbers.form)) {  // their rotations scale
+            const V share = path == Path::Leaps && numbers.form.bails ? V(1.0f) / at.scales : numbers.unscale;
+            g = {g.x * share, g.y * share, g.z * share, g.scales};
+        }
         for (uint32_t i = passes; i-- > 0;) {
-            const State<V> before = kept[i].back(g, all, form);
-            if (form.bails)
+            const State<V> before = kept[i].template back<path>(g, numbers);
+            if (path == Path::Leaps && numbers.form.bails)
                 g = chosen(kept[i].moves, before, g);
             else
                 g = before;
         }
-        const D &x = args[position], &y = args[position + 1], &z = args[position + 2];
-        return D{terminal(at, all, form), g.x * x.dx + g.y * y.dx + g.z * z.dx, g.x * x.dy + g.y * y.dy + g.z * z.dy,
+        return D{terminal(at, numbers), g.x * x.dx + g.y * y.dx + g.z * z.dx, g.x * x.dy + g.y * y.dy + g.z * z.dy,
                  g.x * x.dz + g.y * y.dz + g.z * z.dz};
     }
 
@@ -116,7 +173,7 @@ struct Kifs {
         V middle[operandCount], spread = 0.0f;
         for (size_t i = 0; i < operandCount; ++i) middle[i] = i < centreOfScale ? centre(args[i]) : args[i].lo;
         for (size_t i = centreOfScale; i < operandCount; ++i) spread = max(args[i].hi - args[i].lo, spread);
-        if (!form.continuous() || any(!(spread <= V(0.0f)))) return passesOver(args, form);
+        if (!form.continuous() || any(!(spread <= V(0.0f)))) return passesOver(args, data);
 
         const V rx = radius(args[0]), ry = radius(args[1]), rz = radius(args[2]);
         const V* c = middle + centreOfScale;
@@ -124,46 +181,47 @@ struct Kifs {
         const V size = abs(middle[0]) + abs(middle[1]) + abs(middle[2]) + abs(c[0]) + abs(c[1]) + abs(c[2]) + V(2.0f);
         const V ulps = size * (1e-6f * static_cast<float>(form.passes + 1));
         const V reach = sqrt(rx * rx + ry * ry + rz * rz) * 1.00001f + ulps;
-        const V value = apply<V>(middle, data);
-        V scales = 1.0f;
-        for (uint32_t i = 0; i < form.passes; ++i) scales = scales * middle[scale];
-        const V deepest = (form.cube ? -max(max(c[0], c[1]), c[2]) : V(-2.0f)) / scales * V(1.00001f);
+        const Numbers<V> numbers(std::span<const V>(middle, operandCount), data);
+        const V value = distance(middle[0], middle[1], middle[2], numbers);
+        const V deepest = -numbers.reach * numbers.unscale * V(1.00001f);
         return I{max(deepest, value - reach), value + reach};  // NaN, as the second operand, survives
     }
 
 private:
-    /// A point on its way through the passes, and the product of the scales so far.
+    /// A point on its way through the passes, and the product of the scales so far, which only a bailout asks for.
     template <class V>
     struct State {
         V x, y, z, scales;
     };
 
-    /// Which way a pass went, for the way back.
+    /// What tells which way a pass went, for the way back: its point before the folds, and before the last one. Masks
+    /// would say the same in less room, but take longer to store and to fetch.
     template <class V>
     struct Kept {
-        MaskOf<V> negX, negY, negZ, xy, z, rest, low, moves;
+        V x, y, z, offset;
+        MaskOf<V> moves;
 
-        void signs(const State<V>& p) { negX = p.x < V(0.0f), negY = p.y < V(0.0f), negZ = p.z < V(0.0f); }
-        void order(const V& x, const V& y, const V& mostXy, const V& z0, const V& leastXy, const V& leastZ) {
-            xy = x > y, z = mostXy > z0, rest = leastXy > leastZ;
-        }
-        void fold(const V& offset) { low = offset < V(0.0f); }
+        void point(const State<V>& p) { x = p.x, y = p.y, z = p.z; }
+        void fold(const V& o) { offset = o; }
         void move(const MaskOf<V>& m) { moves = m; }
 
-        /// The derivatives before the pass from those after it.
-        State<V> back(State<V> g, std::span<const V> args, const Form& form) const {
-            if (!form.jump) g.z = select(low, g.z, -g.z);
-            if (form.folds) g = turnedBack(g, args, Kifs::fold);
-            const V yx = select(rest, g.y, g.z), leastZ = select(rest, g.z, g.y);
-            const V most = select(z, g.x, leastZ), gz = select(z, leastZ, g.x);
-            const V gx = select(xy, most, yx), gy = select(xy, yx, most);
-            g = {select(negX, -gx, gx), select(negY, -gy, gy), select(negZ, -gz, gz), g.scales};
-            return form.turns ? turnedBack(g, args, Kifs::turn) : g;
+        /// The derivatives before the pass from those after it, scaled where the pass has a rotation that does.
+        template <Path path>
+        [[gnu::always_inline]] State<V> back(State<V> g, const Numbers<V>& n) const {
+            const V zero = 0.0f;
+            if (path != Path::Leaps || !n.form.jump) g.z = select(offset < zero, g.z, -g.z);
+            if (folds<path>(n.form)) g = turnedBack(g, n.fold);
+            const V ax = abs(x), ay = abs(y), az = abs(z), least = min(ax, ay), most = max(ax, ay);
+            const auto xy = ax > ay, top = most > az, rest = least > min(most, az);
+            const V second = select(rest, g.y, g.z), third = select(rest, g.z, g.y);
+            const V first = select(top, g.x, third), gz = select(top, third, g.x);
+            const V gx = select(xy, first, second), gy = select(xy, second, first);
+            g = {select(x < zero, -gx, gx), select(y < zero, -gy, gy), select(z < zero, -gz, gz), g.scales};
+            return turns<path>(n.form) ? turnedBack(g, n.turn) : g;
         }
     };
     struct Unkept {
-        void signs(const auto&) {}
-        void order(const auto&...) {}
+        void point(const auto&) {}
         void fold(const auto&) {}
         void move(const auto&) {}
     };
@@ -175,35 +233,48 @@ private:
     }
 
     /// Takes `at` through the passes; keep(i) is told which way pass i went. Returns how many were begun.
-    template <class V, class Keep>
-    static uint32_t walk(State<V>& at, std::span<const V> args, const Form& form, const Keep& keep) {
-        for (uint32_t i = 0; i < form.passes; ++i) {
+    template <Path path, class V, class Keep>
+    [[gnu::always_inline]] static uint32_t walk(State<V>& at, const Numbers<V>& n, const Keep& keep) {
+        if constexpr (path == Path::Leaps) return walkWithLeaps(at, n, keep);
+        for (uint32_t i = 0; i < n.form.passes; ++i) {
             auto&& kept = keep(i);
-            State<V> next = isometries(at, args, form, kept);
-            const V h = lastFold(args);
-            if (form.jump) {
+            at = scaled<path>(at, n, kept);
+            const V offset = at.z - n.lastFold;
+            kept.fold(offset);
+            at.z = n.lastFold - abs(offset);
+        }
+        return n.form.passes;
+    }
+    template <class V, class Keep>
+    static uint32_t walkWithLeaps(State<V>& at, const Numbers<V>& n, const Keep& keep) {
+        for (uint32_t i = 0; i < n.form.passes; ++i) {
+            auto&& kept = keep(i);
+            State<V> next = scaled<Path::Leaps>(at, n, kept);
+            const V& h = n.lastFold;
+            if (n.form.jump) {
                 next.z = select(next.z > h, next.z - (h + h), next.z);
             } else {
                 const V offset = next.z - h;
                 kept.fold(offset);
                 next.z = h - abs(offset);
             }
-            if (!form.bails) {
+            if (!n.form.bails) {
                 at = next;
                 continue;
             }
-            const V limit = i == 0 ? V(std::numeric_limits<float>::infinity()) : args[bailout];
+            next.scales = at.scales * n.scale;
+            const V limit = i == 0 ? V(std::numeric_limits<float>::infinity()) : n.limit;
             const auto moves = dot(at) <= limit;
             kept.move(moves);
             at = chosen<V>(moves, next, at);
             if (!any(moves)) return i + 1;
         }
-        return form.passes;
+        return n.form.passes;
     }
 
     /// Derivatives of the terminal solid's distance.
     template <class V>
-    static State<V> normal(const State<V>& p, const Form& form) {
+    [[gnu::always_inline]] static State<V> normal(const State<V>& p, const Form& form) {
         const V zero = 0.0f;
         if (!form.cube) {
             const V length = sqrt(dot(p));
@@ -219,71 +290,57 @@ private:
     }
 
     template <class V>
-    static State<V> start(std::span<const V> args) {
-        return {args[position], args[position + 1], args[position + 2], V(1.0f)};
-    }
-
-    template <class V>
     static V dot(const State<V>& p) {
         const V x = abs(p.x), y = abs(p.y), z = abs(p.z);  // so that an interval's squares aren't negative
         return x * x + y * y + z * z;
     }
 
-    /// Half the distance between the two copies along z.
+    /// The linear map by columns.
     template <class V>
-    static V lastFold(std::span<const V> args) {
-        return args[centreOfScale + 2] * (args[scale] - V(1.0f)) * V(0.5f);
-    }
-
-    /// The rotation in the nine operands from `first`, by columns.
-    template <class V>
-    static State<V> rotated(const State<V>& p, std::span<const V> args, size_t first) {
-        const auto row = [&](size_t r) {
-            return args[first + r] * p.x + args[first + 3 + r] * p.y + args[first + 6 + r] * p.z;
-        };
+    [[gnu::always_inline]] static State<V> mapped(const State<V>& p, const V m[9]) {
+        const auto row = [&](size_t r) { return m[r] * p.x + m[3 + r] * p.y + m[6 + r] * p.z; };
         return {row(0), row(1), row(2), p.scales};
     }
-
-    /// The inverse rotation.
+    /// Its transpose: the inverse of a rotation.
     template <class V>
-    static State<V> turnedBack(const State<V>& p, std::span<const V> args, size_t first) {
-        const auto column = [&](size_t c) {
-            return args[first + 3 * c] * p.x + args[first + 3 * c + 1] * p.y + args[first + 3 * c + 2] * p.z;
-        };
+    [[gnu::always_inline]] static State<V> turnedBack(const State<V>& p, const V m[9]) {
+        const auto column = [&](size_t c) { return m[3 * c] * p.x + m[3 * c + 1] * p.y + m[3 * c + 2] * p.z; };
         return {column(0), column(1), column(2), p.scales};
     }
 
     /// One pass up to the last fold.
-    template <class V, class Keep>
-    static State<V> isometries(State<V> p, std::span<const V> args, const Form& form, Keep&& kept) {
-        if (form.turns) p = rotated(p, args, turn);
-        kept.signs(p);
+    template <Path path, class V, class Keep>
+    [[gnu::always_inline]] static State<V> scaled(State<V> p, const Numbers<V>& n, Keep&& kept) {
+        if (turns<path>(n.form)) p = mapped(p, n.turn);
+        kept.point(p);
         const V x = abs(p.x), y = abs(p.y), z = abs(p.z);
         const V xy = max(x, y), yx = min(x, y);
         const V first = max(xy, z), rest = min(xy, z);
-        kept.order(x, y, xy, z, yx, rest);
         State<V> q{first, max(yx, rest), min(yx, rest), p.scales};
-        if (form.folds) q = rotated(q, args, fold);
-        const V s = args[scale], less = s - V(1.0f);
-        return {q.x * s - args[centreOfScale] * less, q.y * s - args[centreOfScale + 1] * less, q.z * s, q.scales * s};
+        if (folds<path>(n.form))
+            q = mapped(q, n.fold);
+        else
+            q = {q.x * n.scale, q.y * n.scale, q.z * n.scale, q.scales};
+        return {q.x - n.moveX, q.y - n.moveY, q.z, q.scales};
     }
 
     template <class V>
-    static V terminal(const State<V>& p, std::span<const V> args, const Form& form) {
-        const V* c = &args[centreOfScale];
-        if (form.cube) return (max(max(abs(p.x), abs(p.y)), abs(p.z)) - max(max(c[0], c[1]), c[2])) / p.scales;
-        return (sqrt(dot(p)) - V(2.0f)) / p.scales;
+    [[gnu::always_inline]] static V terminal(const State<V>& p, const Numbers<V>& n) {
+        const V size = n.form.cube ? max(max(abs(p.x), abs(p.y)), abs(p.z)) : sqrt(dot(p));
+        return n.form.bails ? (size - n.reach) / p.scales : (size - n.reach) * n.unscale;
     }
 
     /// The natural extension: wide, but it holds for parameters that vary, for jumps and for bailouts.
     template <class I>
-    static I passesOver(std::span<const I> args, const Form& form) {
+    static I passesOver(std::span<const I> args, uint32_t data) {
         using V = typename I::Value;
-        State<I> at = start(args);
+        const Numbers<I> n(args, data);
+        const Form& form = n.form;
+        State<I> at{args[position], args[position + 1], args[position + 2], I(1.0f)};
         V lo = std::numeric_limits<float>::infinity(), hi = -std::numeric_limits<float>::infinity();
         for (uint32_t i = 0; i < form.passes; ++i) {
-            at = isometries(at, args, form, Unkept{});
-            const I h = lastFold(args);
+            at = scaled<Path::Leaps>(at, n, Unkept{});
+            const I& h = n.lastFold;
             if (form.jump) {
                 const auto may = at.z.hi > h.lo, must = at.z.lo > h.hi;
                 const I moved = at.z - (h + h);
@@ -293,13 +350,14 @@ private:
                 at.z = h - abs(at.z - h);
             }
             if (form.bails) {
-                const I early = terminal(at, args, form);
-                const auto leaves = dot(at).hi > args[bailout].lo;
+                at.scales = at.scales * n.scale;
+                const I early = terminal(at, n);
+                const auto leaves = dot(at).hi > n.limit.lo;
                 lo = select(leaves, min(early.lo, lo), lo);
                 hi = select(leaves, max(early.hi, hi), hi);
             }
         }
-        const I last = terminal(at, args, form);
+        const I last = terminal(at, n);
         return {min(lo, last.lo), max(hi, last.hi)};
     }
 };

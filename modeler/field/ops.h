@@ -13,7 +13,9 @@
 //   I interval(…same operands as I…)     an enclosure of apply's floats, rounding included; operands' bounds are never
 //                                        NaN. The default is apply over intervals: rounding is monotone, so it encloses
 //   D gradient(…same operands as D…)     value (same bits as apply) and derivatives; the default is apply over Dual
-//   D gradientByNumbers(same)            the same, for a row with `moving` while the operands from there on are numbers
+//   Numbers<V>(args, data)               for a row with three operands that move, while the others are numbers: what it
+//                                        makes of those, once for all points. V distance(x, y, z, numbers) gives apply's
+//                                        bits and D gradientByNumbers(x, y, z, numbers) derivatives too
 //   owner                                which operand owns the surface (Owner)
 //   V reach(span<const I>, uint32_t)     for Owner::Least (Greatest): an operand that lies above (below) it can't matter:
 //                                        the bits stay the same without it or with any other number beyond it. With one

@@ -2,6 +2,7 @@
 // instantiate an inline function that doesn't depend on Arch.
 #include "modeler/eval/source_arch.h"
 #include "modeler/eval/values_dual.h"
+#include "modeler/eval/values_pair.h"
 #include "modeler/eval/values_simd.h"
 #include "modeler/field/ops.h"
 #include "tests/bench/operation_times.h"
@@ -28,7 +29,14 @@ inline void opaque(Float& f) {
     asm volatile("" : "+m"(f.v.data));
 #endif
 }
-inline void opaque(Dual& d) { opaque(d.value), opaque(d.dx), opaque(d.dy), opaque(d.dz); }
+template <class V>
+inline void opaque(eval::Pair<V>& p) {
+    opaque(p.a), opaque(p.b);
+}
+template <class V>
+inline void opaque(eval::Dual<V>& d) {
+    opaque(d.value), opaque(d.dx), opaque(d.dy), opaque(d.dz);
+}
 
 template <class V>
 V number(float f) {
@@ -50,9 +58,7 @@ auto dataOf(const eval::Operation& operation) {
 
 template <class Row, class V>
 V call(auto... args) {
-    if constexpr (std::is_same_v<V, Dual> && requires { Row::gradientByNumbers(args...); })
-        return Row::gradientByNumbers(args...);
-    else if constexpr (std::is_same_v<V, Dual> && requires { Row::gradient(args...); })
+    if constexpr (std::is_same_v<V, Dual> && requires { Row::gradient(args...); })
         return Row::gradient(args...);
     else
         return Row::apply(args...);
@@ -72,10 +78,39 @@ double leastOf(Body&& body) {
     return best;
 }
 
+/// Of one vector of a row whose operands are numbers but for the point: two run side by side, as in the kernels.
+template <class Row, bool gradient>
+double measuredByNumbers(const eval::Operation& operation) {
+    using Two = eval::Pair<Float>;
+    Two args[mostOperands];
+    for (uint32_t i = 0; i < operation.count; ++i) args[i] = number<Two>(0.25f + 0.01f * static_cast<float>(i));
+    const typename Row::template Numbers<Two> numbers(std::span<const Two>(args, operation.count), operation.data);
+    double seconds = 0;
+    Row::visitPath(numbers.form, [&]<auto path>() {
+        seconds = leastOf([&] {
+            for (int c = 0; c < chains; ++c) {
+                opaque(args[0]);
+                if constexpr (gradient) {
+                    eval::Dual<Two> at[3];
+                    for (int axis = 0; axis < 3; ++axis) at[axis] = {args[axis], Two(0.5f), Two(0.25f), Two(0.125f)};
+                    auto out = Row::template gradientByNumbers<path>(at[0], at[1], at[2], numbers);
+                    opaque(out);
+                } else {
+                    Two out = Row::template distance<path>(args[0], args[1], args[2], numbers);
+                    opaque(out);
+                }
+            }
+        });
+    });
+    return seconds / (2 * chains);
+}
+
 template <class Row, class V>
 double measured([[maybe_unused]] const eval::Operation& operation) {
     if constexpr (Row::arity == field::ops::leaf) {
         return 0;
+    } else if constexpr (requires { sizeof(typename Row::template Numbers<Float>); }) {
+        return measuredByNumbers<Row, std::is_same_v<V, Dual>>(operation);
     } else if constexpr (Row::arity == field::ops::variadic) {
         const uint32_t n = operation.count < mostOperands ? operation.count : mostOperands;
         V args[mostOperands];
