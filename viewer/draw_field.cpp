@@ -78,7 +78,7 @@ Result<Image> FieldPainter::draw(const PictureOptions& options, Progress* progre
     const TraceCost before = scene.cost();
     parts_->cost = {};
     parts_->cost.prepareSeconds = prepared;
-    scene.look(options);
+    scene.look(options, 1, !layers);
     const View view = viewOf(options.camera, options.width, options.height);
     if (layers) *layers = emptyLayers(options.width, options.height);
     PixelSums sums(options.width, options.height);

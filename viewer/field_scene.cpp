@@ -34,17 +34,53 @@ Status FieldScene::warmUp() {
     return ray ? Status(Done{}) : ray.error();
 }
 
-void FieldScene::look(const PictureOptions& options, double fine) {
+void FieldScene::look(const PictureOptions& options, double fine, bool share) {
     setScene(programs_->shade, field_->bounds, options);
     tracer_->look(options, fine);
+    seen_.look(options, fine);
+    share_ = share;
+}
+
+Status FieldScene::ask(Tracer::What what, const std::vector<uint32_t>& which, Rays& rays, Progress* progress) {
+    std::vector<Hit> hits;
+    std::vector<Lit> lits;
+    for (const uint32_t i : which) {
+        hits.push_back(rays.hits[i]);
+        lits.push_back(rays.lits[i]);
+    }
+    if (Status s = tracer_->light(what, hits, lits, progress); !s) return s;
+    for (size_t k = 0; k < which.size(); ++k) rays.lits[which[k]] = lits[k];
+    return Done{};
+}
+
+/// Key pixels ask the field, others only for what those around them don't tell.
+Status FieldScene::light(std::span<const Job> jobs, Rays& rays, Progress* progress) {
+    const auto put = [&](uint32_t i) { seen_.put(jobs[i], rays.hits[i], rays.lits[i], rays.origins[i]); };
+    const auto take = [&](uint32_t i, const std::optional<Lit>& lit) {
+        if (!lit) return false;
+        rays.lits[i] = *lit;
+        put(i);
+        return true;
+    };
+    for (const bool key : {true, false}) {
+        std::vector<uint32_t> unknown, dark;
+        for (uint32_t i = 0; i < jobs.size(); ++i) {
+            if ((!share_ || SeenPixels::isKey(jobs[i])) != key || rays.hits[i].kind() == HitKind::Sky) continue;
+            if (key || !take(i, seen_.surface(jobs[i], rays.hits[i], rays.origins[i]))) unknown.push_back(i);
+        }
+        if (Status s = ask(Tracer::What::Normals, unknown, rays, progress); !s) return s;
+        for (const uint32_t i : unknown)
+            if (key || !take(i, seen_.light(jobs[i], rays.hits[i], rays.lits[i].normal, rays.origins[i]))) dark.push_back(i);
+        if (Status s = ask(Tracer::What::Light, dark, rays, progress); !s) return s;
+        for (const uint32_t i : dark) put(i);
+    }
+    return Done{};
 }
 
 Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
     Result<std::vector<Hit>> hits = tracer_->trace(jobs, progress);
     if (!hits) return hits.error();
-    Result<std::vector<Lit>> lits = tracer_->light(*hits, progress);
-    if (!lits) return lits.error();
-    Rays rays{std::move(*hits), std::move(*lits), {}, std::vector<OriginId>(jobs.size(), 0)};
+    Rays rays{std::move(*hits), std::vector<Lit>(jobs.size(), Lit{}), {}, std::vector<OriginId>(jobs.size(), 0)};
     std::vector<Vec3f> places;
     std::vector<size_t> of;
     for (size_t i = 0; i < jobs.size(); ++i) {
@@ -58,6 +94,7 @@ Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
         rays.origins[of[k]] = origins[k];
         materialOfHit[of[k]] = field_->materialOf[origins[k]];
     }
+    if (Status s = light(jobs, rays, progress); !s) return s.error();
     const Buffer hitBuffer = Buffer::of<Hit>(rays.hits), litBuffer = Buffer::of<Lit>(rays.lits), materialBuffer = Buffer::of<uint32_t>(materialOfHit),
                  colors = Buffer::ofBytes(nullptr, jobs.size() * sizeof(rays.colors[0]));
     hitBuffer.bindStorage(2);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "viewer/gpu_tracer.h"
+#include "viewer/seen_pixels.h"
 #include "viewer/tracer.h"
 
 namespace sgm::viewer {
@@ -37,8 +38,8 @@ public:
     /// Draws one ray from anywhere: drivers finish compiling at a program's first draw.
     Status warmUp();
     /// Sets camera, picture size and ground. `fine` scales how exactly surfaces are found: above 1 finer than the
-    /// picture's pixels ask for.
-    void look(const PictureOptions& options, double fine = 1);
+    /// picture's pixels ask for. With `share`, samples whose surroundings agree take their light from there.
+    void look(const PictureOptions& options, double fine = 1, bool share = true);
     /// Traces and lights up to `mostJobs` jobs of the picture last looked at, in pieces of some 15 ms.
     Result<Rays> draw(std::span<const Job> jobs, Progress* progress);
     /// Of all that was drawn.
@@ -46,9 +47,15 @@ public:
     const std::shared_ptr<const PreparedField>& field() const { return field_; }
 
 private:
+    /// Asks the tracer about some of the hits.
+    Status ask(Tracer::What what, const std::vector<uint32_t>& which, Rays& rays, Progress* progress);
+    Status light(std::span<const Job> jobs, Rays& rays, Progress* progress);
+
     std::shared_ptr<const PreparedField> field_;
     std::shared_ptr<const FieldPrograms> programs_;
     std::unique_ptr<Tracer> tracer_;
+    SeenPixels seen_;
+    bool share_ = true;
     Buffer materials_;
     int threads_;
     size_t shadePiece_ = 2048;  ///< jobs a dispatch

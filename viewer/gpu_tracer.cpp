@@ -19,20 +19,17 @@ class GpuTracer final : public Tracer {
 public:
     GpuTracer(std::shared_ptr<const PreparedField> field, std::shared_ptr<const RayPrograms> programs)
         : field_(std::move(field)), programs_(std::move(programs)) {
-        std::vector<uint32_t> words, starts;
+        std::vector<uint32_t> words, leaves;
         const CellTree& tree = field_->tree;
-        for (size_t i = 0; i < tree.tapes.size(); ++i) {
-            starts.push_back(eval::appendTape(tree.tapes[i], words));
-            // The last word of a tape's first texel is free: how near the surface may be from inside the cell.
-            words[size_t(starts.back()) * 4 + 3] = std::bit_cast<uint32_t>(tree.ranges[i].lo);
-        }
-        std::vector<uint32_t> nodes = tree.nodes;
-        for (uint32_t& word : nodes)
-            if (CellTree::stateOf(word) == CellState::Near) word = uint32_t(CellState::Near) << 30 | starts[CellTree::indexOf(word)];
+        for (size_t i = 0; i < tree.tapes.size(); ++i)
+            leaves.insert(leaves.end(), {eval::appendTape(tree.tapes[i], words), std::bit_cast<uint32_t>(tree.ranges[i].lo),
+                                         std::bit_cast<uint32_t>(tree.ranges[i].hi), 0});
         if (words.empty()) words.resize(4);
+        if (leaves.empty()) leaves.resize(4);
         words_ = TexelBuffer::of(words, 4);
         single_ = words_.as(1);
-        nodes_ = TexelBuffer::of(nodes, 1);
+        nodes_ = TexelBuffer::of(tree.nodes, 1);
+        leaves_ = TexelBuffer::of(leaves, 4);
     }
 
     void look(const PictureOptions& options, double fine) override {
@@ -42,6 +39,7 @@ public:
             program->set("tapes", 0);
             program->set("tree", 1);
             program->set("tapeWords", 2);
+            program->set("leaves", 3);
             program->set("rootLow", field_->tree.low);
             program->set("rootEdge", field_->tree.edge);
             program->set("boundsLow", field_->box.lo);
@@ -61,12 +59,14 @@ public:
         return hits.read<Hit>(jobs.size());
     }
 
-    Result<std::vector<Lit>> light(std::span<const Hit> hits, Progress* progress) override {
-        const Buffer hitBuffer = Buffer::of(hits), lits = Buffer::ofBytes(nullptr, hits.size() * sizeof(Lit));
+    Status light(What what, std::span<const Hit> hits, std::span<Lit> lits, Progress* progress) override {
+        const Buffer hitBuffer = Buffer::of(hits), litBuffer = Buffer::of<Lit>(lits);
         hitBuffer.bindStorage(2);
-        lits.bindStorage(3);
-        if (Status s = run(programs_->surface, hits.size(), lightPiece_, progress); !s) return s.error();
-        return lits.read<Lit>(hits.size());
+        litBuffer.bindStorage(3);
+        programs_->surface.set("what", static_cast<int>(what));
+        if (Status s = run(programs_->surface, hits.size(), lightPiece_[what == What::Light], progress); !s) return s;
+        litBuffer.read(lits.data(), lits.size_bytes());
+        return Done{};
     }
 
 private:
@@ -74,6 +74,7 @@ private:
         words_.bind(0);
         nodes_.bind(1);
         single_.bind(2);
+        leaves_.bind(3);
         const Buffer counts = Buffer::of<uint32_t>(std::array<uint32_t, 3>{});
         counts.bindStorage(7);
         if (Status s = runInPieces(program, count, piece, progress); !s) return s;
@@ -84,8 +85,8 @@ private:
 
     std::shared_ptr<const PreparedField> field_;
     std::shared_ptr<const RayPrograms> programs_;
-    TexelBuffer words_, single_, nodes_;               // the tapes by instruction and by word; the tree
-    size_t tracePiece_ = 2048, lightPiece_ = 2048;  // jobs a dispatch
+    TexelBuffer words_, single_, nodes_, leaves_;    // the tapes by instruction and by word; the tree
+    size_t tracePiece_ = 2048, lightPiece_[2] = {2048, 2048};  // jobs a dispatch
 };
 
 }  // namespace

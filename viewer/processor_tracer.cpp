@@ -100,13 +100,14 @@ public:
         return hits;
     }
 
-    Result<std::vector<Lit>> light(std::span<const Hit> hits, Progress* progress) override {
-        std::vector<Lit> lits(hits.size());
-        const Status done = inPieces(hits.size(), progress, [&](size_t low, size_t high, Answers& answers, TraceCost& cost) {
-            lightPiece(hits.subspan(low, high - low), std::span(lits).subspan(low, high - low), answers, cost);
+    Status light(What what, std::span<const Hit> hits, std::span<Lit> lits, Progress* progress) override {
+        return inPieces(hits.size(), progress, [&](size_t low, size_t high, Answers& answers, TraceCost& cost) {
+            const auto hitsHere = hits.subspan(low, high - low);
+            const auto litsHere = lits.subspan(low, high - low);
+            if (what == What::Normals) return setNormals(hitsHere, litsHere, answers, cost);
+            setOpenness(hitsHere, litsHere, answers, cost);
+            setSunAndDay(hitsHere, litsHere, answers, cost);
         });
-        if (!done) return done.error();
-        return lits;
     }
 
 private:
@@ -198,7 +199,6 @@ private:
         };
         std::vector<Weighed> of;
         for (size_t i = 0; i < hits.size(); ++i) {
-            if (hits[i].kind() == HitKind::Sky) continue;
             lits[i].openness = 1;  // less what is hidden, a quarter a distance
             float reach = 0.07f * cells.size;
             for (int k = 0; k < 4; ++k, reach *= 0.4f) {
@@ -220,15 +220,13 @@ private:
         for (size_t j = 0; j < of.size(); ++j)
             lits[of[j].hit].openness -= 0.25f * (1 - std::clamp(cells.side * values[j] / of[j].enough, 0.0f, 1.0f));
         // A little stays even where things touch: light creeps in.
-        for (size_t i = 0; i < hits.size(); ++i)
-            if (hits[i].kind() != HitKind::Sky) lits[i].openness = 0.08f + 0.92f * lits[i].openness;
+        for (Lit& lit : lits) lit.openness = 0.08f + 0.92f * lit.openness;
     }
 
-    void lightPiece(std::span<const Hit> hits, std::span<Lit> lits, Answers& answers, TraceCost& cost) const {
+    /// Share of the sun's disc that each hit sees; in a hollow with a lamp that of the day, by wide discs of the upper sky.
+    void setSunAndDay(std::span<const Hit> hits, std::span<Lit> lits, Answers& answers, TraceCost& cost) const {
         const CellSpace cells = space();
         const Vec3f eye = view_.eye.as<float>(), sun = sunDirection();
-        setNormals(hits, lits, answers, cost);
-        setOpenness(hits, lits, answers, cost);
         std::vector<DiscWalk> walks;
         struct Ray {
             float* into;
@@ -236,10 +234,6 @@ private:
         };
         std::vector<Ray> rays;
         for (size_t i = 0; i < hits.size(); ++i) {
-            if (hits[i].kind() == HitKind::Sky) {
-                lits[i] = {};
-                continue;
-            }
             Lit& lit = lits[i];
             lit.sunlight = 0;
             lit.daylight = lamp_m_ > 0 && hits[i].kind() == HitKind::Object ? 0.0f : 1.0f;

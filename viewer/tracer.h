@@ -49,8 +49,9 @@ public:
     virtual void look(const PictureOptions& options, double fine) = 0;
     /// A hit a job. Error::Cancelled when `progress` says so, Error::Internal when the driver fails.
     virtual Result<std::vector<Hit>> trace(std::span<const Job> jobs, Progress* progress) = 0;
-    /// The light at each hit.
-    virtual Result<std::vector<Lit>> light(std::span<const Hit> hits, Progress* progress) = 0;
+    /// Sets the normals alone, or, by those, all the rest; of hits that aren't the sky's.
+    enum class What : int { Normals, Light };
+    virtual Status light(What what, std::span<const Hit> hits, std::span<Lit> lits, Progress* progress) = 0;
     /// All so far.
     const TraceCost& cost() const { return cost_; }
 

@@ -18,26 +18,26 @@ float Cell::exit(Vec3f p, Vec3f inverseDirection) const {
 }
 
 Cell CellSpace::cellAt(Vec3f p) const {
+    constexpr int finest = 1 << (2 * CellTree::surfaceDepth);
     const CellTree& tree = field.tree;
-    Vec3f q = (p - tree.low) / tree.edge, low{};
-    for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(q[axis], 0.0f, 0.9999999f);
-    float edge = 1;
+    Vec3i q;  // in finest cells
+    for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(static_cast<int>((p[axis] - tree.low[axis]) * finestPerMetre), 0, finest - 1);
     uint32_t word = uint32_t(CellState::Node) << 30;
+    int shift = 2 * CellTree::surfaceDepth;
     while (CellTree::stateOf(word) == CellState::Node) {
-        edge *= 0.25f;
-        uint32_t child = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const float k = std::clamp(std::floor((q[axis] - low[axis]) / edge), 0.0f, 3.0f);
-            low[axis] += k * edge;
-            child |= static_cast<uint32_t>(k) << (2 * axis);
-        }
+        shift -= 2;
+        const auto child = static_cast<size_t>((q.x >> shift & 3) | (q.y >> shift & 3) << 2 | (q.z >> shift & 3) << 4);
         word = tree.nodes[size_t(CellTree::indexOf(word)) * 64 + child];
     }
-    Cell cell{CellTree::stateOf(word), CellTree::indexOf(word), tree.low + low * tree.edge, edge * tree.edge, 0};
+    const float unit = tree.edge / finest;
+    const Vec3f low{static_cast<float>(q.x >> shift << shift), static_cast<float>(q.y >> shift << shift), static_cast<float>(q.z >> shift << shift)};
+    Cell cell{CellTree::stateOf(word), 0, tree.low + low * unit, static_cast<float>(1 << shift) * unit, 0};
     if (side < 0 && cell.state != CellState::Near) cell.state = cell.state == CellState::Inside ? CellState::Outside : CellState::Inside;
-    cell.least = cell.state == CellState::Outside             ? margin
-                 : cell.state == CellState::Near && side > 0 ? tree.ranges[cell.tape].lo
-                                                             : -margin;
+    cell.least = cell.state == CellState::Outside ? margin : -margin;
+    if (cell.state == CellState::Near) {
+        cell.tape = CellTree::indexOf(word);
+        cell.least = side > 0 ? tree.ranges[cell.tape].lo : -tree.ranges[cell.tape].hi;
+    }
     return cell;
 }
 
@@ -53,7 +53,8 @@ std::array<float, 2> CellSpace::span(Vec3f origin, Vec3f inverseDirection) const
 }
 
 SurfaceWalk::SurfaceWalk(const CellSpace& space, Vec3f origin, Vec3f direction, float pixelAngle)
-    : origin_(origin), direction_(direction), inverse_(inverseOf(direction)), tolerance_(2e-6f * space.size), angle_(0.2f * pixelAngle) {
+    : origin_(origin), direction_(direction), inverse_(inverseOf(direction)), tolerance_(2e-6f * space.size),
+      angle_(0.1f * pixelAngle), pixelAngle_(pixelAngle) {
     const auto [near, far] = space.span(origin, inverse_);
     t_ = near;
     end_ = far;
@@ -76,6 +77,7 @@ bool SurfaceWalk::ask(const CellSpace& space, Question& question) {
         if (cell_.state == CellState::Near) {
             question = {origin_ + (t_ + stride_) * direction_, cell_.tape};
             ++steps_;
+            angle_ = std::min(angle_ + 0.015f * pixelAngle_, 0.3f * pixelAngle_);
             return true;
         }
         answer(space, cell_.state == CellState::Inside ? -space.margin : space.margin);
@@ -131,7 +133,7 @@ bool DiscWalk::ask(const CellSpace& space, Question& question) {
 
 void DiscWalk::answer(const CellSpace& space, float value) {
     const float next = std::abs(value) * space.inverseLipschitz;
-    const float disc = std::min(radius_ * (t_ + stride_), space.margin), least = std::max(0.25f * disc, 6e-4f * space.size);
+    const float disc = std::min(radius_ * (t_ + stride_), space.margin), least = std::max(0.5f * disc, 1e-3f * space.size);
     if (stride_ > std::max(free_ + next, least)) {
         stride_ = std::max(free_, least);
         return;

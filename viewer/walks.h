@@ -35,6 +35,7 @@ struct CellSpace {
     float side;  ///< 1, or −1 to stand inside the solid
     float inverseLipschitz = field.inverseLipschitz();
     float margin = field.tree.margin;
+    float finestPerMetre = float(1 << (2 * CellTree::surfaceDepth)) / field.tree.edge;
     float size = length(field.bounds.size());  ///< metres
 
     Cell cellAt(Vec3f p) const;
@@ -48,7 +49,7 @@ Vec3f inverseOf(Vec3f direction);
 /// The first surface along a ray.
 class SurfaceWalk {
 public:
-    /// `pixelAngle`: radians a pixel, a fifth of which is how exact the hit is.
+    /// `pixelAngle`: radians a pixel; hits are exact to some fifth of one.
     SurfaceWalk(const CellSpace& space, Vec3f origin, Vec3f direction, float pixelAngle);
     /// False when the walk has ended.
     bool ask(const CellSpace& space, Question& question);
@@ -59,7 +60,7 @@ public:
 
 private:
     Vec3f origin_, direction_, inverse_;
-    float t_, end_, free_ = 0, slope_ = -1, stride_ = 0, tolerance_, angle_, found_ = -1;
+    float t_, end_, free_ = 0, slope_ = -1, stride_ = 0, tolerance_, angle_, pixelAngle_, found_ = -1;
     int steps_ = 0;
     bool ended_ = false;
     Cell cell_;

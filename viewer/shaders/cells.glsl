@@ -1,5 +1,6 @@
 // Space cut into a tree of cells, 4 × 4 × 4 a node, each leaf with a tape shortened for it (viewer/cells.h).
-uniform usamplerBuffer tree;   // 64 words a node: state in the two top bits, tape start or node below
+uniform usamplerBuffer tree;   // 64 words a node: state in the two top bits, leaf or node below
+uniform usamplerBuffer leaves; // tape start, least and most of the field
 uniform vec3 rootLow;          // metres
 uniform float rootEdge;
 uniform vec3 boundsLow, boundsHigh;
@@ -40,9 +41,13 @@ Cell cellAt(vec3 p) {
     }
     uint state = word >> 30;
     if (side < 0.0 && state != cellNear) state = cellInside - state;
-    uint tape = word & 0x3fffffffu;
+    uint tape = 0u;
     float least = state == cellOutside ? margin : -margin;
-    if (state == cellNear && side > 0.0) least = uintBitsToFloat(texelFetch(tapes, int(tape)).w);
+    if (state == cellNear) {
+        uvec4 leaf = texelFetch(leaves, int(word & 0x3fffffffu));
+        tape = leaf.x;
+        least = side > 0.0 ? uintBitsToFloat(leaf.y) : -uintBitsToFloat(leaf.z);
+    }
     return Cell(state, tape, rootLow + low * rootEdge, edge * rootEdge, least);
 }
 

@@ -1,8 +1,9 @@
-// The second pass: normals, shadow and occlusion from the field, at what the rays met.
+// The second pass: normals of what the rays met, or by those shadow and occlusion from the field.
 layout(local_size_x = 64) in;
 layout(std430, binding = 2) readonly buffer Hits { vec4 hits[]; };
-layout(std430, binding = 3) writeonly buffer Lits { vec4 lits[]; };  // two a hit: normal, openness; sunlight, daylight
+layout(std430, binding = 3) buffer Lits { vec4 lits[]; };  // two a hit: normal, openness; sunlight, daylight
 uniform uint firstJob, jobCount;
+uniform int what;  // 0: normals; 1: the rest
 
 /// Tetrahedral differences; the cell's tape is exact a little beyond the cell.
 vec3 normalAt(vec3 p, float h) {
@@ -34,7 +35,7 @@ float discSeen(vec3 p, vec3 direction, float radius) {
         }
         float value = cell.state == cellInside ? -margin : side * fieldBy(cell.tape, q);
         float next = abs(value) * inverseLipschitz;
-        float disc = min(radius * (t + stride), margin), least = max(0.25 * disc, 6e-4 * sceneSize);
+        float disc = min(radius * (t + stride), margin), least = max(0.5 * disc, 1e-3 * sceneSize);
         if (stride > max(free + next, least)) {
             stride = max(free, least);
             continue;
@@ -84,17 +85,20 @@ void main() {
     if (gl_GlobalInvocationID.x >= jobCount) return;
     uint i = firstJob + gl_GlobalInvocationID.x;
     vec4 hit = hits[i];
-    lits[2u * i] = lits[2u * i + 1u] = vec4(0.0);
-    if (hit.w == hitSky) return;
     float distance = length(eye - hit.xyz);
-    vec3 normal = vec3(0.0, 1.0, 0.0);
-    if (hit.w == hitObject) normal = normalAt(hit.xyz, max(2e-5 * sceneSize, 0.4 * pixelAngle * distance));
-    vec3 start = hit.xyz + normal * max(1e-4 * sceneSize, 0.5 * pixelAngle * distance);
-    float sunlight = 0.0, daylight = 1.0;
-    if ((lampReach == 0.0 || side > 0.0) && dot(normal, sunDirection) > 0.0) sunlight = sunlightAt(start);
-    if (lampReach > 0.0 && hit.w == hitObject) daylight = daylightAt(start, normal);
-    lits[2u * i] = vec4(normal, opennessAt(hit.xyz, normal));
-    lits[2u * i + 1u] = vec4(sunlight, daylight, 0.0, 0.0);
+    if (what == 0) {
+        vec3 normal = vec3(0.0, 1.0, 0.0);
+        if (hit.w == hitObject) normal = normalAt(hit.xyz, max(2e-5 * sceneSize, 0.4 * pixelAngle * distance));
+        lits[2u * i] = vec4(normal, 0.0);
+    } else {
+        vec3 normal = lits[2u * i].xyz;
+        vec3 start = hit.xyz + normal * max(1e-4 * sceneSize, 0.5 * pixelAngle * distance);
+        float sunlight = 0.0, daylight = 1.0;
+        if ((lampReach == 0.0 || side > 0.0) && dot(normal, sunDirection) > 0.0) sunlight = sunlightAt(start);
+        if (lampReach > 0.0 && hit.w == hitObject) daylight = daylightAt(start, normal);
+        lits[2u * i] = vec4(normal, opennessAt(hit.xyz, normal));
+        lits[2u * i + 1u] = vec4(sunlight, daylight, 0.0, 0.0);
+    }
     atomicAdd(counts[1], evaluations);
     atomicAdd(counts[2], instructions);
 }

@@ -7,12 +7,12 @@ uniform uint firstJob, jobCount;
 
 /// Distance to the first surface along the ray, −1 when there is none. `free` is a radius about the ray's point at t that
 /// holds no surface; a step may be longer than it while the next point's radius reaches back over the gap, and its length
-/// follows the slope met so far.
+/// follows the slope met so far. A ray that grazes a surface for long takes it from farther away.
 float trace(vec3 origin, vec3 direction) {
     vec3 inverseDirection = inverseOf(direction);
     vec2 span = boundsSpan(origin, inverseDirection);
     float tolerance = 2e-6 * sceneSize;
-    float t = span.x, free = 0.0, slope = -1.0, stride = 0.0;
+    float t = span.x, free = 0.0, slope = -1.0, stride = 0.0, near = 0.1 * pixelAngle;
     for (int step = 0; step < 512 && t + stride <= span.y; ++step) {
         Cell cell = cellAt(origin + (t + stride) * direction);
         if (cell.least > 0.0 && stride <= free + cell.least * inverseLipschitz) {
@@ -27,7 +27,10 @@ float trace(vec3 origin, vec3 direction) {
         }
         float value = margin;
         if (cell.state == cellInside) value = -margin;
-        else if (cell.state == cellNear) value = side * fieldBy(cell.tape, origin + (t + stride) * direction);
+        else if (cell.state == cellNear) {
+            value = side * fieldBy(cell.tape, origin + (t + stride) * direction);
+            near = min(near + 0.015 * pixelAngle, 0.3 * pixelAngle);
+        }
         float next = value * inverseLipschitz;
         if (stride > free + abs(next) && stride > 0.0) {  // a gap: back to the safe step
             stride = free;
@@ -37,7 +40,7 @@ float trace(vec3 origin, vec3 direction) {
         if (stride > 0.0) slope = mix(slope, (next - free) / stride, 0.4);
         t += stride;
         free = next;
-        if (value < max(tolerance, 0.2 * pixelAngle * t)) return max(t + free, 0.0);  // one more safe step, or back out
+        if (value < max(tolerance, near * t)) return max(t + free, 0.0);  // one more safe step, or back out
         stride = max(free, 2.0 * free / (1.0 - min(slope, 0.6)));
         if (t + stride > span.y) stride = free;  // the long step would leave the box, perhaps past a last surface
     }

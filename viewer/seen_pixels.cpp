@@ -1,0 +1,108 @@
+#include "viewer/seen_pixels.h"
+
+#include <cmath>
+
+#include "viewer/scene.h"
+
+namespace sgm::viewer {
+namespace {
+
+/// Larger pictures don't keep their pixels, which would take a gigabyte.
+constexpr size_t mostPixels = size_t(1) << 24;
+
+}  // namespace
+
+/// A weighted mean of light, and how far what it is of differs.
+class SeenPixels::Mean {
+public:
+    void add(const Lit& lit, float weight, int dx, int dy) {
+        const float shares[] = {lit.sunlight, lit.openness, lit.daylight};
+        for (size_t i = 0; i < 3; ++i) {
+            low_[i] = std::min(low_[i], shares[i]);
+            high_[i] = std::max(high_[i], shares[i]);
+            sums_[i] += weight * shares[i];
+        }
+        normal_ += weight * lit.normal;
+        weight_ += weight;
+        left_ |= dx < 0, right_ |= dx > 0, above_ |= dy < 0, below_ |= dy > 0;
+        ++count_;
+    }
+    int count() const { return count_; }
+    /// Some of it lies on opposite sides.
+    bool around() const { return (left_ && right_) || (above_ && below_); }
+    /// The most that a share differs.
+    float spread() const { return std::max({high_[0] - low_[0], high_[1] - low_[1], high_[2] - low_[2]}); }
+    /// How much the normals agree, the cosine of what lies between for two.
+    float agreement() const { return length(normal_) / weight_; }
+    Lit lit() const { return {normalized(normal_), sums_[1] / weight_, sums_[0] / weight_, sums_[2] / weight_, {}}; }
+
+private:
+    float low_[3] = {1, 1, 1}, high_[3] = {0, 0, 0}, sums_[3] = {0, 0, 0}, weight_ = 0;
+    Vec3f normal_{};
+    int count_ = 0;
+    bool left_ = false, right_ = false, above_ = false, below_ = false;
+};
+
+void SeenPixels::look(const PictureOptions& options, double fine) {
+    if (options == options_ && fine == fine_) return;
+    options_ = options;
+    fine_ = fine;
+    const View view = viewOf(options.camera, options.width, options.height);
+    eye_ = view.eye.as<float>();
+    pixelAngle_ = static_cast<float>(view.pixelAngle);
+    const size_t count = size_t(options.width) * size_t(options.height);
+    pixels_.resize(count <= mostPixels ? count : 0);
+    known_.assign(pixels_.size(), false);
+}
+
+void SeenPixels::put(Job job, const Hit& hit, const Lit& lit, OriginId origin) {
+    if (job.sample != 0 || pixels_.empty()) return;
+    const size_t at = job.y() * size_t(options_.width) + job.x();
+    pixels_[at] = {hit, lit, origin};
+    known_[at] = true;
+}
+
+template <class Belongs>
+void SeenPixels::gather(Job job, const Hit& hit, OriginId origin, Mean& mean, Belongs&& belongs) const {
+    if (pixels_.empty()) return;
+    const int width = options_.width, height = options_.height;
+    const float pixel = pixelAt(hit);
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+            const int x = static_cast<int>(job.x()) + dx, y = static_cast<int>(job.y()) + dy;
+            if (x < 0 || y < 0 || x >= width || y >= height) continue;
+            // A first sample asks those beside it: what was asked of the field itself.
+            if (job.sample == 0 && std::abs(dx) + std::abs(dy) != 1) continue;
+            const size_t at = size_t(y) * size_t(width) + size_t(x);
+            if (!known_[at]) continue;
+            const Pixel& p = pixels_[at];
+            const Vec3f away = hit.position - p.hit.position;
+            if (p.hit.kindNumber != hit.kindNumber || p.origin != origin || !belongs(p, away)) continue;
+            mean.add(p.lit, 1 / (dot(away, away) + 0.05f * pixel * pixel), dx, dy);
+        }
+}
+
+std::optional<Lit> SeenPixels::surface(Job job, const Hit& hit, OriginId origin) const {
+    const float pixel = pixelAt(hit);
+    Mean mean;
+    gather(job, hit, origin, mean, [&](const Pixel& p, Vec3f away) {
+        return std::abs(dot(away, p.lit.normal)) < 0.04f * pixel && length(away) < 8 * pixel;
+    });
+    if (job.sample == 0 ? !mean.around() : mean.count() < 2) return std::nullopt;
+    if (mean.spread() > 0.1f || mean.agreement() < 0.98f) return std::nullopt;
+    return mean.lit();
+}
+
+std::optional<Lit> SeenPixels::light(Job job, const Hit& hit, Vec3f normal, OriginId origin) const {
+    const float pixel = pixelAt(hit);
+    Mean mean;
+    gather(job, hit, origin, mean, [&](const Pixel& p, Vec3f away) { return dot(p.lit.normal, normal) > 0.3f && length(away) < 4 * pixel; });
+    if (mean.count() == 0 || (job.sample == 0 && !mean.around())) return std::nullopt;
+    // The edge of a shadow on something smooth must be found; on ornament nobody sees it.
+    if (mean.spread() > 0.25f && (job.sample == 0 || mean.agreement() > 0.95f)) return std::nullopt;
+    Lit lit = mean.lit();
+    lit.normal = normal;
+    return lit;
+}
+
+}  // namespace sgm::viewer
