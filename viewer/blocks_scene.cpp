@@ -1,7 +1,11 @@
 #include "viewer/blocks_scene.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
+#include "modeler/core/parallel.h"
+#include "modeler/eval/evaluate.h"
 #include "modeler/mesh/edge_loops.h"
 #include "modeler/mesh/marching_cubes.h"
 #include "viewer/field_scene.h"
@@ -11,6 +15,7 @@ namespace sgm::viewer {
 namespace {
 
 constexpr size_t cornersPerBlock = 33 * 33 * 33, cellsPerBlock = 32 * 32 * 32;
+constexpr float cellsPerEdge = 32;  // of a block
 constexpr float nearestToCorner = mesh::edgeMargin;
 
 Buffer caseWords() {
@@ -38,15 +43,16 @@ GpuTriangles roomFor(size_t count) {
 
 Result<PreparedBlocks> prepareBlocks(const eval::Tape& tape, const mesh::Grid& grid, int threads, Progress* progress) {
     mesh::Counts counts;
-    const auto blocks = mesh::subdivide(tape, grid, threads, progress, counts);
+    auto blocks = mesh::subdivide(tape, grid, threads, progress, counts);
     if (!blocks.ok()) return blocks.error();
     PreparedBlocks prepared;
     prepared.grid = grid;
     prepared.ops = eval::opsOf(tape);
-    for (const mesh::Block& block : *blocks) {
+    for (mesh::Block& block : *blocks) {
         const auto start = static_cast<int32_t>(eval::appendTape(block.tape, prepared.words));
         prepared.blocks.push_back({block.index.x, block.index.y, block.index.z, start});
         prepared.registers = std::max(prepared.registers, block.tape.registerCount());
+        prepared.tapes.push_back(std::move(block.tape));
     }
     return prepared;
 }
@@ -99,6 +105,37 @@ Result<GpuTriangles> polygonizeOnGpu(const PreparedBlocks& blocks, const BlockPr
         if (counting) made = roomFor(count.read<uint32_t>(1)[0]);
     }
     return made;
+}
+
+std::vector<OriginId> ownersOf(const PreparedBlocks& blocks, const GpuTriangles& triangles, int threads) {
+    const std::vector<Vec3f> corners = triangles.positions.read<Vec3f>(triangles.count * 3);
+    std::map<std::array<int, 3>, size_t> blockAt;
+    for (size_t b = 0; b < blocks.blocks.size(); ++b) blockAt[{blocks.blocks[b][0], blocks.blocks[b][1], blocks.blocks[b][2]}] = b;
+    struct Members {
+        std::vector<float> x, y, z;
+        std::vector<size_t> triangles;
+    };
+    std::vector<Members> members(blocks.blocks.size());
+    const float edge = cellsPerEdge * blocks.grid.cell_m;
+    for (size_t t = 0; t < triangles.count; ++t) {
+        const Vec3f middle = (corners[3 * t] + corners[3 * t + 1] + corners[3 * t + 2]) / 3.0f, place = (middle - blocks.grid.origin) / edge;
+        const auto index = [](float v) { return static_cast<int>(std::floor(v)); };
+        const auto block = blockAt.find({index(place.x), index(place.y), index(place.z)});
+        if (block == blockAt.end()) continue;  // rounded across the border of all blocks
+        Members& into = members[block->second];
+        into.x.push_back(middle.x), into.y.push_back(middle.y), into.z.push_back(middle.z);
+        into.triangles.push_back(t);
+    }
+    std::vector<OriginId> owners(triangles.count, 0);
+    std::vector<eval::Workspace> workspaces(size_t(threadCount(threads)));
+    parallelFor(members.size(), threads, nullptr, [&](size_t b, int worker) {
+        const Members& m = members[b];
+        if (m.triangles.empty()) return;
+        std::vector<OriginId> found(m.triangles.size());
+        eval::evaluateOrigin(blocks.tapes[b], {m.x.data(), m.y.data(), m.z.data(), found.size()}, found.data(), workspaces[size_t(worker)]);
+        for (size_t i = 0; i < found.size(); ++i) owners[m.triangles[i]] = found[i];
+    });
+    return owners;
 }
 
 Result<std::vector<Vec3f>> polygonizeOnGpu(const eval::Tape& tape, const mesh::Grid& grid) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "modeler/core/provenance.h"
 #include "modeler/eval/glsl.h"
 #include "modeler/mesh/subdivide.h"
 #include "viewer/gpu.h"
@@ -18,6 +19,7 @@ struct PreparedBlocks {
     mesh::Grid grid;
     std::vector<uint32_t> words;                ///< the blocks' tapes
     std::vector<std::array<int32_t, 4>> blocks;  ///< index of the block, texel where its tape starts
+    std::vector<eval::Tape> tapes;               ///< the same tapes, for `ownersOf`
     uint32_t registers = 0;
     eval::OpSet ops;
 };
@@ -43,6 +45,9 @@ struct GpuTriangles {
 };
 /// Error::Cancelled when `progress` says so.
 Result<GpuTriangles> polygonizeOnGpu(const PreparedBlocks& blocks, const BlockPrograms& programs, Progress* progress);
+
+/// Whose surface each triangle is: asked of its block's tape, at its middle.
+std::vector<OriginId> ownersOf(const PreparedBlocks& blocks, const GpuTriangles& triangles, int threads);
 
 /// The corners of the triangles, three a triangle, made by a context of its own; for tests that compare with the CPU.
 Result<std::vector<Vec3f>> polygonizeOnGpu(const eval::Tape& tape, const mesh::Grid& grid);

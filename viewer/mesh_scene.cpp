@@ -100,20 +100,36 @@ std::vector<uint32_t> rulesOf(const Provenance& provenance) {
     return rules;
 }
 
+/// Material and rule of each triangle, by whose it is.
+std::vector<PreparedMesh::Owner> ownersFrom(std::span<const OriginId> origins, const Provenance& provenance) {
+    const std::vector<uint32_t> rules = rulesOf(provenance);
+    std::vector<PreparedMesh::Owner> owners;
+    for (const OriginId origin : origins) {
+        const OriginId part = origin < provenance.parts.size() ? origin : 0;
+        owners.push_back({provenance.parts[part].material, rules[part], 0});
+    }
+    return owners;
+}
+
+TexelBuffer upload(const std::vector<PreparedMesh::Owner>& owners) {
+    std::vector<uint32_t> words;
+    for (const PreparedMesh::Owner& owner : owners) words.insert(words.end(), {owner.material, owner.rule, owner.component});
+    if (words.empty()) words.push_back(0);  // buffers hold something
+    return TexelBuffer::of(words, 1);
+}
+
 }  // namespace
 
 Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& provenance) {
     PreparedMesh prepared;
-    const std::vector<uint32_t> rules = rulesOf(provenance);
+    std::vector<OriginId> origins;
     for (const mesh::Chunk& chunk : mesh.chunks) {
         prepared.positions.insert(prepared.positions.end(), chunk.positions.begin(), chunk.positions.end());
         prepared.normals.insert(prepared.normals.end(), chunk.normals.begin(), chunk.normals.end());
         for (const mesh::Triangle& t : chunk.triangles) prepared.triangles.push_back(chunk.inMesh(t));
-        for (const OriginId origin : chunk.origins) {
-            const OriginId part = origin < provenance.parts.size() ? origin : 0;
-            prepared.owners.push_back({provenance.parts[part].material, rules[part], 0});
-        }
+        origins.insert(origins.end(), chunk.origins.begin(), chunk.origins.end());
     }
+    prepared.owners = ownersFrom(origins, provenance);
     if (prepared.normals.size() != prepared.positions.size() || prepared.owners.size() != prepared.triangles.size())
         return Error{Error::Kind::Internal, "the mesh has no normal for every vertex or no origin for every triangle"};
     prepared.bounds = mesh.bounds();
@@ -144,22 +160,21 @@ MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshProgram
       bounds_(mesh.bounds),
       triangles_(TriangleBuffers::of(mesh.positions, mesh.normals, mesh.curvatures, mesh.triangles)),
       triangleCount_(mesh.triangles.size()),
+      owners_(upload(mesh.owners)),
       materials_(uploadMaterials(mesh.materials)),
       skyCount_(std::clamp<size_t>((size_t(24) << 20) / std::max<size_t>(triangleCount_, 1), 12, mostSkyMaps)) {
-    static_assert(sizeof(PreparedMesh::Owner) == 3 * sizeof(uint32_t));
-    const auto* words = reinterpret_cast<const uint32_t*>(mesh.owners.data());
-    owners_ = TexelBuffer::of({words, mesh.owners.size() * 3}, 1);
     makeMaps();
 }
 
-MeshScene::MeshScene(GpuTriangles triangles, const Box3f& bounds, const Material& material, std::shared_ptr<const MeshPrograms> programs)
+MeshScene::MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, const Box3f& bounds, const Provenance& provenance,
+                     std::shared_ptr<const MeshPrograms> programs)
     : programs_(std::move(programs)),
       bounds_(bounds),
       triangleCount_(triangles.count),
-      materials_(uploadMaterials({material})),
+      owners_(upload(ownersFrom(owners, provenance))),
+      materials_(uploadMaterials(provenance.materials)),
       skyCount_(12) {
     const std::vector<float> flat(triangleCount_ * 3 + 1, 0.0f);
-    owners_ = TexelBuffer::of(std::vector<uint32_t>(triangleCount_ * 3 + 1, 0u), 1);
     triangles_ = TriangleBuffers::of(std::move(triangles.positions), std::move(triangles.normals), Buffer::of<float>(flat), std::move(triangles.indices));
     makeMaps();
 }

@@ -57,8 +57,9 @@ struct MeshPrograms {
 class MeshScene {
 public:
     MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs);
-    /// Of triangles that a shader has made: all of one material, rule and component, without curvature.
-    MeshScene(GpuTriangles triangles, const Box3f& bounds, const Material& material, std::shared_ptr<const MeshPrograms> programs);
+    /// Of triangles that a shader has made, with the owner of each: all of one component, without curvature.
+    MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, const Box3f& bounds, const Provenance& provenance,
+              std::shared_ptr<const MeshPrograms> programs);
     /// Draws all maps of shadow and sky.
     Status light(Progress* progress);
     /// Draws the next map: first the sun's, then those of the sky, which count once all are there. True when none is left.

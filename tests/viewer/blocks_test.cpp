@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modeler/eval/evaluate.h"
 #include "modeler/mesh/polygonize.h"
 #include "tests/viewer/gpu_fixture.h"
 #include "tests/viewer/scenes.h"
@@ -56,6 +57,34 @@ TEST_F(Blocks, EndAtTheGridsBorder) {
     scene.add("cube", {0, 0, 0}, {1, 1, 1}, {1, 1, 1});
     const field::Field field = scene.sum();
     expectSame(scene.compile(field), {{-0.6f, -1.1f, -1.1f}, {1.1f, 0.52f, 1.1f}}, 0.037f);
+}
+
+TEST_F(Blocks, KnowWhoseEachTriangleIs) {
+    Scene scene;
+    scene.add("sphere", {0, 0, 0}, {1, 1, 1}, {1, 0, 0});
+    scene.add("torus", {0.9, 0.3, 0.1}, {0.8, 0.3, 0.8}, {0, 1, 0});
+    const field::Field field = scene.sum();
+    const eval::Tape tape = scene.compile(field);
+    const auto gpu = GpuContext::create();
+    ASSERT_TRUE(gpu.ok());
+    const auto blocks = prepareBlocks(tape, mesh::gridFor(field.bounds, 0.02f), 1, nullptr);
+    ASSERT_TRUE(blocks.ok());
+    ASSERT_GT(blocks->blocks.size(), 8u);
+    const auto programs = programsFor(*blocks, nullptr);
+    ASSERT_TRUE(programs.ok());
+    const auto triangles = polygonizeOnGpu(*blocks, **programs, nullptr);
+    ASSERT_TRUE(triangles.ok());
+    const std::vector<Vec3f> corners = triangles->positions.read<Vec3f>(triangles->count * 3);
+    std::vector<float> x, y, z;
+    for (size_t t = 0; t < triangles->count; ++t) {
+        const Vec3f middle = (corners[3 * t] + corners[3 * t + 1] + corners[3 * t + 2]) / 3.0f;
+        x.push_back(middle.x), y.push_back(middle.y), z.push_back(middle.z);
+    }
+    std::vector<OriginId> whole(x.size());
+    eval::Workspace workspace;
+    eval::evaluateOrigin(tape, {x.data(), y.data(), z.data(), x.size()}, whole.data(), workspace);
+    EXPECT_EQ(ownersOf(*blocks, *triangles, 1), whole);
+    for (const OriginId owner : {1u, 2u}) EXPECT_GT(std::count(whole.begin(), whole.end(), owner), 1000);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ private:
     bool begin(const char* name, ImVec2 low, ImVec2 size, bool above = false);
     void left(ImVec2 low, ImVec2 size);
     void right(ImVec2 low, ImVec2 size);
-    void splitter(const char* name, float x, float y, float height, float& width, float sign);
+    void splitter(const char* name, float x, float y, float height, float width, std::optional<float>& chosen, float sign);
 
     Workbench& bench_;
     Bars bars_;
@@ -44,7 +44,7 @@ private:
     TextPanel text_;
     StepPanel step_;
     ExportPanel export_;
-    float left_ = 0, right_ = 0;  // pixels; 0 before the first frame
+    std::optional<float> left_, right_;  // pixels that a hand has chosen; else they follow the window
 };
 
 bool Workspace::begin(const char* name, ImVec2 low, ImVec2 size, bool above) {
@@ -56,7 +56,7 @@ bool Workspace::begin(const char* name, ImVec2 low, ImVec2 size, bool above) {
                             ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoNavFocus);
 }
 
-void Workspace::splitter(const char* name, float x, float y, float height, float& width, float sign) {
+void Workspace::splitter(const char* name, float x, float y, float height, float width, std::optional<float>& chosen, float sign) {
     constexpr float grab = 6;
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));  // it would hide all of so narrow a window
     if (begin(name, {x - grab / 2, y}, {grab, height}, true)) {
@@ -67,7 +67,7 @@ void Workspace::splitter(const char* name, float x, float y, float height, float
             ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
             ImGui::GetWindowDrawList()->AddLine({x, y}, {x, y + height}, tint::accent, 2);
         }
-        if (ImGui::IsItemActive()) width = std::clamp(width + sign * ImGui::GetIO().MouseDelta.x, 200.0f, 640.0f);
+        if (ImGui::IsItemActive()) chosen = std::clamp(width + sign * ImGui::GetIO().MouseDelta.x, 200.0f, 640.0f);
     }
     ImGui::End();
     ImGui::PopStyleVar();
@@ -105,10 +105,8 @@ void Workspace::right(ImVec2 low, ImVec2 size) {
 
 void Workspace::show() {
     const ImGuiIO& io = ImGui::GetIO();
-    if (left_ == 0) {
-        left_ = std::clamp(io.DisplaySize.x * 0.22f, 296.0f, 430.0f);
-        right_ = std::clamp(io.DisplaySize.x * 0.26f, 396.0f, 520.0f);
-    }
+    const float leftWidth = left_.value_or(std::clamp(io.DisplaySize.x * 0.23f, 280.0f, 430.0f)),
+                rightWidth = right_.value_or(std::clamp(io.DisplaySize.x * 0.31f, 340.0f, 560.0f));
     const float bar = ImGui::GetFrameHeight() + 14, status = ImGui::GetFrameHeight() + 6, height = io.DisplaySize.y - bar - status;
     const float problems = bench_.session.problems().empty() ? 0 : std::min(ImGui::GetFrameHeight() * 4.5f, height / 3);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
@@ -118,9 +116,9 @@ void Workspace::show() {
     if (begin("Status", {0, io.DisplaySize.y - status}, {io.DisplaySize.x, status})) bars_.status(bench_);
     ImGui::End();
     ImGui::PopStyleColor();
-    left({0, bar}, {left_, height});
-    right({io.DisplaySize.x - right_, bar}, {right_, height});
-    const float x = left_ + 1, width = io.DisplaySize.x - left_ - right_ - 2;
+    left({0, bar}, {leftWidth, height});
+    right({io.DisplaySize.x - rightWidth, bar}, {rightWidth, height});
+    const float x = leftWidth + 1, width = io.DisplaySize.x - leftWidth - rightWidth - 2;
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
     if (begin("View", {x, bar}, {width, height - problems})) viewport(bench_);
     ImGui::End();
@@ -129,8 +127,8 @@ void Workspace::show() {
         if (begin("Problems", {x, bar + height - problems}, {width, problems})) problemsPanel(bench_);
         ImGui::End();
     }
-    splitter("##left", left_, bar, height, left_, 1);
-    splitter("##right", io.DisplaySize.x - right_, bar, height, right_, -1);
+    splitter("##left", leftWidth, bar, height, leftWidth, left_, 1);
+    splitter("##right", io.DisplaySize.x - rightWidth, bar, height, rightWidth, right_, -1);
     ImGui::PopStyleVar();
     if (!io.WantTextInput || bench_.typing) {
         bars_.keys(bench_);

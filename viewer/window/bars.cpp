@@ -44,7 +44,9 @@ void Bars::top(Workbench& bench) {
     gap();
     int pane = static_cast<int>(bench.look.pane);
     constexpr std::array panes{"Field", "Fog", "Mesh", "Split"};
-    if (oneOf(report, "pane", panes, pane)) bench.look.pane = static_cast<Pane>(pane);
+    constexpr std::array meanings{"The field itself, by rays: exact, and there at once", "The solid as a cloud of that shape",
+                                  "The mesh that would be exported", "Field and mesh side by side"};
+    if (oneOf(report, "pane", panes, pane, meanings)) bench.look.pane = static_cast<Pane>(pane);
     gap();
     lookControls(bench);
     if (bench.wantsMesh()) {
@@ -60,7 +62,7 @@ void Bars::lookControls(Workbench& bench) {
     if (choice(report, "look.joints", joints, shown, ImGui::GetFontSize() * 7)) bench.look.joints = static_cast<JointsShown>(shown);
     hint("Joints of the selected shape or of all: red joins to a centre, green face to face, bonded ones filled");
     ImGui::SameLine();
-    toggle(report, "look.ground", "Ground", bench.look.ground);
+    toggle(report, "look.ground", "Ground", bench.look.ground, "Stand the model on a plane that takes its shadow");
     ImGui::SameLine();
     const bool within = bench.orbit.lamp_m > 0;
     if (button(report, "look.inside", within ? "Outside" : "Inside", "Stand in the largest hollow with a lamp, or leave it", bench.field.hasField()))
@@ -74,15 +76,16 @@ void Bars::meshControls(Workbench& bench) {
     static const std::vector<std::string> looks{"Materials", "Normals", "Curvature", "Rules", "Components"};
     int look = static_cast<int>(bench.look.mesh.look);
     if (choice(report, "mesh.look", looks, look, ImGui::GetFontSize() * 7)) bench.look.mesh.look = static_cast<MeshLook>(look);
+    hint("What the mesh's colours tell");
     ImGui::SameLine();
     static const std::vector<std::string> sizes{"64", "128", "192", "256", "384"};
     int size = 0;
     for (int i = 0; i < static_cast<int>(sizes.size()); ++i)
         if (std::stoi(sizes[size_t(i)]) == bench.look.meshResolution) size = i;
     if (choice(report, "mesh.cells", sizes, size, ImGui::GetFontSize() * 4)) bench.look.meshResolution = std::stoi(sizes[size_t(size)]);
-    hint("Cells along the longest side");
+    hint("Cells along the longest side: more are finer and slower");
     ImGui::SameLine();
-    toggle(report, "mesh.wire", "Wire", bench.look.mesh.wireframe);
+    toggle(report, "mesh.wire", "Wire", bench.look.mesh.wireframe, "The edges of the triangles");
     ImGui::SameLine();
     toggle(report, "mesh.section", "Section", bench.look.section, "Cut the mesh open along an axis");
     if (!bench.look.section) return;
@@ -112,15 +115,20 @@ void Bars::status(Workbench& bench) {
     ImGui::PushStyleColor(ImGuiCol_Text, bench.noticeIsProblem ? tint::error : tint::faint);
     ImGui::TextUnformatted(bench.hover && !bench.noticeIsProblem ? bench.hover->text.c_str() : bench.notice.c_str());
     ImGui::PopStyleColor();
-    std::string facts;
+    std::string facts, stages;
     if (bench.shown()) {
         double seconds = bench.fieldTimes.prepare;
-        for (const auto& [stage, took] : bench.shown()->stages) seconds += took;
-        facts = fmt::format("{} shapes  ·  {} steps  ·  {:.0f} ms", bench.tree()->shapes.size(), bench.shown()->model.derivation.steps.size(), seconds * 1000);
+        for (const auto& [stage, took] : bench.shown()->stages) {
+            seconds += took;
+            stages += fmt::format("{}  {:.1f} ms\n", stage, took * 1000);
+        }
+        stages += fmt::format("cells for the rays  {:.1f} ms", bench.fieldTimes.prepare * 1000);
+        facts = fmt::format("{} shapes  ·  {} steps  ·  made in {:.0f} ms", bench.tree()->shapes.size(), bench.shown()->model.derivation.steps.size(), seconds * 1000);
         if (bench.wantsMesh() && bench.mesh.hasMesh()) facts += fmt::format("  ·  {} triangles", bench.mesh.triangleCount());
     }
     ImGui::SameLine(right - ImGui::CalcTextSize(facts.c_str()).x - 12);
     faint(facts);
+    hint(stages.empty() ? nullptr : stages.c_str());
 }
 
 void Bars::keys(Workbench& bench) {
@@ -155,7 +163,7 @@ void Bars::cheatSheet(Workbench& bench) {
     const bool blender = bench.look.hands == Hands::Blender;
     const std::pair<const char*, const char*> rows[] = {
         {blender ? "MMB drag" : "LMB drag", "Turn"}, {blender ? "Shift MMB" : "MMB drag", "Move"}, {blender ? "Ctrl MMB" : "RMB drag", "Nearer, farther"},
-        {"Wheel", "Nearer, farther"}, {"Click", "Select what is there, and its text"}, {"F", "Frame the selection"}, {"A", "Frame all"}, {"Home", "All, from the usual side"},
+        {"Wheel", "Nearer, farther"}, {"Click", "Select what is there, and its text"}, {"Ctrl+Click", "On a slider: type its value"}, {"F", "Frame the selection"}, {"A", "Frame all"}, {"Home", "All, from the usual side"},
         {"1 - 7", "Front, back, right, left, top, bottom, three-quarter"}, {"P", "Picture of the view beside the file"}, {"T", "Turntable: 36 pictures"},
         {"Ctrl+S  Ctrl+O", "Save, open"}, {"Ctrl+Z  Ctrl+Y", "Undo, redo"}, {"H", "This sheet"}};
     const ImVec2 screen = ImGui::GetIO().DisplaySize;

@@ -40,6 +40,7 @@ private:
     uint64_t aheadRevision_ = 0;    ///< of the document, when the last of them was
     std::optional<ParamRow> held_;  ///< what a hand holds; the model follows it
     std::string styleName_;
+    float labelShare_ = 0.46f;  ///< of a row's width
 };
 
 /// The derived tree, filtered and foldable; a shape may be dragged onto a joint of the view.

@@ -177,8 +177,8 @@ Status Preparer::makeMesh(std::shared_ptr<const Meshed> meshed) {
 Status Preparer::makePreview(std::shared_ptr<const Shown> model, int resolution, Progress& progress) {
     Ready<MeshScene> ready;
     const lower::Model& lowered = *model->model.lowered;
-    const Box3f& bounds = lowered.field.bounds;
     const Stopwatch watch;
+    const Box3f bounds = tighten(model->model.tape, lowered.field.bounds);  // the ground lies where the field's does
     const Result<PreparedBlocks> blocks = prepareBlocks(model->model.tape, mesh::gridFor(bounds, mesh::cellFor(bounds, resolution)), 0, &progress);
     if (!blocks) return blocks.error();
     auto programs = programsFor(*blocks, blockPrograms_);
@@ -188,8 +188,8 @@ Status Preparer::makePreview(std::shared_ptr<const Shown> model, int resolution,
     if (!triangles) return triangles.error();
     ready.times.prepare = watch.seconds();
     if (Status s = ensureMeshPrograms(ready.times); !s) return s;
-    const auto& materials = lowered.provenance.materials;
-    ready.scene = std::make_unique<MeshScene>(std::move(*triangles), bounds, materials.empty() ? Material{} : materials.back(), meshPrograms_);
+    const std::vector<OriginId> owners = ownersOf(*blocks, *triangles, 0);
+    ready.scene = std::make_unique<MeshScene>(std::move(*triangles), owners, bounds, lowered.provenance, meshPrograms_);
     give(&News::mesh, std::move(ready));
     const std::lock_guard lock(mutex_);
     news_.meshIsPreview = true;

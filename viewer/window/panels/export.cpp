@@ -30,7 +30,7 @@ void ExportPanel::option(Workbench& bench, ExportRow& row) {
 void ExportPanel::show(Workbench& bench) {
     const auto formats = exporter::exporters();
     std::vector<std::string> names;
-    for (const exporter::Exporter& f : formats) names.push_back(fmt::format("{}  {}", f.extension, f.doc));
+    for (const exporter::Exporter& f : formats) names.push_back(fmt::format("{}  {}", f.extension, f.doc.substr(0, f.doc.find(':'))));
     const bool first = format_ < 0;
     int format = std::max(format_, 0);
     heading("Format");
@@ -40,6 +40,9 @@ void ExportPanel::show(Workbench& bench) {
         std::filesystem::path file = bench.document.path().empty() ? "untitled" : bench.document.path();
         file_ = file.replace_extension(formats[size_t(format)].extension).string();
     }
+    ImGui::PushTextWrapPos(0);
+    faint(std::string(formats[size_t(std::max(format_, 0))].doc));
+    ImGui::PopTextWrapPos();
     heading("Options");
     const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
     ImGui::AlignTextToFramePadding();

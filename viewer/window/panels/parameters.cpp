@@ -48,6 +48,11 @@ void ParametersPanel::show(Workbench& bench) {
     choices(bench);
     list(bench);
     if (ImGui::BeginChild("rows")) {
+        // As wide as the longest label asks for, within what leaves the sliders room.
+        float longest = 0;
+        for (const ParamRow& r : rows_)
+            if (r.number.size() <= 3) longest = std::max(longest, ImGui::CalcTextSize(r.label.c_str()).x);
+        labelShare_ = std::clamp((longest + 10) / ImGui::GetContentRegionAvail().x, 0.3f, 0.54f);
         std::string group;
         for (const ParamRow& r : rows_) {
             if (r.group != group && !r.group.empty()) heading(r.group.c_str());
@@ -190,11 +195,13 @@ void ParametersPanel::row(Workbench& bench, ParamRow row) {
     ImGui::PushID(row.name.c_str());
     const float width = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX();
     ImGui::AlignTextToFramePadding();
-    const float labelWidth = width * 0.46f;
-    ImGui::TextUnformatted(shortened(row.label, labelWidth - 6).c_str());
+    // Many numbers get a line of their own.
+    const bool wide = row.number.size() > 3;
+    const float labelWidth = wide ? 0 : labelShare_ * width;
+    ImGui::TextUnformatted(shortened(row.label, (wide ? width - ImGui::GetFrameHeight() : labelWidth) - 6).c_str());
     const std::string why = fmt::format("{} ({}){}", row.label, row.name, row.key ? fmt::format(", key {}", row.key) : "");
     hint(why.c_str());
-    ImGui::SameLine(left + labelWidth);
+    if (!wide) ImGui::SameLine(left + labelWidth);
     const bool active = held_.has_value();
     if (control(bench, row)) {
         if (row.kind == ParamRow::Kind::Integer || row.kind == ParamRow::Kind::Real) held_ = row;

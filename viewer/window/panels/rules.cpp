@@ -79,6 +79,15 @@ void RulesPanel::show(Workbench& bench) {
         clipper.Begin(static_cast<int>(rows_.size()), ImGui::GetTextLineHeight() + 6);
         while (clipper.Step())
             for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) row(bench, size_t(i));
+        if (!listed_->uses.empty()) {
+            std::string used;
+            for (const syntax::UseDecl& use : listed_->uses) used += (used.empty() ? "" : ", ") + std::string(use.file.span.text());
+            ImGui::Dummy({0, 4});
+            ImGui::PushTextWrapPos(0);
+            faint("and the rules of " + used);
+            ImGui::PopTextWrapPos();
+            hint("They are used and not part of this text; Shapes tells which of them made a shape");
+        }
         if (std::exchange(scroll_, false)) ImGui::SetScrollY(std::max(0.0f, (ImGui::GetTextLineHeight() + 6) * static_cast<float>(selected) - ImGui::GetWindowHeight() / 3));
     }
     ImGui::EndChild();
