@@ -19,6 +19,7 @@ namespace {
 
 constexpr int settlingFrames = 3;       // after an event, until ImGui's hover and layout have settled
 constexpr double shownEvery = 0.06;     // seconds between pictures of a view that refines itself
+constexpr double refinedEvery = 0.1;    // seconds between pieces of the picture while frames are owed to a hand
 constexpr double listenFor = 0.5;       // seconds between looks at the file while nothing happens
 
 /// Columns and rows of the window.
@@ -215,7 +216,7 @@ int runApp(const AppOptions& options) {
     int wanted = settlingFrames;
     bool refining = false;
     double frameSeconds = 0;  // that the last frame took
-    Stopwatch sinceShown, sinceLook;
+    Stopwatch sinceShown, sinceLook, sinceRefined;
     for (;;) {
         const bool working = bench.busy() || workspace.working() || options.benchmark;
         window.listen(wanted > 0 || refining ? 0 : working ? shownEvery : listenFor);
@@ -231,14 +232,19 @@ int runApp(const AppOptions& options) {
             sinceLook = {};
         }
         turn.was("files");
-        const Result<bool> drew = refine(bench);
-        if (!drew) return fail(drew.error());
+        // What a hand did is answered first; a hand that never rests still gets its picture, piece by piece.
+        bool ended = false;
+        if (wanted == 0 || sinceRefined.seconds() > refinedEvery) {
+            const Result<bool> drew = refine(bench);
+            if (!drew) return fail(drew.error());
+            ended = refining && !*drew;
+            refining = *drew;
+            sinceRefined = {};
+        }
         turn.drew();
         const Result<bool> taken = bench.takePictures();
         if (!taken) bench.say(taken.error().message, true);
         if (!taken || *taken) wanted = settlingFrames;
-        const bool ended = refining && !*drew;
-        refining = *drew;
         turn.was("pictures");
         // Where frames are dear, most of the time still goes to the picture.
         if (wanted > 0 || ended || ((refining || working) && sinceShown.seconds() >= std::max(shownEvery, 3 * frameSeconds))) {
