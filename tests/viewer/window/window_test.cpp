@@ -148,6 +148,8 @@ TEST_F(Window, WhatIsSeenLeadsToItsTextAndBack) {
 TEST_F(Window, MeshAndFieldSideBySide) {
     openText(pair);
     click("pane.Split");
+    click("mesh.cells");
+    click("mesh.cells.64");
     until("a mesh", [](const auto& s) { return s["triangles"] > 1000 && s["drawn"] == true; });
     shoot("split");
     click("pane.Mesh");
