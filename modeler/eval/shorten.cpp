@@ -141,12 +141,13 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
             const float* const ends = bounds + size_t{w.links.bounds(i)} * maxBoxes;
             const Care inner = careOfOperands(row, ends[2 * maxBoxes], b.care(value));
             const bool first = !beyond(row, ends[0], inner), second = !beyond(row, ends[maxBoxes], inner);
-            const TapeBuilder::Use operands[] = {{values[0], origins ? origins[0] : 0, inner},
-                                                 {values[1], origins ? origins[1] : 0, inner}};
-            if (first && second)
-                b.define(value, in.op, in.data, operands, 2, origins != nullptr);
-            else  // where neither is told apart, any will do
-                b.alias(value, operands[second ? 1 : 0]);
+            const auto use = [&](uint32_t k) -> TapeBuilder::Use { return {values[k], origins ? origins[k] : 0, inner}; };
+            if (first && second) {
+                const TapeBuilder::Use both[] = {use(0), use(1)};
+                b.define(value, in.op, in.data, both, 2, origins != nullptr);
+            } else {  // where neither is told apart, any will do
+                b.alias(value, use(second ? 1 : 0));
+            }
         } else if (row.chooses) {
             operandsLeft(row, in, values, origins, bounds + size_t{w.links.bounds(i)} * maxBoxes,
                          careOfResult(tape, in, values, b.care(value)), w.uses);

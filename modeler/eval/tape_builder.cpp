@@ -1,8 +1,6 @@
 #include "modeler/eval/tape_builder.h"
 
 #include <algorithm>
-#include <bit>
-#include <utility>
 
 #include "modeler/field/ops.h"
 
@@ -24,44 +22,6 @@ void TapeBuilder::begin(size_t keys) {
 void TapeBuilder::bindInput(uint32_t key, uint32_t coordinate) {
     values_[key].reg = coordinate;
     inputs_.push_back(key);
-}
-
-uint32_t TapeBuilder::takeRegister() {
-    if (free_.empty()) return registers_++;
-    const uint32_t reg = free_.back();
-    free_.pop_back();
-    return reg;
-}
-
-void TapeBuilder::enter(uint32_t key, Value v) {
-    values_[key] = v;
-    liveBits_[key / 64] |= uint64_t{1} << key % 64;
-}
-
-TapeBuilder::Value TapeBuilder::leave(uint32_t key) {
-    liveBits_[key / 64] &= ~(uint64_t{1} << key % 64);
-    return std::exchange(values_[key], Value{});
-}
-
-uint32_t TapeBuilder::nextLive(uint32_t below) const {
-    for (uint32_t word = below / 64 + 1; word-- > 0;) {
-        uint64_t bits = liveBits_[word];
-        if (word == below / 64) bits &= (uint64_t{1} << below % 64) - 1;
-        if (bits != 0) return word * 64 + static_cast<uint32_t>(std::bit_width(bits)) - 1;
-    }
-    return none;
-}
-
-Source TapeBuilder::demand(const Use& use, uint32_t ownerEntry) {
-    if (isConstant(use.source)) return use.source;
-    if (!live(use.source)) {
-        enter(use.source, {takeRegister(), ownerEntry, use.care});
-    } else {
-        Value& v = values_[use.source];
-        v.owner = none;
-        v.care = {std::min(v.care.least, use.care.least), std::max(v.care.most, use.care.most)};
-    }
-    return values_[use.source].reg;
 }
 
 void TapeBuilder::result(Use use) {
@@ -110,21 +70,6 @@ void TapeBuilder::define(uint32_t key, const Instruction& like, const Source* op
         if (in.count > 1) in.b = source(1);
     }
     code_.push_back(in);
-}
-
-void TapeBuilder::alias(uint32_t key, Use same) {
-    const uint32_t owner = values_[key].owner;
-    // The consumer's own word on the owner goes first; where it says nothing, the operand's stands.
-    const bool told = same.origin == 0 || (owner != none && origins_[owner] != 0);
-    const bool canTell = owner != none;
-    if (!told && canTell) origins_[owner] = same.origin;
-    if (!isConstant(same.source) && !live(same.source) && (told || canTell)) {
-        Value v = leave(key);
-        v.care = same.care;
-        enter(same.source, v);
-    } else {
-        define(key, field::codeOf<field::ops::Copy>, 0, &same, 1, !told && !canTell);
-    }
 }
 
 void TapeBuilder::finish(const std::shared_ptr<const std::vector<float>>& constants,
