@@ -51,13 +51,6 @@ SparseRows cutAmong(const BitRows& inside, int axis, const BitRows& edges) {
     return cut;
 }
 
-/// Eight rows from (j, k) on, a byte each.
-uint64_t eightRows(const std::array<uint8_t, paddedRows>& bytes, int j, int k) {
-    uint64_t word;
-    std::memcpy(&word, bytes.data() + j + brickCorners * k, sizeof word);
-    return word;
-}
-
 }  // namespace
 
 const BrickLoops& brickLoops() {
@@ -78,28 +71,6 @@ BrickSigns::BrickSigns(const float* corner) {
         low[row] = static_cast<uint8_t>(rows[row]);
         high[row] = static_cast<uint8_t>(rows[row] >> 1);
     }
-}
-
-BitCube surfaceCells(const BrickSigns& signs) {
-    std::array<uint64_t, brickCorners> any, all;  // of the corners in each layer
-    for (int k = 0; k < brickCorners; ++k) {
-        const uint64_t a = eightRows(signs.low, 0, k), b = eightRows(signs.high, 0, k), c = eightRows(signs.low, 1, k),
-                       d = eightRows(signs.high, 1, k);
-        any[k] = a | b | c | d;
-        all[k] = a & b & c & d;
-    }
-    BitCube cells;
-    for (int k = 0; k < brickCells; ++k) cells.layers[k] = (any[k] | any[k + 1]) & ~(all[k] & all[k + 1]);
-    return cells;
-}
-
-BitCube ownCuts(const BrickSigns& signs, int axis) {
-    BitCube cuts;
-    for (int k = 0; k < brickCells; ++k)
-        cuts.layers[k] = axis == 0   ? eightRows(signs.low, 1, k + 1) ^ eightRows(signs.high, 1, k + 1)
-                         : axis == 1 ? eightRows(signs.high, 0, k + 1) ^ eightRows(signs.high, 1, k + 1)
-                                     : eightRows(signs.high, 1, k) ^ eightRows(signs.high, 1, k + 1);
-    return cuts;
 }
 
 SparseRows cutsOnLowSides(const BrickSigns& signs, int axis, int sides) {

@@ -33,14 +33,6 @@ struct BrickSigns {
     explicit BrickSigns(const float* corner);
 };
 
-/// The cells that hold surface: bit i + 8 j of word k is cell (i, j, k).
-BitCube surfaceCells(const BrickSigns& signs);
-
-/// The edges along `axis` that the surface cuts and the brick owns: bit i + 8 j of word k is the edge up from corner
-/// (i, j, k) + firstOwn(axis).
-BitCube ownCuts(const BrickSigns& signs, int axis);
-constexpr Vec3i firstOwn(int axis) { return {axis == 0 ? 0 : 1, axis == 1 ? 0 : 1, axis == 2 ? 0 : 1}; }
-
 /// Rows of bits, and which groups of four rows have any.
 struct SparseRows {
     BitRows rows;

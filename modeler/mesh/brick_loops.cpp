@@ -106,57 +106,79 @@ uint32_t cut(const uint16_t* __restrict inside, int up, int shift, const uint16_
     return groups;
 }
 
-#if defined(__AVX512BW__)
+/// Eight rows of bytes from row r on.
+inline uint64_t eightRows(const uint8_t* bytes, int r) {
+    uint64_t word;
+    __builtin_memcpy(&word, bytes + r, sizeof word);
+    return word;
+}
 
-/// The words of a row of bytes: corner c of eight cells, in the layer of row j = c >> 1 & 1 and of k + (c >> 2).
+/// Corner c of the cells in layer k: bit i + 8 j of a word.
 struct CellCorners {
     uint64_t words[8];
     CellCorners(const uint8_t* low, const uint8_t* high, int k) {
-        for (int c = 0; c < 8; ++c)
-            __builtin_memcpy(&words[c], (c & 1 ? high : low) + (c >> 1 & 1) + corners * (k + (c >> 2)), 8);
+        for (int c = 0; c < 8; ++c) words[c] = eightRows(c & 1 ? high : low, (c >> 1 & 1) + corners * (k + (c >> 2)));
     }
 };
 
-/// Calls visit(k, j, mask) for bits (0 … 7, j), (0 … 7, j + 1) of each word k where there are any: most often there are
-/// none, and which follows no pattern.
+/// The code of the lowest own edge along each axis.
+constexpr uint32_t firstOwn[] = {0x00010100u, 0x01010001u, 0x02000101u};
+/// Rows of bytes from which own edges go up along each axis, beside those where their other ends are.
+constexpr int rowsBelow[] = {corners + 1, corners, 1}, rowsAbove = corners + 1;
+
+#if defined(__AVX512BW__)
+
+/// Calls visit(k, j, mask) for bits (0 … 7, j), (0 … 7, j + 1) of each word k that `groups` names, four groups a word:
+/// most often there are few, and which follows no pattern.
 template <class Visit>
-inline void forEachTwoRows(const BitCube& bits, Visit&& visit) {
-    const __m512i words = _mm512_loadu_si512(bits.layers);
-    alignas(64) uint16_t rows[32];
-    _mm512_store_si512(rows, words);
-    for (uint32_t rest = _mm512_test_epi16_mask(words, words); rest != 0; rest &= rest - 1) {
-        const auto at = static_cast<uint32_t>(__builtin_ctz(rest));
-        visit(at >> 2, at % 4 * 2, rows[at]);
+inline void forEachTwoRows(const uint64_t* words, uint32_t groups, Visit&& visit) {
+    for (; groups != 0; groups &= groups - 1) {
+        const auto at = static_cast<uint32_t>(__builtin_ctz(groups));
+        visit(at >> 2, at % 4 * 2, static_cast<__mmask16>(words[at >> 2] >> at % 4 * 16));
     }
 }
 
-size_t list(const BitCube& bits, uint32_t origin, uint32_t* __restrict codes) {
+size_t ownEdges(const uint8_t* low, const uint8_t* high, uint32_t* __restrict codes) {
+    const __m512i layers = _mm512_setr_epi64(0, corners, 2 * corners, 3 * corners, 4 * corners, 5 * corners,
+                                             6 * corners, 7 * corners);
     const __m512i twoRows = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 256, 257, 258, 259, 260, 261, 262, 263);
+    const __m512i above = _mm512_i64gather_epi64(layers, high + rowsAbove, 1);
     size_t n = 0;
-    forEachTwoRows(bits, [&](uint32_t k, uint32_t j, __mmask16 mask) {
-        const __m512i here = _mm512_set1_epi32(static_cast<int>(origin + (j << 8 | k << 16)));
-        _mm512_storeu_si512(codes + n, _mm512_maskz_compress_epi32(mask, _mm512_add_epi32(twoRows, here)));
-        n += static_cast<size_t>(__builtin_popcount(mask));
-    });
+    for (int axis = 0; axis < 3; ++axis) {
+        const __m512i below = _mm512_i64gather_epi64(layers, (axis == 0 ? low : high) + rowsBelow[axis], 1);
+        const __m512i cut = _mm512_xor_si512(below, above);
+        alignas(64) uint64_t words[8];
+        _mm512_store_si512(words, cut);
+        forEachTwoRows(words, _mm512_test_epi16_mask(cut, cut), [&](uint32_t k, uint32_t j, __mmask16 mask) {
+            const __m512i here = _mm512_set1_epi32(static_cast<int>(firstOwn[axis] + (j << 8 | k << 16)));
+            _mm512_storeu_si512(codes + n, _mm512_maskz_compress_epi32(mask, _mm512_add_epi32(twoRows, here)));
+            n += static_cast<size_t>(__builtin_popcount(mask));
+        });
+    }
     _mm512_storeu_si512(codes + n, _mm512_setzero_si512());
     return n;
 }
 
 /// Cases of 64 cells at a time, a byte each.
-size_t cells(const BitCube& bits, const uint8_t* low, const uint8_t* high, int corner, int rowStride, int layerStride,
+size_t cells(const uint8_t* low, const uint8_t* high, int corner, int rowStride, int layerStride,
              SurfaceCell* __restrict list) {
     alignas(64) uint8_t cases[8][64];
+    uint64_t cut[8];
+    uint32_t groups = 0;
     for (int k = 0; k < 8; ++k) {
         const CellCorners at(low, high, k);
         __m512i sum = _mm512_setzero_si512();
         for (int c = 0; c < 8; ++c)
             sum = _mm512_or_si512(sum, _mm512_maskz_set1_epi8(at.words[c], static_cast<char>(1 << c)));
         _mm512_store_si512(cases[k], sum);
+        cut[k] = _mm512_test_epi8_mask(sum, sum) & _mm512_cmpneq_epi8_mask(sum, _mm512_set1_epi8(-1));
+        const __m128i word = _mm_cvtsi64_si128(static_cast<long long>(cut[k]));
+        groups |= static_cast<uint32_t>(_mm_test_epi16_mask(word, word)) << 4 * k;
     }
     const __m512i column = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7);
     const __m512i twoRows = _mm512_mask_add_epi32(column, 0xff00, column, _mm512_set1_epi32(rowStride));
     size_t n = 0;
-    forEachTwoRows(bits, [&](uint32_t k, uint32_t j, __mmask16 mask) {
+    forEachTwoRows(cut, groups, [&](uint32_t k, uint32_t j, __mmask16 mask) {
         const int first = corner + static_cast<int>(j) * rowStride + static_cast<int>(k) * layerStride;
         const __m128i here = _mm_load_si128(reinterpret_cast<const __m128i*>(cases[k] + 8 * j));
         const __m512i pairs = _mm512_or_si512(_mm512_add_epi32(twoRows, _mm512_set1_epi32(first)),
@@ -169,33 +191,35 @@ size_t cells(const BitCube& bits, const uint8_t* low, const uint8_t* high, int c
 
 #else
 
-/// Calls visit(i, j, k) for every bit.
-template <class Visit>
-inline void forEachBit(const BitCube& bits, Visit&& visit) {
-    for (int k = 0; k < 8; ++k)
-        for (uint64_t rest = bits.layers[k]; rest != 0; rest &= rest - 1) {
-            const int bit = __builtin_ctzll(rest);
-            visit(bit & 7, bit >> 3, k);
-        }
-}
-
-size_t list(const BitCube& bits, uint32_t origin, uint32_t* __restrict codes) {
+size_t ownEdges(const uint8_t* low, const uint8_t* high, uint32_t* __restrict codes) {
     size_t n = 0;
-    forEachBit(bits, [&](int i, int j, int k) { codes[n++] = origin + static_cast<uint32_t>(i | j << 8 | k << 16); });
+    for (int axis = 0; axis < 3; ++axis)
+        for (int k = 0; k < 8; ++k) {
+            const uint64_t below = eightRows(axis == 0 ? low : high, rowsBelow[axis] + corners * k);
+            for (uint64_t cut = below ^ eightRows(high, rowsAbove + corners * k); cut != 0; cut &= cut - 1) {
+                const int bit = __builtin_ctzll(cut);
+                codes[n++] = firstOwn[axis] + static_cast<uint32_t>((bit & 7) | bit >> 3 << 8 | k << 16);
+            }
+        }
     for (size_t i = n; i < n + rowPadding; ++i) codes[i] = 0;
     return n;
 }
 
-size_t cells(const BitCube& bits, const uint8_t* low, const uint8_t* high, int corner, int rowStride, int layerStride,
+size_t cells(const uint8_t* low, const uint8_t* high, int corner, int rowStride, int layerStride,
              SurfaceCell* __restrict list) {
     size_t n = 0;
-    forEachBit(bits, [&](int i, int j, int k) {
-        const int row = j + corners * k;
-        const auto sides = [&](int r) { return (low[r] >> i & 1) | (high[r] >> i & 1) << 1; };
-        const int inside = sides(row) | sides(row + 1) << 2 | sides(row + corners) << 4 | sides(row + corners + 1) << 6;
-        list[n++] = {static_cast<uint16_t>(corner + i + j * rowStride + k * layerStride),
-                     static_cast<uint16_t>(inside)};
-    });
+    for (int k = 0; k < 8; ++k) {
+        const CellCorners at(low, high, k);
+        uint64_t some = 0, all = ~uint64_t{0};
+        for (const uint64_t word : at.words) some |= word, all &= word;
+        for (uint64_t cut = some & ~all; cut != 0; cut &= cut - 1) {
+            const int bit = __builtin_ctzll(cut);
+            unsigned inside = 0;
+            for (int c = 0; c < 8; ++c) inside |= static_cast<unsigned>(at.words[c] >> bit & 1) << c;
+            list[n++] = {static_cast<uint16_t>(corner + (bit & 7) + (bit >> 3) * rowStride + k * layerStride),
+                         static_cast<uint16_t>(inside)};
+        }
+    }
     return n;
 }
 
@@ -284,7 +308,7 @@ void owners(const uint32_t* triangles, size_t n, const uint32_t* origins, uint32
 }  // namespace
 
 namespace SGM_ISA {
-const BrickLoops brickLoops{gather, scatter, inside, cut, list, cells, join, owners};
+const BrickLoops brickLoops{gather, scatter, inside, cut, ownEdges, cells, join, owners};
 }  // namespace SGM_ISA
 
 }  // namespace sgm::mesh

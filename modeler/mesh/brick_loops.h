@@ -21,11 +21,6 @@ struct CornerRow {
     uint8_t count;    ///< 0 … 9
 };
 
-/// Bits in eight words of 8 × 8: bit i + 8 j of word k.
-struct BitCube {
-    uint64_t layers[8];
-};
-
 /// A cell with surface, by its low corner.
 struct SurfaceCell {
     uint16_t corner;
@@ -51,14 +46,14 @@ struct BrickLoops {
     /// The edges among `edges` with one end inside: bits (inside ^ inside[row + up] >> shift) & edges of `cutRows` rows;
     /// `up` more of them may be read. Returns which groups of four rows have any.
     uint32_t (*cut)(const uint16_t* inside, int up, int shift, const uint16_t* edges, uint16_t* cut);
-    /// Lists the bits set, ascending, as codeOf(i, j, k) + `origin`; returns how many. The list's last vector is filled
-    /// up with zeros.
-    size_t (*list)(const BitCube& bits, uint32_t origin, uint32_t* codes);
-    /// Lists the cells among the 8³ of a brick that `bits` names, ascending, with their cases; returns how many. Bits 0
-    /// … 7 and 1 … 8 of the rows of corners are in `low` and `high`, row j + 9k; the brick's low corner is `corner`,
-    /// rows and layers are so many corners apart. The list needs room for `rowPadding` more.
-    size_t (*cells)(const BitCube& bits, const uint8_t* low, const uint8_t* high, int corner, int rowStride,
-                    int layerStride, SurfaceCell* cells);
+    /// Lists the edges that the surface cuts and a brick owns: along x, y and z, each ascending, by codeOf their low
+    /// corner and axis; returns how many. Bits 0 … 7 and 1 … 8 of the rows of corners, whether they are inside, are in
+    /// `low` and `high`, row j + 9k. The list's last vector is filled up with zeros.
+    size_t (*ownEdges)(const uint8_t* low, const uint8_t* high, uint32_t* codes);
+    /// Lists the cells of a brick that hold surface, ascending, with their cases; returns how many. The brick's low
+    /// corner is `corner`, rows and layers are so many corners apart. The list needs room for `rowPadding` more.
+    size_t (*cells)(const uint8_t* low, const uint8_t* high, int corner, int rowStride, int layerStride,
+                    SurfaceCell* cells);
     /// Joins vertices, cell by cell; `number` holds three numbers a corner, rows and layers are so many corners apart.
     /// Writes the cells' triangles, three numbers each, and nothing beside them.
     void (*join)(const SurfaceCell* cells, size_t n, const uint32_t* number, size_t rowStride, size_t layerStride,

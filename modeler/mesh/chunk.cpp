@@ -113,8 +113,8 @@ bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chun
 /// The brick's cells with surface; returns how many.
 size_t BlockMesher::addCells(const BrickSigns& signs, Vec3i brick) {
     SurfaceCell* const cells = cells_.data() + cellCount_;
-    const size_t count = brickLoops().cells(surfaceCells(signs), signs.low.data(), signs.high.data(),
-                                            brickCorner(brick), blockCorners, blockCorners * blockCorners, cells);
+    const size_t count = brickLoops().cells(signs.low.data(), signs.high.data(), brickCorner(brick), blockCorners,
+                                            blockCorners * blockCorners, cells);
     const uint8_t* const triangles = triangleCounts().data();
     for (size_t c = 0; c < count; ++c) triangles_ += triangles[cells[c].inside];
     cellCount_ += count;
@@ -125,10 +125,7 @@ size_t BlockMesher::addCells(const BrickSigns& signs, Vec3i brick) {
 /// The brick's own edges that the surface cuts, one after the other as their vertices are numbered from vertices_ on.
 void BlockMesher::addOwnEdges(const BrickSigns& signs) {
     edges_.reserve(3 * brickRows * brickCorners);
-    size_t n = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        n += brickLoops().list(ownCuts(signs, axis), codeAt(firstOwn(axis), axis), edges_.list.data() + n);
-    edges_.size = ownEdges_ = n;
+    edges_.size = ownEdges_ = brickLoops().ownEdges(signs.low.data(), signs.high.data(), edges_.list.data());
 }
 
 /// Lists cut edges on low sides of the block: lower blocks own them. Their places are looked for only where that tells

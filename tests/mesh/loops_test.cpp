@@ -120,48 +120,64 @@ TEST(Loops, TrianglesBelongToMostOfTheirCorners) {
     }
 }
 
-TEST(Loops, BitsAreListedInOrder) {
-    BitCube bits{};
-    std::vector<uint32_t> expected;
-    for (uint32_t c = 0; c < 512; ++c) {
-        if (c / 64 == 3 || uniform(combine(7, c), 0, 1) < 0.6) continue;
-        bits.layers[c / 64] |= 1ull << c % 64;
-        expected.push_back(codeOf(8, 16, 24) + codeOf(c & 7, c >> 3 & 7, c >> 6));
+/// Whether corners of a brick are inside, by chance or all along a plane.
+struct Corners {
+    std::array<uint8_t, 112> low{}, high{};
+    uint64_t seed;
+
+    explicit Corners(uint64_t seed) : seed(seed) {
+        for (int k = 0; k < 9; ++k)
+            for (int j = 0; j < 9; ++j)
+                for (int i = 0; i < 9; ++i) {
+                    if (!isIn(i, j, k)) continue;
+                    const auto row = static_cast<size_t>(j + 9 * k);
+                    if (i < 8) low[row] |= static_cast<uint8_t>(1 << i);
+                    if (i > 0) high[row] |= static_cast<uint8_t>(1 << (i - 1));
+                }
     }
-    for (const Loops& l : loopsHere()) {
-        std::vector<uint32_t> codes(512 + rowPadding, 1u);
-        ASSERT_EQ(l.bricks->list(bits, codeOf(8, 16, 24), codes.data()), expected.size());
-        for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(codes[i], expected[i]);
-        for (size_t i = expected.size(); i < wholeVectors(expected.size()); ++i) EXPECT_EQ(codes[i], 0u);
+    bool isIn(int i, int j, int k) const {
+        return seed == 0 ? i + 2 * j + k < 14 : uniform(combine(combine(seed, i), combine(j, k)), 0, 1) < 0.5;
+    }
+};
+
+TEST(Loops, OwnEdgesAreListedInOrder) {
+    for (uint64_t seed = 0; seed < 3; ++seed) {
+        const Corners c(seed);
+        std::vector<uint32_t> expected;
+        for (int axis = 0; axis < 3; ++axis)
+            for (int k = axis != 2; k < 8 + (axis != 2); ++k)
+                for (int j = axis != 1; j < 8 + (axis != 1); ++j)
+                    for (int i = axis != 0; i < 8 + (axis != 0); ++i)
+                        if (c.isIn(i, j, k) != c.isIn(i + (axis == 0), j + (axis == 1), k + (axis == 2)))
+                            expected.push_back(codeOf(i, j, k, axis));
+        for (const Loops& l : loopsHere()) {
+            std::vector<uint32_t> codes(3 * 512 + rowPadding, 1u);
+            ASSERT_EQ(l.bricks->ownEdges(c.low.data(), c.high.data(), codes.data()), expected.size());
+            for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(codes[i], expected[i]);
+            for (size_t i = expected.size(); i < wholeVectors(expected.size()); ++i) EXPECT_EQ(codes[i], 0u);
+        }
     }
 }
 
 TEST(Loops, CellsAreListedWithTheirCases) {
     constexpr int rowStride = 33, layerStride = 1089, corner = 100;
-    std::array<uint8_t, 96> low{}, high{};
-    const auto isIn = [](int i, int j, int k) { return uniform(combine(combine(11, i), combine(j, k)), 0, 1) < 0.5; };
-    for (int k = 0; k < 9; ++k)
-        for (int j = 0; j < 9; ++j)
-            for (int i = 0; i < 9; ++i) {
-                if (!isIn(i, j, k)) continue;
-                if (i < 8) low[j + 9 * k] |= static_cast<uint8_t>(1 << i);
-                if (i > 0) high[j + 9 * k] |= static_cast<uint8_t>(1 << (i - 1));
+    for (uint64_t seed = 0; seed < 3; ++seed) {
+        const Corners in(seed);
+        for (const Loops& l : loopsHere()) {
+            std::vector<SurfaceCell> cells(512 + rowPadding);
+            const size_t n =
+                l.bricks->cells(in.low.data(), in.high.data(), corner, rowStride, layerStride, cells.data());
+            size_t at = 0;
+            for (int c = 0; c < 512; ++c) {
+                const int i = c & 7, j = c >> 3 & 7, k = c >> 6;
+                int inside = 0;
+                for (int v = 0; v < 8; ++v) inside |= in.isIn(i + (v & 1), j + (v >> 1 & 1), k + (v >> 2)) << v;
+                if (inside == 0 || inside == 255) continue;
+                EXPECT_EQ(cells[at].corner, corner + i + j * rowStride + k * layerStride);
+                EXPECT_EQ(cells[at++].inside, inside);
             }
-    BitCube bits{};
-    for (uint32_t c = 0; c < 512; c += 1 + c % 7) bits.layers[c / 64] |= 1ull << c % 64;
-    for (const Loops& l : loopsHere()) {
-        std::vector<SurfaceCell> cells(512 + rowPadding);
-        const size_t n = l.bricks->cells(bits, low.data(), high.data(), corner, rowStride, layerStride, cells.data());
-        size_t at = 0;
-        for (int c = 0; c < 512; ++c) {
-            if (!(bits.layers[c / 64] >> c % 64 & 1)) continue;
-            const int i = c & 7, j = c >> 3 & 7, k = c >> 6;
-            int inside = 0;
-            for (int v = 0; v < 8; ++v) inside |= isIn(i + (v & 1), j + (v >> 1 & 1), k + (v >> 2)) << v;
-            EXPECT_EQ(cells[at].corner, corner + i + j * rowStride + k * layerStride);
-            EXPECT_EQ(cells[at++].inside, inside);
+            EXPECT_EQ(at, n);
         }
-        EXPECT_EQ(at, n);
     }
 }
 
