@@ -42,7 +42,8 @@ struct OwnedOperand {
     Owners owners;
 };
 
-struct Workspace::Impl {
+/// Aligned, so that no two threads write to one line of cache, nor to the next one, which processors fetch with it.
+struct alignas(128) Workspace::Impl {
     Kernels kernels;
     Tally* tally = nullptr;  ///< where operations are counted, if at all
     AlignedFloats registers, arguments;

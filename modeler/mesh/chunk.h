@@ -13,8 +13,9 @@
 
 namespace sgm::mesh {
 
-/// What one worker reuses from block to block.
-class BlockMesher {
+/// What one worker reuses from block to block; aligned, so that no two workers write to one line of cache, nor to the
+/// next one, which processors fetch with it.
+class alignas(128) BlockMesher {
 public:
     /// `refineSteps` as in findVertices.
     BlockMesher(const Grid& grid, size_t refineSteps) : grid_(grid), refineSteps_(refineSteps) {}
