@@ -5,8 +5,11 @@
 namespace sgm::mesh {
 namespace {
 
-/// Below this a shorter tape saves less than making it costs.
-constexpr size_t shortEnough = 8;
+/// Up to so many instructions a shorter tape saves less than making it costs.
+constexpr size_t shortEnough = 4;
+/// A block's tape up to `notLong` is left as it is once so many bricks one after the other needed all of it.
+constexpr int vainEnough = 8;
+constexpr size_t notLong = 16;
 
 /// For the seven bricks that come before a brick in its block, by their offset's bits: which numbers they have, as a
 /// mask; none where the block ends.
@@ -47,6 +50,7 @@ const std::array<BlockSamples::Rows, 256>& wholeBricks() {
 
 void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts) {
     block_ = &block;
+    inVain_ = 0;
     care_ = careOf(block.tape, grid);
     const Vec3i first = block.index * blockCells;
     last_ = grid.cells - first;
@@ -122,8 +126,12 @@ void BlockSamples::sealBorder(Vec3i brick) {
 }
 
 const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Counts& counts) {
-    const bool whole = block_->tape.size() <= shortEnough;
-    if (!whole) eval::shorten(block_->tape, region_[brick], workspace, tape_, care_);
+    const size_t length = block_->tape.size();
+    const bool whole = length <= shortEnough || (length <= notLong && inVain_ >= vainEnough);
+    if (!whole) {
+        eval::shorten(block_->tape, region_[brick], workspace, tape_, care_);
+        inVain_ = tape_.size() < length ? 0 : inVain_ + 1;
+    }
     const eval::Tape& tape = whole ? block_->tape : tape_;
     const Vec3i at = brickAt(brick), first = at * brickCells;
     const Rows& rows = rowsOf(brick);

@@ -66,6 +66,7 @@ private:
     uint64_t active_ = 0;
     std::array<uint8_t, bricksPerBlock> region_{};  ///< of a brick, in the last evaluateRanges
     eval::Tape tape_;
+    int inVain_ = 0;  ///< latest bricks of the block that needed its whole tape
     Vec3i last_;  ///< the highest corner in the grid, counted from the block's first
     PageVector<float> values_ = PageVector<float>(cornersPerBlock + rowPadding);
     std::array<std::array<float, blockCorners + rowPadding>, 3> coordinates_{};
