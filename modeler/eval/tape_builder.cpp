@@ -64,7 +64,10 @@ void TapeBuilder::define(uint32_t key, const Instruction& like, const Source* op
         return demand({operands[i], origins ? origins[i] : 0}, origins ? in.origins - 1 + i : none);
     };
     if (field::traits(in.op).arity == field::ops::variadic) {
-        for (uint32_t i = 0; i < in.count; ++i) sources_.push_back(isConstant(operands[i]) ? operands[i] : source(i));
+        sources_.insert(sources_.end(), operands, operands + in.count);
+        Source* const own = sources_.data() + in.a;
+        for (uint32_t i = 0; i < in.count; ++i)
+            if (!isConstant(operands[i])) own[i] = source(i);
     } else {
         in.a = source(0);
         if (in.count > 1) in.b = source(1);
