@@ -55,6 +55,16 @@ void OwnerPass::takeBest(uint32_t first, size_t n, MoveOwners move) {
     }
 }
 
+/// The row of owners that an operand has, where the others are nobody's; else null.
+const float* OwnerPass::onlyRow() const {
+    const float* row = nullptr;
+    for (const OwnedOperand& o : operands_) {
+        if (o.owners.one != 0 || (row && o.owners.row)) return nullptr;
+        if (o.owners.row) row = o.owners.row;
+    }
+    return row;
+}
+
 /// The lesser or greater of two operands that both move, in one go: `taken` may be the row of either. False where it is
 /// another choice.
 bool OwnerPass::takeOfTwo(const field::OpTraits& row, size_t n, float* taken) const {
@@ -102,7 +112,9 @@ void OwnerPass::operator()(const Instruction& in, const StepContext& c) {
         owners_[in.out] = operands_[row.firstChoice].owners;
         return;
     }
-    if (!takeOfTwo(row, c.count, rowOf(in.out))) {
+    if (const float* const only = row.owner == Owner::First ? onlyRow() : nullptr) {
+        if (only != rowOf(in.out)) std::copy_n(only, c.count, rowOf(in.out));
+    } else if (!takeOfTwo(row, c.count, rowOf(in.out))) {
         take(row, c.count);
         std::copy_n(taken_, c.count, rowOf(in.out));
     }

@@ -26,6 +26,7 @@ private:
     const float* valuesOf(const OwnedOperand& o, size_t n);
     void gather(const Instruction& in, const Source* sources, const StepContext& c);
     bool alike(uint32_t first, uint32_t last) const;
+    const float* onlyRow() const;
     bool takeOfTwo(const field::OpTraits& row, size_t n, float* taken) const;
     void take(const field::OpTraits& row, size_t n);
     void takeBest(uint32_t first, size_t n, MoveOwners move);
