@@ -3,7 +3,8 @@
 // Assumes the two ends of a cut edge differ in sign. Linear interpolation is Lorensen & Cline 1987. A refinement
 // evaluates value and derivatives together and takes Newton's step, or halves the bracket where that would leave it.
 // Newton's step and the secant through the bracket's other end enclose the root where the field is convex or concave
-// between them, so a vertex is done once the two agree.
+// between them, so a vertex is done once the two agree; or once a parabola through three of its four samples and the
+// slope agrees with the fourth, which it would not over a crease: then it goes to the parabola's root.
 #pragma once
 
 #include <vector>
