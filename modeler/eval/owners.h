@@ -33,8 +33,8 @@ private:
 
     const Tape& tape_;
     const Kernels& kernels_;
-    float* const rows_;   // by register
-    float* const taken_;  // of the instruction at work
+    float* const rows_;            // by register
+    float* const taken_;           // of the instruction at work
     std::vector<Owners>& owners_;  // by register; x, y, z belong to nobody
     std::vector<OwnedOperand>& operands_;
     alignas(vectorFloats * sizeof(float)) std::array<float, maxBlock> constant_, best_;

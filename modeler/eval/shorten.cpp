@@ -141,7 +141,9 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
             const float* const ends = bounds + size_t{w.links.bounds(i)} * maxBoxes;
             const Care inner = careOfOperands(row, ends[2 * maxBoxes], b.care(value));
             const bool first = !beyond(row, ends[0], inner), second = !beyond(row, ends[maxBoxes], inner);
-            const auto use = [&](uint32_t k) -> TapeBuilder::Use { return {values[k], origins ? origins[k] : 0, inner}; };
+            const auto use = [&](uint32_t k) -> TapeBuilder::Use {
+                return {values[k], origins ? origins[k] : 0, inner};
+            };
             if (first && second) {
                 const TapeBuilder::Use both[] = {use(0), use(1)};
                 b.define(value, in.op, in.data, both, 2, origins != nullptr);

@@ -139,8 +139,8 @@ inline void forEachTwoRows(const uint64_t* words, uint32_t groups, Visit&& visit
 }
 
 size_t ownEdges(const uint8_t* low, const uint8_t* high, uint32_t* __restrict codes) {
-    const __m512i layers = _mm512_setr_epi64(0, corners, 2 * corners, 3 * corners, 4 * corners, 5 * corners,
-                                             6 * corners, 7 * corners);
+    const __m512i layers =
+        _mm512_setr_epi64(0, corners, 2 * corners, 3 * corners, 4 * corners, 5 * corners, 6 * corners, 7 * corners);
     const __m512i twoRows = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 256, 257, 258, 259, 260, 261, 262, 263);
     const __m512i above = _mm512_i64gather_epi64(layers, high + rowsAbove, 1);
     size_t n = 0;
@@ -268,7 +268,8 @@ inline __m512i everyThird(const __m512i numbers[3], int first) {
 }
 
 void owners(const uint32_t* triangles, size_t n, const uint32_t* origins, uint32_t own, uint32_t* to) {
-    const __m512i number = _mm512_set1_epi32(static_cast<int>(~borrowed)), behind = _mm512_set1_epi32(static_cast<int>(own));
+    const __m512i number = _mm512_set1_epi32(static_cast<int>(~borrowed)),
+                  behind = _mm512_set1_epi32(static_cast<int>(own));
     const auto firstOf = [](size_t count) { return static_cast<__mmask16>(count < 16 ? (1u << count) - 1 : 0xffffu); };
     for (size_t t = 0; t < n; t += 16) {
         const size_t left = n - t;

@@ -43,8 +43,8 @@ struct BrickLoops {
     /// Bit i of bits[j + 9k]: corner (i, j, k) has f < 0, counted from `corner`; rows and layers are `rowStride` and
     /// `layerStride` floats apart.
     void (*inside)(const float* corner, size_t rowStride, size_t layerStride, uint16_t* bits);
-    /// The edges among `edges` with one end inside: bits (inside ^ inside[row + up] >> shift) & edges of `cutRows` rows;
-    /// `up` more of them may be read. Returns which groups of four rows have any.
+    /// The edges among `edges` with one end inside: bits (inside ^ inside[row + up] >> shift) & edges of `cutRows`
+    /// rows; `up` more of them may be read. Returns which groups of four rows have any.
     uint32_t (*cut)(const uint16_t* inside, int up, int shift, const uint16_t* edges, uint16_t* cut);
     /// Lists the edges that the surface cuts and a brick owns: along x, y and z, each ascending, by codeOf their low
     /// corner and axis; returns how many. Bits 0 … 7 and 1 … 8 of the rows of corners, whether they are inside, are in

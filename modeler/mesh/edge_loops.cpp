@@ -182,8 +182,8 @@ size_t step(const EdgeArrays& e, size_t n) {
         const Parabola bent(t, f, rise, tIn, fIn, tOut, fOut);
         const Mask agreed = apart <= Float(agreement);
         const Mask smooth = (apart <= Float(mostBent)) & bent.fits(way);
-        const Mask done = (kept & (agreed | smooth) & (way <= Float(longStep))) | (high - low <= Float(agreement)) |
-                          (number >= end);
+        const Mask done =
+            (kept & (agreed | smooth) & (way <= Float(longStep))) | (high - low <= Float(agreement)) | (number >= end);
         t0.store(e.tIn + i), f0.store(e.fIn + i);
         t1.store(e.tOut + i), f1.store(e.fOut + i);
         const Float root = select(agreed | !smooth, newton, bent.root(newton));

@@ -78,7 +78,8 @@ Status link(std::vector<Chunk>& chunks, int threads) {
     if (Status status = numbering.add(chunks); !status) return status;
     size_t borrowed = 0;
     for (const Chunk& c : chunks) borrowed += c.borrowed.vertices.size();
-    parallelFor(chunks.size(), borrowed >= worthAThread ? threads : 1, nullptr, [&](size_t i, int) { nameBorrowed(chunks, chunks[i]); });
+    parallelFor(chunks.size(), borrowed >= worthAThread ? threads : 1, nullptr,
+                [&](size_t i, int) { nameBorrowed(chunks, chunks[i]); });
     setFacetedNormals(chunks, chunks);
     return Done{};
 }

@@ -54,8 +54,8 @@ struct Children {
 
 /// Splits one region into those children that may hold surface and that the filter wants, each with its tape shortened
 /// to it. Part `part` of `parts`, layers of children.
-std::vector<Region> split(const eval::Tape& tape, Vec3i index, int part, int parts, int childCells,
-                          const Grid& grid, const RegionFilter& filter, eval::Workspace& workspace, Counts& counts) {
+std::vector<Region> split(const eval::Tape& tape, Vec3i index, int part, int parts, int childCells, const Grid& grid,
+                          const RegionFilter& filter, eval::Workspace& workspace, Counts& counts) {
     const int blocks = childCells / blockCells;
     Children children(index, childCells, splits * part / parts, splits * (part + 1) / parts, grid);
     if (filter.skips)
