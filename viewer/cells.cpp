@@ -68,7 +68,8 @@ uint32_t CellTree::find(Vec3f p) const {
 }
 
 Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float margin, int threads,
-                              Progress* progress) {
+                              Progress* progress, int levels) {
+    const int usual = std::min(levels, CellTree::depth);
     CellTree tree;
     tree.edge = maxComponent(bounds.size()) * 1.001f;
     tree.low = bounds.centre() - Vec3f{tree.edge, tree.edge, tree.edge} * 0.5f;
@@ -77,7 +78,7 @@ Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float
     std::vector<Pending> pending;
     pending.push_back({0, tree.low, tape});
     float edge = tree.edge;
-    for (int level = 0; level < CellTree::surfaceDepth && !pending.empty(); ++level) {
+    for (int level = 0; level < levels && !pending.empty(); ++level) {
         edge /= 4;
         if (progress) progress->begin("cells", pending.size());
         std::vector<Children> children(pending.size());
@@ -98,9 +99,9 @@ Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float
                     eval::Tape& shortened = children[i].tapes[taken++];
                     index = static_cast<uint32_t>(tree.tapes.size());
                     const eval::Range range = children[i].ranges[c];
-                    const bool deeper = level + 1 < CellTree::depth
+                    const bool deeper = level + 1 < usual
                                             ? shortened.size() > shortTape
-                                            : level + 1 < CellTree::surfaceDepth && shortened.size() > longTape &&
+                                            : level + 1 < levels && shortened.size() > longTape &&
                                                   range.lo <= 0 && range.hi >= 0;
                     if (deeper)
                         next.push_back(

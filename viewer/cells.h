@@ -39,8 +39,9 @@ struct CellTree {
     uint32_t find(Vec3f p) const;
 };
 
-/// Cuts `bounds` into cells. Error::Cancelled when `progress` says so.
+/// Cuts `bounds` into cells, at most `levels` deep: fewer are cut sooner and cost rays more. Error::Cancelled when
+/// `progress` says so.
 Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float margin, int threads,
-                              Progress* progress);
+                              Progress* progress, int levels = CellTree::surfaceDepth);
 
 }  // namespace sgm::viewer

@@ -6,11 +6,11 @@
 namespace sgm::viewer {
 
 Result<PreparedField> prepareField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance, int threads,
-                                   Progress* progress) {
+                                   Progress* progress, int levels) {
     // Soft shadows and occlusion ask for exact distances up to the margin, and no further.
     const float margin = 0.03f * length(bounds.size());
     PreparedField field{tape, bounds, bounds.inflated(margin), {}, provenance.materials, {}};
-    Result<CellTree> tree = cutIntoCells(tape, field.box, margin, threads, progress);
+    Result<CellTree> tree = cutIntoCells(tape, field.box, margin, threads, progress, levels);
     if (!tree) return tree.error();
     field.tree = std::move(*tree);
     for (const Part& part : provenance.parts) field.materialOf.push_back(part.material);

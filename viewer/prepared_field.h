@@ -26,8 +26,8 @@ struct PreparedField {
     std::vector<OriginId> originsOf(const std::vector<Vec3f>& places, int threads) const;
 };
 
-/// Cuts space into cells. Error::Cancelled when `progress` says so.
+/// Cuts space into cells, at most `levels` deep. Error::Cancelled when `progress` says so.
 Result<PreparedField> prepareField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance, int threads,
-                                   Progress* progress);
+                                   Progress* progress, int levels = CellTree::surfaceDepth);
 
 }  // namespace sgm::viewer

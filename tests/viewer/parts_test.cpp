@@ -49,38 +49,44 @@ TEST_F(Parts, CellsKnowTheFieldExactly) {
     const field::Field field = scene.sum();
     const eval::Tape tape = scene.compile(field);
     const float margin = 0.5f;
-    const auto tree = cutIntoCells(tape, field.bounds.inflated(margin), margin, 2, nullptr);
-    ASSERT_TRUE(tree.ok());
-    size_t near = 0, shorter = 0;
-    for (uint64_t i = 0; i < 3000; ++i) {
-        Vec3f p;
-        for (int axis = 0; axis < 3; ++axis)
-            p[axis] = static_cast<float>(
-                uniform(combine(10 + uint64_t(axis), i), field.bounds.lo[axis], field.bounds.hi[axis]));
-        const uint32_t word = tree->find(p);
-        const float value = valueOf(tape, p);
-        switch (CellTree::stateOf(word)) {
-            case CellState::Outside:
-                EXPECT_GT(value, margin);
-                break;
-            case CellState::Inside:
-                EXPECT_LT(value, -margin);
-                break;
-            case CellState::Near: {
-                const eval::Tape& local = tree->tapes[CellTree::indexOf(word)];
-                EXPECT_EQ(valueOf(local, p), value);
-                const eval::Range range = tree->ranges[CellTree::indexOf(word)];
-                EXPECT_TRUE(range.lo <= value && value <= range.hi);
-                ++near;
-                shorter += local.size() * 4 < tape.size() ? 1 : 0;
-                break;
+    for (const int levels : {1, 2, CellTree::surfaceDepth}) {
+        const auto tree = cutIntoCells(tape, field.bounds.inflated(margin), margin, 2, nullptr, levels);
+        ASSERT_TRUE(tree.ok());
+        size_t near = 0, shorter = 0;
+        for (uint64_t i = 0; i < 3000; ++i) {
+            Vec3f p;
+            for (int axis = 0; axis < 3; ++axis)
+                p[axis] = static_cast<float>(
+                    uniform(combine(10 + uint64_t(axis), i), field.bounds.lo[axis], field.bounds.hi[axis]));
+            const uint32_t word = tree->find(p);
+            const float value = valueOf(tape, p);
+            switch (CellTree::stateOf(word)) {
+                case CellState::Outside:
+                    EXPECT_GT(value, margin);
+                    break;
+                case CellState::Inside:
+                    EXPECT_LT(value, -margin);
+                    break;
+                case CellState::Near: {
+                    const eval::Tape& local = tree->tapes[CellTree::indexOf(word)];
+                    EXPECT_EQ(valueOf(local, p), value);
+                    const eval::Range range = tree->ranges[CellTree::indexOf(word)];
+                    EXPECT_TRUE(range.lo <= value && value <= range.hi);
+                    ++near;
+                    shorter += local.size() * 4 < tape.size() ? 1 : 0;
+                    break;
+                }
+                case CellState::Node:
+                    ADD_FAILURE() << "find must end at a leaf";
             }
-            case CellState::Node:
-                ADD_FAILURE() << "find must end at a leaf";
         }
+        EXPECT_GT(near, 500u);
+        if (levels <= 2) {
+            EXPECT_LE(tree->nodes.size(), levels == 1 ? 64u : 64u + 64u * 64u);
+            continue;
+        }
+        EXPECT_GT(shorter, near * 9 / 10) << "cells are there to make tapes short";
     }
-    EXPECT_GT(near, 500u);
-    EXPECT_GT(shorter, near * 9 / 10) << "cells are there to make tapes short";
 }
 
 TEST_F(Parts, FrameFitsTheBoxTightly) {

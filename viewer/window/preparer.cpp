@@ -5,6 +5,15 @@
 #include "modeler/core/stopwatch.h"
 
 namespace sgm::viewer {
+namespace {
+
+/// Depth of the cells: few while a hand holds a slider, for it waits for them, and no picture of it is drawn whole.
+int levelsFor(const Shown& model) {
+    constexpr size_t longTape = 4096;  // that two levels leave too long for rays
+    return !model.held ? CellTree::surfaceDepth : model.model.tape.size() > longTape ? 3 : 2;
+}
+
+}  // namespace
 
 Preparer::Preparer(std::unique_ptr<SharedContext> context, std::function<void()> wake)
     : context_(std::move(context)), wake_(std::move(wake)), worker_([this] { work(); }) {}
@@ -96,7 +105,7 @@ Status Preparer::makeField(std::shared_ptr<const Shown> model, bool withCamera, 
     Stopwatch watch;
     const lower::Model& lowered = *model->model.lowered;
     const eval::Tape& tape = model->model.tape;
-    Result<PreparedField> field = prepareField(tape, tighten(tape, lowered.field.bounds), lowered.provenance, 0, &progress);
+    Result<PreparedField> field = prepareField(tape, tighten(tape, lowered.field.bounds), lowered.provenance, 0, &progress, levelsFor(*model));
     if (!field) return field.error();
     ready.times.prepare = watch.seconds();
     if (withCamera) ready.camera = frame(tape, field->bounds, 1);

@@ -81,7 +81,8 @@ bool Workbench::poll() {
     if (session.model() != model && session.model()) {
         resolveSelection();
         hover.reset();
-        if (!framed_ || !prepared_ || !looksLike(*prepared_, *session.model())) {
+        // What a slider let go of looks the same, but was made ready in haste.
+        if (!framed_ || !prepared_ || prepared_->held || !looksLike(*prepared_, *session.model())) {
             preparer.retire(std::exchange(prepared_, session.model()));
             preparer.prepare(prepared_, !framed_);
         }
