@@ -108,7 +108,7 @@ void Workspace::show() {
     const ImGuiIO& io = ImGui::GetIO();
     const float leftWidth = left_.value_or(std::clamp(io.DisplaySize.x * 0.23f, 280.0f, 430.0f)),
                 rightWidth = right_.value_or(std::clamp(io.DisplaySize.x * 0.31f, 340.0f, 560.0f));
-    const float bar = ImGui::GetFrameHeight() + 14, status = ImGui::GetFrameHeight() + 6, height = io.DisplaySize.y - bar - status;
+    const float bar = bars_.height(), status = ImGui::GetFrameHeight() + 6, height = io.DisplaySize.y - bar - status;
     const float problems = bench_.session.problems().empty() ? 0 : std::min(ImGui::GetFrameHeight() * 4.5f, height / 3);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
     ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_MenuBarBg));

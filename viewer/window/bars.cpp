@@ -49,10 +49,20 @@ void Bars::top(Workbench& bench) {
     if (oneOf(report, "pane", panes, pane, meanings)) bench.look.pane = static_cast<Pane>(pane);
     gap();
     lookControls(bench);
+    const float end = ImGui::GetItemRectMax().x;
     if (bench.wantsMesh()) {
-        gap();
+        if (!wrapped_) gap();
+        const float start = ImGui::GetCursorScreenPos().x;
         meshControls(bench);
+        const float needed = end + 29 + ImGui::GetItemRectMax().x - start;
+        wrapped_ = needed > ImGui::GetWindowPos().x + ImGui::GetWindowWidth() - 8;
+    } else {
+        wrapped_ = false;
     }
+}
+
+float Bars::height() const {
+    return ImGui::GetFrameHeight() + 14 + (wrapped_ ? ImGui::GetFrameHeightWithSpacing() : 0);
 }
 
 void Bars::lookControls(Workbench& bench) {

@@ -9,6 +9,8 @@ namespace sgm::viewer {
 class Bars {
 public:
     void top(Workbench& bench);
+    /// Height of what `top` shows, pixels: two lines where the window is too narrow for one.
+    float height() const;
     void status(Workbench& bench);
     /// Open, save, undo, help, pictures. Call once a frame, when no text takes keys.
     void keys(Workbench& bench);
@@ -24,6 +26,7 @@ private:
     void cheatSheet(Workbench& bench);
 
     bool help_ = false, opening_ = false, naming_ = false;
+    bool wrapped_ = false;  ///< the mesh's controls have a line of their own
     std::string folder_, name_;
 };
 

@@ -51,7 +51,7 @@ void ParametersPanel::show(Workbench& bench) {
         // As wide as the longest label asks for, within what leaves the sliders room.
         float longest = 0;
         for (const ParamRow& r : rows_)
-            if (r.number.size() <= 3) longest = std::max(longest, ImGui::CalcTextSize(r.label.c_str()).x);
+            if (r.number.size() < 3) longest = std::max(longest, ImGui::CalcTextSize(r.label.c_str()).x);
         labelShare_ = std::clamp((longest + 10) / ImGui::GetContentRegionAvail().x, 0.3f, 0.54f);
         std::string group;
         for (const ParamRow& r : rows_) {
@@ -196,7 +196,7 @@ void ParametersPanel::row(Workbench& bench, ParamRow row) {
     const float width = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX();
     ImGui::AlignTextToFramePadding();
     // Many numbers get a line of their own.
-    const bool wide = row.number.size() > 3;
+    const bool wide = row.number.size() >= 3;
     const float labelWidth = wide ? 0 : labelShare_ * width;
     ImGui::TextUnformatted(shortened(row.label, (wide ? width - ImGui::GetFrameHeight() : labelWidth) - 6).c_str());
     const std::string why = fmt::format("{} ({}){}", row.label, row.name, row.key ? fmt::format(", key {}", row.key) : "");

@@ -50,7 +50,8 @@ void StepPanel::shapes(Workbench& bench) {
     if (ImGui::BeginChild("live", {0, -below})) {
         size_t waiting = 0;
         for (const StepRow& row : bench.stepper->rows()) waiting += !row.rules.empty();
-        heading(fmt::format("{} live shapes, {} of them matched", bench.stepper->rows().size(), waiting).c_str());
+        const size_t live = bench.stepper->rows().size();
+        heading(fmt::format("{} live shape{}, {} of them matched", live, live == 1 ? "" : "s", waiting).c_str());
         const StepRow* picked = bench.selected() == derive::none ? nullptr : bench.stepper->rowOf(bench.selected());
         for (const StepRow& row : bench.stepper->rows()) {
             ImGui::PushID(static_cast<int>(row.shape));
@@ -84,9 +85,11 @@ void StepPanel::shapes(Workbench& bench) {
 void StepPanel::save(Workbench& bench) {
     ImGui::Separator();
     const Result<std::string> way = bench.stepper->way(way_);
-    ImGui::PushFont(codeFont());
-    faint(way ? *way : way.error().message);
-    ImGui::PopFont();
+    const std::string& whole = way ? *way : way.error().message;
+    if (way) ImGui::PushFont(codeFont());
+    faint(shortened(whole, ImGui::GetContentRegionAvail().x));
+    if (way) ImGui::PopFont();
+    hint(whole.c_str());
     const float width = ImGui::CalcTextSize("Save way").x + 2 * ImGui::GetStyle().FramePadding.x;
     field(bench.report, "step.name", way_, "Name of the way", ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
     ImGui::SameLine();
