@@ -42,17 +42,18 @@ inline bool mayHoldSurface(eval::Range range, const CellRange& cells, const Grid
     return !(range.hi < 0) || touchesBorder;
 }
 
+/// Whether an evaluation costs as much as dozens of others, and no shortening spares it: the tape folds a fractal.
+bool isDear(const eval::Tape& tape);
+
+/// Distances, in cells, within which a sample of a dear field tells the signs: those of a corner's neighbours, so that
+/// the surface cuts no edge there, of corners 1, √2 or √3 away. A little more is for rounding.
+inline constexpr float farEdge = 2.0625f, farFace = 2.48f, farMiddle = 2.8f;
+
 /// What the mesher tells apart of the field's values. On an edge that the surface cuts they stay within Lipschitz
 /// constant · cell of 0, and vertices lie on those edges; of all other values only the sign counts. The constant is
 /// rounded up to a power of two, so that small changes of it change nothing, and a quarter more is for rounding.
-inline eval::Care careOf(const eval::Tape& tape, const Grid& grid) {
-    const float lipschitz = tape.lipschitz();
-    if (!(lipschitz > 0) || !std::isfinite(lipschitz)) return {};
-    int exponent = 0;
-    const bool isPower = std::frexp(lipschitz, &exponent) == 0.5f;
-    const float most = 1.25f * std::ldexp(grid.cell_m, isPower ? exponent - 1 : exponent);
-    return {-most, most};
-}
+/// Samples of a dear field are also asked how far the surface is.
+eval::Care careOf(const eval::Tape& tape, const Grid& grid);
 
 /// Error::Input for a box without end and for cells that float32 can't resolve or that aren't positive, Error::Budget
 /// for too many along an axis.

@@ -11,34 +11,10 @@ constexpr size_t shortEnough = 4;
 constexpr int vainEnough = 8;
 constexpr size_t notLong = 16;
 
-/// For the seven bricks that come before a brick in its block, by their offset's bits: which numbers they have, as a
-/// mask; none where the block ends.
-using LowerBricks = std::array<uint64_t, 8>;
-
-std::array<LowerBricks, bricksPerBlock> lowerBricks() {
-    std::array<LowerBricks, bricksPerBlock> all{};
-    for (int b = 0; b < bricksPerBlock; ++b)
-        for (int offset = 1; offset < 8; ++offset) {
-            const Vec3i other = brickAt(b) - Vec3i{offset & 1, offset >> 1 & 1, offset >> 2};
-            if (minComponent(other) >= 0) all[b][offset] = 1ull << brickNumber(other);
-        }
-    return all;
-}
-
-/// Which of a brick's low faces, edges and corner a lower active brick has sampled: bit d (x = 1, y = 2, z = 4) is set
-/// when a corner on the low sides d lies on the high sides of some active brick.
-uint8_t sampledBelow(uint64_t active, int brick) {
-    static const auto lower = lowerBricks();
-    constexpr uint8_t within[] = {0, 0xaa, 0xcc, 0x88, 0xf0, 0xa0, 0xc0, 0x80};  // sides that have those of an offset
-    uint8_t result = 0;
-    for (int offset = 1; offset < 8; ++offset) result |= active & lower[brick][offset] ? within[offset] : uint8_t{0};
-    return result;
-}
-
 /// Rows of whole bricks, by `sampledBelow`.
-const std::array<BlockSamples::Rows, 256>& wholeBricks() {
+const std::array<SampleRows, 256>& wholeBricks() {
     static const auto table = [] {
-        std::array<BlockSamples::Rows, 256> all;
+        std::array<SampleRows, 256> all;
         for (int below = 0; below < 256; ++below)
             all[below].list(Vec3i{1, 1, 1} * brickCorners, static_cast<uint8_t>(below));
         return all;
@@ -78,22 +54,24 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
         active_ |= 1ull << numbers[i];
         region_[numbers[i]] = static_cast<uint8_t>(i);
     }
+    dear_ = isDear(block.tape) && std::isfinite(care_.most);
+    if (dear_)
+        active_ = coarse_.enter(block, active_, coordinates_, grid.cell_m, workspace, counts) | onBorder(active_);
 }
 
-void BlockSamples::Rows::list(Vec3i corners, uint8_t below) {
-    count = points = 0;
-    for (int k = 0; k < corners.z; ++k)
-        for (int j = 0; j < corners.y; ++j) {
-            const int low = (j == 0 ? 2 : 0) | (k == 0 ? 4 : 0);
-            if (below >> low & 1) continue;
-            const int skip = below >> (low | 1) & 1, along = corners.x - skip;
-            rows[count++] = {static_cast<uint16_t>(cornerNumber(skip, j, k)), static_cast<uint8_t>(skip),
-                             static_cast<uint8_t>(j), static_cast<uint8_t>(k), static_cast<uint8_t>(along)};
-            points += static_cast<size_t>(along);
-        }
+/// Those of the bricks that touch the border of the grid, or end there.
+uint64_t BlockSamples::onBorder(uint64_t bricks) const {
+    uint64_t some = 0;
+    for (uint64_t rest = bricks; rest != 0; rest &= rest - 1) {
+        const int brick = std::countr_zero(rest);
+        const Vec3i low = brickAt(brick) * brickCells;
+        if (minComponent(block_->index * blockCells + low) == 0 || minComponent(last_ - low) <= brickCells)
+            some |= 1ull << brick;
+    }
+    return some;
 }
 
-const BlockSamples::Rows& BlockSamples::rowsOf(int brick) {
+const SampleRows& BlockSamples::rowsOf(int brick) {
     const Vec3i corners = last_ + Vec3i{1, 1, 1} - brickAt(brick) * brickCells;
     const uint8_t below = sampledBelow(active_, brick);
     if (minComponent(corners) >= brickCorners) return wholeBricks()[below];
@@ -134,7 +112,13 @@ const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Co
     }
     const eval::Tape& tape = whole ? block_->tape : tape_;
     const Vec3i at = brickAt(brick), first = at * brickCells;
-    const Rows& rows = rowsOf(brick);
+    if (dear_) {
+        coarse_.sample(brick, sampledBelow(active_, brick), tape, coordinates_, last_ - first, values_.data(),
+                       workspace, counts);
+        sealBorder(at);
+        return tape;
+    }
+    const SampleRows& rows = rowsOf(brick);
     const BrickLoops& loops = brickLoops();
     eval::PointRoom to = eval::roomForPoints(tape, rows.points, workspace);
     if (!to.x) to = {x_.data(), y_.data(), z_.data()};

@@ -1,0 +1,42 @@
+// A block's corners and bricks by number, and which corners a brick has to evaluate.
+// Enters: a brick, the active ones. Leaves: rows of corners. Assumes bricks are sampled in ascending order.
+#pragma once
+
+#include <array>
+
+#include "modeler/mesh/brick_loops.h"
+#include "modeler/mesh/region.h"
+
+namespace sgm::mesh {
+
+inline constexpr int bricksAlong = blockCells / brickCells;
+inline constexpr int bricksPerBlock = bricksAlong * bricksAlong * bricksAlong;
+inline constexpr int blockCorners = blockCells + 1;
+inline constexpr int brickCorners = brickCells + 1;
+/// Corners of a block, and their numbers, x fastest.
+inline constexpr int cornersPerBlock = blockCorners * blockCorners * blockCorners;
+constexpr int cornerNumber(int i, int j, int k) { return i + blockCorners * (j + blockCorners * k); }
+
+/// A brick's number in its block, its coordinates there and its low corner's number.
+constexpr int brickNumber(Vec3i at) { return at.x + bricksAlong * (at.y + bricksAlong * at.z); }
+constexpr Vec3i brickAt(int number) {
+    return {number % bricksAlong, number / bricksAlong % bricksAlong, number / (bricksAlong * bricksAlong)};
+}
+constexpr int brickCorner(Vec3i brick) {
+    return cornerNumber(brick.x * brickCells, brick.y * brickCells, brick.z * brickCells);
+}
+
+/// Corners that a brick has to evaluate.
+struct SampleRows {
+    std::array<CornerRow, brickCorners * brickCorners> rows;
+    size_t count = 0, points = 0;
+    /// Those of a brick of so many corners in a block of `along` along an edge, but for those on low sides that `below`
+    /// names, see sampledBelow.
+    void list(Vec3i corners, uint8_t below, int along = blockCorners);
+};
+
+/// Which of a brick's low faces, edges and corner a lower one of `bricks` has sampled: bit d (x = 1, y = 2, z = 4) is
+/// set when a corner on the low sides d lies on the high sides of one of them.
+uint8_t sampledBelow(uint64_t bricks, int brick);
+
+}  // namespace sgm::mesh
