@@ -170,7 +170,7 @@ bool find(const float* coarse, size_t rowStride, size_t layerStride, FarFrom far
 
 void fill(const float* coarse, size_t rowStride, size_t layerStride, const Between& between, float* values,
           size_t valueRow, size_t valueLayer) {
-    constexpr float outside = 3e38f;
+    constexpr float outside = 1e15f;  // of which the square is no infinity
     for (int k = 0; k < corners; ++k)
         for (int j = 0; j < corners; ++j) {
             const int r = j + corners * k;

@@ -114,7 +114,7 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
         places[at] = 3 * corner + axis;
     }
     const size_t whole = (n + edgeVector - 1) / edgeVector * edgeVector;  // not by wholeVectors, an inline function
-    for (size_t at = n; at < whole; ++at)  // numbers like the others
+    for (size_t at = n; at < whole; ++at)                                 // numbers like the others
         for (float* const to : {e.x, e.y, e.z, e.axis, e.base, e.span, e.fIn, e.fOut}) to[at] = to[n - 1];
 }
 
@@ -161,7 +161,29 @@ private:
     Float t_, slope_, missedAcross_, missedBehind_, across_, behind_;
 };
 
-size_t step(const EdgeArrays& e, size_t n) {
+/// The line between the bracket's ends; where one end was moved twice and the other never, the value there counts half
+/// (the Illinois method of Dowell & Jarratt 1971), if `weaken` says so.
+void narrow(const EdgeArrays& e, size_t n, bool weaken) {
+    const Float one = 1.0f, share = weaken ? 0.5f : 1.0f;
+    for (size_t i = 0; i < n; i += Float::size) {
+        const Float t = Float::load(e.t + i), f = Float::load(e.f + i);
+        const Mask inside = f < Float(0.0f);
+        const Float t0 = select(inside, t, Float::load(e.tIn + i)), f0 = select(inside, f, Float::load(e.fIn + i));
+        const Float t1 = select(inside, Float::load(e.tOut + i), t), f1 = select(inside, Float::load(e.fOut + i), f);
+        const Float other = select(inside, t1, t0);
+        const Float weight = select((other <= Float(0.0f)) | (other >= one), share, one);
+        const Float g0 = select(inside, f0, f0 * weight), g1 = select(inside, f1 * weight, f1);
+        const Float moved = withinEdge(t0 + (t1 - t0) * (g0 / (g0 - g1)));
+        t0.store(e.tIn + i), f0.store(e.fIn + i);
+        t1.store(e.tOut + i), f1.store(e.fOut + i);
+        moved.store(e.t + i);
+        moveTo(e, i, Axes(e, i), Float::load(e.base + i) + moved * Float::load(e.span + i));
+    }
+}
+
+/// Newton's step; where it is not to be trusted, the middle of the bracket, or nowhere if it is the last one.
+template <bool last>
+size_t stepOrStay(const EdgeArrays& e, size_t n) {
     Float open = 0.0f, number = ascending();
     const Float end = static_cast<float>(n);
     for (size_t i = 0; i < n; i += Float::size, number = number + Float(static_cast<float>(Float::size))) {
@@ -182,12 +204,13 @@ size_t step(const EdgeArrays& e, size_t n) {
         const Parabola bent(t, f, rise, tIn, fIn, tOut, fOut);
         const Mask agreed = apart <= Float(agreement);
         const Mask smooth = (apart <= Float(mostBent)) & bent.fits(way);
-        const Mask done =
-            (kept & (agreed | smooth) & (way <= Float(longStep))) | (high - low <= Float(agreement)) | (number >= end);
+        const Mask trusted = kept & (agreed | smooth) & (way <= Float(longStep));
+        const Mask done = trusted | (high - low <= Float(agreement)) | (number >= end);
         t0.store(e.tIn + i), f0.store(e.fIn + i);
         t1.store(e.tOut + i), f1.store(e.fOut + i);
         const Float root = select(agreed | !smooth, newton, bent.root(newton));
-        const Float moved = withinEdge(select(kept, root, Float(0.5f) * (t0 + t1)));
+        const Float moved =
+            last ? select(trusted, withinEdge(root), t) : withinEdge(select(kept, root, Float(0.5f) * (t0 + t1)));
         moved.store(e.t + i);
         moveTo(e, i, along, Float::load(e.base + i) + moved * span);
         const Float again = select(done, Float(0.0f), Float(1.0f));
@@ -196,6 +219,8 @@ size_t step(const EdgeArrays& e, size_t n) {
     }
     return sum(open);
 }
+size_t step(const EdgeArrays& e, size_t n) { return stepOrStay<false>(e, n); }
+void settle(const EdgeArrays& e, size_t n) { stepOrStay<true>(e, n); }
 
 size_t normalize(const EdgeArrays& e, size_t n) {
     Float without = 0.0f, number = ascending();
@@ -310,7 +335,7 @@ void interleave(const float* __restrict x, const float* __restrict y, const floa
 }  // namespace
 
 namespace SGM_ISA {
-const EdgeLoops loops{place, interpolate, step, normalize, pick, putBack, interleave};
+const EdgeLoops loops{place, interpolate, narrow, step, settle, normalize, pick, putBack, interleave};
 }  // namespace SGM_ISA
 
 }  // namespace sgm::mesh

@@ -50,9 +50,14 @@ struct EdgeLoops {
     /// Makes brackets of the samples at the low ends (in fIn) and high ends (in fOut), and goes where the line between
     /// them is zero (SG-M III-G).
     void (*interpolate)(const EdgeArrays& e, size_t n);
+    /// Narrows the brackets by t and f and moves each vertex to where the line between their ends is zero. With
+    /// `weaken` an end that never moved counts half.
+    void (*narrow)(const EdgeArrays& e, size_t n, bool weaken);
     /// Narrows the brackets by t and f and moves each vertex by Newton's step, or to the middle where that would leave
     /// the bracket. Tells in `open` which have to be looked at again; returns how many.
     size_t (*step)(const EdgeArrays& e, size_t n);
+    /// Moves each vertex by Newton's step for the last time, where that can be trusted.
+    void (*settle)(const EdgeArrays& e, size_t n);
     /// Scales (dx, dy, dz) to unit length, to zero where it has no direction; returns how many have none.
     size_t (*normalize)(const EdgeArrays& e, size_t n);
     /// Takes over the open ones of n entries, but for f, open and derivatives; returns how many. They stay in order.

@@ -2,12 +2,53 @@
 
 #include <algorithm>
 
+#include "modeler/mesh/region.h"
+
 namespace sgm::mesh {
 namespace {
 
 /// The field's value and its derivatives.
 void evaluate(const eval::Tape& tape, const EdgeArrays& e, size_t n, eval::Workspace& workspace) {
     eval::evaluateGradient(tape, {e.x, e.y, e.z, n}, e.f, e.dx, e.dy, e.dz, workspace);
+}
+
+/// By values alone, and by the derivative once at the end.
+uint64_t findByValues(const eval::Tape& tape, size_t refineSteps, eval::Workspace& workspace, CutEdges& edges) {
+    const EdgeLoops& loops = edgeLoops();
+    const EdgeArrays& e = edges.arrays;
+    for (size_t s = 0; s < refineSteps; ++s) {
+        eval::evaluate(tape, {e.x, e.y, e.z, edges.size}, e.f, workspace);
+        loops.narrow(e, edges.size, s % 2 == 1);
+    }
+    evaluate(tape, e, edges.size, workspace);
+    if (refineSteps > 0) loops.settle(e, edges.size);
+    return refineSteps * edges.size;
+}
+
+/// By value and derivative together: most vertices take one evaluation, and only the others go on.
+uint64_t findByNewton(const eval::Tape& tape, size_t refineSteps, eval::Workspace& workspace,
+                      std::vector<CutEdges>& scratch, CutEdges& edges) {
+    const EdgeLoops& loops = edgeLoops();
+    uint64_t evaluations = 0;
+    scratch.resize(std::max(scratch.size(), refineSteps));
+    CutEdges* list = &edges;
+    for (size_t s = 0;; ++s) {
+        evaluate(tape, list->arrays, list->size, workspace);
+        if (s == refineSteps) break;  // where the last step led, only the derivative is asked
+        evaluations += list->size;
+        if (loops.step(list->arrays, list->size) == 0) break;
+        CutEdges& open = scratch[s];
+        open.reserve(list->size);
+        open.size = loops.pick(list->arrays, list->size, open.arrays);
+        list = &open;
+    }
+    // Each list was picked from the one before.
+    while (list != &edges) {
+        const CutEdges& from = *list;
+        list = list == scratch.data() ? &edges : list - 1;
+        loops.putBack(from.arrays, list->size, list->arrays);
+    }
+    return evaluations;
 }
 
 }  // namespace
@@ -41,25 +82,8 @@ uint64_t findVertices(const eval::Tape& tape, size_t refineSteps, eval::Workspac
     if (edges.size == 0) return 0;
     const EdgeLoops& loops = edgeLoops();
     loops.interpolate(edges.arrays, edges.size);
-    uint64_t evaluations = 0;
-    scratch.resize(std::max(scratch.size(), refineSteps));
-    CutEdges* list = &edges;
-    for (size_t s = 0;; ++s) {
-        evaluate(tape, list->arrays, list->size, workspace);
-        if (s == refineSteps) break;  // where the last step led, only the derivative is asked
-        evaluations += list->size;
-        if (loops.step(list->arrays, list->size) == 0) break;
-        CutEdges& open = scratch[s];
-        open.reserve(list->size);
-        open.size = loops.pick(list->arrays, list->size, open.arrays);
-        list = &open;
-    }
-    // Each list was picked from the one before.
-    while (list != &edges) {
-        const CutEdges& from = *list;
-        list = list == scratch.data() ? &edges : list - 1;
-        loops.putBack(from.arrays, list->size, list->arrays);
-    }
+    const uint64_t evaluations = isDear(tape) ? findByValues(tape, refineSteps, workspace, edges)
+                                              : findByNewton(tape, refineSteps, workspace, scratch, edges);
     edges.flat = loops.normalize(edges.arrays, edges.size);
     return evaluations;
 }
