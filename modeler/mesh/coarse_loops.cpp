@@ -193,12 +193,24 @@ void fill(const float* coarse, size_t rowStride, size_t layerStride, const Betwe
         }
 }
 
-/// Calls visit(i, j, k) for the needed corners, or visit(mask, j, k) for rows of them.
+/// Calls visit(mask, j, k) for rows with needed corners: which those are follows no pattern.
 template <class Visit>
 inline void forEachRow(const Between& between, Visit&& visit) {
+#if defined(__AVX512BW__)
+    for (int first = 0; first < corners * corners; first += 32) {
+        const __m512i rows = _mm512_loadu_si512(between.needed + first);
+        const int count = corners * corners - first;
+        uint32_t rest = _mm512_test_epi16_mask(rows, rows) & (count < 32 ? (1u << count) - 1 : ~0u);
+        for (; rest != 0; rest &= rest - 1) {
+            const int row = first + __builtin_ctz(rest), k = row * 57 >> 9;  // row / 9
+            visit(static_cast<unsigned>(between.needed[row]), row - corners * k, k);
+        }
+    }
+#else
     for (int k = 0; k < corners; ++k)
         for (int j = 0; j < corners; ++j)
             if (const unsigned mask = between.needed[j + corners * k]; mask != 0) visit(mask, j, k);
+#endif
 }
 
 size_t gather(const Between& between, const float* xs, const float* ys, const float* zs, float* __restrict x,

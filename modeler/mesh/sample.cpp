@@ -85,14 +85,12 @@ void BlockSamples::sealBorder(Vec3i brick) {
     if (minComponent(block_->index * blockCells + first) > 0 && minComponent(end) > brickCells) return;
     float* const values = values_.data() + brickCorner(brick);
     const auto plane = [&](int axis, int at, auto&& change) {
-        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-        for (int a = 0; a < brickCorners; ++a)
-            for (int b = 0; b < brickCorners; ++b) {
-                Vec3i corner;
-                corner[axis] = at, corner[u] = a, corner[v] = b;
-                float& f = values[cornerNumber(corner.x, corner.y, corner.z)];
-                f = change(f);
-            }
+        constexpr int strides[] = {1, blockCorners, blockCorners * blockCorners};
+        const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+        for (int b = 0; b < brickCorners; ++b) {
+            float* const row = values + at * strides[axis] + b * strides[v];
+            for (int a = 0; a < brickCorners; ++a) row[a * strides[u]] = change(row[a * strides[u]]);
+        }
     };
     const auto outside = [](float f) { return std::max(0.0f, f); };
     for (int axis = 0; axis < 3; ++axis) {
