@@ -290,9 +290,9 @@ void DisplayTexture::resize(int width, int height) {
     framebuffer_ = makeFramebuffer();
     glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture_.id(), 0);
 }
-void DisplayTexture::write(std::span<const uint8_t> rgba, int low, int high) {
+void DisplayTexture::write(std::span<const uint8_t> rgba, int x, int y, int width, int height) {
     glBindTexture(GL_TEXTURE_2D, texture_.id());
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, low, width_, high - low, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    glTexSubImage2D(GL_TEXTURE_2D, 0, x, y, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
 }
 void DisplayTexture::encode(const ColorTarget& target, const Program& encode) {
     resize(target.width, target.height);

@@ -169,8 +169,8 @@ class DisplayTexture {
 public:
     /// Nothing where it has this size already.
     void resize(int width, int height);
-    /// Rows [low, high) from the top, four bytes a pixel.
-    void write(std::span<const uint8_t> rgba, int low, int high);
+    /// A part of it, (x, y) from the top left; four bytes a pixel, top row first.
+    void write(std::span<const uint8_t> rgba, int x, int y, int width, int height);
     /// Makes all of it, top row first, of a resolved target of the same size; `encode` is the shader of that name.
     void encode(const ColorTarget& target, const Program& encode);
     uint32_t id() const { return texture_.id(); }

@@ -19,11 +19,11 @@ Image PixelSums::image() const {
     return encode(means, width, height);
 }
 
-std::vector<uint8_t> PixelSums::bytes(int low, int high) const {
-    std::vector<uint8_t> bytes(size_t(width) * size_t(high - low) * 4, 0);
+std::vector<uint8_t> PixelSums::bytes(int left, int top, int columns, int rows) const {
+    std::vector<uint8_t> bytes(size_t(columns) * size_t(rows) * 4, 0);
     uint8_t* to = bytes.data();
-    for (int y = low; y < high; ++y)
-        for (int x = 0; x < width; ++x, to += 4) {
+    for (int y = top; y < top + rows; ++y)
+        for (int x = left; x < left + columns; ++x, to += 4) {
             const float* sum = &rgba[(size_t(y) * size_t(width) + size_t(x)) * 4];
             if (sum[3] == 0) continue;
             const std::array<uint8_t, 3> rgb = encodePixel({sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]}, x, y);

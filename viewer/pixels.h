@@ -37,8 +37,8 @@ struct PixelSums {
     void add(std::span<const Job> jobs, std::span<const std::array<float, 4>> colors);
     /// Means as 8-bit sRGB.
     Image image() const;
-    /// The same for rows [low, high) as RGBA, transparent where there is no sample yet.
-    std::vector<uint8_t> bytes(int low, int high) const;
+    /// The same for a part of it as RGBA, transparent where there is no sample yet; (left, top) from the top left.
+    std::vector<uint8_t> bytes(int left, int top, int columns, int rows) const;
 };
 
 /// Every pixel once, in blocks of 8 × 8 so that neighbours run together.

@@ -1,5 +1,7 @@
 #include "viewer/prepared_field.h"
 
+#include <algorithm>
+
 #include "modeler/core/parallel.h"
 #include "modeler/eval/evaluate.h"
 
@@ -26,27 +28,39 @@ float PreparedField::sideOf(Vec3f eye) const {
 
 /// Places are gathered by cell and asked on the cell's own tape.
 std::vector<OriginId> PreparedField::originsOf(const std::vector<Vec3f>& places, int threads) const {
-    const size_t leaves = tree.tapes.size();  // index `leaves` is the whole tape, for places beside every near cell
-    std::vector<std::vector<uint32_t>> byLeaf(leaves + 1);
-    for (size_t i = 0; i < places.size(); ++i) {
+    const auto whole = static_cast<uint32_t>(tree.tapes.size());  // the field's own tape, for places beside every near cell
+    struct Member {
+        uint32_t tape, place;
+    };
+    std::vector<Member> members(places.size());
+    for (uint32_t i = 0; i < places.size(); ++i) {
         const uint32_t word = tree.find(places[i]);
-        byLeaf[CellTree::stateOf(word) == CellState::Near ? CellTree::indexOf(word) : leaves].push_back(static_cast<uint32_t>(i));
+        members[i] = {CellTree::stateOf(word) == CellState::Near ? CellTree::indexOf(word) : whole, i};
     }
+    std::stable_sort(members.begin(), members.end(), [](const Member& a, const Member& b) { return a.tape < b.tape; });
+    std::vector<size_t> starts;  // of each tape's members
+    for (size_t i = 0; i < members.size(); ++i)
+        if (i == 0 || members[i].tape != members[i - 1].tape) starts.push_back(i);
+    starts.push_back(members.size());
     std::vector<OriginId> all(places.size(), 0);
-    std::vector<eval::Workspace> workspaces(size_t(threadCount(threads)));
-    parallelFor(byLeaf.size(), threads, nullptr, [&](size_t leaf, int worker) {
-        const std::vector<uint32_t>& members = byLeaf[leaf];
-        if (members.empty()) return;
+    const size_t groups = starts.size() - 1;
+    constexpr size_t fewGroups = 64;  // a thread takes so many at a time
+    std::vector<eval::Workspace> workspaces(std::min(size_t(threadCount(threads)), groups / fewGroups + 1));
+    const auto askGroup = [&](size_t g, eval::Workspace& workspace) {
         std::vector<float> x, y, z;
-        for (const uint32_t i : members) {
-            x.push_back(places[i].x);
-            y.push_back(places[i].y);
-            z.push_back(places[i].z);
+        for (size_t i = starts[g]; i < starts[g + 1]; ++i) {
+            const Vec3f& p = places[members[i].place];
+            x.push_back(p.x);
+            y.push_back(p.y);
+            z.push_back(p.z);
         }
-        std::vector<OriginId> origins(members.size());
-        eval::evaluateOrigin(leaf < leaves ? tree.tapes[leaf] : tape, {x.data(), y.data(), z.data(), x.size()}, origins.data(),
-                             workspaces[size_t(worker)]);
-        for (size_t k = 0; k < members.size(); ++k) all[members[k]] = origins[k] < materialOf.size() ? origins[k] : 0;
+        std::vector<OriginId> origins(x.size());
+        const uint32_t number = members[starts[g]].tape;
+        eval::evaluateOrigin(number < whole ? tree.tapes[number] : tape, {x.data(), y.data(), z.data(), x.size()}, origins.data(), workspace);
+        for (size_t k = 0; k < origins.size(); ++k) all[members[starts[g] + k].place] = origins[k] < materialOf.size() ? origins[k] : 0;
+    };
+    parallelFor((groups + fewGroups - 1) / fewGroups, static_cast<int>(workspaces.size()), nullptr, [&](size_t batch, int worker) {
+        for (size_t g = batch * fewGroups; g < std::min((batch + 1) * fewGroups, groups); ++g) askGroup(g, workspaces[size_t(worker)]);
     });
     return all;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "modeler/core/stopwatch.h"
 #include "viewer/scene.h"
@@ -11,14 +12,16 @@ namespace {
 
 constexpr double coarseSeconds = 0.05, batchSeconds = 0.018;
 
+/// Pixels along an edge of the squares in which the picture fills.
+constexpr int tile = 32;
+
 /// Every pixel once, tile by tile, the tiles from the middle outwards.
 std::vector<Job> fromTheMiddle(int width, int height) {
-    constexpr uint32_t tile = 32;
     std::vector<Job> jobs = firstSamples(width, height);
     const auto away = [&](const Job& job) {
-        const double x = static_cast<double>(job.x() / tile * tile + tile / 2) - width / 2.0,
-                     y = static_cast<double>(job.y() / tile * tile + tile / 2) - height / 2.0;
-        return std::pair(x * x + y * y, job.y() / tile * 4096 + job.x() / tile);
+        const int i = static_cast<int>(job.x()) / tile, j = static_cast<int>(job.y()) / tile;
+        const double x = i * tile + tile / 2 - width / 2.0, y = j * tile + tile / 2 - height / 2.0;
+        return std::pair(x * x + y * y, j * 4096 + i);
     };
     std::stable_sort(jobs.begin(), jobs.end(), [&](const Job& a, const Job& b) { return away(a) < away(b); });
     return jobs;
@@ -96,12 +99,12 @@ Status FieldView::drawCoarse() {
     times_.full = 0;
     perRay = 0.5 * perRay + 0.5 * watch.seconds() / static_cast<double>(jobs.size());
     coarse_.resize(small.width, small.height);
-    coarse_.write(sums.bytes(0, small.height), 0, small.height);
+    coarse_.write(sums.bytes(0, 0, small.width, small.height), 0, 0, small.width, small.height);
 
     point(look_);
     fine_.resize(look_.width, look_.height);
     sums_ = PixelSums(look_.width, look_.height);
-    fine_.write(sums_.bytes(0, look_.height), 0, look_.height);
+    fine_.write(sums_.bytes(0, 0, look_.width, look_.height), 0, 0, look_.width, look_.height);
     if (first_.empty()) first_ = fromTheMiddle(look_.width, look_.height);
     jobs_ = first_;
     next_ = 0;
@@ -115,12 +118,12 @@ Status FieldView::drawBatch() {
     const auto colors = colorsOf(chunk);
     if (!colors) return colors.error();
     sums_.add(chunk, *colors);
-    int low = look_.height, high = 0;
-    for (const Job& job : chunk) {
-        low = std::min(low, static_cast<int>(job.y()));
-        high = std::max(high, static_cast<int>(job.y()) + 1);
+    std::set<std::pair<int, int>> tiles;
+    for (const Job& job : chunk) tiles.emplace(static_cast<int>(job.x()) / tile, static_cast<int>(job.y()) / tile);
+    for (const auto& [i, j] : tiles) {
+        const int x = i * tile, y = j * tile, width = std::min(tile, look_.width - x), height = std::min(tile, look_.height - y);
+        fine_.write(sums_.bytes(x, y, width, height), x, y, width, height);
     }
-    fine_.write(sums_.bytes(low, high), low, high);
     times_.full += watch.seconds();
     const double wanted = static_cast<double>(chunk.size()) * std::clamp(batchSeconds / watch.seconds(), 0.25, 2.0);
     if (chunk.size() == batch_) batch_ = std::clamp(static_cast<size_t>(wanted), size_t(256), mostJobs);
