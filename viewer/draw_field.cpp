@@ -59,7 +59,7 @@ Result<FieldPainter> FieldPainter::create(const eval::Tape& tape, const Box3f& b
     const double start = secondsNow();
     Result<GpuContext> gpu = GpuContext::create();
     if (!gpu) return gpu.error();
-    Result<PreparedField> prepared = prepareField(tape, bounds, provenance, threads, progress);
+    Result<PreparedField> prepared = prepareField(tape, bounds, provenance, threads, progress, cellDepth(by));
     if (!prepared) return prepared.error();
     auto parts = std::shared_ptr<Parts>(new Parts{std::move(*gpu), {}, {}});
     auto programs = programsFor(*prepared, nullptr, by);

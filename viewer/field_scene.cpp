@@ -5,11 +5,17 @@
 
 namespace sgm::viewer {
 
+TracedBy tracerHere(TracedBy by) {
+    if (by != TracedBy::Best) return by;
+    return softwareGl() ? TracedBy::Processor : TracedBy::Gpu;
+}
+
+int cellDepth(TracedBy by) { return tracerHere(by) == TracedBy::Gpu ? CellTree::surfaceDepth : CellTree::depth; }
+
 Result<std::shared_ptr<const FieldPrograms>> programsFor(const PreparedField& field, std::shared_ptr<const FieldPrograms> before,
                                                          TracedBy by) {
-    const bool byShaders = by == TracedBy::Gpu || (by == TracedBy::Best && !softwareGl());
     std::shared_ptr<const RayPrograms> rays;
-    if (byShaders) {
+    if (tracerHere(by) == TracedBy::Gpu) {
         auto made = rayProgramsFor(field, before ? before->rays : nullptr);
         if (!made) return made.error();
         rays = std::move(*made);

@@ -16,6 +16,9 @@
 
 namespace sgm::viewer {
 
+/// Who walks here: `Best` becomes one of the others, by the current context.
+TracedBy tracerHere(TracedBy by);
+
 enum class HitKind { Sky, Object, Ground };
 
 /// What a ray met, as shaders read and write it.
@@ -58,6 +61,10 @@ public:
 protected:
     TraceCost cost_;
 };
+
+/// How deep space is best cut into cells for who walks: shaders gain by the shortest tapes; the processor asks many places at
+/// once of longer ones as quickly, and needn't wait for the last cut. `Best` asks the current context.
+int cellDepth(TracedBy by);
 
 /// Walks on the processor, on `threads` threads (0 = all). `field` must live on.
 std::unique_ptr<Tracer> processorTracer(std::shared_ptr<const PreparedField> field, int threads);

@@ -191,6 +191,23 @@ TEST_F(Picture, ShadersAndProcessorTraceTheSame) {
     }
 }
 
+TEST_F(Picture, SharedLightLooksLikeEverySamplesOwn) {
+    Scene scene;
+    for (int i = 0; i < 5; ++i) scene.add(i % 2 ? "sphere" : "cube", {2.5 * i, 0.3 * i, 0.7 * i}, {1.1, 1, 1.2}, i % 3 ? red : green);
+    const field::Field field = scene.sum();
+    const eval::Tape tape = scene.compile(field);
+    auto painter = FieldPainter::create(tape, field.bounds, scene.provenance, 0, nullptr);
+    ASSERT_TRUE(painter.ok()) << painter.error().message;
+    const PictureOptions options = optionsAt(frame(tape, field.bounds, 1), true);
+    const auto shared = painter->draw(options, nullptr);
+    const uint64_t evaluations = painter->cost().lightEvaluations;
+    Layers layers;  // which hold what each sample asked for itself
+    const auto own = painter->draw(options, nullptr, &layers);
+    ASSERT_TRUE(shared.ok() && own.ok());
+    EXPECT_LT(evaluations * 4, painter->cost().lightEvaluations * 3);
+    EXPECT_LT(differentPixels(*shared, *own), size_t(edge) * edge / 50);
+}
+
 TEST_F(Picture, EdgesAreSmooth) {
     RedBall ball;
     PictureOptions options = optionsAt(ball.camera, false);

@@ -10,7 +10,7 @@ namespace {
 /// Depth of the cells: few while a hand holds a slider, for it waits for them, and no picture of it is drawn whole.
 int levelsFor(const Shown& model) {
     constexpr size_t longTape = 4096;  // that two levels leave too long for rays
-    return !model.held ? CellTree::surfaceDepth : model.model.tape.size() > longTape ? 3 : 2;
+    return !model.held ? cellDepth(TracedBy::Best) : model.model.tape.size() > longTape ? 3 : 2;
 }
 
 }  // namespace
