@@ -83,7 +83,7 @@ Status FieldScene::light(std::span<const Job> jobs, Rays& rays, Progress* progre
     return Done{};
 }
 
-Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
+Result<Rays> FieldScene::trace(std::span<const Job> jobs, Progress* progress) {
     Result<std::vector<Hit>> hits = tracer_->trace(jobs, progress);
     if (!hits) return hits.error();
     Rays rays{std::move(*hits), std::vector<Lit>(jobs.size(), Lit{}), {}, std::vector<OriginId>(jobs.size(), 0)};
@@ -95,12 +95,17 @@ Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
         places.push_back(rays.hits[i].position);
     }
     const std::vector<OriginId> origins = field_->originsOf(places, threads_);
-    std::vector<uint32_t> materialOfHit(jobs.size(), 0);
-    for (size_t k = 0; k < of.size(); ++k) {
-        rays.origins[of[k]] = origins[k];
-        materialOfHit[of[k]] = field_->materialOf[origins[k]];
-    }
+    for (size_t k = 0; k < of.size(); ++k) rays.origins[of[k]] = origins[k];
+    return rays;
+}
+
+Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
+    Result<Rays> traced = trace(jobs, progress);
+    if (!traced) return traced;
+    Rays& rays = *traced;
     if (Status s = light(jobs, rays, progress); !s) return s.error();
+    std::vector<uint32_t> materialOfHit;
+    for (const OriginId origin : rays.origins) materialOfHit.push_back(field_->materialOf[origin]);
     const Buffer hitBuffer = Buffer::of<Hit>(rays.hits), litBuffer = Buffer::of<Lit>(rays.lits), materialBuffer = Buffer::of<uint32_t>(materialOfHit),
                  colors = Buffer::ofBytes(nullptr, jobs.size() * sizeof(rays.colors[0]));
     hitBuffer.bindStorage(2);
@@ -110,7 +115,7 @@ Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
     colors.bindStorage(6);
     if (Status s = runInPieces(programs_->shade, jobs.size(), shadePiece_, progress); !s) return s.error();
     rays.colors = colors.read<std::array<float, 4>>(jobs.size());
-    return rays;
+    return traced;
 }
 
 }  // namespace sgm::viewer

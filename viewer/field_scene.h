@@ -40,6 +40,8 @@ public:
     /// Sets camera, picture size and ground. `fine` scales how exactly surfaces are found: above 1 finer than the
     /// picture's pixels ask for. With `share`, samples whose surroundings agree take their light from there.
     void look(const PictureOptions& options, double fine = 1, bool share = true);
+    /// What the rays of jobs of the picture last looked at meet: without light and colours.
+    Result<Rays> trace(std::span<const Job> jobs, Progress* progress);
     /// Traces and lights up to `mostJobs` jobs of the picture last looked at, in pieces of some 15 ms.
     Result<Rays> draw(std::span<const Job> jobs, Progress* progress);
     /// Of all that was drawn.

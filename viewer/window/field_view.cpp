@@ -158,7 +158,7 @@ std::optional<Pick> FieldView::pick(int x, int y) {
     if (!scene_ || x < 0 || y < 0 || x >= look_.width || y >= look_.height) return std::nullopt;
     scene_->look(look_);
     const Job job{static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16, 0};
-    const Result<Rays> rays = scene_->draw({&job, 1}, nullptr);
+    const Result<Rays> rays = scene_->trace({&job, 1}, nullptr);
     if (!rays) return std::nullopt;
     return Pick{rays->hits[0].kind(), rays->hits[0].position, rays->origins[0]};
 }
