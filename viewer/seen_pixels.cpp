@@ -27,7 +27,11 @@ public:
         left_ |= dx < 0, right_ |= dx > 0, above_ |= dy < 0, below_ |= dy > 0;
         ++count_;
     }
+    /// A pixel that isn't taken.
+    void skip() { whole_ = false; }
     int count() const { return count_; }
+    /// None was left out.
+    bool whole() const { return whole_; }
     /// Some of it lies on opposite sides.
     bool around() const { return (left_ && right_) || (above_ && below_); }
     /// The most that a share differs.
@@ -40,7 +44,7 @@ private:
     float low_[3] = {1, 1, 1}, high_[3] = {0, 0, 0}, sums_[3] = {0, 0, 0}, weight_ = 0;
     Vec3f normal_{};
     int count_ = 0;
-    bool left_ = false, right_ = false, above_ = false, below_ = false;
+    bool whole_ = true, left_ = false, right_ = false, above_ = false, below_ = false;
 };
 
 void SeenPixels::look(const PictureOptions& options, double fine) {
@@ -77,7 +81,10 @@ void SeenPixels::gather(Job job, const Hit& hit, OriginId origin, Mean& mean, Be
             if (!known_[at]) continue;
             const Pixel& p = pixels_[at];
             const Vec3f away = hit.position - p.hit.position;
-            if (p.hit.kindNumber != hit.kindNumber || p.origin != origin || !belongs(p, away)) continue;
+            if (p.hit.kindNumber != hit.kindNumber || p.origin != origin || !belongs(p, away)) {
+                mean.skip();
+                continue;
+            }
             mean.add(p.lit, 1 / (dot(away, away) + 0.05f * pixel * pixel), dx, dy);
         }
 }
@@ -89,7 +96,8 @@ std::optional<Lit> SeenPixels::surface(Job job, const Hit& hit, OriginId origin)
         return std::abs(dot(away, p.lit.normal)) < 0.04f * pixel && length(away) < 8 * pixel;
     });
     if (job.sample == 0 ? !mean.around() : mean.count() < 2) return std::nullopt;
-    if (mean.spread() > 0.1f || mean.agreement() < 0.98f) return std::nullopt;
+    // Beside an edge normals are those of a pixel's width, which no neighbour has.
+    if (!mean.whole() || mean.spread() > 0.1f || mean.agreement() < 0.98f) return std::nullopt;
     return mean.lit();
 }
 
