@@ -12,7 +12,7 @@ namespace {
 /// Adds the display light of every job to its pixel, and what its ray met to the layers.
 Status addJobs(const std::vector<Job>& jobs, FieldScene& scene, PixelSums& sums, const View& view, Layers* layers,
                DrawCost& cost, Progress* progress) {
-    if (progress) progress->begin("draw", jobs.size() * 3);
+    if (progress) progress->begin("draw", jobs.size() * 4);  // traced, their normals, their light, coloured
     for (size_t first = 0; first < jobs.size(); first += mostJobs) {
         const std::span chunk = std::span(jobs).subspan(first, std::min(mostJobs, jobs.size() - first));
         const Result<Rays> rays = scene.draw(chunk, progress);

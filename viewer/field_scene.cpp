@@ -12,8 +12,8 @@ TracedBy tracerHere(TracedBy by) {
 
 int cellDepth(TracedBy by) { return tracerHere(by) == TracedBy::Gpu ? CellTree::surfaceDepth : CellTree::depth; }
 
-Result<std::shared_ptr<const FieldPrograms>> programsFor(const PreparedField& field, std::shared_ptr<const FieldPrograms> before,
-                                                         TracedBy by) {
+Result<std::shared_ptr<const FieldPrograms>> programsFor(const PreparedField& field,
+                                                         std::shared_ptr<const FieldPrograms> before, TracedBy by) {
     std::shared_ptr<const RayPrograms> rays;
     if (tracerHere(by) == TracedBy::Gpu) {
         auto made = rayProgramsFor(field, before ? before->rays : nullptr);
@@ -76,7 +76,8 @@ Status FieldScene::light(std::span<const Job> jobs, Rays& rays, Progress* progre
         }
         if (Status s = ask(Tracer::What::Normals, unknown, rays, progress); !s) return s;
         for (const uint32_t i : unknown)
-            if (key || !take(i, seen_.light(jobs[i], rays.hits[i], rays.lits[i].normal, rays.origins[i]))) dark.push_back(i);
+            if (key || !take(i, seen_.light(jobs[i], rays.hits[i], rays.lits[i].normal, rays.origins[i])))
+                dark.push_back(i);
         if (Status s = ask(Tracer::What::Light, dark, rays, progress); !s) return s;
         for (const uint32_t i : dark) put(i);
     }
@@ -106,7 +107,8 @@ Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
     if (Status s = light(jobs, rays, progress); !s) return s.error();
     std::vector<uint32_t> materialOfHit;
     for (const OriginId origin : rays.origins) materialOfHit.push_back(field_->materialOf[origin]);
-    const Buffer hitBuffer = Buffer::of<Hit>(rays.hits), litBuffer = Buffer::of<Lit>(rays.lits), materialBuffer = Buffer::of<uint32_t>(materialOfHit),
+    const Buffer hitBuffer = Buffer::of<Hit>(rays.hits), litBuffer = Buffer::of<Lit>(rays.lits),
+                 materialBuffer = Buffer::of<uint32_t>(materialOfHit),
                  colors = Buffer::ofBytes(nullptr, jobs.size() * sizeof(rays.colors[0]));
     hitBuffer.bindStorage(2);
     litBuffer.bindStorage(3);

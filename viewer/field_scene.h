@@ -19,7 +19,8 @@ struct FieldPrograms {
     std::shared_ptr<const RayPrograms> rays;  ///< null where the processor walks the rays
 };
 /// Programs for this field and those that `before` covers (null: none): `before` itself where it covers the field.
-Result<std::shared_ptr<const FieldPrograms>> programsFor(const PreparedField& field, std::shared_ptr<const FieldPrograms> before,
+Result<std::shared_ptr<const FieldPrograms>> programsFor(const PreparedField& field,
+                                                         std::shared_ptr<const FieldPrograms> before,
                                                          TracedBy by = TracedBy::Best);
 
 /// What a batch of rays met, an entry a job.

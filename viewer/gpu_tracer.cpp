@@ -22,8 +22,9 @@ public:
         std::vector<uint32_t> words, leaves;
         const CellTree& tree = field_->tree;
         for (size_t i = 0; i < tree.tapes.size(); ++i)
-            leaves.insert(leaves.end(), {eval::appendTape(tree.tapes[i], words), std::bit_cast<uint32_t>(tree.ranges[i].lo),
-                                         std::bit_cast<uint32_t>(tree.ranges[i].hi), 0});
+            leaves.insert(leaves.end(),
+                          {eval::appendTape(tree.tapes[i], words), std::bit_cast<uint32_t>(tree.ranges[i].lo),
+                           std::bit_cast<uint32_t>(tree.ranges[i].hi), 0});
         if (words.empty()) words.resize(4);
         if (leaves.empty()) leaves.resize(4);
         words_ = TexelBuffer::of(words, 4);
@@ -47,7 +48,10 @@ public:
             program->set("side", side);
             program->set("inverseLipschitz", field_->inverseLipschitz());
             program->set("margin", field_->tree.margin);
-            if (fine != 1) program->set("pixelAngle", static_cast<float>(viewOf(options.camera, options.width, options.height).pixelAngle / fine));
+            if (fine != 1)
+                program->set(
+                    "pixelAngle",
+                    static_cast<float>(viewOf(options.camera, options.width, options.height).pixelAngle / fine));
         }
     }
 
@@ -85,7 +89,7 @@ private:
 
     std::shared_ptr<const PreparedField> field_;
     std::shared_ptr<const RayPrograms> programs_;
-    TexelBuffer words_, single_, nodes_, leaves_;    // the tapes by instruction and by word; the tree
+    TexelBuffer words_, single_, nodes_, leaves_;              // the tapes by instruction and by word; the tree
     size_t tracePiece_ = 2048, lightPiece_[2] = {2048, 2048};  // jobs a dispatch
 };
 
@@ -95,7 +99,8 @@ bool RayPrograms::cover(const PreparedField& field) const {
     return registersOf(field) <= registers && (eval::opsOf(field.tape) & ~ops).none();
 }
 
-Result<std::shared_ptr<const RayPrograms>> rayProgramsFor(const PreparedField& field, std::shared_ptr<const RayPrograms> before) {
+Result<std::shared_ptr<const RayPrograms>> rayProgramsFor(const PreparedField& field,
+                                                          std::shared_ptr<const RayPrograms> before) {
     if (before && before->cover(field)) return before;
     const auto programs = std::make_shared<RayPrograms>();
     programs->registers = std::max(before ? before->registers : 0, registersOf(field));
@@ -109,7 +114,8 @@ Result<std::shared_ptr<const RayPrograms>> rayProgramsFor(const PreparedField& f
     return std::shared_ptr<const RayPrograms>(programs);
 }
 
-std::unique_ptr<Tracer> gpuTracer(std::shared_ptr<const PreparedField> field, std::shared_ptr<const RayPrograms> programs) {
+std::unique_ptr<Tracer> gpuTracer(std::shared_ptr<const PreparedField> field,
+                                  std::shared_ptr<const RayPrograms> programs) {
     return std::make_unique<GpuTracer>(std::move(field), std::move(programs));
 }
 

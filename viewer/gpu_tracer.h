@@ -1,6 +1,5 @@
-// Rays walked by shaders: one fixed program interprets the shortened tapes of cells, so that a new field costs an upload and
-// no compile.
-// Enters: prepared fields. Leaves: tracers. Assumes a current GL 4.3 context.
+// Rays walked by shaders: one fixed program interprets the shortened tapes of cells, so that a new field costs an
+// upload and no compile. Enters: prepared fields. Leaves: tracers. Assumes a current GL 4.3 context.
 #pragma once
 
 #include <memory>
@@ -22,13 +21,15 @@ struct RayPrograms {
 };
 
 /// Programs for this field and those that `before` covers (null: none): `before` itself where it covers the field.
-Result<std::shared_ptr<const RayPrograms>> rayProgramsFor(const PreparedField& field, std::shared_ptr<const RayPrograms> before);
+Result<std::shared_ptr<const RayPrograms>> rayProgramsFor(const PreparedField& field,
+                                                          std::shared_ptr<const RayPrograms> before);
 
 /// `programs` must cover the field.
-std::unique_ptr<Tracer> gpuTracer(std::shared_ptr<const PreparedField> field, std::shared_ptr<const RayPrograms> programs);
+std::unique_ptr<Tracer> gpuTracer(std::shared_ptr<const PreparedField> field,
+                                  std::shared_ptr<const RayPrograms> programs);
 
-/// Runs `program` over jobs [0, count), which it reads as firstJob and jobCount, in dispatches of `piece` jobs: some 15 ms
-/// each, by the time the last ones took.
+/// Runs `program` over jobs [0, count), which it reads as firstJob and jobCount, in dispatches of `piece` jobs: some 15
+/// ms each, by the time the last ones took.
 Status runInPieces(const Program& program, size_t count, size_t& piece, Progress* progress);
 
 /// The most jobs of one dispatch.

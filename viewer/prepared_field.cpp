@@ -7,8 +7,8 @@
 
 namespace sgm::viewer {
 
-Result<PreparedField> prepareField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance, int threads,
-                                   Progress* progress, int levels) {
+Result<PreparedField> prepareField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
+                                   int threads, Progress* progress, int levels) {
     // Soft shadows and occlusion ask for exact distances up to the margin, and no further.
     const float margin = 0.03f * length(bounds.size());
     PreparedField field{tape, bounds, bounds.inflated(margin), {}, provenance.materials, {}};
@@ -28,7 +28,8 @@ float PreparedField::sideOf(Vec3f eye) const {
 
 /// Places are gathered by cell and asked on the cell's own tape.
 std::vector<OriginId> PreparedField::originsOf(const std::vector<Vec3f>& places, int threads) const {
-    const auto whole = static_cast<uint32_t>(tree.tapes.size());  // the field's own tape, for places beside every near cell
+    const auto whole =
+        static_cast<uint32_t>(tree.tapes.size());  // the field's own tape, for places beside every near cell
     struct Member {
         uint32_t tape, place;
     };
@@ -56,12 +57,16 @@ std::vector<OriginId> PreparedField::originsOf(const std::vector<Vec3f>& places,
         }
         std::vector<OriginId> origins(x.size());
         const uint32_t number = members[starts[g]].tape;
-        eval::evaluateOrigin(number < whole ? tree.tapes[number] : tape, {x.data(), y.data(), z.data(), x.size()}, origins.data(), workspace);
-        for (size_t k = 0; k < origins.size(); ++k) all[members[starts[g] + k].place] = origins[k] < materialOf.size() ? origins[k] : 0;
+        eval::evaluateOrigin(number < whole ? tree.tapes[number] : tape, {x.data(), y.data(), z.data(), x.size()},
+                             origins.data(), workspace);
+        for (size_t k = 0; k < origins.size(); ++k)
+            all[members[starts[g] + k].place] = origins[k] < materialOf.size() ? origins[k] : 0;
     };
-    parallelFor((groups + fewGroups - 1) / fewGroups, static_cast<int>(workspaces.size()), nullptr, [&](size_t batch, int worker) {
-        for (size_t g = batch * fewGroups; g < std::min((batch + 1) * fewGroups, groups); ++g) askGroup(g, workspaces[size_t(worker)]);
-    });
+    parallelFor((groups + fewGroups - 1) / fewGroups, static_cast<int>(workspaces.size()), nullptr,
+                [&](size_t batch, int worker) {
+                    for (size_t g = batch * fewGroups; g < std::min((batch + 1) * fewGroups, groups); ++g)
+                        askGroup(g, workspaces[size_t(worker)]);
+                });
     return all;
 }
 

@@ -13,8 +13,8 @@ namespace sgm::viewer {
 
 struct PreparedField {
     eval::Tape tape;
-    Box3f bounds;                      ///< of the solid, metres
-    Box3f box;                         ///< what the cells cover
+    Box3f bounds;  ///< of the solid, metres
+    Box3f box;     ///< what the cells cover
     CellTree tree;
     std::vector<Material> materials;
     std::vector<uint32_t> materialOf;  ///< by OriginId
@@ -27,7 +27,7 @@ struct PreparedField {
 };
 
 /// Cuts space into cells, at most `levels` deep. Error::Cancelled when `progress` says so.
-Result<PreparedField> prepareField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance, int threads,
-                                   Progress* progress, int levels = CellTree::surfaceDepth);
+Result<PreparedField> prepareField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
+                                   int threads, Progress* progress, int levels = CellTree::surfaceDepth);
 
 }  // namespace sgm::viewer

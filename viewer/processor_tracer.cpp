@@ -1,11 +1,10 @@
-// Rays walked on the processor: those of a piece of the picture together, the places that they ask about gathered by cell.
+// Rays walked on the processor: those of a piece of the picture together, the places that they ask about gathered by
+// cell.
 #include <cmath>
 
 #include "modeler/core/parallel.h"
-#include "modeler/eval/evaluate.h"
+#include "viewer/answers.h"
 #include "viewer/scene.h"
-#include "viewer/tracer.h"
-#include "viewer/walks.h"
 
 namespace sgm::viewer {
 namespace {
@@ -13,73 +12,10 @@ namespace {
 /// Jobs or hits that one thread walks together.
 constexpr size_t pieceSize = 4096;
 
-/// Answers questions, those of one tape at once.
-class Answers {
-public:
-    explicit Answers(const CellTree& tree) : tree_(&tree), first_(tree.tapes.size(), none) {}
-
-    /// values[i] is the field at questions[i]; valid until the next call.
-    const std::vector<float>& of(const std::vector<Question>& questions, TraceCost& cost) {
-        const size_t n = questions.size();
-        next_.resize(n);
-        touched_.clear();
-        for (auto i = static_cast<uint32_t>(n); i-- > 0;) {
-            uint32_t& first = first_[questions[i].tape];
-            if (first == none) touched_.push_back(questions[i].tape);
-            next_[i] = std::exchange(first, i);
-        }
-        values_.resize(n);
-        for (const uint32_t tape : touched_) {
-            x_.clear(), y_.clear(), z_.clear();
-            const uint32_t first = std::exchange(first_[tape], none);
-            for (uint32_t i = first; i != none; i = next_[i]) {
-                const Vec3f& p = questions[i].place;
-                x_.push_back(p.x), y_.push_back(p.y), z_.push_back(p.z);
-            }
-            answers_.resize(x_.size());
-            eval::evaluate(tree_->tapes[tape], {x_.data(), y_.data(), z_.data(), x_.size()}, answers_.data(), workspace_);
-            cost.instructions += tree_->tapes[tape].size() * x_.size();
-            const float* answer = answers_.data();
-            for (uint32_t i = first; i != none; i = next_[i]) values_[i] = *answer++;
-        }
-        return values_;
-    }
-
-    /// Takes every walk to its end; gives the number of evaluations.
-    template <class Walk>
-    uint64_t follow(const CellSpace& space, std::span<Walk> walks, TraceCost& cost) {
-        std::vector<uint32_t> live(walks.size());
-        for (size_t i = 0; i < live.size(); ++i) live[i] = static_cast<uint32_t>(i);
-        std::vector<Question> questions;
-        uint64_t evaluations = 0;
-        while (!live.empty()) {
-            questions.clear();
-            size_t kept = 0;
-            for (const uint32_t i : live) {
-                Question question;
-                if (!walks[i].ask(space, question)) continue;
-                questions.push_back(question);
-                live[kept++] = i;
-            }
-            live.resize(kept);
-            const std::vector<float>& values = of(questions, cost);
-            for (size_t k = 0; k < kept; ++k) walks[live[k]].answer(space, space.side * values[k]);
-            evaluations += kept;
-        }
-        return evaluations;
-    }
-
-private:
-    static constexpr uint32_t none = 0xffffffffu;
-    const CellTree* tree_;
-    eval::Workspace workspace_;
-    std::vector<uint32_t> first_, next_, touched_;  // lists of the questions of a tape
-    std::vector<float> x_, y_, z_, answers_, values_;
-};
-
 class ProcessorTracer final : public Tracer {
 public:
-    ProcessorTracer(std::shared_ptr<const PreparedField> field, int threads) : field_(std::move(field)), threads_(threadCount(threads)) {}
+    ProcessorTracer(std::shared_ptr<const PreparedField> field, int threads)
+        : field_(std::move(field)), threads_(threadCount(threads)) {}
 
     void look(const PictureOptions& options, double fine) override {
         view_ = viewOf(options.camera, options.width, options.height);
@@ -93,9 +29,10 @@ public:
 
     Result<std::vector<Hit>> trace(std::span<const Job> jobs, Progress* progress) override {
         std::vector<Hit> hits(jobs.size());
-        const Status done = inPieces(jobs.size(), progress, [&](size_t low, size_t high, Answers& answers, TraceCost& cost) {
-            tracePiece(jobs.subspan(low, high - low), std::span(hits).subspan(low, high - low), answers, cost);
-        });
+        const Status done =
+            inPieces(jobs.size(), progress, [&](size_t low, size_t high, Answers& answers, TraceCost& cost) {
+                tracePiece(jobs.subspan(low, high - low), std::span(hits).subspan(low, high - low), answers, cost);
+            });
         if (!done) return done.error();
         return hits;
     }
@@ -117,14 +54,16 @@ private:
     /// Calls body(low, high, answers, cost) for pieces of [0, count) on all threads.
     template <class Body>
     Status inPieces(size_t count, Progress* progress, Body&& body) {
-        const size_t piece = std::clamp(count / size_t(threads_ * 4), size_t(64), pieceSize), pieces = (count + piece - 1) / piece;
+        const size_t piece = std::clamp(count / size_t(threads_ * 4), size_t(64), pieceSize),
+                     pieces = (count + piece - 1) / piece;
         std::vector<TraceCost> costs(pieces);
         while (answers_.size() < std::min(size_t(threads_), pieces)) answers_.emplace_back(field_->tree);
-        parallelFor(pieces, std::min(threads_, static_cast<int>(std::max<size_t>(pieces, 1))), progress, [&](size_t i, int worker) {
-            const size_t low = i * piece, high = std::min(low + piece, count);
-            body(low, high, answers_[size_t(worker)], costs[i]);
-            tick(progress, high - low);
-        });
+        parallelFor(pieces, std::min(threads_, static_cast<int>(std::max<size_t>(pieces, 1))), progress,
+                    [&](size_t i, int worker) {
+                        const size_t low = i * piece, high = std::min(low + piece, count);
+                        body(low, high, answers_[size_t(worker)], costs[i]);
+                        tick(progress, high - low);
+                    });
         if (cancelled(progress)) return cancelledError();
         for (const TraceCost& cost : costs) cost_ += cost;
         return Done{};
@@ -167,7 +106,9 @@ private:
     void setNormals(std::span<const Hit> hits, std::span<Lit> lits, Answers& answers, TraceCost& cost) const {
         const CellSpace cells = space();
         const Vec3f eye = view_.eye.as<float>();
-        const auto corner = [](int i) { return Vec3f{float((i + 3) >> 1 & 1), float(i >> 1 & 1), float(i & 1)} * 2.0f - Vec3f{1, 1, 1}; };
+        const auto corner = [](int i) {
+            return Vec3f{float((i + 3) >> 1 & 1), float(i >> 1 & 1), float(i & 1)} * 2.0f - Vec3f{1, 1, 1};
+        };
         std::vector<Question> questions;
         std::vector<size_t> of;
         for (size_t i = 0; i < hits.size(); ++i) {
@@ -223,7 +164,8 @@ private:
         for (Lit& lit : lits) lit.openness = 0.08f + 0.92f * lit.openness;
     }
 
-    /// Share of the sun's disc that each hit sees; in a hollow with a lamp that of the day, by wide discs of the upper sky.
+    /// Share of the sun's disc that each hit sees; in a hollow with a lamp that of the day, by wide discs of the upper
+    /// sky.
     void setSunAndDay(std::span<const Hit> hits, std::span<Lit> lits, Answers& answers, TraceCost& cost) const {
         const CellSpace cells = space();
         const Vec3f eye = view_.eye.as<float>(), sun = sunDirection();
@@ -237,13 +179,16 @@ private:
             Lit& lit = lits[i];
             lit.sunlight = 0;
             lit.daylight = lamp_m_ > 0 && hits[i].kind() == HitKind::Object ? 0.0f : 1.0f;
-            const Vec3f start = hits[i].position + lit.normal * std::max(1e-4f * cells.size, 0.5f * pixelAngle() * length(eye - hits[i].position));
+            const Vec3f start =
+                hits[i].position +
+                lit.normal * std::max(1e-4f * cells.size, 0.5f * pixelAngle() * length(eye - hits[i].position));
             if ((lamp_m_ == 0 || cells.side > 0) && dot(lit.normal, sun) > 0) {
                 walks.emplace_back(cells, start, sun, 0.035f);
                 rays.push_back({&lit.sunlight, 1});
             }
             if (lit.daylight == 1 || cells.side < 0) continue;
-            for (const Vec3f direction : {Vec3f{0.7f, 0.714f, 0}, {0, 0.714f, 0.7f}, {-0.7f, 0.714f, 0}, {0, 0.714f, -0.7f}, {0, 1, 0}}) {
+            for (const Vec3f direction :
+                 {Vec3f{0.7f, 0.714f, 0}, {0, 0.714f, 0.7f}, {-0.7f, 0.714f, 0}, {0, 0.714f, -0.7f}, {0, 1, 0}}) {
                 const float cosine = dot(lit.normal, direction);
                 if (cosine <= 0) continue;
                 walks.emplace_back(cells, start, direction, 0.3f);
@@ -251,7 +196,8 @@ private:
             }
         }
         cost.light += answers.follow(cells, std::span(walks), cost);
-        for (size_t j = 0; j < rays.size(); ++j) *rays[j].into = std::min(*rays[j].into + rays[j].weight * walks[j].seen(), 1.0f);
+        for (size_t j = 0; j < rays.size(); ++j)
+            *rays[j].into = std::min(*rays[j].into + rays[j].weight * walks[j].seen(), 1.0f);
     }
 
     std::shared_ptr<const PreparedField> field_;

@@ -24,7 +24,7 @@ public:
         }
         normal_ += weight * lit.normal;
         weight_ += weight;
-        left_ |= dx < 0, right_ |= dx > 0, above_ |= dy < 0, below_ |= dy > 0;
+        left_ |= dx<0, right_ |= dx> 0, above_ |= dy<0, below_ |= dy> 0;
         ++count_;
     }
     /// A pixel that isn't taken.
@@ -104,7 +104,8 @@ std::optional<Lit> SeenPixels::surface(Job job, const Hit& hit, OriginId origin)
 std::optional<Lit> SeenPixels::light(Job job, const Hit& hit, Vec3f normal, OriginId origin) const {
     const float pixel = pixelAt(hit);
     Mean mean;
-    gather(job, hit, origin, mean, [&](const Pixel& p, Vec3f away) { return dot(p.lit.normal, normal) > 0.3f && length(away) < 4 * pixel; });
+    gather(job, hit, origin, mean,
+           [&](const Pixel& p, Vec3f away) { return dot(p.lit.normal, normal) > 0.3f && length(away) < 4 * pixel; });
     if (mean.count() == 0 || (job.sample == 0 && !mean.around())) return std::nullopt;
     // The edge of a shadow on something smooth must be found; on ornament nobody sees it.
     if (mean.spread() > 0.25f && (job.sample == 0 || mean.agreement() > 0.95f)) return std::nullopt;

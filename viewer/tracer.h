@@ -1,6 +1,6 @@
-// Who walks rays through a prepared field: the GPU's shaders, or, where the driver has only a processor to run them on, that
-// processor's own vectors, which are an order of magnitude quicker there.
-// Enters: jobs of a picture. Leaves: what their rays met, and the light there. Both walk alike (trace.comp.glsl, walks.h).
+// Who walks rays through a prepared field: the GPU's shaders, or, where the driver has only a processor to run them on,
+// that processor's own vectors, which are an order of magnitude quicker there. Enters: jobs of a picture. Leaves: what
+// their rays met, and the light there. Both walk alike (trace.comp.glsl, walks.h).
 #pragma once
 
 #include <array>
@@ -30,10 +30,10 @@ struct Hit {
 
 /// How much light comes to a hit, as shaders read and write it; shares 0 … 1. All 0 for the sky.
 struct Lit {
-    Vec3f normal;      ///< unit
-    float openness;    ///< of open sky
-    float sunlight;    ///< of the sun's disc
-    float daylight;    ///< in a hollow with a lamp: of the day that gets in
+    Vec3f normal;    ///< unit
+    float openness;  ///< of open sky
+    float sunlight;  ///< of the sun's disc
+    float daylight;  ///< in a hollow with a lamp: of the day that gets in
     float unused[2];
 };
 
@@ -62,8 +62,8 @@ protected:
     TraceCost cost_;
 };
 
-/// How deep space is best cut into cells for who walks: shaders gain by the shortest tapes; the processor asks many places at
-/// once of longer ones as quickly, and needn't wait for the last cut. `Best` asks the current context.
+/// How deep space is best cut into cells for who walks: shaders gain by the shortest tapes; the processor asks many
+/// places at once of longer ones as quickly, and needn't wait for the last cut. `Best` asks the current context.
 int cellDepth(TracedBy by);
 
 /// Walks on the processor, on `threads` threads (0 = all). `field` must live on.

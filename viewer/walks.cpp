@@ -11,7 +11,8 @@ Vec3f inverseOf(Vec3f direction) {
 
 float Cell::exit(Vec3f p, Vec3f inverseDirection) const {
     const auto far = [&](int axis) {
-        const float a = (low[axis] - p[axis]) * inverseDirection[axis], b = (low[axis] + edge - p[axis]) * inverseDirection[axis];
+        const float a = (low[axis] - p[axis]) * inverseDirection[axis],
+                    b = (low[axis] + edge - p[axis]) * inverseDirection[axis];
         return std::max(a, b);
     };
     return std::max(std::min({far(0), far(1), far(2)}), 0.0f) + edge * 1e-3f;
@@ -21,7 +22,8 @@ Cell CellSpace::cellAt(Vec3f p) const {
     constexpr int finest = 1 << (2 * CellTree::surfaceDepth);
     const CellTree& tree = field.tree;
     Vec3i q;  // in finest cells
-    for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(static_cast<int>((p[axis] - tree.low[axis]) * finestPerMetre), 0, finest - 1);
+    for (int axis = 0; axis < 3; ++axis)
+        q[axis] = std::clamp(static_cast<int>((p[axis] - tree.low[axis]) * finestPerMetre), 0, finest - 1);
     uint32_t word = uint32_t(CellState::Node) << 30;
     int shift = 2 * CellTree::surfaceDepth;
     while (CellTree::stateOf(word) == CellState::Node) {
@@ -30,9 +32,11 @@ Cell CellSpace::cellAt(Vec3f p) const {
         word = tree.nodes[size_t(CellTree::indexOf(word)) * 64 + child];
     }
     const float unit = tree.edge / finest;
-    const Vec3f low{static_cast<float>(q.x >> shift << shift), static_cast<float>(q.y >> shift << shift), static_cast<float>(q.z >> shift << shift)};
+    const Vec3f low{static_cast<float>(q.x >> shift << shift), static_cast<float>(q.y >> shift << shift),
+                    static_cast<float>(q.z >> shift << shift)};
     Cell cell{CellTree::stateOf(word), 0, tree.low + low * unit, static_cast<float>(1 << shift) * unit, 0};
-    if (side < 0 && cell.state != CellState::Near) cell.state = cell.state == CellState::Inside ? CellState::Outside : CellState::Inside;
+    if (side < 0 && cell.state != CellState::Near)
+        cell.state = cell.state == CellState::Inside ? CellState::Outside : CellState::Inside;
     cell.least = cell.state == CellState::Outside ? margin : -margin;
     if (cell.state == CellState::Near) {
         cell.tape = CellTree::indexOf(word);
@@ -53,8 +57,12 @@ std::array<float, 2> CellSpace::span(Vec3f origin, Vec3f inverseDirection) const
 }
 
 SurfaceWalk::SurfaceWalk(const CellSpace& space, Vec3f origin, Vec3f direction, float pixelAngle)
-    : origin_(origin), direction_(direction), inverse_(inverseOf(direction)), tolerance_(2e-6f * space.size),
-      angle_(0.1f * pixelAngle), pixelAngle_(pixelAngle) {
+    : origin_(origin),
+      direction_(direction),
+      inverse_(inverseOf(direction)),
+      tolerance_(2e-6f * space.size),
+      angle_(0.1f * pixelAngle),
+      pixelAngle_(pixelAngle) {
     const auto [near, far] = space.span(origin, inverse_);
     t_ = near;
     end_ = far;
@@ -133,7 +141,8 @@ bool DiscWalk::ask(const CellSpace& space, Question& question) {
 
 void DiscWalk::answer(const CellSpace& space, float value) {
     const float next = std::abs(value) * space.inverseLipschitz;
-    const float disc = std::min(radius_ * (t_ + stride_), space.margin), least = std::max(0.5f * disc, 1e-3f * space.size);
+    const float disc = std::min(radius_ * (t_ + stride_), space.margin),
+                least = std::max(0.5f * disc, 1e-3f * space.size);
     if (stride_ > std::max(free_ + next, least)) {
         stride_ = std::max(free_, least);
         return;

@@ -1,7 +1,7 @@
-// Steps of a ray through cells, one evaluation of the field at a time: `ask` goes on to the next place where the field must be
-// evaluated, `answer` takes its value there. So many rays walk together, and the field is evaluated for all of them at once.
-// Enters: a prepared field, rays. Leaves: where they hit, or how much of a disc of light they see. The same steps as
-// trace.comp.glsl and surface.comp.glsl take, which say where they come from.
+// Steps of a ray through cells, one evaluation of the field at a time: `ask` goes on to the next place where the field
+// must be evaluated, `answer` takes its value there. So many rays walk together, and the field is evaluated for all of
+// them at once. Enters: a prepared field, rays. Leaves: where they hit, or how much of a disc of light they see. The
+// same steps as trace.comp.glsl and surface.comp.glsl take, which say where they come from.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,8 @@ struct Cell {
     float edge = 0;                        ///< metres
     float least = 0;                       ///< of the field in the cell
     bool holds(Vec3f p) const {
-        return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x < low.x + edge && p.y < low.y + edge && p.z < low.z + edge;
+        return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x < low.x + edge && p.y < low.y + edge &&
+               p.z < low.z + edge;
     }
     /// Distance along a ray from p to a little beyond where it leaves the cell.
     float exit(Vec3f p, Vec3f inverseDirection) const;
