@@ -5,13 +5,6 @@
 
 namespace sgm::viewer {
 
-TracedBy tracerHere(TracedBy by) {
-    if (by != TracedBy::Best) return by;
-    return softwareGl() ? TracedBy::Processor : TracedBy::Gpu;
-}
-
-int cellDepth(TracedBy by) { return tracerHere(by) == TracedBy::Gpu ? CellTree::surfaceDepth : CellTree::depth; }
-
 Result<std::shared_ptr<const FieldPrograms>> programsFor(const PreparedField& field,
                                                          std::shared_ptr<const FieldPrograms> before, TracedBy by) {
     std::shared_ptr<const RayPrograms> rays;

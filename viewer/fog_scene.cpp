@@ -1,7 +1,7 @@
 #include "viewer/fog_scene.h"
 
 #include "modeler/volume/fog.h"
-#include "viewer/field_scene.h"
+#include "viewer/gpu_tracer.h"
 #include "viewer/scene.h"
 #include "viewer/shader_text.h"
 

@@ -211,13 +211,6 @@ private:
 
 }  // namespace
 
-TraceCost& TraceCost::operator+=(const TraceCost& other) {
-    hits += other.hits;
-    light += other.light;
-    instructions += other.instructions;
-    return *this;
-}
-
 std::unique_ptr<Tracer> processorTracer(std::shared_ptr<const PreparedField> field, int threads) {
     return std::make_unique<ProcessorTracer>(std::move(field), threads);
 }
