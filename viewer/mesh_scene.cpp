@@ -79,16 +79,11 @@ std::vector<float> curvaturesOf(const PreparedMesh& mesh) {
 
 /// Numbers the connected components in the order of their first triangles.
 void findComponents(PreparedMesh& mesh) {
-    mesh::Components groups(mesh.positions.size());
-    for (const Vec3<uint32_t>& t : mesh.triangles) {
-        groups.join(t.x, t.y);
-        groups.join(t.y, t.z);
-    }
-    std::map<uint32_t, uint32_t> numbers;
-    for (size_t i = 0; i < mesh.triangles.size(); ++i)
-        mesh.owners[i].component =
-            numbers.emplace(groups.find(mesh.triangles[i].x), static_cast<uint32_t>(numbers.size())).first->second;
-    mesh.components = static_cast<uint32_t>(numbers.size());
+    const mesh::SurfaceLabels surfaces = mesh::labelSurfaces(mesh.positions.size(), [&](auto f) {
+        for (const Vec3<uint32_t>& t : mesh.triangles) f(t);
+    });
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) mesh.owners[i].component = surfaces.of[mesh.triangles[i].x];
+    mesh.components = surfaces.count;
 }
 
 /// By OriginId: the rule that made it, numbered in the order of the parts.

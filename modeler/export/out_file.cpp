@@ -5,21 +5,25 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 
 #include "modeler/core/atomic_file.h"
 
 namespace sgm::exporter {
+namespace {
+
+constexpr size_t bufferSize = size_t{1} << 18;  // stays in the second cache until the system has copied it
+
+}  // namespace
 
 OutFile::OutFile(const std::filesystem::path& path, std::filesystem::path target, const Progress* progress)
-    : target_(std::move(target)), buffer_(size_t{1} << 20), progress_(progress) {
+    : target_(std::move(target)), buffer_(bufferSize), progress_(progress) {
     fd_ = open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
     if (fd_ < 0) error_ = errno;
 }
 
 OutFile::OutFile(std::filesystem::path target, const Progress* progress)
-    : target_(std::move(target)), buffer_(size_t{1} << 20), progress_(progress) {
+    : target_(std::move(target)), buffer_(bufferSize), progress_(progress) {
     const std::filesystem::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
     std::string name = (folder / ".sgm-XXXXXX").string();
     fd_ = mkostemp(name.data(), O_CLOEXEC);

@@ -6,6 +6,7 @@
 #include <bit>
 #include <charconv>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <string_view>
 #include <type_traits>
@@ -33,11 +34,15 @@ public:
 
     void bytes(const void* data, size_t size);
     void text(std::string_view s) { bytes(s.data(), s.size()); }
-    /// The value's own bytes.
-    template <class T>
-    void raw(const T& value) {
-        static_assert(std::is_trivially_copyable_v<T>);
-        bytes(&value, sizeof value);
+    /// The values' own bytes, one after the other.
+    template <class... T>
+    void raw(const T&... values) {
+        static_assert((std::is_trivially_copyable_v<T> && ...));
+        constexpr size_t size = (sizeof(T) + ...);
+        if (buffer_.size() - used_ < size) flush();
+        char* to = buffer_.data() + used_;
+        ((std::memcpy(to, &values, sizeof values), to += sizeof values), ...);
+        used_ += size;
     }
     /// The shortest decimal text that reads back as the same number.
     template <class T>

@@ -31,24 +31,22 @@ public:
     }
 
     void vertices(OutFile& out, const mesh::Chunk& chunk) const override {
-        std::vector<uint32_t> materials;
-        if (!bare_) materials = vertexMaterials(chunk);
+        if (bare_) {
+            for (const Vec3f& p : chunk.positions) out.raw(place_.position(p));
+            return;
+        }
+        const std::vector<uint32_t> materials = vertexMaterials(chunk);
         for (size_t i = 0; i < chunk.positions.size() && !out.failed(); ++i) {
             const Vec3f normal = unitNormal(chunk.normals[i]);
-            out.raw(place_.position(chunk.positions[i]));
-            if (bare_) continue;
-            out.raw(place_.direction(normal));
-            out.raw(boxProjection(chunk.positions[i], facing(normal)));
-            out.raw(colors_[materials[i]]);
+            out.raw(place_.position(chunk.positions[i]), place_.direction(normal), boxProjection(chunk.positions[i], facing(normal)), colors_[materials[i]]);
         }
     }
 
     void triangles(OutFile& out, const mesh::Chunk& chunk) const override {
-        for (size_t i = 0; i < chunk.triangles.size() && !out.failed(); ++i) {
-            out.raw(uint8_t{3});
-            out.raw(chunk.inMesh(chunk.triangles[i]));
-            if (!bare_) out.raw(chunk.origins[i]);
-        }
+        constexpr uint8_t corners = 3;
+        for (size_t i = 0; i < chunk.triangles.size() && !out.failed(); ++i)
+            if (bare_) out.raw(corners, chunk.inMesh(chunk.triangles[i]));
+            else out.raw(corners, chunk.inMesh(chunk.triangles[i]), chunk.origins[i]);
     }
 
 private:

@@ -28,11 +28,7 @@ Status streamStl(const ExportInput& input, const ChunkSource& chunks, const Path
                         c = place.position(vertices.position(t.z));
             if (a == b || b == c || c == a) continue;
             const Vec3d normal = cross((b - a).as<double>(), (c - a).as<double>());
-            out.raw(normalized(normal).as<float>());
-            out.raw(a);
-            out.raw(b);
-            out.raw(c);
-            out.raw(uint16_t{0});
+            out.raw(normalized(normal).as<float>(), a, b, c, uint16_t{0});
             ++count;
         }
         return Done{};

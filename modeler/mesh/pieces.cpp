@@ -7,14 +7,7 @@
 namespace sgm::mesh {
 namespace {
 
-constexpr uint32_t unseen = 0xffffffffu;
-
-std::vector<Vec3f> positionsOf(const Mesh& mesh) {
-    std::vector<Vec3f> positions;
-    positions.reserve(mesh.vertexCount());
-    for (const Chunk& c : mesh.chunks) positions.insert(positions.end(), c.positions.begin(), c.positions.end());
-    return positions;
-}
+constexpr uint32_t none = SurfaceLabels::none;
 
 /// Calls f(triangle, origin) for every triangle.
 template <class F>
@@ -45,97 +38,107 @@ void judgeSupport(std::vector<Piece>& pieces, float slack_m) {
     })->floats = false;
 }
 
-/// Every connected surface, those around air too, and which one each vertex of the mesh is on.
+/// Every connected surface, those around air too.
 struct Surfaces {
-    std::vector<Piece> pieces;
-    std::vector<uint32_t> of;
+    std::vector<Piece> pieces;  ///< without their owners
+    SurfaceLabels labels;       ///< by vertex: its piece
 };
 
+/// The position of a vertex counted in the whole mesh.
+Vec3f positionOf(const Mesh& mesh, uint32_t vertex) {
+    const auto after = std::upper_bound(mesh.chunks.begin(), mesh.chunks.end(), vertex,
+                                        [](uint32_t v, const Chunk& c) { return v < c.firstVertex; });
+    return after[-1].positions[vertex - after[-1].firstVertex];
+}
+
 Surfaces surfacesOf(const Mesh& mesh) {
-    const std::vector<Vec3f> positions = positionsOf(mesh);
-    Components components(positions.size());
-    forTriangles(mesh, [&](const Triangle& t, OriginId) {
-        components.join(t.x, t.y);
-        components.join(t.x, t.z);
-    });
-    Surfaces found{{}, std::vector<uint32_t>(positions.size(), unseen)};
-    std::vector<Tally> tallies;
-    const Vec3d near = positions.empty() ? Vec3d{} : positions.front().as<double>();
-    forTriangles(mesh, [&](const Triangle& t, OriginId origin) {
-        uint32_t& index = found.of[components.find(t.x)];
-        if (index == unseen) {
-            index = static_cast<uint32_t>(found.pieces.size());
-            found.pieces.emplace_back();
-            tallies.emplace_back();
+    Surfaces found{{}, labelSurfaces(mesh.vertexCount(), [&](auto f) { forTriangles(mesh, [&](const Triangle& t, OriginId) { f(t); }); })};
+    found.pieces.resize(found.labels.count);
+    Vec3d near{};
+    std::vector<Vec3f> borrowed;
+    for (const Chunk& c : mesh.chunks) {
+        if (&c == &mesh.chunks.front() && !c.positions.empty()) near = c.positions.front().as<double>();
+        for (size_t v = 0; v < c.positions.size(); ++v)
+            if (const uint32_t piece = found.labels.of[c.firstVertex + v]; piece != none)
+                found.pieces[piece].bounds = hull(found.pieces[piece].bounds, c.positions[v]);
+        borrowed.clear();
+        for (const uint32_t v : c.borrowed.vertices) borrowed.push_back(positionOf(mesh, v));
+        const auto position = [&](uint32_t corner) {
+            return (corner & borrowedBit ? borrowed[corner & ~borrowedBit] : c.positions[corner]).as<double>() - near;
+        };
+        for (const Triangle& t : c.triangles) {
+            Piece& piece = found.pieces[found.labels.of[c.inMesh(t.x)]];
+            ++piece.triangles;
+            // The solid under a triangle along x, by the divergence theorem.
+            const Vec3d a = position(t.x), b = position(t.y) - a, d = position(t.z) - a;
+            piece.volume_m3 += (3 * a.x + b.x + d.x) * (b.y * d.z - b.z * d.y) / 6;
         }
-        Piece& piece = found.pieces[index];
-        ++piece.triangles;
-        ++tallies[index][origin];
-        const Vec3d a = positions[t.x].as<double>() - near, b = positions[t.y].as<double>() - near,
-                    c = positions[t.z].as<double>() - near;
-        piece.volume_m3 += dot(a, cross(b, c)) / 6;
-        for (int i = 0; i < 3; ++i) piece.bounds = hull(piece.bounds, positions[t[i]]);
-    });
-    for (size_t i = 0; i < tallies.size(); ++i) found.pieces[i].origins = byCount(tallies[i]);
-    for (uint32_t v = 0; v < found.of.size(); ++v) found.of[v] = found.of[components.find(v)];
+    }
     return found;
 }
 
-/// Drops the vertices that aren't marked, with their triangles; the borders between chunks follow.
-void keepVertices(Mesh& mesh, const std::vector<bool>& stays) {
-    std::vector<uint32_t> now(stays.size(), unseen);  // numbers in the mesh
+/// Who owns each surface, most triangles first.
+void findOwners(const Mesh& mesh, Surfaces& surfaces) {
+    std::vector<Tally> tallies(surfaces.pieces.size());
+    forTriangles(mesh, [&](const Triangle& t, OriginId origin) { ++tallies[surfaces.labels.of[t.x]][origin]; });
+    for (size_t i = 0; i < tallies.size(); ++i) surfaces.pieces[i].origins = byCount(tallies[i]);
+}
+
+/// Drops the surfaces that don't stay, with vertices that have no triangle; the borders between chunks follow.
+void keepSurfaces(Mesh& mesh, const Surfaces& surfaces, const std::vector<bool>& pieceStays) {
+    std::vector<uint32_t> now(surfaces.labels.of.size(), none);  // numbers in the mesh
     uint32_t next = 0;
-    for (size_t v = 0; v < stays.size(); ++v)
-        if (stays[v]) now[v] = next++;
+    for (size_t v = 0; v < now.size(); ++v)
+        if (surfaces.labels.of[v] != none && pieceStays[surfaces.labels.of[v]]) now[v] = next++;
+    const auto stays = [&](uint32_t v) { return now[v] != none; };
     std::vector<uint32_t> borrowedNow;  // places in a chunk's list
-    for (Chunk& c : mesh.chunks) {
-        const uint32_t first = c.firstVertex, own = static_cast<uint32_t>(c.positions.size());
-        uint32_t before = 0, firstNow = 0;
-        for (; before < own && now[first + before] == unseen;) ++before;
-        firstNow = before < own ? now[first + before] : 0;
-        const auto local = [&](uint32_t v) { return now[first + v] - firstNow; };
-        const auto filter = [&](SeamList& list, auto stayed, auto renamed, std::vector<uint32_t>* places) {
-            uint32_t n = 0;
-            for (int kind = 0; kind < seamKinds; ++kind) {
-                const uint32_t from = list.begin[size_t(kind)], to = list.begin[size_t(kind) + 1];
-                list.begin[size_t(kind)] = n;
-                for (uint32_t i = from; i < to; ++i) {
-                    if (places) places->push_back(n);
-                    if (stayed(list.vertices[i])) list.vertices[n++] = renamed(list.vertices[i]);
-                }
-            }
-            list.begin[seamKinds] = n;
-            list.vertices.resize(n);
-        };
-        size_t kept = 0;
-        for (size_t i = 0; i < c.triangles.size(); ++i)
-            if (stays[c.inMesh(c.triangles[i].x)]) {
-                c.triangles[kept] = c.triangles[i];
-                c.origins[kept++] = c.origins[i];
-            }
-        c.triangles.resize(kept);
-        c.origins.resize(kept);
-        borrowedNow.clear();
-        filter(c.borrowed, [&](uint32_t v) { return stays[v]; }, [&](uint32_t v) { return now[v]; }, &borrowedNow);
-        filter(c.lent, [&](uint32_t v) { return stays[first + v]; }, local, nullptr);
-        for (Triangle& t : c.triangles)
-            for (int i = 0; i < 3; ++i)
-                t[i] = t[i] & borrowedBit ? borrowedNow[t[i] & ~borrowedBit] | borrowedBit : local(t[i]);
-        std::erase_if(c.faceted, [&](uint32_t v) { return !stays[first + v]; });
-        for (uint32_t& v : c.faceted) v = local(v);
-        uint32_t n = 0;
-        for (uint32_t v = 0; v < own; ++v)
-            if (stays[first + v]) {
-                c.positions[n] = c.positions[v];
-                c.normals[n++] = c.normals[v];
-            }
-        c.positions.resize(n);
-        c.normals.resize(n);
-    }
     uint32_t firstVertex = 0;
     for (Chunk& c : mesh.chunks) {
+        const uint32_t first = c.firstVertex, own = static_cast<uint32_t>(c.positions.size());
+        const uint32_t staying = static_cast<uint32_t>(std::count_if(now.begin() + first, now.begin() + first + own, [](uint32_t v) { return v != none; }));
+        const auto local = [&](uint32_t v) { return now[first + v] - firstVertex; };
+        if (staying == own && std::all_of(c.borrowed.vertices.begin(), c.borrowed.vertices.end(), stays)) {
+            for (uint32_t& v : c.borrowed.vertices) v = now[v];
+        } else {
+            const auto filter = [&](SeamList& list, auto stayed, auto renamed, std::vector<uint32_t>* places) {
+                uint32_t n = 0;
+                for (int kind = 0; kind < seamKinds; ++kind) {
+                    const uint32_t from = list.begin[size_t(kind)], to = list.begin[size_t(kind) + 1];
+                    list.begin[size_t(kind)] = n;
+                    for (uint32_t i = from; i < to; ++i) {
+                        if (places) places->push_back(n);
+                        if (stayed(list.vertices[i])) list.vertices[n++] = renamed(list.vertices[i]);
+                    }
+                }
+                list.begin[seamKinds] = n;
+                list.vertices.resize(n);
+            };
+            size_t kept = 0;
+            for (size_t i = 0; i < c.triangles.size(); ++i)
+                if (stays(c.inMesh(c.triangles[i].x))) {
+                    c.triangles[kept] = c.triangles[i];
+                    c.origins[kept++] = c.origins[i];
+                }
+            c.triangles.resize(kept);
+            c.origins.resize(kept);
+            borrowedNow.clear();
+            filter(c.borrowed, stays, [&](uint32_t v) { return now[v]; }, &borrowedNow);
+            filter(c.lent, [&](uint32_t v) { return stays(first + v); }, local, nullptr);
+            for (Triangle& t : c.triangles)
+                for (int i = 0; i < 3; ++i) t[i] = t[i] & borrowedBit ? borrowedNow[t[i] & ~borrowedBit] | borrowedBit : local(t[i]);
+            std::erase_if(c.faceted, [&](uint32_t v) { return !stays(first + v); });
+            for (uint32_t& v : c.faceted) v = local(v);
+            uint32_t n = 0;
+            for (uint32_t v = 0; v < own; ++v)
+                if (stays(first + v)) {
+                    c.positions[n] = c.positions[v];
+                    c.normals[n++] = c.normals[v];
+                }
+            c.positions.resize(n);
+            c.normals.resize(n);
+        }
         c.firstVertex = firstVertex;
-        firstVertex += static_cast<uint32_t>(c.positions.size());
+        firstVertex += staying;
     }
     std::erase_if(mesh.chunks, [](const Chunk& c) { return c.positions.empty() && c.triangles.empty(); });
 }
@@ -143,7 +146,9 @@ void keepVertices(Mesh& mesh, const std::vector<bool>& stays) {
 }  // namespace
 
 std::vector<Piece> pieces(const Mesh& mesh, float slack_m) {
-    std::vector<Piece> found = surfacesOf(mesh).pieces;
+    Surfaces surfaces = surfacesOf(mesh);
+    findOwners(mesh, surfaces);
+    std::vector<Piece> found = std::move(surfaces.pieces);
     std::erase_if(found, [](const Piece& p) { return p.volume_m3 <= 0; });
     judgeSupport(found, slack_m);
     return found;
@@ -185,9 +190,7 @@ Dropped keepOnly(Mesh& mesh, Keep keep, float slack_m) {
             dropped.volume_m3 += surfaces.pieces[i].volume_m3;
         }
     }
-    std::vector<bool> stays(surfaces.of.size());
-    for (size_t v = 0; v < stays.size(); ++v) stays[v] = surfaces.of[v] != unseen && pieceStays[surfaces.of[v]];
-    keepVertices(mesh, stays);
+    if (dropped.pieces + dropped.cavities > 0) keepSurfaces(mesh, surfaces, pieceStays);
     return dropped;
 }
 

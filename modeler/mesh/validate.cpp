@@ -103,22 +103,20 @@ void countEdges(const Flat& flat, MeshFigures& figures, uint64_t& edges) {
 MeshFigures measureFlat(const Flat& flat) {
     MeshFigures figures;
     figures.triangles = flat.triangles.size();
-    Components components(flat.positions.size());
-    std::vector<bool> used(flat.positions.size());
+    const SurfaceLabels surfaces = labelSurfaces(flat.positions.size(), [&](auto f) {
+        for (const Triangle& t : flat.triangles) f(t);
+    });
+    figures.components = surfaces.count;
     const Vec3d origin = flat.positions.empty() ? Vec3d{} : flat.positions.front().as<double>();
     for (const Triangle& t : flat.triangles) {
         const Vec3d a = flat.positions[t.x].as<double>() - origin, b = flat.positions[t.y].as<double>() - origin,
                     c = flat.positions[t.z].as<double>() - origin;
         figures.volume_m3 += dot(a, cross(b, c)) / 6;
         figures.area_m2 += length(cross(b - a, c - a)) / 2;
-        components.join(t.x, t.y);
-        components.join(t.x, t.z);
-        for (int i = 0; i < 3; ++i) used[t[i]] = true;
     }
     for (uint32_t v = 0; v < flat.positions.size(); ++v) {
-        if (!used[v]) continue;
+        if (surfaces.of[v] == SurfaceLabels::none) continue;
         ++figures.vertices;
-        figures.components += components.find(v) == v ? 1 : 0;
         figures.bounds = hull(figures.bounds, flat.positions[v]);
     }
     uint64_t edges = 0;
