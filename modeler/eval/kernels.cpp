@@ -176,16 +176,14 @@ void stepOver(const Instruction& in, const StepContext& c) {
     }
 }
 
-/// A row whose operands are numbers but for the point, from point i on for as many whole V as there are. Returns how
+/// A row whose operands are numbers but for those that move, from point i on for as many whole V as there are. Returns how
 /// far it came.
 template <class Row, auto path, class V>
 size_t stepByNumbers(size_t i, const float* const* rows, const auto& numbers, float* out, const StepContext& c) {
     for (; i + Planes<V>::floats <= c.count; i += Planes<V>::floats) {
-        const auto at = [&](size_t axis) { return Planes<V>::load(rows[axis] + i, c.stride); };
-        if constexpr (Planes<V>::count == 4)
-            Planes<V>::store(Row::template gradientByNumbers<path>(at(0), at(1), at(2), numbers), out + i, c.stride);
-        else
-            Planes<V>::store(Row::template distance<path>(at(0), at(1), at(2), numbers), out + i, c.stride);
+        V at[Row::moving];
+        for (size_t k = 0; k < Row::moving; ++k) at[k] = Planes<V>::load(rows[k] + i, c.stride);
+        Planes<V>::store(Row::template byNumbers<path>(at, numbers), out + i, c.stride);
     }
     return i;
 }

@@ -3,6 +3,8 @@
 // Assumes nothing; the value has the same bits as without derivatives.
 #pragma once
 
+#include <concepts>
+
 #include "modeler/field/values.h"
 
 namespace sgm::eval {
@@ -32,6 +34,23 @@ struct Dual {
     friend Dual operator/(Dual a, Dual b) {
         const V q = a.value / b.value, r = V(1.0f) / b.value;
         return {q, (a.dx - q * b.dx) * r, (a.dy - q * b.dy) * r, (a.dz - q * b.dz) * r};
+    }
+    // With a number, whose derivatives are 0.
+    template <std::same_as<V> N>
+    friend Dual operator+(Dual a, N b) {
+        return {a.value + b, a.dx, a.dy, a.dz};
+    }
+    template <std::same_as<V> N>
+    friend Dual operator-(Dual a, N b) {
+        return {a.value - b, a.dx, a.dy, a.dz};
+    }
+    template <std::same_as<V> N>
+    friend Dual operator-(N a, Dual b) {
+        return {a - b.value, -b.dx, -b.dy, -b.dz};
+    }
+    template <std::same_as<V> N>
+    friend Dual operator*(Dual a, N b) {
+        return {a.value * b, a.dx * b, a.dy * b, a.dz * b};
     }
     friend Dual operator-(Dual a) { return {-a.value, -a.dx, -a.dy, -a.dz}; }
     friend Mask operator<(Dual a, Dual b) { return a.value < b.value; }

@@ -12,6 +12,7 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <type_traits>
 
 #include "modeler/field/kifs.h"
 
@@ -128,33 +129,90 @@ for (uint next = 0u;;) {
 }
 return best;)";
 
+    using Path = Kifs::Path;
+    static constexpr void visitPath(const Kifs::Form& form, auto&& visit) { Kifs::visitPath(form, visit); }
+
+    /// What a point is asked about, made from the parameters: once for all points, where those are numbers.
+    template <class V>
+    struct Numbers {
+        Kifs::Form form;
+        Kifs::Numbers<V> folds;
+        struct Axis {
+            V perPeriod;
+            V reach;  ///< metres of the world of half a period, at least
+        } axis[2];
+        V mirror[3], storey, perStorey, lastStorey, rise, perRise, most, deepest, slack;
+        /// From `from` on in half a period, to where the next one begins: its scale and shift, and along either axis the
+        /// least metres of the world that its map makes one of.
+        struct Bay {
+            V from, zoom, pan, shrink[2];
+        } bay[mostBays + 1];
+        uint32_t bays = 1;
+
+        /// Of `args` the parameters are read, at their places.
+        Numbers(std::span<const V> args, uint32_t data)
+            : form(Kifs::unpack(data)), folds(args.subspan(fractal - size_t{Kifs::centreOfScale}), data), storey(args[Facade::storey]),
+              perStorey(V(1.0f) / storey), lastStorey(args[storeys] - V(1.0f)), rise(args[Facade::rise]), perRise(storey / rise),
+              most(args[Facade::most]), deepest(args[Facade::deepest]), slack(args[Facade::slack]) {
+            for (size_t i = 0; i < 2; ++i) {
+                const V& length = args[period + i];
+                axis[i] = {V(1.0f) / length, length * args[Facade::shrink + i] * V(0.5f)};
+            }
+            for (size_t i = 0; i < 3; ++i) mirror[i] = args[mirrors + i];
+            while (bays < mostBays && any(args[Facade::bays + 3 * bays] < V(2.0f))) ++bays;
+            for (uint32_t i = 0; i < bays; ++i) {
+                const V* const b = &args[Facade::bays + 3 * i];
+                const V size = abs(b[1]);
+                bay[i] = {i == 0 ? V(-nowhere) : b[0], b[1], b[2], {axis[0].reach / size, axis[1].reach / size}};
+            }
+            bay[bays].from = V(nowhere);
+        }
+        /// The same for a V made of one W.
+        template <class W>
+        explicit Numbers(const Numbers<W>& n)
+            : form(n.form), folds(n.folds), axis{{V(n.axis[0].perPeriod), V(n.axis[0].reach)}, {V(n.axis[1].perPeriod), V(n.axis[1].reach)}},
+              mirror{V(n.mirror[0]), V(n.mirror[1]), V(n.mirror[2])}, storey(n.storey), perStorey(n.perStorey), lastStorey(n.lastStorey),
+              rise(n.rise), perRise(n.perRise), most(n.most), deepest(n.deepest), slack(n.slack), bays(n.bays) {
+            for (uint32_t i = 0; i < bays; ++i)
+                bay[i] = {V(n.bay[i].from), V(n.bay[i].zoom), V(n.bay[i].pan), {V(n.bay[i].shrink[0]), V(n.bay[i].shrink[1])}};
+            bay[bays].from = V(n.bay[bays].from);
+        }
+    };
+
     template <class V>
     static V apply(std::span<const V> args, uint32_t data) {
-        const V limit = args[most];
-        const auto decided = (args[outer] >= limit) | (args[inner] <= -args[deepest]);
+        const Numbers<V> numbers(args, data);
+        V value;
+        visitPath(numbers.form, [&]<Path path>() { value = byNumbers<path>(args.data(), numbers); });
+        return value;
+    }
+
+    /// The value at (x, y, z) between the shells; with derivatives where V is over the numbers' W.
+    template <Path path, class V, class W>
+    static V byNumbers(const V* at, const Numbers<W>& n) {
+        const V limit = lifted<V>(n.most);
+        const auto decided = (at[outer] >= limit) | (at[inner] <= lifted<V>(-n.deepest));
         const auto open = !decided;
         if (!any(open)) return limit;
-        const uint32_t count = countOf(args);
-        const Along<V> x = along(args, 0, count), z = along(args, 1, count);
-        const Up<V> up = levels(args);
-        const Kifs::Numbers<V> folds(args.subspan(fractal - size_t{Kifs::centreOfScale}), data);
-        const V own = cell(args, folds, x, x.zoom, x.pan, z, z.zoom, z.pan, up.v);
-        V best = min(max(own, max(max(x.least, z.least), -up.edge) - args[slack]), limit);
-        const V border = min(min(-x.least, -z.least), up.edge) - args[slack];
+        const Along<V, W> x = along(at[position], n, 0), z = along(at[position + 2], n, 1);
+        const Up<V> up = levels(at[position + 1], n);
+        const V own = cell<path>(n, x, x.own, z, z.own, up.v);
+                V best = min(max(own, max(max(x.off, z.off), -up.edge) - n.slack), limit);
+        const V border = min(min(-x.off, -z.off), up.edge) - n.slack;
         if (!any((best > border) & open)) return select(decided, limit, best);  // no other cell is so near
-        for (uint32_t j = 0; j < count; ++j) {
-            if (!any((z.off[j] - args[slack] < best) & open)) continue;
-            for (uint32_t i = 0; i < count; ++i) {
-                const V off = max(x.off[i], z.off[j]);
-                if (!any((off - args[slack] < best) & open)) continue;
-                const auto inOwn = x.within(args, i, count) & z.within(args, j, count);
+        for (uint32_t j = 0; j < n.bays; ++j) {
+            const V offZ = z.to(j, n);
+            if (!any((offZ - n.slack < best) & open)) continue;
+            for (uint32_t i = 0; i < n.bays; ++i) {
+                const V off = max(x.to(i, n), offZ);
+                if (!any((off - n.slack < best) & open)) continue;
+                const auto inOwn = x.within(i, n) & z.within(j, n);
                 for (const bool over : {false, true}) {
-                    const V slab = max(off, over ? up.edge : -up.edge) - args[slack];
+                    const V slab = max(off, over ? up.edge : -up.edge) - n.slack;
                     auto counts = (slab < best) & open;
                     if (!over) counts = counts & !inOwn;
                     if (!any(counts)) continue;
-                    const V *a = &args[bays + 3 * i], *b = &args[bays + 3 * j];
-                    const V d = cell(args, folds, x, a[1], a[2], z, b[1], b[2], over ? up.beyond : up.v);
+                    const V d = cell<path>(n, x, x.bay(i, n), z, z.bay(j, n), over ? up.beyond : up.v);
                     best = min(max(d, slab), best);  // nothing new for lanes that don't count
                 }
             }
@@ -176,7 +234,7 @@ return best;)";
         const auto may = (args[outer].hi >= limit) | (args[inner].lo <= -deep);
         if (!any(!decided)) return I{limit, limit};
         middle[outer] = V(0.0f), middle[inner] = V(0.0f);  // where no shell decides
-        const V value = apply<V>(middle, data);
+        const V value = apply<V>(std::span<const V>(middle, operandCount), data);
         const V rx = radius(args[0]) * middle[shrink], ry = radius(args[1]), rz = radius(args[2]) * middle[shrink + 1];
         const V size = abs(middle[0]) * middle[shrink] + abs(middle[1]) + abs(middle[2]) * middle[shrink + 1];
         const V reach = sqrt(rx * rx + ry * ry + rz * rz) * 1.00001f + size * 2e-6f + middle[rounding];
@@ -185,19 +243,35 @@ return best;)";
     }
 
 private:
-    /// One horizontal axis: where in half a period, folded, and in which bay.
-    template <class V>
-    struct Along {
-        V raw, u;         ///< 0 … 1: before and after the paper's folds
-        V reach;          ///< metres of the world of half a period, at least
-        V zoom, pan;      ///< of the own bay
-        V off[mostBays];  ///< signed distance to every bay, metres
-        V least;          ///< to the own one
+    static constexpr float nowhere = 1e4f;
 
-        auto within(std::span<const V> args, uint32_t bay, uint32_t count) const {
-            const auto from = raw >= (bay == 0 ? V(-1.0f) : args[bays + 3 * bay]);
-            return bay + 1 == count ? from : from & (raw < args[bays + 3 * bay + 3]);
+    /// A number as a V, which has derivatives where W has none.
+    template <class V, class W>
+    static V lifted(const W& number) {
+        if constexpr (std::is_same_v<V, W>) return number;
+        else return V(number, W(0.0f), W(0.0f), W(0.0f));
+    }
+
+    /// A bay as one axis sees it.
+    template <class W>
+    struct Seen {
+        W zoom, pan, shrink;
+    };
+    /// One horizontal axis: where in half a period, folded, and in which bay.
+    template <class V, class W>
+    struct Along {
+        uint32_t axis;
+        V raw, u;     ///< 0 … 1: before and after the paper's folds
+        V off;        ///< signed distance to the own bay, metres
+        Seen<W> own;
+
+        Seen<W> bay(uint32_t i, const Numbers<W>& n) const { return {n.bay[i].zoom, n.bay[i].pan, n.bay[i].shrink[axis]}; }
+        /// Signed distance to a bay, metres.
+        V to(uint32_t i, const Numbers<W>& n) const { return between(n.bay[i].from, n.bay[i + 1].from, n); }
+        V between(const W& from, const W& end, const Numbers<W>& n) const {
+            return max(from - raw, raw - end) * n.axis[axis].reach;
         }
+        auto within(uint32_t i, const Numbers<W>& n) const { return (raw >= lifted<V>(n.bay[i].from)) & (raw < lifted<V>(n.bay[i + 1].from)); }
     };
     /// The storeys around a height.
     template <class V>
@@ -206,53 +280,39 @@ private:
         V beyond;  ///< the same in the nearer neighbour
         V edge;    ///< metres to the neighbour
     };
-    static constexpr float nowhere = 1e4f;
 
-    template <class V>
-    static uint32_t countOf(std::span<const V> args) {
-        uint32_t count = 1;
-        while (count < mostBays && any(args[bays + 3 * count] < V(2.0f))) ++count;
-        return count;
-    }
-
-    template <class V>
-    static Along<V> along(std::span<const V> args, size_t axis, uint32_t count) {
-        Along<V> a;
-        const V& w = args[period + axis];
-        const V turn = args[position + 2 * axis] / w;
-        a.raw = abs((turn - floor(turn)) * V(2.0f) - V(1.0f));
-        a.reach = w * args[shrink + axis] * V(0.5f);
+    template <class V, class W>
+    static Along<V, W> along(const V& at, const Numbers<W>& n, uint32_t axis) {
+        Along<V, W> a{axis, {}, {}, {}, {n.bay[0].zoom, n.bay[0].pan, n.bay[0].shrink[axis]}};
+        const V turn = at * n.axis[axis].perPeriod;
+        a.raw = abs((turn - floor(turn)) * W(2.0f) - W(1.0f));
         a.u = a.raw;
-        for (size_t i = 0; i < 3; ++i) a.u = abs(abs(a.u - args[mirrors + i]) - args[mirrors + i]);
-        a.zoom = args[bays + 1], a.pan = args[bays + 2];
-        for (uint32_t i = 0; i < count; ++i) {
-            const V* bay = &args[bays + 3 * i];
-            const V from = i == 0 ? V(-nowhere) : bay[0] - a.raw;
-            const V to = i + 1 == count ? V(-nowhere) : a.raw - bay[3];
-            a.off[i] = max(from, to) * a.reach;
-            a.least = i == 0 ? a.off[0] : min(a.off[i], a.least);
-            if (i == 0) continue;
-            const auto here = a.raw >= bay[0];
-            a.zoom = select(here, bay[1], a.zoom);
-            a.pan = select(here, bay[2], a.pan);
+        for (const W& r : n.mirror) a.u = abs(abs(a.u - r) - r);
+        W from = n.bay[0].from, end = n.bay[1].from;
+        for (uint32_t i = 1; i < n.bays; ++i) {
+            const auto here = a.raw >= lifted<V>(n.bay[i].from);
+            from = select(here, n.bay[i].from, from);
+            end = select(here, n.bay[i + 1].from, end);
+            const Seen<W> next = a.bay(i, n);
+            a.own = {select(here, next.zoom, a.own.zoom), select(here, next.pan, a.own.pan), select(here, next.shrink, a.own.shrink)};
         }
+        a.off = a.between(from, end, n);
         return a;
     }
 
-    template <class V>
-    static Up<V> levels(std::span<const V> args) {
-        const V up = args[position + 1] / args[storey], last = args[storeys] - V(1.0f);
+    template <class V, class W>
+    static Up<V> levels(const V& y, const Numbers<W>& n) {
+        const V up = y * n.perStorey, last = lifted<V>(n.lastStorey);
         const V level = min(max(floor(up), V(0.0f)), last), v = up - level;
-        const V below = select(level > V(0.0f), v, V(nowhere)), above = select(level < last, V(1.0f) - v, V(nowhere));
-        return {v, select(below < above, v + V(1.0f), v - V(1.0f)), min(below, above) * args[storey]};
+        const V below = select(level > V(0.0f), v, V(nowhere)), above = select(level < last, W(1.0f) - v, V(nowhere));
+        return {v, select(below < above, v + W(1.0f), v - W(1.0f)), min(below, above) * n.storey};
     }
 
     /// Distance to one cell's fractal, its map continued beyond the cell; divided by the map's greatest stretch.
-    template <class V>
-    static V cell(std::span<const V> args, const Kifs::Numbers<V>& folds, const Along<V>& x, const V& zoomX,
-                  const V& panX, const Along<V>& z, const V& zoomZ, const V& panZ, const V& v) {
-        const V stretch = max(max(abs(zoomX) / x.reach, abs(zoomZ) / z.reach), args[rise] / args[storey]);
-        return Kifs::distance(zoomX * x.u + panX, args[rise] * v, zoomZ * z.u + panZ, folds) / stretch;
+    template <Path path, class V, class W>
+    static V cell(const Numbers<W>& n, const Along<V, W>& x, const Seen<W>& inX, const Along<V, W>& z, const Seen<W>& inZ, const V& v) {
+        const V at[] = {x.u * inX.zoom + inX.pan, v * n.rise, z.u * inZ.zoom + inZ.pan};
+        return Kifs::byNumbers<path>(at, n.folds) * min(min(inX.shrink, inZ.shrink), n.perRise);
     }
 };
 

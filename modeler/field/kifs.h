@@ -11,6 +11,7 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <type_traits>
 
 #include "modeler/field/values.h"
 
@@ -121,47 +122,22 @@ struct Kifs {
 
     template <class V>
     static V apply(std::span<const V> args, uint32_t data) {
-        return distance(args[position], args[position + 1], args[position + 2], Numbers<V>(args, data));
-    }
-
-    /// The value at (x, y, z).
-    template <class V>
-    static V distance(const V& x, const V& y, const V& z, const Numbers<V>& numbers) {
+        const Numbers<V> numbers(args, data);
         V value;
-        visitPath(numbers.form, [&]<Path path>() { value = distance<path>(x, y, z, numbers); });
+        visitPath(numbers.form, [&]<Path path>() { value = byNumbers<path>(args.data(), numbers); });
         return value;
     }
-    template <Path path, class V>
-    [[gnu::always_inline]] static V distance(const V& x, const V& y, const V& z, const Numbers<V>& numbers) {
-        State<V> at{x, y, z, V(1.0f)};
-        walk<path>(at, numbers, [](uint32_t) { return Unkept{}; });
-        return terminal(at, numbers);
-    }
 
-    /// The same with derivatives: back through the passes from the terminal solid's normal, which each of them turns
-    /// and reflects.
-    template <Path path, class D>
-    [[gnu::always_inline]] static D gradientByNumbers(const D& x, const D& y, const D& z,
-                                                      const Numbers<typename D::Value>& numbers) {
-        using V = typename D::Value;
-        constexpr uint32_t mostPasses = 255;
-        Kept<V> kept[mostPasses];
-        State<V> at{x.value, y.value, z.value, V(1.0f)};
-        const uint32_t passes = walk<path>(at, numbers, [&](uint32_t i) -> Kept<V>& { return kept[i]; });
-        State<V> g = normal(at, numbers.form);
-        if (folds<path>(numbers.form)) {  // their rotations scale
-            const V share = path == Path::Leaps && numbers.form.bails ? V(1.0f) / at.scales : numbers.unscale;
-            g = {g.x * share, g.y * share, g.z * share, g.scales};
+    /// The value at a point; with derivatives where V is over the numbers' W.
+    template <Path path, class V, class W>
+    [[gnu::always_inline]] static V byNumbers(const V* at, const Numbers<W>& numbers) {
+        if constexpr (!std::is_same_v<V, W>) {
+            return gradient<path>(at[0], at[1], at[2], numbers);
+        } else {
+            State<V> p{at[0], at[1], at[2], V(1.0f)};
+            walk<path>(p, numbers, [](uint32_t) { return Unkept{}; });
+            return terminal(p, numbers);
         }
-        for (uint32_t i = passes; i-- > 0;) {
-            const State<V> before = kept[i].template back<path>(g, numbers);
-            if (path == Path::Leaps && numbers.form.bails)
-                g = chosen(kept[i].moves, before, g);
-            else
-                g = before;
-        }
-        return D{terminal(at, numbers), g.x * x.dx + g.y * y.dx + g.z * z.dx, g.x * x.dy + g.y * y.dy + g.z * z.dy,
-                 g.x * x.dz + g.y * y.dz + g.z * z.dz};
     }
 
     /// With fixed parameters and a continuous form: f(centre) ± the radius of the box, not below the terminal solid's depth.
@@ -181,8 +157,9 @@ struct Kifs {
         const V size = abs(middle[0]) + abs(middle[1]) + abs(middle[2]) + abs(c[0]) + abs(c[1]) + abs(c[2]) + V(2.0f);
         const V ulps = size * (1e-6f * static_cast<float>(form.passes + 1));
         const V reach = sqrt(rx * rx + ry * ry + rz * rz) * 1.00001f + ulps;
-        const Numbers<V> numbers(std::span<const V>(middle, operandCount), data);
-        const V value = distance(middle[0], middle[1], middle[2], numbers);
+        const std::span<const V> at(middle, operandCount);
+        const Numbers<V> numbers(at, data);
+        const V value = apply<V>(at, data);
         const V deepest = -numbers.reach * numbers.unscale * V(1.00001f);
         return I{max(deepest, value - reach), value + reach};  // NaN, as the second operand, survives
     }
@@ -225,6 +202,32 @@ private:
         void fold(const auto&) {}
         void move(const auto&) {}
     };
+
+    /// The same with derivatives: back through the passes from the terminal solid's normal, which each of them turns
+    /// and reflects.
+    template <Path path, class D>
+    [[gnu::always_inline]] static D gradient(const D& x, const D& y, const D& z,
+                                                      const Numbers<typename D::Value>& numbers) {
+        using V = typename D::Value;
+        constexpr uint32_t mostPasses = 255;
+        Kept<V> kept[mostPasses];
+        State<V> at{x.value, y.value, z.value, V(1.0f)};
+        const uint32_t passes = walk<path>(at, numbers, [&](uint32_t i) -> Kept<V>& { return kept[i]; });
+        State<V> g = normal(at, numbers.form);
+        if (folds<path>(numbers.form)) {  // their rotations scale
+            const V share = path == Path::Leaps && numbers.form.bails ? V(1.0f) / at.scales : numbers.unscale;
+            g = {g.x * share, g.y * share, g.z * share, g.scales};
+        }
+        for (uint32_t i = passes; i-- > 0;) {
+            const State<V> before = kept[i].template back<path>(g, numbers);
+            if (path == Path::Leaps && numbers.form.bails)
+                g = chosen(kept[i].moves, before, g);
+            else
+                g = before;
+        }
+        return D{terminal(at, numbers), g.x * x.dx + g.y * y.dx + g.z * z.dx, g.x * x.dy + g.y * y.dy + g.z * z.dy,
+                 g.x * x.dz + g.y * y.dz + g.z * z.dz};
+    }
 
     template <class V>
     static State<V> chosen(const MaskOf<V>& mask, const State<V>& a, const State<V>& b) {

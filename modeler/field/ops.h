@@ -13,9 +13,10 @@
 //   I interval(…same operands as I…)     an enclosure of apply's floats, rounding included; operands' bounds are never
 //                                        NaN. The default is apply over intervals: rounding is monotone, so it encloses
 //   D gradient(…same operands as D…)     value (same bits as apply) and derivatives; the default is apply over Dual
-//   Numbers<V>(args, data)               for a row with three operands that move, while the others are numbers: what it
-//                                        makes of those, once for all points. V distance(x, y, z, numbers) gives apply's
-//                                        bits and D gradientByNumbers(x, y, z, numbers) derivatives too
+//   Numbers<V>(args, data)               for a row most of whose operands are numbers: what it makes of those, once for all
+//                                        points. V byNumbers<path>(const V* moving, numbers) gives apply's bits, with
+//                                        derivatives where V has them and the numbers have not; paths are told apart by
+//                                        visitPath(numbers.form, …)
 //   owner                                which operand owns the surface (Owner)
 //   V reach(span<const I>, uint32_t)     for Owner::Least (Greatest): an operand that lies above (below) it can't matter:
 //                                        the bits stay the same without it or with any other number beyond it. With one

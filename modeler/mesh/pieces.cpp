@@ -58,20 +58,31 @@ Surfaces surfacesOf(const Mesh& mesh) {
     std::vector<Vec3f> borrowed;
     for (const Chunk& c : mesh.chunks) {
         if (&c == &mesh.chunks.front() && !c.positions.empty()) near = c.positions.front().as<double>();
-        for (size_t v = 0; v < c.positions.size(); ++v)
-            if (const uint32_t piece = found.labels.of[c.firstVertex + v]; piece != none)
-                found.pieces[piece].bounds = hull(found.pieces[piece].bounds, c.positions[v]);
+        const uint32_t* const own = found.labels.of.data() + c.firstVertex;
+        const auto count = static_cast<uint32_t>(c.positions.size());
+        for (uint32_t v = 0, piece; v < count;) {  // neighbours lie on one piece mostly
+            Box3f box;
+            for (piece = own[v]; v < count && own[v] == piece; ++v) box = hull(box, c.positions[v]);
+            if (piece != none) found.pieces[piece].bounds = hull(found.pieces[piece].bounds, box);
+        }
         borrowed.clear();
         for (const uint32_t v : c.borrowed.vertices) borrowed.push_back(positionOf(mesh, v));
         const auto position = [&](uint32_t corner) {
             return (corner & borrowedBit ? borrowed[corner & ~borrowedBit] : c.positions[corner]).as<double>() - near;
         };
-        for (const Triangle& t : c.triangles) {
-            Piece& piece = found.pieces[found.labels.of[c.inMesh(t.x)]];
-            ++piece.triangles;
-            // The solid under a triangle along x, by the divergence theorem.
-            const Vec3d a = position(t.x), b = position(t.y) - a, d = position(t.z) - a;
-            piece.volume_m3 += (3 * a.x + b.x + d.x) * (b.y * d.z - b.z * d.y) / 6;
+        const auto pieceOf = [&](const Triangle& t) { return found.labels.of[c.inMesh(t.x)]; };
+        for (size_t i = 0; i < c.triangles.size();) {
+            const size_t first = i;
+            const uint32_t piece = pieceOf(c.triangles[i]);
+            double sixfold = 0;
+            for (; i < c.triangles.size() && pieceOf(c.triangles[i]) == piece; ++i) {
+                // The solid under a triangle along x, by the divergence theorem.
+                const Triangle& t = c.triangles[i];
+                const Vec3d p = position(t.x), q = position(t.y) - p, r = position(t.z) - p;
+                sixfold += (3 * p.x + q.x + r.x) * (q.y * r.z - q.z * r.y);
+            }
+            found.pieces[piece].triangles += i - first;
+            found.pieces[piece].volume_m3 += sixfold / 6;
         }
     }
     return found;

@@ -91,12 +91,12 @@ double measuredByNumbers(const eval::Operation& operation) {
             for (int c = 0; c < chains; ++c) {
                 opaque(args[0]);
                 if constexpr (gradient) {
-                    eval::Dual<Two> at[3];
-                    for (int axis = 0; axis < 3; ++axis) at[axis] = {args[axis], Two(0.5f), Two(0.25f), Two(0.125f)};
-                    auto out = Row::template gradientByNumbers<path>(at[0], at[1], at[2], numbers);
+                    eval::Dual<Two> at[Row::moving];
+                    for (size_t k = 0; k < Row::moving; ++k) at[k] = {args[k], Two(0.5f), Two(0.25f), Two(0.125f)};
+                    auto out = Row::template byNumbers<path>(at, numbers);
                     opaque(out);
                 } else {
-                    Two out = Row::template distance<path>(args[0], args[1], args[2], numbers);
+                    Two out = Row::template byNumbers<path>(args, numbers);
                     opaque(out);
                 }
             }
