@@ -1,0 +1,28 @@
+// The functions of this room that need OpenVDB, as one table.
+// Enters: nothing. Leaves: their addresses. `sgm` reads it from a module that it loads when it first needs a volume
+// (on_demand.cpp), for binding OpenVDB's 70,000 symbols takes longer than most of what sgm is asked for; other programs
+// link the functions themselves.
+#pragma once
+
+#include "modeler/volume/air.h"
+#include "modeler/volume/dense.h"
+#include "modeler/volume/fog.h"
+#include "modeler/volume/keep.h"
+#include "modeler/volume/volume.h"
+
+namespace sgm::volume {
+
+/// See the functions of these names.
+struct Doors {
+    decltype(&volume::airOf) airOf;
+    decltype(&volume::dense) dense;
+    decltype(&volume::fillVdb) fillVdb;
+    decltype(&volume::fog) fog;
+    decltype(&volume::keepOnly) keepOnly;
+    decltype(&volume::sample) sample;
+};
+
+}  // namespace sgm::volume
+
+/// The module's table.
+extern "C" const sgm::volume::Doors sgm_volume_doors;
