@@ -3,6 +3,7 @@
 // little-endian machine, as every format here is little-endian.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cstdint>
@@ -43,6 +44,17 @@ public:
         char* to = buffer_.data() + used_;
         ((std::memcpy(to, &values, sizeof values), to += sizeof values), ...);
         used_ += size;
+    }
+    /// `count` rows of `size` bytes, each written by row(i, to).
+    template <size_t size, class Row>
+    void rows(size_t count, Row row) {
+        for (size_t i = 0; i < count && !failed();) {
+            if (buffer_.size() - used_ < size) flush();
+            const size_t end = std::min(count, i + (buffer_.size() - used_) / size);
+            char* to = buffer_.data() + used_;
+            used_ += (end - i) * size;
+            for (; i < end; ++i, to += size) row(i, to);
+        }
     }
     /// The shortest decimal text that reads back as the same number.
     template <class T>

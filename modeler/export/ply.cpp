@@ -32,7 +32,10 @@ public:
 
     void vertices(OutFile& out, const mesh::Chunk& chunk) const override {
         if (bare_) {
-            for (const Vec3f& p : chunk.positions) out.raw(place_.position(p));
+            out.rows<sizeof(Vec3f)>(chunk.positions.size(), [&, place = place_, from = chunk.positions.data()](size_t i, char* to) {
+                const Vec3f position = place.position(from[i]);
+                std::memcpy(to, &position, sizeof position);
+            });
             return;
         }
         const std::vector<uint32_t> materials = vertexMaterials(chunk);
@@ -43,10 +46,18 @@ public:
     }
 
     void triangles(OutFile& out, const mesh::Chunk& chunk) const override {
-        constexpr uint8_t corners = 3;
-        for (size_t i = 0; i < chunk.triangles.size() && !out.failed(); ++i)
-            if (bare_) out.raw(corners, chunk.inMesh(chunk.triangles[i]));
-            else out.raw(corners, chunk.inMesh(chunk.triangles[i]), chunk.origins[i]);
+        constexpr size_t faceBytes = 1 + sizeof(mesh::Triangle);
+        const auto face = [from = chunk.triangles.data(), first = chunk.firstVertex, borrowed = chunk.borrowed.vertices.data()](size_t i, char* to) {
+            mesh::Triangle t = from[i];
+            for (int k = 0; k < 3; ++k) t[k] = t[k] & mesh::borrowedBit ? borrowed[t[k] & ~mesh::borrowedBit] : first + t[k];
+            *to = 3;
+            std::memcpy(to + 1, &t, sizeof t);
+        };
+        if (bare_) return out.rows<faceBytes>(chunk.triangles.size(), face);
+        out.rows<faceBytes + sizeof(OriginId)>(chunk.triangles.size(), [&](size_t i, char* to) {
+            face(i, to);
+            std::memcpy(to + faceBytes, &chunk.origins[i], sizeof(OriginId));
+        });
     }
 
 private:

@@ -40,27 +40,30 @@ private:
 struct SurfaceLabels {
     static constexpr uint32_t none = 0xffffffffu;  ///< the vertex has no triangle
     std::vector<uint32_t> of;                      ///< by vertex: 0 … count − 1, in the order of the surfaces' first triangles
+    std::vector<uint32_t> numbers;                 ///< by the label that a triangle was given: the same
     uint32_t count = 0;
 };
 
 /// Labels vertices as pixels are (Rosenfeld and Pfaltz, "Sequential Operations in Digital Picture Processing", 1966): a triangle
 /// hands on the label that it finds, and labels that meet are one. There are far fewer labels than vertices.
-/// `forTriangles(f)` calls f with every triangle, corners counted in the whole mesh.
+/// `forTriangles(f)` calls f with every triangle, corners counted in the whole mesh; f returns its label.
 template <class ForTriangles>
 SurfaceLabels labelSurfaces(size_t vertices, ForTriangles forTriangles) {
     constexpr uint32_t none = SurfaceLabels::none;
-    SurfaceLabels found{std::vector<uint32_t>(vertices, none)};
+    SurfaceLabels found{std::vector<uint32_t>(vertices, none), {}};
     std::vector<uint32_t>& of = found.of;
     Components labels(0);
     forTriangles([&](const Vec3<uint32_t>& t) {
         uint32_t label = std::min({of[t.x], of[t.y], of[t.z]});
-        if (label != none && of[t.x] == of[t.y] && of[t.x] == of[t.z]) return;
+        if (label != none && of[t.x] == of[t.y] && of[t.x] == of[t.z]) return label;
         label = label == none ? labels.add() : labels.find(label);
         for (int i = 0; i < 3; ++i)
             if (of[t[i]] != none) label = labels.join(label, of[t[i]]);
         for (int i = 0; i < 3; ++i) of[t[i]] = label;
+        return label;
     });
-    std::vector<uint32_t> numbers(labels.size());
+    std::vector<uint32_t>& numbers = found.numbers;
+    numbers.resize(labels.size());
     for (uint32_t label = 0; label < labels.size(); ++label) {
         const uint32_t lowest = labels.find(label);
         numbers[label] = lowest == label ? found.count++ : numbers[lowest];

@@ -1,5 +1,6 @@
 #include "modeler/mesh/pieces.h"
 
+#include <optional>
 #include <unordered_map>
 
 #include "modeler/mesh/components.h"
@@ -51,38 +52,58 @@ Vec3f positionOf(const Mesh& mesh, uint32_t vertex) {
     return after[-1].positions[vertex - after[-1].firstVertex];
 }
 
+/// What triangles of one label add up to.
+struct Sum {
+    uint64_t triangles = 0;
+    double sixfold_m3 = 0;
+};
+
 Surfaces surfacesOf(const Mesh& mesh) {
-    Surfaces found{{}, labelSurfaces(mesh.vertexCount(), [&](auto f) { forTriangles(mesh, [&](const Triangle& t, OriginId) { f(t); }); })};
+    Surfaces found;
+    std::vector<Sum> sums;
+    const auto visit = [&](auto labelOf) {
+        std::optional<Vec3d> near;  // sums stay small
+        std::vector<Vec3f> borrowed;
+        Sum sum;
+        uint32_t last = 0;
+        const auto put = [&] {
+            if (sums.size() <= last) sums.resize(last + size_t{1});
+            sums[last].triangles += sum.triangles, sums[last].sixfold_m3 += sum.sixfold_m3;
+            sum = {};
+        };
+        for (const Chunk& c : mesh.chunks) {
+            if (!near && !c.positions.empty()) near = c.positions.front().as<double>();
+            borrowed.clear();
+            for (const uint32_t v : c.borrowed.vertices) borrowed.push_back(positionOf(mesh, v));
+            const auto position = [&](uint32_t corner) {
+                return (corner & borrowedBit ? borrowed[corner & ~borrowedBit] : c.positions[corner]).as<double>() - *near;
+            };
+            for (const Triangle& t : c.triangles) {
+                const uint32_t label = labelOf(c.inMesh(t));
+                if (label != last) put();
+                last = label;
+                // The solid under a triangle along x, by the divergence theorem.
+                const Vec3d p = position(t.x), q = position(t.y) - p, r = position(t.z) - p;
+                sum.sixfold_m3 += (3 * p.x + q.x + r.x) * (q.y * r.z - q.z * r.y);
+                ++sum.triangles;
+            }
+        }
+        put();
+    };
+    found.labels = labelSurfaces(mesh.vertexCount(), visit);
     found.pieces.resize(found.labels.count);
-    Vec3d near{};
-    std::vector<Vec3f> borrowed;
+    for (size_t label = 0; label < found.labels.numbers.size(); ++label) {
+        Piece& piece = found.pieces[found.labels.numbers[label]];
+        piece.triangles += sums[label].triangles;
+        piece.volume_m3 += sums[label].sixfold_m3 / 6;
+    }
     for (const Chunk& c : mesh.chunks) {
-        if (&c == &mesh.chunks.front() && !c.positions.empty()) near = c.positions.front().as<double>();
         const uint32_t* const own = found.labels.of.data() + c.firstVertex;
         const auto count = static_cast<uint32_t>(c.positions.size());
         for (uint32_t v = 0, piece; v < count;) {  // neighbours lie on one piece mostly
             Box3f box;
             for (piece = own[v]; v < count && own[v] == piece; ++v) box = hull(box, c.positions[v]);
             if (piece != none) found.pieces[piece].bounds = hull(found.pieces[piece].bounds, box);
-        }
-        borrowed.clear();
-        for (const uint32_t v : c.borrowed.vertices) borrowed.push_back(positionOf(mesh, v));
-        const auto position = [&](uint32_t corner) {
-            return (corner & borrowedBit ? borrowed[corner & ~borrowedBit] : c.positions[corner]).as<double>() - near;
-        };
-        const auto pieceOf = [&](const Triangle& t) { return found.labels.of[c.inMesh(t.x)]; };
-        for (size_t i = 0; i < c.triangles.size();) {
-            const size_t first = i;
-            const uint32_t piece = pieceOf(c.triangles[i]);
-            double sixfold = 0;
-            for (; i < c.triangles.size() && pieceOf(c.triangles[i]) == piece; ++i) {
-                // The solid under a triangle along x, by the divergence theorem.
-                const Triangle& t = c.triangles[i];
-                const Vec3d p = position(t.x), q = position(t.y) - p, r = position(t.z) - p;
-                sixfold += (3 * p.x + q.x + r.x) * (q.y * r.z - q.z * r.y);
-            }
-            found.pieces[piece].triangles += i - first;
-            found.pieces[piece].volume_m3 += sixfold / 6;
         }
     }
     return found;
