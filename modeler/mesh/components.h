@@ -54,12 +54,14 @@ SurfaceLabels labelSurfaces(size_t vertices, ForTriangles forTriangles) {
     std::vector<uint32_t>& of = found.of;
     Components labels(0);
     forTriangles([&](const Vec3<uint32_t>& t) {
-        uint32_t label = std::min({of[t.x], of[t.y], of[t.z]});
-        if (label != none && of[t.x] == of[t.y] && of[t.x] == of[t.z]) return label;
-        label = label == none ? labels.add() : labels.find(label);
-        for (int i = 0; i < 3; ++i)
-            if (of[t[i]] != none) label = labels.join(label, of[t[i]]);
-        for (int i = 0; i < 3; ++i) of[t[i]] = label;
+        const uint32_t a = of[t.x], b = of[t.y], c = of[t.z];
+        uint32_t label = std::min({a, b, c});
+        const auto differs = [&](uint32_t other) { return (other != label) & (other != none); };
+        if (label == none) label = labels.add();
+        else if (differs(a) | differs(b) | differs(c))
+            for (const uint32_t met : {a, b, c})
+                if (met != none) label = labels.join(label, met);
+        of[t.x] = of[t.y] = of[t.z] = label;
         return label;
     });
     std::vector<uint32_t>& numbers = found.numbers;
