@@ -1,6 +1,6 @@
 // The functions of this room that need OpenVDB, as one table.
-// Enters: nothing. Leaves: their addresses. `sgm` reads it from a module that it loads when it first needs a volume
-// (on_demand.cpp), for binding OpenVDB's 70,000 symbols takes longer than most of what sgm is asked for; other programs
+// Enters: nothing. Leaves: their addresses. `sgm` and the window read it from a module, loaded when they first need a volume
+// (on_demand.cpp), for binding OpenVDB's 70,000 symbols takes longer than most of what sgm is asked for; tests and bench
 // link the functions themselves.
 #pragma once
 
