@@ -178,27 +178,29 @@ private:
         V x, y, z, offset;
         MaskOf<V> moves;
 
-        void point(const State<V>& p) { x = p.x, y = p.y, z = p.z; }
+        void point(const V& px, const V& py, const V& pz) { x = px, y = py, z = pz; }
         void fold(const V& o) { offset = o; }
         void move(const MaskOf<V>& m) { moves = m; }
 
         /// The derivatives before the pass from those after it, scaled where the pass has a rotation that does.
         template <Path path>
-        [[gnu::always_inline]] State<V> back(State<V> g, const Numbers<V>& n) const {
+        [[gnu::always_inline]] void back(V& gx, V& gy, V& gz, const Numbers<V>& n) const {
             const V zero = 0.0f;
-            if (path != Path::Leaps || !n.form.jump) g.z = select(offset < zero, g.z, -g.z);
-            if (folds<path>(n.form)) g = turnedBack(g, n.fold);
+            if (path != Path::Leaps || !n.form.jump) gz = select(offset < zero, gz, -gz);
+            if (folds<path>(n.form)) rotateBack(gx, gy, gz, n.fold);
             const V ax = abs(x), ay = abs(y), az = abs(z), least = min(ax, ay), most = max(ax, ay);
             const auto xy = ax > ay, top = most > az, rest = least > min(most, az);
-            const V second = select(rest, g.y, g.z), third = select(rest, g.z, g.y);
-            const V first = select(top, g.x, third), gz = select(top, third, g.x);
-            const V gx = select(xy, first, second), gy = select(xy, second, first);
-            g = {select(x < zero, -gx, gx), select(y < zero, -gy, gy), select(z < zero, -gz, gz), g.scales};
-            return turns<path>(n.form) ? turnedBack(g, n.turn) : g;
+            const V second = select(rest, gy, gz), third = select(rest, gz, gy);
+            const V first = select(top, gx, third), last = select(top, third, gx);
+            const V right = select(xy, first, second), up = select(xy, second, first);
+            gx = select(x < zero, -right, right);
+            gy = select(y < zero, -up, up);
+            gz = select(z < zero, -last, last);
+            if (turns<path>(n.form)) rotateBack(gx, gy, gz, n.turn);
         }
     };
     struct Unkept {
-        void point(const auto&) {}
+        void point(const auto&, const auto&, const auto&) {}
         void fold(const auto&) {}
         void move(const auto&) {}
     };
@@ -213,20 +215,22 @@ private:
         Kept<V> kept[mostPasses];
         State<V> at{x.value, y.value, z.value, V(1.0f)};
         const uint32_t passes = walk<path>(at, numbers, [&](uint32_t i) -> Kept<V>& { return kept[i]; });
-        State<V> g = normal(at, numbers.form);
+        const State<V> g = normal(at, numbers.form);
+        V gx = g.x, gy = g.y, gz = g.z;
         if (folds<path>(numbers.form)) {  // their rotations scale
             const V share = path == Path::Leaps && numbers.form.bails ? V(1.0f) / at.scales : numbers.unscale;
-            g = {g.x * share, g.y * share, g.z * share, g.scales};
+            gx = gx * share, gy = gy * share, gz = gz * share;
         }
         for (uint32_t i = passes; i-- > 0;) {
-            const State<V> before = kept[i].template back<path>(g, numbers);
-            if (path == Path::Leaps && numbers.form.bails)
-                g = chosen(kept[i].moves, before, g);
-            else
-                g = before;
+            const V afterX = gx, afterY = gy, afterZ = gz;
+            kept[i].template back<path>(gx, gy, gz, numbers);
+            if (path != Path::Leaps || !numbers.form.bails) continue;
+            gx = select(kept[i].moves, gx, afterX);
+            gy = select(kept[i].moves, gy, afterY);
+            gz = select(kept[i].moves, gz, afterZ);
         }
-        return D{terminal(at, numbers), g.x * x.dx + g.y * y.dx + g.z * z.dx, g.x * x.dy + g.y * y.dy + g.z * z.dy,
-                 g.x * x.dz + g.y * y.dz + g.z * z.dz};
+        return D{terminal(at, numbers), gx * x.dx + gy * y.dx + gz * z.dx, gx * x.dy + gy * y.dy + gz * z.dy,
+                 gx * x.dz + gy * y.dz + gz * z.dz};
     }
 
     template <class V>
@@ -239,20 +243,23 @@ private:
     template <Path path, class V, class Keep>
     [[gnu::always_inline]] static uint32_t walk(State<V>& at, const Numbers<V>& n, const Keep& keep) {
         if constexpr (path == Path::Leaps) return walkWithLeaps(at, n, keep);
+        V x = at.x, y = at.y, z = at.z;  // by themselves: a compiler keeps those in registers
         for (uint32_t i = 0; i < n.form.passes; ++i) {
             auto&& kept = keep(i);
-            at = scaled<path>(at, n, kept);
-            const V offset = at.z - n.lastFold;
+            foldAndScale<path>(x, y, z, n, kept);
+            const V offset = z - n.lastFold;
             kept.fold(offset);
-            at.z = n.lastFold - abs(offset);
+            z = n.lastFold - abs(offset);
         }
+        at = {x, y, z, at.scales};
         return n.form.passes;
     }
     template <class V, class Keep>
     static uint32_t walkWithLeaps(State<V>& at, const Numbers<V>& n, const Keep& keep) {
         for (uint32_t i = 0; i < n.form.passes; ++i) {
             auto&& kept = keep(i);
-            State<V> next = scaled<Path::Leaps>(at, n, kept);
+            State<V> next = at;
+            foldAndScale<Path::Leaps>(next.x, next.y, next.z, n, kept);
             const V& h = n.lastFold;
             if (n.form.jump) {
                 next.z = select(next.z > h, next.z - (h + h), next.z);
@@ -300,31 +307,32 @@ private:
 
     /// The linear map by columns.
     template <class V>
-    [[gnu::always_inline]] static State<V> mapped(const State<V>& p, const V m[9]) {
-        const auto row = [&](size_t r) { return m[r] * p.x + m[3 + r] * p.y + m[6 + r] * p.z; };
-        return {row(0), row(1), row(2), p.scales};
+    [[gnu::always_inline]] static void rotate(V& x, V& y, V& z, const V m[9]) {
+        const V px = x, py = y, pz = z;
+        const auto row = [&](size_t r) { return m[r] * px + m[3 + r] * py + m[6 + r] * pz; };
+        x = row(0), y = row(1), z = row(2);
     }
     /// Its transpose: the inverse of a rotation.
     template <class V>
-    [[gnu::always_inline]] static State<V> turnedBack(const State<V>& p, const V m[9]) {
-        const auto column = [&](size_t c) { return m[3 * c] * p.x + m[3 * c + 1] * p.y + m[3 * c + 2] * p.z; };
-        return {column(0), column(1), column(2), p.scales};
+    [[gnu::always_inline]] static void rotateBack(V& x, V& y, V& z, const V m[9]) {
+        const V px = x, py = y, pz = z;
+        const auto column = [&](size_t c) { return m[3 * c] * px + m[3 * c + 1] * py + m[3 * c + 2] * pz; };
+        x = column(0), y = column(1), z = column(2);
     }
 
     /// One pass up to the last fold.
     template <Path path, class V, class Keep>
-    [[gnu::always_inline]] static State<V> scaled(State<V> p, const Numbers<V>& n, Keep&& kept) {
-        if (turns<path>(n.form)) p = mapped(p, n.turn);
-        kept.point(p);
-        const V x = abs(p.x), y = abs(p.y), z = abs(p.z);
-        const V xy = max(x, y), yx = min(x, y);
-        const V first = max(xy, z), rest = min(xy, z);
-        State<V> q{first, max(yx, rest), min(yx, rest), p.scales};
+    [[gnu::always_inline]] static void foldAndScale(V& x, V& y, V& z, const Numbers<V>& n, Keep&& kept) {
+        if (turns<path>(n.form)) rotate(x, y, z, n.turn);
+        kept.point(x, y, z);
+        const V ax = abs(x), ay = abs(y), az = abs(z);
+        const V xy = max(ax, ay), yx = min(ax, ay), rest = min(xy, az);
+        x = max(xy, az), y = max(yx, rest), z = min(yx, rest);
         if (folds<path>(n.form))
-            q = mapped(q, n.fold);
+            rotate(x, y, z, n.fold);
         else
-            q = {q.x * n.scale, q.y * n.scale, q.z * n.scale, q.scales};
-        return {q.x - n.moveX, q.y - n.moveY, q.z, q.scales};
+            x = x * n.scale, y = y * n.scale, z = z * n.scale;
+        x = x - n.moveX, y = y - n.moveY;
     }
 
     template <class V>
@@ -342,7 +350,7 @@ private:
         State<I> at{args[position], args[position + 1], args[position + 2], I(1.0f)};
         V lo = std::numeric_limits<float>::infinity(), hi = -std::numeric_limits<float>::infinity();
         for (uint32_t i = 0; i < form.passes; ++i) {
-            at = scaled<Path::Leaps>(at, n, Unkept{});
+            foldAndScale<Path::Leaps>(at.x, at.y, at.z, n, Unkept{});
             const I& h = n.lastFold;
             if (form.jump) {
                 const auto may = at.z.hi > h.lo, must = at.z.lo > h.hi;
