@@ -2,11 +2,94 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
+#include <mutex>
 #include <system_error>
 #include <thread>
 #include <vector>
 
 namespace sgm {
+namespace {
+
+/// A loop under way.
+struct Loop {
+    const size_t count;
+    const Progress* const progress;
+    void* const context;
+    void (*const body)(void*, size_t, int);
+    int places;  ///< for threads that may still join it; guarded, as the next two are, by the crew's mutex
+    int joined = 0, busy = 0;
+    std::condition_variable left;
+    std::atomic<size_t> next{0};
+
+    void work(int worker) {
+        while (!cancelled(progress)) {
+            const size_t i = next.fetch_add(1, std::memory_order_relaxed);
+            if (i >= count) break;
+            body(context, i, worker);
+        }
+    }
+};
+
+/// Threads that wait for loops. A caller never waits for one that hasn't joined: where all are slow to come, it does
+/// the work itself.
+class Crew {
+public:
+    /// Runs a loop on the calling thread and on up to loop.places others.
+    void run(Loop& loop) {
+        const int others = loop.places;
+        {
+            const std::lock_guard lock(mutex_);
+            hire(others);
+            free_ -= others;
+            open_.push_back(&loop);
+        }
+        for (int i = 0; i < others; ++i) called_.notify_one();
+        loop.work(0);
+        std::unique_lock lock(mutex_);
+        free_ += loop.places;
+        loop.places = 0;
+        std::erase(open_, &loop);
+        loop.left.wait(lock, [&] { return loop.busy == 0; });
+    }
+
+private:
+    /// Sees to it that so many threads are free, unless the system gives no more: then those there are do the work.
+    void hire(int wanted) {
+        try {
+            for (; free_ < wanted; ++free_) std::thread([this] { serve(); }).detach();
+        } catch (const std::system_error&) {
+        }
+    }
+    [[noreturn]] void serve() {
+        std::unique_lock lock(mutex_);
+        for (;;) {
+            called_.wait(lock, [&] { return !open_.empty(); });
+            Loop& loop = *open_.front();
+            if (--loop.places == 0) open_.erase(open_.begin());
+            const int worker = ++loop.joined;
+            ++loop.busy;
+            lock.unlock();
+            loop.work(worker);
+            lock.lock();
+            ++free_;
+            if (--loop.busy == 0) loop.left.notify_one();
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable called_;
+    std::vector<Loop*> open_;  ///< those with places
+    int free_ = 0;             ///< threads beyond those that the open loops have places for
+};
+
+/// Never destroyed: its threads wait until the very end.
+Crew& crew() {
+    static Crew& crew = *new Crew;
+    return crew;
+}
+
+}  // namespace
 
 int threadCount(int wanted) {
     if (wanted > 0) return wanted;
@@ -16,22 +99,12 @@ int threadCount(int wanted) {
 namespace detail {
 
 void parallelFor(size_t count, int threads, const Progress* progress, void* context, void (*body)(void*, size_t, int)) {
-    std::atomic<size_t> next{0};
-    const auto work = [&](int worker) {
-        while (!cancelled(progress)) {
-            const size_t i = next.fetch_add(1, std::memory_order_relaxed);
-            if (i >= count) break;
-            body(context, i, worker);
-        }
-    };
-    std::vector<std::jthread> others;  // joined at the end
-    try {
-        for (int worker = 1; worker < threads && static_cast<size_t>(worker) < count; ++worker)
-            others.emplace_back(work, worker);
-    } catch (const std::system_error&) {
-        // The system gives no more threads: those there are do the work.
-    }
-    work(0);
+    const int others = static_cast<int>(std::min(static_cast<size_t>(threads), std::max<size_t>(count, 1))) - 1;
+    Loop loop{count, progress, context, body, others, 0, 0, {}, {}};
+    if (others > 0)
+        crew().run(loop);
+    else
+        loop.work(0);
 }
 
 }  // namespace detail

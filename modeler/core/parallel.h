@@ -1,7 +1,7 @@
 // Parallel loops on a chosen number of threads.
 // Enters: a count and a body. Leaves: nothing; the body writes only to its own index's slot, so that order can't show.
-// Assumes the body doesn't throw, and takes long enough to be worth a step of an atomic counter; the threads live as long
-// as the loop.
+// Assumes the body doesn't throw, and takes long enough to be worth a step of an atomic counter. Threads stay for the
+// loops to come; a loop never waits for one that is slow to come, and does without where there is none.
 #pragma once
 
 #include <cstddef>

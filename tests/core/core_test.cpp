@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <set>
+#include <thread>
 
 #include "modeler/core/conventions.h"
 #include "modeler/core/parallel.h"
@@ -60,6 +62,32 @@ TEST(Parallel, EveryIndexOnceAtAnyThreadCount) {
         for (const auto& n : seen) ASSERT_EQ(n, 1);
         EXPECT_EQ(worst, 0);
     }
+}
+
+TEST(Parallel, LoopsInLoopsAndSideBySide) {
+    std::atomic<int> calls{0};
+    const auto loops = [&] {
+        for (int round = 0; round < 50; ++round)
+            parallelFor(6, 3, nullptr, [&](size_t, int) { parallelFor(5, 2, nullptr, [&](size_t, int) { ++calls; }); });
+    };
+    std::thread beside(loops);
+    loops();
+    beside.join();
+    EXPECT_EQ(calls, 2 * 50 * 6 * 5);
+}
+
+TEST(Parallel, ThreadsStayFromLoopToLoop) {
+    std::atomic<int> most{0};
+    for (int round = 0; round < 20; ++round) {
+        std::atomic<int> begun{0};
+        parallelFor(2, 2, nullptr, [&](size_t, int worker) {
+            ++begun;
+            while (begun < 2) std::this_thread::yield();  // each of the two takes one
+            thread_local int loops = 0;
+            if (worker == 1) most = std::max(most.load(), ++loops);
+        });
+    }
+    EXPECT_GT(most, 1);
 }
 
 TEST(Parallel, CancelStopsHandingOut) {
