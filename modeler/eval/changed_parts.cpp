@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "modeler/eval/evaluate.h"
 #include "modeler/field/ops.h"
@@ -67,19 +68,30 @@ bool ChangedParts::find(const Tape& tape, const NumbersChanged& changed) {
     return true;
 }
 
-uint64_t ChangedParts::unreached(std::span<const Box3f> boxes, Care care, Workspace& workspace) const {
-    uint64_t far = boxes.size() == 64 ? ~uint64_t{0} : (uint64_t{1} << boxes.size()) - 1;
+ChangedParts::Reach ChangedParts::reach(std::span<const Box3f> boxes, Care care, Workspace& workspace) const {
+    Reach reach{boxes.size() == 64 ? ~uint64_t{0} : (uint64_t{1} << boxes.size()) - 1, true};
     std::array<Range, 64> ranges;
     const auto ask = [&](const Tape& tape) {
         evaluateRanges(tape, {boxes.data(), boxes.size()}, ranges.data(), workspace);
-        for (size_t i = 0; i < boxes.size(); ++i)
-            if (!(ranges[i].lo > care.most)) far &= ~(uint64_t{1} << i);
+        for (size_t i = 0; i < boxes.size(); ++i) {
+            if (!(ranges[i].lo > care.most)) reach.unreached &= ~(uint64_t{1} << i);
+            reach.bounded = reach.bounded && std::isfinite(ranges[i].lo) && std::isfinite(ranges[i].hi);
+        }
     };
-    for (size_t i = 0; i < found_.size() && far != 0; ++i) {
+    for (size_t i = 0; i < found_.size(); ++i) {
         ask(parts_[i].before);
         ask(parts_[i].now);
     }
-    return far;
+    return reach;
+}
+
+Tape ChangedParts::around(const Tape& tape, const Box3f& box, Care care, Workspace& workspace) const {
+    std::vector<uint32_t> free;
+    for (const uint32_t value : found_) free.push_back(value - 3);
+    std::sort(free.begin(), free.end());
+    Range whole;
+    evaluateRanges(tape, {&box, 1}, &whole, workspace, free);
+    return shorten(tape, 0, workspace, care);
 }
 
 }  // namespace sgm::eval

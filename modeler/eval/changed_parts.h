@@ -1,7 +1,7 @@
 // Which parts of a tape changed with its numbers, each as a tape of its own.
 // Enters: a tape, and which of its constants changed. Leaves: those operands of its topmost minima that read one, with
 // the numbers of before and of now. Assumes the code stayed. Where such a part is farther from the surface than anyone
-// cares, before and now, `shorten` makes of the whole tape what it made before (see `unreached`).
+// cares, before and now, `shorten` makes of the whole tape what it made before (see `Reach`).
 #pragma once
 
 #include <vector>
@@ -19,10 +19,17 @@ public:
     /// Looks for the parts. False where they are so much of the tape that to ask them costs more than it saves. What is
     /// known of the code is kept: use a new object for other code.
     bool find(const Tape& tape, const NumbersChanged& changed);
-    /// Bit i is set where every part stays above care.most in box i (at most 64). There minima take nothing from a
-    /// part, nor does it narrow what they pass down: its greatest value is above all they care for. So the whole tape,
-    /// shortened to the box, is the same as with the old numbers.
-    uint64_t unreached(std::span<const Box3f> boxes, Care care, Workspace& workspace) const;
+    /// What is known of the parts in boxes, at most 64, before and now.
+    struct Reach {
+        /// Bit i is set where every part stays above care.most in box i. There minima take nothing from a part, nor
+        /// does it narrow what they pass down: its greatest value is above all they care for. So the whole tape,
+        /// shortened to the box, is the same as with the old numbers.
+        uint64_t unreached;
+        bool bounded;  ///< in all others the parts' values are numbers, of which ranges tell something
+    };
+    Reach reach(std::span<const Box3f> boxes, Care care, Workspace& workspace) const;
+    /// `tape`, the one of the last `find`, shortened to a box whatever numbers the parts come to have there.
+    Tape around(const Tape& tape, const Box3f& box, Care care, Workspace& workspace) const;
 
 private:
     struct Part {

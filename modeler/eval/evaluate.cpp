@@ -103,7 +103,8 @@ void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& w
         [&](const StepContext&, size_t first, size_t n) { pass.store(out + first, n); });
 }
 
-void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& workspace) {
+void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& workspace,
+                    std::span<const uint32_t> free) {
     assert(regions.n >= 1 && regions.n <= maxBoxes);
     Workspace::Impl& w = workspace.impl();
     StepContext c = w.context(tape, 2, maxBoxes);
@@ -118,13 +119,17 @@ void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& wo
     }
     w.links.follow(tape);
     float* const bounds = w.bounds.get(w.links.boundRows() * maxBoxes);
+    constexpr float infinity = std::numeric_limits<float>::infinity();
     for (size_t i = 0; i < tape.size(); ++i) {
         const Instruction& in = tape.code()[i];
         c.bounds = bounds + size_t{w.links.bounds(i)} * maxBoxes;
         if (needsRange(in)) keepRange(tape, in, c);
         w.kernels.ranges[static_cast<size_t>(in.op)](in, c);
+        if (free.empty() || free.front() != i) continue;
+        free = free.subspan(1);
+        std::fill_n(rowOf(c, in.out, 2, 0), c.count, -infinity);
+        std::fill_n(rowOf(c, in.out, 2, 1), c.count, infinity);
     }
-    constexpr float infinity = std::numeric_limits<float>::infinity();
     for (size_t i = 0; i < regions.n; ++i) {
         const bool constant = isConstant(tape.result());
         const float number = constant ? tape.constants()[indexOf(tape.result())] : 0.0f;

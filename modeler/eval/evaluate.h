@@ -71,8 +71,10 @@ struct Regions {
     size_t n;  ///< 1 … 64
 };
 
-/// out[i] encloses f over boxes[i]; remembers the choices for `shorten`.
-void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& workspace);
+/// out[i] encloses f over boxes[i]; remembers the choices for `shorten`. The instructions `free`, by number, ascending,
+/// count as any number whatever they read.
+void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& workspace,
+                    std::span<const uint32_t> free = {});
 
 /// The tape with everything dropped that can't matter in region `index` of the last evaluateRanges on this workspace
 /// (which must have been of this very tape). Inside the region it returns the same bits as `tape` wherever those lie in

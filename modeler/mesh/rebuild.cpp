@@ -33,6 +33,7 @@ void Rebuild::forget() {
     mesh_.chunks.clear();
     tape_ = {};
     numbers_.reset();
+    near_ = {};
     grid_ = {};
 }
 
@@ -63,23 +64,75 @@ std::vector<Chunk> Rebuild::takeKept(const Regions& now, const std::vector<Block
     return chunks;
 }
 
+/// Adds to `same` the regions that no changed part reaches, and to `reached` the boxes of all other blocks. False where
+/// ranges tell nothing of some part there.
+bool Rebuild::leaveUnreached(const eval::Tape& tape, const Grid& grid, Regions& same, Box3f& reached) {
+    const eval::Care care = careOf(tape, grid);
+    bool bounded = true;
+    scratch_.resize(std::max<size_t>(scratch_.size(), 1));
+    std::vector<Vec3i> regions{{0, 0, 0}}, next;
+    for (int blocks = blocksOfRoot(grid) / regionSplits; blocks > 0; blocks /= regionSplits) {
+        next.clear();
+        for (const Vec3i region : regions) {
+            const Children children(region, blocks * blockCells, 0, regionSplits, grid);
+            if (children.n == 0) continue;
+            const auto reach = parts_.reach({children.boxes.data(), children.n}, care, scratch_.front());
+            bounded = bounded && reach.bounded;
+            for (size_t i = 0; i < children.n; ++i) {
+                if (reach.unreached >> i & 1) {
+                    same.emplace(Region{levelOf(blocks), children.indices[i]}, eval::Fingerprint{});
+                    continue;
+                }
+                next.push_back(children.indices[i]);
+                if (blocks == 1) reached = hull(reached, children.boxes[i]);
+            }
+        }
+        regions.swap(next);
+    }
+    return bounded;
+}
+
+/// The tape in a box that holds `reached`, where no numbers count but those that changed: kept from change to change
+/// while a parameter is dragged. Not for a field that is dear in places: what is cared for would hang on the box.
+const eval::Tape& Rebuild::tapeAround(const Box3f& reached, const eval::Tape& tape, const Grid& grid,
+                                      const eval::NumbersChanged& changed) {
+    const auto& known = near_.places;
+    if (near_.box.contains(reached.lo) && near_.box.contains(reached.hi) &&
+        std::includes(known.begin(), known.end(), changed.places.begin(), changed.places.end())) {
+        eval::TapeBuilder::rebind(near_.tape, tape.sharedConstants(), tape.lipschitz());
+    } else {
+        const Box3f box = reached.inflated(static_cast<float>(blockCells) * grid.cell_m);
+        near_ = {box, changed.places, parts_.around(tape, box, careOf(tape, grid), scratch_.front())};
+    }
+    return near_.tape;
+}
+
 Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts,
                                  const eval::NumbersChanged* changed) {
     Regions now, same;
     std::mutex guard;
     RegionFilter filter;
-    if (!changed) parts_ = {};
-    if (changed && parts_.find(tape, *changed))
-        filter.skips = [&, care = careOf(tape, grid)](std::span<const Vec3i> indices, int blocks,
-                                                      std::span<const Box3f> boxes, eval::Workspace& workspace) {
-            const uint64_t far = parts_.unreached(boxes, care, workspace);
+    const eval::Tape* from = &tape;
+    if (!changed) parts_ = {}, near_ = {};
+    if (changed && parts_.find(tape, *changed)) {
+        Box3f reached;
+        const bool bounded = leaveUnreached(tape, grid, same, reached);
+        if (bounded && !reached.empty() && !isDear(tape)) from = &tapeAround(reached, tape, grid, *changed);
+        filter.skips = [&](std::span<const Vec3i> indices, int blocks) {
             const std::lock_guard lock(guard);
+            uint64_t some = 0;
             for (size_t i = 0; i < indices.size(); ++i)
-                if (far >> i & 1) same.emplace(Region{levelOf(blocks), indices[i]}, eval::Fingerprint{});
-            return far;
+                some |= uint64_t{same.contains({levelOf(blocks), indices[i]})} << i;
+            return some;
         };
+    }
     filter.wants = [&](Vec3i index, int blocks, const eval::Tape& shortened) {
         const Region region{levelOf(blocks), index};
+        if (from != &tape && blocks > 1) {  // good in part of the region: tells nothing of all of it
+            const std::lock_guard lock(guard);
+            now.emplace(region, eval::Fingerprint{});
+            return true;
+        }
         const eval::Fingerprint print = eval::fingerprint(shortened);
         const auto before = regions_.find(region);
         const bool equal = before != regions_.end() && before->second == print;
@@ -87,7 +140,7 @@ Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progr
         (equal ? same : now).emplace(region, print);
         return !equal;
     };
-    const auto blocks = subdivide(tape, grid, options_.threads, progress, counts, filter, &scratch_);
+    const auto blocks = subdivide(*from, grid, options_.threads, progress, counts, filter, &scratch_);
     if (!blocks.ok()) return blocks.error();
     keepBelow(regions_, same, now);
 

@@ -43,10 +43,20 @@ private:
     };
     using Regions = std::unordered_map<Region, eval::Fingerprint, RegionHash>;
 
+    /// The tape as it is in a box, whatever numbers come to be at these places of its constants.
+    struct Near {
+        Box3f box;
+        std::vector<uint32_t> places;  ///< ascending
+        eval::Tape tape;
+    };
+
     Result<const Mesh*> run(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts,
                             const eval::NumbersChanged* changed);
     const Mesh* keepAll();
     void forget();
+    bool leaveUnreached(const eval::Tape& tape, const Grid& grid, Regions& same, Box3f& reached);
+    const eval::Tape& tapeAround(const Box3f& reached, const eval::Tape& tape, const Grid& grid,
+                                 const eval::NumbersChanged& changed);
     static void keepBelow(const Regions& before, const Regions& same, Regions& now);
     std::vector<Chunk> takeKept(const Regions& now, const std::vector<Block>& made);
 
@@ -58,6 +68,7 @@ private:
     Regions regions_;  ///< all that may hold surface, blocks (level 0) and above
     Mesh mesh_;
     eval::ChangedParts parts_;
+    Near near_;  ///< of the last change of numbers
     std::vector<eval::Workspace> scratch_;
     size_t blocksMade_ = 0, blocksKept_ = 0;
 };

@@ -2,6 +2,7 @@
 // Enters: a cube's index and edge, the grid. Leaves: cells, box, verdict. Assumes ranges that enclose the field.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -32,6 +33,43 @@ inline CellRange cellsOf(Vec3i index, int edgeCells, const Grid& grid) {
 inline Box3f boxOf(const CellRange& cells, const Grid& grid) {
     return {grid.corner(cells.lo.x, cells.lo.y, cells.lo.z), grid.corner(cells.hi.x, cells.hi.y, cells.hi.z)};
 }
+
+/// Blocks along an edge of the cube that the descent begins with.
+inline int blocksOfRoot(const Grid& grid) {
+    int size = regionSplits;
+    while (size * blockCells < maxComponent(grid.cells)) size *= regionSplits;
+    return size;
+}
+
+/// Parts of a region that have cells, in order: of all, those along z from `firstLayer` to `endLayer`.
+struct Children {
+    std::array<Vec3i, regionSplits * regionSplits * regionSplits> indices;
+    std::array<CellRange, regionSplits * regionSplits * regionSplits> cells;
+    std::array<Box3f, regionSplits * regionSplits * regionSplits> boxes;
+    size_t n = 0;
+
+    Children(Vec3i region, int childCells, int firstLayer, int endLayer, const Grid& grid) {
+        for (int k = firstLayer; k < endLayer; ++k)
+            for (int j = 0; j < regionSplits; ++j)
+                for (int i = 0; i < regionSplits; ++i) {
+                    const Vec3i index = region * regionSplits + Vec3i{i, j, k};
+                    const CellRange range = cellsOf(index, childCells, grid);
+                    if (range.empty()) continue;
+                    indices[n] = index;
+                    cells[n] = range;
+                    boxes[n++] = boxOf(range, grid);
+                }
+    }
+    void leaveOut(uint64_t which) {
+        size_t left = 0;
+        for (size_t i = 0; i < n; ++i) {
+            if (which >> i & 1) continue;
+            indices[left] = indices[i], cells[left] = cells[i], boxes[left] = boxes[i];
+            ++left;
+        }
+        n = left;
+    }
+};
 
 /// False when all samples of the cells count alike. Samples on the grid's border count as outside whatever the field
 /// says (so the mesh closes even where bounds were wrong), hence a region that is inside all over ends where it touches

@@ -22,36 +22,6 @@ constexpr size_t worthAThread = 2000, instructionsARegion = 20;
 /// A cube of blocks on the way down: blocks [index · size, (index + 1) · size) of its level.
 using Region = Block;
 
-/// Parts of a region that have cells, in order: of all, those along z from `firstLayer` to `endLayer`.
-struct Children {
-    std::array<Vec3i, splits * splits * splits> indices;
-    std::array<CellRange, splits * splits * splits> cells;
-    std::array<Box3f, splits * splits * splits> boxes;
-    size_t n = 0;
-
-    Children(Vec3i region, int childCells, int firstLayer, int endLayer, const Grid& grid) {
-        for (int k = firstLayer; k < endLayer; ++k)
-            for (int j = 0; j < splits; ++j)
-                for (int i = 0; i < splits; ++i) {
-                    const Vec3i index = region * splits + Vec3i{i, j, k};
-                    const CellRange range = cellsOf(index, childCells, grid);
-                    if (range.empty()) continue;
-                    indices[n] = index;
-                    cells[n] = range;
-                    boxes[n++] = boxOf(range, grid);
-                }
-    }
-    void leaveOut(uint64_t which) {
-        size_t left = 0;
-        for (size_t i = 0; i < n; ++i) {
-            if (which >> i & 1) continue;
-            indices[left] = indices[i], cells[left] = cells[i], boxes[left] = boxes[i];
-            ++left;
-        }
-        n = left;
-    }
-};
-
 /// Splits one region into those children that may hold surface and that the filter wants, each with its tape shortened
 /// to it. Part `part` of `parts`, layers of children.
 std::vector<Region> split(const eval::Tape& tape, Vec3i index, int part, int parts, int childCells, const Grid& grid,
@@ -59,8 +29,7 @@ std::vector<Region> split(const eval::Tape& tape, Vec3i index, int part, int par
     const int blocks = childCells / blockCells;
     Children children(index, childCells, splits * part / parts, splits * (part + 1) / parts, grid);
     if (filter.skips)
-        children.leaveOut(filter.skips({children.indices.data(), children.n}, blocks,
-                                       {children.boxes.data(), children.n}, workspace));
+        children.leaveOut(filter.skips({children.indices.data(), children.n}, blocks));
     if (children.n == 0) return {};
     std::array<eval::Range, splits * splits * splits> ranges;
     eval::evaluateRanges(tape, {children.boxes.data(), children.n}, ranges.data(), workspace);
@@ -145,10 +114,7 @@ Result<std::vector<Block>> subdivide(const eval::Tape& tape, const Grid& grid, i
                                      std::vector<eval::Workspace>* scratch) {
     const auto start = std::chrono::steady_clock::now();
     if (Status status = checkGrid(grid); !status) return status.error();
-    const int blocksAlong = (maxComponent(grid.cells) + blockCells - 1) / blockCells;
-    int size = splits;
-    while (size < blocksAlong) size *= splits;
-
+    int size = blocksOfRoot(grid);
     std::vector<eval::Workspace> own;
     std::vector<eval::Workspace>& workspaces = scratch ? *scratch : own;
     workspaces.resize(std::max(workspaces.size(), static_cast<size_t>(threadCount(threads))));

@@ -59,8 +59,7 @@ struct Counts {
 struct RegionFilter {
     /// Asked before anything is known of at most 64 regions: bit i leaves region i out with all below. None where
     /// empty.
-    std::function<uint64_t(std::span<const Vec3i> indices, int blocks, std::span<const Box3f> boxes, eval::Workspace&)>
-        skips;
+    std::function<uint64_t(std::span<const Vec3i> indices, int blocks)> skips;
     /// Asked of a region that may hold surface, with the tape shortened to it: false leaves it out likewise.
     std::function<bool(Vec3i index, int blocks, const eval::Tape& tape)> wants;
 };

@@ -117,7 +117,7 @@ TEST(ChangedParts, WhereNoneComesNearTheShortenedTapeStays) {
                            static_cast<float>(i / 16) * 5 - 10};
             boxes.push_back({lo, lo + Vec3f{5, 5, 5}});
         }
-        const uint64_t unreached = parts.unreached(boxes, care, asked);
+        const uint64_t unreached = parts.reach(boxes, care, asked).unreached;
         std::array<Range, 64> ranges;
         evaluateRanges(then, {boxes.data(), 64}, ranges.data(), before);
         evaluateRanges(recompiler.tape(), {boxes.data(), 64}, ranges.data(), now);
@@ -134,6 +134,49 @@ TEST(ChangedParts, WhereNoneComesNearTheShortenedTapeStays) {
     EXPECT_GT(far, 500u);
     EXPECT_GT(near, 50u);
     EXPECT_LT(alike, far + near) << "something must change";
+}
+
+TEST(ChangedParts, AroundABoxTheTapeHoldsWhateverNumbersCome) {
+    Graph g;
+    auto centres = scattered(60);
+    const Vec3f start = centres[7];
+    const Care care{-0.2f, 0.2f};
+    Recompiler recompiler;
+    recompiler.startOver(g, balls(g, centres, 1));
+    Workspace asked, whole, part;
+    ChangedParts parts;
+    Tape around;
+    const Box3f box{start - Vec3f{4, 4, 4}, start + Vec3f{4, 4, 4}};
+    size_t surface = 0;
+    for (uint64_t round = 0; round < 24; ++round) {
+        centres[7].x = start.x + static_cast<float>(uniform(round, -9, 9));  // out of the box, and back
+        recompiler.follow(g, balls(g, centres, 1));
+        ASSERT_FALSE(recompiler.whole());
+        const Tape& tape = recompiler.tape();
+        if (round == 0) {
+            ASSERT_TRUE(parts.find(tape, recompiler.changed()));
+            around = parts.around(tape, box, care, asked);
+            EXPECT_LT(4 * around.size(), tape.size());
+        }
+        TapeBuilder::rebind(around, tape.sharedConstants(), tape.lipschitz());
+        std::vector<Box3f> boxes;
+        for (int i = 0; i < 64; ++i) {
+            const Vec3f lo = box.lo + Vec3i{i % 4, i / 4 % 4, i / 16}.as<float>() * 2.0f;
+            boxes.push_back({lo, lo + Vec3f{2, 2, 2}});
+        }
+        std::array<Range, 64> ranges, inPart;
+        evaluateRanges(tape, {boxes.data(), 64}, ranges.data(), whole);
+        evaluateRanges(around, {boxes.data(), 64}, inPart.data(), part);
+        for (size_t i = 0; i < 64; ++i) {
+            const bool may = ranges[i].lo < 0 && ranges[i].hi >= 0;
+            ASSERT_EQ(may, inPart[i].lo < 0 && inPart[i].hi >= 0);
+            if (!may) continue;
+            ++surface;
+            EXPECT_EQ(fingerprint(shorten(tape, i, whole, care)), fingerprint(shorten(around, i, part, care)))
+                << "round " << round << ", box " << i;
+        }
+    }
+    EXPECT_GT(surface, 200u);
 }
 
 TEST(ChangedParts, TooManyAreRefused) {
