@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "modeler/eval/left_out.h"
 #include "modeler/eval/workspace.h"
 #include "modeler/field/ops.h"
 
@@ -168,6 +169,41 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
         }
     }
     b.finish(tape.sharedConstants(), tape.grids(), tape.lipschitz(), into);
+}
+
+uint64_t mayLeaveOut(const Tape& tape, size_t instruction, size_t n, Workspace& workspace, Care care) {
+    Workspace::Impl& w = workspace.impl();
+    assert(w.links.follows(tape) && n >= 1 && n <= maxBoxes);
+    const uint64_t all = n == maxBoxes ? ~uint64_t{0} : (uint64_t{1} << n) - 1;
+    const auto chooses = [&](size_t i) { return field::traits(tape.code()[i].op).chooses; };
+    size_t choices = 0;
+    for (size_t i = 0; i < tape.size(); ++i) choices += chooses(i);
+    if (choices == 0) return 0;
+    const Source result = w.links.result();
+    if (choices > 1 || isConstant(result) || result < 3 || !chooses(result - 3)) return all;
+    const size_t last = result - 3;
+    const field::OpTraits& row = field::traits(tape.code()[last].op);
+    if (!row.selects || instruction == last) return all;
+
+    // Which values need the instruction.
+    std::vector<uint8_t> needs(tape.size() + 3, 0);
+    const auto need = [&](Source s) { return !isConstant(s) && needs[s] != 0; };
+    for (size_t i = instruction; i < last; ++i) {
+        const Source* const values = w.links.operands(i);
+        needs[i + 3] = i == instruction || std::any_of(values, values + tape.code()[i].count, need);
+    }
+    const Source* const values = w.links.operands(last);
+    if (need(values[0]) == need(values[1])) return need(values[0]) ? 0 : all;
+    const bool isFirst = need(values[0]);
+    const float* const ends = w.bounds.get(w.links.boundRows() * maxBoxes) + size_t{w.links.bounds(last)} * maxBoxes;
+    uint64_t out = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const Care inner = careOfOperands(row, ends[2 * maxBoxes + i], care);
+        const bool first = !beyond(row, ends[i], inner), second = !beyond(row, ends[maxBoxes + i], inner);
+        const bool left = isFirst ? first || !second : second;  // where neither is told apart, the first one is
+        out |= uint64_t{!left} << i;
+    }
+    return out;
 }
 
 Tape shorten(const Tape& tape, size_t index, Workspace& workspace, Care care) {

@@ -10,6 +10,9 @@
 namespace sgm::mesh {
 namespace {
 
+/// Vertices of several bricks are found together, where one tape is good for them, once there are so many.
+constexpr size_t enoughEdges = 336;
+
 /// Place of the edge that runs along `axis` from a corner up: the edges of a cell lie close to each other.
 constexpr int edgePlace(int corner, int axis) { return 3 * corner + axis; }
 
@@ -55,6 +58,14 @@ void copyTo(PageVector<T>& to, const PageVector<T>& from) {
     if (!from.empty()) std::memcpy(to.data(), from.data(), from.size() * sizeof(T));
 }
 
+/// The arrays from entry n on.
+EdgeArrays from(EdgeArrays e, size_t n) {
+    for (float** const row : {&e.x, &e.y, &e.z, &e.dx, &e.dy, &e.dz, &e.f, &e.base, &e.span, &e.tIn, &e.fIn, &e.tOut,
+                              &e.fOut, &e.t, &e.axis, &e.open})
+        *row += n;
+    return e;
+}
+
 /// The sides of a block that a brick touches, as a mask of axes.
 int lowSidesOf(Vec3i brick) { return (brick.x == 0 ? 1 : 0) | (brick.y == 0 ? 2 : 0) | (brick.z == 0 ? 4 : 0); }
 int highSidesOf(Vec3i brick) { return lowSidesOf(Vec3i{1, 1, 1} * (bricksAlong - 1) - brick); }
@@ -85,17 +96,20 @@ void BlockMesher::clear() {
     for (auto& list : borrowed_) list.clear();
     for (auto& list : lent_) list.clear();
     vertices_ = 0, cellCount_ = 0, triangles_ = 0, flat_ = false;
+    waiting_ = 0;
 }
 
 bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chunk) {
     const Stopwatch sampling;
     clear();
     samples_.enter(block, grid_, workspace_, counts_);
+    blockOwner_ = samples_.oneTape() ? onlyOwner(block.tape) : std::nullopt;
     for (uint64_t rest = samples_.active(); rest != 0; rest &= rest - 1) {
         if (cancelled(progress)) return false;
         const int brick = std::countr_zero(rest);
         addBrick(brick, samples_.sample(brick, workspace_, counts_));
     }
+    if (waiting_ > 0) findWaiting(block.tape);
     counts_.sampleSeconds += sampling.seconds();
 
     const Stopwatch joining;
@@ -124,7 +138,7 @@ size_t BlockMesher::addCells(const BrickSigns& signs, Vec3i brick) {
 
 /// The brick's own edges that the surface cuts, one after the other as their vertices are numbered from vertices_ on.
 void BlockMesher::addOwnEdges(const BrickSigns& signs) {
-    edges_.reserve(3 * brickRows * brickCorners);
+    if (waiting_ == 0) edges_.reserve(enoughEdges + 3 * brickRows * brickCorners);
     edges_.size = ownEdges_ = brickLoops().ownEdges(signs.low.data(), signs.high.data(), edges_.list.data());
 }
 
@@ -149,7 +163,7 @@ void BlockMesher::borrow(const BrickSigns& signs, Vec3i brick, std::optional<Ori
     std::fill(codes + edges_.size, codes + wholeVectors(edges_.size), 0u);
 }
 
-/// Looks up where the listed edges begin and end, and numbers the brick's own.
+/// Looks up where the listed edges begin and end, behind those that wait, and numbers the brick's own.
 void BlockMesher::placeEdges(Vec3i brick) {
     const Vec3i first = brick * brickCells;
     const EdgeEnds ends{
@@ -157,9 +171,11 @@ void BlockMesher::placeEdges(Vec3i brick) {
         samples_.values() + brickCorner(brick),
         {1, blockCorners, blockCorners * blockCorners}};
     uint32_t* const places = edges_.list.data();
-    edgeLoops().place(ends, places, edges_.size, edges_.arrays, places);
+    edgeLoops().place(ends, places, edges_.size, from(edges_.arrays, waiting_), places);
     uint32_t* const number = number_.data() + edgePlace(brickCorner(brick), 0);
     for (size_t e = 0; e < ownEdges_; ++e) number[places[e]] = static_cast<uint32_t>(vertices_ + e);
+    vertices_ += static_cast<uint32_t>(ownEdges_);
+    origins_.resize(vertices_);
 }
 
 /// Lists own vertices on high sides of the block for every block that meets this one there.
@@ -176,17 +192,23 @@ void BlockMesher::lend(const BrickSigns& signs, Vec3i brick) {
     }
 }
 
-/// Finds where the brick's vertices lie.
-void BlockMesher::findPlaces(const eval::Tape& tape) {
+/// Finds where the vertices on all edges lie, of which the first `own` are the next ones of the block.
+void BlockMesher::findPlaces(const eval::Tape& tape, size_t own) {
     counts_.refinementEvaluations += findVertices(tape, refineSteps_, workspace_, openEdges_, edges_);
     flat_ = flat_ || (edges_.size > 0 && edges_.flat > 0);
-    const size_t first = vertices_, n = ownEdges_;
-    vertices_ += static_cast<uint32_t>(n);
-    positions_.resize(vertices_), normals_.resize(vertices_), origins_.resize(vertices_);
-    if (n == 0) return;
+    const size_t first = positions_.size();
+    positions_.resize(first + own), normals_.resize(first + own);
+    if (own == 0) return;
     const EdgeArrays& e = edges_.arrays;
-    edgeLoops().interleave(e.x, e.y, e.z, n, &positions_[first].x);
-    edgeLoops().interleave(e.dx, e.dy, e.dz, n, &normals_[first].x);
+    edgeLoops().interleave(e.x, e.y, e.z, own, &positions_[first].x);
+    edgeLoops().interleave(e.dx, e.dy, e.dz, own, &normals_[first].x);
+}
+
+/// Finds the vertices that wait.
+void BlockMesher::findWaiting(const eval::Tape& tape) {
+    edges_.size = waiting_;
+    findPlaces(tape, waiting_);
+    waiting_ = 0;
 }
 
 /// Asks whose surface each vertex lies on, the latest own ones and those that are borrowed. Returns the owner of all of
@@ -227,7 +249,12 @@ void BlockMesher::addBrick(int number, const eval::Tape& tape) {
     if (lowSidesOf(brick) != 0) borrow(signs, brick, owner);
     placeEdges(brick);
     if (highSidesOf(brick) != 0) lend(signs, brick);
-    findPlaces(tape);
+    if (blockOwner_) {
+        waiting_ += ownEdges_;
+        if (waiting_ >= enoughEdges) findWaiting(tape);
+    } else {
+        findPlaces(tape, ownEdges_);
+    }
     std::optional<OriginId> edgesOwner = owner;
     if (owner) {
         std::fill_n(origins_.data() + origins_.size() - ownEdges_, ownEdges_, *owner);

@@ -53,7 +53,8 @@ private:
     void borrow(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner);
     void placeEdges(Vec3i brick);
     void lend(const BrickSigns& signs, Vec3i brick);
-    void findPlaces(const eval::Tape& tape);
+    void findPlaces(const eval::Tape& tape, size_t own);
+    void findWaiting(const eval::Tape& tape);
     std::optional<OriginId> findOrigins(const eval::Tape& tape);
     std::optional<OriginId> ownerAround(Vec3i brick, OriginId owner) const;
     void listSeams(Chunk& chunk);
@@ -63,8 +64,10 @@ private:
     const size_t refineSteps_;
     eval::Workspace workspace_;
     BlockSamples samples_;
-    CutEdges edges_;  ///< of a brick, its own first
+    CutEdges edges_;  ///< of a brick, its own first; before them those that wait
     size_t ownEdges_ = 0;
+    std::optional<OriginId> blockOwner_;  ///< of all bricks, where they have one tape as well: then vertices may wait
+    size_t waiting_ = 0;                  ///< edges of bricks before, whose vertices are still to be found
     std::vector<CutEdges> openEdges_;
     std::vector<std::pair<int, size_t>> borrowedPlaces_;  ///< of the others: kind of seam, place in its list
     /// Of the vertex on an edge, see edgePlace; the last ones are read and never used.

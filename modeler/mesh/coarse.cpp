@@ -92,7 +92,7 @@ size_t CoarseSamples::ask(const eval::Tape& tape, uint64_t bricks, eval::Workspa
         for (; rest != 0; rest &= rest - 1) {
             const int brick = std::countr_zero(rest);
             const SampleRows& rows = coarseRows(sampledBelow(bricks, brick), along);
-            if (points + rows.points > most) break;
+            if (points + rows.points > enough) break;
             const Vec3i low = brickAt(brick) * (coarseCorners - 1);
             loops.gather(rows.rows.data(), rows.count, &coordinates_[0][low.x], &coordinates_[1][low.y],
                          &coordinates_[2][low.z], x_.data() + points, y_.data() + points, z_.data() + points);
@@ -111,21 +111,39 @@ size_t CoarseSamples::ask(const eval::Tape& tape, uint64_t bricks, eval::Workspa
     return all;
 }
 
-void CoarseSamples::sample(int brick, uint8_t below, const eval::Tape& tape, const CornerCoordinates& coordinates,
-                           Vec3i last, float* values, eval::Workspace& workspace, Counts& counts) {
-    const Vec3i at = brickAt(brick), first = at * brickCells;
+void CoarseSamples::sample(uint64_t bricks, uint64_t active, const eval::Tape& tape,
+                           const CornerCoordinates& coordinates, Vec3i last, float* values, eval::Workspace& workspace,
+                           Counts& counts) {
+    constexpr size_t rowStride = blockCorners, layerStride = blockCorners * blockCorners;
     const CoarseLoops& loops = coarseLoops();
-    Between& between = between_[brick];
-    float* const to = values + brickCorner(at);
-    loops.fill(values_.data() + corner(at), row, layer, between, to, blockCorners, blockCorners * blockCorners);
-    leaveOut(below, between);
-    if (minComponent(last) < brickCells) cutOff(last, between);
-    const size_t n = loops.gather(between, &coordinates[0][first.x], &coordinates[1][first.y], &coordinates[2][first.z],
-                                  x_.data(), y_.data(), z_.data());
-    if (n == 0) return;
-    eval::evaluate(tape, {x_.data(), y_.data(), z_.data(), n}, f_.data(), workspace);
-    counts.pointEvaluations += n;
-    loops.scatter(between, f_.data(), to, blockCorners, blockCorners * blockCorners);
+    std::array<size_t, bricksPerBlock> asked;  // corners of a brick
+    uint64_t waiting = 0;
+    size_t n = 0;
+    const auto evaluate = [&] {
+        if (n > 0) eval::evaluate(tape, {x_.data(), y_.data(), z_.data(), n}, f_.data(), workspace);
+        const float* f = f_.data();
+        for (; waiting != 0; waiting &= waiting - 1) {
+            const int brick = std::countr_zero(waiting);
+            loops.scatter(between_[brick], f, values + brickCorner(brickAt(brick)), rowStride, layerStride);
+            f += asked[brick];
+        }
+        counts.pointEvaluations += n;
+        n = 0;
+    };
+    for (uint64_t rest = bricks; rest != 0; rest &= rest - 1) {
+        const int brick = std::countr_zero(rest);
+        const Vec3i at = brickAt(brick), first = at * brickCells;
+        Between& between = between_[brick];
+        loops.fill(values_.data() + corner(at), row, layer, between, values + brickCorner(at), rowStride, layerStride);
+        leaveOut(sampledBelow(active, brick), between);
+        if (minComponent(last - first) < brickCells) cutOff(last - first, between);
+        asked[brick] = loops.gather(between, &coordinates[0][first.x], &coordinates[1][first.y],
+                                    &coordinates[2][first.z], x_.data() + n, y_.data() + n, z_.data() + n);
+        waiting |= 1ull << brick;
+        n += asked[brick];
+        if (n >= enough) evaluate();
+    }
+    evaluate();
 }
 
 }  // namespace sgm::mesh

@@ -19,17 +19,18 @@ public:
     /// Evaluates every second corner of bricks. Returns those of them in which the field may have both signs.
     uint64_t enter(const Block& block, uint64_t bricks, const CornerCoordinates& coordinates, float cell_m,
                    eval::Workspace& workspace, Counts& counts);
-    /// Writes one such brick to the block's `values`, up to its corner `last`, by a tape that is good for it; `below`
-    /// as of `sampledBelow`. The bricks before it have to be there.
-    void sample(int brick, uint8_t below, const eval::Tape& tape, const CornerCoordinates& coordinates, Vec3i last,
-                float* values, eval::Workspace& workspace, Counts& counts);
+    /// Writes some of `active` such bricks to the block's `values`, up to its corner `last`, by a tape that is good for
+    /// all of them. The bricks before them have to be there.
+    void sample(uint64_t bricks, uint64_t active, const eval::Tape& tape, const CornerCoordinates& coordinates,
+                Vec3i last, float* values, eval::Workspace& workspace, Counts& counts);
 
 private:
     static constexpr int along = blockCells / 2 + 1, row = along, layer = along * along;
     static constexpr int corner(Vec3i brick) {
         return (brick.x + along * (brick.y + along * brick.z)) * (coarseCorners - 1);
     }
-    static constexpr size_t most = brickCorners * brickCorners * brickCorners;  ///< points at a time
+    static constexpr size_t enough = brickCorners * brickCorners * brickCorners;  ///< points at a time
+    static constexpr size_t most = 2 * enough;                                    ///< with another brick's
 
     size_t ask(const eval::Tape& tape, uint64_t bricks, eval::Workspace& workspace);
 

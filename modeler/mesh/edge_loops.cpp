@@ -84,14 +84,14 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
         const __m512i corner =
             _mm512_add_epi32(i, _mm512_add_epi32(_mm512_mullo_epi32(j, row), _mm512_mullo_epi32(k, layer)));
         const __m512i other = _mm512_add_epi32(corner, ofAxis(ints, one, row, layer));
-        _mm512_store_ps(e.x + at, x);
-        _mm512_store_ps(e.y + at, y);
-        _mm512_store_ps(e.z + at, z);
-        _mm512_store_ps(e.axis + at, _mm512_cvtepi32_ps(axis));
-        _mm512_store_ps(e.base + at, low);
-        _mm512_store_ps(e.span + at, _mm512_sub_ps(high, low));
-        _mm512_store_ps(e.fIn + at, _mm512_i32gather_ps(corner, ends.values, 4));
-        _mm512_store_ps(e.fOut + at, _mm512_i32gather_ps(other, ends.values, 4));
+        _mm512_storeu_ps(e.x + at, x);
+        _mm512_storeu_ps(e.y + at, y);
+        _mm512_storeu_ps(e.z + at, z);
+        _mm512_storeu_ps(e.axis + at, _mm512_cvtepi32_ps(axis));
+        _mm512_storeu_ps(e.base + at, low);
+        _mm512_storeu_ps(e.span + at, _mm512_sub_ps(high, low));
+        _mm512_storeu_ps(e.fIn + at, _mm512_i32gather_ps(corner, ends.values, 4));
+        _mm512_storeu_ps(e.fOut + at, _mm512_i32gather_ps(other, ends.values, 4));
         _mm512_storeu_si512(places + at, _mm512_add_epi32(_mm512_mullo_epi32(corner, number(3)), axis));
     }
 }

@@ -45,7 +45,7 @@ struct EdgeEnds {
 struct EdgeLoops {
     /// Writes n entries, edges up from corners along axes, by `codes`: where they lie, how long they are, the samples
     /// at their ends; and to `places` three times the corner's number, counted as the values are, plus the axis. Both
-    /// may be one list.
+    /// may be one list, and the arrays of entries may begin anywhere.
     void (*place)(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArrays& e, uint32_t* places);
     /// Makes brackets of the samples at the low ends (in fIn) and high ends (in fOut), and goes where the line between
     /// them is zero (SG-M III-G).

@@ -9,8 +9,8 @@
 namespace sgm::mesh {
 namespace {
 
-/// Borrowed vertices that are sooner named than a thread starts.
-constexpr size_t worthAThread = 300000;
+/// Borrowed vertices that are sooner named than a thread comes.
+constexpr size_t worthAThread = 75000;
 
 /// The chunk of block `index`, among chunks in order of (z, y, x); null where there is none.
 const Chunk* findChunk(std::span<const Chunk> chunks, Vec3i index) {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "modeler/eval/left_out.h"
+#include "modeler/field/ops.h"
+
 namespace sgm::mesh {
 namespace {
 
@@ -10,6 +13,19 @@ constexpr size_t shortEnough = 4;
 /// A block's tape up to `notLong` is left as it is once so many bricks one after the other needed all of it.
 constexpr int vainEnough = 8;
 constexpr size_t notLong = 16;
+
+/// Whether all bricks may take the block's tape, where `regions` of the last evaluateRanges are: it folds one fractal,
+/// and shortening would spare that to none.
+bool foldsEverywhere(const eval::Tape& tape, uint64_t regions, eval::Workspace& workspace, eval::Care care) {
+    if (tape.size() > notLong) return false;
+    size_t fractals = 0, last = 0;
+    for (size_t i = 0; i < tape.size(); ++i) {
+        if (tape.code()[i].op == field::codeOf<field::ops::Facade>) return false;
+        if (tape.code()[i].op == field::codeOf<field::ops::Kifs>) ++fractals, last = i;
+    }
+    const auto n = static_cast<size_t>(std::bit_width(regions));
+    return fractals == 1 && n > 0 && (eval::mayLeaveOut(tape, last, n, workspace, care) & regions) == 0;
+}
 
 /// Rows of whole bricks, by `sampledBelow`.
 const std::array<SampleRows, 256>& wholeBricks() {
@@ -49,14 +65,18 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
     eval::evaluateRanges(block.tape, {boxes.data(), n}, ranges.data(), workspace);
     counts.intervalEvaluations += n;
     active_ = 0;
+    uint64_t regions = 0;
     for (size_t i = 0; i < n; ++i) {
         if (!mayHoldSurface(ranges[i], cells[i], grid)) continue;
+        regions |= 1ull << i;
         active_ |= 1ull << numbers[i];
         region_[numbers[i]] = static_cast<uint8_t>(i);
     }
     dear_ = isDear(block.tape) && std::isfinite(care_.most);
-    if (dear_)
-        active_ = coarse_.enter(block, active_, coordinates_, grid.cell_m, workspace, counts) | onBorder(active_);
+    oneTape_ = dear_ && foldsEverywhere(block.tape, regions, workspace, care_);
+    if (!dear_) return;
+    active_ = coarse_.enter(block, active_, coordinates_, grid.cell_m, workspace, counts) | onBorder(active_);
+    if (oneTape_) coarse_.sample(active_, active_, block.tape, coordinates_, last_, values_.data(), workspace, counts);
 }
 
 /// Those of the bricks that touch the border of the grid, or end there.
@@ -102,6 +122,11 @@ void BlockSamples::sealBorder(Vec3i brick) {
 }
 
 const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Counts& counts) {
+    const Vec3i at = brickAt(brick), first = at * brickCells;
+    if (oneTape_) {
+        sealBorder(at);
+        return block_->tape;
+    }
     const size_t length = block_->tape.size();
     const bool whole = length <= shortEnough || (length <= notLong && inVain_ >= vainEnough);
     if (!whole) {
@@ -109,10 +134,8 @@ const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Co
         inVain_ = tape_.size() < length ? 0 : inVain_ + 1;
     }
     const eval::Tape& tape = whole ? block_->tape : tape_;
-    const Vec3i at = brickAt(brick), first = at * brickCells;
     if (dear_) {
-        coarse_.sample(brick, sampledBelow(active_, brick), tape, coordinates_, last_ - first, values_.data(),
-                       workspace, counts);
+        coarse_.sample(1ull << brick, active_, tape, coordinates_, last_, values_.data(), workspace, counts);
         sealBorder(at);
         return tape;
     }

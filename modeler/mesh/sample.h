@@ -20,6 +20,8 @@ public:
     void enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts);
     /// Bricks that may hold surface, by number.
     uint64_t active() const { return active_; }
+    /// Whether `sample` answers the block's own tape for every brick.
+    bool oneTape() const { return oneTape_; }
     /// Shortens the tape to an active brick and evaluates the corners that no lower brick has. To be called in
     /// ascending order; the tape lasts until the next call.
     const eval::Tape& sample(int brick, eval::Workspace& workspace, Counts& counts);
@@ -41,6 +43,7 @@ private:
     eval::Care care_;
     uint64_t active_ = 0;
     bool dear_ = false;  ///< `coarse_` takes care of the bricks
+    bool oneTape_ = false;
     CoarseSamples coarse_;
     std::array<uint8_t, bricksPerBlock> region_{};  ///< of a brick, in the last evaluateRanges
     eval::Tape tape_;

@@ -15,9 +15,9 @@ namespace sgm::mesh {
 namespace {
 
 constexpr int splits = regionSplits;
-/// A level of the descent with fewer instructions is sooner gone through than a thread starts; a region by itself costs
+/// A level of the descent with fewer instructions is sooner gone through than a thread comes; a region by itself costs
 /// as much as some of them.
-constexpr size_t worthAThread = 2000, instructionsARegion = 20;
+constexpr size_t worthAThread = 500, instructionsARegion = 20;
 
 /// A cube of blocks on the way down: blocks [index · size, (index + 1) · size) of its level.
 using Region = Block;

@@ -1,3 +1,4 @@
+#include "modeler/eval/left_out.h"
 #include "samples.h"
 
 namespace sgm::eval::testing {
@@ -139,6 +140,47 @@ TEST(Shorten, ValuesBeyondWhatIsToldApartKeepTheirSide) {
     Graph graph;
     const Num holes = max(graph.y() - 0.1f, -spheres(graph, 0, 64));
     expectSides(compile(graph, {holes, {}, 1, 1}, graph.constants()), {{20, -3, -3}, {26, 3, 3}}, {-0.1f, 0.3f});
+}
+
+TEST(Shorten, WhatItMayLeaveOutIsKnownBefore) {
+    const auto roots = [](const Tape& tape) {
+        return std::count_if(tape.code().begin(), tape.code().end(),
+                             [](const Instruction& in) { return in.op == field::codeOf<field::ops::Sqrt>; });
+    };
+    Draws draws{5};
+    size_t kept = 0, dropped = 0, unsure = 0;
+    for (int form = 0; form < 4; ++form) {
+        field::Graph g;
+        const field::Num tube = field::sqrt(g.x() * g.x() + g.y() * g.y()) - 1, slab = field::abs(g.z()) - 1;
+        const field::Num both = form % 2 == 0 ? field::max(tube, slab) : field::min(slab, tube);
+        const field::Num f = form < 2 ? both : field::min(both, g.x() + 3);
+        const Tape tape = compile(g, {f, {{-3, -3, -3}, {3, 3, 3}}, 1, 1}, g.constants());
+        size_t root = 0;
+        while (tape.code()[root].op != field::codeOf<field::ops::Sqrt>) ++root;
+        Box3f boxes[64];
+        for (Box3f& box : boxes) {
+            const auto at = [&] { return draws.real(-3, 2.5f); };
+            const Vec3f lo{at(), at(), at()};
+            box = {lo, lo + Vec3f{.5f, .5f, .5f}};
+        }
+        Workspace w;
+        Range ranges[64];
+        evaluateRanges(tape, {boxes, 64}, ranges, w);
+        const Care care{-0.4f, 0.4f};
+        const uint64_t out = mayLeaveOut(tape, root, 64, w, care);
+        for (size_t i = 0; i < 64; ++i) {
+            const bool left = roots(shorten(tape, i, w, care)) == 0, may = (out >> i & 1) != 0;
+            if (form < 2)
+                EXPECT_EQ(left, may) << "form " << form << ", box " << i;
+            else
+                EXPECT_TRUE(may || !left);
+            (left ? dropped : kept) += form < 2;
+            unsure += form >= 2 && may && !left;
+        }
+    }
+    EXPECT_GT(kept, 20u);
+    EXPECT_GT(dropped, 20u);
+    EXPECT_GT(unsure, 0u);
 }
 
 TEST(Shorten, WhatIsToldApartGoesThroughSumsAndScales) {

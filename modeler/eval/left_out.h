@@ -1,0 +1,15 @@
+// What shortening would leave out, asked before it is done.
+// Enters: a tape, the ranges of the last evaluateRanges. Leaves: regions. Assumes as `shorten` does.
+#pragma once
+
+#include <cstdint>
+
+#include "modeler/eval/evaluate.h"
+
+namespace sgm::eval {
+
+/// Bit i is set where `shorten` to region i may leave out an instruction, given by its number; exact where one min or
+/// max at the end of the tape decides on it, and set wherever more do. Of the last evaluateRanges' `n` regions.
+uint64_t mayLeaveOut(const Tape& tape, size_t instruction, size_t n, Workspace& workspace, Care care = {});
+
+}  // namespace sgm::eval
