@@ -42,6 +42,7 @@ Result<std::vector<Chunk>> chunksOf(std::span<const Block> blocks, const Grid& g
     Memory memory(options.memoryBudget_bytes);
     const auto threads = static_cast<size_t>(threadCount(options.threads));
     std::vector<BlockMesher> workers;
+    workers.reserve(threads);
     std::vector<eval::Tally> tallies(threads);
     for (size_t w = 0; w < threads; ++w) {
         workers.emplace_back(grid, static_cast<size_t>(options.refineSteps));

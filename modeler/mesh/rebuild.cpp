@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "modeler/core/random.h"
+#include "modeler/core/stopwatch.h"
 #include "modeler/mesh/chunk.h"
 #include "modeler/mesh/region.h"
 
@@ -112,6 +113,7 @@ Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progr
     Regions now, same;
     std::mutex guard;
     RegionFilter filter;
+    const Stopwatch reaching;
     const eval::Tape* from = &tape;
     if (!changed) parts_ = {}, near_ = {};
     if (changed && parts_.find(tape, *changed)) {
@@ -126,6 +128,7 @@ Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progr
             return some;
         };
     }
+    counts.subdivideSeconds += reaching.seconds();
     filter.wants = [&](Vec3i index, int blocks, const eval::Tape& shortened) {
         const Region region{levelOf(blocks), index};
         if (from != &tape && blocks > 1) {  // good in part of the region: tells nothing of all of it
