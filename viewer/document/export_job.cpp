@@ -69,6 +69,7 @@ Status ExportJob::start(std::shared_ptr<const Shown> shown, ExportRequest reques
                      fmt::format("'{}': the folder '{}' does not exist", request.file.string(), folder.string())};
     progress_ = std::make_shared<Progress>();
     done_ = false;
+    file_ = request.file;
     thread_ = std::thread([this, shown = std::move(shown), request = std::move(request), format, wake = std::move(wake),
                            progress = progress_] {
         outcome_ = write(*shown, request, *format, *progress);

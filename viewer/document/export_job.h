@@ -46,15 +46,19 @@ public:
     /// and while another export runs. `wake` is called from the thread at its end.
     Status start(std::shared_ptr<const Shown> shown, ExportRequest request, std::function<void()> wake = nullptr);
     void cancel() { progress_->cancel(); }
-    bool running() const { return thread_.joinable() && !done_; }
+    /// From `start` until the outcome is taken.
+    bool running() const { return thread_.joinable(); }
     std::string_view stage() const { return progress_->stage(); }
     double fraction() const { return progress_->fraction(); }
+    /// What it writes, or wrote last.
+    const std::filesystem::path& file() const { return file_; }
     /// The outcome, once, when it has ended.
     std::optional<Status> take();
 
 private:
     std::shared_ptr<Progress> progress_ = std::make_shared<Progress>();
     std::thread thread_;
+    std::filesystem::path file_;
     std::atomic<bool> done_{false};
     std::optional<Status> outcome_;
 };

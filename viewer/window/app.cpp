@@ -25,9 +25,7 @@ constexpr double listenFor = 0.5;       // seconds between looks at the file whi
 /// Columns and rows of the window.
 class Workspace {
 public:
-    Workspace(Workbench& bench, std::function<void()> wake) : bench_(bench), export_(std::move(wake)) {}
-    /// Something in a panel works and wants to show how far it is.
-    bool working() const { return export_.running(); }
+    explicit Workspace(Workbench& bench) : bench_(bench) {}
     void show();
 
 private:
@@ -211,14 +209,14 @@ int runApp(const AppOptions& options) {
     if (!options.file.empty())
         if (const Status s = bench.open(options.file); !s) return fail(s.error());
     if (!options.benchmark) bench.offerAbandoned();
-    Workspace workspace(bench, &Window::wake);
+    Workspace workspace(bench);
     Benchmark benchmark;
     int wanted = settlingFrames;
     bool refining = false;
     double frameSeconds = 0;  // that the last frame took
     Stopwatch sinceShown, sinceLook, sinceRefined;
     for (;;) {
-        const bool working = bench.busy() || workspace.working() || options.benchmark;
+        const bool working = bench.busy() || bench.exporting.running() || options.benchmark;
         window.listen(wanted > 0 || refining ? 0 : working ? shownEvery : listenFor);
         const Stopwatch whole;
         Turn turn;

@@ -112,16 +112,22 @@ void Bars::status(Workbench& bench) {
     const float right = ImGui::GetWindowWidth();
     ImGui::SetCursorPosY((ImGui::GetWindowHeight() - ImGui::GetFrameHeight()) / 2);
     ImGui::AlignTextToFramePadding();
-    if (bench.busy()) {
-        const bool deriving = bench.session.busy();
-        const std::string stage(deriving ? bench.session.stage() : bench.preparer.stage());
+    const auto progress = [&](std::string_view stage, double fraction, const char* name, const char* hint) {
         ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 3);
-        ImGui::ProgressBar(static_cast<float>(deriving ? bench.session.fraction() : bench.preparer.fraction()), {ImGui::GetFontSize() * 10, ImGui::GetFrameHeight() - 6}, stage.c_str());
+        ImGui::ProgressBar(static_cast<float>(fraction), {ImGui::GetFontSize() * 10, ImGui::GetFrameHeight() - 6}, std::string(stage).c_str());
         ImGui::SameLine();
         ImGui::SetCursorPosY(ImGui::GetCursorPosY() - 3);
-        if (button(bench.report, "progress.cancel", "Cancel", "Keep the model as it is")) bench.cancel();
+        const bool cancelled = button(bench.report, name, "Cancel", hint);
         ImGui::SameLine();
+        return cancelled;
+    };
+    if (bench.busy()) {
+        const bool deriving = bench.session.busy();
+        if (progress(deriving ? bench.session.stage() : bench.preparer.stage(), deriving ? bench.session.fraction() : bench.preparer.fraction(), "progress.cancel",
+                     "Keep the model as it is; Esc while a slider is held"))
+            bench.cancel();
     }
+    if (bench.exporting.running() && progress(bench.exporting.stage(), bench.exporting.fraction(), "export.cancel", "Stop the export; the file stays as it was")) bench.exporting.cancel();
     ImGui::PushStyleColor(ImGuiCol_Text, bench.noticeIsProblem ? tint::error : tint::faint);
     ImGui::TextUnformatted(bench.hover && !bench.noticeIsProblem ? bench.hover->text.c_str() : bench.notice.c_str());
     ImGui::PopStyleColor();
@@ -147,6 +153,8 @@ void Bars::keys(Workbench& bench) {
     if (pressed(GLFW_KEY_ESCAPE)) {
         help_ = false;
         bench.turntable.reset();
+        // A hand that holds a slider can't click Cancel.
+        if (bench.document.dragging() && bench.busy()) bench.cancel();
     }
     if (io.KeyCtrl) {
         if (pressed(GLFW_KEY_S)) bench.document.path().empty() ? void(naming_ = true) : bench.save();

@@ -118,16 +118,14 @@ private:
 /// Every exporter's options from its table, and the work with its progress.
 class ExportPanel {
 public:
-    explicit ExportPanel(std::function<void()> wake) : wake_(std::move(wake)) {}
     void show(Workbench& bench);
-    bool running() const { return job_.running(); }
 
 private:
     void option(Workbench& bench, ExportRow& row);
 
-    std::function<void()> wake_;
-    ExportJob job_;
-    int format_ = -1, resolution_ = 192;
+    size_t format_ = 0;  // row of the table
+    int resolution_ = 192;
+    std::filesystem::path document_;  // that `file_` was named after
     std::vector<ExportRow> options_;
     std::string file_;
 };

@@ -2,14 +2,26 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "modeler/core/conventions.h"
 
 namespace sgm::viewer {
 
 constexpr int fogVoxels = 96, previewCells = 64;  // along the longest side
 
+namespace {
+
+/// The same file by whatever name; one that is gone, by its name.
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code failed;
+    return std::filesystem::equivalent(a, b, failed) || (failed && a.lexically_normal() == b.lexically_normal());
+}
+
+}  // namespace
+
 Workbench::Workbench(Report& report, std::unique_ptr<SharedContext> shared, std::function<void()> wake)
-    : report(report), session(wake), preparer(std::move(shared), std::move(wake)) {}
+    : report(report), session(wake), preparer(std::move(shared), wake), wake_(std::move(wake)) {}
 
 Status Workbench::open(const std::filesystem::path& path) {
     Result<Document> opened = Document::open(path);
@@ -114,6 +126,10 @@ bool Workbench::poll() {
         news = true;
     }
     if (!ready.problem.empty()) say(ready.problem, true);
+    if (const std::optional<Status> written = exporting.take()) {
+        *written ? say("Wrote " + exporting.file().string()) : say(written->error().message, true);
+        news = true;
+    }
     settled_ = settled && !working();
     return news;
 }
@@ -127,6 +143,10 @@ void Workbench::cancel() {
     preparer.cancel();
     preparer.retire(std::exchange(prepared_, nullptr));
     say("Cancelled: what is shown was made before");
+}
+
+void Workbench::exportTo(ExportRequest request) {
+    if (const Status s = exporting.start(session.model(), std::move(request), wake_); !s) say(s.error().message, true);
 }
 
 void Workbench::select(derive::ShapeId shape, bool quiet) {
@@ -282,8 +302,14 @@ Result<bool> Workbench::takePictures() {
 void Workbench::offerAbandoned() {
     const std::vector<Abandoned> left = abandonedWork();
     if (left.empty()) return;
-    const Abandoned work = left.front();
-    const std::string name = work.document.empty() ? "a grammar without a name" : work.document.filename().string();
+    std::error_code ignored;
+    const std::filesystem::path here = std::filesystem::absolute(document.path(), ignored);
+    const auto about = document.path().empty() ? left.begin() : std::find_if(left.begin(), left.end(), [&](const Abandoned& a) { return sameFile(a.document, here); });
+    const auto nameOf = [](const Abandoned& a) { return a.document.empty() ? "a grammar without a name" : a.document.filename().string(); };
+    if (about == left.end())
+        return say(fmt::format("Unsaved work on {} is kept; {} to go on with it", nameOf(left.front()), left.front().document.empty() ? "start without a file" : "open it"));
+    const Abandoned work = *about;
+    const std::string name = nameOf(work);
     question = Question{fmt::format("The window was closed by force; unsaved work on {} was kept.", name),
                         {{"Go on with it", [this, work] {
                               document = Document::recovered(work.document, work.text);
@@ -299,7 +325,8 @@ void Workbench::offerAbandoned() {
 
 void Workbench::drop(const std::filesystem::path& path) {
     const auto go = [this, path] {
-        if (const Status s = open(path); !s) say(s.error().message, true);
+        if (const Status s = open(path); !s) return say(s.error().message, true);
+        offerAbandoned();
     };
     if (!document.dirty()) return go();
     question = Question{fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),

@@ -8,6 +8,7 @@
 
 #include "viewer/document/document.h"
 #include "viewer/document/edits.h"
+#include "viewer/document/export_job.h"
 #include "viewer/document/picking.h"
 #include "viewer/document/recovery.h"
 #include "viewer/document/session.h"
@@ -68,7 +69,8 @@ public:
     void undo();
     void redo();
     void save(bool overwrite = false);
-    /// Asks whether to go on with work that a crash left behind.
+    /// Asks whether to go on with what a crash left behind of this document; where none is open, of any. Says so where it
+    /// left something of another one.
     void offerAbandoned();
     /// Opens another file; asks first where the present text isn't saved.
     void drop(const std::filesystem::path& path);
@@ -82,6 +84,9 @@ public:
     bool poll();
     /// Something is computed, or has been and waits for `poll`.
     bool busy() const { return !settled_ || working(); }
+
+    /// Writes the shown model to a file on a thread of its own.
+    void exportTo(ExportRequest request);
 
     // --- The selection ---
     /// A shape of the shown model, or none. The text that made it is revealed unless `quiet`.
@@ -129,6 +134,7 @@ public:
     Document document;
     Session session;
     Preparer preparer;
+    ExportJob exporting;
     FieldView field;
     MeshView mesh;
     Orbit orbit;
@@ -156,6 +162,7 @@ private:
     /// Leads the steps over to a new text.
     void followSteps();
 
+    std::function<void()> wake_;
     Recovery recovery_;
     std::shared_ptr<const derive::Derivation> byHand_;  ///< shown instead of deriving
     uint64_t steppedAt_ = 0;                            ///< the revision that the steps belong to

@@ -118,8 +118,8 @@ void Hands::open(const std::string& example) {
     start();
 }
 
-void Hands::openText(const std::string& text) {
-    file = folder / "test.sgm";
+void Hands::openText(const std::string& text, const std::string& name) {
+    file = folder / name;
     std::ofstream(file) << text;
     start();
 }
@@ -217,6 +217,16 @@ void Hands::click(const std::string& widget, double x, double y, int button) {
 void Hands::poke(const std::string& widget, double x) {
     const auto [px, py] = placeOf(widget, x, 0.5);
     tool({"mousemove", std::to_string(px), std::to_string(py), "mousedown", "1", "mouseup", "1"});
+}
+
+void Hands::dragAtWork(const std::string& widget, double x, const std::function<void()>& act) {
+    const auto [fx, fy] = placeOf(widget, 0.1, 0.5);
+    const auto [tx, ty] = placeOf(widget, x, 0.5);
+    move(fx, fy);
+    press(1);
+    tool({"mousemove", std::to_string(tx), std::to_string(ty)});
+    act();
+    tool({"mouseup", "1"});
 }
 
 void Hands::drag(const std::string& widget, double fromX, double fromY, double toX, double toY, int button) {

@@ -23,7 +23,7 @@ protected:
     /// Starts the program with a copy of an example in this test's folder, and waits for its first picture.
     void open(const std::string& example);
     /// The same with a text of the test's own.
-    void openText(const std::string& text);
+    void openText(const std::string& text, const std::string& name = "test.sgm");
     void start();
     void kill();
 
@@ -44,6 +44,10 @@ protected:
     void click(const std::string& widget, double x = 0.5, double y = 0.5, int button = 1);
     /// A click that waits for nothing, for a program at work.
     void poke(const std::string& widget, double x = 0.5);
+    /// Presses a key; waits for nothing.
+    void press(const std::string& key) { tool({"key", key}); }
+    /// Holds a widget, drags it to a share of its width, acts and lets go; waits for nothing, for a program at work.
+    void dragAtWork(const std::string& widget, double x, const std::function<void()>& act);
     /// Presses at one place of a widget, moves to another and lets go.
     void drag(const std::string& widget, double fromX, double fromY, double toX, double toY, int button = 1);
     /// Looks at what shows while a widget is held and dragged; lets go of it where it was.

@@ -234,6 +234,14 @@ TEST_F(Verbs, FilesAreOpened) {
     until("the other file", [](const auto& s) { return s["text"] == "grammar 1\nstart Other -> torus\n"; });
     dropFile(folder / "test.sgm");
     until("the dropped file", [](const auto& s) { return s["text"] == hall; });
+    click("tab.Export");
+    dropFile(folder / "other.sgm");
+    until("the other file again", [](const auto& s) { return s["text"] != hall && !s["busy"]; });
+    drag("export.cells", 0.5, 0.5, 0.05, 0.5);
+    click("export.export");
+    EXPECT_TRUE(std::string(until("its mesh", [](const auto& s) { return std::string(s["notice"]).starts_with("Wrote "); })["notice"]).ends_with("other.glb"));
+    dropFile(folder / "test.sgm");
+    until("the first file again", [](const auto& s) { return s["text"] == hall && !s["busy"]; });
     click("param.tall", 0.9);
     dropFile(folder / "other.sgm");
     until("a question, for there is unsaved work", [](const auto& s) { return s["question"] != ""; });
@@ -251,6 +259,35 @@ TEST_F(Verbs, WorkIsCancelled) {
     until("rest", [](const auto& s) { return !s["busy"] && std::string(s["notice"]).starts_with("Cancelled"); });
     key("ctrl+z");
     until("the small model", [&](const auto& s) { return s["shapes"] == shapes && !s["busy"]; });
+
+    // With the slider in hand the key does it; let go, the text is built as it stands.
+    dragAtWork("param.n", 0.97, [&] {
+        until("work on what the slider says", [](const auto& s) { return s["busy"] == true && s["notice"] == "Set n"; });
+        press("Escape");
+        until("rest in the hand", [](const auto& s) { return !s["busy"] && std::string(s["notice"]).starts_with("Cancelled"); });
+    });
+    until("work on the text", [](const auto& s) { return s["busy"] == true; });
+    poke("progress.cancel");
+    until("rest", [](const auto& s) { return !s["busy"]; });
+}
+
+TEST_F(Verbs, AnExportGoesOnWhileOneWorks) {
+    openText("grammar 1\nstart A -> sphere size 2 + cube at +x\n");
+    click("tab.Export");
+    drag("export.cells", 0.5, 0.5, 0.2, 0.5);
+    poke("export.export");
+    click("tab.Rules");
+    until("the word that it is written", [](const auto& s) { return std::string(s["notice"]).starts_with("Wrote "); });
+    EXPECT_FALSE(has("export.cancel"));
+    click("tab.Export");
+    drag("export.cells", 0.2, 0.5, 0.99, 0.5);
+    fill("export.file", (folder / "large.ply").string());
+    EXPECT_FALSE(has("export.uv")) << "the file's ending chooses the format, and with it the options";
+    poke("export.export");
+    until("a way to stop it", [&](const auto&) { return has("export.cancel"); });
+    poke("export.cancel");
+    until("its end", [&](const auto& s) { return s["notice"] == "cancelled" && !has("export.cancel"); });
+    EXPECT_FALSE(fs::exists(folder / "large.ply"));
 }
 
 }  // namespace

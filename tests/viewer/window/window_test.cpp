@@ -323,6 +323,13 @@ TEST_F(Window, NothingIsLost) {
     click("answer.Keep mine");
     EXPECT_EQ(text(), changed);
     kill();
+    // Another file has nothing to do with it: no question, but a word.
+    const std::filesystem::path changedFile = file;
+    openText("grammar 1\nstart Other -> torus\n", "other.sgm");
+    EXPECT_EQ(state()["question"], "");
+    EXPECT_NE(std::string(state()["notice"]).find("test.sgm"), std::string::npos) << state()["notice"];
+    kill();
+    file = changedFile;
     start();
     until("an offer", [](const auto& s) { return s["question"] != ""; });
     shoot("recovered");

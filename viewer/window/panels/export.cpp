@@ -31,17 +31,21 @@ void ExportPanel::show(Workbench& bench) {
     const auto formats = exporter::exporters();
     std::vector<std::string> names;
     for (const exporter::Exporter& f : formats) names.push_back(fmt::format("{}  {}", f.extension, f.doc.substr(0, f.doc.find(':'))));
-    const bool first = format_ < 0;
-    int format = std::max(format_, 0);
-    heading("Format");
-    if (choice(bench.report, "export.format", names, format) || first) {
+    const auto take = [&](size_t format) {
         format_ = format;
-        options_ = exportRows(formats[size_t(format)]);
-        std::filesystem::path file = bench.document.path().empty() ? "untitled" : bench.document.path();
-        file_ = file.replace_extension(formats[size_t(format)].extension).string();
+        options_ = exportRows(formats[format]);
+    };
+    const std::filesystem::path document = bench.document.path().empty() ? "untitled" : bench.document.path();
+    heading("Format");
+    int format = static_cast<int>(format_);
+    const bool chosen = choice(bench.report, "export.format", names, format), another = document_ != document;
+    if (another) file_ = (document_ = document).string();
+    if (chosen || another) {
+        take(size_t(format));
+        file_ = std::filesystem::path(file_).replace_extension(formats[format_].extension).string();
     }
     ImGui::PushTextWrapPos(0);
-    faint(std::string(formats[size_t(std::max(format_, 0))].doc));
+    faint(std::string(formats[format_].doc));
     ImGui::PopTextWrapPos();
     heading("Options");
     const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
@@ -54,20 +58,18 @@ void ExportPanel::show(Workbench& bench) {
     hint("Cells along the longest side of the model");
     for (ExportRow& row : options_) option(bench, row);
     heading("File");
-    field(bench.report, "export.file", file_);
+    // The ending says the format, whichever of the two is changed.
+    if (field(bench.report, "export.file", file_))
+        if (const exporter::Exporter* named = exporter::findExporter(std::filesystem::path(file_).extension().string()); named && named != &formats[format_])
+            take(static_cast<size_t>(named - formats.data()));
     ImGui::Dummy({0, 4});
-    if (job_.running()) {
-        ImGui::ProgressBar(static_cast<float>(job_.fraction()), {ImGui::GetContentRegionAvail().x - ImGui::GetFontSize() * 5, 0}, std::string(job_.stage()).c_str());
-        ImGui::SameLine();
-        if (button(bench.report, "export.cancel", "Cancel")) job_.cancel();
-    } else if (button(bench.report, "export.export", "Export", nullptr, bench.shown() != nullptr)) {
+    if (button(bench.report, "export.export", "Export", nullptr, bench.shown() && !bench.exporting.running())) {
         ExportRequest request;
         request.file = file_;
         request.resolution = resolution_;
         for (const ExportRow& row : options_) request.options[row.name] = row.value;
-        if (const Status s = job_.start(bench.session.model(), std::move(request), wake_); !s) bench.say(s.error().message, true);
+        bench.exportTo(std::move(request));
     }
-    if (const auto outcome = job_.take()) *outcome ? bench.say("Wrote " + file_) : bench.say(outcome->error().message, true);
 }
 
 }  // namespace sgm::viewer
