@@ -164,7 +164,10 @@ void Checker::shape(Place& place, const syntax::Element& written, Element& out) 
         out.label = "group";
     } else if (written.solid) {
         content(place, *written.solid, out);
-    } else if (out.op != Operator::None && written.live.empty()) {
+    } else if (!written.live.empty()) {
+        diagnostics_.error(written.live.span, fmt::format("no shape stands before ': {}'", written.live.text),
+                           fmt::format("leave ':' out to go on with the rules of '{}'", written.live.text));
+    } else if (out.op != Operator::None) {
         diagnostics_.error(written.span, "nothing is joined here", "name a shape after the operator");
     }
     live(written.live, out);

@@ -22,6 +22,8 @@ using Where = Place::Where;
 constexpr std::array<std::string_view, 7> axisWords{"+x", "-x", "+y", "-y", "+z", "-z", "centre"};
 constexpr std::array<std::string_view, 7> figureWords{"bonds",   "overlaps", "shapes",  "terminals",
                                                       "classic", "morphic",  "floating"};
+constexpr std::array<std::string_view, 12> colorWords{"red",   "green", "blue", "yellow", "orange", "brown",
+                                                      "black", "white", "grey", "gray",   "purple", "pink"};
 
 /// Numbers as their place understands them: bare lengths are metres, and only counts stay whole.
 void adapt(Expr& e, Want want) {
@@ -98,6 +100,8 @@ bool Checker::asks(const Typed& value, Want want, std::string_view what, const W
         if (want == Want::Length && value.type.like.units[0] == Unit::Share)
             mend = fmt::format("write a length such as '{}m'", digits);
     }
+    if (want == Want::Color && written && written->kind == Written::Kind::Text && written->text.starts_with('#'))
+        mend = "leave the quotes out";
     if (want == Want::Count && value.type.like.kind == Value::Kind::Number && value.type.like.units[0] == Unit::None)
         mend = "write 'round(…)' around it";
     const std::string got = want == Want::Count && !mend.empty() ? "may have a fraction" : "is " + describe(value.type);
@@ -138,6 +142,8 @@ Typed Checker::unknownName(const Place& place, const Written& e) {
     if (place.where == Where::Expect) known.assign(figureWords.begin(), figureWords.end());
     std::string mend = nearest(e.text, known);
     if (e.text == "i") mend = "'i' counts the steps inside a rule with 'repeat'";
+    if (std::find(colorWords.begin(), colorWords.end(), e.text) != colorWords.end() && mend.empty())
+        mend = "a colour is written #rrggbb, as #c8b090";
     if (symbols_.contains(e.text)) return failed(e.span, fmt::format("'{}' is a shape, not a value", e.text));
     return unknown(e.span, e.text, fmt::format("unknown name '{}'", e.text), std::move(mend));
 }

@@ -79,7 +79,15 @@ Operator operatorOf(std::string_view text) {
 
 }  // namespace
 
+/// What other programs call our solids and operators.
+constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
+    {"box", "did you mean 'cube'?"},      {"ball", "did you mean 'sphere'?"},    {"tube", "did you mean 'cylinder'?"},
+    {"ring", "did you mean 'torus'?"},    {"union", "join shapes with '+'"},     {"difference", "cut with '-'"},
+    {"subtract", "cut with '-'"},         {"intersection", "keep with '&' what both share"}};
+
 std::string Checker::unknownSolid(std::string_view word) const {
+    for (const auto& [theirs, mend] : elsewhere)
+        if (theirs == word) return std::string(mend);
     std::vector<std::string> known = symbolNames(true);
     for (const field::Primitive& row : field::primitives()) known.emplace_back(row.name);
     return nearest(word, known);

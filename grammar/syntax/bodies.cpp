@@ -295,7 +295,7 @@ void refuseStray(Cursor& cursor) {
     if (token.kind == Token::Kind::Word && !isReserved(cursor.text(token)) && !token.columnOne) {
         const std::string near = nearestWord(cursor.text(token));
         cursor.fail(cursor.found() + " can't follow a shape",
-                    near.empty() ? "join shapes with + - & morph, or list them with ','" : near);
+                    near.empty() ? "name an attribute (size, color …), join shapes with + - & morph, or list them with ','" : near);
     } else if (cursor.at("(")) {
         cursor.fail("'(' can't follow a shape",
                     "write it without a blank before '(' for arguments, or join with an operator");

@@ -67,7 +67,7 @@ constexpr auto ornamentParameters = fractalAnd({
 });
 
 constexpr PrimitiveParameter meshParameters[] = {
-    {"file", Kind::File, 0, 0, 0, "a closed mesh (.obj, .ply, .stl) in the grammar's own folder"},
+    {"file", Kind::File, 0, 0, 0, "a closed mesh (.obj, .ply, .stl, .off) in the grammar's own folder"},
 };
 
 constexpr PrimitiveJoint apex[] = {{"apex", {0, 1, 0}, {0, 1, 0}}};

@@ -169,12 +169,13 @@ TEST_F(Cli, InterruptCancelsWith130AndLeavesNothing) {
     EXPECT_TRUE(fs::is_empty(scratch_.path()));
 }
 
-TEST_F(Cli, FormatterIsIdempotentAndExamplesAreFormatted) {
-    for (const auto& entry : fs::recursive_directory_iterator("examples")) {
-        if (entry.path().extension() != ".sgm") continue;
-        const Outcome run = sgm("fmt --check " + entry.path().string());
-        EXPECT_EQ(run.code, 0) << run.out;
-    }
+TEST_F(Cli, FormatterIsIdempotentAndShippedGrammarsAreFormatted) {
+    for (const char* folder : {"examples", "grammar/std"})
+        for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+            if (entry.path().extension() != ".sgm") continue;
+            const Outcome run = sgm("fmt --check " + entry.path().string());
+            EXPECT_EQ(run.code, 0) << run.out;
+        }
     const std::string file = grammar("start   A->cube   size 2 // a comment\n");
     EXPECT_EQ(sgm("fmt --check " + file).code, 1);
     EXPECT_EQ(sgm("fmt " + file).code, 0);

@@ -34,6 +34,16 @@ TEST_F(Meshes, SayWhereTheFileIsNamedAndWhatToMend) {
     EXPECT_EQ(sgm("check " + grammar("start A -> mesh(\"../secret.obj\")\n")).code, 1);
 }
 
+TEST_F(Meshes, ThatHoldNothingAreToldWithTheCell) {
+    for (const char* body : {"cube size (1000, 1, .001)", "sphere - cube size 4"})
+        for (const char* ending : {".ply", ".vdb"}) {
+            const Outcome run = sgm("build -q " + grammar(std::string("start A -> ") + body + "\n") + " -o " + path(std::string("x") + ending));
+            EXPECT_EQ(run.code, 1) << body;
+            EXPECT_NE(run.out.find("no surface at cells of"), std::string::npos) << run.out;
+            EXPECT_FALSE(fs::exists(path(std::string("x") + ending)));
+        }
+}
+
 TEST_F(Meshes, StreamedFilesHaveTheSameBytes) {
     const std::string file = grammar("start A -> torus size (3, 1, 3) + sphere size 2 move (0, 1, 0)\n");
     for (const char* ending : {".ply", ".stl", ".off"}) {
