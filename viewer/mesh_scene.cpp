@@ -2,6 +2,7 @@
 // many (a depth map a direction). Drawn in batches of triangles, so that no draw takes long.
 #include "viewer/mesh_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -14,7 +15,13 @@ namespace {
 
 constexpr size_t batchTriangles = 1u << 17;  // a draw
 constexpr int sunMapEdge = 2048, skyMapEdge = 256;
-constexpr size_t mostSkyMaps = 40;  // as in visibility.glsl
+constexpr size_t leastSkyMaps = 12, mostSkyMaps = 40;  // the latter as in visibility.glsl
+
+/// As many as the driver draws in a second or two; software draws some 3 million triangles a second (docs/viewer.md).
+size_t skyMapsFor(size_t triangles) {
+    const size_t drawn = size_t(softwareGl() ? 6 : 24) << 20;
+    return std::clamp(drawn / std::max<size_t>(triangles, 1), leastSkyMaps, mostSkyMaps);
+}
 
 /// Metres across a map that takes in all of the object from any side.
 double mapSpan(const Box3f& bounds) { return 1.02 * length(bounds.size().as<double>()); }
@@ -157,7 +164,7 @@ MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshProgram
       triangleCount_(mesh.triangles.size()),
       owners_(upload(mesh.owners)),
       materials_(uploadMaterials(mesh.materials)),
-      skyCount_(std::clamp<size_t>((size_t(24) << 20) / std::max<size_t>(triangleCount_, 1), 12, mostSkyMaps)) {
+      skyCount_(skyMapsFor(triangleCount_)) {
     makeMaps();
 }
 
@@ -168,7 +175,7 @@ MeshScene::MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, c
       triangleCount_(triangles.count),
       owners_(upload(ownersFrom(owners, provenance))),
       materials_(uploadMaterials(provenance.materials)),
-      skyCount_(12) {
+      skyCount_(leastSkyMaps) {
     const std::vector<float> flat(triangleCount_ * 3 + 1, 0.0f);
     triangles_ = TriangleBuffers::of(std::move(triangles.positions), std::move(triangles.normals), Buffer::of<float>(flat), std::move(triangles.indices));
     makeMaps();

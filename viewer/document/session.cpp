@@ -17,27 +17,13 @@ bool sameOptions(const derive::Options& a, const derive::Options& b) {
            a.budget.shapes == b.budget.shapes && a.budget.seconds == b.budget.seconds;
 }
 
-bool sameInstructions(const eval::Tape& a, const eval::Tape& b) {
-    const auto same = [](const eval::Instruction& i, const eval::Instruction& j) {
-        return i.op == j.op && i.count == j.count && i.out == j.out && i.a == j.a && i.b == j.b && i.data == j.data &&
-               i.origins == j.origins;
-    };
-    const auto equal = [](auto x, auto y) { return std::equal(x.begin(), x.end(), y.begin(), y.end()); };
-    return std::equal(a.code().begin(), a.code().end(), b.code().begin(), b.code().end(), same) &&
-           equal(a.sources(), b.sources()) && equal(a.origins(), b.origins()) &&
-           a.constants().size() == b.constants().size() && a.result() == b.result();
-}
-
 bool sameValues(const Shown& a, const Shown& b) {
     return a.fingerprint == b.fingerprint && a.model.tape.lipschitz() == b.model.tape.lipschitz();
 }
 
 /// What every model has, however it was made.
-std::shared_ptr<const Shown> finished(Shown shown, const Shown* before) {
+std::shared_ptr<const Shown> finished(Shown shown) {
     shown.fingerprint = eval::fingerprint(shown.model.tape);
-    shown.change = before && sameValues(*before, shown)                                ? Change::Nothing
-                   : before && sameInstructions(before->model.tape, shown.model.tape) ? Change::Numbers
-                                                                                       : Change::Structure;
     return std::make_shared<const Shown>(std::move(shown));
 }
 
@@ -250,7 +236,7 @@ Result<std::shared_ptr<const Shown>> Session::followed(const ShowRequest& reques
     // What the slider stood at when it was taken is shown already.
     if (shown_ && shown_->grammar == shown.grammar && !handShown_ && sameOptions(shown_->options, shown.options)) return shown_;
     handShown_ = nullptr;
-    return finished(std::move(shown), shown_.get());
+    return finished(std::move(shown));
 }
 
 /// Parsed text to a grammar, unless neither the text nor a file it uses has changed. Adds what is wrong to `problems`.
@@ -301,7 +287,7 @@ Result<std::shared_ptr<const Shown>> Session::made(const ShowRequest& request, S
     shown.byHand = request.byHand != nullptr;
     shown.shapesMade = shown.model.derivation.tree.shapes.size();
     shown.stages = std::move(stages);
-    return finished(std::move(shown), shown_.get());
+    return finished(std::move(shown));
 }
 
 void Session::meshIt(const ShowRequest& request, Progress& progress) {

@@ -22,13 +22,6 @@
 
 namespace sgm::viewer {
 
-/// What a model's field has to do with the one shown before.
-enum class Change : uint8_t {
-    Nothing,    ///< the same values everywhere, bit for bit: nothing to mesh again; materials and spans may differ
-    Numbers,    ///< the same instructions with other constants: upload numbers, compile nothing
-    Structure,  ///< another tape
-};
-
 /// A good model. Immutable; shapes point into sources that `grammar` holds.
 struct Shown {
     uint64_t revision = 0;  ///< of the document it was made from
@@ -38,8 +31,7 @@ struct Shown {
     bool byHand = false;  ///< its derivation came from the Step panel
     bool held = false;    ///< follows a slider in a hand: `grammar`, and with it every span, is of the text before
     size_t shapesMade = 0;  ///< derived anew; the others were kept from the model before
-    Change change = Change::Structure;
-    eval::Fingerprint fingerprint;  ///< of the tape
+    eval::Fingerprint fingerprint;  ///< of the tape: the same for two models, the same surface, bit for bit
     Stages stages;  ///< seconds of what ran: parse, check, derive, lower, compile
 };
 /// Both are the same to the eye: surface and materials.
