@@ -63,15 +63,27 @@ Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const ru
     return Tried{std::move(*model), {}};
 }
 
-/// Good variations until the sheet is full; a candidate is known by its number, so that the same sheet comes again.
+/// "wide=3 tall=4"; "as it is" where nothing is changed.
+std::string worded(const std::vector<NamedValue>& values) {
+    std::string text;
+    for (const NamedValue& v : values) text += fmt::format("{}{}={}", text.empty() ? "" : " ", v.name, v.value);
+    return text.empty() ? "as it is" : text;
+}
+
+/// Good variations until the sheet is full, none of them twice; a candidate is known by its number, so that the same sheet comes again.
 Result<std::vector<Variation>> search(const MutateRequest& request, const std::shared_ptr<const rules::Grammar>& grammar, size_t wanted, Progress* progress) {
     std::vector<Variation> found;
     std::map<std::string, int> rejected;
     const std::set<std::string> locked(request.lock.begin(), request.lock.end());
+    std::set<std::string> seen;
     const size_t most = 8 * wanted + 16;
     for (size_t k = 0; found.size() < wanted && k < most; ++k) {
         std::vector<NamedValue> values;
         if (k > 0) values = variation(*grammar, request.model, locked, request.spread, combine(request.model.seed, k));
+        if (!seen.insert(worded(values)).second) {
+            ++rejected["the same as another"];
+            continue;
+        }
         auto one = tried(request, grammar, values, progress);
         if (!one.ok()) return one.error();
         if (one->model) found.push_back({std::move(values), std::move(*one->model)});
@@ -173,11 +185,7 @@ Status mutated(const MutateRequest& request) {
         if (!request.quiet) fmt::print("wrote {}\n", request.output);
     }
     if (!request.quiet)
-        for (size_t k = 0; k < found->size(); ++k) {
-            std::string text;
-            for (const NamedValue& v : (*found)[k].values) text += fmt::format(" {}={}", v.name, v.value);
-            fmt::print("{}:{}\n", k, text.empty() ? " as it is" : text);
-        }
+        for (size_t k = 0; k < found->size(); ++k) fmt::print("{}: {}\n", k, worded((*found)[k].values));
     if (request.pick < 0) return Done{};
     if (const Status s = saveChoice(request, *grammar, *found); !s.ok()) return s;
     if (!request.quiet) fmt::print("wrote style {} into {}\n", request.save, request.model.file);

@@ -50,6 +50,17 @@ TEST_F(Cli, MutateWritesTheChosenOneBack) {
     EXPECT_EQ(read(path("a.ply")), read(path("b.ply")));
 }
 
+TEST_F(Cli, MutateShowsNothingTwice) {
+    const std::string file = grammar("param n = 1 in 1..4\nstart A -> cube : B\nrule B repeat n -> + sphere size .8 at free(+x, +y, +z) overlap .4 : B\n");
+    const Outcome run = sgm("mutate " + file + " --rows 3 --cols 4 --spread 1 --resolution 32");
+    ASSERT_EQ(run.code, 0) << run.out;
+    for (const char* line : {"0: as it is\n", " n=2\n", " n=3\n", " n=4\n", ": the same as another\n"}) {
+        const size_t at = run.out.find(line);
+        ASSERT_NE(at, std::string::npos) << line << run.out;
+        EXPECT_EQ(run.out.find(line, at + 1), std::string::npos) << line << run.out;
+    }
+}
+
 TEST_F(Cli, MutateJudgesAlikeAtAnyResolution) {
     const std::string bare = grammar("param width = 4 in 2..8.0\nstart House -> cube size (width, 3, 3) + cube size (3, 3, width) + cube size (1.7, 5, 1.3) turn 20deg\n");
     for (const char* cells : {"24", "64", "160"})
