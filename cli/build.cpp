@@ -102,6 +102,7 @@ void say(const BuildRequest& request, const Model& model, const mesh::MeshFigure
                f.components == 1 ? "" : "s", f.volume_m3, total);
     for (const std::string& file : allFiles(request.out)) fmt::print("wrote {}\n", file);
     if (!request.floor.empty()) fmt::print("wrote {}\n", request.floor);
+    sayUngrown(model.derivation);
     sayFloating(model, support);
 }
 
