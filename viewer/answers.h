@@ -17,6 +17,12 @@ public:
 
     /// values[i] is the field at questions[i]; valid until the next call. Adds the instructions to `cost`.
     const std::vector<float>& of(const std::vector<Question>& questions, TraceCost& cost);
+    /// The same with derivatives: one evaluation each, of a few times the instructions' time.
+    struct Slope {
+        float value;
+        Vec3f gradient;
+    };
+    const std::vector<Slope>& slopesOf(const std::vector<Question>& questions, TraceCost& cost);
 
     /// Takes every walk to its end; gives the number of evaluations.
     template <class Walk>
@@ -44,10 +50,15 @@ public:
 
 private:
     static constexpr uint32_t none = 0xffffffffu;
+    /// For every tape that is asked: evaluate(tape, places), then take(question, number among the places).
+    template <class Evaluate, class Take>
+    void byTape(const std::vector<Question>& questions, TraceCost& cost, Evaluate&& evaluate, Take&& take);
+
     const CellTree* tree_;
     eval::Workspace workspace_;
     std::vector<uint32_t> first_, next_, touched_;  // lists of the questions of a tape
-    std::vector<float> x_, y_, z_, answers_, values_;
+    std::vector<float> x_, y_, z_, answers_, dx_, dy_, dz_, values_;
+    std::vector<Slope> slopes_;
 };
 
 }  // namespace sgm::viewer

@@ -1,5 +1,8 @@
 #include "viewer/field_scene.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "viewer/scene.h"
 #include "viewer/shader_text.h"
 
@@ -67,7 +70,9 @@ Status FieldScene::light(std::span<const Job> jobs, Rays& rays, Progress* progre
             if ((!share_ || SeenPixels::isKey(jobs[i])) != key || rays.hits[i].kind() == HitKind::Sky) continue;
             if (key || !take(i, seen_.surface(jobs[i], rays.hits[i], rays.origins[i]))) unknown.push_back(i);
         }
-        if (Status s = ask(Tracer::What::Normals, unknown, rays, progress); !s) return s;
+        std::vector<uint32_t> bare;
+        std::ranges::copy_if(unknown, std::back_inserter(bare), [&](uint32_t i) { return rays.lits[i].normal == Vec3f{}; });
+        if (Status s = ask(Tracer::What::Normals, bare, rays, progress); !s) return s;
         for (const uint32_t i : unknown)
             if (key || !take(i, seen_.light(jobs[i], rays.hits[i], rays.lits[i].normal, rays.origins[i])))
                 dark.push_back(i);
@@ -78,9 +83,24 @@ Status FieldScene::light(std::span<const Job> jobs, Rays& rays, Progress* progre
 }
 
 Result<Rays> FieldScene::trace(std::span<const Job> jobs, Progress* progress) {
-    Result<std::vector<Hit>> hits = tracer_->trace(jobs, progress);
-    if (!hits) return hits.error();
-    Rays rays{std::move(*hits), std::vector<Lit>(jobs.size(), Lit{}), {}, std::vector<OriginId>(jobs.size(), 0)};
+    Rays rays{std::vector<Hit>(jobs.size()), std::vector<Lit>(jobs.size(), Lit{}), {}, std::vector<OriginId>(jobs.size(), 0)};
+    for (const bool leading : {true, false}) {
+        std::vector<uint32_t> which;
+        std::vector<Ray> some;
+        for (uint32_t i = 0; i < jobs.size(); ++i) {
+            if (SeenPixels::leads(jobs[i]) != leading) continue;
+            which.push_back(i);
+            some.push_back(seen_.ray(jobs[i]));
+        }
+        if (some.empty()) continue;
+        const Result<Met> met = tracer_->trace(some, progress);
+        if (!met) return met.error();
+        for (size_t k = 0; k < which.size(); ++k) {
+            rays.hits[which[k]] = met->hits[k];
+            rays.lits[which[k]].normal = met->normals[k];
+            seen_.put(jobs[which[k]], met->free[k]);
+        }
+    }
     std::vector<Vec3f> places;
     std::vector<size_t> of;
     for (size_t i = 0; i < jobs.size(); ++i) {

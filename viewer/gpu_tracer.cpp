@@ -55,12 +55,14 @@ public:
         }
     }
 
-    Result<std::vector<Hit>> trace(std::span<const Job> jobs, Progress* progress) override {
-        const Buffer jobBuffer = Buffer::of(jobs), hits = Buffer::ofBytes(nullptr, jobs.size() * sizeof(Hit));
-        jobBuffer.bindStorage(1);
+    Result<Met> trace(std::span<const Ray> rays, Progress* progress) override {
+        const Buffer rayBuffer = Buffer::of(rays), hits = Buffer::ofBytes(nullptr, rays.size() * sizeof(Hit)),
+                     free = Buffer::ofBytes(nullptr, rays.size() * sizeof(float));
+        rayBuffer.bindStorage(1);
         hits.bindStorage(2);
-        if (Status s = run(programs_->trace, jobs.size(), tracePiece_, progress); !s) return s.error();
-        return hits.read<Hit>(jobs.size());
+        free.bindStorage(3);
+        if (Status s = run(programs_->trace, rays.size(), tracePiece_, progress); !s) return s.error();
+        return Met{hits.read<Hit>(rays.size()), std::vector<Vec3f>(rays.size(), Vec3f{}), free.read<float>(rays.size())};
     }
 
     Status light(What what, std::span<const Hit> hits, std::span<Lit> lits, Progress* progress) override {

@@ -74,10 +74,7 @@ double plainEvaluations(const eval::Tape& tape, const Box3f& bounds, const Pictu
     const float size = length(bounds.size()), pixel = static_cast<float>(view.pixelAngle);
     const Box3f box = bounds.inflated(0.03f * size);
     Walk seen;
-    for (const PicturePlace& place : places) {
-        const double x = 2 * place.x / options.width - 1, y = 1 - 2 * place.y / options.height;
-        seen.add(eye, normalized(view.forward + view.right * x + view.up * y).as<float>());
-    }
+    for (const PicturePlace& place : places) seen.add(eye, rayThrough(view, options, place));
     uint64_t evaluations = march(seen, tape, box, 0, 2e-6f * size, 0.2f * pixel);
     Walk sunward;
     for (size_t i = 0; i < seen.t.size(); ++i) {

@@ -9,7 +9,7 @@
 namespace sgm::viewer {
 namespace {
 
-/// Jobs or hits that one thread walks together.
+/// Rays or hits that one thread walks together.
 constexpr size_t pieceSize = 4096;
 
 class ProcessorTracer final : public Tracer {
@@ -20,21 +20,19 @@ public:
     void look(const PictureOptions& options, double fine) override {
         view_ = viewOf(options.camera, options.width, options.height);
         view_.pixelAngle /= fine;
-        width_ = options.width;
-        height_ = options.height;
-        ground_ = options.ground;
+        options_ = options;
         lamp_m_ = static_cast<float>(options.camera.lamp_m);
         side_ = field_->sideOf(view_.eye.as<float>());
     }
 
-    Result<std::vector<Hit>> trace(std::span<const Job> jobs, Progress* progress) override {
-        std::vector<Hit> hits(jobs.size());
+    Result<Met> trace(std::span<const Ray> rays, Progress* progress) override {
+        Met met{std::vector<Hit>(rays.size()), std::vector<Vec3f>(rays.size(), Vec3f{}), std::vector<float>(rays.size())};
         const Status done =
-            inPieces(jobs.size(), progress, [&](size_t low, size_t high, Answers& answers, TraceCost& cost) {
-                tracePiece(jobs.subspan(low, high - low), std::span(hits).subspan(low, high - low), answers, cost);
+            inPieces(rays.size(), progress, [&](size_t low, size_t high, Answers& answers, TraceCost& cost) {
+                tracePiece(rays.subspan(low, high - low), met, low, answers, cost);
             });
         if (!done) return done.error();
-        return hits;
+        return met;
     }
 
     Status light(What what, std::span<const Hit> hits, std::span<Lit> lits, Progress* progress) override {
@@ -72,25 +70,32 @@ private:
     /// Where a ray meets the ground, as a distance along it; −1 when it doesn't.
     float groundDistance(Vec3f origin, Vec3f direction) const {
         const float ground = field_->bounds.lo.y;
-        if (!ground_ || direction.y > -1e-4f || origin.y < ground) return -1;
+        if (!options_.ground || direction.y > -1e-4f || origin.y < ground) return -1;
         const float t = (ground - origin.y) / direction.y;
         return t < 60 * length(field_->bounds.size()) ? t : -1;
     }
 
-    void tracePiece(std::span<const Job> jobs, std::span<Hit> hits, Answers& answers, TraceCost& cost) const {
+    /// Sets what of `met` begins at `low`.
+    void tracePiece(std::span<const Ray> rays, Met& met, size_t low, Answers& answers, TraceCost& cost) const {
         const CellSpace cells = space();
         const Vec3f eye = view_.eye.as<float>();
         std::vector<Vec3f> directions;
+        for (const Ray& ray : rays) directions.push_back(rayThrough(view_, options_, ray.job.place()));
+        std::vector<float> found = guessed(rays, directions, std::span(met.normals).subspan(low), answers, cost);
         std::vector<SurfaceWalk> walks;
-        for (const Job& job : jobs) {
-            const PicturePlace at = job.place();
-            const double x = 2 * at.x / width_ - 1, y = 1 - 2 * at.y / height_;
-            directions.push_back(normalized(view_.forward + view_.right * x + view_.up * y).as<float>());
-            walks.emplace_back(cells, eye, directions.back(), pixelAngle());
+        std::vector<size_t> of;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            if (found[i] >= 0) continue;
+            of.push_back(i);
+            walks.emplace_back(cells, eye, directions[i], pixelAngle(), rays[i]);
         }
         cost.hits += answers.follow(cells, std::span(walks), cost);
-        for (size_t i = 0; i < jobs.size(); ++i) {
-            float t = walks[i].found();
+        for (size_t k = 0; k < of.size(); ++k) {
+            found[of[k]] = walks[k].found();
+            met.free[low + of[k]] = walks[k].freeBeside();
+        }
+        for (size_t i = 0; i < rays.size(); ++i) {
+            float t = found[i];
             const float below = groundDistance(eye, directions[i]);
             HitKind kind = HitKind::Object;
             if (below >= 0 && (t < 0 || below < t)) {
@@ -98,35 +103,58 @@ private:
                 kind = HitKind::Ground;
             }
             if (t < 0) kind = HitKind::Sky;
-            hits[i] = {t < 0 ? directions[i] : eye + t * directions[i], static_cast<float>(kind)};
+            met.hits[low + i] = {t < 0 ? directions[i] : eye + t * directions[i], static_cast<float>(kind)};
         }
     }
 
-    /// Tetrahedral differences at every hit of an object; the cells' tapes are exact a little beyond the cells.
+    /// Distance along every ray where its guess is right, −1 where it isn't or there is none; and the normals there.
+    std::vector<float> guessed(std::span<const Ray> rays, std::span<const Vec3f> directions, std::span<Vec3f> normals,
+                               Answers& answers, TraceCost& cost) const {
+        const CellSpace cells = space();
+        std::vector<float> found(rays.size(), -1);
+        std::vector<Question> questions;
+        std::vector<size_t> of;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            if (rays[i].guess <= 0) continue;
+            const Vec3f place = view_.eye.as<float>() + rays[i].guess * directions[i];
+            const Cell cell = cells.cellAt(place);
+            if (cell.state != CellState::Near) continue;
+            of.push_back(i);
+            questions.push_back({place, cell.tape});
+        }
+        const std::vector<Answers::Slope>& slopes = answers.slopesOf(questions, cost);
+        cost.hits += questions.size();
+        for (size_t k = 0; k < of.size(); ++k) {
+            const float guess = rays[of[k]].guess;
+            if (!cells.surfaceAt(cells.side * slopes[k].value, pixelAngle() * guess)) continue;
+            found[of[k]] = guess;
+            normals[of[k]] = normalOf(slopes[k], cells);
+        }
+        return found;
+    }
+
+    static Vec3f normalOf(const Answers::Slope& slope, const CellSpace& cells) {
+        return cells.side * normalized(slope.gradient + Vec3f{0, 1e-20f, 0});
+    }
+
+    /// The field's derivatives at every hit of an object, a little before it: behind an edge begin other faces.
     void setNormals(std::span<const Hit> hits, std::span<Lit> lits, Answers& answers, TraceCost& cost) const {
         const CellSpace cells = space();
         const Vec3f eye = view_.eye.as<float>();
-        const auto corner = [](int i) {
-            return Vec3f{float((i + 3) >> 1 & 1), float(i >> 1 & 1), float(i & 1)} * 2.0f - Vec3f{1, 1, 1};
-        };
         std::vector<Question> questions;
         std::vector<size_t> of;
         for (size_t i = 0; i < hits.size(); ++i) {
             lits[i].normal = {0, 1, 0};
             if (hits[i].kind() != HitKind::Object) continue;
-            const Cell cell = cells.cellAt(hits[i].position);
+            const Vec3f place = hits[i].position + (eye - hits[i].position) * (0.05f * pixelAngle());
+            const Cell cell = cells.cellAt(place);
             if (cell.state != CellState::Near) continue;
-            const float h = std::max(2e-5f * cells.size, 0.4f * pixelAngle() * length(eye - hits[i].position));
             of.push_back(i);
-            for (int k = 0; k < 4; ++k) questions.push_back({hits[i].position + corner(k) * h, cell.tape});
+            questions.push_back({place, cell.tape});
         }
-        const std::vector<float>& values = answers.of(questions, cost);
+        const std::vector<Answers::Slope>& slopes = answers.slopesOf(questions, cost);
         cost.light += questions.size();
-        for (size_t j = 0; j < of.size(); ++j) {
-            Vec3f sum{0, 1e-20f, 0};
-            for (int k = 0; k < 4; ++k) sum += corner(k) * values[4 * j + size_t(k)];
-            lits[of[j]].normal = cells.side * normalized(sum);
-        }
+        for (size_t j = 0; j < of.size(); ++j) lits[of[j]].normal = normalOf(slopes[j], cells);
     }
 
     /// Share of the sky that each hit sees, from the field at growing distances along the normal.
@@ -179,11 +207,10 @@ private:
             Lit& lit = lits[i];
             lit.sunlight = 0;
             lit.daylight = lamp_m_ > 0 && hits[i].kind() == HitKind::Object ? 0.0f : 1.0f;
-            const Vec3f start =
-                hits[i].position +
-                lit.normal * std::max(1e-4f * cells.size, 0.5f * pixelAngle() * length(eye - hits[i].position));
+            const float pixel = pixelAngle() * length(eye - hits[i].position);
+            const Vec3f start = hits[i].position + lit.normal * std::max(1e-4f * cells.size, 0.5f * pixel);
             if ((lamp_m_ == 0 || cells.side > 0) && dot(lit.normal, sun) > 0) {
-                walks.emplace_back(cells, start, sun, 0.035f);
+                walks.emplace_back(cells, start, sun, 0.035f, pixel);
                 rays.push_back({&lit.sunlight, 1});
             }
             if (lit.daylight == 1 || cells.side < 0) continue;
@@ -191,7 +218,7 @@ private:
                  {Vec3f{0.7f, 0.714f, 0}, {0, 0.714f, 0.7f}, {-0.7f, 0.714f, 0}, {0, 0.714f, -0.7f}, {0, 1, 0}}) {
                 const float cosine = dot(lit.normal, direction);
                 if (cosine <= 0) continue;
-                walks.emplace_back(cells, start, direction, 0.3f);
+                walks.emplace_back(cells, start, direction, 0.3f, pixel);
                 rays.push_back({&lit.daylight, 0.4f * cosine});
             }
         }
@@ -204,8 +231,7 @@ private:
     int threads_;
     std::vector<Answers> answers_;  // a worker
     View view_{};
-    int width_ = 0, height_ = 0;
-    bool ground_ = false;
+    PictureOptions options_;
     float lamp_m_ = 0, side_ = 1;
 };
 

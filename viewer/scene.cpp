@@ -40,6 +40,11 @@ View viewOf(const Camera& camera, int width, int height) {
     return view;
 }
 
+Vec3f rayThrough(const View& view, const PictureOptions& options, PicturePlace at) {
+    const double x = 2 * at.x / options.width - 1, y = 1 - 2 * at.y / options.height;
+    return normalized(view.forward + view.right * x + view.up * y).as<float>();
+}
+
 Vec3f sunDirection() { return normalized(Vec3f{-0.44f, 0.74f, 0.60f}); }
 
 void setScene(const Program& program, const Box3f& bounds, const PictureOptions& options) {

@@ -14,6 +14,9 @@ struct View {
 };
 View viewOf(const Camera& camera, int width, int height);
 
+/// Unit direction of the ray through a place of the picture.
+Vec3f rayThrough(const View& view, const PictureOptions& options, PicturePlace at);
+
 /// Towards the sun: behind the left shoulder of the default camera.
 Vec3f sunDirection();
 

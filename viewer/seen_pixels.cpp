@@ -1,8 +1,7 @@
 #include "viewer/seen_pixels.h"
 
 #include <cmath>
-
-#include "viewer/scene.h"
+#include <utility>
 
 namespace sgm::viewer {
 namespace {
@@ -51,17 +50,62 @@ void SeenPixels::look(const PictureOptions& options, double fine) {
     if (options == options_ && fine == fine_) return;
     options_ = options;
     fine_ = fine;
-    const View view = viewOf(options.camera, options.width, options.height);
-    eye_ = view.eye.as<float>();
-    pixelAngle_ = static_cast<float>(view.pixelAngle);
+    view_ = viewOf(options.camera, options.width, options.height);
+    eye_ = view_.eye.as<float>();
+    pixelAngle_ = static_cast<float>(view_.pixelAngle);
     const size_t count = size_t(options.width) * size_t(options.height);
     pixels_.resize(count <= mostPixels ? count : 0);
     known_.assign(pixels_.size(), false);
+    free_.assign(pixels_.size(), 0);
+}
+
+bool SeenPixels::smoothTowards(Job job) const {
+    const Pixel& first = pixels_[indexOf(job.x(), job.y())];
+    const PicturePlace place = job.place();
+    const int x = static_cast<int>(job.x()), y = static_cast<int>(job.y());
+    const int besideX = place.x > x + 0.5 ? x + 1 : x - 1, besideY = place.y > y + 0.5 ? y + 1 : y - 1;
+    for (const auto& [u, v] : {std::pair{besideX, y}, {x, besideY}, {besideX, besideY}}) {
+        if (u < 0 || v < 0 || u >= options_.width || v >= options_.height) return false;
+        const size_t at = indexOf(size_t(u), size_t(v));
+        const Pixel& p = pixels_[at];
+        if (!known_[at] || p.hit.kind() != HitKind::Object) return false;
+        if (std::abs(dot(p.hit.position - first.hit.position, first.lit.normal)) > pixelAt(first.hit)) return false;
+    }
+    return true;
+}
+
+Ray SeenPixels::ray(Job job) const {
+    // Half a pixel's diagonal, and for all of the block's the way to the farthest one.
+    constexpr float ofPixel = 0.75f, ofBlock = 2.83f + ofPixel;
+    Ray ray{job};
+    if (pixels_.empty()) return ray;
+    if (job.sample == 0) {
+        ray.beside = (leads(job) ? ofBlock : ofPixel) * pixelAngle_;
+        const size_t x = job.x() / block * block + 2, y = job.y() / block * block + 2;
+        if (!leads(job) && x < size_t(options_.width) && y < size_t(options_.height)) ray.start = free_[indexOf(x, y)];
+        return ray;
+    }
+    const size_t at = indexOf(job.x(), job.y());
+    ray.start = free_[at];
+    const Pixel& first = pixels_[at];
+    if (!known_[at] || first.hit.kind() != HitKind::Object) return ray;
+    const Vec3f direction = rayThrough(view_, options_, job.place());
+    const float cosine = dot(first.lit.normal, direction);
+    if (cosine > -0.1f) return ray;
+    const float plane = dot(first.hit.position - eye_, first.lit.normal) / cosine;
+    // What stands before it is narrower than its pixel, or one of those around it would show it.
+    const float most = smoothTowards(job) ? 24 : 2;
+    if (plane >= ray.start && plane < ray.start * (1 + most * pixelAngle_)) ray.guess = plane;
+    return ray;
+}
+
+void SeenPixels::put(Job job, float free) {
+    if (job.sample == 0 && !free_.empty()) free_[indexOf(job.x(), job.y())] = free;
 }
 
 void SeenPixels::put(Job job, const Hit& hit, const Lit& lit, OriginId origin) {
     if (job.sample != 0 || pixels_.empty()) return;
-    const size_t at = job.y() * size_t(options_.width) + job.x();
+    const size_t at = indexOf(job.x(), job.y());
     pixels_[at] = {hit, lit, origin};
     known_[at] = true;
 }
@@ -77,7 +121,7 @@ void SeenPixels::gather(Job job, const Hit& hit, OriginId origin, Mean& mean, Be
             if (x < 0 || y < 0 || x >= width || y >= height) continue;
             // A first sample asks those beside it: what was asked of the field itself.
             if (job.sample == 0 && std::abs(dx) + std::abs(dy) != 1) continue;
-            const size_t at = size_t(y) * size_t(width) + size_t(x);
+            const size_t at = indexOf(size_t(x), size_t(y));
             if (!known_[at]) continue;
             const Pixel& p = pixels_[at];
             const Vec3f away = hit.position - p.hit.position;
@@ -103,9 +147,13 @@ std::optional<Lit> SeenPixels::surface(Job job, const Hit& hit, OriginId origin)
 
 std::optional<Lit> SeenPixels::light(Job job, const Hit& hit, Vec3f normal, OriginId origin) const {
     const float pixel = pixelAt(hit);
+    // What faces away from the sun doesn't know whether it is seen from there.
+    const bool sunny = dot(normal, sunDirection()) > 0;
     Mean mean;
-    gather(job, hit, origin, mean,
-           [&](const Pixel& p, Vec3f away) { return dot(p.lit.normal, normal) > 0.3f && length(away) < 4 * pixel; });
+    gather(job, hit, origin, mean, [&](const Pixel& p, Vec3f away) {
+        return dot(p.lit.normal, normal) > 0.3f && length(away) < 4 * pixel &&
+               (!sunny || dot(p.lit.normal, sunDirection()) > 0);
+    });
     if (mean.count() == 0 || (job.sample == 0 && !mean.around())) return std::nullopt;
     // The edge of a shadow on something smooth must be found; on ornament nobody sees it.
     if (mean.spread() > 0.25f && (job.sample == 0 || mean.agreement() > 0.95f)) return std::nullopt;

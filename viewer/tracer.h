@@ -1,5 +1,5 @@
 // Who walks rays through a prepared field: the GPU's shaders, or, where the driver has only a processor to run them on,
-// that processor's own vectors, which are an order of magnitude quicker there. Enters: jobs of a picture. Leaves: what
+// that processor's own vectors, which are an order of magnitude quicker there. Enters: rays of a picture. Leaves: what
 // their rays met, and the light there. Both walk alike (trace.comp.glsl, walks.h).
 #pragma once
 
@@ -28,6 +28,21 @@ struct Hit {
     HitKind kind() const { return static_cast<HitKind>(static_cast<int>(kindNumber)); }
 };
 
+/// A ray through a sample of the picture, and what those beside it tell.
+struct Ray {
+    Job job;
+    float start = 0;   ///< no surface is nearer along it, metres
+    float guess = 0;   ///< where it may meet the plane that its pixel's first ray met, metres; 0 for nowhere
+    float beside = 0;  ///< half the angle of the cone about it whose rays come later, radians; 0 for none
+};
+
+/// What rays met, an entry a ray.
+struct Met {
+    std::vector<Hit> hits;
+    std::vector<Vec3f> normals;  ///< unit, of those that became known on the way; else 0
+    std::vector<float> free;  ///< metres along each up to which the cone beside it is known to hold no surface
+};
+
 /// How much light comes to a hit, as shaders read and write it; shares 0 … 1. All 0 for the sky.
 struct Lit {
     Vec3f normal;    ///< unit
@@ -50,8 +65,8 @@ public:
     /// Sets camera, picture size and ground. `fine` scales how exactly surfaces are found: above 1 finer than the
     /// picture's pixels ask for.
     virtual void look(const PictureOptions& options, double fine) = 0;
-    /// A hit a job. Error::Cancelled when `progress` says so, Error::Internal when the driver fails.
-    virtual Result<std::vector<Hit>> trace(std::span<const Job> jobs, Progress* progress) = 0;
+    /// Error::Cancelled when `progress` says so, Error::Internal when the driver fails.
+    virtual Result<Met> trace(std::span<const Ray> rays, Progress* progress) = 0;
     /// Sets the normals alone, or, by those, all the rest; of hits that aren't the sky's.
     enum class What : int { Normals, Light };
     virtual Status light(What what, std::span<const Hit> hits, std::span<Lit> lits, Progress* progress) = 0;

@@ -56,16 +56,22 @@ std::array<float, 2> CellSpace::span(Vec3f origin, Vec3f inverseDirection) const
     return {near, far};
 }
 
-SurfaceWalk::SurfaceWalk(const CellSpace& space, Vec3f origin, Vec3f direction, float pixelAngle)
+SurfaceWalk::SurfaceWalk(const CellSpace& space, Vec3f origin, Vec3f direction, float pixelAngle,
+                         const Ray& ray)
     : origin_(origin),
       direction_(direction),
       inverse_(inverseOf(direction)),
       tolerance_(2e-6f * space.size),
       angle_(0.1f * pixelAngle),
-      pixelAngle_(pixelAngle) {
+      pixelAngle_(pixelAngle),
+      beside_(ray.beside) {
     const auto [near, far] = space.span(origin, inverse_);
-    t_ = near;
+    t_ = freeBeside_ = std::max(near, ray.start);
     end_ = far;
+}
+
+void SurfaceWalk::setFree(float from, float to) {
+    if (from <= freeBeside_ + gap(from)) freeBeside_ = std::max(freeBeside_, to);
 }
 
 bool SurfaceWalk::ask(const CellSpace& space, Question& question) {
@@ -75,7 +81,10 @@ bool SurfaceWalk::ask(const CellSpace& space, Question& question) {
         if (cell_.least > 0 && stride_ <= free_ + cell_.least * space.inverseLipschitz) {
             t_ += stride_;
             while (cell_.least > 0 && t_ <= end_) {
+                const float from = t_;
                 t_ += cell_.exit(origin_ + t_ * direction_, inverse_);
+                const float spare = cell_.least * space.inverseLipschitz - beside_ * t_;  // of a ball about any of the way
+                if (spare >= 0) setFree(from - spare, t_);
                 cell_ = space.cellAt(origin_ + t_ * direction_);
             }
             free_ = stride_ = 0;
@@ -95,32 +104,41 @@ bool SurfaceWalk::ask(const CellSpace& space, Question& question) {
 
 void SurfaceWalk::answer(const CellSpace& space, float value) {
     const float next = value * space.inverseLipschitz;
-    if (stride_ > free_ + std::abs(next) && stride_ > 0) {  // a gap: back to the safe step
+    if (stride_ > free_ + std::abs(next) + gap(t_) && stride_ > 0) {  // back to the safe step
         stride_ = free_;
         slope_ = -1;
         return;
     }
     if (stride_ > 0) slope_ += 0.4f * ((next - free_) / stride_ - slope_);
     t_ += stride_;
-    free_ = next;
-    if (value < std::max(tolerance_, angle_ * t_)) {  // one more safe step, or back out
-        found_ = std::max(t_ + free_, 0.0f);
+    if (value < std::max(tolerance_, angle_ * t_)) {  // one more safe step, or back out by the secant
+        found_ = std::max(t_ + (next < 0 && stride_ > 0 ? stride_ * next / (free_ - next) : next), 0.0f);
         ended_ = true;
         return;
     }
-    stride_ = std::max(free_, 2 * free_ / (1 - std::min(slope_, 0.6f)));
+    free_ = next;
+    const float aside = beside_ * (t_ + free_);
+    if (free_ > aside) {
+        const float half = std::sqrt(free_ * free_ - aside * aside);
+        setFree(t_ - half, t_ + half);
+    }
+    stride_ = std::max(free_, (2 * free_ + gap(t_)) / (1 - std::min(slope_, 0.6f)));
     if (t_ + stride_ > end_) stride_ = free_;  // the long step would leave the box, perhaps past a last surface
 }
 
-DiscWalk::DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float radius)
-    : place_(place), direction_(direction), inverse_(inverseOf(direction)), radius_(radius) {
+DiscWalk::DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float radius, float pixel)
+    : place_(place),
+      direction_(direction),
+      inverse_(inverseOf(direction)),
+      radius_(radius),
+      pixel_(pixel) {
     const auto [near, far] = space.span(place, inverse_);
     t_ = std::max(near, 3e-4f * space.size);
     end_ = far;
 }
 
 bool DiscWalk::ask(const CellSpace& space, Question& question) {
-    for (; steps_ < 128 && t_ + stride_ <= end_ && clearance_ > -1; ++steps_) {
+    for (; steps_ < 128 && t_ + stride_ <= end_ && clearance_ > -0.9f; ++steps_) {
         const Vec3f place = place_ + (t_ + stride_) * direction_;
         if (!cell_.holds(place)) cell_ = space.cellAt(place);
         // Nothing of the cell comes into the disc.
@@ -142,12 +160,16 @@ bool DiscWalk::ask(const CellSpace& space, Question& question) {
 void DiscWalk::answer(const CellSpace& space, float value) {
     const float next = std::abs(value) * space.inverseLipschitz;
     const float disc = std::min(radius_ * (t_ + stride_), space.margin),
-                least = std::max(0.5f * disc, 1e-3f * space.size);
+                least = std::max(0.5f * disc, std::max(1e-3f * space.size, disc < pixel_ ? 1.4f * pixel_ : 0));
     if (stride_ > std::max(free_ + next, least)) {
         stride_ = std::max(free_, least);
         return;
     }
     clearance_ = std::min(clearance_, value / disc);
+    // Inside, fields may fall little however deep the place is. Where nobody sees the penumbra, a way through the solid
+    // counts as half as much depth.
+    within_ = value < 0 ? within_ + stride_ : 0;
+    if (value < 0 && disc < pixel_) clearance_ = std::min(clearance_, -0.5f * within_ / disc);
     t_ += stride_;
     free_ = next;
     stride_ = std::max(free_ > 2 * disc ? 1.5f * free_ : 0.9f * free_, least);

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "viewer/prepared_field.h"
+#include "viewer/tracer.h"
 
 namespace sgm::viewer {
 
@@ -40,6 +41,12 @@ struct CellSpace {
     float size = length(field.bounds.size());  ///< metres
 
     Cell cellAt(Vec3f p) const;
+    /// Whether a guess hits the surface: by the field there times `side`, and the picture's pixel there, metres. Inside
+    /// it may lie behind another face.
+    bool surfaceAt(float value, float pixel) const {
+        const float least = 2e-6f * size;
+        return value > -std::max(0.05f * pixel, least) && value < std::max(0.35f * pixel, least);
+    }
     /// The span of a ray inside the box; empty (x > y) when it misses it.
     std::array<float, 2> span(Vec3f origin, Vec3f inverseDirection) const;
 };
@@ -50,18 +57,26 @@ Vec3f inverseOf(Vec3f direction);
 /// The first surface along a ray.
 class SurfaceWalk {
 public:
-    /// `pixelAngle`: radians a pixel; hits are exact to some fifth of one.
-    SurfaceWalk(const CellSpace& space, Vec3f origin, Vec3f direction, float pixelAngle);
+    /// `pixelAngle`: radians a pixel; hits are exact to some third of one.
+    SurfaceWalk(const CellSpace& space, Vec3f origin, Vec3f direction, float pixelAngle, const Ray& ray);
     /// False when the walk has ended.
     bool ask(const CellSpace& space, Question& question);
     /// The field's value, times the space's side.
     void answer(const CellSpace& space, float value);
     /// Distance along the ray, metres; −1 when there is no surface.
     float found() const { return found_; }
+    /// Distance along the ray up to which the cone beside it holds no surface, metres.
+    float freeBeside() const { return freeBeside_; }
 
 private:
+    /// What may be stepped over unseen at t, metres.
+    float gap(float t) const { return 0.3f * pixelAngle_ * t; }
+    /// The cone beside the ray holds no surface between two places of it.
+    void setFree(float from, float to);
+
     Vec3f origin_, direction_, inverse_;
     float t_, end_, free_ = 0, slope_ = -1, stride_ = 0, tolerance_, angle_, pixelAngle_, found_ = -1;
+    float beside_, freeBeside_;
     int steps_ = 0;
     bool ended_ = false;
     Cell cell_;
@@ -70,8 +85,8 @@ private:
 /// Share that a place sees of a disc of light.
 class DiscWalk {
 public:
-    /// `radius`: half the disc's angle, radians.
-    DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float radius);
+    /// `radius`: half the disc's angle, radians; `pixel`: of the picture at the place, metres.
+    DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float radius, float pixel);
     bool ask(const CellSpace& space, Question& question);
     void answer(const CellSpace& space, float value);
     /// 0 … 1.
@@ -79,7 +94,7 @@ public:
 
 private:
     Vec3f place_, direction_, inverse_;
-    float t_, end_, radius_, clearance_ = 1, free_ = 0, stride_ = 0;
+    float t_, end_, radius_, pixel_, clearance_ = 1, within_ = 0, free_ = 0, stride_ = 0;
     int steps_ = 0;
     Cell cell_;
 };

@@ -6,6 +6,7 @@
 #include "tests/viewer/scenes.h"
 #include "viewer/offscreen.h"
 #include "viewer/scene.h"
+#include "viewer/tracer.h"
 
 namespace sgm::viewer::test {
 namespace {
@@ -189,6 +190,42 @@ TEST_F(Picture, ShadersAndProcessorTraceTheSame) {
         }
         EXPECT_LT(differentPixels(images[0], images[1]), size_t(edge) * edge / 200);
     }
+}
+
+TEST_F(Picture, RaysStartWhereTheConeBesideAnotherIsFree) {
+    Scene scene;
+    for (int i = 0; i < 9; ++i) scene.add(i % 2 ? "sphere" : "cube", {2.5 * (i % 3), 2.5 * (i / 3), 0}, {1.1, 1, 1.2}, red);
+    for (int i = 0; i < 6; ++i) scene.add("cube", {1.2 * i, 2.5, 3.0}, {0.03, 4, 0.03}, green);  // posts, narrower than a pixel
+    const field::Field solid = scene.sum();
+    const eval::Tape tape = scene.compile(solid);
+    auto field = prepareField(tape, solid.bounds, scene.provenance, 1, nullptr);
+    ASSERT_TRUE(field.ok()) << field.error().message;
+    const auto tracer = processorTracer(std::make_shared<const PreparedField>(std::move(*field)), 1);
+    const PictureOptions options = optionsAt(frame(tape, solid.bounds, 1), true);
+    tracer->look(options, 1);
+    const View view = viewOf(options.camera, edge, edge);
+    std::vector<Ray> first, whole, started;
+    for (const Job& job : firstSamples(edge, edge)) first.push_back({job, 0, 0, static_cast<float>(0.75 * view.pixelAngle)});
+    const auto met = tracer->trace(first, nullptr);
+    ASSERT_TRUE(met.ok());
+    for (size_t i = 0; i < first.size(); ++i) {
+        const Job second{first[i].job.pixel, 1};
+        whole.push_back({second});
+        started.push_back({second, met->free[i]});
+    }
+    const uint64_t before = tracer->cost().hits;
+    const auto all = tracer->trace(whole, nullptr);
+    const uint64_t between = tracer->cost().hits;
+    const auto rest = tracer->trace(started, nullptr);
+    ASSERT_TRUE(all.ok() && rest.ok());
+    EXPECT_LT((tracer->cost().hits - between) * 10, (between - before) * 9);
+    size_t different = 0;
+    for (size_t i = 0; i < whole.size(); ++i) {
+        const Hit &a = all->hits[i], &b = rest->hits[i];
+        const double pixel = view.pixelAngle * length(a.position.as<double>() - view.eye);
+        different += a.kind() != b.kind() || (a.kind() == HitKind::Object && length(a.position - b.position) > 3 * pixel) ? 1 : 0;
+    }
+    EXPECT_LT(different, size_t(edge) * edge / 500);
 }
 
 TEST_F(Picture, SharedLightLooksLikeEverySamplesOwn) {

@@ -20,11 +20,11 @@ vec3 normalAt(vec3 p, float h) {
 /// Share that p sees of a disc of light of half angle `radius` (radians) about `direction`: along the ray, the least
 /// clearance in units of the disc's radius there. Strides are relaxed as in trace.comp.glsl: away from
 /// the penumbra one and a half times the free radius, taken back when the two radii leave a gap.
-float discSeen(vec3 p, vec3 direction, float radius) {
+float discSeen(vec3 p, vec3 direction, float radius, float pixel) {
     vec3 inverseDirection = inverseOf(direction);
     vec2 span = boundsSpan(p, inverseDirection);
-    float t = max(span.x, 3e-4 * sceneSize), clearance = 1.0, free = 0.0, stride = 0.0;
-    for (int step = 0; step < 128 && t + stride <= span.y && clearance > -1.0; ++step) {
+    float t = max(span.x, 3e-4 * sceneSize), clearance = 1.0, free = 0.0, stride = 0.0, within = 0.0;
+    for (int step = 0; step < 128 && t + stride <= span.y && clearance > -0.9; ++step) {
         vec3 q = p + (t + stride) * direction;
         Cell cell = cellAt(q);
         // Nothing of the cell comes into the disc.
@@ -35,12 +35,16 @@ float discSeen(vec3 p, vec3 direction, float radius) {
         }
         float value = cell.state == cellInside ? -margin : side * fieldBy(cell.tape, q);
         float next = abs(value) * inverseLipschitz;
-        float disc = min(radius * (t + stride), margin), least = max(0.5 * disc, 1e-3 * sceneSize);
+        float disc = min(radius * (t + stride), margin), least = max(0.5 * disc, max(1e-3 * sceneSize, disc < pixel ? 1.4 * pixel : 0.0));
         if (stride > max(free + next, least)) {
             stride = max(free, least);
             continue;
         }
         clearance = min(clearance, value / disc);
+        // Inside, fields may fall little however deep the place is. Where nobody sees the penumbra, a way through the
+        // solid counts as half as much depth.
+        within = value < 0.0 ? within + stride : 0.0;
+        if (value < 0.0 && disc < pixel) clearance = min(clearance, -0.5 * within / disc);
         t += stride;
         free = next;
         stride = max(free > 2.0 * disc ? 1.5 * free : 0.9 * free, least);
@@ -49,8 +53,6 @@ float discSeen(vec3 p, vec3 direction, float radius) {
     clearance = clamp(0.5 + 0.5 * clearance, 0.0, 1.0);
     return clearance * clearance * (3.0 - 2.0 * clearance);
 }
-
-float sunlightAt(vec3 p) { return discSeen(p, sunDirection, 0.035); }
 
 /// Share of the sky that p sees, from the field at growing distances along the normal.
 float opennessAt(vec3 p, vec3 normal) {
@@ -69,14 +71,14 @@ float opennessAt(vec3 p, vec3 normal) {
 }
 
 /// Share of the day that comes into a hollow to p: wide discs of the upper sky.
-float daylightAt(vec3 p, vec3 normal) {
+float daylightAt(vec3 p, vec3 normal, float pixel) {
     if (side < 0.0) return 0.0;
     float seen = 0.0;
     for (int i = 0; i < 5; ++i) {
         float angle = 1.5707963 * float(i);
         vec3 direction = i == 4 ? vec3(0.0, 1.0, 0.0) : vec3(0.7 * cos(angle), 0.714, 0.7 * sin(angle));
         float cosine = dot(normal, direction);
-        if (cosine > 0.0) seen += cosine * discSeen(p, direction, 0.3);
+        if (cosine > 0.0) seen += cosine * discSeen(p, direction, 0.3, pixel);
     }
     return min(0.4 * seen, 1.0);
 }
@@ -85,17 +87,17 @@ void main() {
     if (gl_GlobalInvocationID.x >= jobCount) return;
     uint i = firstJob + gl_GlobalInvocationID.x;
     vec4 hit = hits[i];
-    float distance = length(eye - hit.xyz);
+    float pixel = pixelAngle * length(eye - hit.xyz);
     if (what == 0) {
         vec3 normal = vec3(0.0, 1.0, 0.0);
-        if (hit.w == hitObject) normal = normalAt(hit.xyz, max(2e-5 * sceneSize, 0.4 * pixelAngle * distance));
+        if (hit.w == hitObject) normal = normalAt(hit.xyz + normalize(eye - hit.xyz) * (0.05 * pixel), max(2e-5 * sceneSize, 0.02 * pixel));
         lits[2u * i] = vec4(normal, 0.0);
     } else {
         vec3 normal = lits[2u * i].xyz;
-        vec3 start = hit.xyz + normal * max(1e-4 * sceneSize, 0.5 * pixelAngle * distance);
+        vec3 start = hit.xyz + normal * max(1e-4 * sceneSize, 0.5 * pixel);
         float sunlight = 0.0, daylight = 1.0;
-        if ((lampReach == 0.0 || side > 0.0) && dot(normal, sunDirection) > 0.0) sunlight = sunlightAt(start);
-        if (lampReach > 0.0 && hit.w == hitObject) daylight = daylightAt(start, normal);
+        if ((lampReach == 0.0 || side > 0.0) && dot(normal, sunDirection) > 0.0) sunlight = discSeen(start, sunDirection, 0.035, pixel);
+        if (lampReach > 0.0 && hit.w == hitObject) daylight = daylightAt(start, normal, pixel);
         lits[2u * i] = vec4(normal, opennessAt(hit.xyz, normal));
         lits[2u * i + 1u] = vec4(sunlight, daylight, 0.0, 0.0);
     }
