@@ -260,12 +260,17 @@ TEST_F(Verbs, WorkIsCancelled) {
     key("ctrl+z");
     until("the small model", [&](const auto& s) { return s["shapes"] == shapes && !s["busy"]; });
 
-    // With the slider in hand the key does it.
-    dragAtWork("param.n", 0.97, [&] {
-        until("work on what the slider says", [](const auto& s) { return s["busy"] == true && s["notice"] == "Set n"; });
-        press("Escape");
-        until("rest in the hand", [](const auto& s) { return !s["busy"] && std::string(s["notice"]).starts_with("Cancelled"); });
-    });
+    // With the slider in hand the key does it, unless the work is done before the key comes: then again.
+    const auto ended = [](const auto& s) { return s["shapes"] > 30000; };
+    const auto cancelled = [](const auto& s) { return std::string(s["notice"]).starts_with("Cancelled"); };
+    bool stopped = false;
+    for (int tries = 0; tries < 10 && !stopped; ++tries)
+        dragAtWork("param.n", 0.97, [&] {
+            until("work on what the slider says", [&](const auto& s) { return ended(s) || (s["busy"] == true && s["notice"] == "Set n"); });
+            press("Escape");
+            stopped = cancelled(until("rest in the hand", [&](const auto& s) { return !s["busy"] && (cancelled(s) || ended(s)); }));
+        });
+    EXPECT_TRUE(stopped);
 }
 
 TEST_F(Verbs, AnExportGoesOnWhileOneWorks) {
