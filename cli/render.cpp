@@ -26,7 +26,7 @@ struct RenderRequest {
     std::string output, size = "960x720", view = "field", camera, rays = "best";
     std::vector<std::string> layers;
     double extinction = 0;
-    int samples = 4, turntable = 0;  ///< turntable: how many pictures around the model, 0 for one
+    int samples = 8, turntable = 0;  ///< turntable: how many pictures around the model, 0 for one
     bool noGround = false, stats = false, quiet = false;
 };
 

@@ -72,7 +72,12 @@ Status FieldScene::light(std::span<const Job> jobs, Rays& rays, Progress* progre
         }
         std::vector<uint32_t> bare;
         std::ranges::copy_if(unknown, std::back_inserter(bare), [&](uint32_t i) { return rays.lits[i].normal == Vec3f{}; });
-        if (Status s = ask(Tracer::What::Normals, bare, rays, progress); !s) return s;
+        // A pixel's first sample stands for all of it, until its others add what they meet.
+        const auto isFirst = [&](uint32_t i) { return jobs[i].sample == 0; };
+        const std::vector<uint32_t> others(std::ranges::stable_partition(bare, isFirst).begin(), bare.end());
+        bare.resize(bare.size() - others.size());
+        if (Status s = ask(Tracer::What::WideNormals, bare, rays, progress); !s) return s;
+        if (Status s = ask(Tracer::What::Normals, others, rays, progress); !s) return s;
         for (const uint32_t i : unknown)
             if (key || !take(i, seen_.light(jobs[i], rays.hits[i], rays.lits[i].normal, rays.origins[i])))
                 dark.push_back(i);

@@ -50,7 +50,7 @@ struct PictureOptions {
     int width = 640, height = 640;
     Camera camera;
     bool ground = true;  ///< a plane under the object that takes its shadow
-    int samples = 4;     ///< for a pixel on an edge, 1 … 64
+    int samples = 8;     ///< for a pixel on an edge, 1 … 64
     int threads = 0;     ///< for the work beside the GPU's; 0 = all
     friend bool operator==(const PictureOptions&, const PictureOptions&) = default;
 };

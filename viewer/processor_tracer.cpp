@@ -39,7 +39,7 @@ public:
         return inPieces(hits.size(), progress, [&](size_t low, size_t high, Answers& answers, TraceCost& cost) {
             const auto hitsHere = hits.subspan(low, high - low);
             const auto litsHere = lits.subspan(low, high - low);
-            if (what == What::Normals) return setNormals(hitsHere, litsHere, answers, cost);
+            if (what != What::Light) return setNormals(what == What::WideNormals, hitsHere, litsHere, answers, cost);
             setOpenness(hitsHere, litsHere, answers, cost);
             setSunAndDay(hitsHere, litsHere, answers, cost);
         });
@@ -137,8 +137,9 @@ private:
         return cells.side * normalized(slope.gradient + Vec3f{0, 1e-20f, 0});
     }
 
-    /// The field's derivatives at every hit of an object, a little before it: behind an edge begin other faces.
-    void setNormals(std::span<const Hit> hits, std::span<Lit> lits, Answers& answers, TraceCost& cost) const {
+    /// The field's derivatives at every hit of an object, a little before it: behind an edge begin other faces. Wide ones are
+    /// means of four, some sixth of a pixel about it.
+    void setNormals(bool wide, std::span<const Hit> hits, std::span<Lit> lits, Answers& answers, TraceCost& cost) const {
         const CellSpace cells = space();
         const Vec3f eye = view_.eye.as<float>();
         std::vector<Question> questions;
@@ -150,11 +151,24 @@ private:
             const Cell cell = cells.cellAt(place);
             if (cell.state != CellState::Near) continue;
             of.push_back(i);
-            questions.push_back({place, cell.tape});
+            if (!wide) {
+                questions.push_back({place, cell.tape});
+                continue;
+            }
+            const Vec3f back = eye - hits[i].position;
+            const float reach = 0.15f * pixelAngle() * length(back);
+            const Vec3f aside = normalized(cross(back, Vec3f{0.3f, 1, 0.2f})) * reach, up = normalized(cross(back, aside)) * reach;
+            for (const Vec3f off : {aside + 0.4f * up, -aside - 0.4f * up, up - 0.4f * aside, 0.4f * aside - up})
+                questions.push_back({place + off, cell.tape});
         }
         const std::vector<Answers::Slope>& slopes = answers.slopesOf(questions, cost);
         cost.light += questions.size();
-        for (size_t j = 0; j < of.size(); ++j) lits[of[j]].normal = normalOf(slopes[j], cells);
+        const size_t each = wide ? 4 : 1;
+        for (size_t j = 0; j < of.size(); ++j) {
+            Answers::Slope mean{0, {0, 0, 0}};
+            for (size_t k = 0; k < each; ++k) mean.gradient = mean.gradient + normalized(slopes[j * each + k].gradient);
+            lits[of[j]].normal = normalOf(mean, cells);
+        }
     }
 
     /// Share of the sky that each hit sees, from the field at growing distances along the normal.

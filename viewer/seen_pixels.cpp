@@ -8,6 +8,8 @@ namespace {
 
 /// Larger pictures don't keep their pixels, which would take a gigabyte.
 constexpr size_t mostPixels = size_t(1) << 24;
+/// Of the weights by distance, pixels²: a pixel's own light on ornament counts little more than that of those around it.
+constexpr float softness = 1;
 
 }  // namespace
 
@@ -129,7 +131,7 @@ void SeenPixels::gather(Job job, const Hit& hit, OriginId origin, Mean& mean, Be
                 mean.skip();
                 continue;
             }
-            mean.add(p.lit, 1 / (dot(away, away) + 0.05f * pixel * pixel), dx, dy);
+            mean.add(p.lit, 1 / (dot(away, away) + softness * pixel * pixel), dx, dy);
         }
 }
 

@@ -67,8 +67,9 @@ public:
     virtual void look(const PictureOptions& options, double fine) = 0;
     /// Error::Cancelled when `progress` says so, Error::Internal when the driver fails.
     virtual Result<Met> trace(std::span<const Ray> rays, Progress* progress) = 0;
-    /// Sets the normals alone, or, by those, all the rest; of hits that aren't the sky's.
-    enum class What : int { Normals, Light };
+    /// Sets the normals alone, where hits are or as means over some of their pixels, or, by those, all the rest; of hits that
+    /// aren't the sky's.
+    enum class What : int { Normals, WideNormals, Light };
     virtual Status light(What what, std::span<const Hit> hits, std::span<Lit> lits, Progress* progress) = 0;
     /// All so far.
     const TraceCost& cost() const { return cost_; }

@@ -3,7 +3,7 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 2) readonly buffer Hits { vec4 hits[]; };
 layout(std430, binding = 3) buffer Lits { vec4 lits[]; };  // two a hit: normal, openness; sunlight, daylight
 uniform uint firstJob, jobCount;
-uniform int what;  // 0: normals; 1: the rest
+uniform int what;  // 0: normals where hits are; 1: means over some of a pixel; 2: the rest
 
 /// Tetrahedral differences; the cell's tape is exact a little beyond the cell.
 vec3 normalAt(vec3 p, float h) {
@@ -88,9 +88,9 @@ void main() {
     uint i = firstJob + gl_GlobalInvocationID.x;
     vec4 hit = hits[i];
     float pixel = pixelAngle * length(eye - hit.xyz);
-    if (what == 0) {
+    if (what < 2) {
         vec3 normal = vec3(0.0, 1.0, 0.0);
-        if (hit.w == hitObject) normal = normalAt(hit.xyz + normalize(eye - hit.xyz) * (0.05 * pixel), max(2e-5 * sceneSize, 0.02 * pixel));
+        if (hit.w == hitObject) normal = normalAt(hit.xyz + normalize(eye - hit.xyz) * (0.05 * pixel), max(2e-5 * sceneSize, (what == 0 ? 0.02 : 0.1) * pixel));
         lits[2u * i] = vec4(normal, 0.0);
     } else {
         vec3 normal = lits[2u * i].xyz;
