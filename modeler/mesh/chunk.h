@@ -93,6 +93,9 @@ struct Numbering {
     Status add(std::span<Chunk> chunks);
 };
 
+/// The chunk that owns a vertex counted in the whole mesh; `chunks`, numbered and in order, hold it.
+const Chunk& ownerOf(std::span<const Chunk> chunks, uint32_t vertex);
+
 /// Names what a chunk borrows; `chunks`, numbered and in order, hold those that lend to it.
 void nameBorrowed(std::span<const Chunk> chunks, Chunk& chunk);
 

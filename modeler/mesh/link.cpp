@@ -21,6 +21,11 @@ const Chunk* findChunk(std::span<const Chunk> chunks, Vec3i index) {
 
 }  // namespace
 
+const Chunk& ownerOf(std::span<const Chunk> chunks, uint32_t vertex) {
+    const auto after = [](uint32_t v, const Chunk& c) { return v < c.firstVertex; };
+    return *std::prev(std::upper_bound(chunks.begin(), chunks.end(), vertex, after));
+}
+
 void nameBorrowed(std::span<const Chunk> chunks, Chunk& chunk) {
     for (int kind = 0; kind < seamKinds; ++kind) {
         const uint32_t begin = chunk.borrowed.begin[kind], end = chunk.borrowed.begin[kind + 1];
@@ -41,7 +46,7 @@ void setFacetedNormals(std::span<const Chunk> chunks, std::span<Chunk> of) {
 
     const auto after = [](uint32_t v, const Chunk& c) { return v < c.firstVertex; };
     const auto position = [&](uint32_t v) {
-        const Chunk& c = *std::prev(std::upper_bound(chunks.begin(), chunks.end(), v, after));
+        const Chunk& c = ownerOf(chunks, v);
         return c.positions[v - c.firstVertex].as<double>();
     };
     std::vector<Vec3d> sums(faceted.size());

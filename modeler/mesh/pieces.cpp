@@ -3,6 +3,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "modeler/mesh/chunk.h"
 #include "modeler/mesh/components.h"
 
 namespace sgm::mesh {
@@ -45,13 +46,6 @@ struct Surfaces {
     SurfaceLabels labels;       ///< by vertex: its piece
 };
 
-/// The position of a vertex counted in the whole mesh.
-Vec3f positionOf(const Mesh& mesh, uint32_t vertex) {
-    const auto after = std::upper_bound(mesh.chunks.begin(), mesh.chunks.end(), vertex,
-                                        [](uint32_t v, const Chunk& c) { return v < c.firstVertex; });
-    return after[-1].positions[vertex - after[-1].firstVertex];
-}
-
 /// What triangles of one label add up to.
 struct Sum {
     uint64_t triangles = 0;
@@ -74,7 +68,10 @@ Surfaces surfacesOf(const Mesh& mesh) {
         for (const Chunk& c : mesh.chunks) {
             if (!near && !c.positions.empty()) near = c.positions.front().as<double>();
             borrowed.clear();
-            for (const uint32_t v : c.borrowed.vertices) borrowed.push_back(positionOf(mesh, v));
+            for (const uint32_t v : c.borrowed.vertices) {
+                const Chunk& owner = ownerOf(mesh.chunks, v);
+                borrowed.push_back(owner.positions[v - owner.firstVertex]);
+            }
             const auto position = [&](uint32_t corner) {
                 return (corner & borrowedBit ? borrowed[corner & ~borrowedBit] : c.positions[corner]).as<double>() - *near;
             };

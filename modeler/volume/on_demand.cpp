@@ -8,25 +8,32 @@
 namespace sgm::volume {
 namespace {
 
-/// The table, loaded once and for good. Error::Internal where the module or OpenVDB isn't to be found.
+constexpr const char* moduleName = "sgm_volumes.so";
+
+/// The table. Error::Internal where the module or OpenVDB isn't to be found.
 Result<const Doors*> load() {
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-    for (const auto& path : {program / SGM_VOLUME_MODULE, program.parent_path() / "lib/sgm" / SGM_VOLUME_MODULE}) {
+    for (const auto& path : {program / moduleName, program.parent_path() / "lib/sgm" / moduleName}) {
         if (!std::filesystem::exists(path)) continue;
         void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
         const void* const doors = module ? dlsym(module, "sgm_volume_doors") : nullptr;
         if (!doors) return Error{Error::Kind::Internal, std::string("volumes: ") + dlerror()};
         return static_cast<const Doors*>(doors);
     }
-    return Error{Error::Kind::Internal, "volumes: " SGM_VOLUME_MODULE " is neither beside " + program.string() + "/sgm nor in lib/sgm"};
+    return Error{Error::Kind::Internal, std::string("volumes: ") + moduleName + " is neither beside " + program.string() + "/sgm nor in lib/sgm"};
+}
+
+/// Loaded once and for good.
+const Result<const Doors*>& doors() {
+    static const Result<const Doors*> loaded = load();
+    return loaded;
 }
 
 /// What `door` leads to.
 template <auto door, class Outcome, class... Arguments>
 Outcome through(Arguments&&... arguments) {
-    static const Result<const Doors*> doors = load();
-    if (!doors.ok()) return doors.error();
-    return ((*doors)->*door)(std::forward<Arguments>(arguments)...);
+    if (!doors().ok()) return doors().error();
+    return ((*doors())->*door)(std::forward<Arguments>(arguments)...);
 }
 
 }  // namespace
