@@ -19,8 +19,9 @@ Kernels kernelsFor(Isa isa) {
     return portable::kernels();
 }
 
-void count(const Tape& tape, size_t points, bool gradient, Tally& tally) {
-    for (const Instruction& in : tape.code()) tally[{in.op, in.count, in.data, gradient}] += points;
+void count(const Tape& tape, size_t n, Asked asked, Tally* tally) {
+    if (!tally) return;
+    for (const Instruction& in : tape.code()) (*tally)[{in.op, in.count, in.data, asked}] += n;
 }
 
 /// Copies the two rows that `needsRange` speaks of, see Links::boundRows.
@@ -77,7 +78,7 @@ PointRoom roomForPoints(const Tape& tape, size_t n, Workspace& workspace) {
 
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
-    if (w.tally) count(tape, points.n, false, *w.tally);
+    count(tape, points.n, Asked::Value, w.tally);
     runBlocks(tape, points, w.kernels.values, 1, w, nothingBefore, [&](const StepContext& c, size_t first, size_t n) {
         storeResult(tape, c, w.kernels.store, 1, 0, out + first, n);
     });
@@ -86,7 +87,7 @@ void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace)
 void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
                       Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
-    if (w.tally) count(tape, points.n, true, *w.tally);
+    count(tape, points.n, Asked::Gradient, w.tally);
     float* const out[] = {value, dx, dy, dz};
     runBlocks(tape, points, w.kernels.gradients, 4, w, nothingBefore,
               [&](const StepContext& c, size_t first, size_t n) {
@@ -97,6 +98,7 @@ void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, 
 
 void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
+    count(tape, points.n, Asked::Value, w.tally);
     OwnerPass pass(tape, w);
     runBlocks(
         tape, points, w.kernels.values, 1, w, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
@@ -107,6 +109,7 @@ void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& wo
                     std::span<const uint32_t> free) {
     assert(regions.n >= 1 && regions.n <= maxBoxes);
     Workspace::Impl& w = workspace.impl();
+    count(tape, regions.n, Asked::Range, w.tally);
     StepContext c = w.context(tape, 2, maxBoxes);
     c.count = roundedUp(regions.n);
     for (uint32_t axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
 // How often tapes ran each operation: what a lower bound of their time is made of.
-// Enters: a Workspace told to count (Workspace::tallyInto). Leaves: points by operation. Assumes one thread.
+// Enters: a Workspace told to count (Workspace::tallyInto). Leaves: points and boxes by operation. Assumes one thread.
 #pragma once
 
 #include <compare>
@@ -10,16 +10,19 @@
 
 namespace sgm::eval {
 
+/// What of an operation is asked for: numbers at points, with derivatives, or enclosures over boxes.
+enum class Asked : uint8_t { Value, Gradient, Range };
+
 /// An operation as far as its cost depends on it.
 struct Operation {
     field::OpCode op;
     uint32_t count;         ///< operands
     uint32_t data;          ///< structural integer (the passes of a KIFS)
-    bool gradient = false;  ///< with derivatives
+    Asked asked = Asked::Value;
     friend auto operator<=>(const Operation&, const Operation&) = default;
 };
 
-/// Points that each operation was asked for; boxes of intervals are not counted.
+/// Points, or boxes, that each operation was asked for.
 using Tally = std::map<Operation, uint64_t>;
 
 }  // namespace sgm::eval

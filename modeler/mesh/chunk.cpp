@@ -102,12 +102,15 @@ void BlockMesher::clear() {
 bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chunk) {
     const Stopwatch sampling;
     clear();
-    samples_.enter(block, grid_, workspace_, counts_);
+    {
+        const AddTime evaluating(fieldTime_);
+        samples_.enter(block, grid_, workspace_, counts_);
+    }
     blockOwner_ = samples_.oneTape() ? onlyOwner(block.tape) : std::nullopt;
     for (uint64_t rest = samples_.active(); rest != 0; rest &= rest - 1) {
         if (cancelled(progress)) return false;
         const int brick = std::countr_zero(rest);
-        addBrick(brick, samples_.sample(brick, workspace_, counts_));
+        addBrick(brick, sampled(brick));
     }
     if (waiting_ > 0) findWaiting(block.tape);
     counts_.sampleSeconds += sampling.seconds();
@@ -122,6 +125,12 @@ bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chun
     writeTriangles(chunk);
     counts_.polygonizeSeconds += joining.seconds();
     return true;
+}
+
+/// Samples the brick; returns its tape.
+const eval::Tape& BlockMesher::sampled(int brick) {
+    const AddTime evaluating(fieldTime_);
+    return samples_.sample(brick, workspace_, counts_);
 }
 
 /// The brick's cells with surface; returns how many.
@@ -194,7 +203,7 @@ void BlockMesher::lend(const BrickSigns& signs, Vec3i brick) {
 
 /// Finds where the vertices on all edges lie, of which the first `own` are the next ones of the block.
 void BlockMesher::findPlaces(const eval::Tape& tape, size_t own) {
-    counts_.refinementEvaluations += findVertices(tape, refineSteps_, workspace_, openEdges_, edges_);
+    counts_.refinementEvaluations += findVertices(tape, refineSteps_, workspace_, openEdges_, edges_, fieldTime_);
     flat_ = flat_ || (edges_.size > 0 && edges_.flat > 0);
     const size_t first = positions_.size();
     positions_.resize(first + own), normals_.resize(first + own);
@@ -217,7 +226,10 @@ std::optional<OriginId> BlockMesher::findOrigins(const eval::Tape& tape) {
     const size_t n = edges_.size;
     if (n == 0) return {};
     found_.resize(n);
-    eval::evaluateOrigin(tape, {edges_.arrays.x, edges_.arrays.y, edges_.arrays.z, n}, found_.data(), workspace_);
+    {
+        const AddTime evaluating(fieldTime_);
+        eval::evaluateOrigin(tape, {edges_.arrays.x, edges_.arrays.y, edges_.arrays.z, n}, found_.data(), workspace_);
+    }
     std::copy_n(found_.data(), ownEdges_, origins_.data() + origins_.size() - ownEdges_);
     for (size_t e = ownEdges_; e < n; ++e) {
         const auto [kind, place] = borrowedPlaces_[e - ownEdges_];

@@ -25,6 +25,8 @@ public:
 
     /// Counts operations too, as eval::Workspace::tallyInto.
     void tallyInto(eval::Tally* tally) { workspace_.tallyInto(tally); }
+    /// Reads the clock around all that evaluates the field.
+    void timeField() { fieldTime_ = &counts_.field; }
     /// Counted so far; seconds are those of this worker.
     const Counts& counts() const { return counts_; }
 
@@ -47,6 +49,7 @@ private:
     };
 
     void clear();
+    const eval::Tape& sampled(int brick);
     void addBrick(int number, const eval::Tape& tape);
     size_t addCells(const BrickSigns& signs, Vec3i brick);
     void addOwnEdges(const BrickSigns& signs);
@@ -84,6 +87,7 @@ private:
     size_t cellCount_ = 0, triangles_ = 0;
     bool flat_ = false;  ///< some vertex has no normal
     Counts counts_;
+    SumOfTimes* fieldTime_ = nullptr;  ///< counts_.field, if that is measured
 };
 
 /// Counts vertices and triangles across a mesh. Chunks come in order of (z, y, x).

@@ -47,6 +47,7 @@ Result<std::vector<Chunk>> chunksOf(std::span<const Block> blocks, const Grid& g
     for (size_t w = 0; w < threads; ++w) {
         workers.emplace_back(grid, static_cast<size_t>(options.refineSteps));
         if (options.tally) workers[w].tallyInto(&tallies[w]);
+        if (options.timeField) workers[w].timeField();
     }
     std::vector<Chunk> chunks(blocks.size());
     parallelFor(blocks.size(), options.threads, progress, [&](size_t b, int worker) {
@@ -60,6 +61,7 @@ Result<std::vector<Chunk>> chunksOf(std::span<const Block> blocks, const Grid& g
     for (const BlockMesher& w : workers) counted += w.counts();
     counted.sampleSeconds /= static_cast<double>(threads);
     counted.polygonizeSeconds /= static_cast<double>(threads);
+    counted.field.seconds /= static_cast<double>(threads);
     counts += counted;
     for (const eval::Tally& tally : tallies)
         for (const auto& [operation, points] : tally) (*options.tally)[operation] += points;

@@ -18,7 +18,8 @@ struct PolygonizeOptions {
     int threads = 0;      ///< 0 = all
     int refineSteps = 3;  ///< evaluations a vertex may take after linear interpolation; 0 = the paper's interpolation
     uint64_t memoryBudget_bytes = 8ull << 30;  ///< Error::Budget beyond
-    eval::Tally* tally = nullptr;              ///< adds up the operations that samples and vertices took
+    eval::Tally* tally = nullptr;              ///< adds up the operations that samples, vertices and origins took
+    bool timeField = false;                    ///< reads the clock around every evaluation, which takes time itself
 };
 
 /// The first half of `polygonize`: the chunks of those blocks that hold surface, in the blocks' order, each by itself;

@@ -66,6 +66,7 @@ Counts& Counts::operator+=(const Counts& o) {
     subdivideSeconds += o.subdivideSeconds;
     sampleSeconds += o.sampleSeconds;
     polygonizeSeconds += o.polygonizeSeconds;
+    field += o.field;
     return *this;
 }
 

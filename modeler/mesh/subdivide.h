@@ -12,6 +12,7 @@
 
 #include "modeler/core/progress.h"
 #include "modeler/core/result.h"
+#include "modeler/core/stopwatch.h"
 #include "modeler/eval/evaluate.h"
 
 namespace sgm::mesh {
@@ -52,6 +53,7 @@ struct Counts {
     uint64_t refinementEvaluations = 0;
     uint64_t surfaceCells = 0;
     double subdivideSeconds = 0, sampleSeconds = 0, polygonizeSeconds = 0;
+    SumOfTimes field;  ///< of sampleSeconds, what the field's evaluation takes; with PolygonizeOptions::timeField
     Counts& operator+=(const Counts& o);
 };
 

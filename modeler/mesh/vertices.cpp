@@ -7,33 +7,48 @@
 namespace sgm::mesh {
 namespace {
 
-/// The field's value and its derivatives.
-void evaluate(const eval::Tape& tape, const EdgeArrays& e, size_t n, eval::Workspace& workspace) {
-    eval::evaluateGradient(tape, {e.x, e.y, e.z, n}, e.f, e.dx, e.dy, e.dz, workspace);
-}
+/// The field, whose evaluation may be timed.
+class TimedField {
+public:
+    TimedField(const eval::Tape& tape, eval::Workspace& workspace, SumOfTimes* time)
+        : tape_(tape), workspace_(workspace), time_(time) {}
+    void value(const EdgeArrays& e, size_t n) const {
+        const AddTime evaluating(time_);
+        eval::evaluate(tape_, {e.x, e.y, e.z, n}, e.f, workspace_);
+    }
+    /// Its derivatives too.
+    void gradient(const EdgeArrays& e, size_t n) const {
+        const AddTime evaluating(time_);
+        eval::evaluateGradient(tape_, {e.x, e.y, e.z, n}, e.f, e.dx, e.dy, e.dz, workspace_);
+    }
+
+private:
+    const eval::Tape& tape_;
+    eval::Workspace& workspace_;
+    SumOfTimes* const time_;
+};
 
 /// By values alone, and by the derivative once at the end.
-uint64_t findByValues(const eval::Tape& tape, size_t refineSteps, eval::Workspace& workspace, CutEdges& edges) {
+uint64_t findByValues(const TimedField& field, size_t refineSteps, CutEdges& edges) {
     const EdgeLoops& loops = edgeLoops();
     const EdgeArrays& e = edges.arrays;
     for (size_t s = 0; s < refineSteps; ++s) {
-        eval::evaluate(tape, {e.x, e.y, e.z, edges.size}, e.f, workspace);
+        field.value(e, edges.size);
         loops.narrow(e, edges.size, s % 2 == 1);
     }
-    evaluate(tape, e, edges.size, workspace);
+    field.gradient(e, edges.size);
     if (refineSteps > 0) loops.settle(e, edges.size);
     return refineSteps * edges.size;
 }
 
 /// By value and derivative together: most vertices take one evaluation, and only the others go on.
-uint64_t findByNewton(const eval::Tape& tape, size_t refineSteps, eval::Workspace& workspace,
-                      std::vector<CutEdges>& scratch, CutEdges& edges) {
+uint64_t findByNewton(const TimedField& field, size_t refineSteps, std::vector<CutEdges>& scratch, CutEdges& edges) {
     const EdgeLoops& loops = edgeLoops();
     uint64_t evaluations = 0;
     scratch.resize(std::max(scratch.size(), refineSteps));
     CutEdges* list = &edges;
     for (size_t s = 0;; ++s) {
-        evaluate(tape, list->arrays, list->size, workspace);
+        field.gradient(list->arrays, list->size);
         if (s == refineSteps) break;  // where the last step led, only the derivative is asked
         evaluations += list->size;
         if (loops.step(list->arrays, list->size) == 0) break;
@@ -78,12 +93,13 @@ void CutEdges::reserve(size_t n) {
 }
 
 uint64_t findVertices(const eval::Tape& tape, size_t refineSteps, eval::Workspace& workspace,
-                      std::vector<CutEdges>& scratch, CutEdges& edges) {
+                      std::vector<CutEdges>& scratch, CutEdges& edges, SumOfTimes* fieldTime) {
     if (edges.size == 0) return 0;
     const EdgeLoops& loops = edgeLoops();
     loops.interpolate(edges.arrays, edges.size);
-    const uint64_t evaluations = isDear(tape) ? findByValues(tape, refineSteps, workspace, edges)
-                                              : findByNewton(tape, refineSteps, workspace, scratch, edges);
+    const TimedField field(tape, workspace, fieldTime);
+    const uint64_t evaluations =
+        isDear(tape) ? findByValues(field, refineSteps, edges) : findByNewton(field, refineSteps, scratch, edges);
     edges.flat = loops.normalize(edges.arrays, edges.size);
     return evaluations;
 }

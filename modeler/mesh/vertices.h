@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "modeler/core/pages.h"
+#include "modeler/core/stopwatch.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/mesh/edge_loops.h"
 
@@ -38,8 +39,8 @@ private:
 
 /// Moves all vertices to the surface in at most `refineSteps` evaluations each (0: the line between the samples), and
 /// leaves in dx, dy, dz the unit normal where the field was last evaluated, zero where it has none. `scratch` grows to
-/// a list a step. Returns how many evaluations refined.
+/// a list a step. Returns how many evaluations refined; `fieldTime`, if any, adds up what those took.
 uint64_t findVertices(const eval::Tape& tape, size_t refineSteps, eval::Workspace& workspace,
-                      std::vector<CutEdges>& scratch, CutEdges& edges);
+                      std::vector<CutEdges>& scratch, CutEdges& edges, SumOfTimes* fieldTime = nullptr);
 
 }  // namespace sgm::mesh

@@ -40,7 +40,7 @@ public:
             of(fmt::format("{}: one thread / two threads at 512", scene), 1.85, true, scene, 512,
                [](const auto& m) { return m.oneThreadSeconds / m.totalSeconds; });
         add("sample / its operations alone, the worst", 3, false,
-            worst(false, [](const auto& m) { return m.sampleOverLeast(); }));
+            worst(false, [](const auto& m) { return m.fieldOverLeast(); }));
         add("join / writing its output, the worst", 3, false,
             worst(false, [&](const auto& m) { return polygonizeOverWrite(m, limits_); }));
         of("S3: bytes a triangle at 512", 60, false, "S3", 512, [](const auto& m) { return m.bytesPerTriangle(); });

@@ -120,7 +120,7 @@ void count(const Shells& shells, const mesh::Grid& grid, Vec3i block, eval::Work
 uint64_t foldedPoints(const eval::Tally& tally) {
     uint64_t points = 0;
     for (const auto& [operation, n] : tally)
-        if (operation.op == field::codeOf<field::ops::Facade> && !operation.gradient) points += n;
+        if (operation.op == field::codeOf<field::ops::Facade> && operation.asked == eval::Asked::Value) points += n;
     return points;
 }
 

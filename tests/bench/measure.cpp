@@ -25,13 +25,14 @@ mesh::Grid cubeOf(mesh::Grid grid) {
 }
 
 /// One run from tape to mesh, on `m`'s cube; `seconds` and `counts` keep the best.
-Status runOurs(const Scene& scene, const mesh::Grid& grid, Running running, eval::Tally* tally, double& best,
-               Measurement& m, mesh::Counts& counts) {
+Status runOurs(const Scene& scene, const mesh::Grid& grid, Running running, mesh::PolygonizeOptions options,
+               double& best, Measurement& m, mesh::Counts& counts) {
     mesh::Counts now;
     const Stopwatch watch(running), wall;
     const auto blocks = mesh::subdivide(scene.tape, grid, running.threads, nullptr, now);
     if (!blocks.ok()) return blocks.error();
-    const auto mesh = mesh::polygonize(*blocks, grid, {.threads = running.threads, .tally = tally}, nullptr, now);
+    options.threads = running.threads;
+    const auto mesh = mesh::polygonize(*blocks, grid, options, nullptr, now);
     if (!mesh.ok()) return mesh.error();
     const double seconds = watch.seconds(), wallSeconds = wall.seconds();
     m.vertices = mesh->vertexCount();
@@ -40,7 +41,7 @@ Status runOurs(const Scene& scene, const mesh::Grid& grid, Running running, eval
     best = seconds;
     counts = now;
     // Stages are told by the wall.
-    for (double* stage : {&counts.subdivideSeconds, &counts.sampleSeconds, &counts.polygonizeSeconds})
+    for (double* stage : {&counts.subdivideSeconds, &counts.sampleSeconds, &counts.polygonizeSeconds, &counts.field.seconds})
         *stage *= seconds / wallSeconds;
     return Done{};
 }
@@ -101,14 +102,35 @@ Status takeTurns(std::vector<Contestant>& contestants, int rounds) {
     return Done{};
 }
 
-/// The least time of what one run's samples and vertices are made of.
-Result<double> leastSampleSeconds(const Scene& scene, const mesh::Grid& grid, Running running) {
+/// What the clock tells of a piece of time in which nothing happens. As much passes outside of the piece.
+double secondsOfNothing() {
+    double least = 1;
+    for (int tries = 0; tries < 10; ++tries) {
+        SumOfTimes sum;
+        for (int i = 0; i < 1000; ++i) {
+            const AddTime nothing(&sum);
+        }
+        least = std::min(least, sum.seconds / static_cast<double>(sum.pieces));
+    }
+    return least;
+}
+
+/// What evaluating the field takes, and would take from register to register. Its share of a run is that of runs which
+/// read the clock around it, by themselves: the others needn't.
+Status measureField(const Scene& scene, const mesh::Grid& grid, Running running, int repeats, Measurement& m) {
+    Measurement timed;
+    for (int r = 0; r < repeats; ++r)
+        if (Status status = runOurs(scene, grid, running, {.timeField = true}, timed.totalSeconds, timed, timed.counts);
+            !status)
+            return status;
+    const double reading = static_cast<double>(timed.counts.field.pieces) * secondsOfNothing() / running.threads;
+    m.fieldSeconds = m.counts.sampleSeconds * (timed.counts.field.seconds - reading) /
+                     (timed.counts.sampleSeconds - 2 * reading);
     eval::Tally tally;
-    Measurement ignored;
-    double seconds = 0;
-    if (Status status = runOurs(scene, grid, running, &tally, seconds, ignored, ignored.counts); !status)
-        return status.error();
-    return leastSeconds(tally) / running.threads;
+    if (Status status = runOurs(scene, grid, running, {.tally = &tally}, timed.totalSeconds, timed, timed.counts); !status)
+        return status;
+    m.leastFieldSeconds = leastSeconds(tally) / running.threads;
+    return Done{};
 }
 
 }  // namespace
@@ -132,13 +154,13 @@ Result<Measurement> measure(const Scene& scene, int resolution, const MeasureOpt
     mesh::Counts ignored;
     const PeakMemory peak;
     std::vector<Contestant> contestants{{[&] {
-        const Status status = runOurs(scene, cube, running, nullptr, m.totalSeconds, m, m.counts);
+        const Status status = runOurs(scene, cube, running, {}, m.totalSeconds, m, m.counts);
         if (m.peakBytes == 0) m.peakBytes = peak.bytes();
         return status;
     }}};
     if (options.oneThread)
         contestants.push_back({[&] {
-            return runOurs(scene, cube, {1, running.clock}, nullptr, m.oneThreadSeconds, m, ignored);
+            return runOurs(scene, cube, {1, running.clock}, {}, m.oneThreadSeconds, m, ignored);
         }});
     if (options.dense) {
         contestants.push_back(
@@ -148,9 +170,7 @@ Result<Measurement> measure(const Scene& scene, int resolution, const MeasureOpt
     }
     if (options.peers) contestants.push_back(openVdb(scene, cube, running, m.openvdb));
     if (Status status = takeTurns(contestants, options.repeats); !status) return status.error();
-    const auto least = leastSampleSeconds(scene, cube, running);
-    if (!least.ok()) return least.error();
-    m.leastSampleSeconds = *least;
+    if (Status status = measureField(scene, cube, running, std::min(options.repeats, 5), m); !status) return status.error();
     return m;
 }
 

@@ -27,7 +27,8 @@ struct Measurement {
     double totalSeconds = 0;        ///< tape to mesh: refined positions, normals, triangles, origins
     double oneThreadSeconds = 0;    ///< the same on one thread; 0 where not asked for
     mesh::Counts counts;            ///< stages of the best run
-    double leastSampleSeconds = 0;  ///< of its operations alone, from register to register, shared by the threads
+    double fieldSeconds = 0;        ///< of its sampleSeconds, by the share measured apart: evaluating the field
+    double leastFieldSeconds = 0;   ///< of the field's operations alone, from register to register, shared by the threads
     uint64_t vertices = 0, triangles = 0;
     uint64_t peakBytes = 0;    ///< of the first run, above the start
     DenseResult dense;         ///< every sample of the cube in memory, then marching cubes
@@ -46,10 +47,14 @@ struct Measurement {
     double bytesPerTriangle() const {
         return static_cast<double>(peakBytes) / static_cast<double>(std::max<uint64_t>(1, triangles));
     }
-    /// The sampling stage over the least time of its operations.
-    double sampleOverLeast() const { return leastSampleSeconds > 0 ? counts.sampleSeconds / leastSampleSeconds : 0; }
-    /// What polygonize stores: a triangle's corners and its origin.
-    uint64_t polygonizedBytes() const { return triangles * (sizeof(mesh::Triangle) + sizeof(OriginId)); }
+    /// Evaluating the field over the least time of its operations.
+    double fieldOverLeast() const { return leastFieldSeconds > 0 ? fieldSeconds / leastFieldSeconds : 0; }
+    /// All that makes a mesh of the field's values: cells, edges, steps to the surface, vertices, seams, triangles.
+    double meshSeconds() const { return counts.sampleSeconds - fieldSeconds + counts.polygonizeSeconds; }
+    /// What it stores: a triangle's corners and its origin, a vertex's place and its normal.
+    uint64_t meshBytes() const {
+        return triangles * (sizeof(mesh::Triangle) + sizeof(OriginId)) + vertices * 2 * sizeof(Vec3f);
+    }
     double openvdbSeconds() const { return openvdb.sampleSeconds + openvdb.meshSeconds; }
     /// volumeToMesh after the sweeps' own loop over the blocks that aren't skipped, at its rate over the cube.
     double openvdbByHandSeconds() const {

@@ -2,6 +2,7 @@
 // instantiate an inline function that doesn't depend on Arch.
 #include "modeler/eval/source_arch.h"
 #include "modeler/eval/values_dual.h"
+#include "modeler/eval/values_interval.h"
 #include "modeler/eval/values_pair.h"
 #include "modeler/eval/values_simd.h"
 #include "modeler/field/ops.h"
@@ -13,6 +14,7 @@ namespace {
 using Arch = eval::SourceArch;
 using Float = eval::Lanes<Arch>;
 using Dual = eval::Dual<Float>;
+using Interval = eval::Interval<Float>;
 
 constexpr int chains = 8;  ///< independent inputs, so that latency doesn't count
 constexpr int tries = 5;
@@ -37,6 +39,7 @@ template <class V>
 inline void opaque(eval::Dual<V>& d) {
     opaque(d.value), opaque(d.dx), opaque(d.dy), opaque(d.dz);
 }
+inline void opaque(Interval& i) { opaque(i.lo), opaque(i.hi); }
 
 template <class V>
 V number(float f) {
@@ -56,10 +59,13 @@ auto dataOf(const eval::Operation& operation) {
         return operation.data;
 }
 
+/// As the kernels do (modeler/eval/kernels.cpp).
 template <class Row, class V>
 V call(auto... args) {
     if constexpr (std::is_same_v<V, Dual> && requires { Row::gradient(args...); })
         return Row::gradient(args...);
+    else if constexpr (std::is_same_v<V, Interval> && requires { Row::interval(args...); })
+        return Row::interval(args...);
     else
         return Row::apply(args...);
 }
@@ -109,7 +115,7 @@ template <class Row, class V>
 double measured([[maybe_unused]] const eval::Operation& operation) {
     if constexpr (Row::arity == field::ops::leaf) {
         return 0;
-    } else if constexpr (requires { sizeof(typename Row::template Numbers<Float>); }) {
+    } else if constexpr (!std::is_same_v<V, Interval> && requires { sizeof(typename Row::template Numbers<Float>); }) {
         return measuredByNumbers<Row, std::is_same_v<V, Dual>>(operation);
     } else if constexpr (Row::arity == field::ops::variadic) {
         const uint32_t n = operation.count < mostOperands ? operation.count : mostOperands;
@@ -146,7 +152,12 @@ double measured([[maybe_unused]] const eval::Operation& operation) {
 namespace SGM_ISA {
 double secondsPerPoint(const eval::Operation& operation) {
     const double vector = field::visitOp(operation.op, [&]<class Row>() {
-        return operation.gradient ? measured<Row, Dual>(operation) : measured<Row, Float>(operation);
+        switch (operation.asked) {
+            case eval::Asked::Gradient: return measured<Row, Dual>(operation);
+            case eval::Asked::Range: return measured<Row, Interval>(operation);
+            case eval::Asked::Value: break;
+        }
+        return measured<Row, Float>(operation);
     });
     return vector / static_cast<double>(Float::size);
 }

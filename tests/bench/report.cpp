@@ -12,7 +12,7 @@ using nlohmann::ordered_json;
 ordered_json stagesOf(const Measurement& m) {
     return {{"derive_seconds", m.deriveSeconds},        {"lower_seconds", m.lowerSeconds},
             {"compile_seconds", m.compileSeconds},      {"subdivide_seconds", m.counts.subdivideSeconds},
-            {"sample_seconds", m.counts.sampleSeconds}, {"polygonize_seconds", m.counts.polygonizeSeconds}};
+            {"sample_seconds", m.fieldSeconds},  {"polygonize_seconds", m.meshSeconds()}};
 }
 
 ordered_json sweepOf(const DenseResult& d) {
@@ -52,8 +52,8 @@ ordered_json sceneOf(const Measurement& m, const Limits& limits) {
                           {"interval_evaluations", m.counts.intervalEvaluations},
                           {"refinement_evaluations", m.counts.refinementEvaluations},
                           {"peak_bytes", m.peakBytes},
-                          {"least_sample_seconds", m.leastSampleSeconds},
-                          {"sample_over_least", m.sampleOverLeast()},
+                          {"least_sample_seconds", m.leastFieldSeconds},
+                          {"sample_over_least", m.fieldOverLeast()},
                           {"polygonize_over_write", polygonizeOverWrite(m, limits)},
                           {"swept_by", m.handWritten ? "hand-written loops" : "tape"},
                           {"dense", sweepOf(m.dense)},
@@ -67,8 +67,8 @@ ordered_json sceneOf(const Measurement& m, const Limits& limits) {
 }  // namespace
 
 double polygonizeOverWrite(const Measurement& m, const Limits& limits) {
-    const double floor = static_cast<double>(m.polygonizedBytes()) / (1e9 * limits.freshWriteGBs);
-    return floor > 0 ? m.counts.polygonizeSeconds / floor : 0;
+    const double floor = static_cast<double>(m.meshBytes()) / (1e9 * limits.freshWriteGBs);
+    return floor > 0 ? m.meshSeconds() / floor : 0;
 }
 
 std::string limitsLine(const Limits& limits, int threads) {
@@ -97,8 +97,8 @@ std::string tableRow(const Measurement& m, const Limits& limits) {
         "{:12} {:>4} {:>6} | {:>7.4f} {:>7.4f} {:>7.4f} {:>7.4f} {:>5.1f} {:>5.1f} | {:5} {:>7} {:>7} | {:>7} {:>7} | "
         "{:>7} {:>7} | "
         "{:>7} {:>7} {:>7} {:>7} | {:>7} | {:>8} {:>6.1f} {:>6.2f} {:>5.0f}",
-        m.scene, m.resolution, m.tapeLength, m.totalSeconds, m.counts.subdivideSeconds, m.counts.sampleSeconds,
-        m.counts.polygonizeSeconds, m.sampleOverLeast(), polygonizeOverWrite(m, limits),
+        m.scene, m.resolution, m.tapeLength, m.totalSeconds, m.counts.subdivideSeconds, m.fieldSeconds,
+        m.meshSeconds(), m.fieldOverLeast(), polygonizeOverWrite(m, limits),
         m.handWritten ? "hand" : "tape", sweep(m.dense), ratio(m.dense.seconds), sweep(m.fused), ratio(m.fused.seconds),
         sweep(m.tight), ratio(m.tight.seconds), seconds(m.openvdb.sampleSeconds), seconds(m.openvdb.meshSeconds),
         ratio(m.openvdbSeconds()), ratio(m.openvdbByHandSeconds()), seconds(m.vtk.seconds), m.triangles,
