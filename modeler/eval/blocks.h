@@ -10,8 +10,6 @@ namespace sgm::eval {
 
 /// Floats of registers that stay in a first-level cache.
 inline constexpr size_t cacheFloats = 32 * 1024 / sizeof(float);
-/// The most points at a time: no fewer than the 9³ corners of a brick.
-inline constexpr size_t maxBlock = 768;
 
 inline size_t roundedUp(size_t n) { return (n + vectorFloats - 1) / vectorFloats * vectorFloats; }
 
@@ -21,9 +19,15 @@ inline size_t blockSize(const Tape& tape, size_t planes) {
     return std::clamp(fits, vectorFloats, maxBlock);
 }
 
-/// Row `plane` of a register.
+/// Row `plane` of a register that instructions write, or of any in ranges.
 inline float* rowOf(const StepContext& c, uint32_t reg, size_t planes, size_t plane) {
     return c.registers + (reg * planes + plane) * c.stride;
+}
+
+/// Row `plane` of what an operand or the result reads, values (1 plane) or gradients (4).
+inline const float* placeOf(const StepContext& c, uint32_t reg, size_t planes, size_t plane) {
+    if (reg >= 3) return rowOf(c, reg, planes, plane);
+    return plane == 0 ? c.coordinates[reg] : c.derivatives[reg] + (plane - 1) * c.stride;
 }
 
 /// Copies a plane of the result to `out`.
@@ -32,7 +36,7 @@ inline void storeResult(const Tape& tape, const StepContext& c, StoreRow store, 
     if (isConstant(tape.result()))
         std::fill_n(out, n, plane == 0 ? tape.constants()[indexOf(tape.result())] : 0.0f);
     else
-        store(rowOf(c, tape.result(), planes, plane), n, out);
+        store(placeOf(c, tape.result(), planes, plane), n, out);
 }
 
 /// Runs a tape over points in blocks; `before(in, context)` sees each instruction's operands, `done` each block's
@@ -40,15 +44,18 @@ inline void storeResult(const Tape& tape, const StepContext& c, StoreRow store, 
 template <class Before, class DoneBlock>
 void runBlocks(const Tape& tape, const Points& points, const Step* steps, size_t planes, Workspace::Impl& w,
                Before&& before, DoneBlock&& done) {
-    const size_t block = blockSize(tape, planes);
-    const bool inPlace = planes == 1 && w.roomStride > 0 && points.x == w.registers.get(0);
-    StepContext c = w.context(tape, planes, inPlace ? w.roomStride : std::min(block, roundedUp(points.n)));
-    w.roomStride = 0;
+    const size_t block = blockSize(tape, planes), most = std::min(block, roundedUp(points.n));
+    StepContext c = w.context(tape, planes, planes == 1 ? most : Workspace::Impl::strideOfGradients(most));
+    float* const copies = points.padded ? nullptr : w.points.get(3 * most);
+    if (planes > 1) w.pointDerivatives(c);
     for (size_t first = 0; first < points.n; first += block) {
         const size_t n = std::min(block, points.n - first);
         c.count = roundedUp(n);
         const float* const from[] = {points.x + first, points.y + first, points.z + first};
-        (planes == 1 ? w.kernels.loadValues : w.kernels.loadGradients)(from, n, c);
+        for (size_t axis = 0; axis < 3; ++axis) {
+            if (copies) w.kernels.load(from[axis], n, c.count, copies + axis * most);
+            c.coordinates[axis] = copies ? copies + axis * most : from[axis];
+        }
         for (const Instruction& in : tape.code()) {
             before(in, c);
             steps[static_cast<size_t>(in.op)](in, c);

@@ -60,6 +60,8 @@ StepContext Workspace::Impl::context(const Tape& tape, size_t planes, size_t str
     return {registers.get(tape.registerCount() * planes * stride),
             stride,
             stride,
+            {},
+            {},
             tape.constants().data(),
             tape.sources().data(),
             tape.grids() ? tape.grids()->words.data() : nullptr,
@@ -67,13 +69,18 @@ StepContext Workspace::Impl::context(const Tape& tape, size_t planes, size_t str
             nullptr};
 }
 
-PointRoom roomForPoints(const Tape& tape, size_t n, Workspace& workspace) {
-    Workspace::Impl& w = workspace.impl();
-    w.roomStride = 0;
-    if (n > blockSize(tape, 1)) return {nullptr, nullptr, nullptr};
-    w.roomStride = roundedUp(n) + vectorFloats;
-    const StepContext c = w.context(tape, 1, w.roomStride);
-    return {rowOf(c, 0, 1, 0), rowOf(c, 1, 1, 0), rowOf(c, 2, 1, 0)};
+void Workspace::Impl::pointDerivatives(StepContext& c) {
+    const auto which = std::find(std::begin(gradientStrides), std::end(gradientStrides), c.stride);
+    assert(which != std::end(gradientStrides));
+    AlignedFloats& kept = derivatives_[which - std::begin(gradientStrides)];
+    constexpr size_t rows = 5, one = 2;
+    const bool fresh = kept.empty();
+    float* const first = kept.get(rows * c.stride);
+    if (fresh) {
+        std::fill_n(first, rows * c.stride, 0.0f);
+        std::fill_n(first + one * c.stride, c.stride, 1.0f);
+    }
+    for (size_t axis = 0; axis < 3; ++axis) c.derivatives[axis] = first + (one - axis) * c.stride;
 }
 
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace) {

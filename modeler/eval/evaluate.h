@@ -38,21 +38,17 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
+/// Floats of the longest vector.
+inline constexpr size_t pointPadding = 16;
+
 /// Positions and where the values go: n of each, any n, no alignment needed.
 struct Points {
     const float* x;
     const float* y;
     const float* z;
     size_t n;
+    bool padded = false;  ///< rows are 64-byte aligned, and numbers up to a multiple of pointPadding: nothing is copied
 };
-
-/// Where points may be written so that `evaluate` needn't copy them.
-struct PointRoom {
-    float *x, *y, *z;
-};
-/// Room for n points of this tape, and 16 floats more each that anything may be written to; null pointers where it
-/// doesn't take so many at a time. Valid for the workspace's next `evaluate`, if that is the next use of it.
-PointRoom roomForPoints(const Tape& tape, size_t n, Workspace& workspace);
 
 /// out[i] = f(x[i], y[i], z[i]).
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace);

@@ -18,19 +18,27 @@ using Arch = SourceArch;
 using Float = Lanes<Arch>;
 static_assert(vectorFloats % Float::size == 0);
 
+/// Where an operand is: its first plane, and the others, a stride apart.
+struct Place {
+    const float* first;
+    const float* rest;
+    Place from(size_t i) const { return {first + i, rest + i}; }
+};
+
 /// How a value type lies in the register file.
 template <class V>
 struct Planes;
 template <>
 struct Planes<Float> {
     static constexpr size_t count = 1, floats = Float::size;
-    static Float load(const float* p, size_t) { return Float::load(p); }
+    static Float load(Place at, size_t) { return Float::load(at.first); }
     static void store(Float v, float* p, size_t) { v.store(p); }
 };
 template <>
 struct Planes<Pair<Float>> {
     static constexpr size_t count = 1, floats = 2 * Float::size;
-    static Pair<Float> load(const float* p, size_t) { return {Float::load(p), Float::load(p + Float::size)}; }
+    static Pair<Float> row(const float* p) { return {Float::load(p), Float::load(p + Float::size)}; }
+    static Pair<Float> load(Place at, size_t) { return row(at.first); }
     static void store(Pair<Float> v, float* p, size_t) {
         v.a.store(p);
         v.b.store(p + Float::size);
@@ -39,8 +47,9 @@ struct Planes<Pair<Float>> {
 template <>
 struct Planes<Dual<Float>> {
     static constexpr size_t count = 4, floats = Float::size;
-    static Dual<Float> load(const float* p, size_t stride) {
-        return {Float::load(p), Float::load(p + stride), Float::load(p + 2 * stride), Float::load(p + 3 * stride)};
+    static Dual<Float> load(Place at, size_t stride) {
+        return {Float::load(at.first), Float::load(at.rest), Float::load(at.rest + stride),
+                Float::load(at.rest + 2 * stride)};
     }
     static void store(Dual<Float> v, float* p, size_t stride) {
         v.value.store(p);
@@ -53,8 +62,8 @@ template <>
 struct Planes<Dual<Pair<Float>>> {
     static constexpr size_t count = 4, floats = 2 * Float::size;
     using Row = Planes<Pair<Float>>;
-    static Dual<Pair<Float>> load(const float* p, size_t stride) {
-        return {Row::load(p, 0), Row::load(p + stride, 0), Row::load(p + 2 * stride, 0), Row::load(p + 3 * stride, 0)};
+    static Dual<Pair<Float>> load(Place at, size_t stride) {
+        return {Row::row(at.first), Row::row(at.rest), Row::row(at.rest + stride), Row::row(at.rest + 2 * stride)};
     }
     static void store(Dual<Pair<Float>> v, float* p, size_t stride) {
         Row::store(v.value, p, 0);
@@ -66,7 +75,7 @@ struct Planes<Dual<Pair<Float>>> {
 template <>
 struct Planes<Interval<Float>> {
     static constexpr size_t count = 2;
-    static Interval<Float> load(const float* p, size_t stride) { return {Float::load(p), Float::load(p + stride)}; }
+    static Interval<Float> load(Place at, size_t) { return {Float::load(at.first), Float::load(at.rest)}; }
     static void store(Interval<Float> v, float* p, size_t stride) {
         v.lo.store(p);
         v.hi.store(p + stride);
@@ -115,9 +124,19 @@ auto dataOf(const Instruction& in, const StepContext& c) {
         return in.data;
 }
 
+/// Where an instruction writes.
 template <class V>
-float* rowOf(const StepContext& c, uint32_t reg) {
+float* outOf(const StepContext& c, uint32_t reg) {
     return c.registers + size_t{reg} * Planes<V>::count * c.stride;
+}
+
+/// Where an operand is read.
+template <class V>
+Place placeOf(const StepContext& c, uint32_t reg) {
+    if constexpr (!std::is_same_v<V, Interval<Float>>)
+        if (reg < 3) return {c.coordinates[reg], c.derivatives[reg]};
+    const float* const first = outOf<V>(c, reg);
+    return {first, first + c.stride};
 }
 
 /// An operand that is one constant for all lanes.
@@ -129,9 +148,9 @@ struct Fixed {
 /// An operand in a register.
 template <class V>
 struct Moving {
-    const float* row;
+    Place place;
     size_t stride;
-    V at(size_t i) const { return Planes<V>::load(row + i, stride); }
+    V at(size_t i) const { return Planes<V>::load(place.from(i), stride); }
 };
 
 /// fn with the operand as it is: the choice is made once an instruction, not once a vector.
@@ -140,12 +159,12 @@ void withOperand(Source s, const StepContext& c, Fn&& fn) {
     if (isConstant(s))
         fn(Fixed<V>{V(c.constants[indexOf(s)])});
     else
-        fn(Moving<V>{rowOf<V>(c, s), c.stride});
+        fn(Moving<V>{placeOf<V>(c, s), c.stride});
 }
 
 template <class V>
 V loadAt(Source s, const StepContext& c, size_t i) {
-    return isConstant(s) ? V(c.constants[indexOf(s)]) : Planes<V>::load(rowOf<V>(c, s) + i, c.stride);
+    return isConstant(s) ? V(c.constants[indexOf(s)]) : Planes<V>::load(placeOf<V>(c, s).from(i), c.stride);
 }
 
 /// What pruning needs to know: each operand's end that is nearer to being chosen, and the reach; NaN where one is
@@ -165,7 +184,7 @@ void keepBounds(std::span<const Interval<Float>> args, uint32_t data, size_t i, 
 template <class Row, class V>
 void stepOver(const Instruction& in, const StepContext& c) {
     [[maybe_unused]] constexpr bool chooses = field::traitsOf<Row>().chooses && std::is_same_v<V, Interval<Float>>;
-    float* const out = rowOf<V>(c, in.out);
+    float* const out = outOf<V>(c, in.out);
     V* const args = static_cast<V*>(c.arguments);
     const Source* const sources = c.sources + in.a;
     for (size_t i = 0; i < c.count; i += Float::size) {
@@ -179,10 +198,10 @@ void stepOver(const Instruction& in, const StepContext& c) {
 /// A row whose operands are numbers but for those that move, from point i on for as many whole V as there are. Returns how
 /// far it came.
 template <class Row, auto path, class V>
-size_t stepByNumbers(size_t i, const float* const* rows, const auto& numbers, float* out, const StepContext& c) {
+size_t stepByNumbers(size_t i, const Place* places, const auto& numbers, float* out, const StepContext& c) {
     for (; i + Planes<V>::floats <= c.count; i += Planes<V>::floats) {
         V at[Row::moving];
-        for (size_t k = 0; k < Row::moving; ++k) at[k] = Planes<V>::load(rows[k] + i, c.stride);
+        for (size_t k = 0; k < Row::moving; ++k) at[k] = Planes<V>::load(places[k].from(i), c.stride);
         Planes<V>::store(Row::template byNumbers<path>(at, numbers), out + i, c.stride);
     }
     return i;
@@ -196,9 +215,9 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
     const Source* const sources = c.sources + in.a;
     for (size_t k = 0; k < count; ++k)
         if (isConstant(sources[k]) != (k >= moving)) return false;
-    const float* rows[moving];
-    for (size_t k = 0; k < moving; ++k) rows[k] = rowOf<V>(c, sources[k]);
-    float* const out = rowOf<V>(c, in.out);
+    Place places[moving];
+    for (size_t k = 0; k < moving; ++k) places[k] = placeOf<V>(c, sources[k]);
+    float* const out = outOf<V>(c, in.out);
     if constexpr (!std::is_same_v<V, Interval<Float>> && requires { sizeof(typename Row::template Numbers<Float>); }) {
         Float args[count];
         for (size_t k = moving; k < count; ++k) args[k] = Float(c.constants[indexOf(sources[k])]);
@@ -207,14 +226,14 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
         Row::visitPath(numbers.form, [&]<auto path>() {
             using Two = std::conditional_t<std::is_same_v<V, Float>, Pair<Float>, Dual<Pair<Float>>>;
             const typename Row::template Numbers<Pair<Float>> both(numbers);
-            const size_t i = stepByNumbers<Row, path, Two>(0, rows, both, out, c);
-            stepByNumbers<Row, path, V>(i, rows, numbers, out, c);
+            const size_t i = stepByNumbers<Row, path, Two>(0, places, both, out, c);
+            stepByNumbers<Row, path, V>(i, places, numbers, out, c);
         });
     } else {
         V args[count];
         for (size_t k = moving; k < count; ++k) args[k] = V(c.constants[indexOf(sources[k])]);
         for (size_t i = 0; i < c.count; i += Float::size) {
-            for (size_t k = 0; k < moving; ++k) args[k] = Planes<V>::load(rows[k] + i, c.stride);
+            for (size_t k = 0; k < moving; ++k) args[k] = Planes<V>::load(places[k].from(i), c.stride);
             Planes<V>::store(Body<Row, V>::call(std::span<const V>(args, count), dataOf<Row>(in, c)), out + i,
                              c.stride);
         }
@@ -225,7 +244,7 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
 template <class Row, class V>
 void step(const Instruction& in, const StepContext& c) {
     [[maybe_unused]] constexpr bool chooses = field::traitsOf<Row>().chooses && std::is_same_v<V, Interval<Float>>;
-    float* const out = rowOf<V>(c, in.out);
+    float* const out = outOf<V>(c, in.out);
     if constexpr (Row::arity == 1) {
         withOperand<V>(in.a, c, [&](auto a) {
             for (size_t i = 0; i < c.count; i += Float::size)
@@ -282,22 +301,12 @@ inline Float loadSome(const float* from, size_t n, float rest) {
 #endif
 }
 
-template <class V>
-void loadPoints(const float* const from[3], size_t n, const StepContext& c) {
-    for (uint32_t axis = 0; axis < 3; ++axis) {
-        const float* const coordinates = from[axis];
-        float* const row = rowOf<V>(c, axis);
-        size_t i = coordinates == row ? n / Float::size * Float::size : 0;
-        for (; i + Float::size <= n; i += Float::size)
-            Float(Float::Batch::load_unaligned(coordinates + i)).store(row + i);
-        const Float last = coordinates[n - 1];
-        if (i < n) loadSome(coordinates + i, n - i, coordinates[n - 1]).store(row + i), i += Float::size;
-        for (; i < c.count; i += Float::size) last.store(row + i);
-        for (size_t d = 1; d < Planes<V>::count; ++d) {
-            const Float derivative = d == axis + 1 ? 1.0f : 0.0f;
-            for (i = 0; i < c.count; i += Float::size) derivative.store(row + d * c.stride + i);
-        }
-    }
+void load(const float* from, size_t n, size_t count, float* row) {
+    size_t i = 0;
+    for (; i + Float::size <= n; i += Float::size) Float(Float::Batch::load_unaligned(from + i)).store(row + i);
+    const Float last = from[n - 1];
+    if (i < n) loadSome(from + i, n - i, from[n - 1]).store(row + i), i += Float::size;
+    for (; i < count; i += Float::size) last.store(row + i);
 }
 
 void store(const float* row, size_t n, float* to) {
@@ -323,8 +332,7 @@ Kernels kernels() {
     constexpr field::OpTable rows;
     return {steps<Float>(rows), steps<Dual<Float>>(rows), steps<Interval<Float>>(rows),
             moveOwners<true>,   moveOwners<false>,        ownersOfTwo<true>,
-            ownersOfTwo<false>, loadPoints<Float>,        loadPoints<Dual<Float>>,
-            store};
+            ownersOfTwo<false>, load,                     store};
 }
 }  // namespace SGM_ISA
 

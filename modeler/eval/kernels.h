@@ -1,7 +1,8 @@
 // One step of a tape, compiled for each instruction set.
 // Enters: an instruction and register files. Leaves: the instruction's output registers. Assumes 64-byte aligned
 // memory. A register file is planar: register r of a value type of P floats is P rows of `stride` floats at r · P ·
-// stride.
+// stride. The coordinates, which no instruction writes, are read from where they are: registers 0, 1, 2 stay empty, but
+// for ranges.
 #pragma once
 
 #include <cstddef>
@@ -13,6 +14,8 @@ namespace sgm::eval {
 
 /// Floats in the longest vector: register rows are multiples of it.
 inline constexpr size_t vectorFloats = 16;
+/// The most points at a time: no fewer than the 9³ corners of a brick.
+inline constexpr size_t maxBlock = 768;
 /// Boxes at once: floats of a row of bounds.
 inline constexpr size_t maxBoxes = 64;
 /// Bytes of argument scratch a variadic op needs for each operand: a Dual of the longest vector.
@@ -21,8 +24,10 @@ inline constexpr size_t argumentBytes = 4 * vectorFloats * sizeof(float);
 /// Where the steps work.
 struct StepContext {
     float* registers;
-    size_t stride;  ///< floats in a row, a multiple of vectorFloats
-    size_t count;   ///< floats of a row in use, a multiple of vectorFloats
+    size_t stride;                 ///< floats in a row, a multiple of vectorFloats
+    size_t count;                  ///< floats of a row in use, a multiple of vectorFloats
+    const float* coordinates[3];   ///< rows of x, y, z; not for ranges
+    const float* derivatives[3];   ///< gradients: their planes dx, dy, dz, `stride` apart
     const float* constants;
     const Source* sources;
     const float* const* grids;  ///< words of the tape's grids, by number
@@ -41,9 +46,8 @@ using MoveOwners = void (*)(const float* values, const float* owners, float one,
 using OwnersOfTwo = void (*)(const float* const values[2], const float* const owners[2], const float ones[2], size_t n,
                              float* taken);
 
-/// Puts n ≥ 1 points into registers 0, 1, 2, and the last one again up to c.count. Derivatives are 1 where they are
-/// due.
-using LoadPoints = void (*)(const float* const from[3], size_t n, const StepContext& c);
+/// Copies n ≥ 1 floats to an aligned row, and the last one again up to `count`, a multiple of vectorFloats.
+using LoadRow = void (*)(const float* from, size_t n, size_t count, float* row);
 /// Copies n floats of an aligned row.
 using StoreRow = void (*)(const float* row, size_t n, float* to);
 
@@ -54,7 +58,7 @@ struct Kernels {
     const Step* ranges;     ///< Interval: rows lo, hi; ops that choose also write `bounds`
     MoveOwners toLesser, toGreater;
     OwnersOfTwo ofLesser, ofGreater;
-    LoadPoints loadValues, loadGradients;
+    LoadRow load;
     StoreRow store;
 };
 

@@ -24,7 +24,7 @@ void OwnerPass::gather(const Instruction& in, const Source* sources, const StepC
         if (isConstant(s))
             operands_.push_back({nullptr, c.constants[indexOf(s)], {nullptr, own}});
         else
-            operands_.push_back({eval::rowOf(c, s, 1, 0), 0.0f, own != 0 ? Owners{nullptr, own} : owners_[s]});
+            operands_.push_back({eval::placeOf(c, s, 1, 0), 0.0f, own != 0 ? Owners{nullptr, own} : owners_[s]});
     }
 }
 

@@ -2,7 +2,9 @@
 // Enters: sizes asked for. Leaves: aligned memory that only grows. Assumes one thread.
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <iterator>
 #include <vector>
 
 #include "modeler/eval/evaluate.h"
@@ -20,6 +22,8 @@ public:
         if (lines_.size() < lines) lines_.resize(lines);
         return lines_.empty() ? nullptr : lines_.front().v;
     }
+
+    bool empty() const { return lines_.empty(); }
 
 private:
     struct alignas(vectorFloats * sizeof(float)) Line {
@@ -47,7 +51,7 @@ struct alignas(128) Workspace::Impl {
     Kernels kernels;
     Tally* tally = nullptr;  ///< where operations are counted, if at all
     AlignedFloats registers, arguments;
-    size_t roomStride = 0;  ///< of the registers that roomForPoints handed out
+    AlignedFloats points;  ///< copies of coordinates that aren't padded
     Links links;                    ///< of the last evaluateRanges
     AlignedFloats bounds;  ///< rows of maxBoxes floats, see Links::bounds
     AlignedFloats owners;  ///< registers of owners, as bits
@@ -58,6 +62,19 @@ struct alignas(128) Workspace::Impl {
 
     /// A context for blocks of `count` floats of a value type of `planes` floats.
     StepContext context(const Tape& tape, size_t planes, size_t stride);
+
+    /// Few strides, so that derivatives of coordinates stay from call to call; no powers of two, whose rows would evict
+    /// each other.
+    static constexpr size_t gradientStrides[] = {96, 192, 384, maxBlock};
+    /// The least of them that has room for n points, n ≤ maxBlock.
+    static size_t strideOfGradients(size_t n) {
+        return *std::lower_bound(std::begin(gradientStrides), std::end(gradientStrides), n);
+    }
+    /// Sets the context's derivatives of coordinates, for its stride.
+    void pointDerivatives(StepContext& c);
+
+private:
+    AlignedFloats derivatives_[std::size(gradientStrides)];  ///< by stride: rows 0 0 1 0 0
 };
 
 }  // namespace sgm::eval

@@ -64,9 +64,9 @@ const BrickLoops& brickLoops() {
 #endif
 }
 
-BrickSigns::BrickSigns(const float* corner) {
+BrickSigns::BrickSigns(const BrickValues& values) {
     std::fill(rows.begin() + brickRows, rows.end(), uint16_t{0});
-    brickLoops().inside(corner, blockCorners, blockCorners * blockCorners, rows.data());
+    brickLoops().inside(values.corner, values.row, values.layer, rows.data());
     for (int row = 0; row < paddedRows; ++row) {
         low[row] = static_cast<uint8_t>(rows[row]);
         high[row] = static_cast<uint8_t>(rows[row] >> 1);

@@ -29,8 +29,7 @@ struct BrickSigns {
     BitRows rows;
     std::array<uint8_t, paddedRows> low, high;  ///< bits 0 … 7 and 1 … 8 of each row
 
-    /// `corner` is the block's sample at the brick's low corner.
-    explicit BrickSigns(const float* corner);
+    explicit BrickSigns(const BrickValues& values);
 };
 
 /// Rows of bits, and which groups of four rows have any.

@@ -175,9 +175,11 @@ void BlockMesher::borrow(const BrickSigns& signs, Vec3i brick, std::optional<Ori
 /// Looks up where the listed edges begin and end, behind those that wait, and numbers the brick's own.
 void BlockMesher::placeEdges(Vec3i brick) {
     const Vec3i first = brick * brickCells;
+    const BrickValues values = samples_.values(brickNumber(brick));
     const EdgeEnds ends{
         {samples_.coordinates(0) + first.x, samples_.coordinates(1) + first.y, samples_.coordinates(2) + first.z},
-        samples_.values() + brickCorner(brick),
+        values.corner,
+        {1, values.row, values.layer},
         {1, blockCorners, blockCorners * blockCorners}};
     uint32_t* const places = edges_.list.data();
     edgeLoops().place(ends, places, edges_.size, from(edges_.arrays, waiting_), places);
@@ -228,7 +230,7 @@ std::optional<OriginId> BlockMesher::findOrigins(const eval::Tape& tape) {
     found_.resize(n);
     {
         const AddTime evaluating(fieldTime_);
-        eval::evaluateOrigin(tape, {edges_.arrays.x, edges_.arrays.y, edges_.arrays.z, n}, found_.data(), workspace_);
+        eval::evaluateOrigin(tape, {edges_.arrays.x, edges_.arrays.y, edges_.arrays.z, n, true}, found_.data(), workspace_);
     }
     std::copy_n(found_.data(), ownEdges_, origins_.data() + origins_.size() - ownEdges_);
     for (size_t e = ownEdges_; e < n; ++e) {
@@ -254,7 +256,7 @@ std::optional<OriginId> BlockMesher::ownerAround(Vec3i brick, OriginId owner) co
 
 void BlockMesher::addBrick(int number, const eval::Tape& tape) {
     const Vec3i brick = brickAt(number);
-    const BrickSigns signs(samples_.values() + brickCorner(brick));
+    const BrickSigns signs(samples_.values(number));
     if (addCells(signs, brick) == 0) return;
     std::optional<OriginId> owner = onlyOwner(tape);
     addOwnEdges(signs);

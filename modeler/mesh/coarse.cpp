@@ -95,10 +95,10 @@ size_t CoarseSamples::ask(const eval::Tape& tape, uint64_t bricks, eval::Workspa
             if (points + rows.points > enough) break;
             const Vec3i low = brickAt(brick) * (coarseCorners - 1);
             loops.gather(rows.rows.data(), rows.count, &coordinates_[0][low.x], &coordinates_[1][low.y],
-                         &coordinates_[2][low.z], x_.data() + points, y_.data() + points, z_.data() + points);
+                         &coordinates_[2][low.z], points_.x.data() + points, points_.y.data() + points, points_.z.data() + points);
             points += rows.points;
         }
-        eval::evaluate(tape, {x_.data(), y_.data(), z_.data(), points}, f_.data(), workspace);
+        points_.evaluate(tape, points, f_.data(), workspace);
         const float* f = f_.data();
         for (uint64_t done = first & ~rest; done != 0; done &= done - 1) {
             const int brick = std::countr_zero(done);
@@ -120,7 +120,7 @@ void CoarseSamples::sample(uint64_t bricks, uint64_t active, const eval::Tape& t
     uint64_t waiting = 0;
     size_t n = 0;
     const auto evaluate = [&] {
-        if (n > 0) eval::evaluate(tape, {x_.data(), y_.data(), z_.data(), n}, f_.data(), workspace);
+        if (n > 0) points_.evaluate(tape, n, f_.data(), workspace);
         const float* f = f_.data();
         for (; waiting != 0; waiting &= waiting - 1) {
             const int brick = std::countr_zero(waiting);
@@ -138,7 +138,7 @@ void CoarseSamples::sample(uint64_t bricks, uint64_t active, const eval::Tape& t
         leaveOut(sampledBelow(active, brick), between);
         if (minComponent(last - first) < brickCells) cutOff(last - first, between);
         asked[brick] = loops.gather(between, &coordinates[0][first.x], &coordinates[1][first.y],
-                                    &coordinates[2][first.z], x_.data() + n, y_.data() + n, z_.data() + n);
+                                    &coordinates[2][first.z], points_.x.data() + n, points_.y.data() + n, points_.z.data() + n);
         waiting |= 1ull << brick;
         n += asked[brick];
         if (n >= enough) evaluate();

@@ -37,7 +37,8 @@ private:
     PageVector<float> values_ = PageVector<float>(along * along * along + rowPadding);
     std::array<std::array<float, along + rowPadding>, 3> coordinates_{};
     std::array<Between, bricksPerBlock> between_;
-    std::array<float, most + rowPadding> x_, y_, z_, f_;
+    PointRows<most> points_;
+    std::array<float, most + rowPadding> f_;
 };
 
 }  // namespace sgm::mesh

@@ -66,6 +66,7 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
                  zs = _mm512_loadu_ps(ends.coordinates[2]);
     const auto number = [](size_t v) { return _mm512_set1_epi32(static_cast<int>(v)); };
     const __m512i row = number(ends.strides[1]), layer = number(ends.strides[2]), byte = number(255), one = number(1);
+    const __m512i numberRow = number(ends.numbers[1]), numberLayer = number(ends.numbers[2]);
     for (size_t at = 0; at < n; at += edgeVector) {
         const __m512i code = _mm512_loadu_si512(codes + at), axis = _mm512_srli_epi32(code, 24);
         const __mmask16 notX = _mm512_cmpgt_epi32_mask(axis, _mm512_setzero_si512()),
@@ -81,8 +82,10 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
         const __m512 high = ofAxis(floats, _mm512_permutexvar_ps(_mm512_add_epi32(i, one), xs),
                                    _mm512_permutexvar_ps(_mm512_add_epi32(j, one), ys),
                                    _mm512_permutexvar_ps(_mm512_add_epi32(k, one), zs));
-        const __m512i corner =
-            _mm512_add_epi32(i, _mm512_add_epi32(_mm512_mullo_epi32(j, row), _mm512_mullo_epi32(k, layer)));
+        const auto counted = [&](__m512i byJ, __m512i byK) {
+            return _mm512_add_epi32(i, _mm512_add_epi32(_mm512_mullo_epi32(j, byJ), _mm512_mullo_epi32(k, byK)));
+        };
+        const __m512i corner = counted(row, layer);
         const __m512i other = _mm512_add_epi32(corner, ofAxis(ints, one, row, layer));
         _mm512_storeu_ps(e.x + at, x);
         _mm512_storeu_ps(e.y + at, y);
@@ -92,7 +95,7 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
         _mm512_storeu_ps(e.span + at, _mm512_sub_ps(high, low));
         _mm512_storeu_ps(e.fIn + at, _mm512_i32gather_ps(corner, ends.values, 4));
         _mm512_storeu_ps(e.fOut + at, _mm512_i32gather_ps(other, ends.values, 4));
-        _mm512_storeu_si512(places + at, _mm512_add_epi32(_mm512_mullo_epi32(corner, number(3)), axis));
+        _mm512_storeu_si512(places + at, _mm512_add_epi32(_mm512_mullo_epi32(counted(numberRow, numberLayer), number(3)), axis));
     }
 }
 
@@ -111,7 +114,7 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
         e.span[at] = along[1] - along[0];
         e.fIn[at] = ends.values[corner];
         e.fOut[at] = ends.values[corner + ends.strides[axis]];
-        places[at] = 3 * corner + axis;
+        places[at] = 3 * (i + j * ends.numbers[1] + k * ends.numbers[2]) + axis;
     }
     const size_t whole = (n + edgeVector - 1) / edgeVector * edgeVector;  // not by wholeVectors, an inline function
     for (size_t at = n; at < whole; ++at)                                 // numbers like the others
@@ -283,6 +286,7 @@ size_t pick(const EdgeArrays& from, size_t n, const EdgeArrays& to) {
             (to.*row)[picked] = (from.*row)[i];
             picked += from.open[i] != 0.0f;
         }
+        for (size_t i = picked; picked > 0 && i % edgeVector != 0; ++i) (to.*row)[i] = (to.*row)[picked - 1];
     }
     return picked;
 }

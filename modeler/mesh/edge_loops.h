@@ -1,6 +1,6 @@
 // The loops over a brick's cut edges, compiled for each instruction set.
 // Enters: arrays of n entries. Leaves: the same arrays moved on. Assumes arrays don't overlap and have room for whole
-// vectors: entries from n up to the next multiple of `edgeVector` are read and written too, and hold anything. Plain
+// vectors: entries from n up to the next multiple of `edgeVector` are read and written too, and hold any numbers. Plain
 // loops for the compiler's vectors, and every instruction set gives the same bits.
 #pragma once
 
@@ -40,11 +40,12 @@ struct EdgeEnds {
     const float* coordinates[3];  ///< metres, by corner along each axis; `edgeVector` of them may be read
     const float* values;          ///< by corner, `strides` apart along the axes
     uint32_t strides[3];
+    uint32_t numbers[3];  ///< what a corner's number grows by along the axes
 };
 
 struct EdgeLoops {
     /// Writes n entries, edges up from corners along axes, by `codes`: where they lie, how long they are, the samples
-    /// at their ends; and to `places` three times the corner's number, counted as the values are, plus the axis. Both
+    /// at their ends; and to `places` three times the corner's number plus the axis. Both
     /// may be one list, and the arrays of entries may begin anywhere.
     void (*place)(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArrays& e, uint32_t* places);
     /// Makes brackets of the samples at the low ends (in fIn) and high ends (in fOut), and goes where the line between

@@ -27,15 +27,28 @@ bool foldsEverywhere(const eval::Tape& tape, uint64_t regions, eval::Workspace& 
     return fractals == 1 && n > 0 && (eval::mayLeaveOut(tape, last, n, workspace, care) & regions) == 0;
 }
 
-/// Rows of whole bricks, by `sampledBelow`.
-const std::array<SampleRows, 256>& wholeBricks() {
+/// Rows of bricks that end in the grid, by `sampledBelow`.
+const std::array<SampleRows, 256>& fullBricks() {
     static const auto table = [] {
         std::array<SampleRows, 256> all;
         for (int below = 0; below < 256; ++below)
-            all[below].list(Vec3i{1, 1, 1} * brickCorners, static_cast<uint8_t>(below));
+            all[below].list(Vec3i{1, 1, 1} * brickCorners, static_cast<uint8_t>(below), brickCorners);
         return all;
     }();
     return table;
+}
+
+/// Whether the corners that lower bricks have are found sooner by evaluating them again: a seventh of all, but then
+/// nothing is gathered and scattered.
+bool isQuick(const eval::Tape& tape) {
+    namespace ops = field::ops;
+    constexpr size_t quick = 6;
+    constexpr uint32_t manyOperands = 16;
+    const auto slow = [](const eval::Instruction& in) {
+        return in.count > manyOperands || field::traits(in.op).readsGrid || in.op == field::codeOf<ops::Kifs> ||
+               in.op == field::codeOf<ops::Facade> || in.op == field::codeOf<ops::Noise>;
+    };
+    return tape.size() <= quick && std::none_of(tape.code().begin(), tape.code().end(), slow);
 }
 
 }  // namespace
@@ -74,7 +87,10 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
     }
     dear_ = isDear(block.tape) && std::isfinite(care_.most);
     oneTape_ = dear_ && foldsEverywhere(block.tape, regions, workspace, care_);
-    if (!dear_) return;
+    if (!dear_) {
+        wholeBricks_.enter(coordinates_);
+        return;
+    }
     active_ = coarse_.enter(block, active_, coordinates_, grid.cell_m, workspace, counts) | onBorder(active_);
     if (oneTape_) coarse_.sample(active_, active_, block.tape, coordinates_, last_, values_.data(), workspace, counts);
 }
@@ -94,22 +110,23 @@ uint64_t BlockSamples::onBorder(uint64_t bricks) const {
 const SampleRows& BlockSamples::rowsOf(int brick) {
     const Vec3i corners = last_ + Vec3i{1, 1, 1} - brickAt(brick) * brickCells;
     const uint8_t below = sampledBelow(active_, brick);
-    if (minComponent(corners) >= brickCorners) return wholeBricks()[below];
-    cutOff_.list(min(Vec3i{brickCorners, brickCorners, brickCorners}, corners), below);
+    if (minComponent(corners) >= brickCorners) return fullBricks()[below];
+    cutOff_.list(min(Vec3i{brickCorners, brickCorners, brickCorners}, corners), below, brickCorners);
     return cutOff_;
 }
 
 /// Corners on the grid's border are outside at least, those beyond its end 0.
-void BlockSamples::sealBorder(Vec3i brick) {
-    const Vec3i first = brick * brickCells, end = last_ - first;
+void BlockSamples::sealBorder(int brick) {
+    const Vec3i first = brickAt(brick) * brickCells, end = last_ - first;
     if (minComponent(block_->index * blockCells + first) > 0 && minComponent(end) > brickCells) return;
-    float* const values = values_.data() + brickCorner(brick);
+    const BrickValues at = values(brick);
+    float* const corners = values_.data() + (at.corner - values_.data());
+    const size_t strides[] = {1, at.row, at.layer};
     const auto plane = [&](int axis, int at, auto&& change) {
-        constexpr int strides[] = {1, blockCorners, blockCorners * blockCorners};
         const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
         for (int b = 0; b < brickCorners; ++b) {
-            float* const row = values + at * strides[axis] + b * strides[v];
-            for (int a = 0; a < brickCorners; ++a) row[a * strides[u]] = change(row[a * strides[u]]);
+            float* const row = corners + static_cast<size_t>(at) * strides[axis] + static_cast<size_t>(b) * strides[v];
+            for (size_t a = 0; a < brickCorners; ++a) row[a * strides[u]] = change(row[a * strides[u]]);
         }
     };
     const auto outside = [](float f) { return std::max(0.0f, f); };
@@ -121,10 +138,52 @@ void BlockSamples::sealBorder(Vec3i brick) {
         for (int at = end[axis] + 1; at <= brickCells; ++at) plane(axis, at, [](float) { return 0.0f; });
 }
 
+/// The corners on low sides that lower bricks of the block have.
+void BlockSamples::copyFromBelow(int brick) {
+    const Vec3i at = brickAt(brick);
+    unsigned faces = 0;
+    float* const to = values_.data() + brickRoom * brick;
+    for (const int offset : {1, 2, 4, 3, 5, 6, 7}) {  // faces hold edges and corners
+        const Vec3i by{offset & 1, offset >> 1 & 1, offset >> 2}, other = at - by;
+        if (minComponent(other) < 0 || !(active_ >> brickNumber(other) & 1) || (faces & static_cast<unsigned>(offset)) != 0)
+            continue;
+        if (std::has_single_bit(static_cast<unsigned>(offset))) faces |= static_cast<unsigned>(offset);
+        const float* const from = values_.data() + brickRoom * brickNumber(other);
+        const auto row = [](int j, int k) { return brickCorners * (j + brickCorners * k); };
+        for (int k = 0; k <= (by.z ? 0 : brickCells); ++k)
+            for (int j = 0; j <= (by.y ? 0 : brickCells); ++j) {
+                const float* const other = from + row(j + by.y * brickCells, k + by.z * brickCells);
+                if (by.x)
+                    to[row(j, k)] = other[brickCells];
+                else
+                    std::copy_n(other, brickCorners, to + row(j, k));
+            }
+    }
+}
+
+void WholeBricks::enter(const CornerCoordinates& coordinates) {
+    constexpr size_t row = brickCorners, layer = row * row;
+    for (size_t axis = 0; axis < 3; ++axis)
+        for (size_t b = 0; b < bricksAlong; ++b) {
+            const float* const from = coordinates[axis].data() + b * brickCells;
+            Row& to = rows_[axis][b];
+            if (to.first == from[0] && to.last == from[brickCells]) continue;  // blocks come one after the other
+            to.first = from[0], to.last = from[brickCells];
+            float* const at = to.at.data();
+            for (size_t n = 0; n < row; ++n)
+                if (axis == 0)
+                    std::copy_n(from, row, at + n * row);
+                else
+                    std::fill_n(at + n * (axis == 1 ? row : layer), axis == 1 ? row : layer, from[n]);
+            for (size_t k = 1; k < row && axis < 2; ++k) std::copy_n(at, layer, at + k * layer);
+            std::fill(to.at.begin() + points, to.at.end(), at[points - 1]);
+        }
+}
+
 const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Counts& counts) {
     const Vec3i at = brickAt(brick), first = at * brickCells;
     if (oneTape_) {
-        sealBorder(at);
+        sealBorder(brick);
         return block_->tape;
     }
     const size_t length = block_->tape.size();
@@ -136,19 +195,26 @@ const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Co
     const eval::Tape& tape = whole ? block_->tape : tape_;
     if (dear_) {
         coarse_.sample(1ull << brick, active_, tape, coordinates_, last_, values_.data(), workspace, counts);
-        sealBorder(at);
+        sealBorder(brick);
+        return tape;
+    }
+    float* const to = values_.data() + brickRoom * brick;
+    if (isQuick(tape)) {
+        const eval::Points points = wholeBricks_.of(at);
+        eval::evaluate(tape, points, to, workspace);
+        counts.pointEvaluations += points.n;
+        sealBorder(brick);
         return tape;
     }
     const SampleRows& rows = rowsOf(brick);
     const BrickLoops& loops = brickLoops();
-    eval::PointRoom to = eval::roomForPoints(tape, rows.points, workspace);
-    if (!to.x) to = {x_.data(), y_.data(), z_.data()};
     loops.gather(rows.rows.data(), rows.count, coordinates(0) + first.x, coordinates(1) + first.y,
-                 coordinates(2) + first.z, to.x, to.y, to.z);
-    eval::evaluate(tape, {to.x, to.y, to.z, rows.points}, f_.data(), workspace);
+                 coordinates(2) + first.z, points_.x.data(), points_.y.data(), points_.z.data());
+    points_.evaluate(tape, rows.points, f_.data(), workspace);
     counts.pointEvaluations += rows.points;
-    loops.scatter(rows.rows.data(), rows.count, f_.data(), values_.data() + brickCorner(at));
-    sealBorder(at);
+    loops.scatter(rows.rows.data(), rows.count, f_.data(), to);
+    copyFromBelow(brick);
+    sealBorder(brick);
     return tape;
 }
 

@@ -3,8 +3,10 @@
 // pruning is exact: the bricks around a corner would all compute the same bits for it, so one of them does.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 #include <vector>
 
 #include "modeler/core/pages.h"
@@ -12,6 +14,31 @@
 #include "modeler/mesh/sample_rows.h"
 
 namespace sgm::mesh {
+
+/// Samples of a brick's corners: from the lowest one on, rows and layers so many floats apart.
+struct BrickValues {
+    const float* corner;
+    uint32_t row, layer;
+};
+
+/// The coordinates of all corners of a brick, point by point, for each place it can have in its block along an axis.
+class WholeBricks {
+public:
+    static constexpr size_t points = size_t{brickCorners} * brickCorners * brickCorners;
+    /// Goes to a block with corners at these coordinates.
+    void enter(const CornerCoordinates& coordinates);
+    eval::Points of(Vec3i brick) const {
+        return {rows_[0][brick.x].at.data(), rows_[1][brick.y].at.data(), rows_[2][brick.z].at.data(), points, true};
+    }
+
+private:
+    static constexpr size_t room = (points + eval::pointPadding - 1) / eval::pointPadding * eval::pointPadding;
+    struct alignas(64) Row {
+        float first = std::numeric_limits<float>::quiet_NaN(), last = 0;  ///< the lowest and the highest corner's
+        alignas(64) std::array<float, room> at;
+    };
+    std::array<std::array<Row, bricksAlong>, 3> rows_;
+};
 
 /// One worker's samples, reused from block to block.
 class BlockSamples {
@@ -26,32 +53,39 @@ public:
     /// ascending order; the tape lasts until the next call.
     const eval::Tape& sample(int brick, eval::Workspace& workspace, Counts& counts);
 
-    /// The block's samples by corner; those of active bricks are there once their brick was sampled. Corners on the
-    /// grid's border or beyond are never inside.
-    const float* values() const { return values_.data(); }
+    /// The samples of an active brick, once it was sampled. Corners on the grid's border or beyond are never inside.
+    BrickValues values(int brick) const {
+        if (dear_) return {values_.data() + brickCorner(brickAt(brick)), blockCorners, blockCorners * blockCorners};
+        return {values_.data() + size_t{brickRoom} * static_cast<size_t>(brick), brickCorners, brickCorners * brickCorners};
+    }
     /// Coordinate of corners i along `axis`, metres.
     const float* coordinates(int axis) const { return coordinates_[axis].data(); }
 
 private:
     const SampleRows& rowsOf(int brick);
     uint64_t onBorder(uint64_t bricks) const;
-    void sealBorder(Vec3i brick);
+    void sealBorder(int brick);
+    void copyFromBelow(int brick);
 
+    /// Floats kept for each brick by itself.
+    static constexpr int brickRoom = brickCorners * brickCorners * brickCorners + 7;
     static constexpr int maxBatch = brickCorners * brickCorners * brickCorners + rowPadding;
 
     const Block* block_ = nullptr;
     eval::Care care_;
     uint64_t active_ = 0;
-    bool dear_ = false;  ///< `coarse_` takes care of the bricks
+    bool dear_ = false;  ///< `coarse_` takes care of the bricks, and values_ is by the block's corners, not by brick
     bool oneTape_ = false;
     CoarseSamples coarse_;
     std::array<uint8_t, bricksPerBlock> region_{};  ///< of a brick, in the last evaluateRanges
     eval::Tape tape_;
     int inVain_ = 0;  ///< latest bricks of the block that needed its whole tape
     Vec3i last_;  ///< the highest corner in the grid, counted from the block's first
-    PageVector<float> values_ = PageVector<float>(cornersPerBlock + rowPadding);
+    PageVector<float> values_ = PageVector<float>(std::max(cornersPerBlock, bricksPerBlock * brickRoom) + rowPadding);
     CornerCoordinates coordinates_{};
-    std::array<float, maxBatch> x_, y_, z_, f_;
+    WholeBricks wholeBricks_;
+    PointRows<maxBatch> points_;
+    std::array<float, maxBatch> f_;
     SampleRows cutOff_;  ///< of a brick that the grid's end cuts off
 };
 

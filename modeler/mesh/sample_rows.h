@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "modeler/eval/evaluate.h"
 #include "modeler/mesh/brick_loops.h"
 #include "modeler/mesh/region.h"
 
@@ -38,5 +39,19 @@ struct SampleRows {
 /// Which of a brick's low faces, edges and corner a lower one of `bricks` has sampled: bit d (x = 1, y = 2, z = 4) is
 /// set when a corner on the low sides d lies on the high sides of one of them.
 uint8_t sampledBelow(uint64_t bricks, int brick);
+
+/// Points to be evaluated together, up to n of them.
+template <size_t n>
+struct PointRows {
+    static constexpr size_t room = (n + eval::pointPadding - 1) / eval::pointPadding * eval::pointPadding + rowPadding;
+    alignas(64) std::array<float, room> x, y, z;
+
+    /// The field at the first `count` ≥ 1 points.
+    void evaluate(const eval::Tape& tape, size_t count, float* out, eval::Workspace& workspace) {
+        for (float* const row : {x.data(), y.data(), z.data()})
+            for (size_t i = count; i % eval::pointPadding != 0; ++i) row[i] = row[count - 1];
+        eval::evaluate(tape, {x.data(), y.data(), z.data(), count, true}, out, workspace);
+    }
+};
 
 }  // namespace sgm::mesh

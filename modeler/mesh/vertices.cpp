@@ -14,12 +14,12 @@ public:
         : tape_(tape), workspace_(workspace), time_(time) {}
     void value(const EdgeArrays& e, size_t n) const {
         const AddTime evaluating(time_);
-        eval::evaluate(tape_, {e.x, e.y, e.z, n}, e.f, workspace_);
+        eval::evaluate(tape_, {e.x, e.y, e.z, n, true}, e.f, workspace_);
     }
     /// Its derivatives too.
     void gradient(const EdgeArrays& e, size_t n) const {
         const AddTime evaluating(time_);
-        eval::evaluateGradient(tape_, {e.x, e.y, e.z, n}, e.f, e.dx, e.dy, e.dz, workspace_);
+        eval::evaluateGradient(tape_, {e.x, e.y, e.z, n, true}, e.f, e.dx, e.dy, e.dz, workspace_);
     }
 
 private:

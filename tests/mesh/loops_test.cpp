@@ -230,7 +230,7 @@ struct RandomEdges {
 
 TEST(Loops, EdgesArePlacedBetweenTheirEnds) {
     const Samples at = randomSamples(9), values = randomSamples(10);
-    const EdgeEnds ends{{at.data(), at.data() + 20, at.data() + 40}, values.data(), {1, side, side * side}};
+    const EdgeEnds ends{{at.data(), at.data() + 20, at.data() + 40}, values.data(), {1, side, side * side}, {1, 30, 900}};
     for (const size_t n : {1, 16, 37})
         for (const Loops& l : loopsHere()) {
             CutEdges edges;
@@ -251,7 +251,7 @@ TEST(Loops, EdgesArePlacedBetweenTheirEnds) {
                 EXPECT_EQ(a.fIn[e], values[number]);
                 EXPECT_EQ(a.fOut[e], values[number + ends.strides[axis]]);
                 EXPECT_EQ(a.axis[e], static_cast<float>(axis));
-                EXPECT_EQ(places[e], 3 * number + axis);
+                EXPECT_EQ(places[e], 3 * (corner[0] + 30 * corner[1] + 900 * corner[2]) + axis);
             }
         }
 }
