@@ -70,6 +70,17 @@ V call(auto... args) {
         return Row::apply(args...);
 }
 
+/// Makes new operands of those that change from point to point: else the compiler would compute what hangs on the others
+/// once for all.
+template <class Row, class V>
+inline void renew(V* args) {
+    if constexpr (requires { Row::moving; }) {
+        for (size_t k = 0; k < Row::moving; ++k) opaque(args[k]);
+    } else {
+        opaque(args[0]);
+    }
+}
+
 /// Seconds of one run of `body`, the least of a few tries.
 template <class Body>
 double leastOf(Body&& body) {
@@ -95,7 +106,7 @@ double measuredByNumbers(const eval::Operation& operation) {
     Row::visitPath(numbers.form, [&]<auto path>() {
         seconds = leastOf([&] {
             for (int c = 0; c < chains; ++c) {
-                opaque(args[0]);
+                renew<Row>(args);
                 if constexpr (gradient) {
                     eval::Dual<Two> at[Row::moving];
                     for (size_t k = 0; k < Row::moving; ++k) at[k] = {args[k], Two(0.5f), Two(0.25f), Two(0.125f)};
@@ -123,7 +134,7 @@ double measured([[maybe_unused]] const eval::Operation& operation) {
         for (uint32_t i = 0; i < n; ++i) args[i] = number<V>(0.25f + 0.01f * static_cast<float>(i));
         const double seconds = leastOf([&] {
             for (int c = 0; c < chains; ++c) {
-                opaque(args[0]);
+                renew<Row>(args);
                 V out = call<Row, V>(std::span<const V>(args, n), dataOf<Row>(operation));
                 opaque(out);
             }
