@@ -40,17 +40,19 @@ inline void storeResult(const Tape& tape, const StepContext& c, StoreRow store, 
 }
 
 /// Runs a tape over points in blocks; `before(in, context)` sees each instruction's operands, `done` each block's
-/// registers.
+/// registers. Values of the result go to `result` at once, if there is one: aligned, with room for whole vectors.
 template <class Before, class DoneBlock>
 void runBlocks(const Tape& tape, const Points& points, const Step* steps, size_t planes, Workspace::Impl& w,
-               Before&& before, DoneBlock&& done) {
+               float* result, Before&& before, DoneBlock&& done) {
     const size_t block = blockSize(tape, planes), most = std::min(block, roundedUp(points.n));
     StepContext c = w.context(tape, planes, planes == 1 ? most : Workspace::Impl::strideOfGradients(most));
     float* const copies = points.padded ? nullptr : w.points.get(3 * most);
     if (planes > 1) w.pointDerivatives(c);
+    if (result) c.resultRegister = tape.result();
     for (size_t first = 0; first < points.n; first += block) {
         const size_t n = std::min(block, points.n - first);
         c.count = roundedUp(n);
+        c.result = result + first;
         const float* const from[] = {points.x + first, points.y + first, points.z + first};
         for (size_t axis = 0; axis < 3; ++axis) {
             if (copies) w.kernels.load(from[axis], n, c.count, copies + axis * most);

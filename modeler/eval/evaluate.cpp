@@ -56,16 +56,18 @@ Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 void Workspace::tallyInto(Tally* tally) { impl_->tally = tally; }
 
 StepContext Workspace::Impl::context(const Tape& tape, size_t planes, size_t stride) {
-    const size_t argumentFloats = tape.longest() * argumentBytes / sizeof(float);
+    const size_t argumentFloats = tape.longest() * (argumentBytes / sizeof(float));
     return {registers.get(tape.registerCount() * planes * stride),
             stride,
             stride,
             {},
             {},
+            nullptr,
+            noRegister,
             tape.constants().data(),
             tape.sources().data(),
             tape.grids() ? tape.grids()->words.data() : nullptr,
-            arguments.get(argumentFloats),
+            argumentFloats > 0 ? arguments.get(argumentFloats) : nullptr,
             nullptr};
 }
 
@@ -86,9 +88,11 @@ void Workspace::Impl::pointDerivatives(StepContext& c) {
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
     count(tape, points.n, Asked::Value, w.tally);
-    runBlocks(tape, points, w.kernels.values, 1, w, nothingBefore, [&](const StepContext& c, size_t first, size_t n) {
-        storeResult(tape, c, w.kernels.store, 1, 0, out + first, n);
-    });
+    const bool atOnce = points.padded && !isConstant(tape.result()) && tape.result() >= 3;
+    runBlocks(tape, points, w.kernels.values, 1, w, atOnce ? out : nullptr, nothingBefore,
+              [&](const StepContext& c, size_t first, size_t n) {
+                  if (!atOnce) storeResult(tape, c, w.kernels.store, 1, 0, out + first, n);
+              });
 }
 
 void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
@@ -96,7 +100,7 @@ void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, 
     Workspace::Impl& w = workspace.impl();
     count(tape, points.n, Asked::Gradient, w.tally);
     float* const out[] = {value, dx, dy, dz};
-    runBlocks(tape, points, w.kernels.gradients, 4, w, nothingBefore,
+    runBlocks(tape, points, w.kernels.gradients, 4, w, nullptr, nothingBefore,
               [&](const StepContext& c, size_t first, size_t n) {
                   for (size_t plane = 0; plane < 4; ++plane)
                       storeResult(tape, c, w.kernels.store, 4, plane, out[plane] + first, n);
@@ -108,7 +112,7 @@ void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& w
     count(tape, points.n, Asked::Value, w.tally);
     OwnerPass pass(tape, w);
     runBlocks(
-        tape, points, w.kernels.values, 1, w, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
+        tape, points, w.kernels.values, 1, w, nullptr, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
         [&](const StepContext&, size_t first, size_t n) { pass.store(out + first, n); });
 }
 

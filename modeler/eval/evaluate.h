@@ -50,7 +50,8 @@ struct Points {
     bool padded = false;  ///< rows are 64-byte aligned, and numbers up to a multiple of pointPadding: nothing is copied
 };
 
-/// out[i] = f(x[i], y[i], z[i]).
+/// out[i] = f(x[i], y[i], z[i]). Where the points are padded, `out` has to be 64-byte aligned, with room up to the same
+/// multiple; what is written beyond n means nothing.
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace);
 
 /// Values and their exact derivatives by x, y, z (at a kink, those of the chosen operand).

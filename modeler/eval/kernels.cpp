@@ -127,6 +127,8 @@ auto dataOf(const Instruction& in, const StepContext& c) {
 /// Where an instruction writes.
 template <class V>
 float* outOf(const StepContext& c, uint32_t reg) {
+    if constexpr (Planes<V>::count == 1)
+        if (reg == c.resultRegister) return c.result;
     return c.registers + size_t{reg} * Planes<V>::count * c.stride;
 }
 
@@ -207,6 +209,19 @@ size_t stepByNumbers(size_t i, const Place* places, const auto& numbers, float* 
     return i;
 }
 
+/// Derivatives of a row of x, y, z themselves and numbers.
+template <class Row>
+void stepBySlopes(const Instruction& in, float* out, const StepContext& c) {
+    const Source* const sources = c.sources + in.a;
+    Float args[Row::operandCount];
+    for (size_t k = Row::moving; k < Row::operandCount; ++k) args[k] = Float(c.constants[indexOf(sources[k])]);
+    for (size_t i = 0; i < c.count; i += Float::size) {
+        for (size_t k = 0; k < Row::moving; ++k) args[k] = Float::load(c.coordinates[k] + i);
+        const auto [value, by] = Row::template slopes<Float>([&](size_t k) { return args[k]; });
+        Planes<Dual<Float>>::store({value, by.x, by.y, by.z}, out + i, c.stride);
+    }
+}
+
 /// Operands of a known number, the moving ones in registers and the others constant: those stay in vector registers.
 /// False where the operands are otherwise.
 template <class Row, class V>
@@ -230,6 +245,12 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
             stepByNumbers<Row, path, V>(i, places, numbers, out, c);
         });
     } else {
+        if constexpr (std::is_same_v<V, Dual<Float>> && requires { &Row::template slopes<Float, float (*)(size_t)>; }) {
+            if (sources[0] == 0 && sources[1] == 1 && sources[2] == 2) {
+                stepBySlopes<Row>(in, out, c);
+                return true;
+            }
+        }
         V args[count];
         for (size_t k = moving; k < count; ++k) args[k] = V(c.constants[indexOf(sources[k])]);
         for (size_t i = 0; i < c.count; i += Float::size) {

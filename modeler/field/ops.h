@@ -13,6 +13,8 @@
 //   I interval(…same operands as I…)     an enclosure of apply's floats, rounding included; operands' bounds are never
 //                                        NaN. The default is apply over intervals: rounding is monotone, so it encloses
 //   D gradient(…same operands as D…)     value (same bits as apply) and derivatives; the default is apply over Dual
+//   Slopes<V> slopes<V>(at)              for a row of a position and numbers, at(i) its operands: the value and its derivatives by
+//                                        the position, all that is needed where that is x, y, z themselves
 //   Numbers<V>(args, data)               for a row most of whose operands are numbers: what it makes of those, once for all
 //                                        points. V byNumbers<path>(const V* moving, numbers) gives apply's bits, with
 //                                        derivatives where V has them and the numbers have not; paths are told apart by

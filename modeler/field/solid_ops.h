@@ -20,6 +20,13 @@ struct Triple {
     V x, y, z;
 };
 
+/// A value with its derivatives by the position, x, y and z.
+template <class V>
+struct Slopes {
+    V value;
+    Triple<V> by;
+};
+
 /// Position less centre: operands 0 … 2 less operands 3 … 5, by `at`.
 template <class V, class At>
 Triple<V> offset(const At& at) {
@@ -52,9 +59,11 @@ void offsets(std::span<const I> args, Triple<typename I::Value>& near, Triple<ty
     along(2, near.z, far.z);
 }
 
-/// The derivatives of f(x, y, z) from those by x, y and z.
-template <class D>
-D chained(std::span<const D> args, const typename D::Value& value, const Triple<typename D::Value>& slope) {
+/// The derivatives of f(x, y, z) from those of a row by x, y and z.
+template <class Row, class D>
+D chained(std::span<const D> args) {
+    using V = typename D::Value;
+    const auto [value, slope] = Row::template slopes<V>([&](size_t i) { return args[i].value; });
     const D &x = args[0], &y = args[1], &z = args[2];
     return D{value, slope.x * x.dx + slope.y * y.dx + slope.z * z.dx, slope.x * x.dy + slope.y * y.dy + slope.z * z.dy,
              slope.x * x.dz + slope.y * y.dz + slope.z * z.dz};
@@ -89,14 +98,16 @@ struct Ball {
         const V r = args[radius].lo;
         return I{detail::lengthOf(scaled(near, at)) - r, detail::lengthOf(scaled(far, at)) - r};
     }
-    /// The derivative at the centre, which has none, is given as 0.
     template <class D>
     static D gradient(std::span<const D> args, uint32_t) {
-        using V = typename D::Value;
-        const auto at = [&](size_t i) { return args[i].value; };
+        return detail::chained<Ball>(args);
+    }
+    /// The derivative at the centre, which has none, is given as 0.
+    template <class V, class At>
+    static detail::Slopes<V> slopes(const At& at) {
         const detail::Triple<V> u = scaled(detail::offset<V>(at), at), slope = scaled(u, at);
         const V length = detail::lengthOf(u), share = detail::inverse(length);
-        return detail::chained(args, length - at(radius), {slope.x * share, slope.y * share, slope.z * share});
+        return {length - at(radius), {slope.x * share, slope.y * share, slope.z * share}};
     }
 
 private:
@@ -133,12 +144,14 @@ struct Box {
         detail::offsets(args, near, far);
         return I{distance(beyond(near, at)), distance(beyond(far, at))};
     }
-    /// Outside it points away from the nearest point; inside, to the nearest face.
     template <class D>
     static D gradient(std::span<const D> args, uint32_t) {
-        using V = typename D::Value;
+        return detail::chained<Box>(args);
+    }
+    /// Outside they point away from the nearest point; inside, to the nearest face.
+    template <class V, class At>
+    static detail::Slopes<V> slopes(const At& at) {
         const V zero = 0.0f, one = 1.0f;
-        const auto at = [&](size_t i) { return args[i].value; };
         const detail::Triple<V> d = detail::offset<V>(at), q = beyond<V>({abs(d.x), abs(d.y), abs(d.z)}, at);
         const detail::Triple<V> out{max(q.x, zero), max(q.y, zero), max(q.z, zero)};
         const V share = detail::inverse(detail::lengthOf(out));
@@ -147,10 +160,9 @@ struct Box {
             const V size = select(outside, away * share, face);
             return select(along < zero, -size, size);
         };
-        return detail::chained(
-            args, distance(q),
-            {slope(d.x, out.x, select(inX, one, zero)), slope(d.y, out.y, select(inX, zero, select(inY, one, zero))),
-             slope(d.z, out.z, select(inX | inY, zero, one))});
+        return {distance(q),
+                {slope(d.x, out.x, select(inX, one, zero)), slope(d.y, out.y, select(inX, zero, select(inY, one, zero))),
+                 slope(d.z, out.z, select(inX | inY, zero, one))}};
     }
 
 private:

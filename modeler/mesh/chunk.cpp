@@ -205,7 +205,9 @@ void BlockMesher::lend(const BrickSigns& signs, Vec3i brick) {
 
 /// Finds where the vertices on all edges lie, of which the first `own` are the next ones of the block.
 void BlockMesher::findPlaces(const eval::Tape& tape, size_t own) {
-    counts_.refinementEvaluations += findVertices(tape, refineSteps_, workspace_, openEdges_, edges_, fieldTime_);
+    const bool dear = samples_.isDear() && isDear(tape);
+    counts_.refinementEvaluations +=
+        findVertices(tape, dear, refineSteps_, workspace_, openEdges_, edges_, fieldTime_);
     flat_ = flat_ || (edges_.size > 0 && edges_.flat > 0);
     const size_t first = positions_.size();
     positions_.resize(first + own), normals_.resize(first + own);

@@ -38,7 +38,7 @@ private:
     std::array<std::array<float, along + rowPadding>, 3> coordinates_{};
     std::array<Between, bricksPerBlock> between_;
     PointRows<most> points_;
-    std::array<float, most + rowPadding> f_;
+    alignas(64) std::array<float, most + rowPadding> f_;
 };
 
 }  // namespace sgm::mesh

@@ -85,7 +85,8 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
         active_ |= 1ull << numbers[i];
         region_[numbers[i]] = static_cast<uint8_t>(i);
     }
-    dear_ = isDear(block.tape) && std::isfinite(care_.most);
+    folds_ = mesh::isDear(block.tape);
+    dear_ = folds_ && std::isfinite(care_.most);
     oneTape_ = dear_ && foldsEverywhere(block.tape, regions, workspace, care_);
     if (!dear_) {
         wholeBricks_.enter(coordinates_);

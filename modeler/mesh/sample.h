@@ -47,6 +47,8 @@ public:
     void enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts);
     /// Bricks that may hold surface, by number.
     uint64_t active() const { return active_; }
+    /// Whether the block's tape is dear.
+    bool isDear() const { return folds_; }
     /// Whether `sample` answers the block's own tape for every brick.
     bool oneTape() const { return oneTape_; }
     /// Shortens the tape to an active brick and evaluates the corners that no lower brick has. To be called in
@@ -74,6 +76,7 @@ private:
     const Block* block_ = nullptr;
     eval::Care care_;
     uint64_t active_ = 0;
+    bool folds_ = false;  ///< the block's tape is dear
     bool dear_ = false;  ///< `coarse_` takes care of the bricks, and values_ is by the block's corners, not by brick
     bool oneTape_ = false;
     CoarseSamples coarse_;
@@ -85,7 +88,7 @@ private:
     CornerCoordinates coordinates_{};
     WholeBricks wholeBricks_;
     PointRows<maxBatch> points_;
-    std::array<float, maxBatch> f_;
+    alignas(64) std::array<float, maxBatch> f_;
     SampleRows cutOff_;  ///< of a brick that the grid's end cuts off
 };
 

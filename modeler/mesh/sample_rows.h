@@ -46,7 +46,7 @@ struct PointRows {
     static constexpr size_t room = (n + eval::pointPadding - 1) / eval::pointPadding * eval::pointPadding + rowPadding;
     alignas(64) std::array<float, room> x, y, z;
 
-    /// The field at the first `count` ≥ 1 points.
+    /// The field at the first `count` ≥ 1 points; `out` as the rows, aligned and with room for whole vectors.
     void evaluate(const eval::Tape& tape, size_t count, float* out, eval::Workspace& workspace) {
         for (float* const row : {x.data(), y.data(), z.data()})
             for (size_t i = count; i % eval::pointPadding != 0; ++i) row[i] = row[count - 1];

@@ -92,14 +92,14 @@ void CutEdges::reserve(size_t n) {
     for (const auto member : rows) arrays.*member = row, row += room;
 }
 
-uint64_t findVertices(const eval::Tape& tape, size_t refineSteps, eval::Workspace& workspace,
+uint64_t findVertices(const eval::Tape& tape, bool dear, size_t refineSteps, eval::Workspace& workspace,
                       std::vector<CutEdges>& scratch, CutEdges& edges, SumOfTimes* fieldTime) {
     if (edges.size == 0) return 0;
     const EdgeLoops& loops = edgeLoops();
     loops.interpolate(edges.arrays, edges.size);
     const TimedField field(tape, workspace, fieldTime);
     const uint64_t evaluations =
-        isDear(tape) ? findByValues(field, refineSteps, edges) : findByNewton(field, refineSteps, scratch, edges);
+        dear ? findByValues(field, refineSteps, edges) : findByNewton(field, refineSteps, scratch, edges);
     edges.flat = loops.normalize(edges.arrays, edges.size);
     return evaluations;
 }

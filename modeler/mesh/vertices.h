@@ -38,9 +38,9 @@ private:
 };
 
 /// Moves all vertices to the surface in at most `refineSteps` evaluations each (0: the line between the samples), and
-/// leaves in dx, dy, dz the unit normal where the field was last evaluated, zero where it has none. `scratch` grows to
-/// a list a step. Returns how many evaluations refined; `fieldTime`, if any, adds up what those took.
-uint64_t findVertices(const eval::Tape& tape, size_t refineSteps, eval::Workspace& workspace,
+/// leaves in dx, dy, dz the unit normal where the field was last evaluated, zero where it has none. `dear`: the
+/// tape is (region.h). `scratch` grows to a list a step. Returns how many evaluations refined; `fieldTime`, if any, adds up what those took.
+uint64_t findVertices(const eval::Tape& tape, bool dear, size_t refineSteps, eval::Workspace& workspace,
                       std::vector<CutEdges>& scratch, CutEdges& edges, SumOfTimes* fieldTime = nullptr);
 
 }  // namespace sgm::mesh
