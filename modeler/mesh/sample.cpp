@@ -42,7 +42,7 @@ const std::array<SampleRows, 256>& fullBricks() {
 /// nothing is gathered and scattered.
 bool isQuick(const eval::Tape& tape) {
     namespace ops = field::ops;
-    constexpr size_t quick = 6;
+    constexpr size_t quick = 10;
     constexpr uint32_t manyOperands = 16;
     const auto slow = [](const eval::Instruction& in) {
         return in.count > manyOperands || field::traits(in.op).readsGrid || in.op == field::codeOf<ops::Kifs> ||
