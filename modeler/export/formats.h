@@ -36,6 +36,8 @@ struct Placement {
     bool zUp = false;
     float unitsPerMetre = 1;
 
+    /// Files hold what the mesh does.
+    bool isIdentity() const { return !zUp && unitsPerMetre == 1; }
     /// Turned by 90° about x where the file's z is up.
     Vec3f direction(Vec3f d) const { return zUp ? Vec3f{d.x, -d.z, d.y} : d; }
     Vec3f position(Vec3f p) const { return direction(p) * unitsPerMetre; }

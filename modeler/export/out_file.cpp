@@ -10,20 +10,15 @@
 #include "modeler/core/atomic_file.h"
 
 namespace sgm::exporter {
-namespace {
-
-constexpr size_t bufferSize = size_t{1} << 18;  // stays in the second cache until the system has copied it
-
-}  // namespace
 
 OutFile::OutFile(const std::filesystem::path& path, std::filesystem::path target, const Progress* progress)
-    : target_(std::move(target)), buffer_(bufferSize), progress_(progress) {
+    : target_(std::move(target)), progress_(progress) {
     fd_ = open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
     if (fd_ < 0) error_ = errno;
 }
 
 OutFile::OutFile(std::filesystem::path target, const Progress* progress)
-    : target_(std::move(target)), buffer_(bufferSize), progress_(progress) {
+    : target_(std::move(target)), progress_(progress) {
     const std::filesystem::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
     std::string name = (folder / ".sgm-XXXXXX").string();
     fd_ = mkostemp(name.data(), O_CLOEXEC);
@@ -40,24 +35,34 @@ OutFile::~OutFile() {
 void OutFile::bytes(const void* data, size_t size) {
     const char* from = static_cast<const char*>(data);
     while (size > 0) {
-        const size_t n = std::min(size, buffer_.size() - used_);
+        const size_t n = std::min(size, blockBytes - used_);
         std::memcpy(buffer_.data() + used_, from, n);
         used_ += n;
         from += n;
         size -= n;
-        if (used_ == buffer_.size()) flush();
+        if (used_ == blockBytes) writeBlock();
     }
 }
 
-void OutFile::flush() {
+void OutFile::write(size_t size) {
     stopped_ = stopped_ || cancelled(progress_);
-    for (size_t done = 0; done < used_ && !failed();) {
-        const ssize_t n = ::write(fd_, buffer_.data() + done, used_ - done);
+    for (size_t done = 0; done < size && !failed();) {
+        const ssize_t n = ::write(fd_, buffer_.data() + done, size - done);
         if (n >= 0)
             done += static_cast<size_t>(n);
         else if (errno != EINTR)
             error_ = errno;
     }
+}
+
+void OutFile::writeBlock() {
+    write(blockBytes);
+    used_ -= blockBytes;
+    std::memcpy(buffer_.data(), buffer_.data() + blockBytes, used_);
+}
+
+void OutFile::flush() {
+    write(used_);
     used_ = 0;
 }
 
@@ -67,7 +72,7 @@ void OutFile::append(OutFile& part) {
     if (!failed()) error_ = part.error_;
     stopped_ = stopped_ || part.stopped_;
     for (off_t at = 0; !failed();) {
-        const ssize_t n = pread(part.fd_, buffer_.data(), buffer_.size(), at);
+        const ssize_t n = pread(part.fd_, buffer_.data(), blockBytes, at);
         if (n == 0) break;
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) {

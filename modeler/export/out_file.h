@@ -40,20 +40,23 @@ public:
     void raw(const T&... values) {
         static_assert((std::is_trivially_copyable_v<T> && ...));
         constexpr size_t size = (sizeof(T) + ...);
-        if (buffer_.size() - used_ < size) flush();
+        static_assert(size <= rowRoom);
         char* to = buffer_.data() + used_;
         ((std::memcpy(to, &values, sizeof values), to += sizeof values), ...);
         used_ += size;
+        if (used_ >= blockBytes) writeBlock();
     }
-    /// `count` rows of `size` bytes, each written by row(i, to).
+    /// `count` rows of `size` bytes, each written by row(i, to), one after the other; a row may write up to `rowRoom`
+    /// bytes, of which the next one takes those beyond `size`.
     template <size_t size, class Row>
     void rows(size_t count, Row row) {
+        static_assert(size <= rowRoom);
         for (size_t i = 0; i < count && !failed();) {
-            if (buffer_.size() - used_ < size) flush();
-            const size_t end = std::min(count, i + (buffer_.size() - used_) / size);
+            const size_t end = std::min(count, i + (blockBytes - used_ + size - 1) / size);
             char* to = buffer_.data() + used_;
             used_ += (end - i) * size;
             for (; i < end; ++i, to += size) row(i, to);
+            if (used_ >= blockBytes) writeBlock();
         }
     }
     /// The shortest decimal text that reads back as the same number.
@@ -82,12 +85,20 @@ public:
     Status finish();
 
 private:
+    /// What is written at once: a whole number of the file's pages, so that the system takes large ones. Stays in the
+    /// second cache until the system has copied it.
+    static constexpr size_t blockBytes = size_t{1} << 18;
+    /// Beyond the block, for the last row.
+    static constexpr size_t rowRoom = 128;
+
     void flush();
+    void writeBlock();
+    void write(size_t size);
 
     std::filesystem::path target_;
-    std::vector<char> buffer_;
+    std::vector<char> buffer_ = std::vector<char>(blockBytes + 2 * rowRoom);
     const Progress* progress_;
-    size_t used_ = 0;
+    size_t used_ = 0;  ///< less than a block between calls
     bool stopped_ = false;  ///< cancelled
     int fd_ = -1;
     int error_ = 0;  ///< errno of the first failure

@@ -31,8 +31,10 @@ public:
     }
 
     void vertices(OutFile& out, const mesh::Chunk& chunk) const override {
+        const size_t count = chunk.positions.size();
+        if (bare_ && place_.isIdentity()) return out.bytes(chunk.positions.data(), count * sizeof(Vec3f));
         if (bare_) {
-            out.rows<sizeof(Vec3f)>(chunk.positions.size(), [&, place = place_, from = chunk.positions.data()](size_t i, char* to) {
+            out.rows<sizeof(Vec3f)>(count, [&, place = place_, from = chunk.positions.data()](size_t i, char* to) {
                 const Vec3f position = place.position(from[i]);
                 std::memcpy(to, &position, sizeof position);
             });
@@ -48,10 +50,20 @@ public:
     void triangles(OutFile& out, const mesh::Chunk& chunk) const override {
         constexpr size_t faceBytes = 1 + sizeof(mesh::Triangle);
         const auto face = [from = chunk.triangles.data(), first = chunk.firstVertex, borrowed = chunk.borrowed.vertices.data()](size_t i, char* to) {
-            mesh::Triangle t = from[i];
-            for (int k = 0; k < 3; ++k) t[k] = t[k] & mesh::borrowedBit ? borrowed[t[k] & ~mesh::borrowedBit] : first + t[k];
-            *to = 3;
-            std::memcpy(to + 1, &t, sizeof t);
+            // Two words: the low one holds corners x and y. Ours are all of most triangles'.
+            constexpr uint64_t both = 0x100000001u;
+            uint64_t xy;
+            std::memcpy(&xy, &from[i], sizeof xy);
+            uint64_t z = from[i].z;
+            if (((xy | z) & both * mesh::borrowedBit) == 0) {
+                xy += both * first, z += first;
+            } else {
+                const auto inMesh = [&](uint64_t corner) -> uint64_t { return corner & mesh::borrowedBit ? borrowed[corner & ~mesh::borrowedBit] : first + corner; };
+                xy = inMesh(from[i].x) | inMesh(from[i].y) << 32;
+                z = inMesh(from[i].z);
+            }
+            const uint64_t row[2] = {xy << 8 | 3, xy >> 56 | z << 8};
+            std::memcpy(to, row, sizeof row);
         };
         if (bare_) return out.rows<faceBytes>(chunk.triangles.size(), face);
         out.rows<faceBytes + sizeof(OriginId)>(chunk.triangles.size(), [&](size_t i, char* to) {
