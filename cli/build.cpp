@@ -44,6 +44,11 @@ bool surveys(const BuildRequest& request) { return request.cave || !request.floo
 /// Whether the blocks are needed, from which a level set is sampled.
 bool wantsLevelSet(const BuildRequest& request) { return wantsVolume(request.out) || surveys(request); }
 
+/// Whether nobody asks for the mesh's normals and origins: neither the files nor edits, the floor and the figures.
+bool bareWillDo(const BuildRequest& request) {
+    return request.quiet && request.report.empty() && request.smooth == 0 && request.simplify == 1 && !surveys(request) && bareWillDo(request.out);
+}
+
 /// A streamed build never has the whole mesh; Error::Usage names what would need it.
 Status checkStream(const BuildRequest& request) {
     const std::pair<bool, const char*> whole[] = {{request.smooth > 0, "--smooth"}, {request.simplify < 1, "--simplify"}, {request.keep != "all", "--keep"},
@@ -187,7 +192,7 @@ Status stream(const BuildRequest& request, const Model& model, Progress* progres
     exporter::ExportInput input = viewer::exportInput(model, request.model.file);
     input.progress = progress;
     const Status written = streamOutput(request.out, input, [&](const mesh::ChunkVisitor& visit) {
-        return mesh::polygonizeInLayers(*blocks, grid, {.threads = request.grid.threads}, progress, counts, [&](const mesh::Mesh& window, const mesh::Chunk& chunk) {
+        return mesh::polygonizeInLayers(*blocks, grid, {.threads = request.grid.threads, .bare = bareWillDo(request.out)}, progress, counts, [&](const mesh::Mesh& window, const mesh::Chunk& chunk) {
             triangles += chunk.triangles.size();
             return visit(window, chunk);
         });
@@ -204,7 +209,7 @@ Status buildOne(const BuildRequest& request) {
     const auto model = makeModel(request.model, stages, watch.progress());
     if (!model.ok()) return model.error();
     if (request.stream) return stream(request, *model, watch.progress());
-    auto meshed = makeMesh(*model, request.grid, stages, watch.progress());
+    auto meshed = makeMesh(*model, request.grid, stages, watch.progress(), bareWillDo(request));
     if (!meshed.ok()) return meshed.error();
     return deliver(request, *model, std::move(*meshed), stages, watch.progress());
 }
@@ -252,14 +257,15 @@ Status buildFrames(const BuildRequest& request) {
     const auto bounds = boundsOfFrames(grammar, *options, *animation, watch.progress());
     if (!bounds.ok()) return bounds.error();
     const mesh::Grid grid = gridOver(*bounds, request.grid);
-    mesh::Rebuild rebuild({.threads = request.grid.threads});
+    const mesh::PolygonizeOptions meshing{.threads = request.grid.threads, .bare = bareWillDo(request)};
+    mesh::Rebuild rebuild(meshing);
     const auto still = options->params;
     for (int frame = 0; frame < animation->frames; ++frame) {
         Stages stages;
         options->params = animation->values(still, frame);
         const auto model = makeModel(grammar, *options, stages, watch.progress());
         if (!model.ok()) return model.error();
-        auto meshed = wantsLevelSet(request) ? makeMesh(*model, grid, request.grid.threads, stages, watch.progress())
+        auto meshed = wantsLevelSet(request) ? makeMesh(*model, grid, meshing, stages, watch.progress())
                                   : makeMesh(*model, grid, rebuild, stages, watch.progress());
         if (!meshed.ok()) return meshed.error();
         if (!request.quiet) fmt::print("frame {} of {}, {}: ", frame + 1, animation->frames, animation->text(*grammar, frame));

@@ -91,6 +91,13 @@ bool wantsVolume(const OutputRequest& request) {
     return std::any_of(request.files.begin(), request.files.end(), [](const std::string& file) { return formatOf(file)->wantsVolume; });
 }
 
+bool bareWillDo(const OutputRequest& request) {
+    return std::all_of(request.files.begin(), request.files.end(), [&](const std::string& file) {
+        const Exporter& row = *formatOf(file);
+        return exporter::takesBare(row, optionsFor(request, row));
+    });
+}
+
 Status checkStreamed(const OutputRequest& request) {
     if (request.files.size() != 1 || !request.proxy.empty())
         return Error{Error::Kind::Usage, "--stream writes one file, without a proxy: give a single -o"};

@@ -28,6 +28,9 @@ Status checkMeshFile(const char* option, const std::string& file);
 /// True when one of the files holds a volume.
 bool wantsVolume(const OutputRequest& request);
 
+/// True when no file says anything of the mesh's normals and origins. (The proxy is a mesh of its own.)
+bool bareWillDo(const OutputRequest& request);
+
 /// Error::Usage unless there is one file, of a format that takes a mesh chunk by chunk.
 Status checkStreamed(const OutputRequest& request);
 /// Writes that file.

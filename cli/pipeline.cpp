@@ -55,8 +55,8 @@ mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request) {
     return mesh::gridFor(bounds, request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution));
 }
 
-Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress) {
-    return makeMesh(model, gridOver(model.lowered->field.bounds, request), request.threads, stages, progress);
+Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress, bool bare) {
+    return makeMesh(model, gridOver(model.lowered->field.bounds, request), {.threads = request.threads, .bare = bare}, stages, progress);
 }
 
 void sayUngrown(const derive::Derivation& derivation) {

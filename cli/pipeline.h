@@ -45,8 +45,8 @@ Result<Model> makeModel(const ModelRequest& request, Stages& stages, Progress* p
 
 /// The grid that is asked for over these bounds.
 mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request);
-/// The mesh of the model over its own bounds.
-Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress);
+/// The mesh of the model over its own bounds, `bare` or with normals and origins.
+Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress, bool bare = false);
 
 /// A warning on stderr for every element that a closed joint kept from growing wherever it came.
 void sayUngrown(const derive::Derivation& derivation);

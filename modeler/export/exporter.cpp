@@ -33,19 +33,26 @@ constexpr ExportOption volumeOptions[] = {
     {"lump", "0", "", "fog: metres of the largest lumps of noise; 0: an eighth of the least extent", 0, 1e5},
 };
 
+bool always(const ExportOptions&) { return true; }
+
+bool withoutAttributes(const ExportOptions& options) {
+    const auto asked = options.find("attributes");
+    return asked != options.end() && asked->second == "none";
+}
+
 constexpr Exporter table[] = {
-    {".glb", "glTF 2.0, binary: normals, texture coordinates, a primitive a material", false, gltfOptions, writeGlb,
-     nullptr},
-    {".gltf", "glTF 2.0 as JSON, with its buffer inside", false, gltfOptions, writeGltf, nullptr},
-    {".obj", "Wavefront OBJ, with a .mtl beside it", false, texturedOptions, writeObj, nullptr},
-    {".ply", "PLY, binary: normals, texture coordinates s t, colours, an origin a face", false, plyOptions, writePly,
-     streamPly},
-    {".stl", "STL, binary: positions only", false, plainOptions, writeStl, streamStl},
-    {".off", "OFF: positions and triangles as text", false, plainOptions, writeOff, streamOff},
+    {".glb", "glTF 2.0, binary: normals, texture coordinates, a primitive a material", false, gltfOptions, nullptr,
+     writeGlb, nullptr},
+    {".gltf", "glTF 2.0 as JSON, with its buffer inside", false, gltfOptions, nullptr, writeGltf, nullptr},
+    {".obj", "Wavefront OBJ, with a .mtl beside it", false, texturedOptions, nullptr, writeObj, nullptr},
+    {".ply", "PLY, binary: normals, texture coordinates s t, colours, an origin a face", false, plyOptions,
+     withoutAttributes, writePly, streamPly},
+    {".stl", "STL, binary: positions only", false, plainOptions, always, writeStl, streamStl},
+    {".off", "OFF: positions and triangles as text", false, plainOptions, always, writeOff, streamOff},
     {".usda", "OpenUSD as text: normals, display colours, a subset and preview surface a material", false,
-     texturedOptions, writeUsda, nullptr},
+     texturedOptions, nullptr, writeUsda, nullptr},
     {".vdb", "OpenVDB: a narrow-band level set, fog for renderers, or both; voxels in metres", true, volumeOptions,
-     writeVdb, nullptr},
+     always, writeVdb, nullptr},
 };
 
 /// `parts`, each turned to text by `name`, with `separator` between them.
@@ -81,11 +88,15 @@ std::string refusal(const ExportOption& option, const std::string& value) {
     return {};
 }
 
+Error bareError(const Path& path) { return writeError(path, "the mesh has no normals and origins"); }
+
 Status checkInput(const ExportInput& input, const Exporter& row, const Path& path) {
     if (row.wantsVolume && !input.volume) return writeError(path, "there is no volume");
     if (!row.wantsVolume && (!input.mesh || input.mesh->triangleCount() == 0))
         return writeError(path, "the mesh has no triangles");
-    return checkOptions(row, input.options);
+    if (Status status = checkOptions(row, input.options); !status.ok()) return status;
+    if (!takesBare(row, input.options) && input.mesh->isBare()) return bareError(path);
+    return Done{};
 }
 
 /// The format of a path.
@@ -128,6 +139,8 @@ Status checkOptions(const Exporter& row, const ExportOptions& options) {
 
 std::span<const Exporter> exporters() { return table; }
 
+bool takesBare(const Exporter& row, const ExportOptions& options) { return row.takesBare && row.takesBare(options); }
+
 const Exporter* findExporter(std::string_view extension) {
     std::string lower(extension);
     for (char& c : lower)
@@ -155,9 +168,11 @@ Status writeStreamed(const ExportInput& input, const ChunkSource& chunks, const 
     if (Status status = checkOptions(**row, input.options); !status.ok()) return status;
     return replaced(input, path, [&](const ExportInput& complete, const Path& temporary) -> Status {
         uint64_t triangles = 0;
+        const bool whole = !takesBare(**row, input.options);
         const ChunkSource counted = [&](const mesh::ChunkVisitor& visit) {
-            return chunks([&](const mesh::Mesh& window, const mesh::Chunk& chunk) {
+            return chunks([&](const mesh::Mesh& window, const mesh::Chunk& chunk) -> Status {
                 triangles += chunk.triangles.size();
+                if (whole && chunk.isBare()) return bareError(path);
                 return visit(window, chunk);
             });
         };

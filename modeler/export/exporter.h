@@ -48,6 +48,9 @@ struct Exporter {
     std::string_view doc;
     bool wantsVolume;
     std::span<const ExportOption> options;
+    /// Whether a file with these options says nothing of normals and origins, so that the mesh may be bare; null where
+    /// every file does.
+    bool (*takesBare)(const ExportOptions& options);
     /// Writes to `temporary`; `write` renames it into place.
     Status (*write)(const ExportInput& input, const std::filesystem::path& temporary,
                     const std::filesystem::path& target);
@@ -64,6 +67,8 @@ const Exporter* findExporter(std::string_view extension);
 std::string streamedExtensions();
 /// Error::Usage, in words, for a name that the format doesn't have and for a value that the option doesn't take.
 Status checkOptions(const Exporter& row, const ExportOptions& options);
+/// Whether a bare mesh has all that the format writes with these options.
+bool takesBare(const Exporter& row, const ExportOptions& options);
 /// Writes `path` by its extension: all or nothing, Error::Cancelled when `input.progress` says so.
 Status write(const ExportInput& input, const std::filesystem::path& path);
 /// The same of a mesh that comes in chunks, `input.mesh` unset; the first error of `chunks` ends it. Error::Usage where

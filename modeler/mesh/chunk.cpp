@@ -75,18 +75,6 @@ int sidesAt(int side, Vec3i at, int axis) {
     return ((at.x == side ? 1 : 0) | (at.y == side ? 2 : 0) | (at.z == side ? 4 : 0)) & ~(1 << axis);
 }
 
-/// Who owns all that a tape can show; nothing where it depends on the place.
-std::optional<OriginId> onlyOwner(const eval::Tape& tape) {
-    const auto origins = tape.origins();
-    if (origins[0] != 0 || origins.size() == 1) return origins[0];
-    // The last instruction takes one of its operands.
-    const eval::Instruction& last = tape.code().back();
-    if (last.out != tape.result() || last.origins == 0) return {};
-    const auto operands = origins.subspan(last.origins - 1, last.count);
-    const bool same = std::all_of(operands.begin(), operands.end(), [&](OriginId o) { return o == operands[0]; });
-    return same && operands[0] != 0 ? std::optional(operands[0]) : std::nullopt;
-}
-
 }  // namespace
 
 void BlockMesher::clear() {
@@ -118,13 +106,26 @@ bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chun
     const Stopwatch joining;
     chunk.block = block.index;
     copyTo(chunk.positions, positions_);
-    copyTo(chunk.normals, normals_);
-    for (size_t i = 0; flat_ && i < normals_.size(); ++i)
+    if (!bare_) copyTo(chunk.normals, normals_);
+    for (size_t i = 0; flat_ && !bare_ && i < normals_.size(); ++i)
         if (normals_[i] == Vec3f{}) chunk.faceted.push_back(static_cast<uint32_t>(i));
     listSeams(chunk);
     writeTriangles(chunk);
     counts_.polygonizeSeconds += joining.seconds();
     return true;
+}
+
+/// Who owns all that a tape can show; nothing where it depends on the place. Nobody asks in a bare mesh.
+std::optional<OriginId> BlockMesher::onlyOwner(const eval::Tape& tape) const {
+    if (bare_) return OriginId{0};
+    const auto origins = tape.origins();
+    if (origins[0] != 0 || origins.size() == 1) return origins[0];
+    // The last instruction takes one of its operands.
+    const eval::Instruction& last = tape.code().back();
+    if (last.out != tape.result() || last.origins == 0) return {};
+    const auto operands = origins.subspan(last.origins - 1, last.count);
+    const bool same = std::all_of(operands.begin(), operands.end(), [&](OriginId o) { return o == operands[0]; });
+    return same && operands[0] != 0 ? std::optional(operands[0]) : std::nullopt;
 }
 
 /// Samples the brick; returns its tape.
@@ -186,7 +187,7 @@ void BlockMesher::placeEdges(Vec3i brick) {
     uint32_t* const number = number_.data() + edgePlace(brickCorner(brick), 0);
     for (size_t e = 0; e < ownEdges_; ++e) number[places[e]] = static_cast<uint32_t>(vertices_ + e);
     vertices_ += static_cast<uint32_t>(ownEdges_);
-    origins_.resize(vertices_);
+    if (!bare_) origins_.resize(vertices_);
 }
 
 /// Lists own vertices on high sides of the block for every block that meets this one there.
@@ -205,15 +206,16 @@ void BlockMesher::lend(const BrickSigns& signs, Vec3i brick) {
 
 /// Finds where the vertices on all edges lie, of which the first `own` are the next ones of the block.
 void BlockMesher::findPlaces(const eval::Tape& tape, size_t own) {
-    const bool dear = samples_.isDear() && isDear(tape);
-    counts_.refinementEvaluations +=
-        findVertices(tape, dear, refineSteps_, workspace_, openEdges_, edges_, fieldTime_);
+    const VertexSearch search{refineSteps_, samples_.isDear() && isDear(tape), !bare_, fieldTime_};
+    counts_.refinementEvaluations += findVertices(tape, search, workspace_, openEdges_, edges_);
     flat_ = flat_ || (edges_.size > 0 && edges_.flat > 0);
     const size_t first = positions_.size();
-    positions_.resize(first + own), normals_.resize(first + own);
+    positions_.resize(first + own);
     if (own == 0) return;
     const EdgeArrays& e = edges_.arrays;
     edgeLoops().interleave(e.x, e.y, e.z, own, &positions_[first].x);
+    if (bare_) return;
+    normals_.resize(first + own);
     edgeLoops().interleave(e.dx, e.dy, e.dz, own, &normals_[first].x);
 }
 
@@ -273,7 +275,7 @@ void BlockMesher::addBrick(int number, const eval::Tape& tape) {
     }
     std::optional<OriginId> edgesOwner = owner;
     if (owner) {
-        std::fill_n(origins_.data() + origins_.size() - ownEdges_, ownEdges_, *owner);
+        if (!bare_) std::fill_n(origins_.data() + origins_.size() - ownEdges_, ownEdges_, *owner);
     } else {
         edgesOwner = findOrigins(tape);
         if (edgesOwner) owner = ownerAround(brick, *edgesOwner);
@@ -291,7 +293,7 @@ void BlockMesher::listSeams(Chunk& chunk) {
         chunk.borrowed.begin[kind] = borrowed;
         for (const Borrowed& b : borrowed_[kind]) {
             number_[b.edge] = borrowedBit | borrowed++;
-            origins_.push_back(b.origin);
+            if (!bare_) origins_.push_back(b.origin);
         }
         chunk.lent.begin[kind] = static_cast<uint32_t>(chunk.lent.vertices.size());
         chunk.lent.vertices.insert(chunk.lent.vertices.end(), lent_[kind].begin(), lent_[kind].end());
@@ -304,10 +306,11 @@ void BlockMesher::listSeams(Chunk& chunk) {
 /// Joins vertices. A triangle takes the origin of most of its vertices, the lowest where all three differ.
 void BlockMesher::writeTriangles(Chunk& chunk) const {
     chunk.triangles.resize(triangles_);
-    chunk.origins.resize(triangles_);
     if (triangles_ == 0) return;
     brickLoops().join(cells_.data(), cellCount_, number_.data(), blockCorners, blockCorners * blockCorners,
                       placedCases().data(), &chunk.triangles[0].x);
+    if (bare_) return;
+    chunk.origins.resize(triangles_);
     OriginId* const origin = chunk.origins.data();
     size_t first = 0;
     for (const Brick& brick : bricks_) {

@@ -17,8 +17,9 @@ namespace sgm::mesh {
 /// next one, which processors fetch with it.
 class alignas(128) BlockMesher {
 public:
-    /// `refineSteps` as in findVertices.
-    BlockMesher(const Grid& grid, size_t refineSteps) : grid_(grid), refineSteps_(refineSteps) {}
+    /// `refineSteps` as in findVertices; `bare` as in PolygonizeOptions.
+    BlockMesher(const Grid& grid, size_t refineSteps, bool bare = false)
+        : grid_(grid), refineSteps_(refineSteps), bare_(bare) {}
 
     /// The block's chunk; false when it was cancelled on the way. What it borrows is not named yet: see `link`.
     bool mesh(const Block& block, const Progress* progress, Chunk& chunk);
@@ -50,6 +51,7 @@ private:
 
     void clear();
     const eval::Tape& sampled(int brick);
+    std::optional<OriginId> onlyOwner(const eval::Tape& tape) const;
     void addBrick(int number, const eval::Tape& tape);
     size_t addCells(const BrickSigns& signs, Vec3i brick);
     void addOwnEdges(const BrickSigns& signs);
@@ -65,6 +67,7 @@ private:
 
     const Grid grid_;
     const size_t refineSteps_;
+    const bool bare_;
     eval::Workspace workspace_;
     BlockSamples samples_;
     CutEdges edges_;  ///< of a brick, its own first; before them those that wait

@@ -1,9 +1,11 @@
 // The mesh every writer takes: indexed triangles in chunks, one chunk a block of 32³ cells.
 // Enters: chunks from polygonize. Leaves: vertices, normals, triangles, origins. Assumes chunks in ascending block
 // order. A chunk numbers its own vertices from 0, so that it stays as it is whatever becomes of the others; vertices on
-// a border between blocks belong to the lowest of them, and the others borrow them.
+// a border between blocks belong to the lowest of them, and the others borrow them. A bare mesh is its shape alone:
+// its chunks have no normals, no origins and no faceted vertices.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -35,9 +37,9 @@ struct Chunk {
     Vec3i block;                     ///< block coordinates in the grid
     uint32_t firstVertex = 0;        ///< index of positions[0] in the whole mesh
     PageVector<Vec3f> positions;     ///< metres, object frame
-    PageVector<Vec3f> normals;       ///< unit, outward, from the field's derivative
+    PageVector<Vec3f> normals;       ///< unit, outward, from the field's derivative; none in a bare mesh
     PageVector<Triangle> triangles;  ///< corners count in this chunk, see `inMesh`
-    PageVector<OriginId> origins;    ///< one per triangle
+    PageVector<OriginId> origins;    ///< one per triangle; none in a bare mesh
     SeamList borrowed;               ///< indices in the whole mesh of vertices that lower blocks own
     SeamList lent;                   ///< own vertices that higher blocks borrow
     std::vector<uint32_t> faceted;   ///< own vertices without derivative: their normals come from the triangles
@@ -46,6 +48,8 @@ struct Chunk {
     uint32_t inMesh(uint32_t corner) const {
         return corner & borrowedBit ? borrowed.vertices[corner & ~borrowedBit] : firstVertex + corner;
     }
+    /// Whether normals or origins are missing.
+    bool isBare() const { return normals.size() != positions.size() || origins.size() != triangles.size(); }
     Triangle inMesh(Triangle t) const { return {inMesh(t.x), inMesh(t.y), inMesh(t.z)}; }
 };
 
@@ -61,6 +65,10 @@ struct Mesh {
         size_t n = 0;
         for (const Chunk& c : chunks) n += c.triangles.size();
         return n;
+    }
+    /// Whether some chunk's normals or origins are missing.
+    bool isBare() const {
+        return std::any_of(chunks.begin(), chunks.end(), [](const Chunk& c) { return c.isBare(); });
     }
     Box3f bounds() const {
         Box3f box;

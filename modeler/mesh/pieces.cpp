@@ -142,14 +142,15 @@ void keepSurfaces(Mesh& mesh, const Surfaces& surfaces, const std::vector<bool>&
                 list.begin[seamKinds] = n;
                 list.vertices.resize(n);
             };
+            const bool bare = c.isBare();
             size_t kept = 0;
             for (size_t i = 0; i < c.triangles.size(); ++i)
                 if (stays(c.inMesh(c.triangles[i].x))) {
-                    c.triangles[kept] = c.triangles[i];
-                    c.origins[kept++] = c.origins[i];
+                    if (!bare) c.origins[kept] = c.origins[i];
+                    c.triangles[kept++] = c.triangles[i];
                 }
             c.triangles.resize(kept);
-            c.origins.resize(kept);
+            if (!bare) c.origins.resize(kept);
             borrowedNow.clear();
             filter(c.borrowed, stays, [&](uint32_t v) { return now[v]; }, &borrowedNow);
             filter(c.lent, [&](uint32_t v) { return stays(first + v); }, local, nullptr);
@@ -160,11 +161,11 @@ void keepSurfaces(Mesh& mesh, const Surfaces& surfaces, const std::vector<bool>&
             uint32_t n = 0;
             for (uint32_t v = 0; v < own; ++v)
                 if (stays(first + v)) {
-                    c.positions[n] = c.positions[v];
-                    c.normals[n++] = c.normals[v];
+                    if (!bare) c.normals[n] = c.normals[v];
+                    c.positions[n++] = c.positions[v];
                 }
             c.positions.resize(n);
-            c.normals.resize(n);
+            if (!bare) c.normals.resize(n);
         }
         c.firstVertex = firstVertex;
         firstVertex += staying;

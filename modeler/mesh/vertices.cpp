@@ -29,27 +29,29 @@ private:
 };
 
 /// By values alone, and by the derivative once at the end.
-uint64_t findByValues(const TimedField& field, size_t refineSteps, CutEdges& edges) {
+uint64_t findByValues(const TimedField& field, const VertexSearch& search, CutEdges& edges) {
     const EdgeLoops& loops = edgeLoops();
     const EdgeArrays& e = edges.arrays;
-    for (size_t s = 0; s < refineSteps; ++s) {
+    for (size_t s = 0; s < search.refineSteps; ++s) {
         field.value(e, edges.size);
         loops.narrow(e, edges.size, s % 2 == 1);
     }
-    field.gradient(e, edges.size);
-    if (refineSteps > 0) loops.settle(e, edges.size);
-    return refineSteps * edges.size;
+    if (search.normals || search.refineSteps > 0) field.gradient(e, edges.size);
+    if (search.refineSteps > 0) loops.settle(e, edges.size);
+    return search.refineSteps * edges.size;
 }
 
 /// By value and derivative together: most vertices take one evaluation, and only the others go on.
-uint64_t findByNewton(const TimedField& field, size_t refineSteps, std::vector<CutEdges>& scratch, CutEdges& edges) {
+uint64_t findByNewton(const TimedField& field, const VertexSearch& search, std::vector<CutEdges>& scratch,
+                      CutEdges& edges) {
     const EdgeLoops& loops = edgeLoops();
     uint64_t evaluations = 0;
-    scratch.resize(std::max(scratch.size(), refineSteps));
+    scratch.resize(std::max(scratch.size(), search.refineSteps));
     CutEdges* list = &edges;
     for (size_t s = 0;; ++s) {
+        if (s == search.refineSteps && !search.normals) break;
         field.gradient(list->arrays, list->size);
-        if (s == refineSteps) break;  // where the last step led, only the derivative is asked
+        if (s == search.refineSteps) break;  // where the last step led, only the derivative is asked
         evaluations += list->size;
         if (loops.step(list->arrays, list->size) == 0) break;
         CutEdges& open = scratch[s];
@@ -92,15 +94,15 @@ void CutEdges::reserve(size_t n) {
     for (const auto member : rows) arrays.*member = row, row += room;
 }
 
-uint64_t findVertices(const eval::Tape& tape, bool dear, size_t refineSteps, eval::Workspace& workspace,
-                      std::vector<CutEdges>& scratch, CutEdges& edges, SumOfTimes* fieldTime) {
+uint64_t findVertices(const eval::Tape& tape, const VertexSearch& search, eval::Workspace& workspace,
+                      std::vector<CutEdges>& scratch, CutEdges& edges) {
     if (edges.size == 0) return 0;
     const EdgeLoops& loops = edgeLoops();
     loops.interpolate(edges.arrays, edges.size);
-    const TimedField field(tape, workspace, fieldTime);
+    const TimedField field(tape, workspace, search.fieldTime);
     const uint64_t evaluations =
-        dear ? findByValues(field, refineSteps, edges) : findByNewton(field, refineSteps, scratch, edges);
-    edges.flat = loops.normalize(edges.arrays, edges.size);
+        search.dear ? findByValues(field, search, edges) : findByNewton(field, search, scratch, edges);
+    edges.flat = search.normals ? loops.normalize(edges.arrays, edges.size) : 0;
     return evaluations;
 }
 

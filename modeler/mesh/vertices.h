@@ -37,10 +37,18 @@ private:
     PageVector<float> memory_;
 };
 
+/// How vertices are looked for.
+struct VertexSearch {
+    size_t refineSteps = 3;
+    bool dear = false;                ///< the tape is, see isDear
+    bool normals = true;              ///< where nobody wants them dx, dy, dz hold anything
+    SumOfTimes* fieldTime = nullptr;  ///< adds up what evaluations take, if it is there
+};
+
 /// Moves all vertices to the surface in at most `refineSteps` evaluations each (0: the line between the samples), and
-/// leaves in dx, dy, dz the unit normal where the field was last evaluated, zero where it has none. `dear`: the
-/// tape is (region.h). `scratch` grows to a list a step. Returns how many evaluations refined; `fieldTime`, if any, adds up what those took.
-uint64_t findVertices(const eval::Tape& tape, bool dear, size_t refineSteps, eval::Workspace& workspace,
-                      std::vector<CutEdges>& scratch, CutEdges& edges, SumOfTimes* fieldTime = nullptr);
+/// leaves in dx, dy, dz the unit normal where the field was last evaluated, zero where it has none. `scratch` grows to a
+/// list a step. Returns how many evaluations refined.
+uint64_t findVertices(const eval::Tape& tape, const VertexSearch& search, eval::Workspace& workspace,
+                      std::vector<CutEdges>& scratch, CutEdges& edges);
 
 }  // namespace sgm::mesh

@@ -56,10 +56,13 @@ Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Pr
 
 mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave) {
     const float upright = static_cast<float>(std::cos(cave.agent.slope_rad)) - 0.05f;
-    std::vector<const Vec3f*> position(mesh.vertexCount()), normal(mesh.vertexCount());
+    const bool bare = mesh.isBare();
+    std::vector<const Vec3f*> position(mesh.vertexCount()), normal(bare ? 0 : mesh.vertexCount());
     for (const mesh::Chunk& c : mesh.chunks)
-        for (size_t i = 0; i < c.positions.size(); ++i)
-            position[c.firstVertex + i] = &c.positions[i], normal[c.firstVertex + i] = &c.normals[i];
+        for (size_t i = 0; i < c.positions.size(); ++i) {
+            position[c.firstVertex + i] = &c.positions[i];
+            if (!bare) normal[c.firstVertex + i] = &c.normals[i];
+        }
     mesh::Chunk kept;
     std::vector<uint32_t> numberOf(mesh.vertexCount(), nowhere);
     for (const mesh::Chunk& c : mesh.chunks)
@@ -74,12 +77,12 @@ mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave) {
                 if (number == nowhere) {
                     number = static_cast<uint32_t>(kept.positions.size());
                     kept.positions.push_back(*position[tri[corner]]);
-                    kept.normals.push_back(*normal[tri[corner]]);
+                    if (!bare) kept.normals.push_back(*normal[tri[corner]]);
                 }
                 own[corner] = number;
             }
             kept.triangles.push_back(own);
-            kept.origins.push_back(c.origins[t]);
+            if (!bare) kept.origins.push_back(c.origins[t]);
         }
     mesh::Mesh floor;
     floor.chunks.push_back(std::move(kept));

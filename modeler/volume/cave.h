@@ -90,7 +90,8 @@ struct Cave {
 /// Surveys the air; `hollow` as in `airOf`. Error::Usage for an agent that can't be, Error::Cancelled.
 Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Progress* progress);
 
-/// The triangles of `mesh` that are floor the agent can stand on: a sheet with borders, in one chunk.
+/// The triangles of `mesh` that are floor the agent can stand on: a sheet with borders, in one chunk; bare where
+/// `mesh` is.
 mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave);
 
 }  // namespace sgm::volume

@@ -210,7 +210,7 @@ protected:
     static std::vector<unsigned char> bytesOf(const Model& model) {
         const Box3f& bounds = model.lowered->field.bounds;
         Stages stages;
-        const auto made = makeMesh(model, mesh::gridFor(bounds, mesh::cellFor(bounds, 24)), 1, stages, nullptr);
+        const auto made = makeMesh(model, mesh::gridFor(bounds, mesh::cellFor(bounds, 24)), {.threads = 1}, stages, nullptr);
         EXPECT_TRUE(made.ok());
         return mesh::bytesOf(made->mesh);
     }

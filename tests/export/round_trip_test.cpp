@@ -183,6 +183,30 @@ TEST(RoundTrip, PlyOfTheShapeAlone) {
     EXPECT_EQ(bare.triangles, all.triangles);
 }
 
+TEST_P(EveryMeshFormat, OfABareMeshHasTheSameBytesOrIsRefused) {
+    Fixture full, bare;
+    for (mesh::Chunk& c : bare.mesh.chunks) c.normals.clear(), c.origins.clear();
+    const std::string file = "sphere" + GetParam();
+    for (const ExportOptions& options : {ExportOptions{}, ExportOptions{{"attributes", "none"}}}) {
+        const Exporter& row = *findExporter(GetParam());
+        if (!checkOptions(row, options).ok()) continue;
+        full.input.options = bare.input.options = options;
+        if (takesBare(row, options)) {
+            EXPECT_EQ(contentOf(bare.write(file)), contentOf(full.write(file)));
+            continue;
+        }
+        const Status status = write(bare.input, bare.folder / file);
+        ASSERT_FALSE(status.ok());
+        EXPECT_NE(status.error().message.find("no normals"), std::string::npos);
+        EXPECT_EQ(bare.folder.fileCount(), 0u);
+        if (!row.stream) continue;
+        const ChunkSource all = [&](const mesh::ChunkVisitor& visit) { return visit(bare.mesh, bare.mesh.chunks[0]); };
+        ExportInput input = bare.input;
+        input.mesh = nullptr;
+        EXPECT_EQ(writeStreamed(input, all, bare.folder / file).error().message, status.error().message);
+    }
+}
+
 TEST(RoundTrip, TextureChartsAreInMetresAndNeverMirrored) {
     Fixture f;
     const ReadBack r = readBack(f.write("a.glb"));

@@ -2,28 +2,12 @@
 
 #include <cstring>
 
-#include "modeler/field/ops.h"
 #include "modeler/mesh/coarse_loops.h"
 #include "modeler/mesh/region.h"
 #include "tests/mesh/scenes.h"
 
 namespace sgm::mesh {
 namespace {
-
-/// The benchmark's fractal of six folds: its values are dear, and the surface is near to everything.
-Scene fractal() {
-    using field::ops::Kifs;
-    Scene s;
-    const float cosine = 0.9238795f, sine = 0.3826834f;
-    const float numbers[] = {.93f,   .93f, .33f, 3.5f, cosine, 0, -sine, 0, 1, 0, sine, 0,
-                             cosine, 1,    0,    0,    0,      1, 0,     0, 0, 1, 4};
-    std::vector<field::Operand> operands{{s.graph.x().id(), 0}, {s.graph.y().id(), 0}, {s.graph.z().id(), 0}};
-    for (const float n : numbers) operands.push_back({s.graph.slot(n).id(), 0});
-    const field::Num value =
-        s.graph.apply(field::codeOf<Kifs>, operands, Kifs::pack({.passes = 6, .folds = true, .turns = false}));
-    s.field = {max(value, box(s.graph, {}, {1, 1, 1}).value), {{-1, -1, -1}, {1, 1, 1}}, 1, 1};
-    return s;
-}
 
 /// Edges of the grid whose ends differ in sign, all corners asked; those on the border count as outside.
 size_t cutEdges(const eval::Tape& tape, const Grid& grid) {

@@ -194,6 +194,25 @@ TEST(Polygonize, LayerByLayerTheChunksAreTheSame) {
     }
 }
 
+TEST(Polygonize, ABareMeshIsTheShapeOfAFullOne) {
+    Scene steps;  // without derivative
+    steps.field = {floor(field::length(steps.graph.position())) - 0.5f, {{-1, -1, -1}, {1, 1, 1}}, 100, 0};
+    const Scene one = ballScene();  // one tape and one owner
+    const Scene dear = fractal();  // refined by values
+    const Scene cloud = cloudScene(60, 0.12f, 5);
+    for (const Scene* s : std::initializer_list<const Scene*>{&steps, &one, &dear, &cloud})
+        for (const int refineSteps : {0, 1, 3}) {
+            Mesh full = *meshOf(*s, 90, 2, {.refineSteps = refineSteps}).mesh;
+            const Mesh bare = *meshOf(*s, 90, 2, {.refineSteps = refineSteps, .bare = true}).mesh;
+            EXPECT_TRUE(bare.isBare());
+            EXPECT_FALSE(full.isBare());
+            EXPECT_GT(bare.triangleCount(), 1000u);
+            for (Chunk& c : full.chunks) c.normals.clear(), c.origins.clear();
+            EXPECT_EQ(bytesOf(bare), bytesOf(full)) << refineSteps;
+            for (const Chunk& c : bare.chunks) EXPECT_TRUE(c.faceted.empty());
+        }
+}
+
 TEST(Polygonize, CountsStayBelowTwentySamplesASurfaceCell) {
     const Meshed m = meshOf(cloudScene(60, 0.12f, 5), 200);
     ASSERT_TRUE(m.mesh.ok());

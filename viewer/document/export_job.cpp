@@ -13,7 +13,9 @@ Status write(const Shown& shown, const ExportRequest& request, const exporter::E
     const float cell_m =
         request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
     Stages stages;
-    const auto meshed = makeMesh(shown.model, mesh::gridFor(bounds, cell_m), request.threads, stages, &progress);
+    const mesh::PolygonizeOptions options{.threads = request.threads,
+                                          .bare = exporter::takesBare(format, request.options)};
+    const auto meshed = makeMesh(shown.model, mesh::gridFor(bounds, cell_m), options, stages, &progress);
     if (!meshed.ok()) return meshed.error();
     exporter::ExportInput input = exportInput(shown.model, shown.grammar->sources[0]->name());
     input.mesh = &meshed->mesh;

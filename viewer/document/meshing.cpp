@@ -4,15 +4,14 @@
 
 namespace sgm::viewer {
 
-Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int threads, Stages& stages,
-                             Progress* progress) {
+Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, const mesh::PolygonizeOptions& options,
+                             Stages& stages, Progress* progress) {
     MeshedModel made;
     made.grid = grid;
     auto blocks = timed(stages, "subdivide",
-                        [&] { return mesh::subdivide(model.tape, made.grid, threads, progress, made.counts); });
+                        [&] { return mesh::subdivide(model.tape, made.grid, options.threads, progress, made.counts); });
     if (!blocks.ok()) return blocks.error();
     made.blocks = std::move(*blocks);
-    const mesh::PolygonizeOptions options{.threads = threads};
     Stages whole;
     auto mesh = timed(whole, "polygonize",
                       [&] { return mesh::polygonize(made.blocks, made.grid, options, progress, made.counts); });

@@ -19,8 +19,8 @@ struct MeshedModel {
     mesh::Mesh mesh;
     mesh::Counts counts;
 };
-Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, int threads, Stages& stages,
-                             Progress* progress);
+Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, const mesh::PolygonizeOptions& options,
+                             Stages& stages, Progress* progress);
 /// The same, taking what didn't change from the last mesh of `rebuild`; without blocks, which only volumes want.
 Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::Rebuild& rebuild, Stages& stages,
                              Progress* progress);
