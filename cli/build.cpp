@@ -129,7 +129,7 @@ mesh::Keep keepOf(const BuildRequest& request) {
 
 /// Takes crumbs and what floats away where that is wanted.
 void keepOnly(const BuildRequest& request, MeshedModel& meshed) {
-    const mesh::Dropped dropped = mesh::keepOnly(meshed.mesh, keepOf(request), meshed.grid.cell_m);
+    const mesh::Dropped dropped = mesh::keepOnly(meshed.mesh, keepOf(request), meshed.grid.cell_m, request.grid.threads);
     if (!request.quiet && dropped.pieces + dropped.cavities > 0)
         fmt::print("left out {} piece{} of {:.4g} m³, filled {} cavit{} of {:.4g} m³\n", dropped.pieces, dropped.pieces == 1 ? "" : "s", dropped.volume_m3,
                    dropped.cavities, dropped.cavities == 1 ? "y" : "ies", dropped.filled_m3);

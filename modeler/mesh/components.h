@@ -31,6 +31,7 @@ public:
         return parent_.back();
     }
     size_t size() const { return parent_.size(); }
+    void clear() { parent_.clear(); }
 
 private:
     std::vector<uint32_t> parent_;
@@ -46,33 +47,61 @@ struct SurfaceLabels {
 
 /// Labels vertices as pixels are (Rosenfeld and Pfaltz, "Sequential Operations in Digital Picture Processing", 1966): a triangle
 /// hands on the label that it finds, and labels that meet are one. There are far fewer labels than vertices.
+class Labeller {
+public:
+    /// Forgets all; for so many vertices.
+    void begin(size_t vertices) {
+        of_.assign(vertices, none);
+        labels_.clear();
+    }
+    /// The label of a triangle and its corners, of fewer than 2³¹ that were given out so far.
+    uint32_t label(const Vec3<uint32_t>& t) {
+        uint32_t &x = of_[t.x], &y = of_[t.y], &z = of_[t.z];
+        const uint32_t a = x, b = y, c = z;
+        // The lowest label, for which none is the greatest number, and the highest one, for which it is the least.
+        uint32_t low = a < b ? a : b;
+        low = low < c ? low : c;
+        int32_t high = signedOf(a) > signedOf(b) ? signedOf(a) : signedOf(b);
+        high = high > signedOf(c) ? high : signedOf(c);
+        if ((static_cast<uint32_t>(high) != low) | (low == none)) [[unlikely]] low = met(a, b, c);
+        return x = y = z = low;
+    }
+    /// What was found; begin anew then.
+    SurfaceLabels found() {
+        SurfaceLabels found{std::move(of_), std::vector<uint32_t>(labels_.size())};
+        for (uint32_t label = 0; label < labels_.size(); ++label) {
+            const uint32_t lowest = labels_.find(label);
+            found.numbers[label] = lowest == label ? found.count++ : found.numbers[lowest];
+        }
+        for (uint32_t& v : found.of)
+            if (v != none) v = found.numbers[v];
+        return found;
+    }
+
+private:
+    static constexpr uint32_t none = SurfaceLabels::none;
+    static constexpr int32_t signedOf(uint32_t label) { return static_cast<int32_t>(label); }
+
+    /// What they are from now on, a new label where all are none.
+    [[gnu::noinline]] uint32_t met(uint32_t a, uint32_t b, uint32_t c) {
+        uint32_t label = std::min({a, b, c});
+        if (label == none) return labels_.add();
+        for (const uint32_t l : {a, b, c})
+            if (l != none) label = labels_.join(label, l);
+        return label;
+    }
+
+    std::vector<uint32_t> of_;
+    Components labels_{0};
+};
+
 /// `forTriangles(f)` calls f with every triangle, corners counted in the whole mesh; f returns its label.
 template <class ForTriangles>
 SurfaceLabels labelSurfaces(size_t vertices, ForTriangles forTriangles) {
-    constexpr uint32_t none = SurfaceLabels::none;
-    SurfaceLabels found{std::vector<uint32_t>(vertices, none), {}};
-    std::vector<uint32_t>& of = found.of;
-    Components labels(0);
-    forTriangles([&](const Vec3<uint32_t>& t) {
-        const uint32_t a = of[t.x], b = of[t.y], c = of[t.z];
-        uint32_t label = std::min({a, b, c});
-        const auto differs = [&](uint32_t other) { return (other != label) & (other != none); };
-        if (label == none) label = labels.add();
-        else if (differs(a) | differs(b) | differs(c))
-            for (const uint32_t met : {a, b, c})
-                if (met != none) label = labels.join(label, met);
-        of[t.x] = of[t.y] = of[t.z] = label;
-        return label;
-    });
-    std::vector<uint32_t>& numbers = found.numbers;
-    numbers.resize(labels.size());
-    for (uint32_t label = 0; label < labels.size(); ++label) {
-        const uint32_t lowest = labels.find(label);
-        numbers[label] = lowest == label ? found.count++ : numbers[lowest];
-    }
-    for (uint32_t& v : of)
-        if (v != none) v = numbers[v];
-    return found;
+    Labeller labels;
+    labels.begin(vertices);
+    forTriangles([&](const Vec3<uint32_t>& t) { return labels.label(t); });
+    return labels.found();
 }
 
 }  // namespace sgm::mesh

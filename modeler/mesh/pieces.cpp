@@ -1,8 +1,9 @@
 #include "modeler/mesh/pieces.h"
 
-#include <optional>
+#include <span>
 #include <unordered_map>
 
+#include "modeler/core/parallel.h"
 #include "modeler/mesh/chunk.h"
 #include "modeler/mesh/components.h"
 
@@ -11,12 +12,36 @@ namespace {
 
 constexpr uint32_t none = SurfaceLabels::none;
 
-/// Calls f(triangle, origin) for every triangle.
-template <class F>
-void forTriangles(const Mesh& mesh, F f) {
-    for (const Chunk& c : mesh.chunks)
-        for (size_t i = 0; i < c.triangles.size(); ++i) f(c.inMesh(c.triangles[i]), i < c.origins.size() ? c.origins[i] : 0);
+/// A corner's place among a chunk's vertices, `own` of its own and then those it borrows.
+constexpr uint32_t placeOf(uint32_t corner, uint32_t own) {
+    return corner + ((0u - (corner >> 31)) & (own + borrowedBit));  // without a branch that would be guessed wrong
 }
+constexpr Triangle placesOf(Triangle t, uint32_t own) {
+    return {placeOf(t.x, own), placeOf(t.y, own), placeOf(t.z, own)};
+}
+
+uint32_t ownCount(const Chunk& c) { return static_cast<uint32_t>(c.positions.size()); }
+size_t placeCount(const Chunk& c) { return c.positions.size() + c.borrowed.vertices.size(); }
+
+/// Finds the chunks that own vertices; those that a chunk borrows come in long runs of one owner.
+class Owners {
+public:
+    explicit Owners(std::span<const Chunk> chunks) : chunks_(chunks) {}
+    /// The number of the chunk that owns a vertex counted in the whole mesh.
+    size_t of(uint32_t vertex) {
+        if (vertex < begin_ || vertex >= end_) {
+            const Chunk& owner = ownerOf(chunks_, vertex);
+            at_ = static_cast<size_t>(&owner - chunks_.data());
+            begin_ = owner.firstVertex, end_ = begin_ + ownCount(owner);
+        }
+        return at_;
+    }
+
+private:
+    const std::span<const Chunk> chunks_;
+    size_t at_ = 0;
+    uint32_t begin_ = 0, end_ = 0;
+};
 
 using Tally = std::unordered_map<OriginId, uint64_t>;
 
@@ -40,143 +65,291 @@ void judgeSupport(std::vector<Piece>& pieces, float slack_m) {
     })->floats = false;
 }
 
-/// Every connected surface, those around air too.
-struct Surfaces {
-    std::vector<Piece> pieces;  ///< without their owners
-    SurfaceLabels labels;       ///< by vertex: its piece
-};
-
-/// What triangles of one label add up to.
+/// What triangles of one label, or part, add up to.
 struct Sum {
     uint64_t triangles = 0;
     double sixfold_m3 = 0;
+    Box3d bounds;  ///< as seen from the mesh's first vertex
 };
 
-Surfaces surfacesOf(const Mesh& mesh) {
+/// What hangs together among a chunk's triangles.
+struct Parts {
+    uint32_t first = 0;     ///< number of the first one in the mesh
+    std::vector<Sum> sums;  ///< of each, in the order of their first triangles
+    /// By place: the number of the vertex's part in the mesh, or none; empty where all are on the only one.
+    std::vector<uint32_t> of;
+
+    uint32_t at(size_t place) const { return of.empty() ? first : of[place]; }
+};
+
+/// Every connected surface, those around air too.
+struct Surfaces {
+    std::vector<Piece> pieces;      ///< without their owners
+    std::vector<Parts> parts;       ///< by chunk
+    std::vector<uint32_t> pieceOf;  ///< by part
+};
+
+/// What a worker needs to find the parts of chunks, seen from `near`, so that sums stay small.
+class PartFinder {
+public:
+    PartFinder(const Mesh& mesh, Vec3d near) : chunks_(mesh.chunks), owners_(mesh.chunks), near_(near) {}
+
+    /// The chunk's parts, counted from 0.
+    Parts find(const Chunk& c) {
+        look(c);
+        const uint32_t own = ownCount(c);
+        labels_.begin(at_.size());
+        for (const Triangle& t : c.triangles) labels_.label(placesOf(t, own));
+        SurfaceLabels labels = labels_.found();
+        Parts parts;
+        parts.sums.resize(labels.count);
+        Sum* const sums = parts.sums.data();
+        if (labels.count == 1 && std::find(labels.of.begin(), labels.of.end(), none) == labels.of.end()) {
+            sumUp(c, [sums](uint32_t) -> Sum& { return *sums; });
+            for (const Vec3d& p : at_) sums->bounds = hull(sums->bounds, p);
+            return parts;
+        }
+        parts.of = std::move(labels.of);
+        sumUp(c, [sums, of = parts.of.data()](uint32_t place) -> Sum& { return sums[of[place]]; });
+        for (size_t v = 0; v < at_.size();) {  // neighbours lie on one part mostly
+            const uint32_t part = parts.of[v];
+            Box3d box;
+            for (; v < at_.size() && parts.of[v] == part; ++v) box = hull(box, at_[v]);
+            if (part != none) parts.sums[part].bounds = hull(parts.sums[part].bounds, box);
+        }
+        return parts;
+    }
+
+private:
+    /// Adds every triangle to sumAt(place of a corner).
+    template <class SumAt>
+    void sumUp(const Chunk& c, SumAt sumAt) const {
+        const uint32_t own = ownCount(c);
+        const Vec3d* const at = at_.data();
+        for (const Triangle& corners : c.triangles) {
+            const Triangle t = placesOf(corners, own);
+            // The solid under a triangle along x, by the divergence theorem.
+            const Vec3d &p = at[t.x], &q = at[t.y], &r = at[t.z];
+            Sum& sum = sumAt(t.x);
+            sum.sixfold_m3 += (p.x + q.x + r.x) * ((q.y - p.y) * (r.z - p.z) - (q.z - p.z) * (r.y - p.y));
+            ++sum.triangles;
+        }
+    }
+    /// Where the chunk's vertices are, by place.
+    void look(const Chunk& c) {
+        at_.clear();
+        at_.reserve(placeCount(c));
+        for (const Vec3f& p : c.positions) at_.push_back(p.as<double>() - near_);
+        for (const uint32_t v : c.borrowed.vertices) {
+            const Chunk& owner = chunks_[owners_.of(v)];
+            at_.push_back(owner.positions[v - owner.firstVertex].as<double>() - near_);
+        }
+    }
+
+    const std::span<const Chunk> chunks_;
+    Owners owners_;
+    const Vec3d near_;
+    std::vector<Vec3d> at_;
+    Labeller labels_;
+};
+
+/// Numbers the parts of the chunks in the mesh and joins those that meet at borrowed vertices.
+Components joinedParts(const Mesh& mesh, std::vector<Parts>& parts) {
+    uint32_t count = 0;
+    for (Parts& p : parts) {
+        p.first = count;
+        count += static_cast<uint32_t>(p.sums.size());
+        for (uint32_t& part : p.of) part += part != none ? p.first : 0;
+    }
+    Components joined(count);
+    Owners owners(mesh.chunks);
+    for (size_t c = 0; c < parts.size(); ++c) {
+        const Chunk& chunk = mesh.chunks[c];
+        uint32_t lastOurs = none, lastTheirs = none;
+        for (size_t i = 0; i < chunk.borrowed.vertices.size(); ++i) {
+            const uint32_t v = chunk.borrowed.vertices[i];
+            const size_t owner = owners.of(v);
+            const uint32_t ours = parts[c].at(chunk.positions.size() + i);
+            const size_t place = v - mesh.chunks[owner].firstVertex;
+            const uint32_t theirs = parts[owner].at(place);
+            if (ours == none || (ours == lastOurs && theirs == lastTheirs)) continue;
+            if (theirs == none) {
+                parts[owner].of[place] = ours;  // none of its own chunk's triangles uses it
+                continue;
+            }
+            joined.join(ours, theirs);
+            lastOurs = ours, lastTheirs = theirs;
+        }
+    }
+    return joined;
+}
+
+Surfaces surfacesOf(const Mesh& mesh, int threads) {
     Surfaces found;
-    std::vector<Sum> sums;
-    const auto visit = [&](auto labelOf) {
-        std::optional<Vec3d> near;  // sums stay small
-        std::vector<Vec3f> borrowed;
-        Sum sum;
-        uint32_t last = 0;
-        const auto put = [&] {
-            if (sums.size() <= last) sums.resize(last + size_t{1});
-            sums[last].triangles += sum.triangles, sums[last].sixfold_m3 += sum.sixfold_m3;
-            sum = {};
-        };
-        for (const Chunk& c : mesh.chunks) {
-            if (!near && !c.positions.empty()) near = c.positions.front().as<double>();
-            borrowed.clear();
-            for (const uint32_t v : c.borrowed.vertices) {
-                const Chunk& owner = ownerOf(mesh.chunks, v);
-                borrowed.push_back(owner.positions[v - owner.firstVertex]);
-            }
-            const auto position = [&](uint32_t corner) {
-                return (corner & borrowedBit ? borrowed[corner & ~borrowedBit] : c.positions[corner]).as<double>() - *near;
-            };
-            for (const Triangle& t : c.triangles) {
-                const uint32_t label = labelOf(c.inMesh(t));
-                if (label != last) put();
-                last = label;
-                // The solid under a triangle along x, by the divergence theorem.
-                const Vec3d p = position(t.x), q = position(t.y) - p, r = position(t.z) - p;
-                sum.sixfold_m3 += (3 * p.x + q.x + r.x) * (q.y * r.z - q.z * r.y);
-                ++sum.triangles;
-            }
-        }
-        put();
-    };
-    found.labels = labelSurfaces(mesh.vertexCount(), visit);
-    found.pieces.resize(found.labels.count);
-    for (size_t label = 0; label < found.labels.numbers.size(); ++label) {
-        Piece& piece = found.pieces[found.labels.numbers[label]];
-        piece.triangles += sums[label].triangles;
-        piece.volume_m3 += sums[label].sixfold_m3 / 6;
-    }
+    found.parts.resize(mesh.chunks.size());
+    Vec3d near{};
     for (const Chunk& c : mesh.chunks) {
-        const uint32_t* const own = found.labels.of.data() + c.firstVertex;
-        const auto count = static_cast<uint32_t>(c.positions.size());
-        for (uint32_t v = 0, piece; v < count;) {  // neighbours lie on one piece mostly
-            Box3f box;
-            for (piece = own[v]; v < count && own[v] == piece; ++v) box = hull(box, c.positions[v]);
-            if (piece != none) found.pieces[piece].bounds = hull(found.pieces[piece].bounds, box);
-        }
+        if (c.positions.empty()) continue;
+        near = c.positions.front().as<double>();
+        break;
     }
+    std::vector<PartFinder> workers(static_cast<size_t>(threadCount(threads)), PartFinder(mesh, near));
+    parallelFor(mesh.chunks.size(), threads, nullptr, [&](size_t c, int worker) { found.parts[c] = workers[static_cast<size_t>(worker)].find(mesh.chunks[c]); });
+    Components joined = joinedParts(mesh, found.parts);
+    found.pieceOf.resize(joined.size());
+    uint32_t part = 0;
+    for (const Parts& parts : found.parts)
+        for (const Sum& sum : parts.sums) {
+            const uint32_t lowest = joined.find(part);
+            uint32_t& number = found.pieceOf[part];
+            if (lowest == part) {
+                number = static_cast<uint32_t>(found.pieces.size());
+                found.pieces.emplace_back();
+            } else {
+                number = found.pieceOf[lowest];
+            }
+            Piece& piece = found.pieces[number];
+            piece.triangles += sum.triangles;
+            piece.volume_m3 += sum.sixfold_m3 / 6;
+            piece.bounds = hull(piece.bounds, {(near + sum.bounds.lo).as<float>(), (near + sum.bounds.hi).as<float>()});
+            ++part;
+        }
     return found;
 }
 
 /// Who owns each surface, most triangles first.
 void findOwners(const Mesh& mesh, Surfaces& surfaces) {
     std::vector<Tally> tallies(surfaces.pieces.size());
-    forTriangles(mesh, [&](const Triangle& t, OriginId origin) { ++tallies[surfaces.labels.of[t.x]][origin]; });
+    for (size_t c = 0; c < mesh.chunks.size(); ++c) {
+        const Chunk& chunk = mesh.chunks[c];
+        for (size_t i = 0; i < chunk.triangles.size(); ++i) {
+            const uint32_t part = surfaces.parts[c].at(placeOf(chunk.triangles[i].x, ownCount(chunk)));
+            ++tallies[surfaces.pieceOf[part]][i < chunk.origins.size() ? chunk.origins[i] : 0];
+        }
+    }
     for (size_t i = 0; i < tallies.size(); ++i) surfaces.pieces[i].origins = byCount(tallies[i]);
+}
+
+/// A chunk's vertices once some are gone.
+struct Renumbered {
+    uint32_t own = 0;  ///< of those that are left
+    /// By place: what a corner becomes, or none; empty where all stay.
+    std::vector<uint32_t> corner;
+};
+
+/// What becomes of the corners of chunk c.
+Renumbered renumbered(const Mesh& mesh, const Surfaces& surfaces, const std::vector<uint8_t>& partStays, size_t c, Owners& owners) {
+    const Chunk& chunk = mesh.chunks[c];
+    const Parts& parts = surfaces.parts[c];
+    const uint32_t own = ownCount(chunk);
+    const auto first = partStays.begin() + parts.first;
+    if (std::all_of(first, first + static_cast<ptrdiff_t>(parts.sums.size()), [](uint8_t stays) { return stays != 0; }) &&
+        (parts.of.empty() || std::find(parts.of.begin(), parts.of.end(), none) == parts.of.end()))
+        return {own, {}};
+    Renumbered now;
+    now.corner.resize(placeCount(chunk));
+    const auto stays = [&](uint32_t part) { return part != none && partStays[part] != 0; };
+    for (uint32_t v = 0; v < own; ++v) {
+        const bool left = stays(parts.at(v));
+        now.corner[v] = left ? now.own : none;
+        now.own += left;
+    }
+    uint32_t borrowed = borrowedBit;
+    for (size_t i = 0; i < chunk.borrowed.vertices.size(); ++i) {
+        uint32_t part = parts.at(own + i);
+        if (part == none) {
+            const size_t owner = owners.of(chunk.borrowed.vertices[i]);
+            part = surfaces.parts[owner].at(chunk.borrowed.vertices[i] - mesh.chunks[owner].firstVertex);
+        }
+        const bool left = stays(part);
+        now.corner[own + i] = left ? borrowed : none;
+        borrowed += left;
+    }
+    return now;
+}
+
+/// Keeps the entries that stay, under the numbers that renamed(entry) gives them, none where they don't.
+template <class Renamed>
+void renumber(SeamList& list, Renamed renamed) {
+    uint32_t n = 0;
+    for (size_t kind = 0; kind < seamKinds; ++kind) {
+        const uint32_t from = list.begin[kind], to = list.begin[kind + 1];
+        list.begin[kind] = n;
+        for (uint32_t i = from; i < to; ++i)
+            if (const uint32_t vertex = renamed(i); vertex != none) list.vertices[n++] = vertex;
+    }
+    list.begin[seamKinds] = n;
+    list.vertices.resize(n);
+}
+
+/// Leaves the entries i for which stays(i) says so, `left` of them.
+template <class T, class Stays>
+void compact(PageVector<T>& list, size_t left, Stays stays) {
+    T* const entries = list.data();
+    for (size_t i = 0, n = 0; i < list.size(); ++i) {
+        entries[n] = entries[i];
+        n += stays(i);
+    }
+    list.resize(left);
+}
+
+/// Drops what is gone of a chunk's own.
+void dropOwn(Chunk& c, const Renumbered& now) {
+    const uint32_t own = ownCount(c);
+    const uint32_t* const corner = now.corner.data();
+    const bool hasOrigins = !c.origins.empty();
+    size_t left = 0;
+    for (size_t i = 0; i < c.triangles.size(); ++i) {
+        const Triangle t = placesOf(c.triangles[i], own);
+        c.triangles[left] = {corner[t.x], corner[t.y], corner[t.z]};
+        if (hasOrigins) c.origins[left] = c.origins[i];
+        left += corner[t.x] != none;
+    }
+    c.triangles.resize(left);
+    if (hasOrigins) c.origins.resize(left);
+    const auto stays = [&](size_t v) { return corner[v] != none; };
+    if (!c.normals.empty()) compact(c.normals, now.own, stays);
+    compact(c.positions, now.own, stays);
+    renumber(c.lent, [&](uint32_t i) { return corner[c.lent.vertices[i]]; });
+    std::erase_if(c.faceted, [&](uint32_t v) { return !stays(v); });
+    for (uint32_t& v : c.faceted) v = corner[v];
 }
 
 /// Drops the surfaces that don't stay, with vertices that have no triangle; the borders between chunks follow.
 void keepSurfaces(Mesh& mesh, const Surfaces& surfaces, const std::vector<bool>& pieceStays) {
-    std::vector<uint32_t> now(surfaces.labels.of.size(), none);  // numbers in the mesh
+    std::vector<uint8_t> partStays(surfaces.pieceOf.size());
+    for (size_t part = 0; part < partStays.size(); ++part) partStays[part] = pieceStays[surfaces.pieceOf[part]];
+    std::vector<Renumbered> now(mesh.chunks.size());
+    std::vector<uint32_t> firstVertex(mesh.chunks.size());
+    Owners owners(mesh.chunks);
     uint32_t next = 0;
-    for (size_t v = 0; v < now.size(); ++v)
-        if (surfaces.labels.of[v] != none && pieceStays[surfaces.labels.of[v]]) now[v] = next++;
-    const auto stays = [&](uint32_t v) { return now[v] != none; };
-    std::vector<uint32_t> borrowedNow;  // places in a chunk's list
-    uint32_t firstVertex = 0;
-    for (Chunk& c : mesh.chunks) {
-        const uint32_t first = c.firstVertex, own = static_cast<uint32_t>(c.positions.size());
-        const uint32_t staying = static_cast<uint32_t>(std::count_if(now.begin() + first, now.begin() + first + own, [](uint32_t v) { return v != none; }));
-        const auto local = [&](uint32_t v) { return now[first + v] - firstVertex; };
-        if (staying == own && std::all_of(c.borrowed.vertices.begin(), c.borrowed.vertices.end(), stays)) {
-            for (uint32_t& v : c.borrowed.vertices) v = now[v];
-        } else {
-            const auto filter = [&](SeamList& list, auto stayed, auto renamed, std::vector<uint32_t>* places) {
-                uint32_t n = 0;
-                for (int kind = 0; kind < seamKinds; ++kind) {
-                    const uint32_t from = list.begin[size_t(kind)], to = list.begin[size_t(kind) + 1];
-                    list.begin[size_t(kind)] = n;
-                    for (uint32_t i = from; i < to; ++i) {
-                        if (places) places->push_back(n);
-                        if (stayed(list.vertices[i])) list.vertices[n++] = renamed(list.vertices[i]);
-                    }
-                }
-                list.begin[seamKinds] = n;
-                list.vertices.resize(n);
-            };
-            const bool bare = c.isBare();
-            size_t kept = 0;
-            for (size_t i = 0; i < c.triangles.size(); ++i)
-                if (stays(c.inMesh(c.triangles[i].x))) {
-                    if (!bare) c.origins[kept] = c.origins[i];
-                    c.triangles[kept++] = c.triangles[i];
-                }
-            c.triangles.resize(kept);
-            if (!bare) c.origins.resize(kept);
-            borrowedNow.clear();
-            filter(c.borrowed, stays, [&](uint32_t v) { return now[v]; }, &borrowedNow);
-            filter(c.lent, [&](uint32_t v) { return stays(first + v); }, local, nullptr);
-            for (Triangle& t : c.triangles)
-                for (int i = 0; i < 3; ++i) t[i] = t[i] & borrowedBit ? borrowedNow[t[i] & ~borrowedBit] | borrowedBit : local(t[i]);
-            std::erase_if(c.faceted, [&](uint32_t v) { return !stays(first + v); });
-            for (uint32_t& v : c.faceted) v = local(v);
-            uint32_t n = 0;
-            for (uint32_t v = 0; v < own; ++v)
-                if (stays(first + v)) {
-                    if (!bare) c.normals[n] = c.normals[v];
-                    c.positions[n++] = c.positions[v];
-                }
-            c.positions.resize(n);
-            if (!bare) c.normals.resize(n);
-        }
-        c.firstVertex = firstVertex;
-        firstVertex += staying;
+    for (size_t c = 0; c < now.size(); ++c) {
+        now[c] = renumbered(mesh, surfaces, partStays, c, owners);
+        firstVertex[c] = next;
+        next += now[c].own;
+    }
+    for (size_t c = 0; c < now.size(); ++c) {
+        Chunk& chunk = mesh.chunks[c];
+        const uint32_t own = ownCount(chunk);
+        renumber(chunk.borrowed, [&](uint32_t i) {
+            if (!now[c].corner.empty() && now[c].corner[own + i] == none) return none;
+            const uint32_t v = chunk.borrowed.vertices[i];
+            const size_t owner = owners.of(v);
+            const uint32_t place = v - mesh.chunks[owner].firstVertex;
+            return firstVertex[owner] + (now[owner].corner.empty() ? place : now[owner].corner[place]);
+        });
+    }
+    for (size_t c = 0; c < now.size(); ++c) {
+        if (!now[c].corner.empty()) dropOwn(mesh.chunks[c], now[c]);
+        mesh.chunks[c].firstVertex = firstVertex[c];
     }
     std::erase_if(mesh.chunks, [](const Chunk& c) { return c.positions.empty() && c.triangles.empty(); });
 }
 
 }  // namespace
 
-std::vector<Piece> pieces(const Mesh& mesh, float slack_m) {
-    Surfaces surfaces = surfacesOf(mesh);
+std::vector<Piece> pieces(const Mesh& mesh, float slack_m, int threads) {
+    Surfaces surfaces = surfacesOf(mesh, threads);
     findOwners(mesh, surfaces);
     std::vector<Piece> found = std::move(surfaces.pieces);
     std::erase_if(found, [](const Piece& p) { return p.volume_m3 <= 0; });
@@ -196,10 +369,10 @@ std::vector<bool> staying(std::vector<Piece> solids, Keep keep, float slack_m) {
     return stays;
 }
 
-Dropped keepOnly(Mesh& mesh, Keep keep, float slack_m) {
+Dropped keepOnly(Mesh& mesh, Keep keep, float slack_m, int threads) {
     Dropped dropped;
     if (keep == Keep::All || mesh.triangleCount() == 0) return dropped;
-    const Surfaces surfaces = surfacesOf(mesh);
+    const Surfaces surfaces = surfacesOf(mesh, threads);
     std::vector<Piece> solids;
     std::vector<size_t> solidOf(surfaces.pieces.size(), surfaces.pieces.size());
     for (size_t i = 0; i < surfaces.pieces.size(); ++i)

@@ -17,8 +17,8 @@ struct Piece {
 };
 
 /// The pieces in the order of their first triangle. Whatever comes down to `slack_m` above the mesh's lowest point
-/// stands; one cell is a sensible slack. O(n log n).
-std::vector<Piece> pieces(const Mesh& mesh, float slack_m);
+/// stands; one cell is a sensible slack. O(n log n); `threads` 0: all.
+std::vector<Piece> pieces(const Mesh& mesh, float slack_m, int threads = 1);
 
 /// Which solids of a mesh stay: all; those that stand and aren't crumbs of less than a thousandth of the greatest one; or
 /// the greatest one alone.
@@ -33,6 +33,6 @@ struct Dropped {
     double filled_m3 = 0;
 };
 /// Takes away what doesn't stay, and the closed cavities of what does. Nothing with Keep::All. Vertices are numbered anew.
-Dropped keepOnly(Mesh& mesh, Keep keep, float slack_m);
+Dropped keepOnly(Mesh& mesh, Keep keep, float slack_m, int threads = 1);
 
 }  // namespace sgm::mesh

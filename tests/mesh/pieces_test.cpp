@@ -5,7 +5,9 @@
 
 #include <numbers>
 
+#include "modeler/mesh/chunk.h"
 #include "modeler/mesh/validate.h"
+#include "tests/mesh/mesh_bytes.h"
 #include "tests/mesh/scenes.h"
 
 namespace sgm::mesh {
@@ -62,6 +64,46 @@ TEST(Pieces, KeepLeavesClosedSolidsAndFillsCavities) {
             next += static_cast<uint32_t>(c.positions.size());
             EXPECT_EQ(c.normals.size(), c.positions.size());
         }
+    }
+}
+
+TEST(Pieces, OfManyBlocksAreThoseOfTheWhole) {
+    for (uint64_t key = 0; key < 4; ++key) {
+        const Scene s = cloudScene(60, 0.08f, key);
+        const Mesh mesh = *meshOf(s, 150).mesh;
+        ASSERT_GT(mesh.chunks.size(), 20u);
+        const MeshFigures whole = measure(mesh);
+        const auto found = pieces(mesh, 0);
+        EXPECT_EQ(found.size(), whole.components) << "no cavity in a cloud of balls";
+        uint64_t triangles = 0;
+        double volume_m3 = 0;
+        Box3f bounds;
+        for (const Piece& p : found) triangles += p.triangles, volume_m3 += p.volume_m3, bounds = hull(bounds, p.bounds);
+        EXPECT_EQ(triangles, mesh.triangleCount());
+        EXPECT_NEAR(volume_m3, whole.volume_m3, 1e-9);
+        EXPECT_EQ(bounds, mesh.bounds());
+    }
+}
+
+TEST(Pieces, KeepLeavesTheSameSeamsAtAnyThreadCountAndOfABareMeshTheSameShape) {
+    for (uint64_t key = 0; key < 4; ++key) {
+        const Scene s = cloudScene(60, 0.08f, key);
+        Mesh full = *meshOf(s, 150).mesh, again = full, bare = *meshOf(s, 150, 2, {.bare = true}).mesh;
+        ASSERT_GT(keepOnly(full, Keep::Largest, 0, 1).pieces, 3u);
+        keepOnly(again, Keep::Largest, 0, 3);
+        EXPECT_EQ(bytesOf(again), bytesOf(full));
+        keepOnly(bare, Keep::Largest, 0);
+        EXPECT_FALSE(full.isBare());
+        for (Chunk& c : again.chunks) {
+            const std::vector<uint32_t> borrowed = c.borrowed.vertices;
+            nameBorrowed(again.chunks, c);
+            EXPECT_EQ(c.borrowed.vertices, borrowed) << "both sides of a seam list the same vertices";
+            c.normals.clear(), c.origins.clear();
+        }
+        EXPECT_EQ(bytesOf(bare), bytesOf(again));
+        const MeshFigures f = measure(full);
+        EXPECT_EQ(f.components, 1u);
+        EXPECT_EQ(f.boundaryEdges + f.nonmanifoldEdges, 0u);
     }
 }
 
