@@ -8,6 +8,7 @@
 #include <numeric>
 #include <vector>
 
+#include "modeler/core/pages.h"
 #include "modeler/core/vec.h"
 
 namespace sgm::mesh {
@@ -40,7 +41,7 @@ private:
 /// Which connected surface each vertex of a mesh is on.
 struct SurfaceLabels {
     static constexpr uint32_t none = 0xffffffffu;  ///< the vertex has no triangle
-    std::vector<uint32_t> of;                      ///< by vertex: 0 … count − 1, in the order of the surfaces' first triangles
+    PageVector<uint32_t> of;                       ///< by vertex: 0 … count − 1, in the order of the surfaces' first triangles
     std::vector<uint32_t> numbers;                 ///< by the label that a triangle was given: the same
     uint32_t count = 0;
 };
@@ -91,7 +92,7 @@ private:
         return label;
     }
 
-    std::vector<uint32_t> of_;
+    PageVector<uint32_t> of_;
     Components labels_{0};
 };
 

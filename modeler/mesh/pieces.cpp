@@ -77,7 +77,7 @@ struct Parts {
     uint32_t first = 0;     ///< number of the first one in the mesh
     std::vector<Sum> sums;  ///< of each, in the order of their first triangles
     /// By place: the number of the vertex's part in the mesh, or none; empty where all are on the only one.
-    std::vector<uint32_t> of;
+    PageVector<uint32_t> of;
 
     uint32_t at(size_t place) const { return of.empty() ? first : of[place]; }
 };
@@ -234,7 +234,7 @@ void findOwners(const Mesh& mesh, Surfaces& surfaces) {
 struct Renumbered {
     uint32_t own = 0;  ///< of those that are left
     /// By place: what a corner becomes, or none; empty where all stay.
-    std::vector<uint32_t> corner;
+    PageVector<uint32_t> corner;
 };
 
 /// What becomes of the corners of chunk c.
