@@ -89,8 +89,8 @@ struct Surfaces {
     std::vector<uint32_t> pieceOf;  ///< by part
 };
 
-/// What a worker needs to find the parts of chunks, seen from `near`, so that sums stay small.
-class PartFinder {
+/// What a worker needs to find the parts of chunks, seen from `near`, so that sums stay small; aligned as BlockMesher.
+class alignas(128) PartFinder {
 public:
     PartFinder(const Mesh& mesh, Vec3d near) : chunks_(mesh.chunks), owners_(mesh.chunks), near_(near) {}
 
@@ -137,19 +137,20 @@ private:
     }
     /// Where the chunk's vertices are, by place.
     void look(const Chunk& c) {
-        at_.clear();
-        at_.reserve(placeCount(c));
-        for (const Vec3f& p : c.positions) at_.push_back(p.as<double>() - near_);
+        at_.resize(placeCount(c));
+        const Vec3d near = near_;
+        Vec3d* at = at_.data();
+        for (const Vec3f& p : c.positions) *at++ = p.as<double>() - near;
         for (const uint32_t v : c.borrowed.vertices) {
             const Chunk& owner = chunks_[owners_.of(v)];
-            at_.push_back(owner.positions[v - owner.firstVertex].as<double>() - near_);
+            *at++ = owner.positions[v - owner.firstVertex].as<double>() - near;
         }
     }
 
     const std::span<const Chunk> chunks_;
     Owners owners_;
     const Vec3d near_;
-    std::vector<Vec3d> at_;
+    PageVector<Vec3d> at_;
     Labeller labels_;
 };
 
