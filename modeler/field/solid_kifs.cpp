@@ -47,7 +47,7 @@ Field kifs(const PrimitiveInput& in) {
     const auto add = [&](std::initializer_list<Num> list) {
         for (const Num& n : list) operands.push_back({n.id(), 0});
     };
-    add({in.p.x / in.half.x * reach, in.p.y / in.half.y * reach, in.p.z / in.half.z * reach});
+    add({in.p.x * (reach / in.half.x), in.p.y * (reach / in.half.y), in.p.z * (reach / in.half.z)});
     add({cx, cy, cz, in.arguments[Scale].node[0]});
     for (const size_t rotation : {Fold, Turn})
         for (int i = 0; i < 9; ++i) add({in.arguments[rotation].node[i]});

@@ -45,8 +45,9 @@ bool isQuick(const eval::Tape& tape) {
     constexpr size_t quick = 10;
     constexpr uint32_t manyOperands = 16;
     const auto slow = [](const eval::Instruction& in) {
-        return in.count > manyOperands || field::traits(in.op).readsGrid || in.op == field::codeOf<ops::Kifs> ||
-               in.op == field::codeOf<ops::Facade> || in.op == field::codeOf<ops::Noise>;
+        if (in.op == field::codeOf<ops::Kifs>) return false;  // it isn't dear
+        return in.count > manyOperands || field::traits(in.op).readsGrid || in.op == field::codeOf<ops::Facade> ||
+               in.op == field::codeOf<ops::Noise>;
     };
     return tape.size() <= quick && std::none_of(tape.code().begin(), tape.code().end(), slow);
 }
