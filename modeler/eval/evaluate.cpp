@@ -112,7 +112,8 @@ void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& w
     count(tape, points.n, Asked::Value, w.tally);
     OwnerPass pass(tape, w);
     runBlocks(
-        tape, points, w.kernels.values, 1, w, nullptr, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
+        tape, points, w.kernels.values, 1, w, nullptr,
+        [&](const Instruction& in, const StepContext& c) { pass(in, c); },
         [&](const StepContext&, size_t first, size_t n) { pass.store(out + first, n); });
 }
 

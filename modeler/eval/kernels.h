@@ -26,11 +26,11 @@ inline constexpr uint32_t noRegister = 0xffffffffu;
 /// Where the steps work.
 struct StepContext {
     float* registers;
-    size_t stride;                 ///< floats in a row, a multiple of vectorFloats
-    size_t count;                  ///< floats of a row in use, a multiple of vectorFloats
-    const float* coordinates[3];   ///< rows of x, y, z; not for ranges
-    const float* derivatives[3];   ///< gradients: their planes dx, dy, dz, `stride` apart
-    float* result;                 ///< values: row of register `resultRegister`, if any, instead of its own
+    size_t stride;                ///< floats in a row, a multiple of vectorFloats
+    size_t count;                 ///< floats of a row in use, a multiple of vectorFloats
+    const float* coordinates[3];  ///< rows of x, y, z; not for ranges
+    const float* derivatives[3];  ///< gradients: their planes dx, dy, dz, `stride` apart
+    float* result;                ///< values: row of register `resultRegister`, if any, instead of its own
     uint32_t resultRegister;
     const float* constants;
     const Source* sources;

@@ -16,8 +16,8 @@ enum class Asked : uint8_t { Value, Gradient, Range };
 /// An operation as far as its cost depends on it.
 struct Operation {
     field::OpCode op;
-    uint32_t count;         ///< operands
-    uint32_t data;          ///< structural integer (the passes of a KIFS)
+    uint32_t count;  ///< operands
+    uint32_t data;   ///< structural integer (the passes of a KIFS)
     Asked asked = Asked::Value;
     friend auto operator<=>(const Operation&, const Operation&) = default;
 };

@@ -52,7 +52,7 @@ struct alignas(128) Workspace::Impl {
     Tally* tally = nullptr;  ///< where operations are counted, if at all
     AlignedFloats registers, arguments;
     AlignedFloats points;  ///< copies of coordinates that aren't padded
-    Links links;                    ///< of the last evaluateRanges
+    Links links;           ///< of the last evaluateRanges
     AlignedFloats bounds;  ///< rows of maxBoxes floats, see Links::bounds
     AlignedFloats owners;  ///< registers of owners, as bits
     std::vector<Owners> registerOwners;

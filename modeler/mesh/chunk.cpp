@@ -234,7 +234,8 @@ std::optional<OriginId> BlockMesher::findOrigins(const eval::Tape& tape) {
     found_.resize(n);
     {
         const AddTime evaluating(fieldTime_);
-        eval::evaluateOrigin(tape, {edges_.arrays.x, edges_.arrays.y, edges_.arrays.z, n, true}, found_.data(), workspace_);
+        eval::evaluateOrigin(tape, {edges_.arrays.x, edges_.arrays.y, edges_.arrays.z, n, true}, found_.data(),
+                             workspace_);
     }
     std::copy_n(found_.data(), ownEdges_, origins_.data() + origins_.size() - ownEdges_);
     for (size_t e = ownEdges_; e < n; ++e) {

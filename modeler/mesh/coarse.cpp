@@ -95,7 +95,8 @@ size_t CoarseSamples::ask(const eval::Tape& tape, uint64_t bricks, eval::Workspa
             if (points + rows.points > enough) break;
             const Vec3i low = brickAt(brick) * (coarseCorners - 1);
             loops.gather(rows.rows.data(), rows.count, &coordinates_[0][low.x], &coordinates_[1][low.y],
-                         &coordinates_[2][low.z], points_.x.data() + points, points_.y.data() + points, points_.z.data() + points);
+                         &coordinates_[2][low.z], points_.x.data() + points, points_.y.data() + points,
+                         points_.z.data() + points);
             points += rows.points;
         }
         points_.evaluate(tape, points, f_.data(), workspace);
@@ -137,8 +138,9 @@ void CoarseSamples::sample(uint64_t bricks, uint64_t active, const eval::Tape& t
         loops.fill(values_.data() + corner(at), row, layer, between, values + brickCorner(at), rowStride, layerStride);
         leaveOut(sampledBelow(active, brick), between);
         if (minComponent(last - first) < brickCells) cutOff(last - first, between);
-        asked[brick] = loops.gather(between, &coordinates[0][first.x], &coordinates[1][first.y],
-                                    &coordinates[2][first.z], points_.x.data() + n, points_.y.data() + n, points_.z.data() + n);
+        asked[brick] =
+            loops.gather(between, &coordinates[0][first.x], &coordinates[1][first.y], &coordinates[2][first.z],
+                         points_.x.data() + n, points_.y.data() + n, points_.z.data() + n);
         waiting |= 1ull << brick;
         n += asked[brick];
         if (n >= enough) evaluate();

@@ -95,7 +95,8 @@ void place(const EdgeEnds& ends, const uint32_t* codes, size_t n, const EdgeArra
         _mm512_storeu_ps(e.span + at, _mm512_sub_ps(high, low));
         _mm512_storeu_ps(e.fIn + at, _mm512_i32gather_ps(corner, ends.values, 4));
         _mm512_storeu_ps(e.fOut + at, _mm512_i32gather_ps(other, ends.values, 4));
-        _mm512_storeu_si512(places + at, _mm512_add_epi32(_mm512_mullo_epi32(counted(numberRow, numberLayer), number(3)), axis));
+        _mm512_storeu_si512(places + at,
+                            _mm512_add_epi32(_mm512_mullo_epi32(counted(numberRow, numberLayer), number(3)), axis));
     }
 }
 

@@ -147,7 +147,8 @@ void BlockSamples::copyFromBelow(int brick) {
     float* const to = values_.data() + brickRoom * brick;
     for (const int offset : {1, 2, 4, 3, 5, 6, 7}) {  // faces hold edges and corners
         const Vec3i by{offset & 1, offset >> 1 & 1, offset >> 2}, other = at - by;
-        if (minComponent(other) < 0 || !(active_ >> brickNumber(other) & 1) || (faces & static_cast<unsigned>(offset)) != 0)
+        if (minComponent(other) < 0 || !(active_ >> brickNumber(other) & 1) ||
+            (faces & static_cast<unsigned>(offset)) != 0)
             continue;
         if (std::has_single_bit(static_cast<unsigned>(offset))) faces |= static_cast<unsigned>(offset);
         const float* const from = values_.data() + brickRoom * brickNumber(other);
@@ -164,22 +165,23 @@ void BlockSamples::copyFromBelow(int brick) {
 }
 
 void WholeBricks::enter(const CornerCoordinates& coordinates) {
-    constexpr size_t row = brickCorners, layer = row * row;
+    constexpr size_t row = brickCorners, layer = row * row, strides[] = {1, row, layer};
     for (size_t axis = 0; axis < 3; ++axis)
         for (size_t b = 0; b < bricksAlong; ++b) {
             const float* const from = coordinates[axis].data() + b * brickCells;
-            Row& to = rows_[axis][b];
-            if (to.first == from[0] && to.last == from[brickCells]) continue;  // blocks come one after the other
-            to.first = from[0], to.last = from[brickCells];
-            float* const at = to.at.data();
+            std::array<float, room>& at = rows_[axis][b].at;
+            bool same = filled_;  // blocks come one after the other
+            for (size_t n = 0; n < row && same; ++n) same = at[n * strides[axis]] == from[n];
+            if (same) continue;
             for (size_t n = 0; n < row; ++n)
                 if (axis == 0)
-                    std::copy_n(from, row, at + n * row);
+                    std::copy_n(from, row, at.data() + n * row);
                 else
-                    std::fill_n(at + n * (axis == 1 ? row : layer), axis == 1 ? row : layer, from[n]);
-            for (size_t k = 1; k < row && axis < 2; ++k) std::copy_n(at, layer, at + k * layer);
-            std::fill(to.at.begin() + points, to.at.end(), at[points - 1]);
+                    std::fill_n(at.data() + n * strides[axis], strides[axis], from[n]);
+            for (size_t k = 1; k < row && axis < 2; ++k) std::copy_n(at.data(), layer, at.data() + k * layer);
+            std::fill(at.begin() + points, at.end(), at[points - 1]);
         }
+    filled_ = true;
 }
 
 const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Counts& counts) {

@@ -1,12 +1,11 @@
 // The field's values at a block's corners, brick by brick, each brick with its own shortened tape.
 // Enters: a block. Leaves: which bricks may hold surface; their tapes and values, one brick after the other. Assumes
-// pruning is exact: the bricks around a corner would all compute the same bits for it, so one of them does.
+// pruning is exact: the bricks around a corner all compute the same bits for it where they matter, so any of them may.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <limits>
 #include <vector>
 
 #include "modeler/core/pages.h"
@@ -34,10 +33,10 @@ public:
 private:
     static constexpr size_t room = (points + eval::pointPadding - 1) / eval::pointPadding * eval::pointPadding;
     struct alignas(64) Row {
-        float first = std::numeric_limits<float>::quiet_NaN(), last = 0;  ///< the lowest and the highest corner's
-        alignas(64) std::array<float, room> at;
+        std::array<float, room> at;
     };
     std::array<std::array<Row, bricksAlong>, 3> rows_;
+    bool filled_ = false;
 };
 
 /// One worker's samples, reused from block to block.
@@ -51,14 +50,15 @@ public:
     bool isDear() const { return folds_; }
     /// Whether `sample` answers the block's own tape for every brick.
     bool oneTape() const { return oneTape_; }
-    /// Shortens the tape to an active brick and evaluates the corners that no lower brick has. To be called in
-    /// ascending order; the tape lasts until the next call.
+    /// Shortens the tape to an active brick and evaluates its corners, or those that no lower brick has where the tape
+    /// is long. To be called in ascending order; the tape lasts until the next call.
     const eval::Tape& sample(int brick, eval::Workspace& workspace, Counts& counts);
 
     /// The samples of an active brick, once it was sampled. Corners on the grid's border or beyond are never inside.
     BrickValues values(int brick) const {
         if (dear_) return {values_.data() + brickCorner(brickAt(brick)), blockCorners, blockCorners * blockCorners};
-        return {values_.data() + size_t{brickRoom} * static_cast<size_t>(brick), brickCorners, brickCorners * brickCorners};
+        return {values_.data() + size_t{brickRoom} * static_cast<size_t>(brick), brickCorners,
+                brickCorners * brickCorners};
     }
     /// Coordinate of corners i along `axis`, metres.
     const float* coordinates(int axis) const { return coordinates_[axis].data(); }
@@ -77,14 +77,14 @@ private:
     eval::Care care_;
     uint64_t active_ = 0;
     bool folds_ = false;  ///< the block's tape is dear
-    bool dear_ = false;  ///< `coarse_` takes care of the bricks, and values_ is by the block's corners, not by brick
+    bool dear_ = false;   ///< `coarse_` takes care of the bricks, and values_ is by the block's corners, not by brick
     bool oneTape_ = false;
     CoarseSamples coarse_;
     std::array<uint8_t, bricksPerBlock> region_{};  ///< of a brick, in the last evaluateRanges
     eval::Tape tape_;
     int inVain_ = 0;  ///< latest bricks of the block that needed its whole tape
-    Vec3i last_;  ///< the highest corner in the grid, counted from the block's first
-    PageVector<float> values_ = PageVector<float>(std::max(cornersPerBlock, bricksPerBlock * brickRoom) + rowPadding);
+    Vec3i last_;      ///< the highest corner in the grid, counted from the block's first
+    PageVector<float> values_ = PageVector<float>(std::max(cornersPerBlock, bricksPerBlock* brickRoom) + rowPadding);
     CornerCoordinates coordinates_{};
     WholeBricks wholeBricks_;
     PointRows<maxBatch> points_;

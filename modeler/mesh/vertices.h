@@ -46,8 +46,8 @@ struct VertexSearch {
 };
 
 /// Moves all vertices to the surface in at most `refineSteps` evaluations each (0: the line between the samples), and
-/// leaves in dx, dy, dz the unit normal where the field was last evaluated, zero where it has none. `scratch` grows to a
-/// list a step. Returns how many evaluations refined.
+/// leaves in dx, dy, dz the unit normal where the field was last evaluated, zero where it has none. `scratch` grows to
+/// a list a step. Returns how many evaluations refined.
 uint64_t findVertices(const eval::Tape& tape, const VertexSearch& search, eval::Workspace& workspace,
                       std::vector<CutEdges>& scratch, CutEdges& edges);
 

@@ -41,7 +41,8 @@ Status runOurs(const Scene& scene, const mesh::Grid& grid, Running running, mesh
     best = seconds;
     counts = now;
     // Stages are told by the wall.
-    for (double* stage : {&counts.subdivideSeconds, &counts.sampleSeconds, &counts.polygonizeSeconds, &counts.field.seconds})
+    for (double* stage :
+         {&counts.subdivideSeconds, &counts.sampleSeconds, &counts.polygonizeSeconds, &counts.field.seconds})
         *stage *= seconds / wallSeconds;
     return Done{};
 }
@@ -124,10 +125,11 @@ Status measureField(const Scene& scene, const mesh::Grid& grid, Running running,
             !status)
             return status;
     const double reading = static_cast<double>(timed.counts.field.pieces) * secondsOfNothing() / running.threads;
-    m.fieldSeconds = m.counts.sampleSeconds * (timed.counts.field.seconds - reading) /
-                     (timed.counts.sampleSeconds - 2 * reading);
+    m.fieldSeconds =
+        m.counts.sampleSeconds * (timed.counts.field.seconds - reading) / (timed.counts.sampleSeconds - 2 * reading);
     eval::Tally tally;
-    if (Status status = runOurs(scene, grid, running, {.tally = &tally}, timed.totalSeconds, timed, timed.counts); !status)
+    if (Status status = runOurs(scene, grid, running, {.tally = &tally}, timed.totalSeconds, timed, timed.counts);
+        !status)
         return status;
     m.leastFieldSeconds = leastSeconds(tally) / running.threads;
     return Done{};
@@ -170,7 +172,8 @@ Result<Measurement> measure(const Scene& scene, int resolution, const MeasureOpt
     }
     if (options.peers) contestants.push_back(openVdb(scene, cube, running, m.openvdb));
     if (Status status = takeTurns(contestants, options.repeats); !status) return status.error();
-    if (Status status = measureField(scene, cube, running, std::min(options.repeats, 5), m); !status) return status.error();
+    if (Status status = measureField(scene, cube, running, std::min(options.repeats, 5), m); !status)
+        return status.error();
     return m;
 }
 

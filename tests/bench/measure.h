@@ -24,11 +24,12 @@ struct Measurement {
     Vec3i cells;            ///< a cube for all but `tight`
     size_t tapeLength = 0;  ///< instructions
     double deriveSeconds = 0, lowerSeconds = 0, compileSeconds = 0;
-    double totalSeconds = 0;        ///< tape to mesh: refined positions, normals, triangles, origins
-    double oneThreadSeconds = 0;    ///< the same on one thread; 0 where not asked for
-    mesh::Counts counts;            ///< stages of the best run
-    double fieldSeconds = 0;        ///< of its sampleSeconds, by the share measured apart: evaluating the field
-    double leastFieldSeconds = 0;   ///< of the field's operations alone, from register to register, shared by the threads
+    double totalSeconds = 0;      ///< tape to mesh: refined positions, normals, triangles, origins
+    double oneThreadSeconds = 0;  ///< the same on one thread; 0 where not asked for
+    mesh::Counts counts;          ///< stages of the best run
+    double fieldSeconds = 0;      ///< of its sampleSeconds, by the share measured apart: evaluating the field
+    double leastFieldSeconds =
+        0;  ///< of the field's operations alone, from register to register, shared by the threads
     uint64_t vertices = 0, triangles = 0;
     uint64_t peakBytes = 0;    ///< of the first run, above the start
     DenseResult dense;         ///< every sample of the cube in memory, then marching cubes

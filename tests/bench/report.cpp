@@ -10,9 +10,9 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json stagesOf(const Measurement& m) {
-    return {{"derive_seconds", m.deriveSeconds},        {"lower_seconds", m.lowerSeconds},
-            {"compile_seconds", m.compileSeconds},      {"subdivide_seconds", m.counts.subdivideSeconds},
-            {"sample_seconds", m.fieldSeconds},  {"polygonize_seconds", m.meshSeconds()}};
+    return {{"derive_seconds", m.deriveSeconds},   {"lower_seconds", m.lowerSeconds},
+            {"compile_seconds", m.compileSeconds}, {"subdivide_seconds", m.counts.subdivideSeconds},
+            {"sample_seconds", m.fieldSeconds},    {"polygonize_seconds", m.meshSeconds()}};
 }
 
 ordered_json sweepOf(const DenseResult& d) {
@@ -97,12 +97,12 @@ std::string tableRow(const Measurement& m, const Limits& limits) {
         "{:12} {:>4} {:>6} | {:>7.4f} {:>7.4f} {:>7.4f} {:>7.4f} {:>5.1f} {:>5.1f} | {:5} {:>7} {:>7} | {:>7} {:>7} | "
         "{:>7} {:>7} | "
         "{:>7} {:>7} {:>7} {:>7} | {:>7} | {:>8} {:>6.1f} {:>6.2f} {:>5.0f}",
-        m.scene, m.resolution, m.tapeLength, m.totalSeconds, m.counts.subdivideSeconds, m.fieldSeconds,
-        m.meshSeconds(), m.fieldOverLeast(), polygonizeOverWrite(m, limits),
-        m.handWritten ? "hand" : "tape", sweep(m.dense), ratio(m.dense.seconds), sweep(m.fused), ratio(m.fused.seconds),
-        sweep(m.tight), ratio(m.tight.seconds), seconds(m.openvdb.sampleSeconds), seconds(m.openvdb.meshSeconds),
-        ratio(m.openvdbSeconds()), ratio(m.openvdbByHandSeconds()), seconds(m.vtk.seconds), m.triangles,
-        m.nsPerTriangle(), m.evaluationsPerCell(), m.bytesPerTriangle());
+        m.scene, m.resolution, m.tapeLength, m.totalSeconds, m.counts.subdivideSeconds, m.fieldSeconds, m.meshSeconds(),
+        m.fieldOverLeast(), polygonizeOverWrite(m, limits), m.handWritten ? "hand" : "tape", sweep(m.dense),
+        ratio(m.dense.seconds), sweep(m.fused), ratio(m.fused.seconds), sweep(m.tight), ratio(m.tight.seconds),
+        seconds(m.openvdb.sampleSeconds), seconds(m.openvdb.meshSeconds), ratio(m.openvdbSeconds()),
+        ratio(m.openvdbByHandSeconds()), seconds(m.vtk.seconds), m.triangles, m.nsPerTriangle(), m.evaluationsPerCell(),
+        m.bytesPerTriangle());
 }
 
 std::string dragLine(const DragResult& d) {

@@ -61,9 +61,10 @@ TEST(Tape, ItsOperationsAreCounted) {
     evaluate(tape, {at.data(), at.data(), at.data(), 100}, f.data(), w);
     evaluateGradient(tape, {at.data(), at.data(), at.data(), 7}, f.data(), dx.data(), dy.data(), dz.data(), w);
     using field::codeOf;
-    const Tally expected{{{codeOf<ops::Mul>, 2, 0, Asked::Value}, 200}, {{codeOf<ops::Add>, 2, 0, Asked::Value}, 100},
-                         {{codeOf<ops::Min>, 2, 0, Asked::Value}, 100}, {{codeOf<ops::Mul>, 2, 0, Asked::Gradient}, 14},
-                         {{codeOf<ops::Add>, 2, 0, Asked::Gradient}, 7},    {{codeOf<ops::Min>, 2, 0, Asked::Gradient}, 7}};
+    const Tally expected{
+        {{codeOf<ops::Mul>, 2, 0, Asked::Value}, 200},  {{codeOf<ops::Add>, 2, 0, Asked::Value}, 100},
+        {{codeOf<ops::Min>, 2, 0, Asked::Value}, 100},  {{codeOf<ops::Mul>, 2, 0, Asked::Gradient}, 14},
+        {{codeOf<ops::Add>, 2, 0, Asked::Gradient}, 7}, {{codeOf<ops::Min>, 2, 0, Asked::Gradient}, 7}};
     EXPECT_EQ(tally, expected);
 
     tally.clear();
