@@ -39,20 +39,31 @@ inline void storeResult(const Tape& tape, const StepContext& c, StoreRow store, 
         store(placeOf(c, tape.result(), planes, plane), n, out);
 }
 
+/// Where the result's planes go at once, if anywhere: aligned rows, with room for whole vectors.
+struct ResultRows {
+    float* first = nullptr;
+    size_t stride = 0;
+};
+
+/// Whether the last instruction may write them.
+inline bool endsInResult(const Tape& tape) {
+    return tape.size() > 0 && !isConstant(tape.result()) && tape.code().back().out == tape.result();
+}
+
 /// Runs a tape over points in blocks; `before(in, context)` sees each instruction's operands, `done` each block's
-/// registers. Values of the result go to `result` at once, if there is one: aligned, with room for whole vectors.
+/// registers. `result` only where the tape endsInResult: it isn't in the registers then.
 template <class Before, class DoneBlock>
 void runBlocks(const Tape& tape, const Points& points, const Step* steps, size_t planes, Workspace::Impl& w,
-               float* result, Before&& before, DoneBlock&& done) {
+               ResultRows result, Before&& before, DoneBlock&& done) {
     const size_t block = blockSize(tape, planes), most = std::min(block, roundedUp(points.n));
     StepContext c = w.context(tape, planes, planes == 1 ? most : Workspace::Impl::strideOfGradients(most));
     float* const copies = points.padded ? nullptr : w.points.get(3 * most);
     if (planes > 1) w.pointDerivatives(c);
-    if (result) c.resultRegister = tape.result();
+    c.resultStride = result.stride;
+    const Instruction* const last = result.first ? &tape.code().back() : nullptr;
     for (size_t first = 0; first < points.n; first += block) {
         const size_t n = std::min(block, points.n - first);
         c.count = roundedUp(n);
-        c.result = result + first;
         const float* const from[] = {points.x + first, points.y + first, points.z + first};
         for (size_t axis = 0; axis < 3; ++axis) {
             if (copies) w.kernels.load(from[axis], n, c.count, copies + axis * most);
@@ -60,6 +71,7 @@ void runBlocks(const Tape& tape, const Points& points, const Step* steps, size_t
         }
         for (const Instruction& in : tape.code()) {
             before(in, c);
+            c.result = &in == last ? result.first + first : nullptr;
             steps[static_cast<size_t>(in.op)](in, c);
         }
         done(c, first, n);

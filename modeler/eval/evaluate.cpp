@@ -63,7 +63,7 @@ StepContext Workspace::Impl::context(const Tape& tape, size_t planes, size_t str
             {},
             {},
             nullptr,
-            noRegister,
+            0,
             tape.constants().data(),
             tape.sources().data(),
             tape.grids() ? tape.grids()->words.data() : nullptr,
@@ -88,8 +88,8 @@ void Workspace::Impl::pointDerivatives(StepContext& c) {
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
     count(tape, points.n, Asked::Value, w.tally);
-    const bool atOnce = points.padded && !isConstant(tape.result()) && tape.result() >= 3;
-    runBlocks(tape, points, w.kernels.values, 1, w, atOnce ? out : nullptr, nothingBefore,
+    const bool atOnce = points.padded && endsInResult(tape);
+    runBlocks(tape, points, w.kernels.values, 1, w, atOnce ? ResultRows{out, 0} : ResultRows{}, nothingBefore,
               [&](const StepContext& c, size_t first, size_t n) {
                   if (!atOnce) storeResult(tape, c, w.kernels.store, 1, 0, out + first, n);
               });
@@ -100,9 +100,12 @@ void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, 
     Workspace::Impl& w = workspace.impl();
     count(tape, points.n, Asked::Gradient, w.tally);
     float* const out[] = {value, dx, dy, dz};
-    runBlocks(tape, points, w.kernels.gradients, 4, w, nullptr, nothingBefore,
+    const auto apart = static_cast<size_t>(dx - value);
+    const bool atOnce = points.padded && endsInResult(tape) && dx > value && dy == dx + apart && dz == dy + apart &&
+                        apart % pointPadding == 0;
+    runBlocks(tape, points, w.kernels.gradients, 4, w, atOnce ? ResultRows{value, apart} : ResultRows{}, nothingBefore,
               [&](const StepContext& c, size_t first, size_t n) {
-                  for (size_t plane = 0; plane < 4; ++plane)
+                  for (size_t plane = 0; plane < 4 && !atOnce; ++plane)
                       storeResult(tape, c, w.kernels.store, 4, plane, out[plane] + first, n);
               });
 }
@@ -112,7 +115,7 @@ void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& w
     count(tape, points.n, Asked::Value, w.tally);
     OwnerPass pass(tape, w);
     runBlocks(
-        tape, points, w.kernels.values, 1, w, nullptr,
+        tape, points, w.kernels.values, 1, w, {},
         [&](const Instruction& in, const StepContext& c) { pass(in, c); },
         [&](const StepContext&, size_t first, size_t n) { pass.store(out + first, n); });
 }

@@ -54,7 +54,8 @@ struct Points {
 /// multiple; what is written beyond n means nothing.
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace);
 
-/// Values and their exact derivatives by x, y, z (at a kink, those of the chosen operand).
+/// Values and their exact derivatives by x, y, z (at a kink, those of the chosen operand). Rows of padded points as for
+/// `evaluate`; those at equal distances, value first, are written at once.
 void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
                       Workspace& workspace);
 

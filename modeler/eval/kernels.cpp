@@ -127,17 +127,18 @@ auto dataOf(const Instruction& in, const StepContext& c) {
 /// Where an instruction writes.
 template <class V>
 float* outOf(const StepContext& c, uint32_t reg) {
-    if constexpr (Planes<V>::count == 1)
-        if (reg == c.resultRegister) return c.result;
-    return c.registers + size_t{reg} * Planes<V>::count * c.stride;
+    return c.result ? c.result : c.registers + size_t{reg} * Planes<V>::count * c.stride;
 }
+
+/// How far the planes there are apart.
+inline size_t outStride(const StepContext& c) { return c.result ? c.resultStride : c.stride; }
 
 /// Where an operand is read.
 template <class V>
 Place placeOf(const StepContext& c, uint32_t reg) {
     if constexpr (!std::is_same_v<V, Interval<Float>>)
         if (reg < 3) return {c.coordinates[reg], c.derivatives[reg]};
-    const float* const first = outOf<V>(c, reg);
+    const float* const first = c.registers + size_t{reg} * Planes<V>::count * c.stride;
     return {first, first + c.stride};
 }
 
@@ -187,13 +188,14 @@ template <class Row, class V>
 void stepOver(const Instruction& in, const StepContext& c) {
     [[maybe_unused]] constexpr bool chooses = field::traitsOf<Row>().chooses && std::is_same_v<V, Interval<Float>>;
     float* const out = outOf<V>(c, in.out);
+    const size_t stride = outStride(c);
     V* const args = static_cast<V*>(c.arguments);
     const Source* const sources = c.sources + in.a;
     for (size_t i = 0; i < c.count; i += Float::size) {
         for (uint32_t k = 0; k < in.count; ++k) args[k] = loadAt<V>(sources[k], c, i);
         const std::span<const V> all(args, in.count);
         if constexpr (chooses) keepBounds<Row>(all, in.data, i, c);
-        Planes<V>::store(Body<Row, V>::call(all, dataOf<Row>(in, c)), out + i, c.stride);
+        Planes<V>::store(Body<Row, V>::call(all, dataOf<Row>(in, c)), out + i, stride);
     }
 }
 
@@ -201,10 +203,11 @@ void stepOver(const Instruction& in, const StepContext& c) {
 /// far it came.
 template <class Row, auto path, class V>
 size_t stepByNumbers(size_t i, const Place* places, const auto& numbers, float* out, const StepContext& c) {
+    const size_t stride = outStride(c);
     for (; i + Planes<V>::floats <= c.count; i += Planes<V>::floats) {
         V at[Row::moving];
         for (size_t k = 0; k < Row::moving; ++k) at[k] = Planes<V>::load(places[k].from(i), c.stride);
-        Planes<V>::store(Row::template byNumbers<path>(at, numbers), out + i, c.stride);
+        Planes<V>::store(Row::template byNumbers<path>(at, numbers), out + i, stride);
     }
     return i;
 }
@@ -213,12 +216,13 @@ size_t stepByNumbers(size_t i, const Place* places, const auto& numbers, float* 
 template <class Row>
 void stepBySlopes(const Instruction& in, float* out, const StepContext& c) {
     const Source* const sources = c.sources + in.a;
+    const size_t stride = outStride(c);
     Float args[Row::operandCount];
     for (size_t k = Row::moving; k < Row::operandCount; ++k) args[k] = Float(c.constants[indexOf(sources[k])]);
     for (size_t i = 0; i < c.count; i += Float::size) {
         for (size_t k = 0; k < Row::moving; ++k) args[k] = Float::load(c.coordinates[k] + i);
         const auto [value, by] = Row::template slopes<Float>([&](size_t k) { return args[k]; });
-        Planes<Dual<Float>>::store({value, by.x, by.y, by.z}, out + i, c.stride);
+        Planes<Dual<Float>>::store({value, by.x, by.y, by.z}, out + i, stride);
     }
 }
 
@@ -233,6 +237,7 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
     Place places[moving];
     for (size_t k = 0; k < moving; ++k) places[k] = placeOf<V>(c, sources[k]);
     float* const out = outOf<V>(c, in.out);
+    const size_t stride = outStride(c);
     if constexpr (!std::is_same_v<V, Interval<Float>> && requires { sizeof(typename Row::template Numbers<Float>); }) {
         Float args[count];
         for (size_t k = moving; k < count; ++k) args[k] = Float(c.constants[indexOf(sources[k])]);
@@ -255,8 +260,7 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
         for (size_t k = moving; k < count; ++k) args[k] = V(c.constants[indexOf(sources[k])]);
         for (size_t i = 0; i < c.count; i += Float::size) {
             for (size_t k = 0; k < moving; ++k) args[k] = Planes<V>::load(places[k].from(i), c.stride);
-            Planes<V>::store(Body<Row, V>::call(std::span<const V>(args, count), dataOf<Row>(in, c)), out + i,
-                             c.stride);
+            Planes<V>::store(Body<Row, V>::call(std::span<const V>(args, count), dataOf<Row>(in, c)), out + i, stride);
         }
     }
     return true;
@@ -266,10 +270,11 @@ template <class Row, class V>
 void step(const Instruction& in, const StepContext& c) {
     [[maybe_unused]] constexpr bool chooses = field::traitsOf<Row>().chooses && std::is_same_v<V, Interval<Float>>;
     float* const out = outOf<V>(c, in.out);
+    const size_t stride = outStride(c);
     if constexpr (Row::arity == 1) {
         withOperand<V>(in.a, c, [&](auto a) {
             for (size_t i = 0; i < c.count; i += Float::size)
-                Planes<V>::store(Body<Row, V>::call(a.at(i)), out + i, c.stride);
+                Planes<V>::store(Body<Row, V>::call(a.at(i)), out + i, stride);
         });
     } else if constexpr (Row::arity == 2) {
         withOperand<V>(in.a, c, [&](auto a) {
@@ -277,7 +282,7 @@ void step(const Instruction& in, const StepContext& c) {
                 for (size_t i = 0; i < c.count; i += Float::size) {
                     const V args[] = {a.at(i), b.at(i)};
                     if constexpr (chooses) keepBounds<Row>(args, in.data, i, c);
-                    Planes<V>::store(Body<Row, V>::call(args[0], args[1]), out + i, c.stride);
+                    Planes<V>::store(Body<Row, V>::call(args[0], args[1]), out + i, stride);
                 }
             });
         });

@@ -21,8 +21,6 @@ inline constexpr size_t maxBoxes = 64;
 /// Bytes of argument scratch a variadic op needs for each operand: a Dual of the longest vector.
 inline constexpr size_t argumentBytes = 4 * vectorFloats * sizeof(float);
 
-inline constexpr uint32_t noRegister = 0xffffffffu;
-
 /// Where the steps work.
 struct StepContext {
     float* registers;
@@ -30,8 +28,8 @@ struct StepContext {
     size_t count;                 ///< floats of a row in use, a multiple of vectorFloats
     const float* coordinates[3];  ///< rows of x, y, z; not for ranges
     const float* derivatives[3];  ///< gradients: their planes dx, dy, dz, `stride` apart
-    float* result;                ///< values: row of register `resultRegister`, if any, instead of its own
-    uint32_t resultRegister;
+    float* result;               ///< where the instruction writes, if not to its register: planes `resultStride` apart
+    size_t resultStride;
     const float* constants;
     const Source* sources;
     const float* const* grids;  ///< words of the tape's grids, by number

@@ -85,8 +85,9 @@ void CutEdges::reserve(size_t n) {
     const size_t room = wholeVectors(n) + edgeVector;
     if (room <= list.size()) return;
     list.resize(room);
-    constexpr float* EdgeArrays::*rows[] = {&EdgeArrays::x,    &EdgeArrays::y,   &EdgeArrays::z,    &EdgeArrays::dx,
-                                            &EdgeArrays::dy,   &EdgeArrays::dz,  &EdgeArrays::f,    &EdgeArrays::base,
+    // As evaluateGradient writes them at once: f, dx, dy, dz.
+    constexpr float* EdgeArrays::*rows[] = {&EdgeArrays::x,    &EdgeArrays::y,   &EdgeArrays::z,    &EdgeArrays::f,
+                                            &EdgeArrays::dx,   &EdgeArrays::dy,  &EdgeArrays::dz,   &EdgeArrays::base,
                                             &EdgeArrays::span, &EdgeArrays::tIn, &EdgeArrays::fIn,  &EdgeArrays::tOut,
                                             &EdgeArrays::fOut, &EdgeArrays::t,   &EdgeArrays::axis, &EdgeArrays::open};
     memory_.resize(room * std::size(rows));
