@@ -9,6 +9,8 @@
 namespace sgm::eval {
 namespace {
 
+static_assert(pointPadding == vectorFloats);
+
 Kernels kernelsFor(Isa isa) {
 #if defined(SGM_X86_KERNELS)
     if (isa == Isa::Avx512 && bestIsa() == Isa::Avx512) return avx512::kernels();

@@ -24,6 +24,8 @@ struct BrickValues {
 class WholeBricks {
 public:
     static constexpr size_t points = size_t{brickCorners} * brickCorners * brickCorners;
+    /// Floats that a brick's points, or values, take: whole vectors.
+    static constexpr size_t room = (points + eval::pointPadding - 1) / eval::pointPadding * eval::pointPadding;
     /// Goes to a block with corners at these coordinates.
     void enter(const CornerCoordinates& coordinates);
     eval::Points of(Vec3i brick) const {
@@ -31,7 +33,6 @@ public:
     }
 
 private:
-    static constexpr size_t room = (points + eval::pointPadding - 1) / eval::pointPadding * eval::pointPadding;
     struct alignas(64) Row {
         std::array<float, room> at;
     };
@@ -69,8 +70,7 @@ private:
     void sealBorder(int brick);
     void copyFromBelow(int brick);
 
-    /// Floats kept for each brick by itself.
-    static constexpr int brickRoom = brickCorners * brickCorners * brickCorners + 7;
+    static constexpr int brickRoom = WholeBricks::room;
     static constexpr int maxBatch = brickCorners * brickCorners * brickCorners + rowPadding;
 
     const Block* block_ = nullptr;
