@@ -13,10 +13,11 @@ inline constexpr size_t cacheFloats = 32 * 1024 / sizeof(float);
 
 inline size_t roundedUp(size_t n) { return (n + vectorFloats - 1) / vectorFloats * vectorFloats; }
 
-/// Points at a time, so that the registers stay in cache.
-inline size_t blockSize(const Tape& tape, size_t planes) {
-    const size_t fits = cacheFloats / (tape.registerCount() * planes) / vectorFloats * vectorFloats;
-    return std::clamp(fits, vectorFloats, maxBlock);
+/// How many of n points at a time, so that the registers stay in cache.
+inline size_t blockSize(const Tape& tape, size_t planes, size_t n) {
+    const size_t rows = tape.registerCount() * planes, all = std::min(roundedUp(n), maxBlock);
+    if (rows * all <= cacheFloats) return all;  // without a division, for most tapes are short
+    return std::clamp(cacheFloats / rows / vectorFloats * vectorFloats, vectorFloats, all);
 }
 
 /// Row `plane` of a register that instructions write, or of any in ranges.
@@ -55,10 +56,13 @@ inline bool endsInResult(const Tape& tape) {
 template <class Before, class DoneBlock>
 void runBlocks(const Tape& tape, const Points& points, const Step* steps, size_t planes, Workspace::Impl& w,
                ResultRows result, Before&& before, DoneBlock&& done) {
-    const size_t block = blockSize(tape, planes), most = std::min(block, roundedUp(points.n));
-    StepContext c = w.context(tape, planes, planes == 1 ? most : Workspace::Impl::strideOfGradients(most));
-    float* const copies = points.padded ? nullptr : w.points.get(3 * most);
-    if (planes > 1) w.pointDerivatives(c);
+    const size_t block = blockSize(tape, planes, points.n);
+    StepContext c;
+    if (planes == 1)
+        w.setUp(c, tape, planes, block);
+    else
+        w.setUpGradients(c, tape, block);
+    float* const copies = points.padded ? nullptr : w.points.get(3 * block);
     c.resultStride = result.stride;
     const Instruction* const last = result.first ? &tape.code().back() : nullptr;
     for (size_t first = 0; first < points.n; first += block) {
@@ -66,8 +70,8 @@ void runBlocks(const Tape& tape, const Points& points, const Step* steps, size_t
         c.count = roundedUp(n);
         const float* const from[] = {points.x + first, points.y + first, points.z + first};
         for (size_t axis = 0; axis < 3; ++axis) {
-            if (copies) w.kernels.load(from[axis], n, c.count, copies + axis * most);
-            c.coordinates[axis] = copies ? copies + axis * most : from[axis];
+            if (copies) w.kernels.load(from[axis], n, c.count, copies + axis * block);
+            c.coordinates[axis] = copies ? copies + axis * block : from[axis];
         }
         for (const Instruction& in : tape.code()) {
             before(in, c);

@@ -57,26 +57,11 @@ Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 void Workspace::tallyInto(Tally* tally) { impl_->tally = tally; }
 
-StepContext Workspace::Impl::context(const Tape& tape, size_t planes, size_t stride) {
-    const size_t argumentFloats = tape.longest() * (argumentBytes / sizeof(float));
-    return {registers.get(tape.registerCount() * planes * stride),
-            stride,
-            stride,
-            {},
-            {},
-            nullptr,
-            0,
-            tape.constants().data(),
-            tape.sources().data(),
-            tape.grids() ? tape.grids()->words.data() : nullptr,
-            argumentFloats > 0 ? arguments.get(argumentFloats) : nullptr,
-            nullptr};
-}
-
-void Workspace::Impl::pointDerivatives(StepContext& c) {
-    const auto which = std::find(std::begin(gradientStrides), std::end(gradientStrides), c.stride);
-    assert(which != std::end(gradientStrides));
-    AlignedFloats& kept = derivatives_[which - std::begin(gradientStrides)];
+void Workspace::Impl::setUpGradients(StepContext& c, const Tape& tape, size_t n) {
+    size_t which = 0;
+    while (gradientStrides[which] < n) ++which;
+    setUp(c, tape, 4, gradientStrides[which]);
+    AlignedFloats& kept = derivatives_[which];
     constexpr size_t rows = 5, one = 2;
     const bool fresh = kept.empty();
     float* const first = kept.get(rows * c.stride);
@@ -117,8 +102,7 @@ void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& w
     count(tape, points.n, Asked::Value, w.tally);
     OwnerPass pass(tape, w);
     runBlocks(
-        tape, points, w.kernels.values, 1, w, {},
-        [&](const Instruction& in, const StepContext& c) { pass(in, c); },
+        tape, points, w.kernels.values, 1, w, {}, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
         [&](const StepContext&, size_t first, size_t n) { pass.store(out + first, n); });
 }
 
@@ -127,17 +111,21 @@ void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& wo
     assert(regions.n >= 1 && regions.n <= maxBoxes);
     Workspace::Impl& w = workspace.impl();
     count(tape, regions.n, Asked::Range, w.tally);
-    StepContext c = w.context(tape, 2, maxBoxes);
+    StepContext c;
+    w.setUp(c, tape, 2, maxBoxes);
     c.count = roundedUp(regions.n);
     for (uint32_t axis = 0; axis < 3; ++axis) {
         float *lo = rowOf(c, axis, 2, 0), *hi = rowOf(c, axis, 2, 1);
-        for (size_t i = 0; i < c.count; ++i) {
-            const Box3f& box = regions.boxes[std::min(i, regions.n - 1)];
-            lo[i] = box.lo[static_cast<int>(axis)];
-            hi[i] = box.hi[static_cast<int>(axis)];
+        for (size_t i = 0; i < regions.n; ++i) {
+            lo[i] = regions.boxes[i].lo[static_cast<int>(axis)];
+            hi[i] = regions.boxes[i].hi[static_cast<int>(axis)];
         }
+        std::fill(lo + regions.n, lo + c.count, lo[regions.n - 1]);
+        std::fill(hi + regions.n, hi + c.count, hi[regions.n - 1]);
     }
     w.links.follow(tape);
+    w.parts.follow(tape, w.links);
+    w.regions = regions.n;
     float* const bounds = w.bounds.get(w.links.boundRows() * maxBoxes);
     constexpr float infinity = std::numeric_limits<float>::infinity();
     for (size_t i = 0; i < tape.size(); ++i) {

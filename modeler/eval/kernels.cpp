@@ -199,8 +199,8 @@ void stepOver(const Instruction& in, const StepContext& c) {
     }
 }
 
-/// A row whose operands are numbers but for those that move, from point i on for as many whole V as there are. Returns how
-/// far it came.
+/// A row whose operands are numbers but for those that move, from point i on for as many whole V as there are. Returns
+/// how far it came.
 template <class Row, auto path, class V>
 size_t stepByNumbers(size_t i, const Place* places, const auto& numbers, float* out, const StepContext& c) {
     const size_t stride = outStride(c);
@@ -243,12 +243,13 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
         for (size_t k = moving; k < count; ++k) args[k] = Float(c.constants[indexOf(sources[k])]);
         using Numbers = typename Row::template Numbers<Float>;
         const Numbers numbers(std::span<const Float>(args, count), in.data);
-        Row::visitPath(numbers.form, [&]<auto path>() {
-            using Two = std::conditional_t<std::is_same_v<V, Float>, Pair<Float>, Dual<Pair<Float>>>;
-            const typename Row::template Numbers<Pair<Float>> both(numbers);
-            const size_t i = stepByNumbers<Row, path, Two>(0, places, both, out, c);
-            stepByNumbers<Row, path, V>(i, places, numbers, out, c);
-        });
+        Row::visitPath(
+            numbers.form, [&]<auto path>() {
+                using Two = std::conditional_t<std::is_same_v<V, Float>, Pair<Float>, Dual<Pair<Float>>>;
+                const typename Row::template Numbers<Pair<Float>> both(numbers);
+                const size_t i = stepByNumbers<Row, path, Two>(0, places, both, out, c);
+                stepByNumbers<Row, path, V>(i, places, numbers, out, c);
+            });
     } else {
         if constexpr (std::is_same_v<V, Dual<Float>> && requires { &Row::template slopes<Float, float (*)(size_t)>; }) {
             if (sources[0] == 0 && sources[1] == 1 && sources[2] == 2) {
@@ -345,6 +346,28 @@ void store(const float* row, size_t n, float* to) {
 #endif
 }
 
+/// A bit a lane.
+inline uint64_t bitsOf(Float::Mask mask) {
+#if defined(__AVX512F__)
+    return mask.m.data;
+#elif defined(__AVX__)
+    return static_cast<uint64_t>(_mm256_movemask_ps(mask.m));
+#else
+    alignas(64) bool lanes[Float::size];
+    mask.m.store_aligned(lanes);
+    uint64_t bits = 0;
+    for (size_t i = 0; i < Float::size; ++i) bits |= uint64_t{lanes[i]} << i;
+    return bits;
+#endif
+}
+
+uint64_t notAbove(const float* row, const float* most) {
+    uint64_t bits = 0;
+    for (size_t i = 0; i < maxBoxes; i += Float::size)
+        bits |= bitsOf(!(Float::load(row + i) > Float::load(most + i))) << i;
+    return bits;
+}
+
 template <class V, class... Rows>
 const Step* steps(field::TypeList<Rows...>) {
     static constexpr Step table[] = {step<Rows, V>...};
@@ -356,9 +379,16 @@ const Step* steps(field::TypeList<Rows...>) {
 namespace SGM_ISA {
 Kernels kernels() {
     constexpr field::OpTable rows;
-    return {steps<Float>(rows), steps<Dual<Float>>(rows), steps<Interval<Float>>(rows),
-            moveOwners<true>,   moveOwners<false>,        ownersOfTwo<true>,
-            ownersOfTwo<false>, load,                     store};
+    return {steps<Float>(rows),
+            steps<Dual<Float>>(rows),
+            steps<Interval<Float>>(rows),
+            moveOwners<true>,
+            moveOwners<false>,
+            ownersOfTwo<true>,
+            ownersOfTwo<false>,
+            load,
+            store,
+            notAbove};
 }
 }  // namespace SGM_ISA
 

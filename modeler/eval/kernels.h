@@ -28,7 +28,7 @@ struct StepContext {
     size_t count;                 ///< floats of a row in use, a multiple of vectorFloats
     const float* coordinates[3];  ///< rows of x, y, z; not for ranges
     const float* derivatives[3];  ///< gradients: their planes dx, dy, dz, `stride` apart
-    float* result;               ///< where the instruction writes, if not to its register: planes `resultStride` apart
+    float* result;                ///< where the instruction writes, if not to its register: planes `resultStride` apart
     size_t resultStride;
     const float* constants;
     const Source* sources;
@@ -53,6 +53,9 @@ using LoadRow = void (*)(const float* from, size_t n, size_t count, float* row);
 /// Copies n floats of an aligned row.
 using StoreRow = void (*)(const float* row, size_t n, float* to);
 
+/// Bit i is set where row[i] isn't above most[i], of maxBoxes floats (aligned).
+using NotAbove = uint64_t (*)(const float* row, const float* most);
+
 /// The steps of every op for one instruction set, by OpCode.
 struct Kernels {
     const Step* values;
@@ -62,6 +65,7 @@ struct Kernels {
     OwnersOfTwo ofLesser, ofGreater;
     LoadRow load;
     StoreRow store;
+    NotAbove notAbove;
 };
 
 namespace portable {

@@ -1,27 +1,53 @@
 #include "modeler/eval/links.h"
 
+#include <algorithm>
+
 namespace sgm::eval {
+namespace {
+
+bool passesOn(field::OpCode op) {
+    namespace ops = field::ops;
+    using field::codeOf;
+    return op == codeOf<ops::Neg> || op == codeOf<ops::Add> || op == codeOf<ops::Sub> || op == codeOf<ops::Mul> ||
+           op == codeOf<ops::Div> || op == codeOf<ops::Morph>;
+}
+
+Pruning pruningOf(const Instruction& in, const field::OpTraits& row, bool leaf) {
+    if (row.selects) return Pruning::Selects;
+    if (row.chooses) return Pruning::Chooses;
+    if (leaf) return Pruning::Leaf;
+    return passesOn(in.op) ? Pruning::PassesOn : Pruning::Plain;
+}
+
+}  // namespace
 
 void Links::follow(const Tape& tape) {
     code_ = tape.code().data();
     boundRows_ = 0;
     values_.clear();
-    first_.resize(tape.size());
-    bounds_.resize(tape.size());
+    links_.resize(tape.size());
     holder_.resize(tape.registerCount());  // the value each register holds
     for (uint32_t axis = 0; axis < 3; ++axis) holder_[axis] = axis;
+    readers_.assign(tape.size() + 3, 0);
     const auto valueOf = [&](Source s) { return isConstant(s) ? s : holder_[s]; };
+    const auto read = [&](Source s) {
+        const Source value = valueOf(s);
+        if (!isConstant(value)) ++readers_[value];
+        values_.push_back(value);
+    };
     for (size_t i = 0; i < tape.size(); ++i) {
         const Instruction& in = tape.code()[i];
         const field::OpTraits& row = field::traits(in.op);
-        first_[i] = static_cast<uint32_t>(values_.size());
-        bounds_[i] = boundRows_;
+        const auto first = static_cast<uint32_t>(values_.size());
         if (row.arity == field::ops::variadic) {
-            for (uint32_t k = in.a; k < in.a + in.count; ++k) values_.push_back(valueOf(tape.sources()[k]));
+            for (uint32_t k = in.a; k < in.a + in.count; ++k) read(tape.sources()[k]);
         } else {
-            values_.push_back(valueOf(in.a));
-            if (in.count > 1) values_.push_back(valueOf(in.b));
+            read(in.a);
+            if (in.count > 1) read(in.b);
         }
+        const bool leaf =
+            std::all_of(values_.begin() + first, values_.end(), [](Source s) { return isConstant(s) || s < 3; });
+        links_[i] = {first, boundRows_, pruningOf(in, row, leaf)};
         if (row.chooses) boundRows_ += in.count + 1;
         if (needsRange(in)) boundRows_ += 2;
         holder_[in.out] = static_cast<uint32_t>(i) + 3;

@@ -16,25 +16,42 @@ inline bool needsRange(const Instruction& in) {
            in.op == field::codeOf<field::ops::Morph>;
 }
 
+/// What a shorter tape may leave out of an instruction's operands, or tell them of its consumers.
+enum class Pruning : uint8_t {
+    Leaf,     ///< nothing: it reads x, y, z and constants
+    Plain,    ///< nothing: all of its operands matters
+    Selects,  ///< one of its two operands
+    Chooses,  ///< some of its operands
+    PassesOn  ///< what its consumers tell apart may bound what matters of them
+};
+
 /// x, y, z are values 0, 1, 2 and instruction i makes value 3 + i; constants as in Source.
 class Links {
 public:
     /// Follows the tape; what was told of another one is forgotten.
     void follow(const Tape& tape);
     /// The operands of instruction i, as many as it has.
-    const Source* operands(size_t i) const { return values_.data() + first_[i]; }
+    const Source* operands(size_t i) const { return values_.data() + links_[i].first; }
     /// Its first row of bounds, if it chooses or `needsRange` (evaluateRanges).
-    uint32_t bounds(size_t i) const { return bounds_[i]; }
+    uint32_t bounds(size_t i) const { return links_[i].bounds; }
+    Pruning pruning(size_t i) const { return links_[i].pruning; }
     /// Rows of bounds of all instructions: where they choose one an operand and one for the reach; both ends of a
     /// difference's second operand; the low ends of a morph's two.
     uint32_t boundRows() const { return boundRows_; }
+    /// How many operands a value is.
+    uint32_t readers(uint32_t value) const { return readers_[value]; }
     Source result() const { return result_; }
     /// True for the tape followed last.
     bool follows(const Tape& tape) const { return code_ == tape.code().data(); }
 
 private:
+    struct Link {
+        uint32_t first, bounds;
+        Pruning pruning;
+    };
     std::vector<Source> values_, holder_;
-    std::vector<uint32_t> first_, bounds_;
+    std::vector<uint32_t> readers_;
+    std::vector<Link> links_;
     uint32_t boundRows_ = 0;
     Source result_ = 0;
     const Instruction* code_ = nullptr;

@@ -121,51 +121,85 @@ void operandsLeft(const field::OpTraits& row, const Instruction& in, const Sourc
     if (uses.size() == row.firstChoice) use(row.firstChoice, inner);
 }
 
+/// Goes to a region's parts where the tape's value is a union of them, and says what of them matters.
+std::optional<Care> enterUnion(Workspace::Impl& w, size_t region, Care care) {
+    if (w.parts.empty()) return {};
+    const float* const bounds = w.bounds.get(w.links.boundRows() * maxBoxes);
+    if (!w.parts.told(care)) w.parts.tell(bounds, w.regions, care, w.kernels.notAbove);
+    if (!w.parts.enter(region)) return {};
+    return careOfOperands(field::traits(field::codeOf<field::ops::Min>), bounds[w.parts.reach() * maxBoxes + region],
+                          care);
+}
+
 }  // namespace
 
 void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, Care care) {
     Workspace::Impl& w = workspace.impl();
-    assert(w.links.follows(tape) && index < maxBoxes && &into != &tape);
+    assert(w.links.follows(tape) && index < w.regions && &into != &tape);
     const float* const bounds = w.bounds.get(w.links.boundRows() * maxBoxes) + index;
     TapeBuilder& b = w.builder;
     b.begin(tape.size() + 3);
     for (uint32_t axis = 0; axis < 3; ++axis) b.bindInput(axis, axis);
-    b.result({w.links.result(), tape.origins()[0], care});
+    const std::optional<Care> ofParts = enterUnion(w, index, care);
+    if (ofParts)
+        b.result({w.parts.value(), tape.origins()[0] != 0 ? tape.origins()[0] : w.parts.origin(), *ofParts});
+    else
+        b.result({w.links.result(), tape.origins()[0], care});
     for (uint32_t value = b.nextLive(static_cast<uint32_t>(tape.size()) + 3); value != TapeBuilder::none;
          value = b.nextLive(value)) {
         const size_t i = value - 3;
         const Instruction& in = tape.code()[i];
         const field::OpTraits& row = field::traits(in.op);
-        const Source* const values = w.links.operands(i);
+        const Source* const operands = w.links.operands(i);
         const OriginId* const origins = ownersOf(tape, in);
-        if (row.selects) {
-            const float* const ends = bounds + size_t{w.links.bounds(i)} * maxBoxes;
-            const Care inner = careOfOperands(row, ends[2 * maxBoxes], b.care(value));
-            const bool first = !beyond(row, ends[0], inner), second = !beyond(row, ends[maxBoxes], inner);
-            const auto use = [&](uint32_t k) -> TapeBuilder::Use {
-                return {values[k], origins ? origins[k] : 0, inner};
-            };
-            if (first && second) {
-                const TapeBuilder::Use both[] = {use(0), use(1)};
-                b.define(value, in.op, in.data, both, 2, origins != nullptr);
-            } else {  // where neither is told apart, any will do
-                b.alias(value, use(second ? 1 : 0));
+        if (ofParts && w.parts.isMinimum(value)) {
+            const UnionParts::Operands& left = w.parts.operands(value);
+            const TapeBuilder::Use both[] = {{left.value[0], left.origin[0], *ofParts},
+                                             {left.value[1], left.origin[1], *ofParts}};
+            b.define(value, in.op, in.data, both, 2, w.parts.listed());
+            continue;
+        }
+        switch (w.links.pruning(i)) {
+            case Pruning::Leaf:
+                b.defineLeaf(value, in, operands, origins);
+                break;
+            case Pruning::Plain:
+                b.define(value, in, operands, origins);
+                break;
+            case Pruning::Selects: {
+                const float* const ends = bounds + size_t{w.links.bounds(i)} * maxBoxes;
+                const Care inner = careOfOperands(row, ends[2 * maxBoxes], b.care(value));
+                const bool first = !beyond(row, ends[0], inner), second = !beyond(row, ends[maxBoxes], inner);
+                const auto use = [&](uint32_t k) -> TapeBuilder::Use {
+                    return {operands[k], origins ? origins[k] : 0, inner};
+                };
+                if (first && second) {
+                    const TapeBuilder::Use both[] = {use(0), use(1)};
+                    b.define(value, in.op, in.data, both, 2, origins != nullptr);
+                } else {  // where neither is told apart, any will do
+                    b.alias(value, use(second ? 1 : 0));
+                }
+                break;
             }
-        } else if (row.chooses) {
-            operandsLeft(row, in, values, origins, bounds + size_t{w.links.bounds(i)} * maxBoxes,
-                         careOfResult(tape, in, values, b.care(value)), w.uses);
-            if (w.uses.size() == row.firstChoice + 1u)
-                b.alias(value, w.uses.back());
-            else
-                b.define(value, in.op, in.data, w.uses.data(), w.uses.size(), origins != nullptr);
-        } else if (const auto passed =
-                       passedOn(tape, in, values, bounds + size_t{w.links.bounds(i)} * maxBoxes, b.care(value))) {
-            w.uses.clear();
-            for (uint32_t k = 0; k < in.count; ++k)
-                w.uses.push_back({values[k], origins ? origins[k] : 0, (*passed)[k]});
-            b.define(value, in.op, in.data, w.uses.data(), w.uses.size(), origins != nullptr);
-        } else {
-            b.define(value, in, values, origins);
+            case Pruning::Chooses:
+                operandsLeft(row, in, operands, origins, bounds + size_t{w.links.bounds(i)} * maxBoxes,
+                             careOfResult(tape, in, operands, b.care(value)), w.uses);
+                if (w.uses.size() == row.firstChoice + 1u)
+                    b.alias(value, w.uses.back());
+                else
+                    b.define(value, in.op, in.data, w.uses.data(), w.uses.size(), origins != nullptr);
+                break;
+            case Pruning::PassesOn: {
+                const auto passed =
+                    passedOn(tape, in, operands, bounds + size_t{w.links.bounds(i)} * maxBoxes, b.care(value));
+                if (!passed) {
+                    b.define(value, in, operands, origins);
+                    break;
+                }
+                std::array<TapeBuilder::Use, 3> uses;
+                for (uint32_t k = 0; k < in.count; ++k) uses[k] = {operands[k], origins ? origins[k] : 0, (*passed)[k]};
+                b.define(value, in.op, in.data, uses.data(), in.count, origins != nullptr);
+            }
         }
     }
     b.finish(tape.sharedConstants(), tape.grids(), tape.lipschitz(), into);

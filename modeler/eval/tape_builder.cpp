@@ -11,8 +11,9 @@ void TapeBuilder::begin(size_t keys) {
         values_.resize(keys);
         liveBits_.resize(keys / 64 + 1);
     }
+    if (code_.size() < keys) code_.resize(keys);
+    first_ = code_.size();
     free_.clear();
-    code_.clear();
     sources_.clear();
     origins_.assign(1, 0);  // entry 0 is the owner of the result
     registers_ = 3;
@@ -29,22 +30,9 @@ void TapeBuilder::result(Use use) {
     result_ = demand(use, 0);
 }
 
-/// The instruction that defines `key`, which is dead from here on; its operands' places are next in the lists.
-Instruction TapeBuilder::begun(uint32_t key, field::OpCode op, uint32_t data, size_t count, bool listed) {
-    Instruction in{op, static_cast<uint32_t>(count), leave(key).reg};
-    in.data = data;
-    free_.push_back(in.out);
-    if (listed) in.origins = static_cast<uint32_t>(origins_.size()) + 1;
-    if (field::traits(op).arity == field::ops::variadic) {
-        in.a = static_cast<Source>(sources_.size());
-        longest_ = std::max(longest_, in.count);
-    }
-    return in;
-}
-
 void TapeBuilder::define(uint32_t key, field::OpCode op, uint32_t data, const Use* operands, size_t count,
                          bool listed) {
-    Instruction in = begun(key, op, data, count, listed);
+    Instruction& in = begun(key, op, data, count, listed);
     if (listed)
         for (size_t i = 0; i < count; ++i) origins_.push_back(operands[i].origin);
     const auto entry = [&](size_t i) { return listed ? in.origins - 1 + static_cast<uint32_t>(i) : none; };
@@ -54,11 +42,10 @@ void TapeBuilder::define(uint32_t key, field::OpCode op, uint32_t data, const Us
         in.a = demand(operands[0], entry(0));
         if (count > 1) in.b = demand(operands[1], entry(1));
     }
-    code_.push_back(in);
 }
 
 void TapeBuilder::define(uint32_t key, const Instruction& like, const Source* operands, const OriginId* origins) {
-    Instruction in = begun(key, like.op, like.data, like.count, origins != nullptr);
+    Instruction& in = begun(key, like.op, like.data, like.count, origins != nullptr);
     if (origins) origins_.insert(origins_.end(), origins, origins + in.count);
     const auto source = [&](uint32_t i) {
         return demand({operands[i], origins ? origins[i] : 0}, origins ? in.origins - 1 + i : none);
@@ -72,14 +59,24 @@ void TapeBuilder::define(uint32_t key, const Instruction& like, const Source* op
         in.a = source(0);
         if (in.count > 1) in.b = source(1);
     }
-    code_.push_back(in);
+}
+
+void TapeBuilder::defineLeaf(uint32_t key, const Instruction& like, const Source* operands, const OriginId* origins) {
+    Instruction& in = begun(key, like.op, like.data, like.count, origins != nullptr);
+    if (origins) origins_.insert(origins_.end(), origins, origins + in.count);
+    if (field::traits(in.op).arity == field::ops::variadic) {
+        sources_.insert(sources_.end(), operands, operands + in.count);
+    } else {
+        in.a = operands[0];
+        if (in.count > 1) in.b = operands[1];
+    }
 }
 
 void TapeBuilder::finish(const std::shared_ptr<const std::vector<float>>& constants,
                          const std::shared_ptr<const Grids>& grids, float lipschitz, Tape& into) {
     for (const uint32_t key : inputs_) values_[key] = {};
     inputs_.clear();
-    into.code_.assign(code_.rbegin(), code_.rend());
+    into.code_.assign(code_.begin() + static_cast<ptrdiff_t>(first_), code_.end());
     into.sources_ = sources_;
     into.origins_ = origins_;
     if (into.constants_ != constants) into.constants_ = constants;  // the count of owners is shared between threads

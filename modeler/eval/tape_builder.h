@@ -42,6 +42,8 @@ public:
     void define(uint32_t key, field::OpCode op, uint32_t data, const Use* operands, size_t count, bool listed);
     /// The same for operands of which everything matters, as instruction `in` has them; `origins` null: not listed.
     void define(uint32_t key, const Instruction& in, const Source* operands, const OriginId* origins);
+    /// The same for an instruction that reads constants and inputs, which have keys 0, 1, 2 as they have registers.
+    void defineLeaf(uint32_t key, const Instruction& in, const Source* operands, const OriginId* origins);
     /// The live value `key` is the same as `same`: no instruction unless `same` already has a register of its own.
     void alias(uint32_t key, Use same);
     /// The tape, in order, in the memory `into` has.
@@ -63,12 +65,13 @@ private:
     void enter(uint32_t key, Value v);
     Value leave(uint32_t key);
     uint32_t takeRegister();
-    Instruction begun(uint32_t key, field::OpCode op, uint32_t data, size_t count, bool listed);
+    Instruction& begun(uint32_t key, field::OpCode op, uint32_t data, size_t count, bool listed);
 
     std::vector<Value> values_;       // all dead between tapes
     std::vector<uint64_t> liveBits_;  // by key, inputs apart
     std::vector<uint32_t> inputs_, free_;
-    std::vector<Instruction> code_;  // in reverse
+    std::vector<Instruction> code_;  // written from its end down to `first_`
+    size_t first_ = 0;
     std::vector<Source> sources_;
     std::vector<OriginId> origins_;
     uint32_t registers_ = 3, longest_ = 0;
@@ -105,14 +108,28 @@ inline uint32_t TapeBuilder::nextLive(uint32_t below) const {
 
 inline Source TapeBuilder::demand(const Use& use, uint32_t ownerEntry) {
     if (isConstant(use.source)) return use.source;
-    if (!live(use.source)) {
-        enter(use.source, {takeRegister(), ownerEntry, use.care});
-    } else {
-        Value& v = values_[use.source];
-        v.owner = none;
-        v.care = {std::min(v.care.least, use.care.least), std::max(v.care.most, use.care.most)};
+    Value& v = values_[use.source];
+    if (v.reg == none) {
+        const uint32_t reg = takeRegister();
+        enter(use.source, {reg, ownerEntry, use.care});
+        return reg;
     }
-    return values_[use.source].reg;
+    v.owner = none;
+    v.care = {std::min(v.care.least, use.care.least), std::max(v.care.most, use.care.most)};
+    return v.reg;
+}
+
+/// The instruction that defines `key`, which is dead from here on; its operands' places are next in the lists.
+inline Instruction& TapeBuilder::begun(uint32_t key, field::OpCode op, uint32_t data, size_t count, bool listed) {
+    Instruction& in = code_[--first_];
+    in = {op, static_cast<uint32_t>(count), leave(key).reg, 0, 0, data, 0};
+    free_.push_back(in.out);
+    if (listed) in.origins = static_cast<uint32_t>(origins_.size()) + 1;
+    if (field::traits(op).arity == field::ops::variadic) {
+        in.a = static_cast<Source>(sources_.size());
+        longest_ = std::max(longest_, in.count);
+    }
+    return in;
 }
 
 inline void TapeBuilder::alias(uint32_t key, Use same) {

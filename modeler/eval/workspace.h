@@ -11,6 +11,7 @@
 #include "modeler/eval/kernels.h"
 #include "modeler/eval/links.h"
 #include "modeler/eval/tape_builder.h"
+#include "modeler/eval/union_parts.h"
 
 namespace sgm::eval {
 
@@ -53,6 +54,8 @@ struct alignas(128) Workspace::Impl {
     AlignedFloats registers, arguments;
     AlignedFloats points;  ///< copies of coordinates that aren't padded
     Links links;           ///< of the last evaluateRanges
+    UnionParts parts;      ///< of the same tape
+    size_t regions = 0;    ///< that it asked about
     AlignedFloats bounds;  ///< rows of maxBoxes floats, see Links::bounds
     AlignedFloats owners;  ///< registers of owners, as bits
     std::vector<Owners> registerOwners;
@@ -60,20 +63,25 @@ struct alignas(128) Workspace::Impl {
     TapeBuilder builder;
     std::vector<TapeBuilder::Use> uses;
 
-    /// A context for blocks of `count` floats of a value type of `planes` floats.
-    StepContext context(const Tape& tape, size_t planes, size_t stride);
-
-    /// Few strides, so that derivatives of coordinates stay from call to call; no powers of two, whose rows would evict
-    /// each other.
-    static constexpr size_t gradientStrides[] = {96, 192, 384, maxBlock};
-    /// The least of them that has room for n points, n ≤ maxBlock.
-    static size_t strideOfGradients(size_t n) {
-        return *std::lower_bound(std::begin(gradientStrides), std::end(gradientStrides), n);
+    /// Sets all but where points are and results go, for rows of `stride` floats and a value type of `planes` floats.
+    void setUp(StepContext& c, const Tape& tape, size_t planes, size_t stride) {
+        const size_t argumentFloats = tape.longest() * (argumentBytes / sizeof(float));
+        c.registers = registers.get(tape.registerCount() * planes * stride);
+        c.stride = stride;
+        for (const float*& rows : c.derivatives) rows = nullptr;
+        c.result = nullptr;
+        c.constants = tape.constants().data();
+        c.sources = tape.sources().data();
+        c.grids = tape.grids() ? tape.grids()->words.data() : nullptr;
+        c.arguments = argumentFloats > 0 ? arguments.get(argumentFloats) : nullptr;
     }
-    /// Sets the context's derivatives of coordinates, for its stride.
-    void pointDerivatives(StepContext& c);
+    /// The same for derivatives at n points, n ≤ maxBlock. Strides are few, so that derivatives of coordinates stay
+    /// from call to call.
+    void setUpGradients(StepContext& c, const Tape& tape, size_t n);
 
 private:
+    /// No powers of two, whose rows would evict each other.
+    static constexpr size_t gradientStrides[] = {96, 192, 384, maxBlock};
     AlignedFloats derivatives_[std::size(gradientStrides)];  ///< by stride: rows 0 0 1 0 0
 };
 

@@ -74,10 +74,11 @@ struct Children {
 /// False when all samples of the cells count alike. Samples on the grid's border count as outside whatever the field
 /// says (so the mesh closes even where bounds were wrong), hence a region that is inside all over ends where it touches
 /// the border.
+inline bool mayHoldSurface(eval::Range range, bool touchesBorder) {
+    return range.lo < 0 && (touchesBorder || !(range.hi < 0));
+}
 inline bool mayHoldSurface(eval::Range range, const CellRange& cells, const Grid& grid) {
-    if (range.lo >= 0) return false;
-    const bool touchesBorder = minComponent(cells.lo) == 0 || minComponent(grid.cells - cells.hi) == 0;
-    return !(range.hi < 0) || touchesBorder;
+    return mayHoldSurface(range, minComponent(cells.lo) == 0 || minComponent(grid.cells - cells.hi) == 0);
 }
 
 /// Whether an evaluation costs as much as dozens of others, and no shortening spares it: the tape folds a fractal.

@@ -65,26 +65,31 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
         for (int axis = 0; axis < 3; ++axis) coordinates_[axis][i] = at[axis];
     }
 
-    std::array<CellRange, bricksPerBlock> cells;
-    std::array<Box3f, bricksPerBlock> boxes;
-    std::array<int, bricksPerBlock> numbers;
+    // Bricks that have cells, so many along each axis, are regions.
+    Vec3i along;
+    for (int axis = 0; axis < 3; ++axis)
+        along[axis] = std::min(bricksAlong, (last_[axis] + brickCells - 1) / brickCells);
+    uint64_t bricks = 0;
     size_t n = 0;
-    for (int b = 0; b < bricksPerBlock; ++b) {
-        cells[n] = cellsOf(block.index * bricksAlong + brickAt(b), brickCells, grid);
-        if (cells[n].empty()) continue;
-        boxes[n] = boxOf(cells[n], grid);
-        numbers[n++] = b;
-    }
-    std::array<eval::Range, bricksPerBlock> ranges;
-    eval::evaluateRanges(block.tape, {boxes.data(), n}, ranges.data(), workspace);
+    for (int k = 0; k < along.z; ++k)
+        for (int j = 0; j < along.y; ++j)
+            for (int i = 0; i < along.x; ++i) {
+                const Vec3i low = Vec3i{i, j, k} * brickCells, high = min(low + Vec3i{1, 1, 1} * brickCells, last_);
+                const int brick = brickNumber({i, j, k});
+                bricks |= 1ull << brick;
+                region_[brick] = static_cast<uint8_t>(n);
+                boxes_[n++] = {cornerAt(low), cornerAt(high)};
+            }
+    eval::evaluateRanges(block.tape, {boxes_.data(), n}, ranges_.data(), workspace);
     counts.intervalEvaluations += n;
     active_ = 0;
     uint64_t regions = 0;
-    for (size_t i = 0; i < n; ++i) {
-        if (!mayHoldSurface(ranges[i], cells[i], grid)) continue;
-        regions |= 1ull << i;
-        active_ |= 1ull << numbers[i];
-        region_[numbers[i]] = static_cast<uint8_t>(i);
+    const uint64_t border = onBorder(bricks);
+    for (uint64_t rest = bricks; rest != 0; rest &= rest - 1) {
+        const int brick = std::countr_zero(rest), region = region_[brick];
+        if (!mayHoldSurface(ranges_[region], border >> brick & 1)) continue;
+        regions |= 1ull << region;
+        active_ |= 1ull << brick;
     }
     folds_ = mesh::isDear(block.tape);
     dear_ = folds_ && std::isfinite(care_.most);
@@ -100,6 +105,7 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
 /// Those of the bricks that touch the border of the grid, or end there.
 uint64_t BlockSamples::onBorder(uint64_t bricks) const {
     uint64_t some = 0;
+    if (minComponent(block_->index) > 0 && minComponent(last_) > blockCells) return some;
     for (uint64_t rest = bricks; rest != 0; rest &= rest - 1) {
         const int brick = std::countr_zero(rest);
         const Vec3i low = brickAt(brick) * brickCells;

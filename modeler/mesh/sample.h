@@ -65,6 +65,7 @@ public:
     const float* coordinates(int axis) const { return coordinates_[axis].data(); }
 
 private:
+    Vec3f cornerAt(Vec3i at) const { return {coordinates_[0][at.x], coordinates_[1][at.y], coordinates_[2][at.z]}; }
     const SampleRows& rowsOf(int brick);
     uint64_t onBorder(uint64_t bricks) const;
     void sealBorder(int brick);
@@ -81,6 +82,8 @@ private:
     bool oneTape_ = false;
     CoarseSamples coarse_;
     std::array<uint8_t, bricksPerBlock> region_{};  ///< of a brick, in the last evaluateRanges
+    std::array<Box3f, bricksPerBlock> boxes_;       ///< by region
+    std::array<eval::Range, bricksPerBlock> ranges_;
     eval::Tape tape_;
     int inVain_ = 0;  ///< latest bricks of the block that needed its whole tape
     Vec3i last_;      ///< the highest corner in the grid, counted from the block's first
