@@ -31,11 +31,12 @@ struct RenderRequest {
 };
 
 Result<viewer::PictureOptions> parseSize(const std::string& text) {
+    constexpr int longestSide = 16384;
     viewer::PictureOptions options;
     int used = 0;
     if (std::sscanf(text.c_str(), "%dx%d%n", &options.width, &options.height, &used) != 2 || used != static_cast<int>(text.size()) ||
-        std::min(options.width, options.height) < 1 || std::max(options.width, options.height) > 16384)
-        return Error{Error::Kind::Usage, fmt::format("--size {}: write WIDTHxHEIGHT in pixels, as 960x720", text)};
+        std::min(options.width, options.height) < 1 || std::max(options.width, options.height) > longestSide)
+        return Error{Error::Kind::Usage, fmt::format("--size {}: write WIDTHxHEIGHT in pixels, as 960x720; no side is longer than {}", text, longestSide)};
     return options;
 }
 

@@ -43,7 +43,7 @@ std::optional<Bounds> boundsOf(Id id) {
     constexpr double big = 1e6;
     switch (id) {
         case Id::Size:
-            return Bounds{1e-6, big, "greater than zero, and at most 1000 km"};
+            return Bounds{1e-6, big, "at least 0.000001m, and at most 1000 km"};
         case Id::Move:
         case Id::Shift:
             return Bounds{-big, big, "at most 1000 km"};
