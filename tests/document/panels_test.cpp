@@ -263,6 +263,35 @@ TEST(Exports, ShowEveryOptionOfTheTable) {
     }
 }
 
+TEST(Exports, WriteTheSolidsThatStay) {
+    const Scratch scratch;
+    const auto model = shown(Document("grammar 1\nstart A -> cube size 2 + cube size .2 at +x shift (1, 0, 0)\n"));
+    const auto sizeOf = [&](const std::string& name, mesh::Keep keep) {
+        ExportJob job;
+        EXPECT_TRUE(job.start(model, {.file = scratch / name, .options = {}, .resolution = 64, .keep = keep}).ok());
+        std::optional<Status> done;
+        while (!(done = job.take())) std::this_thread::yield();
+        EXPECT_TRUE(done->ok());
+        return std::filesystem::file_size(scratch / name);
+    };
+    for (const std::string ending : {".ply", ".vdb"}) {
+        const auto all = sizeOf("all" + ending, mesh::Keep::All);
+        EXPECT_LT(sizeOf("grounded" + ending, mesh::Keep::Grounded), all);
+        EXPECT_EQ(sizeOf("largest" + ending, mesh::Keep::Largest), sizeOf("grounded" + ending, mesh::Keep::Grounded));
+    }
+}
+
+TEST(Exports, WriteNothingOfNothing) {
+    const Scratch scratch;
+    const auto model = shown(Document("grammar 1\nstart Needle -> cube size (.01, 2, .01)\n"));
+    ExportJob job;
+    ASSERT_TRUE(job.start(model, {.file = scratch / "a.ply", .options = {}, .cell_m = .5}).ok());
+    std::optional<Status> done;
+    while (!(done = job.take())) std::this_thread::yield();
+    EXPECT_EQ(done->error().kind, Error::Kind::Input);
+    EXPECT_FALSE(std::filesystem::exists(scratch / "a.ply"));
+}
+
 TEST(Exports, WriteFilesOrSayWhyNot) {
     const Scratch scratch;
     const auto model = shown(Document(tower));

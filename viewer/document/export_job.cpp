@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "modeler/volume/keep.h"
 #include "viewer/document/meshing.h"
 
 namespace sgm::viewer {
@@ -15,8 +16,10 @@ Status write(const Shown& shown, const ExportRequest& request, const exporter::E
     Stages stages;
     const mesh::PolygonizeOptions options{.threads = request.threads,
                                           .bare = exporter::takesBare(format, request.options)};
-    const auto meshed = makeMesh(shown.model, mesh::gridFor(bounds, cell_m), options, stages, &progress);
+    auto meshed = makeMesh(shown.model, mesh::gridFor(bounds, cell_m), options, stages, &progress);
     if (!meshed.ok()) return meshed.error();
+    mesh::keepOnly(meshed->mesh, request.keep, cell_m, request.threads);
+    if (meshed->mesh.triangleCount() == 0) return noSurface(cell_m);
     exporter::ExportInput input = exportInput(shown.model, shown.grammar->sources[0]->name());
     input.mesh = &meshed->mesh;
     input.options = request.options;
@@ -25,6 +28,7 @@ Status write(const Shown& shown, const ExportRequest& request, const exporter::E
     if (format.wantsVolume) {
         auto sampled = levelSet(shown.model, *meshed, request.threads, &progress);
         if (!sampled.ok()) return sampled.error();
+        if (const Status s = volume::keepOnly(*sampled, request.keep, cell_m, &progress); !s.ok()) return s;
         input.volume = &level.emplace(std::move(*sampled));
     }
     return exporter::write(input, request.file);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "modeler/export/exporter.h"
+#include "modeler/mesh/pieces.h"
 #include "viewer/document/session.h"
 
 namespace sgm::viewer {
@@ -33,6 +34,7 @@ struct ExportRequest {
     int resolution = 128;  ///< cells along the longest side
     double cell_m = 0;     ///< > 0 wins over resolution
     int threads = 0;
+    mesh::Keep keep = mesh::Keep::All;  ///< which separate solids are written
 };
 
 class ExportJob {

@@ -38,6 +38,11 @@ Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::R
     return made;
 }
 
+Error noSurface(float cell_m) {
+    return {Error::Kind::Input,
+            fmt::format("there is no surface at cells of {:.3g} m: all is cut away, or thinner than a cell", cell_m)};
+}
+
 Result<volume::Volume> levelSet(const Model& model, const MeshedModel& meshed, int threads, Progress* progress) {
     constexpr int bandVoxels = 3;  // half-width, OpenVDB's usual
     return volume::sample(meshed.blocks, model.tape, meshed.grid, bandVoxels, threads, progress);

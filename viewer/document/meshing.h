@@ -25,6 +25,9 @@ Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, const m
 Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::Rebuild& rebuild, Stages& stages,
                              Progress* progress);
 
+/// Why nothing is written of a model that has no surface at such cells.
+Error noSurface(float cell_m);
+
 /// The level set of the model for formats that hold volumes.
 Result<volume::Volume> levelSet(const Model& model, const MeshedModel& meshed, int threads, Progress* progress);
 

@@ -302,6 +302,8 @@ TEST_F(Window, FilesAreWritten) {
     for (const auto& [name, box] : widgets.items())
         if (name.starts_with("export.format..ply")) click(name);
     drag("export.cells", 0.5, 0.5, 0.1, 0.5);
+    click("export.keep");
+    click("export.keep.largest");
     shoot("export");
     click("export.export");
     until("a mesh", [&](const auto&) { return std::filesystem::exists(folder / "test.ply"); });

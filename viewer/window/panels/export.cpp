@@ -56,6 +56,14 @@ void ExportPanel::show(Workbench& bench) {
     ImGui::SliderInt("##cells", &resolution_, 32, 1024, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     bench.report.mark("export.cells");
     hint("Cells along the longest side of the model");
+    constexpr const char* solids = "Which separate solids are written: all, those that stand and aren't crumbs, or the largest one; the latter two fill closed cavities";
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted("keep");
+    hint(solids);
+    ImGui::SameLine(left + width * 0.4f);
+    const std::string kept[] = {"all", "grounded", "largest"};  // by mesh::Keep
+    choice(bench.report, "export.keep", kept, keep_);
+    hint(solids);
     for (ExportRow& row : options_) option(bench, row);
     heading("File");
     // The ending says the format, whichever of the two is changed.
@@ -67,6 +75,7 @@ void ExportPanel::show(Workbench& bench) {
         ExportRequest request;
         request.file = file_;
         request.resolution = resolution_;
+        request.keep = static_cast<mesh::Keep>(keep_);
         for (const ExportRow& row : options_) request.options[row.name] = row.value;
         bench.exportTo(std::move(request));
     }
