@@ -107,7 +107,8 @@ void say(const BuildRequest& request, const Model& model, const mesh::MeshFigure
                f.components == 1 ? "" : "s", f.volume_m3, total);
     for (const std::string& file : allFiles(request.out)) fmt::print("wrote {}\n", file);
     if (!request.floor.empty()) fmt::print("wrote {}\n", request.floor);
-    sayUngrown(model.derivation);
+    const syntax::Diagnostics ungrown = derive::ungrown(model.derivation);
+    for (const syntax::Diagnostic& d : ungrown.all()) fmt::print(stderr, "{}\n", syntax::render(d));
     sayFloating(model, support);
 }
 

@@ -59,18 +59,6 @@ Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Sta
     return makeMesh(model, gridOver(model.lowered->field.bounds, request), {.threads = request.threads, .bare = bare}, stages, progress);
 }
 
-void sayUngrown(const derive::Derivation& derivation) {
-    for (const derive::Closed& closed : derivation.closed) {
-        const auto isOf = [&](const derive::Shape& s) {
-            return s.span.source == closed.span.source && s.span.begin == closed.span.begin && s.span.end == closed.span.end;
-        };
-        const auto& shapes = derivation.tree.shapes;
-        if (std::any_of(shapes.begin(), shapes.end(), isOf)) continue;
-        fmt::print(stderr, "{}\n", syntax::render({syntax::Severity::Warning, closed.span, "another shape has closed its joint, so this grows nowhere",
-                                                  "choose another joint of ours, 'at free(…)', or place it by 'move'"}));
-    }
-}
-
 int fail(const Error& error) {
     if (!error.message.empty()) fmt::print(stderr, "sgm: {}\n", error.message);
     switch (error.kind) {

@@ -48,9 +48,6 @@ mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request);
 /// The mesh of the model over its own bounds, `bare` or with normals and origins.
 Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress, bool bare = false);
 
-/// A warning on stderr for every element that a closed joint kept from growing wherever it came.
-void sayUngrown(const derive::Derivation& derivation);
-
 /// Prints "sgm: …" to stderr and gives the exit code: 1 input, 2 usage, 3 budget, 130 cancelled.
 int fail(const Error& error);
 

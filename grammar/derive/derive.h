@@ -57,6 +57,9 @@ struct Derivation {
     uint64_t memory() const;
 };
 
+/// A warning for every element that a closed joint kept from growing wherever it came.
+syntax::Diagnostics ungrown(const Derivation& derivation);
+
 /// Limits of a derivation; what passes one ends in Error::Budget.
 struct Budget {
     uint64_t shapes = 250'000;            ///< a runaway reaches it within a second

@@ -1,4 +1,4 @@
-// What `check … expect` asks of a derivation: overlapping boxes.
+// What `check … expect` asks of a derivation: overlapping boxes; and what didn't grow.
 #include <algorithm>
 #include <unordered_set>
 
@@ -50,6 +50,20 @@ uint64_t Derivation::overlaps() const {
         count += !bonded.contains(uint64_t(lo) << 32 | hi);
     });
     return count;
+}
+
+syntax::Diagnostics ungrown(const Derivation& derivation) {
+    syntax::Diagnostics warnings;
+    for (const Closed& closed : derivation.closed) {
+        const auto isOf = [&](const Shape& s) {
+            return s.span.source == closed.span.source && s.span.begin == closed.span.begin && s.span.end == closed.span.end;
+        };
+        const auto& shapes = derivation.tree.shapes;
+        if (std::none_of(shapes.begin(), shapes.end(), isOf))
+            warnings.warning(closed.span, "another shape has closed its joint, so this grows nowhere",
+                             "choose another joint of ours, 'at free(…)', or place it by 'move'");
+    }
+    return warnings;
 }
 
 }  // namespace sgm::derive

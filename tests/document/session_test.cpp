@@ -112,6 +112,16 @@ TEST_F(Sessions, FollowStartStyleAndWay) {
     EXPECT_EQ(session.problems()[0].message, "there is no start 'Other' any more");
 }
 
+TEST_F(Sessions, WhatAClosedJointKeepsFromGrowingIsTold) {
+    Document closed("grammar 1\nstart A -> cube : B\nrule B -> + cube size .5 at +x + sphere at +x\n");
+    show(session, closed);
+    ASSERT_EQ(session.problems().size(), 1u);
+    EXPECT_EQ(session.problems()[0].severity, syntax::Severity::Warning);
+    EXPECT_EQ(session.problems()[0].line, 3u);
+    EXPECT_EQ(session.problems()[0].column, 32u);
+    EXPECT_NE(session.problems()[0].message.find("closed its joint"), std::string::npos);
+}
+
 TEST_F(Sessions, ABrokenTextKeepsTheLastModel) {
     show(session, document);
     const auto good = session.model();

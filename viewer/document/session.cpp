@@ -188,6 +188,8 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
         if (good) {
             if (*shown != shown_) news.model = *shown;
             shown_ = *shown;
+            const std::vector<Problem> ungrown = problemsOf(derive::ungrown(shown_->model.derivation));
+            problems.insert(problems.end(), ungrown.begin(), ungrown.end());
         } else if (shown.error().kind != Error::Kind::Cancelled) {
             problems.push_back(problemOf(shown.error()));
         } else if (superseded()) {
