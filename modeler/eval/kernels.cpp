@@ -238,18 +238,15 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
     for (size_t k = 0; k < moving; ++k) places[k] = placeOf<V>(c, sources[k]);
     float* const out = outOf<V>(c, in.out);
     const size_t stride = outStride(c);
-    if constexpr (!std::is_same_v<V, Interval<Float>> && requires { sizeof(typename Row::template Numbers<Float>); }) {
-        Float args[count];
-        for (size_t k = moving; k < count; ++k) args[k] = Float(c.constants[indexOf(sources[k])]);
-        using Numbers = typename Row::template Numbers<Float>;
-        const Numbers numbers(std::span<const Float>(args, count), in.data);
-        Row::visitPath(
-            numbers.form, [&]<auto path>() {
-                using Two = std::conditional_t<std::is_same_v<V, Float>, Pair<Float>, Dual<Pair<Float>>>;
-                const typename Row::template Numbers<Pair<Float>> both(numbers);
-                const size_t i = stepByNumbers<Row, path, Two>(0, places, both, out, c);
-                stepByNumbers<Row, path, V>(i, places, numbers, out, c);
-            });
+    if constexpr (!std::is_same_v<V, Interval<Float>> && requires { sizeof(typename Row::template Numbers<float>); }) {
+        float args[count];
+        for (size_t k = moving; k < count; ++k) args[k] = c.constants[indexOf(sources[k])];
+        const typename Row::template Numbers<float> numbers(std::span<const float>(args, count), in.data);
+        Row::visitPath(numbers.form, [&]<auto path>() {
+            using Two = std::conditional_t<std::is_same_v<V, Float>, Pair<Float>, Dual<Pair<Float>>>;
+            const size_t i = stepByNumbers<Row, path, Two>(0, places, numbers, out, c);
+            stepByNumbers<Row, path, V>(i, places, numbers, out, c);
+        });
     } else {
         if constexpr (std::is_same_v<V, Dual<Float>> && requires { &Row::template slopes<Float, float (*)(size_t)>; }) {
             if (sources[0] == 0 && sources[1] == 1 && sources[2] == 2) {

@@ -130,6 +130,8 @@ for (uint next = 0u;;) {
 return best;)";
 
     using Path = Kifs::Path;
+    template <class V, class W>
+    using NumberOf = Kifs::NumberOf<V, W>;
     static constexpr void visitPath(const Kifs::Form& form, auto&& visit) { Kifs::visitPath(form, visit); }
 
     /// What a point is asked about, made from the parameters: once for all points, where those are numbers.
@@ -150,7 +152,7 @@ return best;)";
         uint32_t bays = 1;
 
         /// Of `args` the parameters are read, at their places.
-        Numbers(std::span<const V> args, uint32_t data)
+        [[gnu::always_inline]] Numbers(std::span<const V> args, uint32_t data)
             : form(Kifs::unpack(data)), folds(args.subspan(fractal - size_t{Kifs::centreOfScale}), data), storey(args[Facade::storey]),
               perStorey(V(1.0f) / storey), lastStorey(args[storeys] - V(1.0f)), rise(args[Facade::rise]), perRise(storey / rise),
               most(args[Facade::most]), deepest(args[Facade::deepest]), slack(args[Facade::slack]) {
@@ -167,16 +169,6 @@ return best;)";
             }
             bay[bays].from = V(nowhere);
         }
-        /// The same for a V made of one W.
-        template <class W>
-        explicit Numbers(const Numbers<W>& n)
-            : form(n.form), folds(n.folds), axis{{V(n.axis[0].perPeriod), V(n.axis[0].reach)}, {V(n.axis[1].perPeriod), V(n.axis[1].reach)}},
-              mirror{V(n.mirror[0]), V(n.mirror[1]), V(n.mirror[2])}, storey(n.storey), perStorey(n.perStorey), lastStorey(n.lastStorey),
-              rise(n.rise), perRise(n.perRise), most(n.most), deepest(n.deepest), slack(n.slack), bays(n.bays) {
-            for (uint32_t i = 0; i < bays; ++i)
-                bay[i] = {V(n.bay[i].from), V(n.bay[i].zoom), V(n.bay[i].pan), {V(n.bay[i].shrink[0]), V(n.bay[i].shrink[1])}};
-            bay[bays].from = V(n.bay[bays].from);
-        }
     };
 
     template <class V>
@@ -187,28 +179,29 @@ return best;)";
         return value;
     }
 
-    /// The value at (x, y, z) between the shells; with derivatives where V is over the numbers' W.
+    /// The value at (x, y, z) between the shells; numbers as in Kifs.
     template <Path path, class V, class W>
-    static V byNumbers(const V* at, const Numbers<W>& n) {
-        const V limit = lifted<V>(n.most);
-        const auto decided = (at[outer] >= limit) | (at[inner] <= lifted<V>(-n.deepest));
+    [[gnu::always_inline]] static V byNumbers(const V* at, const Numbers<W>& n) {
+        const V limit = V(n.most);
+        const auto decided = (at[outer] >= limit) | (at[inner] <= V(-n.deepest));
         const auto open = !decided;
         if (!any(open)) return limit;
+        const NumberOf<V, W> slack = n.slack;
         const Along<V, W> x = along(at[position], n, 0), z = along(at[position + 2], n, 1);
         const Up<V> up = levels(at[position + 1], n);
         const V own = cell<path>(n, x, x.own, z, z.own, up.v);
-                V best = min(max(own, max(max(x.off, z.off), -up.edge) - n.slack), limit);
-        const V border = min(min(-x.off, -z.off), up.edge) - n.slack;
+        V best = min(max(own, max(max(x.off, z.off), -up.edge) - slack), limit);
+        const V border = min(min(-x.off, -z.off), up.edge) - slack;
         if (!any((best > border) & open)) return select(decided, limit, best);  // no other cell is so near
         for (uint32_t j = 0; j < n.bays; ++j) {
             const V offZ = z.to(j, n);
-            if (!any((offZ - n.slack < best) & open)) continue;
+            if (!any((offZ - slack < best) & open)) continue;
             for (uint32_t i = 0; i < n.bays; ++i) {
                 const V off = max(x.to(i, n), offZ);
-                if (!any((off - n.slack < best) & open)) continue;
+                if (!any((off - slack < best) & open)) continue;
                 const auto inOwn = x.within(i, n) & z.within(j, n);
                 for (const bool over : {false, true}) {
-                    const V slab = max(off, over ? up.edge : -up.edge) - n.slack;
+                    const V slab = max(off, over ? up.edge : -up.edge) - slack;
                     auto counts = (slab < best) & open;
                     if (!over) counts = counts & !inOwn;
                     if (!any(counts)) continue;
@@ -245,33 +238,26 @@ return best;)";
 private:
     static constexpr float nowhere = 1e4f;
 
-    /// A number as a V, which has derivatives where W has none.
-    template <class V, class W>
-    static V lifted(const W& number) {
-        if constexpr (std::is_same_v<V, W>) return number;
-        else return V(number, W(0.0f), W(0.0f), W(0.0f));
-    }
-
     /// A bay as one axis sees it.
     template <class W>
     struct Seen {
         W zoom, pan, shrink;
     };
     /// One horizontal axis: where in half a period, folded, and in which bay.
-    template <class V, class W>
+    template <class V, class W, class N = NumberOf<V, W>>
     struct Along {
         uint32_t axis;
         V raw, u;     ///< 0 … 1: before and after the paper's folds
         V off;        ///< signed distance to the own bay, metres
-        Seen<W> own;
+        Seen<N> own;
 
-        Seen<W> bay(uint32_t i, const Numbers<W>& n) const { return {n.bay[i].zoom, n.bay[i].pan, n.bay[i].shrink[axis]}; }
+        Seen<N> bay(uint32_t i, const Numbers<W>& n) const { return {n.bay[i].zoom, n.bay[i].pan, n.bay[i].shrink[axis]}; }
         /// Signed distance to a bay, metres.
         V to(uint32_t i, const Numbers<W>& n) const { return between(n.bay[i].from, n.bay[i + 1].from, n); }
-        V between(const W& from, const W& end, const Numbers<W>& n) const {
-            return max(from - raw, raw - end) * n.axis[axis].reach;
+        V between(const N& from, const N& end, const Numbers<W>& n) const {
+            return max(from - raw, raw - end) * N(n.axis[axis].reach);
         }
-        auto within(uint32_t i, const Numbers<W>& n) const { return (raw >= lifted<V>(n.bay[i].from)) & (raw < lifted<V>(n.bay[i + 1].from)); }
+        auto within(uint32_t i, const Numbers<W>& n) const { return (raw >= V(n.bay[i].from)) & (raw < V(n.bay[i + 1].from)); }
     };
     /// The storeys around a height.
     template <class V>
@@ -282,37 +268,44 @@ private:
     };
 
     template <class V, class W>
-    static Along<V, W> along(const V& at, const Numbers<W>& n, uint32_t axis) {
-        Along<V, W> a{axis, {}, {}, {}, {n.bay[0].zoom, n.bay[0].pan, n.bay[0].shrink[axis]}};
-        const V turn = at * n.axis[axis].perPeriod;
-        a.raw = abs((turn - floor(turn)) * W(2.0f) - W(1.0f));
+    [[gnu::always_inline]] static Along<V, W> along(const V& at, const Numbers<W>& n, uint32_t axis) {
+        Along<V, W> a;  // to be written once: clearing it first took an eighth of a facade's time
+        a.axis = axis;
+        using N = NumberOf<V, W>;
+        const V turn = at * N(n.axis[axis].perPeriod);
+        a.raw = abs((turn - floor(turn)) * N(2.0f) - N(1.0f));
         a.u = a.raw;
-        for (const W& r : n.mirror) a.u = abs(abs(a.u - r) - r);
-        W from = n.bay[0].from, end = n.bay[1].from;
+        for (const W& r : n.mirror) a.u = abs(abs(a.u - N(r)) - N(r));
+        N from = n.bay[0].from, end = n.bay[1].from, zoom = n.bay[0].zoom, pan = n.bay[0].pan, shrink = n.bay[0].shrink[axis];
         for (uint32_t i = 1; i < n.bays; ++i) {
-            const auto here = a.raw >= lifted<V>(n.bay[i].from);
+            const auto here = a.raw >= V(n.bay[i].from);
+            if (!any(here)) break;
             from = select(here, n.bay[i].from, from);
             end = select(here, n.bay[i + 1].from, end);
-            const Seen<W> next = a.bay(i, n);
-            a.own = {select(here, next.zoom, a.own.zoom), select(here, next.pan, a.own.pan), select(here, next.shrink, a.own.shrink)};
+            zoom = select(here, n.bay[i].zoom, zoom);
+            pan = select(here, n.bay[i].pan, pan);
+            shrink = select(here, n.bay[i].shrink[axis], shrink);
         }
+        a.own = {zoom, pan, shrink};
         a.off = a.between(from, end, n);
         return a;
     }
 
     template <class V, class W>
-    static Up<V> levels(const V& y, const Numbers<W>& n) {
-        const V up = y * n.perStorey, last = lifted<V>(n.lastStorey);
+    [[gnu::always_inline]] static Up<V> levels(const V& y, const Numbers<W>& n) {
+        using N = NumberOf<V, W>;
+        const V up = y * N(n.perStorey), last = V(n.lastStorey);
         const V level = min(max(floor(up), V(0.0f)), last), v = up - level;
-        const V below = select(level > V(0.0f), v, V(nowhere)), above = select(level < last, W(1.0f) - v, V(nowhere));
-        return {v, select(below < above, v + W(1.0f), v - W(1.0f)), min(below, above) * n.storey};
+        const V below = select(level > V(0.0f), v, V(nowhere)), above = select(level < last, N(1.0f) - v, V(nowhere));
+        return {v, select(below < above, v + N(1.0f), v - N(1.0f)), min(below, above) * N(n.storey)};
     }
 
     /// Distance to one cell's fractal, its map continued beyond the cell; divided by the map's greatest stretch.
-    template <Path path, class V, class W>
-    static V cell(const Numbers<W>& n, const Along<V, W>& x, const Seen<W>& inX, const Along<V, W>& z, const Seen<W>& inZ, const V& v) {
-        const V at[] = {x.u * inX.zoom + inX.pan, v * n.rise, z.u * inZ.zoom + inZ.pan};
-        return Kifs::byNumbers<path>(at, n.folds) * min(min(inX.shrink, inZ.shrink), n.perRise);
+    template <Path path, class V, class W, class N = NumberOf<V, W>>
+    [[gnu::always_inline]] static V cell(const Numbers<W>& n, const Along<V, W>& x, const Seen<N>& inX, const Along<V, W>& z,
+                                         const Seen<N>& inZ, const V& v) {
+        const V at[] = {x.u * inX.zoom + inX.pan, v * N(n.rise), z.u * inZ.zoom + inZ.pan};
+        return Kifs::byNumbers<path>(at, n.folds) * min(min(inX.shrink, inZ.shrink), N(n.perRise));
     }
 };
 

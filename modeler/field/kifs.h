@@ -97,7 +97,7 @@ struct Kifs {
         V fold[9], turn[9];  ///< rotations by columns, the fold's scaled
 
         /// Of `args` the parameters are read, at their places.
-        Numbers(std::span<const V> args, uint32_t data)
+        [[gnu::always_inline]] Numbers(std::span<const V> args, uint32_t data)
             : form(unpack(data)), scale(args[Kifs::scale]), limit(args[bailout]) {
             const V* const c = &args[centreOfScale];
             const V less = scale - V(1.0f);
@@ -110,14 +110,6 @@ struct Kifs {
             for (size_t i = 0; form.folds && i < 9; ++i) fold[i] = args[Kifs::fold + i] * scale;
             for (size_t i = 0; form.turns && i < 9; ++i) turn[i] = args[Kifs::turn + i];
         }
-        /// The same for a V made of one W.
-        template <class W>
-        explicit Numbers(const Numbers<W>& n)
-            : form(n.form), scale(n.scale), lastFold(n.lastFold), moveX(n.moveX), moveY(n.moveY), limit(n.limit),
-              reach(n.reach), unscale(n.unscale) {
-            for (size_t i = 0; form.folds && i < 9; ++i) fold[i] = V(n.fold[i]);
-            for (size_t i = 0; form.turns && i < 9; ++i) turn[i] = V(n.turn[i]);
-        }
     };
 
     template <class V>
@@ -128,10 +120,11 @@ struct Kifs {
         return value;
     }
 
-    /// The value at a point; with derivatives where V is over the numbers' W.
+    /// The value at a point, by numbers that are V themselves or plain floats; with derivatives where V has them and the
+    /// numbers have none.
     template <Path path, class V, class W>
     [[gnu::always_inline]] static V byNumbers(const V* at, const Numbers<W>& numbers) {
-        if constexpr (!std::is_same_v<V, W>) {
+        if constexpr (!std::is_same_v<NumberOf<V, W>, V>) {
             return gradient<path>(at[0], at[1], at[2], numbers);
         } else {
             State<V> p{at[0], at[1], at[2], V(1.0f)};
@@ -139,6 +132,19 @@ struct Kifs {
             return terminal(p, numbers);
         }
     }
+
+    /// What a number W is beside a V: a V, without its derivatives where the W has none.
+    template <class V, class W>
+    struct Beside {
+        using Type = V;
+    };
+    template <class V, class W>
+        requires(!std::is_same_v<V, W>) && requires { typename V::Value; }
+    struct Beside<V, W> {
+        using Type = typename V::Value;
+    };
+    template <class V, class W>
+    using NumberOf = typename Beside<V, W>::Type;
 
     /// With fixed parameters and a continuous form: f(centre) ± the radius of the box, not below the terminal solid's depth.
     /// Otherwise the passes over intervals.
@@ -183,8 +189,8 @@ private:
         void move(const MaskOf<V>& m) { moves = m; }
 
         /// The derivatives before the pass from those after it, scaled where the pass has a rotation that does.
-        template <Path path>
-        [[gnu::always_inline]] void back(V& gx, V& gy, V& gz, const Numbers<V>& n) const {
+        template <Path path, class W>
+        [[gnu::always_inline]] void back(V& gx, V& gy, V& gz, const Numbers<W>& n) const {
             const V zero = 0.0f;
             if (path != Path::Leaps || !n.form.jump) gz = select(offset < zero, gz, -gz);
             if (folds<path>(n.form)) rotateBack(gx, gy, gz, n.fold);
@@ -207,9 +213,8 @@ private:
 
     /// The same with derivatives: back through the passes from the terminal solid's normal, which each of them turns
     /// and reflects.
-    template <Path path, class D>
-    [[gnu::always_inline]] static D gradient(const D& x, const D& y, const D& z,
-                                                      const Numbers<typename D::Value>& numbers) {
+    template <Path path, class D, class W>
+    [[gnu::always_inline]] static D gradient(const D& x, const D& y, const D& z, const Numbers<W>& numbers) {
         using V = typename D::Value;
         constexpr uint32_t mostPasses = 255;
         Kept<V> kept[mostPasses];
@@ -218,7 +223,7 @@ private:
         const State<V> g = normal(at, numbers.form);
         V gx = g.x, gy = g.y, gz = g.z;
         if (folds<path>(numbers.form)) {  // their rotations scale
-            const V share = path == Path::Leaps && numbers.form.bails ? V(1.0f) / at.scales : numbers.unscale;
+            const V share = path == Path::Leaps && numbers.form.bails ? V(1.0f) / at.scales : V(numbers.unscale);
             gx = gx * share, gy = gy * share, gz = gz * share;
         }
         for (uint32_t i = passes; i-- > 0;) {
@@ -240,8 +245,8 @@ private:
     }
 
     /// Takes `at` through the passes; keep(i) is told which way pass i went. Returns how many were begun.
-    template <Path path, class V, class Keep>
-    [[gnu::always_inline]] static uint32_t walk(State<V>& at, const Numbers<V>& n, const Keep& keep) {
+    template <Path path, class V, class W, class Keep>
+    [[gnu::always_inline]] static uint32_t walk(State<V>& at, const Numbers<W>& n, const Keep& keep) {
         if constexpr (path == Path::Leaps) return walkWithLeaps(at, n, keep);
         V x = at.x, y = at.y, z = at.z;  // by themselves: a compiler keeps those in registers
         for (uint32_t i = 0; i < n.form.passes; ++i) {
@@ -254,13 +259,13 @@ private:
         at = {x, y, z, at.scales};
         return n.form.passes;
     }
-    template <class V, class Keep>
-    static uint32_t walkWithLeaps(State<V>& at, const Numbers<V>& n, const Keep& keep) {
+    template <class V, class W, class Keep>
+    static uint32_t walkWithLeaps(State<V>& at, const Numbers<W>& n, const Keep& keep) {
         for (uint32_t i = 0; i < n.form.passes; ++i) {
             auto&& kept = keep(i);
             State<V> next = at;
             foldAndScale<Path::Leaps>(next.x, next.y, next.z, n, kept);
-            const V& h = n.lastFold;
+            const V h = n.lastFold;
             if (n.form.jump) {
                 next.z = select(next.z > h, next.z - (h + h), next.z);
             } else {
@@ -273,7 +278,7 @@ private:
                 continue;
             }
             next.scales = at.scales * n.scale;
-            const V limit = i == 0 ? V(std::numeric_limits<float>::infinity()) : n.limit;
+            const V limit = i == 0 ? V(std::numeric_limits<float>::infinity()) : V(n.limit);
             const auto moves = dot(at) <= limit;
             kept.move(moves);
             at = chosen<V>(moves, next, at);
@@ -306,23 +311,23 @@ private:
     }
 
     /// The linear map by columns.
-    template <class V>
-    [[gnu::always_inline]] static void rotate(V& x, V& y, V& z, const V m[9]) {
+    template <class V, class W>
+    [[gnu::always_inline]] static void rotate(V& x, V& y, V& z, const W m[9]) {
         const V px = x, py = y, pz = z;
         const auto row = [&](size_t r) { return m[r] * px + m[3 + r] * py + m[6 + r] * pz; };
         x = row(0), y = row(1), z = row(2);
     }
     /// Its transpose: the inverse of a rotation.
-    template <class V>
-    [[gnu::always_inline]] static void rotateBack(V& x, V& y, V& z, const V m[9]) {
+    template <class V, class W>
+    [[gnu::always_inline]] static void rotateBack(V& x, V& y, V& z, const W m[9]) {
         const V px = x, py = y, pz = z;
         const auto column = [&](size_t c) { return m[3 * c] * px + m[3 * c + 1] * py + m[3 * c + 2] * pz; };
         x = column(0), y = column(1), z = column(2);
     }
 
     /// One pass up to the last fold.
-    template <Path path, class V, class Keep>
-    [[gnu::always_inline]] static void foldAndScale(V& x, V& y, V& z, const Numbers<V>& n, Keep&& kept) {
+    template <Path path, class V, class W, class Keep>
+    [[gnu::always_inline]] static void foldAndScale(V& x, V& y, V& z, const Numbers<W>& n, Keep&& kept) {
         if (turns<path>(n.form)) rotate(x, y, z, n.turn);
         kept.point(x, y, z);
         const V ax = abs(x), ay = abs(y), az = abs(z);
@@ -335,8 +340,8 @@ private:
         x = x - n.moveX, y = y - n.moveY;
     }
 
-    template <class V>
-    [[gnu::always_inline]] static V terminal(const State<V>& p, const Numbers<V>& n) {
+    template <class V, class W>
+    [[gnu::always_inline]] static V terminal(const State<V>& p, const Numbers<W>& n) {
         const V size = n.form.cube ? max(max(abs(p.x), abs(p.y)), abs(p.z)) : sqrt(dot(p));
         return n.form.bails ? (size - n.reach) / p.scales : (size - n.reach) * n.unscale;
     }

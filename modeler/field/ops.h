@@ -16,9 +16,9 @@
 //   Slopes<V> slopes<V>(at)              for a row of a position and numbers, at(i) its operands: the value and its derivatives by
 //                                        the position, all that is needed where that is x, y, z themselves
 //   Numbers<V>(args, data)               for a row most of whose operands are numbers: what it makes of those, once for all
-//                                        points. V byNumbers<path>(const V* moving, numbers) gives apply's bits, with
-//                                        derivatives where V has them and the numbers have not; paths are told apart by
-//                                        visitPath(numbers.form, …)
+//                                        points. V byNumbers<path>(const V* moving, numbers) gives apply's bits from
+//                                        numbers that are V, or floats: then with derivatives where V has them; paths are
+//                                        told apart by visitPath(numbers.form, …)
 //   owner                                which operand owns the surface (Owner)
 //   V reach(span<const I>, uint32_t)     for Owner::Least (Greatest): an operand that lies above (below) it can't matter:
 //                                        the bits stay the same without it or with any other number beyond it. With one
