@@ -75,6 +75,11 @@ int sidesAt(int side, Vec3i at, int axis) {
     return ((at.x == side ? 1 : 0) | (at.y == side ? 2 : 0) | (at.z == side ? 4 : 0)) & ~(1 << axis);
 }
 
+/// Whether a shortened form of a tape is all of it, so that either will do.
+bool leavesNothingOut(const eval::Tape& shortened, const eval::Tape& whole) {
+    return shortened.size() == whole.size() && shortened.sources().size() == whole.sources().size();
+}
+
 }  // namespace
 
 void BlockMesher::clear() {
@@ -94,11 +99,10 @@ bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chun
         const AddTime evaluating(fieldTime_);
         samples_.enter(block, grid_, workspace_, counts_);
     }
-    blockOwner_ = samples_.oneTape() ? onlyOwner(block.tape) : std::nullopt;
     for (uint64_t rest = samples_.active(); rest != 0; rest &= rest - 1) {
         if (cancelled(progress)) return false;
         const int brick = std::countr_zero(rest);
-        addBrick(brick, sampled(brick));
+        addBrick(brick, sampled(brick), block.tape);
     }
     if (waiting_ > 0) findWaiting(block.tape);
     counts_.sampleSeconds += sampling.seconds();
@@ -259,18 +263,20 @@ std::optional<OriginId> BlockMesher::ownerAround(Vec3i brick, OriginId owner) co
     return owner;
 }
 
-void BlockMesher::addBrick(int number, const eval::Tape& tape) {
+void BlockMesher::addBrick(int number, const eval::Tape& tape, const eval::Tape& whole) {
     const Vec3i brick = brickAt(number);
     const BrickSigns signs(samples_.values(number));
     if (addCells(signs, brick) == 0) return;
     std::optional<OriginId> owner = onlyOwner(tape);
+    const bool mayWait = owner && leavesNothingOut(tape, whole);
+    if (!mayWait && waiting_ > 0) findWaiting(whole);
     addOwnEdges(signs);
     if (lowSidesOf(brick) != 0) borrow(signs, brick, owner);
     placeEdges(brick);
     if (highSidesOf(brick) != 0) lend(signs, brick);
-    if (blockOwner_) {
+    if (mayWait) {
         waiting_ += ownEdges_;
-        if (waiting_ >= enoughEdges) findWaiting(tape);
+        if (waiting_ >= enoughEdges) findWaiting(whole);
     } else {
         findPlaces(tape, ownEdges_);
     }

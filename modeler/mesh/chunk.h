@@ -52,7 +52,7 @@ private:
     void clear();
     const eval::Tape& sampled(int brick);
     std::optional<OriginId> onlyOwner(const eval::Tape& tape) const;
-    void addBrick(int number, const eval::Tape& tape);
+    void addBrick(int number, const eval::Tape& tape, const eval::Tape& whole);
     size_t addCells(const BrickSigns& signs, Vec3i brick);
     void addOwnEdges(const BrickSigns& signs);
     void borrow(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner);
@@ -72,8 +72,7 @@ private:
     BlockSamples samples_;
     CutEdges edges_;  ///< of a brick, its own first; before them those that wait
     size_t ownEdges_ = 0;
-    std::optional<OriginId> blockOwner_;  ///< of all bricks, where they have one tape as well: then vertices may wait
-    size_t waiting_ = 0;                  ///< edges of bricks before, whose vertices are still to be found
+    size_t waiting_ = 0;  ///< edges of bricks before, whose vertices the block's whole tape is still to find
     std::vector<CutEdges> openEdges_;
     std::vector<std::pair<int, size_t>> borrowedPlaces_;  ///< of the others: kind of seam, place in its list
     /// Of the vertex on an edge, see edgePlace; the last ones are read and never used.

@@ -205,14 +205,19 @@ size_t stepOrStay(const EdgeArrays& e, size_t n) {
         const Float low = min(t0, t1), high = max(t0, t1);
         const Mask kept = (newton >= low) & (newton <= high);
         const Float apart = abs(newton - secant), way = abs(newton - t);
-        const Parabola bent(t, f, rise, tIn, fIn, tOut, fOut);
-        const Mask agreed = apart <= Float(agreement);
-        const Mask smooth = (apart <= Float(mostBent)) & bent.fits(way);
-        const Mask trusted = kept & (agreed | smooth) & (way <= Float(longStep));
+        const Mask agreed = apart <= Float(agreement), bends = !agreed & (apart <= Float(mostBent));
+        Float root = newton;
+        Mask fits = agreed;
+        if (any(bends)) {  // a field of planes and creases never does
+            const Parabola bent(t, f, rise, tIn, fIn, tOut, fOut);
+            const Mask smooth = bends & bent.fits(way);
+            root = select(smooth, bent.root(newton), root);
+            fits = fits | smooth;
+        }
+        const Mask trusted = kept & fits & (way <= Float(longStep));
         const Mask done = trusted | (high - low <= Float(agreement)) | (number >= end);
         t0.store(e.tIn + i), f0.store(e.fIn + i);
         t1.store(e.tOut + i), f1.store(e.fOut + i);
-        const Float root = select(agreed | !smooth, newton, bent.root(newton));
         const Float moved =
             last ? select(trusted, withinEdge(root), t) : withinEdge(select(kept, root, Float(0.5f) * (t0 + t1)));
         moved.store(e.t + i);
