@@ -1,5 +1,6 @@
 #include "modeler/mesh/pieces.h"
 
+#include <array>
 #include <span>
 #include <unordered_map>
 
@@ -65,11 +66,17 @@ void judgeSupport(std::vector<Piece>& pieces, float slack_m) {
     })->floats = false;
 }
 
-/// What triangles of one label, or part, add up to.
+/// What triangles of one part add up to.
 struct Sum {
     uint64_t triangles = 0;
     double sixfold_m3 = 0;
     Box3d bounds;  ///< as seen from the mesh's first vertex
+};
+
+/// The same of the triangles that were given one label.
+struct LabelSum {
+    uint64_t triangles = 0;
+    double sixfold_m3 = 0;
 };
 
 /// What hangs together among a chunk's triangles.
@@ -97,20 +104,22 @@ public:
     /// The chunk's parts, counted from 0.
     Parts find(const Chunk& c) {
         look(c);
-        const uint32_t own = ownCount(c);
-        labels_.begin(at_.size());
-        for (const Triangle& t : c.triangles) labels_.label(placesOf(t, own));
+        label(c);
         SurfaceLabels labels = labels_.found();
         Parts parts;
         parts.sums.resize(labels.count);
-        Sum* const sums = parts.sums.data();
+        for (size_t label = 0; label < sums_.size(); ++label) {
+            Sum& sum = parts.sums[labels.numbers[label]];
+            sum.triangles += sums_[label].triangles;
+            sum.sixfold_m3 += sums_[label].sixfold_m3;
+        }
         if (labels.count == 1 && std::find(labels.of.begin(), labels.of.end(), none) == labels.of.end()) {
-            sumUp(c, [sums](uint32_t) -> Sum& { return *sums; });
-            for (const Vec3d& p : at_) sums->bounds = hull(sums->bounds, p);
+            Box3d box;
+            for (const Vec3d& p : at_) box = hull(box, p);
+            parts.sums[0].bounds = box;
             return parts;
         }
         parts.of = std::move(labels.of);
-        sumUp(c, [sums, of = parts.of.data()](uint32_t place) -> Sum& { return sums[of[place]]; });
         for (size_t v = 0; v < at_.size();) {  // neighbours lie on one part mostly
             const uint32_t part = parts.of[v];
             Box3d box;
@@ -121,16 +130,33 @@ public:
     }
 
 private:
-    /// Adds every triangle to sumAt(place of a corner).
-    template <class SumAt>
-    void sumUp(const Chunk& c, SumAt sumAt) const {
+    /// Labels the chunk's triangles, and adds up those of each label.
+    void label(const Chunk& c) {
         const uint32_t own = ownCount(c);
+        labels_.begin(at_.size());
+        sums_.clear();
+        std::array<Triangle, 256> some;  // their places come by vectors, and stay in the first cache
+        for (size_t first = 0; first < c.triangles.size(); first += some.size()) {
+            const size_t count = std::min(some.size(), c.triangles.size() - first);
+            const uint32_t* const corners = &c.triangles[first].x;
+            for (size_t i = 0; i < 3 * count; ++i) (&some[0].x)[i] = placeOf(corners[i], own);
+            labelSome({some.data(), count});
+        }
+    }
+    /// The same for triangles whose corners are places.
+    void labelSome(std::span<const Triangle> triangles) {
         const Vec3d* const at = at_.data();
-        for (const Triangle& corners : c.triangles) {
-            const Triangle t = placesOf(corners, own);
+        size_t labels = sums_.size();
+        LabelSum* sums = sums_.data();
+        for (const Triangle& t : triangles) {
+            const uint32_t label = labels_.label(t);
+            if (label == labels) [[unlikely]] {
+                sums_.emplace_back();
+                sums = sums_.data(), ++labels;
+            }
             // The solid under a triangle along x, by the divergence theorem.
             const Vec3d &p = at[t.x], &q = at[t.y], &r = at[t.z];
-            Sum& sum = sumAt(t.x);
+            LabelSum& sum = sums[label];
             sum.sixfold_m3 += (p.x + q.x + r.x) * ((q.y - p.y) * (r.z - p.z) - (q.z - p.z) * (r.y - p.y));
             ++sum.triangles;
         }
@@ -152,6 +178,7 @@ private:
     const Vec3d near_;
     PageVector<Vec3d> at_;
     Labeller labels_;
+    std::vector<LabelSum> sums_;
 };
 
 /// Numbers the parts of the chunks in the mesh and joins those that meet at borrowed vertices.
@@ -231,42 +258,15 @@ void findOwners(const Mesh& mesh, Surfaces& surfaces) {
     for (size_t i = 0; i < tallies.size(); ++i) surfaces.pieces[i].origins = byCount(tallies[i]);
 }
 
-/// A chunk's vertices once some are gone.
-struct Renumbered {
-    uint32_t own = 0;  ///< of those that are left
-    /// By place: what a corner becomes, or none; empty where all stay.
-    PageVector<uint32_t> corner;
-};
-
-/// What becomes of the corners of chunk c.
-Renumbered renumbered(const Mesh& mesh, const Surfaces& surfaces, const std::vector<uint8_t>& partStays, size_t c, Owners& owners) {
-    const Chunk& chunk = mesh.chunks[c];
-    const Parts& parts = surfaces.parts[c];
-    const uint32_t own = ownCount(chunk);
-    const auto first = partStays.begin() + parts.first;
-    if (std::all_of(first, first + static_cast<ptrdiff_t>(parts.sums.size()), [](uint8_t stays) { return stays != 0; }) &&
-        (parts.of.empty() || std::find(parts.of.begin(), parts.of.end(), none) == parts.of.end()))
-        return {own, {}};
-    Renumbered now;
-    now.corner.resize(placeCount(chunk));
-    const auto stays = [&](uint32_t part) { return part != none && partStays[part] != 0; };
-    for (uint32_t v = 0; v < own; ++v) {
-        const bool left = stays(parts.at(v));
-        now.corner[v] = left ? now.own : none;
-        now.own += left;
+/// Leaves the entries i for which stays(i) says so, `left` of them.
+template <class T, class Stays>
+void compact(PageVector<T>& list, size_t left, Stays stays) {
+    T* const entries = list.data();
+    for (size_t i = 0, n = 0; i < list.size(); ++i) {
+        entries[n] = entries[i];
+        n += stays(i);
     }
-    uint32_t borrowed = borrowedBit;
-    for (size_t i = 0; i < chunk.borrowed.vertices.size(); ++i) {
-        uint32_t part = parts.at(own + i);
-        if (part == none) {
-            const size_t owner = owners.of(chunk.borrowed.vertices[i]);
-            part = surfaces.parts[owner].at(chunk.borrowed.vertices[i] - mesh.chunks[owner].firstVertex);
-        }
-        const bool left = stays(part);
-        now.corner[own + i] = left ? borrowed : none;
-        borrowed += left;
-    }
-    return now;
+    list.resize(left);
 }
 
 /// Keeps the entries that stay, under the numbers that renamed(entry) gives them, none where they don't.
@@ -283,67 +283,98 @@ void renumber(SeamList& list, Renamed renamed) {
     list.vertices.resize(n);
 }
 
-/// Leaves the entries i for which stays(i) says so, `left` of them.
-template <class T, class Stays>
-void compact(PageVector<T>& list, size_t left, Stays stays) {
-    T* const entries = list.data();
-    for (size_t i = 0, n = 0; i < list.size(); ++i) {
-        entries[n] = entries[i];
-        n += stays(i);
+/// Drops surfaces that don't stay, chunk by chunk, with vertices that have no triangle.
+class Dropper {
+public:
+    Dropper(Mesh& mesh, const Surfaces& surfaces, const std::vector<bool>& pieceStays)
+        : mesh_(mesh), surfaces_(surfaces), owners_(mesh.chunks), partStays_(surfaces.pieceOf.size()) {
+        for (size_t part = 0; part < partStays_.size(); ++part) partStays_[part] = pieceStays[surfaces.pieceOf[part]];
     }
-    list.resize(left);
-}
 
-/// Drops what is gone of a chunk's own.
-void dropOwn(Chunk& c, const Renumbered& now) {
-    const uint32_t own = ownCount(c);
-    const uint32_t* const corner = now.corner.data();
-    const bool hasOrigins = !c.origins.empty();
-    size_t left = 0;
-    for (size_t i = 0; i < c.triangles.size(); ++i) {
-        const Triangle t = placesOf(c.triangles[i], own);
-        c.triangles[left] = {corner[t.x], corner[t.y], corner[t.z]};
-        if (hasOrigins) c.origins[left] = c.origins[i];
-        left += corner[t.x] != none;
+    /// Drops what is gone of chunk c. What is left of the borders keeps its order in both chunks; what it borrows is to be
+    /// named, and all chunks are to be numbered.
+    void drop(size_t c) {
+        if (allStays(surfaces_.parts[c])) return;
+        const uint32_t left = findCorners(c);
+        Chunk& chunk = mesh_.chunks[c];
+        const uint32_t own = ownCount(chunk);
+        const uint32_t* const corner = corner_.data();
+        dropTriangles(chunk);
+        const auto stays = [&](size_t v) { return corner[v] != none; };
+        if (!chunk.normals.empty()) compact(chunk.normals, left, stays);
+        compact(chunk.positions, left, stays);
+        renumber(chunk.lent, [&](uint32_t i) { return corner[chunk.lent.vertices[i]]; });
+        renumber(chunk.borrowed, [&](uint32_t i) { return corner[own + i]; });
+        std::erase_if(chunk.faceted, [&](uint32_t v) { return !stays(v); });
+        for (uint32_t& v : chunk.faceted) v = corner[v];
     }
-    c.triangles.resize(left);
-    if (hasOrigins) c.origins.resize(left);
-    const auto stays = [&](size_t v) { return corner[v] != none; };
-    if (!c.normals.empty()) compact(c.normals, now.own, stays);
-    compact(c.positions, now.own, stays);
-    renumber(c.lent, [&](uint32_t i) { return corner[c.lent.vertices[i]]; });
-    std::erase_if(c.faceted, [&](uint32_t v) { return !stays(v); });
-    for (uint32_t& v : c.faceted) v = corner[v];
-}
+
+private:
+    bool stays(uint32_t part) const { return part != none && partStays_[part] != 0; }
+    bool allStays(const Parts& parts) const {
+        const auto first = partStays_.begin() + parts.first;
+        return std::all_of(first, first + static_cast<ptrdiff_t>(parts.sums.size()), [](uint8_t stays) { return stays != 0; }) &&
+               std::find(parts.of.begin(), parts.of.end(), none) == parts.of.end();
+    }
+    /// What becomes of the corners of chunk c, by place; returns how many vertices of its own are left.
+    uint32_t findCorners(size_t c) {
+        const Chunk& chunk = mesh_.chunks[c];
+        const Parts& parts = surfaces_.parts[c];
+        const uint32_t own = ownCount(chunk);
+        corner_.resize(placeCount(chunk));
+        uint32_t next = 0, borrowed = borrowedBit;
+        for (uint32_t v = 0; v < own; ++v) {
+            const bool left = stays(parts.at(v));
+            corner_[v] = left ? next : none;
+            next += left;
+        }
+        for (size_t i = 0; i < chunk.borrowed.vertices.size(); ++i) {
+            const bool left = stays(partOfBorrowed(c, i));
+            corner_[own + i] = left ? borrowed : none;
+            borrowed += left;
+        }
+        return next;
+    }
+    /// The part of a borrowed vertex: its owner's, where no triangle of the chunk uses it.
+    uint32_t partOfBorrowed(size_t c, size_t i) {
+        const Chunk& chunk = mesh_.chunks[c];
+        const uint32_t part = surfaces_.parts[c].at(chunk.positions.size() + i), vertex = chunk.borrowed.vertices[i];
+        if (part != none) return part;
+        const size_t owner = owners_.of(vertex);
+        return surfaces_.parts[owner].at(vertex - mesh_.chunks[owner].firstVertex);
+    }
+    void dropTriangles(Chunk& chunk) const {
+        const uint32_t own = ownCount(chunk);
+        const uint32_t* const corner = corner_.data();
+        const bool hasOrigins = !chunk.origins.empty();
+        size_t left = 0;
+        for (size_t i = 0; i < chunk.triangles.size(); ++i) {
+            const Triangle t = placesOf(chunk.triangles[i], own);
+            chunk.triangles[left] = {corner[t.x], corner[t.y], corner[t.z]};
+            if (hasOrigins) chunk.origins[left] = chunk.origins[i];
+            left += corner[t.x] != none;
+        }
+        chunk.triangles.resize(left);
+        if (hasOrigins) chunk.origins.resize(left);
+    }
+
+    Mesh& mesh_;
+    const Surfaces& surfaces_;
+    Owners owners_;
+    std::vector<uint8_t> partStays_;
+    PageVector<uint32_t> corner_;  ///< of the chunk at hand, by place: what a corner becomes, or none
+};
 
 /// Drops the surfaces that don't stay, with vertices that have no triangle; the borders between chunks follow.
 void keepSurfaces(Mesh& mesh, const Surfaces& surfaces, const std::vector<bool>& pieceStays) {
-    std::vector<uint8_t> partStays(surfaces.pieceOf.size());
-    for (size_t part = 0; part < partStays.size(); ++part) partStays[part] = pieceStays[surfaces.pieceOf[part]];
-    std::vector<Renumbered> now(mesh.chunks.size());
-    std::vector<uint32_t> firstVertex(mesh.chunks.size());
-    Owners owners(mesh.chunks);
+    Dropper dropper(mesh, surfaces, pieceStays);
+    for (size_t c = 0; c < mesh.chunks.size(); ++c) dropper.drop(c);
     uint32_t next = 0;
-    for (size_t c = 0; c < now.size(); ++c) {
-        now[c] = renumbered(mesh, surfaces, partStays, c, owners);
-        firstVertex[c] = next;
-        next += now[c].own;
+    for (Chunk& chunk : mesh.chunks) {
+        chunk.firstVertex = next;
+        next += ownCount(chunk);
     }
-    for (size_t c = 0; c < now.size(); ++c) {
-        Chunk& chunk = mesh.chunks[c];
-        const uint32_t own = ownCount(chunk);
-        renumber(chunk.borrowed, [&](uint32_t i) {
-            if (!now[c].corner.empty() && now[c].corner[own + i] == none) return none;
-            const uint32_t v = chunk.borrowed.vertices[i];
-            const size_t owner = owners.of(v);
-            const uint32_t place = v - mesh.chunks[owner].firstVertex;
-            return firstVertex[owner] + (now[owner].corner.empty() ? place : now[owner].corner[place]);
-        });
-    }
-    for (size_t c = 0; c < now.size(); ++c) {
-        if (!now[c].corner.empty()) dropOwn(mesh.chunks[c], now[c]);
-        mesh.chunks[c].firstVertex = firstVertex[c];
-    }
+    for (Chunk& chunk : mesh.chunks) nameBorrowed(mesh.chunks, chunk);
     std::erase_if(mesh.chunks, [](const Chunk& c) { return c.positions.empty() && c.triangles.empty(); });
 }
 
