@@ -2,6 +2,10 @@
 // closed; a vertex on a material border takes the colour of its first triangle.
 #include <fmt/format.h>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 #include "modeler/export/lists.h"
 #include "modeler/export/surface.h"
 
@@ -49,21 +53,24 @@ public:
 
     void triangles(OutFile& out, const mesh::Chunk& chunk) const override {
         constexpr size_t faceBytes = 1 + sizeof(mesh::Triangle);
-        const auto face = [from = chunk.triangles.data(), first = chunk.firstVertex, borrowed = chunk.borrowed.vertices.data()](size_t i, char* to) {
-            // Two words: the low one holds corners x and y. Ours are all of most triangles'.
-            constexpr uint64_t both = 0x100000001u;
-            uint64_t xy;
-            std::memcpy(&xy, &from[i], sizeof xy);
-            uint64_t z = from[i].z;
-            if (((xy | z) & both * mesh::borrowedBit) == 0) {
-                xy += both * first, z += first;
-            } else {
-                const auto inMesh = [&](uint64_t corner) -> uint64_t { return corner & mesh::borrowedBit ? borrowed[corner & ~mesh::borrowedBit] : first + corner; };
-                xy = inMesh(from[i].x) | inMesh(from[i].y) << 32;
-                z = inMesh(from[i].z);
-            }
-            const uint64_t row[2] = {xy << 8 | 3, xy >> 56 | z << 8};
-            std::memcpy(to, row, sizeof row);
+        const auto face = [&chunk, from = chunk.triangles.data(), first = chunk.firstVertex](size_t i, char* to) {
+#if defined(__SSE2__)
+            // A row in one register; its last three bytes are the next one's. Ours are all corners of most triangles.
+            const auto number = [](uint32_t n) { return _mm_cvtsi32_si128(static_cast<int>(n)); };
+            const auto corners = [&](const mesh::Triangle& t) {
+                return _mm_unpacklo_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(&t)), number(t.z));
+            };
+            __m128i row = corners(from[i]);
+            if (_mm_movemask_ps(_mm_castsi128_ps(row)) == 0) [[likely]]
+                row = _mm_add_epi32(row, _mm_shuffle_epi32(number(first), 0));
+            else
+                row = corners(chunk.inMesh(from[i]));
+            _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm_or_si128(_mm_slli_si128(row, 1), number(3)));
+#else
+            const mesh::Triangle t = chunk.inMesh(from[i]);
+            *to = 3;
+            std::memcpy(to + 1, &t, sizeof t);
+#endif
         };
         if (bare_) return out.rows<faceBytes>(chunk.triangles.size(), face);
         out.rows<faceBytes + sizeof(OriginId)>(chunk.triangles.size(), [&](size_t i, char* to) {
