@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tests/mesh/scenes.h"
@@ -34,6 +35,37 @@ TEST(Chunk, DependsOnItsBlockAlone) {
     }
     EXPECT_EQ(at, whole.chunks.size());
     EXPECT_GT(at, 20u);
+}
+
+/// Where a scene's vertices are on a grid, ascending.
+std::vector<std::array<float, 3>> verticesOf(const Scene& s, const Grid& grid) {
+    Counts counts;
+    const auto blocks = subdivide(s.tape(), grid, 1, nullptr, counts);
+    const Mesh mesh = *polygonize(*blocks, grid, {.threads = 1}, nullptr, counts);
+    std::vector<std::array<float, 3>> all;
+    for (const Chunk& c : mesh.chunks)
+        for (const Vec3f& p : c.positions) all.push_back({p.x, p.y, p.z});
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+TEST(Chunk, VerticesThatWaitForTheNextBricksAreTheSame) {
+    // A ball's bricks all have its tape; with others around it, in the same blocks, bricks have tapes of their own.
+    Scene alone, among;
+    const auto ballOf = [](Scene& s) { return field::Owned{ball(s.graph, {}, 1), 1}; };
+    const field::Owned one[] = {ballOf(alone)};
+    alone.field = field::sum(alone.graph, one);
+    std::vector<field::Owned> parts{ballOf(among)};
+    for (int i = 0; i < 60; ++i) {
+        const float z = static_cast<float>(2 * i + 1) / 60 - 1, turn = 2.4f * static_cast<float>(i), r = std::sqrt(1 - z * z);
+        parts.push_back({ball(among.graph, Vec3f{r * std::cos(turn), r * std::sin(turn), z} * 1.4f, 0.05f), 2});
+    }
+    among.field = field::sum(among.graph, parts);
+    const Grid grid = gridFor(among.field.bounds, 1 / 32.0f);
+    const auto some = verticesOf(alone, grid), all = verticesOf(among, grid);
+    ASSERT_GT(some.size(), 10000u);
+    EXPECT_GT(all.size(), some.size());
+    EXPECT_TRUE(std::includes(all.begin(), all.end(), some.begin(), some.end()));
 }
 
 TEST(Chunk, BorrowedVerticesLieOnTheSharedSide) {
