@@ -337,7 +337,7 @@ void store(const float* row, size_t n, float* to) {
     size_t i = 0;
     for (; i + Float::size <= n; i += Float::size) Float::load(row + i).v.store_unaligned(to + i);
 #if defined(__AVX512F__)
-    _mm512_mask_storeu_ps(to + i, static_cast<__mmask16>((1u << (n - i)) - 1), _mm512_load_ps(row + i));
+    if (i < n) _mm512_mask_storeu_ps(to + i, static_cast<__mmask16>((1u << (n - i)) - 1), _mm512_load_ps(row + i));
 #else
     for (; i < n; ++i) to[i] = row[i];
 #endif

@@ -138,7 +138,7 @@ return best;)";
     template <class V>
     struct Numbers {
         Kifs::Form form;
-        Kifs::Numbers<V> folds;
+        Kifs::Folds<V> folds;
         struct Axis {
             V perPeriod;
             V reach;  ///< metres of the world of half a period, at least
@@ -232,7 +232,9 @@ return best;)";
         const V size = abs(middle[0]) * middle[shrink] + abs(middle[1]) + abs(middle[2]) * middle[shrink + 1];
         const V reach = sqrt(rx * rx + ry * ry + rz * rz) * 1.00001f + size * 2e-6f + middle[rounding];
         const V lo = max(-deep, value - reach), hi = min(limit, value + reach);
-        return I{select(decided, limit, lo), select(may, limit, hi)};
+        // Nothing is known so far out that a fold might overflow.
+        const auto near = size + reach <= V(1e9f);
+        return I{select(decided, limit, lo), select(may, limit, hi)}.where(decided | near);
     }
 
 private:
@@ -305,7 +307,7 @@ private:
     [[gnu::always_inline]] static V cell(const Numbers<W>& n, const Along<V, W>& x, const Seen<N>& inX, const Along<V, W>& z,
                                          const Seen<N>& inZ, const V& v) {
         const V at[] = {x.u * inX.zoom + inX.pan, v * N(n.rise), z.u * inZ.zoom + inZ.pan};
-        return Kifs::byNumbers<path>(at, n.folds) * min(min(inX.shrink, inZ.shrink), N(n.perRise));
+        return Kifs::folded<path>(at, n.folds) * min(min(inX.shrink, inZ.shrink), N(n.perRise));
     }
 };
 

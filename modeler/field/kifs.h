@@ -22,8 +22,18 @@ struct Kifs {
     static constexpr int arity = variadic;
     static constexpr size_t moving = 3;
 
-    /// Places of the operands; vectors take three, rotations nine (by columns).
-    enum Operand : size_t { position, centreOfScale = 3, scale = 6, fold = 7, turn = 16, bailout = 25, operandCount };
+    /// Places of the operands; vectors take three, rotations nine (by columns). Coordinates are multiplied by the
+    /// stretch before the passes.
+    enum Operand : size_t {
+        position,
+        centreOfScale = 3,
+        scale = 6,
+        fold = 7,
+        turn = 16,
+        bailout = 25,
+        stretch = 26,
+        operandCount = 29
+    };
 
     /// What of a node is structure.
     struct Form {
@@ -44,7 +54,8 @@ struct Kifs {
     }
 
     static constexpr std::string_view glsl =
-        "vec3 p = vec3(arg(first), arg(first + 1u), arg(first + 2u));\n"
+        "vec3 p = vec3(arg(first), arg(first + 1u), arg(first + 2u)) *\n"
+        "    vec3(arg(first + 26u), arg(first + 27u), arg(first + 28u));\n"
         "vec3 c = vec3(arg(first + 3u), arg(first + 4u), arg(first + 5u));\n"
         "float s = arg(first + 6u), scales = 1.0;\n"
         "mat3 r2 = mat3(1.0), r1 = mat3(1.0);\n"
@@ -91,13 +102,13 @@ struct Kifs {
 
     /// What the passes take from the parameters: to be made once for all points, where those are numbers.
     template <class V>
-    struct Numbers {
+    struct Folds {
         Form form;
         V scale, lastFold, moveX, moveY, limit, reach, unscale;
         V fold[9], turn[9];  ///< rotations by columns, the fold's scaled
 
         /// Of `args` the parameters are read, at their places.
-        [[gnu::always_inline]] Numbers(std::span<const V> args, uint32_t data)
+        [[gnu::always_inline]] Folds(std::span<const V> args, uint32_t data)
             : form(unpack(data)), scale(args[Kifs::scale]), limit(args[bailout]) {
             const V* const c = &args[centreOfScale];
             const V less = scale - V(1.0f);
@@ -109,6 +120,15 @@ struct Kifs {
             unscale = V(1.0f) / scales;
             for (size_t i = 0; form.folds && i < 9; ++i) fold[i] = args[Kifs::fold + i] * scale;
             for (size_t i = 0; form.turns && i < 9; ++i) turn[i] = args[Kifs::turn + i];
+        }
+    };
+
+    /// The same with the stretch.
+    template <class V>
+    struct Numbers : Folds<V> {
+        V stretch[3];
+        [[gnu::always_inline]] Numbers(std::span<const V> args, uint32_t data) : Folds<V>(args, data) {
+            for (size_t i = 0; i < 3; ++i) stretch[i] = args[Kifs::stretch + i];
         }
     };
 
@@ -124,12 +144,26 @@ struct Kifs {
     /// numbers have none.
     template <Path path, class V, class W>
     [[gnu::always_inline]] static V byNumbers(const V* at, const Numbers<W>& numbers) {
+        const auto stretched = [&](size_t i) {
+            if constexpr (std::is_same_v<NumberOf<V, W>, V>) {
+                return at[i] * V(numbers.stretch[i]);
+            } else {
+                const NumberOf<V, W> by = numbers.stretch[i];
+                return V{at[i].value * by, at[i].dx * by, at[i].dy * by, at[i].dz * by};
+            }
+        };
+        const V p[] = {stretched(0), stretched(1), stretched(2)};
+        return folded<path>(p, numbers);
+    }
+    /// The same of a point that is stretched already, or needn't be.
+    template <Path path, class V, class W>
+    [[gnu::always_inline]] static V folded(const V* at, const Folds<W>& folds) {
         if constexpr (!std::is_same_v<NumberOf<V, W>, V>) {
-            return gradient<path>(at[0], at[1], at[2], numbers);
+            return gradient<path>(at[0], at[1], at[2], folds);
         } else {
             State<V> p{at[0], at[1], at[2], V(1.0f)};
-            walk<path>(p, numbers, [](uint32_t) { return Unkept{}; });
-            return terminal(p, numbers);
+            walk<path>(p, folds, [](uint32_t) { return Unkept{}; });
+            return terminal(p, folds);
         }
     }
 
@@ -153,21 +187,24 @@ struct Kifs {
         using V = typename I::Value;
         const Form form = unpack(data);
         V middle[operandCount], spread = 0.0f;
-        for (size_t i = 0; i < operandCount; ++i) middle[i] = i < centreOfScale ? centre(args[i]) : args[i].lo;
+        const I at[] = {args[0] * args[stretch], args[1] * args[stretch + 1], args[2] * args[stretch + 2]};
+        for (size_t i = 0; i < operandCount; ++i) middle[i] = i < centreOfScale ? centre(at[i]) : args[i].lo;
         for (size_t i = centreOfScale; i < operandCount; ++i) spread = max(args[i].hi - args[i].lo, spread);
-        if (!form.continuous() || any(!(spread <= V(0.0f)))) return passesOver(args, data);
+        if (!form.continuous() || any(!(spread <= V(0.0f)))) return passesOver(at, args, data);
 
-        const V rx = radius(args[0]), ry = radius(args[1]), rz = radius(args[2]);
+        const V rx = radius(at[0]), ry = radius(at[1]), rz = radius(at[2]);
         const V* c = middle + centreOfScale;
         // A pass rounds by a few ulps of the coordinates before it, which the scales divide again.
         const V size = abs(middle[0]) + abs(middle[1]) + abs(middle[2]) + abs(c[0]) + abs(c[1]) + abs(c[2]) + V(2.0f);
         const V ulps = size * (1e-6f * static_cast<float>(form.passes + 1));
         const V reach = sqrt(rx * rx + ry * ry + rz * rz) * 1.00001f + ulps;
-        const std::span<const V> at(middle, operandCount);
-        const Numbers<V> numbers(at, data);
-        const V value = apply<V>(at, data);
-        const V deepest = -numbers.reach * numbers.unscale * V(1.00001f);
-        return I{max(deepest, value - reach), value + reach};  // NaN, as the second operand, survives
+        const Folds<V> folds(std::span<const V>(middle, operandCount), data);
+        V value;
+        visitPath(form, [&]<Path path>() { value = folded<path>(middle, folds); });
+        const V deepest = -folds.reach * folds.unscale * V(1.00001f);
+        // Nothing is known where a pass might overflow, for its values are then.
+        const auto fits = size + reach <= folds.unscale * V(1e30f);
+        return I{max(deepest, value - reach), value + reach}.where(fits);  // NaN, as the second operand, survives
     }
 
 private:
@@ -190,7 +227,7 @@ private:
 
         /// The derivatives before the pass from those after it, scaled where the pass has a rotation that does.
         template <Path path, class W>
-        [[gnu::always_inline]] void back(V& gx, V& gy, V& gz, const Numbers<W>& n) const {
+        [[gnu::always_inline]] void back(V& gx, V& gy, V& gz, const Folds<W>& n) const {
             const V zero = 0.0f;
             if (path != Path::Leaps || !n.form.jump) gz = select(offset < zero, gz, -gz);
             if (folds<path>(n.form)) rotateBack(gx, gy, gz, n.fold);
@@ -214,7 +251,7 @@ private:
     /// The same with derivatives: back through the passes from the terminal solid's normal, which each of them turns
     /// and reflects.
     template <Path path, class D, class W>
-    [[gnu::always_inline]] static D gradient(const D& x, const D& y, const D& z, const Numbers<W>& numbers) {
+    [[gnu::always_inline]] static D gradient(const D& x, const D& y, const D& z, const Folds<W>& numbers) {
         using V = typename D::Value;
         constexpr uint32_t mostPasses = 255;
         Kept<V> kept[mostPasses];
@@ -246,7 +283,7 @@ private:
 
     /// Takes `at` through the passes; keep(i) is told which way pass i went. Returns how many were begun.
     template <Path path, class V, class W, class Keep>
-    [[gnu::always_inline]] static uint32_t walk(State<V>& at, const Numbers<W>& n, const Keep& keep) {
+    [[gnu::always_inline]] static uint32_t walk(State<V>& at, const Folds<W>& n, const Keep& keep) {
         if constexpr (path == Path::Leaps) return walkWithLeaps(at, n, keep);
         V x = at.x, y = at.y, z = at.z;  // by themselves: a compiler keeps those in registers
         for (uint32_t i = 0; i < n.form.passes; ++i) {
@@ -260,7 +297,7 @@ private:
         return n.form.passes;
     }
     template <class V, class W, class Keep>
-    static uint32_t walkWithLeaps(State<V>& at, const Numbers<W>& n, const Keep& keep) {
+    static uint32_t walkWithLeaps(State<V>& at, const Folds<W>& n, const Keep& keep) {
         for (uint32_t i = 0; i < n.form.passes; ++i) {
             auto&& kept = keep(i);
             State<V> next = at;
@@ -327,7 +364,7 @@ private:
 
     /// One pass up to the last fold.
     template <Path path, class V, class W, class Keep>
-    [[gnu::always_inline]] static void foldAndScale(V& x, V& y, V& z, const Numbers<W>& n, Keep&& kept) {
+    [[gnu::always_inline]] static void foldAndScale(V& x, V& y, V& z, const Folds<W>& n, Keep&& kept) {
         if (turns<path>(n.form)) rotate(x, y, z, n.turn);
         kept.point(x, y, z);
         const V ax = abs(x), ay = abs(y), az = abs(z);
@@ -341,18 +378,18 @@ private:
     }
 
     template <class V, class W>
-    [[gnu::always_inline]] static V terminal(const State<V>& p, const Numbers<W>& n) {
+    [[gnu::always_inline]] static V terminal(const State<V>& p, const Folds<W>& n) {
         const V size = n.form.cube ? max(max(abs(p.x), abs(p.y)), abs(p.z)) : sqrt(dot(p));
         return n.form.bails ? (size - n.reach) / p.scales : (size - n.reach) * n.unscale;
     }
 
     /// The natural extension: wide, but it holds for parameters that vary, for jumps and for bailouts.
     template <class I>
-    static I passesOver(std::span<const I> args, uint32_t data) {
+    static I passesOver(const I* p, std::span<const I> args, uint32_t data) {
         using V = typename I::Value;
-        const Numbers<I> n(args, data);
+        const Folds<I> n(args, data);
         const Form& form = n.form;
-        State<I> at{args[position], args[position + 1], args[position + 2], I(1.0f)};
+        State<I> at{p[0], p[1], p[2], I(1.0f)};
         V lo = std::numeric_limits<float>::infinity(), hi = -std::numeric_limits<float>::infinity();
         for (uint32_t i = 0; i < form.passes; ++i) {
             foldAndScale<Path::Leaps>(at.x, at.y, at.z, n, Unkept{});

@@ -216,6 +216,15 @@ struct Morph {
     }
 };
 
+/// The interval of a sine or cosine from its value in the middle. Of large angles it is known that they have one; an
+/// infinite one has none, and of those far out rounding leaves nothing.
+template <class I>
+I ofTurn(I angle, typename I::Value middle) {
+    using V = typename I::Value;
+    const V precise = 1e4f, far = 1e6f;
+    const V reach = select((angle.lo >= -precise) & (angle.hi <= precise), radius(angle) + 4 * mathError, V(3.0f));
+    return around<I>(middle, reach, -1 - mathError, 1 + mathError).where((angle.lo >= -far) & (angle.hi <= far));
+}
 struct Sin {
     static constexpr std::string_view name = "sin";
     static constexpr int arity = 1;
@@ -225,7 +234,7 @@ struct Sin {
     }
     template <class I>
     static I interval(I a) {
-        return around<I>(apply(centre(a)), radius(a) + 4 * mathError, -1 - mathError, 1 + mathError);
+        return ofTurn(a, apply(centre(a)));
     }
     template <class D>
     static D gradient(D a) {
@@ -241,7 +250,7 @@ struct Cos {
     }
     template <class I>
     static I interval(I a) {
-        return around<I>(apply(centre(a)), radius(a) + 4 * mathError, -1 - mathError, 1 + mathError);
+        return ofTurn(a, apply(centre(a)));
     }
     template <class D>
     static D gradient(D a) {

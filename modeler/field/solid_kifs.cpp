@@ -47,11 +47,12 @@ Field kifs(const PrimitiveInput& in) {
     const auto add = [&](std::initializer_list<Num> list) {
         for (const Num& n : list) operands.push_back({n.id(), 0});
     };
-    add({in.p.x * (reach / in.half.x), in.p.y * (reach / in.half.y), in.p.z * (reach / in.half.z)});
+    add({in.p.x, in.p.y, in.p.z});
     add({cx, cy, cz, in.arguments[Scale].node[0]});
     for (const size_t rotation : {Fold, Turn})
         for (int i = 0; i < 9; ++i) add({in.arguments[rotation].node[i]});
     add({safeBailout(in.arguments[Bailout].node[0])});
+    add({reach / in.half.x, reach / in.half.y, reach / in.half.z});
 
     const Num value = graph.apply(codeOf<ops::Kifs>, operands, ops::Kifs::pack(form));
     const Num scaled = value * (min(min(in.half.x, in.half.y), in.half.z) / reach);

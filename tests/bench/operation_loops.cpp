@@ -31,6 +31,7 @@ inline void opaque(Float& f) {
     asm volatile("" : "+m"(f.v.data));
 #endif
 }
+inline void opaque(float& f) { asm volatile("" : "+m"(f)); }
 template <class V>
 inline void opaque(eval::Pair<V>& p) {
     opaque(p.a), opaque(p.b);
@@ -99,9 +100,11 @@ double leastOf(Body&& body) {
 template <class Row, bool gradient>
 double measuredByNumbers(const eval::Operation& operation) {
     using Two = eval::Pair<Float>;
-    Two args[mostOperands];
-    for (uint32_t i = 0; i < operation.count; ++i) args[i] = number<Two>(0.25f + 0.01f * static_cast<float>(i));
-    const typename Row::template Numbers<Two> numbers(std::span<const Two>(args, operation.count), operation.data);
+    Two args[Row::moving];
+    float plain[mostOperands];
+    for (uint32_t i = 0; i < operation.count; ++i) plain[i] = number<float>(0.25f + 0.01f * static_cast<float>(i));
+    for (size_t i = 0; i < Row::moving; ++i) args[i] = Two(plain[i]);
+    const typename Row::template Numbers<float> numbers(std::span<const float>(plain, operation.count), operation.data);
     double seconds = 0;
     Row::visitPath(numbers.form, [&]<auto path>() {
         seconds = leastOf([&] {
@@ -126,7 +129,7 @@ template <class Row, class V>
 double measured([[maybe_unused]] const eval::Operation& operation) {
     if constexpr (Row::arity == field::ops::leaf) {
         return 0;
-    } else if constexpr (!std::is_same_v<V, Interval> && requires { sizeof(typename Row::template Numbers<Float>); }) {
+    } else if constexpr (!std::is_same_v<V, Interval> && requires { sizeof(typename Row::template Numbers<float>); }) {
         return measuredByNumbers<Row, std::is_same_v<V, Dual>>(operation);
     } else if constexpr (Row::arity == field::ops::variadic) {
         const uint32_t n = operation.count < mostOperands ? operation.count : mostOperands;

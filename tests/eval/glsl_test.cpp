@@ -74,7 +74,7 @@ std::vector<Num> sampleNodes(field::Graph& g, field::OpCode op) {
             for (const Vec3d& column : {m.x, m.y, m.z})
                 for (int i = 0; i < 3; ++i) operands.push_back({g.literal(static_cast<float>(column[i])).id(), 0});
         }
-        operands.push_back({g.literal(1000.0f).id(), 0});
+        for (const float v : {1000.0f, 0.8f, 1.0f, 1.25f}) operands.push_back({g.literal(v).id(), 0});
         for (const bool cube : {false, true}) {
             field::ops::Kifs::Form form;
             form.passes = 4;

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "modeler/eval/values_interval.h"
 #include "samples.h"
 
 namespace sgm::eval::testing {
@@ -10,6 +11,24 @@ TEST(Math, SineAndCosineAreWithinTheirErrorUpToTenThousandRadians) {
         const float a = static_cast<float>(i) * 0.05f;
         ASSERT_NEAR(ops::Sin::apply(a), std::sin(double{a}), double{ops::mathError}) << a;
         ASSERT_NEAR(ops::Cos::apply(a), std::cos(double{a}), double{ops::mathError}) << a;
+    }
+}
+
+TEST(Math, OfAnglesWithoutEndNothingIsKnown) {
+    using I = Interval<float>;
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (const I angle :
+         {I{0, infinity}, I{-infinity, 0}, I{-infinity, infinity}, I{infinity, infinity}, I{5e8f, 5e8f}}) {
+        EXPECT_FALSE(known(ops::Sin::interval(angle)));
+        EXPECT_FALSE(known(ops::Cos::interval(angle)));
+    }
+    // Beyond ten thousand radians it is that there is a sine.
+    Draws draws{5};
+    for (int i = 0; i < 100000; ++i) {
+        const float a = draws.real(-1e6, 1e6);
+        const I all = ops::Sin::interval(I{a, a});
+        ASSERT_LE(all.lo, ops::Sin::apply(a)) << a;
+        ASSERT_GE(all.hi, ops::Sin::apply(a)) << a;
     }
 }
 

@@ -122,7 +122,8 @@ struct Example {
 /// A KIFS with fixed parameters: a turn about y, a fold about z, both small.
 inline Example kifsExample(ops::Kifs::Form form) {
     const float t = 0.3f, c = std::cos(t), s = std::sin(t);
-    const float numbers[] = {0.93f, 0.93f, 0.33f, 3, c, s, 0, -s, c, 0, 0, 0, 1, c, 0, -s, 0, 1, 0, s, 0, c, 50};
+    const float numbers[] = {0.93f, 0.93f, 0.33f, 3, c, s, 0, -s, c, 0,  0,    0, 1,
+                             c,     0,     -s,    0, 1, 0, s, 0,  c, 50, 0.8f, 1, 1.25f};
     Example e{{{-2, 2}, {-2, 2}, {-2, 2}}, ops::Kifs::pack(form), form.continuous()};
     for (const float n : numbers) e.operands.push_back({n, n, false});
     return e;

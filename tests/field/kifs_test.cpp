@@ -26,6 +26,7 @@ Operands operands(Vec3d center, double scale, const Mat3& fold = {}, const Mat3&
     for (const auto& [at, m] : {std::pair{Kifs::fold, fold}, {Kifs::turn, turn}})
         put(at, m.x), put(at + 3, m.y), put(at + 6, m.z);
     a[Kifs::bailout] = static_cast<float>(bailout);
+    put(Kifs::stretch, {1, 1, 1});
     return a;
 }
 

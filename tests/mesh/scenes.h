@@ -86,8 +86,8 @@ inline Scene fractal() {
     using field::ops::Kifs;
     Scene s;
     const float cosine = 0.9238795f, sine = 0.3826834f;
-    const float numbers[] = {.93f,   .93f, .33f, 3.5f, cosine, 0, -sine, 0, 1, 0, sine, 0,
-                             cosine, 1,    0,    0,    0,      1, 0,     0, 0, 1, 4};
+    const float numbers[] = {.93f, .93f, .33f, 3.5f, cosine, 0, -sine, 0, 1, 0, sine, 0, cosine,
+                             1,    0,    0,    0,    1,      0, 0,     0, 1, 4, 1,    1, 1};
     std::vector<field::Operand> operands{{s.graph.x().id(), 0}, {s.graph.y().id(), 0}, {s.graph.z().id(), 0}};
     for (const float n : numbers) operands.push_back({s.graph.slot(n).id(), 0});
     const field::Num value =
