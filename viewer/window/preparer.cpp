@@ -57,7 +57,10 @@ void Preparer::preview(std::shared_ptr<const Shown> model, int resolution) {
     });
 }
 void Preparer::prepare(std::shared_ptr<const Meshed> mesh) {
-    ask([&](Wanted& wanted) { wanted.mesh = std::move(mesh); });
+    ask([&](Wanted& wanted) {
+        wanted.mesh = std::move(mesh);
+        wanted.preview = nullptr;  // of a model before: made after the mesh it would stay in its place
+    });
 }
 
 void Preparer::retire(std::shared_ptr<const void> retired) {
