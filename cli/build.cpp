@@ -141,8 +141,11 @@ Status deliver(const BuildRequest& request, const Model& model, MeshedModel mesh
     keepOnly(request, meshed);
     auto mesh = edited(std::move(meshed.mesh), request, stages, progress);
     if (!mesh.ok()) return mesh.error();
-    if (mesh->triangleCount() == 0 && !allFiles(request.out).empty())
-        return Error{Error::Kind::Input, fmt::format("there is no surface at cells of {:.3g} m: all is cut away, or thinner than a cell (--cell, --resolution)", meshed.grid.cell_m)};
+    if (mesh->triangleCount() == 0 && !allFiles(request.out).empty()) {
+        Error error = viewer::noSurface(meshed.grid.cell_m);
+        error.message += " (--cell, --resolution)";
+        return error;
+    }
     if (request.judge)
         if (const Status s = judged(*mesh, stages); !s.ok()) return s;
     mesh::MeshFigures figures;  // of the solid, before it is turned inside out

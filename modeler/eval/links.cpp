@@ -5,18 +5,10 @@
 namespace sgm::eval {
 namespace {
 
-bool passesOn(field::OpCode op) {
-    namespace ops = field::ops;
-    using field::codeOf;
-    return op == codeOf<ops::Neg> || op == codeOf<ops::Add> || op == codeOf<ops::Sub> || op == codeOf<ops::Mul> ||
-           op == codeOf<ops::Div> || op == codeOf<ops::Morph>;
-}
-
-Pruning pruningOf(const Instruction& in, const field::OpTraits& row, bool leaf) {
+Pruning pruningOf(const field::OpTraits& row, bool leaf) {
     if (row.selects) return Pruning::Selects;
     if (row.chooses) return Pruning::Chooses;
-    if (leaf) return Pruning::Leaf;
-    return passesOn(in.op) ? Pruning::PassesOn : Pruning::Plain;
+    return leaf ? Pruning::Leaf : Pruning::NeedsAll;
 }
 
 }  // namespace
@@ -47,7 +39,7 @@ void Links::follow(const Tape& tape) {
         }
         const bool leaf =
             std::all_of(values_.begin() + first, values_.end(), [](Source s) { return isConstant(s) || s < 3; });
-        links_[i] = {first, boundRows_, pruningOf(in, row, leaf)};
+        links_[i] = {first, boundRows_, pruningOf(row, leaf)};
         if (row.chooses) boundRows_ += in.count + 1;
         if (needsRange(in)) boundRows_ += 2;
         holder_[in.out] = static_cast<uint32_t>(i) + 3;

@@ -16,13 +16,12 @@ inline bool needsRange(const Instruction& in) {
            in.op == field::codeOf<field::ops::Morph>;
 }
 
-/// What a shorter tape may leave out of an instruction's operands, or tell them of its consumers.
+/// What a shorter tape may leave out of an instruction's operands.
 enum class Pruning : uint8_t {
     Leaf,     ///< nothing: it reads x, y, z and constants
-    Plain,    ///< nothing: all of its operands matters
     Selects,  ///< one of its two operands
     Chooses,  ///< some of its operands
-    PassesOn  ///< what its consumers tell apart may bound what matters of them
+    NeedsAll  ///< nothing, but what its consumers tell apart may bound what matters of them
 };
 
 /// x, y, z are values 0, 1, 2 and instruction i makes value 3 + i; constants as in Source.

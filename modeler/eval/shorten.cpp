@@ -163,9 +163,6 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
             case Pruning::Leaf:
                 b.defineLeaf(value, in, operands, origins);
                 break;
-            case Pruning::Plain:
-                b.define(value, in, operands, origins);
-                break;
             case Pruning::Selects: {
                 const float* const ends = bounds + size_t{w.links.bounds(i)} * maxBoxes;
                 const Care inner = careOfOperands(row, ends[2 * maxBoxes], b.care(value));
@@ -189,7 +186,7 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
                 else
                     b.define(value, in.op, in.data, w.uses.data(), w.uses.size(), origins != nullptr);
                 break;
-            case Pruning::PassesOn: {
+            case Pruning::NeedsAll: {
                 const auto passed =
                     passedOn(tape, in, operands, bounds + size_t{w.links.bounds(i)} * maxBoxes, b.care(value));
                 if (!passed) {

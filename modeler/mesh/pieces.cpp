@@ -369,11 +369,8 @@ private:
 void keepSurfaces(Mesh& mesh, const Surfaces& surfaces, const std::vector<bool>& pieceStays) {
     Dropper dropper(mesh, surfaces, pieceStays);
     for (size_t c = 0; c < mesh.chunks.size(); ++c) dropper.drop(c);
-    uint32_t next = 0;
-    for (Chunk& chunk : mesh.chunks) {
-        chunk.firstVertex = next;
-        next += ownCount(chunk);
-    }
+    [[maybe_unused]] const Status numbered = Numbering{}.add(mesh.chunks);
+    assert(numbered);  // there are fewer than before
     for (Chunk& chunk : mesh.chunks) nameBorrowed(mesh.chunks, chunk);
     std::erase_if(mesh.chunks, [](const Chunk& c) { return c.positions.empty() && c.triangles.empty(); });
 }

@@ -211,6 +211,16 @@ TEST(Kifs, IntervalsEnclose) {
         }
 }
 
+/// Where a pass may overflow, values are no numbers.
+TEST(Kifs, NothingIsKnownFarOut) {
+    using I = eval::Interval<float>;
+    std::array<I, Kifs::operandCount> box;
+    const Operands a = operands({1, 1, 1}, 3);
+    for (size_t i = 0; i < a.size(); ++i) box[i] = I(a[i]);
+    for (size_t i = 0; i < 3; ++i) box[i] = {0, 3e38f};
+    EXPECT_FALSE(known(Kifs::interval(std::span<const I>(box), Kifs::pack({.passes = 4}))));
+}
+
 /// A small box about an empty place of the sponge is seen to be empty: what prunes a descent.
 TEST(Kifs, IntervalsPrune) {
     using I = eval::Interval<float>;
