@@ -32,6 +32,16 @@ struct SeamList {
     std::vector<uint32_t> vertices;
 };
 
+/// Names the smooth piece of a part's surface that a triangle lies on: a face of a box, a side of a roof, a blend. Two
+/// triangles of equal origin and label that share an edge have no crease between them.
+using Label = uint32_t;
+
+/// The normal at one corner of a triangle whose vertex lies on a crease.
+struct CornerNormal {
+    uint32_t corner;  ///< 3 · triangle + 0 … 2, counted in the chunk
+    Vec3f normal;     ///< unit, outward, of the smooth piece that the triangle lies on
+};
+
 /// What one block contributes.
 struct Chunk {
     Vec3i block;                     ///< block coordinates in the grid
@@ -40,6 +50,9 @@ struct Chunk {
     PageVector<Vec3f> normals;       ///< unit, outward, from the field's derivative; none in a bare mesh
     PageVector<Triangle> triangles;  ///< corners count in this chunk, see `inMesh`
     PageVector<OriginId> origins;    ///< one per triangle; none in a bare mesh
+    PageVector<Label> labels;        ///< one per triangle; none where creases were not looked for
+    /// Ascending by corner: replace the vertex's normal in `normals` for that corner alone.
+    std::vector<CornerNormal> cornerNormals;
     SeamList borrowed;               ///< indices in the whole mesh of vertices that lower blocks own
     SeamList lent;                   ///< own vertices that higher blocks borrow
     std::vector<uint32_t> faceted;   ///< own vertices without derivative: their normals come from the triangles
