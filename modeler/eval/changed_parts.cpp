@@ -49,7 +49,7 @@ void ChangedParts::extract(const Tape& tape, uint32_t value, Tape& into) {
     builder_.result({value});
     for (uint32_t v = builder_.nextLive(value + 1); v != TapeBuilder::none; v = builder_.nextLive(v))
         builder_.define(v, tape.code()[v - 3], links_.operands(v - 3), nullptr);
-    builder_.finish(tape.sharedConstants(), tape.grids(), tape.lipschitz(), into);
+    builder_.finish(tape.sharedConstants(), tape.grids(), TapeBuilder::scaleOf(tape), into);
 }
 
 bool ChangedParts::find(const Tape& tape, const NumbersChanged& changed) {
@@ -63,7 +63,7 @@ bool ChangedParts::find(const Tape& tape, const NumbersChanged& changed) {
         size += parts_[i].now.size();
         if (4 * size > tape.size()) return false;
         parts_[i].before = parts_[i].now;
-        TapeBuilder::rebind(parts_[i].before, changed.before, tape.lipschitz());
+        TapeBuilder::rebind(parts_[i].before, changed.before, TapeBuilder::scaleOf(tape));
     }
     return true;
 }

@@ -2,6 +2,9 @@
 #include "modeler/eval/compiler.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "modeler/core/random.h"
 
 namespace sgm::eval {
 namespace {
@@ -28,12 +31,13 @@ float foldedValue(const Graph& graph, const Node& n, std::span<const float> args
 
 }  // namespace
 
-Tape Compiler::run(float lipschitz) {
+Tape Compiler::run(const field::Field& field) {
     reach();
     for (NodeId id = 0; id <= root_; ++id)
         if (fates_[id].kind != Fate::Unreached) decide(id);
     order();
-    return write(lipschitz);
+    namePieces();
+    return write(scaleOf(field));
 }
 
 void Compiler::reach() {
@@ -123,7 +127,52 @@ TapeBuilder::Use Compiler::useOf(const field::Operand& o) {
     return {f.kind == Fate::Constant ? constants_.source(o.node, f.value) : standIn(o.node), o.origin};
 }
 
-Tape Compiler::write(float lipschitz) {
+/// Names each value from which an op chooses by all that it consists of, slots by their keys: so names outlast a change
+/// of numbers and of other parts. What a blend joins has the name of the blend.
+void Compiler::namePieces() {
+    std::vector<uint64_t> hashes(fates_.size());
+    for (NodeId id = 0; id <= root_; ++id) {
+        if (fates_[id].kind == Fate::Unreached) continue;
+        const Node& n = graph_.node(id);
+        uint64_t hash = combine(static_cast<uint64_t>(n.op) + 1, n.data);
+        if (n.op == codeOf<ops::Slot>) {
+            const field::SlotKey key = graph_.slotKeys()[n.data];
+            if (!(key == field::SlotKey{})) hash = combine(mix(key.path), key.attribute);
+        } else if (field::traits(n.op).readsGrid) {
+            hash = combine(static_cast<uint64_t>(n.op) + 1, graph_.grids()[n.data]->hash());
+        }
+        for (const field::Operand& o : graph_.operands(id)) hash = combine(hash, hashes[o.node]);
+        hashes[id] = hash;
+    }
+    pieces_.assign(fates_.size(), 0);
+    const auto nameOf = [&](NodeId id) { return static_cast<uint32_t>(hashes[id]) | 1u; };
+    for (NodeId id = root_ + 1; id-- > 0;) {  // a blend before what it joins
+        if (fates_[id].kind == Fate::Unreached) continue;
+        const field::OpTraits& row = field::traits(graph_.node(id).op);
+        const bool blends = graph_.node(id).op == codeOf<ops::Blend>;
+        if (blends && pieces_[id] == 0) pieces_[id] = nameOf(id);
+        if (!blends && !row.selects && !row.hasSides) continue;
+        for (const field::Operand& o : graph_.operands(id).subspan(blends ? 1 : 0))
+            if (const NodeId of = standIn(o.node); blends || pieces_[of] == 0)
+                pieces_[of] = blends ? pieces_[id] : nameOf(of);
+    }
+}
+
+TapeBuilder::Scale Compiler::scaleOf(const field::Field& field) const {
+    const Box3f& box = field.bounds;
+    uint32_t chosen = 0;
+    for (NodeId id = 0; id <= root_; ++id)
+        if (pieces_[id] != 0 && isInput(id)) chosen |= 1u << graph_.node(id).data;
+    if (box.empty() || !box.finite()) return {field.lipschitz, 0, chosen};
+    float most = 0;
+    for (const Vec3f& end : {box.lo, box.hi}) most = std::max({most, std::abs(end.x), std::abs(end.y), std::abs(end.z)});
+    constexpr int bits = 20;  // of a float's 24
+    int exponent = 0;
+    std::frexp(most, &exponent);
+    return {field.lipschitz, std::ldexp(1.0f, exponent - bits), chosen};
+}
+
+Tape Compiler::write(TapeBuilder::Scale scale) {
     TapeBuilder builder;
     builder.begin(fates_.size());
     for (NodeId id = 0; id <= root_; ++id)
@@ -140,11 +189,12 @@ Tape Compiler::write(float lipschitz) {
             continue;
         }
         const bool listed = owned_ && field::traits(n.op).owner != ops::Owner::First;
-        builder.define(ordered_[i], n.op, n.data, uses.data(), uses.size(), listed);
+        const Instruction like{.op = n.op, .count = 0, .out = 0, .data = n.data, .piece = pieces_[ordered_[i]]};
+        builder.define(ordered_[i], like, uses.data(), uses.size(), listed);
     }
     Tape tape;
     const auto grids = graph_.grids().empty() ? nullptr : std::make_shared<const Grids>(graph_.grids());
-    builder.finish(std::make_shared<const std::vector<float>>(constants_.take()), grids, lipschitz, tape);
+    builder.finish(std::make_shared<const std::vector<float>>(constants_.take()), grids, scale, tape);
     return tape;
 }
 
@@ -153,7 +203,7 @@ Grids::Grids(std::vector<field::SampledGridPtr> all) : list(std::move(all)) {
 }
 
 Tape compile(const field::Graph& graph, const field::Field& field, std::span<const float> constants) {
-    return Compiler(graph, field.value.id(), constants, false).run(field.lipschitz);
+    return Compiler(graph, field.value.id(), constants, false).run(field);
 }
 
 }  // namespace sgm::eval

@@ -51,7 +51,7 @@ public:
     Compiler(const field::Graph& graph, NodeId root, std::span<const float> constants, bool byNode)
         : graph_(graph), root_(root), slots_(constants), fates_(size_t{root} + 1), constants_(byNode) {}
 
-    Tape run(float lipschitz);
+    Tape run(const field::Field& field);
 
     // For when numbers change.
     NodeId root() const { return root_; }
@@ -63,6 +63,8 @@ public:
     /// The operand whose value is the node's own, since the other one is a number that changes nothing, as 1 in a
     /// product.
     std::optional<NodeId> passesOn(NodeId id) const;
+    /// What a tape says of the field as a whole.
+    TapeBuilder::Scale scaleOf(const field::Field& field) const;
     /// As of Constants.
     uint32_t placeOf(NodeId id) const { return constants_.placeOf(id); }
 
@@ -72,7 +74,8 @@ private:
     std::span<const NodeId> heavyFirst(NodeId id);
     uint32_t need(std::span<const NodeId> heavy) const;
     void order();
-    Tape write(float lipschitz);
+    void namePieces();
+    Tape write(TapeBuilder::Scale scale);
     TapeBuilder::Use useOf(const field::Operand& o);
 
     /// The node that stands for `id`.
@@ -86,6 +89,7 @@ private:
     std::vector<Fate> fates_;
     std::vector<float> args_;
     std::vector<NodeId> sorted_, ordered_;
+    std::vector<uint32_t> pieces_;  ///< by node, see Instruction::piece
     Constants constants_;
     bool owned_ = false;  ///< someone owns something
 };

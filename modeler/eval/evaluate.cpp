@@ -4,6 +4,7 @@
 #include <cassert>
 #include <limits>
 
+#include "modeler/eval/labels.h"
 #include "modeler/eval/owners.h"
 
 namespace sgm::eval {
@@ -51,7 +52,11 @@ Isa bestIsa() {
     return Isa::Portable;
 }
 
-Workspace::Workspace(Isa isa) : impl_(std::make_unique<Impl>()) { impl_->kernels = kernelsFor(isa); }
+Workspace::Workspace(Isa isa) : impl_(std::make_unique<Impl>()) {
+    impl_->kernels = kernelsFor(isa);
+    std::copy_n(impl_->kernels.gradients, field::opCount, impl_->pieceGradients.data());
+    impl_->pieceGradients[static_cast<size_t>(field::codeOf<field::ops::Blend>)] = impl_->kernels.blendOfPieces;
+}
 Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
@@ -104,6 +109,30 @@ void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& w
     runBlocks(
         tape, points, w.kernels.values, 1, w, {}, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
         [&](const StepContext&, size_t first, size_t n) { pass.store(out + first, n); });
+}
+
+void evaluateLabels(const Tape& tape, Points points, uint32_t* labels, OriginId* origins, Workspace& workspace) {
+    Workspace::Impl& w = workspace.impl();
+    count(tape, points.n, Asked::Value, w.tally);
+    LabelPass pass(tape, w, 1);
+    runBlocks(
+        tape, points, w.kernels.values, 1, w, {}, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
+        [&](const StepContext&, size_t first, size_t n) { pass.store(labels + first, origins + first, n); });
+}
+
+void evaluatePieces(const Tape& tape, Points points, const PieceSamples& out, Workspace& workspace) {
+    Workspace::Impl& w = workspace.impl();
+    count(tape, points.n, Asked::Gradient, w.tally);
+    float* const rows[] = {out.value, out.dx, out.dy, out.dz};
+    LabelPass pass(tape, w, 4);
+    runBlocks(
+        tape, points, w.pieceGradients.data(), 4, w, {},
+        [&](const Instruction& in, const StepContext& c) { pass(in, c); },
+        [&](const StepContext& c, size_t first, size_t n) {
+            for (size_t plane = 0; plane < 4; ++plane)
+                storeResult(tape, c, w.kernels.store, 4, plane, rows[plane] + first, n);
+            pass.store(out.labels + first, out.origins + first, n);
+        });
 }
 
 void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& workspace,

@@ -62,6 +62,23 @@ void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, 
 /// Whose surface each point lies on: walks min, max, blend and morph down the operand they take; ties go to the first.
 void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& workspace);
 
+/// Names the smooth piece of surface that each point lies on: the operand that every minimum and maximum takes, down
+/// to the face of a box and the sign of a mirrored coordinate. Values within Tape::tieMargin of each other tie, and a
+/// tie goes to the first operand. What a blend joins is one piece with it, also where a field lies alone; a number to
+/// which a value is clamped has label 0, and a square forgets what its operand chose. `labels` and `origins` get n entries; origins are those of the operands taken. A shortened tape
+/// gives the same names inside its region wherever `care` tells its value apart. Costs about two evaluations.
+void evaluateLabels(const Tape& tape, Points points, uint32_t* labels, OriginId* origins, Workspace& workspace);
+
+/// Value, derivatives and labels of each point. Unlike those of evaluateGradient the derivatives of a shortened tape
+/// have the same bits as the whole one's, wherever `care` tells its value apart.
+struct PieceSamples {
+    float *value, *dx, *dy, *dz;
+    uint32_t* labels;
+    OriginId* origins;
+};
+/// Writes n entries of each row of `out`.
+void evaluatePieces(const Tape& tape, Points points, const PieceSamples& out, Workspace& workspace);
+
 /// Which branches of a tape can't matter in which of up to 64 regions; filled by evaluateRanges, read by shorten.
 /// Valid until the workspace's next evaluateRanges.
 struct Regions {

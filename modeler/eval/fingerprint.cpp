@@ -38,7 +38,7 @@ Fingerprint fingerprint(const Tape& tape) {
         hash.add(static_cast<uint32_t>(in.op), in.count);
         hash.add(in.out, in.data);
         if (field::traits(in.op).readsGrid) hash.add(tape.grids()->list[in.data]->hash());
-        hash.add(in.origins);
+        hash.add(in.origins, in.piece);
         if (arity == field::ops::variadic)
             for (uint32_t k = 0; k < in.count; ++k) addSource(tape.sources()[in.a + k]);
         else

@@ -365,6 +365,14 @@ uint64_t notAbove(const float* row, const float* most) {
     return bits;
 }
 
+/// A blend whose derivatives are, bit for bit, those of the least field where no other counts.
+struct BlendOfPieces : field::ops::Blend {
+    template <class D>
+    static D gradient(std::span<const D> args, uint32_t data) {
+        return gradientOf<true>(args, data);
+    }
+};
+
 template <class V, class... Rows>
 const Step* steps(field::TypeList<Rows...>) {
     static constexpr Step table[] = {step<Rows, V>...};
@@ -385,7 +393,8 @@ Kernels kernels() {
             ownersOfTwo<false>,
             load,
             store,
-            notAbove};
+            notAbove,
+            step<BlendOfPieces, Dual<Float>>};
 }
 }  // namespace SGM_ISA
 

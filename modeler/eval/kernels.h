@@ -66,6 +66,7 @@ struct Kernels {
     LoadRow load;
     StoreRow store;
     NotAbove notAbove;
+    Step blendOfPieces;  ///< as of `gradients`, but a field alone keeps the bits of its derivatives
 };
 
 namespace portable {

@@ -12,7 +12,7 @@ struct Recompiler::State {
     State(const field::Graph& graph, const field::Field& field)
         : constants(graph.constants().begin(), graph.constants().end()),
           compiler(graph, field.value.id(), constants, true),
-          tape(compiler.run(field.lipschitz)) {}
+          tape(compiler.run(field)) {}
 
     /// Lists who reads a number, and which node is which slot.
     void index(const field::Graph& graph);
@@ -96,7 +96,7 @@ bool Recompiler::rebind(const field::Graph& graph, const field::Field& field) {
         }
     }
     std::sort(changed_.places.begin(), changed_.places.end());
-    TapeBuilder::rebind(state_->tape, table ? table : changed_.before, field.lipschitz);
+    TapeBuilder::rebind(state_->tape, table ? table : changed_.before, compiler.scaleOf(field));
     return true;
 }
 

@@ -28,11 +28,12 @@ Care careOfResult(const Tape& tape, const Instruction& in, const Source* values,
 }
 
 /// What matters of the operands of an op that chooses, and with it what may be dropped. `reach` is the op's own, NaN
-/// where an operand is unknown: then nothing may be dropped, since a NaN takes sides by its place.
-Care careOfOperands(const field::OpTraits& row, float reach, Care outer) {
+/// where an operand is unknown: then nothing may be dropped, since a NaN takes sides by its place. An operand that ties
+/// with the chosen one stays, for labels go to the first of those that tie.
+Care careOfOperands(const field::OpTraits& row, float reach, Care outer, float tieMargin) {
     if (std::isnan(reach)) return {};
-    if (row.owner == Owner::Least) return {outer.least, std::min(outer.most, reach)};
-    return {std::max(outer.least, reach), outer.most};
+    if (row.owner == Owner::Least) return {outer.least, std::min(outer.most, reach + tieMargin)};
+    return {std::max(outer.least, reach - tieMargin), outer.most};
 }
 
 /// True where no value of the operand is told apart. Strict: at a tie ±0 could differ.
@@ -110,10 +111,10 @@ const OriginId* ownersOf(const Tape& tape, const Instruction& in) {
 
 /// The operands that are left of an instruction that chooses, with what of them matters.
 void operandsLeft(const field::OpTraits& row, const Instruction& in, const Source* values, const OriginId* origins,
-                  const float* bounds, Care outer, std::vector<TapeBuilder::Use>& uses) {
+                  const float* bounds, Care outer, float tieMargin, std::vector<TapeBuilder::Use>& uses) {
     const auto use = [&](uint32_t k, Care c) { uses.push_back({values[k], origins ? origins[k] : 0, c}); };
     uses.clear();
-    const Care inner = careOfOperands(row, bounds[in.count * maxBoxes], outer);
+    const Care inner = careOfOperands(row, bounds[in.count * maxBoxes], outer, tieMargin);
     for (uint32_t k = 0; k < row.firstChoice; ++k) use(k, {});
     for (uint32_t k = row.firstChoice; k < in.count; ++k)
         if (!beyond(row, bounds[k * maxBoxes], inner)) use(k, inner);
@@ -122,13 +123,13 @@ void operandsLeft(const field::OpTraits& row, const Instruction& in, const Sourc
 }
 
 /// Goes to a region's parts where the tape's value is a union of them, and says what of them matters.
-std::optional<Care> enterUnion(Workspace::Impl& w, size_t region, Care care) {
+std::optional<Care> enterUnion(Workspace::Impl& w, size_t region, Care care, float tieMargin) {
     if (w.parts.empty()) return {};
     const float* const bounds = w.bounds.get(w.links.boundRows() * maxBoxes);
-    if (!w.parts.told(care)) w.parts.tell(bounds, w.regions, care, w.kernels.notAbove);
+    if (!w.parts.told(care)) w.parts.tell(bounds, w.regions, care, tieMargin, w.kernels.notAbove);
     if (!w.parts.enter(region)) return {};
     return careOfOperands(field::traits(field::codeOf<field::ops::Min>), bounds[w.parts.reach() * maxBoxes + region],
-                          care);
+                          care, tieMargin);
 }
 
 }  // namespace
@@ -140,7 +141,7 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
     TapeBuilder& b = w.builder;
     b.begin(tape.size() + 3);
     for (uint32_t axis = 0; axis < 3; ++axis) b.bindInput(axis, axis);
-    const std::optional<Care> ofParts = enterUnion(w, index, care);
+    const std::optional<Care> ofParts = enterUnion(w, index, care, tape.tieMargin());
     if (ofParts)
         b.result({w.parts.value(), tape.origins()[0] != 0 ? tape.origins()[0] : w.parts.origin(), *ofParts});
     else
@@ -156,7 +157,7 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
             const UnionParts::Operands& left = w.parts.operands(value);
             const TapeBuilder::Use both[] = {{left.value[0], left.origin[0], *ofParts},
                                              {left.value[1], left.origin[1], *ofParts}};
-            b.define(value, in.op, in.data, both, 2, w.parts.listed());
+            b.define(value, in, both, 2, w.parts.listed());
             continue;
         }
         switch (w.links.pruning(i)) {
@@ -165,14 +166,14 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
                 break;
             case Pruning::Selects: {
                 const float* const ends = bounds + size_t{w.links.bounds(i)} * maxBoxes;
-                const Care inner = careOfOperands(row, ends[2 * maxBoxes], b.care(value));
+                const Care inner = careOfOperands(row, ends[2 * maxBoxes], b.care(value), tape.tieMargin());
                 const bool first = !beyond(row, ends[0], inner), second = !beyond(row, ends[maxBoxes], inner);
                 const auto use = [&](uint32_t k) -> TapeBuilder::Use {
                     return {operands[k], origins ? origins[k] : 0, inner};
                 };
                 if (first && second) {
                     const TapeBuilder::Use both[] = {use(0), use(1)};
-                    b.define(value, in.op, in.data, both, 2, origins != nullptr);
+                    b.define(value, in, both, 2, origins != nullptr);
                 } else {  // where neither is told apart, any will do
                     b.alias(value, use(second ? 1 : 0));
                 }
@@ -180,11 +181,11 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
             }
             case Pruning::Chooses:
                 operandsLeft(row, in, operands, origins, bounds + size_t{w.links.bounds(i)} * maxBoxes,
-                             careOfResult(tape, in, operands, b.care(value)), w.uses);
+                             careOfResult(tape, in, operands, b.care(value)), tape.tieMargin(), w.uses);
                 if (w.uses.size() == row.firstChoice + 1u)
                     b.alias(value, w.uses.back());
                 else
-                    b.define(value, in.op, in.data, w.uses.data(), w.uses.size(), origins != nullptr);
+                    b.define(value, in, w.uses.data(), w.uses.size(), origins != nullptr);
                 break;
             case Pruning::NeedsAll: {
                 const auto passed =
@@ -195,11 +196,11 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, C
                 }
                 std::array<TapeBuilder::Use, 3> uses;
                 for (uint32_t k = 0; k < in.count; ++k) uses[k] = {operands[k], origins ? origins[k] : 0, (*passed)[k]};
-                b.define(value, in.op, in.data, uses.data(), in.count, origins != nullptr);
+                b.define(value, in, uses.data(), in.count, origins != nullptr);
             }
         }
     }
-    b.finish(tape.sharedConstants(), tape.grids(), tape.lipschitz(), into);
+    b.finish(tape.sharedConstants(), tape.grids(), TapeBuilder::scaleOf(tape), into);
 }
 
 uint64_t mayLeaveOut(const Tape& tape, size_t instruction, size_t n, Workspace& workspace, Care care) {
@@ -229,7 +230,7 @@ uint64_t mayLeaveOut(const Tape& tape, size_t instruction, size_t n, Workspace& 
     const float* const ends = w.bounds.get(w.links.boundRows() * maxBoxes) + size_t{w.links.bounds(last)} * maxBoxes;
     uint64_t out = 0;
     for (size_t i = 0; i < n; ++i) {
-        const Care inner = careOfOperands(row, ends[2 * maxBoxes + i], care);
+        const Care inner = careOfOperands(row, ends[2 * maxBoxes + i], care, tape.tieMargin());
         const bool first = !beyond(row, ends[i], inner), second = !beyond(row, ends[maxBoxes + i], inner);
         const bool left = isFirst ? first || !second : second;  // where neither is told apart, the first one is
         out |= uint64_t{!left} << i;

@@ -31,6 +31,7 @@ struct Instruction {
     Source b = 0;          ///< second operand
     uint32_t data = 0;     ///< structural integer of the op (KIFS passes, the number of a grid)
     uint32_t origins = 0;  ///< 1 + index of this instruction's operand origins in Tape::origins(), 0 for none
+    uint32_t piece = 0;    ///< names the smooth piece of surface that this value makes, 0 where no op chooses from it
 };
 
 /// What the consumers of a value tell apart: any two numbers above `most` are the same to them, and any two below
@@ -68,6 +69,10 @@ public:
     const std::shared_ptr<const Grids>& grids() const { return grids_; }
     /// Global Lipschitz constant of the field.
     float lipschitz() const { return lipschitz_; }
+    /// Two values that differ by less are equal to evaluateLabels, metres: above the rounding of the field's floats.
+    float tieMargin() const { return tieMargin_; }
+    /// Which of x, y, z an op of the whole field chooses from, bit by bit: each is a piece of surface then.
+    uint32_t chosenInputs() const { return chosenInputs_; }
 
 private:
     friend class TapeBuilder;
@@ -80,6 +85,8 @@ private:
     uint32_t longest_ = 0;
     Source result_ = 0;
     float lipschitz_ = 1;
+    float tieMargin_ = 0;
+    uint32_t chosenInputs_ = 0;
 };
 
 /// Binds `constants` (by SlotId; graph.constants() for the present ones), folds what is constant, orders and allocates.

@@ -30,13 +30,12 @@ void TapeBuilder::result(Use use) {
     result_ = demand(use, 0);
 }
 
-void TapeBuilder::define(uint32_t key, field::OpCode op, uint32_t data, const Use* operands, size_t count,
-                         bool listed) {
-    Instruction& in = begun(key, op, data, count, listed);
+void TapeBuilder::define(uint32_t key, const Instruction& like, const Use* operands, size_t count, bool listed) {
+    Instruction& in = begun(key, like, count, listed);
     if (listed)
         for (size_t i = 0; i < count; ++i) origins_.push_back(operands[i].origin);
     const auto entry = [&](size_t i) { return listed ? in.origins - 1 + static_cast<uint32_t>(i) : none; };
-    if (field::traits(op).arity == field::ops::variadic) {
+    if (field::traits(like.op).arity == field::ops::variadic) {
         for (size_t i = 0; i < count; ++i) sources_.push_back(demand(operands[i], entry(i)));
     } else {
         in.a = demand(operands[0], entry(0));
@@ -45,7 +44,7 @@ void TapeBuilder::define(uint32_t key, field::OpCode op, uint32_t data, const Us
 }
 
 void TapeBuilder::define(uint32_t key, const Instruction& like, const Source* operands, const OriginId* origins) {
-    Instruction& in = begun(key, like.op, like.data, like.count, origins != nullptr);
+    Instruction& in = begun(key, like, like.count, origins != nullptr);
     if (origins) origins_.insert(origins_.end(), origins, origins + in.count);
     const auto source = [&](uint32_t i) {
         return demand({operands[i], origins ? origins[i] : 0}, origins ? in.origins - 1 + i : none);
@@ -62,7 +61,7 @@ void TapeBuilder::define(uint32_t key, const Instruction& like, const Source* op
 }
 
 void TapeBuilder::defineLeaf(uint32_t key, const Instruction& like, const Source* operands, const OriginId* origins) {
-    Instruction& in = begun(key, like.op, like.data, like.count, origins != nullptr);
+    Instruction& in = begun(key, like, like.count, origins != nullptr);
     if (origins) origins_.insert(origins_.end(), origins, origins + in.count);
     if (field::traits(in.op).arity == field::ops::variadic) {
         sources_.insert(sources_.end(), operands, operands + in.count);
@@ -73,7 +72,7 @@ void TapeBuilder::defineLeaf(uint32_t key, const Instruction& like, const Source
 }
 
 void TapeBuilder::finish(const std::shared_ptr<const std::vector<float>>& constants,
-                         const std::shared_ptr<const Grids>& grids, float lipschitz, Tape& into) {
+                         const std::shared_ptr<const Grids>& grids, Scale scale, Tape& into) {
     for (const uint32_t key : inputs_) values_[key] = {};
     inputs_.clear();
     into.code_.assign(code_.begin() + static_cast<ptrdiff_t>(first_), code_.end());
@@ -84,12 +83,16 @@ void TapeBuilder::finish(const std::shared_ptr<const std::vector<float>>& consta
     into.registers_ = registers_;
     into.longest_ = longest_;
     into.result_ = result_;
-    into.lipschitz_ = lipschitz;
+    into.lipschitz_ = scale.lipschitz;
+    into.tieMargin_ = scale.tieMargin;
+    into.chosenInputs_ = scale.chosenInputs;
 }
 
-void TapeBuilder::rebind(Tape& tape, std::shared_ptr<const std::vector<float>> constants, float lipschitz) {
+void TapeBuilder::rebind(Tape& tape, std::shared_ptr<const std::vector<float>> constants, Scale scale) {
     tape.constants_ = std::move(constants);
-    tape.lipschitz_ = lipschitz;
+    tape.lipschitz_ = scale.lipschitz;
+    tape.tieMargin_ = scale.tieMargin;
+    tape.chosenInputs_ = scale.chosenInputs;
 }
 
 }  // namespace sgm::eval

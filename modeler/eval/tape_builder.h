@@ -28,6 +28,12 @@ public:
         Care care{};
     };
 
+    /// See Tape::lipschitz, Tape::tieMargin and Tape::chosenInputs.
+    struct Scale {
+        float lipschitz, tieMargin;
+        uint32_t chosenInputs;
+    };
+
     /// Starts a tape whose values have keys below `keys`.
     void begin(size_t keys);
     /// Says that `key` is coordinate 0, 1 or 2; those registers are never given to others.
@@ -38,8 +44,9 @@ public:
     uint32_t nextLive(uint32_t below) const;
     /// What of a live value matters to what is written.
     Care care(uint32_t key) const { return values_[key].care; }
-    /// Writes the instruction that defines the live value `key`. `listed`: it keeps the owners of its operands.
-    void define(uint32_t key, field::OpCode op, uint32_t data, const Use* operands, size_t count, bool listed);
+    /// Writes the instruction that defines the live value `key`: op, data and piece of `like` over these operands.
+    /// `listed`: it keeps the owners of its operands.
+    void define(uint32_t key, const Instruction& like, const Use* operands, size_t count, bool listed);
     /// The same for operands of which everything matters, as instruction `in` has them; `origins` null: not listed.
     void define(uint32_t key, const Instruction& in, const Source* operands, const OriginId* origins);
     /// The same for an instruction that reads constants and inputs, which have keys 0, 1, 2 as they have registers.
@@ -48,10 +55,12 @@ public:
     void alias(uint32_t key, Use same);
     /// The tape, in order, in the memory `into` has.
     void finish(const std::shared_ptr<const std::vector<float>>& constants, const std::shared_ptr<const Grids>& grids,
-                float lipschitz, Tape& into);
+                Scale scale, Tape& into);
 
+    /// What a tape says of its field as a whole.
+    static Scale scaleOf(const Tape& tape) { return {tape.lipschitz(), tape.tieMargin(), tape.chosenInputs()}; }
     /// Gives a tape other numbers, in a table of the same order.
-    static void rebind(Tape& tape, std::shared_ptr<const std::vector<float>> constants, float lipschitz);
+    static void rebind(Tape& tape, std::shared_ptr<const std::vector<float>> constants, Scale scale);
 
 private:
     /// Where a live value is, and the one place that says who owns it (`none` when several consumers read it).
@@ -65,7 +74,7 @@ private:
     void enter(uint32_t key, Value v);
     Value leave(uint32_t key);
     uint32_t takeRegister();
-    Instruction& begun(uint32_t key, field::OpCode op, uint32_t data, size_t count, bool listed);
+    Instruction& begun(uint32_t key, const Instruction& like, size_t count, bool listed);
 
     std::vector<Value> values_;       // all dead between tapes
     std::vector<uint64_t> liveBits_;  // by key, inputs apart
@@ -120,12 +129,12 @@ inline Source TapeBuilder::demand(const Use& use, uint32_t ownerEntry) {
 }
 
 /// The instruction that defines `key`, which is dead from here on; its operands' places are next in the lists.
-inline Instruction& TapeBuilder::begun(uint32_t key, field::OpCode op, uint32_t data, size_t count, bool listed) {
+inline Instruction& TapeBuilder::begun(uint32_t key, const Instruction& like, size_t count, bool listed) {
     Instruction& in = code_[--first_];
-    in = {op, static_cast<uint32_t>(count), leave(key).reg, 0, 0, data, 0};
+    in = {like.op, static_cast<uint32_t>(count), leave(key).reg, 0, 0, like.data, 0, like.piece};
     free_.push_back(in.out);
     if (listed) in.origins = static_cast<uint32_t>(origins_.size()) + 1;
-    if (field::traits(op).arity == field::ops::variadic) {
+    if (field::traits(like.op).arity == field::ops::variadic) {
         in.a = static_cast<Source>(sources_.size());
         longest_ = std::max(longest_, in.count);
     }
@@ -143,7 +152,7 @@ inline void TapeBuilder::alias(uint32_t key, Use same) {
         v.care = same.care;
         enter(same.source, v);
     } else {
-        define(key, field::codeOf<field::ops::Copy>, 0, &same, 1, !told && !canTell);
+        define(key, {.op = field::codeOf<field::ops::Copy>, .count = 1, .out = 0}, &same, 1, !told && !canTell);
     }
 }
 

@@ -36,13 +36,13 @@ void UnionParts::follow(const Tape& tape, const Links& links) {
     if (operands_.size() < tape.size() + 3) operands_.resize(tape.size() + 3);
 }
 
-void UnionParts::tell(const float* bounds, size_t n, Care care, NotAbove notAbove) {
+void UnionParts::tell(const float* bounds, size_t n, Care care, float tieMargin, NotAbove notAbove) {
     alignas(vectorFloats * sizeof(float)) std::array<float, maxBoxes> most{};
     std::array<uint32_t, maxBoxes> count{};
     uint64_t asked = 0;
     for (size_t r = 0; r < n; ++r) {
         const float reach = bounds[reach_ * maxBoxes + r];
-        most[r] = std::min(care.most, reach);
+        most[r] = std::min(care.most, reach + tieMargin);
         asked |= uint64_t{!std::isnan(reach)} << r;
     }
     regions_.clear();

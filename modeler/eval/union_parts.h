@@ -40,7 +40,8 @@ public:
 
     /// Tells for each of the first n regions which parts aren't above all that counts there, by `bounds`, rows of
     /// maxBoxes floats, and what is told apart of the result.
-    void tell(const float* bounds, size_t n, Care care, NotAbove notAbove);
+    /// A part that may tie with the least, see Tape::tieMargin, isn't above it.
+    void tell(const float* bounds, size_t n, Care care, float tieMargin, NotAbove notAbove);
     /// True once `tell` was called for this care and the last tape.
     bool told(Care care) const { return told_ && care == care_; }
     /// Goes to a region, by what `tell` said. False where nothing is left, for then any part will do, and where an

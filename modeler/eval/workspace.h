@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <iterator>
 #include <vector>
@@ -47,6 +48,19 @@ struct OwnedOperand {
     Owners owners;
 };
 
+/// A row of names over a block, or one name for all its points; 0 is none.
+struct Names {
+    const uint32_t* row = nullptr;
+    uint32_t one = 0;
+    uint32_t at(size_t i) const { return row ? row[i] : one; }
+    bool none() const { return !row && one == 0; }
+};
+
+/// What LabelPass knows of a register.
+struct PieceNames {
+    Names label, origin;
+};
+
 /// Aligned, so that no two threads write to one line of cache, nor to the next one, which processors fetch with it.
 struct alignas(128) Workspace::Impl {
     Kernels kernels;
@@ -60,6 +74,9 @@ struct alignas(128) Workspace::Impl {
     AlignedFloats owners;  ///< registers of owners, as bits
     std::vector<Owners> registerOwners;
     std::vector<OwnedOperand> ownedOperands;
+    std::array<Step, field::opCount> pieceGradients;  ///< see evaluatePieces
+    std::vector<uint32_t> nameRows;                   ///< two a register: labels, origins
+    std::vector<PieceNames> registerNames;
     TapeBuilder builder;
     std::vector<TapeBuilder::Use> uses;
 

@@ -59,7 +59,12 @@ struct Blend {
 
     /// Implicit differentiation: ∂f/∂fᵢ = tᵢ / Σt with tᵢ = max(0, c' − dᵢ), and ∂f/∂k = k / Σt − 1.
     template <class D>
-    static D gradient(std::span<const D> args, uint32_t) {
+    static D gradient(std::span<const D> args, uint32_t data) {
+        return gradientOf<false>(args, data);
+    }
+    /// With `exact`, where no field but the least counts, its derivatives bit for bit.
+    template <bool exact, class D>
+    static D gradientOf(std::span<const D> args, uint32_t) {
         using V = typename D::Value;
         const D k = args[0];
         const Solution<V> s = solve(args.size(), k.value, [&](size_t i) { return args[i].value; });
@@ -74,7 +79,7 @@ struct Blend {
             total = total + t;
             least = min(a, least);
         }
-        const auto soft = total > V(0.0f);
+        const auto soft = total > (exact ? s.c : V(0.0f));
         const V weight = V(1.0f) / select(soft, total, V(1.0f)), slope = k.value * weight - V(1.0f);
         return D{melt(s, k.value), select(soft, dx * weight + k.dx * slope, least.dx),
                  select(soft, dy * weight + k.dy * slope, least.dy),

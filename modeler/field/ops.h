@@ -28,6 +28,7 @@
 //                                        takes `uint32_t data` takes the grid's words, `const float* grid`, in its place
 //   selects = true                       the result is one of the operands, so that what the consumer of the result
 //                                        doesn't care for needn't be told apart in the operands either
+//   hasSides = true                      the surface has an edge where its two operands are equal, as at their maximum
 //   glsl                                 body of `float op_NAME(uint first, uint count, uint data)`, in which operand i is
 //                                        `arg(first + i)`; needed by variadic rows: a loop can't become one expression.
 //                                        word(data, i) is the i-th word of the grid
@@ -202,6 +203,23 @@ struct Max {
         return max(args[0].lo, args[1].lo);
     }
 };
+/// Distance to the rim where two perpendicular faces meet, from the distances to both: |max((a, b), 0)| +
+/// min(max(a, b), 0).
+struct Rim {
+    static constexpr std::string_view name = "rim";
+    static constexpr int arity = 2;
+    static constexpr bool hasSides = true;
+    template <class V>
+    static V apply(V a, V b) {
+        const V zero = 0.0f;
+        return Sqrt::apply(Square::apply(max(a, zero)) + Square::apply(max(b, zero))) + min(max(a, b), zero);
+    }
+    /// It grows with both.
+    template <class I>
+    static I interval(I a, I b) {
+        return I{apply(a.lo, b.lo), apply(a.hi, b.hi)};
+    }
+};
 /// a·(1 − t) + b·t over (a, b, t): SG-M eq. 14.
 struct Morph {
     static constexpr std::string_view name = "morph";
@@ -315,7 +333,7 @@ struct TypeList {
 };
 using OpTable = TypeList<ops::Input, ops::Literal, ops::Slot, ops::Copy, ops::Add, ops::Sub, ops::Mul, ops::Div,
                          ops::Neg, ops::Abs, ops::Sqrt, ops::Square, ops::Floor, ops::Mod, ops::Min, ops::Max,
-                         ops::Morph, ops::Sin, ops::Cos, ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend, ops::Ball, ops::Box,
+                         ops::Rim, ops::Morph, ops::Sin, ops::Cos, ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend, ops::Ball, ops::Box,
                          ops::Sampled, ops::Facade>;
 
 namespace detail {
@@ -356,6 +374,7 @@ struct OpTraits {
     bool chooses;  ///< has a reach
     bool selects;
     bool readsGrid;
+    bool hasSides;
     uint32_t firstChoice;  ///< operands before it are never dropped
     ops::Owner owner;
     std::string_view glsl;  ///< empty where the body is made from apply
@@ -363,10 +382,11 @@ struct OpTraits {
 
 template <class Row>
 constexpr OpTraits traitsOf() {
-    OpTraits t{Row::name, Row::arity, false, false, false, false, 0, ops::Owner::First, {}};
+    OpTraits t{Row::name, Row::arity, false, false, false, false, false, 0, ops::Owner::First, {}};
     if constexpr (requires { Row::commutative; }) t.commutative = Row::commutative;
     if constexpr (requires { Row::selects; }) t.selects = Row::selects;
     if constexpr (requires { Row::readsGrid; }) t.readsGrid = Row::readsGrid;
+    if constexpr (requires { Row::hasSides; }) t.hasSides = Row::hasSides;
     if constexpr (requires { Row::firstChoice; }) t.firstChoice = Row::firstChoice;
     if constexpr (requires { Row::owner; }) t.owner = Row::owner;
     if constexpr (requires { Row::glsl; }) t.glsl = Row::glsl;

@@ -18,7 +18,7 @@ double roundness(double a, double b) { return std::min(a, b) / std::max(a, b); }
 /// The whole scope's cylinder about y; an exact distance when its base is a circle.
 Num cylinderDistance(const PrimitiveInput& in) {
     const Num side = (radial(in) - 1.0f) * min(in.half.x, in.half.z), cap = abs(in.p.y) - in.half.y;
-    return hypot(max(side, 0.0f), max(cap, 0.0f)) + min(max(side, cap), 0.0f);
+    return side.graph().apply(codeOf<ops::Rim>, {side, cap});
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ const eval::Tape& Rebuild::tapeAround(const Box3f& reached, const eval::Tape& ta
     const auto& known = near_.places;
     if (near_.box.contains(reached.lo) && near_.box.contains(reached.hi) &&
         std::includes(known.begin(), known.end(), changed.places.begin(), changed.places.end())) {
-        eval::TapeBuilder::rebind(near_.tape, tape.sharedConstants(), tape.lipschitz());
+        eval::TapeBuilder::rebind(near_.tape, tape.sharedConstants(), eval::TapeBuilder::scaleOf(tape));
     } else {
         const Box3f box = reached.inflated(static_cast<float>(blockCells) * grid.cell_m);
         near_ = {box, changed.places, parts_.around(tape, box, careOf(tape, grid), scratch_.front())};
@@ -171,7 +171,7 @@ const Mesh* Rebuild::keepAll() {
 Result<const Mesh*> Rebuild::update(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts,
                                     const eval::NumbersChanged* changed) {
     const eval::Care care = careOf(tape, grid);
-    if (!sameGrid(grid, grid_) || !(care == care_)) forget();
+    if (!sameGrid(grid, grid_) || !(care == care_) || tape.tieMargin() != tieMargin_) forget();
     if (!changed || !numbers_ || changed->before != numbers_) changed = nullptr;
     const eval::Fingerprint print = changed ? eval::Fingerprint{} : eval::fingerprint(tape);
     if (changed ? changed->places.empty() : print == tape_) return keepAll();
@@ -184,6 +184,7 @@ Result<const Mesh*> Rebuild::update(const eval::Tape& tape, const Grid& grid, Pr
     numbers_ = tape.sharedConstants();
     grid_ = grid;
     care_ = care;
+    tieMargin_ = tape.tieMargin();
     return result;
 }
 

@@ -63,6 +63,7 @@ private:
     PolygonizeOptions options_;
     Grid grid_;
     eval::Care care_;
+    float tieMargin_ = 0;
     eval::Fingerprint tape_;                             ///< of the last tape, where it was asked for
     std::shared_ptr<const std::vector<float>> numbers_;  ///< the last tape's constants
     Regions regions_;  ///< all that may hold surface, blocks (level 0) and above

@@ -158,7 +158,7 @@ TEST(ChangedParts, AroundABoxTheTapeHoldsWhateverNumbersCome) {
             around = parts.around(tape, box, care, asked);
             EXPECT_LT(4 * around.size(), tape.size());
         }
-        TapeBuilder::rebind(around, tape.sharedConstants(), tape.lipschitz());
+        TapeBuilder::rebind(around, tape.sharedConstants(), TapeBuilder::scaleOf(tape));
         std::vector<Box3f> boxes;
         for (int i = 0; i < 64; ++i) {
             const Vec3f lo = box.lo + Vec3i{i % 4, i / 4 % 4, i / 16}.as<float>() * 2.0f;

@@ -80,8 +80,8 @@ inline std::vector<float> values(const Tape& tape, const Cloud& cloud, Isa isa =
     return out;
 }
 
-/// The node's value at one point, node after node, in plain floats.
-inline float walk(const Graph& graph, Num root, float x, float y, float z) {
+/// The values of all nodes up to one at one point, node after node, in plain floats.
+inline std::vector<float> walkAll(const Graph& graph, Num root, float x, float y, float z) {
     std::vector<float> value(root.id() + 1);
     std::vector<float> args;
     for (field::NodeId id = 0; id <= root.id(); ++id) {
@@ -105,7 +105,18 @@ inline float walk(const Graph& graph, Num root, float x, float y, float z) {
                 return std::bit_cast<float>(n.data);
         });
     }
-    return value[root.id()];
+    return value;
+}
+
+/// The node's value at one point.
+inline float walk(const Graph& graph, Num root, float x, float y, float z) {
+    return walkAll(graph, root, x, y, z).back();
+}
+
+/// Whether all nodes up to one are finite at one point.
+inline bool isFinite(const Graph& graph, Num root, float x, float y, float z) {
+    const std::vector<float> all = walkAll(graph, root, x, y, z);
+    return std::all_of(all.begin(), all.end(), [](float v) { return std::isfinite(v); });
 }
 
 /// Operands for one example of a row: how many, and the range each may lie in.

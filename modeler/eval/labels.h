@@ -1,0 +1,54 @@
+// Names of smooth pieces of surface ride forward beside the values: each instruction passes on the name of the operand
+// it takes, or makes one of its own where it folds or has faces.
+// Enters: a tape's instructions and register rows, block by block. Leaves: for each point the label of the piece and
+// its origin. Assumes blocks of at most maxBlock points and operands that are still in their registers. A label is a
+// hash of Instruction::piece and of choices, so that dropping operands that cannot be taken changes none.
+#pragma once
+
+#include "modeler/eval/blocks.h"
+#include "modeler/field/ops.h"
+
+namespace sgm::eval {
+
+class LabelPass {
+public:
+    /// `planes`: floats of a value in the register file, 1 for values and 4 for gradients.
+    LabelPass(const Tape& tape, Workspace::Impl& workspace, size_t planes);
+
+    /// To be called before each instruction runs.
+    void operator()(const Instruction& in, const StepContext& c);
+
+    /// Labels and origins of the tape's value at the first n points of the block.
+    void store(uint32_t* labels, OriginId* origins, size_t n) const;
+
+private:
+    /// One operand: its values, null for a constant, and its names.
+    struct Operand {
+        const float* values;
+        float constant;
+        PieceNames names;
+        float at(size_t i) const { return values ? values[i] : constant; }
+    };
+
+    Operand operand(const Instruction& in, const Source* sources, uint32_t k, const StepContext& c) const;
+    bool isUnnamed(const Instruction& in, const Source* sources) const;
+    void choose(const Instruction& in, const Source* sources, const StepContext& c, bool least);
+    void blend(const Instruction& in, const Source* sources, const StepContext& c);
+    void nameFaces(const Instruction& in, const Source* sources, const StepContext& c);
+    void nameSides(const Instruction& in, const Source* sources, const StepContext& c);
+    void morph(const Instruction& in, const Source* sources, const StepContext& c);
+    Names combined(const Instruction& in, const Source* sources, const StepContext& c);
+    Names firstOrigin(const Instruction& in, const Source* sources, const StepContext& c);
+    Names ofPiece(const Instruction& in, Names label, size_t n);
+    static Names settled(uint32_t* row, size_t n);
+
+    uint32_t* labelRow(uint32_t reg) { return rows_ + 2 * reg * maxBlock; }
+    uint32_t* originRow(uint32_t reg) { return labelRow(reg) + maxBlock; }
+
+    const Tape& tape_;
+    const size_t planes_;
+    uint32_t* rows_;                  // by register
+    std::vector<PieceNames>& names_;  // by register
+};
+
+}  // namespace sgm::eval
