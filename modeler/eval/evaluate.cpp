@@ -88,14 +88,14 @@ void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace)
 }
 
 void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
-                      Workspace& workspace) {
+                      Workspace& workspace, bool exact) {
     Workspace::Impl& w = workspace.impl();
     count(tape, points.n, Asked::Gradient, w.tally);
     float* const out[] = {value, dx, dy, dz};
     const auto apart = static_cast<size_t>(dx - value);
     const bool atOnce = points.padded && endsInResult(tape) && dx > value && dy == dx + apart && dz == dy + apart &&
                         apart % pointPadding == 0;
-    runBlocks(tape, points, w.kernels.gradients, 4, w, atOnce ? ResultRows{value, apart} : ResultRows{}, nothingBefore,
+    runBlocks(tape, points, exact ? w.pieceGradients.data() : w.kernels.gradients, 4, w, atOnce ? ResultRows{value, apart} : ResultRows{}, nothingBefore,
               [&](const StepContext& c, size_t first, size_t n) {
                   for (size_t plane = 0; plane < 4 && !atOnce; ++plane)
                       storeResult(tape, c, w.kernels.store, 4, plane, out[plane] + first, n);

@@ -56,8 +56,9 @@ void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace)
 
 /// Values and their exact derivatives by x, y, z (at a kink, those of the chosen operand). Rows of padded points as for
 /// `evaluate`; those at equal distances, value first, are written at once.
+/// With `exact` the derivatives of a shortened tape have the bits of the whole one's (see evaluatePieces).
 void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
-                      Workspace& workspace);
+                      Workspace& workspace, bool exact = false);
 
 /// Whose surface each point lies on: walks min, max, blend and morph down the operand they take; ties go to the first.
 void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& workspace);

@@ -82,8 +82,14 @@ bool leavesNothingOut(const eval::Tape& shortened, const eval::Tape& whole) {
 
 }  // namespace
 
+BlockMesher::BlockMesher(const Grid& grid, const PolygonizeOptions& options)
+    : grid_(grid),
+      refineSteps_(static_cast<size_t>(options.refineSteps)),
+      bare_(options.bare && options.surface == Surface::Cubes),
+      crisp_(options.surface == Surface::Crisp ? std::make_unique<CrispBlock>() : nullptr) {}
+
 void BlockMesher::clear() {
-    positions_.clear(), normals_.clear(), origins_.clear();
+    positions_.clear(), normals_.clear(), origins_.clear(), labels_.clear();
     bricks_.clear();
     owned_.bricks = owned_.alike = 0;
     for (auto& list : borrowed_) list.clear();
@@ -115,6 +121,7 @@ bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chun
         if (normals_[i] == Vec3f{}) chunk.faceted.push_back(static_cast<uint32_t>(i));
     listSeams(chunk);
     writeTriangles(chunk);
+    if (crisp_) splitAtCreases(block, chunk);
     counts_.polygonizeSeconds += joining.seconds();
     return true;
 }
@@ -170,7 +177,7 @@ void BlockMesher::borrow(const BrickSigns& signs, Vec3i brick, std::optional<Ori
                 borrowedPlaces_.emplace_back(kind, borrowed_[kind].size());
                 edges_.list[edges_.size++] = codeAt(inBrick, axis);
             }
-            borrowed_[kind].push_back({static_cast<uint32_t>(edge), owner.value_or(0)});
+            borrowed_[kind].push_back({static_cast<uint32_t>(edge), owner.value_or(0), {}});
         });
     }
     uint32_t* const codes = edges_.list.data();
@@ -210,7 +217,9 @@ void BlockMesher::lend(const BrickSigns& signs, Vec3i brick) {
 
 /// Finds where the vertices on all edges lie, of which the first `own` are the next ones of the block.
 void BlockMesher::findPlaces(const eval::Tape& tape, size_t own) {
-    const VertexSearch search{refineSteps_, samples_.isDear() && isDear(tape), !bare_, fieldTime_};
+    // Blocks around an edge have to agree on crisp vertices, so which search is taken can't hang on a block's tape.
+    const bool dear = !crisp_ && samples_.isDear() && isDear(tape);
+    const VertexSearch search{refineSteps_, dear, !bare_, crisp_ != nullptr, fieldTime_};
     counts_.refinementEvaluations += findVertices(tape, search, workspace_, openEdges_, edges_);
     flat_ = flat_ || (edges_.size > 0 && edges_.flat > 0);
     const size_t first = positions_.size();
@@ -267,6 +276,7 @@ void BlockMesher::addBrick(int number, const eval::Tape& tape, const eval::Tape&
     const Vec3i brick = brickAt(number);
     const BrickSigns signs(samples_.values(number));
     if (addCells(signs, brick) == 0) return;
+    if (crisp_) return addCrispBrick(brick, signs, tape);
     std::optional<OriginId> owner = onlyOwner(tape);
     const bool mayWait = owner && leavesNothingOut(tape, whole);
     if (!mayWait && waiting_ > 0) findWaiting(whole);
@@ -291,6 +301,79 @@ void BlockMesher::addBrick(int number, const eval::Tape& tape, const eval::Tape&
     owned_.bricks |= 1ull << number;
     owned_.alike |= uint64_t{edgesOwner.has_value()} << number;
     owned_.owner[static_cast<size_t>(number)] = edgesOwner.value_or(0);
+}
+
+/// A brick of a crisp surface: every vertex has a label.
+void BlockMesher::addCrispBrick(Vec3i brick, const BrickSigns& signs, const eval::Tape& tape) {
+    addOwnEdges(signs);
+    borrowedPlaces_.clear();
+    if (lowSidesOf(brick) != 0) borrow(signs, brick, {});
+    placeEdges(brick);
+    if (highSidesOf(brick) != 0) lend(signs, brick);
+    findPlaces(tape, ownEdges_);
+    findLabels(tape);
+}
+
+/// Asks for the piece of surface that each vertex lies on, the latest own ones and those that are borrowed.
+void BlockMesher::findLabels(const eval::Tape& tape) {
+    const size_t n = edges_.size;
+    labels_.resize(vertices_);
+    if (n == 0) return;
+    found_.resize(n), foundLabels_.resize(n);
+    const EdgeArrays& e = edges_.arrays;
+    {
+        const AddTime evaluating(fieldTime_);
+        eval::evaluateLabels(tape, {e.x, e.y, e.z, n, true}, foundLabels_.data(), found_.data(), workspace_);
+    }
+    for (size_t i = 0; i < n; ++i) foundLabels_[i] = labelOf(foundLabels_[i], found_[i]);
+    std::copy_n(found_.data(), ownEdges_, origins_.data() + origins_.size() - ownEdges_);
+    std::copy_n(foundLabels_.data(), ownEdges_, labels_.data() + labels_.size() - ownEdges_);
+    for (size_t i = ownEdges_; i < n; ++i) {
+        const auto [kind, place] = borrowedPlaces_[i - ownEdges_];
+        Borrowed& borrowed = borrowed_[static_cast<size_t>(kind)][place];
+        borrowed.origin = found_[i];
+        borrowed.point = {{e.x[i], e.y[i], e.z[i]}, {e.dx[i], e.dy[i], e.dz[i]}, foundLabels_[i], found_[i]};
+    }
+}
+
+void BlockMesher::splitAtCreases(const Block& block, Chunk& chunk) {
+    for (const auto& list : borrowed_)
+        for (const Borrowed& b : list) {
+            positions_.push_back(b.point.at);
+            normals_.push_back(b.point.gradient);
+            labels_.push_back(b.point.label);
+        }
+    const BlockSurface surface{&block,      &grid_,  {cells_.data(), cellCount_}, number_.data(), vertices_, positions_,
+                               normals_,    labels_, origins_,                    chunk.triangles};
+    {
+        const AddTime evaluating(fieldTime_);
+        counts_.refinementEvaluations += crisp_->run(surface, workspace_);
+    }
+    const PieceTriangles& split = crisp_->triangles();
+    if (!crisp_->hasCreases()) {
+        chunk.labels.resize(triangles_);
+        for (size_t t = 0; t < triangles_; ++t) chunk.labels[t] = labels_[surface.placeOf(chunk.triangles[t].x)];
+        return;
+    }
+    chunk.triangles.assign(split.triangles.begin(), split.triangles.end());
+    chunk.labels.assign(split.labels.begin(), split.labels.end());
+    chunk.origins.assign(split.origins.begin(), split.origins.end());
+    chunk.positions.insert(chunk.positions.end(), split.positions.begin(), split.positions.end());
+    chunk.normals.insert(chunk.normals.end(), split.normals.begin(), split.normals.end());
+    chunk.cornerNormals = split.cornerNormals;
+    listFaceSeams(chunk);
+}
+
+/// Appends vertices inside cell faces to the lists of the seams.
+void BlockMesher::listFaceSeams(Chunk& chunk) const {
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto end = static_cast<size_t>(edgeSeamKinds + axis + 1);
+        chunk.borrowed.vertices.resize(chunk.borrowed.vertices.size() + crisp_->borrowed(axis));
+        chunk.borrowed.begin[end] = static_cast<uint32_t>(chunk.borrowed.vertices.size());
+        const auto& lent = crisp_->lent(axis);
+        chunk.lent.vertices.insert(chunk.lent.vertices.end(), lent.begin(), lent.end());
+        chunk.lent.begin[end] = static_cast<uint32_t>(chunk.lent.vertices.size());
+    }
 }
 
 /// Puts the lists of the seams one after the other, and numbers borrowed edges by their place there.
@@ -318,6 +401,10 @@ void BlockMesher::writeTriangles(Chunk& chunk) const {
                       placedCases().data(), &chunk.triangles[0].x);
     if (bare_) return;
     chunk.origins.resize(triangles_);
+    if (crisp_) {
+        brickLoops().owners(&chunk.triangles[0].x, triangles_, origins_.data(), vertices_, chunk.origins.data());
+        return;
+    }
     OriginId* const origin = chunk.origins.data();
     size_t first = 0;
     for (const Brick& brick : bricks_) {

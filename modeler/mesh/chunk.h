@@ -4,11 +4,14 @@
 // is cut in every block around it, so the block that owns its vertex exists.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 
 #include "modeler/mesh/brick.h"
+#include "modeler/mesh/crisp_block.h"
 #include "modeler/mesh/mesh.h"
+#include "modeler/mesh/polygonize.h"
 #include "modeler/mesh/vertices.h"
 
 namespace sgm::mesh {
@@ -17,9 +20,7 @@ namespace sgm::mesh {
 /// next one, which processors fetch with it.
 class alignas(128) BlockMesher {
 public:
-    /// `refineSteps` as in findVertices; `bare` as in PolygonizeOptions.
-    BlockMesher(const Grid& grid, size_t refineSteps, bool bare = false)
-        : grid_(grid), refineSteps_(refineSteps), bare_(bare) {}
+    BlockMesher(const Grid& grid, const PolygonizeOptions& options);
 
     /// The block's chunk; false when it was cancelled on the way. What it borrows is not named yet: see `link`.
     bool mesh(const Block& block, const Progress* progress, Chunk& chunk);
@@ -41,6 +42,7 @@ private:
     struct Borrowed {
         uint32_t edge;  ///< in number_
         OriginId origin;
+        PiecePoint point{};  ///< of a crisp surface
     };
 
     /// Bricks with surface, by number: which there are, of which all edges have one owner, and who that is.
@@ -61,6 +63,10 @@ private:
     void findPlaces(const eval::Tape& tape, size_t own);
     void findWaiting(const eval::Tape& tape);
     std::optional<OriginId> findOrigins(const eval::Tape& tape);
+    void addCrispBrick(Vec3i brick, const BrickSigns& signs, const eval::Tape& tape);
+    void findLabels(const eval::Tape& tape);
+    void splitAtCreases(const Block& block, Chunk& chunk);
+    void listFaceSeams(Chunk& chunk) const;
     std::optional<OriginId> ownerAround(Vec3i brick, OriginId owner) const;
     void listSeams(Chunk& chunk);
     void writeTriangles(Chunk& chunk) const;
@@ -68,6 +74,8 @@ private:
     const Grid grid_;
     const size_t refineSteps_;
     const bool bare_;
+    std::unique_ptr<CrispBlock> crisp_;  ///< null for plain marching cubes
+    PageVector<uint32_t> labels_, foundLabels_;  ///< of a crisp surface, as origins_
     eval::Workspace workspace_;
     BlockSamples samples_;
     CutEdges edges_;  ///< of a brick, its own first; before them those that wait

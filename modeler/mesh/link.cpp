@@ -30,7 +30,7 @@ void nameBorrowed(std::span<const Chunk> chunks, Chunk& chunk) {
     for (int kind = 0; kind < seamKinds; ++kind) {
         const uint32_t begin = chunk.borrowed.begin[kind], end = chunk.borrowed.begin[kind + 1];
         if (begin == end) continue;
-        const int sides = kind + 1;
+        const int sides = sidesOfSeam(kind);
         const Chunk* const lender = findChunk(chunks, chunk.block - Vec3i{sides & 1, sides >> 1 & 1, sides >> 2});
         assert(lender && lender->lent.begin[kind + 1] - lender->lent.begin[kind] == end - begin);
         const uint32_t* const lent = lender->lent.vertices.data() + lender->lent.begin[kind];

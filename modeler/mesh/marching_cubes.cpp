@@ -1,5 +1,6 @@
 #include "modeler/mesh/marching_cubes.h"
 
+#include <algorithm>
 #include <cassert>
 #include <limits>
 
@@ -21,22 +22,33 @@ int edgeBetween(int corner0, int corner1) {
     return -1;
 }
 
-/// For every edge that the surface crosses the next one of its loop, −1 elsewhere.
-std::array<int, edgesPerCell> traceSegments(int inside) {
-    std::array<int, edgesPerCell> next;
-    next.fill(-1);
+/// By edge the next one of its loop, −1 where the surface doesn't cross it, and the face between them.
+struct Segments {
+    std::array<int, edgesPerCell> next, face;
+};
+
+Segments traceSegments(int inside, int joined) {
+    Segments segments;
+    segments.next.fill(-1);
+    segments.face.fill(-1);
     const auto isIn = [&](int corner) { return (inside >> corner & 1) != 0; };
     for (int face = 0; face < 6; ++face) {
         const std::array<int, 4> corners = faceCorners(face / 2, face % 2);
+        const bool join = (joined >> face & 1) != 0 && isIn(corners[0]) == isIn(corners[2]) &&
+                          isIn(corners[1]) == isIn(corners[3]) && isIn(corners[0]) != isIn(corners[1]);
         for (int i = 0; i < 4; ++i) {
             const int before = corners[(i + 3) % 4];
             if (isIn(before) || !isIn(corners[i])) continue;
             int last = i;
             while (isIn(corners[(last + 1) % 4])) last = (last + 1) % 4;
-            next[edgeBetween(before, corners[i])] = edgeBetween(corners[last], corners[(last + 1) % 4]);
+            const int from = edgeBetween(before, corners[i]);
+            // Joined, the segment cuts off the outside corner before the run instead.
+            segments.next[from] = join ? edgeBetween(corners[(i + 2) % 4], corners[(i + 3) % 4])
+                                       : edgeBetween(corners[last], corners[(last + 1) % 4]);
+            segments.face[from] = face;
         }
     }
-    return next;
+    return segments;
 }
 
 /// Midpoint of an edge, in half cells.
@@ -94,30 +106,53 @@ private:
     int apex_[edgesPerCell][edgesPerCell]{};
 };
 
-CellCase makeCase(int inside) {
-    CellCase result;
-    std::array<int, edgesPerCell> next = traceSegments(inside);
+CellLoops traceLoops(int inside, int joined) {
+    CellLoops result;
+    Segments segments = traceSegments(inside, joined);
     for (int start = 0; start < edgesPerCell; ++start) {
-        std::array<int, edgesPerCell> loop{};
-        int size = 0;
-        for (int e = start; next[e] >= 0;) {
-            loop[size++] = e;
-            const int following = next[e];
-            next[e] = -1;
+        if (segments.next[start] < 0) continue;
+        CellLoop& loop = result.loops[result.count++];
+        for (int e = start; segments.next[e] >= 0;) {
+            loop.edges[loop.size] = static_cast<uint8_t>(e);
+            loop.faces[loop.size++] = static_cast<uint8_t>(segments.face[e]);
+            const int following = segments.next[e];
+            segments.next[e] = -1;
             e = following;
         }
-        if (size > 0) LoopTriangulation(loop, size).emit(0, size - 1, result);
     }
     return result;
 }
 
+CellCase makeCase(const CellLoops& loops) {
+    CellCase result;
+    for (int l = 0; l < loops.count; ++l) {
+        std::array<int, edgesPerCell> edges{};
+        std::copy_n(loops.loops[l].edges.begin(), loops.loops[l].size, edges.begin());
+        LoopTriangulation(edges, loops.loops[l].size).emit(0, loops.loops[l].size - 1, result);
+    }
+    return result;
+}
+
+LoopTable makeLoops() {
+    LoopTable table;
+    for (int inside = 0; inside < 256; ++inside) table[inside] = traceLoops(inside, 0);
+    return table;
+}
+
 CaseTable makeTable() {
     CaseTable table;
-    for (int inside = 0; inside < 256; ++inside) table[inside] = makeCase(inside);
+    for (int inside = 0; inside < 256; ++inside) table[inside] = makeCase(loopTable()[inside]);
     return table;
 }
 
 }  // namespace
+
+CellLoops loopsOf(int inside, int joined) { return traceLoops(inside, joined); }
+
+const LoopTable& loopTable() {
+    static const LoopTable table = makeLoops();
+    return table;
+}
 
 const CaseTable& caseTable() {
     static const CaseTable table = makeTable();

@@ -44,4 +44,25 @@ struct CellCase {
 using CaseTable = std::array<CellCase, 256>;
 const CaseTable& caseTable();
 
+/// A closed polygon of one case: edges counter-clockwise seen from outside the solid, and the cell's faces that hold
+/// the sides: side i runs from edges[i] to the next edge in face 2 · axis + (0 low, 1 high).
+struct CellLoop {
+    uint8_t size = 0;
+    std::array<uint8_t, edgesPerCell> edges{}, faces{};
+};
+
+/// The polygons of one case, in the order in which `CellCase` lists their triangles.
+struct CellLoops {
+    uint8_t count = 0;
+    std::array<CellLoop, 4> loops{};
+};
+
+/// All cases, by the bit mask of inside corners.
+using LoopTable = std::array<CellLoops, 256>;
+const LoopTable& loopTable();
+
+/// The polygons of a case where on some faces, bit 2 · axis + side of `joined`, the inside corners are joined instead of
+/// apart; only faces whose corners alternate make a difference.
+CellLoops loopsOf(int inside, int joined);
+
 }  // namespace sgm::mesh

@@ -22,9 +22,11 @@ using Triangle = Vec3<uint32_t>;
 /// Marks a corner that counts in Chunk::borrowed instead of Chunk::positions.
 inline constexpr uint32_t borrowedBit = 0x80000000u;
 
-/// The ways in which blocks meet: kind + 1 is the mask of axes along which the lender is one block lower (x 1, y 2, z
-/// 4).
-inline constexpr int seamKinds = 6;
+/// The ways in which blocks share vertices: first those on grid edges, by the axes along which the lender is one block
+/// lower, then those inside cell faces, which lie on one side of a block.
+inline constexpr int seamKinds = 9, edgeSeamKinds = 6;
+/// The axes along which the lender is one block lower, as a mask (x 1, y 2, z 4).
+constexpr int sidesOfSeam(int kind) { return kind < edgeSeamKinds ? kind + 1 : 1 << (kind - edgeSeamKinds); }
 
 /// Lists by the kind of seam, one after the other. Both sides of a seam list its vertices in the same order.
 struct SeamList {

@@ -31,7 +31,8 @@ private:
 
 uint64_t bytesOf(const Chunk& c) {
     return sizeof(Chunk) + (c.positions.size() + c.normals.size()) * sizeof(Vec3f) +
-           c.triangles.size() * sizeof(Triangle) + c.origins.size() * sizeof(OriginId) +
+           c.triangles.size() * sizeof(Triangle) + (c.origins.size() + c.labels.size()) * sizeof(OriginId) +
+           c.cornerNormals.size() * sizeof(CornerNormal) +
            (c.borrowed.vertices.size() + c.lent.vertices.size()) * sizeof(uint32_t);
 }
 
@@ -45,7 +46,7 @@ Result<std::vector<Chunk>> chunksOf(std::span<const Block> blocks, const Grid& g
     workers.reserve(threads);
     std::vector<eval::Tally> tallies(threads);
     for (size_t w = 0; w < threads; ++w) {
-        workers.emplace_back(grid, static_cast<size_t>(options.refineSteps), options.bare);
+        workers.emplace_back(grid, options);
         if (options.tally) workers[w].tallyInto(&tallies[w]);
         if (options.timeField) workers[w].timeField();
     }

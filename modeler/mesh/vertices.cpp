@@ -10,8 +10,8 @@ namespace {
 /// The field, whose evaluation may be timed.
 class TimedField {
 public:
-    TimedField(const eval::Tape& tape, eval::Workspace& workspace, SumOfTimes* time)
-        : tape_(tape), workspace_(workspace), time_(time) {}
+    TimedField(const eval::Tape& tape, eval::Workspace& workspace, const VertexSearch& search)
+        : tape_(tape), workspace_(workspace), time_(search.fieldTime), exact_(search.exact) {}
     void value(const EdgeArrays& e, size_t n) const {
         const AddTime evaluating(time_);
         eval::evaluate(tape_, {e.x, e.y, e.z, n, true}, e.f, workspace_);
@@ -19,13 +19,14 @@ public:
     /// Its derivatives too.
     void gradient(const EdgeArrays& e, size_t n) const {
         const AddTime evaluating(time_);
-        eval::evaluateGradient(tape_, {e.x, e.y, e.z, n, true}, e.f, e.dx, e.dy, e.dz, workspace_);
+        eval::evaluateGradient(tape_, {e.x, e.y, e.z, n, true}, e.f, e.dx, e.dy, e.dz, workspace_, exact_);
     }
 
 private:
     const eval::Tape& tape_;
     eval::Workspace& workspace_;
     SumOfTimes* const time_;
+    const bool exact_;
 };
 
 /// By values alone, and by the derivative once at the end.
@@ -100,7 +101,7 @@ uint64_t findVertices(const eval::Tape& tape, const VertexSearch& search, eval::
     if (edges.size == 0) return 0;
     const EdgeLoops& loops = edgeLoops();
     loops.interpolate(edges.arrays, edges.size);
-    const TimedField field(tape, workspace, search.fieldTime);
+    const TimedField field(tape, workspace, search);
     const uint64_t evaluations =
         search.dear ? findByValues(field, search, edges) : findByNewton(field, search, scratch, edges);
     edges.flat = search.normals ? loops.normalize(edges.arrays, edges.size) : 0;

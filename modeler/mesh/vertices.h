@@ -42,6 +42,7 @@ struct VertexSearch {
     size_t refineSteps = 3;
     bool dear = false;                ///< the tape is, see isDear
     bool normals = true;              ///< where nobody wants them dx, dy, dz hold anything
+    bool exact = false;               ///< blocks around an edge find the same bits, see evaluateGradient; never dear
     SumOfTimes* fieldTime = nullptr;  ///< adds up what evaluations take, if it is there
 };
 

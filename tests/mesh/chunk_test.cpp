@@ -21,7 +21,7 @@ TEST(Chunk, DependsOnItsBlockAlone) {
     size_t at = 0;
     for (size_t b = blocks->size(); b-- > 0;) {  // in another order, each by a mesher of its own
         Chunk chunk;
-        ASSERT_TRUE(BlockMesher(grid, 3).mesh((*blocks)[b], nullptr, chunk));
+        ASSERT_TRUE(BlockMesher(grid, PolygonizeOptions{}).mesh((*blocks)[b], nullptr, chunk));
         const auto same = std::find_if(whole.chunks.begin(), whole.chunks.end(),
                                        [&](const Chunk& c) { return c.block == chunk.block; });
         if (chunk.triangles.empty()) continue;

@@ -1,0 +1,101 @@
+// The surface in a cell, split into its smooth pieces: a polygon a piece, along creases between breaks on the cell's
+// faces, which meet in a corner where there are three or more.
+// Enters: closed loops of vertices and breaks around cells. Leaves: triangles with labels, new vertices at corners.
+// Assumes breaks that neighbouring cells read from the face they share: so the surface is closed, whatever is done
+// inside a cell. Polygons that fold over are replaced by triangles around a point inside the cell, which never cross.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "modeler/mesh/face_creases.h"
+#include "modeler/mesh/mesh.h"
+
+namespace sgm::mesh {
+
+/// A vertex of a loop and the piece of the side that follows it.
+struct LoopNode {
+    uint32_t vertex;  ///< its corner number in the chunk
+    Vec3f at;
+    uint32_t label;
+    OriginId origin;
+    bool isBreak = false;  ///< the piece before it is another one
+    int face = -1;         ///< of a break, the face of the cell that it lies on
+    std::array<PiecePoint, 2> sides{};  ///< of a break, before and after it; of a vertex, itself
+};
+
+/// What the pieces of a block's cells are written to.
+struct PieceTriangles {
+    std::vector<Triangle> triangles;
+    std::vector<uint32_t> labels;
+    std::vector<OriginId> origins;
+    std::vector<CornerNormal> cornerNormals;  ///< corners count in `triangles`
+    std::vector<Vec3f> positions, normals;    ///< of new vertices
+    void clear() {
+        triangles.clear(), labels.clear(), origins.clear(), cornerNormals.clear();
+        positions.clear(), normals.clear();
+    }
+};
+
+/// One worker's splitter, reused from block to block.
+class CellPieces {
+public:
+    /// Begins a block.
+    void clear();
+    /// Adds a loop of `cell`, counter-clockwise seen from outside the solid.
+    void addLoop(Vec3i cell, std::span<const LoopNode> nodes);
+    /// Ends a group of loops: their triangles are one after the other.
+    void endCell() { cellEnds_.push_back(static_cast<uint32_t>(loops_.size())); }
+    /// Places corners, numbered from `firstVertex` on. Returns how often the field was evaluated.
+    uint64_t placeCorners(const eval::Tape& tape, const Grid& grid, eval::Workspace& workspace, uint32_t firstVertex);
+    /// Triangulates everything. `cellEnds[i]` is the end of the triangles of the i-th cell.
+    void triangulate(PieceTriangles& out, std::vector<uint32_t>& cellEnds);
+
+private:
+    /// Nodes [first, end) of one piece.
+    struct Polygon {
+        uint32_t first, end;
+        uint32_t label;
+        OriginId origin;
+    };
+    struct Loop {
+        Vec3i cell;
+        uint32_t firstNode, endNode;        ///< as they came
+        uint32_t firstPolygon, endPolygon;  ///< in order
+        int32_t corner;                     ///< −1 for none
+    };
+    struct Corner {
+        Vec3i cell;
+        uint32_t loop;
+        Vec3f at;
+        std::vector<PiecePoint> planes;
+        std::vector<uint32_t> labels;
+        std::vector<Vec3f> means;  ///< by label: the middle of its nodes
+    };
+
+    void addPolygon(std::span<const LoopNode> nodes);
+    void addSplit(Loop& loop, std::vector<LoopNode>& nodes);
+    void addCorner(Loop& loop, const std::vector<LoopNode>& nodes);
+    Vec3f inCell(const Corner& corner, Vec3f p) const;
+    void intersect(Corner& corner) const;
+    bool liesInFace(const LoopNode& a, const LoopNode& b, const LoopNode& c) const;
+    bool triangulatePolygon(const Polygon& polygon, PieceTriangles& out);
+    bool triangulateLoop(const Loop& loop, PieceTriangles& out);
+    bool crosses(const PieceTriangles& out, size_t firstTriangle) const;
+    void fan(const Loop& loop, PieceTriangles& out);
+    void emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, const Polygon& piece, Vec3f normal,
+              PieceTriangles& out);
+
+    const Grid* grid_ = nullptr;
+    std::vector<LoopNode> nodes_, scratch_, rest_;
+    std::vector<Polygon> polygons_;
+    std::vector<Loop> loops_;
+    std::vector<Corner> corners_;
+    std::vector<uint32_t> cellEnds_;
+    uint32_t firstVertex_ = 0;
+    Vec3f low_, high_;                              ///< of the cell at hand
+    std::vector<std::array<Vec3f, 3>> places_;  ///< of its triangles
+};
+
+}  // namespace sgm::mesh

@@ -1,0 +1,276 @@
+#include "modeler/mesh/crisp_block.h"
+
+#include <algorithm>
+
+#include "modeler/mesh/marching_cubes.h"
+
+namespace sgm::mesh {
+namespace {
+
+constexpr int edgePlace(Vec3i corner, int axis) { return 3 * cornerNumber(corner.x, corner.y, corner.z) + axis; }
+constexpr Vec3i cornerAt(int number) {
+    return {number % blockCorners, number / blockCorners % blockCorners, number / (blockCorners * blockCorners)};
+}
+constexpr Vec3i offset(int corner) { return {corner & 1, corner >> 1 & 1, corner >> 2}; }
+constexpr Vec3i unit(int axis) { return {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0}; }
+
+/// An edge's number among the four of a face: along u or v, at the low or high end of the other.
+int codeInFace(int edge, int axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3, along = edgeAxis(edge), other = along == u ? v : u;
+    return (along == u ? 0 : 2) + (edgeCorner(edge) >> other & 1);
+}
+
+/// Whether two segments run through the face of a cell: corners alternate around it.
+bool isAmbiguous(int inside, int axis, int side) {
+    const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, base = side << axis;
+    const auto in = [&](int corner) { return inside >> corner & 1; };
+    return in(base) == in(base | u | v) && in(base | u) == in(base | v) && in(base) != in(base | u);
+}
+
+}  // namespace
+
+/// Cells whose vertices lie on several pieces.
+void CrispBlock::findMixedCells() {
+    mixed_.clear();
+    const uint32_t* const labels = surface_->labels.data();
+    const auto labelOf = [&](uint32_t corner) { return labels[surface_->placeOf(corner)]; };
+    size_t t = 0;
+    for (uint32_t c = 0; c < surface_->cells.size(); ++c) {
+        const size_t first = t, end = first + caseTable()[surface_->cells[c].inside].triangles;
+        bool mixed = false;
+        for (; t < end; ++t) {
+            const Triangle& triangle = surface_->triangles[t];
+            const uint32_t label = labelOf(triangle.x);
+            mixed = mixed || label != labelOf(triangle.y) || label != labelOf(triangle.z);
+        }
+        if (mixed) mixed_.push_back({c, static_cast<uint32_t>(first), static_cast<uint32_t>(end), 0});
+    }
+}
+
+/// The place of the vertex on an edge of the cell at `low`.
+uint32_t CrispBlock::vertexAt(Vec3i low, int edge) const {
+    return surface_->placeOf(surface_->number[edgePlace(low + offset(edgeCorner(edge)), edgeAxis(edge))]);
+}
+
+const CellLoops& CrispBlock::loopsOfCell(const MixedCell& mixed) {
+    const int inside = surface_->cells[mixed.cell].inside;
+    if (mixed.joined == 0) return loopTable()[static_cast<size_t>(inside)];
+    return joinedLoops_ = loopsOf(inside, mixed.joined);
+}
+
+/// Where two segments of a face would both lead from one piece to another, the field amid the face says whether they
+/// part its inside corners, as marching cubes has it, or its outside corners.
+uint64_t CrispBlock::joinFaces(eval::Workspace& workspace) {
+    std::vector<float> x, y, z;
+    std::vector<size_t> faces;                           // places in segmentAt_
+    std::vector<std::pair<size_t, uint32_t>> asked;      // mixed cell and face, number
+    for (size_t m = 0; m < mixed_.size(); ++m) {
+        const SurfaceCell& cell = surface_->cells[mixed_[m].cell];
+        const Vec3i low = cornerAt(cell.corner);
+        for (int face = 0; face < 6; ++face) {
+            const int axis = face / 2;
+            if (!isAmbiguous(cell.inside, axis, face % 2)) continue;
+            std::array<uint32_t, 4> places{};  // of its vertices, by code
+            for (int e = 0; e < edgesPerCell; ++e)
+                if (edgeAxis(e) != axis && (edgeCorner(e) >> axis & 1) == face % 2)
+                    places[static_cast<size_t>(codeInFace(e, axis))] = vertexAt(low, e);
+            const uint32_t label = surface_->labels[places[0]];
+            if (std::all_of(places.begin(), places.end(), [&](uint32_t p) { return surface_->labels[p] == label; }))
+                continue;
+            const auto key = static_cast<size_t>(4 * edgePlace(low + unit(axis) * (face % 2), axis));
+            if (segmentAt_[key] == 0) {
+                Vec3f sum{};
+                for (const uint32_t p : places) sum += surface_->positions[p];
+                sum *= 0.25f;
+                x.push_back(sum.x), y.push_back(sum.y), z.push_back(sum.z);
+                faces.push_back(key);
+                segmentAt_[key] = static_cast<uint32_t>(faces.size());
+            }
+            asked.emplace_back(6 * m + static_cast<size_t>(face), segmentAt_[key] - 1);
+        }
+    }
+    for (const size_t key : faces) segmentAt_[key] = 0;
+    std::vector<float> f(x.size());
+    if (!x.empty()) eval::evaluate(surface_->block->tape, {x.data(), y.data(), z.data(), x.size()}, f.data(), workspace);
+    for (const auto& [at, number] : asked)
+        if (f[number] < 0) mixed_[at / 6].joined |= 1 << at % 6;
+    return x.size();
+}
+
+/// The segment of a side of a loop whose ends have different labels, and whether the loop runs along it backward.
+int32_t CrispBlock::segmentOf(const SurfaceCell& cell, const CellLoop& loop, int side) {
+    const Vec3i low = cornerAt(cell.corner);
+    const int edges[] = {loop.edges[static_cast<size_t>(side)], loop.edges[static_cast<size_t>((side + 1) % loop.size)]};
+    const uint32_t place[] = {vertexAt(low, edges[0]), vertexAt(low, edges[1])};
+    if (surface_->labels[place[0]] == surface_->labels[place[1]]) return -1;
+    const int face = loop.faces[static_cast<size_t>(side)], axis = face / 2;
+    const int codes[] = {codeInFace(edges[0], axis), codeInFace(edges[1], axis)};
+    const int reversed = codes[0] > codes[1] ? 1 : 0;
+    const Vec3i corner = low + unit(axis) * (face % 2);
+    uint32_t& known = segmentAt_[static_cast<size_t>(4 * edgePlace(corner, axis) + std::min(codes[0], codes[1]))];
+    if (known == 0) {
+        FaceSegment segment{first_ + corner, axis, !isAmbiguous(cell.inside, axis, face % 2), {}, 0, 0};
+        for (int end = 0; end < 2; ++end) {
+            const uint32_t p = place[end ^ reversed];
+            segment.ends[end] = {surface_->positions[p], {}, surface_->labels[p], surface_->origins[p]};
+        }
+        segments_.push_back(segment);
+        codes_.push_back(static_cast<uint8_t>(std::min(codes[0], codes[1])));
+        known = static_cast<uint32_t>(segments_.size());
+    }
+    return 2 * static_cast<int32_t>(known - 1) + reversed;
+}
+
+void CrispBlock::findSegments() {
+    segments_.clear(), codes_.clear(), sides_.clear();
+    for (const MixedCell& mixed : mixed_) {
+        const SurfaceCell& cell = surface_->cells[mixed.cell];
+        const CellLoops& loops = loopsOfCell(mixed);
+        for (int l = 0; l < loops.count; ++l)
+            for (int side = 0; side < loops.loops[l].size; ++side)
+                sides_.push_back(segmentOf(cell, loops.loops[l], side));
+    }
+    for (size_t s = 0; s < segments_.size(); ++s)
+        segmentAt_[static_cast<size_t>(4 * edgePlace(segments_[s].face - first_, segments_[s].axis) + codes_[s])] = 0;
+}
+
+/// Numbers breaks: own ones after the block's other vertices, those on its low sides as borrowed ones after the others.
+/// On sides they come in order of place.
+void CrispBlock::numberBreaks() {
+    breakVertex_.assign(creases_.breaks().size(), 0);
+    std::array<std::vector<std::pair<uint32_t, uint32_t>>, 3> low, high;
+    uint32_t own = surface_->own;
+    for (uint32_t s = 0; s < segments_.size(); ++s) {
+        const FaceSegment& segment = segments_[s];
+        const Vec3i at = segment.face - first_;
+        const auto axis = static_cast<size_t>(segment.axis);
+        const auto key = static_cast<uint32_t>(4 * edgePlace(at - unit(segment.axis) * at[segment.axis], 0) + codes_[s]);
+        if (at[segment.axis] == 0) {
+            low[axis].emplace_back(key, s);
+            continue;
+        }
+        if (at[segment.axis] == blockCells) high[axis].emplace_back(key, s);
+        for (uint32_t b = 0; b < segment.breaks; ++b) breakVertex_[segment.firstBreak + b] = own++;
+    }
+    auto borrowed = static_cast<uint32_t>(surface_->positions.size()) - surface_->own;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        std::sort(low[axis].begin(), low[axis].end());
+        std::sort(high[axis].begin(), high[axis].end());
+        const uint32_t before = borrowed;
+        for (const auto& [key, s] : low[axis])
+            for (uint32_t b = 0; b < segments_[s].breaks; ++b)
+                breakVertex_[segments_[s].firstBreak + b] = borrowedBit | borrowed++;
+        borrowedCount_[axis] = borrowed - before;
+        lent_[axis].clear();
+        for (const auto& [key, s] : high[axis])
+            for (uint32_t b = 0; b < segments_[s].breaks; ++b)
+                lent_[axis].push_back(breakVertex_[segments_[s].firstBreak + b]);
+    }
+    out_.positions.resize(own - surface_->own), out_.normals.resize(own - surface_->own);
+    for (size_t b = 0; b < breakVertex_.size(); ++b) {
+        if (breakVertex_[b] & borrowedBit) continue;
+        const Break& at = creases_.breaks()[b];
+        const Vec3f n = normalized(normalized(at.sides[0].gradient) + normalized(at.sides[1].gradient));
+        out_.positions[breakVertex_[b] - surface_->own] = at.at;
+        out_.normals[breakVertex_[b] - surface_->own] = n == Vec3f{} ? Vec3f{0, 1, 0} : n;
+    }
+}
+
+/// A loop with the breaks on its sides.
+void CrispBlock::addNodes(const SurfaceCell& cell, const CellLoop& loop, size_t& side) {
+    nodes_.clear();
+    const Vec3i low = cornerAt(cell.corner);
+    for (int i = 0; i < loop.size; ++i, ++side) {
+        const int edge = loop.edges[static_cast<size_t>(i)];
+        const uint32_t vertex = surface_->number[edgePlace(low + offset(edgeCorner(edge)), edgeAxis(edge))];
+        const uint32_t place = surface_->placeOf(vertex);
+        LoopNode node{vertex, surface_->positions[place], surface_->labels[place], surface_->origins[place]};
+        node.sides[0] = node.sides[1] = {node.at, surface_->normals[place], node.label, node.origin};
+        const int32_t known = sides_[side];
+        if (known >= 0) {
+            const FaceSegment& segment = segments_[static_cast<size_t>(known / 2)];
+            node.sides[0].gradient = node.sides[1].gradient = segment.ends[known % 2].gradient;
+        }
+        nodes_.push_back(node);
+        if (known < 0) continue;
+        const FaceSegment& segment = segments_[static_cast<size_t>(known / 2)];
+        const bool reversed = known % 2 != 0;
+        for (uint32_t k = 0; k < segment.breaks; ++k) {
+            const uint32_t b = segment.firstBreak + (reversed ? segment.breaks - 1 - k : k);
+            const Break& at = creases_.breaks()[b];
+            LoopNode& point = nodes_.emplace_back();
+            point.vertex = breakVertex_[b], point.at = at.at;
+            point.sides = {at.sides[reversed ? 1 : 0], at.sides[reversed ? 0 : 1]};
+            point.label = point.sides[1].label, point.origin = point.sides[1].origin;
+            point.isBreak = true;
+            point.face = loop.faces[static_cast<size_t>(i)];
+        }
+    }
+}
+
+void CrispBlock::splitCells() {
+    pieces_.clear();
+    size_t side = 0;
+    for (const MixedCell& mixed : mixed_) {
+        const SurfaceCell& cell = surface_->cells[mixed.cell];
+        const CellLoops& loops = loopsOfCell(mixed);
+        for (int l = 0; l < loops.count; ++l) {
+            addNodes(cell, loops.loops[l], side);
+            pieces_.addLoop(first_ + cornerAt(cell.corner), nodes_);
+        }
+        pieces_.endCell();
+    }
+}
+
+/// Triangles of cells that are one piece each.
+void CrispBlock::copyTriangles(size_t first, size_t end) {
+    out_.triangles.insert(out_.triangles.end(), surface_->triangles.begin() + static_cast<ptrdiff_t>(first),
+                          surface_->triangles.begin() + static_cast<ptrdiff_t>(end));
+    for (size_t t = first; t < end; ++t) {
+        const uint32_t place = surface_->placeOf(surface_->triangles[t].x);
+        out_.labels.push_back(surface_->labels[place]);
+        out_.origins.push_back(surface_->origins[place]);
+    }
+}
+
+void CrispBlock::assemble(const std::vector<uint32_t>& ends) {
+    size_t copied = 0, first = 0, normal = 0;
+    for (size_t m = 0; m < mixed_.size(); ++m) {
+        copyTriangles(copied, mixed_[m].firstTriangle);
+        copied = mixed_[m].endTriangle;
+        const auto base = static_cast<uint32_t>(out_.triangles.size() - first);
+        for (; first < ends[m]; ++first) {
+            out_.triangles.push_back(split_.triangles[first]);
+            out_.labels.push_back(split_.labels[first]);
+            out_.origins.push_back(split_.origins[first]);
+        }
+        for (; normal < split_.cornerNormals.size() && split_.cornerNormals[normal].corner < 3 * ends[m]; ++normal)
+            out_.cornerNormals.push_back(
+                {split_.cornerNormals[normal].corner + 3 * base, split_.cornerNormals[normal].normal});
+    }
+    copyTriangles(copied, surface_->triangles.size());
+    out_.positions.insert(out_.positions.end(), split_.positions.begin(), split_.positions.end());
+    out_.normals.insert(out_.normals.end(), split_.normals.begin(), split_.normals.end());
+}
+
+uint64_t CrispBlock::run(const BlockSurface& surface, eval::Workspace& workspace) {
+    surface_ = &surface;
+    first_ = surface.block->index * blockCells;
+    out_.clear(), split_.clear();
+    for (auto& list : lent_) list.clear();
+    borrowedCount_ = {};
+    findMixedCells();
+    if (mixed_.empty()) return 0;
+    uint64_t evaluations = joinFaces(workspace);
+    findSegments();
+    evaluations += creases_.solve(surface.block->tape, *surface.grid, workspace, segments_);
+    numberBreaks();
+    splitCells();
+    const auto corners = surface.own + static_cast<uint32_t>(out_.positions.size());
+    evaluations += pieces_.placeCorners(surface.block->tape, *surface.grid, workspace, corners);
+    pieces_.triangulate(split_, ends_);
+    assemble(ends_);
+    return evaluations;
+}
+
+}  // namespace sgm::mesh

@@ -1,0 +1,282 @@
+#include "modeler/mesh/face_creases.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sgm::mesh {
+namespace {
+
+constexpr int probeRounds = 5;    ///< times that both sides of a crease are looked at
+constexpr int borderRounds = 12;  ///< halvings of a border's bracket
+constexpr int mostSplits = 3;     ///< pieces found between the ends of a segment
+constexpr float probeShare = 0.0625f;
+constexpr float settledShare = 1e-4f;  ///< of a cell, within which a crease point may still move
+constexpr float endMargin = 0x1.0p-12f;  ///< of a segment, kept free of breaks at its ends
+constexpr float mergedShare = 0x1.0p-8f;  ///< of a cell, within which two breaks are one
+constexpr float faceMargin = 0x1.0p-7f;  ///< of a cell, kept free of breaks at the sides of a face
+constexpr float parallel = 1e-3f;        ///< sine of the least angle between two lines that cross
+
+/// The two axes of a face.
+struct Plane {
+    int u, v;
+    explicit Plane(int axis) : u((axis + 1) % 3), v((axis + 2) % 3) {}
+    double dot(Vec3f g, Vec3f d) const { return double{g[u]} * d[u] + double{g[v]} * d[v]; }
+    double length(Vec3f g) const { return std::sqrt(dot(g, g)); }
+};
+
+Vec3f between(Vec3f a, Vec3f b, double share) {
+    return (a.as<double>() + (b - a).as<double>() * share).as<float>();
+}
+
+}  // namespace
+
+PiecePoint FaceCreases::Samples::point(size_t i, float& value) const {
+    value = rows[i];
+    return {{x[i], y[i], z[i]}, {rows[n + i], rows[2 * n + i], rows[3 * n + i]}, labelOf(labels[i], origins[i]),
+            origins[i]};
+}
+
+uint64_t FaceCreases::solve(const eval::Tape& tape, const Grid& grid, eval::Workspace& workspace,
+                            std::vector<FaceSegment>& segments) {
+    grid_ = &grid;
+    gaps_.clear(), open_.clear(), breaks_.clear();
+    for (uint32_t s = 0; s < segments.size(); ++s) {
+        Gap gap;
+        gap.segment = s;
+        gap.a = segments[s].ends[0], gap.b = segments[s].ends[1];
+        gaps_.push_back(gap);
+        open_.push_back(s);
+    }
+    uint64_t evaluations = 0;
+    while (!open_.empty()) {
+        samples_.clear();
+        for (const uint32_t g : open_) ask(segments[gaps_[g].segment], gaps_[g]);
+        const size_t n = samples_.n;
+        evaluations += n;
+        samples_.rows.resize(4 * n), samples_.labels.resize(n), samples_.origins.resize(n);
+        float* const rows = samples_.rows.data();
+        eval::evaluatePieces(tape, {samples_.x.data(), samples_.y.data(), samples_.z.data(), n},
+                             {rows, rows + n, rows + 2 * n, rows + 3 * n, samples_.labels.data(),
+                              samples_.origins.data()},
+                             workspace);
+        next_.clear();
+        size_t sample = 0;
+        for (const uint32_t g : open_) {
+            const size_t first = sample;
+            sample += gaps_[g].state == State::Border ? 1 : 2;
+            take(segments[gaps_[g].segment], g, first);
+            if (gaps_[g].state != State::Done) next_.push_back(g);
+        }
+        open_.swap(next_);
+    }
+    separate(segments);
+    return evaluations;
+}
+
+void FaceCreases::ask(const FaceSegment&, const Gap& gap) {
+    switch (gap.state) {
+        case State::Ends:
+            samples_.add(gap.a.at), samples_.add(gap.b.at);
+            break;
+        case State::Crease:
+            samples_.add(between(gap.at, gap.a.at, probeShare)), samples_.add(between(gap.at, gap.b.at, probeShare));
+            break;
+        default:
+            samples_.add(between(gap.lineA.at, gap.lineB.at, 0.5));
+    }
+}
+
+void FaceCreases::take(const FaceSegment& segment, uint32_t gap, size_t sample) {
+    switch (gaps_[gap].state) {
+        case State::Ends:
+            return takeEnds(segment, gaps_[gap], sample);
+        case State::Crease:
+            return takeProbes(segment, gap, sample);
+        default:
+            return takeMiddle(segment, gap, sample);
+    }
+}
+
+/// The ends of a gap lie on the surface: their derivatives begin the search.
+void FaceCreases::takeEnds(const FaceSegment& segment, Gap& gap, size_t sample) {
+    gap.lineA = samples_.point(sample, gap.valueA), gap.lineB = samples_.point(sample + 1, gap.valueB);
+    gap.lineA.label = gap.a.label, gap.lineB.label = gap.b.label;
+    gap.lineA.origin = gap.a.origin, gap.lineB.origin = gap.b.origin;
+    gap.a.gradient = gap.lineA.gradient, gap.b.gradient = gap.lineB.gradient;
+    aim(segment, gap);
+}
+
+/// Goes to where the two pieces' lines cross, or looks for a border where they don't.
+void FaceCreases::aim(const FaceSegment& segment, Gap& gap) {
+    const Plane plane(segment.axis);
+    const Vec3f ga = gap.lineA.gradient, gb = gap.lineB.gradient;
+    const double la = plane.length(ga), lb = plane.length(gb);
+    const double det = double{ga[plane.u]} * gb[plane.v] - double{ga[plane.v]} * gb[plane.u];
+    if (!(std::abs(det) > parallel * la * lb)) return searchBorder(gap);
+    // g · (p − q) + f = 0 for both.
+    const double ra = plane.dot(ga, gap.lineA.at) - gap.valueA, rb = plane.dot(gb, gap.lineB.at) - gap.valueB;
+    const Vec3f before = gap.at;
+    gap.at = gap.a.at;
+    gap.at[plane.u] = static_cast<float>((ra * gb[plane.v] - rb * ga[plane.v]) / det);
+    gap.at[plane.v] = static_cast<float>((rb * ga[plane.u] - ra * gb[plane.u]) / det);
+    const bool first = gap.state == State::Ends;
+    if (!mayLieAt(segment, gap.at)) {
+        const double reach = 2 * grid_->cell_m;
+        if (!(length(gap.at - gap.a.at) < reach) && !first) return searchBorder(gap);
+        gap.at = inFace(segment, gap.at);  // where a third piece shows, if one cuts the crease off
+    }
+    gap.state = State::Crease;
+    if (!first && length(gap.at - before) <= settledShare * grid_->cell_m) gap.state = State::Done;
+}
+
+/// Both pieces are looked at close to where their lines cross.
+void FaceCreases::takeProbes(const FaceSegment& segment, uint32_t g, size_t sample) {
+    Gap& gap = gaps_[g];
+    ++gap.rounds;
+    bool known = true;
+    for (int side = 0; side < 2; ++side) {
+        float value;
+        const PiecePoint probe = samples_.point(sample + static_cast<size_t>(side), value);
+        if (probe.label == gap.a.label) {
+            gap.lineA = probe, gap.valueA = value;
+        } else if (probe.label == gap.b.label) {
+            gap.lineB = probe, gap.valueB = value;
+        } else if (gap.splits < mostSplits) {
+            PiecePoint third = probe;
+            const Plane plane(segment.axis);
+            const double square = plane.dot(probe.gradient, probe.gradient);
+            if (square > 0) {
+                third.at[plane.u] -= static_cast<float>(value * probe.gradient[plane.u] / square);
+                third.at[plane.v] -= static_cast<float>(value * probe.gradient[plane.v] / square);
+            }
+            if (mayLieAt(segment, third.at)) return split(g, third);
+            known = false;
+        } else {
+            known = false;
+        }
+    }
+    if (!known || gap.rounds >= probeRounds) return searchBorder(gap);
+    aim(segment, gap);
+}
+
+void FaceCreases::searchBorder(Gap& gap) {
+    gap.state = State::Border;
+    gap.rounds = 0;
+    gap.lineA = gap.a, gap.lineB = gap.b;
+}
+
+/// Halves a border's bracket, on the surface.
+void FaceCreases::takeMiddle(const FaceSegment& segment, uint32_t g, size_t sample) {
+    Gap& gap = gaps_[g];
+    float value;
+    PiecePoint middle = samples_.point(sample, value);
+    const Plane plane(segment.axis);
+    const double square = plane.dot(middle.gradient, middle.gradient);
+    const double most = 0.5 * length(gap.lineB.at - gap.lineA.at);
+    if (square > 0 && std::abs(value) <= most * std::sqrt(square)) {
+        middle.at[plane.u] -= static_cast<float>(value * middle.gradient[plane.u] / square);
+        middle.at[plane.v] -= static_cast<float>(value * middle.gradient[plane.v] / square);
+    }
+    if (middle.label == gap.a.label)
+        gap.lineA = middle;
+    else if (middle.label == gap.b.label)
+        gap.lineB = middle;
+    else if (gap.splits < mostSplits && mayLieAt(segment, middle.at))
+        return split(g, middle);
+    else
+        (gap.rounds % 2 ? gap.lineA : gap.lineB).at = middle.at;
+    if (++gap.rounds < borderRounds) return;
+    gap.at = between(gap.lineA.at, gap.lineB.at, 0.5);
+    if (!mayLieAt(segment, gap.at)) gap.at = between(gap.a.at, gap.b.at, 0.5);
+    gap.state = State::Done;
+}
+
+/// A third piece lies between the two.
+void FaceCreases::split(uint32_t g, const PiecePoint& third) {
+    const auto added = static_cast<uint32_t>(gaps_.size());
+    Gap after;
+    after.segment = gaps_[g].segment, after.next = gaps_[g].next;
+    Gap& gap = gaps_[g];
+    after.splits = gap.splits = static_cast<uint8_t>(gap.splits + 1);
+    after.a = third, after.b = gap.b;
+    gap.b = third;
+    gap.next = static_cast<int32_t>(added);
+    gap.state = State::Ends;
+    gap.rounds = 0;
+    gaps_.push_back(after);
+    next_.push_back(added);
+}
+
+/// A point may lie in the segment's face, a little away from its sides.
+bool FaceCreases::mayLieAt(const FaceSegment& segment, Vec3f p) const { return inFace(segment, p) == p; }
+
+/// The nearest point inside the segment's face.
+Vec3f FaceCreases::inFace(const FaceSegment& segment, Vec3f p) const {
+    const Vec3i at = segment.face;
+    const Vec3f low = grid_->corner(at.x, at.y, at.z), high = grid_->corner(at.x + 1, at.y + 1, at.z + 1);
+    for (const int axis : {Plane(segment.axis).u, Plane(segment.axis).v})
+        p[axis] = std::max(low[axis] + faceMargin * grid_->cell_m,
+                           std::min(high[axis] - faceMargin * grid_->cell_m, p[axis]));
+    return p;
+}
+
+/// Pieces between breaks that coincide go; where a segment's way crosses itself, or another segment shares its face, the
+/// breaks stay on the line between its ends.
+void FaceCreases::separate(std::vector<FaceSegment>& segments) {
+    for (uint32_t s = 0; s < segments.size(); ++s) {
+        chain_.clear();
+        for (int32_t g = static_cast<int32_t>(s); g >= 0; g = gaps_[static_cast<size_t>(g)].next) {
+            const Gap& gap = gaps_[static_cast<size_t>(g)];
+            if (chain_.empty() && g == static_cast<int32_t>(s)) segments[s].ends[0].gradient = gap.a.gradient;
+            segments[s].ends[1].gradient = gap.b.gradient;
+            Break next{gap.at, {gap.lineA, gap.lineB}};
+            if (!chain_.empty() && length(chain_.back().at - gap.at) < mergedShare * grid_->cell_m) {
+                next.sides[0] = chain_.back().sides[0];
+                chain_.pop_back();
+                if (next.sides[0].label == next.sides[1].label) continue;
+            }
+            chain_.push_back(next);
+        }
+        arrange(segments[s]);
+        segments[s].firstBreak = static_cast<uint32_t>(breaks_.size());
+        segments[s].breaks = static_cast<uint32_t>(chain_.size());
+        breaks_.insert(breaks_.end(), chain_.begin(), chain_.end());
+    }
+}
+
+/// Whether the way over the breaks of the segment crosses itself.
+bool FaceCreases::crossesItself(const FaceSegment& segment) const {
+    const Plane plane(segment.axis);
+    const size_t n = chain_.size() + 2;
+    const auto at = [&](size_t i) {
+        return i == 0 ? segment.ends[0].at : i + 1 == n ? segment.ends[1].at : chain_[i - 1].at;
+    };
+    const auto side = [&](size_t a, size_t b, size_t c) {
+        const Vec3d p = at(a).as<double>(), q = at(b).as<double>() - p, r = at(c).as<double>() - p;
+        return q[plane.u] * r[plane.v] - q[plane.v] * r[plane.u];
+    };
+    for (size_t i = 0; i + 1 < n; ++i) {
+        if (i + 2 < n && side(i, i + 1, i + 2) == 0) return true;
+        for (size_t k = i + 2; k + 1 < n; ++k)
+            if ((side(i, i + 1, k) >= 0) != (side(i, i + 1, k + 1) >= 0) &&
+                (side(k, k + 1, i) >= 0) != (side(k, k + 1, i + 1) >= 0))
+                return true;
+    }
+    return false;
+}
+
+void FaceCreases::arrange(const FaceSegment& segment) {
+    const Vec3f a = segment.ends[0].at, b = segment.ends[1].at;
+    const size_t n = chain_.size();
+    if (!segment.alone || (n > 1 && crossesItself(segment))) {
+        for (size_t k = 0; k < n; ++k)
+            chain_[k].at = between(a, b, static_cast<double>(k + 1) / static_cast<double>(n + 1));
+        return;
+    }
+    const float least = endMargin * grid_->cell_m;
+    for (Break& at : chain_)
+        if (std::min(length(at.at - a), length(at.at - b)) < least)
+            at.at = between(at.at, between(a, b, 0.5), 2 * endMargin);
+}
+
+}  // namespace sgm::mesh

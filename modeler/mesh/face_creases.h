@@ -1,0 +1,96 @@
+// Creases and borders on the faces of cells: where the surface's curve in a face goes from one smooth piece to another.
+// After Ho, Wu, Chen, Chuang, Ouhyoung, "Cubical Marching Squares", 2005, with pieces known by their labels instead of
+// guessed from normals.
+// Enters: segments of marching squares whose ends have different labels. Leaves: the points between the pieces. Assumes
+// ends, face and tape alone decide, so that the two cells around a face, also in different blocks, find the same bits.
+#pragma once
+
+#include <vector>
+
+#include "modeler/eval/evaluate.h"
+#include "modeler/mesh/subdivide.h"
+
+namespace sgm::mesh {
+
+/// The label of a part's piece, from that of evaluateLabels: pieces of two parts differ.
+constexpr uint32_t labelOf(uint32_t piece, OriginId origin) {
+    const uint32_t h = (piece ^ origin * 0x9e3779b1u) * 0x85ebca6bu;
+    return h ^ (h >> 15);
+}
+
+/// A point of the surface, the piece that it lies on and the field's derivative there.
+struct PiecePoint {
+    Vec3f at;        ///< metres
+    Vec3f gradient;  ///< of the piece's own field
+    uint32_t label = 0;
+    OriginId origin = 0;
+};
+
+/// A point where two pieces meet.
+struct Break {
+    Vec3f at;           ///< metres
+    PiecePoint sides[2];  ///< before and after it on the way of the segment
+};
+
+/// A segment of marching squares.
+struct FaceSegment {
+    Vec3i face;          ///< low corner of the cell face, counted in the grid
+    int axis = 0;        ///< the normal of the face
+    bool alone = true;   ///< the face has no other segment
+    PiecePoint ends[2];  ///< gradients are found by the solver
+    uint32_t firstBreak = 0, breaks = 0;
+};
+
+/// One worker's solver, reused from block to block.
+class FaceCreases {
+public:
+    /// Finds the breaks of all segments, listed in their order. Returns how often the field was evaluated.
+    uint64_t solve(const eval::Tape& tape, const Grid& grid, eval::Workspace& workspace,
+                   std::vector<FaceSegment>& segments);
+    const std::vector<Break>& breaks() const { return breaks_; }
+
+private:
+    enum class State : uint8_t { Ends, Crease, Border, Done };
+    /// Two neighbouring pieces of a segment, and the search for the point between them.
+    struct Gap {
+        uint32_t segment = 0;
+        int32_t next = -1;  ///< the gap after it on the segment
+        State state = State::Ends;
+        uint8_t rounds = 0, splits = 0;
+        PiecePoint a, b;          ///< where the pieces are known
+        PiecePoint lineA, lineB;  ///< where their fields were looked at last, nearer to the crease
+        float valueA = 0, valueB = 0;
+        Vec3f at;
+    };
+    struct Samples {
+        std::vector<float> x, y, z, rows;
+        std::vector<uint32_t> labels;
+        std::vector<OriginId> origins;
+        size_t n = 0;
+        void clear() { n = 0, x.clear(), y.clear(), z.clear(); }
+        void add(Vec3f p) { ++n, x.push_back(p.x), y.push_back(p.y), z.push_back(p.z); }
+        PiecePoint point(size_t i, float& value) const;
+    };
+
+    void ask(const FaceSegment& segment, const Gap& gap);
+    void take(const FaceSegment& segment, uint32_t gap, size_t sample);
+    void takeEnds(const FaceSegment& segment, Gap& gap, size_t sample);
+    void takeProbes(const FaceSegment& segment, uint32_t gap, size_t sample);
+    void takeMiddle(const FaceSegment& segment, uint32_t gap, size_t sample);
+    void aim(const FaceSegment& segment, Gap& gap);
+    void searchBorder(Gap& gap);
+    void split(uint32_t gap, const PiecePoint& between);
+    Vec3f inFace(const FaceSegment& segment, Vec3f p) const;
+    bool mayLieAt(const FaceSegment& segment, Vec3f p) const;
+    bool crossesItself(const FaceSegment& segment) const;
+    void arrange(const FaceSegment& segment);
+    void separate(std::vector<FaceSegment>& segments);
+
+    const Grid* grid_ = nullptr;
+    std::vector<Gap> gaps_;
+    std::vector<uint32_t> open_, next_;
+    Samples samples_;
+    std::vector<Break> breaks_, chain_;
+};
+
+}  // namespace sgm::mesh

@@ -1,0 +1,170 @@
+// Crisp meshes: closed, oriented, free of crossings, and exact along creases, borders and corners of closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "modeler/field/solids.h"
+#include "modeler/mesh/validate.h"
+#include "tests/mesh/mesh_bytes.h"
+#include "tests/mesh/scenes.h"
+
+namespace sgm::mesh {
+namespace {
+
+const PolygonizeOptions crisp{.surface = Surface::Crisp};
+
+/// Coordinates of a graph in a frame turned about three axes.
+field::Point turned(field::Graph& g, Vec3f centre, double degrees) {
+    const double a = degrees * 3.14159265358979 / 180;
+    const Mat3 m = Mat3::rotation({1, 0, 0}, a) * Mat3::rotation({0, 1, 0}, 0.7 * a) * Mat3::rotation({0, 0, 1}, 1.3 * a);
+    const field::Point p = shifted(g, centre);
+    const auto along = [&](Vec3d axis) {
+        const Vec3f d = axis.as<float>();
+        return p.x * g.literal(d.x) + p.y * g.literal(d.y) + p.z * g.literal(d.z);
+    };
+    return {along(m.x), along(m.y), along(m.z)};
+}
+
+field::Field block(field::Graph& g, Vec3f centre, Vec3f half, double degrees = 0) {
+    const field::Point h{g.slot(half.x), g.slot(half.y), g.slot(half.z)};
+    const float reach = length(half);
+    const Vec3f r{reach, reach, reach};
+    const field::Num value = field::solids::boxDistance(degrees == 0 ? shifted(g, centre) : turned(g, centre, degrees), h);
+    return {value, degrees == 0 ? Box3f{centre - half, centre + half} : Box3f{centre - r, centre + r}, 1, 0.5f};
+}
+
+Mesh crispMesh(const Scene& scene, int resolution) {
+    const Meshed m = meshOf(scene, resolution, 2, crisp);
+    EXPECT_TRUE(m.mesh.ok());
+    const MeshFigures f = measure(*m.mesh);
+    EXPECT_EQ(f.boundaryEdges, 0u) << resolution;
+    EXPECT_EQ(f.nonmanifoldEdges, 0u) << resolution;
+    const auto word = judge(*m.mesh);
+    EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects) << resolution;
+    return *m.mesh;
+}
+
+/// How far the field is from 0 in the middle of each triangle, at most, metres.
+double mostOff(const Scene& scene, const Mesh& mesh) {
+    const eval::Tape tape = scene.tape();
+    eval::Workspace w;
+    double most = 0;
+    std::vector<Vec3f> at;
+    for (const Chunk& c : mesh.chunks) at.insert(at.end(), c.positions.begin(), c.positions.end());
+    for (const Chunk& c : mesh.chunks)
+        for (const Triangle& local : c.triangles) {
+            const Triangle t = c.inMesh(local);
+            const Vec3f m = (at[t.x] + at[t.y] + at[t.z]) * (1 / 3.0f);
+            float f;
+            eval::evaluate(tape, {&m.x, &m.y, &m.z, 1}, &f, w);
+            most = std::max(most, std::abs(double{f}));
+        }
+    return most;
+}
+
+TEST(Crisp, ABoxIsExact) {
+    for (const double degrees : {0.0, 10.0, 23.0, 45.0})
+        for (const int resolution : {9, 24, 64}) {
+            Scene s;
+            s.field = block(s.graph, {0.1f, 0.2f, -0.3f}, {1, 0.8f, 0.6f}, degrees);
+            const Mesh mesh = crispMesh(s, resolution);
+            const float cell = cellFor(s.field.bounds, resolution);
+            EXPECT_NEAR(measure(mesh).volume_m3, 8 * 0.48, 2e-5) << degrees << ' ' << resolution;
+            EXPECT_LT(mostOff(s, mesh), 1e-4 * cell) << degrees << ' ' << resolution;
+        }
+}
+
+TEST(Crisp, ABoxLessABoxIsExact) {
+    for (const double degrees : {0.0, 10.0, 23.0, 45.0})
+        for (const int resolution : {24, 64}) {
+            Scene s;
+            const field::Field host = block(s.graph, {}, {1, 1, 1}, degrees);
+            const Mat3 m = Mat3::rotation({1, 0, 0}, degrees * 3.14159265358979 / 180) *
+                           Mat3::rotation({0, 1, 0}, 0.7 * degrees * 3.14159265358979 / 180) *
+                           Mat3::rotation({0, 0, 1}, 1.3 * degrees * 3.14159265358979 / 180);
+            const Vec3f corner = (m * Vec3d{1, 1, 1}).as<float>();
+            s.field = field::difference({host, 1}, {block(s.graph, corner, {0.9f, 0.8f, 0.7f}, degrees), 2});
+            const Mesh mesh = crispMesh(s, resolution);
+            const float cell = cellFor(s.field.bounds, resolution);
+            EXPECT_NEAR(measure(mesh).volume_m3, 8 - 0.9 * 0.8 * 0.7, 4e-5) << degrees << ' ' << resolution;
+            EXPECT_LT(mostOff(s, mesh), 1e-4 * cell) << degrees << ' ' << resolution;
+        }
+}
+
+/// Sum of the lengths of edges between two origins.
+double borderLength(const Mesh& mesh) {
+    std::vector<Vec3f> at;
+    for (const Chunk& c : mesh.chunks) at.insert(at.end(), c.positions.begin(), c.positions.end());
+    std::map<std::pair<uint32_t, uint32_t>, OriginId> half;
+    double sum = 0;
+    for (const Chunk& c : mesh.chunks)
+        for (size_t t = 0; t < c.triangles.size(); ++t) {
+            const Triangle tri = c.inMesh(c.triangles[t]);
+            for (int k = 0; k < 3; ++k) half[{tri[k], tri[(k + 1) % 3]}] = c.origins[t];
+        }
+    for (const auto& [edge, origin] : half)
+        if (edge.first < edge.second && half.at({edge.second, edge.first}) != origin)
+            sum += length(at[edge.first] - at[edge.second]);
+    return sum;
+}
+
+TEST(Crisp, BordersOfMaterialsAreStraight) {
+    for (const double degrees : {0.0, 23.0})
+        for (const int resolution : {24, 64, 128}) {
+            Scene s;
+            const Mat3 m = Mat3::rotation({1, 0, 0}, degrees * 3.14159265358979 / 180) *
+                           Mat3::rotation({0, 1, 0}, 0.7 * degrees * 3.14159265358979 / 180) *
+                           Mat3::rotation({0, 0, 1}, 1.3 * degrees * 3.14159265358979 / 180);
+            const Vec3f beside = (m * Vec3d{1, 0, 0}).as<float>();
+            const field::Owned both[] = {{block(s.graph, {}, {1, 1, 1}, degrees), 1},
+                                         {block(s.graph, beside, {1, 1, 1}, degrees), 2}};
+            s.field = field::sum(s.graph, both);
+            const Mesh mesh = crispMesh(s, resolution);
+            EXPECT_NEAR(borderLength(mesh), 8, 8 * 0.01) << degrees << ' ' << resolution;
+            EXPECT_NEAR(measure(mesh).volume_m3, 12, 6e-4) << degrees << ' ' << resolution;
+        }
+}
+
+TEST(Crisp, ACylinderHasRoundRims) {
+    Scene s;
+    const field::Point p = turned(s.graph, {}, 17);
+    const field::Num side = sqrt(square(p.x) + square(p.z)) - 1.0f, cap = abs(p.y) - 1.0f;
+    s.field = {s.graph.apply(field::codeOf<field::ops::Rim>, {side, cap}), {{-1.5f, -1.5f, -1.5f}, {1.5f, 1.5f, 1.5f}}, 1, 1};
+    for (const int resolution : {24, 64}) crispMesh(s, resolution);
+}
+
+TEST(Crisp, RandomBoxesAreClosedAndDontCross) {
+    for (uint64_t key = 0; key < 150; ++key) {
+        Scene s;
+        std::vector<field::Owned> parts;
+        uint64_t draw = mix(key + 77);
+        const auto real = [&](double lo, double hi) { return static_cast<float>(uniform(draw = mix(draw), lo, hi)); };
+        const bool aligned = key % 2 == 0;
+        const size_t count = 2 + key % 5;
+        for (size_t i = 0; i < count; ++i) {
+            const Vec3f centre{real(-1, 1), real(-1, 1), real(-1, 1)}, half{real(.2, .8), real(.2, .8), real(.2, .8)};
+            parts.push_back({block(s.graph, centre, half, aligned ? 0 : real(0, 90)), static_cast<OriginId>(i + 1)});
+        }
+        s.field = field::sum(s.graph, parts);
+        if (key % 3 == 0)
+            s.field = field::difference({s.field, 0}, {block(s.graph, {real(-1, 1), 0, 0}, {.5f, .4f, .3f}, real(0, 90)), 99});
+        const Meshed m = meshOf(s, 32, 2, crisp);
+        ASSERT_TRUE(m.mesh.ok());
+        const MeshFigures f = measure(*m.mesh);
+        EXPECT_EQ(f.boundaryEdges, 0u) << key;
+        EXPECT_EQ(f.nonmanifoldEdges, 0u) << key;
+        const auto word = judge(*m.mesh);
+        EXPECT_TRUE(word.ok() && word->closed && word->outward) << key;
+        EXPECT_FALSE(word->selfIntersects) << key;
+    }
+}
+
+TEST(Crisp, ThreadsChangeNothing) {
+    Scene s = cloudScene(40, 0.1f, 3);
+    s.field = field::difference({s.field, 0}, {block(s.graph, {0.5f, 0.5f, 0.5f}, {0.3f, 0.4f, 0.2f}, 30), 99});
+    EXPECT_EQ(bytesOf(*meshOf(s, 70, 1, crisp).mesh), bytesOf(*meshOf(s, 70, 2, crisp).mesh));
+}
+
+}  // namespace
+}  // namespace sgm::mesh
