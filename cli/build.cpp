@@ -196,7 +196,7 @@ Status stream(const BuildRequest& request, const Model& model, Progress* progres
     exporter::ExportInput input = viewer::exportInput(model, request.model.file);
     input.progress = progress;
     const Status written = streamOutput(request.out, input, [&](const mesh::ChunkVisitor& visit) {
-        return mesh::polygonizeInLayers(*blocks, grid, {.threads = request.grid.threads, .bare = bareWillDo(request.out)}, progress, counts, [&](const mesh::Mesh& window, const mesh::Chunk& chunk) {
+        return mesh::polygonizeInLayers(*blocks, grid, meshingOf(request.grid, bareWillDo(request.out)), progress, counts, [&](const mesh::Mesh& window, const mesh::Chunk& chunk) {
             triangles += chunk.triangles.size();
             return visit(window, chunk);
         });
@@ -261,7 +261,7 @@ Status buildFrames(const BuildRequest& request) {
     const auto bounds = boundsOfFrames(grammar, *options, *animation, watch.progress());
     if (!bounds.ok()) return bounds.error();
     const mesh::Grid grid = gridOver(*bounds, request.grid);
-    const mesh::PolygonizeOptions meshing{.threads = request.grid.threads, .bare = bareWillDo(request)};
+    const mesh::PolygonizeOptions meshing = meshingOf(request.grid, bareWillDo(request));
     mesh::Rebuild rebuild(meshing);
     const auto still = options->params;
     for (int frame = 0; frame < animation->frames; ++frame) {

@@ -27,6 +27,12 @@ void addGridOptions(CLI::App& command, GridRequest& request) {
     auto* resolution = command.add_option("--resolution", request.resolution, "Cells along the longest side of the bounds");
     resolution->check(CLI::Range(2, 8192))->capture_default_str();
     command.add_option("--cell", request.cell_m, "Edge of a cell in metres")->check(CLI::PositiveNumber)->excludes(resolution);
+    const std::map<std::string, mesh::Surface> surfaces{{"crisp", mesh::Surface::Crisp}, {"cubes", mesh::Surface::Cubes}};
+    command
+        .add_option("--surface", request.surface,
+                    "crisp: creases and borders of materials are exact; cubes: plain marching cubes")
+        ->transform(CLI::CheckedTransformer(surfaces, CLI::ignore_case))
+        ->option_text("{crisp,cubes} [crisp]");
     command.add_option("--threads", request.threads, "Threads (0: all)")->check(CLI::Range(0, 1024))->capture_default_str();
 }
 
@@ -55,8 +61,16 @@ mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request) {
     return mesh::gridFor(bounds, request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution));
 }
 
+mesh::PolygonizeOptions meshingOf(const GridRequest& request, bool bare) {
+    mesh::PolygonizeOptions options;
+    options.surface = request.surface;
+    options.threads = request.threads;
+    options.bare = bare;
+    return options;
+}
+
 Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress, bool bare) {
-    return makeMesh(model, gridOver(model.lowered->field.bounds, request), {.threads = request.threads, .bare = bare}, stages, progress);
+    return makeMesh(model, gridOver(model.lowered->field.bounds, request), meshingOf(request, bare), stages, progress);
 }
 
 int fail(const Error& error) {

@@ -29,10 +29,11 @@ struct ModelRequest : viewer::ModelChoice {
 /// Adds FILE, --start, --derive, --set, --style, --seed and the budgets.
 void addModelOptions(CLI::App& command, ModelRequest& request);
 
-/// How fine: --resolution or --cell, and --threads.
+/// How fine and how: --resolution or --cell, --surface and --threads.
 struct GridRequest {
     int resolution = 128;
     double cell_m = 0;  ///< > 0 wins over resolution
+    mesh::Surface surface = mesh::Surface::Crisp;
     int threads = 0;
 };
 void addGridOptions(CLI::App& command, GridRequest& request);
@@ -43,6 +44,8 @@ std::shared_ptr<const rules::Grammar> loadGrammar(const std::string& file, Stage
 /// A model from the file on.
 Result<Model> makeModel(const ModelRequest& request, Stages& stages, Progress* progress);
 
+/// How the mesher is to work; `bare` as in PolygonizeOptions.
+mesh::PolygonizeOptions meshingOf(const GridRequest& request, bool bare = false);
 /// The grid that is asked for over these bounds.
 mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request);
 /// The mesh of the model over its own bounds, `bare` or with normals and origins.

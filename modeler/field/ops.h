@@ -212,7 +212,8 @@ struct Rim {
     template <class V>
     static V apply(V a, V b) {
         const V zero = 0.0f;
-        return Sqrt::apply(Square::apply(max(a, zero)) + Square::apply(max(b, zero))) + min(max(a, b), zero);
+        // On the surface the second operand wins: the derivative is the face's.
+        return Sqrt::apply(Square::apply(max(zero, a)) + Square::apply(max(zero, b))) + min(zero, max(a, b));
     }
     /// It grows with both.
     template <class I>

@@ -50,9 +50,7 @@ double squares(const LoopNode& a, const LoopNode& b) {
 
 }  // namespace
 
-void CellPieces::clear() {
-    nodes_.clear(), polygons_.clear(), loops_.clear(), corners_.clear(), cellEnds_.clear();
-}
+void CellPieces::clear() { nodes_.clear(), polygons_.clear(), loops_.clear(), corners_.clear(), cellEnds_.clear(); }
 
 void CellPieces::addPolygon(std::span<const LoopNode> nodes) {
     if (nodes.size() < 3) return;  // a piece that only touches the cell's face
@@ -143,9 +141,8 @@ void CellPieces::addCorner(Loop& loop, const std::vector<LoopNode>& nodes) {
     corner.at = sum * (1.0f / static_cast<float>(corner.planes.size()));
 }
 
-/// The nearest point inside the corner's cell.
-Vec3f CellPieces::inCell(const Corner& corner, Vec3f p) const {
-    const Vec3i cell = corner.cell;
+/// The nearest point inside a cell.
+Vec3f CellPieces::inCell(Vec3i cell, Vec3f p) const {
     const Vec3f low = grid_->corner(cell.x, cell.y, cell.z), high = grid_->corner(cell.x + 1, cell.y + 1, cell.z + 1);
     const Vec3f margin = (high - low) * 0x1.0p-8f;
     return max(low + margin, min(high - margin, p));
@@ -162,7 +159,7 @@ void CellPieces::intersect(Corner& corner) const {
         for (int axis = 0; axis < 3; ++axis) rows[static_cast<size_t>(axis)] += n * n[axis];
         right += n * d;
     }
-    corner.at = inCell(corner, (middle + solved(rows, right)).as<float>());
+    corner.at = inCell(corner.cell, (middle + solved(rows, right)).as<float>());
 }
 
 uint64_t CellPieces::placeCorners(const eval::Tape& tape, const Grid& grid, eval::Workspace& workspace,
@@ -191,8 +188,10 @@ uint64_t CellPieces::placeCorners(const eval::Tape& tape, const Grid& grid, eval
         for (Corner& corner : corners_) {
             std::vector<PiecePoint> seen;
             for (size_t k = 0; k < corner.means.size(); ++k, ++i) {
-                PiecePoint plane{{x[i], y[i], z[i]}, {rows[n + i], rows[2 * n + i], rows[3 * n + i]},
-                                 labelOf(labels[i], origins[i]), origins[i]};
+                PiecePoint plane{{x[i], y[i], z[i]},
+                                 {rows[n + i], rows[2 * n + i], rows[3 * n + i]},
+                                 labelOf(labels[i], origins[i]),
+                                 origins[i]};
                 const Vec3d g = plane.gradient.as<double>();
                 const double square = dot(g, g);
                 if (!(square > 0) || !(std::abs(rows[i]) < std::sqrt(square) * grid.cell_m)) continue;
@@ -227,8 +226,7 @@ void CellPieces::emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, c
     for (uint32_t k = 0; k < 3; ++k) {
         const LoopNode& node = *corners[k];
         const bool isEdgeVertex = node.sides[0].label == piece.label && node.sides[1].label == piece.label &&
-                                  !node.isBreak &&
-                                  (node.vertex < firstVertex_ || (node.vertex & borrowedBit) != 0);
+                                  !node.isBreak && (node.vertex < firstVertex_ || (node.vertex & borrowedBit) != 0);
         if (isEdgeVertex) continue;
         const PiecePoint& side = sideOf(node, piece.label);
         const Vec3f n = side.label == piece.label ? normalized(side.gradient) : normal;
@@ -292,20 +290,28 @@ bool CellPieces::crosses(const PieceTriangles& out, size_t firstTriangle) const 
     return anyCross(places_, std::span(out.triangles).subspan(firstTriangle));
 }
 
+/// The middle of all nodes of some loops.
+Vec3f CellPieces::middleOf(uint32_t firstLoop, uint32_t endLoop) const {
+    Vec3f sum{};
+    uint32_t count = 0;
+    for (uint32_t l = firstLoop; l < endLoop; ++l)
+        for (uint32_t i = loops_[l].firstNode; i < loops_[l].endNode; ++i, ++count) sum += nodes_[i].at;
+    return sum * (1.0f / static_cast<float>(count));
+}
+
 /// Triangles from a point in the cell to all sides of the loop, which never cross each other.
-void CellPieces::fan(const Loop& loop, PieceTriangles& out) {
+void CellPieces::fan(uint32_t l, Vec3f middleOfAll, float apart, PieceTriangles& out) {
+    Loop& loop = loops_[l];
     const auto nodes = std::span(nodes_).subspan(loop.firstNode, loop.endNode - loop.firstNode);
     LoopNode middle{};
-    Vec3f sum{}, normals{};
-    for (const LoopNode& node : nodes) sum += node.at, normals += normalized(node.sides[0].gradient);
-    middle.at = sum * (1.0f / static_cast<float>(nodes.size()));
-    if (loop.corner >= 0) {
-        middle.vertex = firstVertex_ + static_cast<uint32_t>(loop.corner);
-        corners_[static_cast<size_t>(loop.corner)].at = middle.at;
-    } else {
-        middle.vertex = firstVertex_ + static_cast<uint32_t>(corners_.size());
-        corners_.emplace_back().at = middle.at;
+    middle.at = middleOf(l, l + 1);
+    middle.at = inCell(loop.cell, middle.at + (middle.at - middleOfAll) * apart);
+    if (loop.corner < 0) {
+        loop.corner = static_cast<int32_t>(corners_.size());
+        corners_.emplace_back();
     }
+    middle.vertex = firstVertex_ + static_cast<uint32_t>(loop.corner);
+    corners_[static_cast<size_t>(loop.corner)].at = middle.at;
     for (size_t i = 0; i < nodes.size(); ++i) {
         const LoopNode &a = nodes[i], &b = nodes[(i + 1) % nodes.size()];
         const Polygon piece{0, 0, a.label, a.origin};
@@ -327,9 +333,14 @@ void CellPieces::triangulate(PieceTriangles& out, std::vector<uint32_t>& cellEnd
         bool good = true;
         for (uint32_t l = next; l < end && good; ++l) good = triangulateLoop(loops_[l], out);
         if (!good || crosses(out, triangles)) {
-            out.triangles.resize(triangles), out.labels.resize(triangles), out.origins.resize(triangles);
-            out.cornerNormals.resize(normals);
-            for (uint32_t l = next; l < end; ++l) fan(Loop(loops_[l]), out);
+            // Fans of several loops may cross each other: then their middles are moved apart.
+            for (const float apart : {0.0f, 0.5f, 1.0f, 2.0f, 4.0f}) {
+                out.triangles.resize(triangles), out.labels.resize(triangles), out.origins.resize(triangles);
+                out.cornerNormals.resize(normals);
+                places_.clear();
+                for (uint32_t l = next; l < end; ++l) fan(l, middleOf(next, end), apart, out);
+                if (end - next == 1 || !crosses(out, triangles)) break;
+            }
         }
         next = end;
         cellEnds.push_back(static_cast<uint32_t>(out.triangles.size()));

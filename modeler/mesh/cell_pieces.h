@@ -20,8 +20,8 @@ struct LoopNode {
     Vec3f at;
     uint32_t label;
     OriginId origin;
-    bool isBreak = false;  ///< the piece before it is another one
-    int face = -1;         ///< of a break, the face of the cell that it lies on
+    bool isBreak = false;               ///< the piece before it is another one
+    int face = -1;                      ///< of a break, the face of the cell that it lies on
     std::array<PiecePoint, 2> sides{};  ///< of a break, before and after it; of a vertex, itself
 };
 
@@ -77,13 +77,14 @@ private:
     void addPolygon(std::span<const LoopNode> nodes);
     void addSplit(Loop& loop, std::vector<LoopNode>& nodes);
     void addCorner(Loop& loop, const std::vector<LoopNode>& nodes);
-    Vec3f inCell(const Corner& corner, Vec3f p) const;
+    Vec3f inCell(Vec3i cell, Vec3f p) const;
     void intersect(Corner& corner) const;
     bool liesInFace(const LoopNode& a, const LoopNode& b, const LoopNode& c) const;
     bool triangulatePolygon(const Polygon& polygon, PieceTriangles& out);
     bool triangulateLoop(const Loop& loop, PieceTriangles& out);
     bool crosses(const PieceTriangles& out, size_t firstTriangle) const;
-    void fan(const Loop& loop, PieceTriangles& out);
+    Vec3f middleOf(uint32_t firstLoop, uint32_t endLoop) const;
+    void fan(uint32_t loop, Vec3f middleOfAll, float apart, PieceTriangles& out);
     void emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, const Polygon& piece, Vec3f normal,
               PieceTriangles& out);
 
@@ -94,7 +95,7 @@ private:
     std::vector<Corner> corners_;
     std::vector<uint32_t> cellEnds_;
     uint32_t firstVertex_ = 0;
-    Vec3f low_, high_;                              ///< of the cell at hand
+    Vec3f low_, high_;                          ///< of the cell at hand
     std::vector<std::array<Vec3f, 3>> places_;  ///< of its triangles
 };
 

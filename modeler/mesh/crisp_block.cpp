@@ -62,8 +62,8 @@ const CellLoops& CrispBlock::loopsOfCell(const MixedCell& mixed) {
 /// part its inside corners, as marching cubes has it, or its outside corners.
 uint64_t CrispBlock::joinFaces(eval::Workspace& workspace) {
     std::vector<float> x, y, z;
-    std::vector<size_t> faces;                           // places in segmentAt_
-    std::vector<std::pair<size_t, uint32_t>> asked;      // mixed cell and face, number
+    std::vector<size_t> faces;                       // places in segmentAt_
+    std::vector<std::pair<size_t, uint32_t>> asked;  // mixed cell and face, number
     for (size_t m = 0; m < mixed_.size(); ++m) {
         const SurfaceCell& cell = surface_->cells[mixed_[m].cell];
         const Vec3i low = cornerAt(cell.corner);
@@ -74,9 +74,13 @@ uint64_t CrispBlock::joinFaces(eval::Workspace& workspace) {
             for (int e = 0; e < edgesPerCell; ++e)
                 if (edgeAxis(e) != axis && (edgeCorner(e) >> axis & 1) == face % 2)
                     places[static_cast<size_t>(codeInFace(e, axis))] = vertexAt(low, e);
-            const uint32_t label = surface_->labels[places[0]];
-            if (std::all_of(places.begin(), places.end(), [&](uint32_t p) { return surface_->labels[p] == label; }))
-                continue;
+            // Only where a segment of marching cubes has two labels is the neighbour mixed too.
+            const int base = (face % 2) << axis;
+            const bool diagonal = (cell.inside >> base & 1) != 0;  // inside corners are those at both low or high ends
+            const auto differ = [&](size_t p, size_t q) {
+                return surface_->labels[places[p]] != surface_->labels[places[q]];
+            };
+            if (diagonal ? !differ(0, 2) && !differ(1, 3) : !differ(0, 3) && !differ(1, 2)) continue;
             const auto key = static_cast<size_t>(4 * edgePlace(low + unit(axis) * (face % 2), axis));
             if (segmentAt_[key] == 0) {
                 Vec3f sum{};
@@ -91,7 +95,8 @@ uint64_t CrispBlock::joinFaces(eval::Workspace& workspace) {
     }
     for (const size_t key : faces) segmentAt_[key] = 0;
     std::vector<float> f(x.size());
-    if (!x.empty()) eval::evaluate(surface_->block->tape, {x.data(), y.data(), z.data(), x.size()}, f.data(), workspace);
+    if (!x.empty())
+        eval::evaluate(surface_->block->tape, {x.data(), y.data(), z.data(), x.size()}, f.data(), workspace);
     for (const auto& [at, number] : asked)
         if (f[number] < 0) mixed_[at / 6].joined |= 1 << at % 6;
     return x.size();
@@ -100,7 +105,8 @@ uint64_t CrispBlock::joinFaces(eval::Workspace& workspace) {
 /// The segment of a side of a loop whose ends have different labels, and whether the loop runs along it backward.
 int32_t CrispBlock::segmentOf(const SurfaceCell& cell, const CellLoop& loop, int side) {
     const Vec3i low = cornerAt(cell.corner);
-    const int edges[] = {loop.edges[static_cast<size_t>(side)], loop.edges[static_cast<size_t>((side + 1) % loop.size)]};
+    const int edges[] = {loop.edges[static_cast<size_t>(side)],
+                         loop.edges[static_cast<size_t>((side + 1) % loop.size)]};
     const uint32_t place[] = {vertexAt(low, edges[0]), vertexAt(low, edges[1])};
     if (surface_->labels[place[0]] == surface_->labels[place[1]]) return -1;
     const int face = loop.faces[static_cast<size_t>(side)], axis = face / 2;
@@ -144,7 +150,8 @@ void CrispBlock::numberBreaks() {
         const FaceSegment& segment = segments_[s];
         const Vec3i at = segment.face - first_;
         const auto axis = static_cast<size_t>(segment.axis);
-        const auto key = static_cast<uint32_t>(4 * edgePlace(at - unit(segment.axis) * at[segment.axis], 0) + codes_[s]);
+        const auto key =
+            static_cast<uint32_t>(4 * edgePlace(at - unit(segment.axis) * at[segment.axis], 0) + codes_[s]);
         if (at[segment.axis] == 0) {
             low[axis].emplace_back(key, s);
             continue;

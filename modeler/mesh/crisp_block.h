@@ -68,8 +68,8 @@ private:
     Vec3i first_;  ///< the block's first cell in the grid
     std::vector<MixedCell> mixed_;
     std::vector<FaceSegment> segments_;
-    std::vector<uint8_t> codes_;        ///< of segments: their order in a face
-    std::vector<int32_t> sides_;        ///< by side of a mixed cell's loops: 2 · segment + reversed, or −1
+    std::vector<uint8_t> codes_;  ///< of segments: their order in a face
+    std::vector<int32_t> sides_;  ///< by side of a mixed cell's loops: 2 · segment + reversed, or −1
     CellLoops joinedLoops_;
     /// By face and code, 1 + segment; before that, 1 + number of an ambiguous face.
     PageVector<uint32_t> segmentAt_ = PageVector<uint32_t>(4 * edgePlaces, 0u);

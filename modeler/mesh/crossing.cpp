@@ -37,7 +37,8 @@ bool cross(const Places& a, const Triangle& ta, const Places& b, const Triangle&
     if (shared >= 2) return folded(a, b);
     const auto of = [](const Places& p, int i) { return p[static_cast<size_t>(i % 3)]; };
     if (shared == 1)
-        return meets(b, of(a, sharedOfA + 1), of(a, sharedOfA + 2)) || meets(a, of(b, sharedOfB + 1), of(b, sharedOfB + 2));
+        return meets(b, of(a, sharedOfA + 1), of(a, sharedOfA + 2)) ||
+               meets(a, of(b, sharedOfB + 1), of(b, sharedOfB + 2));
     for (int i = 0; i < 3; ++i)
         if (meets(b, of(a, i), of(a, i + 1)) || meets(a, of(b, i), of(b, i + 1))) return true;
     return false;

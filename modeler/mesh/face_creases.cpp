@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modeler/mesh/region.h"
+
 namespace sgm::mesh {
 namespace {
 
@@ -10,11 +12,12 @@ constexpr int probeRounds = 5;    ///< times that both sides of a crease are loo
 constexpr int borderRounds = 12;  ///< halvings of a border's bracket
 constexpr int mostSplits = 3;     ///< pieces found between the ends of a segment
 constexpr float probeShare = 0.0625f;
-constexpr float settledShare = 1e-4f;  ///< of a cell, within which a crease point may still move
-constexpr float endMargin = 0x1.0p-12f;  ///< of a segment, kept free of breaks at its ends
-constexpr float mergedShare = 0x1.0p-8f;  ///< of a cell, within which two breaks are one
-constexpr float faceMargin = 0x1.0p-7f;  ///< of a cell, kept free of breaks at the sides of a face
-constexpr float parallel = 1e-3f;        ///< sine of the least angle between two lines that cross
+constexpr float settledShare = 1e-4f;       ///< of a cell, within which a crease point may still move
+constexpr float endMargin = 0x1.0p-12f;     ///< of a segment, kept free of breaks at its ends
+constexpr float mergedShare = 0x1.0p-8f;    ///< of a cell, within which two breaks are one
+constexpr double monotoneShare = 0x1.0p-6;  ///< of a segment, between breaks
+constexpr float faceMargin = 0x1.0p-7f;     ///< of a cell, kept free of breaks at the sides of a face
+constexpr float parallel = 1e-3f;           ///< sine of the least angle between two lines that cross
 
 /// The two axes of a face.
 struct Plane {
@@ -24,21 +27,22 @@ struct Plane {
     double length(Vec3f g) const { return std::sqrt(dot(g, g)); }
 };
 
-Vec3f between(Vec3f a, Vec3f b, double share) {
-    return (a.as<double>() + (b - a).as<double>() * share).as<float>();
-}
+Vec3f between(Vec3f a, Vec3f b, double share) { return (a.as<double>() + (b - a).as<double>() * share).as<float>(); }
 
 }  // namespace
 
 PiecePoint FaceCreases::Samples::point(size_t i, float& value) const {
     value = rows[i];
-    return {{x[i], y[i], z[i]}, {rows[n + i], rows[2 * n + i], rows[3 * n + i]}, labelOf(labels[i], origins[i]),
+    return {{x[i], y[i], z[i]},
+            {rows[n + i], rows[2 * n + i], rows[3 * n + i]},
+            labelOf(labels[i], origins[i]),
             origins[i]};
 }
 
 uint64_t FaceCreases::solve(const eval::Tape& tape, const Grid& grid, eval::Workspace& workspace,
                             std::vector<FaceSegment>& segments) {
     grid_ = &grid;
+    limit_ = surfaceReach(tape, grid);
     gaps_.clear(), open_.clear(), breaks_.clear();
     for (uint32_t s = 0; s < segments.size(); ++s) {
         Gap gap;
@@ -55,10 +59,9 @@ uint64_t FaceCreases::solve(const eval::Tape& tape, const Grid& grid, eval::Work
         evaluations += n;
         samples_.rows.resize(4 * n), samples_.labels.resize(n), samples_.origins.resize(n);
         float* const rows = samples_.rows.data();
-        eval::evaluatePieces(tape, {samples_.x.data(), samples_.y.data(), samples_.z.data(), n},
-                             {rows, rows + n, rows + 2 * n, rows + 3 * n, samples_.labels.data(),
-                              samples_.origins.data()},
-                             workspace);
+        eval::evaluatePieces(
+            tape, {samples_.x.data(), samples_.y.data(), samples_.z.data(), n},
+            {rows, rows + n, rows + 2 * n, rows + 3 * n, samples_.labels.data(), samples_.origins.data()}, workspace);
         next_.clear();
         size_t sample = 0;
         for (const uint32_t g : open_) {
@@ -137,7 +140,9 @@ void FaceCreases::takeProbes(const FaceSegment& segment, uint32_t g, size_t samp
     for (int side = 0; side < 2; ++side) {
         float value;
         const PiecePoint probe = samples_.point(sample + static_cast<size_t>(side), value);
-        if (probe.label == gap.a.label) {
+        if (!isKnown(value)) {
+            known = false;
+        } else if (probe.label == gap.a.label) {
             gap.lineA = probe, gap.valueA = value;
         } else if (probe.label == gap.b.label) {
             gap.lineB = probe, gap.valueB = value;
@@ -173,7 +178,10 @@ void FaceCreases::takeMiddle(const FaceSegment& segment, uint32_t g, size_t samp
     const Plane plane(segment.axis);
     const double square = plane.dot(middle.gradient, middle.gradient);
     const double most = 0.5 * length(gap.lineB.at - gap.lineA.at);
-    if (square > 0 && std::abs(value) <= most * std::sqrt(square)) {
+    if (!isKnown(value)) {
+        middle = gap.lineA;
+        middle.at = between(gap.lineA.at, gap.lineB.at, 0.5);
+    } else if (square > 0 && std::abs(value) <= most * std::sqrt(square)) {
         middle.at[plane.u] -= static_cast<float>(value * middle.gradient[plane.u] / square);
         middle.at[plane.v] -= static_cast<float>(value * middle.gradient[plane.v] / square);
     }
@@ -220,8 +228,8 @@ Vec3f FaceCreases::inFace(const FaceSegment& segment, Vec3f p) const {
     return p;
 }
 
-/// Pieces between breaks that coincide go; where a segment's way crosses itself, or another segment shares its face, the
-/// breaks stay on the line between its ends.
+/// Pieces between breaks that coincide go; where a segment's way crosses itself, or another segment shares its face,
+/// the breaks stay on the line between its ends.
 void FaceCreases::separate(std::vector<FaceSegment>& segments) {
     for (uint32_t s = 0; s < segments.size(); ++s) {
         chain_.clear();
@@ -244,31 +252,22 @@ void FaceCreases::separate(std::vector<FaceSegment>& segments) {
     }
 }
 
-/// Whether the way over the breaks of the segment crosses itself.
-bool FaceCreases::crossesItself(const FaceSegment& segment) const {
-    const Plane plane(segment.axis);
-    const size_t n = chain_.size() + 2;
-    const auto at = [&](size_t i) {
-        return i == 0 ? segment.ends[0].at : i + 1 == n ? segment.ends[1].at : chain_[i - 1].at;
-    };
-    const auto side = [&](size_t a, size_t b, size_t c) {
-        const Vec3d p = at(a).as<double>(), q = at(b).as<double>() - p, r = at(c).as<double>() - p;
-        return q[plane.u] * r[plane.v] - q[plane.v] * r[plane.u];
-    };
-    for (size_t i = 0; i + 1 < n; ++i) {
-        if (i + 2 < n && side(i, i + 1, i + 2) == 0) return true;
-        for (size_t k = i + 2; k + 1 < n; ++k)
-            if ((side(i, i + 1, k) >= 0) != (side(i, i + 1, k + 1) >= 0) &&
-                (side(k, k + 1, i) >= 0) != (side(k, k + 1, i + 1) >= 0))
-                return true;
+/// Whether each break lies farther along the segment than the one before: then the way over them can't cross itself.
+bool FaceCreases::isMonotone(const FaceSegment& segment) const {
+    const Vec3d from = segment.ends[0].at.as<double>(), way = segment.ends[1].at.as<double>() - from;
+    double last = 0;
+    for (const Break& at : chain_) {
+        const double share = dot(at.at.as<double>() - from, way) / dot(way, way);
+        if (!(share >= last + monotoneShare)) return false;
+        last = share;
     }
-    return false;
+    return last + monotoneShare <= 1;
 }
 
 void FaceCreases::arrange(const FaceSegment& segment) {
     const Vec3f a = segment.ends[0].at, b = segment.ends[1].at;
     const size_t n = chain_.size();
-    if (!segment.alone || (n > 1 && crossesItself(segment))) {
+    if (!segment.alone || (n > 1 && !isMonotone(segment))) {
         for (size_t k = 0; k < n; ++k)
             chain_[k].at = between(a, b, static_cast<double>(k + 1) / static_cast<double>(n + 1));
         return;

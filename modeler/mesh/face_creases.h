@@ -28,7 +28,7 @@ struct PiecePoint {
 
 /// A point where two pieces meet.
 struct Break {
-    Vec3f at;           ///< metres
+    Vec3f at;             ///< metres
     PiecePoint sides[2];  ///< before and after it on the way of the segment
 };
 
@@ -82,11 +82,14 @@ private:
     void split(uint32_t gap, const PiecePoint& between);
     Vec3f inFace(const FaceSegment& segment, Vec3f p) const;
     bool mayLieAt(const FaceSegment& segment, Vec3f p) const;
-    bool crossesItself(const FaceSegment& segment) const;
+    bool isMonotone(const FaceSegment& segment) const;
     void arrange(const FaceSegment& segment);
     void separate(std::vector<FaceSegment>& segments);
 
+    bool isKnown(float value) const { return value >= -limit_ && value <= limit_; }
+
     const Grid* grid_ = nullptr;
+    float limit_ = 0;  ///< values beyond it hang on the block's tape
     std::vector<Gap> gaps_;
     std::vector<uint32_t> open_, next_;
     Samples samples_;

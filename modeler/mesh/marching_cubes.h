@@ -61,8 +61,8 @@ struct CellLoops {
 using LoopTable = std::array<CellLoops, 256>;
 const LoopTable& loopTable();
 
-/// The polygons of a case where on some faces, bit 2 · axis + side of `joined`, the inside corners are joined instead of
-/// apart; only faces whose corners alternate make a difference.
+/// The polygons of a case where on some faces, bit 2 · axis + side of `joined`, the inside corners are joined instead
+/// of apart; only faces whose corners alternate make a difference.
 CellLoops loopsOf(int inside, int joined);
 
 }  // namespace sgm::mesh

@@ -1,6 +1,8 @@
 #include "modeler/mesh/region.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "modeler/field/ops.h"
 
@@ -16,14 +18,30 @@ bool isDear(const eval::Tape& tape) {
     });
 }
 
-eval::Care careOf(const eval::Tape& tape, const Grid& grid) {
+namespace {
+
+/// Lipschitz constant · cell, rounded up to a power of two; infinite where nothing is known.
+float reachOfCell(const eval::Tape& tape, const Grid& grid) {
     const float lipschitz = tape.lipschitz();
-    if (!(lipschitz > 0) || !std::isfinite(lipschitz)) return {};
+    if (!(lipschitz > 0) || !std::isfinite(lipschitz)) return std::numeric_limits<float>::infinity();
     int exponent = 0;
     const bool isPower = std::frexp(lipschitz, &exponent) == 0.5f;
-    const float cells = isDear(tape) ? farMiddle : 1.25f;
-    const float most = cells * std::ldexp(grid.cell_m, isPower ? exponent - 1 : exponent);
+    return std::ldexp(grid.cell_m, isPower ? exponent - 1 : exponent);
+}
+
+constexpr float farCells = 1.25f;
+
+}  // namespace
+
+eval::Care careOf(const eval::Tape& tape, const Grid& grid) {
+    const float reach = reachOfCell(tape, grid);
+    if (!std::isfinite(reach)) return {};
+    const float most = (isDear(tape) ? farMiddle : farCells) * reach;
     return {-most, most};
+}
+
+float surfaceReach(const eval::Tape& tape, const Grid& grid) {
+    return std::min(0.999f * farCells * reachOfCell(tape, grid), std::numeric_limits<float>::max());
 }
 
 }  // namespace sgm::mesh

@@ -94,6 +94,10 @@ inline constexpr float farEdge = 2.0625f, farFace = 2.48f, farMiddle = 2.8f;
 /// Samples of a dear field are also asked how far the surface is.
 eval::Care careOf(const eval::Tape& tape, const Grid& grid);
 
+/// Values of a block's tape up to this one, by amount, have the bits of the whole field's, whatever the block: a little
+/// less than `careOf` tells apart of a field that isn't dear.
+float surfaceReach(const eval::Tape& tape, const Grid& grid);
+
 /// Error::Input for a box without end and for cells that float32 can't resolve or that aren't positive, Error::Budget
 /// for too many along an axis.
 Status checkGrid(const Grid& grid);

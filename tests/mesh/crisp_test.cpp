@@ -17,7 +17,8 @@ const PolygonizeOptions crisp{.surface = Surface::Crisp};
 /// Coordinates of a graph in a frame turned about three axes.
 field::Point turned(field::Graph& g, Vec3f centre, double degrees) {
     const double a = degrees * 3.14159265358979 / 180;
-    const Mat3 m = Mat3::rotation({1, 0, 0}, a) * Mat3::rotation({0, 1, 0}, 0.7 * a) * Mat3::rotation({0, 0, 1}, 1.3 * a);
+    const Mat3 m =
+        Mat3::rotation({1, 0, 0}, a) * Mat3::rotation({0, 1, 0}, 0.7 * a) * Mat3::rotation({0, 0, 1}, 1.3 * a);
     const field::Point p = shifted(g, centre);
     const auto along = [&](Vec3d axis) {
         const Vec3f d = axis.as<float>();
@@ -30,7 +31,8 @@ field::Field block(field::Graph& g, Vec3f centre, Vec3f half, double degrees = 0
     const field::Point h{g.slot(half.x), g.slot(half.y), g.slot(half.z)};
     const float reach = length(half);
     const Vec3f r{reach, reach, reach};
-    const field::Num value = field::solids::boxDistance(degrees == 0 ? shifted(g, centre) : turned(g, centre, degrees), h);
+    const field::Num value =
+        field::solids::boxDistance(degrees == 0 ? shifted(g, centre) : turned(g, centre, degrees), h);
     return {value, degrees == 0 ? Box3f{centre - half, centre + half} : Box3f{centre - r, centre + r}, 1, 0.5f};
 }
 
@@ -130,7 +132,8 @@ TEST(Crisp, ACylinderHasRoundRims) {
     Scene s;
     const field::Point p = turned(s.graph, {}, 17);
     const field::Num side = sqrt(square(p.x) + square(p.z)) - 1.0f, cap = abs(p.y) - 1.0f;
-    s.field = {s.graph.apply(field::codeOf<field::ops::Rim>, {side, cap}), {{-1.5f, -1.5f, -1.5f}, {1.5f, 1.5f, 1.5f}}, 1, 1};
+    s.field = {
+        s.graph.apply(field::codeOf<field::ops::Rim>, {side, cap}), {{-1.5f, -1.5f, -1.5f}, {1.5f, 1.5f, 1.5f}}, 1, 1};
     for (const int resolution : {24, 64}) crispMesh(s, resolution);
 }
 
@@ -148,7 +151,8 @@ TEST(Crisp, RandomBoxesAreClosedAndDontCross) {
         }
         s.field = field::sum(s.graph, parts);
         if (key % 3 == 0)
-            s.field = field::difference({s.field, 0}, {block(s.graph, {real(-1, 1), 0, 0}, {.5f, .4f, .3f}, real(0, 90)), 99});
+            s.field = field::difference({s.field, 0},
+                                        {block(s.graph, {real(-1, 1), 0, 0}, {.5f, .4f, .3f}, real(0, 90)), 99});
         const Meshed m = meshOf(s, 32, 2, crisp);
         ASSERT_TRUE(m.mesh.ok());
         const MeshFigures f = measure(*m.mesh);
