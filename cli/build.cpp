@@ -207,12 +207,34 @@ Status stream(const BuildRequest& request, const Model& model, Progress* progres
     return Done{};
 }
 
+/// Whether files of the solid tree are all that is wanted.
+bool solidsWillDo(const BuildRequest& request) {
+    return solidsWillDo(request.out) && request.report.empty() && !request.judge && !surveys(request);
+}
+
+/// Writes the solid tree where that is wanted: before meshing, for a model that isn't exactly one is refused.
+Status writeSolids(const BuildRequest& request, const Model& model, Stages& stages, Progress* progress) {
+    exporter::ExportInput input = viewer::exportInput(model, request.model.file);
+    input.progress = progress;
+    return timed(stages, "solids", [&] { return writeSolids(request.out, model, input); });
+}
+
+void sayFiles(const BuildRequest& request) {
+    if (request.quiet) return;
+    for (const std::string& file : allFiles(request.out)) fmt::print("wrote {}\n", file);
+}
+
 Status buildOne(const BuildRequest& request) {
     Stages stages;
     Watch watch(request.quiet);
     const auto model = makeModel(request.model, stages, watch.progress());
     if (!model.ok()) return model.error();
     if (request.stream) return stream(request, *model, watch.progress());
+    if (const Status s = writeSolids(request, *model, stages, watch.progress()); !s.ok()) return s;
+    if (solidsWillDo(request)) {
+        sayFiles(request);
+        return Done{};
+    }
     auto meshed = makeMesh(*model, request.grid, stages, watch.progress(), bareWillDo(request));
     if (!meshed.ok()) return meshed.error();
     return deliver(request, *model, std::move(*meshed), stages, watch.progress());
@@ -269,11 +291,17 @@ Status buildFrames(const BuildRequest& request) {
         options->params = animation->values(still, frame);
         const auto model = makeModel(grammar, *options, stages, watch.progress());
         if (!model.ok()) return model.error();
+        const BuildRequest framed = *requestOf(request, frame);
+        if (const Status s = writeSolids(framed, *model, stages, watch.progress()); !s.ok()) return s;
+        if (!request.quiet) fmt::print("frame {} of {}, {}: ", frame + 1, animation->frames, animation->text(*grammar, frame));
+        if (solidsWillDo(request)) {
+            sayFiles(framed);
+            continue;
+        }
         auto meshed = wantsLevelSet(request) ? makeMesh(*model, grid, meshing, stages, watch.progress())
                                   : makeMesh(*model, grid, rebuild, stages, watch.progress());
         if (!meshed.ok()) return meshed.error();
-        if (!request.quiet) fmt::print("frame {} of {}, {}: ", frame + 1, animation->frames, animation->text(*grammar, frame));
-        if (const Status s = deliver(*requestOf(request, frame), *model, std::move(*meshed), stages, watch.progress()); !s.ok()) return s;
+        if (const Status s = deliver(framed, *model, std::move(*meshed), stages, watch.progress()); !s.ok()) return s;
         std::fflush(stdout);
     }
     return Done{};

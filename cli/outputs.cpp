@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "grammar/lower/solid_tree.h"
 #include "modeler/mesh/proxy.h"
 
 namespace sgm::cli {
@@ -14,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using exporter::Exporter;
 
-const Exporter* formatOf(const std::string& file) { return exporter::findExporter(fs::path(file).extension().string()); }
+const Exporter* formatOf(const std::string& file) { return exporter::exporterFor(file); }
 
 Status checkFile(const std::string& file) {
     std::vector<std::string> known;
@@ -71,8 +72,10 @@ std::vector<std::string> allFiles(const OutputRequest& request) {
 
 Status checkMeshFile(const char* option, const std::string& file) {
     if (const Status s = checkFile(file); !s.ok()) return s;
-    if (!formatOf(file)->wantsVolume) return Done{};
-    return Error{Error::Kind::Usage, fmt::format("{} {}: this is a mesh; '{}' holds volumes", option, file, formatOf(file)->extension)};
+    const Exporter& row = *formatOf(file);
+    if (!row.wantsVolume && !row.wantsSolids) return Done{};
+    const char* held = row.wantsVolume ? "volumes" : "solid trees";
+    return Error{Error::Kind::Usage, fmt::format("{} {}: this is a mesh; '{}' holds {}", option, file, row.extension, held)};
 }
 
 Status checkOutputs(const OutputRequest& request) {
@@ -89,6 +92,11 @@ Status checkOutputs(const OutputRequest& request) {
 
 bool wantsVolume(const OutputRequest& request) {
     return std::any_of(request.files.begin(), request.files.end(), [](const std::string& file) { return formatOf(file)->wantsVolume; });
+}
+
+bool solidsWillDo(const OutputRequest& request) {
+    return !request.files.empty() && request.proxy.empty() &&
+           std::all_of(request.files.begin(), request.files.end(), [](const std::string& file) { return formatOf(file)->wantsSolids; });
 }
 
 bool bareWillDo(const OutputRequest& request) {
@@ -110,9 +118,27 @@ Status streamOutput(const OutputRequest& request, exporter::ExportInput input, c
     return exporter::writeStreamed(input, chunks, request.files[0]);
 }
 
+Status writeSolids(const OutputRequest& request, const Model& model, exporter::ExportInput input) {
+    field::SolidTree tree;
+    for (const std::string& file : request.files) {
+        const Exporter& row = *formatOf(file);
+        if (!row.wantsSolids) continue;
+        if (tree.nodes.empty()) {
+            auto collected = lower::solidTree(model.derivation, *model.lowered, input.progress);
+            if (!collected.ok()) return collected.error();
+            tree = std::move(*collected);
+        }
+        input.solids = &tree;
+        input.options = optionsFor(request, row);
+        if (const Status written = exporter::write(input, file); !written.ok()) return written;
+    }
+    return Done{};
+}
+
 Status writeOutputs(const OutputRequest& request, const Model& model, exporter::ExportInput input, int threads) {
     for (const std::string& file : request.files) {
         const Exporter& row = *formatOf(file);
+        if (row.wantsSolids) continue;
         input.options = optionsFor(request, row);
         if (const Status written = exporter::write(input, file); !written.ok()) return written;
     }

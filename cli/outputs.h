@@ -28,6 +28,9 @@ Status checkMeshFile(const char* option, const std::string& file);
 /// True when one of the files holds a volume.
 bool wantsVolume(const OutputRequest& request);
 
+/// True when every file holds the solid tree, so that no mesh is wanted.
+bool solidsWillDo(const OutputRequest& request);
+
 /// True when no file says anything of the mesh's normals and origins. (The proxy is a mesh of its own.)
 bool bareWillDo(const OutputRequest& request);
 
@@ -36,7 +39,10 @@ Status checkStreamed(const OutputRequest& request);
 /// Writes that file.
 Status streamOutput(const OutputRequest& request, exporter::ExportInput input, const exporter::ChunkSource& chunks);
 
-/// Writes every file. `input` has the mesh, the level set where one of the files wants it, and what is known of the model.
+/// Writes the files that hold the model's solid tree, if any. Error::Input, located, where the model isn't exactly one.
+Status writeSolids(const OutputRequest& request, const Model& model, exporter::ExportInput input);
+
+/// Writes every other file. `input` has the mesh, the level set where one of the files wants it, and what is known of the model.
 Status writeOutputs(const OutputRequest& request, const Model& model, exporter::ExportInput input, int threads);
 
 }  // namespace sgm::cli

@@ -17,6 +17,8 @@ constexpr ExportOption unit{"unit", "m", "m|cm|mm", "the length of one unit in t
 constexpr ExportOption gltfOptions[] = {uv};
 constexpr ExportOption texturedOptions[] = {up, unit, uv};
 constexpr ExportOption plainOptions[] = {up, unit};
+constexpr ExportOption scadOptions[] = {
+    up, unit, {"sides", "128", "16|32|64|128|256|512|1024|2048|4096", "sides of round solids, inscribed"}};
 constexpr ExportOption plyOptions[] = {
     up,
     unit,
@@ -53,7 +55,17 @@ constexpr Exporter table[] = {
      texturedOptions, nullptr, writeUsda, nullptr},
     {".vdb", "OpenVDB: a narrow-band level set, fog for renderers, or both; voxels in metres", true, volumeOptions,
      always, writeVdb, nullptr},
+    {".csg.json", "The solid tree as JSON: booleans of primitives with their parts and materials, of models that are exactly that",
+     false, {}, always, writeCsgJson, nullptr, true},
+    {".scad", "The solid tree as an OpenSCAD program: a module a boolean, of the same models", false, scadOptions, always, writeScad, nullptr, true},
 };
+
+/// The name in lower case, by ASCII.
+std::string lowered(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
 
 /// `parts`, each turned to text by `name`, with `separator` between them.
 template <class Parts, class Name>
@@ -92,16 +104,17 @@ Error bareError(const Path& path) { return writeError(path, "the mesh has no nor
 
 Status checkInput(const ExportInput& input, const Exporter& row, const Path& path) {
     if (row.wantsVolume && !input.volume) return writeError(path, "there is no volume");
-    if (!row.wantsVolume && (!input.mesh || input.mesh->triangleCount() == 0))
+    if (row.wantsSolids && !input.solids) return writeError(path, "there is no solid tree");
+    if (!row.wantsVolume && !row.wantsSolids && (!input.mesh || input.mesh->triangleCount() == 0))
         return writeError(path, "the mesh has no triangles");
     if (Status status = checkOptions(row, input.options); !status.ok()) return status;
-    if (!takesBare(row, input.options) && input.mesh->isBare()) return bareError(path);
+    if (input.mesh && !takesBare(row, input.options) && input.mesh->isBare()) return bareError(path);
     return Done{};
 }
 
 /// The format of a path.
 Result<const Exporter*> rowFor(const Path& path) {
-    if (const Exporter* const row = findExporter(path.extension().string())) return row;
+    if (const Exporter* const row = exporterFor(path)) return row;
     return Error{Error::Kind::Usage, fmt::format("no format for '{}'; the extensions are {}", path.string(),
                                                  joined(table, " ", [](const Exporter& e) { return e.extension; }))};
 }
@@ -142,11 +155,16 @@ std::span<const Exporter> exporters() { return table; }
 bool takesBare(const Exporter& row, const ExportOptions& options) { return row.takesBare && row.takesBare(options); }
 
 const Exporter* findExporter(std::string_view extension) {
-    std::string lower(extension);
-    for (char& c : lower)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    const std::string lower = lowered(std::string(extension));
     const auto row =
         std::find_if(std::begin(table), std::end(table), [&](const Exporter& e) { return e.extension == lower; });
+    return row == std::end(table) ? nullptr : row;
+}
+
+const Exporter* exporterFor(const Path& path) {
+    const std::string name = lowered(path.filename().string());
+    const auto row =
+        std::find_if(std::begin(table), std::end(table), [&](const Exporter& e) { return name.size() > e.extension.size() && name.ends_with(e.extension); });
     return row == std::end(table) ? nullptr : row;
 }
 

@@ -1,5 +1,5 @@
 // The exporter table: one row a format.
-// Enters: a mesh (or a level set) with its provenance. Leaves: a file, written beside its target and renamed into
+// Enters: a mesh (or a level set, or a solid tree) with its provenance. Leaves: a file, written beside its target and renamed into
 // place, so that a good earlier file is never lost. Assumes metres, Y up; options say otherwise for formats that can't.
 #pragma once
 
@@ -13,6 +13,7 @@
 #include "modeler/core/progress.h"
 #include "modeler/core/provenance.h"
 #include "modeler/core/result.h"
+#include "modeler/field/solid_tree.h"
 #include "modeler/mesh/polygonize.h"
 #include "modeler/volume/volume.h"
 
@@ -29,10 +30,11 @@ struct ExportOption {
 /// Values by ExportOption::name.
 using ExportOptions = std::map<std::string, std::string, std::less<>>;
 
-/// What is written. `mesh` is set for mesh formats, `volume`, a level set, for volumes.
+/// What is written. `mesh` is set for mesh formats, `volume`, a level set, for volumes, `solids` for solid trees.
 struct ExportInput {
     const mesh::Mesh* mesh = nullptr;
     const volume::Volume* volume = nullptr;
+    const field::SolidTree* solids = nullptr;
     const Provenance* provenance = nullptr;
     std::string name = "model";                 ///< of the object in the file
     std::map<std::string, std::string> extras;  ///< grammar, seed, parameters: kept where the format can hold them
@@ -57,12 +59,15 @@ struct Exporter {
     /// The same bytes from chunks, of which it holds none; null where the format wants the whole mesh.
     Status (*stream)(const ExportInput& input, const ChunkSource& chunks, const std::filesystem::path& temporary,
                      const std::filesystem::path& target);
+    bool wantsSolids = false;  ///< holds the model's solid tree, and neither a mesh nor a volume
 };
 
 /// The table, in the order of docs/reference.md.
 std::span<const Exporter> exporters();
 /// The row for ".glb" …, or null.
 const Exporter* findExporter(std::string_view extension);
+/// The row whose extension the file's name ends with, in upper or lower case, or null.
+const Exporter* exporterFor(const std::filesystem::path& path);
 /// Extensions of the formats that take a mesh chunk by chunk: ".ply .stl …".
 std::string streamedExtensions();
 /// Error::Usage, in words, for a name that the format doesn't have and for a value that the option doesn't take.

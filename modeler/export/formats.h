@@ -21,6 +21,8 @@ Status writeStl(const ExportInput& input, const Path& temporary, const Path& tar
 Status writeOff(const ExportInput& input, const Path& temporary, const Path& target);
 Status writeUsda(const ExportInput& input, const Path& temporary, const Path& target);
 Status writeVdb(const ExportInput& input, const Path& temporary, const Path& target);
+Status writeCsgJson(const ExportInput& input, const Path& temporary, const Path& target);
+Status writeScad(const ExportInput& input, const Path& temporary, const Path& target);
 Status streamPly(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target);
 Status streamStl(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target);
 Status streamOff(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target);

@@ -263,6 +263,22 @@ TEST(Exports, ShowEveryOptionOfTheTable) {
     }
 }
 
+TEST(Exports, WriteTheSolidTree) {
+    const Scratch scratch;
+    const auto outcome = [&](const std::string& body) {
+        const auto model = shown(Document("grammar 1\nstart A -> " + body + "\n"));
+        ExportJob job;
+        EXPECT_TRUE(job.start(model, {.file = scratch / "a.csg.json", .options = {}}).ok());
+        std::optional<Status> done;
+        while (!(done = job.take())) std::this_thread::yield();
+        return *done;
+    };
+    EXPECT_FALSE(outcome("cube size 2 + sphere size 1 blend .2m").ok());
+    EXPECT_FALSE(std::filesystem::exists(scratch / "a.csg.json"));
+    EXPECT_TRUE(outcome("cube size 2 - sphere size 1").ok());
+    EXPECT_GT(std::filesystem::file_size(scratch / "a.csg.json"), 500u);
+}
+
 TEST(Exports, WriteTheSolidsThatStay) {
     const Scratch scratch;
     const auto model = shown(Document("grammar 1\nstart A -> cube size 2 + cube size .2 at +x shift (1, 0, 0)\n"));

@@ -10,11 +10,12 @@ namespace sgm::exporter {
 namespace {
 
 TEST(ExporterTable, EveryRowIsComplete) {
-    EXPECT_EQ(exporters().size(), 8u);
+    EXPECT_EQ(exporters().size(), 10u);
     for (const Exporter& row : exporters()) {
         EXPECT_EQ(row.extension[0], '.');
         EXPECT_FALSE(row.doc.empty());
         EXPECT_EQ(findExporter(row.extension), &row);
+        EXPECT_EQ(exporterFor("folder.ply/a.b" + std::string(row.extension)), &row);
         for (const ExportOption& o : row.options) {
             EXPECT_FALSE(o.doc.empty());
             if (!o.choices.empty()) {
@@ -25,6 +26,8 @@ TEST(ExporterTable, EveryRowIsComplete) {
     EXPECT_EQ(findExporter(".GLB"), findExporter(".glb"));
     EXPECT_EQ(findExporter(".fbx"), nullptr);
     EXPECT_EQ(findExporter(""), nullptr);
+    EXPECT_EQ(exporterFor("a.json"), nullptr);
+    EXPECT_EQ(exporterFor(".glb"), nullptr);
 }
 
 class Write : public testing::Test {
@@ -76,7 +79,7 @@ TEST_F(Write, StopsWhenCancelled) {
     progress.cancel();
     input.progress = &progress;
     for (const Exporter& row : exporters()) {
-        if (row.wantsVolume) continue;
+        if (row.wantsVolume || row.wantsSolids) continue;
         const Status status = write(input, folder / std::string("a").append(row.extension));
         ASSERT_FALSE(status.ok()) << row.extension;
         EXPECT_EQ(status.error().kind, Error::Kind::Cancelled);
@@ -88,7 +91,7 @@ TEST_F(Write, TicksToTheEnd) {
     Progress progress;
     input.progress = &progress;
     for (const Exporter& row : exporters())
-        if (!row.wantsVolume) {
+        if (!row.wantsVolume && !row.wantsSolids) {
             EXPECT_EQ(errorOf(folder / std::string("a").append(row.extension)), "");
             EXPECT_DOUBLE_EQ(progress.fraction(), 1) << row.extension;
         }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "grammar/lower/solid_tree.h"
 #include "modeler/volume/keep.h"
 #include "viewer/document/meshing.h"
 
@@ -9,7 +10,18 @@ namespace sgm::viewer {
 namespace fs = std::filesystem;
 namespace {
 
+Status writeSolids(const Shown& shown, const ExportRequest& request, Progress& progress) {
+    const auto tree = lower::solidTree(shown.model.derivation, *shown.model.lowered, &progress);
+    if (!tree.ok()) return tree.error();
+    exporter::ExportInput input = exportInput(shown.model, shown.grammar->sources[0]->name());
+    input.solids = &*tree;
+    input.options = request.options;
+    input.progress = &progress;
+    return exporter::write(input, request.file);
+}
+
 Status write(const Shown& shown, const ExportRequest& request, const exporter::Exporter& format, Progress& progress) {
+    if (format.wantsSolids) return writeSolids(shown, request, progress);
     const Box3f& bounds = shown.model.lowered->field.bounds;
     const float cell_m =
         request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
@@ -64,7 +76,7 @@ ExportJob::~ExportJob() {
 Status ExportJob::start(std::shared_ptr<const Shown> shown, ExportRequest request, std::function<void()> wake) {
     if (thread_.joinable()) return Error{Error::Kind::Input, "another export is under way"};
     if (!shown) return Error{Error::Kind::Input, "there is no model to export yet"};
-    const exporter::Exporter* format = exporter::findExporter(request.file.extension().string());
+    const exporter::Exporter* format = exporter::exporterFor(request.file);
     if (!format)
         return Error{Error::Kind::Usage, fmt::format("'{}': no format has the ending '{}'", request.file.string(),
                                                      request.file.extension().string())};

@@ -41,8 +41,10 @@ void ExportPanel::show(Workbench& bench) {
     const bool chosen = choice(bench.report, "export.format", names, format), another = document_ != document;
     if (another) file_ = (document_ = document).string();
     if (chosen || another) {
+        const exporter::Exporter* before = exporter::exporterFor(file_);
+        if (before) file_.resize(file_.size() - before->extension.size());
         take(size_t(format));
-        file_ = std::filesystem::path(file_).replace_extension(formats[format_].extension).string();
+        file_ = (before ? file_ : std::filesystem::path(file_).replace_extension().string()).append(formats[format_].extension);
     }
     ImGui::PushTextWrapPos(0);
     faint(std::string(formats[format_].doc));
@@ -68,7 +70,7 @@ void ExportPanel::show(Workbench& bench) {
     heading("File");
     // The ending says the format, whichever of the two is changed.
     if (field(bench.report, "export.file", file_))
-        if (const exporter::Exporter* named = exporter::findExporter(std::filesystem::path(file_).extension().string()); named && named != &formats[format_])
+        if (const exporter::Exporter* named = exporter::exporterFor(file_); named && named != &formats[format_])
             take(static_cast<size_t>(named - formats.data()));
     ImGui::Dummy({0, 4});
     if (button(bench.report, "export.export", "Export", nullptr, bench.shown() && !bench.exporting.running())) {
