@@ -8,7 +8,10 @@
 cd "$(dirname "$0")"
 . cmake/setup.sh
 case "${1:-}" in
-  bench) build bench && shift && exec build/release/tests/bench/bench "$@" ;;
+  bench)
+    build bench && shift
+    case " $* " in *" --meshes "*) install_judge ;; esac
+    exec build/release/tests/bench/bench "$@" ;;
   view) build sgm sgm-viewer ;;
   gallery) build sgm sgm-viewer bench && shift && exec docs/gallery.sh "$@" ;;
 esac

@@ -30,5 +30,11 @@ build() {
   ninja -C build/release -j "${JOBS:-2}" "$@" >build/build.log 2>&1 || { grep -A 12 -m 5 'FAILED\|error' build/build.log; exit 1; }
 }
 
+# npm's manifold-3d, the judge of `bench --meshes`, where npm is there to fetch it; bench says so where it isn't.
+install_judge() {
+  [ ! -d build/node_modules/manifold-3d ] && command -v npm >/dev/null || return 0
+  npm install --prefix build --no-audit --no-fund --omit=optional manifold-3d@3.5.4 >build/npm.log 2>&1 || tail -n 5 build/npm.log >&2
+}
+
 mkdir -p build
 install_missing

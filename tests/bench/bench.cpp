@@ -8,6 +8,7 @@
 #include "modeler/core/parallel.h"
 #include "tests/bench/gallery.h"
 #include "tests/bench/kifs.h"
+#include "tests/bench/meshes.h"
 #include "tests/bench/pictures.h"
 #include "tests/bench/report.h"
 
@@ -22,6 +23,8 @@ struct Request {
     MeasureOptions measure;
     std::string json, drag, gallery;
     bool bars = false, cpu = false, noPeers = false, noDense = false, kifs = false, pictures = false;
+    bool meshes = false, crossings = false;
+    int sides = MeshesOptions{}.sides;
 };
 
 void addOptions(CLI::App& app, Request& request) {
@@ -50,6 +53,15 @@ void addOptions(CLI::App& app, Request& request) {
     app.add_flag("--kifs", request.kifs, "Measure the folding of fractals and what the shells of facades save instead");
     app.add_flag("--pictures", request.pictures,
                  "Measure pictures of fields at 640 x 640 instead, and judge what the window asks of itself");
+    auto* meshes =
+        app.add_flag("--meshes", request.meshes,
+                     "Hold meshes of buildings against exact solid geometry instead (needs node and manifold-3d)");
+    app.add_flag("--crossings", request.crossings, "Let CGAL count the crossing pairs of triangles of --meshes")
+        ->needs(meshes);
+    app.add_option("--sides", request.sides, "Sides of round solids in the exact models of --meshes, a multiple of 4")
+        ->needs(meshes)
+        ->check(CLI::Range(132, 65536))
+        ->capture_default_str();
     app.add_flag("--no-dense", request.noDense, "Leave the dense sweeps out");
     app.add_flag("--no-peers", request.noPeers, "Leave OpenVDB and VTK out");
     app.add_option("--json", request.json, "Write all figures to this file");
@@ -118,6 +130,25 @@ Status measureLarge(Request request, const Limits& limits, Measured& out) {
     return Done{};
 }
 
+Status writeFile(const std::string& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) return Error{Error::Kind::Input, "can't write " + path};
+    return Done{};
+}
+
+/// The table of --meshes.
+Status runMeshes(const Request& request) {
+    if (request.sides % 4 != 0) return Error{Error::Kind::Usage, "--sides is a multiple of 4"};
+    MeshesOptions options{request.scenes,          request.resolutions, request.sides,
+                          request.measure.repeats, request.crossings,   request.measure.running};
+    options.scenes.insert(options.scenes.end(), request.files.begin(), request.files.end());
+    const auto rows = measureMeshes(options);
+    if (!rows.ok()) return rows.error();
+    return request.json.empty() ? Status(Done{}) : writeFile(request.json, meshesJson(*rows, options));
+}
+
 int fail(const Error& error) {
     fmt::print(stderr, "{}\n", error.message);
     return error.kind == Error::Kind::Usage ? 2 : 1;
@@ -130,11 +161,15 @@ int main(int argc, char** argv) {
     CLI::App app{"bench: field to mesh beside dense SIMD sweeps, OpenVDB, VTK and the machine's limits"};
     addOptions(app, request);
     CLI11_PARSE(app, argc, argv);
+    if (request.cpu) request.measure.running.clock = Clock::Processor;
+    request.measure.running.threads = threadCount(request.measure.running.threads);
+    if (request.meshes) {
+        const Status done = runMeshes(request);
+        return done.ok() ? 0 : fail(done.error());
+    }
     const bool everything = request.bars && request.resolutions.empty() && request.scenes.empty();
     if (request.resolutions.empty())
         request.resolutions = request.bars ? std::vector<int>{64, 256, 512} : std::vector<int>{256};
-    request.measure.running.threads = threadCount(request.measure.running.threads);
-    if (request.cpu) request.measure.running.clock = Clock::Processor;
     request.measure.peers = !request.noPeers;
     request.measure.dense = !request.noDense;
 
@@ -165,8 +200,6 @@ int main(int argc, char** argv) {
         for (const Bar& bar : measured.bars) fmt::print("{}\n", barLine(bar));
     }
     if (request.json.empty()) return 0;
-    std::ofstream file(request.json, std::ios::binary);
-    file << toJson(measured, limits, request.measure.running.threads);
-    file.close();
-    return file ? 0 : fail({Error::Kind::Input, "can't write " + request.json});
+    const Status written = writeFile(request.json, toJson(measured, limits, request.measure.running.threads));
+    return written.ok() ? 0 : fail(written.error());
 }

@@ -1,0 +1,54 @@
+// What exact constructive solid geometry makes of a solid tree: triangles, creases, corners, borders.
+// Enters: a .csg.json file. Leaves: figures and features, computed by tests/exact/exact.mjs (npm's manifold-3d) and
+// kept in a folder, by content. Assumes the repository's root as the working folder.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "modeler/core/provenance.h"
+#include "modeler/core/result.h"
+#include "tests/exact/spatial.h"
+
+namespace sgm::exact {
+
+/// A straight piece of an edge whose faces turn by more than 10 degrees.
+struct Crease {
+    Segment segment;
+    uint32_t chain = 0;  ///< pieces of one chain, from corner to corner, follow each other
+    double degrees = 0;
+    bool convex = false;
+    Vec3d normals[2];  ///< unit, outward
+};
+
+/// A vertex where creases meet at an angle, or an apex.
+struct Corner {
+    Vec3d point;
+    uint32_t creases = 0;
+    double thickness_m = 0;  ///< least extent of the thinnest solid that meets there
+};
+
+struct ExactModel {
+    int sides = 0;        ///< of round solids, inscribed
+    uint64_t planar = 0;  ///< triangles after the planar merge
+    double volume_m3 = 0, area_m2 = 0, crease_m = 0, border_m = 0;
+    int64_t euler = 0;  ///< V − E + F
+    std::vector<Crease> creases;
+    std::vector<Corner> corners;
+    std::vector<Segment> borders;  ///< edges between two looks, where asked for
+    std::vector<Vec3d> points;
+    std::vector<Corners> triangles;
+    std::vector<OriginId> origins;  ///< one per triangle; of the first owner where borders were asked for
+};
+
+/// "" where node and manifold-3d are installed, else what to install.
+std::string missingJudge();
+
+/// The exact model with round solids of `sides` sides, a multiple of 4; its borders, which take as long again, where
+/// asked for. Files are kept in `folder` under a name made of the tree's and the script's content. Error::Input with
+/// the script's own words where it fails.
+Result<ExactModel> exactModel(const std::filesystem::path& csgJson, int sides, bool borders,
+                              const std::filesystem::path& folder);
+
+}  // namespace sgm::exact
