@@ -15,7 +15,8 @@
 // model of their own, for manifold takes either owner where it is left to itself. The triangles are those of its planar
 // merge: coplanar ones of one solid are joined.
 // MESH.bin, little-endian: uint32 vertices, triangles; float64 x y z a vertex; uint32 three corners a triangle; uint32
-// origin a triangle; of the model with borders where --borders is given, else of either owner.
+// origin a triangle, of the model with borders where --borders is given, else of either owner; uint32 1|0 a triangle:
+// whether it is of a round solid.
 //
 // Round solids are inscribed: their corners lie on the true surface. n sides of radius r stay r(1 − cos(π/n)) inside:
 // .0003 r at 128, 3e-7 r at 4096, and a cylinder's volume is (2π/n)²/6 too small: 4e-4 at 128, 4e-7 at 4096. Balls have n
@@ -26,7 +27,7 @@ import fs from 'node:fs';
 import {pathToFileURL} from 'node:url';
 
 import {areaOf, bordersOf, cross, eulerOf, featuresOf, lengthOf, looksOf, sub, withoutFilms} from './features.mjs';
-import {aligned, Solids, thicknesses} from './solids.mjs';
+import {aligned, isRound, Solids, thicknesses} from './solids.mjs';
 
 async function loadManifold() {
   const path = ['build/', ''].map(folder => `${process.cwd()}/${folder}node_modules/manifold-3d/manifold.js`).find(fs.existsSync);
@@ -138,7 +139,8 @@ function writeMesh(file, soup, tree) {
   const {points, triangles, node} = soup;
   const head = Uint32Array.of(points.length, triangles.length);
   const parts = [head, Float64Array.from(points.flat()), Uint32Array.from(triangles.flat()),
-                 Uint32Array.from(node, n => tree.nodes[n].origin)];
+                 Uint32Array.from(node, n => tree.nodes[n].origin),
+                 Uint32Array.from(node, n => isRound(tree.nodes[n]) ? 1 : 0)];
   fs.writeFileSync(file, Buffer.concat(parts.map(p => Buffer.from(p.buffer))));
 }
 

@@ -56,6 +56,7 @@ bool readMesh(const fs::path& path, ExactModel& model) {
     readList(file, model.points, head[0]);
     readList(file, model.triangles, head[1]);
     readList(file, model.origins, head[1]);
+    readList(file, model.round, head[1]);
     return bool(file);
 }
 

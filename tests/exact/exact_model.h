@@ -40,6 +40,7 @@ struct ExactModel {
     std::vector<Vec3d> points;
     std::vector<Corners> triangles;
     std::vector<OriginId> origins;  ///< one per triangle; of the first owner where borders were asked for
+    std::vector<uint32_t> round;    ///< one per triangle: 1 where it is of a round solid, else 0
 };
 
 /// "" where node and manifold-3d are installed, else what to install.

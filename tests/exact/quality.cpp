@@ -74,9 +74,13 @@ std::vector<Edge> edgesOf(const Soup& soup) {
     return edges;
 }
 
-Vec3d normalOf(const Soup& soup, uint32_t t) {
-    const Corners& c = soup.triangles[t];
-    return normalized(cross(soup.points[c.y] - soup.points[c.x], soup.points[c.z] - soup.points[c.x]));
+/// The triangle's unit normal; zero where it is lower than `least_m`, so that rounding decides where it looks.
+Vec3d normalOf(const Soup& soup, uint32_t t, double least_m) {
+    const Vec3d a = soup.points[soup.triangles[t].x], b = soup.points[soup.triangles[t].y],
+                c = soup.points[soup.triangles[t].z];
+    const Vec3d twice = cross(b - a, c - a);
+    const double base = std::max({length(b - a), length(c - b), length(a - c)});
+    return length(twice) > least_m * base ? normalized(twice) : Vec3d{};
 }
 
 /// What lies along the mesh's edges: its own creases, and the length between two looks.
@@ -85,31 +89,32 @@ struct Along {
     double border_m = 0;
 };
 
-Along alongEdges(const Soup& soup) {
+Along alongEdges(const Soup& soup, double cell_m) {
     Along along;
     const std::vector<Edge> edges = edgesOf(soup);
     for (size_t i = 0; i + 1 < edges.size(); ++i) {
         if (edges[i].key() != edges[i + 1].key()) continue;
         const Segment s{soup.points[edges[i].a], soup.points[edges[i].b]};
         if (soup.looks[edges[i].t] != soup.looks[edges[i + 1].t]) along.border_m += length(s.b - s.a);
-        const Vec3d n = normalOf(soup, edges[i].t), m = normalOf(soup, edges[i + 1].t);
-        // A triangle without area has no normal.
+        const Vec3d n = normalOf(soup, edges[i].t, 1e-3 * cell_m), m = normalOf(soup, edges[i + 1].t, 1e-3 * cell_m);
         if (dot(n, n) > 0 && dot(m, m) > 0 && dot(n, m) < creaseCosine) along.creases.push_back(s);
     }
     return along;
 }
 
-/// Whether the solid or the air before it is thinner than two cells at the surface nearest to `p`.
-bool isThin(const TriangleTree& exact, Vec3d p, double cell_m) {
-    const Plane at = exact.nearest(p);
+/// Whether the exact surface nearest to `p` is flat, and the solid and the air there at least two cells thick.
+bool isFlatAndThick(const TriangleTree& exact, const ExactModel& model, Vec3d p, double cell_m) {
+    const auto [at, triangle] = exact.nearest(p);
+    if (model.round[triangle]) return false;
     const double off_m = 1e-3 * cell_m;
     const auto own = [&](const Plane& plane) { return plane.distance(at.point) < 0.1 * off_m; };
     const Vec3d off = at.normal * off_m;
-    return std::min(exact.hit(at.point - off, -at.normal, own), exact.hit(at.point + off, at.normal, own)) < 2 * cell_m;
+    return std::min(exact.hit(at.point - off, -at.normal, own), exact.hit(at.point + off, at.normal, own)) >=
+           2 * cell_m;
 }
 
 /// Distances in cells from points every half cell along the mesh's creases to the nearest exact one, but where the
-/// nearest feature, or the surface itself, is thin: there a mesh tears.
+/// nearest feature, or the surface itself, is thin, for there a mesh tears, and where it is round, for there it bends.
 std::vector<double> strays(const std::vector<Segment>& creases, const ExactModel& model, const CreaseSamples& samples,
                            double cell_m) {
     std::vector<double> found;
@@ -128,7 +133,7 @@ std::vector<double> strays(const std::vector<Segment>& creases, const ExactModel
         const int count = std::max(1, static_cast<int>(std::ceil(length(way) / (0.5 * cell_m))));
         for (int i = 0; i < count; ++i) {
             const Vec3d p = s.a + way * ((i + 0.5) / count);
-            if (thick.distance(p) < thin.distance(p) && !isThin(surface, p, cell_m))
+            if (thick.distance(p) < thin.distance(p) && isFlatAndThick(surface, model, p, cell_m))
                 found.push_back(nearest.distance(p) / cell_m);
         }
     }
@@ -169,7 +174,7 @@ Quality measureQuality(const mesh::Mesh& mesh, const Provenance& provenance, con
     for (const Corner& c : model.corners) distances.push_back(vertices.distance(c.point) / cell_m);
     quality.everyCorner = spreadOf(std::move(distances));
 
-    const Along along = alongEdges(soup);
+    const Along along = alongEdges(soup, cell_m);
     quality.stray = spreadOf(strays(along.creases, model, samples, cell_m));
     quality.border_m = along.border_m;
     quality.borderRatio = model.border_m > 0 ? along.border_m / model.border_m : 0;

@@ -36,6 +36,7 @@ ExactModel boxModel(Vec3d lo, Vec3d hi) {
         m.triangles.push_back({f[0], f[2], f[3]});
     }
     m.origins.assign(12, 1);
+    m.round.assign(12, 0);
     for (int axis = 0; axis < 3; ++axis)
         for (uint32_t v = 0; v < 8; ++v) {
             if (v >> axis & 1) continue;

@@ -85,6 +85,8 @@ export class Solids {
   }
 }
 
+export const isRound = node => ['sphere', 'ellipsoid', 'cylinder', 'cone', 'torus', 'capsule'].includes(node.solid);
+
 /// The least extent of each node's solid in metres; 0 for booleans.
 export function thicknesses(tree) {
   return tree.nodes.map(n => n.solid === 'torus' ? Math.min(n.size[1], n.tube * Math.min(n.size[0], n.size[2])) :

@@ -31,15 +31,19 @@ Vec3d vecOf(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
 struct TriangleTree::Impl {
     Triangles triangles;
+    std::vector<uint32_t> given;  ///< their numbers; triangles without area are left out
     CGAL::AABB_tree<CGAL::AABB_traits<Kernel, TrianglePrimitive>> tree;
 };
 
 TriangleTree::TriangleTree(std::span<const Vec3d> points, std::span<const Corners> triangles)
     : impl_(std::make_unique<Impl>()) {
     impl_->triangles.reserve(triangles.size());
-    for (const Corners& t : triangles) {
+    for (uint32_t i = 0; i < triangles.size(); ++i) {
+        const Corners& t = triangles[i];
         const Kernel::Triangle_3 made(pointOf(points[t.x]), pointOf(points[t.y]), pointOf(points[t.z]));
-        if (!made.is_degenerate()) impl_->triangles.push_back(made);
+        if (made.is_degenerate()) continue;
+        impl_->triangles.push_back(made);
+        impl_->given.push_back(i);
     }
     impl_->tree.rebuild(impl_->triangles.cbegin(), impl_->triangles.cend());
     impl_->tree.accelerate_distance_queries();
@@ -49,10 +53,11 @@ TriangleTree::~TriangleTree() = default;
 
 double TriangleTree::distance(Vec3d p) const { return std::sqrt(impl_->tree.squared_distance(pointOf(p))); }
 
-Plane TriangleTree::nearest(Vec3d p) const {
+TriangleTree::Nearest TriangleTree::nearest(Vec3d p) const {
     const auto [point, t] = impl_->tree.closest_point_and_primitive(pointOf(p));
     const Vec3d a = vecOf(t->vertex(0)), b = vecOf(t->vertex(1)), c = vecOf(t->vertex(2));
-    return {vecOf(point), normalized(cross(b - a, c - a))};
+    return {{vecOf(point), normalized(cross(b - a, c - a))},
+            impl_->given[static_cast<size_t>(t - impl_->triangles.cbegin())]};
 }
 
 double TriangleTree::hit(Vec3d from, Vec3d direction, const std::function<bool(const Plane&)>& skipped) const {

@@ -31,8 +31,12 @@ public:
     ~TriangleTree();
     /// Metres from `p` to the nearest point of the mesh.
     double distance(Vec3d p) const;
-    /// The nearest point of the mesh, with its triangle's normal.
-    Plane nearest(Vec3d p) const;
+    /// The nearest point of the mesh, with its triangle and that one's normal.
+    struct Nearest {
+        Plane plane;
+        uint32_t triangle;
+    };
+    Nearest nearest(Vec3d p) const;
     /// Metres along the unit `direction` to the first triangle whose plane isn't skipped, infinite where there is none.
     double hit(Vec3d from, Vec3d direction, const std::function<bool(const Plane&)>& skipped) const;
 
