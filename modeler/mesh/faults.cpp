@@ -1,0 +1,171 @@
+#include "modeler/mesh/faults.h"
+
+#include <algorithm>
+#include <bit>
+#include <mutex>
+
+#include "modeler/core/parallel.h"
+#include "modeler/mesh/exact_meeting.h"
+
+namespace sgm::mesh {
+namespace {
+
+constexpr uint32_t leafTriangles = 4;
+constexpr size_t tasksPerThread = 64;
+
+/// The bits of a coordinate in [0, 1023], two places between each.
+uint32_t spread(uint32_t x) {
+    x = (x | x << 16) & 0x030000ffu;
+    x = (x | x << 8) & 0x0300f00fu;
+    x = (x | x << 4) & 0x030c30c3u;
+    return (x | x << 2) & 0x09249249u;
+}
+
+/// What a node bounds: triangles and their unit normals.
+struct Bounds {
+    Box3f box, normals;
+
+    /// Whether all normals are in one half-space, well off its border.
+    bool isNarrow() const {
+        const Vec3f d = normals.centre();
+        const Vec3f least = min(normals.lo * d, normals.hi * d);
+        return least.x + least.y + least.z > 0.1f * length(d);
+    }
+    bool meets(const Bounds& other) const { return !intersection(box, other.box).empty(); }
+};
+
+Bounds hull(const Bounds& a, const Bounds& b) { return {sgm::hull(a.box, b.box), sgm::hull(a.normals, b.normals)}; }
+
+/// A complete binary tree over triangles in the order of a space-filling curve (Morton 1966); node n has 2n and 2n + 1.
+class Hierarchy {
+public:
+    Hierarchy(std::span<const Vec3f> positions, std::span<const SimpleTriangle> triangles, int threads)
+        : positions_(positions), triangles_(triangles), own_(triangles.size()) {
+        Box3f all;
+        for (size_t i = 0; i < triangles.size(); ++i) all = sgm::hull(all, own_[i].box = boxOf(i));
+        const Vec3f size = all.size();
+        const auto place = [&](Vec3f p, int axis) {
+            const float share = size[axis] > 0 ? (p[axis] - all.lo[axis]) / size[axis] : 0;
+            return spread(static_cast<uint32_t>(share * 1023));
+        };
+        std::vector<uint64_t> keys(triangles.size());
+        for (size_t i = 0; i < keys.size(); ++i) {
+            const Vec3f p = own_[i].box.centre();
+            keys[i] = static_cast<uint64_t>(place(p, 0) | place(p, 1) << 1 | place(p, 2) << 2) << 32 | i;
+        }
+        std::sort(keys.begin(), keys.end());
+        for (const uint64_t key : keys) order_.push_back(static_cast<uint32_t>(key));
+        leaves_ = std::bit_ceil(std::max<size_t>(1, (order_.size() + leafTriangles - 1) / leafTriangles));
+        nodes_.resize(2 * leaves_);
+        parallelFor(leaves_, threads, nullptr, [&](size_t leaf, int) {
+            for (const uint32_t t : trianglesOf(leaves_ + leaf)) {
+                const Vec3f n = normalOf(t);
+                own_[t].normals = {n, n};
+                nodes_[leaves_ + leaf] = hull(nodes_[leaves_ + leaf], own_[t]);
+            }
+        });
+        for (size_t n = leaves_ - 1; n > 0; --n) nodes_[n] = hull(nodes_[2 * n], nodes_[2 * n + 1]);
+    }
+
+    using Pair = std::pair<uint32_t, uint32_t>;
+
+    /// Appends what remains of comparing two nodes, or a node with itself, one level down; leaves are compared.
+    template <class Found>
+    void compare(Pair pair, std::vector<Pair>& open, Found&& found) const {
+        const auto [a, b] = pair;
+        if (a == b) {
+            if (nodes_[a].isNarrow() || nodes_[a].box.empty()) return;
+            if (a >= leaves_) return compareLeaves(a, b, found);
+            open.insert(open.end(), {{2 * a, 2 * a}, {2 * a + 1, 2 * a + 1}, {2 * a, 2 * a + 1}});
+            return;
+        }
+        if (!nodes_[a].meets(nodes_[b]) || hull(nodes_[a], nodes_[b]).isNarrow()) return;
+        if (a >= leaves_) return compareLeaves(a, b, found);
+        for (const uint32_t i : {2 * a, 2 * a + 1})
+            for (const uint32_t j : {2 * b, 2 * b + 1}) open.push_back({i, j});
+    }
+
+private:
+    Vec3f corner(size_t triangle, int i) const { return positions_[triangles_[triangle].corners[i]]; }
+    Box3f boxOf(size_t t) const {
+        return sgm::hull(sgm::hull(Box3f{corner(t, 0), corner(t, 0)}, corner(t, 1)), corner(t, 2));
+    }
+    Vec3f normalOf(size_t t) const {
+        const Vec3d a = corner(t, 0).as<double>();
+        return normalized(cross(corner(t, 1).as<double>() - a, corner(t, 2).as<double>() - a)).as<float>();
+    }
+    std::span<const uint32_t> trianglesOf(size_t leaf) const {
+        const size_t begin = std::min(order_.size(), (leaf - leaves_) * leafTriangles);
+        return {order_.data() + begin, std::min<size_t>(leafTriangles, order_.size() - begin)};
+    }
+    template <class Found>
+    void compareLeaves(uint32_t a, uint32_t b, Found&& found) const {
+        const std::span<const uint32_t> left = trianglesOf(a), right = trianglesOf(b);
+        for (size_t i = 0; i < left.size(); ++i)
+            for (size_t j = a == b ? i + 1 : 0; j < right.size(); ++j) {
+                const uint32_t s = left[i], t = right[j];
+                if (own_[s].meets(own_[t]) && meetWrongly(positions_, triangles_[s].corners, triangles_[t].corners))
+                    found(s), found(t);
+            }
+    }
+
+    std::span<const Vec3f> positions_;
+    std::span<const SimpleTriangle> triangles_;
+    std::vector<Bounds> own_;  ///< by triangle
+    std::vector<uint32_t> order_;
+    size_t leaves_ = 0;
+    std::vector<Bounds> nodes_;
+};
+
+/// Triangles with an edge that runs the same way as another's.
+void findRepeatedEdges(std::span<const Vec3f> positions, std::span<const SimpleTriangle> triangles,
+                       std::vector<uint32_t>& faults) {
+    std::vector<uint32_t> begin(positions.size() + 1);
+    for (const SimpleTriangle& t : triangles)
+        for (int i = 0; i < 3; ++i) ++begin[t.corners[i] + 1];
+    for (size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+    std::vector<uint32_t> next(begin.begin(), begin.end() - 1);
+    std::vector<std::pair<uint32_t, uint32_t>> ends(3 * triangles.size());  // by start: end and triangle
+    for (uint32_t t = 0; t < triangles.size(); ++t)
+        for (int i = 0; i < 3; ++i) {
+            const uint32_t a = triangles[t].corners[i], b = triangles[t].corners[(i + 1) % 3];
+            for (uint32_t k = begin[a]; k < next[a]; ++k)
+                if (ends[k].first == b) faults.insert(faults.end(), {ends[k].second, t});
+            ends[next[a]++] = {b, t};
+        }
+}
+
+}  // namespace
+
+std::vector<uint32_t> findFaults(std::span<const Vec3f> positions, std::span<const SimpleTriangle> triangles,
+                                 int threads, const Progress* progress) {
+    std::vector<uint32_t> faults;
+    if (triangles.empty()) return faults;
+    findRepeatedEdges(positions, triangles, faults);
+    const Hierarchy hierarchy(positions, triangles, threads);
+    const auto note = [&faults](uint32_t t) { faults.push_back(t); };
+    std::vector<Hierarchy::Pair> tasks{{1, 1}}, next;
+    while (!tasks.empty() && tasks.size() < tasksPerThread * static_cast<size_t>(threadCount(threads))) {
+        next.clear();
+        for (const Hierarchy::Pair& pair : tasks) hierarchy.compare(pair, next, note);
+        tasks.swap(next);
+    }
+    std::mutex mutex;
+    parallelFor(tasks.size(), threads, progress, [&](size_t i, int) {
+        std::vector<uint32_t> found;
+        std::vector<Hierarchy::Pair> open{tasks[i]};
+        while (!open.empty()) {
+            const Hierarchy::Pair pair = open.back();
+            open.pop_back();
+            hierarchy.compare(pair, open, [&found](uint32_t t) { found.push_back(t); });
+        }
+        if (found.empty()) return;
+        const std::lock_guard lock(mutex);
+        faults.insert(faults.end(), found.begin(), found.end());
+    });
+    std::sort(faults.begin(), faults.end());
+    faults.erase(std::unique(faults.begin(), faults.end()), faults.end());
+    return faults;
+}
+
+}  // namespace sgm::mesh

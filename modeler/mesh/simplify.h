@@ -1,0 +1,27 @@
+// As few triangles as the shape needs, to a tolerance in metres.
+// Enters: a mesh whose triangles name part and smooth piece. Leaves: a mesh of one chunk with the same parts, pieces
+// and normals. Assumes a closed, oriented 2-manifold that doesn't cross itself.
+#pragma once
+
+#include "modeler/core/progress.h"
+#include "modeler/core/result.h"
+#include "modeler/mesh/mesh.h"
+
+namespace sgm::mesh {
+
+struct SimplifyOptions {
+    /// How far the surface, its creases and the borders of its parts may move, in metres; ≥ 0. With 0 nothing goes but
+    /// what is planar or straight within rounding: 2⁻²⁰ of the largest coordinate.
+    double tolerance_m = 0;
+    int threads = 1;  ///< 0: all the machine has; the result is the same for any number
+};
+
+/// Merges what is planar and decimates what is curved. A region is a connected set of triangles of one origin and
+/// label. Points on a border of regions that aren't needed within the tolerance go, once for both sides; planar regions
+/// are triangulated anew from their borders. The result is closed, oriented, a 2-manifold and crosses itself nowhere.
+/// O(n) in the triangles of planar regions.
+/// Error::Usage for a negative tolerance, Error::Input for a mesh that isn't closed, Error::Budget for 2³¹ triangles,
+/// Error::Cancelled.
+Result<Mesh> simplify(const Mesh& mesh, const SimplifyOptions& options, Progress* progress);
+
+}  // namespace sgm::mesh
