@@ -7,6 +7,7 @@
 #include <map>
 
 #include "modeler/mesh/components.h"
+#include "modeler/mesh/corners.h"
 #include "viewer/scene.h"
 #include "viewer/shader_text.h"
 
@@ -93,6 +94,25 @@ void findComponents(PreparedMesh& mesh) {
     mesh.components = surfaces.count;
 }
 
+/// Gives a vertex of its own to every normal that meets in one on a crease, after all others. Whose position a vertex
+/// has says what hangs together, so components are found before.
+void splitHardCorners(PreparedMesh& mesh, const mesh::CornerNormalTable& corners) {
+    if (corners.empty()) return;
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> split;  // by vertex and normal
+    for (size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const uint32_t own = corners.of[t][k];
+            if (own == mesh::noIndex) continue;
+            uint32_t& vertex = mesh.triangles[t][k];
+            const auto [at, fresh] = split.try_emplace({vertex, own}, static_cast<uint32_t>(mesh.positions.size()));
+            if (fresh) {
+                mesh.positions.push_back(Vec3f(mesh.positions[vertex]));
+                mesh.normals.push_back(corners.normals[own]);
+            }
+            vertex = at->second;
+        }
+}
+
 /// By OriginId: the rule that made it, numbered in the order of the parts.
 std::vector<uint32_t> rulesOf(const Provenance& provenance) {
     std::map<std::string, uint32_t> numbers;
@@ -136,8 +156,9 @@ Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& prove
         return Error{Error::Kind::Internal, "the mesh has no normal for every vertex or no origin for every triangle"};
     prepared.bounds = mesh.bounds();
     prepared.materials = provenance.materials;
-    prepared.curvatures = curvaturesOf(prepared);
     findComponents(prepared);
+    splitHardCorners(prepared, mesh::collectCornerNormals(mesh));
+    prepared.curvatures = curvaturesOf(prepared);
     return prepared;
 }
 

@@ -137,7 +137,7 @@ private:
             const Vec3f position = vertices_.position(patched_.vertices[v]);
             bounds = hull(bounds, position);
             put(positions_, v, position);
-            put(normals_, v, unitNormal(vertices_.normal(patched_.vertices[v])));
+            put(normals_, v, patched_.normal(v, vertices_));
             if (!textured_) continue;
             auto uv = boxProjection(position, patch.facing);
             uv[1] = 1 - uv[1];  // glTF counts v downwards

@@ -1,5 +1,5 @@
 // Wavefront OBJ with its materials in a .mtl beside it (Wavefront, Advanced Visualizer Manual, appendix B). Positions
-// and normals stay shared, so the mesh stays closed; only texture coordinates are cut at chart borders.
+// stay shared, so the mesh stays closed; normals are cut at hard edges and texture coordinates at chart borders.
 #include <fmt/format.h>
 
 #include "modeler/core/atomic_file.h"
@@ -13,43 +13,90 @@ namespace {
 /// The .mtl lies beside the .obj; its name is one word, since many readers end it at a blank.
 Path materialFile(const Path& target) { return target.parent_path() / wordOf(target.stem().string() + ".mtl"); }
 
-void writeVertices(OutFile& out, const mesh::Mesh& mesh, const Placement& place) {
-    const auto line = [&](std::string_view keyword, Vec3f v) {
-        if (out.failed()) return;
-        out.text(keyword);
-        out.numbers(v, " ");
-        out.text("\n");
-    };
-    for (const mesh::Chunk& chunk : mesh.chunks)
-        for (const Vec3f& p : chunk.positions) line("v ", place.position(p));
-    for (const mesh::Chunk& chunk : mesh.chunks)
-        for (const Vec3f& n : chunk.normals) line("vn ", place.direction(unitNormal(n)));
-}
+/// The file's text, a part after the other.
+class ObjText {
+public:
+    ObjText(OutFile& out, const ExportInput& input, const PatchedMesh& patched, bool textured)
+        : out_(out),
+          mesh_(*input.mesh),
+          patched_(patched),
+          vertices_(mesh_),
+          place_(placementOf(input)),
+          textured_(textured) {
+        if (patched.corners.empty()) return;
+        const std::vector<mesh::Triangle> triangles = mesh::gatherTriangles(mesh_);
+        smoothing_ = mesh::findSmoothingGroups(mesh_, triangles, patched.corners,
+                                               mesh::findEdgeNeighbours(triangles, mesh_.vertexCount()));
+    }
 
-/// One patch: its texture coordinates, then its faces as position/texture/normal, counted from 1.
-void writePatch(OutFile& out, const PatchedMesh& patched, const Patch& patch, Vertices& vertices, bool textured) {
-    for (uint32_t v = patch.firstVertex; textured && v < patch.firstVertex + patch.vertexCount; ++v) {
-        const auto [s, t] = boxProjection(vertices.position(patched.vertices[v]), patch.facing);
-        out.text("vt ");
-        out.number(s);
-        out.text(" ");
-        out.number(t);
-        out.text("\n");
-    }
-    for (uint32_t t = patch.firstTriangle; t < patch.firstTriangle + patch.triangleCount && !out.failed(); ++t) {
-        out.text("f");
-        for (int corner = 0; corner < 3; ++corner) {
-            const uint32_t v = patched.triangles[t][corner];
-            out.text(" ");
-            out.number(patched.vertices[v] + 1);
-            out.text("/");
-            if (textured) out.number(v + 1);
-            out.text("/");
-            out.number(patched.vertices[v] + 1);
+    /// All positions; the normals of hard corners, and then those of vertices that need their own.
+    void vertices() {
+        for (const mesh::Chunk& chunk : mesh_.chunks)
+            for (const Vec3f& p : chunk.positions) line("v ", place_.position(p));
+        for (const Vec3f& n : patched_.corners.normals) line("vn ", place_.direction(unitNormal(n)));
+        normalOf_.assign(mesh_.vertexCount(), 0);
+        for (uint32_t v = 0; v < patched_.vertices.size(); ++v)
+            if (patched_.normals.empty() || patched_.normals[v] == mesh::noIndex) normalOf_[patched_.vertices[v]] = 1;
+        auto next = static_cast<uint32_t>(patched_.corners.normals.size());
+        for (uint32_t v = 0; v < normalOf_.size(); ++v) {
+            if (normalOf_[v] == 0) continue;
+            normalOf_[v] = next++;
+            line("vn ", place_.direction(unitNormal(vertices_.normal(v))));
         }
-        out.text("\n");
     }
-}
+
+    /// One patch: its texture coordinates, then its faces as position/texture/normal, counted from 1.
+    void patch(const Patch& patch) {
+        for (uint32_t v = patch.firstVertex; textured_ && v < patch.firstVertex + patch.vertexCount; ++v) {
+            const auto [s, t] = boxProjection(vertices_.position(patched_.vertices[v]), patch.facing);
+            out_.text("vt ");
+            out_.number(s);
+            out_.text(" ");
+            out_.number(t);
+            out_.text("\n");
+        }
+        for (uint32_t t = patch.firstTriangle; t < patch.firstTriangle + patch.triangleCount && !out_.failed(); ++t)
+            face(t);
+    }
+
+private:
+    void line(std::string_view keyword, Vec3f v) {
+        if (out_.failed()) return;
+        out_.text(keyword);
+        out_.numbers(v, " ");
+        out_.text("\n");
+    }
+
+    void face(uint32_t t) {
+        if (const uint32_t group = smoothing_.empty() ? 1 : smoothing_[patched_.order[t]]; group != smoothed_) {
+            out_.text("s ");
+            out_.number(smoothed_ = group);
+            out_.text("\n");
+        }
+        out_.text("f");
+        for (int corner = 0; corner < 3; ++corner) {
+            const uint32_t v = patched_.triangles[t][corner];
+            const uint32_t own = patched_.normals.empty() ? mesh::noIndex : patched_.normals[v];
+            out_.text(" ");
+            out_.number(patched_.vertices[v] + 1);
+            out_.text("/");
+            if (textured_) out_.number(v + 1);
+            out_.text("/");
+            out_.number((own == mesh::noIndex ? normalOf_[patched_.vertices[v]] : own) + 1);
+        }
+        out_.text("\n");
+    }
+
+    OutFile& out_;
+    const mesh::Mesh& mesh_;
+    const PatchedMesh& patched_;
+    Vertices vertices_;
+    const Placement place_;
+    const bool textured_;
+    std::vector<uint32_t> smoothing_;  ///< group by triangle in mesh order; empty: 1 for all
+    std::vector<uint32_t> normalOf_;   ///< by mesh vertex: number of its line of normals, from 0
+    uint32_t smoothed_ = 0;            ///< the group that the last face was put in
+};
 
 Status writeMaterials(const ExportInput& input, const PatchedMesh& patched, const std::vector<std::string>& names,
                       const Path& target) {
@@ -79,14 +126,14 @@ Status writeObj(const ExportInput& input, const Path& temporary, const Path& tar
     out.text("# sgm\n");
     for (const auto& [key, value] : input.extras) out.text(fmt::format("# {}: {}\n", oneLine(key), oneLine(value)));
     out.text(fmt::format("mtllib {}\no {}\n", materials.filename().string(), wordOf(input.name)));
-    writeVertices(out, *input.mesh, placementOf(input));
+    ObjText text(out, input, patched, textured);
     if (input.progress) input.progress->begin("write", patched.patches.size());
-    Vertices vertices(*input.mesh);
+    text.vertices();
     for (size_t i = 0; i < patched.patches.size(); ++i) {
         const Patch& patch = patched.patches[i];
         if (i == 0 || patched.patches[i - 1].material != patch.material)
             out.text(fmt::format("usemtl {}\n", names[patch.material]));
-        writePatch(out, patched, patch, vertices, textured);
+        text.patch(patch);
         tick(input.progress);
     }
     if (Status status = out.finish(); !status.ok()) return status;

@@ -7,7 +7,7 @@ namespace sgm::exporter {
 namespace {
 
 constexpr uint32_t facings = 6;
-constexpr uint32_t none = 0xffffffffu;
+using mesh::noIndex;
 
 /// The group (material · 6 + facing) of every triangle, in mesh order.
 std::vector<uint32_t> groupTriangles(const mesh::Mesh& mesh, const Provenance& provenance, bool cutByFacing) {
@@ -28,8 +28,7 @@ std::vector<uint32_t> groupTriangles(const mesh::Mesh& mesh, const Provenance& p
 }
 
 /// Counting sort of the mesh's triangles by group; fills the patches' triangle ranges.
-std::vector<mesh::Triangle> sortTriangles(const mesh::Mesh& mesh, const std::vector<uint32_t>& groups,
-                                          std::vector<Patch>& patches) {
+void sortTriangles(const mesh::Mesh& mesh, const std::vector<uint32_t>& groups, PatchedMesh& out) {
     const uint32_t groupCount = groups.empty() ? 0 : *std::max_element(groups.begin(), groups.end()) + 1;
     std::vector<uint32_t> next(groupCount + 1, 0);
     for (const uint32_t g : groups) ++next[g + 1];
@@ -40,16 +39,59 @@ std::vector<mesh::Triangle> sortTriangles(const mesh::Mesh& mesh, const std::vec
             patch.facing = static_cast<int>(g % facings);
             patch.firstTriangle = next[g];
             patch.triangleCount = next[g + 1];
-            patches.push_back(patch);
+            out.patches.push_back(patch);
         }
         next[g + 1] += next[g];
     }
-    std::vector<mesh::Triangle> sorted(groups.size());
-    size_t i = 0;
+    out.triangles.resize(groups.size());
+    out.order.resize(groups.size());
+    uint32_t i = 0;
     for (const mesh::Chunk& chunk : mesh.chunks)
-        for (const mesh::Triangle& t : chunk.triangles) sorted[next[groups[i++]]++] = chunk.inMesh(t);
-    return sorted;
+        for (const mesh::Triangle& t : chunk.triangles) {
+            const uint32_t at = next[groups[i]]++;
+            out.triangles[at] = chunk.inMesh(t);
+            out.order[at] = i++;
+        }
 }
+
+/// Numbers the vertices of patches, one for each mesh vertex and normal in a patch, in the order of their first
+/// corners.
+class VertexCutter {
+public:
+    VertexCutter(PatchedMesh& out, size_t meshVertices) : out_(out), newest_(meshVertices, noIndex) {
+        out_.vertices.reserve(meshVertices);
+    }
+    void cut(Patch& patch) {
+        patch.firstVertex = static_cast<uint32_t>(out_.vertices.size());
+        for (uint32_t t = patch.firstTriangle; t < patch.firstTriangle + patch.triangleCount; ++t)
+            for (int corner = 0; corner < 3; ++corner) {
+                const uint32_t normal = out_.corners.empty() ? noIndex : out_.corners.of[out_.order[t]][corner];
+                uint32_t& index = out_.triangles[t][corner];
+                index = vertexOf(patch, index, normal);
+            }
+        patch.vertexCount = static_cast<uint32_t>(out_.vertices.size()) - patch.firstVertex;
+    }
+
+private:
+    uint32_t vertexOf(const Patch& patch, uint32_t vertex, uint32_t normal) {
+        // A vertex met in an earlier patch has a number below this patch's first: it is met anew.
+        const uint32_t newest =
+            newest_[vertex] == noIndex || newest_[vertex] < patch.firstVertex ? noIndex : newest_[vertex];
+        for (uint32_t v = newest; v != noIndex; v = out_.corners.empty() ? noIndex : older_[v])
+            if (out_.corners.empty() || out_.normals[v] == normal) return v;
+        newest_[vertex] = static_cast<uint32_t>(out_.vertices.size());
+        out_.vertices.push_back(vertex);
+        if (!out_.corners.empty()) {
+            out_.normals.push_back(normal);
+            older_.push_back(newest);
+        }
+        return newest_[vertex];
+    }
+
+    PatchedMesh& out_;
+    std::vector<uint32_t> newest_;  ///< by mesh vertex: the last patch vertex made of it
+    std::vector<uint32_t> older_;   ///< by patch vertex: one of the same patch and mesh vertex with another normal
+};
 
 }  // namespace
 
@@ -108,26 +150,16 @@ std::array<float, 2> boxProjection(Vec3f p, int facing) {
 
 PatchedMesh cutIntoPatches(const mesh::Mesh& mesh, const Provenance& provenance, bool cutByFacing) {
     PatchedMesh out;
-    out.triangles = sortTriangles(mesh, groupTriangles(mesh, provenance, cutByFacing), out.patches);
-    const size_t vertexCount = mesh.vertexCount();
-    out.vertices.reserve(vertexCount);
-    // A vertex met in an earlier patch has a number below this patch's first: it is met anew.
-    std::vector<uint32_t> patchVertex(vertexCount, none);
-    for (Patch& patch : out.patches) {
-        patch.firstVertex = static_cast<uint32_t>(out.vertices.size());
-        for (uint32_t t = patch.firstTriangle; t < patch.firstTriangle + patch.triangleCount; ++t)
-            for (int corner = 0; corner < 3; ++corner) {
-                uint32_t& index = out.triangles[t][corner];
-                uint32_t& known = patchVertex[index];
-                if (known == none || known < patch.firstVertex) {
-                    known = static_cast<uint32_t>(out.vertices.size());
-                    out.vertices.push_back(index);
-                }
-                index = known;
-            }
-        patch.vertexCount = static_cast<uint32_t>(out.vertices.size()) - patch.firstVertex;
-    }
+    out.corners = mesh::collectCornerNormals(mesh);
+    sortTriangles(mesh, groupTriangles(mesh, provenance, cutByFacing), out);
+    VertexCutter cutter(out, mesh.vertexCount());
+    for (Patch& patch : out.patches) cutter.cut(patch);
     return out;
+}
+
+Vec3f PatchedMesh::normal(uint32_t v, Vertices& ofMesh) const {
+    const uint32_t own = normals.empty() ? noIndex : normals[v];
+    return unitNormal(own == noIndex ? ofMesh.normal(vertices[v]) : corners.normals[own]);
 }
 
 }  // namespace sgm::exporter

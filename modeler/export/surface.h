@@ -1,5 +1,5 @@
-// What writers need of a mesh beyond its chunks: vertices by global index, materials by triangle, texture charts.
-// Enters: a Mesh and its Provenance. Leaves: flat lists in a fixed order. Assumes the mesh's promises (mesh.h).
+// What writers need of a mesh beyond its chunks: vertices by global index, materials by triangle, texture charts, hard
+// edges. Enters: a Mesh and its Provenance. Leaves: flat lists in a fixed order. Assumes the mesh's promises (mesh.h).
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "modeler/core/provenance.h"
-#include "modeler/mesh/mesh.h"
+#include "modeler/mesh/corners.h"
 
 namespace sgm::exporter {
 
@@ -50,11 +50,20 @@ struct Patch {
     uint32_t firstTriangle = 0, triangleCount = 0;  ///< in PatchedMesh::triangles
 };
 
-/// A mesh cut along the borders of materials and facings: vertices there occur once per patch.
+/// A mesh cut along hard edges and the borders of materials and facings: a vertex there occurs once per patch and
+/// normal.
 struct PatchedMesh {
     std::vector<Patch> patches;             ///< none empty; ascending by material, then facing
     std::vector<uint32_t> vertices;         ///< global mesh vertex of each patch vertex
     std::vector<mesh::Triangle> triangles;  ///< corners index `vertices`
+    std::vector<uint32_t> order;            ///< by triangle: its place in the mesh, counted through all chunks
+    mesh::CornerNormalTable corners;        ///< of the mesh, its triangles in the mesh's order
+    /// By patch vertex: index into corners.normals, or mesh::noIndex where the mesh vertex's own normal holds; empty
+    /// where it does for all.
+    std::vector<uint32_t> normals;
+
+    /// The unit normal of a patch vertex, of the mesh that was cut.
+    Vec3f normal(uint32_t v, Vertices& ofMesh) const;
 };
 
 /// Sorts triangles into patches, stable within a patch. Linear in the mesh; `cutByFacing` asks for texture charts.

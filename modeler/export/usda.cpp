@@ -54,10 +54,7 @@ public:
         const size_t n = input_.mesh->vertexCount();
         list("point3f[] points", n,
              [&](size_t i) { parenthesized(place_.position(vertices_.position(static_cast<uint32_t>(i)))); });
-        list(
-            "normal3f[] normals", n,
-            [&](size_t i) { parenthesized(place_.direction(unitNormal(vertices_.normal(static_cast<uint32_t>(i))))); },
-            "vertex");
+        normals();
     }
 
     void colors(const std::vector<Subset>& subsets) {
@@ -106,6 +103,24 @@ public:
     }
 
 private:
+    /// One a vertex; one a face's corner where the mesh has hard edges.
+    void normals() {
+        if (patched_.corners.empty())
+            return list(
+                "normal3f[] normals", input_.mesh->vertexCount(),
+                [&](size_t i) {
+                    parenthesized(place_.direction(unitNormal(vertices_.normal(static_cast<uint32_t>(i)))));
+                },
+                "vertex");
+        list(
+            "normal3f[] normals", 3 * patched_.triangles.size(),
+            [&](size_t i) {
+                const uint32_t v = patched_.triangles[i / 3][static_cast<int>(i % 3)];
+                parenthesized(place_.direction(patched_.normal(v, vertices_)));
+            },
+            "faceVarying");
+    }
+
     /// "type name = [element, element, …]", with its interpolation where it has one.
     template <class Element>
     void list(std::string_view declaration, size_t count, Element element, std::string_view interpolation = "") {

@@ -4,6 +4,7 @@
 #include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 #include <OpenMesh/Tools/Smoother/JacobiLaplaceSmootherT.hh>
+#include <algorithm>
 #include <cmath>
 
 #include "modeler/mesh/openmesh.h"
@@ -29,6 +30,7 @@ private:
 
 Result<Mesh> smooth(const Mesh& mesh, int passes, Progress* progress) {
     if (passes < 0) return Error{Error::Kind::Usage, "the number of smoothing passes can't be negative"};
+    if (passes == 0) return mesh;
     if (progress) progress->begin("smooth", static_cast<uint64_t>(passes));
     HalfEdgeMesh half = toOpenMesh(mesh);
     using Smoother = OpenMesh::Smoother::JacobiLaplaceSmootherT<HalfEdgeMesh>;
@@ -39,7 +41,7 @@ Result<Mesh> smooth(const Mesh& mesh, int passes, Progress* progress) {
         smoother.smooth(1);
         tick(progress);
     }
-    return fromOpenMesh(half, passes == 0);
+    return fromOpenMesh(half, false);
 }
 
 Result<Mesh> simplify(const Mesh& mesh, double ratio, Progress* progress) {
@@ -47,7 +49,7 @@ Result<Mesh> simplify(const Mesh& mesh, double ratio, Progress* progress) {
         return Error{Error::Kind::Usage, "the simplification ratio must be above 0 and at most 1"};
     HalfEdgeMesh half = toOpenMesh(mesh);
     const auto target = static_cast<size_t>(std::ceil(ratio * static_cast<double>(half.n_faces())));
-    if (target == half.n_faces()) return fromOpenMesh(half, true);
+    if (target == half.n_faces()) return mesh;
     if (progress) progress->begin("simplify", (half.n_faces() - target) / 2);  // a collapse takes two faces
 
     CancelObserver observer(progress);
@@ -70,6 +72,12 @@ void turnInsideOut(Mesh& mesh) {
     for (Chunk& chunk : mesh.chunks) {
         for (Triangle& t : chunk.triangles) std::swap(t.y, t.z);
         for (Vec3f& n : chunk.normals) n = -n;
+        for (CornerNormal& own : chunk.cornerNormals) {
+            if (const uint32_t k = own.corner % 3; k != 0) own.corner += k == 1 ? 1 : -1;
+            own.normal = -own.normal;
+        }
+        std::sort(chunk.cornerNormals.begin(), chunk.cornerNormals.end(),
+                  [](const CornerNormal& a, const CornerNormal& b) { return a.corner < b.corner; });
     }
 }
 

@@ -346,16 +346,23 @@ private:
     void dropTriangles(Chunk& chunk) const {
         const uint32_t own = ownCount(chunk);
         const uint32_t* const corner = corner_.data();
-        const bool hasOrigins = !chunk.origins.empty();
-        size_t left = 0;
+        const bool hasOrigins = !chunk.origins.empty(), hasLabels = !chunk.labels.empty();
+        const std::vector<CornerNormal>& hard = chunk.cornerNormals;
+        size_t left = 0, leftHard = 0, h = 0;
         for (size_t i = 0; i < chunk.triangles.size(); ++i) {
             const Triangle t = placesOf(chunk.triangles[i], own);
+            const bool stays = corner[t.x] != none;
             chunk.triangles[left] = {corner[t.x], corner[t.y], corner[t.z]};
             if (hasOrigins) chunk.origins[left] = chunk.origins[i];
-            left += corner[t.x] != none;
+            if (hasLabels) chunk.labels[left] = chunk.labels[i];
+            for (; h < hard.size() && hard[h].corner / 3 == i; ++h)
+                if (stays) chunk.cornerNormals[leftHard++] = {static_cast<uint32_t>(3 * left) + hard[h].corner % 3, hard[h].normal};
+            left += stays;
         }
         chunk.triangles.resize(left);
+        chunk.cornerNormals.resize(leftHard);
         if (hasOrigins) chunk.origins.resize(left);
+        if (hasLabels) chunk.labels.resize(left);
     }
 
     Mesh& mesh_;

@@ -65,7 +65,8 @@ mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave) {
         }
     mesh::Chunk kept;
     std::vector<uint32_t> numberOf(mesh.vertexCount(), nowhere);
-    for (const mesh::Chunk& c : mesh.chunks)
+    for (const mesh::Chunk& c : mesh.chunks) {
+        auto hard = c.cornerNormals.begin();
         for (size_t t = 0; t < c.triangles.size(); ++t) {
             const mesh::Triangle tri = c.inMesh(c.triangles[t]);
             const Vec3f a = *position[tri.x], b = *position[tri.y], d = *position[tri.z];
@@ -81,9 +82,14 @@ mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave) {
                 }
                 own[corner] = number;
             }
+            while (hard != c.cornerNormals.end() && hard->corner < 3 * t) ++hard;
+            for (; hard != c.cornerNormals.end() && hard->corner < 3 * t + 3; ++hard)
+                kept.cornerNormals.push_back({static_cast<uint32_t>(3 * kept.triangles.size()) + hard->corner % 3, hard->normal});
             kept.triangles.push_back(own);
             if (!bare) kept.origins.push_back(c.origins[t]);
+            if (!c.labels.empty()) kept.labels.push_back(c.labels[t]);
         }
+    }
     mesh::Mesh floor;
     floor.chunks.push_back(std::move(kept));
     return floor;

@@ -7,6 +7,7 @@
 
 #include "modeler/mesh/openmesh.h"
 #include "modeler/mesh/validate.h"
+#include "tests/mesh/mesh_bytes.h"
 #include "tests/mesh/scenes.h"
 
 namespace sgm::mesh {
@@ -73,7 +74,7 @@ TEST(Edit, SmoothingEvensOutAndKeepsTheRest) {
     EXPECT_EQ(originsOf(*smoothed), originsOf(mesh));
     EXPECT_LT(roughness(*smoothed), 0.5 * roughness(mesh));
     EXPECT_NEAR(measure(*smoothed).volume_m3 / measure(mesh).volume_m3, 1, 0.02);
-    EXPECT_EQ(smooth(mesh, 0, nullptr)->chunks[0].positions, fromOpenMesh(toOpenMesh(mesh), true).chunks[0].positions);
+    EXPECT_EQ(bytesOf(*smooth(mesh, 0, nullptr)), bytesOf(mesh));
 }
 
 TEST(Edit, SimplifyingReachesItsRatioAndStaysClosed) {

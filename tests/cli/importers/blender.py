@@ -38,6 +38,7 @@ def facts(thing):
         mesh.from_mesh(thing.data)
         found["triangles"] = len(mesh.faces)
         found["open"] = sum(1 for edge in mesh.edges if len(edge.link_faces) != 2)
+        found["sharp"] = sum(1 for edge in mesh.edges if not edge.smooth)
         found["volume"] = mesh.calc_volume(signed=True)
         found["materials"] = sorted(material.name for material in thing.data.materials)
         found["charts"] = len(thing.data.uv_layers)
