@@ -132,6 +132,10 @@ bool Interpreter::readLooks(const Element& e, const ElementFacts& facts, const P
         for (int i = 0; i < 3; ++i) out.scope.size[i] = metres(size, i, place.scope.size[i]);
     }
     if (facts.turn) out.scope.axes = place.scope.axes * rotation(evaluate(facts.turn->args[0], place));
+    if (e.content.kind == Content::Kind::Symbol) {
+        for (const Attribute& a : grammar_.symbols[e.content.symbol].look) readAttribute(a, place, out);
+        out.colorBy = nullptr;  // the terminal itself names such a look
+    }
     for (const Attribute& a : e.attributes) readAttribute(a, place, out);
     for (int i = 0; i < 3; ++i) {
         const double s = out.scope.size[i];
@@ -173,6 +177,7 @@ void Interpreter::readAttribute(const Attribute& a, const Place& place, Looks& o
         case Id::Color: {
             const rules::Value c = evaluate(a.args[0], place);
             out.color = Vec3d{c.n[0], c.n[1], c.n[2]}.as<float>();
+            out.colorBy = &a.args[0];
             break;
         }
         case Id::Rough: out.rough = static_cast<float>(std::clamp(number(a.args[0], place), 0.0, 1.0)); break;
@@ -193,20 +198,50 @@ void Interpreter::readAttribute(const Attribute& a, const Place& place, Looks& o
     }
 }
 
+/// The parameter or inherited value that gives an expression its colour: one that has it, else the first one that is a
+/// colour at all; "" where none is.
+std::string Interpreter::nameOfColor(const rules::Expr& e, Vec3f color, const Place& place) const {
+    std::string first;
+    std::vector<const rules::Expr*> open{&e};
+    while (!open.empty()) {
+        const rules::Expr& at = *open.back();
+        open.pop_back();
+        for (auto arg = at.args.rbegin(); arg != at.args.rend(); ++arg) open.push_back(&*arg);
+        if (at.kind != rules::Expr::Kind::Param && at.kind != rules::Expr::Kind::Inherited) continue;
+        const rules::Value value = evaluate(at, place);
+        if (value.kind != rules::Value::Kind::Color) continue;
+        const std::string& name = at.kind == rules::Expr::Kind::Param ? grammar_.params[at.index].name : at.value.text;
+        if (Vec3d{value.n[0], value.n[1], value.n[2]}.as<float>() == color) return name;
+        if (first.empty()) first = name;
+    }
+    return first;
+}
+
+/// What names a look: what gives it its colour, the terminal it changes, or the colour itself.
+std::string Interpreter::nameOfLook(const Looks& looks, uint32_t base, const Place& place) const {
+    const auto& materials = builder_.derivation().materials;
+    std::string name;
+    if (looks.colorBy) name = nameOfColor(*looks.colorBy, *looks.color, place);
+    if (!name.empty()) return name;
+    if (base != rules::none) return materials[base].name;
+    if (!looks.colorBy) return materials[0].name;
+    return "color_" + rules::toText(evaluate(*looks.colorBy, place)).substr(1);
+}
+
 /// The material of the terminal, or of the first in a solid, changed by colour, roughness and metalness where given.
-uint32_t Interpreter::materialOf(const Looks& looks, const Element& e) {
+uint32_t Interpreter::materialOf(const Looks& looks, const Element& e, const Place& place) {
     const bool terminal = e.content.kind == Content::Kind::Symbol && grammar_.symbols[e.content.symbol].terminal;
     const uint32_t base = terminal ? grammar_.symbols[e.content.symbol].material : e.content.solid.material;
     if (!looks.color && !looks.rough && !looks.metal) return base;
     auto& materials = builder_.derivation().materials;
     Material m = base == rules::none ? materials[0] : materials[base];
-    if (base == rules::none) m.name = e.label;
     if (looks.color) m.color = *looks.color;
     if (looks.rough) m.roughness = *looks.rough;
     if (looks.metal) m.metallic = *looks.metal;
-    const std::array<float, 6> key{static_cast<float>(base == rules::none ? factsOf(e).label : base + 1e6f), m.color.x, m.color.y, m.color.z, m.roughness, m.metallic};
+    const std::array<float, 5> key{m.color.x, m.color.y, m.color.z, m.roughness, m.metallic};
     const auto [at, fresh] = mixedMaterials_.try_emplace(key, static_cast<uint32_t>(materials.size()));
     if (fresh) {
+        m.name = nameOfLook(looks, base, place);
         materials.push_back(std::move(m));
         if (builder_.recording()) builder_.recording()->freshMaterial();
     }
@@ -223,7 +258,7 @@ Shape Interpreter::shapeOf(const Element& e, Looks& looks, const Place& place, u
     s.label = facts.label;
     s.jointSet = facts.jointSet;
     s.solid = solidOf(e, facts, place);
-    s.material = materialOf(looks, e);
+    s.material = materialOf(looks, e, place);
     s.op = e.op;
     s.amount = looks.amount;
     s.blend_m = looks.blend_m;

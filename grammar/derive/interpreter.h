@@ -67,6 +67,7 @@ private:
         Vec3d moved_m;
         double overlap = 0, amount = 0.5, blend_m = 0;
         std::optional<Vec3f> color;
+        const rules::Expr* colorBy = nullptr;  ///< what gave the colour
         std::optional<float> rough, metal;
         Extras extras;
     };
@@ -103,7 +104,9 @@ private:
     uint32_t jointSetOf(const rules::Element& e);
     bool readLooks(const rules::Element& e, const ElementFacts& facts, const Place& place, Looks& out);
     void readAttribute(const rules::Attribute& a, const Place& place, Looks& out);
-    uint32_t materialOf(const Looks& looks, const rules::Element& e);
+    std::string nameOfColor(const rules::Expr& e, Vec3f color, const Place& place) const;
+    std::string nameOfLook(const Looks& looks, uint32_t base, const Place& place) const;
+    uint32_t materialOf(const Looks& looks, const rules::Element& e, const Place& place);
     SolidValue valueOf(const rules::Solid& solid, const Place& place) const;
     uint32_t solidOf(const rules::Element& e, ElementFacts& facts, const Place& place);
     Shape shapeOf(const rules::Element& e, Looks& looks, const Place& place, uint64_t key);
@@ -122,7 +125,7 @@ private:
     std::vector<RuleFacts> facts_;
     std::unordered_map<const rules::Element*, ElementFacts> elements_;
     std::map<std::string, uint32_t, std::less<>> labels_;
-    std::map<std::array<float, 6>, uint32_t> mixedMaterials_;  ///< base and what attributes change
+    std::map<std::array<float, 5>, uint32_t> mixedMaterials_;  ///< by colour, roughness, metalness: those of attributes
     std::vector<rules::Value> locals_;
     uint32_t chainRule_ = none;  ///< the rule whose chain is being run
 };

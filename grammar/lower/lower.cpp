@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
 #include "grammar/lower/lowering.h"
 #include "grammar/lower/solids.h"
 #include "modeler/core/random.h"
@@ -36,6 +41,7 @@ OriginId Lowering::ownerOf(ShapeId id) {
         part.line = s.span.source->place(s.span.begin).line;
     }
     part.material = materials_.of(id);
+    part.pose = {s.scope.centre, s.scope.axes};
     model_.provenance.parts.push_back(std::move(part));
     model_.shapeOf.push_back(id);
     return owners_[id];
@@ -213,10 +219,10 @@ Status Lowering::run(Progress* progress) {
         for (const Shape& s : tree_.shapes) joins_.push_back(isSum(s));
     }
     if (progress) progress->begin("lower", tree_.shapes.size());
-    model_.provenance.materials = d_.materials;
     model_.shapeOf.push_back(none);
     if (const Status done = walk(0, progress); !done.ok()) return done;
     nameTheWhole();
+    mergeMaterials();
     const bool nothing = model_.field.bounds.empty();
     if (!nothing && model_.field.bounds.finite()) return Done{};
     const std::string path = tree_.path(0);
@@ -230,6 +236,46 @@ void Lowering::nameTheWhole() {
     Part all = parts.size() > 1 ? parts[1] : Part{};
     if (parts.size() > 2) all.path = tree_.path(0), all.symbol = tree_.labels[0], all.rule.clear();
     parts[0] = std::move(all);
+    poseTheWhole();
+}
+
+/// The whole stands as the root does, or as the only part.
+void Lowering::poseTheWhole() {
+    auto& parts = model_.provenance.parts;
+    const derive::Scope& root = tree_.shapes[0].scope;
+    parts[0].pose = parts.size() == 2 ? parts[1].pose : Pose{root.centre, root.axes};
+}
+
+/// One material a look, of those that parts have: a look keeps the name of the first one that the grammar gives it, the
+/// default's only where no other has it. Looks of one name are numbered.
+void Lowering::mergeMaterials() {
+    using Look = std::array<float, 5>;
+    const auto lookOf = [&](size_t i) {
+        const Material& m = d_.materials[i];
+        return Look{m.color.x, m.color.y, m.color.z, m.roughness, m.metallic};
+    };
+    std::set<size_t> used;
+    for (const Part& part : model_.provenance.parts) used.insert(part.material);
+    const auto isNamed = [&](size_t i) { return i > 0 && lookOf(i) == lookOf(0); };
+    std::vector<size_t> order(used.begin(), used.end());
+    if (std::any_of(order.begin(), order.end(), isNamed)) std::stable_partition(order.begin(), order.end(), isNamed);
+
+    std::vector<Material>& merged = model_.provenance.materials;
+    merged.clear();
+    std::vector<uint32_t> numbers(d_.materials.size(), 0);
+    std::map<Look, uint32_t> looks;
+    std::set<std::string> taken;
+    std::map<std::string, uint32_t> nextNumber;  // by name
+    for (const size_t i : order) {
+        const auto [at, fresh] = looks.try_emplace(lookOf(i), static_cast<uint32_t>(merged.size()));
+        numbers[i] = at->second;
+        if (!fresh) continue;
+        merged.push_back(d_.materials[i]);
+        std::string& name = merged.back().name;
+        uint32_t& next = nextNumber.try_emplace(name, 2).first->second;
+        while (!taken.insert(name).second) name = fmt::format("{}_{}", d_.materials[i].name, next++);
+    }
+    for (Part& part : model_.provenance.parts) part.material = numbers[part.material];
 }
 
 Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress) {

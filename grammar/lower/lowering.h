@@ -58,6 +58,8 @@ private:
     Owned whole(Content& content, ShapeId id);
     Owned solidOf(ShapeId id);
     void nameTheWhole();
+    void poseTheWhole();
+    void mergeMaterials();
 
     // relowering.cpp
     using Dirty = std::set<ShapeId, std::greater<>>;

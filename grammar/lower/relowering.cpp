@@ -73,6 +73,11 @@ bool Lowering::again(std::span<const ShapeId> changed) {
         dirty.erase(dirty.begin());
         if (!againPart(part, dirty)) return false;
     }
+    for (const ShapeId id : changed) {
+        const derive::Scope& scope = tree_.shapes[id].scope;
+        if (owners_[id] != 0) model_.provenance.parts[owners_[id]].pose = {scope.centre, scope.axes};
+    }
+    poseTheWhole();
     const Box3f& bounds = model_.field.bounds;
     return model_.graph.nodeCount() == nodes && model_.provenance.parts.size() == parts && !bounds.empty() && bounds.finite();
 }

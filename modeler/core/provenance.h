@@ -15,11 +15,18 @@ using OriginId = uint32_t;
 
 /// How a terminal looks. Colours are linear RGB, 0 … 1.
 struct Material {
-    std::string name = "default";  ///< stable: the terminal's symbol
+    std::string name = "default";  ///< of what gives the look: a parameter, a terminal, or the colour itself
     Vec3f color{0.8f, 0.78f, 0.74f};
     float roughness = 0.8f;  ///< 0 … 1
     float metallic = 0.0f;   ///< 0 … 1
     friend bool operator==(const Material&, const Material&) = default;
+};
+
+/// How a shape stands in the object.
+struct Pose {
+    Vec3d origin;  ///< centre of its scope, metres
+    Mat3 axes;     ///< of its scope: object from local
+    friend bool operator==(const Pose&, const Pose&) = default;
 };
 
 /// One shape of the derived tree that owns surface.
@@ -30,9 +37,10 @@ struct Part {
     std::string file;       ///< grammar file
     uint32_t line = 0;      ///< 1-based line of the text that made it
     uint32_t material = 0;  ///< index into Provenance::materials
+    Pose pose;              ///< of the shape's scope
 };
 
-/// The table behind OriginId and material indices. parts[0] and materials[0] always exist.
+/// The table behind OriginId and material indices. parts[0] and materials[0] always exist; no two materials look the same.
 struct Provenance {
     std::vector<Part> parts{Part{}};
     std::vector<Material> materials{Material{}};

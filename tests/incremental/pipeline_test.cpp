@@ -10,7 +10,7 @@ namespace {
 
 using namespace testing_;
 
-auto told(const Part& p) { return std::tie(p.path, p.symbol, p.rule, p.file, p.line, p.material); }
+auto told(const Part& p) { return std::tie(p.path, p.symbol, p.rule, p.file, p.line, p.material, p.pose); }
 
 /// A model followed through options, on one lattice.
 class Followed {
