@@ -27,6 +27,8 @@ constexpr ExportOption plyOptions[] = {
 constexpr ExportOption volumeOptions[] = {
     {"grids", "levelset", "levelset|fog|levelset,fog", "which grids the file holds; the fog's is called density"},
     {"grid", "level_set", "", "name of the level set's grid"},
+    {"distance", "exact", "exact|raw",
+     "level set: distances to the isosurface, or the field's own values, which are steeper or flatter in places"},
     {"half", "no", "no|yes", "16-bit floats: about a third smaller, three digits"},
     {"density", "1", "", "fog: density deep inside", 1e-6, 1e6},
     {"edge", "0", "", "fog: metres of depth over which it thickens to that; 0: three voxels", 0, 1e5},

@@ -1,9 +1,11 @@
 // OpenVDB (.vdb): the level set, the fog made from it, or both, by the room that owns them. Renderers look for a float
-// grid called "density" of the class fog volume.
+// grid called "density" of the class fog volume; programs that offset, smooth or advect take the level set's values for
+// distances.
 #include <optional>
 
 #include "modeler/export/formats.h"
 #include "modeler/volume/fog.h"
+#include "modeler/volume/renormalize.h"
 
 namespace sgm::exporter {
 namespace {
@@ -26,8 +28,15 @@ volume::FogOptions fogOptions(const ExportInput& input) {
 Status writeVdb(const ExportInput& input, const Path& temporary, const Path& target) {
     const std::string_view grids = option(input, "grids", "levelset");
     std::vector<volume::NamedVolume> volumes;
-    if (grids.find("levelset") != grids.npos)
-        volumes.push_back({*input.volume, std::string(option(input, "grid", "level_set"))});
+    std::optional<volume::Volume> exact;
+    if (grids.find("levelset") != grids.npos) {
+        if (option(input, "distance", "exact") == "exact") {
+            auto renormalized = volume::renormalize(*input.volume, 0, input.progress);
+            if (!renormalized.ok()) return renormalized.error();
+            exact = std::move(*renormalized);
+        }
+        volumes.push_back({exact ? *exact : *input.volume, std::string(option(input, "grid", "level_set"))});
+    }
     std::optional<volume::Volume> density;
     if (grids.find("fog") != grids.npos) {
         auto fog = volume::fog(*input.volume, fogOptions(input), input.progress);

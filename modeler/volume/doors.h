@@ -8,6 +8,7 @@
 #include "modeler/volume/dense.h"
 #include "modeler/volume/fog.h"
 #include "modeler/volume/keep.h"
+#include "modeler/volume/renormalize.h"
 #include "modeler/volume/volume.h"
 
 namespace sgm::volume {
@@ -19,6 +20,7 @@ struct Doors {
     decltype(&volume::fillVdb) fillVdb;
     decltype(&volume::fog) fog;
     decltype(&volume::keepOnly) keepOnly;
+    decltype(&volume::renormalize) renormalize;
     decltype(&volume::sample) sample;
 };
 

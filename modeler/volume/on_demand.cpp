@@ -55,6 +55,10 @@ Status keepOnly(Volume& level, mesh::Keep keep, float slack_m, Progress* progres
     return through<&Doors::keepOnly, Status>(level, keep, slack_m, progress);
 }
 
+Result<Volume> renormalize(const Volume& level, int threads, Progress* progress) {
+    return through<&Doors::renormalize, Result<Volume>>(level, threads, progress);
+}
+
 Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& whole, const mesh::Grid& grid, int halfWidth, int threads,
                       Progress* progress) {
     return through<&Doors::sample, Result<Volume>>(blocks, whole, grid, halfWidth, threads, progress);

@@ -12,10 +12,10 @@
 namespace sgm::exporter {
 namespace {
 
-/// A unit sphere in voxels of 2 cm: a file of about half a megabyte.
-volume::Volume unitSphere() {
+/// slope · distance to a unit sphere in voxels of 2 cm: a file of about half a megabyte.
+volume::Volume unitSphere(float slope = 1) {
     field::Graph graph;
-    const field::Field field{length(graph.position()) - 1.0f, {{-1, -1, -1}, {1, 1, 1}}};
+    const field::Field field{(length(graph.position()) - 1.0f) * slope, {{-1, -1, -1}, {1, 1, 1}}};
     const eval::Tape tape = eval::compile(graph, field, graph.constants());
     const mesh::Grid grid = mesh::gridFor(field.bounds, 0.02f);
     mesh::Counts counts;
@@ -33,6 +33,7 @@ struct VdbExport : testing::Test {
 
 TEST_F(VdbExport, WritesTheVolumeUnderItsGridName) {
     input.extras = {{"grammar", "rock.sgm"}};
+    input.options = {{"distance", "raw"}};
     ASSERT_TRUE(write(input, folder / "a.vdb").ok());
     const std::string bytes = contentOf(folder / "a.vdb");
     EXPECT_NE(bytes.find("level_set"), std::string::npos);
@@ -42,10 +43,28 @@ TEST_F(VdbExport, WritesTheVolumeUnderItsGridName) {
     EXPECT_EQ(read->activeVoxels(), sphere.activeVoxels());
     EXPECT_DOUBLE_EQ(read->enclosed_m3(), sphere.enclosed_m3());
 
-    input.options = {{"grid", "rock"}, {"half", "yes"}};
+    input.options = {{"distance", "raw"}, {"grid", "rock"}, {"half", "yes"}};
     ASSERT_TRUE(write(input, folder / "b.vdb").ok());
     EXPECT_EQ(contentOf(folder / "b.vdb").find("level_set"), std::string::npos);
     EXPECT_LT(std::filesystem::file_size(folder / "b.vdb"), bytes.size());
+}
+
+TEST_F(VdbExport, ALevelSetHoldsDistancesUnlessRawValuesAreWanted) {
+    const volume::Volume flat = unitSphere(0.5f);
+    input.volume = &flat;
+    const auto written = [&](const char* distance) {
+        input.options = {{"distance", distance}};
+        EXPECT_TRUE(write(input, folder / "a.vdb").ok());
+        return std::move(volume::readVdb(folder / "a.vdb")).value();
+    };
+    const volume::Volume exact = written("exact"), raw = written("raw");
+    for (const Vec3f p : {Vec3f{0.96f, 0, 0}, Vec3f{0, 1.04f, 0}, Vec3f{0.6f, 0, 0.84f}}) {
+        EXPECT_EQ(raw.at(p), flat.at(p));
+        EXPECT_NEAR(exact.at(p), 2 * raw.at(p), 3e-4f);
+    }
+    EXPECT_FLOAT_EQ(exact.at({3, 0, 0}), 0.06f);
+    EXPECT_FLOAT_EQ(exact.at({0, 0, 0}), -0.06f);
+    EXPECT_LT(exact.activeVoxels(), raw.activeVoxels() * 6 / 10) << "the band is three voxels wide in metres";
 }
 
 TEST_F(VdbExport, WritesFogAloneOrBesideTheLevelSet) {
