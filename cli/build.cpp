@@ -13,6 +13,7 @@
 #include "cli/floating.h"
 #include "cli/outputs.h"
 #include "cli/pipeline.h"
+#include "cli/renamed.h"
 #include "cli/report.h"
 #include "cli/watch.h"
 #include "grammar/incremental/pipeline.h"
@@ -36,7 +37,7 @@ struct BuildRequest {
     int smooth = 0;
     double simplify = 1;
     std::string keep = "all";
-    bool judge = false, cave = false, inward = false, stream = false, quiet = false;
+    bool validate = false, cave = false, inward = false, stream = false, quiet = false;
 };
 
 bool surveys(const BuildRequest& request) { return request.cave || !request.floor.empty(); }
@@ -52,7 +53,7 @@ bool bareWillDo(const BuildRequest& request) {
 /// A streamed build never has the whole mesh; Error::Usage names what would need it.
 Status checkStream(const BuildRequest& request) {
     const std::pair<bool, const char*> whole[] = {{request.smooth > 0, "--smooth"}, {request.simplify < 1, "--simplify"}, {request.keep != "all", "--keep"},
-                                                  {request.judge, "--judge"},       {surveys(request), "--cave and --floor"}, {request.inward, "--inward"},
+                                                  {request.validate, "--validate"}, {surveys(request), "--cave and --floor"}, {request.inward, "--inward"},
                                                   {!request.report.empty(), "--report"}, {!request.animations.empty(), "--animate"}};
     for (const auto& [asked, option] : whole)
         if (asked) return Error{Error::Kind::Usage, fmt::format("--stream never holds the whole mesh: leave out {}", option)};
@@ -113,8 +114,8 @@ void say(const BuildRequest& request, const Model& model, const mesh::MeshFigure
 }
 
 /// CGAL's word on the mesh as a line; Error::Input when it finds a fault.
-Status judged(const mesh::Mesh& mesh, Stages& stages) {
-    const auto judgement = timed(stages, "judge", [&] { return mesh::judge(mesh); });
+Status validated(const mesh::Mesh& mesh, Stages& stages) {
+    const auto judgement = timed(stages, "validate", [&] { return mesh::judge(mesh); });
     if (!judgement.ok()) return judgement.error();
     const std::string verdict = fmt::format("CGAL: {}, {}, {}, {:.6g} m³", judgement->closed ? "closed" : "not closed",
                                             judgement->outward ? "outward" : "not outward",
@@ -136,7 +137,7 @@ void keepOnly(const BuildRequest& request, MeshedModel& meshed) {
                    dropped.cavities, dropped.cavities == 1 ? "y" : "ies", dropped.filled_m3);
 }
 
-/// From a mesh to what was asked for: edits, judgement, files, figures.
+/// From a mesh to what was asked for: edits, validation, files, figures.
 Status deliver(const BuildRequest& request, const Model& model, MeshedModel meshed, Stages& stages, Progress* progress) {
     keepOnly(request, meshed);
     auto mesh = edited(std::move(meshed.mesh), request, stages, progress);
@@ -146,8 +147,8 @@ Status deliver(const BuildRequest& request, const Model& model, MeshedModel mesh
         error.message += " (--cell, --resolution)";
         return error;
     }
-    if (request.judge)
-        if (const Status s = judged(*mesh, stages); !s.ok()) return s;
+    if (request.validate)
+        if (const Status s = validated(*mesh, stages); !s.ok()) return s;
     mesh::MeshFigures figures;  // of the solid, before it is turned inside out
     Support support;
     if (!request.quiet || !request.report.empty()) {
@@ -331,12 +332,13 @@ void addBuild(CLI::App& app, int& exitCode) {
         ->check(CLI::IsMember({"all", "grounded", "largest"}))->capture_default_str();
     command->add_option("--smooth", request->smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
     command->add_option("--simplify", request->simplify, "Decimate to this share of the triangles")->check(CLI::Range(0.001, 1.0));
-    command->add_flag("--judge", request->judge, "Let CGAL judge the mesh before it is written: closed, outward, no self-intersection");
+    command->add_flag("--validate", request->validate, "Validate with CGAL: closed, oriented, no self-intersections");
+    addRenamedFlag(*command, "--judge", "--validate", request->validate);
     command->add_flag("--stream", request->stream, "Mesh and write layer by layer, for a mesh larger than memory: one " + exporter::streamedExtensions() + " file, and nothing that needs the whole mesh");
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
     command->footer(
         "Examples:\n  sgm build examples/grotto.sgm -o grotto.glb -o grotto.vdb --resolution 256\n"
-        "  sgm build examples/cumulus.sgm -o cumulus.vdb --export grids=fog --export wisps=.6 --proxy shadow.glb\n"
+        "  sgm build examples/cumulus.sgm -o cumulus.vdb --format-option grids=fog --format-option wisps=.6 --proxy shadow.glb\n"
         "  sgm build examples/tower.sgm --set floors=12 --seed 7 -o tower.obj --report tower.json\n"
         "  sgm build examples/tower.sgm --animate peak=0..1:48 -o roof_%04d.glb\n"
         "  sgm build examples/grotto.sgm --start Void --inward --cave -o grotto.glb --floor floor.glb");

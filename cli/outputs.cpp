@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cli/renamed.h"
 #include "grammar/lower/solid_tree.h"
 #include "modeler/mesh/proxy.h"
 
@@ -45,21 +46,22 @@ exporter::ExportOptions optionsFor(const OutputRequest& request, const Exporter&
 /// An option that none of the files takes says so, rather than do nothing.
 Status checkOption(const OutputRequest& request, const std::string& text) {
     const std::string name = text.substr(0, text.find('='));
-    if (name.size() == text.size()) return Error{Error::Kind::Usage, fmt::format("write --export NAME=VALUE instead of '{}'", text)};
+    if (name.size() == text.size()) return Error{Error::Kind::Usage, fmt::format("write --format-option NAME=VALUE instead of '{}'", text)};
     for (const std::string& file : allFiles(request))
         if (has(*formatOf(file), name)) return Done{};
     std::vector<std::string> endings;
     for (const Exporter& e : exporter::exporters())
         if (has(e, name)) endings.emplace_back(e.extension);
-    if (endings.empty()) return Error{Error::Kind::Usage, fmt::format("--export {}: no format has that option (see `sgm reference`)", text)};
-    return Error{Error::Kind::Usage, fmt::format("--export {}: an option of {}, and no such file is asked for", text, fmt::join(endings, " "))};
+    if (endings.empty()) return Error{Error::Kind::Usage, fmt::format("--format-option {}: no format has that option (see `sgm reference`)", text)};
+    return Error{Error::Kind::Usage, fmt::format("--format-option {}: an option of {}, and no such file is asked for", text, fmt::join(endings, " "))};
 }
 
 }  // namespace
 
 void addOutputOptions(CLI::App& command, OutputRequest& request) {
     command.add_option("-o,--output", request.files, "Output file, format by its ending; may be given again")->allow_extra_args(false);
-    command.add_option("--export", request.options, "Option of a format, NAME=VALUE (see `sgm reference`)")->allow_extra_args(false);
+    command.add_option("--format-option", request.options, "Option of a file format, NAME=VALUE (see `sgm reference`); may be given again")->allow_extra_args(false);
+    addRenamedOption(command, "--export", "--format-option", request.options);
     auto* proxy = command.add_option("--proxy", request.proxy, "Mesh file for a coarse closed mesh around the model: shadows, light, collision");
     command.add_option("--proxy-tolerance", request.proxyTolerance_m, "Metres the proxy may stand off (default: a twentieth of the longest side)")->check(CLI::PositiveNumber)->needs(proxy);
 }

@@ -13,7 +13,7 @@ struct OutputRequest {
     std::string proxy;                 ///< a mesh file, "" for none
     double proxyTolerance_m = 0;       ///< 0: a twentieth of the model's longest side
 };
-/// Adds -o, --export, --proxy and --proxy-tolerance.
+/// Adds -o, --format-option, --proxy and --proxy-tolerance.
 void addOutputOptions(CLI::App& command, OutputRequest& request);
 
 /// The outputs and the proxy, if there is one.

@@ -67,7 +67,7 @@ std::string functionsPage() {
 }
 
 std::string exportersPage() {
-    std::string page = "\n## File formats\n\n`sgm build FILE -o NAME.ENDING`; options by `--export NAME=VALUE`.\n\n| ending | | options |\n|---|---|---|\n";
+    std::string page = "\n## File formats\n\n`sgm build FILE -o NAME.ENDING`; options by `--format-option NAME=VALUE`.\n\n| ending | | options |\n|---|---|---|\n";
     for (const exporter::Exporter& e : exporter::exporters()) {
         std::string options;
         for (const exporter::ExportOption& o : e.options)

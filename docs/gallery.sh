@@ -49,7 +49,7 @@ blender() {
   local models
   models=$(mktemp -d)
   "$sgm" build examples/buildings/palace.sgm --resolution 256 -q -o "$models/palace.glb"
-  "$sgm" build examples/cumulus.sgm --resolution 160 --export grids=fog --export edge=60 --export wisps=.6 -q -o "$models/cumulus.vdb"
+  "$sgm" build examples/cumulus.sgm --resolution 160 --format-option grids=fog --format-option edge=60 --format-option wisps=.6 -q -o "$models/cumulus.vdb"
   command blender -b --factory-startup --python docs/blender.py -- "$models"/palace.glb "$models"/cumulus.vdb docs/pictures/blender.png >/dev/null
   rm -r "$models"
   echo docs/pictures/blender.png

@@ -60,7 +60,7 @@ echo "| at 256 | CPU-seconds | triangles | bytes a triangle |"
 echo "|---|---|---|---|"
 measured "Mandelbulber2, Menger sponge" "$work/sponge.ply" mandelbulber2 -n -C -V ply "$work/sponge.fract"
 measured "Mandelbulber2, KIFS with the sponge's numbers" "$work/kifs.ply" mandelbulber2 -n -C -V ply "$work/kifs.fract"
-ours() { measured "$1" "$work/ours.ply" "$sgm" build "${@:2}" --resolution 256 --export attributes=none -q -o "$work/ours.ply"; }
+ours() { measured "$1" "$work/ours.ply" "$sgm" build "${@:2}" --resolution 256 --format-option attributes=none -q -o "$work/ours.ply"; }
 ours "sgm, Menger sponge" examples/kifs/figures.sgm --start Menger --set passes=4
 while read -r name; do
   printf 'grammar 1\nuse "std/kifs.sgm"\nstart Test -> Box size (16, 12, 12) clad %s\n' "$name" >"$work/test.sgm"

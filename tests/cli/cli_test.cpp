@@ -253,7 +253,7 @@ TEST_F(Cli, StylesAndSettingsChangeTheModel) {
 
 TEST_F(Cli, ExamplesAreClosedAndFreeOfSelfIntersections) {
     for (const std::string example : {"grotto", "cumulus", "tower", "joints"}) {
-        const Outcome run = sgm("build examples/" + example + ".sgm --resolution 128 --judge --report " + path("r.json"));
+        const Outcome run = sgm("build examples/" + example + ".sgm --resolution 128 --validate --report " + path("r.json"));
         EXPECT_EQ(run.code, 0) << example << ": " << run.out;
         const Json mesh = Json::parse(read(path("r.json")))["mesh"];
         EXPECT_EQ(mesh["boundary_edges"], 0) << example;
@@ -283,13 +283,30 @@ TEST_F(Cli, SmoothAndSimplifyKeepTheMeshClosed) {
 
 TEST_F(Cli, OptionsGoToTheOutputsThatKnowThem) {
     const std::string start = "build examples/joints.sgm --resolution 32 -o " + path("a.glb") + " -o " + path("a.vdb");
-    EXPECT_EQ(sgm(start + " --export half=yes --export uv=none").code, 0);
-    EXPECT_EQ(sgm("build examples/joints.sgm --resolution 32 -o " + path("b.glb") + " --export half=yes").code, 2) << "does nothing";
-    EXPECT_EQ(sgm(start + " --export half").code, 2);
+    EXPECT_EQ(sgm(start + " --format-option half=yes --format-option uv=none").code, 0);
+    EXPECT_EQ(sgm("build examples/joints.sgm --resolution 32 -o " + path("b.glb") + " --format-option half=yes").code, 2) << "does nothing";
+    EXPECT_EQ(sgm(start + " --format-option half").code, 2);
     // Before the work, and before anything is written.
     fs::remove(path("a.glb"));
-    EXPECT_EQ(sgm(start + " --export wisps=2").code, 2);
+    EXPECT_EQ(sgm(start + " --format-option wisps=2").code, 2);
     EXPECT_FALSE(fs::exists(path("a.glb")));
+}
+
+TEST_F(Cli, OldNamesOfOptionsWorkAndSayTheNewOnes) {
+    const std::string start = "build examples/joints.sgm --resolution 32 -o ";
+    ASSERT_EQ(sgm(start + path("new.ply") + " --format-option up=z --format-option attributes=none").out.find("note"), std::string::npos);
+    const Outcome old = sgm(start + path("old.ply") + " --export up=z --export attributes=none --judge");
+    EXPECT_EQ(old.code, 0) << old.out;
+    EXPECT_EQ(read(path("old.ply")), read(path("new.ply")));
+    EXPECT_NE(old.out.find("note: --export is now --format-option"), std::string::npos) << old.out;
+    EXPECT_NE(old.out.find("note: --judge is now --validate"), std::string::npos) << old.out;
+    EXPECT_NE(old.out.find("CGAL: closed"), std::string::npos) << old.out;
+    const Outcome mixed = sgm(start + path("mixed.ply") + " --export attributes=none --format-option up=z");
+    EXPECT_EQ(mixed.code, 0) << mixed.out;
+    EXPECT_EQ(read(path("mixed.ply")), read(path("new.ply")));
+    const std::string help = sgm("build --help").out;
+    for (const char* gone : {"--export", "--judge"}) EXPECT_EQ(help.find(gone), std::string::npos) << gone;
+    for (const char* now : {"--format-option", "--validate"}) EXPECT_NE(help.find(now), std::string::npos) << now;
 }
 
 TEST_F(Cli, ProxyIsASecondCoarseMesh) {

@@ -71,7 +71,7 @@ TEST_F(Importers, BlenderSeesClosedUprightMeshes) {
 TEST_F(Importers, BlenderTakesZUpWhereAFormatDoesntSay) {
     if (!blenderWorks()) GTEST_SKIP() << "blender or python3-numpy isn't installed";
     const std::string ply = path("tower.ply"), stl = path("tower.stl");
-    report_ = built("examples/tower.sgm --resolution 32 --export up=z -o " + ply + " -o " + stl)["mesh"];
+    report_ = built("examples/tower.sgm --resolution 32 --format-option up=z -o " + ply + " -o " + stl)["mesh"];
     const double height = report_["bounds"][1][1].get<double>() - report_["bounds"][0][1].get<double>();
     for (const auto& [file, found] :
          factsFrom("blender -b --factory-startup --python tests/cli/importers/blender.py -- " + ply + " " + stl))

@@ -65,14 +65,14 @@ TEST_F(Meshes, OfTheShapeAloneHaveTheSameBytesWhateverElseIsAsked) {
     // Quiet, such a build keeps no normals and no origins; with a report or another file it does.
     const std::string file = grammar("start A -> torus size (3, 1, 3) + sphere size .8 move (0, 3, 0)\n");
     for (const char* keep : {"", " --keep largest --inward"}) {
-        const std::string common = file + " --resolution 60 --export attributes=none" + keep;
+        const std::string common = file + " --resolution 60 --format-option attributes=none" + keep;
         ASSERT_EQ(sgm("build -q " + common + " -o " + path("q.ply") + " -o " + path("q.stl") + " -o " + path("q.off")).code, 0);
         ASSERT_EQ(sgm("build " + common + " -o " + path("s.ply") + " -o " + path("s.stl") + " -o " + path("s.off")).code, 0);
         ASSERT_EQ(sgm("build -q " + common + " -o " + path("g.ply") + " -o " + path("g.glb") + " --report " + path("r.json")).code, 0);
         for (const char* ending : {".ply", ".stl", ".off"}) EXPECT_EQ(read(path("q") + ending), read(path("s") + ending)) << ending << keep;
         EXPECT_EQ(read(path("g.ply")), read(path("q.ply"))) << keep;
     }
-    for (const char* edit : {" --smooth 1", " --simplify .5", " --judge", " --cave"})
+    for (const char* edit : {" --smooth 1", " --simplify .5", " --validate", " --cave"})
         EXPECT_EQ(sgm("build -q " + file + " --resolution 40 -o " + path("e.stl") + edit).code, 0) << edit;
 }
 
