@@ -20,6 +20,7 @@
 #include "modeler/core/stopwatch.h"
 #include "modeler/export/exporter.h"
 #include "modeler/mesh/edit.h"
+#include "modeler/mesh/simplify.h"
 #include "modeler/mesh/validate.h"
 #include "modeler/volume/keep.h"
 #include "viewer/document/files.h"
@@ -36,6 +37,7 @@ struct BuildRequest {
     std::string report, agent, floor;  ///< agent as `parseAgent` reads it, "" for the usual one
     int smooth = 0;
     double simplify = 1;
+    std::optional<double> tolerance_m;  ///< none: see toleranceOf
     std::string keep = "all";
     bool validate = false, cave = false, inward = false, stream = false, quiet = false;
 };
@@ -47,12 +49,12 @@ bool wantsLevelSet(const BuildRequest& request) { return wantsVolume(request.out
 
 /// Whether nobody asks for the mesh's normals and origins: neither the files nor edits, the floor and the figures.
 bool bareWillDo(const BuildRequest& request) {
-    return request.quiet && request.report.empty() && request.smooth == 0 && request.simplify == 1 && !surveys(request) && bareWillDo(request.out);
+    return request.quiet && request.report.empty() && request.smooth == 0 && request.simplify == 1 && !request.tolerance_m && !surveys(request) && bareWillDo(request.out);
 }
 
 /// A streamed build never has the whole mesh; Error::Usage names what would need it.
 Status checkStream(const BuildRequest& request) {
-    const std::pair<bool, const char*> whole[] = {{request.smooth > 0, "--smooth"}, {request.simplify < 1, "--simplify"}, {request.keep != "all", "--keep"},
+    const std::pair<bool, const char*> whole[] = {{request.smooth > 0, "--smooth"}, {request.simplify < 1 || request.tolerance_m, "--simplify and --tolerance"}, {request.keep != "all", "--keep"},
                                                   {request.validate, "--validate"}, {surveys(request), "--cave and --floor"}, {request.inward, "--inward"},
                                                   {!request.report.empty(), "--report"}, {!request.animations.empty(), "--animate"}};
     for (const auto& [asked, option] : whole)
@@ -72,14 +74,25 @@ Status checkRequest(const BuildRequest& request) {
     return Done{};
 }
 
-Result<mesh::Mesh> edited(mesh::Mesh mesh, const BuildRequest& request, Stages& stages, Progress* progress) {
+/// How far simplification may move the surface, metres: of a crisp mesh a hundredth of a cell, unless the user says
+/// otherwise or smooths it.
+double toleranceOf(const BuildRequest& request, float cell_m) {
+    if (request.tolerance_m) return *request.tolerance_m;
+    return request.grid.surface == mesh::Surface::Crisp && request.smooth == 0 ? 0.01 * static_cast<double>(cell_m) : 0;
+}
+
+Result<mesh::Mesh> edited(mesh::Mesh mesh, const BuildRequest& request, float cell_m, Stages& stages, Progress* progress) {
     if (request.smooth > 0) {
         auto result = timed(stages, "smooth", [&] { return mesh::smooth(mesh, request.smooth, progress); });
         if (!result.ok()) return result;
         mesh = std::move(*result);
     }
-    if (request.simplify < 1) {
-        auto result = timed(stages, "simplify", [&] { return mesh::simplify(mesh, request.simplify, progress); });
+    const double tolerance_m = toleranceOf(request, cell_m);
+    if ((request.simplify < 1 || tolerance_m > 0) && mesh.triangleCount() > 0) {
+        auto result = timed(stages, "simplify", [&] {
+            return request.simplify < 1 ? mesh::simplifyToShare(mesh, request.simplify, request.grid.threads, progress)
+                                        : mesh::simplify(mesh, {tolerance_m, request.grid.threads}, progress);
+        });
         if (!result.ok()) return result;
         mesh = std::move(*result);
     }
@@ -140,7 +153,7 @@ void keepOnly(const BuildRequest& request, MeshedModel& meshed) {
 /// From a mesh to what was asked for: edits, validation, files, figures.
 Status deliver(const BuildRequest& request, const Model& model, MeshedModel meshed, Stages& stages, Progress* progress) {
     keepOnly(request, meshed);
-    auto mesh = edited(std::move(meshed.mesh), request, stages, progress);
+    auto mesh = edited(std::move(meshed.mesh), request, meshed.grid.cell_m, stages, progress);
     if (!mesh.ok()) return mesh.error();
     if (mesh->triangleCount() == 0 && !allFiles(request.out).empty()) {
         Error error = viewer::noSurface(meshed.grid.cell_m);
@@ -210,7 +223,7 @@ Status stream(const BuildRequest& request, const Model& model, Progress* progres
 
 /// Whether files of the solid tree are all that is wanted.
 bool solidsWillDo(const BuildRequest& request) {
-    return solidsWillDo(request.out) && request.report.empty() && !request.judge && !surveys(request);
+    return solidsWillDo(request.out) && request.report.empty() && !request.validate && !surveys(request);
 }
 
 /// Writes the solid tree where that is wanted: before meshing, for a model that isn't exactly one is refused.
@@ -331,7 +344,14 @@ void addBuild(CLI::App& app, int& exitCode) {
     command->add_option("--keep", request->keep, "Which separate solids stay: all, those that stand and aren't crumbs, or the largest one; the latter two fill closed cavities")
         ->check(CLI::IsMember({"all", "grounded", "largest"}))->capture_default_str();
     command->add_option("--smooth", request->smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
-    command->add_option("--simplify", request->simplify, "Decimate to this share of the triangles")->check(CLI::Range(0.001, 1.0));
+    auto* share = command->add_option("--simplify", request->simplify, "Simplify to at most this share of the triangles");
+    share->check(CLI::Range(0.001, 1.0));
+    command
+        ->add_option("--tolerance", request->tolerance_m,
+                     "How far simplification may move the surface: 5mm, 2cm, .01m; 0 keeps all [a crisp mesh: .01 cell]")
+        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"mm", .001}, {"cm", .01}, {"m", 1}}))
+        ->check(CLI::NonNegativeNumber)
+        ->excludes(share);
     command->add_flag("--validate", request->validate, "Validate with CGAL: closed, oriented, no self-intersections");
     addRenamedFlag(*command, "--judge", "--validate", request->validate);
     command->add_flag("--stream", request->stream, "Mesh and write layer by layer, for a mesh larger than memory: one " + exporter::streamedExtensions() + " file, and nothing that needs the whole mesh");

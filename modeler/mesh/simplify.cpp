@@ -113,4 +113,24 @@ Result<Mesh> simplify(const Mesh& mesh, const SimplifyOptions& options, Progress
     return Simplifier(mesh, options, progress).run();
 }
 
+Result<Mesh> simplifyToShare(const Mesh& mesh, double share, int threads, Progress* progress) {
+    if (!(share > 0 && share <= 1))
+        return Error{Error::Kind::Usage, "the simplification ratio must be above 0 and at most 1"};
+    if (share == 1) return mesh;
+    const double most = share * static_cast<double>(mesh.triangleCount());
+    const auto extent = static_cast<double>(maxComponent(mesh.bounds().size()));
+    double low = 1e-5 * extent, high = 0.2 * extent;
+    auto best = simplify(mesh, {high, threads}, progress);
+    while (high > 1.125 * low) {
+        const double middle = std::sqrt(low * high);
+        auto tried = simplify(mesh, {middle, threads}, progress);
+        if (!tried.ok()) return tried;
+        if (static_cast<double>(tried->triangleCount()) <= most)
+            high = middle, best = std::move(tried);
+        else
+            low = middle;
+    }
+    return best;
+}
+
 }  // namespace sgm::mesh

@@ -24,4 +24,9 @@ struct SimplifyOptions {
 /// Error::Cancelled.
 Result<Mesh> simplify(const Mesh& mesh, const SimplifyOptions& options, Progress* progress);
 
+/// As `simplify`, with about the least tolerance (within an eighth) that leaves at most `share` of the triangles, in
+/// (0, 1]; with a fifth of the mesh's extent where none does. Takes about ten times as long. Error::Usage for another
+/// share.
+Result<Mesh> simplifyToShare(const Mesh& mesh, double share, int threads, Progress* progress);
+
 }  // namespace sgm::mesh
