@@ -9,6 +9,7 @@
 
 #include "cli/animation.h"
 #include "cli/cave.h"
+#include "cli/colliders.h"
 #include "cli/commands.h"
 #include "cli/floating.h"
 #include "cli/outputs.h"
@@ -68,6 +69,8 @@ Status checkRequest(const BuildRequest& request) {
     if (const Status s = request.floor.empty() ? Done{} : checkMeshFile("--floor", request.floor); !s.ok()) return s;
     if (request.stream)
         if (const Status s = checkStream(request); !s.ok()) return s;
+    if (request.inward && (request.out.collider == "boxes" || request.out.collider == "convex"))
+        return Error{Error::Kind::Usage, fmt::format("--collider {} fills the terminals, and --inward is for hollows: take --collider mesh", request.out.collider)};
     if (request.agent.empty()) return Done{};
     if (!surveys(request)) return Error{Error::Kind::Usage, "--agent walks through a cave: add --cave or --floor FILE"};
     if (const auto agent = parseAgent(request.agent); !agent.ok()) return agent.error();
@@ -108,12 +111,13 @@ Result<volume::Cave> survey(const BuildRequest& request, exporter::ExportInput i
     const mesh::Mesh floor = volume::walkableFloor(*input.mesh, *cave);
     if (floor.triangleCount() == 0) return Error{Error::Kind::Input, fmt::format("--floor {}: the agent can stand nowhere", request.floor)};
     input.mesh = &floor;
+    input.colliders = {};
     input.name += "-floor";
     if (const Status written = exporter::write(input, request.floor); !written.ok()) return written.error();
     return cave;
 }
 
-void say(const BuildRequest& request, const Model& model, const mesh::MeshFigures& f, const Support& support, const Stages& stages) {
+void say(const BuildRequest& request, const Model& model, const mesh::MeshFigures& f, const Support& support, const Colliders& colliders, const Stages& stages) {
     double total = 0;
     for (const auto& stage : stages) total += stage.second;
     fmt::print("{} shapes, {} bonds, {} rules; {} triangles in {} component{}, {:.4g} m³; {:.2f} s\n", model.derivation.tree.shapes.size(),
@@ -121,6 +125,8 @@ void say(const BuildRequest& request, const Model& model, const mesh::MeshFigure
                f.components == 1 ? "" : "s", f.volume_m3, total);
     for (const std::string& file : allFiles(request.out)) fmt::print("wrote {}\n", file);
     if (!request.floor.empty()) fmt::print("wrote {}\n", request.floor);
+    if (!request.out.collider.empty()) fmt::print("{} collider{} ({})\n", colliders.all.size(), colliders.all.size() == 1 ? "" : "s", request.out.collider);
+    for (const std::string& note : colliders.notes) fmt::print(stderr, "note: collider: {}\n", note);
     const syntax::Diagnostics ungrown = derive::ungrown(model.derivation);
     for (const syntax::Diagnostic& d : ungrown.all()) fmt::print(stderr, "{}\n", syntax::render(d));
     sayFloating(model, support);
@@ -173,6 +179,13 @@ Status deliver(const BuildRequest& request, const Model& model, MeshedModel mesh
     exporter::ExportInput input = viewer::exportInput(model, request.model.file);
     input.mesh = &*mesh;
     input.progress = progress;
+    Colliders colliders;
+    if (!request.out.collider.empty()) {
+        auto made = timed(stages, "colliders", [&] { return makeColliders(request.out.collider, model, *mesh, progress); });
+        if (!made.ok()) return made.error();
+        colliders = std::move(*made);
+        input.colliders = colliders.all;
+    }
     std::optional<volume::Volume> level;
     if (wantsLevelSet(request)) {
         auto sampled = timed(stages, "level set", [&] {
@@ -194,7 +207,7 @@ Status deliver(const BuildRequest& request, const Model& model, MeshedModel mesh
     if (!request.report.empty())
         if (const Status s = viewer::writeText(request.report, reportJson(model, meshed, figures, support, cave, stages, request.grid.threads)); !s.ok()) return s;
     if (request.quiet) return Done{};
-    say(request, model, figures, support, stages);
+    say(request, model, figures, support, colliders, stages);
     if (cave && request.cave) fmt::print("{}", caveTable(*cave));
     return Done{};
 }

@@ -43,6 +43,19 @@ exporter::ExportOptions optionsFor(const OutputRequest& request, const Exporter&
     return options;
 }
 
+/// Colliders need a file that holds them, and a file's names for colliders need some.
+Status checkCollider(const OutputRequest& request) {
+    const auto named = std::find_if(request.options.begin(), request.options.end(), [](const std::string& text) { return text.starts_with("engine="); });
+    if (request.collider.empty()) {
+        if (named == request.options.end()) return Done{};
+        return Error{Error::Kind::Usage, fmt::format("--format-option {} names colliders: add --collider boxes, convex or mesh", *named)};
+    }
+    if (request.collider == "mesh" && named != request.options.end() && *named == "engine=unreal")
+        return Error{Error::Kind::Usage, "--collider mesh: Unreal imports convex colliders alone; take boxes or convex"};
+    if (std::any_of(request.files.begin(), request.files.end(), [](const std::string& file) { return exporter::holdsColliders(*formatOf(file)); })) return Done{};
+    return Error{Error::Kind::Usage, fmt::format("--collider {}: colliders go into .glb and .gltf, and no such file is asked for", request.collider)};
+}
+
 /// An option that none of the files takes says so, rather than do nothing.
 Status checkOption(const OutputRequest& request, const std::string& text) {
     const std::string name = text.substr(0, text.find('='));
@@ -62,7 +75,9 @@ void addOutputOptions(CLI::App& command, OutputRequest& request) {
     command.add_option("-o,--output", request.files, "Output file, format by its ending; may be given again")->allow_extra_args(false);
     command.add_option("--format-option", request.options, "Option of a file format, NAME=VALUE (see `sgm reference`); may be given again")->allow_extra_args(false);
     addRenamedOption(command, "--export", "--format-option", request.options);
-    auto* proxy = command.add_option("--proxy", request.proxy, "Mesh file for a coarse closed mesh around the model: shadows, light, collision");
+    command.add_option("--collider", request.collider, "Add colliders to .glb and .gltf: boxes or convex parts made from the terminals, or the mesh, simplified")
+        ->check(CLI::IsMember({"boxes", "convex", "mesh"}));
+    auto* proxy = command.add_option("--proxy", request.proxy, "Mesh file for a coarse closed mesh around the model; goes with the next version: see --collider");
     command.add_option("--proxy-tolerance", request.proxyTolerance_m, "Metres the proxy may stand off (default: a twentieth of the longest side)")->check(CLI::PositiveNumber)->needs(proxy);
 }
 
@@ -83,8 +98,11 @@ Status checkMeshFile(const char* option, const std::string& file) {
 Status checkOutputs(const OutputRequest& request) {
     for (const std::string& file : request.files)
         if (const Status s = checkFile(file); !s.ok()) return s;
-    if (!request.proxy.empty())
+    if (!request.proxy.empty()) {
+        noteRenamed("--proxy", "--collider");
         if (const Status s = checkMeshFile("--proxy", request.proxy); !s.ok()) return s;
+    }
+    if (const Status s = checkCollider(request); !s.ok()) return s;
     for (const std::string& text : request.options)
         if (const Status s = checkOption(request, text); !s.ok()) return s;
     for (const std::string& file : allFiles(request))
@@ -150,6 +168,7 @@ Status writeOutputs(const OutputRequest& request, const Model& model, exporter::
     const auto around = mesh::proxy(model.lowered->graph, model.lowered->field, tolerance_m, threads, input.progress);
     if (!around.ok()) return around.error();
     input.mesh = &*around;
+    input.colliders = {};
     input.options = optionsFor(request, *formatOf(request.proxy));
     return exporter::write(input, request.proxy);
 }

@@ -14,7 +14,9 @@ namespace {
 constexpr ExportOption uv{"uv", "box", "box|none", "texture coordinates in metres, projected along the nearest axis"};
 constexpr ExportOption up{"up", "y", "y|z", "the axis that points up in the file"};
 constexpr ExportOption unit{"unit", "m", "m|cm|mm", "the length of one unit in the file"};
-constexpr ExportOption gltfOptions[] = {uv};
+constexpr ExportOption gltfOptions[] = {
+    uv,
+    {"engine", "godot", "godot|unreal|unity", "whose names colliders bear, so that it imports them as such"}};
 constexpr ExportOption texturedOptions[] = {up, unit, uv};
 constexpr ExportOption plainOptions[] = {up, unit};
 constexpr ExportOption scadOptions[] = {
@@ -153,6 +155,10 @@ Status checkOptions(const Exporter& row, const ExportOptions& options) {
 }
 
 std::span<const Exporter> exporters() { return table; }
+
+bool holdsColliders(const Exporter& row) {
+    return std::any_of(row.options.begin(), row.options.end(), [](const ExportOption& o) { return o.name == "engine"; });
+}
 
 bool takesBare(const Exporter& row, const ExportOptions& options) { return row.takesBare && row.takesBare(options); }
 

@@ -13,6 +13,7 @@
 #include "modeler/core/progress.h"
 #include "modeler/core/provenance.h"
 #include "modeler/core/result.h"
+#include "modeler/export/colliders.h"
 #include "modeler/field/solid_tree.h"
 #include "modeler/mesh/polygonize.h"
 #include "modeler/volume/volume.h"
@@ -36,6 +37,7 @@ struct ExportInput {
     const volume::Volume* volume = nullptr;
     const field::SolidTree* solids = nullptr;
     const Provenance* provenance = nullptr;
+    std::span<const Collider> colliders;        ///< written by formats that hold colliders
     std::string name = "model";                 ///< of the object in the file
     std::map<std::string, std::string> extras;  ///< grammar, seed, parameters: kept where the format can hold them
     ExportOptions options;                      ///< those of the format, checked by `write`
@@ -72,6 +74,8 @@ const Exporter* exporterFor(const std::filesystem::path& path);
 std::string streamedExtensions();
 /// Error::Usage, in words, for a name that the format doesn't have and for a value that the option doesn't take.
 Status checkOptions(const Exporter& row, const ExportOptions& options);
+/// Whether files of the format hold colliders: those with the option `engine` do.
+bool holdsColliders(const Exporter& row);
 /// Whether a bare mesh has all that the format writes with these options.
 bool takesBare(const Exporter& row, const ExportOptions& options);
 /// Writes `path` by its extension: all or nothing, Error::Cancelled when `input.progress` says so.

@@ -10,6 +10,7 @@
 #include "modeler/core/atomic_file.h"
 #include "modeler/core/polled_file.h"
 #include "modeler/export/formats.h"
+#include "modeler/export/gltf_colliders.h"
 #include "modeler/export/surface.h"
 
 namespace sgm::exporter {
@@ -175,6 +176,7 @@ Status writeScene(const ExportInput& input, const Path& temporary, const Path& t
     MeshBuilder builder(input, option(input, "uv", "box") == "box");
     if (!builder.build()) return cancelledError();
     addScene(builder.model, input);
+    if (Status status = addColliders(builder.model, input); !status.ok()) return status;
     // The container's lengths have 32 bits; a little room is left for the JSON.
     if (binary && builder.model.buffers[0].data.size() > 0xfff00000u)
         return writeError(target, "the mesh is larger than the 4 GB a .glb can hold; choose another format");

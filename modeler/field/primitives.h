@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "modeler/field/convex.h"
 #include "modeler/field/field.h"
 
 namespace sgm::field {
@@ -59,6 +60,7 @@ struct Primitive {
     bool bounded = true;  ///< false: fills half of space, may only cut
     std::span<const PrimitiveJoint> joints{};
     bool morphs = false;  ///< its first parameter is the share of a morph
+    convex::PartsOf convexParts = nullptr;  ///< null where it has none, or where they must be found from its field
 };
 
 /// The table, in the order of docs/reference.md.

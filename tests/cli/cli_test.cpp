@@ -309,8 +309,34 @@ TEST_F(Cli, OldNamesOfOptionsWorkAndSayTheNewOnes) {
     for (const char* now : {"--format-option", "--validate"}) EXPECT_NE(help.find(now), std::string::npos) << now;
 }
 
+TEST_F(Cli, CollidersGoIntoFilesThatHoldThem) {
+    const std::string start = "build examples/joints.sgm --resolution 32 ";
+    const Outcome run = sgm(start + "--collider convex --format-option engine=unreal -o " + path("a.gltf") + " -o " + path("a.stl"));
+    EXPECT_EQ(run.code, 0) << run.out;
+    EXPECT_NE(run.out.find(" colliders (convex)"), std::string::npos) << run.out;
+    const Json file = Json::parse(read(path("a.gltf")));
+    EXPECT_EQ(file["nodes"][1]["name"], "UCX_joints_00");
+    EXPECT_EQ(sgm(start + "--collider convex -o " + path("b.stl")).code, 2) << "holds none";
+    EXPECT_EQ(sgm(start + "--collider hulls -o " + path("b.glb")).code, 2);
+    EXPECT_EQ(sgm(start + "--format-option engine=unreal -o " + path("b.glb")).code, 2) << "of no colliders";
+    EXPECT_EQ(sgm(start + "--collider mesh --format-option engine=unreal -o " + path("b.glb")).code, 2);
+    EXPECT_EQ(sgm(start + "--collider boxes --inward -o " + path("b.glb")).code, 2);
+    EXPECT_FALSE(fs::exists(path("b.glb")));
+}
+
+TEST_F(Cli, CollidersSayWhatTheyLeaveOut) {
+    const std::string file = grammar("start A -> cube size 2 + sphere size 1 at +y blend .3\n");
+    const Outcome run = sgm("build " + file + " --resolution 32 --collider convex -o " + path("a.glb"));
+    EXPECT_EQ(run.code, 0) << run.out;
+    EXPECT_NE(run.out.find("note: collider: "), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("test.sgm:2:"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("taken as sharp"), std::string::npos) << run.out;
+}
+
 TEST_F(Cli, ProxyIsASecondCoarseMesh) {
-    ASSERT_EQ(sgm("build examples/joints.sgm --resolution 64 -o " + path("a.off") + " --proxy " + path("p.off")).code, 0);
+    const Outcome run = sgm("build examples/joints.sgm --resolution 64 -o " + path("a.off") + " --proxy " + path("p.off"));
+    ASSERT_EQ(run.code, 0) << run.out;
+    EXPECT_NE(run.out.find("note: --proxy is now --collider"), std::string::npos) << run.out;
     EXPECT_LT(fs::file_size(path("p.off")), fs::file_size(path("a.off")) / 10);
     EXPECT_EQ(sgm("build examples/joints.sgm --proxy " + path("p.vdb")).code, 2);
     EXPECT_EQ(sgm("build examples/joints.sgm --proxy-tolerance 1").code, 2) << "of no proxy";

@@ -41,6 +41,20 @@ protected:
         for (size_t axis = 0; axis < 3; ++axis) size_[axis] = hi[axis].get<double>() - lo[axis].get<double>();
     }
 
+    /// What a script of tests/cli/importers prints of the models in the folder, once Godot's editor has imported them and
+    /// `done`, shell text, succeeds there.
+    std::map<std::string, Json> godotOn(const std::string& script, const std::string& done) {
+        scratch_.write("project.godot", "config_version=4\n[application]\nconfig/name=\"tower\"\n");
+        const std::string folder = path("");
+        const std::string godot = "HOME=" + folder + " timeout 60 godot3-server --path " + folder + " ";
+        // Godot 3.2 doesn't always end by --quit.
+        const std::string import = godot + "--editor --quit > /dev/null 2>&1 & while kill -0 $! 2> /dev/null; do sleep .2; (cd " +
+                                   folder + " && " + done + ") > /dev/null 2>&1 && kill $!; done; true";
+        EXPECT_NE(std::system(import.c_str()), -1);
+        fs::copy("tests/cli/importers/" + script, path(script));
+        return factsFrom(godot + "-s " + script);
+    }
+
     Json report_;
     double size_[3] = {};
 };
@@ -81,19 +95,34 @@ TEST_F(Importers, BlenderTakesZUpWhereAFormatDoesntSay) {
 TEST_F(Importers, GodotSeesEveryMaterial) {
     if (!installed("godot3-server")) GTEST_SKIP() << "godot3-server isn't installed";
     build({"tower.glb", "tower.obj"});
-    scratch_.write("project.godot", "config_version=4\n[application]\nconfig/name=\"tower\"\n");
-    const std::string folder = path("");
-    const std::string godot = "HOME=" + folder + " timeout 60 godot3-server --path " + folder + " ";
-    // The editor imports what it finds; Godot 3.2 doesn't always end by --quit.
-    const std::string import =
-        godot + "--editor --quit > /dev/null 2>&1 & while kill -0 $! 2> /dev/null; do sleep .2; ls " + folder +
-        "/.import/*.scn " + folder + "/.import/*.mesh > /dev/null 2>&1 && kill $!; done; true";
-    ASSERT_NE(std::system(import.c_str()), -1);
-    fs::copy("tests/cli/importers/godot.gd", path("godot.gd"));
-    for (const auto& [file, found] : factsFrom(godot + "-s godot.gd")) {
+    for (const auto& [file, found] : godotOn("godot.gd", "ls .import/*.scn .import/*.mesh")) {
         EXPECT_EQ(found["triangles"], report_["triangles"]) << file;
         EXPECT_EQ(found["surfaces"], 5) << file;
         for (size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(found["size"][axis], size_[axis], 1e-3) << file;
+    }
+}
+
+TEST_F(Importers, GodotTakesColliders) {
+    if (!installed("godot3-server")) GTEST_SKIP() << "godot3-server isn't installed";
+    // Godot 3.2 takes a tenth of a second for each collider.
+    const std::string wall = grammar(
+        "terminal stone = cube\nstart A -> stone size (4, 3, .4) - cube size 1 at centre to centre move (.5, 0, 0) + pyramid size (4, 1, .4) at +y\n");
+    std::map<std::string, int> written{{"boxes.glb", 6}, {"convex.glb", 5}, {"mesh.glb", 1}};
+    for (const std::string kind : {"boxes", "convex", "mesh"}) {
+        const Outcome run = sgm("build " + wall + " --resolution 64 --collider " + kind + " -o " + path(kind + ".glb"));
+        ASSERT_EQ(run.code, 0) << run.out;
+        EXPECT_NE(run.out.find("\n" + std::to_string(written[kind + ".glb"]) + " collider"), std::string::npos) << run.out;
+    }
+    const auto facts = godotOn("godot_colliders.gd", "test $(ls .import/*.scn | wc -l) = 3");
+    EXPECT_EQ(facts.size(), 3u);
+    for (const auto& [file, found] : facts) {
+        SCOPED_TRACE(file);
+        EXPECT_EQ(found["meshes"], 1) << "what collides isn't seen";
+        EXPECT_EQ(found["bodies"], written[file]);
+        EXPECT_EQ(found[file == "mesh.glb" ? "concave" : "convex"], written[file]);
+        EXPECT_EQ(found[file == "mesh.glb" ? "convex" : "concave"], 0);
+        EXPECT_NEAR(found["low"], -1.5, 0.05);
+        EXPECT_NEAR(found["high"], 2.5, 0.2);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "modeler/export/exporter.h"
+#include "modeler/mesh/convex_polyhedron.h"
 #include "tests/export/hand_made.h"
 #include "tests/export/read_back.h"
 #include "tests/scratch.h"
@@ -34,6 +35,10 @@ TEST_F(Judged, GltfValidatorFindsNothing) {
     const auto glb = folder / "a.glb", gltf = folder / "a.gltf", plain = folder / "b.glb", verdict = folder / "verdict";
     ASSERT_TRUE(write(input, glb).ok());
     ASSERT_TRUE(write(input, gltf).ok());
+    Collider box;
+    mesh::ConvexPolyhedron(Box3d{{-1, -1, -1}, {1, 1, 1}}).triangulate(box.positions, box.triangles);
+    const Collider colliders[] = {box, box};
+    input.colliders = colliders;
     input.options = {{"uv", "none"}};
     ASSERT_TRUE(write(input, plain).ok());
     const int code = run("node tests/export/validate_gltf.js " + glb.string() + " " + gltf.string() + " " +
