@@ -81,7 +81,7 @@ Status checkRequest(const BuildRequest& request) {
 /// otherwise or smooths it.
 double toleranceOf(const BuildRequest& request, float cell_m) {
     if (request.tolerance_m) return *request.tolerance_m;
-    return request.grid.surface == mesh::Surface::Crisp && request.smooth == 0 ? 0.01 * static_cast<double>(cell_m) : 0;
+    return request.grid.surface == mesh::Surface::Crisp && request.smooth == 0 ? mesh::usualTolerance(cell_m) : 0;
 }
 
 Result<mesh::Mesh> edited(mesh::Mesh mesh, const BuildRequest& request, float cell_m, Stages& stages, Progress* progress) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "grammar/lower/convex_parts.h"
-#include "modeler/mesh/edit.h"
+#include "modeler/mesh/simplify.h"
 
 namespace sgm::cli {
 namespace {
@@ -26,9 +26,9 @@ exporter::Collider colliderOf(const mesh::Mesh& mesh) {
 
 /// A twentieth of the triangles, but not below some thousands.
 Result<Colliders> fromMesh(const mesh::Mesh& mesh, Progress* progress) {
-    constexpr double share = 0.05, enough = 2000;
-    const double ratio = std::clamp(enough / static_cast<double>(mesh.triangleCount()), share, 1.0);
-    auto coarse = mesh::simplify(mesh, ratio, progress);
+    constexpr double share = 0.002;  // of the extent
+    const auto extent = static_cast<double>(maxComponent(mesh.bounds().size()));
+    auto coarse = mesh::simplify(mesh, {share * extent, 0}, progress);
     if (!coarse.ok()) return coarse.error();
     return Colliders{{colliderOf(*coarse)}, {}};
 }

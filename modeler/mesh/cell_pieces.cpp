@@ -238,12 +238,10 @@ void CellPieces::emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, c
     out.origins.push_back(piece.origin);
 }
 
-/// Whether three corners lie in one face of the cell at hand: the neighbour might put a triangle there too.
-bool CellPieces::liesInFace(const LoopNode& a, const LoopNode& b, const LoopNode& c) const {
+/// Whether a diagonal lies in a face of the cell at hand: it might be the neighbour's too.
+bool CellPieces::liesInFace(const LoopNode& a, const LoopNode& b) const {
     for (int axis = 0; axis < 3; ++axis)
-        if (a.at[axis] == b.at[axis] && b.at[axis] == c.at[axis] &&
-            (a.at[axis] == low_[axis] || a.at[axis] == high_[axis]))
-            return true;
+        if (a.at[axis] == b.at[axis] && (a.at[axis] == low_[axis] || a.at[axis] == high_[axis])) return true;
     return false;
 }
 
@@ -266,7 +264,7 @@ bool CellPieces::triangulatePolygon(const Polygon& polygon, PieceTriangles& out)
             const LoopNode &a = scratch_[(i + count - 1) % count], &b = scratch_[i], &c = scratch_[(i + 1) % count];
             const double quality = facing(a, b, c, n) / (squares(a, b) + squares(b, c) + squares(c, a));
             if (!(quality > most)) continue;
-            bool ear = !liesInFace(a, b, c);
+            bool ear = !liesInFace(a, c);
             for (size_t k = 0; k + 3 < count && ear; ++k) ear = !holds(a, b, c, scratch_[(i + 2 + k) % count], n);
             if (ear) best = i, most = quality;
         }
@@ -275,7 +273,6 @@ bool CellPieces::triangulatePolygon(const Polygon& polygon, PieceTriangles& out)
         scratch_.erase(scratch_.begin() + static_cast<ptrdiff_t>(best));
     }
     if (!(facing(scratch_[0], scratch_[1], scratch_[2], n) > 0)) return false;
-    if (liesInFace(scratch_[0], scratch_[1], scratch_[2])) return false;
     emit(scratch_[0], scratch_[1], scratch_[2], polygon, normal, out);
     return true;
 }

@@ -79,7 +79,7 @@ private:
     void addCorner(Loop& loop, const std::vector<LoopNode>& nodes);
     Vec3f inCell(Vec3i cell, Vec3f p) const;
     void intersect(Corner& corner) const;
-    bool liesInFace(const LoopNode& a, const LoopNode& b, const LoopNode& c) const;
+    bool liesInFace(const LoopNode& a, const LoopNode& b) const;
     bool triangulatePolygon(const Polygon& polygon, PieceTriangles& out);
     bool triangulateLoop(const Loop& loop, PieceTriangles& out);
     bool crosses(const PieceTriangles& out, size_t firstTriangle) const;

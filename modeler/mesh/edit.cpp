@@ -1,5 +1,8 @@
 #include "modeler/mesh/edit.h"
 
+#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
+#include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
+#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 #include <OpenMesh/Tools/Smoother/JacobiLaplaceSmootherT.hh>
 #include <algorithm>
 #include <cmath>
@@ -7,6 +10,24 @@
 #include "modeler/mesh/openmesh.h"
 
 namespace sgm::mesh {
+namespace {
+
+namespace decimater = OpenMesh::Decimater;
+
+/// Tells the decimater to stop when the watcher wants it.
+class CancelObserver : public decimater::Observer {
+public:
+    explicit CancelObserver(Progress* progress) : Observer(interval), progress_(progress) {}
+    void notify(size_t) override { tick(progress_, interval); }
+    bool abort() const override { return cancelled(progress_); }
+
+private:
+    static constexpr size_t interval = 256;
+    Progress* progress_;
+};
+
+}  // namespace
+
 Result<Mesh> smooth(const Mesh& mesh, int passes, Progress* progress) {
     if (passes < 0) return Error{Error::Kind::Usage, "the number of smoothing passes can't be negative"};
     if (passes == 0) return mesh;
@@ -20,6 +41,30 @@ Result<Mesh> smooth(const Mesh& mesh, int passes, Progress* progress) {
         smoother.smooth(1);
         tick(progress);
     }
+    return fromOpenMesh(half, false);
+}
+
+Result<Mesh> decimate(const Mesh& mesh, double ratio, Progress* progress) {
+    if (!(ratio > 0 && ratio <= 1))
+        return Error{Error::Kind::Usage, "the decimation ratio must be above 0 and at most 1"};
+    HalfEdgeMesh half = toOpenMesh(mesh);
+    const auto target = static_cast<size_t>(std::ceil(ratio * static_cast<double>(half.n_faces())));
+    if (target == half.n_faces()) return fromOpenMesh(half, true);
+    if (progress) progress->begin("decimate", (half.n_faces() - target) / 2);  // a collapse takes two faces
+
+    CancelObserver observer(progress);
+    decimater::DecimaterT<HalfEdgeMesh> decimater(half);
+    decimater::ModQuadricT<HalfEdgeMesh>::Handle quadric;
+    decimater::ModNormalFlippingT<HalfEdgeMesh>::Handle flipping;
+    decimater.add(quadric);
+    decimater.add(flipping);
+    decimater.module(quadric).unset_max_err();  // a priority, no limit
+    decimater.module(flipping).set_max_normal_deviation(60);
+    decimater.set_observer(&observer);
+    if (!decimater.initialize()) return Error{Error::Kind::Internal, "OpenMesh can't start its decimation"};
+    decimater.decimate_to_faces(0, target);
+    if (cancelled(progress)) return cancelledError();
+    half.garbage_collection();
     return fromOpenMesh(half, false);
 }
 

@@ -1,4 +1,5 @@
-// Editing a mesh: smoothing through OpenMesh, which keeps it closed and keeps its origins, and turning it inside out.
+// Editing a mesh: smoothing and decimation through OpenMesh, which keep it closed and keep its origins, and turning it
+// inside out.
 // Enters: a Mesh. Leaves: a Mesh, of one chunk when OpenMesh made it. Assumes a closed manifold mesh from polygonize.
 #pragma once
 
@@ -11,6 +12,11 @@ namespace sgm::mesh {
 /// `passes` (≥ 0) of OpenMesh's Jacobi-Laplace smoother (tangential and normal, C1); normals are recomputed from faces.
 /// Error::Usage for a negative count, Error::Cancelled when `progress` says so.
 Result<Mesh> smooth(const Mesh& mesh, int passes, Progress* progress);
+/// Quadric decimation to `ratio` in (0, 1] of the triangles, for proxies: topology is kept and no face may turn by more
+/// than 60°, so it may stop earlier, but the result may cross itself; `simplify` (simplify.h) never does. Normals are
+/// recomputed from faces. Error::Usage for another ratio, Error::Cancelled.
+Result<Mesh> decimate(const Mesh& mesh, double ratio, Progress* progress);
+
 /// Turns the surface round: triangles are wound and normals point the other way, as for a room seen from inside.
 void turnInsideOut(Mesh& mesh);
 

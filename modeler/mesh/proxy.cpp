@@ -97,7 +97,7 @@ Result<Mesh> proxy(field::Graph& graph, const field::Field& field, double tolera
     if (!fine.ok()) return fine;
     Result<Mesh> kept = std::move(fine);
     for (int step = 0; step < mostThinnings; ++step) {
-        auto thinner = simplify(*kept, 0.4, progress);
+        auto thinner = decimate(*kept, 0.4, progress);
         if (!thinner.ok()) return thinner;
         if (!encloses(*thinner, tape)) break;
         kept = std::move(thinner);

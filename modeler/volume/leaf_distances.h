@@ -1,5 +1,4 @@
-// Exact distances from the voxels of a leaf to the triangles around it. Includes OpenVDB: for this room's .cpp files
-// only.
+// Exact distances from the voxels of a leaf to the triangles around it. No OpenVDB here.
 // Enters: the isosurface in the leaf and those about it. Leaves: distances in voxels. One worker, one object.
 #pragma once
 

@@ -37,6 +37,15 @@ std::vector<Coord> sortedOnce(std::vector<Coord> origins) {
     return origins;
 }
 
+CornerValues cornerValues(const FloatGrid::ConstAccessor& grid, Coord origin) {
+    CornerValues values;
+    size_t n = 0;
+    for (int i = 0; i < cellCorners; ++i)
+        for (int j = 0; j < cellCorners; ++j)
+            for (int k = 0; k < cellCorners; ++k) values[n++] = grid.getValue(origin.offsetBy(i, j, k));
+    return values;
+}
+
 /// A level set's isosurface by leaf.
 class Surfaces {
 public:
@@ -53,7 +62,7 @@ public:
         std::vector<FloatGrid::ConstAccessor> values(static_cast<size_t>(threadCount(threads)),
                                                      grid.getConstAccessor());
         parallelFor(origins_.size(), threads, progress, [&](size_t n, int worker) {
-            surfaces_[n] = isosurface(values[static_cast<size_t>(worker)], origins_[n]);
+            surfaces_[n] = isosurface(cornerValues(values[static_cast<size_t>(worker)], origins_[n]));
             tick(progress);
         });
         for (size_t n = 0; n < origins_.size(); ++n)

@@ -11,6 +11,7 @@
 #include "grammar/lower/solid_tree.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/export/exporter.h"
+#include "modeler/mesh/simplify.h"
 
 namespace sgm::bench {
 namespace {
@@ -119,20 +120,27 @@ uint64_t glbBytes(const Prepared& p, const mesh::Mesh& mesh) {
 }
 
 Result<MeshRow> measureRow(const Prepared& p, int resolution, const MeshesOptions& options) {
-    MeshRow row{p.name, resolution, 0, p.exactTriangles, 0, 0, 0, p.ownersDiffer, std::nullopt};
-    const cli::GridRequest grid{.resolution = resolution, .threads = options.running.threads};
+    MeshRow row{p.name, resolution, 0, p.exactTriangles, 0, 0, 0, 0, p.ownersDiffer, std::nullopt};
     std::optional<cli::MeshedModel> made;
-    for (int i = 0; i < std::max(1, options.repeats); ++i) {
-        cli::Stages stages;
-        const Stopwatch watch(options.running);
-        auto meshed = cli::makeMesh(p.model, grid, stages, nullptr);
-        const double seconds = watch.seconds();
-        if (!meshed.ok()) return meshed.error();
-        row.seconds = i == 0 ? seconds : std::min(row.seconds, seconds);
-        made = std::move(*meshed);
-    }
-    // There is no other surface than that of marching cubes yet.
-    row.cubesSeconds = row.seconds;
+    const auto least = [&](double& sum, double seconds, int i) { sum = i == 0 ? seconds : std::min(sum, seconds); };
+    for (const mesh::Surface surface : {mesh::Surface::Cubes, mesh::Surface::Crisp})
+        for (int i = 0; i < std::max(1, options.repeats); ++i) {
+            const cli::GridRequest grid{
+                .resolution = resolution, .surface = surface, .threads = options.running.threads};
+            cli::Stages stages;
+            const Stopwatch watch(options.running);
+            auto meshed = cli::makeMesh(p.model, grid, stages, nullptr);
+            least(surface == mesh::Surface::Cubes ? row.cubesSeconds : row.crispSeconds, watch.seconds(), i);
+            if (!meshed.ok()) return meshed.error();
+            if (surface == mesh::Surface::Crisp) {  // as `sgm build` does
+                const mesh::SimplifyOptions simplification{mesh::usualTolerance(meshed->grid.cell_m), grid.threads};
+                auto simple = mesh::simplify(meshed->mesh, simplification, nullptr);
+                if (!simple.ok()) return simple.error();
+                meshed->mesh = std::move(*simple);
+                least(row.seconds, watch.seconds(), i);
+            }
+            made = std::move(*meshed);
+        }
     row.triangles = made->mesh.triangleCount();
     row.glbBytes = glbBytes(p, made->mesh);
     if (p.exact)
@@ -150,6 +158,7 @@ nlohmann::ordered_json jsonOf(const MeshRow& row) {
                                 {"resolution", row.resolution},
                                 {"triangles", row.triangles},
                                 {"seconds", row.seconds},
+                                {"crisp_seconds", row.crispSeconds},
                                 {"marching_cubes_seconds", row.cubesSeconds},
                                 {"glb_bytes", row.glbBytes}};
     if (!row.quality) return json;
@@ -177,24 +186,25 @@ nlohmann::ordered_json jsonOf(const MeshRow& row) {
 std::string meshesHeader() {
     return "| model | cells | triangles | of exact | crease, cells: mean | p99 | stray | p99 | corner | borders | "
            "volume "
-           "| open, non-manifold edges | crossing pairs | seconds | of cubes | .glb MB |\n"
+           "| open, non-manifold edges | crossing pairs | seconds | crisp, simplified of cubes | .glb MB |\n"
            "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
 }
 
 std::string meshesRow(const MeshRow& row) {
     const double mb = static_cast<double>(row.glbBytes) / 1e6, ofCubes = row.seconds / row.cubesSeconds;
+    const double crispOfCubes = row.crispSeconds / row.cubesSeconds;
     if (!row.quality)
-        return fmt::format("| {} | {} | {} | – | – | – | – | – | – | – | – | – | – | {:.3f} | {:.2f} | {:.2f} |",
-                           row.scene, row.resolution, row.triangles, row.seconds, ofCubes, mb);
+        return fmt::format("| {} | {} | {} | – | – | – | – | – | – | – | – | – | – | {:.3f} | {:.2f}, {:.2f} | {:.2f} |",
+                           row.scene, row.resolution, row.triangles, row.seconds, crispOfCubes, ofCubes, mb);
     const exact::Quality& q = *row.quality;
     return fmt::format(
         "| {} | {} | {} | {:.2f} | {:.4f} | {:.3f} | {:.4f} | {:.3f} | {:.4f} | {:.4f} | {:+.5f} % | {}, {} | {} | "
         "{:.3f} | "
-        "{:.2f} | {:.2f} |",
+        "{:.2f}, {:.2f} | {:.2f} |",
         row.scene, row.resolution, row.triangles,
         static_cast<double>(row.triangles) / static_cast<double>(row.exactTriangles), q.crease.mean, q.crease.p99,
         q.stray.mean, q.stray.p99, q.corner.mean, q.borderRatio, 100 * q.volumeError, q.boundaryEdges,
-        q.nonmanifoldEdges, q.crossings ? fmt::format("{}", *q.crossings) : "–", row.seconds, ofCubes, mb);
+        q.nonmanifoldEdges, q.crossings ? fmt::format("{}", *q.crossings) : "–", row.seconds, crispOfCubes, ofCubes, mb);
 }
 
 std::string meshesJson(const std::vector<MeshRow>& rows, const MeshesOptions& options) {

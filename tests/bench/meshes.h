@@ -27,8 +27,9 @@ struct MeshRow {
     std::string scene;
     int resolution = 0;
     uint64_t triangles = 0, exactTriangles = 0;  ///< exact: with round solids of 128 sides, after planar merge
-    double seconds = 0;                          ///< field to mesh
+    double seconds = 0;                          ///< field to simplified crisp mesh
     double cubesSeconds = 0;                     ///< field to mesh by marching cubes alone
+    double crispSeconds = 0;                     ///< field to crisp mesh, not simplified
     uint64_t glbBytes = 0;
     double ownersDiffer = 0;  ///< share of the exact surface that looks otherwise in the field
     std::optional<exact::Quality> quality;

@@ -115,7 +115,7 @@ TEST_P(EveryMeshFormat, TurnsAndScalesByOption) {
     const Exporter* row = findExporter(GetParam());
     ASSERT_NE(row, nullptr);
     f.input.options = {{"up", "z"}, {"unit", "cm"}};
-    if (row->options.size() < 2) {  // glTF has metres and Y up by its own word
+    if (GetParam() == ".glb" || GetParam() == ".gltf") {  // it has metres and Y up by its own word
         EXPECT_EQ(write(f.input, f.folder / ("sphere" + GetParam())).error().kind, Error::Kind::Usage);
         return;
     }

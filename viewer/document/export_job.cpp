@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "grammar/lower/solid_tree.h"
+#include "modeler/mesh/simplify.h"
 #include "modeler/volume/keep.h"
 #include "viewer/document/meshing.h"
 
@@ -26,12 +27,16 @@ Status write(const Shown& shown, const ExportRequest& request, const exporter::E
     const float cell_m =
         request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
     Stages stages;
-    const mesh::PolygonizeOptions options{.threads = request.threads,
+    const mesh::PolygonizeOptions options{.surface = mesh::Surface::Crisp,
+                                          .threads = request.threads,
                                           .bare = exporter::takesBare(format, request.options)};
     auto meshed = makeMesh(shown.model, mesh::gridFor(bounds, cell_m), options, stages, &progress);
     if (!meshed.ok()) return meshed.error();
     mesh::keepOnly(meshed->mesh, request.keep, cell_m, request.threads);
     if (meshed->mesh.triangleCount() == 0) return noSurface(cell_m);
+    auto simple = mesh::simplify(meshed->mesh, {mesh::usualTolerance(cell_m), request.threads}, &progress);
+    if (!simple.ok()) return simple.error();
+    meshed->mesh = std::move(*simple);
     exporter::ExportInput input = exportInput(shown.model, shown.grammar->sources[0]->name());
     input.mesh = &meshed->mesh;
     input.options = request.options;

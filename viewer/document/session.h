@@ -156,7 +156,7 @@ private:
     std::shared_ptr<const derive::Derivation> handShown_;
     std::shared_ptr<const Meshed> meshed_;
     int meshResolution_ = 0;
-    mesh::Rebuild rebuild_;
+    mesh::Rebuild rebuild_{mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp}};
 
     std::thread worker_;
 };
