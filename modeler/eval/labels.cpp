@@ -66,19 +66,42 @@ Names LabelPass::ofPiece(const Instruction& in, Names label, size_t n) {
 
 /// The operand that a minimum or maximum takes. A number has no label: it makes no piece.
 void LabelPass::choose(const Instruction& in, const Source* sources, const StepContext& c, bool least) {
-    const Operand a = operand(in, sources, 0, c), b = operand(in, sources, 1, c);
+    const Operand o[] = {operand(in, sources, 0, c), operand(in, sources, 1, c)};
     const size_t n = c.count;
-    const float margin = tape_.tieMargin(), sign = least ? 1.0f : -1.0f;
-    uint32_t* const labels = labelRow(in.out);
-    uint32_t* const origins = originRow(in.out);
-    for (size_t i = 0; i < n; ++i) {
-        const bool second = sign * b.at(i) < sign * a.at(i) - margin;
-        const uint32_t label = second ? b.names.label.at(i) : a.names.label.at(i);
-        const uint32_t origin = second ? b.names.origin.at(i) : a.names.origin.at(i);
-        labels[i] = label;
-        origins[i] = origin;
-    }
-    names_[in.out] = {settled(labels, n), settled(origins, n)};
+    const float margin = tape_.tieMargin();
+    std::array<uint32_t, maxBlock> second;  // all bits or none
+    const auto compare = [&](auto a, auto b) {
+        for (size_t i = 0; i < n; ++i) second[i] = (least ? b(i) < a(i) - margin : b(i) > a(i) + margin) ? ~0u : 0u;
+    };
+    const auto row = [](const Operand& of) { return [p = of.values](size_t i) { return p[i]; }; };
+    const auto number = [](const Operand& of) { return [v = of.constant](size_t) { return v; }; };
+    if (o[0].values && o[1].values)
+        compare(row(o[0]), row(o[1]));
+    else if (o[0].values)
+        compare(row(o[0]), number(o[1]));
+    else if (o[1].values)
+        compare(number(o[0]), row(o[1]));
+    else
+        compare(number(o[0]), number(o[1]));
+    const auto taken = [&](const Names& a, const Names& b, uint32_t* to) -> Names {
+        if (!a.row && !b.row && a.one == b.one) return a;
+        const auto take = [&](auto first, auto other) {
+            for (size_t i = 0; i < n; ++i) to[i] = (other(i) & second[i]) | (first(i) & ~second[i]);
+        };
+        const auto ofRow = [](const Names& of) { return [p = of.row](size_t i) { return p[i]; }; };
+        const auto ofOne = [](const Names& of) { return [v = of.one](size_t) { return v; }; };
+        if (a.row && b.row)
+            take(ofRow(a), ofRow(b));
+        else if (a.row)
+            take(ofRow(a), ofOne(b));
+        else if (b.row)
+            take(ofOne(a), ofRow(b));
+        else
+            take(ofOne(a), ofOne(b));
+        return settled(to, n);
+    };
+    names_[in.out] = {taken(o[0].names.label, o[1].names.label, labelRow(in.out)),
+                      taken(o[0].names.origin, o[1].names.origin, originRow(in.out))};
 }
 
 /// One piece with all that it joins; a field with edges of its own keeps them where no other counts.
@@ -113,20 +136,38 @@ void LabelPass::nameFaces(const Instruction& in, const Source* sources, const St
     for (uint32_t k = 0; k < Box::operandCount; ++k) o[k] = operand(in, sources, k, c);
     const size_t n = c.count;
     const Names of = combined(in, sources, c), origin = firstOrigin(in, sources, c);
-    uint32_t* const labels = labelRow(in.out);
-    for (size_t i = 0; i < n; ++i) {
-        uint32_t face = 0;
-        float most = 0;
-        for (uint32_t axis = 0; axis < 3; ++axis) {
-            const float d = o[axis].at(i) - o[Box::centreAt + axis].at(i);
-            const float beyond = std::abs(d) - o[Box::half + axis].at(i);
-            if (axis > 0 && !(beyond > most)) continue;
-            most = beyond;
-            face = 2 * axis + (d < 0 ? 2 : 1);
+    std::array<uint32_t, maxBlock> face;
+    const auto nameBy = [&](auto position, auto number) {
+        for (size_t i = 0; i < n; ++i) {
+            const float dx = position(0, i) - number(3, i), dy = position(1, i) - number(4, i),
+                        dz = position(2, i) - number(5, i);
+            const float x = std::abs(dx) - number(6, i), y = std::abs(dy) - number(7, i),
+                        z = std::abs(dz) - number(8, i);
+            const uint32_t fx = dx < 0 ? 1 : 0, fy = dy < 0 ? 3 : 2, fz = dz < 0 ? 5 : 4;
+            const uint32_t xy = y > x ? fy : fx;
+            face[i] = z > (y > x ? y : x) ? fz : xy;
         }
-        labels[i] = join(face, of.at(i));
+    };
+    bool usual = true;  // rows of positions, numbers else
+    for (uint32_t k = 0; k < Box::operandCount; ++k) usual = usual && (o[k].values != nullptr) == (k < Box::centreAt);
+    if (usual)
+        nameBy([at = std::array{o[0].values, o[1].values, o[2].values}](size_t k, size_t i) { return at[k][i]; },
+               [&](size_t k, size_t) { return o[k].constant; });
+    else
+        nameBy([&](size_t k, size_t i) { return o[k].at(i); }, [&](size_t k, size_t i) { return o[k].at(i); });
+    uint32_t* const labels = labelRow(in.out);
+    if (of.row) {
+        for (size_t i = 0; i < n; ++i) labels[i] = join(face[i] + 1, of.row[i]);
+        names_[in.out] = {ofPiece(in, settled(labels, n), n), origin};
+        return;
     }
-    names_[in.out] = {ofPiece(in, settled(labels, n), n), origin};
+    std::array<uint32_t, 6> names;
+    for (uint32_t f = 0; f < names.size(); ++f) {
+        const uint32_t label = join(f + 1, of.one);
+        names[f] = in.piece == 0 ? label : join(in.piece, label);
+    }
+    for (size_t i = 0; i < n; ++i) labels[i] = names[face[i]];
+    names_[in.out] = {settled(labels, n), origin};
 }
 
 /// The two sides of a fold.

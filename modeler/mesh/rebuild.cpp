@@ -171,7 +171,8 @@ const Mesh* Rebuild::keepAll() {
 Result<const Mesh*> Rebuild::update(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts,
                                     const eval::NumbersChanged* changed) {
     const eval::Care care = careOf(tape, grid);
-    if (!sameGrid(grid, grid_) || !(care == care_) || tape.tieMargin() != tieMargin_) forget();
+    const bool sameTies = options_.surface != Surface::Crisp || tape.tieMargin() == tieMargin_;
+    if (!sameGrid(grid, grid_) || !(care == care_) || !sameTies) forget();
     if (!changed || !numbers_ || changed->before != numbers_) changed = nullptr;
     const eval::Fingerprint print = changed ? eval::Fingerprint{} : eval::fingerprint(tape);
     if (changed ? changed->places.empty() : print == tape_) return keepAll();

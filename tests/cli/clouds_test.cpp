@@ -58,13 +58,15 @@ double Clouds::flatShare(const std::string& name, const std::string& more) const
     std::vector<std::array<double, 3>> p(points);
     for (auto& q : p) off >> q[0] >> q[1] >> q[2];
     const double lowest = report["mesh"]["bounds"][0][1];
+    const auto [width, height, depth] = extents(report);
+    const double slack = .1 * std::max({width, height, depth}) / 48;  // of a cell
     double flat = 0, below = 0;
     for (size_t f = 0, n, a, b, c; f < faces && off >> n >> a >> b >> c; ++f) {
         // Twice the area seen from below: the cross product's -y.
         const double down = (p[b][0] - p[a][0]) * (p[c][2] - p[a][2]) - (p[b][2] - p[a][2]) * (p[c][0] - p[a][0]);
         if (down <= 0) continue;
         below += down;
-        if (std::max({p[a][1], p[b][1], p[c][1]}) < lowest + .1) flat += down;
+        if (std::max({p[a][1], p[b][1], p[c][1]}) < lowest + slack) flat += down;
     }
     return flat / below;
 }

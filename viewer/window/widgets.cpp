@@ -62,7 +62,7 @@ bool choice(Report& report, const std::string& name, std::span<const std::string
     const bool known = value >= 0 && value < static_cast<int>(items.size());
     ImGui::SetNextItemWidth(width > 0 ? width : -FLT_MIN);
     ImGui::PushID(name.c_str());
-    const bool open = ImGui::BeginCombo("##choice", known ? items[size_t(value)].c_str() : "");
+    const bool open = ImGui::BeginCombo("##choice", known ? items[size_t(value)].c_str() : "", ImGuiComboFlags_HeightLargest);
     if (!open) report.mark(name);
     if (open) {
         for (int i = 0; i < static_cast<int>(items.size()); ++i) {
