@@ -46,7 +46,7 @@ struct Prepared {
     cli::ModelRequest request;
     cli::Model model;
     uint64_t exactTriangles = 0;
-    double ownersDiffer = 0;
+    double ownersDiffer = 0, border_m = 0;
     std::optional<exact::ExactModel> exact;
 };
 
@@ -58,22 +58,24 @@ Status writeTree(const Prepared& p, const fs::path& path) {
     return exporter::write(input, path);
 }
 
-/// The share of the exact surface, by area, that the field gives to a part of another look, at the middles of
-/// triangles: more than a little would tell that borders are not what they should be.
-double ownersDiffer(const exact::ExactModel& model, const cli::Model& field) {
+/// The share of the exact surface, by area, that the field gives to a part of another look, at the middles of the
+/// triangles of the model with owners: more than a little would tell that borders are not what they should be.
+double ownersDiffer(const exact::ExactModel& clean, const exact::ExactModel& first, const cli::Model& field) {
     const Provenance& provenance = field.lowered->provenance;
+    const std::vector<uint32_t> looks = exact::looksOf(provenance);
+    const exact::TriangleTree surface(clean.points, clean.triangles);
     eval::Workspace workspace;
     double area = 0, differs = 0;
-    for (size_t i = 0; i < model.triangles.size(); ++i) {
-        const exact::Corners& t = model.triangles[i];
-        const Vec3d a = model.points[t.x], b = model.points[t.y], c = model.points[t.z];
-        const Vec3f p = ((a + b + c) / 3.0).as<float>();
+    for (size_t i = 0; i < first.triangles.size(); ++i) {
+        const exact::Corners& t = first.triangles[i];
+        const Vec3d a = first.points[t.x], b = first.points[t.y], c = first.points[t.z], middle = (a + b + c) / 3.0;
+        if (surface.distance(middle) > 1e-5) continue;  // a film
+        const Vec3f p = middle.as<float>();
         OriginId owner = 0;
         eval::evaluateOrigin(field.tape, {&p.x, &p.y, &p.z, 1}, &owner, workspace);
-        const Material &is = provenance.materialOf(owner), &should = provenance.materialOf(model.origins[i]);
         const double here = length(cross(b - a, c - a)) / 2;
         area += here;
-        if (is.color != should.color || is.roughness != should.roughness || is.metallic != should.metallic)
+        if (looks[provenance.parts[owner].material] != looks[provenance.parts[first.origins[i]].material])
             differs += here;
     }
     return area > 0 ? differs / area : 0;
@@ -93,13 +95,15 @@ Result<Prepared> prepare(const MeshScene& scene, const MeshesOptions& options, b
     fs::create_directories(folder, ignored);
     const fs::path tree = fs::path(folder) / (fs::path(p.name).stem().string() + ".csg.json");
     if (const Status s = writeTree(p, tree); !s.ok()) return s.error();
-    const auto counted = exact::exactModel(tree, countSides, true, folder);
+    const auto counted = exact::exactModel(tree, countSides, exact::Owners::Either, folder);
     if (!counted.ok()) return counted.error();
-    p.exactTriangles = counted->planar;
-    p.ownersDiffer = ownersDiffer(*counted, p.model);
-    auto exact = exact::exactModel(tree, options.sides, false, folder);
+    const auto first = exact::exactModel(tree, countSides, exact::Owners::First, folder);
+    if (!first.ok()) return first.error();
+    auto exact = exact::exactModel(tree, options.sides, exact::Owners::Either, folder);
     if (!exact.ok()) return exact.error();
-    exact->border_m = counted->border_m;
+    p.exactTriangles = counted->triangles.size();
+    p.border_m = exact::lengthOf(exact::findBorders(*counted, *first, p.model.lowered->provenance));
+    p.ownersDiffer = ownersDiffer(*counted, *first, p.model);
     // What an inscribed prism lacks shrinks with the square of its sides.
     const double ratio = static_cast<double>(options.sides) / countSides;
     exact->volume_m3 += (exact->volume_m3 - counted->volume_m3) / (ratio * ratio - 1);
@@ -120,7 +124,7 @@ uint64_t glbBytes(const Prepared& p, const mesh::Mesh& mesh) {
 }
 
 Result<MeshRow> measureRow(const Prepared& p, int resolution, const MeshesOptions& options) {
-    MeshRow row{p.name, resolution, 0, p.exactTriangles, 0, 0, 0, 0, p.ownersDiffer, std::nullopt};
+    MeshRow row{p.name, resolution, 0, p.exactTriangles, 0, 0, 0, 0, p.ownersDiffer, p.border_m, std::nullopt};
     std::optional<cli::MeshedModel> made;
     const auto least = [&](double& sum, double seconds, int i) { sum = i == 0 ? seconds : std::min(sum, seconds); };
     for (const mesh::Surface surface : {mesh::Surface::Cubes, mesh::Surface::Crisp})
@@ -154,13 +158,10 @@ nlohmann::ordered_json jsonOf(const exact::Spread& s) {
 }
 
 nlohmann::ordered_json jsonOf(const MeshRow& row) {
-    nlohmann::ordered_json json{{"scene", row.scene},
-                                {"resolution", row.resolution},
-                                {"triangles", row.triangles},
-                                {"seconds", row.seconds},
-                                {"crisp_seconds", row.crispSeconds},
-                                {"marching_cubes_seconds", row.cubesSeconds},
-                                {"glb_bytes", row.glbBytes}};
+    nlohmann::ordered_json json{
+        {"scene", row.scene},       {"resolution", row.resolution},      {"triangles", row.triangles},
+        {"seconds", row.seconds},   {"crisp_seconds", row.crispSeconds}, {"marching_cubes_seconds", row.cubesSeconds},
+        {"glb_bytes", row.glbBytes}};
     if (!row.quality) return json;
     const exact::Quality& q = *row.quality;
     json["exact_triangles"] = row.exactTriangles;
@@ -173,7 +174,8 @@ nlohmann::ordered_json jsonOf(const MeshRow& row) {
     json["stray"] = jsonOf(q.stray);
     json["corner"] = jsonOf(q.corner);
     json["border_m"] = q.border_m;
-    json["border_ratio"] = q.borderRatio;
+    json["exact_border_m"] = row.exactBorder_m;
+    json["border_ratio"] = row.borderRatio();
     json["volume_error"] = q.volumeError;
     json["boundary_edges"] = q.boundaryEdges;
     json["nonmanifold_edges"] = q.nonmanifoldEdges;
@@ -194,8 +196,9 @@ std::string meshesRow(const MeshRow& row) {
     const double mb = static_cast<double>(row.glbBytes) / 1e6, ofCubes = row.seconds / row.cubesSeconds;
     const double crispOfCubes = row.crispSeconds / row.cubesSeconds;
     if (!row.quality)
-        return fmt::format("| {} | {} | {} | – | – | – | – | – | – | – | – | – | – | {:.3f} | {:.2f}, {:.2f} | {:.2f} |",
-                           row.scene, row.resolution, row.triangles, row.seconds, crispOfCubes, ofCubes, mb);
+        return fmt::format(
+            "| {} | {} | {} | – | – | – | – | – | – | – | – | – | – | {:.3f} | {:.2f}, {:.2f} | {:.2f} |", row.scene,
+            row.resolution, row.triangles, row.seconds, crispOfCubes, ofCubes, mb);
     const exact::Quality& q = *row.quality;
     return fmt::format(
         "| {} | {} | {} | {:.2f} | {:.4f} | {:.3f} | {:.4f} | {:.3f} | {:.4f} | {:.4f} | {:+.5f} % | {}, {} | {} | "
@@ -203,8 +206,9 @@ std::string meshesRow(const MeshRow& row) {
         "{:.2f}, {:.2f} | {:.2f} |",
         row.scene, row.resolution, row.triangles,
         static_cast<double>(row.triangles) / static_cast<double>(row.exactTriangles), q.crease.mean, q.crease.p99,
-        q.stray.mean, q.stray.p99, q.corner.mean, q.borderRatio, 100 * q.volumeError, q.boundaryEdges,
-        q.nonmanifoldEdges, q.crossings ? fmt::format("{}", *q.crossings) : "–", row.seconds, crispOfCubes, ofCubes, mb);
+        q.stray.mean, q.stray.p99, q.corner.mean, row.borderRatio(), 100 * q.volumeError, q.boundaryEdges,
+        q.nonmanifoldEdges, q.crossings ? fmt::format("{}", *q.crossings) : "–", row.seconds, crispOfCubes, ofCubes,
+        mb);
 }
 
 std::string meshesJson(const std::vector<MeshRow>& rows, const MeshesOptions& options) {

@@ -31,8 +31,10 @@ struct MeshRow {
     double cubesSeconds = 0;                     ///< field to mesh by marching cubes alone
     double crispSeconds = 0;                     ///< field to crisp mesh, not simplified
     uint64_t glbBytes = 0;
-    double ownersDiffer = 0;  ///< share of the exact surface that looks otherwise in the field
+    double ownersDiffer = 0;   ///< share of the exact surface that looks otherwise in the field
+    double exactBorder_m = 0;  ///< length of the exact borders between looks
     std::optional<exact::Quality> quality;
+    double borderRatio() const { return quality && exactBorder_m > 0 ? quality->border_m / exactBorder_m : 0; }
 };
 
 /// Markdown: the head of the table, and a row.

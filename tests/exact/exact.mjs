@@ -1,7 +1,7 @@
 // Exact constructive solid geometry of a solid tree (.csg.json, written by `sgm build`), by npm's manifold-3d: the truth
 // that `bench --meshes` and tests hold meshes against.
 //
-//   node tests/exact/exact.mjs MODEL.csg.json [--sides 128] [--borders] [-o FEATURES.json] [--mesh MESH.bin]
+//   node tests/exact/exact.mjs MODEL.csg.json [--sides 128] [--owners] [-o FEATURES.json] [--mesh MESH.bin]
 //   node tests/exact/exact.mjs --check        ends with 0 where manifold-3d is installed
 //
 // FEATURES.json: {sides, triangles, euler, volume_m3, area_m2, crease_m, border_m, thickness_m: [per node],
@@ -10,13 +10,13 @@
 // A crease is an edge whose faces turn by more than 10 degrees, with the outward normals of both; creases stand in the
 // order of chains from corner to corner. A corner is a vertex where three or more creases meet, or two at more than 30
 // degrees, or whose angles miss 360 degrees by more than 6 (an apex); with it, how many creases meet there and the
-// thickness of the thinnest solid that does. A border is an edge between two looks (colour, roughness, metal); where two
-// solids share a surface the one that stands first in the tree owns it. Borders are looked for with --borders alone, in a
-// model of their own, for manifold takes either owner where it is left to itself. The triangles are those of its planar
-// merge: coplanar ones of one solid are joined.
-// MESH.bin, little-endian: uint32 vertices, triangles; float64 x y z a vertex; uint32 three corners a triangle; uint32
-// origin a triangle, of the model with borders where --borders is given, else of either owner; uint32 1|0 a triangle:
-// whether it is of a round solid.
+// thickness of the thinnest solid that does. A border is an edge between two looks (colour, roughness, metal). The
+// triangles are those of manifold's planar merge: coplanar ones of one solid are joined.
+// Where two solids share a surface manifold takes either owner, in pieces. With --owners the one that stands first in the
+// tree owns it; but where oblique and round surfaces touch, rounding then leaves films without volume inside the solid, so
+// that such a model is good for looking up owners alone.
+// MESH.bin, little-endian: uint32 vertices, triangles; float64 x y z a vertex; float64 x y z a triangle, its plane's
+// normal; uint32 three corners a triangle; uint32 origin a triangle; uint32 1|0 a triangle: whether it is of a round solid.
 //
 // Round solids are inscribed: their corners lie on the true surface. n sides of radius r stay r(1 − cos(π/n)) inside:
 // .0003 r at 128, 3e-7 r at 4096, and a cylinder's volume is (2π/n)²/6 too small: 4e-4 at 128, 4e-7 at 4096. Balls have n
@@ -136,9 +136,9 @@ function soupOf(whole, nodeOf) {
 }
 
 function writeMesh(file, soup, tree) {
-  const {points, triangles, node} = soup;
+  const {points, triangles, node, normal} = soup;
   const head = Uint32Array.of(points.length, triangles.length);
-  const parts = [head, Float64Array.from(points.flat()), Uint32Array.from(triangles.flat()),
+  const parts = [head, Float64Array.from(points.flat()), Float64Array.from(normal.flat()), Uint32Array.from(triangles.flat()),
                  Uint32Array.from(node, n => tree.nodes[n].origin),
                  Uint32Array.from(node, n => isRound(tree.nodes[n]) ? 1 : 0)];
   fs.writeFileSync(file, Buffer.concat(parts.map(p => Buffer.from(p.buffer))));
@@ -148,7 +148,7 @@ function parse(argv) {
   const options = {sides: 128};
   for (let i = 0; i < argv.length; ++i) {
     if (argv[i] === '--sides') options.sides = Number(argv[++i]);
-    else if (argv[i] === '--borders') options.borders = true;
+    else if (argv[i] === '--owners') options.owners = true;
     else if (argv[i] === '--check') options.check = true;
     else if (argv[i] === '-o') options.out = argv[++i];
     else if (argv[i] === '--mesh') options.mesh = argv[++i];
@@ -157,7 +157,7 @@ function parse(argv) {
   }
   const good = options.check || options.file && Number.isInteger(options.sides) && options.sides >= 4 && options.sides % 4 === 0;
   if (!good) {
-    console.error('usage: node exact.mjs MODEL.csg.json [--sides N, a multiple of 4] [--borders] [-o FEATURES.json] [--mesh MESH.bin]');
+    console.error('usage: node exact.mjs MODEL.csg.json [--sides N, a multiple of 4] [--owners] [-o FEATURES.json] [--mesh MESH.bin]');
     process.exit(2);
   }
   return options;
@@ -169,9 +169,7 @@ if (options.check) process.exit(0);
 try {
   const tree = JSON.parse(fs.readFileSync(options.file, 'utf8'));
   if (tree.format !== 'sgm solid tree' || tree.version !== 1) throw new Error(`${options.file} is no solid tree of version 1`);
-  const soup = build(tree, options.sides, false), features = featuresOf(soup, tree);
-  const owned = options.borders ? build(tree, options.sides, true) : soup;
-  const borders = options.borders ? bordersOf(owned, tree) : [];
+  const soup = build(tree, options.sides, options.owners), features = featuresOf(soup, tree), borders = bordersOf(soup, tree);
   const result = {
     sides: options.sides,
     triangles: soup.triangles.length,
@@ -184,7 +182,7 @@ try {
     ...features,
     borders,
   };
-  if (options.mesh) writeMesh(options.mesh, owned, tree);
+  if (options.mesh) writeMesh(options.mesh, soup, tree);
   const text = JSON.stringify(result);
   if (options.out) fs.writeFileSync(options.out, text);
   else console.log(text);

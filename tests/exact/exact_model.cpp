@@ -54,6 +54,7 @@ bool readMesh(const fs::path& path, ExactModel& model) {
     std::vector<uint32_t> head;
     readList(file, head, 2);
     readList(file, model.points, head[0]);
+    readList(file, model.normals, head[1]);
     readList(file, model.triangles, head[1]);
     readList(file, model.origins, head[1]);
     readList(file, model.round, head[1]);
@@ -63,15 +64,12 @@ bool readMesh(const fs::path& path, ExactModel& model) {
 void readFeatures(const fs::path& path, ExactModel& model) {
     const json all = json::parse(contentOf(path));
     model.sides = all["sides"];
-    model.planar = all["triangles"];
     model.volume_m3 = all["volume_m3"];
     model.area_m2 = all["area_m2"];
     model.crease_m = all["crease_m"];
-    model.border_m = all["border_m"];
     model.euler = all["euler"];
     for (const json& row : all["creases"]) model.creases.push_back(creaseOf(row));
     for (const json& row : all["corners"]) model.corners.push_back({vecOf(row, 0), row[3], row[4]});
-    for (const json& row : all["borders"]) model.borders.push_back(segmentOf(row));
 }
 
 }  // namespace
@@ -82,8 +80,8 @@ std::string missingJudge() {
     return code == 127 ? "node isn't installed" : "manifold-3d isn't installed: npm install --prefix build manifold-3d";
 }
 
-Result<ExactModel> exactModel(const fs::path& csgJson, int sides, bool borders, const fs::path& folder) {
-    std::string content = contentOf(csgJson) + (borders ? " borders " : " ") + std::to_string(sides);
+Result<ExactModel> exactModel(const fs::path& csgJson, int sides, Owners owners, const fs::path& folder) {
+    std::string content = contentOf(csgJson) + (owners == Owners::First ? " first " : " ") + std::to_string(sides);
     for (const char* part : scripts) content += contentOf(part);
     const uint64_t key = hashText(content);
     std::error_code ignored;
@@ -95,7 +93,8 @@ Result<ExactModel> exactModel(const fs::path& csgJson, int sides, bool borders, 
         // The features come last, so that a run which was cut off leaves none.
         const int code = run(fmt::format(
             "node --max-old-space-size=8192 {} '{}' --sides {}{} --mesh '{}' -o '{}.part' 2> '{}' && mv '{}.part' '{}'",
-            script, csgJson.string(), sides, borders ? " --borders" : "", mesh, features, log, features, features));
+            script, csgJson.string(), sides, owners == Owners::First ? " --owners" : "", mesh, features, log, features,
+            features));
         if (code != 0) return Error{Error::Kind::Input, contentOf(log)};
     }
     ExactModel model;

@@ -18,19 +18,6 @@ struct Soup {
     std::vector<uint32_t> looks;
 };
 
-/// Materials that look alike have one number.
-std::vector<uint32_t> looksOf(const Provenance& provenance) {
-    std::vector<uint32_t> looks;
-    for (const Material& m : provenance.materials) {
-        const auto same =
-            std::find_if(provenance.materials.begin(), provenance.materials.end(), [&](const Material& o) {
-                return o.color == m.color && o.roughness == m.roughness && o.metallic == m.metallic;
-            });
-        looks.push_back(static_cast<uint32_t>(same - provenance.materials.begin()));
-    }
-    return looks;
-}
-
 Soup soupOf(const mesh::Mesh& mesh, const Provenance& provenance) {
     const std::vector<uint32_t> looks = looksOf(provenance);
     Soup soup;
@@ -177,7 +164,6 @@ Quality measureQuality(const mesh::Mesh& mesh, const Provenance& provenance, con
     const Along along = alongEdges(soup, cell_m);
     quality.stray = spreadOf(strays(along.creases, model, samples, cell_m));
     quality.border_m = along.border_m;
-    quality.borderRatio = model.border_m > 0 ? along.border_m / model.border_m : 0;
 
     const mesh::MeshFigures figures = mesh::measure(mesh);
     quality.volumeError = figures.volume_m3 / model.volume_m3 - 1;

@@ -44,7 +44,6 @@ struct Quality {
     Spread stray;   ///< from points on the mesh's own creases to the exact ones, where the nearest isn't thin, cells
     Spread corner;  ///< from exact corners to the nearest vertex of the mesh, cells
     double border_m = 0;     ///< edges of the mesh between two looks
-    double borderRatio = 0;  ///< over the exact length; 0 where there is none
     double volumeError = 0;  ///< relative, positive: too large
     uint64_t boundaryEdges = 0, nonmanifoldEdges = 0;
     std::optional<uint64_t> crossings;  ///< pairs of triangles, where asked for

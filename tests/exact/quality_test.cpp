@@ -37,6 +37,7 @@ ExactModel boxModel(Vec3d lo, Vec3d hi) {
     }
     m.origins.assign(12, 1);
     m.round.assign(12, 0);
+    for (int face = 0; face < 6; ++face) m.normals.insert(m.normals.end(), 2, outward(face));
     for (int axis = 0; axis < 3; ++axis)
         for (uint32_t v = 0; v < 8; ++v) {
             if (v >> axis & 1) continue;
@@ -79,8 +80,7 @@ Provenance twoLooks() {
 constexpr Vec3d lo{-1, -1, -1}, hi{1, 1, 1};
 
 TEST(Quality, OfTheExactMeshIsPerfect) {
-    ExactModel model = boxModel(lo, hi);
-    model.border_m = 8;
+    const ExactModel model = boxModel(lo, hi);
     const Quality q = measureQuality(boxMesh(lo, hi, true), twoLooks(), model, 0.1, true);
     EXPECT_EQ(q.thickShare, 1);
     EXPECT_EQ(q.crease.count, 12u * 40);
@@ -90,7 +90,7 @@ TEST(Quality, OfTheExactMeshIsPerfect) {
     EXPECT_LT(q.stray.most, 1e-9);
     EXPECT_EQ(q.stray.count, 12u * 40);
     EXPECT_NEAR(q.volumeError, 0, 1e-12);
-    EXPECT_NEAR(q.borderRatio, 1, 1e-12);
+    EXPECT_NEAR(q.border_m, 8, 1e-12);
     EXPECT_EQ(q.boundaryEdges + q.nonmanifoldEdges + *q.crossings, 0u);
 }
 
@@ -155,7 +155,7 @@ protected:
         tree.nodes.push_back(std::move(n));
         return static_cast<uint32_t>(tree.nodes.size() - 1);
     }
-    ExactModel built(int sides = 128) {
+    ExactModel built(int sides = 128, Owners owners = Owners::Either) {
         tree.bounds = {{-5, -5, -5}, {5, 5, 5}};
         exporter::ExportInput input;
         const Provenance provenance = twoLooks();
@@ -163,10 +163,11 @@ protected:
         input.provenance = &provenance;
         const auto file = folder / "a.csg.json";
         EXPECT_TRUE(exporter::write(input, file).ok());
-        auto model = exactModel(file, sides, true, folder / "kept");
+        auto model = exactModel(file, sides, owners, folder / "kept");
         EXPECT_TRUE(model.ok()) << (model.ok() ? "" : model.error().message);
         return model.ok() ? *model : ExactModel{};
     }
+    std::vector<Segment> borders() { return findBorders(built(), built(128, Owners::First), twoLooks()); }
     using Op = field::SolidNode::Op;
     field::SolidTree tree;
     Scratch folder;
@@ -190,17 +191,35 @@ TEST_F(Script, DescribesABox) {
 TEST_F(Script, TheFirstOfTwoSolidsOwnsWhatTheyShare) {
     const uint32_t a = solid("cube", {0, 0, 0}, {2, 2, 2}), b = solid("cube", {1, 0, 0}, {2, 2, 2}, 2);
     node({Op::Union, 0, {a, b}});
-    const ExactModel m = built();
-    EXPECT_EQ(m.triangles.size(), 20u);
-    EXPECT_EQ(m.planar, 28u) << "manifold's own owners: it gives the common faces to both";
-    EXPECT_NEAR(m.border_m, 8, 1e-6);
-    for (const Segment& s : m.borders) EXPECT_NEAR(s.a.x, 1, 1e-6) << "where the first one ends";
+    EXPECT_EQ(built().triangles.size(), 28u) << "manifold gives the common faces to both";
+    EXPECT_EQ(built(128, Owners::First).triangles.size(), 20u);
+    EXPECT_NEAR(lengthOf(borders()), 8, 1e-6);
+    for (const Segment& s : borders()) EXPECT_NEAR(s.a.x, 1, 1e-6) << "where the first one ends";
 }
 
 TEST_F(Script, BordersAreBetweenLooksNotParts) {
     const uint32_t a = solid("cube", {0, 0, 0}, {2, 2, 2}), b = solid("cube", {2, 0, 0}, {2, 2, 2}, 3);
     node({Op::Union, 0, {a, b}});
-    EXPECT_EQ(built().border_m, 0);
+    EXPECT_TRUE(borders().empty());
+}
+
+TEST_F(Script, BordersRunAlongBendsToo) {
+    // A post in a plate, and a drum half sunk into its side, turned so that nothing is parallel to an axis.
+    const Mat3 axes = Mat3::rotation({1, 2, 3}, 0.7);
+    const uint32_t a = solid("cube", {0, 0, 0}, {4, 4, 4}, 1, axes),
+                   b = solid("cube", axes * Vec3d{0, 2.25, 0}, {1, 1, 2}, 2, axes),
+                   c = solid("cylinder", axes * Vec3d{2, 0, 0}, {2, 3, 2}, 2, axes);
+    node({Op::Union, 0, {a, b, c}});
+    const double drum = 2 * 3 + 2 * 2;  // two lines along it, and two diameters
+    EXPECT_NEAR(lengthOf(borders()), 6 + drum, 2e-3);
+}
+
+TEST_F(Script, BordersEndWithinAnEdge) {
+    // The second box stands on half of the first one's top, flush with its front: their common edge line is a border
+    // where both have a face, and the front's plane is one.
+    const uint32_t a = solid("cube", {0, 0, 0}, {4, 2, 4}), b = solid("cube", {1, 2, 1}, {2, 2, 2}, 2);
+    node({Op::Union, 0, {a, b}});
+    EXPECT_NEAR(lengthOf(borders()), 8, 1e-3);
 }
 
 TEST_F(Script, CutsAreConcave) {
@@ -256,7 +275,7 @@ TEST_F(Script, ACylindersRimIsOneChainAndAConesApexACorner) {
 
 TEST_F(Script, SaysWhatIsWrong) {
     const auto file = folder.write("a.csg.json", "{\"format\": \"another\"}");
-    const auto model = exactModel(file, 128, false, folder / "kept");
+    const auto model = exactModel(file, 128, Owners::Either, folder / "kept");
     ASSERT_FALSE(model.ok());
     EXPECT_NE(model.error().message.find("is no solid tree of version 1"), std::string::npos) << model.error().message;
 }
