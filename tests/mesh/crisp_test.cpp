@@ -5,6 +5,7 @@
 #include <map>
 
 #include "modeler/field/solids.h"
+#include "modeler/mesh/rebuild.h"
 #include "modeler/mesh/validate.h"
 #include "tests/mesh/mesh_bytes.h"
 #include "tests/mesh/scenes.h"
@@ -179,6 +180,23 @@ TEST(Crisp, RandomBoxesAreClosedAndDontCross) {
         EXPECT_TRUE(word.ok() && word->closed && word->outward) << key;
         EXPECT_FALSE(word->selfIntersects) << key;
     }
+}
+
+TEST(Crisp, RebuildingGivesTheBytesOfAFullBuild) {
+    Rebuild rebuild(crisp);
+    const Grid grid = gridFor({{-3, -2, -2}, {3, 2, 2}}, 0.06f);
+    for (const float x : {0.0f, 0.3f, 0.35f, 0.0f}) {
+        Scene s;
+        std::vector<field::Owned> parts{{block(s.graph, {-1.5f, 0, 0}, {1, 0.8f, 0.6f}, 20), 1},
+                                        {block(s.graph, {1.2f + x, 0, 0}, {0.7f, 0.5f, 0.9f}, 35), 2}};
+        s.field = field::sum(s.graph, parts);
+        s.field.bounds = {{-3, -2, -2}, {3, 2, 2}};
+        Counts counts;
+        const auto again = rebuild.update(s.tape(), grid, nullptr, counts);
+        ASSERT_TRUE(again.ok());
+        EXPECT_EQ(bytesOf(**again), bytesOf(*meshOf(s.tape(), grid, 2, crisp).mesh)) << x;
+    }
+    EXPECT_GT(rebuild.blocksKept(), 0u);
 }
 
 TEST(Crisp, ThreadsChangeNothing) {
