@@ -21,43 +21,54 @@ constexpr uint32_t nobody = std::numeric_limits<uint32_t>::max();
 /// Cells around the mesh. Not whole, so that walls along the axes lie between nodes.
 constexpr float margin = 2.37f;
 
-/// Triangles with vertices at the same place made one.
-struct Soup {
+/// A soup in the frame of the grid: cells from the first node.
+struct Placed {
     std::vector<Vec3f> positions;
     std::vector<Triangle> triangles;
 };
 
-Soup welded(const Mesh& mesh) {
-    Soup soup;
+TriangleSoup soupOf(const Mesh& mesh) {
+    TriangleSoup soup;
     for (const Chunk& c : mesh.chunks) {
-        soup.positions.insert(soup.positions.end(), c.positions.begin(), c.positions.end());
+        for (const Vec3f& p : c.positions) soup.positions.push_back(p.as<double>());
         for (const Triangle& t : c.triangles) soup.triangles.push_back(c.inMesh(t));
     }
-    const auto key = [&](uint32_t v) {
-        return std::tuple(soup.positions[v].x, soup.positions[v].y, soup.positions[v].z);
-    };
-    std::vector<uint32_t> order(soup.positions.size()), first(soup.positions.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-    for (size_t i = 0; i < order.size(); ++i)
-        first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
-    for (Triangle& t : soup.triangles) t = {first[t.x], first[t.y], first[t.z]};
     return soup;
 }
 
+/// Makes vertices at the same place one.
+void weld(TriangleSoup& soup) {
+    struct Corner {
+        Vec3d p;
+        uint32_t vertex;
+    };
+    std::vector<Corner> order;
+    order.reserve(soup.positions.size());
+    for (const Vec3d& p : soup.positions) order.push_back({p, static_cast<uint32_t>(order.size())});
+    const auto key = [](const Corner& c) { return std::tie(c.p.x, c.p.y, c.p.z); };
+    std::sort(order.begin(), order.end(), [&](const Corner& a, const Corner& b) {
+        return key(a) != key(b) ? key(a) < key(b) : a.vertex < b.vertex;
+    });
+    std::vector<uint32_t> first(order.size());
+    for (size_t i = 0; i < order.size(); ++i)
+        first[order[i].vertex] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1].vertex] : order[i].vertex;
+    for (Triangle& t : soup.triangles) t = {first[t.x], first[t.y], first[t.z]};
+}
+
 /// The middle of an edge that isn't run through as often one way as the other.
-std::optional<Vec3f> hole(const Soup& soup) {
+std::optional<Vec3d> hole(const TriangleSoup& soup) {
     std::vector<std::array<uint32_t, 3>> edges;  // lower vertex, higher vertex, 1 when run downward
+    edges.reserve(3 * soup.triangles.size());
     for (const Triangle& t : soup.triangles)
         for (int i = 0; i < 3; ++i)
             if (const uint32_t a = t[i], b = t[(i + 1) % 3]; a != b)
                 edges.push_back({std::min(a, b), std::max(a, b), a > b});
     std::sort(edges.begin(), edges.end());
     for (size_t i = 0; i < edges.size();) {
-        int balance = 0;
+        int64_t balance = 0;
         const auto [a, b, unused] = edges[i];
         for (; i < edges.size() && edges[i][0] == a && edges[i][1] == b; ++i) balance += edges[i][2] ? 1 : -1;
-        if (balance != 0) return (soup.positions[a] + soup.positions[b]) * 0.5f;
+        if (balance != 0) return (soup.positions[a] + soup.positions[b]) * 0.5;
     }
     return {};
 }
@@ -65,16 +76,25 @@ std::optional<Vec3f> hole(const Soup& soup) {
 /// Distances in cells on a grid of nodes; positions are in cells from the first node.
 class Nodes {
 public:
-    Nodes(Soup soup, Vec3i count)
+    Nodes(Placed soup, Vec3i count, const Progress* progress)
         : soup_(std::move(soup)),
           count_(count),
+          progress_(progress),
           squared_(size(), std::numeric_limits<float>::infinity()),
           nearest_(size(), nobody) {}
 
-    std::vector<float> signedDistances() {
-        for (uint32_t t = 0; t < soup_.triangles.size(); ++t) seed(t, corners(t));
-        for (int way = 0; way < 8; ++way) sweep(way);
+    Result<std::vector<float>> signedDistances() {
+        for (uint32_t t = 0; t < soup_.triangles.size(); ++t) {
+            if (t % 64 == 0 && cancelled(progress_)) return cancelledError();
+            seed(t, corners(t));
+            if (offers_ > mostOffers) return Error{Error::Kind::Budget, "has too many large triangles, one over the other: simplify it"};
+        }
+        for (int way = 0; way < 8; ++way) {
+            if (cancelled(progress_)) return cancelledError();
+            sweep(way);
+        }
         const std::vector<int> windings = this->windings();
+        if (cancelled(progress_)) return cancelledError();
         std::vector<float> distances(size());
         for (size_t i = 0; i < size(); ++i) distances[i] = (windings[i] != 0 ? -1.0f : 1.0f) * std::sqrt(squared_[i]);
         return distances;
@@ -82,6 +102,8 @@ public:
 
 private:
     using Corners = std::array<Vec3f, 3>;
+    /// A mesh of ten million small triangles makes a tenth as many.
+    static constexpr uint64_t mostOffers = 4'000'000'000;
 
     size_t size() const {
         return static_cast<size_t>(count_.x) * static_cast<size_t>(count_.y) * static_cast<size_t>(count_.z);
@@ -115,9 +137,16 @@ private:
                 seed(triangle, piece);
             return;
         }
-        for (int k = static_cast<int>(lo.z) - 1; k <= static_cast<int>(hi.z) + 2; ++k)
-            for (int j = static_cast<int>(lo.y) - 1; j <= static_cast<int>(hi.y) + 2; ++j)
-                for (int i = static_cast<int>(lo.x) - 1; i <= static_cast<int>(hi.x) + 2; ++i) offer(i, j, k, triangle);
+        const auto nodes = [&](int axis) {
+            return std::pair(std::max(static_cast<int>(lo[axis]) - 1, 0), std::min(static_cast<int>(hi[axis]) + 2, count_[axis] - 1));
+        };
+        const auto [x0, x1] = nodes(0);
+        const auto [y0, y1] = nodes(1);
+        const auto [z0, z1] = nodes(2);
+        for (int k = z0; k <= z1; ++k)
+            for (int j = y0; j <= y1; ++j)
+                for (int i = x0; i <= x1; ++i) offer(i, j, k, triangle);
+        offers_ += static_cast<uint64_t>((x1 - x0 + 1) * (y1 - y0 + 1) * (z1 - z0 + 1));
     }
 
     /// Hands nearest triangles on, from the corner of the grid that `way` names to the opposite one.
@@ -138,7 +167,10 @@ private:
     /// How often the mesh winds around each node: crossings along the row before it, each counted with its sense.
     std::vector<int> windings() const {
         std::vector<int> result(size(), 0);
-        for (uint32_t t = 0; t < soup_.triangles.size(); ++t) cross(corners(t), result);
+        for (uint32_t t = 0; t < soup_.triangles.size(); ++t) {
+            if (t % 1024 == 0 && cancelled(progress_)) break;
+            cross(corners(t), result);
+        }
         for (int k = 0; k < count_.z; ++k)
             for (int j = 0; j < count_.y; ++j)
                 for (int i = 1; i < count_.x; ++i) result[at(i, j, k)] += result[at(i - 1, j, k)];
@@ -148,8 +180,8 @@ private:
     /// Enters the rows along x that cross a triangle, at the first node behind it.
     void cross(const Corners& c, std::vector<int>& result) const {
         const Vec3f lo = min(min(c[0], c[1]), c[2]), hi = max(max(c[0], c[1]), c[2]);
-        for (int k = static_cast<int>(lo.z); k <= static_cast<int>(hi.z) + 1; ++k)
-            for (int j = static_cast<int>(lo.y); j <= static_cast<int>(hi.y) + 1; ++j) {
+        for (int k = std::max(static_cast<int>(lo.z), 0); k <= std::min(static_cast<int>(hi.z) + 1, count_.z - 1); ++k)
+            for (int j = std::max(static_cast<int>(lo.y), 0); j <= std::min(static_cast<int>(hi.y) + 1, count_.y - 1); ++j) {
                 const double s0 = side(c[1], c[2], j, k), s1 = side(c[2], c[0], j, k), s2 = side(c[0], c[1], j, k);
                 const bool positive = s0 > 0;
                 if ((s1 > 0) != positive || (s2 > 0) != positive) continue;
@@ -169,43 +201,73 @@ private:
         return swapped ? -never0 : never0;
     }
 
-    Soup soup_;
+    Placed soup_;
     Vec3i count_;
+    const Progress* progress_;
+    uint64_t offers_ = 0;
     std::vector<float> squared_;
     std::vector<uint32_t> nearest_;
 };
 
+/// Where the grid's own frame lies in the file's. Single precision is fine near 0 and near 1 alone: the middle becomes the
+/// origin, and sizes that nobody builds in become some between 1 and 2.
+struct GridFrame {
+    Vec3d origin;
+    double scale = 1;  ///< a power of 2, so that nothing is rounded
+};
+GridFrame frameOf(const Box3d& bounds) {
+    constexpr int usual = 20;  // from a thousandth of a millimetre to a thousand kilometres
+    const Vec3d size = bounds.size();
+    constexpr int most = 1000;     // its power of 2 is a number still
+    const int exponent = std::clamp(std::ilogb(maxComponent(size)), -most, most);
+    return {bounds.lo + size * 0.5, std::abs(exponent) <= usual ? 1.0 : std::ldexp(1.0, -exponent)};
+}
+
 }  // namespace
 
-Result<field::SampledGridPtr> toDistances(const Mesh& mesh, int cells) {
-    Soup soup = welded(mesh);
-    const Box3f bounds = mesh.bounds();
-    if (bounds.empty() || !(minComponent(bounds.size()) > 1e-4f * maxComponent(bounds.size())))
+Result<field::SampledGridPtr> toDistances(TriangleSoup soup, int cells, const Progress* progress) {
+    const Box3d given = soup.bounds();
+    const double longest = given.empty() ? 0 : maxComponent(given.size());
+    if (!(longest > 0) || !(minComponent(given.size()) > 1e-4 * longest))
         return Error{Error::Kind::Input, "is flat: only a closed mesh has an inside"};
+    if (!std::isfinite(longest)) return Error{Error::Kind::Input, "is larger than any number"};
+    weld(soup);
+    if (cancelled(progress)) return cancelledError();
     if (const auto at = hole(soup))
         return Error{
             Error::Kind::Input,
-            fmt::format("is open near ({:.4g}, {:.4g}, {:.4g}): close its holes and let its faces look outward", at->x,
+            fmt::format("is open near ({:.10g}, {:.10g}, {:.10g}): close its holes and let its faces look outward", at->x,
                         at->y, at->z)};
+    const GridFrame frame = frameOf(given);
+    const Vec3d half = given.size() * (0.5 * frame.scale);
+    const Box3f bounds{(-half).as<float>(), half.as<float>()};
     const float cell_m = maxComponent(bounds.size()) / static_cast<float>(cells);
     const Vec3f low = bounds.lo - Vec3f{margin, margin, margin} * cell_m;
     Vec3i count;
     for (int axis = 0; axis < 3; ++axis)
         count[axis] = static_cast<int>(std::ceil(bounds.size()[axis] / cell_m + 2 * margin)) + 1;
-    for (Vec3f& p : soup.positions) p = (p - low) / cell_m;
-    std::vector<float> distances = Nodes(std::move(soup), count).signedDistances();
-    if (*std::min_element(distances.begin(), distances.end()) >= 0)
+    Placed placed{{}, std::move(soup.triangles)};
+    placed.positions.reserve(soup.positions.size());
+    for (const Vec3d& p : soup.positions)
+        placed.positions.push_back((((p - frame.origin) * frame.scale - low.as<double>()) / double{cell_m}).as<float>());
+    soup = {};
+    auto distances = Nodes(std::move(placed), count, progress).signedDistances();
+    if (!distances.ok()) return distances.error();
+    if (*std::min_element(distances->begin(), distances->end()) >= 0)
         return Error{Error::Kind::Input,
                      fmt::format("is too thin: it must be thicker somewhere than 1/{} of its longest side", cells)};
-    for (float& d : distances) d *= cell_m;
-    return std::make_shared<const field::SampledGrid>(low, cell_m, count, distances, bounds);
+    for (float& d : *distances) d *= cell_m;
+    return std::make_shared<const field::SampledGrid>(low, cell_m, count, *distances, bounds);
 }
 
-Result<field::SampledGridPtr> readDistances(const std::filesystem::path& path) {
-    const auto mesh = readMesh(path);
-    if (!mesh.ok()) return mesh.error();
-    auto grid = toDistances(*mesh);
-    if (!grid.ok()) return Error{grid.error().kind, fmt::format("'{}' {}", path.string(), grid.error().message)};
+Result<field::SampledGridPtr> toDistances(const Mesh& mesh, int cells) { return toDistances(soupOf(mesh), cells); }
+
+Result<field::SampledGridPtr> readDistances(const std::filesystem::path& path, const Progress* progress) {
+    auto soup = readMesh(path, progress);
+    if (!soup.ok()) return soup.error();
+    auto grid = toDistances(std::move(*soup), distanceCells, progress);
+    if (!grid.ok() && grid.error().kind != Error::Kind::Cancelled)
+        return Error{grid.error().kind, fmt::format("'{}' {}", path.string(), grid.error().message)};
     return grid;
 }
 

@@ -2,93 +2,71 @@
 
 #include <fmt/format.h>
 
-#include <OpenMesh/Core/IO/MeshIO.hh>
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <sstream>
+#include <string>
 
-#include "modeler/mesh/openmesh.h"
+#include "modeler/core/regular_file.h"
+#include "modeler/mesh/read_formats.h"
 
 namespace sgm::mesh {
 namespace {
 
-/// OpenMesh complains to a stream of its own of what we say ourselves.
-class Quiet {
-public:
-    Quiet() {
-        omerr().disable();
-        omlog().disable();
-    }
-    ~Quiet() {
-        omerr().enable();
-        omlog().enable();
-    }
+constexpr uint64_t mostFile_bytes = 1ull << 30;
+/// Corners and edges are counted in 32 bits.
+constexpr size_t mostTriangles = 200'000'000;
+
+struct Format {
+    std::string_view ending;
+    Status (*read)(std::string_view bytes, TriangleSoup& soup, const Progress* progress);
 };
-
-Error unreadable(const std::filesystem::path& path, const std::string& why) {
-    return {Error::Kind::Input, fmt::format("'{}' {}", path.string(), why)};
-}
-
-/// True where the file's head promises more things than the file has bytes: OpenMesh would believe it.
-bool promisesTooMuch(const std::filesystem::path& path, const std::string& ending) {
-    std::error_code failed;
-    const auto bytes = static_cast<double>(std::filesystem::file_size(path, failed));
-    std::ifstream file(path, std::ios::binary);
-    if (ending == ".stl") {
-        char head[84] = {};
-        uint32_t triangles = 0;
-        file.read(head, sizeof head);
-        std::memcpy(&triangles, head + 80, sizeof triangles);
-        const bool isText = std::memcmp(head, "solid", 5) == 0;
-        return !isText && 84 + 50.0 * triangles > bytes;
-    }
-    double most = 0, count = 0;
-    int lines = 0;
-    std::string word, element;
-    for (std::string line; lines++ < 1000 && std::getline(file, line) && !line.starts_with("end_header");) {
-        std::istringstream words(line);
-        if (ending == ".ply" && words >> word >> element >> count && word == "element") most = std::max(most, count);
-        if (ending == ".off" && lines <= 2 && words >> count) most = std::max(most, count);
-    }
-    return most > bytes;
-}
+constexpr Format formats[] = {{".obj", readObj}, {".ply", readPly}, {".stl", readStl}, {".off", readOff}};
 
 std::string lowerCase(std::string text) {
     for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c);
     return text;
 }
 
+Error about(const std::filesystem::path& path, const Error& error) {
+    if (error.kind == Error::Kind::Cancelled) return error;
+    return {error.kind, fmt::format("'{}' {}", path.string(), error.message)};
+}
+
+/// What holds for every format.
+Status checkSoup(const TriangleSoup& soup) {
+    const auto finite = [](const Vec3d& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); };
+    if (!std::all_of(soup.positions.begin(), soup.positions.end(), finite))
+        return Error{Error::Kind::Input, "has a coordinate that is no number"};
+    if (soup.triangles.empty()) return Error{Error::Kind::Input, "holds no triangles: it is damaged or cut short"};
+    if (soup.triangles.size() > mostTriangles)
+        return Error{Error::Kind::Input, fmt::format("holds more than {} triangles: simplify it", mostTriangles)};
+    const auto known = [&](const Triangle& t) { return std::max({t.x, t.y, t.z}) < soup.positions.size(); };
+    if (!std::all_of(soup.triangles.begin(), soup.triangles.end(), known))
+        return Error{Error::Kind::Input, fmt::format("is damaged: a face has a corner that is none of its {} vertices", soup.positions.size())};
+    return Done{};
+}
+
 }  // namespace
 
-Result<Mesh> readMesh(const std::filesystem::path& path) {
-    constexpr const char* known[] = {".obj", ".ply", ".stl", ".off"};
-    const std::string ending = lowerCase(path.extension().string());
-    if (std::find(std::begin(known), std::end(known), ending) == std::end(known))
-        return unreadable(path, "is no mesh that can be read: save it as .obj, .ply, .stl or .off");
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) return unreadable(path, "is a folder, not a mesh");
-    if (!std::ifstream(path))
-        return unreadable(path, fmt::format("can't be read: {}", std::strerror(errno ? errno : EIO)));
+Error damaged(uint64_t line, std::string_view why) {
+    return {Error::Kind::Input, line == 0 ? fmt::format("is damaged: {}", why) : fmt::format("is damaged, line {}: {}", line, why)};
+}
 
-    if (promisesTooMuch(path, ending)) return unreadable(path, "is damaged or cut short");
-    HalfEdgeMesh read;
-    OpenMesh::IO::Options options;
-    bool good = false;
-    try {
-        const Quiet quiet;
-        good = OpenMesh::IO::read_mesh(read, path.string(), options);
-    } catch (const std::exception&) {  // a count in the file that no memory holds
+Result<TriangleSoup> readMesh(const std::filesystem::path& path, const Progress* progress) {
+    const std::string ending = lowerCase(path.extension().string());
+    const auto* format = std::find_if(std::begin(formats), std::end(formats), [&](const Format& f) { return f.ending == ending; });
+    if (format == std::end(formats))
+        return about(path, {Error::Kind::Input, "is no mesh that can be read: save it as .obj, .ply, .stl or .off"});
+    const Result<std::string> bytes = readRegularFile(path, mostFile_bytes, progress);
+    if (!bytes.ok()) {
+        Error error = bytes.error();
+        if (error.kind != Error::Kind::Cancelled) error.message = "can't be read: " + error.message;
+        return about(path, error);
     }
-    if (!good || read.n_faces() == 0) return unreadable(path, "holds no triangles: it is damaged or cut short");
-    Mesh mesh = fromOpenMesh(read, false);
-    const auto finite = [](const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); };
-    const auto& positions = mesh.chunks[0].positions;
-    if (!std::all_of(positions.begin(), positions.end(), finite))
-        return unreadable(path, "has a coordinate that is no number");
-    return mesh;
+    TriangleSoup soup;
+    if (const Status read = format->read(*bytes, soup, progress); !read.ok()) return about(path, read.error());
+    if (const Status sound = checkSoup(soup); !sound.ok()) return about(path, sound.error());
+    return soup;
 }
 
 }  // namespace sgm::mesh

@@ -1,16 +1,19 @@
 // Meshes from files.
-// Enters: a path. Leaves: one chunk of triangles. Assumes nothing of the file. OBJ, PLY, STL and OFF by OpenMesh.
+// Enters: a path. Leaves: triangles in double precision. Assumes nothing of the file: whatever its bytes are, reading takes
+// time and memory that grow with its size alone.
 #pragma once
 
 #include <filesystem>
 
+#include "modeler/core/progress.h"
 #include "modeler/core/result.h"
-#include "modeler/mesh/mesh.h"
+#include "modeler/mesh/triangle_soup.h"
 
 namespace sgm::mesh {
 
-/// The mesh in a file; polygons are cut into triangles, normals are those of the triangles around. Error::Input, which
-/// begins with the file's name, when it can't be read, holds no triangle or a coordinate that is no number.
-Result<Mesh> readMesh(const std::filesystem::path& path);
+/// The mesh in an OBJ, PLY, STL or OFF file of at most 1 GiB, by its ending; polygons are cut into fans, other files that
+/// it names are not opened. Error::Input, which begins with the file's name, when it can't be read, is damaged, holds no
+/// triangle or a coordinate that is no number; Error::Cancelled when `progress` says so.
+Result<TriangleSoup> readMesh(const std::filesystem::path& path, const Progress* progress = nullptr);
 
 }  // namespace sgm::mesh

@@ -4,25 +4,23 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
-#include "modeler/mesh/read.h"
 
 namespace sgm::mesh {
 namespace {
 
 using field::SampledGrid;
 
-/// A sample and where it is.
+/// A sample and where it is; `middle` is that of the mesh, about which the grid lies.
 template <class Fn>
-void eachSample(const SampledGrid& grid, Fn&& fn) {
+void eachSample(const SampledGrid& grid, Vec3f middle, Fn&& fn) {
     const std::vector<float>& w = grid.words();
     const auto count = [&](size_t axis) { return static_cast<int>(w[SampledGrid::cells + axis]) + 1; };
     size_t at = SampledGrid::firstSample;
     for (int k = 0; k < count(2); ++k)
         for (int j = 0; j < count(1); ++j)
             for (int i = 0; i < count(0); ++i, ++at)
-                fn(Vec3f{w[0], w[1], w[2]} + Vec3i{i, j, k}.as<float>() * w[SampledGrid::cell], w[at]);
+                fn(middle + Vec3f{w[0], w[1], w[2]} + Vec3i{i, j, k}.as<float>() * w[SampledGrid::cell], w[at]);
     EXPECT_EQ(at, w.size());
 }
 
@@ -59,8 +57,8 @@ TEST(Distances, OfABoxAreExactEverywhere) {
     addBox(mesh.chunks.emplace_back(), {-1, 2, 0}, {3, 3, 1.5f});
     const auto grid = toDistances(mesh, 48);
     ASSERT_TRUE(grid.ok());
-    EXPECT_EQ((*grid)->bounds(), mesh.bounds());
-    eachSample(**grid, [](Vec3f p, float d) {
+    EXPECT_EQ((*grid)->bounds().size(), mesh.bounds().size());
+    eachSample(**grid, mesh.bounds().centre(), [](Vec3f p, float d) {
         ASSERT_NEAR(d, boxDistance(p, {-1, 2, 0}, {3, 3, 1.5f}), 1e-5) << p.x << ' ' << p.y << ' ' << p.z;
     });
 }
@@ -74,7 +72,7 @@ TEST(Distances, CountHowOftenTheMeshWindsAround) {
     addBox(chunk, {3, 3, 3}, {6, 5, 5});
     const auto grid = toDistances(mesh, 40);
     ASSERT_TRUE(grid.ok());
-    eachSample(**grid, [](Vec3f p, float d) {
+    eachSample(**grid, mesh.bounds().centre(), [](Vec3f p, float d) {
         const bool hollow = boxDistance(p, {1, 1, 1}, {2, 3, 3}) < 0;
         const bool inside =
             (boxDistance(p, {0, 0, 0}, {4, 4, 4}) < 0 && !hollow) || boxDistance(p, {3, 3, 3}, {6, 5, 5}) < 0;
@@ -94,7 +92,7 @@ TEST(Distances, OfAnOctahedronAcrossTheRows) {
     }
     const auto grid = toDistances(mesh, 50);
     ASSERT_TRUE(grid.ok());
-    eachSample(**grid, [](Vec3f p, float d) {
+    eachSample(**grid, {}, [](Vec3f p, float d) {
         const float planes = (std::abs(p.x) + std::abs(p.y) + std::abs(p.z) - 1) / std::sqrt(3.0f);
         if (planes < 0) {
             ASSERT_NEAR(d, planes, 1e-5);
@@ -124,29 +122,41 @@ TEST(Distances, RefuseWhatHasNoInside) {
     EXPECT_FALSE(toDistances(Mesh{}).ok());
 }
 
-TEST(ReadMesh, TakesPolygonsAndRefusesTheRest) {
-    const std::filesystem::path folder = ::testing::TempDir();
-    const auto write = [&](const char* name, const std::string& text) {
-        std::ofstream(folder / name) << text;
-        return readMesh(folder / name);
-    };
-    const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 .5 1\n";
-    const auto pyramid = write("pyramid.obj", corners + "f 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
-    ASSERT_TRUE(pyramid.ok());
-    EXPECT_EQ(pyramid->triangleCount(), 6u);
-    EXPECT_TRUE(toDistances(*pyramid, 20).ok());
-    for (const auto& [name, text] : {std::pair("cut.stl", std::string("solid cut\n")),
-                                     {"none.obj", corners},
-                                     {"wild.ply", std::string("ply\nformat ascii 1.0\nelement vertex 99999999999\n")},
-                                     {"wild.stl", std::string(80, 'x') + "\xff\xff\xff\x7f"},
-                                     {"wild.off", "OFF\n999999999 999999999 0\n"},
-                                     {"nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
-                                     {"scene.fbx", std::string("x")}}) {
-        const auto bad = write(name, text);
-        ASSERT_FALSE(bad.ok()) << name;
-        EXPECT_EQ(bad.error().message.rfind("'", 0), 0u) << bad.error().message;
+/// The words of a grid of a box that stands somewhere, in some unit.
+std::vector<float> gridOf(Vec3d lo, double unit) {
+    Mesh box;
+    addBox(box.chunks.emplace_back(), {0, 0, 0}, {1, 1, 1});
+    TriangleSoup soup;
+    for (const Vec3f& p : box.chunks[0].positions) soup.positions.push_back(lo + p.as<double>() * unit);
+    soup.triangles.assign(box.chunks[0].triangles.begin(), box.chunks[0].triangles.end());
+    const auto grid = toDistances(std::move(soup), 32);
+    return grid.ok() ? (*grid)->words() : std::vector<float>();
+}
+
+TEST(Distances, AreTheSameWhereverTheMeshStands) {
+    const std::vector<float> near = gridOf({0, 0, 0}, 1);
+    ASSERT_FALSE(near.empty());
+    // A surveyor's coordinates, single precision's last whole numbers and far beyond them.
+    for (const Vec3d lo : {Vec3d{500000, 5400000, 200}, {0, 0, 16777216}, {-1e12, 3e9, 7}}) EXPECT_EQ(gridOf(lo, 1), near) << lo.x;
+}
+
+TEST(Distances, AreFoundOfMeshesOfAnySize) {
+    const std::vector<float> one = gridOf({0, 0, 0}, 1);
+    for (const double unit : {std::ldexp(1, -1060), std::ldexp(1, -149), std::ldexp(1, 120), std::ldexp(1, 1020)}) {
+        const std::vector<float> words = gridOf({0, 0, 0}, unit);
+        ASSERT_EQ(words.size(), one.size()) << unit;
+        for (size_t i = SampledGrid::firstSample; i < one.size(); ++i)
+            ASSERT_FLOAT_EQ(words[i] / words[SampledGrid::cell], one[i] / one[SampledGrid::cell]) << unit;
     }
-    EXPECT_NE(readMesh(folder / "missing.obj").error().message.find("No such file"), std::string::npos);
+}
+
+TEST(Distances, StopWhenTheyAreCancelled) {
+    Progress progress;
+    progress.cancel();
+    TriangleSoup soup{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+    const auto grid = toDistances(std::move(soup), 32, &progress);
+    ASSERT_FALSE(grid.ok());
+    EXPECT_EQ(grid.error().kind, Error::Kind::Cancelled);
 }
 
 }  // namespace
