@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <string>
 
 #include "grammar/syntax/parser.h"
+#include "modeler/core/printable.h"
 
 namespace sgm::rules {
 namespace {
+
+constexpr size_t mostOpen = 100;                 ///< files that wait for those they use
+constexpr size_t mostText_bytes = 64u << 20;     ///< of all files together
+constexpr size_t shownName_bytes = 200;
 
 class Gatherer {
 public:
@@ -16,10 +22,11 @@ public:
 
     void gather(const syntax::Ast& ast) {
         chain_.push_back(ast.source->name());
+        text_bytes_ += ast.source->text().size();
         for (const syntax::UseDecl& use : ast.uses)
             if (use.file.kind == syntax::Expr::Kind::Text) follow(use, *ast.source);
         chain_.pop_back();
-        done_.push_back(ast.source->name());
+        done_.insert(ast.source->name());
         files_.asts.push_back(ast);
     }
 
@@ -30,8 +37,7 @@ private:
         std::string why = "it can't be found";
         const syntax::SourcePtr source = load_.use ? load_.use(use.file.text, from, why) : nullptr;
         if (!source) {
-            files_.missing = true;
-            diagnostics_.error(use.file.span, fmt::format("can't use \"{}\": {}", use.file.text, why));
+            refuse(use, fmt::format("can't use \"{}\": {}", shortened(use.file.text, shownName_bytes), why));
             return;
         }
         const auto open = std::find(chain_.begin(), chain_.end(), source->name());
@@ -42,15 +48,27 @@ private:
                                "leave one 'use' out");
             return;
         }
-        if (std::find(done_.begin(), done_.end(), source->name()) == done_.end())
+        if (done_.contains(source->name())) return;
+        if (chain_.size() >= mostOpen)
+            refuse(use, fmt::format("more than {} files use each other in a row", mostOpen), "let the main file use them");
+        else if (text_bytes_ + source->text().size() > mostText_bytes)
+            refuse(use, fmt::format("the files used so far hold more than {} MiB", mostText_bytes >> 20));
+        else
             gather(syntax::parse(source, diagnostics_));
+    }
+
+    /// A file that isn't there for the checker.
+    void refuse(const syntax::UseDecl& use, std::string message, std::string mend = {}) {
+        files_.missing = true;
+        diagnostics_.error(use.file.span, std::move(message), std::move(mend));
     }
 
     const Loader& load_;
     syntax::Diagnostics& diagnostics_;
     Files files_;
     std::vector<std::string> chain_;  ///< files being read, the main one first
-    std::vector<std::string> done_;
+    std::set<std::string> done_;
+    size_t text_bytes_ = 0;
 };
 
 }  // namespace

@@ -4,19 +4,13 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "modeler/core/printable.h"
+
 namespace sgm::syntax {
 
 namespace {
 
 constexpr bool isContinuation(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
-
-/// `text` as a terminal may show it: control characters but tabs become '?'.
-std::string printable(std::string_view text) {
-    std::string out(text);
-    std::replace_if(
-        out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t'; }, '?');
-    return out;
-}
 
 /// The stretch of a long line around byte `from`, and where it begins.
 std::pair<std::string_view, size_t> window(std::string_view line, size_t from) {
@@ -60,6 +54,12 @@ size_t editDistance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
+/// A message may quote the text, which may hold anything and be of any length.
+std::string messageOf(const Diagnostic& diagnostic) {
+    constexpr size_t longest = 2000;
+    return shortened(printable(diagnostic.message, true), longest);
+}
+
 std::string lowered(std::string_view word) {
     std::string out(word);
     for (char& c : out)
@@ -92,7 +92,7 @@ std::string_view Source::line(uint32_t number) const {
 std::string placeText(SourceSpan span) {
     if (!span.source) return {};
     const Source::Place place = span.source->place(span.begin);
-    return span.source->name() + ':' + std::to_string(place.line) + ':' + std::to_string(place.column) + ": ";
+    return printable(span.source->name()) + ':' + std::to_string(place.line) + ':' + std::to_string(place.column) + ": ";
 }
 
 SourceSpan join(SourceSpan a, SourceSpan b) {
@@ -121,11 +121,11 @@ std::string render(const Diagnostic& diagnostic) {
         const std::string line = printable(shown);
         const size_t from = place.column - 1 - begin;
         const size_t to = from + (diagnostic.span.end - diagnostic.span.begin);
-        out += std::string(severity) + ": " + diagnostic.message + "\n  " + line + "\n  " + caretLine(line, from, to);
+        out += std::string(severity) + ": " + messageOf(diagnostic) + "\n  " + line + "\n  " + caretLine(line, from, to);
     } else {
-        out += std::string(severity) + ": " + diagnostic.message;
+        out += std::string(severity) + ": " + messageOf(diagnostic);
     }
-    if (!diagnostic.mend.empty()) out += "\n  " + diagnostic.mend;
+    if (!diagnostic.mend.empty()) out += "\n  " + printable(diagnostic.mend, true);
     return out + '\n';
 }
 

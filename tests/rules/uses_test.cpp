@@ -34,6 +34,17 @@ TEST(Uses, RefuseAFileThatUsesItself) {
     EXPECT_EQ(c.messages(), "files use each other in a circle: test.sgm -> test.sgm\n");
 }
 
+TEST(Uses, RefuseChainsWithoutEnd) {
+    Loader endless([](const std::string&, const syntax::Source& from, std::string&) {
+        const int next = std::stoi(from.name() == "test.sgm" ? "0" : from.name()) + 1;
+        return std::make_shared<const syntax::Source>(std::to_string(next), "grammar 1\nuse \"next\"\n");
+    });
+    syntax::Diagnostics diagnostics;
+    EXPECT_FALSE(load(std::make_shared<const syntax::Source>("test.sgm", "grammar 1\nuse \"next\"\nstart S -> cube\n"), endless, diagnostics));
+    ASSERT_EQ(diagnostics.all().size(), 1u);
+    EXPECT_EQ(diagnostics.all()[0].message, "more than 100 files use each other in a row");
+}
+
 TEST(Uses, SayWhatTheLoaderSaysAndNoMore) {
     const Checked c = checked("grammar 1\nuse \"gone.sgm\"\nstart S -> brick\n");
     EXPECT_EQ(c.messages(), "can't use \"gone.sgm\": there is no such file\n") << "'brick' may be declared there";

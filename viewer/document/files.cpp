@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <optional>
-#include <sstream>
 
+#include "grammar/syntax/lexer.h"
 #include "modeler/core/atomic_file.h"
+#include "modeler/core/regular_file.h"
 #include "modeler/mesh/distances.h"
 
 namespace sgm::viewer {
@@ -25,32 +26,56 @@ fs::path standardLibrary() {
     return fs::is_directory(installed, ignored) ? installed : fs::path(SGM_STANDARD_LIBRARY);
 }
 
-bool leadsOutside(const fs::path& relative) {
-    if (relative.is_absolute()) return true;
-    for (const fs::path& part : relative.lexically_normal())
-        if (part == "..") return true;
-    return false;
+/// More text than anybody writes; a larger file is something else.
+constexpr uint64_t mostGrammar_bytes = 16u << 20;
+constexpr const char* outside = "a grammar may only use files in its own folder or in std/";
+
+/// Whether a normal path begins with `name`.
+bool beginsWith(const fs::path& path, const char* name) { return !path.empty() && *path.begin() == name; }
+
+bool hasControlCharacter(const std::string& name) {
+    return std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
 }
 
-/// Where a name that stands in `from` lies, or nothing with `why` set.
+/// Where a name that stands in `from` lies, or nothing with `why` set. Every spelling of a file gives the same path, and
+/// so does a link within the folder; one that leads out of it is refused like "../".
 std::optional<fs::path> pathOf(const std::string& name, const syntax::Source& from, std::string& why) {
-    const fs::path wanted(name);
-    if (leadsOutside(wanted)) {
-        why = "a grammar may only use files in its own folder or in std/";
-        return {};
+    const fs::path wanted = fs::path(name).lexically_normal();
+    if (hasControlCharacter(name)) why = "a file's name holds no control characters";
+    else if (wanted.is_absolute() || beginsWith(wanted, "..")) why = outside;
+    else {
+        const bool standard = beginsWith(wanted, "std") && wanted != "std";
+        const fs::path folder = standard ? standardLibrary() : fs::path(from.name()).parent_path();
+        std::error_code failed;
+        const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, failed);
+        const fs::path real = failed ? fs::path() : fs::weakly_canonical(root / (standard ? wanted.lexically_relative("std") : wanted), failed);
+        const fs::path within = real.lexically_relative(root);
+        if (failed) why = failed.message();
+        else if (within.empty() || beginsWith(within, "..")) why = outside;
+        else return folder / within;
     }
-    return name.starts_with("std/") ? standardLibrary() / name.substr(4) : fs::path(from.name()).parent_path() / wanted;
+    return {};
+}
+
+/// Whether a text begins as a grammar does. What doesn't is never quoted in a message: it may be anything.
+bool beginsAsGrammar(const syntax::Source& source) {
+    constexpr size_t enough = 1 << 16;  // of comments before the first word
+    const syntax::Source head("", std::string(source.text().substr(0, enough)));
+    const std::vector<syntax::Token> tokens = syntax::lexSignificant(head);
+    return !tokens.empty() && head.text().substr(tokens[0].begin, tokens[0].end - tokens[0].begin) == "grammar";
 }
 
 /// Meshes read so far. A text is checked again at every edit, and distances take a good part of a second.
 class Meshes {
 public:
+    explicit Meshes(const Progress* progress) : progress_(progress) {}
+
     Result<field::SampledGridPtr> operator()(const fs::path& path) {
         std::error_code failed;
         const auto time = fs::last_write_time(path, failed);
         Read& read = known_[path.string()];
         if (!failed && read.grid && read.time == time) return read.grid;
-        auto grid = mesh::readDistances(path);
+        auto grid = mesh::readDistances(path, progress_);
         read = {time, grid.ok() ? *grid : nullptr};
         return grid;
     }
@@ -60,6 +85,7 @@ private:
         fs::file_time_type time;
         field::SampledGridPtr grid;
     };
+    const Progress* progress_;
     std::map<std::string, Read> known_;
 };
 
@@ -69,27 +95,29 @@ Result<syntax::SourcePtr> readSource(const fs::path& path) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored))
         return Error{Error::Kind::Input, fmt::format("'{}' is a folder, not a grammar file", path.string())};
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    if (file) text << file.rdbuf();
-    if (!file)
-        return Error{Error::Kind::Input,
-                     fmt::format("can't read '{}': {}", path.string(), std::strerror(errno ? errno : EIO))};
-    return std::make_shared<const syntax::Source>(path.string(), text.str());
+    Result<std::string> text = readRegularFile(path, mostGrammar_bytes);
+    if (!text.ok())
+        return Error{Error::Kind::Input, fmt::format("can't read '{}': {}", path.string(), text.error().message)};
+    return std::make_shared<const syntax::Source>(path.string(), std::move(*text));
 }
 
-rules::Loader fileLoader() {
-    rules::Loader loader([](const std::string& name, const syntax::Source& from, std::string& why) -> syntax::SourcePtr {
+rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) {
+    const auto note = [read](const fs::path& path) {
+        if (read) read->push_back(path);
+    };
+    rules::Loader loader([note](const std::string& name, const syntax::Source& from, std::string& why) -> syntax::SourcePtr {
         const auto path = pathOf(name, from, why);
         if (!path) return nullptr;
+        note(*path);
         Result<syntax::SourcePtr> source = readSource(*path);
-        if (source.ok()) return *source;
-        why = source.error().message;
+        if (source.ok() && beginsAsGrammar(**source)) return *source;
+        why = source.ok() ? "it is no grammar: one begins with 'grammar 1'" : source.error().message;
         return nullptr;
     });
-    loader.mesh = [meshes = Meshes()](const std::string& name, const syntax::Source& from, std::string& why) mutable -> field::SampledGridPtr {
+    loader.mesh = [note, meshes = Meshes(progress)](const std::string& name, const syntax::Source& from, std::string& why) mutable -> field::SampledGridPtr {
         const auto path = pathOf(name, from, why);
         if (!path) return nullptr;
+        note(*path);
         const auto grid = meshes(*path);
         if (grid.ok()) return *grid;
         why = grid.error().message;
