@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -21,13 +21,24 @@ struct Loop {
     int joined = 0, busy = 0;
     std::condition_variable left;
     std::atomic<size_t> next{0};
+    std::atomic<bool> failed{false};
+    std::exception_ptr failure;  ///< of the thread that set `failed`
 
-    void work(int worker) {
-        while (!cancelled(progress)) {
-            const size_t i = next.fetch_add(1, std::memory_order_relaxed);
-            if (i >= count) break;
-            body(context, i, worker);
+    /// Nothing is thrown here: no thread may leave a loop that others still work on.
+    void work(int worker) noexcept {
+        try {
+            while (!cancelled(progress) && !failed.load(std::memory_order_relaxed)) {
+                const size_t i = next.fetch_add(1, std::memory_order_relaxed);
+                if (i >= count) break;
+                body(context, i, worker);
+            }
+        } catch (...) {
+            if (!failed.exchange(true)) failure = std::current_exception();
         }
+    }
+    /// For the caller, once all threads have left.
+    void rethrow() const {
+        if (failure) std::rethrow_exception(failure);
     }
 };
 
@@ -40,9 +51,9 @@ public:
         const int others = loop.places;
         {
             const std::lock_guard lock(mutex_);
+            open_.push_back(&loop);  // first, for it may throw
             hire(others);
             free_ -= others;
-            open_.push_back(&loop);
         }
         for (int i = 0; i < others; ++i) called_.notify_one();
         loop.work(0);
@@ -58,7 +69,7 @@ private:
     void hire(int wanted) {
         try {
             for (; free_ < wanted; ++free_) std::thread([this] { serve(); }).detach();
-        } catch (const std::system_error&) {
+        } catch (const std::exception&) {
         }
     }
     [[noreturn]] void serve() {
@@ -100,11 +111,12 @@ namespace detail {
 
 void parallelFor(size_t count, int threads, const Progress* progress, void* context, void (*body)(void*, size_t, int)) {
     const int others = static_cast<int>(std::min(static_cast<size_t>(threads), std::max<size_t>(count, 1))) - 1;
-    Loop loop{count, progress, context, body, others, 0, 0, {}, {}};
+    Loop loop{count, progress, context, body, others, 0, 0, {}, {}, {}, {}};
     if (others > 0)
         crew().run(loop);
     else
         loop.work(0);
+    loop.rethrow();
 }
 
 }  // namespace detail

@@ -1,7 +1,7 @@
 // Parallel loops on a chosen number of threads.
 // Enters: a count and a body. Leaves: nothing; the body writes only to its own index's slot, so that order can't show.
-// Assumes the body doesn't throw, and takes long enough to be worth a step of an atomic counter. Threads stay for the
-// loops to come; a loop never waits for one that is slow to come, and does without where there is none.
+// Assumes the body takes long enough to be worth a step of an atomic counter. Threads stay for the loops to come; a loop
+// never waits for one that is slow to come, and does without where there is none.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ void parallelFor(size_t count, int threads, const Progress* progress, void* cont
 }
 
 /// Calls body(index, worker) once for every index in [0, count), on `threads` threads; `worker` in [0, threads) tells
-/// which scratch to use. Stops handing out indices once `progress` is cancelled.
+/// which scratch to use. Stops handing out indices once `progress` is cancelled or a body throws; the caller throws it then.
 template <class Body>
 void parallelFor(size_t count, int threads, const Progress* progress, Body&& body) {
     using B = std::remove_reference_t<Body>;

@@ -90,6 +90,24 @@ TEST(Parallel, ThreadsStayFromLoopToLoop) {
     EXPECT_GT(most, 1);
 }
 
+TEST(Parallel, ThrowsInTheCallerWhatABodyThrew) {
+    for (const int threads : {1, 2, 5}) {
+        std::atomic<int> calls{0};
+        const auto loop = [&] {
+            parallelFor(100'000, threads, nullptr, [&](size_t, int) {
+                if (++calls == 3) throw std::bad_alloc();
+            });
+        };
+        EXPECT_THROW(loop(), std::bad_alloc) << threads;
+        EXPECT_LT(calls, 10'000) << "the others stop too";
+        const auto nested = [&] { parallelFor(4, threads, nullptr, [&](size_t, int) { loop(), loop(); }); };
+        calls = 0;
+        EXPECT_THROW(nested(), std::bad_alloc) << threads;
+        calls = 0;
+        parallelFor(50, threads, nullptr, [&](size_t, int) { ++calls; });
+        EXPECT_EQ(calls, 50) << "the threads are still there";
+    }
+}
 TEST(Parallel, CancelStopsHandingOut) {
     Progress progress;
     std::atomic<int> done{0};

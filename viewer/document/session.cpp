@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "modeler/core/guarded.h"
+
 namespace sgm::viewer {
 namespace fs = std::filesystem;
 namespace {
@@ -133,6 +135,12 @@ bool Session::usedFilesChanged() const {
     return std::any_of(used_.begin(), used_.end(), [](const UsedFile& used) { return timeOf(used.path) != used.time; });
 }
 
+std::vector<std::filesystem::path> Session::usedFiles() const {
+    std::vector<std::filesystem::path> files;
+    for (const UsedFile& used : used_) files.push_back(used.path);
+    return files;
+}
+
 void Session::work() {
     for (;;) {
         std::optional<ShowRequest> request;
@@ -152,8 +160,25 @@ void Session::work() {
             }
         }
         retired.clear();
-        if (request) attempt(*request, *progress);
+        if (!request) continue;
+        const Status done = guarded([&]() -> Status { return attempt(*request, *progress), Done{}; });
+        if (!done.ok()) giveUp(*request, done.error());
     }
+}
+
+/// What an exception left half made is let go; the last good model stays.
+void Session::giveUp(const ShowRequest& request, const Error& error) {
+    following_.reset();
+    rebuild_ = mesh::Rebuild(mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp});
+    ast_.reset();
+    grammar_.reset();
+    shown_.reset();
+    handShown_.reset();
+    meshed_.reset();
+    News news;
+    news.attempted = request.revision;
+    news.problems = std::vector<Problem>{problemOf(error)};
+    publish(std::move(news));
 }
 
 bool Session::superseded() {

@@ -98,6 +98,8 @@ public:
 
     /// True when a file that the grammar uses has changed on disk since it was read: ask for the model again.
     bool usedFilesChanged() const;
+    /// Those files.
+    std::vector<std::filesystem::path> usedFiles() const;
 
 private:
     struct UsedFile {
@@ -115,6 +117,7 @@ private:
 
     void work();
     void attempt(const ShowRequest& request, Progress& progress);
+    void giveUp(const ShowRequest& request, const Error& error);
     bool asChecked() const;
     bool follows(const ShowRequest& request);
     bool checked(const ShowRequest& request, Stages& stages, std::vector<Problem>& problems);

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "modeler/core/guarded.h"
 #include "modeler/core/stopwatch.h"
 
 namespace sgm::viewer {
@@ -231,11 +232,13 @@ void Preparer::work() {
         makingField_ = model != nullptr;
         const auto progress = running_ = std::make_shared<Progress>();
         lock.unlock();
-        const Status done = model     ? makeField(std::move(model), withCamera, *progress)
-                            : mesh    ? makeMesh(std::move(mesh))
-                            : preview ? makePreview(std::move(preview), previewResolution, *progress)
-                            : within  ? findInside(*within)
-                                      : makeFog(std::move(fog), fogResolution, *progress);
+        const Status done = guarded([&]() -> Status {
+            return model     ? makeField(std::move(model), withCamera, *progress)
+                   : mesh    ? makeMesh(std::move(mesh))
+                   : preview ? makePreview(std::move(preview), previewResolution, *progress)
+                   : within  ? findInside(*within)
+                             : makeFog(std::move(fog), fogResolution, *progress);
+        });
         lock.lock();
         running_ = nullptr;
         makingField_ = false;
