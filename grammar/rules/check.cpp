@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
+#include <set>
 
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
@@ -25,10 +27,11 @@ uint32_t declarationOf(SourceSpan span) {
 
 /// What was found without those errors that stand in a declaration that couldn't be read: a slip is reported once.
 syntax::Diagnostics withoutEchoes(const syntax::Diagnostics& found, const syntax::Diagnostics& unread) {
+    std::set<std::pair<const syntax::Source*, uint32_t>> slips;
+    for (const syntax::Diagnostic& d : unread.all())
+        if (d.span.source) slips.emplace(d.span.source, declarationOf(d.span));
     const auto echoes = [&](const syntax::Diagnostic& d) {
-        return d.span.source && std::any_of(unread.all().begin(), unread.all().end(), [&](const syntax::Diagnostic& slip) {
-            return slip.span.source == d.span.source && declarationOf(slip.span) == declarationOf(d.span);
-        });
+        return !slips.empty() && d.span.source && slips.contains({d.span.source, declarationOf(d.span)});
     };
     syntax::Diagnostics kept;
     for (const syntax::Diagnostic& d : found.all()) {
@@ -41,10 +44,11 @@ syntax::Diagnostics withoutEchoes(const syntax::Diagnostics& found, const syntax
 /// In the order of the text: the main file last, as its uses stand before it.
 void sortInto(syntax::Diagnostics& out, const syntax::Diagnostics& found,
               const std::vector<syntax::SourcePtr>& sources) {
+    std::map<const syntax::Source*, size_t> places;
+    for (size_t i = 1; i < sources.size(); ++i) places.emplace(sources[i].get(), i);
     const auto rank = [&](const syntax::Diagnostic& d) {
-        const auto source = std::find_if(sources.begin(), sources.end(),
-                                         [&](const syntax::SourcePtr& s) { return s.get() == d.span.source; });
-        return std::pair(source == sources.begin() ? sources.end() : source, d.span.begin);
+        const auto place = places.find(d.span.source);
+        return std::pair(place == places.end() ? sources.size() : place->second, d.span.begin);
     };
     std::vector<syntax::Diagnostic> list = found.all();
     std::stable_sort(list.begin(), list.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });

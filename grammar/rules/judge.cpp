@@ -73,10 +73,20 @@ bool alwaysHolds(const std::optional<Expr>& e) { return !e || certain(e).value_o
 class Endings {
 public:
     explicit Endings(const Grammar& grammar) : grammar_(grammar), ends_(grammar.symbols.size(), false) {
-        for (bool changed = true; changed;) {
-            changed = false;
-            for (SymbolId id = 0; id < ends_.size(); ++id)
-                if (!ends_[id] && mayEnd(grammar.symbols[id])) changed = ends_[id] = true;
+        const std::vector<std::vector<SymbolId>> makes = madeBySymbols();
+        std::vector<std::vector<SymbolId>> makers(makes.size());
+        for (SymbolId id = 0; id < makes.size(); ++id)
+            for (const SymbolId made : makes[id]) makers[made].push_back(id);
+        // A symbol is looked at after those that it makes, and again when one of them turns out to end.
+        std::vector<SymbolId> open = madeFirst(makes);
+        std::vector<bool> waits(open.size(), true);
+        for (size_t next = 0; next < open.size(); ++next) {
+            const SymbolId id = open[next];
+            waits[id] = false;
+            if (ends_[id] || !mayEnd(grammar.symbols[id])) continue;
+            ends_[id] = true;
+            for (const SymbolId maker : makers[id])
+                if (!ends_[maker] && !waits[maker]) open.push_back(maker), waits[maker] = true;
         }
     }
 
@@ -99,6 +109,42 @@ public:
     }
 
 private:
+    /// By symbol: the symbols that its rules make, each once.
+    std::vector<std::vector<SymbolId>> madeBySymbols() const {
+        std::vector<std::vector<SymbolId>> makes(ends_.size());
+        for (SymbolId id = 0; id < makes.size(); ++id) {
+            for (const uint32_t rule : grammar_.symbols[id].rules)
+                eachElement(grammar_.rules[rule].body, [&](const Element& e) {
+                    for (const SymbolId s : {e.content.symbol, e.live})
+                        if (s != none) makes[id].push_back(s);
+                });
+            std::sort(makes[id].begin(), makes[id].end());
+            makes[id].erase(std::unique(makes[id].begin(), makes[id].end()), makes[id].end());
+        }
+        return makes;
+    }
+
+    /// All symbols, each behind those that it makes wherever there is no circle.
+    static std::vector<SymbolId> madeFirst(const std::vector<std::vector<SymbolId>>& makes) {
+        std::vector<SymbolId> order;
+        std::vector<bool> seen(makes.size(), false);
+        std::vector<std::pair<SymbolId, size_t>> walk;  // a symbol, and which of those it makes is next
+        for (SymbolId root = 0; root < makes.size(); ++root) {
+            if (!seen[root]) walk.emplace_back(root, 0), seen[root] = true;
+            while (!walk.empty()) {
+                auto& [id, next] = walk.back();
+                if (next == makes[id].size()) {
+                    order.push_back(id);
+                    walk.pop_back();
+                } else if (const SymbolId made = makes[id][next++]; !seen[made]) {
+                    seen[made] = true;
+                    walk.emplace_back(made, 0);
+                }
+            }
+        }
+        return order;
+    }
+
     static bool neverDrawn(const Rule& rule) { return rule.weight && certain(rule.weight).value_or(1) == 0; }
 
     bool mayEnd(const Symbol& symbol) const {
@@ -187,13 +233,15 @@ bool oneAxis(const Grammar& grammar, const std::vector<uint32_t>& cycle) {
 void report(const Grammar& grammar, const std::vector<uint32_t>& cycle, syntax::Diagnostics& diagnostics) {
     const Rule& first = grammar.rules[cycle[0]];
     const std::string& symbol = grammar.symbols[first.symbol].name;
+    constexpr size_t most = 20;  // steps that are told
     std::string message =
         fmt::format("rule '{}' never ends: every '{}' makes another '{}'", first.name, symbol, symbol);
     if (cycle.size() > 1) {
         std::string way;
-        for (const uint32_t rule : cycle)
-            way += fmt::format("'{}' ({}) -> ", grammar.symbols[grammar.rules[rule].symbol].name,
-                               grammar.rules[rule].name);
+        for (size_t i = 0; i < std::min(cycle.size(), most); ++i)
+            way += fmt::format("'{}' ({}) -> ", grammar.symbols[grammar.rules[cycle[i]].symbol].name,
+                               grammar.rules[cycle[i]].name);
+        if (cycle.size() > most) way += fmt::format("{} more -> ", cycle.size() - most);
         message = fmt::format("rule '{}' never ends: {}'{}'", first.name, way, symbol);
     }
     diagnostics.error(first.symbolSpan, std::move(message),
@@ -212,21 +260,21 @@ void findUnreachable(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
 
 void findEndless(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
     const Endings endings(grammar);
-    std::set<SymbolId> said;
+    // By symbol: the walk that came by, counted from 1, and after how many steps.
+    std::vector<std::pair<size_t, size_t>> seen(grammar.symbols.size());
+    size_t walks = 0;
     for (const SymbolId id : reachable(grammar)) {
-        // Follow what is always made until it comes round.
-        std::vector<SymbolId> walk;
+        // Follow what is always made until it comes round, or leads where an earlier walk did.
+        ++walks;
         std::vector<uint32_t> rules;
         for (SymbolId at = id; at != none && !endings.ends(at);) {
-            const auto again = std::find(walk.begin(), walk.end(), at);
-            if (again != walk.end()) {
-                std::vector<uint32_t> cycle(rules.begin() + (again - walk.begin()), rules.end());
+            if (seen[at].first == walks) {
+                std::vector<uint32_t> cycle(rules.begin() + static_cast<ptrdiff_t>(seen[at].second), rules.end());
                 std::rotate(cycle.begin(), std::min_element(cycle.begin(), cycle.end()), cycle.end());
-                if (said.insert(grammar.rules[cycle[0]].symbol).second && oneAxis(grammar, cycle))
-                    report(grammar, cycle, diagnostics);
-                break;
+                if (oneAxis(grammar, cycle)) report(grammar, cycle, diagnostics);
             }
-            walk.push_back(at);
+            if (seen[at].first != 0) break;
+            seen[at] = {walks, rules.size()};
             const auto [rule, made] = endings.next(at);
             rules.push_back(rule);
             at = made;

@@ -1,6 +1,8 @@
 // Rules that never run and rules that never end.
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "tests/rules/read.h"
 
 namespace sgm::rules {
@@ -49,6 +51,30 @@ TEST(Endless, AGuardThatAlwaysHoldsIsNone) {
     EXPECT_EQ(judged("rule A when 1 < 2 -> cube : A\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
     EXPECT_EQ(judged("rule A -> cube while true { + cube at +x }\n"),
               "this 'while' never ends: its condition always holds\n");
+}
+
+/// A chain of rules down to one that ends, or back to its first; either way round in the text.
+std::string chain(int length, bool ends, bool backwards) {
+    std::string rules;
+    for (int i = 0; i < length; ++i) {
+        const int at = backwards ? length - 1 - i : i;
+        const std::string next = at + 1 < length ? "R" + std::to_string(at + 1) : ends ? "" : "R0";
+        rules += "rule R" + std::to_string(at) + " -> cube" + (next.empty() ? "" : " : " + next) + "\n";
+    }
+    return "start S -> cube : R0\n" + rules;
+}
+
+TEST(Endless, IsFoundOfLongChainsAtOnce) {
+    for (const bool backwards : {false, true}) {
+        const auto started = std::chrono::steady_clock::now();
+        const Checked ends = checkedBody(chain(40'000, true, backwards));
+        EXPECT_EQ(ends.messages(), "");
+        const Checked circle = checkedBody(chain(40'000, false, backwards));
+        EXPECT_NE(circle.messages().find("'R0' (R0#1) -> 'R1' (R1#1) -> "), std::string::npos) << circle.messages().substr(0, 300);
+        EXPECT_LT(circle.messages().size(), 2000u);
+        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - started;
+        EXPECT_LT(spent.count(), 4) << "quadratic work takes minutes";
+    }
 }
 
 TEST(Unreachable, RulesAreWarnedOf) {
