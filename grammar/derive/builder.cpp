@@ -35,8 +35,13 @@ void TreeBuilder::fail(Error::Kind kind, const std::string& what, syntax::Source
     failure_ = Error{kind, std::move(text)};
 }
 
+syntax::SourceSpan TreeBuilder::here() const {
+    if (rule_ != none) return derivation_.grammar->rules[rule_].span;
+    return derivation_.tree.shapes.empty() ? syntax::SourceSpan{} : derivation_.tree.shapes[0].span;
+}
+
 void TreeBuilder::poll() {
-    const syntax::SourceSpan span = rule_ == none ? syntax::SourceSpan{} : derivation_.grammar->rules[rule_].span;
+    const syntax::SourceSpan span = here();
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
     if (cancelled(progress_)) failure_ = Error{Error::Kind::Cancelled, "cancelled while deriving"};
     else if (spent.count() > budget_.seconds)
@@ -48,7 +53,7 @@ void TreeBuilder::poll() {
 bool TreeBuilder::work() {
     if (++work_ % 1024 == 0) poll();
     if (work_ > 4 * budget_.shapes + 4096 && !failure_)
-        fail(Error::Kind::Budget, fmt::format("{} turns were made and there is no end", work_), derivation_.grammar->rules.empty() || rule_ == none ? syntax::SourceSpan{} : derivation_.grammar->rules[rule_].span);
+        fail(Error::Kind::Budget, fmt::format("{} turns were made and there is no end", work_), here());
     return !failure_;
 }
 

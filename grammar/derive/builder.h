@@ -94,6 +94,8 @@ private:
     void join(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
     bool ownsBody(ShapeId id) const { return derivation_.tree.bodies[derivation_.tree.shapes[id].body].owner == id; }
 
+    /// The rule that runs, or the start.
+    syntax::SourceSpan here() const;
     void poll();
     void linkBond(uint32_t bond, int end);
     uint32_t& firstBondAt(ShapeId id, uint32_t joint);

@@ -3,8 +3,9 @@
 
 #include "grammar/derive/derive.h"
 #include "grammar/derive/expressions.h"
-#include "grammar/rules/params.h"
 #include "grammar/derive/support.h"
+#include "grammar/rules/params.h"
+#include "modeler/core/stopwatch.h"
 
 namespace sgm::derive {
 namespace {
@@ -52,12 +53,17 @@ Expr withFigures(Expr e, const Derivation& d, std::string& told) {
 
 }  // namespace
 
-Result<std::vector<Verdict>> runChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t seed, Progress* progress) {
+Result<std::vector<Verdict>> runChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t seed, Progress* progress, double seconds) {
     std::vector<Verdict> verdicts;
+    const Stopwatch watch;
     for (const rules::Check& check : grammar->checks) {
         Options options;
         options.start = check.start;
         options.seed = seed;
+        options.budget.seconds = seconds - watch.seconds();
+        if (options.budget.seconds <= 0)
+            return Error{Error::Kind::Budget, fmt::format("{}the budget of {:g} seconds for all checks of a file is spent: take a smaller model here, or raise --max-seconds",
+                                                          syntax::placeText(check.span), seconds)};
         options.params = rules::valuesOf(*grammar, check.start);
         for (const rules::Setting& s : check.settings) options.params[s.param] = s.value;
         const auto derivation = derive(grammar, options, progress);

@@ -1,4 +1,6 @@
 // What a shape is made of and looks like: solids, materials, declared joints, attributes, and what fills it.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "grammar/derive/interpreter.h"
@@ -137,14 +139,30 @@ bool Interpreter::readLooks(const Element& e, const ElementFacts& facts, const P
         out.colorBy = nullptr;  // the terminal itself names such a look
     }
     for (const Attribute& a : e.attributes) readAttribute(a, place, out);
+    return inBounds(e, facts, out);
+}
+
+/// Refuses numbers that no model can be made of, where they are written.
+bool Interpreter::inBounds(const Element& e, const ElementFacts& facts, const Looks& looks) {
     for (int i = 0; i < 3; ++i) {
-        const double s = out.scope.size[i];
-        if (s > 0 && s < 1e9 && std::abs(out.moved_m[i]) < 1e9) continue;
+        const double s = looks.scope.size[i];
+        if (s > 0 && s < 1e9 && std::abs(looks.moved_m[i]) < 1e9) continue;
         builder_.fail(Error::Kind::Input, s > 0 ? "the shape would be larger or farther away than 1e9 metres" : "the size of the shape isn't positive",
                       facts.size ? facts.size->span : e.span);
         return false;
     }
-    return true;
+    if (const Mat3& m = looks.scope.axes; !std::isfinite(length(m.x) + length(m.y) + length(m.z))) {
+        builder_.fail(Error::Kind::Input, "the angle of the turn is no finite number", facts.turn ? facts.turn->span : e.span);
+        return false;
+    }
+    return !builder_.failed();
+}
+
+/// Refuses noise that is finer or higher than single precision tells places apart.
+void Interpreter::checkNoise(const Displacement& noise, syntax::SourceSpan span) {
+    constexpr double finest_per_m = 1e5, highest_m = 1e6;
+    if (std::abs(noise.amplitude_m) <= highest_m && std::abs(noise.frequency) <= finest_per_m) return;
+    builder_.fail(Error::Kind::Input, fmt::format("noise is at most {:g} m high and has at most {:g} waves a metre", highest_m, finest_per_m), span);
 }
 
 void Interpreter::readAttribute(const Attribute& a, const Place& place, Looks& out) {
@@ -171,6 +189,7 @@ void Interpreter::readAttribute(const Attribute& a, const Place& place, Looks& o
             d.amplitude_m = number(a.args[0], place);
             d.frequency = number(a.args[1], place);
             if (a.args.size() > 2) d.octaves = static_cast<int>(std::clamp(number(a.args[2], place), 1.0, 8.0));
+            checkNoise(d, a.span);
             out.extras.displace.push_back(d);
             break;
         }

@@ -83,7 +83,7 @@ Result<Derivation> derive(std::shared_ptr<const rules::Grammar> grammar, const O
 
 /// One check's verdict, for `sgm check`.
 struct Verdict { bool passed = false; std::string message; syntax::SourceSpan span; };
-/// Runs every `check` of the grammar with its settings over the defaults.
-Result<std::vector<Verdict>> runChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t seed, Progress* progress);
+/// Runs every `check` of the grammar with its settings over the defaults; Error::Budget once they take longer together.
+Result<std::vector<Verdict>> runChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t seed, Progress* progress, double seconds = 60);
 
 }  // namespace sgm::derive

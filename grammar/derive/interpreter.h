@@ -103,6 +103,8 @@ private:
     uint32_t labelOf(const rules::Element& e);
     uint32_t jointSetOf(const rules::Element& e);
     bool readLooks(const rules::Element& e, const ElementFacts& facts, const Place& place, Looks& out);
+    void checkNoise(const Displacement& noise, syntax::SourceSpan span);
+    bool inBounds(const rules::Element& e, const ElementFacts& facts, const Looks& looks);
     void readAttribute(const rules::Attribute& a, const Place& place, Looks& out);
     std::string nameOfColor(const rules::Expr& e, Vec3f color, const Place& place) const;
     std::string nameOfLook(const Looks& looks, uint32_t base, const Place& place) const;

@@ -1,5 +1,6 @@
 #include "grammar/derive/joints.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -16,7 +17,7 @@ bool directed(Vec3d d) { return d != Vec3d{}; }
 
 /// Joints of one direction begin at one slot and those that look the other way at its neighbour, in the same cache line.
 uint64_t cellHash(int64_t x, int64_t y, int64_t z, Vec3d direction) {
-    const auto coarse = [](double d) { return static_cast<int64_t>(d * 4 + std::copysign(0.5, d)); };
+    const auto coarse = [](double d) { return std::abs(d) < 2 ? static_cast<int64_t>(d * 4 + std::copysign(0.5, d)) : int64_t{8}; };
     int64_t looks = coarse(direction.x) * 289 + coarse(direction.y) * 17 + coarse(direction.z);
     const bool flipped = looks < 0;
     if (flipped) looks = -looks;
@@ -28,7 +29,12 @@ uint64_t cellHash(int64_t x, int64_t y, int64_t z, Vec3d direction) {
 /// The hash of the same cell for the opposite direction.
 uint64_t opposite(uint64_t cell) { return cell ^ 1; }
 
-int64_t cellOf(double v) { return static_cast<int64_t>(std::floor(v / cell_m)); }
+/// The outermost cells hold all that is farther away than any model reaches.
+int64_t cellOf(double v) {
+    constexpr double farthest = 1e15;
+    const double cell = std::clamp(std::floor(v / cell_m), -farthest, farthest);
+    return std::isnan(cell) ? 0 : static_cast<int64_t>(cell);
+}
 
 /// Calls f with the cells within tolerance of p: one nearly always, up to eight at a corner.
 template <class F>

@@ -115,6 +115,13 @@ void Lowering::join(Content& content, ShapeId id, Owned part) {
     }
 }
 
+/// A cladding holds its content twice, so that cladding in cladding grows with 2 to the power of its depth. A few levels
+/// are fine, and one level however large its content is.
+bool Lowering::cladsTooMuch() const {
+    constexpr size_t always = 100'000, share = 3;
+    return cladNodes_ > always + share * (model_.graph.nodeCount() - cladNodes_);
+}
+
 /// Cladding is a part of its own, named after its terminal.
 Owned Lowering::dressed(Owned part, ShapeId id) {
     const auto* x = tree_.extrasOf(id);
@@ -130,14 +137,22 @@ Owned Lowering::dressed(Owned part, ShapeId id) {
         model_.provenance.parts.push_back(std::move(own));
         model_.shapeOf.push_back(id);
     }
+    if (refused_ != none || cladsTooMuch()) {
+        if (refused_ == none) refused_ = id;
+        return part;
+    }
     const derive::Scope box = tree_.contentBox(id);
-    return {lowerClad(model_.graph, {part.field, part.origin, ornament}, clad.ornament, box, combine(tree_.shapes[id].key, hashText("clad"))), 0};
+    const size_t before = model_.graph.nodeCount();
+    const Owned whole{lowerClad(model_.graph, {part.field, part.origin, ornament}, clad.ornament, box, combine(tree_.shapes[id].key, hashText("clad"))), 0};
+    cladNodes_ += model_.graph.nodeCount() - before;
+    return whole;
 }
 
 Owned Lowering::displaced(Owned part, ShapeId id) {
     const auto* x = tree_.extrasOf(id);
     if (!x || x->displace.empty() || part.field.bounds.empty()) return part;
     const Shape& s = tree_.shapes[id];
+    const bool isBounded = part.field.bounds.finite();
     for (size_t i = 0; i < x->displace.size(); ++i) {
         const derive::Displacement& n = x->displace[i];
         const uint64_t key = combine(s.key, i);
@@ -146,6 +161,7 @@ Owned Lowering::displaced(Owned part, ShapeId id) {
                                      model_.graph.slot({key, hashText("displace.frequency")}, static_cast<float>(n.frequency)), n.frequency, n.octaves,
                                      static_cast<uint32_t>(key >> 32));
     }
+    if (isBounded && !part.field.bounds.finite() && boundless_ == none) boundless_ = id;
     return part;
 }
 
@@ -221,6 +237,12 @@ Status Lowering::run(Progress* progress) {
     if (progress) progress->begin("lower", tree_.shapes.size());
     model_.shapeOf.push_back(none);
     if (const Status done = walk(0, progress); !done.ok()) return done;
+    if (refused_ != none)
+        return Error{Error::Kind::Budget, fmt::format("{}'{}' is cladding in cladding in cladding: each level doubles the work; clad the parts, or fewer levels",
+                                                      syntax::placeText(tree_.shapes[refused_].span), tree_.path(refused_))};
+    if (boundless_ != none)
+        return Error{Error::Kind::Input, fmt::format("{}'{}': so much noise lies on noise that nobody can tell how far it reaches; displace less often, or by less",
+                                                     syntax::placeText(tree_.shapes[boundless_].span), tree_.path(boundless_))};
     nameTheWhole();
     mergeMaterials();
     const bool nothing = model_.field.bounds.empty();

@@ -75,6 +75,7 @@ private:
     void settle(Content& content);
     OriginId ownerOf(ShapeId id);
     Owned dressed(Owned part, ShapeId id);
+    bool cladsTooMuch() const;
     Owned displaced(Owned part, ShapeId id);
     bool pours(ShapeId id) const;
     bool isSum(const Shape& s) const { return (s.op == Operator::Sum || s.op == Operator::None) && s.blend_m <= 0; }
@@ -87,6 +88,9 @@ private:
     std::vector<Content> open_;
     std::vector<bool> plain_;  ///< by shape: its content is nothing but a sum
     std::vector<OriginId> owners_;  ///< by shape; 0: not asked for
+    size_t cladNodes_ = 0;          ///< of the graph, made for cladding
+    ShapeId refused_ = none;        ///< the first shape whose cladding was one too much
+    ShapeId boundless_ = none;      ///< the first shape whose noise left no bounds
 
     // For a second run.
     const bool keeps_;
