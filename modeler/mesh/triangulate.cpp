@@ -49,7 +49,8 @@ public:
         numbers_.erase(std::unique(numbers_.begin(), numbers_.end()), numbers_.end());
         handles_.resize(numbers_.size());
         Triangulation::Face_handle near;
-        for (const DirectedEdge& e : edges_)  // neighbours one after the other
+        for (const DirectedEdge& e : edges_) {  // neighbours one after the other
+            valid_ &= e[0] != e[1];
             for (const uint32_t v : e) {
                 Triangulation::Vertex_handle& handle = handleOf(v);
                 if (handle != nullptr) continue;
@@ -59,13 +60,15 @@ public:
                 handle->info() = v;
                 near = handle->face();
             }
+        }
     }
 
     /// Triangles to the left of the boundary; false where it isn't one.
     bool triangulate(std::vector<Triangle>& triangles) {
-        if (!valid_ || edges_.size() < 3) return false;
+        // CGAL takes no constraints between points on one line, nor from a point to itself.
+        if (!valid_ || edges_.size() < 3 || plane_.dimension() != 2) return false;
         for (const DirectedEdge& e : edges_) plane_.insert_constraint(handleOf(e[0]), handleOf(e[1]));
-        if (plane_.dimension() != 2 || !markInside()) return false;
+        if (!markInside()) return false;
         for (const auto face : plane_.finite_face_handles())
             if (face->info())
                 triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});

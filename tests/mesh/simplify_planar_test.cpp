@@ -1,6 +1,7 @@
 // Merging of planar regions.
 #include <gtest/gtest.h>
 
+#include "modeler/mesh/triangulate.h"
 #include "tests/mesh/gridded.h"
 #include "tests/mesh/mesh_bytes.h"
 #include "tests/mesh/simplify_checks.h"
@@ -105,6 +106,21 @@ TEST(SimplifyPlanar, ACirclePaintedOnAPlaneStaysWithinTheTolerance) {
     }
     EXPECT_NEAR(painted, std::numbers::pi, 2 * std::numbers::pi * tolerance);
     EXPECT_LT(simple.triangleCount(), 500u);
+}
+
+TEST(SimplifyPlanar, BordersThatCollapseAreRefused) {
+    std::vector<Vec3f> line, zigzag;
+    std::vector<DirectedEdge> around;
+    for (uint32_t i = 0; i < 40; ++i) {
+        line.push_back({static_cast<float>(i < 20 ? i : 40 - i) * 0.25f + (i < 20 ? 0.0f : 0.1f), 0, 1});
+        zigzag.push_back({static_cast<float>(i), static_cast<float>(i % 2), 0});
+        around.push_back({i, (i + 1) % 40});
+    }
+    std::vector<Triangle> triangles;
+    EXPECT_FALSE(triangulatePlanar(around, line, {0, 0, 1}, triangles)) << "all points on one line";
+    around.assign(30, {3, 3});
+    EXPECT_FALSE(triangulatePlanar(around, zigzag, {0, 0, 1}, triangles)) << "edges of no length";
+    EXPECT_TRUE(triangles.empty());
 }
 
 TEST(SimplifyPlanar, TheResultIsTheSameAtAnyNumberOfThreads) {
