@@ -16,7 +16,9 @@ constexpr ExportOption up{"up", "y", "y|z", "the axis that points up in the file
 constexpr ExportOption unit{"unit", "m", "m|cm|mm", "the length of one unit in the file"};
 constexpr ExportOption gltfOptions[] = {
     uv,
-    {"engine", "godot", "godot|unreal|unity", "whose names colliders bear, so that it imports them as such"}};
+    {"engine", "godot", "godot|unreal|unity", "whose names colliders bear, so that it imports them as such"},
+    {"pack", "none", "none|meshopt|draco",
+     "compression, for readers that have it: 16-bit positions on one grid, 8-bit normals"}};
 constexpr ExportOption texturedOptions[] = {up, unit, uv};
 constexpr ExportOption plainOptions[] = {up, unit};
 constexpr ExportOption scadOptions[] = {

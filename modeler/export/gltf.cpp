@@ -11,6 +11,8 @@
 #include "modeler/core/polled_file.h"
 #include "modeler/export/formats.h"
 #include "modeler/export/gltf_colliders.h"
+#include "modeler/export/gltf_draco.h"
+#include "modeler/export/gltf_meshopt.h"
 #include "modeler/export/surface.h"
 
 namespace sgm::exporter {
@@ -172,22 +174,44 @@ void addScene(tinygltf::Model& model, const ExportInput& input) {
     model.defaultScene = 0;
 }
 
+Error tooLarge(const Path& target) {
+    return writeError(target, "the mesh is larger than the 4 GB a .glb can hold; choose another format");
+}
+
+/// Whether a .glb with such a buffer keeps its lengths within 32 bits; a little room is left for the JSON.
+bool fits(const tinygltf::Model& model, bool binary) { return !binary || model.buffers[0].data.size() <= 0xfff00000u; }
+
+/// Fills the temporary file by `fill(stream)`.
+template <class Fill>
+Status writeStream(const ExportInput& input, const Path& temporary, const Path& target, Fill fill) {
+    errno = 0;
+    PolledFile file(temporary, input.progress);
+    std::ostream out(&file);
+    fill(out);
+    if (!file.close()) out.setstate(std::ios::badbit);
+    if (cancelled(input.progress)) return cancelledError();
+    if (!out) return writeError(target, errno != 0 ? errno : EIO);
+    return Done{};
+}
+
 Status writeScene(const ExportInput& input, const Path& temporary, const Path& target, bool binary) {
     MeshBuilder builder(input, option(input, "uv", "box") == "box");
     if (!builder.build()) return cancelledError();
     addScene(builder.model, input);
     if (Status status = addColliders(builder.model, input); !status.ok()) return status;
-    // The container's lengths have 32 bits; a little room is left for the JSON.
-    if (binary && builder.model.buffers[0].data.size() > 0xfff00000u)
-        return writeError(target, "the mesh is larger than the 4 GB a .glb can hold; choose another format");
-    errno = 0;
-    PolledFile file(temporary, input.progress);
-    std::ostream out(&file);
-    tinygltf::TinyGLTF().WriteGltfSceneToStream(&builder.model, out, !binary, binary);
-    if (!file.close()) out.setstate(std::ios::badbit);
-    if (cancelled(input.progress)) return cancelledError();
-    if (!out) return writeError(target, errno != 0 ? errno : EIO);
-    return Done{};
+    const std::string_view pack = option(input, "pack", "none");
+    if (pack == "meshopt") {
+        auto packed = packByMeshopt(std::move(builder.model), input.progress);
+        if (!packed.ok()) return packed.error();
+        if (!fits(packed->model, binary)) return tooLarge(target);
+        return writeStream(input, temporary, target, [&](std::ostream& out) { writeMeshopt(*packed, out, binary); });
+    }
+    if (pack == "draco")
+        if (Status status = packByDraco(builder.model, input.progress); !status.ok()) return status;
+    if (!fits(builder.model, binary)) return tooLarge(target);
+    return writeStream(input, temporary, target, [&](std::ostream& out) {
+        tinygltf::TinyGLTF().WriteGltfSceneToStream(&builder.model, out, !binary, binary);
+    });
 }
 
 }  // namespace
