@@ -10,8 +10,10 @@ namespace {
 
 constexpr uint32_t cornerVertex = 0xffffffffu;  ///< stands for a loop's corner until that is placed
 constexpr float probeShare = 0.0625f;
-constexpr int cornerRounds = 2;
-constexpr double towardsMiddle = 1e-6;  ///< weight of the nodes' middle where planes leave a corner open
+constexpr int cornerRounds = 3;
+constexpr float leavingReach = 2;        ///< of a cell, that a corner may lie outside its cell
+constexpr float confirmShare = 0x1p-8f;  ///< of a cell times the slope: the field at a confirmed corner
+constexpr double towardsMiddle = 1e-6;   ///< weight of the nodes' middle where planes leave a corner open
 
 /// x of A x = b by Cramer's rule, for a symmetric positive definite A.
 Vec3d solved(const std::array<Vec3d, 3>& rows, Vec3d b) {
@@ -129,9 +131,7 @@ void CellPieces::addCorner(Loop& loop, const std::vector<LoopNode>& nodes) {
         corner.labels.push_back(nodes[from].label);
         corner.means.push_back(middle * (1.0f / static_cast<float>(scratch_.size())));
         for (const LoopNode* at : {&nodes[from], &end}) {
-            PiecePoint plane = sideOf(*at, nodes[from].label);
-            plane.at = at->at;
-            corner.planes.push_back(plane);
+            corner.planes.push_back(sideOf(*at, nodes[from].label));
             sum += at->at;
         }
         scratch_.push_back(end);
@@ -159,7 +159,44 @@ void CellPieces::intersect(Corner& corner) const {
         for (int axis = 0; axis < 3; ++axis) rows[static_cast<size_t>(axis)] += n * n[axis];
         right += n * d;
     }
-    corner.at = inCell(corner.cell, (middle + solved(rows, right)).as<float>());
+    corner.meeting = (middle + solved(rows, right)).as<float>();
+    corner.at = inCell(corner.cell, corner.meeting);
+}
+
+/// Evaluates the pieces at some points.
+void CellPieces::probe(const eval::Tape& tape, eval::Workspace& workspace, std::span<const Vec3f> points) {
+    const size_t n = points.size();
+    std::vector<float> x(n), y(n), z(n), rows(4 * n);
+    std::vector<uint32_t> labels(n);
+    std::vector<OriginId> origins(n);
+    for (size_t i = 0; i < n; ++i) x[i] = points[i].x, y[i] = points[i].y, z[i] = points[i].z;
+    eval::evaluatePieces(tape, {x.data(), y.data(), z.data(), n},
+                         {rows.data(), &rows[n], &rows[2 * n], &rows[3 * n], labels.data(), origins.data()}, workspace);
+    probes_.clear();
+    for (size_t i = 0; i < n; ++i)
+        probes_.push_back(
+            {rows[i],
+             {points[i], {rows[n + i], rows[2 * n + i], rows[3 * n + i]}, labelOf(labels[i], origins[i]), origins[i]}});
+}
+
+/// A meeting outside the cell counts where it lies on the surface, on one of the corner's pieces.
+void CellPieces::confirmMeetings(const eval::Tape& tape, eval::Workspace& workspace) {
+    std::vector<Vec3f> points;
+    for (Corner& corner : corners_) {
+        corner.leaves =
+            corner.meeting != corner.at && length(corner.meeting - corner.at) <= leavingReach * grid_->cell_m;
+        if (corner.leaves) points.push_back(corner.meeting);
+    }
+    if (points.empty()) return;
+    probe(tape, workspace, points);
+    size_t i = 0;
+    for (Corner& corner : corners_) {
+        if (!corner.leaves) continue;
+        const Probe& seen = probes_[i++];
+        const auto& labels = corner.labels;
+        corner.leaves = std::find(labels.begin(), labels.end(), seen.point.label) != labels.end() &&
+                        std::abs(seen.value) <= confirmShare * grid_->cell_m * length(seen.point.gradient);
+    }
 }
 
 uint64_t CellPieces::placeCorners(const eval::Tape& tape, const Grid& grid, eval::Workspace& workspace,
@@ -167,42 +204,40 @@ uint64_t CellPieces::placeCorners(const eval::Tape& tape, const Grid& grid, eval
     grid_ = &grid;
     firstVertex_ = firstVertex;
     for (Corner& corner : corners_) intersect(corner);
-    std::vector<float> x, y, z, rows;
-    std::vector<uint32_t> labels;
-    std::vector<OriginId> origins;
     uint64_t evaluations = 0;
     for (int round = 0; round < cornerRounds && !corners_.empty(); ++round) {
-        x.clear(), y.clear(), z.clear();
-        for (const Corner& corner : corners_)
-            for (const Vec3f& mean : corner.means) {
-                const Vec3f p = corner.at + (mean - corner.at) * probeShare;
-                x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
-            }
-        const size_t n = x.size();
-        evaluations += n;
-        rows.resize(4 * n), labels.resize(n), origins.resize(n);
-        eval::evaluatePieces(tape, {x.data(), y.data(), z.data(), n},
-                             {rows.data(), &rows[n], &rows[2 * n], &rows[3 * n], labels.data(), origins.data()},
-                             workspace);
+        std::vector<Vec3f> points;
+        for (const Corner& corner : corners_) {
+            const bool isNear = length(corner.meeting - corner.at) <= leavingReach * grid.cell_m;
+            const Vec3f from = round > 0 && isNear ? corner.meeting : corner.at;
+            for (const Vec3f& mean : corner.means) points.push_back(from + (mean - from) * probeShare);
+        }
+        probe(tape, workspace, points);
+        evaluations += probes_.size();
         size_t i = 0;
         for (Corner& corner : corners_) {
             std::vector<PiecePoint> seen;
             for (size_t k = 0; k < corner.means.size(); ++k, ++i) {
-                PiecePoint plane{{x[i], y[i], z[i]},
-                                 {rows[n + i], rows[2 * n + i], rows[3 * n + i]},
-                                 labelOf(labels[i], origins[i]),
-                                 origins[i]};
+                PiecePoint plane = probes_[i].point;
+                const double value = probes_[i].value;
                 const Vec3d g = plane.gradient.as<double>();
                 const double square = dot(g, g);
-                if (!(square > 0) || !(std::abs(rows[i]) < std::sqrt(square) * grid.cell_m)) continue;
-                plane.at = (plane.at.as<double>() - g * (rows[i] / square)).as<float>();
-                seen.push_back(plane);
+                if (plane.label == corner.labels[k] && square > 0 &&
+                    std::abs(value) < std::sqrt(square) * grid.cell_m) {
+                    plane.at = (plane.at.as<double>() - g * (value / square)).as<float>();
+                    seen.push_back(plane);
+                } else {
+                    for (const PiecePoint& known : corner.planes)
+                        if (known.label == corner.labels[k]) seen.push_back(known);
+                }
             }
-            if (seen.size() < corner.means.size()) continue;
             corner.planes = std::move(seen);
             intersect(corner);
         }
     }
+    probes_.clear();
+    confirmMeetings(tape, workspace);
+    evaluations += probes_.size();
     for (const Loop& loop : loops_) {
         if (loop.corner < 0) continue;
         const Corner& corner = corners_[static_cast<size_t>(loop.corner)];
@@ -296,6 +331,16 @@ Vec3f CellPieces::middleOf(uint32_t firstLoop, uint32_t endLoop) const {
     return sum * (1.0f / static_cast<float>(count));
 }
 
+/// Whether a loop has two pieces along one crease, and the point amid that.
+bool CellPieces::isOneCrease(std::span<const LoopNode> nodes, Vec3f& middle) {
+    int breaks = 0;
+    Vec3f sum{};
+    for (const LoopNode& node : nodes)
+        if (node.isBreak) ++breaks, sum += node.crossing;
+    middle = sum * 0.5f;
+    return breaks == 2;
+}
+
 /// Triangles from a point in the cell to all sides of the loop, which never cross each other.
 void CellPieces::fan(uint32_t l, Vec3f middleOfAll, float apart, PieceTriangles& out) {
     Loop& loop = loops_[l];
@@ -308,14 +353,20 @@ void CellPieces::fan(uint32_t l, Vec3f middleOfAll, float apart, PieceTriangles&
         corners_.emplace_back();
     }
     middle.vertex = firstVertex_ + static_cast<uint32_t>(loop.corner);
-    corners_[static_cast<size_t>(loop.corner)].at = middle.at;
+    Corner& corner = corners_[static_cast<size_t>(loop.corner)];
+    if (corner.planes.empty())
+        corner.leaves = isOneCrease(nodes, corner.meeting);
+    else
+        corner.leaves = corner.leaves || corner.meeting == corner.at;
+    corner.at = middle.at;
     for (size_t i = 0; i < nodes.size(); ++i) {
         const LoopNode &a = nodes[i], &b = nodes[(i + 1) % nodes.size()];
         const Polygon piece{0, 0, a.label, a.origin};
         const LoopNode all[] = {middle, a, b};
-        const Vec3d n = newell(all);
+        const PiecePoint& side = sideOf(a, a.label);
+        const Vec3f own = side.label == a.label ? normalized(side.gradient) : Vec3f{};
         middle.isBreak = true;
-        emit(middle, a, b, piece, normalized(n).as<float>(), out);
+        emit(middle, a, b, piece, own == Vec3f{} ? normalized(newell(all)).as<float>() : own, out);
     }
 }
 
@@ -345,6 +396,8 @@ void CellPieces::triangulate(PieceTriangles& out, std::vector<uint32_t>& cellEnd
     for (const Corner& corner : corners_) {
         Vec3f n{};
         for (const PiecePoint& plane : corner.planes) n += normalized(plane.gradient);
+        if (corner.leaves)
+            out.confined.push_back({firstVertex_ + static_cast<uint32_t>(&corner - corners_.data()), corner.meeting});
         out.positions.push_back(corner.at);
         out.normals.push_back(n == Vec3f{} ? Vec3f{0, 1, 0} : normalized(n));
     }

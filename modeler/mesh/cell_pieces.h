@@ -21,6 +21,7 @@ struct LoopNode {
     uint32_t label;
     OriginId origin;
     bool isBreak = false;               ///< the piece before it is another one
+    Vec3f crossing{};                   ///< of a break, see Break
     int face = -1;                      ///< of a break, the face of the cell that it lies on
     std::array<PiecePoint, 2> sides{};  ///< of a break, before and after it; of a vertex, itself
 };
@@ -32,9 +33,10 @@ struct PieceTriangles {
     std::vector<OriginId> origins;
     std::vector<CornerNormal> cornerNormals;  ///< corners count in `triangles`
     std::vector<Vec3f> positions, normals;    ///< of new vertices
+    std::vector<ConfinedVertex> confined;     ///< of new vertices
     void clear() {
         triangles.clear(), labels.clear(), origins.clear(), cornerNormals.clear();
-        positions.clear(), normals.clear();
+        positions.clear(), normals.clear(), confined.clear();
     }
 };
 
@@ -68,7 +70,9 @@ private:
     struct Corner {
         Vec3i cell;
         uint32_t loop;
-        Vec3f at;
+        Vec3f at;             ///< inside the cell
+        Vec3f meeting;        ///< of its planes: `at`, or outside the cell
+        bool leaves = false;  ///< the pieces were found around a meeting outside the cell
         std::vector<PiecePoint> planes;
         std::vector<uint32_t> labels;
         std::vector<Vec3f> means;  ///< by label: the middle of its nodes
@@ -77,6 +81,13 @@ private:
     void addPolygon(std::span<const LoopNode> nodes);
     void addSplit(Loop& loop, std::vector<LoopNode>& nodes);
     void addCorner(Loop& loop, const std::vector<LoopNode>& nodes);
+    /// A point of the field near a corner.
+    struct Probe {
+        float value;
+        PiecePoint point;
+    };
+    void probe(const eval::Tape& tape, eval::Workspace& workspace, std::span<const Vec3f> points);
+    void confirmMeetings(const eval::Tape& tape, eval::Workspace& workspace);
     Vec3f inCell(Vec3i cell, Vec3f p) const;
     void intersect(Corner& corner) const;
     bool liesInFace(const LoopNode& a, const LoopNode& b) const;
@@ -84,6 +95,7 @@ private:
     bool triangulateLoop(const Loop& loop, PieceTriangles& out);
     bool crosses(const PieceTriangles& out, size_t firstTriangle) const;
     Vec3f middleOf(uint32_t firstLoop, uint32_t endLoop) const;
+    static bool isOneCrease(std::span<const LoopNode> nodes, Vec3f& middle);
     void fan(uint32_t loop, Vec3f middleOfAll, float apart, PieceTriangles& out);
     void emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, const Polygon& piece, Vec3f normal,
               PieceTriangles& out);
@@ -93,6 +105,7 @@ private:
     std::vector<Polygon> polygons_;
     std::vector<Loop> loops_;
     std::vector<Corner> corners_;
+    std::vector<Probe> probes_;
     std::vector<uint32_t> cellEnds_;
     uint32_t firstVertex_ = 0;
     Vec3f low_, high_;                          ///< of the cell at hand

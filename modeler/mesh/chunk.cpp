@@ -12,6 +12,9 @@ namespace {
 
 /// Vertices of several bricks are found together, where one tape is good for them, once there are so many.
 constexpr size_t enoughEdges = 336;
+/// A vertex of a crisp mesh lies on its piece, also where a crease near the edge misleads the first steps. Few take
+/// more than two.
+constexpr int leastCrispSteps = 12;
 
 /// Place of the edge that runs along `axis` from a corner up: the edges of a cell lie close to each other.
 constexpr int edgePlace(int corner, int axis) { return 3 * corner + axis; }
@@ -84,7 +87,9 @@ bool leavesNothingOut(const eval::Tape& shortened, const eval::Tape& whole) {
 
 BlockMesher::BlockMesher(const Grid& grid, const PolygonizeOptions& options)
     : grid_(grid),
-      refineSteps_(static_cast<size_t>(options.refineSteps)),
+      refineSteps_(static_cast<size_t>(options.surface == Surface::Crisp && options.refineSteps > 0
+                                           ? std::max(options.refineSteps, leastCrispSteps)
+                                           : options.refineSteps)),
       bare_(options.bare && options.surface == Surface::Cubes),
       crisp_(options.surface == Surface::Crisp ? std::make_unique<CrispBlock>() : nullptr) {}
 
@@ -343,8 +348,9 @@ void BlockMesher::splitAtCreases(const Block& block, Chunk& chunk) {
             normals_.push_back(b.point.gradient);
             labels_.push_back(b.point.label);
         }
-    const BlockSurface surface{&block,      &grid_,  {cells_.data(), cellCount_}, number_.data(), vertices_, positions_,
-                               normals_,    labels_, origins_,                    chunk.triangles};
+    const BlockSurface surface{
+        &block,   &grid_,         {cells_.data(), cellCount_}, number_.data(), vertices_, positions_, normals_, labels_,
+        origins_, chunk.triangles};
     {
         const AddTime evaluating(fieldTime_);
         counts_.refinementEvaluations += crisp_->run(surface, workspace_);
@@ -361,6 +367,7 @@ void BlockMesher::splitAtCreases(const Block& block, Chunk& chunk) {
     chunk.positions.insert(chunk.positions.end(), split.positions.begin(), split.positions.end());
     chunk.normals.insert(chunk.normals.end(), split.normals.begin(), split.normals.end());
     chunk.cornerNormals = split.cornerNormals;
+    chunk.confined = split.confined;
     listFaceSeams(chunk);
 }
 

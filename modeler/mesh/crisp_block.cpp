@@ -179,6 +179,7 @@ void CrispBlock::numberBreaks() {
         const Break& at = creases_.breaks()[b];
         const Vec3f n = normalized(normalized(at.sides[0].gradient) + normalized(at.sides[1].gradient));
         out_.positions[breakVertex_[b] - surface_->own] = at.at;
+        if (at.crossing != at.at) out_.confined.push_back({breakVertex_[b], at.crossing});
         out_.normals[breakVertex_[b] - surface_->own] = n == Vec3f{} ? Vec3f{0, 1, 0} : n;
     }
 }
@@ -210,6 +211,7 @@ void CrispBlock::addNodes(const SurfaceCell& cell, const CellLoop& loop, size_t&
             point.sides = {at.sides[reversed ? 1 : 0], at.sides[reversed ? 0 : 1]};
             point.label = point.sides[1].label, point.origin = point.sides[1].origin;
             point.isBreak = true;
+            point.crossing = at.crossing;
             point.face = loop.faces[static_cast<size_t>(i)];
         }
     }
@@ -258,6 +260,9 @@ void CrispBlock::assemble(const std::vector<uint32_t>& ends) {
     copyTriangles(copied, surface_->triangles.size());
     out_.positions.insert(out_.positions.end(), split_.positions.begin(), split_.positions.end());
     out_.normals.insert(out_.normals.end(), split_.normals.begin(), split_.normals.end());
+    out_.confined.insert(out_.confined.end(), split_.confined.begin(), split_.confined.end());
+    std::sort(out_.confined.begin(), out_.confined.end(),
+              [](const ConfinedVertex& a, const ConfinedVertex& b) { return a.vertex < b.vertex; });
 }
 
 uint64_t CrispBlock::run(const BlockSurface& surface, eval::Workspace& workspace) {

@@ -18,6 +18,10 @@ constexpr float mergedShare = 0x1.0p-8f;    ///< of a cell, within which two bre
 constexpr double monotoneShare = 0x1.0p-6;  ///< of a segment, between breaks
 constexpr float faceMargin = 0x1.0p-7f;     ///< of a cell, kept free of breaks at the sides of a face
 constexpr float parallel = 1e-3f;           ///< sine of the least angle between two lines that cross
+constexpr double parallelSquare = 1e-3;     ///< squared sine of the least angle of a crease outside its face
+constexpr double leavingReach = 2.0;        ///< of a cell, that a crossing may lie outside its face
+constexpr double stopShare = 0x1p-10;       ///< of a cell, between a crossing and the piece that ends its crease
+constexpr float confirmShare = 0.0625f;     ///< of a cell times the slope: the field beside a confirmed crossing
 
 /// The two axes of a face.
 struct Plane {
@@ -26,6 +30,14 @@ struct Plane {
     double dot(Vec3f g, Vec3f d) const { return double{g[u]} * d[u] + double{g[v]} * d[v]; }
     double length(Vec3f g) const { return std::sqrt(dot(g, g)); }
 };
+
+/// A point of the piece's plane, from one where the piece's field has a value.
+PiecePoint onSurface(PiecePoint point, float value) {
+    const Vec3d g = point.gradient.as<double>();
+    const double square = dot(g, g);
+    if (square > 0) point.at = (point.at.as<double>() - g * (value / square)).as<float>();
+    return point;
+}
 
 Vec3f between(Vec3f a, Vec3f b, double share) { return (a.as<double>() + (b - a).as<double>() * share).as<float>(); }
 
@@ -55,13 +67,8 @@ uint64_t FaceCreases::solve(const eval::Tape& tape, const Grid& grid, eval::Work
     while (!open_.empty()) {
         samples_.clear();
         for (const uint32_t g : open_) ask(segments[gaps_[g].segment], gaps_[g]);
-        const size_t n = samples_.n;
-        evaluations += n;
-        samples_.rows.resize(4 * n), samples_.labels.resize(n), samples_.origins.resize(n);
-        float* const rows = samples_.rows.data();
-        eval::evaluatePieces(
-            tape, {samples_.x.data(), samples_.y.data(), samples_.z.data(), n},
-            {rows, rows + n, rows + 2 * n, rows + 3 * n, samples_.labels.data(), samples_.origins.data()}, workspace);
+        evaluations += samples_.n;
+        evaluateSamples(tape, workspace);
         next_.clear();
         size_t sample = 0;
         for (const uint32_t g : open_) {
@@ -72,8 +79,68 @@ uint64_t FaceCreases::solve(const eval::Tape& tape, const Grid& grid, eval::Work
         }
         open_.swap(next_);
     }
+    evaluations += confirmCrossings(tape, workspace);
     separate(segments);
     return evaluations;
+}
+
+void FaceCreases::evaluateSamples(const eval::Tape& tape, eval::Workspace& workspace) {
+    const size_t n = samples_.n;
+    samples_.rows.resize(4 * n), samples_.labels.resize(n), samples_.origins.resize(n);
+    float* const rows = samples_.rows.data();
+    eval::evaluatePieces(tape, {samples_.x.data(), samples_.y.data(), samples_.z.data(), n},
+                         {rows, rows + n, rows + 2 * n, rows + 3 * n, samples_.labels.data(), samples_.origins.data()},
+                         workspace);
+}
+
+/// Crossings outside their faces count where both pieces are found beside them, on the surface. Where a third piece
+/// ends the crease before, the crossing is moved to this side of its end and looked at again.
+uint64_t FaceCreases::confirmCrossings(const eval::Tape& tape, eval::Workspace& workspace) {
+    open_.clear();
+    for (uint32_t g = 0; g < gaps_.size(); ++g)
+        if (gaps_[g].leaves) open_.push_back(g);
+    uint64_t evaluations = 0;
+    for (int round = 0; round < 2 && !open_.empty(); ++round) {
+        samples_.clear();
+        for (const uint32_t g : open_) {
+            samples_.add(between(gaps_[g].crossing, gaps_[g].a.at, probeShare));
+            samples_.add(between(gaps_[g].crossing, gaps_[g].b.at, probeShare));
+        }
+        evaluations += samples_.n;
+        evaluateSamples(tape, workspace);
+        next_.clear();
+        for (size_t i = 0; i < open_.size(); ++i) {
+            Gap& gap = gaps_[open_[i]];
+            gap.leaves = false;
+            bool confirmed = true;
+            for (size_t side = 0; side < 2; ++side) {
+                float value;
+                const PiecePoint probe = samples_.point(2 * i + side, value);
+                confirmed = confirmed && probe.label == (side == 0 ? gap.a : gap.b).label &&
+                            std::abs(value) <= confirmShare * grid_->cell_m * length(probe.gradient);
+                if (round > 0 || gap.leaves || probe.label == gap.a.label || probe.label == gap.b.label) continue;
+                gap.leaves = stopBefore(gap, probe, value);
+            }
+            if (gap.leaves) next_.push_back(open_[i]);
+            gap.leaves = gap.leaves || confirmed;
+        }
+        open_.swap(next_);
+    }
+    return evaluations;
+}
+
+/// Moves a crossing along its crease to a little before a third piece, the nearer the farther it lay beyond. Whether
+/// that is near enough.
+bool FaceCreases::stopBefore(Gap& gap, const PiecePoint& third, float value) const {
+    const Vec3d along = normalized(cross(gap.lineA.gradient.as<double>(), gap.lineB.gradient.as<double>()));
+    const Vec3d slope = third.gradient.as<double>();
+    const double rise = dot(slope, along);
+    if (!(std::abs(rise) > parallel * length(slope))) return false;
+    const double there = value + dot(slope, (gap.crossing - third.at).as<double>());
+    const double way = -there / rise, cell = grid_->cell_m;  // from the crossing to the end
+    const double before = stopShare * cell / (1 + std::abs(way) / cell);
+    gap.crossing += (along * (way + std::copysign(before, way))).as<float>();
+    return length(gap.crossing - gap.at) <= leavingReach * cell;
 }
 
 void FaceCreases::ask(const FaceSegment&, const Gap& gap) {
@@ -115,21 +182,40 @@ void FaceCreases::aim(const FaceSegment& segment, Gap& gap) {
     const Vec3f ga = gap.lineA.gradient, gb = gap.lineB.gradient;
     const double la = plane.length(ga), lb = plane.length(gb);
     const double det = double{ga[plane.u]} * gb[plane.v] - double{ga[plane.v]} * gb[plane.u];
-    if (!(std::abs(det) > parallel * la * lb)) return searchBorder(gap);
+    const bool first = gap.state == State::Ends;
+    if (!(std::abs(det) > parallel * la * lb)) {
+        if (first) leave(gap, between(gap.a.at, gap.b.at, 0.5));
+        return searchBorder(gap);
+    }
     // g · (p − q) + f = 0 for both.
     const double ra = plane.dot(ga, gap.lineA.at) - gap.valueA, rb = plane.dot(gb, gap.lineB.at) - gap.valueB;
     const Vec3f before = gap.at;
     gap.at = gap.a.at;
     gap.at[plane.u] = static_cast<float>((ra * gb[plane.v] - rb * ga[plane.v]) / det);
     gap.at[plane.v] = static_cast<float>((rb * ga[plane.u] - ra * gb[plane.u]) / det);
-    const bool first = gap.state == State::Ends;
+    gap.crossing = gap.at;
+    gap.leaves = false;
     if (!mayLieAt(segment, gap.at)) {
-        const double reach = 2 * grid_->cell_m;
-        if (!(length(gap.at - gap.a.at) < reach) && !first) return searchBorder(gap);
+        const bool isFar = !(length(gap.at - gap.a.at) < 2 * grid_->cell_m);
         gap.at = inFace(segment, gap.at);  // where a third piece shows, if one cuts the crease off
+        leave(gap, isFar ? between(gap.a.at, gap.b.at, 0.5) : gap.at);
+        if (isFar && !first) return searchBorder(gap);
     }
     gap.state = State::Crease;
     if (!first && length(gap.at - before) <= settledShare * grid_->cell_m) gap.state = State::Done;
+}
+
+/// The crease lies outside the face: the crossing is its point nearest to `from`, so that points keep their order along
+/// it.
+void FaceCreases::leave(Gap& gap, Vec3f from) const {
+    const Vec3d p = from.as<double>(), a = gap.lineA.gradient.as<double>(), b = gap.lineB.gradient.as<double>();
+    const double aa = dot(a, a), bb = dot(b, b), ab = dot(a, b), det = aa * bb - ab * ab;
+    gap.leaves = false;
+    if (!(det > parallelSquare * aa * bb)) return;
+    const double fa = gap.valueA + dot(a, p - gap.lineA.at.as<double>());
+    const double fb = gap.valueB + dot(b, p - gap.lineB.at.as<double>());
+    gap.crossing = (p - a * ((fa * bb - fb * ab) / det) - b * ((fb * aa - fa * ab) / det)).as<float>();
+    gap.leaves = length(gap.crossing - from) <= leavingReach * grid_->cell_m;
 }
 
 /// Both pieces are looked at close to where their lines cross.
@@ -168,6 +254,7 @@ void FaceCreases::searchBorder(Gap& gap) {
     gap.state = State::Border;
     gap.rounds = 0;
     gap.lineA = gap.a, gap.lineB = gap.b;
+    gap.valueA = gap.valueB = 0;
 }
 
 /// Halves a border's bracket, on the surface.
@@ -196,6 +283,7 @@ void FaceCreases::takeMiddle(const FaceSegment& segment, uint32_t g, size_t samp
     if (++gap.rounds < borderRounds) return;
     gap.at = between(gap.lineA.at, gap.lineB.at, 0.5);
     if (!mayLieAt(segment, gap.at)) gap.at = between(gap.a.at, gap.b.at, 0.5);
+    if (!gap.leaves) gap.crossing = gap.at;
     gap.state = State::Done;
 }
 
@@ -210,6 +298,7 @@ void FaceCreases::split(uint32_t g, const PiecePoint& third) {
     gap.b = third;
     gap.next = static_cast<int32_t>(added);
     gap.state = State::Ends;
+    gap.leaves = false;
     gap.rounds = 0;
     gaps_.push_back(after);
     next_.push_back(added);
@@ -237,9 +326,13 @@ void FaceCreases::separate(std::vector<FaceSegment>& segments) {
             const Gap& gap = gaps_[static_cast<size_t>(g)];
             if (chain_.empty() && g == static_cast<int32_t>(s)) segments[s].ends[0].gradient = gap.a.gradient;
             segments[s].ends[1].gradient = gap.b.gradient;
-            Break next{gap.at, {gap.lineA, gap.lineB}};
+            const bool crosses = gap.leaves || mayLieAt(segments[s], gap.crossing);
+            Break next{gap.at,
+                       crosses ? gap.crossing : gap.at,
+                       {onSurface(gap.lineA, gap.valueA), onSurface(gap.lineB, gap.valueB)}};
             if (!chain_.empty() && length(chain_.back().at - gap.at) < mergedShare * grid_->cell_m) {
                 next.sides[0] = chain_.back().sides[0];
+                next.crossing = next.at;
                 chain_.pop_back();
                 if (next.sides[0].label == next.sides[1].label) continue;
             }

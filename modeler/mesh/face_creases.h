@@ -28,7 +28,8 @@ struct PiecePoint {
 
 /// A point where two pieces meet.
 struct Break {
-    Vec3f at;             ///< metres
+    Vec3f at;             ///< metres, inside the face
+    Vec3f crossing;       ///< where the pieces cross in the plane of the face: `at`, or outside the face
     PiecePoint sides[2];  ///< before and after it on the way of the segment
 };
 
@@ -61,6 +62,8 @@ private:
         PiecePoint lineA, lineB;  ///< where their fields were looked at last, nearer to the crease
         float valueA = 0, valueB = 0;
         Vec3f at;
+        Vec3f crossing;       ///< of the two lines, before it was moved into the face
+        bool leaves = false;  ///< the crossing lies outside the face, and both pieces were found there
     };
     struct Samples {
         std::vector<float> x, y, z, rows;
@@ -78,7 +81,11 @@ private:
     void takeProbes(const FaceSegment& segment, uint32_t gap, size_t sample);
     void takeMiddle(const FaceSegment& segment, uint32_t gap, size_t sample);
     void aim(const FaceSegment& segment, Gap& gap);
+    void leave(Gap& gap, Vec3f from) const;
     void searchBorder(Gap& gap);
+    uint64_t confirmCrossings(const eval::Tape& tape, eval::Workspace& workspace);
+    bool stopBefore(Gap& gap, const PiecePoint& third, float value) const;
+    void evaluateSamples(const eval::Tape& tape, eval::Workspace& workspace);
     void split(uint32_t gap, const PiecePoint& between);
     Vec3f inFace(const FaceSegment& segment, Vec3f p) const;
     bool mayLieAt(const FaceSegment& segment, Vec3f p) const;

@@ -44,6 +44,12 @@ struct CornerNormal {
     Vec3f normal;     ///< unit, outward, of the smooth piece that the triangle lies on
 };
 
+/// A vertex that was kept inside its cell although its crease or corner lies beyond.
+struct ConfinedVertex {
+    uint32_t vertex;  ///< an own one of the chunk
+    Vec3f place;      ///< metres, where the crease or corner is
+};
+
 /// What one block contributes.
 struct Chunk {
     Vec3i block;                     ///< block coordinates in the grid
@@ -57,6 +63,7 @@ struct Chunk {
     std::vector<CornerNormal> cornerNormals;
     SeamList borrowed;               ///< indices in the whole mesh of vertices that lower blocks own
     SeamList lent;                   ///< own vertices that higher blocks borrow
+    std::vector<ConfinedVertex> confined;  ///< ascending by vertex; see `releaseConfined`
     std::vector<uint32_t> faceted;   ///< own vertices without derivative: their normals come from the triangles
 
     /// A corner's or a triangle's vertices, counted in the whole mesh.

@@ -307,6 +307,8 @@ public:
         renumber(chunk.borrowed, [&](uint32_t i) { return corner[own + i]; });
         std::erase_if(chunk.faceted, [&](uint32_t v) { return !stays(v); });
         for (uint32_t& v : chunk.faceted) v = corner[v];
+        std::erase_if(chunk.confined, [&](const ConfinedVertex& v) { return !stays(v.vertex); });
+        for (ConfinedVertex& v : chunk.confined) v.vertex = corner[v.vertex];
     }
 
 private:

@@ -35,19 +35,19 @@ bool PlanarMerge::run(Decimation& curved, int threads, Progress* progress) {
     while (!open.empty() && !cancelled(progress)) {
         triangulate(open, threads, progress);
         std::vector<uint32_t> again;
+        bool decimated = false;
         for (const uint32_t region : open) {
             if (!failed_[region]) continue;
-            bool decimated = false;
             for (const uint32_t c : input_.chains.around(region)) {
                 const Chain& chain = input_.chains.chains[c];
                 if (!isPlanar(chain.left) || !isPlanar(chain.right)) decimated |= curved.keepChain(chain);
             }
             refine(region, curved);
-            if (decimated) return true;
             for (const uint32_t c : input_.chains.around(region))
                 for (const uint32_t side : {input_.chains.chains[c].left, input_.chains.chains[c].right})
                     if (isPlanar(side) && !left_[side]) again.push_back(side);
         }
+        if (decimated) return true;
         std::sort(again.begin(), again.end());
         again.erase(std::unique(again.begin(), again.end()), again.end());
         open.swap(again);

@@ -32,7 +32,7 @@ private:
 uint64_t bytesOf(const Chunk& c) {
     return sizeof(Chunk) + (c.positions.size() + c.normals.size()) * sizeof(Vec3f) +
            c.triangles.size() * sizeof(Triangle) + (c.origins.size() + c.labels.size()) * sizeof(OriginId) +
-           c.cornerNormals.size() * sizeof(CornerNormal) +
+           c.cornerNormals.size() * sizeof(CornerNormal) + c.confined.size() * sizeof(ConfinedVertex) +
            (c.borrowed.vertices.size() + c.lent.vertices.size()) * sizeof(uint32_t);
 }
 

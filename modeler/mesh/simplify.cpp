@@ -5,6 +5,7 @@
 
 #include "modeler/mesh/faults.h"
 #include "modeler/mesh/planar_merge.h"
+#include "modeler/mesh/release.h"
 
 namespace sgm::mesh {
 namespace {
@@ -24,6 +25,7 @@ public:
 
     Result<Mesh> run() {
         flat_ = flatten(mesh_, options_.threads);
+        releaseConfined(mesh_, flat_, options_.threads, progress_);
         auto regions = findRegions(flat_, options_.threads);
         if (!regions.ok()) return regions.error();
         regions_ = std::move(*regions);
