@@ -5,9 +5,9 @@
 #include <cmath>
 #include <mutex>
 #include <span>
-#include <unordered_map>
 
 #include "modeler/core/parallel.h"
+#include "modeler/mesh/box_finder.h"
 #include "modeler/mesh/exact_meeting.h"
 
 namespace sgm::mesh {
@@ -268,33 +268,17 @@ private:
     }
     bool isMoved(uint32_t v) const { return moveOf_[v] != none && flat_.positions[v] != moves_[moveOf_[v]].before; }
 
-    /// Calls `visit` for the cells of a grid that a box meets.
-    template <class Visit>
-    static void forCells(const Box3f& box, double size, Visit&& visit) {
-        const Vec3d lo = box.lo.as<double>() * (1 / size), hi = box.hi.as<double>() * (1 / size);
-        const auto bits = [](double c) { return static_cast<uint64_t>(static_cast<int64_t>(c)) & 0x1fffff; };
-        for (double z = std::floor(lo.z); z <= hi.z; ++z)
-            for (double y = std::floor(lo.y); y <= hi.y; ++y)
-                for (double x = std::floor(lo.x); x <= hi.x; ++x) visit(bits(x) | bits(y) << 21 | bits(z) << 42);
-    }
-
     /// Triangles that meet others wrongly, one of them with a moved vertex.
     std::vector<uint32_t> crossingTriangles(int threads, const Progress* progress) const {
         std::vector<uint32_t> moved;
         std::vector<Box3f> boxes;
-        double size = 0;
         for (const Touched& touched : touched_) {
             const Triangle& t = flat_.triangles[touched.triangle];
             if (!isMoved(t.x) && !isMoved(t.y) && !isMoved(t.z)) continue;
             moved.push_back(touched.triangle);
             boxes.push_back(boxOf(t));
-            size += static_cast<double>(maxComponent(boxes.back().size()));
         }
-        if (!(size > 0)) return {};
-        size /= static_cast<double>(boxes.size());
-        std::unordered_map<uint64_t, std::vector<uint32_t>> boxesIn;
-        for (uint32_t b = 0; b < boxes.size(); ++b)
-            forCells(boxes[b], size, [&](uint64_t cell) { boxesIn[cell].push_back(b); });
+        const BoxFinder finder(boxes);
         std::mutex mutex;
         std::vector<uint32_t> crossing;
         const size_t steps = (flat_.triangles.size() + trianglesPerStep - 1) / trianglesPerStep;
@@ -302,17 +286,9 @@ private:
             std::vector<uint32_t> found, beside;
             const size_t end = std::min(flat_.triangles.size(), (step + 1) * trianglesPerStep);
             for (size_t t = step * trianglesPerStep; t < end; ++t) {
-                const Box3f box = boxOf(flat_.triangles[t]);
-                beside.clear();
-                forCells(box, size, [&](uint64_t cell) {
-                    if (const auto in = boxesIn.find(cell); in != boxesIn.end())
-                        for (const uint32_t b : in->second)
-                            if (moved[b] != t && !intersection(boxes[b], box).empty()) beside.push_back(b);
-                });
-                std::sort(beside.begin(), beside.end());
-                beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+                finder.find(boxOf(flat_.triangles[t]), beside);
                 for (const uint32_t b : beside)
-                    if (meetWrongly(flat_.positions, flat_.triangles[t], flat_.triangles[moved[b]]))
+                    if (moved[b] != t && meetWrongly(flat_.positions, flat_.triangles[t], flat_.triangles[moved[b]]))
                         found.insert(found.end(), {static_cast<uint32_t>(t), moved[b]});
             }
             if (found.empty()) return;
