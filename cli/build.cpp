@@ -112,6 +112,7 @@ Result<volume::Cave> survey(const BuildRequest& request, exporter::ExportInput i
     if (floor.triangleCount() == 0) return Error{Error::Kind::Input, fmt::format("--floor {}: the agent can stand nowhere", request.floor)};
     input.mesh = &floor;
     input.colliders = {};
+    input.objects = nullptr;
     input.name += "-floor";
     if (const Status written = exporter::write(input, request.floor); !written.ok()) return written.error();
     return cave;
@@ -157,7 +158,7 @@ void keepOnly(const BuildRequest& request, MeshedModel& meshed) {
 }
 
 /// From a mesh to what was asked for: edits, validation, files, figures.
-Status deliver(const BuildRequest& request, const Model& model, MeshedModel meshed, Stages& stages, Progress* progress) {
+Status deliver(const BuildRequest& request, const Model& model, const viewer::Division& division, MeshedModel meshed, Stages& stages, Progress* progress) {
     keepOnly(request, meshed);
     auto mesh = edited(std::move(meshed.mesh), request, meshed.grid.cell_m, stages, progress);
     if (!mesh.ok()) return mesh.error();
@@ -179,6 +180,7 @@ Status deliver(const BuildRequest& request, const Model& model, MeshedModel mesh
     exporter::ExportInput input = viewer::exportInput(model, request.model.file);
     input.mesh = &*mesh;
     input.progress = progress;
+    division.tell(input);
     Colliders colliders;
     if (!request.out.collider.empty()) {
         auto made = timed(stages, "colliders", [&] { return makeColliders(request.out.collider, model, *mesh, progress); });
@@ -262,9 +264,11 @@ Status buildOne(const BuildRequest& request) {
         sayFiles(request);
         return Done{};
     }
+    const auto division = viewer::divide(*model, request.out.objects);
+    if (!division.ok()) return division.error();
     auto meshed = makeMesh(*model, request.grid, stages, watch.progress(), bareWillDo(request));
     if (!meshed.ok()) return meshed.error();
-    return deliver(request, *model, std::move(*meshed), stages, watch.progress());
+    return deliver(request, *model, *division, std::move(*meshed), stages, watch.progress());
 }
 
 /// The request of one frame: its files by name.
@@ -325,10 +329,12 @@ Status buildFrames(const BuildRequest& request) {
             sayFiles(framed);
             continue;
         }
+        const auto division = viewer::divide(*model, request.out.objects);
+        if (!division.ok()) return division.error();
         auto meshed = wantsLevelSet(request) ? makeMesh(*model, grid, meshing, stages, watch.progress())
                                   : makeMesh(*model, grid, rebuild, stages, watch.progress());
         if (!meshed.ok()) return meshed.error();
-        if (const Status s = deliver(framed, *model, std::move(*meshed), stages, watch.progress()); !s.ok()) return s;
+        if (const Status s = deliver(framed, *model, *division, std::move(*meshed), stages, watch.progress()); !s.ok()) return s;
         std::fflush(stdout);
     }
     return Done{};
@@ -373,6 +379,7 @@ void addBuild(CLI::App& app, int& exitCode) {
         "Examples:\n  sgm build examples/grotto.sgm -o grotto.glb -o grotto.vdb --resolution 256\n"
         "  sgm build examples/cumulus.sgm -o cumulus.vdb --format-option grids=fog --format-option wisps=.6 --proxy shadow.glb\n"
         "  sgm build examples/tower.sgm --set floors=12 --seed 7 -o tower.obj --report tower.json\n"
+        "  sgm build examples/tower.sgm --objects Storey,Roof -o tower.glb -o tower.usda\n"
         "  sgm build examples/tower.sgm --animate peak=0..1:48 -o roof_%04d.glb\n"
         "  sgm build examples/grotto.sgm --start Void --inward --cave -o grotto.glb --floor floor.glb");
     command->callback([request, &exitCode] { exitCode = build(*request); });

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "cli/renamed.h"
+#include "grammar/lower/objects.h"
 #include "grammar/lower/solid_tree.h"
 #include "modeler/mesh/proxy.h"
 
@@ -56,6 +57,21 @@ Status checkCollider(const OutputRequest& request) {
     return Error{Error::Kind::Usage, fmt::format("--collider {}: colliders go into .glb and .gltf, and no such file is asked for", request.collider)};
 }
 
+/// Objects need a file that holds them.
+Status checkObjects(const OutputRequest& request) {
+    if (request.objects.empty()) return Done{};
+    const auto choice = lower::parseObjects(request.objects);
+    if (!choice.ok()) return Error{Error::Kind::Usage, "--objects: " + choice.error().message};
+    const auto unreal = std::find(request.options.begin(), request.options.end(), "engine=unreal");
+    if (choice->divides() && unreal != request.options.end())
+        return Error{Error::Kind::Usage, fmt::format("--objects {}: Unreal takes colliders by the name of one mesh; leave out the objects or the colliders", request.objects)};
+    if (std::any_of(request.files.begin(), request.files.end(), [](const std::string& file) { return formatOf(file)->holdsObjects; })) return Done{};
+    std::vector<std::string> endings;
+    for (const Exporter& e : exporter::exporters())
+        if (e.holdsObjects) endings.emplace_back(e.extension);
+    return Error{Error::Kind::Usage, fmt::format("--objects {}: objects go into {}, and no such file is asked for", request.objects, fmt::join(endings, " "))};
+}
+
 /// An option that none of the files takes says so, rather than do nothing.
 Status checkOption(const OutputRequest& request, const std::string& text) {
     const std::string name = text.substr(0, text.find('='));
@@ -75,6 +91,8 @@ void addOutputOptions(CLI::App& command, OutputRequest& request) {
     command.add_option("-o,--output", request.files, "Output file, format by its ending; may be given again")->allow_extra_args(false);
     command.add_option("--format-option", request.options, "Option of a file format, NAME=VALUE (see `sgm reference`); may be given again")->allow_extra_args(false);
     addRenamedOption(command, "--export", "--format-option", request.options);
+    command.add_option("--objects", request.objects, "Objects in .glb .gltf .obj .usda: none (one piece, colours alone), material (one object divided by material), shape (every shape that shows), or the shapes of symbols: Storey,Window")
+        ->option_text("none|material|shape|SYMBOL[,SYMBOL…] [material]");
     command.add_option("--collider", request.collider, "Add colliders to .glb and .gltf: boxes or convex parts made from the terminals, or the mesh, simplified")
         ->check(CLI::IsMember({"boxes", "convex", "mesh"}));
     auto* proxy = command.add_option("--proxy", request.proxy, "Mesh file for a coarse closed mesh around the model; goes with the next version: see --collider");
@@ -103,6 +121,7 @@ Status checkOutputs(const OutputRequest& request) {
         if (const Status s = checkMeshFile("--proxy", request.proxy); !s.ok()) return s;
     }
     if (const Status s = checkCollider(request); !s.ok()) return s;
+    if (const Status s = checkObjects(request); !s.ok()) return s;
     for (const std::string& text : request.options)
         if (const Status s = checkOption(request, text); !s.ok()) return s;
     for (const std::string& file : allFiles(request))
@@ -169,6 +188,7 @@ Status writeOutputs(const OutputRequest& request, const Model& model, exporter::
     if (!around.ok()) return around.error();
     input.mesh = &*around;
     input.colliders = {};
+    input.objects = nullptr;  // the whole is one, around all of them
     input.options = optionsFor(request, *formatOf(request.proxy));
     return exporter::write(input, request.proxy);
 }

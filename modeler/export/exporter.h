@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "modeler/core/object_tree.h"
 #include "modeler/core/progress.h"
 #include "modeler/core/provenance.h"
 #include "modeler/core/result.h"
@@ -38,6 +39,8 @@ struct ExportInput {
     const field::SolidTree* solids = nullptr;
     const Provenance* provenance = nullptr;
     std::span<const Collider> colliders;        ///< written by formats that hold colliders
+    const ObjectTree* objects = nullptr;        ///< into which formats that hold objects divide the mesh; null: one object
+    bool byMaterial = true;                     ///< formats that hold objects divide each by material; else colours alone
     std::string name = "model";                 ///< of the object in the file
     std::map<std::string, std::string> extras;  ///< grammar, seed, parameters: kept where the format can hold them
     ExportOptions options;                      ///< those of the format, checked by `write`
@@ -61,7 +64,8 @@ struct Exporter {
     /// The same bytes from chunks, of which it holds none; null where the format wants the whole mesh.
     Status (*stream)(const ExportInput& input, const ChunkSource& chunks, const std::filesystem::path& temporary,
                      const std::filesystem::path& target);
-    bool wantsSolids = false;  ///< holds the model's solid tree, and neither a mesh nor a volume
+    bool wantsSolids = false;   ///< holds the model's solid tree, and neither a mesh nor a volume
+    bool holdsObjects = false;  ///< divides a mesh by ExportInput::objects
 };
 
 /// The table, in the order of docs/reference.md.

@@ -1,7 +1,9 @@
 // glTF 2.0, binary (.glb) and as JSON with its buffer embedded (.gltf): Khronos, glTF 2.0 specification.
-// One node, one mesh, one primitive a material; metres and Y up are the format's own conventions.
+// A mesh an object, a primitive a material; metres and Y up are the format's own conventions.
 #include <tiny_gltf.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -13,7 +15,9 @@
 #include "modeler/export/gltf_colliders.h"
 #include "modeler/export/gltf_draco.h"
 #include "modeler/export/gltf_meshopt.h"
+#include "modeler/export/gltf_nodes.h"
 #include "modeler/export/surface.h"
+#include "modeler/export/texture.h"
 
 namespace sgm::exporter {
 namespace {
@@ -65,40 +69,55 @@ int addMaterial(tinygltf::Model& model, const Material& material) {
     return static_cast<int>(model.materials.size()) - 1;
 }
 
-/// Fills the buffer patch by patch and adds one primitive a material.
+/// A light of 0 … 1 in 16 bits.
+uint16_t word(float light) { return static_cast<uint16_t>(std::lround(65535 * std::clamp(light, 0.0f, 1.0f))); }
+
+/// Fills the buffer patch by patch and adds a mesh an object, a primitive a patch.
 class MeshBuilder {
 public:
-    MeshBuilder(const ExportInput& input, bool textured)
-        : input_(input), patched_(cutIntoPatches(*input.mesh, *input.provenance, textured)), vertices_(*input.mesh) {
+    explicit MeshBuilder(const ExportInput& input)
+        : input_(input),
+          texture_(chartTexture(option(input, "uv", "box"), *input.mesh)),
+          patched_(
+              cutIntoPatches(*input.mesh, *input.provenance, {input.objects, texture_.ofTriangle, input.byMaterial})),
+          vertices_(*input.mesh),
+          materials_(input.provenance->materials.size(), -1) {
         model.buffers.emplace_back();
+        const size_t count = patched_.vertices.size(), textured = texture_.empty() ? 0 : 8;
         // One allocation: the buffer is the largest thing here.
-        model.buffers[0].data.reserve(patched_.vertices.size() * (textured ? 32 : 24) + patched_.triangles.size() * 12);
-        positions_ = addView(model, patched_.vertices.size(), 3, TINYGLTF_TARGET_ARRAY_BUFFER);
-        normals_ = addView(model, patched_.vertices.size(), 3, TINYGLTF_TARGET_ARRAY_BUFFER);
-        if (textured) uvs_ = addView(model, patched_.vertices.size(), 2, TINYGLTF_TARGET_ARRAY_BUFFER);
+        model.buffers[0].data.reserve(count * (24 + textured + (input.byMaterial ? 0 : 8)) +
+                                      patched_.triangles.size() * 12);
+        positions_ = addView(model, count, 3, TINYGLTF_TARGET_ARRAY_BUFFER);
+        normals_ = addView(model, count, 3, TINYGLTF_TARGET_ARRAY_BUFFER);
+        if (textured) uvs_ = addView(model, count, 2, TINYGLTF_TARGET_ARRAY_BUFFER);
+        if (!input.byMaterial) colors_ = addView(model, count, 2, TINYGLTF_TARGET_ARRAY_BUFFER);
         indices_ = addView(model, patched_.triangles.size(), 3, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
         indices_.stride = 4;  // an element of an index accessor is one index
-        textured_ = textured;
     }
 
     /// False when the progress was cancelled.
     bool build() {
-        model.meshes.emplace_back();
-        model.meshes[0].name = validUtf8(input_.name);
+        meshOfNode.assign(input_.objects ? input_.objects->nodes.size() : 1, -1);
         if (input_.progress) input_.progress->begin("write", patched_.patches.size());
         for (size_t i = 0; i < patched_.patches.size();) {
-            size_t end = i;
-            while (end < patched_.patches.size() && patched_.patches[end].material == patched_.patches[i].material)
-                ++end;
-            addPrimitive(i, end);
-            if (cancelled(input_.progress)) return false;
-            tick(input_.progress, end - i);
-            i = end;
+            const size_t end = patched_.endOfObject(i);
+            const uint32_t object = patched_.patches[i].object;
+            meshOfNode[object] = static_cast<int>(model.meshes.size());
+            tinygltf::Mesh mesh;
+            mesh.name = validUtf8(object == 0 ? input_.name : input_.objects->nodes[object].name);
+            for (; i < end; ++i) {
+                mesh.primitives.push_back(primitiveOf(patched_.patches[i]));
+                if (cancelled(input_.progress)) return false;
+                tick(input_.progress);
+            }
+            model.meshes.push_back(std::move(mesh));
         }
         return true;
     }
 
     tinygltf::Model model;
+    std::vector<int> meshOfNode;  ///< by node of the object tree; -1: none
+    const PatchedMesh& patched() const { return patched_; }
 
 private:
     template <class T>
@@ -106,32 +125,44 @@ private:
         std::memcpy(model.buffers[0].data.data() + view.offset + element * view.stride, &value, sizeof value);
     }
 
-    /// Patches [begin, end) share a material: their vertices and triangles lie one after another.
-    void addPrimitive(size_t begin, size_t end) {
-        const Patch& first = patched_.patches[begin];
-        const Patch& last = patched_.patches[end - 1];
-        const size_t vertexCount = last.firstVertex + last.vertexCount - first.firstVertex;
-        const size_t triangleCount = last.firstTriangle + last.triangleCount - first.firstTriangle;
+    tinygltf::Primitive primitiveOf(const Patch& patch) {
         Box3f bounds;
-        for (size_t i = begin; i < end; ++i) putVertices(patched_.patches[i], bounds);
-        const Vec3<uint32_t> base{first.firstVertex, first.firstVertex, first.firstVertex};
-        for (size_t t = first.firstTriangle; t < first.firstTriangle + triangleCount; ++t)
+        putVertices(patch, bounds);
+        const Vec3<uint32_t> base{patch.firstVertex, patch.firstVertex, patch.firstVertex};
+        for (size_t t = patch.firstTriangle; t < patch.firstTriangle + patch.triangleCount; ++t)
             put(indices_, 3 * t, patched_.triangles[t] - base);
 
         tinygltf::Primitive primitive;
         primitive.mode = TINYGLTF_MODE_TRIANGLES;
-        primitive.material = addMaterial(model, input_.provenance->materials[first.material]);
-        const auto attribute = [&](const View& view, int type) {
-            return addAccessor(model, view, first.firstVertex, vertexCount, type, TINYGLTF_COMPONENT_TYPE_FLOAT);
+        primitive.material = materialOf(patch.material);
+        const auto attribute = [&](const View& view, int type, int component = TINYGLTF_COMPONENT_TYPE_FLOAT) {
+            return addAccessor(model, view, patch.firstVertex, patch.vertexCount, type, component);
         };
         const int position = primitive.attributes["POSITION"] = attribute(positions_, TINYGLTF_TYPE_VEC3);
         model.accessors[static_cast<size_t>(position)].minValues = {bounds.lo.x, bounds.lo.y, bounds.lo.z};
         model.accessors[static_cast<size_t>(position)].maxValues = {bounds.hi.x, bounds.hi.y, bounds.hi.z};
         primitive.attributes["NORMAL"] = attribute(normals_, TINYGLTF_TYPE_VEC3);
-        if (textured_) primitive.attributes["TEXCOORD_0"] = attribute(uvs_, TINYGLTF_TYPE_VEC2);
-        primitive.indices = addAccessor(model, indices_, 3 * size_t{first.firstTriangle}, 3 * triangleCount,
-                                        TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
-        model.meshes[0].primitives.push_back(primitive);
+        if (!texture_.empty()) primitive.attributes["TEXCOORD_0"] = attribute(uvs_, TINYGLTF_TYPE_VEC2);
+        if (!input_.byMaterial) {
+            const int color = primitive.attributes["COLOR_0"] =
+                attribute(colors_, TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+            model.accessors[static_cast<size_t>(color)].normalized = true;
+        }
+        primitive.indices =
+            addAccessor(model, indices_, 3 * size_t{patch.firstTriangle}, 3 * size_t{patch.triangleCount},
+                        TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+        primitive.extras = originRuns(patched_, patch);
+        return primitive;
+    }
+
+    /// The file's material, added with its first use.
+    int materialOf(uint32_t material) {
+        int& index = materials_[input_.byMaterial ? material : 0];
+        if (index < 0) {
+            const Material colorsAlone{"colors", {1, 1, 1}, 0.8f, 0.0f};
+            index = addMaterial(model, input_.byMaterial ? input_.provenance->materials[material] : colorsAlone);
+        }
+        return index;
     }
 
     void putVertices(const Patch& patch, Box3f& bounds) {
@@ -141,38 +172,24 @@ private:
             bounds = hull(bounds, position);
             put(positions_, v, position);
             put(normals_, v, patched_.normal(v, vertices_));
-            if (!textured_) continue;
-            auto uv = boxProjection(position, patch.facing);
+            if (!input_.byMaterial) {
+                const Vec3f c = input_.provenance->materials[patched_.materials[v]].color;
+                put(colors_, v, std::array<uint16_t, 4>{word(c.x), word(c.y), word(c.z), 65535});
+            }
+            if (texture_.empty()) continue;
+            auto uv = texture_.at(patched_.charts[v], position);
             uv[1] = 1 - uv[1];  // glTF counts v downwards
             put(uvs_, v, uv);
         }
     }
 
     const ExportInput& input_;
+    TextureCharts texture_;
     PatchedMesh patched_;
     Vertices vertices_;
-    View positions_, normals_, uvs_, indices_;
-    bool textured_ = false;
+    View positions_, normals_, uvs_, colors_, indices_;
+    std::vector<int> materials_;  ///< by Provenance::materials: the file's, -1 where not yet used
 };
-
-void addScene(tinygltf::Model& model, const ExportInput& input) {
-    model.asset.version = "2.0";
-    model.asset.generator = "sgm";
-    tinygltf::Node node;
-    node.name = validUtf8(input.name);
-    node.mesh = 0;
-    if (!input.extras.empty()) {
-        // On the node, where viewers show them as the object's own properties.
-        tinygltf::Value::Object extras;
-        for (const auto& [key, value] : input.extras) extras[validUtf8(key)] = tinygltf::Value(validUtf8(value));
-        node.extras = tinygltf::Value(extras);
-    }
-    model.nodes.push_back(node);
-    tinygltf::Scene scene;
-    scene.nodes = {0};
-    model.scenes.push_back(scene);
-    model.defaultScene = 0;
-}
 
 Error tooLarge(const Path& target) {
     return writeError(target, "the mesh is larger than the 4 GB a .glb can hold; choose another format");
@@ -195,9 +212,10 @@ Status writeStream(const ExportInput& input, const Path& temporary, const Path& 
 }
 
 Status writeScene(const ExportInput& input, const Path& temporary, const Path& target, bool binary) {
-    MeshBuilder builder(input, option(input, "uv", "box") == "box");
+    MeshBuilder builder(input);
     if (!builder.build()) return cancelledError();
-    addScene(builder.model, input);
+    addScene(builder.model, input, builder.meshOfNode);
+    addOriginTable(builder.model, *input.provenance, builder.patched());
     if (Status status = addColliders(builder.model, input); !status.ok()) return status;
     const std::string_view pack = option(input, "pack", "none");
     if (pack == "meshopt") {

@@ -78,7 +78,9 @@ Status addColliders(tinygltf::Model& model, const ExportInput& input) {
     }
     View positions(model, corners * sizeof(Vec3f), TINYGLTF_TARGET_ARRAY_BUFFER);
     View indices(model, triangles * sizeof(mesh::Triangle), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-    const std::string seen = model.meshes[0].name;  // Unreal looks for the mesh of this name
+    if (engine == "unreal" && input.objects)
+        return Error{Error::Kind::Usage, "Unreal takes colliders by the name of one mesh: leave out the objects"};
+    const std::string seen = validUtf8(input.name);  // Unreal looks for the mesh of this name
     for (size_t i = 0; i < input.colliders.size(); ++i) {
         const Collider& collider = input.colliders[i];
         tinygltf::Node node;

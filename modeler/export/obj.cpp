@@ -2,10 +2,14 @@
 // stay shared, so the mesh stays closed; normals are cut at hard edges and texture coordinates at chart borders.
 #include <fmt/format.h>
 
+#include <set>
+
 #include "modeler/core/atomic_file.h"
 #include "modeler/export/formats.h"
+#include "modeler/export/origins.h"
 #include "modeler/export/out_file.h"
 #include "modeler/export/surface.h"
+#include "modeler/export/texture.h"
 
 namespace sgm::exporter {
 namespace {
@@ -16,13 +20,13 @@ Path materialFile(const Path& target) { return target.parent_path() / wordOf(tar
 /// The file's text, a part after the other.
 class ObjText {
 public:
-    ObjText(OutFile& out, const ExportInput& input, const PatchedMesh& patched, bool textured)
+    ObjText(OutFile& out, const ExportInput& input, const PatchedMesh& patched, const TextureCharts& texture)
         : out_(out),
           mesh_(*input.mesh),
           patched_(patched),
+          texture_(texture),
           vertices_(mesh_),
-          place_(placementOf(input)),
-          textured_(textured) {
+          place_(placementOf(input)) {
         if (patched.corners.empty()) return;
         const std::vector<mesh::Triangle> triangles = mesh::gatherTriangles(mesh_);
         smoothing_ = mesh::findSmoothingGroups(mesh_, triangles, patched.corners,
@@ -45,18 +49,23 @@ public:
         }
     }
 
-    /// One patch: its texture coordinates, then its faces as position/texture/normal, counted from 1.
+    /// One patch: its texture coordinates, then its faces as position/texture/normal, counted from 1, with a comment
+    /// where their origin changes.
     void patch(const Patch& patch) {
-        for (uint32_t v = patch.firstVertex; textured_ && v < patch.firstVertex + patch.vertexCount; ++v) {
-            const auto [s, t] = boxProjection(vertices_.position(patched_.vertices[v]), patch.facing);
+        for (uint32_t v = patch.firstVertex; !texture_.empty() && v < patch.firstVertex + patch.vertexCount; ++v) {
+            const auto [s, t] = texture_.at(patched_.charts[v], vertices_.position(patched_.vertices[v]));
             out_.text("vt ");
             out_.number(s);
             out_.text(" ");
             out_.number(t);
             out_.text("\n");
         }
-        for (uint32_t t = patch.firstTriangle; t < patch.firstTriangle + patch.triangleCount && !out_.failed(); ++t)
-            face(t);
+        forOriginRuns(patched_, patch, [&](OriginId origin, uint32_t first, uint32_t count) {
+            out_.text("# origin ");
+            out_.number(origin);
+            out_.text("\n");
+            for (uint32_t t = first; t < first + count && !out_.failed(); ++t) face(t);
+        });
     }
 
 private:
@@ -80,7 +89,7 @@ private:
             out_.text(" ");
             out_.number(patched_.vertices[v] + 1);
             out_.text("/");
-            if (textured_) out_.number(v + 1);
+            if (!texture_.empty()) out_.number(v + 1);
             out_.text("/");
             out_.number((own == mesh::noIndex ? normalOf_[patched_.vertices[v]] : own) + 1);
         }
@@ -90,9 +99,9 @@ private:
     OutFile& out_;
     const mesh::Mesh& mesh_;
     const PatchedMesh& patched_;
+    const TextureCharts& texture_;
     Vertices vertices_;
     const Placement place_;
-    const bool textured_;
     std::vector<uint32_t> smoothing_;  ///< group by triangle in mesh order; empty: 1 for all
     std::vector<uint32_t> normalOf_;   ///< by mesh vertex: number of its line of normals, from 0
     uint32_t smoothed_ = 0;            ///< the group that the last face was put in
@@ -100,12 +109,12 @@ private:
 
 Status writeMaterials(const ExportInput& input, const PatchedMesh& patched, const std::vector<std::string>& names,
                       const Path& target) {
+    std::set<uint32_t> used;
+    for (const Patch& p : patched.patches) used.insert(p.material);
     return replaceFile(target, [&](const Path& temporary) {
         OutFile out(temporary, target, input.progress);
         out.text("# sgm\n");
-        for (size_t i = 0; i < patched.patches.size(); ++i) {
-            const uint32_t index = patched.patches[i].material;
-            if (i > 0 && patched.patches[i - 1].material == index) continue;
+        for (const uint32_t index : used) {
             const Material& m = input.provenance->materials[index];
             out.text(fmt::format("newmtl {}\nKd {} {} {}\nPr {}\nPm {}\nillum 2\n", names[index], m.color.x, m.color.y,
                                  m.color.z, m.roughness, m.metallic));
@@ -114,29 +123,41 @@ Status writeMaterials(const ExportInput& input, const PatchedMesh& patched, cons
     });
 }
 
+/// The head of an object: what its shape is, and its name.
+std::string objectHead(const ExportInput& input, uint32_t object) {
+    if (object == 0) return fmt::format("o {}\n", wordOf(input.name));
+    const ObjectNode& node = input.objects->nodes[object];
+    const std::string rule = node.rule.empty() ? "" : fmt::format(", rule {}", node.rule);
+    const std::string shape = fmt::format("{}{}, {}:{}", node.path, rule, node.file, node.line);
+    return fmt::format("# shape {}\no {}\n", oneLine(shape), wordOf(node.name));
+}
+
 }  // namespace
 
 Status writeObj(const ExportInput& input, const Path& temporary, const Path& target) {
-    const bool textured = option(input, "uv", "box") == "box";
-    const PatchedMesh patched = cutIntoPatches(*input.mesh, *input.provenance, textured);
+    const TextureCharts texture = chartTexture(option(input, "uv", "box"), *input.mesh);
+    const PatchedMesh patched =
+        cutIntoPatches(*input.mesh, *input.provenance, {input.objects, texture.ofTriangle, input.byMaterial});
     const std::vector<std::string> names = distinctNames(input.provenance->materials, wordOf);
     const Path materials = materialFile(target);
 
     OutFile out(temporary, target, input.progress);
     out.text("# sgm\n");
     for (const auto& [key, value] : input.extras) out.text(fmt::format("# {}: {}\n", oneLine(key), oneLine(value)));
-    out.text(fmt::format("mtllib {}\no {}\n", materials.filename().string(), wordOf(input.name)));
-    ObjText text(out, input, patched, textured);
+    for (const OriginId origin : originsOf(patched, *input.provenance))
+        out.text(fmt::format("# origin {}: {}\n", origin, originText(input.provenance->parts[origin])));
+    if (input.byMaterial) out.text(fmt::format("mtllib {}\n", materials.filename().string()));
+    ObjText text(out, input, patched, texture);
     if (input.progress) input.progress->begin("write", patched.patches.size());
     text.vertices();
-    for (size_t i = 0; i < patched.patches.size(); ++i) {
-        const Patch& patch = patched.patches[i];
-        if (i == 0 || patched.patches[i - 1].material != patch.material)
-            out.text(fmt::format("usemtl {}\n", names[patch.material]));
+    uint32_t object = mesh::noIndex;
+    for (const Patch& patch : patched.patches) {
+        if (patch.object != object) out.text(objectHead(input, object = patch.object));
+        if (input.byMaterial) out.text(fmt::format("usemtl {}\n", names[patch.material]));
         text.patch(patch);
         tick(input.progress);
     }
-    if (Status status = out.finish(); !status.ok()) return status;
+    if (Status status = out.finish(); !status.ok() || !input.byMaterial) return status;
     // Both files are complete before either is replaced; the .mtl goes first, as the .obj names it.
     return writeMaterials(input, patched, names, materials);
 }

@@ -7,6 +7,7 @@
 #endif
 
 #include "modeler/export/lists.h"
+#include "modeler/export/origins.h"
 #include "modeler/export/surface.h"
 
 namespace sgm::exporter {
@@ -24,6 +25,10 @@ public:
             "ply\nformat binary_little_endian 1.0\ncomment sgm, metres and y up unless its options said otherwise\n");
         for (const auto& [key, value] : input_.extras)
             out.text(fmt::format("comment {}: {}\n", oneLine(key), oneLine(value)));
+        // All parts: of a mesh that comes in chunks it isn't known yet which of them it shows.
+        const std::vector<Part>& parts = input_.provenance->parts;
+        for (size_t i = 0; i < parts.size() && !bare_; ++i)
+            out.text(fmt::format("comment origin {}: {}\n", i, originText(parts[i])));
         out.text(fmt::format("element vertex {}\n", vertices));
         out.text("property float x\nproperty float y\nproperty float z\n");
         if (!bare_) {  // texture coordinates are named as Blender looks for them

@@ -4,9 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "modeler/core/provenance.h"
+#include "modeler/core/object_tree.h"
 #include "modeler/mesh/corners.h"
 
 namespace sgm::exporter {
@@ -42,20 +43,30 @@ int facing(Vec3f direction);
 /// Texture coordinates in metres of a point seen against the axis `facing`, u to the right and v up, never mirrored.
 std::array<float, 2> boxProjection(Vec3f p, int facing);
 
-/// A run of triangles with one material, and one facing where texture coordinates are wanted.
+/// Into which patches a mesh is cut.
+struct Cut {
+    const ObjectTree* objects = nullptr;  ///< null: all are of object 0
+    std::span<const uint32_t> charts;     ///< of the mesh's triangles: a vertex is of one; empty: all are of chart 0
+    bool byMaterial = true;               ///< else a patch holds all materials of its object
+};
+
+/// A run of triangles of one object and one material.
 struct Patch {
-    uint32_t material = 0;
-    int facing = 0;
+    uint32_t object = 0;                            ///< node of the object tree
+    uint32_t material = 0;                          ///< of all its triangles, or of its first vertex
     uint32_t firstVertex = 0, vertexCount = 0;      ///< in PatchedMesh::vertices
     uint32_t firstTriangle = 0, triangleCount = 0;  ///< in PatchedMesh::triangles
 };
 
-/// A mesh cut along hard edges and the borders of materials and facings: a vertex there occurs once per patch and
-/// normal.
+/// A mesh cut along hard edges and the borders of objects, materials and charts: a vertex there occurs once per object,
+/// material, chart and normal.
 struct PatchedMesh {
-    std::vector<Patch> patches;             ///< none empty; ascending by material, then facing
+    std::vector<Patch> patches;             ///< none empty; ascending by object, then material
     std::vector<uint32_t> vertices;         ///< global mesh vertex of each patch vertex
-    std::vector<mesh::Triangle> triangles;  ///< corners index `vertices`
+    std::vector<uint32_t> materials;        ///< of each patch vertex
+    std::vector<uint32_t> charts;           ///< of each patch vertex
+    std::vector<mesh::Triangle> triangles;  ///< corners index `vertices`; ascending by origin within a patch
+    std::vector<OriginId> origins;          ///< by triangle
     std::vector<uint32_t> order;            ///< by triangle: its place in the mesh, counted through all chunks
     mesh::CornerNormalTable corners;        ///< of the mesh, its triangles in the mesh's order
     /// By patch vertex: index into corners.normals, or mesh::noIndex where the mesh vertex's own normal holds; empty
@@ -64,9 +75,11 @@ struct PatchedMesh {
 
     /// The unit normal of a patch vertex, of the mesh that was cut.
     Vec3f normal(uint32_t v, Vertices& ofMesh) const;
+    /// Patches [begin, end) of one object after the other: where the object of patch `begin` ends.
+    size_t endOfObject(size_t begin) const;
 };
 
-/// Sorts triangles into patches, stable within a patch. Linear in the mesh; `cutByFacing` asks for texture charts.
-PatchedMesh cutIntoPatches(const mesh::Mesh& mesh, const Provenance& provenance, bool cutByFacing);
+/// Sorts triangles into patches, stable for triangles of one origin. O(n) in the mesh.
+PatchedMesh cutIntoPatches(const mesh::Mesh& mesh, const Provenance& provenance, const Cut& cut);
 
 }  // namespace sgm::exporter

@@ -1,4 +1,7 @@
 // What the programs that sgm writes for make of its files: Blender and Godot, where they are installed.
+#include <map>
+#include <set>
+
 #include "tests/cli/program.h"
 
 namespace sgm::cli {
@@ -70,7 +73,7 @@ TEST_F(Importers, BlenderSeesClosedUprightMeshes) {
         const Json& found = facts["tower." + kind];
         ASSERT_FALSE(found.is_null());
         EXPECT_EQ(found["triangles"], report_["triangles"]);
-        EXPECT_EQ(found["open"], 0);
+        EXPECT_EQ(found[kind.starts_with("gl") ? "open_welded" : "open"], 0);
         EXPECT_NEAR(found["volume"], report_["volume_m3"].get<double>(), 1e-3 * report_["volume_m3"].get<double>());
         if (kind == "stl") continue;  // holds neither
         EXPECT_EQ(found["charts"], 1);
@@ -80,6 +83,34 @@ TEST_F(Importers, BlenderSeesClosedUprightMeshes) {
     // Blender's z is up; it turns what is said to be y up.
     for (const char* kind : {"glb", "gltf", "obj"})
         EXPECT_NEAR(facts[std::string("tower.") + kind]["size"][2], size_[1], 1e-3) << kind;
+}
+
+TEST_F(Importers, BlenderSeesObjectsInATree) {
+    if (!blenderWorks()) GTEST_SKIP() << "blender or python3-numpy isn't installed";
+    report_ = built("examples/tower.sgm --resolution 64 --objects Storey,Roof -o " + path("tower.glb") + " -o " +
+                    path("tower.obj"))["mesh"];
+    std::map<std::string, Json> facts = factsFrom("blender -b --factory-startup --python tests/cli/importers/blender.py -- --tree " +
+                                                  path("tower.glb") + " " + path("tower.obj"));
+    const Json& glb = facts["tower.glb"];
+    ASSERT_EQ(glb["roots"].size(), 1u);
+    const Json& tower = glb["roots"][0];
+    EXPECT_EQ(tower["name"], "tower");
+    EXPECT_EQ(tower["known"]["grammar"], "tower.sgm");
+    EXPECT_EQ(glb["triangles"], report_["triangles"]);
+    ASSERT_EQ(tower["below"].size(), 1u) << "the group of storeys";
+    const Json& storey = tower["below"][0]["below"][0];
+    EXPECT_EQ(storey["name"], "Storey");
+    EXPECT_EQ(storey["known"]["path"], "House/group/Storey");
+    EXPECT_EQ(storey["known"]["line"], 12);
+    ASSERT_EQ(storey["below"].size(), 9u) << "eight more storeys and the roof";
+    std::set<std::string> names;
+    for (const Json& above : storey["below"]) names.insert(above["name"]);
+    EXPECT_TRUE(names.contains("Storey_2") && names.contains("Storey_9") && names.contains("Roof"));
+    for (const Json& above : storey["below"])
+        EXPECT_EQ(above["known"]["rule"], "Storey#1");
+    // .obj has no tree: the whole, nine storeys and the roof stand beside each other.
+    EXPECT_EQ(facts["tower.obj"]["roots"].size(), 11u);
+    EXPECT_EQ(facts["tower.obj"]["triangles"], report_["triangles"]);
 }
 
 TEST_F(Importers, BlenderTakesZUpWhereAFormatDoesntSay) {

@@ -77,5 +77,45 @@ TEST_F(Meshes, OfTheShapeAloneHaveTheSameBytesWhateverElseIsAsked) {
         EXPECT_EQ(sgm("build -q " + file + " --resolution 40 -o " + path("e.stl") + edit).code, 0) << edit;
 }
 
+TEST_F(Meshes, AreDividedIntoObjectsOfSymbols) {
+    const std::string file = grammar("start A -> cube size 2 : Wall\nrule Wall -> cube size 2 + Post at +y + Post at +x\n"
+                                     "rule Post -> cube size .5\n");
+    const std::string out = path("a.gltf");
+    ASSERT_EQ(sgm("build -q " + file + " --resolution 32 --objects Post -o " + out).code, 0);
+    const Json gltf = Json::parse(read(out));
+    std::vector<std::string> names;
+    for (const Json& node : gltf["nodes"]) names.push_back(node["name"]);
+    EXPECT_EQ(names, (std::vector<std::string>{"test", "Wall", "cube", "Post", "Post_2"}));
+    const Json& second = gltf["nodes"][4]["extras"];
+    EXPECT_EQ(second["path"], "A/Wall/cube/Post[2]");
+    EXPECT_EQ(second["line"], 3);
+    EXPECT_EQ(second["rule"], "Wall#1");
+    EXPECT_EQ(gltf["meshes"].size(), 3u);
+    // Objects don't change what they divide.
+    ASSERT_EQ(sgm("build -q " + file + " --resolution 32 -o " + path("b.gltf")).code, 0);
+    const auto triangles = [](const Json& model) {
+        size_t count = 0;
+        for (const Json& mesh : model["meshes"])
+            for (const Json& p : mesh["primitives"]) count += model["accessors"][p["indices"].get<size_t>()]["count"].get<size_t>() / 3;
+        return count;
+    };
+    EXPECT_EQ(triangles(gltf), triangles(Json::parse(read(path("b.gltf")))));
+}
+
+TEST_F(Meshes, RefuseObjectsThatNobodyHolds) {
+    const std::string file = grammar("start A -> cube size 2 : Wall\n");
+    const std::pair<std::string, std::string> refused[] = {
+        {"--objects Wal -o " + path("a.glb"), "no shape is called 'Wal' (did you mean 'Wall'?); there are A, "},
+        {"--objects Wall, -o " + path("a.glb"), "--objects: objects 'Wall,': write none, material, shape"},
+        {"--objects Wall -o " + path("a.stl"), "--objects Wall: objects go into .glb .gltf .obj .usda, and no such file is asked for"},
+        {"--objects Wall --collider boxes --format-option engine=unreal -o " + path("a.glb"), "Unreal takes colliders by the name of one mesh"}};
+    for (const auto& [arguments, message] : refused) {
+        const Outcome run = sgm("build " + file + " --resolution 16 " + arguments);
+        EXPECT_EQ(run.code, 2) << arguments;
+        EXPECT_NE(run.out.find(message), std::string::npos) << run.out;
+        EXPECT_FALSE(fs::exists(path("a.glb")));
+    }
+}
+
 }  // namespace
 }  // namespace sgm::cli

@@ -279,6 +279,23 @@ TEST(Exports, WriteTheSolidTree) {
     EXPECT_GT(std::filesystem::file_size(scratch / "a.csg.json"), 500u);
 }
 
+TEST(Exports, WriteObjects) {
+    const Scratch scratch;
+    const auto model = shown(Document("grammar 1\nstart A -> cube size 2 : Wall\n"));
+    const auto outcome = [&](const std::string& objects) {
+        ExportJob job;
+        EXPECT_TRUE(job.start(model, {.file = scratch / "a.gltf", .options = {}, .resolution = 16, .objects = objects}).ok());
+        std::optional<Status> done;
+        while (!(done = job.take())) std::this_thread::yield();
+        return *done;
+    };
+    EXPECT_TRUE(outcome("Wall").ok());
+    EXPECT_NE(contentOf(scratch / "a.gltf").find("\"Wall\""), std::string::npos);
+    const Status unknown = outcome("Door");
+    ASSERT_FALSE(unknown.ok());
+    EXPECT_NE(unknown.error().message.find("no shape is called 'Door'"), std::string::npos);
+}
+
 TEST(Exports, WriteTheSolidsThatStay) {
     const Scratch scratch;
     const auto model = shown(Document("grammar 1\nstart A -> cube size 2 + cube size .2 at +x shift (1, 0, 0)\n"));

@@ -41,13 +41,25 @@ TEST_F(Judged, GltfValidatorFindsNothing) {
     input.colliders = colliders;
     input.options = {{"uv", "none"}};
     ASSERT_TRUE(write(input, plain).ok());
+    // Two objects under a group, and one piece.
+    const auto tree = folder / "tree.glb", piece = folder / "piece.glb";
+    ObjectTree objects{{{"a", 0, "A", "A", "", "a.sgm", 1, {}},
+                        {"group", 0, "A/group", "group", "grow", "a.sgm", 2, {}},
+                        {"B", 1, "A/group/B", "B", "grow", "a.sgm", 2, {{"size", Vec3d{1, 2, 3}}, {"with n", 1.0}}}},
+                       {0, 0, 2}};
+    input.options = {};
+    input.objects = &objects;
+    ASSERT_TRUE(write(input, tree).ok());
+    input.objects = nullptr;
+    input.byMaterial = false;
+    ASSERT_TRUE(write(input, piece).ok());
     const int code = run("node tests/export/validate_gltf.js " + glb.string() + " " + gltf.string() + " " +
-                         plain.string() + " > " + verdict.string() + " 2>/dev/null");
+                         plain.string() + " " + tree.string() + " " + piece.string() + " > " + verdict.string() + " 2>/dev/null");
     if (code == 3 || code == 127)
         GTEST_SKIP() << "gltf-validator isn't installed: npm install --prefix build gltf-validator";
     ASSERT_EQ(code, 0);
     const std::string clean = "{\"errors\":0,\"warnings\":0,\"messages\":[]}\n";
-    EXPECT_EQ(contentOf(verdict), clean + clean + clean);
+    EXPECT_EQ(contentOf(verdict), clean + clean + clean + clean + clean);
 }
 
 TEST_F(Judged, OpenScadTakesTheStlInADifference) {

@@ -23,6 +23,8 @@ Status writeSolids(const Shown& shown, const ExportRequest& request, Progress& p
 
 Status write(const Shown& shown, const ExportRequest& request, const exporter::Exporter& format, Progress& progress) {
     if (format.wantsSolids) return writeSolids(shown, request, progress);
+    const auto division = divide(shown.model, format.holdsObjects ? request.objects : "");
+    if (!division.ok()) return division.error();
     const Box3f& bounds = shown.model.lowered->field.bounds;
     const float cell_m =
         request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
@@ -39,6 +41,7 @@ Status write(const Shown& shown, const ExportRequest& request, const exporter::E
     meshed->mesh = std::move(*simple);
     exporter::ExportInput input = exportInput(shown.model, shown.grammar->sources[0]->name());
     input.mesh = &meshed->mesh;
+    division->tell(input);
     input.options = request.options;
     input.progress = &progress;
     std::optional<volume::Volume> level;

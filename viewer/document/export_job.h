@@ -35,6 +35,7 @@ struct ExportRequest {
     double cell_m = 0;     ///< > 0 wins over resolution
     int threads = 0;
     mesh::Keep keep = mesh::Keep::All;  ///< which separate solids are written
+    std::string objects = {};           ///< as lower::parseObjects reads it, for formats that hold objects
 };
 
 class ExportJob {

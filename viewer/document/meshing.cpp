@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "grammar/lower/objects.h"
+
 namespace sgm::viewer {
 
 Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, const mesh::PolygonizeOptions& options,
@@ -58,6 +60,18 @@ exporter::ExportInput exportInput(const Model& model, const std::filesystem::pat
     for (size_t i = 0; i < params.size(); ++i)
         input.extras["param " + params[i].name] = rules::toText(model.derivation.params[i]);
     return input;
+}
+
+Result<Division> divide(const Model& model, const std::string& objects) {
+    const auto choice = lower::parseObjects(objects.empty() ? "material" : objects);
+    if (!choice.ok()) return choice.error();
+    Division division;
+    division.byMaterial = choice->by != lower::ObjectChoice::By::None;
+    if (!choice->divides()) return division;
+    auto tree = lower::objectTree(model.derivation, *model.lowered, *choice);
+    if (!tree.ok()) return tree.error();
+    division.objects = std::move(*tree);
+    return division;
 }
 
 }  // namespace sgm::viewer

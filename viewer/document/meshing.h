@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "modeler/export/exporter.h"
@@ -34,5 +36,20 @@ Result<volume::Volume> levelSet(const Model& model, const MeshedModel& meshed, i
 /// What a file says of the model it holds: names, materials, seed, parameters. `mesh` or `volume` is the caller's to
 /// set.
 exporter::ExportInput exportInput(const Model& model, const std::filesystem::path& grammarFile);
+
+/// How a file divides a mesh: by an object tree, where there is one, and by material.
+struct Division {
+    std::optional<ObjectTree> objects;
+    bool byMaterial = true;
+
+    /// Tells the writer; keep this object until it has written.
+    void tell(exporter::ExportInput& input) const {
+        input.objects = objects ? &*objects : nullptr;
+        input.byMaterial = byMaterial;
+    }
+};
+/// The division that `objects` asks for, as lower::parseObjects reads it, "" being "material". Error::Usage for what
+/// it can't read and for symbols that the model doesn't know.
+Result<Division> divide(const Model& model, const std::string& objects);
 
 }  // namespace sgm::viewer

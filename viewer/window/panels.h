@@ -126,6 +126,7 @@ private:
     size_t format_ = 0;  // row of the table
     int resolution_ = 192;
     int keep_ = 0;        // mesh::Keep
+    std::string objects_ = "material";
     std::filesystem::path document_;  // that `file_` was named after
     std::vector<ExportRow> options_;
     std::string file_;

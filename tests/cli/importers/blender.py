@@ -1,5 +1,6 @@
 # Opens each file after `--` in Blender and prints a JSON line on what it became.
 # blender -b --factory-startup --python blender.py -- FILE…
+import collections
 import json
 import os
 import sys
@@ -42,11 +43,32 @@ def facts(thing):
         found["volume"] = mesh.calc_volume(signed=True)
         found["materials"] = sorted(material.name for material in thing.data.materials)
         found["charts"] = len(thing.data.uv_layers)
+        # glTF has a vertex once for each normal: what is closed is closed by position.
+        sides = collections.Counter()
+        for face in mesh.faces:
+            corners = [tuple(vert.co) for vert in face.verts]
+            for a, b in zip(corners, corners[1:] + corners[:1]):
+                sides[min(a, b), max(a, b)] += 1 if a < b else -1
+        found["open_welded"] = sum(1 for balance in sides.values() if balance != 0)
     return found
 
 
-for path in sys.argv[sys.argv.index("--") + 1 :]:
+def tree(thing):
+    """The object's name, what it knows of its shape, and what hangs on it."""
+    known = {key: value for key, value in thing.items() if isinstance(value, (str, int, float))}
+    return {"name": thing.name, "known": known, "below": [tree(child) for child in thing.children]}
+
+
+arguments = sys.argv[sys.argv.index("--") + 1 :]
+as_tree = arguments[0] == "--tree"
+for path in arguments[as_tree:]:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     open_file(path)
+    if as_tree:
+        roots = [tree(thing) for thing in bpy.data.objects if thing.parent is None]
+        triangles = sum(len(thing.data.polygons) for thing in bpy.data.objects if thing.type == "MESH")
+        found = {"roots": roots, "triangles": triangles}
+        print("FACTS " + json.dumps({"file": os.path.basename(path), **found}))
+        continue
     for thing in bpy.data.objects:
         print("FACTS " + json.dumps({"file": os.path.basename(path), **facts(thing)}))

@@ -66,6 +66,15 @@ void ExportPanel::show(Workbench& bench) {
     const std::string kept[] = {"all", "grounded", "largest"};  // by mesh::Keep
     choice(bench.report, "export.keep", kept, keep_);
     hint(solids);
+    if (formats[format_].holdsObjects) {
+        constexpr const char* divided = "Into which objects the surface is divided: none, material, shape, or the shapes of symbols: Storey,Window";
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextUnformatted("objects");
+        hint(divided);
+        ImGui::SameLine(left + width * 0.4f);
+        field(bench.report, "export.objects", objects_);
+        hint(divided);
+    }
     for (ExportRow& row : options_) option(bench, row);
     heading("File");
     // The ending says the format, whichever of the two is changed.
@@ -78,6 +87,7 @@ void ExportPanel::show(Workbench& bench) {
         request.file = file_;
         request.resolution = resolution_;
         request.keep = static_cast<mesh::Keep>(keep_);
+        request.objects = objects_;
         for (const ExportRow& row : options_) request.options[row.name] = row.value;
         bench.exportTo(std::move(request));
     }

@@ -1,0 +1,32 @@
+// Texture coordinates in metres: into which charts a mesh falls, and where a point lies in its chart.
+// Enters: a Mesh. Leaves: a chart for each triangle. Assumes the mesh's promises (mesh.h).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "modeler/mesh/mesh.h"
+
+namespace sgm::exporter {
+
+/// Directions in which the texture coordinates u (right) and v (up) of a chart grow; unit vectors.
+struct ChartAxes {
+    Vec3f u, v;
+    friend bool operator==(const ChartAxes&, const ChartAxes&) = default;
+};
+
+/// Charts with their axes; texture coordinates are metres along them from the object's origin, so that charts with the
+/// same axes continue each other.
+struct TextureCharts {
+    std::vector<ChartAxes> axes;       ///< by chart
+    std::vector<uint32_t> ofTriangle;  ///< chart, by triangle in mesh order; empty: there are no texture coordinates
+
+    bool empty() const { return ofTriangle.empty(); }
+    std::array<float, 2> at(uint32_t chart, Vec3f p) const { return {dot(p, axes[chart].u), dot(p, axes[chart].v)}; }
+};
+
+/// Texture coordinates by the option `uv` of a format: "box", seen along the nearest axis, or "none".
+TextureCharts chartTexture(std::string_view kind, const mesh::Mesh& mesh);
+
+}  // namespace sgm::exporter
