@@ -11,15 +11,22 @@
 namespace sgm::exporter {
 namespace {
 
-constexpr ExportOption uv{"uv", "box", "box|none", "texture coordinates in metres, projected along the nearest axis"};
+constexpr ExportOption uv{"uv", "scope", "scope|box|none",
+                          "texture coordinates in metres: in the plane of each face, turned with the scope of its shape, "
+                          "or projected along the nearest axis"};
+constexpr ExportOption lightMap{"lightmap", "none", "none|256|512|1024|2048|4096",
+                                "a second set of texture coordinates, without overlaps, for a light map of so many "
+                                "texels a side for each object"};
 constexpr ExportOption up{"up", "y", "y|z", "the axis that points up in the file"};
 constexpr ExportOption unit{"unit", "m", "m|cm|mm", "the length of one unit in the file"};
 constexpr ExportOption gltfOptions[] = {
     uv,
+    lightMap,
     {"engine", "godot", "godot|unreal|unity", "whose names colliders bear, so that it imports them as such"},
     {"pack", "none", "none|meshopt|draco",
      "compression, for readers that have it: 16-bit positions on one grid, 8-bit normals"}};
 constexpr ExportOption texturedOptions[] = {up, unit, uv};
+constexpr ExportOption usdOptions[] = {up, unit, uv, lightMap};
 constexpr ExportOption plainOptions[] = {up, unit};
 constexpr ExportOption scadOptions[] = {
     up, unit, {"sides", "128", "16|32|64|128|256|512|1024|2048|4096", "sides of round solids, inscribed"}};
@@ -60,7 +67,7 @@ constexpr Exporter table[] = {
     {".stl", "STL, binary: positions only", false, plainOptions, always, writeStl, streamStl},
     {".off", "OFF: positions and triangles as text", false, plainOptions, always, writeOff, streamOff},
     {".usda", "OpenUSD as text: normals, display colours, a subset and preview surface a material", false,
-     texturedOptions, nullptr, writeUsda, nullptr, false, true},
+     usdOptions, nullptr, writeUsda, nullptr, false, true},
     {".vdb", "OpenVDB: a narrow-band level set, fog for renderers, or both; voxels in metres", true, volumeOptions,
      always, writeVdb, nullptr},
     {".csg.json", "The solid tree as JSON: booleans of primitives with their parts and materials, of models that are exactly that",

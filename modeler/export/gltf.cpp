@@ -17,7 +17,7 @@
 #include "modeler/export/gltf_meshopt.h"
 #include "modeler/export/gltf_nodes.h"
 #include "modeler/export/surface.h"
-#include "modeler/export/texture.h"
+#include "modeler/export/texture_sets.h"
 
 namespace sgm::exporter {
 namespace {
@@ -75,21 +75,22 @@ uint16_t word(float light) { return static_cast<uint16_t>(std::lround(65535 * st
 /// Fills the buffer patch by patch and adds a mesh an object, a primitive a patch.
 class MeshBuilder {
 public:
-    explicit MeshBuilder(const ExportInput& input)
+    MeshBuilder(const ExportInput& input, TextureSets texture)
         : input_(input),
-          texture_(chartTexture(option(input, "uv", "box"), *input.mesh)),
-          patched_(
-              cutIntoPatches(*input.mesh, *input.provenance, {input.objects, texture_.ofTriangle, input.byMaterial})),
+          texture_(std::move(texture)),
+          patched_(cutIntoPatches(*input.mesh, *input.provenance,
+                                  {input.objects, texture_.charts.ofTriangle, input.byMaterial})),
           vertices_(*input.mesh),
           materials_(input.provenance->materials.size(), -1) {
         model.buffers.emplace_back();
-        const size_t count = patched_.vertices.size(), textured = texture_.empty() ? 0 : 8;
+        const size_t count = patched_.vertices.size(), textured = texture_.empty() ? 0 : texture_.light ? 16 : 8;
         // One allocation: the buffer is the largest thing here.
         model.buffers[0].data.reserve(count * (24 + textured + (input.byMaterial ? 0 : 8)) +
                                       patched_.triangles.size() * 12);
         positions_ = addView(model, count, 3, TINYGLTF_TARGET_ARRAY_BUFFER);
         normals_ = addView(model, count, 3, TINYGLTF_TARGET_ARRAY_BUFFER);
         if (textured) uvs_ = addView(model, count, 2, TINYGLTF_TARGET_ARRAY_BUFFER);
+        if (texture_.light) lightUvs_ = addView(model, count, 2, TINYGLTF_TARGET_ARRAY_BUFFER);
         if (!input.byMaterial) colors_ = addView(model, count, 2, TINYGLTF_TARGET_ARRAY_BUFFER);
         indices_ = addView(model, patched_.triangles.size(), 3, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
         indices_.stride = 4;  // an element of an index accessor is one index
@@ -143,6 +144,7 @@ private:
         model.accessors[static_cast<size_t>(position)].maxValues = {bounds.hi.x, bounds.hi.y, bounds.hi.z};
         primitive.attributes["NORMAL"] = attribute(normals_, TINYGLTF_TYPE_VEC3);
         if (!texture_.empty()) primitive.attributes["TEXCOORD_0"] = attribute(uvs_, TINYGLTF_TYPE_VEC2);
+        if (texture_.light) primitive.attributes["TEXCOORD_1"] = attribute(lightUvs_, TINYGLTF_TYPE_VEC2);
         if (!input_.byMaterial) {
             const int color = primitive.attributes["COLOR_0"] =
                 attribute(colors_, TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
@@ -176,18 +178,20 @@ private:
                 const Vec3f c = input_.provenance->materials[patched_.materials[v]].color;
                 put(colors_, v, std::array<uint16_t, 4>{word(c.x), word(c.y), word(c.z), 65535});
             }
-            if (texture_.empty()) continue;
-            auto uv = texture_.at(patched_.charts[v], position);
-            uv[1] = 1 - uv[1];  // glTF counts v downwards
-            put(uvs_, v, uv);
+            const uint32_t chart = patched_.charts[v];
+            if (!texture_.empty()) put(uvs_, v, downwards(texture_.charts.at(chart, position)));
+            if (texture_.light) put(lightUvs_, v, downwards(texture_.light->at(chart, position)));
         }
     }
 
+    /// glTF counts v downwards.
+    static std::array<float, 2> downwards(std::array<float, 2> uv) { return {uv[0], 1 - uv[1]}; }
+
     const ExportInput& input_;
-    TextureCharts texture_;
+    TextureSets texture_;
     PatchedMesh patched_;
     Vertices vertices_;
-    View positions_, normals_, uvs_, colors_, indices_;
+    View positions_, normals_, uvs_, lightUvs_, colors_, indices_;
     std::vector<int> materials_;  ///< by Provenance::materials: the file's, -1 where not yet used
 };
 
@@ -212,7 +216,9 @@ Status writeStream(const ExportInput& input, const Path& temporary, const Path& 
 }
 
 Status writeScene(const ExportInput& input, const Path& temporary, const Path& target, bool binary) {
-    MeshBuilder builder(input);
+    auto texture = makeTexture(input);
+    if (!texture.ok()) return texture.error();
+    MeshBuilder builder(input, std::move(*texture));
     if (!builder.build()) return cancelledError();
     addScene(builder.model, input, builder.meshOfNode);
     addOriginTable(builder.model, *input.provenance, builder.patched());

@@ -135,7 +135,7 @@ std::string objectHead(const ExportInput& input, uint32_t object) {
 }  // namespace
 
 Status writeObj(const ExportInput& input, const Path& temporary, const Path& target) {
-    const TextureCharts texture = chartTexture(option(input, "uv", "box"), *input.mesh);
+    const TextureCharts texture = chartTexture(option(input, "uv", "scope"), *input.mesh, *input.provenance);
     const PatchedMesh patched =
         cutIntoPatches(*input.mesh, *input.provenance, {input.objects, texture.ofTriangle, input.byMaterial});
     const std::vector<std::string> names = distinctNames(input.provenance->materials, wordOf);

@@ -1,15 +1,124 @@
 #include "modeler/export/texture.h"
 
+#include <cmath>
+#include <unordered_map>
+
+#include "modeler/core/random.h"
 #include "modeler/export/surface.h"
 
 namespace sgm::exporter {
+namespace {
 
-TextureCharts chartTexture(std::string_view kind, const mesh::Mesh& mesh) {
+/// A share of the area of a smooth piece by which its triangles' normals may lean away from their mean: rounding.
+constexpr double flatness = 1e-3;
+/// A face that looks up or down within 2° has no direction of its own that is level.
+constexpr double steepest = 0.9995;
+
+/// As boxProjection: u to the right and v up, seen against each of the six axes.
+constexpr ChartAxes boxAxes[] = {{{0, 0, -1}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 0}}, {{1, 0, 0}, {0, 0, -1}},
+                                 {{1, 0, 0}, {0, 0, 1}},  {{1, 0, 0}, {0, 1, 0}}, {{-1, 0, 0}, {0, 1, 0}}};
+
+/// The triangles of one origin and label: the face of a box, the side of a roof, or something curved.
+struct SmoothPiece {
+    Vec3d normal;  ///< twice the area, then the unit normal of a flat one
+    double bent = 0;
+    bool flat = false;
+};
+
+/// Distinct axes, by their numbers in steps that no eye sees.
+class AxesTable {
+public:
+    uint32_t index(Vec3d u, Vec3d v, std::vector<ChartAxes>& all) {
+        uint64_t key = 0;
+        for (const Vec3d& axis : {u, v})
+            for (int i = 0; i < 3; ++i) key = combine(key, static_cast<uint64_t>(std::llround(axis[i] * 4096)));
+        const auto [at, fresh] = known_.try_emplace(key, static_cast<uint32_t>(all.size()));
+        if (fresh) all.push_back({u.as<float>(), v.as<float>()});
+        return at->second;
+    }
+
+private:
+    std::unordered_map<uint64_t, uint32_t> known_;
+};
+
+/// Charts by the scopes of the parts that own the triangles.
+class ScopeCharts {
+public:
+    ScopeCharts(const mesh::Mesh& mesh, const Provenance& provenance)
+        : mesh_(mesh), provenance_(provenance), vertices_(mesh) {}
+
+    TextureCharts run() {
+        forTriangles([&](OriginId, Vec3d c, SmoothPiece* piece) {
+            if (piece) piece->normal += c;
+        });
+        std::unordered_map<uint64_t, double> areas;
+        for (auto& [key, piece] : pieces_) areas[key] = length(piece.normal), piece.normal = normalized(piece.normal);
+        forTriangles([&](OriginId, Vec3d c, SmoothPiece* piece) {
+            if (piece)
+                piece->bent +=
+                    length(c - piece->normal * dot(c, piece->normal)) + std::max(0.0, -dot(c, piece->normal));
+        });
+        for (auto& [key, piece] : pieces_) piece.flat = piece.bent <= flatness * areas[key];
+        charts_.ofTriangle.reserve(mesh_.triangleCount());
+        forTriangles([&](OriginId origin, Vec3d c, SmoothPiece* piece) {
+            charts_.ofTriangle.push_back(chartOf(origin, c, piece));
+        });
+        return std::move(charts_);
+    }
+
+private:
+    /// Calls visit(origin, cross product of the edges, its piece or null) for every triangle.
+    template <class Visit>
+    void forTriangles(Visit visit) {
+        for (const mesh::Chunk& chunk : mesh_.chunks) {
+            uint64_t last = 0;
+            SmoothPiece* piece = nullptr;
+            for (size_t i = 0; i < chunk.triangles.size(); ++i) {
+                const mesh::Triangle t = chunk.inMesh(chunk.triangles[i]);
+                const Vec3d a = vertices_.position(t.x).as<double>();
+                const Vec3d c =
+                    cross(vertices_.position(t.y).as<double>() - a, vertices_.position(t.z).as<double>() - a);
+                const OriginId origin = chunk.origins[i];
+                if (!chunk.labels.empty()) {
+                    const uint64_t key = uint64_t{origin} << 32 | chunk.labels[i];
+                    if (!piece || key != last) piece = &pieces_[last = key];
+                }
+                visit(origin, c, piece);
+            }
+        }
+    }
+
+    uint32_t chartOf(OriginId origin, Vec3d c, const SmoothPiece* piece) {
+        const Mat3& axes = provenance_.parts[origin < provenance_.parts.size() ? origin : 0].pose.axes;
+        const Mat3 local = axes.transposed();
+        if (!piece || !piece->flat) {
+            const ChartAxes& box = boxAxes[facing((local * c).as<float>())];
+            return table_.index(axes * box.u.as<double>(), axes * box.v.as<double>(), charts_.axes);
+        }
+        Vec3d n = local * piece->normal, u, v;
+        for (int i = 0; i < 3; ++i)
+            if (1 - std::abs(n[i]) < 1e-8) n = Vec3d{}, n[i] = std::copysign(1.0, (local * piece->normal)[i]);
+        if (std::abs(n.y) > steepest) {
+            u = normalized(Vec3d{1, 0, 0} - n * n.x);
+            v = cross(n, u);
+        } else {
+            v = normalized(Vec3d{0, 1, 0} - n * n.y);
+            u = cross(v, n);
+        }
+        return table_.index(axes * u, axes * v, charts_.axes);
+    }
+
+    const mesh::Mesh& mesh_;
+    const Provenance& provenance_;
+    Vertices vertices_;
+    std::unordered_map<uint64_t, SmoothPiece> pieces_;  ///< by origin << 32 | label
+    AxesTable table_;
+    TextureCharts charts_;
+};
+
+TextureCharts boxCharts(const mesh::Mesh& mesh) {
     TextureCharts charts;
-    if (kind == "none") return charts;
-    // As boxProjection: u to the right and v up, seen against each of the six axes.
-    charts.axes = {{{0, 0, -1}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 0}}, {{1, 0, 0}, {0, 0, -1}},
-                   {{1, 0, 0}, {0, 0, 1}},  {{1, 0, 0}, {0, 1, 0}}, {{-1, 0, 0}, {0, 1, 0}}};
+    charts.axes.assign(std::begin(boxAxes), std::end(boxAxes));
     Vertices vertices(mesh);
     charts.ofTriangle.reserve(mesh.triangleCount());
     for (const mesh::Chunk& chunk : mesh.chunks)
@@ -19,6 +128,13 @@ TextureCharts chartTexture(std::string_view kind, const mesh::Mesh& mesh) {
             charts.ofTriangle.push_back(static_cast<uint32_t>(facing(cross(b - a, c - a))));
         }
     return charts;
+}
+
+}  // namespace
+
+TextureCharts chartTexture(std::string_view kind, const mesh::Mesh& mesh, const Provenance& provenance) {
+    if (kind == "none") return {};
+    return kind == "box" ? boxCharts(mesh) : ScopeCharts(mesh, provenance).run();
 }
 
 }  // namespace sgm::exporter

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "modeler/mesh/mesh.h"
@@ -26,7 +27,9 @@ struct TextureCharts {
     std::array<float, 2> at(uint32_t chart, Vec3f p) const { return {dot(p, axes[chart].u), dot(p, axes[chart].v)}; }
 };
 
-/// Texture coordinates by the option `uv` of a format: "box", seen along the nearest axis, or "none".
-TextureCharts chartTexture(std::string_view kind, const mesh::Mesh& mesh);
+/// Texture coordinates by the option `uv` of a format. "scope": a flat face is mapped in its own plane, v along what
+/// the scope of its shape calls up, so that textures turn with their walls and go on from shape to shape; curved ones
+/// are seen along the nearest axis of the scope. "box": all are seen along the nearest axis of the object. "none".
+TextureCharts chartTexture(std::string_view kind, const mesh::Mesh& mesh, const Provenance& provenance);
 
 }  // namespace sgm::exporter

@@ -47,10 +47,11 @@ TEST_F(Judged, GltfValidatorFindsNothing) {
                         {"group", 0, "A/group", "group", "grow", "a.sgm", 2, {}},
                         {"B", 1, "A/group/B", "B", "grow", "a.sgm", 2, {{"size", Vec3d{1, 2, 3}}, {"with n", 1.0}}}},
                        {0, 0, 2}};
-    input.options = {};
+    input.options = {{"lightmap", "512"}};
     input.objects = &objects;
     ASSERT_TRUE(write(input, tree).ok());
     input.objects = nullptr;
+    input.options = {};
     input.byMaterial = false;
     ASSERT_TRUE(write(input, piece).ok());
     const int code = run("node tests/export/validate_gltf.js " + glb.string() + " " + gltf.string() + " " +

@@ -1,0 +1,20 @@
+#include "modeler/export/texture_sets.h"
+
+#include "modeler/export/formats.h"
+
+namespace sgm::exporter {
+
+Result<TextureSets> makeTexture(const ExportInput& input) {
+    TextureSets sets;
+    sets.charts = chartTexture(option(input, "uv", "scope"), *input.mesh, *input.provenance);
+    const std::string_view texels = option(input, "lightmap", "none");
+    if (texels == "none") return sets;
+    if (sets.empty())
+        return Error{Error::Kind::Usage, "option 'lightmap' is a second set of texture coordinates: leave out uv=none"};
+    auto light = LightMap::make(*input.mesh, input.objects, static_cast<int>(*numberOf(texels)), sets.charts);
+    if (!light.ok()) return light.error();
+    sets.light = std::move(*light);
+    return sets;
+}
+
+}  // namespace sgm::exporter
