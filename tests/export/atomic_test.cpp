@@ -1,6 +1,8 @@
 // An earlier good file is never lost: not to a full disk, not to a kill, not to an unwritable place.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -213,6 +215,23 @@ TEST(ReplaceFile, AFailingFillLeavesNothingBehind) {
     ASSERT_FALSE(status.ok());
     EXPECT_EQ(status.error().message, "stopped");
     EXPECT_EQ(folder.fileCount(), 0u);
+}
+
+TEST(Abandoned, TemporaryFilesAreRemovedByTheNextWriter) {
+    const Scratch folder;
+    const auto make = [&](const char* name, std::chrono::minutes age) {
+        const auto path = folder.write(name, "half");
+        std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now() - age);
+        return path;
+    };
+    using std::chrono_literals::operator""min;
+    const auto dead = make(".sgm-1-0.tmp", 5min), fresh = make(".sgm-1-1.tmp", 0min), held = make(".sgm-1-2.tmp", 5min), other = make(".sgm-notes", 5min);
+    const int fd = open(held.c_str(), O_RDONLY);
+    ASSERT_EQ(flock(fd, LOCK_EX), 0) << "as its living process does";
+    ASSERT_TRUE(replaceFile(folder / "a", [](const std::filesystem::path&) -> Status { return Done{}; }).ok());
+    EXPECT_FALSE(std::filesystem::exists(dead));
+    for (const auto& kept : {fresh, held, other}) EXPECT_TRUE(std::filesystem::exists(kept)) << kept;
+    close(fd);
 }
 
 }  // namespace
