@@ -187,6 +187,11 @@ const Exporter* exporterFor(const Path& path) {
     return row == std::end(table) ? nullptr : row;
 }
 
+std::vector<Path> filesOf(const Path& path) {
+    const Exporter* const row = exporterFor(path);
+    return row && row->write == writeObj ? std::vector{path, materialFile(path)} : std::vector{path};
+}
+
 Status write(const ExportInput& input, const Path& path) {
     const auto row = rowFor(path);
     if (!row.ok()) return row.error();

@@ -82,6 +82,8 @@ Status checkOptions(const Exporter& row, const ExportOptions& options);
 bool holdsColliders(const Exporter& row);
 /// Whether a bare mesh has all that the format writes with these options.
 bool takesBare(const Exporter& row, const ExportOptions& options);
+/// What `write` makes of `path`: the file, and those that lie beside it.
+std::vector<std::filesystem::path> filesOf(const std::filesystem::path& path);
 /// Writes `path` by its extension: all or nothing, Error::Cancelled when `input.progress` says so.
 Status write(const ExportInput& input, const std::filesystem::path& path);
 /// The same of a mesh that comes in chunks, `input.mesh` unset; the first error of `chunks` ends it. Error::Usage where

@@ -52,6 +52,8 @@ std::string validUtf8(const std::string& text);
 std::string oneLine(std::string text);
 /// A name a line of text can hold as one word: white space, control characters, quotes and '#' become '_'.
 std::string wordOf(std::string name);
+/// The material library beside an OBJ file.
+Path materialFile(const Path& target);
 /// A letter or '_' followed by letters, digits and '_': what USD calls an identifier.
 std::string identifierOf(std::string name);
 /// The materials' names, each turned by `turn`, equal ones told apart by "_2", "_3", … in order.

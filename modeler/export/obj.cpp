@@ -5,6 +5,7 @@
 #include <set>
 
 #include "modeler/core/atomic_file.h"
+#include "modeler/core/random.h"
 #include "modeler/export/formats.h"
 #include "modeler/export/origins.h"
 #include "modeler/export/out_file.h"
@@ -13,9 +14,6 @@
 
 namespace sgm::exporter {
 namespace {
-
-/// The .mtl lies beside the .obj; its name is one word, since many readers end it at a blank.
-Path materialFile(const Path& target) { return target.parent_path() / wordOf(target.stem().string() + ".mtl"); }
 
 /// The file's text, a part after the other.
 class ObjText {
@@ -133,6 +131,14 @@ std::string objectHead(const ExportInput& input, uint32_t object) {
 }
 
 }  // namespace
+
+/// Its name is one word, since many readers end it at a blank. Where that changes the name, a number keeps it apart from
+/// that of a file which has the changed name.
+Path materialFile(const Path& target) {
+    const std::string name = target.stem().string(), word = wordOf(name);
+    const std::string number = word == name ? "" : fmt::format("-{:08x}", static_cast<uint32_t>(hashText(name)));
+    return target.parent_path() / (word + number + ".mtl");
+}
 
 Status writeObj(const ExportInput& input, const Path& temporary, const Path& target) {
     const TextureCharts texture = chartTexture(option(input, "uv", "scope"), *input.mesh, *input.provenance);
