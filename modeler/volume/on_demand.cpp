@@ -1,8 +1,12 @@
 // The functions of doors.h for a program that loads OpenVDB when it first calls one of them.
 #include <dlfcn.h>
 
+#include <mutex>
+#include <thread>
 #include <utility>
+#include <vector>
 
+#include "modeler/core/parallel.h"
 #include "modeler/volume/doors.h"
 
 namespace sgm::volume {
@@ -10,8 +14,28 @@ namespace {
 
 constexpr const char* moduleName = "sgm_volumes.so";
 
-/// The table. Error::Internal where the module or OpenVDB isn't to be found.
+/// Whether so many threads can run beside this one. OpenVDB and TBB end the program where they get none.
+bool canStart(int threads) {
+    std::mutex gate;
+    std::vector<std::thread> started;
+    gate.lock();
+    const auto wait = [&gate] { const std::lock_guard pass(gate); };
+    bool all = true;
+    try {
+        started.reserve(static_cast<size_t>(threads));
+        for (int i = 0; i < threads; ++i) started.emplace_back(wait);
+    } catch (const std::exception&) {
+        all = false;
+    }
+    gate.unlock();
+    for (std::thread& thread : started) thread.join();
+    return all;
+}
+
+/// The table. Error::Internal where the module or OpenVDB isn't to be found, Error::Budget where there are no threads.
 Result<const Doors*> load() {
+    if (!canStart(threadCount(0)))
+        return Error{Error::Kind::Budget, "volumes: the system gives no more threads: allow more processes (ulimit -u, or the container's limit)"};
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
     for (const auto& path : {program / moduleName, program.parent_path() / "lib/sgm" / moduleName}) {
         if (!std::filesystem::exists(path)) continue;
