@@ -12,6 +12,8 @@
 #include "cli/colliders.h"
 #include "cli/commands.h"
 #include "cli/floating.h"
+#include "cli/messages.h"
+#include "cli/numbers.h"
 #include "cli/outputs.h"
 #include "cli/pipeline.h"
 #include "cli/renamed.h"
@@ -102,22 +104,6 @@ Result<mesh::Mesh> edited(mesh::Mesh mesh, const BuildRequest& request, float ce
     return mesh;
 }
 
-/// Surveys the cave and writes its walkable floor where that is wanted.
-Result<volume::Cave> survey(const BuildRequest& request, exporter::ExportInput input) {
-    const auto agent = request.agent.empty() ? volume::Agent{} : parseAgent(request.agent);
-    if (!agent.ok()) return agent.error();
-    auto cave = volume::surveyCave(*input.volume, *agent, request.inward, input.progress);
-    if (!cave.ok() || request.floor.empty()) return cave;
-    const mesh::Mesh floor = volume::walkableFloor(*input.mesh, *cave);
-    if (floor.triangleCount() == 0) return Error{Error::Kind::Input, fmt::format("--floor {}: the agent can stand nowhere", request.floor)};
-    input.mesh = &floor;
-    input.colliders = {};
-    input.objects = nullptr;
-    input.name += "-floor";
-    if (const Status written = exporter::write(input, request.floor); !written.ok()) return written.error();
-    return cave;
-}
-
 void say(const BuildRequest& request, const Model& model, const mesh::MeshFigures& f, const Support& support, const Colliders& colliders, const Stages& stages) {
     double total = 0;
     for (const auto& stage : stages) total += stage.second;
@@ -127,9 +113,8 @@ void say(const BuildRequest& request, const Model& model, const mesh::MeshFigure
     for (const std::string& file : allFiles(request.out)) fmt::print("wrote {}\n", file);
     if (!request.floor.empty()) fmt::print("wrote {}\n", request.floor);
     if (!request.out.collider.empty()) fmt::print("{} collider{} ({})\n", colliders.all.size(), colliders.all.size() == 1 ? "" : "s", request.out.collider);
-    for (const std::string& note : colliders.notes) fmt::print(stderr, "note: collider: {}\n", note);
-    const syntax::Diagnostics ungrown = derive::ungrown(model.derivation);
-    for (const syntax::Diagnostic& d : ungrown.all()) fmt::print(stderr, "{}\n", syntax::render(d));
+    for (const std::string& note : colliders.notes) tell("note: collider: {}\n", note);
+    tellProblems(derive::ungrown(model.derivation));
     sayFloating(model, support);
 }
 
@@ -163,7 +148,7 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
     auto mesh = edited(std::move(meshed.mesh), request, meshed.grid.cell_m, stages, progress);
     if (!mesh.ok()) return mesh.error();
     if (mesh->triangleCount() == 0 && !allFiles(request.out).empty()) {
-        Error error = viewer::noSurface(meshed.grid.cell_m);
+        Error error = viewer::noSurface(model, meshed.grid.cell_m);
         error.message += " (--cell, --resolution)";
         return error;
     }
@@ -198,14 +183,19 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
         level = std::move(*sampled);
         input.volume = &*level;
     }
-    const Status written = timed(stages, "write", [&] { return writeOutputs(request.out, model, input, request.grid.threads); });
-    if (!written.ok()) return written;
     std::optional<volume::Cave> cave;
+    mesh::Mesh floor;
     if (surveys(request)) {
-        auto surveyed = timed(stages, "cave", [&] { return survey(request, input); });
+        auto surveyed = timed(stages, "cave", [&] { return surveyFor({request.agent, request.floor, request.inward}, input); });
         if (!surveyed.ok()) return surveyed.error();
-        cave = std::move(*surveyed);
+        cave = std::move(surveyed->cave);
+        floor = std::move(surveyed->floor);
     }
+    const Status written = timed(stages, "write", [&] {
+        const Status s = writeOutputs(request.out, model, input, request.grid.threads);
+        return s.ok() && !request.floor.empty() ? writeFloor(request.floor, input, floor) : s;
+    });
+    if (!written.ok()) return written;
     if (!request.report.empty())
         if (const Status s = viewer::writeText(request.report, reportJson(model, meshed, figures, support, cave, stages, request.grid.threads)); !s.ok()) return s;
     if (request.quiet) return Done{};
@@ -285,6 +275,18 @@ Result<BuildRequest> requestOf(const BuildRequest& request, int frame) {
     return one;
 }
 
+/// Everything that the request writes, in all of so many frames; 0 where it isn't animated.
+std::vector<Target> targetsOf(const BuildRequest& request, int frames) {
+    std::vector<Target> targets;
+    for (int frame = 0; frame < std::max(frames, 1); ++frame) {
+        const BuildRequest one = frames == 0 ? request : *requestOf(request, frame);
+        for (const std::string& file : one.out.files) targets.push_back({"-o", file});
+        for (const auto& [option, file] : {std::pair("--proxy", one.out.proxy), {"--floor", one.floor}, {"--report", one.report}})
+            if (!file.empty()) targets.push_back({option, file});
+    }
+    return targets;
+}
+
 /// All frames stand in one grid, so that what doesn't move has the same vertices in each: the box around them all.
 Result<Box3f> boundsOfFrames(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, const Animation& animation, Progress* progress) {
     Box3f bounds;
@@ -304,13 +306,18 @@ Status buildFrames(const BuildRequest& request) {
     for (int frame : {0, 1})
         if (const auto one = requestOf(request, frame); !one.ok()) return one.error();
     Stages loading;
-    const auto grammar = loadGrammar(request.model.file, loading);
-    if (!grammar) return Error{Error::Kind::Input, ""};
+    std::vector<fs::path> inputs;
+    Watch watch(request.quiet);
+    const auto loaded = loadGrammar(request.model, loading, watch.progress(), &inputs);
+    if (!loaded.ok()) return loaded.error();
+    const std::shared_ptr<const rules::Grammar>& grammar = *loaded;
     auto options = optionsFor(*grammar, request.model);
     if (!options.ok()) return options.error();
     const auto animation = readAnimation(*grammar, request.animations);
     if (!animation.ok()) return animation.error();
-    Watch watch(request.quiet);
+    const std::vector<Target> targets = targetsOf(request, animation->frames);
+    if (const Status s = checkTargets(targets); !s.ok()) return s;
+    if (const Status s = checkAgainstInputs(targets, inputs); !s.ok()) return s;
     const auto bounds = boundsOfFrames(grammar, *options, *animation, watch.progress());
     if (!bounds.ok()) return bounds.error();
     const mesh::Grid grid = gridOver(*bounds, request.grid);
@@ -340,8 +347,12 @@ Status buildFrames(const BuildRequest& request) {
     return Done{};
 }
 
-int build(const BuildRequest& request) {
+int build(BuildRequest request) {
     Status done = checkRequest(request);
+    if (done.ok() && request.animations.empty()) {
+        request.model.targets = targetsOf(request, 0);
+        done = checkTargets(request.model.targets);
+    }
     if (done.ok()) done = request.animations.empty() ? buildOne(request) : buildFrames(request);
     return done.ok() ? 0 : fail(done.error());
 }
@@ -364,12 +375,12 @@ void addBuild(CLI::App& app, int& exitCode) {
         ->check(CLI::IsMember({"all", "grounded", "largest"}))->capture_default_str();
     command->add_option("--smooth", request->smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
     auto* share = command->add_option("--simplify", request->simplify, "Simplify to at most this share of the triangles");
-    share->check(CLI::Range(0.001, 1.0));
+    share->check(between(0.001, 1));
     command
         ->add_option("--tolerance", request->tolerance_m,
                      "How far simplification may move the surface: 5mm, 2cm, .01m; 0 keeps all [a crisp mesh: .01 cell]")
         ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"mm", .001}, {"cm", .01}, {"m", 1}}))
-        ->check(CLI::NonNegativeNumber)
+        ->check(between(0, 1e6))
         ->excludes(share);
     command->add_flag("--validate", request->validate, "Validate with CGAL: closed, oriented, no self-intersections");
     addRenamedFlag(*command, "--judge", "--validate", request->validate);

@@ -53,6 +53,27 @@ Result<volume::Agent> parseAgent(const std::string& text) {
     return agent;
 }
 
+Result<Survey> surveyFor(const SurveyRequest& request, const exporter::ExportInput& input) {
+    const auto agent = request.agent.empty() ? volume::Agent{} : parseAgent(request.agent);
+    if (!agent.ok()) return agent.error();
+    auto cave = volume::surveyCave(*input.volume, *agent, request.inward, input.progress);
+    if (!cave.ok()) return cave.error();
+    Survey made{std::move(*cave), {}};
+    if (request.floor.empty()) return made;
+    made.floor = volume::walkableFloor(*input.mesh, made.cave);
+    if (made.floor.triangleCount() == 0)
+        return Error{Error::Kind::Input, fmt::format("--floor {}: the agent can stand nowhere", request.floor)};
+    return made;
+}
+
+Status writeFloor(const std::string& file, exporter::ExportInput input, const mesh::Mesh& floor) {
+    input.mesh = &floor;
+    input.colliders = {};
+    input.objects = nullptr;
+    input.name += "-floor";
+    return exporter::write(input, file);
+}
+
 Json caveJson(const Cave& cave) {
     Json json;
     json["agent"] = {{"radius_m", cave.agent.radius_m},

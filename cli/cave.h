@@ -1,17 +1,34 @@
-// The cave report of `sgm build --cave`: for whom, as a table, as JSON.
-// Enters: a survey. Leaves: text. Assumes metres, Y up.
+// Caves in `sgm build`: the survey, its report as a table and as JSON, and the floor.
+// Enters: a level set and its mesh. Leaves: text and a mesh. Assumes metres, Y up.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "modeler/core/result.h"
+#include "modeler/export/exporter.h"
 #include "modeler/volume/cave.h"
 
 namespace sgm::cli {
 
 /// "RADIUS,HEIGHT" or "RADIUS,HEIGHT,SLOPE" in metres and degrees; Error::Usage for anything else.
 Result<volume::Agent> parseAgent(const std::string& text);
+
+/// What `--cave` and `--floor` ask for.
+struct SurveyRequest {
+    std::string agent;  ///< as `parseAgent` reads it, "" for the usual one
+    std::string floor;  ///< the file for the walkable floor, "" for none
+    bool inward = false;
+};
+/// A cave, and its walkable floor where that is wanted.
+struct Survey {
+    volume::Cave cave;
+    mesh::Mesh floor;
+};
+/// Surveys the input's volume and mesh; Error::Input when a floor is wanted and there is none.
+Result<Survey> surveyFor(const SurveyRequest& request, const exporter::ExportInput& input);
+/// Writes the floor as a model of its own.
+Status writeFloor(const std::string& file, exporter::ExportInput input, const mesh::Mesh& floor);
 
 /// agent, voxel_m, air_m3, spaces, pockets, rooms, passages, entrances, narrowest_m (where there is a passage or an
 /// entrance), floor_m2, headroom_m, walkable, longest_path_m, longest_walk_m.

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/numbers.h"
 #include "cli/pipeline.h"
 #include "cli/watch.h"
 #include "grammar/syntax/parser.h"
@@ -17,13 +19,14 @@ namespace {
 struct CheckRequest {
     std::vector<std::string> files;
     uint64_t seed = 1;
+    double seconds = 60;  ///< for all `check` lines of a file
     bool json = false;
 };
 
 /// Failed checks become errors at their `check` line, so that text and JSON show them like any other problem.
-int runGrammarChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t seed, syntax::Diagnostics& diagnostics) {
+int runGrammarChecks(std::shared_ptr<const rules::Grammar> grammar, const CheckRequest& request, syntax::Diagnostics& diagnostics) {
     Watch watch(false);
-    const auto verdicts = derive::runChecks(std::move(grammar), seed, watch.progress());
+    const auto verdicts = derive::runChecks(std::move(grammar), request.seed, watch.progress(), request.seconds);
     if (!verdicts.ok()) return fail(verdicts.error());
     for (const derive::Verdict& v : *verdicts)
         if (!v.passed) diagnostics.error(v.span, v.message);
@@ -35,11 +38,11 @@ int checkOne(const std::string& file, const CheckRequest& request, nlohmann::jso
     if (!source.ok()) return fail(source.error());
     syntax::Diagnostics diagnostics;
     const auto grammar = rules::load(*source, viewer::fileLoader(), diagnostics);
-    const int code = grammar ? runGrammarChecks(grammar, request.seed, diagnostics) : 0;
+    const int code = grammar ? runGrammarChecks(grammar, request, diagnostics) : 0;
     if (request.json) {
         for (auto& entry : nlohmann::json::parse(syntax::toJson(diagnostics))) found.push_back(std::move(entry));
     } else {
-        for (const syntax::Diagnostic& d : diagnostics.all()) fmt::print(stderr, "{}\n", syntax::render(d));
+        tellProblems(diagnostics);
         if (!diagnostics.hasErrors() && code == 0) fmt::print("{}: fine\n", file);
     }
     return diagnostics.hasErrors() ? 1 : code;
@@ -60,6 +63,7 @@ void addCheck(CLI::App& app, int& exitCode) {
     auto request = std::make_shared<CheckRequest>();
     command->add_option("FILE", request->files, "Grammar files (.sgm)")->required();
     command->add_option("--seed", request->seed, "Seed for the `check` lines")->capture_default_str();
+    command->add_option("--max-seconds", request->seconds, "Budget of time for all `check` lines of a file")->check(between(1e-3, 1e9))->capture_default_str();
     command->add_flag("--json", request->json, "Problems as JSON, for editors");
     command->callback([request, &exitCode] { exitCode = check(*request); });
 }

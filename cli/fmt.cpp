@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/pipeline.h"
 #include "grammar/syntax/parser.h"
 #include "grammar/syntax/printer.h"
@@ -19,7 +20,7 @@ int formatOne(const std::string& file, bool checkOnly) {
     if (!source.ok()) return fail(source.error());
     syntax::Diagnostics diagnostics;
     syntax::parse(*source, diagnostics);
-    for (const syntax::Diagnostic& d : diagnostics.all()) fmt::print(stderr, "{}\n", syntax::render(d));
+    tellProblems(diagnostics);
     if (diagnostics.hasErrors()) return 1;
     const std::string text = syntax::format(**source);
     if (text == (*source)->text()) return 0;

@@ -1,10 +1,13 @@
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <csignal>
 #include <exception>
+#include <new>
+#include <stdexcept>
+#include <system_error>
 
 #include "cli/commands.h"
+#include "cli/memory.h"
+#include "cli/messages.h"
 
 namespace {
 
@@ -17,15 +20,45 @@ constexpr const char* examples = R"(Examples:
 
 Exit codes: 0 done, 1 something in the input, 2 wrong usage, 3 a budget ran out, 130 cancelled.)";
 
+/// Runs what the arguments ask for.
+int run(CLI::App& app, int argc, char** argv, const int& exitCode) {
+    using sgm::cli::tell;
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : 2;
+    } catch (const std::bad_alloc&) {
+        tell("sgm: out of memory; try a lower --resolution or a smaller model, or allow more with --max-memory\n");
+        return 3;
+    } catch (const std::length_error&) {  // a size that no memory holds
+        tell("sgm: out of memory: the input asks for more than any machine has\n");
+        return 3;
+    } catch (const std::system_error& e) {
+        tell("sgm: {}\n", e.what());
+        return 1;
+    } catch (const std::exception& e) {
+        tell("sgm: internal error: {}\n", e.what());
+        return 1;
+    }
+    return exitCode;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    using namespace sgm::cli;
+    openStandardStreams();
+    reserveStack();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk
     CLI::App app{"sgm: grammars that grow implicit solids: caves, clouds, buildings"};
     app.require_subcommand(1);
     app.footer(examples);
     app.set_version_flag("--version", SGM_VERSION);
+    app.fallthrough();
+    uint64_t memory_bytes = usualMemory_bytes();
+    app.add_option("--max-memory", memory_bytes, "Memory that the command may take, as 4GB or 500MB (default: three quarters of what is there)")
+        ->transform(CLI::AsSizeValue(false));
     int exitCode = 0;
-    using namespace sgm::cli;
     addBuild(app, exitCode);
     addRender(app, exitCode);
     addView(app, exitCode);
@@ -36,16 +69,10 @@ int main(int argc, char** argv) {
     addParams(app, exitCode);
     addFmt(app, exitCode);
     addReference(app, exitCode);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : 2;
-    } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "sgm: out of memory; try a lower --resolution\n");
-        return 3;
-    } catch (const std::exception& e) {
-        fmt::print(stderr, "sgm: internal error: {}\n", e.what());
-        return 1;
-    }
-    return exitCode;
+    // Subcommands run in their callbacks, when all options are known.
+    app.parse_complete_callback([&] {
+        if (!app.got_subcommand("view")) limitMemory(memory_bytes);  // drivers map far more than they use
+    });
+    const int code = run(app, argc, argv, exitCode);
+    return flushOutput() || code != 0 ? code : 1;
 }

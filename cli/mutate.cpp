@@ -6,6 +6,7 @@
 #include <map>
 
 #include "cli/commands.h"
+#include "cli/numbers.h"
 #include "cli/variations.h"
 #include "cli/watch.h"
 #include "grammar/rules/params.h"
@@ -168,11 +169,13 @@ Status mutated(const MutateRequest& request) {
     if (std::sscanf(request.size.c_str(), "%dx%d%n", &options.width, &options.height, &used) != 2 || used != static_cast<int>(request.size.size()) ||
         std::min(options.width, options.height) < 32 || std::max(options.width, options.height) > 4096)
         return Error{Error::Kind::Usage, fmt::format("--size {}: write WIDTHxHEIGHT of one picture in pixels, as 320x240", request.size)};
+    if (const Status s = checkTargets(request.model.targets); !s.ok()) return s;
     Stages stages;
-    const auto grammar = loadGrammar(request.model.file, stages);
-    if (!grammar) return Error{Error::Kind::Input, ""};
-    if (const Status s = checkRequest(request, *grammar); !s.ok()) return s;
     Watch watch(request.quiet);
+    const auto loaded = loadGrammar(request.model, stages, watch.progress());
+    if (!loaded.ok()) return loaded.error();
+    const std::shared_ptr<const rules::Grammar>& grammar = *loaded;
+    if (const Status s = checkRequest(request, *grammar); !s.ok()) return s;
     const size_t wanted = static_cast<size_t>(request.rows) * static_cast<size_t>(request.columns);
     const auto found = search(request, grammar, wanted, watch.progress());
     if (!found.ok()) return found.error();
@@ -192,7 +195,8 @@ Status mutated(const MutateRequest& request) {
     return Done{};
 }
 
-int mutate(const MutateRequest& request) {
+int mutate(MutateRequest request) {
+    if (!request.output.empty()) request.model.targets.push_back({"-o", request.output});
     const Status done = mutated(request);
     return done.ok() ? 0 : fail(done.error());
 }
@@ -208,7 +212,7 @@ void addMutate(CLI::App& app, int& exitCode) {
     command->add_option("--cols", request->columns, "Columns of the sheet")->check(CLI::Range(1, 20))->capture_default_str();
     command->add_option("--size", request->size, "Pixels of one picture, WxH")->capture_default_str();
     command->add_option("--lock", request->lock, "Leave a parameter as it is; may be given again")->allow_extra_args(false);
-    command->add_option("--spread", request->spread, "How far values go: 0 not at all, 1 anywhere in their ranges")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+    command->add_option("--spread", request->spread, "How far values go: 0 not at all, 1 anywhere in their ranges")->check(between(0, 1))->capture_default_str();
     command->add_option("--resolution", request->resolution, "Cells along the longest side of the mesh that is judged")->check(CLI::Range(16, 1024))->capture_default_str();
     command->add_option("--threads", request->threads, "Threads (0: all)")->check(CLI::Range(0, 1024))->capture_default_str();
     command->add_option("--pick", request->pick, "Number of the variation to keep")->check(CLI::NonNegativeNumber);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cli/numbers.h"
 #include "cli/renamed.h"
 #include "grammar/lower/objects.h"
 #include "grammar/lower/solid_tree.h"
@@ -24,9 +25,6 @@ Status checkFile(const std::string& file) {
     for (const Exporter& e : exporter::exporters()) known.emplace_back(e.extension);
     if (!formatOf(file))
         return Error{Error::Kind::Usage, fmt::format("'{}': no format has the ending '{}'; there are {}", file, fs::path(file).extension().string(), fmt::join(known, " "))};
-    const fs::path folder = fs::path(file).parent_path();
-    if (std::error_code ignored; !folder.empty() && !fs::is_directory(folder, ignored))
-        return Error{Error::Kind::Input, fmt::format("'{}': the folder '{}' does not exist", file, folder.string())};
     return Done{};
 }
 
@@ -96,7 +94,7 @@ void addOutputOptions(CLI::App& command, OutputRequest& request) {
     command.add_option("--collider", request.collider, "Add colliders to .glb and .gltf: boxes or convex parts made from the terminals, or the mesh, simplified")
         ->check(CLI::IsMember({"boxes", "convex", "mesh"}));
     auto* proxy = command.add_option("--proxy", request.proxy, "Mesh file for a coarse closed mesh around the model; goes with the next version: see --collider");
-    command.add_option("--proxy-tolerance", request.proxyTolerance_m, "Metres the proxy may stand off (default: a twentieth of the longest side)")->check(CLI::PositiveNumber)->needs(proxy);
+    command.add_option("--proxy-tolerance", request.proxyTolerance_m, "Metres the proxy may stand off (default: a twentieth of the longest side)")->check(between(1e-6, 1e6))->needs(proxy);
 }
 
 std::vector<std::string> allFiles(const OutputRequest& request) {

@@ -18,8 +18,11 @@ std::string rangeText(const rules::Param& p) {
 
 int params(const std::string& file, bool json) {
     Stages stages;
-    const auto grammar = loadGrammar(file, stages);
-    if (!grammar) return 1;
+    ModelRequest request;
+    request.file = file;
+    const auto loaded = loadGrammar(request, stages);
+    if (!loaded.ok()) return fail(loaded.error());
+    const rules::Grammar* const grammar = loaded->get();
     if (json) {
         fmt::print("{}\n", rules::paramsJson(*grammar));
         return 0;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/targets.h"
 #include "viewer/document/meshing.h"
 
 namespace CLI {
@@ -25,6 +26,7 @@ using viewer::timed;
 /// Which model of which file: the options that every command about a model takes.
 struct ModelRequest : viewer::ModelChoice {
     std::string file;
+    std::vector<Target> targets;  ///< what will be written, which may replace no file that is read
 };
 /// Adds FILE, --start, --derive, --set, --style, --seed and the budgets.
 void addModelOptions(CLI::App& command, ModelRequest& request);
@@ -38,8 +40,10 @@ struct GridRequest {
 };
 void addGridOptions(CLI::App& command, GridRequest& request);
 
-/// Parse and check. Prints diagnostics to stderr; null when there were errors.
-std::shared_ptr<const rules::Grammar> loadGrammar(const std::string& file, Stages& stages);
+/// Parse and check. Prints diagnostics to stderr; when there were errors, the error is empty, as they are told already.
+/// Error::Usage where a target of the request is a file that was read; all of these are added to `read` unless it is null.
+Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& request, Stages& stages, const Progress* progress = nullptr,
+                                                          std::vector<std::filesystem::path>* read = nullptr);
 
 /// A model from the file on.
 Result<Model> makeModel(const ModelRequest& request, Stages& stages, Progress* progress);

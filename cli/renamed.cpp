@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
+
+#include "cli/messages.h"
 
 namespace sgm::cli {
 namespace {
@@ -13,7 +14,7 @@ constexpr const char* unlisted = "";  ///< CLI11's group of options that --help 
 }  // namespace
 
 void noteRenamed(const char* oldName, const char* newName) {
-    fmt::print(stderr, "note: {} is now {}; the old name goes with the next version\n", oldName, newName);
+    tell("note: {} is now {}; the old name goes with the next version\n", oldName, newName);
 }
 
 void addRenamedOption(CLI::App& command, const char* oldName, const char* newName, std::vector<std::string>& values) {

@@ -9,6 +9,7 @@
 #include "cli/animation.h"
 #include "cli/commands.h"
 #include "cli/ids.h"
+#include "cli/numbers.h"
 #include "cli/pipeline.h"
 #include "cli/watch.h"
 #include "modeler/core/conventions.h"
@@ -61,8 +62,6 @@ Status checkRequest(const RenderRequest& request) {
     const fs::path output = request.output;
     if (output.extension() != ".png" && output.extension() != ".exr")
         return wrong(fmt::format("'{}': pictures are .png, or .exr for floats", request.output));
-    if (std::error_code ignored; output.has_parent_path() && !fs::is_directory(output.parent_path(), ignored))
-        return Error{Error::Kind::Input, fmt::format("'{}': the folder '{}' does not exist", request.output, output.parent_path().string())};
     if (!request.layers.empty() && !isExr(request)) return wrong(fmt::format("--aov: layers need a file that holds floats: -o {}", fs::path(output).replace_extension(".exr").string()));
     if (isExr(request) && request.view != "field") return wrong(fmt::format("'{}': layers are of the field; with --view {} write a .png", request.output, request.view));
     if (request.extinction > 0 && request.view != "fog") return wrong("--extinction is of fog: add --view fog");
@@ -187,8 +186,18 @@ Status drawAll(const RenderRequest& request) {
     return Done{};
 }
 
-int render(const RenderRequest& request) {
+/// Every picture that will be drawn.
+std::vector<Target> targetsOf(const RenderRequest& request) {
+    std::vector<Target> targets;
+    for (int i = 0; i < std::max(request.turntable, 1); ++i)
+        targets.push_back({"-o", request.turntable == 0 ? request.output : *frameName(request.output, i, "--turntable")});
+    return targets;
+}
+
+int render(RenderRequest request) {
     Status done = checkRequest(request);
+    if (done.ok()) request.model.targets = targetsOf(request);
+    if (done.ok()) done = checkTargets(request.model.targets);
     if (done.ok()) done = drawAll(request);
     return done.ok() ? 0 : fail(done.error());
 }
@@ -208,7 +217,7 @@ void addRender(CLI::App& app, int& exitCode) {
     command->add_option("--aov", request->layers, "Layers beside the colour of an .exr: depth, normal, position, origin, ao; metres, ids of shapes with their names in the file")
         ->delimiter(',')->allow_extra_args(false)->check(CLI::IsMember(viewer::layerNames()));
     command->add_option("--turntable", request->turntable, "Draw this many pictures around the model; -o needs a number: turn_%04d.png")->check(CLI::Range(1, 10'000));
-    command->add_option("--extinction", request->extinction, "Of fog, per metre (default: 180 over the model's diagonal)")->check(CLI::Range(1e-6, 1e6));
+    command->add_option("--extinction", request->extinction, "Of fog, per metre (default: 180 over the model's diagonal)")->check(between(1e-6, 1e6));
     command->add_option("--samples", request->samples, "Samples a pixel, for smooth edges")->check(CLI::Range(1, 64))->capture_default_str();
     command->add_option("--rays", request->rays, "Who walks the rays of a field: shaders, the processor, or what is best here, the processor where OpenGL has no GPU")
         ->check(CLI::IsMember({"best", "shaders", "processor"}))->capture_default_str();

@@ -207,8 +207,9 @@ int Dialogue::run() {
 
 int step(const ModelRequest& request) {
     Stages stages;
-    const auto grammar = loadGrammar(request.file, stages);
-    if (!grammar) return 1;
+    const auto loaded = loadGrammar(request, stages);
+    if (!loaded.ok()) return fail(loaded.error());
+    const std::shared_ptr<const rules::Grammar>& grammar = *loaded;
     const auto options = optionsFor(*grammar, request);
     if (!options.ok()) return fail(options.error());
     auto session = derive::Session::begin(grammar, *options);

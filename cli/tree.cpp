@@ -19,12 +19,12 @@ struct TreeRequest {
 
 int tree(const TreeRequest& request) {
     Stages stages;
-    const auto grammar = loadGrammar(request.model.file, stages);
-    if (!grammar) return 1;
-    const auto options = optionsFor(*grammar, request.model);
-    if (!options.ok()) return fail(options.error());
     Watch watch(false);
-    const auto derivation = derive::derive(grammar, *options, watch.progress());
+    const auto grammar = loadGrammar(request.model, stages, watch.progress());
+    if (!grammar.ok()) return fail(grammar.error());
+    const auto options = optionsFor(**grammar, request.model);
+    if (!options.ok()) return fail(options.error());
+    const auto derivation = derive::derive(*grammar, *options, watch.progress());
     if (!derivation.ok()) return fail(derivation.error());
     fmt::print("{}", request.json ? derive::toJson(*derivation) : derive::toText(*derivation, request.steps));
     return 0;

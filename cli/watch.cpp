@@ -7,12 +7,16 @@
 #include <csignal>
 #include <cstdio>
 
+#include "cli/messages.h"
+
 namespace sgm::cli {
 namespace {
 
 // A signal handler can reach nothing but a global; only Watch writes it.
 std::atomic<Progress*> interrupted{nullptr};
 static_assert(std::atomic<Progress*>::is_always_lock_free);
+
+constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP};
 
 void onInterrupt(int) {
     if (Progress* p = interrupted.load()) p->cancel();
@@ -25,26 +29,31 @@ void show(const Progress& progress, const std::atomic<bool>& stop) {
     while (!stop) {
         std::this_thread::sleep_for(50ms);
         if (std::chrono::steady_clock::now() - start < 1s) continue;
-        fmt::print(stderr, "\r\033[K{} {:3.0f} %", progress.stage(), 100 * progress.fraction());
+        tell("\r\033[K{} {:3.0f} %", progress.stage(), 100 * progress.fraction());
         std::fflush(stderr);
         shown = true;
     }
-    if (shown) fmt::print(stderr, "\r\033[K");
+    if (shown) tell("\r\033[K");
 }
 
 }  // namespace
 
 Watch::Watch(bool quiet) {
     interrupted = &progress_;
-    std::signal(SIGINT, onInterrupt);
-    std::signal(SIGTERM, onInterrupt);
-    if (!quiet && isatty(STDERR_FILENO)) line_ = std::thread([this] { show(progress_, stop_); });
+    for (size_t i = 0; i < std::size(signals); ++i) {
+        before_[i] = std::signal(signals[i], onInterrupt);
+        if (before_[i] == SIG_IGN) std::signal(signals[i], SIG_IGN);  // nohup
+    }
+    if (quiet || !isatty(STDERR_FILENO)) return;
+    try {
+        line_ = std::thread([this] { show(progress_, stop_); });
+    } catch (const std::exception&) {  // the system gives no more threads: there is no line then
+    }
 }
 
 Watch::~Watch() {
     interrupted = nullptr;
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
+    for (size_t i = 0; i < std::size(signals); ++i) std::signal(signals[i], before_[i] == SIG_ERR ? SIG_DFL : before_[i]);
     stop_ = true;
     if (line_.joinable()) line_.join();
 }

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "grammar/lower/solid_tree.h"
+#include "modeler/core/atomic_file.h"
+#include "modeler/core/guarded.h"
 #include "modeler/mesh/simplify.h"
 #include "modeler/volume/keep.h"
 #include "viewer/document/meshing.h"
@@ -35,7 +37,7 @@ Status write(const Shown& shown, const ExportRequest& request, const exporter::E
     auto meshed = makeMesh(shown.model, mesh::gridFor(bounds, cell_m), options, stages, &progress);
     if (!meshed.ok()) return meshed.error();
     mesh::keepOnly(meshed->mesh, request.keep, cell_m, request.threads);
-    if (meshed->mesh.triangleCount() == 0) return noSurface(cell_m);
+    if (meshed->mesh.triangleCount() == 0) return noSurface(shown.model, cell_m);
     auto simple = mesh::simplify(meshed->mesh, {mesh::usualTolerance(cell_m), request.threads}, &progress);
     if (!simple.ok()) return simple.error();
     meshed->mesh = std::move(*simple);
@@ -93,12 +95,18 @@ Status ExportJob::start(std::shared_ptr<const Shown> shown, ExportRequest reques
     if (std::error_code ignored; !folder.empty() && !fs::is_directory(folder, ignored))
         return Error{Error::Kind::Input,
                      fmt::format("'{}': the folder '{}' does not exist", request.file.string(), folder.string())};
+    for (const fs::path& file : exporter::filesOf(request.file)) {
+        if (const Status s = checkTarget(file); !s.ok()) return s;
+        for (const fs::path& input : request.inputs)
+            if (identityOf(file) == identityOf(input))
+                return Error{Error::Kind::Input, fmt::format("'{}' is what the model is made from: give the export another name", file.string())};
+    }
     progress_ = std::make_shared<Progress>();
     done_ = false;
     file_ = request.file;
     thread_ = std::thread([this, shown = std::move(shown), request = std::move(request), format, wake = std::move(wake),
                            progress = progress_] {
-        outcome_ = write(*shown, request, *format, *progress);
+        outcome_ = guarded([&] { return write(*shown, request, *format, *progress); });
         done_ = true;
         if (wake) wake();
     });

@@ -36,6 +36,7 @@ struct ExportRequest {
     int threads = 0;
     mesh::Keep keep = mesh::Keep::All;  ///< which separate solids are written
     std::string objects = {};           ///< as lower::parseObjects reads it, for formats that hold objects
+    std::vector<std::filesystem::path> inputs = {};  ///< what the model is made from, which is never replaced
 };
 
 class ExportJob {
@@ -46,7 +47,7 @@ public:
     ExportJob& operator=(const ExportJob&) = delete;
 
     /// Begins. Error::Usage at once for an ending or an option that no format takes, Error::Input for a missing folder,
-    /// and while another export runs. `wake` is called from the thread at its end.
+    /// for a file that is an input, and while another export runs. `wake` is called from the thread at its end.
     Status start(std::shared_ptr<const Shown> shown, ExportRequest request, std::function<void()> wake = nullptr);
     void cancel() { progress_->cancel(); }
     /// From `start` until the outcome is taken.

@@ -40,9 +40,10 @@ Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::R
     return made;
 }
 
-Error noSurface(float cell_m) {
+Error noSurface(const Model& model, float cell_m) {
     return {Error::Kind::Input,
-            fmt::format("there is no surface at cells of {:.3g} m: all is cut away, or thinner than a cell", cell_m)};
+            fmt::format("{}there is no surface at cells of {:.3g} m: all is cut away, or thinner than a cell",
+                        syntax::placeText(model.derivation.tree.shapes[0].span), cell_m)};
 }
 
 Result<volume::Volume> levelSet(const Model& model, const MeshedModel& meshed, int threads, Progress* progress) {

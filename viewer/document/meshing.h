@@ -28,7 +28,7 @@ Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::R
                              Progress* progress);
 
 /// Why nothing is written of a model that has no surface at such cells.
-Error noSurface(float cell_m);
+Error noSurface(const Model& model, float cell_m);
 
 /// The level set of the model for formats that hold volumes.
 Result<volume::Volume> levelSet(const Model& model, const MeshedModel& meshed, int threads, Progress* progress);

@@ -146,6 +146,8 @@ void Workbench::cancel() {
 }
 
 void Workbench::exportTo(ExportRequest request) {
+    request.inputs = session.usedFiles();
+    if (!document.path().empty()) request.inputs.push_back(document.path());
     if (const Status s = exporting.start(session.model(), std::move(request), wake_); !s) say(s.error().message, true);
 }
 
