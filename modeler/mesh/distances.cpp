@@ -21,11 +21,9 @@ constexpr uint32_t nobody = std::numeric_limits<uint32_t>::max();
 /// Cells around the mesh. Not whole, so that walls along the axes lie between nodes.
 constexpr float margin = 2.37f;
 
-/// A soup in the frame of the grid: cells from the first node.
-struct Placed {
-    std::vector<Vec3f> positions;
-    std::vector<Triangle> triangles;
-};
+/// A triangle in the frame of the grid: cells from the first node. Its corners lie together, for sweeps ask for triangles
+/// in no order.
+using Corners = std::array<Vec3f, 3>;
 
 TriangleSoup soupOf(const Mesh& mesh) {
     TriangleSoup soup;
@@ -76,17 +74,17 @@ std::optional<Vec3d> hole(const TriangleSoup& soup) {
 /// Distances in cells on a grid of nodes; positions are in cells from the first node.
 class Nodes {
 public:
-    Nodes(Placed soup, Vec3i count, const Progress* progress)
-        : soup_(std::move(soup)),
+    Nodes(std::vector<Corners> triangles, Vec3i count, const Progress* progress)
+        : triangles_(std::move(triangles)),
           count_(count),
           progress_(progress),
           squared_(size(), std::numeric_limits<float>::infinity()),
           nearest_(size(), nobody) {}
 
     Result<std::vector<float>> signedDistances() {
-        for (uint32_t t = 0; t < soup_.triangles.size(); ++t) {
+        for (uint32_t t = 0; t < triangles_.size(); ++t) {
             if (t % 64 == 0 && cancelled(progress_)) return cancelledError();
-            seed(t, corners(t));
+            seed(t, triangles_[t]);
             if (offers_ > mostOffers) return Error{Error::Kind::Budget, "has too many large triangles, one over the other: simplify it"};
         }
         for (int way = 0; way < 8; ++way) {
@@ -101,7 +99,6 @@ public:
     }
 
 private:
-    using Corners = std::array<Vec3f, 3>;
     /// A mesh of ten million small triangles makes a tenth as many.
     static constexpr uint64_t mostOffers = 4'000'000'000;
 
@@ -113,16 +110,17 @@ private:
                    static_cast<size_t>(count_.x) +
                static_cast<size_t>(i);
     }
-    Corners corners(uint32_t t) const {
-        const Triangle& v = soup_.triangles[t];
-        return {soup_.positions[v.x], soup_.positions[v.y], soup_.positions[v.z]};
-    }
 
     void offer(int i, int j, int k, uint32_t triangle) {
         const size_t node = at(i, j, k);
         if (nearest_[node] == triangle) return;
-        const Corners c = corners(triangle);
-        const float d = squaredDistance(Vec3i{i, j, k}.as<float>(), c[0], c[1], c[2]);
+        const Corners& c = triangles_[triangle];
+        const Vec3f p = Vec3i{i, j, k}.as<float>();
+        // Most triangles are farther away than the nearest one so far by their boxes alone; rounding is well below the margin.
+        constexpr float slack = 1.0001f;
+        const Vec3f off = max(max(min(min(c[0], c[1]), c[2]) - p, p - max(max(c[0], c[1]), c[2])), Vec3f{});
+        if (dot(off, off) > squared_[node] * slack) return;
+        const float d = squaredDistance(p, c[0], c[1], c[2]);
         if (d < squared_[node]) squared_[node] = d, nearest_[node] = triangle;
     }
 
@@ -154,7 +152,7 @@ private:
         const Vec3i step{way & 1 ? -1 : 1, way & 2 ? -1 : 1, way & 4 ? -1 : 1};
         const auto first = [&](int axis) { return step[axis] > 0 ? 1 : count_[axis] - 2; };
         const auto end = [&](int axis) { return step[axis] > 0 ? count_[axis] : -1; };
-        for (int k = first(2); k != end(2); k += step.z)
+        for (int k = first(2); k != end(2) && !cancelled(progress_); k += step.z)
             for (int j = first(1); j != end(1); j += step.y)
                 for (int i = first(0); i != end(0); i += step.x)
                     for (int from = 1; from < 8; ++from) {
@@ -167,9 +165,9 @@ private:
     /// How often the mesh winds around each node: crossings along the row before it, each counted with its sense.
     std::vector<int> windings() const {
         std::vector<int> result(size(), 0);
-        for (uint32_t t = 0; t < soup_.triangles.size(); ++t) {
+        for (uint32_t t = 0; t < triangles_.size(); ++t) {
             if (t % 1024 == 0 && cancelled(progress_)) break;
-            cross(corners(t), result);
+            cross(triangles_[t], result);
         }
         for (int k = 0; k < count_.z; ++k)
             for (int j = 0; j < count_.y; ++j)
@@ -201,7 +199,7 @@ private:
         return swapped ? -never0 : never0;
     }
 
-    Placed soup_;
+    std::vector<Corners> triangles_;
     Vec3i count_;
     const Progress* progress_;
     uint64_t offers_ = 0;
@@ -246,12 +244,14 @@ Result<field::SampledGridPtr> toDistances(TriangleSoup soup, int cells, const Pr
     Vec3i count;
     for (int axis = 0; axis < 3; ++axis)
         count[axis] = static_cast<int>(std::ceil(bounds.size()[axis] / cell_m + 2 * margin)) + 1;
-    Placed placed{{}, std::move(soup.triangles)};
-    placed.positions.reserve(soup.positions.size());
-    for (const Vec3d& p : soup.positions)
-        placed.positions.push_back((((p - frame.origin) * frame.scale - low.as<double>()) / double{cell_m}).as<float>());
+    const auto placed = [&](uint32_t v) {
+        return (((soup.positions[v] - frame.origin) * frame.scale - low.as<double>()) / double{cell_m}).as<float>();
+    };
+    std::vector<Corners> triangles;
+    triangles.reserve(soup.triangles.size());
+    for (const Triangle& t : soup.triangles) triangles.push_back({placed(t.x), placed(t.y), placed(t.z)});
     soup = {};
-    auto distances = Nodes(std::move(placed), count, progress).signedDistances();
+    auto distances = Nodes(std::move(triangles), count, progress).signedDistances();
     if (!distances.ok()) return distances.error();
     if (*std::min_element(distances->begin(), distances->end()) >= 0)
         return Error{Error::Kind::Input,
