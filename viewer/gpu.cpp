@@ -2,6 +2,7 @@
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+#include <sys/resource.h>
 
 #include <string_view>
 
@@ -9,6 +10,13 @@ namespace sgm::viewer {
 namespace {
 
 Error internal(std::string message) { return {Error::Kind::Internal, std::move(message)}; }
+
+/// Whether a limit of address space (ulimit -v) leaves enough for OpenGL drivers, which end the program where it doesn't.
+bool hasAddressSpace() {
+    constexpr rlim_t least_bytes = rlim_t{700} << 20;
+    rlimit limit{};
+    return getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur >= least_bytes;
+}
 
 /// The displays worth trying, in order: surfaceless (Mesa, no hardware needed), then the first EGL devices.
 std::vector<EGLDisplay> displays() {
@@ -115,6 +123,8 @@ void freeRenderbuffer(uint32_t id) { glDeleteRenderbuffers(1, &id); }
 }  // namespace detail
 
 Result<GpuContext> GpuContext::create() {
+    if (!hasAddressSpace())
+        return Error{Error::Kind::Budget, "out of memory: OpenGL drivers need 700 MiB of address space (ulimit -v)"};
     for (const EGLDisplay display : displays())
         if (const EGLContext context = contextOn(display); context != EGL_NO_CONTEXT)
             return GpuContext(display, context);

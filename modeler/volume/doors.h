@@ -22,6 +22,9 @@ struct Doors {
     decltype(&volume::keepOnly) keepOnly;
     decltype(&volume::renormalize) renormalize;
     decltype(&volume::sample) sample;
+    /// Has TBB start its threads, at most so many, while there is room for them: later it ends the program where it gets
+    /// none.
+    void (*startThreads)(int most);
 };
 
 }  // namespace sgm::volume

@@ -32,17 +32,26 @@ bool canStart(int threads) {
     return all;
 }
 
+/// A module that is there but can't be loaded: there is no memory for it, or a library is missing.
+Error unloadable(const std::string& why) {
+    const bool memory = why.find("failed to map") != std::string::npos || why.find("annot allocate") != std::string::npos;
+    return {memory ? Error::Kind::Budget : Error::Kind::Internal, "volumes: " + why + (memory ? ": out of memory" : "")};
+}
+
 /// The table. Error::Internal where the module or OpenVDB isn't to be found, Error::Budget where there are no threads.
 Result<const Doors*> load() {
-    if (!canStart(threadCount(0)))
-        return Error{Error::Kind::Budget, "volumes: the system gives no more threads: allow more processes (ulimit -u, or the container's limit)"};
+    const Error noThreads{Error::Kind::Budget, "volumes: the system gives no more threads: allow more processes (ulimit -u, or the container's limit) or memory"};
+    if (!canStart(threadCount(0))) return noThreads;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
     for (const auto& path : {program / moduleName, program.parent_path() / "lib/sgm" / moduleName}) {
         if (!std::filesystem::exists(path)) continue;
         void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
         const void* const doors = module ? dlsym(module, "sgm_volume_doors") : nullptr;
-        if (!doors) return Error{Error::Kind::Internal, std::string("volumes: ") + dlerror()};
-        return static_cast<const Doors*>(doors);
+        if (!doors) return unloadable(dlerror());
+        const auto* const table = static_cast<const Doors*>(doors);
+        if (!canStart(threadCount(0))) return noThreads;  // the module took memory
+        table->startThreads(threadCount(0));
+        return table;
     }
     return Error{Error::Kind::Internal, std::string("volumes: ") + moduleName + " is neither beside " + program.string() + "/sgm nor in lib/sgm"};
 }
