@@ -5,6 +5,7 @@
 #   ./run.sh bench [ARGUMENTS…]   measures field → mesh beside a dense sweep, OpenVDB and the machine (docs/performance.md)
 #   ./run.sh view FILE            opens the window about a grammar
 #   ./run.sh gallery [NAME…]      draws the pictures of docs/ and README, and measures the times on the gallery's page
+#   ./run.sh fuzz [SECONDS] [TARGET…]  runs the fuzz targets mesh and syntax (clang++; 600 seconds each)
 cd "$(dirname "$0")"
 . cmake/setup.sh
 case "${1:-}" in
@@ -12,6 +13,7 @@ case "${1:-}" in
     build bench && shift
     case " $* " in *" --meshes "*) install_judge ;; esac
     exec build/release/tests/bench/bench "$@" ;;
+  fuzz) shift && exec tests/fuzz/run.sh "$@" ;;
   view) build sgm sgm-viewer ;;
   gallery) build sgm sgm-viewer bench && shift && exec docs/gallery.sh "$@" ;;
 esac

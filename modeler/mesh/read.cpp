@@ -32,7 +32,8 @@ Error about(const std::filesystem::path& path, const Error& error) {
     return {error.kind, fmt::format("'{}' {}", path.string(), error.message)};
 }
 
-/// What holds for every format.
+}  // namespace
+
 Status checkSoup(const TriangleSoup& soup) {
     const auto finite = [](const Vec3d& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); };
     if (!std::all_of(soup.positions.begin(), soup.positions.end(), finite))
@@ -45,8 +46,6 @@ Status checkSoup(const TriangleSoup& soup) {
         return Error{Error::Kind::Input, fmt::format("is damaged: a face has a corner that is none of its {} vertices", soup.positions.size())};
     return Done{};
 }
-
-}  // namespace
 
 Error damaged(uint64_t line, std::string_view why) {
     return {Error::Kind::Input, line == 0 ? fmt::format("is damaged: {}", why) : fmt::format("is damaged, line {}: {}", line, why)};

@@ -22,6 +22,10 @@ Status readStl(std::string_view bytes, TriangleSoup& soup, const Progress* progr
 /// Ascii OFF with any of its prefixes but 4 and n (Geomview manual, "OFF Files").
 Status readOff(std::string_view bytes, TriangleSoup& soup, const Progress* progress);
 
+/// What holds for every format: there are triangles, not too many, with finite corners that are in range. The error is without
+/// the file's name.
+Status checkSoup(const TriangleSoup& soup);
+
 /// "is damaged, line 12: …", or without the line where it is 0.
 Error damaged(uint64_t line, std::string_view why);
 
