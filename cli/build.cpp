@@ -12,6 +12,7 @@
 #include "cli/colliders.h"
 #include "cli/commands.h"
 #include "cli/floating.h"
+#include "cli/missing.h"
 #include "cli/messages.h"
 #include "cli/numbers.h"
 #include "cli/outputs.h"
@@ -144,6 +145,12 @@ void keepOnly(const BuildRequest& request, MeshedModel& meshed) {
 
 /// From a mesh to what was asked for: edits, validation, files, figures.
 Status deliver(const BuildRequest& request, const Model& model, const viewer::Division& division, MeshedModel meshed, Stages& stages, Progress* progress) {
+    std::vector<lower::ThinPart> missing;
+    if (!request.quiet || !request.report.empty()) {
+        auto found = timed(stages, "thin parts", [&] { return findMissingParts(model, meshed, request.grid.threads, progress); });
+        if (!found.ok()) return found.error();
+        missing = std::move(*found);
+    }
     keepOnly(request, meshed);
     auto mesh = edited(std::move(meshed.mesh), request, meshed.grid.cell_m, stages, progress);
     if (!mesh.ok()) return mesh.error();
@@ -197,9 +204,10 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
     });
     if (!written.ok()) return written;
     if (!request.report.empty())
-        if (const Status s = viewer::writeText(request.report, reportJson(model, meshed, figures, support, cave, stages, request.grid.threads)); !s.ok()) return s;
+        if (const Status s = viewer::writeText(request.report, reportJson(model, meshed, figures, support, missing, cave, stages, request.grid.threads)); !s.ok()) return s;
     if (request.quiet) return Done{};
     say(request, model, figures, support, colliders, stages);
+    sayMissing(model, meshed.grid, missing);
     if (cave && request.cave) fmt::print("{}", caveTable(*cave));
     return Done{};
 }

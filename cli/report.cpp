@@ -54,6 +54,21 @@ Json floatingFigures(const Model& model, const Support& support) {
     return list;
 }
 
+/// The parts thinner than a cell that the mesh lacks.
+Json missingFigures(const Model& model, const std::vector<lower::ThinPart>& missing) {
+    Json list = Json::array();
+    for (const lower::ThinPart& m : missing) {
+        const Part& part = model.lowered->provenance.parts[m.part];
+        list.push_back({{"path", part.path},
+                        {"file", part.file},
+                        {"line", part.line},
+                        {"thickness_m", m.thickness_m},
+                        {"cell_m", m.cell_m},
+                        {"missing", m.missing}});
+    }
+    return list;
+}
+
 uint64_t peakMemory_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -63,6 +78,7 @@ uint64_t peakMemory_bytes() {
 }  // namespace
 
 std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Support& support,
+                       const std::vector<lower::ThinPart>& missing,
                        const std::optional<volume::Cave>& cave, const Stages& stages, int threads) {
     const derive::Derivation& d = model.derivation;
     Json json;
@@ -75,6 +91,7 @@ std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh
     json["mesh"] = meshFigures(figures);
     json["pieces"] = support.pieces;
     json["floating"] = floatingFigures(model, support);
+    json["missing"] = missingFigures(model, missing);
     if (cave) json["cave"] = caveJson(*cave);
     json["peak_memory_bytes"] = peakMemory_bytes();
     json["threads"] = threadCount(threads);

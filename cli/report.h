@@ -7,6 +7,7 @@
 
 #include "cli/floating.h"
 #include "cli/pipeline.h"
+#include "grammar/lower/thin_parts.h"
 #include "modeler/mesh/validate.h"
 #include "modeler/volume/cave.h"
 
@@ -14,7 +15,7 @@ namespace sgm::cli {
 
 /// stages, shapes, terminals, bonds, rules_applied, field, mesh, pieces, floating, cave where it was surveyed,
 /// peak_memory_bytes, threads, seed.
-std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Support& support,
+std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Support& support, const std::vector<lower::ThinPart>& missing,
                        const std::optional<volume::Cave>& cave, const Stages& stages, int threads);
 
 }  // namespace sgm::cli

@@ -1,4 +1,7 @@
 // Parts thinner than a cell: which of them a mesh shows (tests/mesh/scenes), and what the list of lost ones is worth.
+#include <cmath>
+
+#include "grammar/lower/thin_parts.h"
 #include "grammar/rules/params.h"
 #include "modeler/mesh/polygonize.h"
 #include "modeler/mesh/subdivide.h"
@@ -9,12 +12,21 @@ namespace {
 
 using namespace testing_;
 
-mesh::Mesh meshed(const Lowered& model, int cells) {
-    const Box3f& bounds = model.model->field.bounds;
-    const mesh::Grid grid = mesh::gridFor(bounds, mesh::cellFor(bounds, cells));
+mesh::Mesh meshedWith(const Lowered& model, float cell_m, mesh::Surface surface) {
+    const mesh::Grid grid = mesh::gridFor(model.model->field.bounds, cell_m);
     mesh::Counts counts;
     const auto blocks = mesh::subdivide(model.tape(), grid, 2, nullptr, counts);
-    return *mesh::polygonize(*blocks, grid, {.threads = 2}, nullptr, counts);
+    return *mesh::polygonize(*blocks, grid, {.surface = surface, .threads = 2}, nullptr, counts);
+}
+mesh::Mesh meshed(const Lowered& model, int cells) {
+    return meshedWith(model, mesh::cellFor(model.model->field.bounds, cells), mesh::Surface::Cubes);
+}
+
+std::vector<lower::ThinPart> missingAt(const Lowered& model, float cell_m) {
+    auto found = lower::findMissingParts(model.derivation, *model.model, model.tape(),
+                                         meshedWith(model, cell_m, mesh::Surface::Crisp), cell_m, 2, nullptr);
+    EXPECT_TRUE(found.ok());
+    return *found;
 }
 
 /// A scene with its parameters as they are, or each of those named set to so many metres.
@@ -63,6 +75,37 @@ TEST_P(Thin, WhatIsLostAt128IsThinnerThanACell) {
         const derive::Shape& shape = model.derivation.tree.shapes[model.model->shapeOf[part]];
         EXPECT_LT(minComponent(shape.scope.size), cell_m) << partText(model, part);
     }
+}
+
+/// What the list says of cells that hold a part is true.
+TEST_P(Thin, PartsThatTheMeshLacksAreNamedWithTheCellsThatHoldThem) {
+    const Lowered model = scene(GetParam().first);
+    const float cell_m = mesh::cellFor(model.model->field.bounds, 64);
+    const auto missing = missingAt(model, cell_m);
+    ASSERT_FALSE(missing.empty());
+    double least = 1e9;
+    std::set<OriginId> named;
+    for (const lower::ThinPart& m : missing) {
+        EXPECT_LT(m.thickness_m, static_cast<double>(cell_m));
+        EXPECT_GT(m.missing, 0.1);
+        least = std::min(least, m.cell_m);
+        named.insert(m.part);
+    }
+    const mesh::Mesh mesh = meshedWith(model, cell_m, mesh::Surface::Crisp);
+    for (const OriginId part : lostParts(model, mesh))
+        EXPECT_TRUE(named.contains(part) || least < 0.02) << partText(model, part);
+    for (const lower::ThinPart& m : missingAt(model, static_cast<float>(0.98 * least)))
+        ADD_FAILURE() << partText(model, m.part) << ": " << m.missing;
+}
+
+TEST(ThinParts, BuriedAndThickOnesAreNotMissing) {
+    const Lowered model(
+        "grammar 1\nstart S -> cube size 4 + cube size (1, .01, 1) + cube size (6, .5, .5)\n"
+        "           + cube size (2, .01, 2) at +x to centre turn (0, 0, 40deg)\n");
+    const auto missing = missingAt(model, 0.2f);
+    ASSERT_EQ(missing.size(), 1u);
+    EXPECT_EQ(model.model->provenance.parts[missing[0].part].path, "S/cube/cube[3]");
+    EXPECT_NEAR(missing[0].cell_m, 0.01 / (std::cos(40 * M_PI / 180) + std::sin(40 * M_PI / 180)), 1e-4);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Thin,

@@ -1,0 +1,211 @@
+#include "grammar/lower/thin_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_set>
+
+#include "modeler/core/parallel.h"
+#include "modeler/eval/evaluate.h"
+
+namespace sgm::lower {
+namespace {
+
+constexpr int fewestLines = 4, mostLines = 12;  ///< along an axis across the thin one
+constexpr int steps = 16;                       ///< between the samples on a line
+constexpr double lineReach = 1.02;              ///< of a scope's half extent, so that its own faces are crossed
+constexpr int halvings = 6;                     ///< of a step around a crossing
+constexpr int fewestCrossings = 3;              ///< of a part that isn't buried
+constexpr double worthTelling = 0.1;            ///< share of the surface
+constexpr size_t partsPerStep = 16;             ///< of a parallel loop
+
+/// Cells as large as the mesh's that hold triangles of thin parts.
+class Presence {
+public:
+    Presence(const mesh::Mesh& mesh, const std::vector<bool>& isThin, float cell_m) : perMetre_(1 / cell_m) {
+        std::vector<const Vec3f*> positions;
+        positions.reserve(mesh.vertexCount());
+        for (const mesh::Chunk& c : mesh.chunks)
+            for (const Vec3f& p : c.positions) positions.push_back(&p);
+        for (const mesh::Chunk& c : mesh.chunks)
+            for (size_t t = 0; t < c.origins.size(); ++t) {
+                if (!isThin[c.origins[t]]) continue;
+                const mesh::Triangle corners = c.inMesh(c.triangles[t]);
+                for (int i = 0; i < 3; ++i) cells_.insert(keyOf(cellOf(*positions[corners[i]]), c.origins[t]));
+            }
+    }
+    /// Whether a triangle of the part has a corner within a cell or so.
+    bool isNear(Vec3f p, OriginId part) const {
+        const Vec3i cell = cellOf(p);
+        for (int z = -1; z <= 1; ++z)
+            for (int y = -1; y <= 1; ++y)
+                for (int x = -1; x <= 1; ++x)
+                    if (cells_.contains(keyOf(cell + Vec3i{x, y, z}, part))) return true;
+        return false;
+    }
+
+private:
+    Vec3i cellOf(Vec3f p) const {
+        const auto floor = [&](float c) { return static_cast<int>(std::floor(c * perMetre_)); };
+        return {floor(p.x), floor(p.y), floor(p.z)};
+    }
+    static uint64_t keyOf(Vec3i cell, OriginId part) {
+        const auto bits = [](int c) { return static_cast<uint64_t>(static_cast<uint32_t>(c)); };
+        uint64_t key = part * 0xd6e8feb86659fd93u;
+        for (const int c : {cell.x, cell.y, cell.z}) key = (key ^ bits(c)) * 0x9e3779b97f4a7c15u, key ^= key >> 29;
+        return key;
+    }
+
+    const float perMetre_;
+    std::unordered_set<uint64_t> cells_;
+};
+
+/// Points as the evaluation takes them.
+struct Rows {
+    std::vector<float> x, y, z;
+    void clear() { x.clear(), y.clear(), z.clear(); }
+    void add(Vec3f p) { x.push_back(p.x), y.push_back(p.y), z.push_back(p.z); }
+    Vec3f operator[](size_t i) const { return {x[i], y[i], z[i]}; }
+    eval::Points points() const { return {x.data(), y.data(), z.data(), x.size()}; }
+};
+
+/// One worker's.
+class Prober {
+public:
+    Prober(const eval::Tape& tape, const Presence& presence, float cell_m)
+        : tape_(tape), presence_(presence), cell_m_(static_cast<double>(cell_m)) {}
+
+    /// Share of a part's surface that the mesh lacks; 0 where it is buried.
+    double missing(OriginId part, const derive::Scope& scope) {
+        if (!shortenTo(scope)) return 0;
+        findCrossings(scope);
+        if (inside_.empty()) return 0;
+        owners_.resize(middles_.x.size());
+        eval::evaluateOrigin(local_, middles_.points(), owners_.data(), workspace_);
+        int met = 0, lacks = 0;
+        for (size_t i = 0; i < owners_.size(); ++i) {
+            if (owners_[i] != part) continue;
+            ++met, lacks += !presence_.isNear(middles_[i], part);
+        }
+        return met < fewestCrossings ? 0 : static_cast<double>(lacks) / met;
+    }
+
+private:
+    /// Leaves in local_ what matters near the scope; whether the surface may be there.
+    bool shortenTo(const derive::Scope& scope) {
+        Box3f box;
+        for (int corner = 0; corner < 8; ++corner)
+            box =
+                hull(box, scope
+                              .point(Vec3d{corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0} *
+                                     (1.1 * lineReach))
+                              .as<float>());
+        eval::Range range{};
+        eval::evaluateRanges(tape_, {&box, 1}, &range, workspace_);
+        if (range.lo > 0 || range.hi < 0) return false;
+        eval::shorten(tape_, 0, workspace_, local_);
+        return true;
+    }
+
+    /// Where lines through the scope along its thin axes cross the field's surface.
+    void findCrossings(const derive::Scope& scope) {
+        rows_.clear();
+        for (int axis = 0; axis < 3; ++axis)
+            if (scope.size[axis] < cell_m_ || scope.size[axis] == minComponent(scope.size)) addLines(scope, axis);
+        evaluate(rows_);
+        inside_.clear(), outside_.clear();
+        for (size_t i = 0; i + 1 < values_.size(); ++i) {
+            if (i % (steps + 1) == steps || (values_[i] < 0) == (values_[i + 1] < 0)) continue;
+            inside_.push_back(rows_[values_[i] < 0 ? i : i + 1]), outside_.push_back(rows_[values_[i] < 0 ? i + 1 : i]);
+        }
+        for (int halving = 0; halving < halvings && !inside_.empty(); ++halving) {
+            middles_.clear();
+            for (size_t i = 0; i < inside_.size(); ++i) middles_.add((inside_[i] + outside_[i]) * 0.5f);
+            evaluate(middles_);
+            for (size_t i = 0; i < inside_.size(); ++i) (values_[i] < 0 ? inside_ : outside_)[i] = middles_[i];
+        }
+    }
+    void addLines(const derive::Scope& scope, int axis) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        const auto linesAlong = [&](int across) {
+            return std::clamp(static_cast<int>(std::ceil(scope.size[across] / cell_m_)), fewestLines, mostLines);
+        };
+        const int alongU = linesAlong(u), alongV = linesAlong(v);
+        for (int j = 0; j < alongV; ++j)
+            for (int i = 0; i < alongU; ++i)
+                for (int s = 0; s <= steps; ++s) {
+                    // Off the middle, so that no line lies in a plane of symmetry.
+                    Vec3d share;
+                    share[u] = (2.0 * i + 1.07) / alongU - 1, share[v] = (2.0 * j + 1.07) / alongV - 1;
+                    share[axis] = lineReach * (2.0 * s / steps - 1);
+                    rows_.add(scope.point(share).as<float>());
+                }
+    }
+    void evaluate(const Rows& rows) {
+        values_.resize(rows.x.size());
+        eval::evaluate(local_, rows.points(), values_.data(), workspace_);
+    }
+
+    const eval::Tape& tape_;
+    const Presence& presence_;
+    const double cell_m_;
+    eval::Tape local_;
+    eval::Workspace workspace_;
+    Rows rows_, middles_;
+    std::vector<float> values_;
+    std::vector<OriginId> owners_;
+    std::vector<Vec3f> inside_, outside_;
+};
+
+/// The largest cells that hold a thin scope. Along the axes a sample lies in whatever is as thick as a cell; what is
+/// turned needs more.
+double cellThatHolds(const derive::Scope& scope) {
+    double least = minComponent(scope.size);
+    double most = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (scope.size[axis] > 1.01 * least) continue;
+        const Vec3d d = scope.axes * Vec3d{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+        most = std::max(most, std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
+    }
+    return least / most;
+}
+
+}  // namespace
+
+Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
+                                               const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
+                                               int threads, Progress* progress) {
+    std::vector<OriginId> thin;
+    std::vector<bool> isThin(model.shapeOf.size());
+    for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
+        if (model.shapeOf[part] == derive::none) continue;
+        const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[part]];
+        if (shape.solid == derive::none || !(cellThatHolds(shape.scope) < static_cast<double>(cell_m))) continue;
+        thin.push_back(part);
+        isThin[part] = true;
+    }
+    if (thin.empty() || mesh.isBare()) return std::vector<ThinPart>{};
+    const Presence presence(mesh, isThin, cell_m);
+    std::vector<double> missing(thin.size());
+    std::vector<Prober> probers;
+    probers.reserve(static_cast<size_t>(threadCount(threads)));
+    for (int w = 0; w < threadCount(threads); ++w) probers.emplace_back(tape, presence, cell_m);
+    if (progress) progress->begin("thin parts", thin.size());
+    parallelFor((thin.size() + partsPerStep - 1) / partsPerStep, threads, progress, [&](size_t step, int worker) {
+        for (size_t i = step * partsPerStep; i < std::min(thin.size(), (step + 1) * partsPerStep); ++i) {
+            const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[thin[i]]];
+            missing[i] = probers[static_cast<size_t>(worker)].missing(thin[i], shape.scope);
+            tick(progress);
+        }
+    });
+    if (cancelled(progress)) return cancelledError();
+    std::vector<ThinPart> found;
+    for (size_t i = 0; i < thin.size(); ++i) {
+        if (!(missing[i] > worthTelling)) continue;
+        const derive::Scope& scope = derivation.tree.shapes[model.shapeOf[thin[i]]].scope;
+        found.push_back({thin[i], minComponent(scope.size), cellThatHolds(scope), missing[i]});
+    }
+    return found;
+}
+
+}  // namespace sgm::lower

@@ -1,0 +1,29 @@
+// Parts thinner than a cell, and how much of them a mesh lacks.
+// Enters: a derivation, its model and a mesh of it. Leaves: the thin parts that miss surface. Assumes a mesh with
+// origins whose triangles are no larger than a cell: before it is simplified, and before separate solids are dropped.
+#pragma once
+
+#include "grammar/lower/lower.h"
+#include "modeler/core/progress.h"
+#include "modeler/eval/tape.h"
+#include "modeler/mesh/mesh.h"
+
+namespace sgm::lower {
+
+/// A part that is thinner than a cell and has surface where the mesh shows none of it.
+struct ThinPart {
+    OriginId part = 0;
+    double thickness_m = 0;  ///< the least extent of its shape's scope
+    double cell_m = 0;       ///< cells no larger than this hold it
+    double missing = 0;      ///< share of its surface without a triangle within a cell
+};
+
+/// Looks at the parts whose scope is somewhere thinner than a cell: on lines through the scope along its thin axes, where does the field's
+/// surface belong to the part, and has the mesh a triangle of the part there? Those that lack more than a tenth,
+/// ascending by part. What is thin within a thicker scope, as a needle's point or a fractal's ornament, isn't looked
+/// for. Empty for a mesh without origins. About 2,000 evaluations a thin part; `threads` 0: all. Error::Cancelled.
+Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
+                                               const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
+                                               int threads, Progress* progress);
+
+}  // namespace sgm::lower
