@@ -57,9 +57,12 @@ Status checkCollider(const OutputRequest& request) {
 
 /// Objects need a file that holds them.
 Status checkObjects(const OutputRequest& request) {
-    if (request.objects.empty()) return Done{};
-    const auto choice = lower::parseObjects(request.objects);
+    const auto choice = lower::parseObjects(request.objects.empty() ? "material" : request.objects);
     if (!choice.ok()) return Error{Error::Kind::Usage, "--objects: " + choice.error().message};
+    const auto instances = std::find_if(request.options.begin(), request.options.end(), [](const std::string& text) { return text.starts_with("instances="); });
+    if (!choice->divides() && instances != request.options.end())
+        return Error{Error::Kind::Usage, fmt::format("--format-option {} is about objects: add --objects shape or the symbols whose shapes are objects", *instances)};
+    if (request.objects.empty()) return Done{};
     const auto unreal = std::find(request.options.begin(), request.options.end(), "engine=unreal");
     if (choice->divides() && unreal != request.options.end())
         return Error{Error::Kind::Usage, fmt::format("--objects {}: Unreal takes colliders by the name of one mesh; leave out the objects or the colliders", request.objects)};

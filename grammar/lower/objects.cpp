@@ -6,6 +6,8 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "grammar/lower/likeness.h"
+
 namespace sgm::lower {
 namespace {
 
@@ -38,7 +40,8 @@ ObjectValue valueOf(const rules::Value& value) {
 /// Which shapes of a derivation are objects, and the tree of them.
 class Divider {
 public:
-    Divider(const derive::Derivation& d, const Model& model) : d_(d), tree_(d.tree), model_(model) {
+    Divider(const derive::Derivation& d, const Model& model)
+        : d_(d), tree_(d.tree), model_(model), likenesses_(likenesses(d, model)) {
         isObject_.resize(tree_.shapes.size());
     }
 
@@ -103,6 +106,8 @@ private:
             node.file = s.span.source->name();
             node.line = s.span.source->place(s.span.begin).line;
         }
+        node.likeness = likenesses_[id];
+        node.centre = s.scope.centre;
         node.values.emplace_back("size", s.scope.size);
         if (const auto* extras = tree_.extrasOf(id))
             for (const auto& [name, value] : extras->values) node.values.emplace_back("with " + name, valueOf(value));
@@ -112,7 +117,8 @@ private:
     const derive::Derivation& d_;
     const derive::ShapeTree& tree_;
     const Model& model_;
-    std::vector<bool> isObject_;  ///< by shape
+    std::vector<uint64_t> likenesses_;  ///< by shape
+    std::vector<bool> isObject_;        ///< by shape
     DistinctNames names_;
 };
 

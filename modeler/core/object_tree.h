@@ -26,6 +26,9 @@ struct ObjectNode {
     std::string file;     ///< grammar file
     uint32_t line = 0;    ///< 1-based line of the text that made it
     std::vector<std::pair<std::string, ObjectValue>> values;  ///< size of its scope, values that it sets
+    /// Equal for nodes that moving puts onto each other, with all that is below them; 0: like no other.
+    uint64_t likeness = 0;
+    Vec3d centre = {};  ///< of its shape's scope, metres
 };
 
 /// Nodes in depth-first order; nodes[0] is the root and holds what no other node does.

@@ -19,14 +19,16 @@ constexpr ExportOption lightMap{"lightmap", "none", "none|256|512|1024|2048|4096
                                 "texels a side for each object"};
 constexpr ExportOption up{"up", "y", "y|z", "the axis that points up in the file"};
 constexpr ExportOption unit{"unit", "m", "m|cm|mm", "the length of one unit in the file"};
+constexpr std::string_view instancesDoc = "whether objects that are equal and touch nothing show one surface";
 constexpr ExportOption gltfOptions[] = {
     uv,
     lightMap,
+    {"instances", "yes", "yes|no", instancesDoc},
     {"engine", "godot", "godot|unreal|unity", "whose names colliders bear, so that it imports them as such"},
     {"pack", "none", "none|meshopt|draco",
      "compression, for readers that have it: 16-bit positions on one grid, 8-bit normals"}};
 constexpr ExportOption texturedOptions[] = {up, unit, uv};
-constexpr ExportOption usdOptions[] = {up, unit, uv, lightMap};
+constexpr ExportOption usdOptions[] = {up, unit, uv, lightMap, {"instances", "no", "yes|no", instancesDoc}};
 constexpr ExportOption plainOptions[] = {up, unit};
 constexpr ExportOption scadOptions[] = {
     up, unit, {"sides", "128", "16|32|64|128|256|512|1024|2048|4096", "sides of round solids, inscribed"}};

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <ostream>
 
 #include "modeler/core/atomic_file.h"
@@ -118,7 +119,6 @@ public:
 
     tinygltf::Model model;
     std::vector<int> meshOfNode;  ///< by node of the object tree; -1: none
-    const PatchedMesh& patched() const { return patched_; }
 
 private:
     template <class T>
@@ -216,12 +216,18 @@ Status writeStream(const ExportInput& input, const Path& temporary, const Path& 
 }
 
 Status writeScene(const ExportInput& input, const Path& temporary, const Path& target, bool binary) {
-    auto texture = makeTexture(input);
+    ExportInput own = input;  // without what is shown twice
+    std::optional<SharedObjects> shared;
+    if (input.objects)
+        shared = option(input, "instances", "yes") == "yes" ? shareObjects(*input.mesh, *input.objects)
+                                                            : keepOwnSurfaces(*input.objects);
+    if (shared && shared->mesh) own.mesh = &*shared->mesh;
+    auto texture = makeTexture(own);
     if (!texture.ok()) return texture.error();
-    MeshBuilder builder(input, std::move(*texture));
+    MeshBuilder builder(own, std::move(*texture));
     if (!builder.build()) return cancelledError();
-    addScene(builder.model, input, builder.meshOfNode);
-    addOriginTable(builder.model, *input.provenance, builder.patched());
+    addScene(builder.model, input, shared ? &*shared : nullptr, builder.meshOfNode);
+    addOriginTable(builder.model, *input.provenance, *input.mesh);
     if (Status status = addColliders(builder.model, input); !status.ok()) return status;
     const std::string_view pack = option(input, "pack", "none");
     if (pack == "meshopt") {

@@ -2,6 +2,8 @@
 
 #include <tiny_gltf.h>
 
+#include <algorithm>
+
 #include "modeler/export/formats.h"
 #include "modeler/export/origins.h"
 
@@ -19,7 +21,7 @@ Value valueOf(const ObjectValue& value) {
     return Value(Value::Array{Value(v.x), Value(v.y), Value(v.z)});
 }
 
-Value extrasOf(const ObjectNode& object) {
+Value::Object extrasOf(const ObjectNode& object) {
     Value::Object extras;
     extras["path"] = textOf(object.path);
     extras["symbol"] = textOf(object.symbol);
@@ -27,12 +29,50 @@ Value extrasOf(const ObjectNode& object) {
     extras["file"] = textOf(object.file);
     extras["line"] = Value(static_cast<int>(object.line));
     for (const auto& [name, value] : object.values) extras[validUtf8(name)] = valueOf(value);
-    return Value(extras);
+    return extras;
+}
+
+/// Which origins of the surface that the node shows stand for which of its own: the other's, its own, the other's …
+Value originsInPlace(const SharedObjects& shared, uint32_t node, const std::vector<OriginId>& shown) {
+    Value::Array pairs;
+    const auto &theirs = shared.origins[shared.of[node]], &own = shared.origins[node];
+    for (size_t i = 0; i < own.size(); ++i) {
+        if (!std::binary_search(shown.begin(), shown.end(), theirs[i])) continue;
+        pairs.emplace_back(static_cast<int>(theirs[i]));
+        pairs.emplace_back(static_cast<int>(own[i]));
+    }
+    return Value(pairs);
+}
+
+/// The nodes below the whole, which is the model's node 0.
+void addObjects(tinygltf::Model& model, const ExportInput& input, const SharedObjects& shared,
+                const std::vector<int>& meshOfNode) {
+    const ObjectTree& tree = *input.objects;
+    const auto& objects = tree.nodes;
+    const std::vector<OriginId> shown = originsOf(*input.mesh, *input.provenance);
+    std::vector<bool> holds(objects.size());
+    for (size_t i = 0; i < objects.size(); ++i) holds[i] = meshOfNode[shared.of[i]] >= 0;
+    const std::vector<bool> kept = nodesAbove(tree, holds);
+    std::vector<int> nodeOf(objects.size(), 0);
+    for (uint32_t i = 1; i < objects.size(); ++i) {
+        if (!kept[i]) continue;
+        tinygltf::Node node;
+        node.name = validUtf8(objects[i].name);
+        node.mesh = meshOfNode[shared.of[i]];
+        Value::Object extras = extrasOf(objects[i]);
+        if (shared.isShared(i) && node.mesh >= 0) extras["origins"] = originsInPlace(shared, i, shown);
+        node.extras = Value(extras);
+        if (const Vec3d moved = shared.moved[i]; moved != Vec3d{}) node.translation = {moved.x, moved.y, moved.z};
+        nodeOf[i] = static_cast<int>(model.nodes.size());
+        model.nodes[static_cast<size_t>(nodeOf[objects[i].parent])].children.push_back(nodeOf[i]);
+        model.nodes.push_back(node);
+    }
 }
 
 }  // namespace
 
-void addScene(tinygltf::Model& model, const ExportInput& input, const std::vector<int>& meshOfNode) {
+void addScene(tinygltf::Model& model, const ExportInput& input, const SharedObjects* shared,
+              const std::vector<int>& meshOfNode) {
     model.asset.version = "2.0";
     model.asset.generator = "sgm";
     tinygltf::Node root;
@@ -45,33 +85,17 @@ void addScene(tinygltf::Model& model, const ExportInput& input, const std::vecto
         root.extras = Value(extras);
     }
     model.nodes.push_back(root);
-    if (input.objects) {
-        const auto& objects = input.objects->nodes;
-        std::vector<bool> holds(objects.size());
-        for (size_t i = 0; i < objects.size(); ++i) holds[i] = meshOfNode[i] >= 0;
-        const std::vector<bool> kept = nodesAbove(*input.objects, holds);
-        std::vector<int> nodeOf(objects.size(), 0);
-        for (size_t i = 1; i < objects.size(); ++i) {
-            if (!kept[i]) continue;
-            tinygltf::Node node;
-            node.name = validUtf8(objects[i].name);
-            node.mesh = meshOfNode[i];
-            node.extras = extrasOf(objects[i]);
-            nodeOf[i] = static_cast<int>(model.nodes.size());
-            model.nodes[static_cast<size_t>(nodeOf[objects[i].parent])].children.push_back(nodeOf[i]);
-            model.nodes.push_back(node);
-        }
-    }
+    if (input.objects) addObjects(model, input, *shared, meshOfNode);
     tinygltf::Scene scene;
     scene.nodes = {0};
     model.scenes.push_back(scene);
     model.defaultScene = 0;
 }
 
-void addOriginTable(tinygltf::Model& model, const Provenance& provenance, const PatchedMesh& patched) {
+void addOriginTable(tinygltf::Model& model, const Provenance& provenance, const mesh::Mesh& mesh) {
     // Lists beside each other: half the text of an object an origin.
     Value::Array ids, paths, rules, files, lines;
-    for (const OriginId origin : originsOf(patched, provenance)) {
+    for (const OriginId origin : originsOf(mesh, provenance)) {
         const Part& part = provenance.parts[origin];
         ids.emplace_back(static_cast<int>(origin));
         paths.push_back(textOf(part.path));

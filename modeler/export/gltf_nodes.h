@@ -2,6 +2,7 @@
 #pragma once
 
 #include "modeler/export/exporter.h"
+#include "modeler/export/shared_objects.h"
 #include "modeler/export/surface.h"
 
 namespace tinygltf {
@@ -13,11 +14,14 @@ namespace sgm::exporter {
 
 /// Adds the scene with its nodes: the first one is the whole, with the input's extras; below it a node for each node of
 /// the input's object tree that holds triangles or stands above one that does, with shape, rule, line and values in its
-/// extras. `meshOfNode` is the mesh of each object, -1 where it has none.
-void addScene(tinygltf::Model& model, const ExportInput& input, const std::vector<int>& meshOfNode);
+/// extras. `meshOfNode` is the mesh of each object, -1 where it has none; nodes that share another's surface have its
+/// mesh and a translation, and say in `origins` which of its origins stand for which of theirs. `shared` is set where
+/// the input has objects.
+void addScene(tinygltf::Model& model, const ExportInput& input, const SharedObjects* shared,
+              const std::vector<int>& meshOfNode);
 
 /// Adds `origins` to the asset's extras: lists id, path, rule, file and line with an element an origin of the mesh.
-void addOriginTable(tinygltf::Model& model, const Provenance& provenance, const PatchedMesh& patched);
+void addOriginTable(tinygltf::Model& model, const Provenance& provenance, const mesh::Mesh& mesh);
 
 /// Extras of a primitive, {"origins": [origin, count, origin, count …]}: whose the patch's triangles are, in their
 /// order.

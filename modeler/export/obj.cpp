@@ -150,7 +150,7 @@ Status writeObj(const ExportInput& input, const Path& temporary, const Path& tar
     OutFile out(temporary, target, input.progress);
     out.text("# sgm\n");
     for (const auto& [key, value] : input.extras) out.text(fmt::format("# {}: {}\n", oneLine(key), oneLine(value)));
-    for (const OriginId origin : originsOf(patched, *input.provenance))
+    for (const OriginId origin : originsOf(*input.mesh, *input.provenance))
         out.text(fmt::format("# origin {}: {}\n", origin, originText(input.provenance->parts[origin])));
     if (input.byMaterial) out.text(fmt::format("mtllib {}\n", materials.filename().string()));
     ObjText text(out, input, patched, texture);

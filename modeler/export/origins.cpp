@@ -6,10 +6,11 @@
 
 namespace sgm::exporter {
 
-std::vector<OriginId> originsOf(const PatchedMesh& patched, const Provenance& provenance) {
+std::vector<OriginId> originsOf(const mesh::Mesh& mesh, const Provenance& provenance) {
     std::vector<bool> seen(provenance.parts.size());
-    for (const OriginId origin : patched.origins)
-        if (origin < seen.size()) seen[origin] = true;
+    for (const mesh::Chunk& chunk : mesh.chunks)
+        for (const OriginId origin : chunk.origins)
+            if (origin < seen.size()) seen[origin] = true;
     std::vector<OriginId> origins;
     for (size_t i = 0; i < seen.size(); ++i)
         if (seen[i]) origins.push_back(static_cast<OriginId>(i));

@@ -7,7 +7,7 @@
 namespace sgm::exporter {
 
 /// The origins of a mesh's triangles that the provenance has parts for, ascending.
-std::vector<OriginId> originsOf(const PatchedMesh& patched, const Provenance& provenance);
+std::vector<OriginId> originsOf(const mesh::Mesh& mesh, const Provenance& provenance);
 
 /// "Cave/Cell, rule grow, a.sgm:12": a part on one line.
 std::string originText(const Part& part);

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "modeler/export/formats.h"
 #include "modeler/export/origins.h"
 #include "modeler/export/out_file.h"
+#include "modeler/export/shared_objects.h"
 #include "modeler/export/usda_mesh.h"
 
 namespace sgm::exporter {
@@ -36,32 +38,41 @@ std::string customData(const ObjectNode& object) {
     return text + "    }\n";
 }
 
-/// The objects as prims, one in another as in their tree; the root's mesh comes first.
+/// The objects as prims, one in another as in their tree; the root's mesh comes first. What shows another's surface is
+/// an instance that refers to its prim.
 class ObjectPrims {
 public:
-    ObjectPrims(OutFile& out, const UsdSurface& surface)
-        : out_(out), surface_(surface), local_(surface.input.mesh->vertexCount()) {}
+    ObjectPrims(OutFile& out, const UsdSurface& surface, const SharedObjects* shared)
+        : out_(out), surface_(surface), shared_(shared), local_(surface.input.mesh->vertexCount()) {}
 
     void write() {
         const auto& patches = surface_.patched.patches;
         const size_t count = surface_.input.objects ? surface_.input.objects->nodes.size() : 1;
         std::vector<size_t> firstPatch(count, patches.size());
         for (size_t i = 0; i < patches.size(); i = surface_.patched.endOfObject(i)) firstPatch[patches[i].object] = i;
-        std::vector<bool> holds(count);
-        for (size_t i = 0; i < count; ++i) holds[i] = firstPatch[i] < patches.size();
         mesh(firstPatch[0]);
         if (!surface_.input.objects) return;
-        const std::vector<bool> kept = nodesAbove(*surface_.input.objects, holds);
-        std::set<std::string> taken{"Materials", "Surface"};
+        const ObjectTree& objects = *surface_.input.objects;
+        std::vector<bool> kept(count);
+        for (size_t i = 0; i < count; ++i) kept[i] = firstPatch[shared_->of[i]] < patches.size();
+        kept = nodesAbove(objects, std::move(kept));
+        std::vector<std::string> paths(count);
+        paths[0] = "/" + surface_.root;
         std::vector<uint32_t> open{0};
         for (uint32_t i = 1; i < count; ++i) {
-            const ObjectNode& object = surface_.input.objects->nodes[i];
+            const ObjectNode& object = objects.nodes[i];
             for (; open.back() != object.parent; open.pop_back())
                 if (kept[open.back()]) out_.text("}\n");
             open.push_back(i);
+            // What is below an instance comes with what it refers to.
+            if (shared_->isShared(i) && !shared_->isTop(objects, i)) kept[i] = false;
             if (!kept[i]) continue;
-            out_.text(fmt::format("def Xform \"{}\" (\n    kind = \"subcomponent\"\n{})\n{{\n",
-                                  distinct(object.name, taken), customData(object)));
+            const std::string name = distinct(object.name);
+            paths[i] = paths[object.parent] + "/" + name;
+            const bool instance = shared_->isShared(i);
+            out_.text(fmt::format("def Xform \"{}\" (\n    kind = \"subcomponent\"\n{}{})\n{{\n", name,
+                                  instance ? reference(paths[shared_->of[i]]) : "", customData(object)));
+            if (instance) move(shared_->moved[i]);
             mesh(firstPatch[i]);
         }
         for (; open.size() > 1; open.pop_back())
@@ -75,20 +86,33 @@ private:
         writeUsdMesh(out_, surface_, local_, firstPatch, surface_.patched.endOfObject(firstPatch));
         tick(surface_.input.progress);
     }
-    static std::string distinct(const std::string& name, std::set<std::string>& taken) {
+    static std::string reference(const std::string& path) {
+        return fmt::format("    instanceable = true\n    prepend references = <{}>\n", path);
+    }
+    void move(Vec3d by) {
+        const Placement place = placementOf(surface_.input);
+        const Vec3d v = (place.zUp ? Vec3d{by.x, -by.z, by.y} : by) * static_cast<double>(place.unitsPerMetre);
+        out_.text(
+            fmt::format("    double3 xformOp:translate = ({}, {}, {})\n"
+                        "    uniform token[] xformOpOrder = [\"xformOp:translate\"]\n",
+                        v.x, v.y, v.z));
+    }
+    std::string distinct(const std::string& name) {
         std::string id = identifierOf(name);
-        for (int i = 2; !taken.insert(id).second; ++i) id = fmt::format("{}_{}", identifierOf(name), i);
+        for (int i = 2; !taken_.insert(id).second; ++i) id = fmt::format("{}_{}", identifierOf(name), i);
         return id;
     }
 
     OutFile& out_;
     const UsdSurface& surface_;
+    const SharedObjects* shared_;  ///< set where there are objects
     std::vector<uint32_t> local_;
+    std::set<std::string> taken_{"Materials", "Surface"};
 };
 
 /// The parts behind the faces' origins, as lists beside each other.
-void writeOriginTable(OutFile& out, const Provenance& provenance, const PatchedMesh& patched) {
-    const std::vector<OriginId> origins = originsOf(patched, provenance);
+void writeOriginTable(OutFile& out, const Provenance& provenance, const mesh::Mesh& mesh) {
+    const std::vector<OriginId> origins = originsOf(mesh, provenance);
     const auto list = [&](std::string_view declaration, auto&& element) {
         out.text(fmt::format("            {} = [", declaration));
         for (size_t i = 0; i < origins.size(); ++i) {
@@ -106,12 +130,12 @@ void writeOriginTable(OutFile& out, const Provenance& provenance, const PatchedM
     out.text("        }\n");
 }
 
-void writeLayer(OutFile& out, const ExportInput& input, const PatchedMesh& patched, const std::string& root) {
+void writeLayer(OutFile& out, const ExportInput& input, const std::string& root) {
     out.text("#usda 1.0\n(\n");
     out.text("    customLayerData = {\n");
     for (const auto& [key, value] : input.extras)
         out.text(fmt::format("        string {} = {}\n", quoted(key), quoted(value)));
-    writeOriginTable(out, *input.provenance, patched);
+    writeOriginTable(out, *input.provenance, *input.mesh);
     out.text("    }\n");
     const Placement place = placementOf(input);
     out.text(
@@ -142,19 +166,25 @@ void writeMaterials(OutFile& out, const UsdSurface& surface) {
 }  // namespace
 
 Status writeUsda(const ExportInput& input, const Path& temporary, const Path& target) {
-    const auto texture = makeTexture(input);
+    ExportInput own = input;  // without what is shown twice
+    std::optional<SharedObjects> shared;
+    if (input.objects)
+        shared = option(input, "instances", "no") == "yes" ? shareObjects(*input.mesh, *input.objects)
+                                                           : keepOwnSurfaces(*input.objects);
+    if (shared && shared->mesh) own.mesh = &*shared->mesh;
+    const auto texture = makeTexture(own);
     if (!texture.ok()) return texture.error();
     const PatchedMesh patched =
-        cutIntoPatches(*input.mesh, *input.provenance, {input.objects, texture->charts.ofTriangle, input.byMaterial});
+        cutIntoPatches(*own.mesh, *own.provenance, {own.objects, texture->charts.ofTriangle, own.byMaterial});
     const std::vector<std::string> names = distinctNames(input.provenance->materials, identifierOf);
     const std::string root = identifierOf(input.name);
-    const UsdSurface surface{input, *texture, patched, names, root};
+    const UsdSurface surface{own, *texture, patched, names, root};
     if (input.progress) input.progress->begin("write", patched.patches.size());
 
     OutFile out(temporary, target, input.progress);
-    writeLayer(out, input, patched, root);
+    writeLayer(out, input, root);
     out.text(fmt::format("def Xform \"{}\" (\n    kind = \"component\"\n)\n{{\n", root));
-    ObjectPrims(out, surface).write();
+    ObjectPrims(out, surface, shared ? &*shared : nullptr).write();
     if (input.byMaterial) writeMaterials(out, surface);
     out.text("}\n");
     return out.finish();

@@ -81,7 +81,7 @@ TEST_F(Meshes, AreDividedIntoObjectsOfSymbols) {
     const std::string file = grammar("start A -> cube size 2 : Wall\nrule Wall -> cube size 2 + Post at +y + Post at +x\n"
                                      "rule Post -> cube size .5\n");
     const std::string out = path("a.gltf");
-    ASSERT_EQ(sgm("build -q " + file + " --resolution 32 --objects Post -o " + out).code, 0);
+    ASSERT_EQ(sgm("build -q " + file + " --resolution 32 --objects Post --format-option instances=no -o " + out).code, 0);
     const Json gltf = Json::parse(read(out));
     std::vector<std::string> names;
     for (const Json& node : gltf["nodes"]) names.push_back(node["name"]);
@@ -102,12 +102,32 @@ TEST_F(Meshes, AreDividedIntoObjectsOfSymbols) {
     EXPECT_EQ(triangles(gltf), triangles(Json::parse(read(path("b.gltf")))));
 }
 
+TEST_F(Meshes, OfEqualObjectsAreWrittenOnce) {
+    const std::string file = grammar(
+        "start Street -> cube size .5 for k in 1..6 { + House at +x to centre move (k * 3.717, .3 * k, .111 * k) }\n"
+        "rule House -> cube size (2, 3, 2) - cube size (.8, 1, .5) at +z to centre + prism size (2.2, 1, 2.2) at +y\n");
+    ASSERT_EQ(sgm("build -q " + file + " --resolution 128 --objects House -o " + path("a.gltf")).code, 0);
+    const Json gltf = Json::parse(read(path("a.gltf")));
+    EXPECT_EQ(gltf["meshes"].size(), 2u) << "the first stone and one house";
+    size_t houses = 0;
+    for (const Json& node : gltf["nodes"])
+        if (node["name"].get<std::string>().starts_with("House")) {
+            EXPECT_EQ(node["mesh"], 1);
+            const double k = static_cast<double>(houses++);
+            if (k == 0) continue;
+            EXPECT_NEAR(node["translation"][0].get<double>(), 3.717 * k, 1e-9);
+            EXPECT_NEAR(node["translation"][2].get<double>(), .111 * k, 1e-9);
+        }
+    EXPECT_EQ(houses, 6u);
+}
+
 TEST_F(Meshes, RefuseObjectsThatNobodyHolds) {
     const std::string file = grammar("start A -> cube size 2 : Wall\n");
     const std::pair<std::string, std::string> refused[] = {
         {"--objects Wal -o " + path("a.glb"), "no shape is called 'Wal' (did you mean 'Wall'?); there are A, "},
         {"--objects Wall, -o " + path("a.glb"), "--objects: objects 'Wall,': write none, material, shape"},
         {"--objects Wall -o " + path("a.stl"), "--objects Wall: objects go into .glb .gltf .obj .usda, and no such file is asked for"},
+        {"--format-option instances=no -o " + path("a.glb"), "instances=no is about objects: add --objects"},
         {"--objects Wall --collider boxes --format-option engine=unreal -o " + path("a.glb"), "Unreal takes colliders by the name of one mesh"}};
     for (const auto& [arguments, message] : refused) {
         const Outcome run = sgm("build " + file + " --resolution 16 " + arguments);

@@ -93,6 +93,43 @@ TEST(Objects, OfUnknownSymbolsAreRefusedWithTheNearestName) {
     for (const char* text : {"", ",", "Window,", "Window,,House"}) EXPECT_FALSE(lower::parseObjects(text).ok()) << text;
 }
 
+/// Likeness of each object called `name` in the street of a House rule's body, in order.
+std::vector<uint64_t> likenessesOf(const std::string& text, const std::string& symbol) {
+    const Lowered model("grammar 1\n" + text);
+    const auto tree = lower::objectTree(model.derivation, *model.model, *lower::parseObjects(symbol));
+    EXPECT_TRUE(tree.ok());
+    std::vector<uint64_t> all;
+    for (const ObjectNode& node : tree->nodes)
+        if (node.symbol == symbol) all.push_back(node.likeness);
+    return all;
+}
+
+TEST(Objects, AreAlikeWhereOnlyTheirPlaceDiffers) {
+    const std::string street = "start Street -> cube for k in 1..3 { + House at +x to centre move (k * 3.7, k * .1, 0)";
+    const std::string house = "rule House -> cube size 2 - cube size (.5, 1, 3) + prism size (2.2, 1, 2.2) at +y";
+    const auto equal = likenessesOf(street + " }\n" + house + "\n", "House");
+    ASSERT_EQ(equal.size(), 3u);
+    EXPECT_NE(equal[0], 0u);
+    EXPECT_EQ(equal[0], equal[1]);
+    EXPECT_EQ(equal[0], equal[2]);
+    for (const char* differs : {" turn (10deg * k)", " size (1 + k, 1, 1)", " with n = k"}) {
+        SCOPED_TRACE(differs);
+        const bool takesN = std::string(differs).find("with") != std::string::npos;
+        const auto all = likenessesOf(street + differs + " }\n" + (takesN ? "rule House -> cube size (1, n, 1)" : house) + "\n", "House");
+        ASSERT_EQ(all.size(), 3u);
+        EXPECT_NE(all[0], all[1]);
+    }
+}
+
+TEST(Objects, OfNoiseAndBlendsAreLikeNoOther) {
+    const std::string street = "start Street -> cube for k in 1..2 { + House at +x to centre move (k * 3.7, 0, 0) }\n";
+    for (const char* house : {"rule House -> cube size 2 displace fbm(.1m, 2/m, 2)\n",
+                              "rule House -> cube size 2 + sphere size 1 at +y blend .2m\n"}) {
+        SCOPED_TRACE(house);
+        for (const uint64_t likeness : likenessesOf(street + house, "House")) EXPECT_EQ(likeness, 0u);
+    }
+}
+
 TEST(Objects, OfAChainOfThousandsAreMadeWithoutRecursion) {
     const Lowered model(
         "grammar 1\nstart A -> cube size 1 : Step\nrule Step repeat 4000 -> + cube size 1 at +x : Step\n");
