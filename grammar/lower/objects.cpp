@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "grammar/lower/likeness.h"
+#include "modeler/field/primitives.h"
 
 namespace sgm::lower {
 namespace {
@@ -109,9 +110,19 @@ private:
         node.likeness = likenesses_[id];
         node.centre = s.scope.centre;
         node.values.emplace_back("size", s.scope.size);
+        addSolid(tree_.solidOf(id), node);
         if (const auto* extras = tree_.extrasOf(id))
             for (const auto& [name, value] : extras->values) node.values.emplace_back("with " + name, valueOf(value));
         return node;
+    }
+
+    /// What a shape's own solid is, with its arguments.
+    static void addSolid(const derive::SolidValue* solid, ObjectNode& node) {
+        if (!solid || !solid->primitive) return;
+        node.values.emplace_back("solid", std::string(solid->primitive->name));
+        for (size_t i = 0; i < solid->args.size(); ++i)
+            node.values.emplace_back("solid " + std::string(solid->primitive->parameters[i].name),
+                                     valueOf(solid->args[i]));
     }
 
     const derive::Derivation& d_;

@@ -82,6 +82,16 @@ TEST(Objects, KnowRuleLineAndValues) {
     EXPECT_EQ(wing.values[2], (std::pair<std::string, ObjectValue>{"with kind", 2.0}));
 }
 
+TEST(Objects, KnowTheirSolidWithItsArguments) {
+    const Lowered model("grammar 1\nstart A -> roof(.35) size (2, 1, 2)\n");
+    const auto tree = lower::objectTree(model.derivation, *model.model, *lower::parseObjects("shape"));
+    ASSERT_TRUE(tree.ok());
+    const auto& values = tree->nodes.back().values;
+    ASSERT_EQ(values.size(), 3u);
+    EXPECT_EQ(values[1], (std::pair<std::string, ObjectValue>{"solid", std::string("roof")}));
+    EXPECT_EQ(values[2], (std::pair<std::string, ObjectValue>{"solid round", 0.35}));
+}
+
 TEST(Objects, OfUnknownSymbolsAreRefusedWithTheNearestName) {
     const Lowered model(street);
     const auto choice = lower::parseObjects("Windw");
