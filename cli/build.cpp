@@ -12,6 +12,7 @@
 #include "cli/colliders.h"
 #include "cli/commands.h"
 #include "cli/floating.h"
+#include "cli/levels.h"
 #include "cli/missing.h"
 #include "cli/messages.h"
 #include "cli/numbers.h"
@@ -19,6 +20,7 @@
 #include "cli/pipeline.h"
 #include "cli/renamed.h"
 #include "cli/report.h"
+#include "cli/validate.h"
 #include "cli/watch.h"
 #include "grammar/incremental/pipeline.h"
 #include "modeler/core/stopwatch.h"
@@ -59,7 +61,7 @@ bool bareWillDo(const BuildRequest& request) {
 /// A streamed build never has the whole mesh; Error::Usage names what would need it.
 Status checkStream(const BuildRequest& request) {
     const std::pair<bool, const char*> whole[] = {{request.smooth > 0, "--smooth"}, {request.simplify < 1 || request.tolerance_m, "--simplify and --tolerance"}, {request.keep != "all", "--keep"},
-                                                  {request.validate, "--validate"}, {surveys(request), "--cave and --floor"}, {request.inward, "--inward"},
+                                                  {request.validate, "--validate"}, {surveys(request), "--cave and --floor"}, {request.out.lod > 1, "--lod"}, {request.inward, "--inward"},
                                                   {!request.report.empty(), "--report"}, {!request.animations.empty(), "--animate"}};
     for (const auto& [asked, option] : whole)
         if (asked) return Error{Error::Kind::Usage, fmt::format("--stream never holds the whole mesh: leave out {}", option)};
@@ -119,18 +121,6 @@ void say(const BuildRequest& request, const Model& model, const mesh::MeshFigure
     sayFloating(model, support);
 }
 
-/// CGAL's word on the mesh as a line; Error::Input when it finds a fault.
-Status validated(const mesh::Mesh& mesh, Stages& stages) {
-    const auto judgement = timed(stages, "validate", [&] { return mesh::judge(mesh); });
-    if (!judgement.ok()) return judgement.error();
-    const std::string verdict = fmt::format("CGAL: {}, {}, {}, {:.6g} m³", judgement->closed ? "closed" : "not closed",
-                                            judgement->outward ? "outward" : "not outward",
-                                            judgement->selfIntersects ? "crosses itself" : "free of self-intersections", judgement->volume_m3);
-    if (!judgement->closed || !judgement->outward || judgement->selfIntersects) return Error{Error::Kind::Input, verdict};
-    fmt::print("{}\n", verdict);
-    return Done{};
-}
-
 mesh::Keep keepOf(const BuildRequest& request) {
     return request.keep == "all" ? mesh::Keep::All : request.keep == "grounded" ? mesh::Keep::Grounded : mesh::Keep::Largest;
 }
@@ -180,6 +170,11 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
         colliders = std::move(*made);
         input.colliders = colliders.all;
     }
+    const auto levels = timed(stages, "levels of detail", [&] {
+        return makeLevels({request.out.lod, meshed.grid.cell_m, meshingOf(request.grid), keepOf(request), request.inward}, model, *mesh, progress);
+    });
+    if (!levels.ok()) return levels.error();
+    input.levels = *levels;
     std::optional<volume::Volume> level;
     if (wantsLevelSet(request)) {
         auto sampled = timed(stages, "level set", [&] {
@@ -207,6 +202,7 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
         if (const Status s = viewer::writeText(request.report, reportJson(model, meshed, figures, support, missing, cave, stages, request.grid.threads)); !s.ok()) return s;
     if (request.quiet) return Done{};
     say(request, model, figures, support, colliders, stages);
+    fmt::print("{}", levelTable(*levels, mesh->triangleCount()));
     sayMissing(model, meshed.grid, missing);
     if (cave && request.cave) fmt::print("{}", caveTable(*cave));
     return Done{};

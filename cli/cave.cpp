@@ -69,6 +69,7 @@ Result<Survey> surveyFor(const SurveyRequest& request, const exporter::ExportInp
 Status writeFloor(const std::string& file, exporter::ExportInput input, const mesh::Mesh& floor) {
     input.mesh = &floor;
     input.colliders = {};
+    input.levels = {};
     input.objects = nullptr;
     input.name += "-floor";
     return exporter::write(input, file);

@@ -73,6 +73,17 @@ Status checkObjects(const OutputRequest& request) {
     return Error{Error::Kind::Usage, fmt::format("--objects {}: objects go into {}, and no such file is asked for", request.objects, fmt::join(endings, " "))};
 }
 
+/// Levels need a file that holds them, and an option about levels needs some.
+Status checkLevels(const OutputRequest& request) {
+    const auto said = std::find_if(request.options.begin(), request.options.end(), [](const std::string& text) { return text.starts_with("levels="); });
+    if (request.lod == 1) {
+        if (said == request.options.end()) return Done{};
+        return Error{Error::Kind::Usage, fmt::format("--format-option {} is about levels of detail: add --lod 3", *said)};
+    }
+    if (std::any_of(request.files.begin(), request.files.end(), [](const std::string& file) { return formatOf(file)->holdsLevels; })) return Done{};
+    return Error{Error::Kind::Usage, fmt::format("--lod {}: levels of detail go into {}, and no such file is asked for", request.lod, exporter::leveledExtensions())};
+}
+
 /// An option that none of the files takes says so, rather than do nothing.
 Status checkOption(const OutputRequest& request, const std::string& text) {
     const std::string name = text.substr(0, text.find('='));
@@ -94,6 +105,8 @@ void addOutputOptions(CLI::App& command, OutputRequest& request) {
     addRenamedOption(command, "--export", "--format-option", request.options);
     command.add_option("--objects", request.objects, "Objects in .glb .gltf .obj .usda: none (one piece, colours alone), material (one object divided by material), shape (every shape that shows), or the shapes of symbols: Storey,Window")
         ->option_text("none|material|shape|SYMBOL[,SYMBOL…] [material]");
+    command.add_option("--lod", request.lod, "Levels of detail, the finest included; each further one is off by twice as much: see docs/programs.md")
+        ->check(CLI::Range(1, mesh::mostLevels))->capture_default_str();
     command.add_option("--collider", request.collider, "Add colliders to .glb and .gltf: boxes or convex parts made from the terminals, or the mesh, simplified")
         ->check(CLI::IsMember({"boxes", "convex", "mesh"}));
     auto* proxy = command.add_option("--proxy", request.proxy, "Mesh file for a coarse closed mesh around the model; goes with the next version: see --collider");
@@ -123,6 +136,7 @@ Status checkOutputs(const OutputRequest& request) {
     }
     if (const Status s = checkCollider(request); !s.ok()) return s;
     if (const Status s = checkObjects(request); !s.ok()) return s;
+    if (const Status s = checkLevels(request); !s.ok()) return s;
     for (const std::string& text : request.options)
         if (const Status s = checkOption(request, text); !s.ok()) return s;
     for (const std::string& file : allFiles(request))
@@ -190,6 +204,7 @@ Status writeOutputs(const OutputRequest& request, const Model& model, exporter::
     input.mesh = &*around;
     input.colliders = {};
     input.objects = nullptr;  // the whole is one, around all of them
+    input.levels = {};
     input.options = optionsFor(request, *formatOf(request.proxy));
     return exporter::write(input, request.proxy);
 }

@@ -12,10 +12,11 @@ struct OutputRequest {
     std::vector<std::string> options;  ///< "NAME=VALUE"
     std::string objects;               ///< as lower::parseObjects reads it, "" for by material
     std::string collider;              ///< "boxes", "convex" or "mesh", "" for none
+    int lod = 1;                       ///< levels of detail, the finest included
     std::string proxy;                 ///< a mesh file, "" for none
     double proxyTolerance_m = 0;       ///< 0: a twentieth of the model's longest side
 };
-/// Adds -o, --format-option, --objects, --collider, --proxy and --proxy-tolerance.
+/// Adds -o, --format-option, --objects, --lod, --collider, --proxy and --proxy-tolerance.
 void addOutputOptions(CLI::App& command, OutputRequest& request);
 
 /// The outputs and the proxy, if there is one.

@@ -26,7 +26,9 @@ constexpr ExportOption gltfOptions[] = {
     {"instances", "yes", "yes|no", instancesDoc},
     {"engine", "godot", "godot|unreal|unity", "whose names colliders bear, so that it imports them as such"},
     {"pack", "none", "none|meshopt|draco",
-     "compression, for readers that have it: 16-bit positions on one grid, 8-bit normals"}};
+     "compression, for readers that have it: 16-bit positions on one grid, 8-bit normals"},
+    {"levels", "scene", "scene|msft",
+     "where coarser levels of detail are: in the scene beside the finest, or outside, for readers of MSFT_lod alone"}};
 constexpr ExportOption texturedOptions[] = {up, unit, uv};
 constexpr ExportOption usdOptions[] = {up, unit, uv, lightMap, {"instances", "no", "yes|no", instancesDoc}};
 constexpr ExportOption plainOptions[] = {up, unit};
@@ -59,17 +61,17 @@ bool withoutAttributes(const ExportOptions& options) {
 
 constexpr Exporter table[] = {
     {".glb", "glTF 2.0, binary: normals, texture coordinates, a primitive a material", false, gltfOptions, nullptr,
-     writeGlb, nullptr, false, true},
-    {".gltf", "glTF 2.0 as JSON, with its buffer inside", false, gltfOptions, nullptr, writeGltf, nullptr, false,
+     writeGlb, nullptr, false, true, true},
+    {".gltf", "glTF 2.0 as JSON, with its buffer inside", false, gltfOptions, nullptr, writeGltf, nullptr, false, true,
      true},
-    {".obj", "Wavefront OBJ, with a .mtl beside it", false, texturedOptions, nullptr, writeObj, nullptr, false,
+    {".obj", "Wavefront OBJ, with a .mtl beside it", false, texturedOptions, nullptr, writeObj, nullptr, false, true,
      true},
     {".ply", "PLY, binary: normals, texture coordinates s t, colours, an origin a face", false, plyOptions,
      withoutAttributes, writePly, streamPly},
     {".stl", "STL, binary: positions only", false, plainOptions, always, writeStl, streamStl},
     {".off", "OFF: positions and triangles as text", false, plainOptions, always, writeOff, streamOff},
     {".usda", "OpenUSD as text: normals, display colours, a subset and preview surface a material", false,
-     usdOptions, nullptr, writeUsda, nullptr, false, true},
+     usdOptions, nullptr, writeUsda, nullptr, false, true, true},
     {".vdb", "OpenVDB: a narrow-band level set, fog for renderers, or both; voxels in metres", true, volumeOptions,
      always, writeVdb, nullptr},
     {".csg.json", "The solid tree as JSON: booleans of primitives with their parts and materials, of models that are exactly that",
@@ -224,6 +226,13 @@ Status writeStreamed(const ExportInput& input, const ChunkSource& chunks, const 
         if (triangles == 0) return writeError(path, "the mesh has no triangles");
         return Done{};
     });
+}
+
+std::string leveledExtensions() {
+    std::vector<std::string_view> extensions;
+    for (const Exporter& e : table)
+        if (e.holdsLevels) extensions.push_back(e.extension);
+    return joined(extensions, " ", [](std::string_view e) { return e; });
 }
 
 std::string streamedExtensions() {

@@ -16,6 +16,7 @@
 #include "modeler/core/result.h"
 #include "modeler/export/colliders.h"
 #include "modeler/field/solid_tree.h"
+#include "modeler/mesh/levels.h"
 #include "modeler/mesh/polygonize.h"
 #include "modeler/volume/volume.h"
 
@@ -41,6 +42,7 @@ struct ExportInput {
     std::span<const Collider> colliders;        ///< written by formats that hold colliders
     const ObjectTree* objects = nullptr;        ///< into which formats that hold objects divide the mesh; null: one object
     bool byMaterial = true;                     ///< formats that hold objects divide each by material; else colours alone
+    std::span<const mesh::LevelOfDetail> levels;  ///< coarser meshes, written by formats that hold levels of detail
     std::string name = "model";                 ///< of the object in the file
     std::map<std::string, std::string> extras;  ///< grammar, seed, parameters: kept where the format can hold them
     ExportOptions options;                      ///< those of the format, checked by `write`
@@ -66,6 +68,7 @@ struct Exporter {
                      const std::filesystem::path& target);
     bool wantsSolids = false;   ///< holds the model's solid tree, and neither a mesh nor a volume
     bool holdsObjects = false;  ///< divides a mesh by ExportInput::objects
+    bool holdsLevels = false;   ///< writes ExportInput::levels beside the mesh
 };
 
 /// The table, in the order of docs/reference.md.
@@ -80,6 +83,8 @@ std::string streamedExtensions();
 Status checkOptions(const Exporter& row, const ExportOptions& options);
 /// Whether files of the format hold colliders: those with the option `engine` do.
 bool holdsColliders(const Exporter& row);
+/// Extensions of the formats that hold levels of detail: ".glb …".
+std::string leveledExtensions();
 /// Whether a bare mesh has all that the format writes with these options.
 bool takesBare(const Exporter& row, const ExportOptions& options);
 /// What `write` makes of `path`: the file, and those that lie beside it.

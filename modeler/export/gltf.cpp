@@ -15,6 +15,7 @@
 #include "modeler/export/formats.h"
 #include "modeler/export/gltf_colliders.h"
 #include "modeler/export/gltf_draco.h"
+#include "modeler/export/gltf_levels.h"
 #include "modeler/export/gltf_meshopt.h"
 #include "modeler/export/gltf_nodes.h"
 #include "modeler/export/surface.h"
@@ -215,6 +216,14 @@ Status writeStream(const ExportInput& input, const Path& temporary, const Path& 
     return Done{};
 }
 
+Result<tinygltf::Model> modelOfMesh(const ExportInput& input) {
+    auto texture = makeTexture(input);
+    if (!texture.ok()) return texture.error();
+    MeshBuilder builder(input, std::move(*texture));
+    if (!builder.build()) return cancelledError();
+    return std::move(builder.model);
+}
+
 Status writeScene(const ExportInput& input, const Path& temporary, const Path& target, bool binary) {
     ExportInput own = input;  // without what is shown twice
     std::optional<SharedObjects> shared;
@@ -228,6 +237,7 @@ Status writeScene(const ExportInput& input, const Path& temporary, const Path& t
     if (!builder.build()) return cancelledError();
     addScene(builder.model, input, shared ? &*shared : nullptr, builder.meshOfNode);
     addOriginTable(builder.model, *input.provenance, *input.mesh);
+    if (Status status = addLevels(builder.model, input, modelOfMesh); !status.ok()) return status;
     if (Status status = addColliders(builder.model, input); !status.ok()) return status;
     const std::string_view pack = option(input, "pack", "none");
     if (pack == "meshopt") {

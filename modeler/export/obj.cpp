@@ -7,6 +7,7 @@
 #include "modeler/core/atomic_file.h"
 #include "modeler/core/random.h"
 #include "modeler/export/formats.h"
+#include "modeler/export/levels.h"
 #include "modeler/export/origins.h"
 #include "modeler/export/out_file.h"
 #include "modeler/export/surface.h"
@@ -15,11 +16,19 @@
 namespace sgm::exporter {
 namespace {
 
-/// The file's text, a part after the other.
+/// Lines of a file that faces count, whatever mesh they belong to.
+struct ObjCounts {
+    size_t positions = 0, coordinates = 0, normals = 0;
+};
+
+/// A mesh's text, a part after the other.
 class ObjText {
 public:
-    ObjText(OutFile& out, const ExportInput& input, const PatchedMesh& patched, const TextureCharts& texture)
-        : out_(out),
+    /// `before` counts what the file holds already.
+    ObjText(OutFile& out, const ExportInput& input, const PatchedMesh& patched, const TextureCharts& texture,
+            const ObjCounts& before)
+        : before_(before),
+          out_(out),
           mesh_(*input.mesh),
           patched_(patched),
           texture_(texture),
@@ -45,6 +54,14 @@ public:
             normalOf_[v] = next++;
             line("vn ", place_.direction(unitNormal(vertices_.normal(v))));
         }
+        normalCount_ = next;
+    }
+
+    /// What the file holds after `vertices` and all patches.
+    ObjCounts counts() const {
+        return {before_.positions + mesh_.vertexCount(),
+                before_.coordinates + (texture_.empty() ? 0 : patched_.vertices.size()),
+                before_.normals + normalCount_};
     }
 
     /// One patch: its texture coordinates, then its faces as position/texture/normal, counted from 1, with a comment
@@ -85,15 +102,16 @@ private:
             const uint32_t v = patched_.triangles[t][corner];
             const uint32_t own = patched_.normals.empty() ? mesh::noIndex : patched_.normals[v];
             out_.text(" ");
-            out_.number(patched_.vertices[v] + 1);
+            out_.number(before_.positions + patched_.vertices[v] + 1);
             out_.text("/");
-            if (!texture_.empty()) out_.number(v + 1);
+            if (!texture_.empty()) out_.number(before_.coordinates + v + 1);
             out_.text("/");
-            out_.number((own == mesh::noIndex ? normalOf_[patched_.vertices[v]] : own) + 1);
+            out_.number(before_.normals + (own == mesh::noIndex ? normalOf_[patched_.vertices[v]] : own) + 1);
         }
         out_.text("\n");
     }
 
+    const ObjCounts before_;
     OutFile& out_;
     const mesh::Mesh& mesh_;
     const PatchedMesh& patched_;
@@ -103,12 +121,11 @@ private:
     std::vector<uint32_t> smoothing_;  ///< group by triangle in mesh order; empty: 1 for all
     std::vector<uint32_t> normalOf_;   ///< by mesh vertex: number of its line of normals, from 0
     uint32_t smoothed_ = 0;            ///< the group that the last face was put in
+    size_t normalCount_ = 0;           ///< lines of normals
 };
 
-Status writeMaterials(const ExportInput& input, const PatchedMesh& patched, const std::vector<std::string>& names,
+Status writeMaterials(const ExportInput& input, const std::set<uint32_t>& used, const std::vector<std::string>& names,
                       const Path& target) {
-    std::set<uint32_t> used;
-    for (const Patch& p : patched.patches) used.insert(p.material);
     return replaceFile(target, [&](const Path& temporary) {
         OutFile out(temporary, target, input.progress);
         out.text("# sgm\n");
@@ -130,10 +147,37 @@ std::string objectHead(const ExportInput& input, uint32_t object) {
     return fmt::format("# shape {}\no {}\n", oneLine(shape), wordOf(node.name));
 }
 
+/// One mesh with what its file needs of it.
+struct ObjMesh {
+    explicit ObjMesh(const ExportInput& ofInput)
+        : input(ofInput),
+          texture(chartTexture(option(input, "uv", "scope"), *input.mesh, *input.provenance)),
+          patched(
+              cutIntoPatches(*input.mesh, *input.provenance, {input.objects, texture.ofTriangle, input.byMaterial})) {}
+
+    /// Writes all of it after what the file holds already; what it holds then.
+    ObjCounts write(OutFile& out, const std::vector<std::string>& names, const ObjCounts& before) const {
+        ObjText text(out, input, patched, texture, before);
+        text.vertices();
+        uint32_t object = mesh::noIndex;
+        for (const Patch& patch : patched.patches) {
+            if (patch.object != object) out.text(objectHead(input, object = patch.object));
+            if (input.byMaterial) out.text(fmt::format("usemtl {}\n", names[patch.material]));
+            text.patch(patch);
+            tick(input.progress);
+        }
+        return text.counts();
+    }
+
+    const ExportInput input;
+    const TextureCharts texture;
+    const PatchedMesh patched;
+};
+
 }  // namespace
 
-/// Its name is one word, since many readers end it at a blank. Where that changes the name, a number keeps it apart from
-/// that of a file which has the changed name.
+/// Its name is one word, since many readers end it at a blank. Where that changes the name, a number keeps it apart
+/// from that of a file which has the changed name.
 Path materialFile(const Path& target) {
     const std::string name = target.stem().string(), word = wordOf(name);
     const std::string number = word == name ? "" : fmt::format("-{:08x}", static_cast<uint32_t>(hashText(name)));
@@ -141,9 +185,7 @@ Path materialFile(const Path& target) {
 }
 
 Status writeObj(const ExportInput& input, const Path& temporary, const Path& target) {
-    const TextureCharts texture = chartTexture(option(input, "uv", "scope"), *input.mesh, *input.provenance);
-    const PatchedMesh patched =
-        cutIntoPatches(*input.mesh, *input.provenance, {input.objects, texture.ofTriangle, input.byMaterial});
+    const ObjMesh finest(inputOfLevel(input, 0));
     const std::vector<std::string> names = distinctNames(input.provenance->materials, wordOf);
     const Path materials = materialFile(target);
 
@@ -153,19 +195,20 @@ Status writeObj(const ExportInput& input, const Path& temporary, const Path& tar
     for (const OriginId origin : originsOf(*input.mesh, *input.provenance))
         out.text(fmt::format("# origin {}: {}\n", origin, originText(input.provenance->parts[origin])));
     if (input.byMaterial) out.text(fmt::format("mtllib {}\n", materials.filename().string()));
-    ObjText text(out, input, patched, texture);
-    if (input.progress) input.progress->begin("write", patched.patches.size());
-    text.vertices();
-    uint32_t object = mesh::noIndex;
-    for (const Patch& patch : patched.patches) {
-        if (patch.object != object) out.text(objectHead(input, object = patch.object));
-        if (input.byMaterial) out.text(fmt::format("usemtl {}\n", names[patch.material]));
-        text.patch(patch);
-        tick(input.progress);
-    }
+    if (input.progress) input.progress->begin("write", finest.patched.patches.size());
+    std::set<uint32_t> used;
+    ObjCounts counts;
+    const auto writeMesh = [&](const ObjMesh& mesh) {
+        for (const Patch& p : mesh.patched.patches) used.insert(p.material);
+        // A level is a group, for objects may divide it.
+        if (!input.levels.empty()) out.text(fmt::format("g {}\n", wordOf(mesh.input.name)));
+        counts = mesh.write(out, names, counts);
+    };
+    writeMesh(finest);
+    for (size_t level = 1; level < levelCount(input); ++level) writeMesh(ObjMesh(inputOfLevel(input, level)));
     if (Status status = out.finish(); !status.ok() || !input.byMaterial) return status;
     // Both files are complete before either is replaced; the .mtl goes first, as the .obj names it.
-    return writeMaterials(input, patched, names, materials);
+    return writeMaterials(input, used, names, materials);
 }
 
 }  // namespace sgm::exporter

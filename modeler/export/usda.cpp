@@ -3,11 +3,12 @@
 // Xforms. Text isn't indented by depth, for a tree of shapes may be thousands deep.
 #include <fmt/format.h>
 
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 
 #include "modeler/export/formats.h"
+#include "modeler/export/levels.h"
 #include "modeler/export/origins.h"
 #include "modeler/export/out_file.h"
 #include "modeler/export/shared_objects.h"
@@ -143,12 +144,11 @@ void writeLayer(OutFile& out, const ExportInput& input, const std::string& root)
                     root, 1.0 / static_cast<double>(place.unitsPerMetre), place.zUp ? "Z" : "Y"));
 }
 
-void writeMaterials(OutFile& out, const UsdSurface& surface) {
-    std::set<uint32_t> used;
-    for (const Patch& p : surface.patched.patches) used.insert(p.material);
+void writeMaterials(OutFile& out, const ExportInput& input, const std::set<uint32_t>& used,
+                    const std::vector<std::string>& names, const std::string& root) {
     out.text("    def Scope \"Materials\"\n    {\n");
     for (const uint32_t material : used) {
-        const Material& m = surface.input.provenance->materials[material];
+        const Material& m = input.provenance->materials[material];
         out.text(
             fmt::format("        def Material \"{0}\"\n        {{\n"
                         "            token outputs:surface.connect = </{1}/Materials/{0}/Surface.outputs:surface>\n\n"
@@ -158,34 +158,86 @@ void writeMaterials(OutFile& out, const UsdSurface& surface) {
                         "                float inputs:roughness = {3}\n"
                         "                float inputs:metallic = {4}\n"
                         "                token outputs:surface\n            }}\n        }}\n",
-                        surface.materialNames[material], surface.root, usdTuple(m.color), m.roughness, m.metallic));
+                        names[material], root, usdTuple(m.color), m.roughness, m.metallic));
     }
     out.text("    }\n");
+}
+
+/// One mesh with what its prims need of it.
+struct UsdLevel {
+    ExportInput input;                      ///< without what is shown twice
+    std::unique_ptr<SharedObjects> shared;  ///< set where there are objects
+    TextureSets texture;
+    PatchedMesh patched;
+};
+
+Result<UsdLevel> makeLevel(const ExportInput& input, size_t level) {
+    UsdLevel made{inputOfLevel(input, level), nullptr, {}, {}};
+    if (const ObjectTree* const objects = made.input.objects) {
+        // An instance refers to a prim by its path, and levels may be left out.
+        const bool share = input.levels.empty() && option(input, "instances", "no") == "yes";
+        made.shared =
+            std::make_unique<SharedObjects>(share ? shareObjects(*made.input.mesh, *objects) : keepOwnSurfaces(*objects));
+        if (made.shared->mesh) made.input.mesh = &*made.shared->mesh;
+    }
+    auto texture = makeTexture(made.input);
+    if (!texture.ok()) return texture.error();
+    made.texture = std::move(*texture);
+    made.patched = cutIntoPatches(*made.input.mesh, *made.input.provenance,
+                                  {made.input.objects, made.texture.charts.ofTriangle, made.input.byMaterial});
+    return made;
+}
+
+/// The head of the default prim; with levels of detail it has a variant set of them.
+std::string rootHead(const ExportInput& input, const std::string& root) {
+    const char* variants =
+        input.levels.empty()
+            ? ""
+            : "    variants = {\n        string LOD = \"LOD0\"\n    }\n    prepend variantSets = \"LOD\"\n";
+    return fmt::format("def Xform \"{}\" (\n    kind = \"component\"\n{})\n{{\n", root, variants);
+}
+
+/// The variants LOD0, LOD1, …: each has the prim of one level alone. Prims stand outside of them, so that a reader
+/// without variants finds the model.
+std::string levelVariants(const ExportInput& input) {
+    std::string text = "    variantSet \"LOD\" = {\n";
+    for (size_t chosen = 0; chosen < levelCount(input); ++chosen) {
+        text += fmt::format("        \"LOD{}\" {{\n", chosen);
+        for (size_t level = 0; level < levelCount(input); ++level)
+            text += fmt::format(
+                "            over \"{}\" (\n                active = {}\n            )\n            {{\n            "
+                "}}\n",
+                identifierOf(levelName(input.name, level)), level == chosen ? "true" : "false");
+        text += "        }\n";
+    }
+    return text + "    }\n";
 }
 
 }  // namespace
 
 Status writeUsda(const ExportInput& input, const Path& temporary, const Path& target) {
-    ExportInput own = input;  // without what is shown twice
-    std::optional<SharedObjects> shared;
-    if (input.objects)
-        shared = option(input, "instances", "no") == "yes" ? shareObjects(*input.mesh, *input.objects)
-                                                           : keepOwnSurfaces(*input.objects);
-    if (shared && shared->mesh) own.mesh = &*shared->mesh;
-    const auto texture = makeTexture(own);
-    if (!texture.ok()) return texture.error();
-    const PatchedMesh patched =
-        cutIntoPatches(*own.mesh, *own.provenance, {own.objects, texture->charts.ofTriangle, own.byMaterial});
+    auto level = makeLevel(input, 0);
+    if (!level.ok()) return level.error();
     const std::vector<std::string> names = distinctNames(input.provenance->materials, identifierOf);
     const std::string root = identifierOf(input.name);
-    const UsdSurface surface{own, *texture, patched, names, root};
-    if (input.progress) input.progress->begin("write", patched.patches.size());
+    if (input.progress) input.progress->begin("write", level->patched.patches.size());
 
     OutFile out(temporary, target, input.progress);
     writeLayer(out, input, root);
-    out.text(fmt::format("def Xform \"{}\" (\n    kind = \"component\"\n)\n{{\n", root));
-    ObjectPrims(out, surface, shared ? &*shared : nullptr).write();
-    if (input.byMaterial) writeMaterials(out, surface);
+    out.text(rootHead(input, root));
+    std::set<uint32_t> used;
+    for (size_t i = 0;;) {
+        for (const Patch& p : level->patched.patches) used.insert(p.material);
+        if (!input.levels.empty()) out.text(fmt::format("def Xform \"{}\"\n{{\n", identifierOf(level->input.name)));
+        const UsdSurface surface{level->input, level->texture, level->patched, names, root};
+        ObjectPrims(out, surface, level->shared.get()).write();
+        if (!input.levels.empty()) out.text("}\n");
+        if (++i == levelCount(input)) break;
+        level = makeLevel(input, i);
+        if (!level.ok()) return level.error();
+    }
+    if (!input.levels.empty()) out.text(levelVariants(input));
+    if (input.byMaterial) writeMaterials(out, input, used, names, root);
     out.text("}\n");
     return out.finish();
 }

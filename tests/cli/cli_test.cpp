@@ -324,6 +324,26 @@ TEST_F(Cli, CollidersGoIntoFilesThatHoldThem) {
     EXPECT_FALSE(fs::exists(path("b.glb")));
 }
 
+TEST_F(Cli, LevelsOfDetailGoIntoFilesThatHoldThem) {
+    const std::string start = "build examples/grotto.sgm --resolution 32 ";
+    const Outcome run = sgm(start + "--lod 3 -o " + path("a.glb") + " -o " + path("a.stl"));
+    ASSERT_EQ(run.code, 0) << run.out;
+    EXPECT_NE(run.out.find("\nlevel 1: "), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find(", up to 1/4 of the picture's height\n"), std::string::npos) << run.out;
+    EXPECT_NE(read(path("a.glb")).find("\"grotto_LOD2\""), std::string::npos);
+    EXPECT_EQ(sgm(start + "-q --lod 1 -o " + path("b.glb")).code, 0);
+    EXPECT_EQ(read(path("b.glb")).find("_LOD"), std::string::npos) << "one level is the mesh itself";
+    EXPECT_EQ(sgm(start + "--lod 3 -o " + path("b.stl")).code, 2) << "holds none";
+    EXPECT_EQ(sgm(start + "--lod 0 -o " + path("b.glb")).code, 2);
+    EXPECT_EQ(sgm(start + "--lod 9 -o " + path("b.glb")).code, 2);
+    EXPECT_EQ(sgm(start + "--format-option levels=msft -o " + path("b.glb")).code, 2) << "of no levels";
+    EXPECT_EQ(sgm(start + "--stream --lod 2 -o " + path("b.stl")).code, 2);
+    // Turned inside out, coarser levels are as well; the same bytes at any number of threads.
+    for (const char* threads : {"1", "4"})
+        ASSERT_EQ(sgm(start + "-q --start Void --inward --lod 6 --threads " + threads + " -o " + path(std::string("in") + threads + ".glb")).code, 0);
+    EXPECT_EQ(read(path("in1.glb")), read(path("in4.glb")));
+}
+
 TEST_F(Cli, CollidersSayWhatTheyLeaveOut) {
     const std::string file = grammar("start A -> cube size 2 + sphere size 1 at +y blend .3\n");
     const Outcome run = sgm("build " + file + " --resolution 32 --collider convex -o " + path("a.glb"));

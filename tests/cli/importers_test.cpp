@@ -157,5 +157,23 @@ TEST_F(Importers, GodotTakesColliders) {
     }
 }
 
+TEST_F(Importers, GodotSeesLevelsAsNamedNodes) {
+    if (!installed("godot3-server")) GTEST_SKIP() << "godot3-server isn't installed";
+    const Outcome run = sgm("build examples/tower.sgm --resolution 64 --lod 3 -o " + path("tower.glb"));
+    ASSERT_EQ(run.code, 0) << run.out;
+    const auto facts = godotOn("godot_levels.gd", "ls .import/*.scn");
+    ASSERT_EQ(facts.size(), 1u);
+    const Json& levels = facts.at("tower.glb")["levels"];
+    ASSERT_EQ(levels.size(), 3u);
+    for (const int level : {1, 2}) {
+        const std::string line = "level " + std::to_string(level) + ": ";
+        const size_t at = run.out.find(line);
+        ASSERT_NE(at, std::string::npos) << run.out;
+        EXPECT_EQ(levels["tower_LOD" + std::to_string(level)], std::stoi(run.out.substr(at + line.size())));
+    }
+    EXPECT_GT(levels["tower_LOD0"], levels["tower_LOD1"]);
+    EXPECT_GT(levels["tower_LOD1"], levels["tower_LOD2"]);
+}
+
 }  // namespace
 }  // namespace sgm::cli
