@@ -13,6 +13,7 @@
 #include "cli/pipeline.h"
 #include "cli/watch.h"
 #include "modeler/core/conventions.h"
+#include "modeler/mesh/simplify.h"
 #include "viewer/fog_scene.h"
 #include "viewer/offscreen.h"
 
@@ -28,8 +29,11 @@ struct RenderRequest {
     std::vector<std::string> layers;
     double extinction = 0;
     int samples = 8, turntable = 0;  ///< turntable: how many pictures around the model, 0 for one
-    bool noGround = false, stats = false, quiet = false;
+    bool noGround = false, wires = false, stats = false, quiet = false;
 };
+
+/// Whether the view draws a mesh.
+bool drawsMesh(const RenderRequest& request) { return request.view == "mesh" || request.view == "labels" || request.view == "creases"; }
 
 Result<viewer::PictureOptions> parseSize(const std::string& text) {
     constexpr int longestSide = 16384;
@@ -64,6 +68,7 @@ Status checkRequest(const RenderRequest& request) {
         return wrong(fmt::format("'{}': pictures are .png, or .exr for floats", request.output));
     if (!request.layers.empty() && !isExr(request)) return wrong(fmt::format("--aov: layers need a file that holds floats: -o {}", fs::path(output).replace_extension(".exr").string()));
     if (isExr(request) && request.view != "field") return wrong(fmt::format("'{}': layers are of the field; with --view {} write a .png", request.output, request.view));
+    if (request.wires && !drawsMesh(request)) return wrong("--wires are the edges of a mesh's triangles: add --view mesh, labels or creases");
     if (request.extinction > 0 && request.view != "fog") return wrong("--extinction is of fog: add --view fog");
     if (request.stats && (request.view != "field" || request.turntable > 0)) return wrong("--stats counts evaluations of the field for one picture: leave out --view and --turntable");
     if (request.turntable == 0) return Done{};
@@ -93,6 +98,15 @@ viewer::TracedBy tracedBy(const std::string& name) {
     return name == "shaders" ? viewer::TracedBy::Gpu : name == "processor" ? viewer::TracedBy::Processor : viewer::TracedBy::Best;
 }
 
+/// The mesh that `sgm build` writes.
+Result<mesh::Mesh> meshAsBuilt(const RenderRequest& request, const Model& model, Progress* progress) {
+    Stages stages;
+    auto meshed = makeMesh(model, request.grid, stages, progress);
+    if (!meshed.ok()) return meshed.error();
+    if (request.grid.surface != mesh::Surface::Crisp || meshed->mesh.triangleCount() == 0) return std::move(meshed->mesh);
+    return mesh::simplify(meshed->mesh, {mesh::usualTolerance(meshed->grid.cell_m), request.grid.threads}, progress);
+}
+
 /// What every picture of the model shares is done here.
 Result<Painter> painterOf(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
     const Provenance& provenance = model.lowered->provenance;
@@ -105,12 +119,15 @@ Result<Painter> painterOf(const RenderRequest& request, const Model& model, cons
     if (request.view == "fog") return fogPainter(request, model, bounds, progress);
     if (request.view == "ids")
         return Painter{[&model, bounds](const auto& options, Progress* progress, viewer::Layers*) { return drawIds(model, bounds, options, progress); }, {}};
-    Stages stages;
-    const auto meshed = makeMesh(model, request.grid, stages, progress);
-    if (!meshed.ok()) return meshed.error();
-    const auto painter = viewer::MeshPainter::create(meshed->mesh, provenance, progress);
+    const auto mesh = meshAsBuilt(request, model, progress);
+    if (!mesh.ok()) return mesh.error();
+    const auto painter = viewer::MeshPainter::create(*mesh, provenance, progress);
     if (!painter.ok()) return painter.error();
-    return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress); }, {}};
+    viewer::MeshStyle style;
+    style.wireframe = request.wires;
+    if (request.view == "labels") style.look = viewer::MeshLook::Labels;
+    if (request.view == "creases") style.look = viewer::MeshLook::Creases;
+    return Painter{[p = *painter, style](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress, style); }, {}};
 }
 
 /// What the numbers of a file with layers mean.
@@ -211,8 +228,8 @@ void addRender(CLI::App& app, int& exitCode) {
     addGridOptions(*command, request->grid);
     command->add_option("-o,--output", request->output, "Picture to write (.png, or .exr for floats)")->required();
     command->add_option("--size", request->size, "Pixels, WxH")->capture_default_str();
-    command->add_option("--view", request->view, "What is drawn: the field, its mesh, fog in its place, or the facade ids and storeys of what is clad")
-        ->check(CLI::IsMember({"field", "mesh", "fog", "ids"}))->capture_default_str();
+    command->add_option("--view", request->view, "What is drawn: the field, its mesh, the mesh with a hue for each smooth piece (labels) or with its hard edges (creases), fog in its place, or the facade ids and storeys of what is clad")
+        ->check(CLI::IsMember({"field", "mesh", "labels", "creases", "fog", "ids"}))->capture_default_str();
     command->add_option("--camera", request->camera, "x,y,z,x,y,z: the eye and what it looks at; or 'inside' for a cave");
     command->add_option("--aov", request->layers, "Layers beside the colour of an .exr: depth, normal, position, origin, ao; metres, ids of shapes with their names in the file")
         ->delimiter(',')->allow_extra_args(false)->check(CLI::IsMember(viewer::layerNames()));
@@ -221,11 +238,13 @@ void addRender(CLI::App& app, int& exitCode) {
     command->add_option("--samples", request->samples, "Samples a pixel, for smooth edges")->check(CLI::Range(1, 64))->capture_default_str();
     command->add_option("--rays", request->rays, "Who walks the rays of a field: shaders, the processor, or what is best here, the processor where OpenGL has no GPU")
         ->check(CLI::IsMember({"best", "shaders", "processor"}))->capture_default_str();
+    command->add_flag("--wires", request->wires, "Draw the edges of the mesh's triangles");
     command->add_flag("--no-ground", request->noGround, "Leave out the ground");
     command->add_flag("--stats", request->stats, "Print how often the field was evaluated a pixel, beside plain sphere tracing, and the times");
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
     command->footer("Examples:\n  sgm render examples/cumulus.sgm -o cumulus.png --size 640x640\n  sgm render examples/grotto.sgm -o in.png --camera inside\n"
         "  sgm render examples/cumulus.sgm -o sky.png --view fog --no-ground\n"
+        "  sgm render examples/tower.sgm -o mesh.png --view mesh --wires\n"
         "  sgm render examples/tower.sgm -o tower.exr --aov depth,normal,origin\n  sgm render examples/tower.sgm -o turn_%04d.png --turntable 36");
     command->callback([request, &exitCode] { exitCode = render(*request); });
 }

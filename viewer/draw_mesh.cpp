@@ -27,7 +27,7 @@ Result<MeshPainter> MeshPainter::create(const mesh::Mesh& mesh, const Provenance
     return MeshPainter(std::move(parts));
 }
 
-Result<Image> MeshPainter::draw(const PictureOptions& options, Progress* progress) {
+Result<Image> MeshPainter::draw(const PictureOptions& options, Progress* progress, const MeshStyle& style) {
     MeshScene& scene = parts_->scene;
     if (Status status = checkPicture(scene.bounds(), options); !status) return status.error();
     std::vector<float> pixels(size_t(options.width) * size_t(options.height) * 4);
@@ -36,7 +36,7 @@ Result<Image> MeshPainter::draw(const PictureOptions& options, Progress* progres
             const int width = std::min(tileEdge, options.width - x0), height = std::min(tileEdge, options.height - y0);
             const Result<ColorTarget> target = ColorTarget::create(width, height, options.samples);
             if (!target) return target.error();
-            if (Status s = scene.draw(*target, x0, y0, options, {}, progress); !s) return s.error();
+            if (Status s = scene.draw(*target, x0, y0, options, style, progress); !s) return s.error();
             const std::vector<float> tile = target->read();
             for (int y = 0; y < height; ++y) {
                 const size_t row = size_t(options.height - 1 - (y0 + y)) * size_t(options.width) + size_t(x0);

@@ -8,6 +8,7 @@
 
 #include "modeler/mesh/components.h"
 #include "modeler/mesh/corners.h"
+#include "viewer/mesh_marks.h"
 #include "viewer/scene.h"
 #include "viewer/shader_text.h"
 
@@ -15,6 +16,7 @@ namespace sgm::viewer {
 namespace {
 
 constexpr size_t batchTriangles = 1u << 17;  // a draw
+constexpr float lineWidth = 1.6f;  // of hard edges, pixels
 constexpr int sunMapEdge = 2048, skyMapEdge = 256;
 constexpr size_t leastSkyMaps = 12, mostSkyMaps = 40;  // the latter as in visibility.glsl
 
@@ -128,14 +130,14 @@ std::vector<PreparedMesh::Owner> ownersFrom(std::span<const OriginId> origins, c
     std::vector<PreparedMesh::Owner> owners;
     for (const OriginId origin : origins) {
         const OriginId part = origin < provenance.parts.size() ? origin : 0;
-        owners.push_back({provenance.parts[part].material, rules[part], 0});
+        owners.push_back({provenance.parts[part].material, rules[part], 0, part});
     }
     return owners;
 }
 
 TexelBuffer upload(const std::vector<PreparedMesh::Owner>& owners) {
     std::vector<uint32_t> words;
-    for (const PreparedMesh::Owner& owner : owners) words.insert(words.end(), {owner.material, owner.rule, owner.component});
+    for (const PreparedMesh::Owner& owner : owners) words.insert(words.end(), {owner.material, owner.rule, owner.component, owner.piece});
     if (words.empty()) words.push_back(0);  // buffers hold something
     return TexelBuffer::of(words, 1);
 }
@@ -157,7 +159,12 @@ Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& prove
     prepared.bounds = mesh.bounds();
     prepared.materials = provenance.materials;
     findComponents(prepared);
-    splitHardCorners(prepared, mesh::collectCornerNormals(mesh));
+    const auto neighbours = mesh::findEdgeNeighbours(prepared.triangles, prepared.positions.size());
+    const std::vector<uint32_t> pieces = numberSmoothPieces(mesh, neighbours);
+    for (size_t t = 0; t < pieces.size(); ++t) prepared.owners[t].piece = pieces[t];
+    const mesh::CornerNormalTable corners = mesh::collectCornerNormals(mesh);
+    prepared.hardEdges = findHardEdges(prepared.positions, prepared.triangles, neighbours, corners);
+    splitHardCorners(prepared, corners);
     prepared.curvatures = curvaturesOf(prepared);
     return prepared;
 }
@@ -170,7 +177,8 @@ Result<std::shared_ptr<const MeshPrograms>> MeshPrograms::create() {
     };
     for (const Wanted& wanted :
          {Wanted{programs->depth, "mesh", "depth"}, Wanted{programs->blur, "screen", "blur_depth"},
-          Wanted{programs->color, "mesh", "mesh_color"}, Wanted{programs->backdrop, "screen", "backdrop"}}) {
+          Wanted{programs->color, "mesh", "mesh_color"}, Wanted{programs->backdrop, "screen", "backdrop"},
+          Wanted{programs->crease, "crease", "crease_color"}}) {
         Result<Program> made = Program::draw(shaderText(wanted.vertex), shaderText(wanted.fragment));
         if (!made) return made.error();
         wanted.program = std::move(*made);
@@ -184,6 +192,7 @@ MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshProgram
       triangles_(TriangleBuffers::of(mesh.positions, mesh.normals, mesh.curvatures, mesh.triangles)),
       triangleCount_(mesh.triangles.size()),
       owners_(upload(mesh.owners)),
+      hardEdges_(mesh.hardEdges),
       materials_(uploadMaterials(mesh.materials)),
       skyCount_(skyMapsFor(triangleCount_)) {
     makeMaps();
@@ -295,10 +304,22 @@ Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureO
     color.set("sectionNormal", style.section ? style.section->normal : Vec3f{});
     color.set("sectionOffset", style.section ? style.section->offset : 0.0f);
     color.set("wire", 0);
-    if (Status s = drawTriangles(color, progress); !s || !style.wireframe) return s;
-    color.set("wire", 1);
-    const WireDrawing wires;
-    return drawTriangles(color, progress);
+    if (Status s = drawTriangles(color, progress); !s) return s;
+    if (style.wireframe) {
+        color.set("wire", 1);
+        const WireDrawing wires;
+        if (Status s = drawTriangles(color, progress); !s) return s;
+    }
+    if (style.look != MeshLook::Creases) return Done{};
+    const Program& crease = programs_->crease;
+    crease.set("clipFromWorld", tileMatrix(view, options, near, far, x0, y0, target.width, target.height));
+    crease.set("eyeAt", view.eye.as<float>());
+    crease.set("nearest", static_cast<float>(near));
+    crease.set("targetSize", Vec3f{static_cast<float>(target.width), static_cast<float>(target.height), 1});
+    crease.set("lineWidth", lineWidth);
+    crease.set("sectionNormal", style.section ? style.section->normal : Vec3f{});
+    crease.set("sectionOffset", style.section ? style.section->offset : 0.0f);
+    return hardEdges_.draw(crease, progress);
 }
 
 }  // namespace sgm::viewer

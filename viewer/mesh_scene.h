@@ -4,42 +4,28 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "viewer/blocks_scene.h"
+#include "viewer/crease_lines.h"
 #include "viewer/gpu.h"
+#include "viewer/mesh_style.h"
 #include "viewer/offscreen.h"
 
 namespace sgm::viewer {
 
-/// What the mesh's colour says.
-enum class MeshLook { Materials, Normals, Curvature, Origin, Components };
-
-/// Everything on the side of a plane that its normal points to is cut away.
-struct Section {
-    Vec3f normal{1, 0, 0};  ///< unit
-    float offset = 0;       ///< metres along the normal from the origin
-    friend bool operator==(const Section&, const Section&) = default;
-};
-
-struct MeshStyle {
-    MeshLook look = MeshLook::Materials;
-    bool wireframe = false;
-    std::optional<Section> section;
-    friend bool operator==(const MeshStyle&, const MeshStyle&) = default;
-};
-
 /// Everything about a mesh that needs no GPU, so that any thread can make it.
 struct PreparedMesh {
-    /// Whose a triangle is: index of its material, of its rule among all rules, of its connected component.
+    /// Whose a triangle is: index of its material, of its rule among all rules, of its connected component, of its
+    /// smooth piece.
     struct Owner {
-        uint32_t material, rule, component;
+        uint32_t material, rule, component, piece;
     };
     std::vector<Vec3f> positions, normals;
     std::vector<float> curvatures;  ///< mean curvature at vertices, 1/m, positive on a ball
     std::vector<Vec3<uint32_t>> triangles;
     std::vector<Owner> owners;  ///< by triangle
+    std::vector<Segment> hardEdges;
     std::vector<Material> materials;
     Box3f bounds;
     uint32_t components = 0;
@@ -49,7 +35,7 @@ Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& prove
 
 /// The shaders that draw meshes.
 struct MeshPrograms {
-    Program depth, blur, color, backdrop;
+    Program depth, blur, color, backdrop, crease;
     static Result<std::shared_ptr<const MeshPrograms>> create();
 };
 
@@ -57,7 +43,8 @@ struct MeshPrograms {
 class MeshScene {
 public:
     MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs);
-    /// Of triangles that a shader has made, with the owner of each: all of one component, without curvature.
+    /// Of triangles that a shader has made, with the owner of each: all of one component, a piece a part, without curvature and hard
+    /// edges.
     MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, const Box3f& bounds, const Provenance& provenance,
               std::shared_ptr<const MeshPrograms> programs);
     /// Draws all maps of shadow and sky.
@@ -81,6 +68,7 @@ private:
     TriangleBuffers triangles_;
     size_t triangleCount_ = 0;
     TexelBuffer owners_;
+    CreaseLines hardEdges_;
     Buffer materials_;
     MapStack sunMap_, skyMaps_, skyDepth_;
     size_t skyCount_ = 0, mapsDrawn_ = 0;

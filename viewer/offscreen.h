@@ -17,6 +17,7 @@
 #include "modeler/eval/tape.h"
 #include "modeler/mesh/mesh.h"
 #include "modeler/volume/dense.h"
+#include "viewer/mesh_style.h"
 
 namespace sgm::viewer {
 
@@ -111,7 +112,7 @@ private:
 class MeshPainter {
 public:
     static Result<MeshPainter> create(const mesh::Mesh& mesh, const Provenance& provenance, Progress* progress);
-    Result<Image> draw(const PictureOptions& options, Progress* progress);
+    Result<Image> draw(const PictureOptions& options, Progress* progress, const MeshStyle& style = {});
 
 private:
     struct Parts;

@@ -13,6 +13,8 @@ const std::vector<Shader>& shaders() {
         {"triangles", "comp", false, {"triangles"}},
         {"mesh", "vert", false, {"mesh"}},
         {"screen", "vert", false, {"screen"}},
+        {"crease", "vert", false, {"crease"}},
+        {"crease_color", "frag", false, {"crease_color"}},
         {"depth", "frag", false, {"depth"}},
         {"encode", "frag", false, {"encode"}},
         {"blur_depth", "frag", false, {"blur_depth"}},

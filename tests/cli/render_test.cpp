@@ -1,5 +1,6 @@
 // `sgm render`: what it writes and what it refuses. Pictures themselves are tested in tests/viewer.
 #include <csignal>
+#include <set>
 
 #include "tests/cli/program.h"
 
@@ -44,6 +45,17 @@ TEST_F(Render, RefusesWhatItCannotWrite) {
     refused("-o " + path("a.png") + " --turntable 4", "%04d");
     refused("-o " + path("a_%04d.png") + " --turntable 0", "1");
     EXPECT_EQ(sgm("render " + file_ + " -o " + path("no/folder.png")).code, 1);
+}
+
+TEST_F(Render, MeshesHaveViewsOfLabelsCreasesAndWires) {
+    std::set<std::string> pictures;
+    for (const std::string view : {"mesh", "mesh --wires", "labels", "creases", "creases --wires", "mesh --surface cubes --wires"}) {
+        const Outcome run = sgm("render " + file_ + " --resolution 24 --size 40x30 -q -o " + path("a.png") + " --view " + view);
+        EXPECT_EQ(run.code, 0) << run.out;
+        pictures.insert(read(path("a.png")));
+    }
+    EXPECT_EQ(pictures.size(), 6u) << "each differs";
+    EXPECT_EQ(sgm("render " + file_ + " --wires -o " + path("b.png")).code, 2) << "the field has none";
 }
 
 TEST_F(Render, FogIsOneOfTheViews) {

@@ -4,13 +4,13 @@ in vec3 worldPosition, worldNormal;
 in float meanCurvature;
 out vec4 color;
 layout(std430, binding = 4) readonly buffer Materials { vec4 materials[]; };  // two a material: colour, roughness; metallic
-uniform usamplerBuffer ownerOfTriangle;  // material, rule, component
+uniform usamplerBuffer ownerOfTriangle;  // material, rule, component, smooth piece
 uniform int firstTriangle;
 uniform int meshLook;  // as viewer::MeshLook
 uniform vec3 sectionNormal;  // zero without a section
 uniform float sectionOffset;
 uniform int wire;
-const int lookMaterials = 0, lookNormals = 1, lookCurvature = 2, lookOrigin = 3;
+const int lookMaterials = 0, lookNormals = 1, lookCurvature = 2, lookOrigin = 3, lookComponents = 4, lookLabels = 5, lookCreases = 6;
 
 /// Colours that differ much from one number to the next: hues a golden ratio apart.
 vec3 distinct(uint n) {
@@ -44,12 +44,16 @@ void main() {
     }
     vec3 toEye = normalize(eye - worldPosition);
     vec3 normal = normalize(worldNormal) * (gl_FrontFacing ? 1.0 : -1.0);
-    int triangle = 3 * (firstTriangle + gl_PrimitiveID);
+    int triangle = 4 * (firstTriangle + gl_PrimitiveID);
     vec3 display;
     if (!gl_FrontFacing && sectionNormal != vec3(0.0)) display = vec3(0.55, 0.16, 0.09);
     else if (meshLook == lookMaterials) display = materialLight(triangle, normal, toEye);
     else if (meshLook == lookNormals) display = 0.5 + 0.5 * normal;
     else if (meshLook == lookCurvature) display = told(curvatureColor(meanCurvature), normal, toEye);
-    else display = told(distinct(texelFetch(ownerOfTriangle, triangle + (meshLook == lookOrigin ? 1 : 2)).x), normal, toEye);
+    else if (meshLook == lookCreases) display = told(vec3(0.80), normal, toEye);
+    else {
+        int word = meshLook == lookOrigin ? 1 : meshLook == lookComponents ? 2 : 3;
+        display = told(distinct(texelFetch(ownerOfTriangle, triangle + word).x), normal, toEye);
+    }
     color = vec4(display, 1.0);
 }

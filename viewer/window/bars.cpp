@@ -83,7 +83,7 @@ void Bars::lookControls(Workbench& bench) {
 
 void Bars::meshControls(Workbench& bench) {
     Report& report = bench.report;
-    static const std::vector<std::string> looks{"Materials", "Normals", "Curvature", "Rules", "Components"};
+    static const std::vector<std::string> looks{"Materials", "Normals", "Curvature", "Rules", "Components", "Labels", "Creases"};
     int look = static_cast<int>(bench.look.mesh.look);
     if (choice(report, "mesh.look", looks, look, ImGui::GetFontSize() * 7)) bench.look.mesh.look = static_cast<MeshLook>(look);
     hint("What the mesh's colours tell");

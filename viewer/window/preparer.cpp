@@ -4,6 +4,7 @@
 
 #include "modeler/core/guarded.h"
 #include "modeler/core/stopwatch.h"
+#include "modeler/mesh/simplify.h"
 
 namespace sgm::viewer {
 namespace {
@@ -173,10 +174,15 @@ Status Preparer::ensureMeshPrograms(ReadyTimes& times) {
     return Done{};
 }
 
-Status Preparer::makeMesh(std::shared_ptr<const Meshed> meshed) {
+Status Preparer::makeMesh(std::shared_ptr<const Meshed> meshed, Progress& progress) {
     Ready<MeshScene> ready;
     Stopwatch watch;
-    const Result<PreparedMesh> mesh = prepareMesh(*meshed->mesh, meshed->of->model.lowered->provenance);
+    // As it would be exported.
+    Result<mesh::Mesh> simple = mesh::Mesh();
+    if (meshed->mesh->triangleCount() > 0)
+        simple = mesh::simplify(*meshed->mesh, {mesh::usualTolerance(meshed->grid.cell_m), 0}, &progress);
+    if (!simple) return simple.error();
+    const Result<PreparedMesh> mesh = prepareMesh(*simple, meshed->of->model.lowered->provenance);
     if (!mesh) return mesh.error();
     ready.times.prepare = watch.seconds();
     if (Status s = ensureMeshPrograms(ready.times); !s) return s;
@@ -234,7 +240,7 @@ void Preparer::work() {
         lock.unlock();
         const Status done = guarded([&]() -> Status {
             return model     ? makeField(std::move(model), withCamera, *progress)
-                   : mesh    ? makeMesh(std::move(mesh))
+                   : mesh    ? makeMesh(std::move(mesh), *progress)
                    : preview ? makePreview(std::move(preview), previewResolution, *progress)
                    : within  ? findInside(*within)
                              : makeFog(std::move(fog), fogResolution, *progress);

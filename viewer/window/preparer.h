@@ -88,7 +88,7 @@ private:
     Status makePreview(std::shared_ptr<const Shown> model, int resolution, Progress& progress);
     Status ensureMeshPrograms(ReadyTimes& times);
     Status findInside(const Shown& model);
-    Status makeMesh(std::shared_ptr<const Meshed> meshed);
+    Status makeMesh(std::shared_ptr<const Meshed> meshed, Progress& progress);
     template <class Scene>
     void give(Ready<Scene> News::*where, Ready<Scene> ready);
 

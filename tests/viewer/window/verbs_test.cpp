@@ -169,7 +169,7 @@ TEST_F(Verbs, TheView) {
     click("mesh.cells");
     click("mesh.cells.64");
     EXPECT_LT(until("a coarser mesh", [](const auto& s) { return s["look"]["cells"] == 64 && !s["busy"]; })["triangles"], 30000);
-    for (int look = 1; const char* name : {"Normals", "Curvature", "Rules", "Components"}) {
+    for (int look = 1; const char* name : {"Normals", "Curvature", "Rules", "Components", "Labels", "Creases"}) {
         click("mesh.look");
         click(std::string("mesh.look.") + name);
         EXPECT_EQ(state()["look"]["mesh"], look++);

@@ -153,7 +153,7 @@ TEST_F(Window, MeshAndFieldSideBySide) {
     until("a mesh", [](const auto& s) { return s["triangles"] > 1000 && s["drawn"] == true; });
     shoot("split");
     click("pane.Mesh");
-    for (const char* look : {"Normals", "Curvature", "Rules", "Components"}) {
+    for (const char* look : {"Normals", "Curvature", "Rules", "Components", "Labels", "Creases"}) {
         click("mesh.look");
         click(std::string("mesh.look.") + look);
         drawn();
