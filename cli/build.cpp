@@ -149,8 +149,13 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
         error.message += " (--cell, --resolution)";
         return error;
     }
-    if (request.validate)
+    if (request.validate) {
         if (const Status s = validated(*mesh, stages); !s.ok()) return s;
+    } else if (request.smooth > 0 && !request.quiet) {
+        const auto judgement = timed(stages, "validate", [&] { return mesh::judge(*mesh); });
+        if (judgement.ok() && judgement->selfIntersects)
+            tell("warning: the smoothed surface crosses itself: smooth less, or take smaller cells (--validate makes this an error)\n");
+    }
     mesh::MeshFigures figures;  // of the solid, before it is turned inside out
     Support support;
     if (!request.quiet || !request.report.empty()) {

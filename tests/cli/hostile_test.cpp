@@ -120,6 +120,23 @@ TEST_F(Hostile, TargetsAreLookedAtBeforeTheWork) {
     }
 }
 
+TEST_F(Hostile, AFloorThatCantBeMadeLeavesNothing) {
+    const Outcome run = quick("build -q " + grammar("start A -> sphere size 2\n") + " --resolution 24 -o " + path("x.ply") + " --report " + path("r.json") +
+                              " --floor " + path("f.ply") + " --agent 50,100");
+    EXPECT_EQ(run.code, 1) << run.out;
+    EXPECT_NE(run.out.find("stand nowhere"), std::string::npos) << run.out;
+    for (const char* file : {"x.ply", "r.json", "f.ply"}) EXPECT_FALSE(fs::exists(path(file))) << file;
+}
+
+TEST_F(Hostile, SmoothingThatMakesTheSurfaceCrossItselfSaysSo) {
+    const auto said = [&](const char* options) { return quick("build examples/kifs/minster.sgm --resolution 32 -o " + path("x.ply") + options); };
+    const Outcome smoothed = said(" --smooth 3");
+    EXPECT_EQ(smoothed.code, 0);
+    EXPECT_NE(smoothed.out.find("crosses itself"), std::string::npos) << smoothed.out;
+    EXPECT_EQ(said("").out.find("crosses itself"), std::string::npos);
+    EXPECT_EQ(said(" --smooth 3 --validate").code, 1);
+}
+
 TEST_F(Hostile, CladdingInCladdingHasABudget) {
     const auto build = [&](int depth) {
         std::string text = "cube size 10 clad ornament()";

@@ -1,10 +1,13 @@
 // Unsaved work after a crash: kept, offered once its program is gone, and not before.
 #include "viewer/document/recovery.h"
 
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 
 #include "tests/scratch.h"
@@ -110,6 +113,23 @@ TEST(Recoveries, LeaveStrangeFilesAlone) {
     EXPECT_EQ(found[0].text, "grammar 1\n");
     EXPECT_TRUE(found[0].document.empty());
     EXPECT_TRUE(abandonedWork(scratch / "none").empty());
+}
+
+TEST(Recoveries, LeaveNoLocksOfProcessesThatAreGone) {
+    const Scratch scratch;
+    const auto aged = [&](const char* name) {
+        const auto path = scratch.write(name, "");
+        std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now() - std::chrono::minutes(5));
+        return path;
+    };
+    const auto idle = aged("1-0.lock"), held = aged("2-0.lock"), guarding = aged("3-0.lock"), fresh = scratch.write("4-0.lock", "");
+    scratch.write("3-0.recovery", "sgm-recovery 0\ngrammar 1\n");
+    const int fd = open(held.c_str(), O_RDWR);
+    ASSERT_EQ(flock(fd, LOCK_EX), 0);
+    EXPECT_EQ(abandonedWork(scratch.path()).size(), 1u);
+    EXPECT_FALSE(std::filesystem::exists(idle));
+    for (const auto& kept : {held, guarding, fresh}) EXPECT_TRUE(std::filesystem::exists(kept)) << kept;
+    close(fd);
 }
 
 TEST(Recoveries, FollowTheDesktopsRules) {

@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cstdlib>
 
 #include "modeler/core/atomic_file.h"
+#include "modeler/core/regular_file.h"
 #include "viewer/document/files.h"
 
 namespace sgm::viewer {
@@ -40,10 +42,24 @@ bool isAbandoned(const fs::path& kept) {
     return true;
 }
 
+/// Removes a lock that guards nothing and that nobody holds: its process was ended before it had unsaved work.
+void removeIdleLock(const fs::path& lock) {
+    using namespace std::chrono_literals;
+    std::error_code failed;
+    fs::path kept = lock;
+    if (fs::exists(kept.replace_extension(ending), failed)) return;
+    if (fs::file_time_type::clock::now() - fs::last_write_time(lock, failed) < 1min || failed) return;  // about to be taken
+    const int fd = lockFile(lock, O_NOFOLLOW);
+    if (fd < 0) return;
+    fs::remove(lock, failed);
+    close(fd);
+}
+
 std::optional<Abandoned> read(const fs::path& kept) {
-    const auto source = readSource(kept);
-    if (!source.ok()) return std::nullopt;
-    std::string_view text = (*source)->text();
+    constexpr uint64_t most_bytes = 256u << 20;  // more than any document that could be opened
+    const auto bytes = readRegularFile(kept, most_bytes);
+    if (!bytes.ok()) return std::nullopt;
+    std::string_view text = *bytes;
     if (!text.starts_with(magic)) return std::nullopt;
     text.remove_prefix(magic.size());
     size_t length = 0;
@@ -69,6 +85,7 @@ std::vector<Abandoned> abandonedWork(const fs::path& folder) {
     std::vector<Abandoned> found;
     std::error_code failed;
     for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed)) {
+        if (entry->path().extension() == lockEnding) removeIdleLock(entry->path());
         if (entry->path().extension() != ending || !isAbandoned(entry->path())) continue;
         if (auto work = read(entry->path())) found.push_back(std::move(*work));
     }
