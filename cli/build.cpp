@@ -20,14 +20,13 @@
 #include "cli/pipeline.h"
 #include "cli/renamed.h"
 #include "cli/report.h"
-#include "cli/validate.h"
+#include "cli/validation.h"
 #include "cli/watch.h"
 #include "grammar/incremental/pipeline.h"
 #include "modeler/core/stopwatch.h"
 #include "modeler/export/exporter.h"
 #include "modeler/mesh/edit.h"
 #include "modeler/mesh/simplify.h"
-#include "modeler/mesh/validate.h"
 #include "modeler/volume/keep.h"
 #include "viewer/document/files.h"
 
@@ -149,13 +148,9 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
         error.message += " (--cell, --resolution)";
         return error;
     }
-    if (request.validate) {
+    if (request.validate)
         if (const Status s = validated(*mesh, stages); !s.ok()) return s;
-    } else if (request.smooth > 0 && !request.quiet) {
-        const auto judgement = timed(stages, "validate", [&] { return mesh::judge(*mesh); });
-        if (judgement.ok() && judgement->selfIntersects)
-            tell("warning: the smoothed surface crosses itself: smooth less, or take smaller cells (--validate makes this an error)\n");
-    }
+    if ((request.smooth > 0 || request.simplify < 1) && !request.validate && !request.quiet) warnOfFaults(*mesh, stages);
     mesh::MeshFigures figures;  // of the solid, before it is turned inside out
     Support support;
     if (!request.quiet || !request.report.empty()) {

@@ -1,8 +1,8 @@
-#include "cli/validate.h"
+#include "cli/validation.h"
 
 #include <fmt/format.h>
 
-#include "modeler/mesh/validate.h"
+#include "cli/messages.h"
 
 namespace sgm::cli {
 
@@ -15,6 +15,13 @@ Status validated(const mesh::Mesh& mesh, Stages& stages) {
     if (!judgement->closed || !judgement->outward || judgement->selfIntersects) return Error{Error::Kind::Input, verdict};
     fmt::print("{}\n", verdict);
     return Done{};
+}
+
+void warnOfFaults(const mesh::Mesh& mesh, Stages& stages) {
+    const auto judgement = timed(stages, "validate", [&] { return mesh::judge(mesh); });
+    if (!judgement.ok() || (judgement->closed && !judgement->selfIntersects)) return;
+    tell("warning: the mesh {} since it was smoothed or simplified: do less of it, or take smaller cells (--validate makes this an error)\n",
+         judgement->closed ? "crosses itself" : "has holes");
 }
 
 }  // namespace sgm::cli

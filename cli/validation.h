@@ -1,0 +1,16 @@
+// CGAL's word on a mesh.
+// Enters: a finished mesh. Leaves: lines on stdout or stderr. Assumes seconds per million triangles are welcome.
+#pragma once
+
+#include "cli/pipeline.h"
+#include "modeler/mesh/validate.h"
+
+namespace sgm::cli {
+
+/// Prints whether the mesh is closed, oriented and free of self-intersections; Error::Input when it isn't.
+Status validated(const mesh::Mesh& mesh, Stages& stages);
+
+/// Warns of a mesh that crosses itself or isn't closed, as smoothing and strong simplification may leave one.
+void warnOfFaults(const mesh::Mesh& mesh, Stages& stages);
+
+}  // namespace sgm::cli
