@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", SGM_VERSION);
     app.fallthrough();
     uint64_t memory_bytes = usualMemory_bytes();
-    app.add_option("--max-memory", memory_bytes, "Memory that the command may take, as 4GB or 500MB (default: three quarters of what is there)")
+    app.add_option("--max-memory", memory_bytes, "Memory that the command may take, as 4GB or 500MB (default: three quarters of what is there; 0: no limit)")
         ->transform(CLI::AsSizeValue(false));
     int exitCode = 0;
     addBuild(app, exitCode);

@@ -42,7 +42,7 @@ Watch::Watch(bool quiet) {
     interrupted = &progress_;
     for (size_t i = 0; i < std::size(signals); ++i) {
         before_[i] = std::signal(signals[i], onInterrupt);
-        if (before_[i] == SIG_IGN) std::signal(signals[i], SIG_IGN);  // nohup
+        if (signals[i] == SIGHUP && before_[i] == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
     }
     if (quiet || !isatty(STDERR_FILENO)) return;
     try {

@@ -83,9 +83,9 @@ public:
 
     Result<std::vector<float>> signedDistances() {
         for (uint32_t t = 0; t < triangles_.size(); ++t) {
-            if (t % 64 == 0 && cancelled(progress_)) return cancelledError();
+            if (t % 8 == 0 && cancelled(progress_)) return cancelledError();
             seed(t, triangles_[t]);
-            if (offers_ > mostOffers) return Error{Error::Kind::Budget, "has too many large triangles, one over the other: simplify it"};
+            if (offers_ > mostOffers()) return Error{Error::Kind::Budget, "has too many large triangles, one over the other: simplify it"};
         }
         for (int way = 0; way < 8; ++way) {
             if (cancelled(progress_)) return cancelledError();
@@ -99,8 +99,8 @@ public:
     }
 
 private:
-    /// A mesh of ten million small triangles makes a tenth as many.
-    static constexpr uint64_t mostOffers = 4'000'000'000;
+    /// Small triangles are offered to few nodes each; large ones cover the box three hundred times before this is spent.
+    uint64_t mostOffers() const { return 500'000'000 + 200 * uint64_t{triangles_.size()}; }
 
     size_t size() const {
         return static_cast<size_t>(count_.x) * static_cast<size_t>(count_.y) * static_cast<size_t>(count_.z);

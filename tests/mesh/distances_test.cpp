@@ -159,5 +159,21 @@ TEST(Distances, StopWhenTheyAreCancelled) {
     EXPECT_EQ(grid.error().kind, Error::Kind::Cancelled);
 }
 
+/// Overlapping shells are one solid, but each large triangle costs as much as the box's side has nodes.
+TEST(Distances, RefuseMoreLargeTrianglesThanMinutesAllow) {
+    Mesh mesh;
+    Chunk& chunk = mesh.chunks.emplace_back();
+    for (int i = 0; i < 3000; ++i) {
+        const float o = 1e-5f * static_cast<float>(i);
+        addBox(chunk, {o, o, o}, {1 + o, 1 + o, 1 + o});
+    }
+    Mesh few;
+    for (int i = 0; i < 20; ++i) addBox(few.chunks.empty() ? few.chunks.emplace_back() : few.chunks[0], {0, 0, 0}, {1, 1, 1 + 0.01f * static_cast<float>(i)});
+    EXPECT_TRUE(toDistances(few).ok());
+    const auto grid = toDistances(mesh);
+    ASSERT_FALSE(grid.ok());
+    EXPECT_EQ(grid.error().kind, Error::Kind::Budget);
+}
+
 }  // namespace
 }  // namespace sgm::mesh
