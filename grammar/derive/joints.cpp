@@ -83,13 +83,28 @@ void JointIndex::search(const ShapeTree& tree, uint64_t cell, const Joint& joint
         if (newest && std::pair(entry.shape, entry.joint) < std::pair(newest->shape, newest->joint)) continue;
         if (faceEachOther(joint, tree.joint(entry.shape, entry.joint))) newest = entry;
     }
+    if (crowds_.empty()) return;
+    const auto crowd = crowds_.find(cell);
+    if (crowd == crowds_.end()) return;
+    for (auto entry = crowd->second.rbegin(); entry != crowd->second.rend() && (!newest || *newest < *entry); ++entry)
+        if (!tree.shapes[entry->shape].dead && faceEachOther(joint, tree.joint(entry->shape, entry->joint))) newest = *entry;
 }
 
-void JointIndex::insert(Slot slot) {
+/// Puts an entry into a free slot; false where its cell has its share of them already.
+bool JointIndex::insert(Slot slot) {
+    constexpr size_t most = 16;
     const size_t mask = slots_.size() - 1;
-    size_t i = slot.cell & mask;
-    while (slots_[i].entry.shape != none) i = (i + 1) & mask;
+    size_t i = slot.cell & mask, ofCell = 0;
+    for (; slots_[i].entry.shape != none; i = (i + 1) & mask)
+        if (slots_[i].cell == slot.cell && ++ofCell == most) return false;
     slots_[i] = slot;
+    return true;
+}
+
+void JointIndex::enter(Slot slot) {
+    if ((used_ + 1) * 2 > slots_.size()) grow();
+    if (insert(slot)) ++used_;
+    else crowded_ += crowds_[slot.cell].insert(slot.entry).second;
 }
 
 void JointIndex::grow() {
@@ -111,8 +126,7 @@ std::optional<JointIndex::Entry> JointIndex::add(const ShapeTree& tree, Entry en
     std::optional<Entry> partner;
     if (spot.inside) search(tree, opposite(spot.cell), joint, partner);
     else forCells(offset(joint.point), -joint.direction, [&](uint64_t cell) { search(tree, cell, joint, partner); });
-    if (++used_ * 2 > slots_.size()) grow();
-    insert({spot.cell, entry});
+    enter({spot.cell, entry});
     return partner;
 }
 
@@ -120,8 +134,7 @@ void JointIndex::move(Entry entry, Spot spot) {
     const size_t mask = slots_.size() - 1;
     for (size_t i = spot.cell & mask; slots_[i].entry.shape != none; i = (i + 1) & mask)
         if (slots_[i].cell == spot.cell && slots_[i].entry == entry) return;
-    if (++used_ * 2 > slots_.size()) grow();
-    insert({spot.cell, entry});
+    enter({spot.cell, entry});
 }
 
 std::vector<uint64_t> JointIndex::cellsFacing(const Joint& joint) {

@@ -1,4 +1,6 @@
 // Joints and bonds, SG-M eqs. 15–16.
+#include <ctime>
+
 #include "modeler/core/random.h"
 #include "tests/derive/grammars.h"
 
@@ -150,6 +152,20 @@ rule Hole -> sphere size (1 + n)
         if (s.solid != derive::none && s.parent != derive::none && d.tree.labels[s.label] == "sphere") sizes.push_back(s.scope.size.x);
     std::sort(sizes.begin(), sizes.end());
     EXPECT_EQ(sizes, (std::vector<double>{1, 2, 3, 4, 5}));
+}
+
+TEST(Joints, ShapesThatAllStandAtOnePlaceTakeNoLongerThanOthers) {
+    std::string crowd = "grammar 1\nstart S -> cube size 1";
+    for (int i = 0; i < 40'000; ++i) crowd += " + cube size 1";
+    const std::clock_t begin = std::clock();
+    const auto d = derived(crowd + " + cube size 1 move (1m, 0m, 0m)\n");
+    EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 4) << "quadratic work takes ten seconds";
+    // The newest of the crowd meets the one beside it.
+    const auto last = static_cast<derive::ShapeId>(d.tree.shapes.size() - 1);
+    size_t met = 0;
+    for (const derive::Bond& b : d.tree.bonds)
+        if (b.directed && (b.shape[0] == last || b.shape[1] == last)) met += b.shape[0] == last - 1 || b.shape[1] == last - 1;
+    EXPECT_EQ(met, 1u);
 }
 
 TEST(OnEach, NothingOfTheNameIsNoError) {
