@@ -43,8 +43,12 @@ std::string customData(const ObjectNode& object) {
 /// an instance that refers to its prim.
 class ObjectPrims {
 public:
-    ObjectPrims(OutFile& out, const UsdSurface& surface, const SharedObjects* shared)
-        : out_(out), surface_(surface), shared_(shared), local_(surface.input.mesh->vertexCount()) {}
+    ObjectPrims(OutFile& out, const UsdSurface& surface, const SharedObjects* shared, std::string path)
+        : out_(out),
+          surface_(surface),
+          shared_(shared),
+          path_(std::move(path)),
+          local_(surface.input.mesh->vertexCount()) {}
 
     void write() {
         const auto& patches = surface_.patched.patches;
@@ -58,7 +62,7 @@ public:
         for (size_t i = 0; i < count; ++i) kept[i] = firstPatch[shared_->of[i]] < patches.size();
         kept = nodesAbove(objects, std::move(kept));
         std::vector<std::string> paths(count);
-        paths[0] = "/" + surface_.root;
+        paths[0] = path_;
         std::vector<uint32_t> open{0};
         for (uint32_t i = 1; i < count; ++i) {
             const ObjectNode& object = objects.nodes[i];
@@ -105,8 +109,9 @@ private:
     }
 
     OutFile& out_;
-    const UsdSurface& surface_;
+    const UsdSurface surface_;
     const SharedObjects* shared_;  ///< set where there are objects
+    const std::string path_;       ///< of the prim that the objects lie in
     std::vector<uint32_t> local_;
     std::set<std::string> taken_{"Materials", "Surface"};
 };
@@ -165,21 +170,19 @@ void writeMaterials(OutFile& out, const ExportInput& input, const std::set<uint3
 
 /// One mesh with what its prims need of it.
 struct UsdLevel {
-    ExportInput input;                      ///< without what is shown twice
-    std::unique_ptr<SharedObjects> shared;  ///< set where there are objects
+    ExportInput input;                            ///< its mesh is that of `shared` where that has one
+    std::unique_ptr<const SharedObjects> shared;  ///< set where there are objects
     TextureSets texture;
     PatchedMesh patched;
 };
 
 Result<UsdLevel> makeLevel(const ExportInput& input, size_t level) {
     UsdLevel made{inputOfLevel(input, level), nullptr, {}, {}};
-    if (const ObjectTree* const objects = made.input.objects) {
-        // An instance refers to a prim by its path, and levels may be left out.
-        const bool share = input.levels.empty() && option(input, "instances", "no") == "yes";
-        made.shared =
-            std::make_unique<SharedObjects>(share ? shareObjects(*made.input.mesh, *objects) : keepOwnSurfaces(*objects));
-        if (made.shared->mesh) made.input.mesh = &*made.shared->mesh;
-    }
+    if (const ObjectTree* const objects = made.input.objects)
+        made.shared = std::make_unique<const SharedObjects>(option(input, "instances", "no") == "yes"
+                                                                ? shareObjects(*made.input.mesh, *objects)
+                                                                : keepOwnSurfaces(*objects));
+    if (made.shared && made.shared->mesh) made.input.mesh = &*made.shared->mesh;
     auto texture = makeTexture(made.input);
     if (!texture.ok()) return texture.error();
     made.texture = std::move(*texture);
@@ -228,9 +231,14 @@ Status writeUsda(const ExportInput& input, const Path& temporary, const Path& ta
     std::set<uint32_t> used;
     for (size_t i = 0;;) {
         for (const Patch& p : level->patched.patches) used.insert(p.material);
-        if (!input.levels.empty()) out.text(fmt::format("def Xform \"{}\"\n{{\n", identifierOf(level->input.name)));
-        const UsdSurface surface{level->input, level->texture, level->patched, names, root};
-        ObjectPrims(out, surface, level->shared.get()).write();
+        std::string path = "/" + root;
+        if (!input.levels.empty()) {
+            const std::string name = identifierOf(level->input.name);
+            out.text(fmt::format("def Xform \"{}\"\n{{\n", name));
+            path += "/" + name;
+        }
+        const SharedObjects* const shared = level->shared ? &*level->shared : nullptr;
+        ObjectPrims(out, {level->input, level->texture, level->patched, names, root}, shared, path).write();
         if (!input.levels.empty()) out.text("}\n");
         if (++i == levelCount(input)) break;
         level = makeLevel(input, i);
