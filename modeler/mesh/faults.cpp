@@ -79,7 +79,7 @@ public:
             open.insert(open.end(), {{2 * a, 2 * a}, {2 * a + 1, 2 * a + 1}, {2 * a, 2 * a + 1}});
             return;
         }
-        if (!nodes_[a].meets(nodes_[b]) || hull(nodes_[a], nodes_[b]).isNarrow()) return;
+        if (!nodes_[a].meets(nodes_[b])) return;
         if (a >= leaves_) return compareLeaves(a, b, found);
         for (const uint32_t i : {2 * a, 2 * a + 1})
             for (const uint32_t j : {2 * b, 2 * b + 1}) open.push_back({i, j});
