@@ -124,14 +124,6 @@ mesh::Keep keepOf(const BuildRequest& request) {
     return request.keep == "all" ? mesh::Keep::All : request.keep == "grounded" ? mesh::Keep::Grounded : mesh::Keep::Largest;
 }
 
-/// Takes crumbs and what floats away where that is wanted.
-void keepOnly(const BuildRequest& request, MeshedModel& meshed) {
-    const mesh::Dropped dropped = mesh::keepOnly(meshed.mesh, keepOf(request), meshed.grid.cell_m, request.grid.threads);
-    if (!request.quiet && dropped.pieces + dropped.cavities > 0)
-        fmt::print("left out {} piece{} of {:.4g} m³, filled {} cavit{} of {:.4g} m³\n", dropped.pieces, dropped.pieces == 1 ? "" : "s", dropped.volume_m3,
-                   dropped.cavities, dropped.cavities == 1 ? "y" : "ies", dropped.filled_m3);
-}
-
 /// From a mesh to what was asked for: edits, validation, files, figures.
 Status deliver(const BuildRequest& request, const Model& model, const viewer::Division& division, MeshedModel meshed, Stages& stages, Progress* progress) {
     std::vector<lower::ThinPart> missing;
@@ -140,7 +132,7 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
         if (!found.ok()) return found.error();
         missing = std::move(*found);
     }
-    keepOnly(request, meshed);
+    keepOnly(keepOf(request), meshed, request.grid.threads, request.quiet);
     auto mesh = edited(std::move(meshed.mesh), request, meshed.grid.cell_m, stages, progress);
     if (!mesh.ok()) return mesh.error();
     if (mesh->triangleCount() == 0 && !allFiles(request.out).empty()) {

@@ -52,4 +52,12 @@ void sayFloating(const Model& model, const Support& support) {
     if (support.floating.size() > most) tell("warning: {} more pieces float\n", support.floating.size() - most);
 }
 
+void keepOnly(mesh::Keep keep, MeshedModel& meshed, int threads, bool quiet) {
+    const mesh::Dropped dropped = mesh::keepOnly(meshed.mesh, keep, meshed.grid.cell_m, threads);
+    if (!quiet && dropped.pieces + dropped.cavities > 0)
+        fmt::print("left out {} piece{} of {:.4g} m³, filled {} cavit{} of {:.4g} m³\n", dropped.pieces,
+                   dropped.pieces == 1 ? "" : "s", dropped.volume_m3, dropped.cavities,
+                   dropped.cavities == 1 ? "y" : "ies", dropped.filled_m3);
+}
+
 }  // namespace sgm::cli
