@@ -90,8 +90,8 @@ public:
         }
     }
 
-    Islands run() {
-        for (uint32_t t = 0; t < triangles_.size(); ++t)
+    Islands run(const Progress* progress) {
+        for (uint32_t t = 0; t < triangles_.size() && !cancelled(progress); ++t)
             if (islands_.ofTriangle[t] == noIndex) grow(t);
         return std::move(islands_);
     }
@@ -269,8 +269,9 @@ private:
 
 }  // namespace
 
-Islands findIslands(const mesh::Mesh& mesh, const TextureCharts& charts, const std::vector<uint32_t>& objects) {
-    return Grower(mesh, charts, objects).run();
+Islands findIslands(const mesh::Mesh& mesh, const TextureCharts& charts, const std::vector<uint32_t>& objects,
+                    const Progress* progress) {
+    return Grower(mesh, charts, objects).run(progress);
 }
 
 }  // namespace sgm::exporter

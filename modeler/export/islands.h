@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "modeler/core/progress.h"
 #include "modeler/export/texture.h"
 
 namespace sgm::exporter {
@@ -23,7 +24,9 @@ struct Islands {
 };
 
 /// Connected triangles of one chart and one object whose projections on the chart's plane don't overlap. `objects` is
-/// the object of each triangle, empty for one object. O(n) for charts that are flat, about that for others.
-Islands findIslands(const mesh::Mesh& mesh, const TextureCharts& charts, const std::vector<uint32_t>& objects);
+/// the object of each triangle, empty for one object. O(n) for charts that are flat, about that for others. What it
+/// gives is of no use once the progress is cancelled.
+Islands findIslands(const mesh::Mesh& mesh, const TextureCharts& charts, const std::vector<uint32_t>& objects,
+                    const Progress* progress);
 
 }  // namespace sgm::exporter

@@ -28,16 +28,23 @@ int texelsOf(float metres, double texelsPerMetre) {
     return static_cast<int>(std::ceil(static_cast<double>(metres) * texelsPerMetre)) + 2 * margin;
 }
 
-/// The islands of one object as rectangles at some scale.
-std::vector<Rectangle> rectanglesOf(const std::vector<Lying>& islands, double texelsPerMetre) {
+/// The islands of one object as rectangles at some scale; none where they take more room than there is.
+std::vector<Rectangle> rectanglesOf(const std::vector<Lying>& islands, double texelsPerMetre, int texels) {
     std::vector<Rectangle> rectangles;
-    for (const Lying& l : islands)
-        rectangles.push_back({texelsOf(l.width, texelsPerMetre), texelsOf(l.height, texelsPerMetre), 0, 0});
+    rectangles.reserve(islands.size());
+    int64_t room = int64_t{texels} * texels;
+    for (const Lying& l : islands) {
+        const Rectangle r{texelsOf(l.width, texelsPerMetre), texelsOf(l.height, texelsPerMetre), 0, 0};
+        room -= int64_t{r.width} * r.height;
+        if (room < 0) return {};
+        rectangles.push_back(r);
+    }
     return rectangles;
 }
 
-/// About the greatest scale, texels a metre, at which all have room, and their places there; 0 where none has.
-double packAll(const std::vector<Lying>& islands, int texels, std::vector<Rectangle>& places) {
+/// About the greatest scale, texels a metre, at which all have room, and their places there; 0 where none has, or where
+/// the progress is cancelled.
+double packAll(const std::vector<Lying>& islands, int texels, Progress* progress, std::vector<Rectangle>& places) {
     double area = 0, longest = 0;
     for (const Lying& l : islands) {
         area += static_cast<double>(l.width) * static_cast<double>(l.height);
@@ -48,10 +55,10 @@ double packAll(const std::vector<Lying>& islands, int texels, std::vector<Rectan
     constexpr double step = 0.97;
     constexpr int steps = 300;  // down to a ten-thousandth
     int good = steps, bad = -1;
-    while (good - bad > 1) {
+    while (good - bad > 1 && !cancelled(progress)) {
         const int middle = (good + bad) / 2;
-        std::vector<Rectangle> tried = rectanglesOf(islands, most * std::pow(step, middle));
-        if (packRectangles(tried, texels))
+        std::vector<Rectangle> tried = rectanglesOf(islands, most * std::pow(step, middle), texels);
+        if (!tried.empty() && packRectangles(tried, texels))
             good = middle, places = std::move(tried);
         else
             bad = middle;
@@ -70,8 +77,10 @@ std::vector<uint32_t> objectsOf(const mesh::Mesh& mesh, const ObjectTree* tree) 
 
 }  // namespace
 
-Result<LightMap> LightMap::make(const mesh::Mesh& mesh, const ObjectTree* objects, int texels, TextureCharts& charts) {
-    const Islands islands = findIslands(mesh, charts, objectsOf(mesh, objects));
+Result<LightMap> LightMap::make(const mesh::Mesh& mesh, const ObjectTree* objects, int texels, Progress* progress,
+                                TextureCharts& charts) {
+    const Islands islands = findIslands(mesh, charts, objectsOf(mesh, objects), progress);
+    if (cancelled(progress)) return cancelledError();
     std::vector<std::vector<uint32_t>> ofObject(objects ? objects->nodes.size() : 1);
     for (uint32_t i = 0; i < islands.all.size(); ++i) ofObject[islands.all[i].object].push_back(i);
     LightMap map;
@@ -81,7 +90,8 @@ Result<LightMap> LightMap::make(const mesh::Mesh& mesh, const ObjectTree* object
         std::vector<Lying> sizes;
         for (const uint32_t i : own) sizes.push_back(lying(islands.all[i]));
         std::vector<Rectangle> places;
-        const double scale = packAll(sizes, texels, places);
+        const double scale = packAll(sizes, texels, progress, places);
+        if (cancelled(progress)) return cancelledError();
         if (scale == 0)
             return Error{Error::Kind::Input,
                          fmt::format("a light map of {} texels a side has no room for {} islands: take a larger one, "

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "modeler/core/object_tree.h"
+#include "modeler/core/progress.h"
 #include "modeler/core/result.h"
 #include "modeler/export/texture.h"
 
@@ -17,8 +18,10 @@ namespace sgm::exporter {
 class LightMap {
 public:
     /// Replaces `charts` by its islands. Each object has a map of its own, `texels` a side, which its islands fill at
-    /// one scale with two texels between them. Error::Input where an object has more islands than its map has room for.
-    static Result<LightMap> make(const mesh::Mesh& mesh, const ObjectTree* objects, int texels, TextureCharts& charts);
+    /// one scale with two texels between them. Error::Input where an object has more islands than its map has room for,
+    /// Error::Cancelled.
+    static Result<LightMap> make(const mesh::Mesh& mesh, const ObjectTree* objects, int texels, Progress* progress,
+                                 TextureCharts& charts);
 
     /// Of a point of the island: u to the right, v up, never mirrored.
     std::array<float, 2> at(uint32_t island, Vec3f p) const;

@@ -11,7 +11,8 @@ Result<TextureSets> makeTexture(const ExportInput& input) {
     if (texels == "none") return sets;
     if (sets.empty())
         return Error{Error::Kind::Usage, "option 'lightmap' is a second set of texture coordinates: leave out uv=none"};
-    auto light = LightMap::make(*input.mesh, input.objects, static_cast<int>(*numberOf(texels)), sets.charts);
+    auto light =
+        LightMap::make(*input.mesh, input.objects, static_cast<int>(*numberOf(texels)), input.progress, sets.charts);
     if (!light.ok()) return light.error();
     sets.light = std::move(*light);
     return sets;

@@ -9,6 +9,7 @@
 
 #include "modeler/core/conventions.h"
 #include "modeler/export/exporter.h"
+#include "modeler/export/lightmap.h"
 #include "tests/export/hand_made.h"
 #include "tests/export/read_back.h"
 #include "tests/hard_box.h"
@@ -298,6 +299,18 @@ TEST_F(TextureTest, LightMapsThatAreTooSmallSaySo) {
     EXPECT_EQ(folder.fileCount(), 0u);
     input.options = {{"lightmap", "256"}, {"uv", "none"}};
     EXPECT_EQ(write(input, folder / "a.glb").error().kind, Error::Kind::Usage);
+}
+
+TEST_F(TextureTest, ALightMapIsCancelled) {
+    mesh = meshOfChunks({box({0, 0, 0}, {}, {1, 1, 1})});
+    TextureCharts charts = chartTexture("scope", mesh, provenance);
+    Progress progress;
+    EXPECT_TRUE(LightMap::make(mesh, nullptr, 256, &progress, charts).ok());
+    progress.cancel();
+    charts = chartTexture("scope", mesh, provenance);
+    const auto map = LightMap::make(mesh, nullptr, 256, &progress, charts);
+    ASSERT_FALSE(map.ok());
+    EXPECT_EQ(map.error().kind, Error::Kind::Cancelled);
 }
 
 TEST_F(TextureTest, UsdHasBothSets) {
