@@ -33,15 +33,24 @@ double penetration(const Scope& a, const Scope& b) {
     return least;
 }
 
-std::vector<Boxed> solidsByX(const ShapeTree& tree) {
+std::vector<Boxed> solidsInOrder(const ShapeTree& tree, int& axis) {
     std::vector<Boxed> boxes;
+    Box3d all;
+    Vec3d sizes;
     for (ShapeId s = 0; s < tree.shapes.size(); ++s) {
         if (tree.shapes[s].solid == none) continue;
         const Scope& scope = tree.shapes[s].scope;
-        const double r = reach(scope, {1, 0, 0});
-        boxes.push_back({scope.centre.x - r, scope.centre.x + r, s});
+        const Vec3d r{reach(scope, {1, 0, 0}), reach(scope, {0, 1, 0}), reach(scope, {0, 0, 1})};
+        boxes.push_back({{scope.centre - r, scope.centre + r}, s});
+        all = hull(all, boxes.back().box);
+        sizes += r;
     }
-    std::sort(boxes.begin(), boxes.end(), [](const Boxed& a, const Boxed& b) { return a.lo != b.lo ? a.lo < b.lo : a.shape < b.shape; });
+    axis = 0;
+    for (int i = 1; i < 3; ++i)
+        if (all.size()[i] * sizes[axis] > all.size()[axis] * sizes[i]) axis = i;
+    std::sort(boxes.begin(), boxes.end(), [&](const Boxed& a, const Boxed& b) {
+        return a.box.lo[axis] != b.box.lo[axis] ? a.box.lo[axis] < b.box.lo[axis] : a.shape < b.shape;
+    });
     return boxes;
 }
 

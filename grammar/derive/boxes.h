@@ -17,20 +17,26 @@ double reach(const Scope& scope, Vec3d axis);
 /// The depth by which two oriented boxes overlap (separating axes), metres; negative when they are apart.
 double penetration(const Scope& a, const Scope& b);
 
-/// A solid's shape and its extent along x, for the sweep.
+/// A solid's shape and its extents along the axes.
 struct Boxed {
-    double lo, hi;
+    Box3d box;
     ShapeId shape;
 };
-/// All shapes with a solid, by their least x.
-std::vector<Boxed> solidsByX(const ShapeTree& tree);
+/// All shapes with a solid, by their least coordinate along the axis on which they share least; `axis` is set to it.
+std::vector<Boxed> solidsInOrder(const ShapeTree& tree, int& axis);
 
-/// Calls f(a, b) for every pair of solids whose extents along x share more than −margin.
+/// Calls f(a, b) for every pair of solids whose extents share more than −margin along all axes, until f gives false.
 template <class F>
 void forPairs(const ShapeTree& tree, double margin, F f) {
-    const auto boxes = solidsByX(tree);
+    int axis = 0;
+    const auto boxes = solidsInOrder(tree, axis);
+    const int second = (axis + 1) % 3, third = (axis + 2) % 3;
+    const auto apart = [&](const Box3d& a, const Box3d& b, int i) { return a.hi[i] + margin < b.lo[i] || b.hi[i] + margin < a.lo[i]; };
     for (size_t i = 0; i < boxes.size(); ++i)
-        for (size_t k = i + 1; k < boxes.size() && boxes[k].lo <= boxes[i].hi + margin; ++k) f(boxes[i].shape, boxes[k].shape);
+        for (size_t k = i + 1; k < boxes.size() && boxes[k].box.lo[axis] <= boxes[i].box.hi[axis] + margin; ++k)
+            if (!apart(boxes[i].box, boxes[k].box, second) && !apart(boxes[i].box, boxes[k].box, third) &&
+                !f(boxes[i].shape, boxes[k].shape))
+                return;
 }
 
 }  // namespace sgm::derive

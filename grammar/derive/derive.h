@@ -45,7 +45,7 @@ struct Derivation {
     uint64_t classic = 0, morphic = 0;  ///< rule applications of R_C and R_M
 
     /// Pairs of shapes with a solid whose boxes overlap by more than 0.1 mm without being bonded or related (one above
-    /// the other in the tree). O(n log n) plus the pairs that share an interval of x.
+    /// the other in the tree); counting ends at a million. O(n log n) plus the pairs that share an interval of an axis.
     uint64_t overlaps() const;
     /// Shapes that carry a solid.
     uint64_t terminals() const;

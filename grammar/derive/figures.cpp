@@ -8,6 +8,9 @@
 namespace sgm::derive {
 namespace {
 
+/// Nobody asks for more, and shapes that all stand at one place overlap in as many pairs as there are.
+constexpr uint64_t mostOverlaps = 1'000'000;
+
 /// Places that a bond joins, as unordered pairs.
 std::unordered_set<uint64_t> bondedPlaces(const ShapeTree& tree) {
     std::unordered_set<uint64_t> pairs;
@@ -44,10 +47,11 @@ uint64_t Derivation::overlaps() const {
     uint64_t count = 0;
     forPairs(tree, 0, [&](ShapeId a, ShapeId b) {
         const Shape &p = tree.shapes[a], &q = tree.shapes[b];
-        if (p.body == q.body || above(a, b) || above(b, a)) return;
-        if (penetration(p.scope, q.scope) <= boxSlack_m) return;
+        if (p.body == q.body || above(a, b) || above(b, a)) return true;
+        if (penetration(p.scope, q.scope) <= boxSlack_m) return true;
         const auto [lo, hi] = std::minmax(p.body, q.body);
         count += !bonded.contains(uint64_t(lo) << 32 | hi);
+        return count < mostOverlaps;
     });
     return count;
 }

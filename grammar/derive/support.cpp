@@ -33,8 +33,9 @@ std::vector<uint32_t> touchingGroups(const ShapeTree& tree) {
     std::vector<uint32_t> parent(tree.shapes.size());
     std::iota(parent.begin(), parent.end(), 0u);
     forPairs(tree, boxSlack_m, [&](ShapeId a, ShapeId b) {
-        if (!adds[a] || !adds[b] || rootOf(parent, a) == rootOf(parent, b)) return;
+        if (!adds[a] || !adds[b] || rootOf(parent, a) == rootOf(parent, b)) return true;
         if (penetration(tree.shapes[a].scope, tree.shapes[b].scope) >= -boxSlack_m) parent[rootOf(parent, a)] = rootOf(parent, b);
+        return true;
     });
     std::vector<uint32_t> groupOf(tree.shapes.size(), none), number(tree.shapes.size(), none);
     uint32_t count = 0;

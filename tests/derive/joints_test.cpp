@@ -160,6 +160,7 @@ TEST(Joints, ShapesThatAllStandAtOnePlaceTakeNoLongerThanOthers) {
     const std::clock_t begin = std::clock();
     const auto d = derived(crowd + " + cube size 1 move (1m, 0m, 0m)\n");
     EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 4) << "quadratic work takes ten seconds";
+    EXPECT_EQ(d.overlaps(), 1'000'000u) << "of 800 million; counting has an end";
     // The newest of the crowd meets the one beside it.
     const auto last = static_cast<derive::ShapeId>(d.tree.shapes.size() - 1);
     size_t met = 0;
