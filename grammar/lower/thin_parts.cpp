@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <unordered_set>
 
 #include "modeler/core/parallel.h"
@@ -11,7 +12,7 @@
 namespace sgm::lower {
 namespace {
 
-constexpr int fewestLines = 4, mostLines = 12;  ///< along an axis across the thin one
+constexpr int fewestLines = 4, mostLines = 16;  ///< along an axis across the thin one
 constexpr int steps = 16;                       ///< between the samples on a line
 constexpr double lineReach = 1.02;              ///< of a scope's half extent, so that its own faces are crossed
 constexpr int halvings = 6;                     ///< of a step around a crossing
@@ -125,6 +126,9 @@ private:
             for (size_t i = 0; i < inside_.size(); ++i) (values_[i] < 0 ? inside_ : outside_)[i] = middles_[i];
         }
     }
+    /// Where the i-th of n lines passes a half extent: denser towards the ends, for a bar may run through a house and
+    /// show these alone; off the middle, so that no line lies in a plane of symmetry.
+    static double shareOf(int i, int n) { return -std::cos(std::numbers::pi * (i + 0.535) / n); }
     void addLines(const derive::Scope& scope, int axis) {
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
         const auto linesAlong = [&](int across) {
@@ -134,9 +138,8 @@ private:
         for (int j = 0; j < alongV; ++j)
             for (int i = 0; i < alongU; ++i)
                 for (int s = 0; s <= steps; ++s) {
-                    // Off the middle, so that no line lies in a plane of symmetry.
                     Vec3d share;
-                    share[u] = (2.0 * i + 1.07) / alongU - 1, share[v] = (2.0 * j + 1.07) / alongV - 1;
+                    share[u] = shareOf(i, alongU), share[v] = shareOf(j, alongV);
                     share[axis] = lineReach * (2.0 * s / steps - 1);
                     rows_.add(scope.point(share).as<float>());
                 }
