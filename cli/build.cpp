@@ -142,7 +142,7 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
     }
     if (request.validate)
         if (const Status s = validated(*mesh, stages); !s.ok()) return s;
-    if ((request.smooth > 0 || request.simplify < 1) && !request.validate && !request.quiet) warnOfFaults(*mesh, stages);
+    if (request.smooth > 0 && !request.validate && !request.quiet) warnOfFaults(*mesh, stages);
     mesh::MeshFigures figures;  // of the solid, before it is turned inside out
     Support support;
     if (!request.quiet || !request.report.empty()) {

@@ -10,7 +10,7 @@ namespace sgm::cli {
 /// Prints whether the mesh is closed, oriented and free of self-intersections; Error::Input when it isn't.
 Status validated(const mesh::Mesh& mesh, Stages& stages);
 
-/// Warns of a mesh that crosses itself or isn't closed, as smoothing and strong simplification may leave one.
+/// Warns of a mesh that crosses itself or isn't closed, as smoothing may leave one.
 void warnOfFaults(const mesh::Mesh& mesh, Stages& stages);
 
 }  // namespace sgm::cli

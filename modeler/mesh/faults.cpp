@@ -117,9 +117,9 @@ private:
     std::vector<Bounds> nodes_;
 };
 
-/// Triangles with an edge that runs the same way as another's.
-void findRepeatedEdges(std::span<const Vec3f> positions, std::span<const SimpleTriangle> triangles,
-                       std::vector<uint32_t>& faults) {
+/// Triangles with an edge that runs the same way as another's, and those around a vertex at which several fans meet.
+void findNonManifold(std::span<const Vec3f> positions, std::span<const SimpleTriangle> triangles,
+                     std::vector<uint32_t>& faults) {
     std::vector<uint32_t> begin(positions.size() + 1);
     for (const SimpleTriangle& t : triangles)
         for (int i = 0; i < 3; ++i) ++begin[t.corners[i] + 1];
@@ -133,6 +133,25 @@ void findRepeatedEdges(std::span<const Vec3f> positions, std::span<const SimpleT
                 if (ends[k].first == b) faults.insert(faults.end(), {ends[k].second, t});
             ends[next[a]++] = {b, t};
         }
+    for (uint32_t v = 0; v < positions.size(); ++v) {
+        const std::span<const std::pair<uint32_t, uint32_t>> around(ends.data() + begin[v], begin[v + 1] - begin[v]);
+        if (around.empty()) continue;
+        // From triangle to triangle over the edges at v, back to the first.
+        const auto thirdOf = [&](size_t i) {
+            const Triangle& t = triangles[around[i].second].corners;
+            return t.x == v ? t.z : t.y == v ? t.x : t.y;
+        };
+        size_t at = 0, seen = 0;
+        do {
+            const uint32_t third = thirdOf(at);
+            at = static_cast<size_t>(
+                std::find_if(around.begin(), around.end(), [&](const auto& e) { return e.first == third; }) -
+                around.begin());
+            ++seen;
+        } while (at != 0 && at < around.size() && seen < around.size());
+        if (at == 0 && seen == around.size()) continue;
+        for (const auto& [end, t] : around) faults.push_back(t);
+    }
 }
 
 }  // namespace
@@ -141,7 +160,7 @@ std::vector<uint32_t> findFaults(std::span<const Vec3f> positions, std::span<con
                                  int threads, const Progress* progress) {
     std::vector<uint32_t> faults;
     if (triangles.empty()) return faults;
-    findRepeatedEdges(positions, triangles, faults);
+    findNonManifold(positions, triangles, faults);
     const Hierarchy hierarchy(positions, triangles, threads);
     const auto note = [&faults](uint32_t t) { faults.push_back(t); };
     std::vector<Hierarchy::Pair> tasks{{1, 1}}, next;

@@ -1,0 +1,52 @@
+// What findFaults finds: crossings, edges that are there twice, fans that meet in a vertex.
+#include "modeler/mesh/faults.h"
+
+#include <gtest/gtest.h>
+
+namespace sgm::mesh {
+namespace {
+
+/// A tetrahedron over four vertices, seen from outside where d is above a, b, c.
+void addTetrahedron(std::vector<SimpleTriangle>& to, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+    for (const Triangle t : {Triangle{a, c, b}, Triangle{a, b, d}, Triangle{b, c, d}, Triangle{c, a, d}})
+        to.push_back({t, 0});
+}
+
+std::vector<uint32_t> faultsOf(const std::vector<Vec3f>& positions, const std::vector<SimpleTriangle>& triangles) {
+    return findFaults(positions, triangles, 2, nullptr);
+}
+
+const std::vector<Vec3f> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
+                                 {3, 0, 2}, {4, 0, 2}, {3, 1, 2}, {3, 0, 3}};
+const std::vector<uint32_t> all{0, 1, 2, 3, 4, 5, 6, 7};
+
+TEST(Faults, TwoTetrahedraApartHaveNone) {
+    std::vector<SimpleTriangle> triangles;
+    addTetrahedron(triangles, 0, 1, 2, 3), addTetrahedron(triangles, 4, 5, 6, 7);
+    EXPECT_TRUE(faultsOf(corners, triangles).empty());
+}
+
+TEST(Faults, FansThatMeetInAVertexAre) {
+    std::vector<SimpleTriangle> triangles;
+    addTetrahedron(triangles, 0, 1, 2, 3), addTetrahedron(triangles, 3, 5, 6, 7);
+    // The two faces that don't touch the vertex are sound.
+    EXPECT_EQ(faultsOf(corners, triangles), (std::vector<uint32_t>{1, 2, 3, 4, 5, 7}));
+}
+
+TEST(Faults, CrossingsAre) {
+    std::vector<Vec3f> moved = corners;
+    for (size_t i = 4; i < 8; ++i) moved[i] -= Vec3f{2.9f, -0.1f, 1.9f};
+    std::vector<SimpleTriangle> triangles;
+    addTetrahedron(triangles, 0, 1, 2, 3), addTetrahedron(triangles, 4, 5, 6, 7);
+    EXPECT_FALSE(faultsOf(moved, triangles).empty());
+}
+
+TEST(Faults, EdgesThatAreThereTwiceAre) {
+    std::vector<SimpleTriangle> triangles;
+    addTetrahedron(triangles, 0, 1, 2, 3), addTetrahedron(triangles, 0, 1, 2, 7);
+    const auto faults = faultsOf(corners, triangles);
+    EXPECT_TRUE(std::find(faults.begin(), faults.end(), 0u) != faults.end());
+}
+
+}  // namespace
+}  // namespace sgm::mesh
