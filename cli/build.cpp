@@ -115,8 +115,8 @@ void say(const BuildRequest& request, const Model& model, const mesh::MeshFigure
     for (const std::string& file : allFiles(request.out)) fmt::print("wrote {}\n", file);
     if (!request.floor.empty()) fmt::print("wrote {}\n", request.floor);
     if (!request.out.collider.empty()) fmt::print("{} collider{} ({})\n", colliders.all.size(), colliders.all.size() == 1 ? "" : "s", request.out.collider);
-    for (const std::string& note : colliders.notes) tell("note: collider: {}\n", note);
-    tellProblems(derive::ungrown(model.derivation));
+    for (const std::string& note : colliders.notes) printMessage("note: collider: {}\n", note);
+    printDiagnostics(derive::ungrown(model.derivation));
     sayFloating(model, support);
 }
 
@@ -154,7 +154,7 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
     exporter::ExportInput input = viewer::exportInput(model, request.model.file);
     input.mesh = &*mesh;
     input.progress = progress;
-    division.tell(input);
+    division.applyTo(input);
     Colliders colliders;
     if (!request.out.collider.empty()) {
         auto made = timed(stages, "colliders", [&] { return makeColliders(request.out.collider, model, *mesh, progress); });
@@ -195,7 +195,7 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
     if (request.quiet) return Done{};
     say(request, model, figures, support, colliders, stages);
     fmt::print("{}", levelTable(*levels, mesh->triangleCount()));
-    sayMissing(model, meshed.grid, missing);
+    printMissingParts(model, meshed.grid, missing);
     if (cave && request.cave) fmt::print("{}", caveTable(*cave));
     return Done{};
 }

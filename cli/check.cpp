@@ -42,7 +42,7 @@ int checkOne(const std::string& file, const CheckRequest& request, nlohmann::jso
     if (request.json) {
         for (auto& entry : nlohmann::json::parse(syntax::toJson(diagnostics))) found.push_back(std::move(entry));
     } else {
-        tellProblems(diagnostics);
+        printDiagnostics(diagnostics);
         if (!diagnostics.hasErrors() && code == 0) fmt::print("{}: fine\n", file);
     }
     return diagnostics.hasErrors() ? 1 : code;

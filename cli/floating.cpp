@@ -46,10 +46,10 @@ void sayFloating(const Model& model, const Support& support) {
     for (size_t i = 0; i < std::min(support.floating.size(), most); ++i) {
         const Floating& f = support.floating[i];
         const Vec3f at = f.piece.bounds.centre();
-        tell("warning: {} floats: {:.3g} m³ about ({:.2f}, {:.2f}, {:.2f})\n", derive::madeBy(model.derivation, f.shape),
+        printMessage("warning: {} floats: {:.3g} m³ about ({:.2f}, {:.2f}, {:.2f})\n", derive::madeBy(model.derivation, f.shape),
                    f.piece.volume_m3, at.x, at.y, at.z);
     }
-    if (support.floating.size() > most) tell("warning: {} more pieces float\n", support.floating.size() - most);
+    if (support.floating.size() > most) printMessage("warning: {} more pieces float\n", support.floating.size() - most);
 }
 
 void keepOnly(mesh::Keep keep, MeshedModel& meshed, int threads, bool quiet) {

@@ -22,7 +22,7 @@ Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m);
 /// A warning on stderr for each floating piece, the first few of many.
 void sayFloating(const Model& model, const Support& support);
 
-/// Takes crumbs and what floats away where that is wanted, and prints what went unless `quiet`.
+/// Drops debris and floating components as `keep` says, and prints what was dropped unless `quiet`.
 void keepOnly(mesh::Keep keep, MeshedModel& meshed, int threads, bool quiet);
 
 }  // namespace sgm::cli

@@ -20,7 +20,7 @@ int formatOne(const std::string& file, bool checkOnly) {
     if (!source.ok()) return fail(source.error());
     syntax::Diagnostics diagnostics;
     syntax::parse(*source, diagnostics);
-    tellProblems(diagnostics);
+    printDiagnostics(diagnostics);
     if (diagnostics.hasErrors()) return 1;
     const std::string text = syntax::format(**source);
     if (text == (*source)->text()) return 0;

@@ -22,22 +22,22 @@ Exit codes: 0 done, 1 something in the input, 2 wrong usage, 3 a budget ran out,
 
 /// Runs what the arguments ask for.
 int run(CLI::App& app, int argc, char** argv, const int& exitCode) {
-    using sgm::cli::tell;
+    using sgm::cli::printMessage;
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? 0 : 2;
     } catch (const std::bad_alloc&) {
-        tell("sgm: out of memory; try a lower --resolution or a smaller model, or allow more with --max-memory\n");
+        printMessage("sgm: out of memory; try a lower --resolution or a smaller model, or allow more with --max-memory\n");
         return 3;
     } catch (const std::length_error&) {  // a size that no memory holds
-        tell("sgm: out of memory: the input asks for more than any machine has\n");
+        printMessage("sgm: out of memory: the input needs more than any machine has\n");
         return 3;
     } catch (const std::system_error& e) {
-        tell("sgm: {}\n", e.what());
+        printMessage("sgm: {}\n", e.what());
         return 1;
     } catch (const std::exception& e) {
-        tell("sgm: internal error: {}\n", e.what());
+        printMessage("sgm: internal error: {}\n", e.what());
         return 1;
     }
     return exitCode;

@@ -14,13 +14,13 @@ void writeMessage(const std::string& text) {
     std::clearerr(stderr);
 }
 
-void tellProblems(const syntax::Diagnostics& diagnostics) {
+void printDiagnostics(const syntax::Diagnostics& diagnostics) {
     constexpr size_t most = 100;
     size_t errors = 0, warnings = 0;
     for (const syntax::Diagnostic& d : diagnostics.all())
-        if ((d.severity == syntax::Severity::Error ? errors : warnings)++ < most) tell("{}\n", syntax::render(d));
-    if (errors > most) tell("{} more errors\n", errors - most);
-    if (warnings > most) tell("{} more warnings\n", warnings - most);
+        if ((d.severity == syntax::Severity::Error ? errors : warnings)++ < most) printMessage("{}\n", syntax::render(d));
+    if (errors > most) printMessage("{} more errors\n", errors - most);
+    if (warnings > most) printMessage("{} more warnings\n", warnings - most);
 }
 
 void openStandardStreams() {
@@ -31,7 +31,7 @@ void openStandardStreams() {
 bool flushOutput() {
     errno = 0;
     if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return true;
-    tell("sgm: can't write to the standard output: {}\n", std::strerror(errno ? errno : EIO));
+    printMessage("sgm: can't write to the standard output: {}\n", std::strerror(errno ? errno : EIO));
     return false;
 }
 

@@ -17,12 +17,12 @@ void writeMessage(const std::string& text);
 
 /// Formats to stderr.
 template <class... Arguments>
-void tell(fmt::format_string<Arguments...> text, Arguments&&... arguments) {
+void printMessage(fmt::format_string<Arguments...> text, Arguments&&... arguments) {
     writeMessage(fmt::format(text, std::forward<Arguments>(arguments)...));
 }
 
 /// Prints problems with the lines they stand in: at most a hundred errors and as many warnings, and how many more there are.
-void tellProblems(const syntax::Diagnostics& diagnostics);
+void printDiagnostics(const syntax::Diagnostics& diagnostics);
 
 /// Opens the standard streams that are closed on /dev/null, so that no file of ours becomes one of them.
 void openStandardStreams();

@@ -25,7 +25,7 @@ Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const 
                                    threads, progress);
 }
 
-void sayMissing(const Model& model, const mesh::Grid& grid, const std::vector<lower::ThinPart>& missing) {
+void printMissingParts(const Model& model, const mesh::Grid& grid, const std::vector<lower::ThinPart>& missing) {
     constexpr size_t most = 5;
     std::map<std::pair<std::string, uint32_t>, Line> lines;
     for (const lower::ThinPart& m : missing) {
@@ -39,7 +39,7 @@ void sayMissing(const Model& model, const mesh::Grid& grid, const std::vector<lo
     size_t told = 0;
     for (const auto& [place, line] : lines) {
         if (told++ == most) break;
-        tell(
+        printMessage(
             "warning: {}:{}: {} '{}' of {:.3g} m {} thinner than the mesh's cells of {:.3g} m and lack{} {:.0f} % of "
             "the surface: "
             "--resolution {} holds {}\n",
@@ -50,7 +50,7 @@ void sayMissing(const Model& model, const mesh::Grid& grid, const std::vector<lo
             line.parts == 1 ? "it" : "them");
     }
     if (lines.size() > most)
-        tell("warning: parts of {} more lines are too thin for these cells\n", lines.size() - most);
+        printMessage("warning: parts of {} more lines are too thin for these cells\n", lines.size() - most);
 }
 
 }  // namespace sgm::cli

@@ -14,6 +14,6 @@ Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const 
                                                       int threads, Progress* progress);
 
 /// A warning for each line of the grammar with such parts, the first few of many.
-void sayMissing(const Model& model, const mesh::Grid& grid, const std::vector<lower::ThinPart>& missing);
+void printMissingParts(const Model& model, const mesh::Grid& grid, const std::vector<lower::ThinPart>& missing);
 
 }  // namespace sgm::cli

@@ -54,7 +54,7 @@ Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& re
     const syntax::Ast ast = timed(stages, "parse", [&] { return syntax::parse(*source, diagnostics); });
     auto grammar = timed(stages, "check", [&] { return rules::check(ast, viewer::fileLoader(progress, &inputs), diagnostics); });
     if (cancelled(progress)) return cancelledError();
-    tellProblems(diagnostics);
+    printDiagnostics(diagnostics);
     if (diagnostics.hasErrors()) return Error{Error::Kind::Input, ""};
     if (const Status s = checkAgainstInputs(request.targets, inputs); !s.ok()) return s.error();
     if (read) read->insert(read->end(), inputs.begin(), inputs.end());
@@ -87,7 +87,7 @@ Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Sta
 
 int fail(const Error& error) {
     constexpr size_t longest = 4000;
-    if (!error.message.empty()) tell("sgm: {}\n", shortened(printable(error.message, true), longest));
+    if (!error.message.empty()) printMessage("sgm: {}\n", shortened(printable(error.message, true), longest));
     switch (error.kind) {
         case Error::Kind::Usage: return 2;
         case Error::Kind::Budget: return 3;

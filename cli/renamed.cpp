@@ -14,7 +14,7 @@ constexpr const char* unlisted = "";  ///< CLI11's group of options that --help 
 }  // namespace
 
 void noteRenamed(const char* oldName, const char* newName) {
-    tell("note: {} is now {}; the old name goes with the next version\n", oldName, newName);
+    printMessage("note: {} is now {}; the old name goes with the next version\n", oldName, newName);
 }
 
 void addRenamedOption(CLI::App& command, const char* oldName, const char* newName, std::vector<std::string>& values) {

@@ -20,7 +20,7 @@ Status validated(const mesh::Mesh& mesh, Stages& stages) {
 void warnOfFaults(const mesh::Mesh& mesh, Stages& stages) {
     const auto judgement = timed(stages, "validate", [&] { return mesh::judge(mesh); });
     if (!judgement.ok() || (judgement->closed && !judgement->selfIntersects)) return;
-    tell("warning: the mesh {} since it was smoothed: smooth less, or take smaller cells (--validate makes this an error)\n",
+    printMessage("warning: the mesh {} since it was smoothed: smooth less, or take smaller cells (--validate makes this an error)\n",
          judgement->closed ? "crosses itself" : "has holes");
 }
 

@@ -29,11 +29,11 @@ void show(const Progress& progress, const std::atomic<bool>& stop) {
     while (!stop) {
         std::this_thread::sleep_for(50ms);
         if (std::chrono::steady_clock::now() - start < 1s) continue;
-        tell("\r\033[K{} {:3.0f} %", progress.stage(), 100 * progress.fraction());
+        printMessage("\r\033[K{} {:3.0f} %", progress.stage(), 100 * progress.fraction());
         std::fflush(stderr);
         shown = true;
     }
-    if (shown) tell("\r\033[K");
+    if (shown) printMessage("\r\033[K");
 }
 
 }  // namespace

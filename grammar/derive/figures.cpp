@@ -8,7 +8,7 @@
 namespace sgm::derive {
 namespace {
 
-/// Nobody asks for more, and shapes that all stand at one place overlap in as many pairs as there are.
+/// Counting ends there: shapes that all stand at one place overlap in as many pairs as there are.
 constexpr uint64_t mostOverlaps = 1'000'000;
 
 /// Places that a bond joins, as unordered pairs.

@@ -83,10 +83,10 @@ void JointIndex::search(const ShapeTree& tree, uint64_t cell, const Joint& joint
         if (newest && std::pair(entry.shape, entry.joint) < std::pair(newest->shape, newest->joint)) continue;
         if (faceEachOther(joint, tree.joint(entry.shape, entry.joint))) newest = entry;
     }
-    if (crowds_.empty()) return;
-    const auto crowd = crowds_.find(cell);
-    if (crowd == crowds_.end()) return;
-    for (auto entry = crowd->second.rbegin(); entry != crowd->second.rend() && (!newest || *newest < *entry); ++entry)
+    if (fullCells_.empty()) return;
+    const auto full = fullCells_.find(cell);
+    if (full == fullCells_.end()) return;
+    for (auto entry = full->second.rbegin(); entry != full->second.rend() && (!newest || *newest < *entry); ++entry)
         if (!tree.shapes[entry->shape].dead && faceEachOther(joint, tree.joint(entry->shape, entry->joint))) newest = *entry;
 }
 
@@ -104,7 +104,7 @@ bool JointIndex::insert(Slot slot) {
 void JointIndex::enter(Slot slot) {
     if ((used_ + 1) * 2 > slots_.size()) grow();
     if (insert(slot)) ++used_;
-    else crowded_ += crowds_[slot.cell].insert(slot.entry).second;
+    else inFullCells_ += fullCells_[slot.cell].insert(slot.entry).second;
 }
 
 void JointIndex::grow() {

@@ -49,17 +49,17 @@ public:
                 const Entry e = slots_[i].entry;
                 if (slots_[i].cell == cell && faceEachOther(joint, tree.joint(e.shape, e.joint))) f(e);
             }
-            if (const auto crowd = crowds_.find(cell); crowd != crowds_.end())
-                for (const Entry e : crowd->second)
+            if (const auto full = fullCells_.find(cell); full != fullCells_.end())
+                for (const Entry e : full->second)
                     if (faceEachOther(joint, tree.joint(e.shape, e.joint))) f(e);
         }
     }
     /// The newest that faces the joint among those entered before `entry`.
     std::optional<Entry> partner(const ShapeTree& tree, Entry entry, const Joint& joint) const;
-    size_t size() const { return used_ + crowded_; }
+    size_t size() const { return used_ + inFullCells_; }
     uint64_t memory() const {
         constexpr uint64_t node_bytes = 64;
-        return slots_.capacity() * sizeof(Slot) + crowded_ * node_bytes;
+        return slots_.capacity() * sizeof(Slot) + inFullCells_ * node_bytes;
     }
 
 private:
@@ -76,8 +76,8 @@ private:
     std::vector<Slot> slots_ = std::vector<Slot>(64);  ///< a power of two, at least half of them empty
     size_t used_ = 0;
     /// By cell: the entries beyond the first few, so that shapes that all stand at one place don't make long runs of slots.
-    std::unordered_map<uint64_t, std::set<Entry>> crowds_;
-    size_t crowded_ = 0;
+    std::unordered_map<uint64_t, std::set<Entry>> fullCells_;
+    size_t inFullCells_ = 0;
 };
 
 /// What a newcomer asks for: its size and orientation are given, its place follows from the joints.

@@ -17,7 +17,7 @@ constexpr int steps = 16;                       ///< between the samples on a li
 constexpr double lineReach = 1.02;              ///< of a scope's half extent, so that its own faces are crossed
 constexpr int halvings = 6;                     ///< of a step around a crossing
 constexpr int fewestCrossings = 3;              ///< of a part that isn't buried
-constexpr double worthTelling = 0.1;            ///< share of the surface
+constexpr double leastMissing = 0.1;            ///< share of the surface that a part in the list lacks
 constexpr size_t partsPerStep = 16;             ///< of a parallel loop
 
 /// Cells as large as the mesh's that hold triangles of thin parts.
@@ -204,7 +204,7 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
     if (cancelled(progress)) return cancelledError();
     std::vector<ThinPart> found;
     for (size_t i = 0; i < thin.size(); ++i) {
-        if (!(missing[i] > worthTelling)) continue;
+        if (!(missing[i] > leastMissing)) continue;
         const derive::Scope& scope = derivation.tree.shapes[model.shapeOf[thin[i]]].scope;
         found.push_back({thin[i], minComponent(scope.size), cellThatHolds(scope), missing[i]});
     }

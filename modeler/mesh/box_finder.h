@@ -11,6 +11,7 @@
 
 namespace sgm::mesh {
 
+/// An index over boxes that don't change.
 class BoxFinder {
 public:
     /// O(n) in the boxes, which have to stay.

@@ -119,7 +119,7 @@ uint64_t FaceCreases::confirmCrossings(const eval::Tape& tape, eval::Workspace& 
                 confirmed = confirmed && probe.label == (side == 0 ? gap.a : gap.b).label &&
                             std::abs(value) <= confirmShare * grid_->cell_m * length(probe.gradient);
                 if (round > 0 || gap.leaves || probe.label == gap.a.label || probe.label == gap.b.label) continue;
-                gap.leaves = stopBefore(gap, probe, value);
+                gap.leaves = moveBeforeThird(gap, probe, value);
             }
             if (gap.leaves) next_.push_back(open_[i]);
             gap.leaves = gap.leaves || confirmed;
@@ -131,7 +131,7 @@ uint64_t FaceCreases::confirmCrossings(const eval::Tape& tape, eval::Workspace& 
 
 /// Moves a crossing along its crease to a little before a third piece, the nearer the farther it lay beyond. Whether
 /// that is near enough.
-bool FaceCreases::stopBefore(Gap& gap, const PiecePoint& third, float value) const {
+bool FaceCreases::moveBeforeThird(Gap& gap, const PiecePoint& third, float value) const {
     const Vec3d along = normalized(cross(gap.lineA.gradient.as<double>(), gap.lineB.gradient.as<double>()));
     const Vec3d slope = third.gradient.as<double>();
     const double rise = dot(slope, along);
@@ -184,7 +184,7 @@ void FaceCreases::aim(const FaceSegment& segment, Gap& gap) {
     const double det = double{ga[plane.u]} * gb[plane.v] - double{ga[plane.v]} * gb[plane.u];
     const bool first = gap.state == State::Ends;
     if (!(std::abs(det) > parallel * la * lb)) {
-        if (first) leave(gap, between(gap.a.at, gap.b.at, 0.5));
+        if (first) projectOntoCrease(gap, between(gap.a.at, gap.b.at, 0.5));
         return searchBorder(gap);
     }
     // g · (p − q) + f = 0 for both.
@@ -198,7 +198,7 @@ void FaceCreases::aim(const FaceSegment& segment, Gap& gap) {
     if (!mayLieAt(segment, gap.at)) {
         const bool isFar = !(length(gap.at - gap.a.at) < 2 * grid_->cell_m);
         gap.at = inFace(segment, gap.at);  // where a third piece shows, if one cuts the crease off
-        leave(gap, isFar ? between(gap.a.at, gap.b.at, 0.5) : gap.at);
+        projectOntoCrease(gap, isFar ? between(gap.a.at, gap.b.at, 0.5) : gap.at);
         if (isFar && !first) return searchBorder(gap);
     }
     gap.state = State::Crease;
@@ -207,7 +207,7 @@ void FaceCreases::aim(const FaceSegment& segment, Gap& gap) {
 
 /// The crease lies outside the face: the crossing is its point nearest to `from`, so that points keep their order along
 /// it.
-void FaceCreases::leave(Gap& gap, Vec3f from) const {
+void FaceCreases::projectOntoCrease(Gap& gap, Vec3f from) const {
     const Vec3d p = from.as<double>(), a = gap.lineA.gradient.as<double>(), b = gap.lineB.gradient.as<double>();
     const double aa = dot(a, a), bb = dot(b, b), ab = dot(a, b), det = aa * bb - ab * ab;
     gap.leaves = false;

@@ -81,10 +81,10 @@ private:
     void takeProbes(const FaceSegment& segment, uint32_t gap, size_t sample);
     void takeMiddle(const FaceSegment& segment, uint32_t gap, size_t sample);
     void aim(const FaceSegment& segment, Gap& gap);
-    void leave(Gap& gap, Vec3f from) const;
+    void projectOntoCrease(Gap& gap, Vec3f from) const;
     void searchBorder(Gap& gap);
     uint64_t confirmCrossings(const eval::Tape& tape, eval::Workspace& workspace);
-    bool stopBefore(Gap& gap, const PiecePoint& third, float value) const;
+    bool moveBeforeThird(Gap& gap, const PiecePoint& third, float value) const;
     void evaluateSamples(const eval::Tape& tape, eval::Workspace& workspace);
     void split(uint32_t gap, const PiecePoint& between);
     Vec3f inFace(const FaceSegment& segment, Vec3f p) const;

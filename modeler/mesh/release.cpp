@@ -29,17 +29,18 @@ public:
     size_t run(int threads, const Progress* progress) {
         findVertices();
         if (moves_.empty()) return 0;
+        const size_t confined = moves_.size();
         findTriangles();
         addNeighbours();
         findTriangles();
         findAround();
         placeJunctions();
         for (const Move& move : moves_) flat_.positions[move.vertex] = move.place;
-        left_ = moves_.size();
         do {
             unfold();
-        } while (left_ > 0 && !cancelled(progress) && takeBack(crossingTriangles(threads, progress)));
-        return left_;
+        } while (!cancelled(progress) && revert(crossingTriangles(threads, progress)));
+        const auto end = moves_.begin() + static_cast<ptrdiff_t>(confined);
+        return static_cast<size_t>(std::count_if(moves_.begin(), end, [](const Move& m) { return m.moved; }));
     }
 
 private:
@@ -120,13 +121,14 @@ private:
                 const uint32_t m = moveOf_[t[i]];
                 if (m == none || keysOf_[m].size() < 3) continue;
                 auto known = std::find_if(planes[m].begin(), planes[m].end(), [&](auto& p) { return p.key == key; });
-                if (known == planes[m].end()) known = planes[m].insert(known, {key, touched.outward, {}, false});
                 for (const int k : {(i + 1) % 3, (i + 2) % 3}) {
-                    const bool isInner = !(touched.creases >> k & 1);  // then it lies on the surface
-                    if (known->isInner || (!isInner && known->point != Vec3d{})) continue;
                     const uint32_t other = moveOf_[t[k]];
-                    *known = {key, touched.outward,
-                              (other == none ? flat_.positions[t[k]] : moves_[other].place).as<double>(), isInner};
+                    const Vec3f point = other == none ? flat_.positions[t[k]] : moves_[other].place;
+                    const PlaneAt plane{key, touched.outward, point.as<double>(), !(touched.creases >> k & 1)};
+                    if (known == planes[m].end())
+                        known = planes[m].insert(known, plane);
+                    else if (plane.isInner && !known->isInner)  // that lies on the surface as it is
+                        *known = plane;
                 }
             }
         }
@@ -180,7 +182,8 @@ private:
         }
     }
 
-    /// Two neighbours on a crease that changed places are exchanged, once; what still folds over moves back.
+    /// Neighbours on a crease that changed places are exchanged, a few times at most; else a vertex goes between its
+    /// neighbours on the crease; what still folds over moves back.
     void unfold() {
         for (auto folded = foldedTriangles(); !folded.empty(); folded = foldedTriangles()) {
             ++round_;
@@ -192,7 +195,7 @@ private:
                 for (int i = 0; i < 3 && !done; ++i) done |= centre(corners[i]);
                 if (!done) rest.push_back(t);
             }
-            if (!takeBack(rest) && rest.size() == folded.size()) return;
+            if (!revert(rest) && rest.size() == folded.size()) return;
         }
     }
 
@@ -301,7 +304,7 @@ private:
     }
 
     /// Moves the vertices of some triangles back. Whether there were any.
-    bool takeBack(const std::vector<uint32_t>& triangles) {
+    bool revert(const std::vector<uint32_t>& triangles) {
         bool some = false;
         for (const uint32_t t : triangles)
             for (int i = 0; i < 3; ++i) {
@@ -309,7 +312,6 @@ private:
                 if (m == none || !moves_[m].moved) continue;
                 moves_[m].moved = false;
                 flat_.positions[moves_[m].vertex] = moves_[m].before;
-                --left_;
                 some = true;
             }
         return some;
@@ -322,7 +324,6 @@ private:
     std::vector<Touched> touched_;
     std::vector<std::vector<uint64_t>> keysOf_;       ///< by move, ascending
     std::vector<std::vector<uint32_t>> trianglesOf_;  ///< by move
-    size_t left_ = 0;
     int round_ = 0;
 };
 

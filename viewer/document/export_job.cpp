@@ -43,7 +43,7 @@ Status write(const Shown& shown, const ExportRequest& request, const exporter::E
     meshed->mesh = std::move(*simple);
     exporter::ExportInput input = exportInput(shown.model, shown.grammar->sources[0]->name());
     input.mesh = &meshed->mesh;
-    division->tell(input);
+    division->applyTo(input);
     input.options = request.options;
     input.progress = &progress;
     std::optional<volume::Volume> level;

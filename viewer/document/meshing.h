@@ -42,8 +42,8 @@ struct Division {
     std::optional<ObjectTree> objects;
     bool byMaterial = true;
 
-    /// Tells the writer; keep this object until it has written.
-    void tell(exporter::ExportInput& input) const {
+    /// Sets what a writer reads of it; this object has to stay until that has written.
+    void applyTo(exporter::ExportInput& input) const {
         input.objects = objects ? &*objects : nullptr;
         input.byMaterial = byMaterial;
     }
