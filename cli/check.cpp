@@ -10,6 +10,7 @@
 #include "cli/numbers.h"
 #include "cli/pipeline.h"
 #include "cli/watch.h"
+#include "grammar/operations/operations.h"
 #include "grammar/syntax/parser.h"
 #include "viewer/document/files.h"
 
@@ -37,7 +38,7 @@ int checkOne(const std::string& file, const CheckRequest& request, nlohmann::jso
     const auto source = viewer::readSource(file);
     if (!source.ok()) return fail(source.error());
     syntax::Diagnostics diagnostics;
-    const auto grammar = rules::load(*source, viewer::fileLoader(), diagnostics);
+    const auto grammar = rules::load(*source, operations::table(), viewer::fileLoader(), diagnostics);
     const int code = grammar ? runGrammarChecks(grammar, request, diagnostics) : 0;
     if (request.json) {
         for (auto& entry : nlohmann::json::parse(syntax::toJson(diagnostics))) found.push_back(std::move(entry));

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/pipeline.h"
+#include "grammar/operations/operations.h"
 #include "grammar/syntax/parser.h"
 #include "grammar/syntax/printer.h"
 #include "viewer/document/files.h"
@@ -19,10 +20,10 @@ int formatOne(const std::string& file, bool checkOnly) {
     const auto source = viewer::readSource(file);
     if (!source.ok()) return fail(source.error());
     syntax::Diagnostics diagnostics;
-    syntax::parse(*source, diagnostics);
+    syntax::parse(*source, operations::table(), diagnostics);
     printDiagnostics(diagnostics);
     if (diagnostics.hasErrors()) return 1;
-    const std::string text = syntax::format(**source);
+    const std::string text = syntax::format(**source, operations::table());
     if (text == (*source)->text()) return 0;
     if (checkOnly) {
         fmt::print("{} is not formatted; run `sgm fmt {}`\n", file, file);

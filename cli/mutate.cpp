@@ -9,6 +9,7 @@
 #include "cli/numbers.h"
 #include "cli/variations.h"
 #include "cli/watch.h"
+#include "grammar/operations/operations.h"
 #include "grammar/rules/params.h"
 #include "grammar/syntax/parser.h"
 #include "modeler/core/random.h"
@@ -137,7 +138,7 @@ Status saveChoice(const MutateRequest& request, const rules::Grammar& grammar, c
     const auto source = viewer::readSource(request.model.file);
     if (!source.ok()) return source.error();
     syntax::Diagnostics diagnostics;
-    const syntax::Ast ast = syntax::parse(*source, diagnostics);
+    const syntax::Ast ast = syntax::parse(*source, operations::table(), diagnostics);
     std::vector<NamedValue> values;
     const auto add = [&](const NamedValue& v) {
         std::erase_if(values, [&](const NamedValue& w) { return w.name == v.name; });

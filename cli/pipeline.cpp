@@ -8,6 +8,7 @@
 
 #include "cli/messages.h"
 #include "cli/numbers.h"
+#include "grammar/operations/operations.h"
 #include "grammar/rules/check.h"
 #include "grammar/syntax/parser.h"
 #include "modeler/core/printable.h"
@@ -51,7 +52,7 @@ Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& re
     if (!source.ok()) return source.error();
     std::vector<std::filesystem::path> inputs{request.file};
     syntax::Diagnostics diagnostics;
-    const syntax::Ast ast = timed(stages, "parse", [&] { return syntax::parse(*source, diagnostics); });
+    const syntax::Ast ast = timed(stages, "parse", [&] { return syntax::parse(*source, operations::table(), diagnostics); });
     auto grammar = timed(stages, "check", [&] { return rules::check(ast, viewer::fileLoader(progress, &inputs), diagnostics); });
     if (cancelled(progress)) return cancelledError();
     printDiagnostics(diagnostics);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "grammar/operations/operations.h"
 #include "grammar/rules/functions.h"
 #include "grammar/syntax/operations.h"
 #include "modeler/export/exporter.h"
@@ -21,8 +22,9 @@ std::string argumentList(const syntax::Operation& operation) {
 
 std::string operationsPage() {
     std::string page = "## Rule operations\n\nWhat a rule body may do to a shape.\n";
-    for (const syntax::Operation& o : syntax::operations()) {
-        page += fmt::format("\n### `{}{}{}`\n\n{}{}\n", o.name, argumentList(o), o.block ? " { … }" : "", o.doc, o.supported ? "" : " *Not supported yet.*");
+    for (const syntax::Operation* row : operations::table().rows()) {
+        const syntax::Operation& o = *row;
+        page += fmt::format("\n### `{}{}{}`\n\n{}\n", o.name, argumentList(o), o.hasBlock() ? " { … }" : "", o.doc);
         for (const syntax::OperationArgument& a : o.arguments) page += fmt::format("- `{}`: {}\n", a.name, a.doc);
         if (!o.example.empty()) page += fmt::format("\n    {}\n", o.example);
     }

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "grammar/lower/lower.h"
+#include "grammar/operations/operations.h"
 #include "grammar/rules/check.h"
 #include "modeler/export/exporter.h"
 #include "modeler/mesh/polygonize.h"
@@ -10,7 +11,7 @@ int main() {
     using namespace sgm;
     const auto source = std::make_shared<const syntax::Source>("embed.sgm", "grammar 1\nstart A -> cube size 2 : B\nrule B -> + sphere at +y to centre blend .3m\n");
     syntax::Diagnostics problems;
-    const auto grammar = rules::load(source, {}, problems);
+    const auto grammar = rules::load(source, operations::table(), {}, problems);
     for (const auto& problem : problems.all()) std::fputs(syntax::render(problem).c_str(), stderr);
     if (!grammar) return 1;
 

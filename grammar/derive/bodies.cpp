@@ -74,11 +74,11 @@ bool Interpreter::runElement(const Element& e, Frame& frame, Target& target, uin
         case Element::Kind::Shape: break;
     }
     const uint64_t key = combine(combine(frame.key, factsOf(e).hash), loop);
-    if (e.content.kind == rules::Content::Kind::None) {
+    if (e.content.empty()) {
         annotate(e, frame, key);
         return !builder_.failed();
     }
-    const bool nil = e.content.kind == rules::Content::Kind::Solid && e.content.solid.kind == rules::Solid::Kind::Nil;
+    const bool nil = e.content.solid() && e.content.solid()->kind == rules::Solid::Kind::Nil;
     if (nil && e.op != rules::Operator::Intersection) return true;
     return e.op == rules::Operator::None ? placeHead(e, frame, target, key, followed) : placeGrown(e, frame, target, key);
 }

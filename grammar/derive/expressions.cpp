@@ -190,4 +190,15 @@ Mat3 rotation(const Value& v) {
     return Mat3::rotation({0, 0, 1}, v.n[2]) * Mat3::rotation({0, 1, 0}, v.n[1]) * Mat3::rotation({1, 0, 0}, v.n[0]);
 }
 
+SolidValue evaluateSolid(const rules::Solid& solid, const Place& place) {
+    SolidValue v;
+    v.kind = solid.kind;
+    v.primitive = solid.primitive;
+    v.op = solid.op;
+    for (const rules::Expr& arg : solid.args) v.args.push_back(evaluate(arg, place));
+    for (const rules::Solid& part : solid.parts) v.parts.push_back(evaluateSolid(part, place));
+    if (solid.kind == rules::Solid::Kind::Morph) v.amount = std::clamp(number(solid.amount, place), 0.0, 1.0);
+    return v;
+}
+
 }  // namespace sgm::derive

@@ -37,6 +37,9 @@ inline constexpr std::string_view allZero = "all weights are 0, so nothing can b
 /// Draws among weights (those below 0 count as 0) by the stream `key`: an index, or `none` when all are 0.
 uint32_t drawByWeight(std::span<const double> weights, uint64_t key);
 
+/// A solid with its numbers bound.
+SolidValue evaluateSolid(const rules::Solid& solid, const Place& place);
+
 /// Three components with their units.
 struct Vector {
     Vec3d n;

@@ -5,30 +5,36 @@
 namespace sgm::derive {
 
 using rules::Attribute;
-using rules::Content;
 using rules::Element;
-using Id = rules::Operation::Id;
+using rules::HostChoice;
+using rules::JointChoice;
+using Phase = rules::Operation::Phase;
 
 namespace {
 
 /// Content that later elements join must not be rewritten or displaced together with them: it gets a node of its own.
 bool needsGroup(const Element& e, const Shape& shape) {
-    return shape.live || shape.extras != none || (e.content.kind == Content::Kind::Group && e.live != rules::none);
+    return shape.live || shape.extras != none || (e.content.group() && e.live != rules::none);
 }
 
-/// The matched scope as prefix attributes leave it.
+/// The matched scope as prefix attributes leave it; each sees what those before it made.
 Scope changedScope(const std::vector<Attribute>& prefix, Place place) {
     for (const Attribute& a : prefix) {
-        if (a.args.empty()) continue;
-        if (a.id == Id::Turn) place.scope.axes = place.scope.axes * rotation(evaluate(a.args[0], place));
-        if (a.id != Id::Size && a.id != Id::Move) continue;
-        const Vector v = vector(a.args[0], place, a.id == Id::Move);
-        Vec3d m;
-        for (int i = 0; i < 3; ++i) m[i] = v.unit[i] == rules::Unit::Share ? v.n[i] * place.scope.size[i] : v.n[i];
-        if (a.id == Id::Size) place.scope.size = m;
-        else place.scope.centre += place.scope.axes * m;
+        if (a.operation->phase != Phase::Scope || a.args.empty()) continue;
+        EvaluatedAttributes out;
+        out.scope = place.scope;
+        AttributeContext context{place, out};
+        a.operation->apply(context, a);
+        place.scope = out.scope;
+        place.scope.centre += out.moved_m;
     }
     return place.scope;
+}
+
+void applyWhole(const std::vector<Attribute>& list, const Place& place, EvaluatedAttributes& out) {
+    AttributeContext context{place, out};
+    for (const Attribute& a : list)
+        if (a.operation->phase == Phase::Whole) a.operation->apply(context, a);
 }
 
 }  // namespace
@@ -38,12 +44,9 @@ void Interpreter::annotate(const Element& e, Frame& frame, uint64_t key) {
     Place place = frame.place;
     place.key = key;
     frame.place.scope = changedScope(e.prefix, place);
-    Looks looks;
-    looks.scope = frame.place.scope;
-    for (const auto* list : {&e.prefix, &e.attributes})
-        for (const Attribute& a : *list)
-            if (a.id == Id::Displace || a.id == Id::Clad || a.id == Id::With || a.id == Id::Tag) readAttribute(a, place, looks);
-    const Extras& x = looks.extras;
+    EvaluatedAttributes attributes;
+    applyWhole(e.prefix, place, attributes);
+    const Extras& x = attributes.extras;
     if (x.empty()) return;
     Extras& all = builder_.extras(frame.node);
     if (!x.clad.empty()) all.clad = x.clad;
@@ -57,13 +60,12 @@ bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint
     Place place = frame.place;
     place.key = key;
     if (!e.prefix.empty()) place.scope = changedScope(e.prefix, place);
-    Looks looks;
-    for (const Attribute& a : e.prefix)
-        if (a.id == Id::With || a.id == Id::Tag) readAttribute(a, place, looks);
-    if (!readLooks(e, factsOf(e), place, looks)) return false;
-    Shape shape = shapeOf(e, looks, place, key);
-    shape.scope = looks.scope;
-    shape.scope.centre += looks.moved_m;
+    EvaluatedAttributes attributes;
+    applyWhole(e.prefix, place, attributes);
+    if (!evaluateAttributes(e, place, attributes)) return false;
+    Shape shape = shapeOf(e, attributes, place, key);
+    shape.scope = attributes.scope;
+    shape.scope.centre += attributes.moved_m;
     shape.parent = frame.node;
     if (followed && needsGroup(e, shape)) {
         Shape group;
@@ -87,10 +89,10 @@ bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint
     return true;
 }
 
-ShapeId Interpreter::hostOf(const ElementFacts& facts, const Frame& frame, const Target& target, const Place& place) const {
-    if (!facts.on || facts.on->host == Attribute::Host::Matched) return target.host;
-    if (facts.on->host == Attribute::Host::Last) return frame.links->last;
-    const auto direction = static_cast<size_t>(evaluate(facts.on->args[0], place).num());
+ShapeId Interpreter::hostOf(const Element& e, const Frame& frame, const Target& target, const Place& place) const {
+    if (!e.on) return target.host;
+    if (e.on->kind == HostChoice::Kind::Last) return frame.links->last;
+    const auto direction = static_cast<size_t>(evaluate(e.on->of, place).num());
     if (direction >= faceCount || frame.links->toward[direction].empty()) return frame.links->root;
     const auto& candidates = frame.links->toward[direction];
     return candidates[pick(combine(place.key, hashText("on")), candidates.size())];
@@ -105,7 +107,7 @@ uint32_t Interpreter::jointNamed(const rules::Expr& expr, ShapeId host, const Pl
 }
 
 /// The host's joints that `at` may take: a named one unless a directed bond closed it; of `free(…)` those nobody met.
-std::vector<uint32_t> Interpreter::openJoints(const Attribute& at, ShapeId host, const Place& place) {
+std::vector<uint32_t> Interpreter::openJoints(const JointChoice& at, ShapeId host, const Place& place) {
     std::vector<uint32_t> joints;
     const ShapeTree& tree = builder_.tree();
     for (const rules::Expr& e : at.joints)
@@ -126,25 +128,24 @@ rules::Joint Interpreter::jointShares(uint32_t joint, uint32_t jointSet) const {
     return {std::string(faceName(joint)), faceDirection(joint), faceDirection(joint)};
 }
 
-uint32_t Interpreter::theirJoint(const ElementFacts& facts, const Joint& ours, const Mat3& axes, const Place& place) {
-    if (!facts.to) return ours.direction == Vec3d{} ? centreJoint : opposedFace(axes, ours.direction);
-    const rules::Value v = evaluate(facts.to->joints[0], place);
+uint32_t Interpreter::theirJoint(const Element& e, const ElementCache& facts, const Joint& ours, const Mat3& axes, const Place& place) {
+    if (!e.to) return ours.direction == Vec3d{} ? centreJoint : opposedFace(axes, ours.direction);
+    const rules::Value v = evaluate(e.to->joints[0], place);
     if (v.kind != rules::Value::Kind::Word) return static_cast<uint32_t>(v.num());
     const auto& named = builder_.tree().namedJoints[facts.jointSet];
     for (uint32_t i = 0; i < named.size(); ++i)
         if (named[i].name == v.text) return firstNamedJoint + i;
-    builder_.fail(Error::Kind::Input, "the newcomer has no joint '" + v.text + "'", facts.to->span);
+    builder_.fail(Error::Kind::Input, "the newcomer has no joint '" + v.text + "'", e.to->span);
     return none;
 }
 
 bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& target, uint64_t key) {
-    const ElementFacts& facts = factsOf(e);
     Place place = frame.place;
     place.key = key;
-    if (!facts.on || facts.on->host != Attribute::Host::Each) return placeOn(hostOf(facts, frame, target, place), e, frame, target, key);
+    if (!e.on || e.on->kind != HostChoice::Kind::Each) return placeOn(hostOf(e, frame, target, place), e, frame, target, key);
     const ShapeTree& tree = builder_.tree();
     if (builder_.recording()) builder_.recording()->readsWorld();
-    const auto symbol = static_cast<rules::SymbolId>(facts.on->args[0].value.num());
+    const auto symbol = static_cast<rules::SymbolId>(e.on->of.value.num());
     std::vector<ShapeId> hosts;  // those that stand now: what grows on them may carry the name too
     for (ShapeId s = frame.links->root; s != none; s = tree.next(s, frame.links->root))
         if (tree.shapes[s].symbol == symbol) hosts.push_back(s);
@@ -154,17 +155,17 @@ bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& targe
 }
 
 bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Target& target, uint64_t key) {
-    ElementFacts& facts = factsOf(e);
+    ElementCache& facts = factsOf(e);
     Place place = frame.place;
     place.key = key;
-    const bool whole = frame.wholeContent && !facts.at && !facts.on;
+    const bool whole = frame.wholeContent && !e.at && !e.on;
     if (whole && builder_.recording()) builder_.recording()->readsWorld();
     place.scope = whole ? builder_.tree().contentBox(host) : builder_.tree().shapes[host].scope;
     place.valuesAt = builder_.tree().shapes[host].valuesAt;
 
     uint32_t oursIndex = centreJoint;
-    if (facts.at) {
-        const auto open = openJoints(*facts.at, host, place);
+    if (e.at) {
+        const auto open = openJoints(*e.at, host, place);
         if (builder_.failed()) return false;
         if (open.empty()) {  // nothing grows where a bond has closed the joint
             if (builder_.runsAgain()) return true;
@@ -178,20 +179,20 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
         }
         oursIndex = open[open.size() == 1 ? 0 : pick(combine(key, hashText("at")), open.size())];
     }
-    Looks looks;
-    if (!readLooks(e, facts, place, looks)) return false;
+    EvaluatedAttributes attributes;
+    if (!evaluateAttributes(e, place, attributes)) return false;
     Mating mating;
     mating.ours = builder_.tree().joint(host, oursIndex);
     if (whole) mating.ours.point = place.scope.centre;
-    mating.moved_m = looks.moved_m;
-    mating.overlap = looks.overlap;
-    const uint32_t theirs = theirJoint(facts, mating.ours, looks.scope.axes, place);
+    mating.moved_m = attributes.moved_m;
+    mating.overlap = attributes.overlap;
+    const uint32_t theirs = theirJoint(e, facts, mating.ours, attributes.scope.axes, place);
     if (theirs == none) return false;
     mating.theirs = jointShares(theirs, facts.jointSet);
 
-    Shape shape = shapeOf(e, looks, place, key);
+    Shape shape = shapeOf(e, attributes, place, key);
     shape.parent = target.node;
-    shape.scope = mate(mating, looks.scope.axes, looks.scope.size);
+    shape.scope = mate(mating, attributes.scope.axes, attributes.scope.size);
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
     builder_.bond(host, oursIndex, id, theirs);

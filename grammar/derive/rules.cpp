@@ -30,7 +30,7 @@ Interpreter::Interpreter(TreeBuilder& builder, std::span<const rules::Value> par
     : builder_(builder), grammar_(*builder.derivation().grammar), params_(params) {
     builder_.tree().namedJoints.emplace_back();
     for (const Rule& rule : grammar_.rules) {
-        RuleFacts facts;
+        RuleInfo facts;
         facts.hash = hashText(rule.name);
         facts.readsWorld = rule.beside != rules::none || (rule.when && asksForCount(*rule.when));
         facts_.push_back(facts);
@@ -87,9 +87,8 @@ bool Interpreter::canGrow(const rules::Body& body, ShapeId host, const Place& pl
     for (const Elements& sibling : body.siblings)
         for (const Element& e : sibling) {
             if (e.kind != Element::Kind::Shape || e.op == rules::Operator::None) continue;
-            const ElementFacts& facts = factsOf(e);
-            if (!facts.at || facts.on) return true;
-            if (!openJoints(*facts.at, host, place).empty()) return true;
+            if (!e.at || e.on) return true;
+            if (!openJoints(*e.at, host, place).empty()) return true;
             asked = true;
         }
     return !asked;
@@ -158,7 +157,7 @@ void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
 void Interpreter::runFinally(uint32_t index, ShapeId root, Links& links, uint32_t generation) {
     const Rule& rule = grammar_.rules[index];
     if (!rule.finally_->grows && rule.finally_->siblings.size() && !rule.finally_->siblings[0].empty() &&
-        rule.finally_->siblings[0][0].content.kind != rules::Content::Kind::None)
+        !rule.finally_->siblings[0][0].content.empty())
         builder_.clearContent(root);
     const uint64_t key = combine(combine(builder_.tree().shapes[root].key, facts_[index].hash), hashText("finally"));
     Frame frame{root, root, key, placeOf(root), &links, true};

@@ -7,25 +7,19 @@
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/make.h"
+#include "grammar/rules/operation_checker.h"
 #include "grammar/rules/words.h"
 
 namespace sgm::rules {
 namespace {
 
-using Id = Operation::Id;
 using Written = syntax::Expr;
-
-const Attribute* find(const std::vector<Attribute>& attributes, Id id) {
-    const auto found =
-        std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.id == id; });
-    return found == attributes.end() ? nullptr : &*found;
-}
 
 bool isNil(const Body& body) {
     return body.siblings.size() == 1 && body.siblings[0].size() == 1 &&
            body.siblings[0][0].kind == Element::Kind::Shape &&
-           body.siblings[0][0].content.kind == Content::Kind::Solid &&
-           body.siblings[0][0].content.solid.kind == Solid::Kind::Nil;
+           body.siblings[0][0].content.solid() &&
+           body.siblings[0][0].content.solid()->kind == Solid::Kind::Nil;
 }
 
 /// A body grows on the matched content when its first shape has an operator; `nil` beside growing choices adds nothing.
@@ -68,8 +62,7 @@ void Checker::content(Place& place, const Written& e, Element& out) {
     const auto symbol = symbols_.find(e.text);
     const bool named = e.kind == Written::Kind::Name && symbol != symbols_.end();
     if (named) {
-        out.content.kind = Content::Kind::Symbol;
-        out.content.symbol = symbol->second;
+        out.content = Content::ofSymbol(symbol->second);
         out.label = e.text;
         if (!grammar_.symbols[symbol->second].terminal && !ruled_.contains(symbol->second))
             unknown(e.span, e.text, fmt::format("there is no rule for '{}'", e.text), unknownSolid(e.text));
@@ -80,87 +73,50 @@ void Checker::content(Place& place, const Written& e, Element& out) {
                            "hand values down with 'with name = …'");
         return;
     }
-    out.content.kind = Content::Kind::Solid;
-    out.content.solid = solid(place, e);
+    Solid made = solid(place, e);
     out.label = e.text;
     const bool cuts = out.op == Operator::Difference || out.op == Operator::Intersection;
-    if (!cuts && out.op != Operator::None) bounded(out.content.solid, out.op == Operator::Morph ? "morphed" : "added");
+    if (!cuts && out.op != Operator::None) bounded(made, out.op == Operator::Morph ? "morphed" : "added");
+    out.content = Content(std::move(made));
 }
 
-/// Attributes that contradict the element's operator or each other.
-void Checker::agreement(const Place& place, const Element& element) {
-    const auto say = [&](Id id, std::string message, std::string mend) {
-        if (const Attribute* a = find(element.attributes, id))
-            diagnostics_.error(a->span, std::move(message), std::move(mend));
-    };
-    if (element.op == Operator::None) {
-        for (const Id id : {Id::At, Id::To, Id::Overlap, Id::Shift, Id::On, Id::Blend}) {
-            if (id == Id::On && place.where == Place::Where::Body) continue;  // its argument was refused already
-            const std::string_view name = syntax::operations()[static_cast<size_t>(id)].name;
-            say(id, fmt::format("'{}' joins a newcomer to what stands, but no operator joins this shape", name),
-                "put '+', '-', '&' or 'morph' before it");
+/// The content operation that an element consists of; null where there is none or, with a message, where it stands beside a
+/// shape.
+const syntax::Attribute* Checker::contentOperation(const syntax::Element& written) {
+    const bool alone = written.kind == syntax::Element::Kind::Shape && !written.solid;
+    const syntax::Attribute* found = nullptr;
+    for (const auto* list : {&written.before, &written.after})
+        for (const syntax::Attribute& a : *list) {
+            if (a.operation->phase != Operation::Phase::Content) continue;
+            found = &a;
+            if (alone) continue;
+            diagnostics_.error(a.name.span,
+                               fmt::format("'{}' cuts the scope itself: no shape stands beside it", a.name.text),
+                               "write the shapes into its parts");
         }
-    } else if (!find(element.attributes, Id::At)) {
-        for (const Id id : {Id::To, Id::Overlap})
-            say(id,
-                fmt::format("'{}' needs the joint it speaks of", syntax::operations()[static_cast<size_t>(id)].name),
-                "add 'at +x', 'at free(…)' or another joint of ours");
-    }
-    if (element.op != Operator::Morph)
-        say(Id::By, "'by' says how far a morph goes, but this shape isn't joined by 'morph'",
-            "write 'morph' before the shape");
-    if (element.op == Operator::Intersection)
-        say(Id::Blend, "what is shared keeps its edge", "leave 'blend' out, or cut with '-' what lies outside");
-    if (element.op == Operator::Morph) say(Id::Blend, "a morph has no edge that could be blended", "leave 'blend' out");
-    newcomerJoint(element);
-}
-
-/// `to NAME` where the newcomer is known: it must have that joint.
-void Checker::newcomerJoint(const Element& element) {
-    const Attribute* to = find(element.attributes, Id::To);
-    if (!to || to->joints.size() != 1 || to->joints[0].value.kind != Value::Kind::Word) return;
-    std::vector<std::string> known;
-    const field::Primitive* row =
-        element.content.kind == Content::Kind::Solid ? element.content.solid.primitive : nullptr;
-    if (element.content.kind == Content::Kind::Symbol) {
-        const Symbol& symbol = grammar_.symbols[element.content.symbol];
-        if (!symbol.terminal) return;
-        for (const Joint& joint : symbol.joints) known.push_back(joint.name);
-        if (symbol.solid) row = symbol.solid->primitive;
-    } else if (element.content.kind != Content::Kind::Solid) {
-        return;
-    }
-    if (row)
-        for (const auto& joint : row->joints) known.emplace_back(joint.name);
-    const std::string& wanted = to->joints[0].value.text;
-    if (std::find(known.begin(), known.end(), wanted) == known.end() && jointNames_.contains(wanted))
-        diagnostics_.error(to->joints[0].span, fmt::format("'{}' has no joint '{}'", element.label, wanted),
-                           nearest(wanted, known));
+    return alone ? found : nullptr;
 }
 
 void Checker::shape(Place& place, const syntax::Element& written, Element& out) {
     // With an operator there is no matched scope to change: what stands before the newcomer is meant for it.
-    std::vector<Attribute> before = attributes(place, written.before);
-    out.attributes = attributes(place, written.after);
-    const syntax::Attribute* cut = splitOf(written);
-    for (auto* list : {&before, &out.attributes}) std::erase_if(*list, [](const Attribute& a) { return a.id == Id::Split; });
+    std::vector<Attribute> before = attributes(place, out, written.before);
+    out.attributes = attributes(place, out, written.after);
+    const syntax::Attribute* cut = contentOperation(written);
     if (out.op == Operator::None && !cut)
         out.prefix = std::move(before);
     else
         out.attributes.insert(out.attributes.begin(), before.begin(), before.end());
     for (const Attribute& a : out.prefix)
-        if (a.id != Id::Size && a.id != Id::Move && a.id != Id::Turn && a.id != Id::With && a.id != Id::Tag)
-            diagnostics_.error(
-                a.span,
-                fmt::format("'{}' can't stand before a shape", syntax::operations()[static_cast<size_t>(a.id)].name),
-                "write it after the shape");
+        if (!a.operation->beforeShape)
+            diagnostics_.error(a.span, fmt::format("'{}' can't stand before a shape", a.operation->name),
+                               "write it after the shape");
     if (cut) {
-        out.content.kind = Content::Kind::Split;
-        out.content.split = parts(place, *cut);
-        out.label = "split";
+        std::vector<Attribute> none;
+        OperationChecker checker(*this, place, out, none);
+        out.content = Content(std::shared_ptr<const Parts>(cut->operation->checkParts(checker, *cut)));
+        out.label = cut->operation->name;
     } else if (written.kind == syntax::Element::Kind::Group) {
-        out.content.kind = Content::Kind::Group;
-        out.content.group = std::make_shared<Body>(written.body ? body(place, *written.body) : Body{});
+        out.content = Content(std::make_shared<const Body>(written.body ? body(place, *written.body) : Body{}));
         out.label = "group";
     } else if (written.solid) {
         content(place, *written.solid, out);
@@ -173,7 +129,9 @@ void Checker::shape(Place& place, const syntax::Element& written, Element& out) 
     live(written.live, out);
     if (out.op == Operator::Morph) place.morphs = true;
     if (!out.label.empty()) out.ordinal = place.ordinals[out.label]++;
-    agreement(place, out);
+    OperationChecker checker(*this, place, out, out.attributes);
+    for (const Attribute& a : out.attributes)
+        if (a.operation->agree) a.operation->agree(checker, out, a);
 }
 
 /// The values of a loop: `axes`, `sides`, a tuple, or a range of whole numbers.
@@ -375,7 +333,7 @@ void Checker::start(const syntax::StartDecl& decl) {
                            "leave the operator out");
     for (const auto& chain : out.body.siblings)
         for (const Element& e : chain)
-            if (e.op == Operator::None && e.content.kind == Content::Kind::Solid) bounded(e.content.solid, "a start");
+            if (e.op == Operator::None && e.content.solid()) bounded(*e.content.solid(), "a start");
     grammar_.starts.push_back(std::move(out));
 }
 

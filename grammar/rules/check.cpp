@@ -98,8 +98,9 @@ std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load,
     return diagnostics.hasErrors() ? nullptr : grammar;
 }
 
-std::shared_ptr<const Grammar> load(syntax::SourcePtr source, const Loader& load, syntax::Diagnostics& diagnostics) {
-    return check(syntax::parse(std::move(source), diagnostics), load, diagnostics);
+std::shared_ptr<const Grammar> load(syntax::SourcePtr source, const syntax::OperationTable& operations, const Loader& load,
+                                    syntax::Diagnostics& diagnostics) {
+    return check(syntax::parse(std::move(source), operations, diagnostics), load, diagnostics);
 }
 
 Result<Value> parseValue(const Param& param, const std::string& text) {

@@ -34,7 +34,8 @@ struct Loader {
 std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load, syntax::Diagnostics& diagnostics);
 
 /// parse + check of one source.
-std::shared_ptr<const Grammar> load(syntax::SourcePtr source, const Loader& load, syntax::Diagnostics& diagnostics);
+std::shared_ptr<const Grammar> load(syntax::SourcePtr source, const syntax::OperationTable& operations, const Loader& load,
+                                    syntax::Diagnostics& diagnostics);
 
 /// Parses and checks "NAME=VALUE" text against a parameter (`--set`): type, unit, range, choices.
 Result<Value> parseValue(const Param& param, const std::string& text);

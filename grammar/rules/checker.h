@@ -81,6 +81,8 @@ public:
     void unused(const syntax::Ast& ast);
 
 private:
+    friend class OperationChecker;
+
     // names.cpp
     void declareParameter(const syntax::ParamDecl& decl);
     void declareTerminals(const syntax::TerminalDecl& decl);
@@ -139,24 +141,8 @@ private:
     std::string unknownSolid(std::string_view word) const;
 
     // attributes.cpp
-    std::vector<Attribute> attributes(Place& place, const std::vector<syntax::Attribute>& written);
-    Attribute attribute(Place& place, const syntax::Attribute& written);
-    void jointArgument(Place& place, const syntax::Expr& e, Attribute& out);
+    std::vector<Attribute> attributes(Place& place, Element& element, const std::vector<syntax::Attribute>& written);
     Expr joint(Place& place, const syntax::Expr& e);
-    void hostArgument(Place& place, const syntax::Expr& e, Attribute& out);
-    void noiseArgument(Place& place, const syntax::Expr& e, Attribute& out);
-    void withArguments(Place& place, const syntax::Attribute& written, Attribute& out);
-    void sensible(const Attribute& attribute);
-
-    // clad.cpp
-    void clad(Place& place, const syntax::Attribute& written, Attribute& out);
-    void fit(Place& place, const syntax::Attribute& written, Attribute* clad);
-
-    // splits.cpp
-    const syntax::Attribute* splitOf(const syntax::Element& written);
-    std::shared_ptr<Split> parts(Place& place, const syntax::Attribute& written);
-    Split::Part part(Place& place, const syntax::Case& written);
-    Split::Part repeatedParts(Place& place, const syntax::Case& written);
 
     // bodies.cpp
     Body body(Place& place, const syntax::Body& written);
@@ -167,8 +153,7 @@ private:
     void choose(Place& place, const syntax::Element& written, Element& out);
     Expr over(Place& place, const syntax::Expr& e, Type& type);
     void live(const syntax::Name& name, Element& out);
-    void agreement(const Place& place, const Element& element);
-    void newcomerJoint(const Element& element);
+    const syntax::Attribute* contentOperation(const syntax::Element& written);
     void rule(const syntax::RuleDecl& decl);
     void start(const syntax::StartDecl& decl);
 

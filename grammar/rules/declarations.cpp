@@ -12,7 +12,6 @@
 namespace sgm::rules {
 namespace {
 
-using Id = Operation::Id;
 using Written = syntax::Expr;
 
 Vec3d vectorOf(const Value& v) { return {v.n[0], v.n[1], v.n[2]}; }
@@ -132,20 +131,19 @@ void Checker::declaredJoint(const syntax::TerminalDecl::JointDecl& decl, std::ve
 
 void Checker::look(const syntax::TerminalDecl& decl, Material& material, std::vector<Attribute>& open) {
     Place place(Place::Where::Look);
-    for (const Attribute& a : attributes(place, decl.attributes)) {
-        if (a.id != Id::Color && a.id != Id::Rough && a.id != Id::Metal) {
+    Element none;
+    for (const Attribute& a : attributes(place, none, decl.attributes)) {
+        if (a.operation->phase != Operation::Phase::Look) {
             diagnostics_.error(a.span,
                                fmt::format("a terminal has a colour, a roughness, a metalness and joints, but no '{}'",
-                                           syntax::operations()[static_cast<size_t>(a.id)].name),
+                                           a.operation->name),
                                "say it where the terminal is used");
             continue;
         }
         if (a.args.empty()) continue;
         const auto value = fold(a.args[0], defaults_);
         if (!value) continue;
-        if (a.id == Id::Color) material.color = vectorOf(*value).as<float>();
-        if (a.id == Id::Rough) material.roughness = static_cast<float>(value->num());
-        if (a.id == Id::Metal) material.metallic = static_cast<float>(value->num());
+        if (a.operation->decorate) a.operation->decorate(*value, material);
         if (!fold(a.args[0], {})) open.push_back(a);
     }
 }

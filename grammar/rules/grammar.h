@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "grammar/rules/value.h"
@@ -102,45 +104,78 @@ struct Solid {
 
 struct Body;
 
-/// `split x { … }`: the scope cut along an axis, a body in every part.
-struct Split {
+/// The block of a content operation (`split x { … }`): parts of the scope, a body in every one.
+struct Parts {
     struct Part {
         SourceSpan span;
-        Expr size;                  ///< metres or a share of the scope; floating: a weight, in `{ … }*` wished metres
-        bool floating = false;      ///< ~: shares what fixed sizes leave
-        std::shared_ptr<Body> body;
-        std::vector<Part> repeated; ///< of `{ … }*`; then size and body say nothing
-        uint32_t local = none;      ///< the local that counts repetitions from 1
+        Expr size;                      ///< metres or a share of the scope; floating: a weight, in `{ … }*` wished metres
+        bool floating = false;          ///< ~: shares what fixed sizes leave
+        std::shared_ptr<const Body> body;
+        std::vector<Part> repeated;     ///< of `{ … }*`; then size and body say nothing
+        uint32_t local = none;          ///< the local that counts repetitions from 1
     };
     SourceSpan span;
-    int axis = 0;                   ///< 0 x, 1 y, 2 z
-    std::vector<Part> parts;        ///< from low to high
+    const Operation* operation = nullptr;
+    int axis = 0;                       ///< 0 x, 1 y, 2 z
+    std::vector<Part> parts;            ///< in the order of the text
 };
 
-/// What joins the tree when an element runs.
-struct Content {
-    enum class Kind : uint8_t { None, Solid, Symbol, Group, Split };
-    Kind kind = Kind::None;
-    Solid solid;                  ///< Solid
-    SymbolId symbol = none;       ///< Symbol: terminal (V_T) or non-terminal (V_N)
-    std::shared_ptr<Body> group;  ///< Group
-    std::shared_ptr<Split> split; ///< Split
+/// What joins the tree when an element runs: nothing, a solid, a symbol, a group or the parts of a content operation.
+class Content {
+public:
+    Content() = default;
+    explicit Content(Solid solid) : value_(std::move(solid)) {}
+    explicit Content(std::shared_ptr<const Body> group) : value_(std::move(group)) {}
+    explicit Content(std::shared_ptr<const Parts> parts) : value_(std::move(parts)) {}
+    static Content ofSymbol(SymbolId symbol) {
+        Content content;
+        content.value_ = SymbolUse{symbol};
+        return content;
+    }
+
+    bool empty() const { return std::holds_alternative<std::monostate>(value_); }
+    /// What the content is, or null (`none` of a symbol) where it is something else.
+    const Solid* solid() const { return std::get_if<Solid>(&value_); }
+    SymbolId symbol() const {
+        const auto* use = std::get_if<SymbolUse>(&value_);
+        return use ? use->id : none;
+    }
+    const Body* group() const { return pointed<Body>(); }
+    const Parts* parts() const { return pointed<Parts>(); }
+
+private:
+    struct SymbolUse {
+        SymbolId id;
+    };
+    template <class T>
+    const T* pointed() const {
+        const auto* held = std::get_if<std::shared_ptr<const T>>(&value_);
+        return held ? held->get() : nullptr;
+    }
+    std::variant<std::monostate, Solid, SymbolUse, std::shared_ptr<const Body>, std::shared_ptr<const Parts>> value_;
 };
 
+/// One use of an operation, checked.
 struct Attribute {
-    Operation::Id id{};
+    const Operation* operation = nullptr;
     SourceSpan span;
     std::vector<Expr> args;
-    /// At, To: which joints are asked for. For `free(…)` the candidates (empty = all); else one.
-    bool free = false;
+    std::shared_ptr<Solid> pattern;  ///< `clad`: an ornament with the thickness, tile and mirror said beside it
+    SymbolId symbol = none;          ///< `clad`: the terminal that named the pattern
+};
+
+/// `at`, `to`: which joints are asked for.
+struct JointChoice {
+    SourceSpan span;
+    bool free = false;         ///< `free(…)`: one of the candidates `joints` (empty: all) that nothing has met
     std::vector<Expr> joints;  ///< each evaluates to an Axis or a Word (a named joint)
-    /// On: `last`; `any(d)` with args[0] = d; `each(Name)` with args[0] = its symbol.
-    enum class Host : uint8_t { Matched, Last, Any, Each } host = Host::Matched;
-    /// Displace: args = amplitude, frequency, octaves.
-    bool fbm = false;
-    /// Clad: an `ornament` with the thickness, tile and mirror said beside it, and the terminal it was named by.
-    std::shared_ptr<Solid> pattern;
-    SymbolId symbol = none;
+};
+
+/// `on`: the shape of a chain whose joint is met.
+struct HostChoice {
+    enum class Kind : uint8_t { Last, Any, Each } kind = Kind::Last;
+    SourceSpan span;
+    Expr of;  ///< Any: a direction; Each: the symbol's index
 };
 
 struct Choice {
@@ -156,6 +191,8 @@ struct Element {
     std::vector<Attribute> prefix;  ///< change the matched scope
     Content content;
     std::vector<Attribute> attributes;
+    std::optional<JointChoice> at, to;
+    std::optional<HostChoice> on;   ///< none: the matched shape
     SymbolId live = none;  ///< `: Name`
     uint32_t ordinal = 0;  ///< ordinal of this symbol in the rule's body: part of the child's key
     std::string label;     ///< key text: symbol or primitive name

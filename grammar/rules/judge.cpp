@@ -6,35 +6,10 @@
 #include <set>
 
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/traverse.h"
 
 namespace sgm::rules {
 namespace {
-
-using Id = Operation::Id;
-
-template <class Visit>
-void eachElement(const Body& body, Visit visit);
-
-template <class Visit>
-void eachPart(const std::vector<Split::Part>& parts, Visit visit) {
-    for (const Split::Part& part : parts) {
-        if (part.body) eachElement(*part.body, visit);
-        eachPart(part.repeated, visit);
-    }
-}
-
-/// Calls `visit` with every element of a body, groups and alternatives included.
-template <class Visit>
-void eachElement(const Body& body, Visit visit) {
-    for (const auto& chain : body.siblings)
-        for (const Element& e : chain) {
-            visit(e);
-            if (e.content.group) eachElement(*e.content.group, visit);
-            if (e.body) eachElement(*e.body, visit);
-            if (e.content.split) eachPart(e.content.split->parts, visit);
-            for (const Choice& c : e.choices) eachElement(*c.body, visit);
-        }
-}
 
 std::set<SymbolId> reachable(const Grammar& grammar) {
     std::set<SymbolId> found;
@@ -43,8 +18,8 @@ std::set<SymbolId> reachable(const Grammar& grammar) {
         if (id != none && found.insert(id).second) open.push_back(id);
     };
     const auto addAll = [&](const Body& body) {
-        eachElement(body, [&](const Element& e) {
-            add(e.content.symbol);
+        forEachElement(body, [&](const Element& e) {
+            add(e.content.symbol());
             add(e.live);
         });
     };
@@ -98,9 +73,9 @@ public:
             const Rule& rule = grammar_.rules[index];
             if (neverDrawn(rule)) continue;
             SymbolId made = none;
-            eachElement(rule.body, [&](const Element& e) {
+            forEachElement(rule.body, [&](const Element& e) {
                 const SymbolId live = rule.repeat ? none : e.live;
-                for (const SymbolId s : {live, e.content.symbol})
+                for (const SymbolId s : {live, e.content.symbol()})
                     if (made == none && s != none && !ends_[s]) made = s;
             });
             if (made != none) return {index, made};
@@ -114,8 +89,8 @@ private:
         std::vector<std::vector<SymbolId>> makes(ends_.size());
         for (SymbolId id = 0; id < makes.size(); ++id) {
             for (const uint32_t rule : grammar_.symbols[id].rules)
-                eachElement(grammar_.rules[rule].body, [&](const Element& e) {
-                    for (const SymbolId s : {e.content.symbol, e.live})
+                forEachElement(grammar_.rules[rule].body, [&](const Element& e) {
+                    for (const SymbolId s : {e.content.symbol(), e.live})
                         if (s != none) makes[id].push_back(s);
                 });
             std::sort(makes[id].begin(), makes[id].end());
@@ -165,17 +140,18 @@ private:
         if (rule.repeat && certain(rule.repeat).value_or(0) < 1) return true;
         bool fails = false;
         std::set<double> used;
-        eachElement(rule.body, [&](const Element& e) {
-            for (const Attribute& a : e.attributes) {
-                const Expr* joint = a.joints.empty() ? nullptr : &a.joints[0];
-                const bool axis =
-                    joint && joint->kind == Expr::Kind::Constant && joint->value.kind == Value::Kind::Axis;
-                if (a.id == Id::At)
-                    fails =
-                        fails || a.free || !axis || joint->value.num() > 5 || !used.insert(joint->value.num()).second;
-                if (a.id == Id::To) fails = fails || !axis || joint->value.num() < 6;
-                if (a.id == Id::Turn) fails = true;
+        forEachElement(rule.body, [&](const Element& e) {
+            const auto axisOf = [](const JointChoice& choice) -> std::optional<double> {
+                const Expr* joint = choice.joints.empty() ? nullptr : &choice.joints[0];
+                const bool axis = joint && joint->kind == Expr::Kind::Constant && joint->value.kind == Value::Kind::Axis;
+                return axis ? std::optional(joint->value.num()) : std::nullopt;
+            };
+            if (e.at) {
+                const auto axis = axisOf(*e.at);
+                fails = fails || e.at->free || !axis || *axis > 5 || !used.insert(*axis).second;
             }
+            if (e.to) fails = fails || axisOf(*e.to).value_or(0) < 6;
+            for (const Attribute& a : e.attributes) fails = fails || a.operation->turnsShape;
         });
         return fails || used.size() > 1;
     }
@@ -190,10 +166,10 @@ private:
     bool elementMayEnd(const Element& e, bool chain) const {
         switch (e.kind) {
             case Element::Kind::Shape:
-                if (e.content.split) return true;  // parts shrink, and those without extent vanish
-                if (e.content.symbol != none && !ends_[e.content.symbol]) return false;
+                if (e.content.parts()) return true;  // parts shrink, and those without extent vanish
+                if (e.content.symbol() != none && !ends_[e.content.symbol()]) return false;
                 if (!chain && e.live != none && !ends_[e.live]) return false;  // in a chain it starts none of its own
-                return !e.content.group || bodyMayEnd(*e.content.group, chain);
+                return !e.content.group() || bodyMayEnd(*e.content.group(), chain);
             case Element::Kind::For:
                 return !alwaysHolds(e.guard) || !runsOnce(*e.over) || bodyMayEnd(*e.body, chain);
             case Element::Kind::While:
@@ -223,9 +199,8 @@ private:
 bool oneAxis(const Grammar& grammar, const std::vector<uint32_t>& cycle) {
     std::set<double> axes;
     for (const uint32_t rule : cycle)
-        eachElement(grammar.rules[rule].body, [&](const Element& e) {
-            for (const Attribute& a : e.attributes)
-                if (a.id == Id::At && !a.joints.empty()) axes.insert(a.joints[0].value.num());
+        forEachElement(grammar.rules[rule].body, [&](const Element& e) {
+            if (e.at && !e.at->joints.empty()) axes.insert(e.at->joints[0].value.num());
         });
     return axes.size() <= 1;
 }

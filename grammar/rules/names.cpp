@@ -86,7 +86,7 @@ void Checker::declareRule(const syntax::RuleDecl& decl) {
 }
 
 void Checker::collect(const syntax::Attribute& attribute) {
-    if (attribute.id == Operation::Id::With && !attribute.args.empty()) withNames_.insert(attribute.args[0].text);
+    if (attribute.operation->namesValue && !attribute.args.empty()) withNames_.insert(attribute.args[0].text);
     collect(attribute.cases);
 }
 

@@ -21,6 +21,7 @@ public:
     Gatherer(const Loader& load, syntax::Diagnostics& diagnostics) : load_(load), diagnostics_(diagnostics) {}
 
     void gather(const syntax::Ast& ast) {
+        operations_ = ast.operations;
         chain_.push_back(ast.source->name());
         text_bytes_ += ast.source->text().size();
         for (const syntax::UseDecl& use : ast.uses)
@@ -54,7 +55,7 @@ private:
         else if (text_bytes_ + source->text().size() > mostText_bytes)
             refuse(use, fmt::format("the files used so far hold more than {} MiB", mostText_bytes >> 20));
         else
-            gather(syntax::parse(source, diagnostics_));
+            gather(syntax::parse(source, *operations_, diagnostics_));
     }
 
     /// A file that isn't there for the checker.
@@ -68,6 +69,7 @@ private:
     Files files_;
     std::vector<std::string> chain_;  ///< files being read, the main one first
     std::set<std::string> done_;
+    const syntax::OperationTable* operations_ = nullptr;
     size_t text_bytes_ = 0;
 };
 

@@ -61,11 +61,11 @@ struct Case {
     std::shared_ptr<Body> body;
 };
 
-/// `size 2 ~> 1.2`, `at free(+x) `, `split y { … }`: one use of a row of the operation table.
+/// `size 2 ~> 1.2`, `at free(+x)`, `split y { … }`: one use of an operation.
 struct Attribute {
     SourceSpan span;
     Name name;
-    Operation::Id id{};
+    const Operation* operation = nullptr;
     std::vector<Expr> args;   ///< one per row argument that was given; of `with a = 2m`: the Name a, then 2m
     std::vector<Case> cases;  ///< for operations with a block
 };
@@ -144,6 +144,7 @@ struct LsystemDecl {
 /// One file, declarations by kind in file order.
 struct Ast {
     SourcePtr source;
+    const OperationTable* operations = nullptr;  ///< of the language it was read in
     int version = 1;
     std::vector<UseDecl> uses;
     std::vector<ParamDecl> params;

@@ -1,5 +1,6 @@
 #include "grammar/syntax/bodies.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "grammar/syntax/expressions.h"
@@ -116,36 +117,6 @@ Case readCase(Cursor& cursor, std::string_view sample) {
     return part;
 }
 
-std::string_view nounOf(ArgumentType type) {
-    switch (type) {
-        case ArgumentType::Number:
-            return "a number";
-        case ArgumentType::Length:
-            return "a length";
-        case ArgumentType::Angle:
-            return "an angle";
-        case ArgumentType::Size:
-            return "a size";
-        case ArgumentType::Vector:
-            return "a number or (x, y, z)";
-        case ArgumentType::Color:
-            return "a colour";
-        case ArgumentType::Joint:
-            return "a joint";
-        case ArgumentType::Shape:
-            return "'last', 'any(…)' or 'each(…)'";
-        case ArgumentType::Noise:
-            return "'billow(…)' or 'fbm(…)'";
-        case ArgumentType::Solid:
-            return "a solid";
-        case ArgumentType::Axis:
-            return "an axis, x, y or z";
-        case ArgumentType::Name:
-            return "a word";
-    }
-    return "a value";
-}
-
 /// The word of an operation is the argument of the one before (a parameter may be called `blend`), unless it goes on as
 /// an operation does, with an argument of its own.
 bool beginsOperation(const Cursor& cursor) {
@@ -156,7 +127,7 @@ bool beginsOperation(const Cursor& cursor) {
         case Token::Kind::Color:
             return true;
         case Token::Kind::Word:
-            return !findOperation(cursor.peekText(1)) && !isReserved(cursor.peekText(1));
+            return !cursor.operations().find(cursor.peekText(1)) && !isReserved(cursor.peekText(1));
         default:
             return cursor.at("(", 1) || cursor.at("{", 1) ||
                    (cursor.peek(2).glued && !cursor.peek(1).glued && (cursor.at("-", 1) || cursor.at("+", 1)));
@@ -167,7 +138,7 @@ Expr readTyped(Cursor& cursor, ArgumentType type) {
     if (type == ArgumentType::Solid) return readSolid(cursor);
     if (type == ArgumentType::Name || type == ArgumentType::Axis) {
         Expr e;
-        const Name name = readName(cursor, nounOf(type));
+        const Name name = readName(cursor, describe(type));
         e.kind = name.empty() ? Expr::Kind::Error : Expr::Kind::Name;
         e.text = name.text;
         e.span = name.span;
@@ -188,12 +159,12 @@ void readArguments(Cursor& cursor, const Operation& row, Attribute& attribute) {
     for (const OperationArgument& argument : row.arguments) {
         if (!fits(cursor, argument.type)) {
             if (argument.optional) continue;
-            cursor.fail("'" + plain(row.name) + "' needs " + plain(nounOf(argument.type)) + ", found " + cursor.found(),
+            cursor.fail("'" + plain(row.name) + "' needs " + plain(describe(argument.type)) + ", found " + cursor.found(),
                         "as in '" + plain(row.example) + "'");
             return;
         }
         attribute.args.push_back(readTyped(cursor, argument.type));
-        if (row.id == Operation::Id::With && attribute.args.size() == 1) cursor.expect("=", "after the value's name");
+        if (row.namesValue && attribute.args.size() == 1) cursor.expect("=", "after the value's name");
     }
     if (cursor.at("*") || cursor.at("/") || cursor.at("%"))
         cursor.fail(cursor.found() + " can't follow the argument of '" + plain(row.name) + "'",
@@ -227,6 +198,9 @@ void readShape(Cursor& cursor, Element& element) {
         element.kind = Element::Kind::Group;
         element.body = std::make_shared<Body>(readBody(cursor));
         cursor.close(open);
+    } else if (cursor.at(Token::Kind::Word) && isLaterOperation(cursor.peekText())) {
+        cursor.fail(cursor.found() + " is an operation of a later version of the language");
+        return;
     } else if (cursor.at(Token::Kind::Word) && !isReserved(cursor.peekText())) {
         element.solid = readSolid(cursor);
     } else if (element.before.empty()) {
@@ -285,15 +259,11 @@ std::vector<Element> readChain(Cursor& cursor) {
     return chain;
 }
 
-std::string_view sampleLabel(Operation::Id id) {
-    return id == Operation::Id::Split ? "~1" : id == Operation::Id::Inset ? "rim" : "side";
-}
-
 /// Says what is wrong with a token that can't follow a shape. Words of the language end a body and are judged outside.
 void refuseStray(Cursor& cursor) {
     const Token token = cursor.peek();
     if (token.kind == Token::Kind::Word && !isReserved(cursor.text(token)) && !token.columnOne) {
-        const std::string near = nearestWord(cursor.text(token));
+        const std::string near = nearestWord(cursor.operations(), cursor.text(token));
         cursor.fail(cursor.found() + " can't follow a shape",
                     near.empty() ? "name an attribute (size, color …), join shapes with + - & morph, or list them with ','" : near);
     } else if (cursor.at("(")) {
@@ -308,27 +278,31 @@ void refuseStray(Cursor& cursor) {
 
 }  // namespace
 
+bool isLaterOperation(std::string_view word) {
+    constexpr std::string_view words[] = {"inset", "footprint", "extrude", "faces", "balcony"};
+    return std::find(std::begin(words), std::end(words), word) != std::end(words);
+}
+
 bool atAttribute(const Cursor& cursor) {
-    if (!cursor.at(Token::Kind::Word) || !findOperation(cursor.peekText())) return false;
-    return !(cursor.at("roof") && cursor.at("(", 1));
+    return cursor.at(Token::Kind::Word) && cursor.operations().find(cursor.peekText());
 }
 
 Attribute readAttribute(Cursor& cursor) {
     const Token word = cursor.take();
-    const Operation& row = *findOperation(cursor.text(word));
+    const Operation& row = *cursor.operations().find(cursor.text(word));
     Attribute attribute;
     attribute.name = {plain(row.name), cursor.span(word)};
-    attribute.id = row.id;
+    attribute.operation = &row;
     readArguments(cursor, row, attribute);
-    if (row.block) attribute.cases = readBlock(cursor, "after '" + plain(row.name) + "'", sampleLabel(row.id));
+    if (row.hasBlock()) attribute.cases = readBlock(cursor, "after '" + plain(row.name) + "'", row.blockLabel);
     attribute.span = cursor.since(word.begin);
     return attribute;
 }
 
-std::string nearestWord(std::string_view word) {
+std::string nearestWord(const OperationTable& operations, std::string_view word) {
     std::vector<std::string> words = {"for", "while", "when", "choose", "finally", "morph", "in",
                                       "of",  "group", "key",  "joint",  "expect",  "axiom"};
-    for (const Operation& row : operations()) words.emplace_back(row.name);
+    for (const Operation* row : operations.rows()) words.emplace_back(row->name);
     const std::string near = didYouMean(word, words);
     return near.empty() ? near : "did you mean " + quoted(near) + "?";
 }

@@ -8,10 +8,12 @@
 namespace sgm::syntax {
 
 Body readBody(Cursor& cursor);
-/// Whether the word at the cursor is an operation's (and not the solid `roof(…)`).
+/// Whether the word at the cursor is an operation's.
 bool atAttribute(const Cursor& cursor);
+/// Words of operations that later versions of the language will have: nothing may be called so.
+bool isLaterOperation(std::string_view word);
 Attribute readAttribute(Cursor& cursor);
 /// "did you mean 'size'?" for the word of an operation or a declaration's part that is nearest to `word`, or "".
-std::string nearestWord(std::string_view word);
+std::string nearestWord(const OperationTable& operations, std::string_view word);
 
 }  // namespace sgm::syntax

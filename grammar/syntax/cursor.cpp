@@ -36,8 +36,8 @@ std::string quoted(std::string_view text) {
     return out;
 }
 
-Cursor::Cursor(const Source& source, std::span<Token> tokens, Diagnostics& diagnostics)
-    : source_(source), tokens_(tokens), diagnostics_(diagnostics), lastEnd_(tokens.empty() ? 0 : tokens[0].begin) {}
+Cursor::Cursor(const Source& source, std::span<Token> tokens, const OperationTable& operations, Diagnostics& diagnostics)
+    : source_(source), tokens_(tokens), operations_(operations), diagnostics_(diagnostics), lastEnd_(tokens.empty() ? 0 : tokens[0].begin) {}
 
 Token Cursor::peek(size_t ahead) const {
     if (ahead < tokens_.size() - at_) return tokens_[at_ + ahead];

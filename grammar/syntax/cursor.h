@@ -8,12 +8,16 @@
 #include <string_view>
 
 #include "grammar/syntax/lexer.h"
+#include "grammar/syntax/operations.h"
 
 namespace sgm::syntax {
 
 class Cursor {
 public:
-    Cursor(const Source& source, std::span<Token> tokens, Diagnostics& diagnostics);
+    Cursor(const Source& source, std::span<Token> tokens, const OperationTable& operations, Diagnostics& diagnostics);
+
+    /// The operations of the language that is read.
+    const OperationTable& operations() const { return operations_; }
 
     /// The token `ahead` of the next one; End (empty, behind the last one taken) when the slice is used up.
     Token peek(size_t ahead = 0) const;
@@ -61,6 +65,7 @@ public:
 private:
     const Source& source_;
     std::span<Token> tokens_;
+    const OperationTable& operations_;
     Diagnostics& diagnostics_;
     size_t at_ = 0;
     uint32_t lastEnd_ = 0;

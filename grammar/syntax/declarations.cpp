@@ -121,7 +121,7 @@ TerminalDecl::JointDecl readJoint(Cursor& cursor) {
 /// The name of a new symbol: an operation's word can't be one, since it would read as an attribute.
 Name readSymbol(Cursor& cursor, std::string_view what) {
     Name name = readName(cursor, what);
-    if (!name.empty() && findOperation(name.text))
+    if (!name.empty() && (cursor.operations().find(name.text) || isLaterOperation(name.text)))
         cursor.complain(name.span, quoted(name.text) + " is an operation and can't name " + std::string(what));
     return name;
 }

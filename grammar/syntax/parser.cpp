@@ -24,7 +24,7 @@ void refuse(Cursor& cursor) {
         cursor.fail(cursor.found() + " begins no declaration",
                     near.empty() ? "later lines of a declaration are indented" : "did you mean " + quoted(near) + "?");
     } else {
-        cursor.fail("unexpected " + cursor.found(), nearestWord(cursor.peekText()));
+        cursor.fail("unexpected " + cursor.found(), nearestWord(cursor.operations(), cursor.peekText()));
     }
 }
 
@@ -70,10 +70,11 @@ bool readVersion(Cursor& cursor, Ast& ast) {
 
 }  // namespace
 
-Ast parse(SourcePtr source, std::span<Token> tokens, Diagnostics& diagnostics) {
+Ast parse(SourcePtr source, std::span<Token> tokens, const OperationTable& operations, Diagnostics& diagnostics) {
     diagnostics.keep(source);
     Ast ast;
     ast.source = source;
+    ast.operations = &operations;
     const auto begins = [&](const Token& t) {
         return t.columnOne && (textOf(*source, t) == "grammar" || findDeclaration(textOf(*source, t)));
     };
@@ -81,7 +82,7 @@ Ast parse(SourcePtr source, std::span<Token> tokens, Diagnostics& diagnostics) {
     do {
         size_t end = begin + (begin < tokens.size());
         while (end < tokens.size() && !begins(tokens[end])) ++end;
-        Cursor cursor(*source, tokens.subspan(begin, end - begin), diagnostics);
+        Cursor cursor(*source, tokens.subspan(begin, end - begin), operations, diagnostics);
         if (begin == 0 && !readVersion(cursor, ast)) return ast;
         readDeclarations(cursor, ast);
         begin = end;
@@ -89,14 +90,15 @@ Ast parse(SourcePtr source, std::span<Token> tokens, Diagnostics& diagnostics) {
     return ast;
 }
 
-Ast parse(SourcePtr source, Diagnostics& diagnostics) {
+Ast parse(SourcePtr source, const OperationTable& operations, Diagnostics& diagnostics) {
     std::vector<Token> tokens = lexSignificant(*source);
-    return parse(std::move(source), tokens, diagnostics);
+    return parse(std::move(source), tokens, operations, diagnostics);
 }
 
 Expr parseExpression(SourcePtr source, Diagnostics& diagnostics) {
     std::vector<Token> tokens = lexSignificant(*source);
-    Cursor cursor(*source, tokens, diagnostics);
+    const OperationTable none;
+    Cursor cursor(*source, tokens, none, diagnostics);
     Expr expression = readExpr(cursor);
     if (!cursor.done()) cursor.fail("unexpected " + cursor.found());
     return expression;

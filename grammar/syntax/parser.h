@@ -65,10 +65,11 @@
 namespace sgm::syntax {
 
 /// A whole file. Declarations with problems are kept as far as their name was read, so that their names are known.
-Ast parse(SourcePtr source, Diagnostics& diagnostics);
+/// `operations` must outlive the Ast.
+Ast parse(SourcePtr source, const OperationTable& operations, Diagnostics& diagnostics);
 
 /// The same from `lexSignificant(*source)`: sets the roles of the tokens on its way.
-Ast parse(SourcePtr source, std::span<Token> tokens, Diagnostics& diagnostics);
+Ast parse(SourcePtr source, std::span<Token> tokens, const OperationTable& operations, Diagnostics& diagnostics);
 
 /// A text that is one expression, as in `--set NAME=VALUE`. The source must outlive it.
 Expr parseExpression(SourcePtr source, Diagnostics& diagnostics);

@@ -216,12 +216,12 @@ std::string write(std::vector<Line> lines) {
 
 }  // namespace
 
-std::string format(const Source& source) {
+std::string format(const Source& source, const OperationTable& operations) {
     // The parser wants to share its source; this one is only borrowed for the call.
     const SourcePtr borrowed(std::shared_ptr<void>(), &source);
     Diagnostics diagnostics;
     std::vector<Token> significant = lexSignificant(source);
-    parse(borrowed, significant, diagnostics);
+    parse(borrowed, significant, operations, diagnostics);
     if (diagnostics.hasErrors()) return std::string(source.text());
 
     std::vector<Token> tokens = lex(source);

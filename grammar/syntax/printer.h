@@ -6,8 +6,9 @@
 
 namespace sgm::syntax {
 
-/// The canonical layout of `source`. Every token and comment is kept, in order.
-std::string format(const Source& source);
+/// The canonical layout of `source`, read with `operations`. Every token and comment is kept, in order; a text with errors
+/// stays as it is.
+std::string format(const Source& source, const OperationTable& operations);
 
 /// "+", "-", "&", "morph", and "" for none.
 std::string_view sign(Operator op);

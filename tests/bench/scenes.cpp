@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "grammar/operations/operations.h"
 #include "grammar/rules/check.h"
 #include "grammar/rules/params.h"
 #include "modeler/mesh/distances.h"
@@ -79,7 +80,7 @@ Result<GrammarScene> loadGrammar(const SceneEntry& entry) {
         return grid.ok() ? *grid : nullptr;
     };
     syntax::Diagnostics diagnostics;
-    const auto grammar = rules::load(source, loader, diagnostics);
+    const auto grammar = rules::load(source, operations::table(), loader, diagnostics);
     if (!grammar) return Error{Error::Kind::Input, syntax::render(diagnostics.all().front())};
     const auto start = startIndex(*grammar, entry.start);
     if (!start.ok()) return start.error();

@@ -8,6 +8,7 @@
 
 #include "grammar/derive/derive.h"
 #include "grammar/derive/print.h"
+#include "grammar/operations/operations.h"
 #include "grammar/rules/check.h"
 #include "tests/field/sampled.h"
 
@@ -31,7 +32,7 @@ inline std::shared_ptr<const rules::Grammar> grammarOf(const std::string& text) 
         return syntax::SourcePtr();
     });
     fromGrammar.mesh = [](const std::string&, const syntax::Source&, std::string&) { return field::test::sampledTorus(16); };
-    auto grammar = rules::load(source, fromGrammar, diagnostics);
+    auto grammar = rules::load(source, operations::table(), fromGrammar, diagnostics);
     for (const auto& d : diagnostics.all())
         if (d.severity == syntax::Severity::Error) ADD_FAILURE() << syntax::render(d);
     return grammar;

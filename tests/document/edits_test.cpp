@@ -1,4 +1,5 @@
 // Every verb of the panels: what it does to the text, and that nothing else moves.
+#include "grammar/operations/operations.h"
 #include "viewer/document/edits.h"
 
 #include "tests/document/texts.h"
@@ -9,7 +10,6 @@ namespace {
 using edits::Edit;
 using syntax::Element;
 using syntax::Operator;
-using Id = syntax::Operation::Id;
 
 class Edits : public testing::Test {
 protected:
@@ -187,19 +187,19 @@ TEST_F(Edits, SolidsAndLiveNames) {
 }
 
 TEST_F(Edits, Attributes) {
-    expectReplaced(edits::setAttribute(ast, wing(1), Id::Shift, "(0, .2, 0)"), "(0, lean, 0)", "(0, .2, 0)");
-    expectReplaced(edits::setAttribute(ast, wing(1), Id::Shift, "lean + .1"), "shift (0, lean, 0)",
+    expectReplaced(edits::setAttribute(ast, wing(1), operations::shift, "(0, .2, 0)"), "(0, lean, 0)", "(0, .2, 0)");
+    expectReplaced(edits::setAttribute(ast, wing(1), operations::shift, "lean + .1"), "shift (0, lean, 0)",
                    "shift (lean + .1)");
-    expectReplaced(edits::setAttribute(ast, wing(1), Id::Shift, "(lean + .1)"), "shift (0, lean, 0)",
+    expectReplaced(edits::setAttribute(ast, wing(1), operations::shift, "(lean + .1)"), "shift (0, lean, 0)",
                    "shift (lean + .1)");
-    expectReplaced(edits::setAttribute(ast, wing(1), Id::Size, "2 ~> 1.5"), "(0, lean, 0) //",
+    expectReplaced(edits::setAttribute(ast, wing(1), operations::size, "2 ~> 1.5"), "(0, lean, 0) //",
                    "(0, lean, 0) size 2 ~> 1.5 //");
-    expectReplaced(edits::setAttribute(ast, rule(0).body.siblings[0][0], Id::Color, "#ff8800"),
+    expectReplaced(edits::setAttribute(ast, rule(0).body.siblings[0][0], operations::color, "#ff8800"),
                    "at +y : Storey\n  finally", "at +y color #ff8800 : Storey\n  finally");
-    expectReplaced(edits::setAttribute(ast, wing(3), Id::By, ".7"), "by .3", "by .7");
-    expectReplaced(edits::removeAttribute(ast, wing(1), Id::Shift), " shift (0, lean, 0)", "");
-    expectRefused(edits::removeAttribute(ast, wing(1), Id::Color), "no 'color'");
-    expectRefused(edits::setAttribute(ast, wing(1), Id::Size, ""), "");
+    expectReplaced(edits::setAttribute(ast, wing(3), operations::by, ".7"), "by .3", "by .7");
+    expectReplaced(edits::removeAttribute(ast, wing(1), operations::shift), " shift (0, lean, 0)", "");
+    expectRefused(edits::removeAttribute(ast, wing(1), operations::color), "no 'color'");
+    expectRefused(edits::setAttribute(ast, wing(1), operations::size, ""), "");
     expectReplaced(edits::setExpression(ast, *rule(0).repeat, "floors"), "repeat floors - 1", "repeat floors");
     expectReplaced(edits::setBody(ast, rule(1).body, "cone"),
                    "-> cube + sphere at +x shift (0, lean, 0) // ball\n     - cylinder size 50% at +z to centre // "

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "grammar/operations/operations.h"
 #include "modeler/core/random.h"
 #include "tests/document/texts.h"
 #include "viewer/document/nodes.h"
@@ -19,7 +20,7 @@ using syntax::Body;
 using syntax::Element;
 using syntax::Operator;
 using syntax::RuleDecl;
-using Id = syntax::Operation::Id;
+using Id = const syntax::Operation*;
 
 /// Elements of a tree in the order of the text, the same in trees of the same text.
 std::vector<std::pair<Body*, std::pair<size_t, size_t>>> elementsOf(const Ast& ast) {
@@ -209,7 +210,7 @@ private:
                 const Edit edit = edits::setOperator(now, element, op);
                 if (op == e.op) return edit;
                 e.op = op;
-                if (op != Operator::Morph) drop(e, Id::By);
+                if (op != Operator::Morph) drop(e, &operations::by);
                 return edit;
             }
             case 4: {
@@ -231,17 +232,17 @@ private:
                 return edit;
             }
             case 7: {
-                const Id id = one({Id::Size, Id::Shift, Id::At, Id::Blend, Id::Rough});
-                const Edit edit = edits::removeAttribute(now, element, id);
+                const Id id = one<Id>({&operations::size, &operations::shift, &operations::at, &operations::blend, &operations::rough});
+                const Edit edit = edits::removeAttribute(now, element, *id);
                 if (edit.ok()) drop(e, id);
                 return edit;
             }
             default: {
-                const Id id = one({Id::Size, Id::Shift, Id::Blend, Id::Rough, Id::Color});
+                const Id id = one<Id>({&operations::size, &operations::shift, &operations::blend, &operations::rough, &operations::color});
                 const std::string value =
-                    id == Id::Color ? "#aabbcc"
+                    id == &operations::color ? "#aabbcc"
                                     : one<std::string>({"2", "1 ~> .5", "floors + 1", "-.1..(.2)", "(a * b)"});
-                const Edit edit = edits::setAttribute(now, element, id, value);
+                const Edit edit = edits::setAttribute(now, element, *id, value);
                 if (edit.ok()) put(e, id, expression(value));
                 return edit;
             }
@@ -251,13 +252,13 @@ private:
     static Attribute* find(Element& e, Id id) {
         for (auto* list : {&e.after, &e.before})
             for (Attribute& a : *list)
-                if (a.id == id) return &a;
+                if (a.operation == id) return &a;
         return nullptr;
     }
     static void drop(Element& e, Id id) {
         for (auto* list : {&e.after, &e.before})
             for (size_t i = 0; i < list->size(); ++i)
-                if ((*list)[i].id == id) {
+                if ((*list)[i].operation == id) {
                     list->erase(list->begin() + static_cast<ptrdiff_t>(i));
                     return;
                 }
@@ -268,8 +269,8 @@ private:
             return;
         }
         Attribute a;
-        a.id = id;
-        a.name.text = syntax::operations()[static_cast<size_t>(id)].name;
+        a.operation = id;
+        a.name.text = id->name;
         a.args = {std::move(value)};
         const bool only = !e.solid && e.kind == Element::Kind::Shape;
         (only ? e.before : e.after).push_back(std::move(a));
@@ -279,7 +280,7 @@ private:
         const std::string& text = document.text();
         ASSERT_FALSE(document.syntaxProblems().hasErrors()) << before << "\n--- became\n" << text;
         ASSERT_EQ(meaning(*document.ast()), meaning(expected)) << before << "\n--- became\n" << text;
-        const std::string laidOut = syntax::format(*document.ast()->source);
+        const std::string laidOut = syntax::format(*document.ast()->source, operations::table());
         ASSERT_EQ(meaning(parsed(laidOut)), meaning(expected)) << laidOut;
     }
 
@@ -330,7 +331,7 @@ TEST(RandomEdits, KeepComments) {
         const auto& [body, at] = list[pick(mix(k), list.size())];
         const Element& element = body->siblings[at.first][at.second];
         const Edit edit =
-            k % 3 == 0   ? edits::setAttribute(*document.ast(), element, Id::Size, std::to_string(k + 1))
+            k % 3 == 0   ? edits::setAttribute(*document.ast(), element, operations::size, std::to_string(k + 1))
             : k % 3 == 1 ? edits::setOperator(*document.ast(), element, k % 2 ? Operator::Sum : Operator::Difference)
                          : edits::moveElement(*document.ast(), element, 1);
         if (edit.ok()) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "grammar/operations/operations.h"
 #include "grammar/syntax/parser.h"
 #include "grammar/syntax/printer.h"
 #include "tests/syntax/dump.h"
@@ -48,7 +49,7 @@ inline std::string replaced(std::string text, std::string_view from, std::string
 
 inline syntax::Ast parsed(const std::string& text) {
     syntax::Diagnostics problems;
-    syntax::Ast ast = syntax::parse(std::make_shared<const syntax::Source>("t.sgm", text), problems);
+    syntax::Ast ast = syntax::parse(std::make_shared<const syntax::Source>("t.sgm", text), operations::table(), problems);
     for (const auto& d : problems.all()) ADD_FAILURE() << syntax::render(d);
     return ast;
 }

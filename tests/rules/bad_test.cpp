@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "grammar/operations/operations.h"
 #include "tests/rules/read.h"
 
 namespace sgm::rules {
@@ -44,7 +45,7 @@ std::string said(const std::string& name) {
     const auto source =
         std::make_shared<const syntax::Source>(name + ".sgm", readText((folder / (name + ".sgm")).string()));
     syntax::Diagnostics diagnostics;
-    const auto grammar = load(source, loader, diagnostics);
+    const auto grammar = load(source, operations::table(), loader, diagnostics);
     EXPECT_FALSE(grammar);
     EXPECT_TRUE(diagnostics.hasErrors());
     std::string text;

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "grammar/operations/operations.h"
 #include "grammar/rules/check.h"
 
 namespace sgm::rules {
@@ -39,7 +40,7 @@ inline Checked checked(const std::string& text, const std::map<std::string, std:
         result.used.push_back(std::make_shared<const syntax::Source>(file->first, file->second));
         return result.used.back();
     };
-    result.grammar = load(result.source, loader, result.diagnostics);
+    result.grammar = load(result.source, operations::table(), loader, result.diagnostics);
     return result;
 }
 

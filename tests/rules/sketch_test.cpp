@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "grammar/operations/operations.h"
 #include "modeler/core/conventions.h"
 #include "modeler/core/random.h"
 #include "tests/rules/read.h"
@@ -10,7 +11,7 @@
 namespace sgm::rules {
 namespace {
 
-using Id = Operation::Id;
+using Id = const Operation*;
 
 class Sketch : public testing::Test {
 protected:
@@ -30,7 +31,7 @@ protected:
                              [&](const Symbol& s) { return s.name == name; });
     }
     static const Attribute& attribute(const Element& e, Id id) {
-        return *std::find_if(e.attributes.begin(), e.attributes.end(), [&](const Attribute& a) { return a.id == id; });
+        return *std::find_if(e.attributes.begin(), e.attributes.end(), [&](const Attribute& a) { return a.operation == id; });
     }
 
     static inline Checked* sketch_ = nullptr;
@@ -52,24 +53,24 @@ TEST_F(Sketch, CaveIsOneMorphicChain) {
     EXPECT_EQ(e.op, Operator::Sum);
     EXPECT_EQ(symbol(e.live), "Cell");
     EXPECT_EQ(e.label, "morph");
-    ASSERT_EQ(e.content.solid.kind, Solid::Kind::Morph);
-    EXPECT_EQ(e.content.solid.parts.at(0).primitive->name, "sphere");
-    EXPECT_EQ(e.content.solid.parts.at(1).primitive->name, "cube");
-    EXPECT_EQ(e.content.solid.amount.kind, Expr::Kind::Param);
+    ASSERT_EQ(e.content.solid()->kind, Solid::Kind::Morph);
+    EXPECT_EQ(e.content.solid()->parts.at(0).primitive->name, "sphere");
+    EXPECT_EQ(e.content.solid()->parts.at(1).primitive->name, "cube");
+    EXPECT_EQ(e.content.solid()->amount.kind, Expr::Kind::Param);
 }
 
 TEST_F(Sketch, CaveAttributesCarryJointsUnitsAndDraws) {
     const Element& e = rule("Cell#1").body.siblings[0][0];
-    const Attribute& size = attribute(e, Id::Size);
+    const Attribute& size = attribute(e, &operations::size);
     ASSERT_EQ(size.args.at(0).kind, Expr::Kind::Ramp);
     EXPECT_EQ(size.args[0].args.at(0).value, Value::number(2, Unit::Metre));
-    const Attribute& at = attribute(e, Id::At);
+    const JointChoice& at = *e.at;
     EXPECT_TRUE(at.free);
     ASSERT_EQ(at.joints.size(), 3u);
     EXPECT_EQ(at.joints[2].value.kind, Value::Kind::Axis);
     EXPECT_EQ(at.joints[2].value.num(), 4);
-    EXPECT_EQ(attribute(e, Id::To).joints.at(0).value.num(), 6) << "centre";
-    const Expr& shift = attribute(e, Id::Shift).args.at(0);
+    EXPECT_EQ(e.to->joints.at(0).value.num(), 6) << "centre";
+    const Expr& shift = attribute(e, &operations::shift).args.at(0);
     EXPECT_EQ(shift.kind, Expr::Kind::Range);
     EXPECT_EQ(shift.draw, hashText("shift"));
     EXPECT_EQ(static_cast<Fn>(shift.args.at(0).index), Fn::Neg);
@@ -92,13 +93,13 @@ TEST_F(Sketch, CloudLoopsOverAxesAndSteps) {
     EXPECT_EQ(steps.over->kind, Expr::Kind::Range);
     EXPECT_EQ(steps.over->args.at(1).index, puff.stepLocal);
     const Element& sphere = steps.body->siblings[0][0];
-    EXPECT_EQ(attribute(sphere, Id::On).host, Attribute::Host::Any);
-    EXPECT_EQ(attribute(sphere, Id::On).args.at(0).index, axes.local);
-    EXPECT_EQ(attribute(sphere, Id::At).joints.at(0).kind, Expr::Kind::Local);
+    EXPECT_EQ(sphere.on->kind, HostChoice::Kind::Any);
+    EXPECT_EQ(sphere.on->of.index, axes.local);
+    EXPECT_EQ(sphere.at->joints.at(0).kind, Expr::Kind::Local);
     const Element& torus = puff.finally_->siblings[0][0];
     EXPECT_EQ(torus.op, Operator::Morph);
-    EXPECT_EQ(attribute(torus, Id::By).args.at(0).value, Value::number(.2));
-    EXPECT_EQ(torus.content.solid.args.at(0).value.num(), torus.content.solid.primitive->parameters[0].fallback)
+    EXPECT_EQ(attribute(torus, &operations::by).args.at(0).value, Value::number(.2));
+    EXPECT_EQ(torus.content.solid()->args.at(0).value.num(), torus.content.solid()->primitive->parameters[0].fallback)
         << "default filled in";
 }
 
@@ -111,17 +112,17 @@ TEST_F(Sketch, BuildingChoosesItsProfileByGuard) {
     const auto& chain = convex.body.siblings[0];
     ASSERT_EQ(chain.size(), 2u);
     EXPECT_EQ(chain[1].over->args.size(), 4u) << "sides";
-    EXPECT_EQ(attribute(chain[1].body->siblings[0][0], Id::Size).args[0].value, Value::number(.3, Unit::Share));
+    EXPECT_EQ(attribute(chain[1].body->siblings[0][0], &operations::size).args[0].value, Value::number(.3, Unit::Share));
     EXPECT_EQ(rule("Level#2").body.siblings[0][1].body->siblings[0][0].op, Operator::Difference);
     EXPECT_EQ(symbolCalled("Level").rules.size(), 3u);
 
     const Rule& storey = rule("Storey#1");
-    const Expr& size = attribute(storey.body.siblings[0][0], Id::Size).args[0];
+    const Expr& size = attribute(storey.body.siblings[0][0], &operations::size).args[0];
     ASSERT_EQ(size.kind, Expr::Kind::Tuple);
     EXPECT_EQ(size.args.at(1).kind, Expr::Kind::Ramp);
     const Element& roof = storey.finally_->siblings[0][0];
-    EXPECT_EQ(roof.content.solid.args.at(0).kind, Expr::Kind::Param);
-    EXPECT_EQ(attribute(roof, Id::On).host, Attribute::Host::Last);
+    EXPECT_EQ(roof.content.solid()->args.at(0).kind, Expr::Kind::Param);
+    EXPECT_EQ(roof.on->kind, HostChoice::Kind::Last);
     EXPECT_FALSE(storey.finallyMorphic);
 }
 
@@ -201,7 +202,7 @@ TEST(Ordinals, CountEachLabelByItself) {
     EXPECT_EQ(chain[0].ordinal, 0u);
     EXPECT_EQ(chain[1].ordinal, 0u);
     EXPECT_EQ(chain[2].ordinal, 1u);
-    const auto& group = chain[3].content.group->siblings[0];
+    const auto& group = chain[3].content.group()->siblings[0];
     EXPECT_EQ(group[0].ordinal, 2u);
     EXPECT_EQ(group[1].ordinal, 1u);
 }
@@ -212,7 +213,7 @@ TEST(Prefix, ChangesTheScopeOnlyWithoutAnOperator) {
     const auto& chain = c.grammar->starts[0].body.siblings[0];
     EXPECT_EQ(chain[0].prefix.size(), 1u);
     EXPECT_TRUE(chain[1].prefix.empty());
-    EXPECT_EQ(chain[1].attributes.at(0).id, Id::Size);
+    EXPECT_EQ(chain[1].attributes.at(0).operation, &operations::size);
 }
 
 TEST(Values, AreInheritedByName) {

@@ -1,6 +1,7 @@
 // `use`: declarations of other files, once each, without circles.
 #include <gtest/gtest.h>
 
+#include "grammar/operations/operations.h"
 #include "grammar/rules/params.h"
 #include "tests/rules/read.h"
 
@@ -40,7 +41,7 @@ TEST(Uses, RefuseChainsWithoutEnd) {
         return std::make_shared<const syntax::Source>(std::to_string(next), "grammar 1\nuse \"next\"\n");
     });
     syntax::Diagnostics diagnostics;
-    EXPECT_FALSE(load(std::make_shared<const syntax::Source>("test.sgm", "grammar 1\nuse \"next\"\nstart S -> cube\n"), endless, diagnostics));
+    EXPECT_FALSE(load(std::make_shared<const syntax::Source>("test.sgm", "grammar 1\nuse \"next\"\nstart S -> cube\n"), operations::table(), endless, diagnostics));
     ASSERT_EQ(diagnostics.all().size(), 1u);
     EXPECT_EQ(diagnostics.all()[0].message, "more than 100 files use each other in a row");
 }

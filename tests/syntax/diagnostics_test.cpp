@@ -1,6 +1,7 @@
 // The parser on bad input: exactly what a person sees, problem by problem.
 #include <gtest/gtest.h>
 
+#include "grammar/operations/operations.h"
 #include "grammar/syntax/parser.h"
 #include "tests/syntax/read.h"
 
@@ -9,7 +10,7 @@ namespace {
 
 std::string problems(const std::string& text) {
     Diagnostics diagnostics;
-    const Ast ast = parse(makeSource(text), diagnostics);
+    const Ast ast = parse(makeSource(text), operations::table(), diagnostics);
     return renderAll(diagnostics);
 }
 
@@ -37,7 +38,7 @@ TEST(Diagnostics, NestingAndLengthAreBounded) {
     };
     const auto messages = [](const std::string& text) {
         Diagnostics diagnostics;
-        parse(makeSource("grammar 1\n" + text), diagnostics);
+        parse(makeSource("grammar 1\n" + text), operations::table(), diagnostics);
         std::string out;
         for (const Diagnostic& d : diagnostics.all()) out += d.message + '\n';
         return out;

@@ -49,7 +49,7 @@ void Dump::expr(const std::optional<Expr>& e) {
 void Dump::attribute(const Attribute& a) {
     open("attribute", a.span);
     name(a.name);
-    word(std::to_string(static_cast<int>(a.id)));
+    word(a.operation->name);
     for (const Expr& arg : a.args) expr(arg);
     for (const Case& c : a.cases) part(c);
     close();

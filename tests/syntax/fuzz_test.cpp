@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <ctime>
 
+#include "grammar/operations/operations.h"
 #include "grammar/syntax/parser.h"
 #include "grammar/syntax/printer.h"
 #include "tests/syntax/dump.h"
@@ -26,7 +27,7 @@ std::string judge(const std::string& text, size_t& parsed) {
     const SourcePtr source = makeSource(text);
     Diagnostics diagnostics;
     const std::clock_t begin = std::clock();
-    const Ast ast = parse(source, diagnostics);
+    const Ast ast = parse(source, operations::table(), diagnostics);
     const double ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     if (ms > 50) return "parsing took " + std::to_string(ms) + " ms";
     for (const Diagnostic& d : diagnostics.all()) {
@@ -38,10 +39,10 @@ std::string judge(const std::string& text, size_t& parsed) {
     if (diagnostics.hasErrors() || !dump.badSpan().empty()) return dump.badSpan();
 
     ++parsed;
-    const SourcePtr once = makeSource(format(*source));
+    const SourcePtr once = makeSource(format(*source, operations::table()));
     Diagnostics again;
-    if (Dump(parse(once, again)).text() != dump.text()) return "formatting changed the meaning\n" + renderAll(again);
-    return format(*once) == once->text() ? "" : "formatting twice is not formatting once";
+    if (Dump(parse(once, operations::table(), again)).text() != dump.text()) return "formatting changed the meaning\n" + renderAll(again);
+    return format(*once, operations::table()) == once->text() ? "" : "formatting twice is not formatting once";
 }
 
 TEST(Fuzz, MutantsNeitherCrashNorMisplaceSpansNorLoseMeaning) {

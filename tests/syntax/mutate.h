@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "grammar/operations/operations.h"
 #include "grammar/syntax/lexer.h"
 #include "grammar/syntax/operations.h"
 #include "modeler/core/random.h"
@@ -17,7 +18,7 @@ public:
     explicit Mutator(std::string text) : text_(std::move(text)) {
         const Source source("mutant", text_);
         for (const Token& token : lexSignificant(source)) words_.emplace_back(textOf(source, token));
-        for (const Operation& row : operations()) words_.emplace_back(row.name);
+        for (const Operation* row : operations::table().rows()) words_.emplace_back(row->name);
         for (const char* word :
              {"((", "))", "{ {", "}*", "-", "~", "not", "..", "~>", "\"", "#", "1e999", "0x", "\xff\xfe"})
             words_.emplace_back(word);

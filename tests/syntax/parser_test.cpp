@@ -1,4 +1,5 @@
 // The parser on good input: the language's sketch, what its nodes hold, and where they say they stand.
+#include "grammar/operations/operations.h"
 #include "grammar/syntax/parser.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ using Kind = Expr::Kind;
 /// The tree of "grammar 1" and `text`, which must parse.
 Ast parsed(const std::string& text) {
     Diagnostics diagnostics;
-    Ast ast = parse(makeSource("grammar 1\n" + text), diagnostics);
+    Ast ast = parse(makeSource("grammar 1\n" + text), operations::table(), diagnostics);
     EXPECT_EQ(renderAll(diagnostics), "") << text;
     return ast;
 }
@@ -67,7 +68,7 @@ std::string expression(const std::string& text) {
 
 TEST(Parser, SketchParsesWithoutDiagnostics) {
     Diagnostics diagnostics;
-    const Ast ast = parse(readSource("tests/syntax/sketch.sgm"), diagnostics);
+    const Ast ast = parse(readSource("tests/syntax/sketch.sgm"), operations::table(), diagnostics);
     EXPECT_EQ(renderAll(diagnostics), "");
     EXPECT_EQ(ast.uses.size(), 1u);
     EXPECT_EQ(ast.params.size(), 9u);
@@ -134,8 +135,8 @@ TEST(Parser, AttributesBindTighterThanOperators) {
     EXPECT_EQ(chain[0].after.size(), 1u);
     EXPECT_EQ(chain[1].op, Operator::Difference);
     EXPECT_EQ(chain[1].after.size(), 3u);
-    EXPECT_EQ(chain[1].after[1].id, Operation::Id::At);
-    EXPECT_EQ(chain[1].after[2].id, Operation::Id::To);
+    EXPECT_EQ(chain[1].after[1].operation, &operations::at);
+    EXPECT_EQ(chain[1].after[2].operation, &operations::to);
     EXPECT_EQ(chain[1].live.text, "B");
     EXPECT_EQ(chain[1].span.text(), "- sphere size (1, 2, 3) at +x to centre : B");
 }
@@ -164,9 +165,6 @@ TEST(Parser, ArgumentsEndBeforeOperators) {
 }
 
 TEST(Parser, WordsThatAreBothSolidAndOperation) {
-    EXPECT_EQ(elementOf(parsed("start A -> roof(peak) at +y\n")).solid->kind, Kind::Call);
-    EXPECT_EQ(elementOf(parsed("start A -> roof hip 35deg tiles\n")).before[0].args.size(), 3u);
-    EXPECT_EQ(elementOf(parsed("start A -> roof hip 35deg\n")).before[0].args.size(), 2u);
     EXPECT_EQ(elementOf(parsed("start A -> morph(cube, sphere, .5)\n")).solid->text, "morph");
     EXPECT_EQ(elementOf(parsed("start A -> morph torus by .2\n")).op, Operator::Morph);
     EXPECT_EQ(elementOf(parsed("start A -> morph (torus + cube) by .2\n")).kind, Element::Kind::Group);
@@ -182,13 +180,13 @@ TEST(Parser, WithHoldsItsNameAndItsValue) {
 }
 
 TEST(Parser, BlocksHoldLabelsTagsAndRepetitions) {
-    const Ast ast = parsed("start A -> faces { tag K: split y { { ~3m: Row }* | pane: wall } | side: wall }\n");
+    const Ast ast = parsed("start A -> split x { tag K: split y { { ~3m: Row }* | pane: wall } | side: wall }\n");
     const Element e = elementOf(ast);
-    const std::vector<Case>& faces = e.before[0].cases;
-    ASSERT_EQ(faces.size(), 2u);
-    EXPECT_EQ(faces[0].tag.text, "K");
-    EXPECT_EQ(faces[1].label->text, "side");
-    const std::vector<Case>& rows = faces[0].body->siblings[0][0].before[0].cases;
+    const std::vector<Case>& parts = e.before[0].cases;
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[0].tag.text, "K");
+    EXPECT_EQ(parts[1].label->text, "side");
+    const std::vector<Case>& rows = parts[0].body->siblings[0][0].before[0].cases;
     ASSERT_EQ(rows.size(), 2u);
     EXPECT_TRUE(rows[0].repeated);
     EXPECT_EQ(shortForm(*rows[0].cases[0].label), "(~ 3m)");
@@ -254,14 +252,14 @@ TEST(Parser, OtherDeclarations) {
 TEST(Parser, ByteOrderMarkAndCarriageReturnsAreBlank) {
     Diagnostics diagnostics;
     const Ast ast =
-        parse(makeSource("\xef\xbb\xbfgrammar 1\r\nstart A -> cube\r\nrule B -> cube // c\r\n"), diagnostics);
+        parse(makeSource("\xef\xbb\xbfgrammar 1\r\nstart A -> cube\r\nrule B -> cube // c\r\n"), operations::table(), diagnostics);
     EXPECT_EQ(renderAll(diagnostics), "");
     EXPECT_EQ(ast.rules.size(), 1u);
 }
 
 TEST(Parser, DeclarationsWithProblemsKeepTheirNames) {
     Diagnostics diagnostics;
-    const Ast ast = parse(makeSource("grammar 1\nrule A -> cube size\nparam p = \nstart S -> cube )\n"), diagnostics);
+    const Ast ast = parse(makeSource("grammar 1\nrule A -> cube size\nparam p = \nstart S -> cube )\n"), operations::table(), diagnostics);
     EXPECT_EQ(diagnostics.all().size(), 3u);
     EXPECT_EQ(ast.rules.at(0).symbol.text, "A");
     EXPECT_EQ(ast.params.at(0).name.text, "p");
@@ -269,14 +267,15 @@ TEST(Parser, DeclarationsWithProblemsKeepTheirNames) {
 }
 
 TEST(Parser, EveryOperationsExampleParses) {
-    for (const Operation& row : operations()) {
+    for (const Operation* operation : operations::table().rows()) {
+        const Operation& row = *operation;
         const Ast ast = parsed("start A -> " + std::string(row.example) + '\n');
         const std::string dump = Dump(ast).text();
         EXPECT_NE(dump.find("(attribute " + std::string(row.name) + ' '), std::string::npos) << row.name;
-        EXPECT_EQ(findOperation(row.name), &row);
+        EXPECT_EQ(operations::table().find(row.name), &row);
         EXPECT_FALSE(row.doc.empty());
     }
-    EXPECT_EQ(findOperation("sizes"), nullptr);
+    EXPECT_EQ(operations::table().find("sizes"), nullptr);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // The formatter: canonical layout that keeps every token, every comment and the meaning.
+#include "grammar/operations/operations.h"
 #include "grammar/syntax/printer.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@
 namespace sgm::syntax {
 namespace {
 
-std::string formatted(const std::string& text) { return format(*makeSource(text)); }
+std::string formatted(const std::string& text) { return format(*makeSource(text), operations::table()); }
 
 /// Tokens and comments in order, a line each.
 std::string contents(const Source& source) {
@@ -29,12 +30,12 @@ std::string contents(const Source& source) {
 
 void expectSafe(const SourcePtr& source) {
     Diagnostics diagnostics;
-    const Ast ast = parse(source, diagnostics);
+    const Ast ast = parse(source, operations::table(), diagnostics);
     ASSERT_FALSE(diagnostics.hasErrors()) << source->name() << renderAll(diagnostics);
-    const SourcePtr once = makeSource(format(*source));
+    const SourcePtr once = makeSource(format(*source, operations::table()));
     EXPECT_EQ(contents(*once), contents(*source)) << source->name();
-    EXPECT_EQ(format(*once), once->text()) << source->name();
-    EXPECT_EQ(Dump(parse(once, diagnostics)).text(), Dump(ast).text()) << source->name();
+    EXPECT_EQ(format(*once, operations::table()), once->text()) << source->name();
+    EXPECT_EQ(Dump(parse(once, operations::table(), diagnostics)).text(), Dump(ast).text()) << source->name();
 }
 
 TEST(Printer, SketchKeepsTokensCommentsAndMeaning) { expectSafe(readSource("tests/syntax/sketch.sgm")); }

@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "grammar/operations/operations.h"
 #include "grammar/syntax/declarations.h"
 #include "grammar/syntax/expressions.h"
 #include "grammar/syntax/lexer.h"
@@ -29,7 +30,7 @@ public:
             return TextColour::Keyword;
         if (params_.contains(word)) return TextColour::Parameter;
         if (terminals_.contains(word)) return TextColour::Terminal;
-        if (syntax::findOperation(word)) return TextColour::Operation;
+        if (operations::table().find(word)) return TextColour::Operation;
         if (word == "morph" || word == "nil" || field::findPrimitive(word)) return TextColour::Solid;
         return word[0] >= 'A' && word[0] <= 'Z' ? TextColour::NonTerminal : TextColour::Plain;
     }

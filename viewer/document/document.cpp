@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "grammar/operations/operations.h"
 #include "grammar/syntax/parser.h"
 #include "modeler/core/stopwatch.h"
 #include "viewer/document/files.h"
@@ -46,7 +47,7 @@ void Document::setText(std::string text) {
     auto problems = std::make_shared<syntax::Diagnostics>();
     const Stopwatch watch;
     ast_ = std::make_shared<const syntax::Ast>(
-        syntax::parse(std::make_shared<const syntax::Source>(name, text_), *problems));
+        syntax::parse(std::make_shared<const syntax::Source>(name, text_), operations::table(), *problems));
     problems_ = std::move(problems);
     parseSeconds_ = watch.seconds();
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "grammar/operations/operations.h"
 #include "grammar/syntax/printer.h"
 #include "viewer/document/nodes.h"
 
@@ -41,10 +42,10 @@ TextEdit putBehind(const Ast& ast, const Element& element, std::string text) {
     return {at, at, "\n" + indent + std::move(text)};
 }
 
-const Attribute* find(const Element& element, Operation::Id id) {
+const Attribute* find(const Element& element, const syntax::Operation& operation) {
     for (const auto* list : {&element.after, &element.before})
         for (const Attribute& attribute : *list)
-            if (attribute.id == id) return &attribute;
+            if (attribute.operation == &operation) return &attribute;
     return nullptr;
 }
 
@@ -59,24 +60,23 @@ uint32_t attributesEnd(const Ast& ast, const Element& element) {
 }
 
 Result<std::string> argumentsOf(const syntax::Operation& row, std::string_view written) {
-    if (row.arguments.size() != 1 || row.block) return std::string(written);
+    if (row.arguments.size() != 1 || row.hasBlock()) return std::string(written);
     return asArgument(written);
 }
 
 /// The edit, not yet tried, that sets an attribute.
-Edit attributeEdit(const Ast& ast, const Element& element, Operation::Id id, std::string_view written) {
-    const syntax::Operation& row = syntax::operations()[static_cast<size_t>(id)];
-    if (isControl(element)) return refused(fmt::format("'{}' belongs to a shape, not to a loop or a choice", row.name));
-    const auto arguments = argumentsOf(row, written);
+Edit attributeEdit(const Ast& ast, const Element& element, const syntax::Operation& operation, std::string_view written) {
+    if (isControl(element)) return refused(fmt::format("'{}' belongs to a shape, not to a loop or a choice", operation.name));
+    const auto arguments = argumentsOf(operation, written);
     if (!arguments.ok()) return arguments.error();
-    const Attribute* present = find(element, id);
+    const Attribute* present = find(element, operation);
     // A shape may set several values: `with` changes the one of this name, or adds one.
-    if (id == Operation::Id::With) present = nullptr;
+    if (operation.namesValue) present = nullptr;
     if (present && !present->args.empty())
         return TextEdit{present->args.front().span.begin, present->args.back().span.end, *arguments};
-    if (present) return TextEdit{present->span.begin, present->span.end, fmt::format("{} {}", row.name, *arguments)};
+    if (present) return TextEdit{present->span.begin, present->span.end, fmt::format("{} {}", operation.name, *arguments)};
     const uint32_t at = attributesEnd(ast, element);
-    return TextEdit{at, at, fmt::format(" {} {}", row.name, *arguments)};
+    return TextEdit{at, at, fmt::format(" {} {}", operation.name, *arguments)};
 }
 
 }  // namespace
@@ -151,7 +151,7 @@ Edit setOperator(const Ast& ast, const Element& element, Operator op) {
     const auto head = static_cast<uint32_t>(element.span.text().size() - operand(element).size());
     const TextEdit change{element.span.begin, element.span.begin + head,
                           op == Operator::None ? "" : fmt::format("{} ", syntax::sign(op))};
-    const Attribute* by = find(element, Operation::Id::By);
+    const Attribute* by = find(element, operations::by);
     if (by && op != Operator::Morph) return tried(ast, merged(ast.source->text(), {change, removalOf(ast, *by)}));
     return tried(ast, change);
 }
@@ -176,23 +176,23 @@ Edit setLive(const Ast& ast, const Element& element, std::string_view name) {
     return tried(ast, {element.span.end, element.span.end, fmt::format(" : {}", *written)});
 }
 
-Edit setAttribute(const Ast& ast, const Element& element, Operation::Id id, std::string_view arguments) {
-    const Edit edit = attributeEdit(ast, element, id, arguments);
+Edit setAttribute(const Ast& ast, const Element& element, const syntax::Operation& operation, std::string_view arguments) {
+    const Edit edit = attributeEdit(ast, element, operation, arguments);
     return edit.ok() ? tried(ast, *edit) : edit;
 }
 
-Edit removeAttribute(const Ast& ast, const Element& element, Operation::Id id) {
-    const Attribute* present = find(element, id);
+Edit removeAttribute(const Ast& ast, const Element& element, const syntax::Operation& operation) {
+    const Attribute* present = find(element, operation);
     if (!present)
-        return refused(fmt::format("there is no '{}' to take out", syntax::operations()[static_cast<size_t>(id)].name));
+        return refused(fmt::format("there is no '{}' to take out", operation.name));
     return tried(ast, removalOf(ast, *present));
 }
 
 Edit attach(const Ast& ast, const Element& element, std::string_view joint) {
     if (element.op == Operator::None)
         return refused("the content of a shape is joined to nothing: give it an operator first");
-    const Edit at = attributeEdit(ast, element, Operation::Id::At, joint);
-    const Attribute* to = find(element, Operation::Id::To);
+    const Edit at = attributeEdit(ast, element, operations::at, joint);
+    const Attribute* to = find(element, operations::to);
     const bool face = to && !to->args.empty() && to->args[0].text != "centre" && to->args[0].text.size() == 2;
     if (!at.ok() || !face) return at.ok() ? tried(ast, *at) : at;
     return tried(ast, merged(ast.source->text(), {*at, removalOf(ast, *to)}));

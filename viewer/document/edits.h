@@ -60,9 +60,9 @@ Edit setSolid(const Ast& ast, const Element& element, std::string_view solid);
 Edit setLive(const Ast& ast, const Element& element, std::string_view name);
 /// What an attribute says, "+x" for At, "(0, .2, 0)" for Shift: changes the one that stands there, or adds it. A
 /// calculation is put in parentheses.
-Edit setAttribute(const Ast& ast, const Element& element, syntax::Operation::Id id, std::string_view arguments);
+Edit setAttribute(const Ast& ast, const Element& element, const syntax::Operation& operation, std::string_view arguments);
 /// Nothing to take out is an error.
-Edit removeAttribute(const Ast& ast, const Element& element, syntax::Operation::Id id);
+Edit removeAttribute(const Ast& ast, const Element& element, const syntax::Operation& operation);
 /// Joins the element at `joint` of its host: `at JOINT`, and no `to` that named a face. What dragging a shape onto a
 /// joint does; see `attach` in picking.h.
 Edit attach(const Ast& ast, const Element& element, std::string_view joint);

@@ -6,6 +6,7 @@
 
 #include "grammar/derive/print.h"
 #include "grammar/derive/way.h"
+#include "grammar/operations/operations.h"
 #include "grammar/rules/params.h"
 #include "viewer/document/nodes.h"
 
@@ -100,7 +101,7 @@ Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& gr
     std::string text = derive::fileWithWay(grammar, name, derive::wayText(grammar, name, *steps));
     syntax::Diagnostics problems;
     const auto changed =
-        rules::load(std::make_shared<const syntax::Source>(grammar.sources[0]->name(), text), loader, problems);
+        rules::load(std::make_shared<const syntax::Source>(grammar.sources[0]->name(), text), operations::table(), loader, problems);
     if (!changed) return refused(fmt::format("can't save this way as '{}': {}", name, problems.all()[0].message));
     options.derive = name;
     const auto derived = derive::derive(changed, options, nullptr), here = session.derivation();

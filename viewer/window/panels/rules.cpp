@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 
+#include "grammar/operations/operations.h"
 #include "viewer/window/panels.h"
 #include "viewer/window/style.h"
 #include "viewer/window/widgets.h"
@@ -227,37 +228,36 @@ void RulesPanel::elementInspector(Workbench& bench, const RuleRow& row) {
 
 void RulesPanel::attributes(Workbench& bench, const Element& element) {
     const syntax::Ast& ast = *listed_;
-    const auto find = [&](Operation::Id id) -> const syntax::Attribute* {
+    const auto find = [&](const Operation& operation) -> const syntax::Attribute* {
         for (const auto* list : {&element.before, &element.after})
             for (const syntax::Attribute& a : *list)
-                if (a.id == id) return &a;
+                if (a.operation == &operation) return &a;
         return nullptr;
     };
     // Joints have a row of buttons: retargeting one is what hands do most.
     if (element.op != Operator::None) {
-        const syntax::Attribute* at = find(Operation::Id::At);
+        const syntax::Attribute* at = find(operations::at);
         constexpr std::array joints{"+x", "-x", "+y", "-y", "+z", "-z", "centre"};
         int joint = -1;
         for (size_t i = 0; i < joints.size(); ++i)
             if (at && argumentsOf(*at) == joints[i]) joint = static_cast<int>(i);
         float left = 0;
         label("joint", left);
-        if (oneOf(bench.report, "joint", joints, joint)) bench.edit(edits::setAttribute(ast, element, Operation::Id::At, joints[size_t(joint)]), fmt::format("Join at {}", joints[size_t(joint)]));
+        if (oneOf(bench.report, "joint", joints, joint)) bench.edit(edits::setAttribute(ast, element, operations::at, joints[size_t(joint)]), fmt::format("Join at {}", joints[size_t(joint)]));
     }
     std::vector<std::string> more{"Add …"};
-    std::vector<Operation::Id> ids{Operation::Id::Size};
-    for (const Operation& operation : syntax::operations()) {
-        if (!operation.supported || operation.block) continue;
-        const syntax::Attribute* there = find(operation.id);
+    for (const Operation* row : ast.operations->rows()) {
+        const Operation& operation = *row;
+        if (operation.hasBlock()) continue;
+        const syntax::Attribute* there = find(operation);
         if (!there) {
             if (operation.arguments.empty()) continue;
             more.emplace_back(operation.name);
-            ids.push_back(operation.id);
             continue;
         }
         const std::string name(operation.name);
         part(bench, name.c_str(), argumentsOf(*there), [&](const std::string& t) {
-            return t.empty() ? edits::removeAttribute(ast, element, operation.id) : edits::setAttribute(ast, element, operation.id, t);
+            return t.empty() ? edits::removeAttribute(ast, element, operation) : edits::setAttribute(ast, element, operation, t);
         });
         hint(std::string(operation.doc).c_str());
     }
@@ -266,11 +266,11 @@ void RulesPanel::attributes(Workbench& bench, const Element& element) {
     int chosen = 0;
     if (!choice(bench.report, "attribute.add", more, chosen)) return;
     // The row's own example shows how its argument is written.
-    const Operation& operation = *syntax::findOperation(more[size_t(chosen)]);
+    const Operation& operation = *ast.operations->find(more[size_t(chosen)]);
     std::string_view example = operation.example;
     const size_t from = example.find(operation.name);
     example = from == std::string_view::npos ? std::string_view("1") : example.substr(from + operation.name.size());
-    bench.edit(edits::setAttribute(ast, element, ids[size_t(chosen)], firstArgument(example)), fmt::format("Add {}", operation.name));
+    bench.edit(edits::setAttribute(ast, element, operation, firstArgument(example)), fmt::format("Add {}", operation.name));
 }
 
 }  // namespace sgm::viewer

@@ -1,0 +1,40 @@
+// An element's attributes, evaluated, and what the `apply` of an operation works with.
+// Enters: checked attributes and where they stand. Leaves: numbers for the newcomer. Assumes attributes of phase Scope are
+// applied before the others, which may ask for the newcomer's size.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "grammar/derive/expressions.h"
+
+namespace sgm::derive {
+
+/// What an element's attributes say of its newcomer, or of the matched shape where no shape stands beside them.
+struct EvaluatedAttributes {
+    Scope scope;                             ///< size and axes; the centre comes from the mating
+    Vec3d moved_m;                           ///< added to where it is placed, in the object's frame
+    double overlap = 0, amount = 0.5, blend_m = 0;
+    std::optional<Vec3f> color;              ///< linear RGB
+    const rules::Expr* colorBy = nullptr;    ///< what gave the colour
+    std::optional<float> rough, metal;
+    Extras extras;
+    std::optional<syntax::SourceSpan> sizeSpan;  ///< of the attribute that set the size
+};
+
+struct AttributeContext {
+    const Place& place;  ///< its scope is what sizes and moves are measured against
+    EvaluatedAttributes& out;
+
+    rules::Value evaluate(const rules::Expr& expr) const { return derive::evaluate(expr, place); }
+    double number(const rules::Expr& expr) const { return derive::number(expr, place); }
+    Vector vector(const rules::Expr& expr, bool eachDraws) const { return derive::vector(expr, place, eachDraws); }
+    /// Three lengths in metres; shares are of the scope's size.
+    Vec3d metres(const rules::Expr& expr, bool eachDraws) const;
+    SolidValue solid(const rules::Solid& solid) const { return evaluateSolid(solid, place); }
+    const rules::Grammar& grammar() const;
+    /// Ends the derivation with an error located at `span`.
+    void fail(const std::string& what, syntax::SourceSpan span) const;
+};
+
+}  // namespace sgm::derive

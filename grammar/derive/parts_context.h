@@ -1,0 +1,31 @@
+// What the `run` of a content operation works with: the scope that it cuts, and bodies run in parts of it.
+// Enters: the checked parts. Leaves: shapes below the node that holds them. Assumes it lives while its operation runs.
+#pragma once
+
+#include <string>
+
+#include "grammar/derive/interpreter.h"
+
+namespace sgm::derive {
+
+class PartsContext {
+public:
+    PartsContext(Interpreter& interpreter, const Interpreter::Frame& frame) : interpreter_(interpreter), frame_(frame) {}
+
+    /// The scope that the operation cuts.
+    const Scope& scope() const { return frame_.place.scope; }
+    /// The value of an expression of the block; `key` tells its draws from those of its neighbours.
+    rules::Value evaluate(const rules::Expr& expr, uint64_t key) const;
+    /// What a local of the block (the `i` of a repetition) stands for from now on.
+    void setLocal(uint32_t local, rules::Value value) { interpreter_.locals_[local] = std::move(value); }
+    /// Runs `body` in a part of the scope; `key` tells the part from its neighbours. False after a failure.
+    bool run(const rules::Body& body, const Scope& part, uint64_t key);
+    /// Ends the derivation with an error located at `span`; returns false.
+    bool fail(const std::string& what, syntax::SourceSpan span);
+
+private:
+    Interpreter& interpreter_;
+    const Interpreter::Frame& frame_;
+};
+
+}  // namespace sgm::derive

@@ -1,0 +1,275 @@
+// at, to, overlap, shift, on, by, blend: how a newcomer joins what stands (SG-M III-F, eq. 14 and 16).
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "grammar/derive/attribute_context.h"
+#include "grammar/operations/operations.h"
+#include "grammar/rules/make.h"
+#include "grammar/rules/operation_checker.h"
+
+namespace sgm::operations {
+namespace {
+
+using derive::AttributeContext;
+using rules::Attribute;
+using rules::Element;
+using rules::HostChoice;
+using rules::JointChoice;
+using rules::OperationChecker;
+using rules::Want;
+using syntax::ArgumentType;
+using syntax::Operation;
+using syntax::OperationArgument;
+using syntax::Operator;
+using Phase = Operation::Phase;
+using Written = syntax::Expr;
+
+constexpr double most_m = 1e6;
+
+constexpr OperationArgument atArguments[] = {
+    {"ours", ArgumentType::Joint, "our joint: a face, centre, a declared name, free(…) or the variable of 'for d in axes'"}};
+constexpr OperationArgument toArguments[] = {
+    {"theirs", ArgumentType::Joint, "the newcomer's joint; the opposite face unless said; centre puts its centre on our joint"}};
+constexpr OperationArgument overlapArguments[] = {
+    {"share", ArgumentType::Number, "how far the newcomer moves inward along the joint: 0 touches, 1 puts its centre there"}};
+constexpr OperationArgument shiftArguments[] = {
+    {"shift", ArgumentType::Vector,
+     "moves the mating point (S_J) along x, y, z of the matched scope: shares of the newcomer's half-size, or metres"}};
+constexpr OperationArgument onArguments[] = {
+    {"host", ArgumentType::Shape,
+     "last: the newest shape of the chain; any(d): one placed toward d in the step before; each(Name): all of that name"}};
+constexpr OperationArgument byArguments[] = {
+    {"amount", ArgumentType::Number, "a of the morph (eq. 14): 0 keeps what stands, 1 gives the newcomer"}};
+constexpr OperationArgument blendArguments[] = {
+    {"radius", ArgumentType::Length, "metres within which both surfaces melt; 0 is a sharp edge"}};
+
+bool isCalled(const Written& e, std::string_view word) {
+    return (e.kind == Written::Kind::Name || e.kind == Written::Kind::Call) && e.text == word;
+}
+
+/// The attribute alone, for `agree`: what it says stands in the element.
+void note(OperationChecker& checker, const syntax::Attribute& written) {
+    Attribute attribute;
+    attribute.operation = written.operation;
+    attribute.span = written.span;
+    checker.add(std::move(attribute));
+}
+
+JointChoice readJoints(OperationChecker& checker, const syntax::Attribute& written) {
+    JointChoice choice;
+    choice.span = written.span;
+    checker.beginDraws(std::string(written.operation->name));
+    const Written& e = written.args[0];
+    choice.free = isCalled(e, "free");
+    if (!choice.free) choice.joints.push_back(checker.joint(e));
+    else
+        for (const Written& candidate : e.args) choice.joints.push_back(checker.joint(candidate));
+    return choice;
+}
+
+void checkAt(OperationChecker& checker, const syntax::Attribute& written) {
+    note(checker, written);
+    if (!written.args.empty()) checker.element().at = readJoints(checker, written);
+}
+
+void checkTo(OperationChecker& checker, const syntax::Attribute& written) {
+    note(checker, written);
+    if (written.args.empty()) return;
+    JointChoice choice = readJoints(checker, written);
+    if (choice.free)
+        checker.error(written.args[0].span, "the newcomer's joints are all free: name one", "write 'to centre' or 'to +y'");
+    checker.element().to = std::move(choice);
+}
+
+/// `each(Name)`: the symbol's index, or nothing after an error.
+void readEach(OperationChecker& checker, const Written& e, HostChoice& host) {
+    host.kind = HostChoice::Kind::Each;
+    const bool named = e.args.size() == 1 && e.args[0].kind == Written::Kind::Name;
+    const auto symbol = named ? checker.findSymbol(e.args[0].text) : std::nullopt;
+    if (symbol)
+        host.of = rules::makeConstant(e.span, rules::Value::number(*symbol));
+    else if (named)
+        checker.unknownName(e.args[0].span, e.args[0].text, fmt::format("no shape is called '{}'", e.args[0].text),
+                            checker.nearest(e.args[0].text, checker.symbolNames()));
+    else
+        checker.error(e.span, "'each' takes the name of shapes", "write 'each(Cell)'");
+}
+
+void checkOn(OperationChecker& checker, const syntax::Attribute& written) {
+    note(checker, written);
+    if (written.args.empty()) return;
+    checker.beginDraws("on");
+    const Written& e = written.args[0];
+    HostChoice host;
+    host.span = written.span;
+    if (isCalled(e, "last")) {
+        if (!checker.isInChain() && !checker.isInFinally())
+            checker.error(e.span, "'last' is the newest shape of a chain, and there is none here", "give the rule a 'repeat'");
+    } else if (isCalled(e, "any")) {
+        host.kind = HostChoice::Kind::Any;
+        if (!checker.isInChain())
+            checker.error(e.span, "'any(d)' draws among the shapes of a chain, and there is none here", "give the rule a 'repeat'");
+        if (e.args.size() == 1) host.of = checker.expression(e.args[0], Want::Axis, "'any'");
+        else checker.error(e.span, "'any' takes one direction", "write 'any(+x)' or 'any(d)'");
+    } else if (isCalled(e, "each")) {
+        readEach(checker, e, host);
+    } else if (e.kind != Written::Kind::Error) {
+        checker.error(e.span, fmt::format("'on' takes 'last', 'any(d)' or 'each(Name)', not '{}'", e.span.text()));
+    }
+    checker.element().on = std::move(host);
+}
+
+void needOperator(OperationChecker& checker, const Element& element, const Attribute& attribute) {
+    if (element.op != Operator::None) return;
+    checker.error(attribute.span,
+                  fmt::format("'{}' joins a newcomer to what stands, but no operator joins this shape", attribute.operation->name),
+                  "put '+', '-', '&' or 'morph' before it");
+}
+
+void agreeOn(OperationChecker& checker, const Element& element, const Attribute& attribute) {
+    // Outside a chain its argument was refused already.
+    if (checker.isInChain() || checker.isInFinally()) needOperator(checker, element, attribute);
+}
+
+void needJoint(OperationChecker& checker, const Element& element, const Attribute& attribute) {
+    needOperator(checker, element, attribute);
+    if (element.op != Operator::None && !element.at)
+        checker.error(attribute.span, fmt::format("'{}' needs the joint it speaks of", attribute.operation->name),
+                      "add 'at +x', 'at free(…)' or another joint of ours");
+}
+
+/// `to NAME` where the newcomer is known: it must have that joint.
+void agreeTo(OperationChecker& checker, const Element& element, const Attribute& attribute) {
+    needJoint(checker, element, attribute);
+    if (!element.to || element.to->joints.size() != 1 || element.to->joints[0].value.kind != rules::Value::Kind::Word) return;
+    std::vector<std::string> known;
+    const rules::Solid* solid = element.content.solid();
+    if (const rules::SymbolId id = element.content.symbol(); id != rules::none) {
+        const rules::Symbol& symbol = checker.grammar().symbols[id];
+        if (!symbol.terminal) return;
+        for (const rules::Joint& joint : symbol.joints) known.push_back(joint.name);
+        if (symbol.solid) solid = &*symbol.solid;
+    } else if (!solid) {
+        return;
+    }
+    if (solid && solid->primitive)
+        for (const auto& joint : solid->primitive->joints) known.emplace_back(joint.name);
+    const rules::Expr& joint = element.to->joints[0];
+    const std::string& wanted = joint.value.text;
+    if (std::find(known.begin(), known.end(), wanted) == known.end() && checker.isJoint(wanted))
+        checker.error(joint.span, fmt::format("'{}' has no joint '{}'", element.label, wanted), checker.nearest(wanted, known));
+}
+
+void agreeBy(OperationChecker& checker, const Element& element, const Attribute& attribute) {
+    if (element.op != Operator::Morph)
+        checker.error(attribute.span, "'by' says how far a morph goes, but this shape isn't joined by 'morph'",
+                      "write 'morph' before the shape");
+}
+
+void agreeBlend(OperationChecker& checker, const Element& element, const Attribute& attribute) {
+    needOperator(checker, element, attribute);
+    if (element.op == Operator::Intersection)
+        checker.error(attribute.span, "what is shared keeps its edge", "leave 'blend' out, or cut with '-' what lies outside");
+    if (element.op == Operator::Morph)
+        checker.error(attribute.span, "a morph has no edge that could be blended", "leave 'blend' out");
+}
+
+void applyOverlap(AttributeContext& context, const Attribute& attribute) {
+    context.out.overlap = context.number(attribute.args[0]);
+}
+
+/// S_J, the paper's shift of the joint: bare numbers and shares are of the newcomer's half-size.
+void applyShift(AttributeContext& context, const Attribute& attribute) {
+    const derive::Vector v = context.vector(attribute.args[0], true);
+    Vec3d m;
+    for (int i = 0; i < 3; ++i)
+        m[i] = v.unit[i] == rules::Unit::Metre ? v.n[i] : v.n[i] * context.out.scope.half()[i];
+    context.out.moved_m += context.place.scope.axes * m;
+}
+
+void applyBy(AttributeContext& context, const Attribute& attribute) {
+    context.out.amount = std::clamp(context.number(attribute.args[0]), 0.0, 1.0);
+}
+
+void applyBlend(AttributeContext& context, const Attribute& attribute) {
+    context.out.blend_m = std::max(0.0, context.number(attribute.args[0]));
+}
+
+}  // namespace
+
+constinit const Operation at{
+    .name = "at",
+    .doc = "Names our joint at which the newcomer is mated; points meet, directions oppose (eq. 16).",
+    .example = "+ sphere at +x",
+    .arguments = atArguments,
+    .phase = Phase::Placement,
+    .check = checkAt,
+    .agree = needOperator,
+};
+
+constinit const Operation to{
+    .name = "to",
+    .doc = "Names the newcomer's joint that is mated with ours.",
+    .example = "+ sphere at +x to centre",
+    .arguments = toArguments,
+    .phase = Phase::Placement,
+    .check = checkTo,
+    .agree = agreeTo,
+};
+
+constinit const Operation overlap{
+    .name = "overlap",
+    .doc = "Lets the newcomer reach into its host.",
+    .example = "+ cube at +y overlap .2",
+    .arguments = overlapArguments,
+    .phase = Phase::Placement,
+    .range = {-most_m, 1, "at most 1"},
+    .agree = needJoint,
+    .apply = applyOverlap,
+};
+
+constinit const Operation shift{
+    .name = "shift",
+    .doc = "Moves the mating point, the paper's joint shift S_J.",
+    .example = "+ sphere at +x to centre shift -.3..0.3",
+    .arguments = shiftArguments,
+    .phase = Phase::Placement,
+    .range = {-most_m, most_m, "at most 1000 km"},
+    .agree = needOperator,
+    .apply = applyShift,
+};
+
+constinit const Operation on{
+    .name = "on",
+    .doc = "Chooses the host among the shapes of a chain.",
+    .example = "+ sphere on last at +y",
+    .arguments = onArguments,
+    .phase = Phase::Placement,
+    .check = checkOn,
+    .agree = agreeOn,
+};
+
+constinit const Operation by{
+    .name = "by",
+    .doc = "Says how far a morph goes.",
+    .example = "morph torus by .2",
+    .arguments = byArguments,
+    .phase = Phase::Placement,
+    .range = {0, 1, "0 … 1"},
+    .agree = agreeBy,
+    .apply = applyBy,
+};
+
+constinit const Operation blend{
+    .name = "blend",
+    .doc = "Melts the newcomer, or the edge of a cut, into what stands.",
+    .example = "+ sphere at +x blend .25m",
+    .arguments = blendArguments,
+    .phase = Phase::Placement,
+    .range = {0, most_m, "no less than 0"},
+    .agree = agreeBlend,
+    .apply = applyBlend,
+};
+
+}  // namespace sgm::operations

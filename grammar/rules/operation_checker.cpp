@@ -1,0 +1,147 @@
+#include "grammar/rules/operation_checker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "grammar/rules/checker.h"
+#include "grammar/rules/evaluate.h"
+#include "grammar/rules/make.h"
+
+namespace sgm::rules {
+namespace {
+
+using syntax::ArgumentType;
+
+Want wantOf(ArgumentType type) {
+    switch (type) {
+        case ArgumentType::Number:
+            return Want::Number;
+        case ArgumentType::Length:
+            return Want::Length;
+        case ArgumentType::Angle:
+            return Want::Angle;
+        case ArgumentType::Rotation:
+            return Want::Angles;
+        case ArgumentType::Size:
+            return Want::Size;
+        case ArgumentType::Vector:
+            return Want::Offset;
+        case ArgumentType::Color:
+            return Want::Color;
+        default:
+            return Want::Anything;
+    }
+}
+
+bool isWord(ArgumentType type) {
+    return type == ArgumentType::Name || type == ArgumentType::Axis || type == ArgumentType::Solid;
+}
+
+/// Every constant part of an expression: both ends of a range or ramp, each component, each value to choose from.
+template <class Visit>
+void eachConstant(const Expr& e, const std::vector<Value>& params, Visit visit) {
+    if (const auto value = fold(e, params)) return visit(e, *value);
+    if (e.kind == Expr::Kind::Range || e.kind == Expr::Kind::Ramp || e.kind == Expr::Kind::Tuple)
+        for (const Expr& arg : e.args) eachConstant(arg, params, visit);
+    if (e.kind == Expr::Kind::Choose)
+        for (size_t i = 1; i < e.args.size(); i += 2) eachConstant(e.args[i], params, visit);
+}
+
+}  // namespace
+
+const Grammar& OperationChecker::grammar() const { return checker_.grammar_; }
+bool OperationChecker::isInChain() const { return place_.where == Place::Where::Chain; }
+bool OperationChecker::isInFinally() const { return place_.where == Place::Where::Finally; }
+
+void OperationChecker::checkArguments(const syntax::Attribute& written) {
+    const Operation& operation = *written.operation;
+    Attribute out;
+    out.operation = &operation;
+    out.span = written.span;
+    beginDraws(std::string(operation.name));
+    for (size_t i = 0; i < written.args.size() && i < operation.arguments.size(); ++i) {
+        const syntax::Expr& arg = written.args[i];
+        const ArgumentType type = operation.arguments[i].type;
+        out.args.push_back(isWord(type) ? makeConstant(arg.span, makeWord(arg.text))
+                                        : expression(arg, wantOf(type), fmt::format("'{}'", operation.name)));
+    }
+    const syntax::OperationRange& range = operation.range;
+    for (const Expr& arg : out.args) {
+        bool said = range.text.empty();
+        eachConstant(arg, checker_.defaults_, [&](const Expr& e, const Value& v) {
+            for (size_t i = 0; i < v.count && !said && (v.kind == Value::Kind::Number || v.kind == Value::Kind::Vector); ++i) {
+                if (v.n[i] >= range.lo && v.n[i] <= range.hi) continue;
+                said = true;
+                error(e.span, fmt::format("'{}' is {}, but must be {}", operation.name, toText(v), range.text));
+            }
+        });
+    }
+    add(std::move(out));
+}
+
+Attribute* OperationChecker::find(const Operation& operation) {
+    const auto found = std::find_if(attributes_.begin(), attributes_.end(),
+                                    [&](const Attribute& a) { return a.operation == &operation; });
+    return found == attributes_.end() ? nullptr : &*found;
+}
+
+void OperationChecker::beginDraws(std::string name) { place_.enter(std::move(name)); }
+
+Expr OperationChecker::expression(const syntax::Expr& e, Want want, std::string_view what) {
+    return checker_.expression(place_, e, want, what);
+}
+
+Typed OperationChecker::value(const syntax::Expr& e) { return checker_.expression(place_, e); }
+Solid OperationChecker::solid(const syntax::Expr& e) { return checker_.solid(place_, e); }
+Expr OperationChecker::joint(const syntax::Expr& e) { return checker_.joint(place_, e); }
+
+std::shared_ptr<const Body> OperationChecker::body(const syntax::Body& written) {
+    return std::make_shared<const Body>(checker_.body(place_, written));
+}
+
+size_t OperationChecker::pushLocal(const std::string& name, uint32_t& local) {
+    const size_t outside = place_.locals.size();
+    local = place_.frame++;
+    place_.locals.push_back({name, local, Type::number(Unit::None, true)});
+    return outside;
+}
+
+void OperationChecker::popLocals(size_t outside) {
+    place_.locals.resize(outside, Place::Local{{}, 0, Type::unknown()});
+}
+
+std::optional<Value> OperationChecker::atDefaults(const Expr& e) const { return fold(e, checker_.defaults_); }
+
+void OperationChecker::checkRange(const Expr& e, const field::Primitive& row, size_t parameter) {
+    checker_.inRange(e, row, parameter);
+}
+
+Solid OperationChecker::solidOfRow(SourceSpan span, const field::Primitive& row) { return Checker::solidOfRow(span, row); }
+
+std::optional<SymbolId> OperationChecker::findSymbol(std::string_view name) const {
+    const auto symbol = checker_.symbols_.find(std::string(name));
+    return symbol == checker_.symbols_.end() ? std::nullopt : std::optional(symbol->second);
+}
+
+bool OperationChecker::isParameter(std::string_view name) const { return checker_.params_.contains(std::string(name)); }
+bool OperationChecker::isJoint(std::string_view name) const { return checker_.jointNames_.contains(std::string(name)); }
+
+std::string OperationChecker::nearest(std::string_view word, const std::vector<std::string>& candidates) const {
+    return checker_.nearest(word, candidates);
+}
+
+std::vector<std::string> OperationChecker::symbolNames() const { return checker_.symbolNames(false); }
+
+void OperationChecker::error(SourceSpan span, std::string message, std::string fix) {
+    checker_.diagnostics_.error(span, std::move(message), std::move(fix));
+}
+
+void OperationChecker::unknownName(SourceSpan span, const std::string& name, std::string message, std::string fix) {
+    checker_.unknown(span, name, std::move(message), std::move(fix));
+}
+
+bool OperationChecker::isExcused(const std::string& name) const { return checker_.excused_.contains(name); }
+size_t OperationChecker::problemCount() const { return checker_.diagnostics_.all().size(); }
+
+}  // namespace sgm::rules
