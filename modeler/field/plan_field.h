@@ -1,0 +1,61 @@
+// A footprint as a field of the plan: every solid over it is a profile of this field and the height.
+// Enters: a sound footprint, its monotone formula, coordinates. Leaves: nodes. Assumes that x and z of the coordinates are
+// the footprint's, in metres; y is up.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "modeler/field/field.h"
+#include "modeler/plan/formula.h"
+
+namespace sgm::field {
+
+/// A number of a solid: the node that carries it, and its present value for bounds.
+struct Quantity {
+    Num node;
+    double value = 0;
+};
+/// A number that never changes, as a literal.
+Quantity fixed(Graph& graph, double value);
+
+/// The distances to the lines of a footprint's edges, and Φ, their formula.
+class PlanField {
+public:
+    /// One half-plane an edge: nx·x + nz·z − c, numbers in slots keyed by (path, "edge i …"), fresh slots for path 0. Edges
+    /// along an axis need one number. `p` must be of the graph. 5 instructions an edge at most.
+    PlanField(const plan::Footprint& footprint, const plan::Formula& formula, Point p, uint64_t path);
+
+    Graph& graph() const { return p_.x.graph(); }
+    const Point& position() const { return p_; }
+    uint64_t path() const { return path_; }
+    const plan::Footprint& footprint() const { return *footprint_; }
+    const plan::Formula& formula() const { return *formula_; }
+    const std::vector<plan::PlacedEdge>& edges() const { return edges_; }
+    /// Signed distance to the line of edge i, > 0 outside, metres.
+    Num distance(uint32_t edge) const { return distances_[edge]; }
+    /// Φ = −D: < 0 inside, metres; 1-Lipschitz, mitred beyond corners.
+    Num outside() const { return outside_; }
+    /// The formula over other leaves, one an edge. Φ is fold(distance).
+    Num fold(const std::function<Num(uint32_t edge)>& leaf) const;
+    /// A slot of this field's path, or a fresh one for path 0.
+    Num slot(std::string_view attribute, uint64_t index, double value) const;
+    /// The rectangle around the outline moved outward by `out` metres: with the tips of mitred corners, up to 4 times as
+    /// far out.
+    plan::Box2 boundsOf(double out = 0) const;
+    /// `value` cut by the box between two heights and around the outline moved by `out`, a little larger than asked for:
+    /// its bounds hold, lipschitz is 1 and growth 1.
+    Field boxed(Num value, double bottom, double top, double out = 0) const;
+
+private:
+    const plan::Footprint* footprint_;  ///< the caller's; must outlive this
+    const plan::Formula* formula_;
+    Point p_;
+    uint64_t path_;
+    std::vector<plan::PlacedEdge> edges_;
+    std::vector<Num> distances_;
+    Num outside_;
+};
+
+}  // namespace sgm::field
