@@ -20,6 +20,9 @@ struct Quantity {
 /// A number that never changes, as a literal.
 Quantity fixed(Graph& graph, double value);
 
+/// The slot keyed by (path, attribute and index), or a fresh one for path 0.
+Num pathSlot(Graph& graph, uint64_t path, std::string_view attribute, uint64_t index, double value);
+
 /// The distances to the lines of a footprint's edges, and Φ, their formula.
 class PlanField {
 public:
@@ -29,7 +32,6 @@ public:
 
     Graph& graph() const { return p_.x.graph(); }
     const Point& position() const { return p_; }
-    uint64_t path() const { return path_; }
     const plan::Footprint& footprint() const { return *footprint_; }
     const plan::Formula& formula() const { return *formula_; }
     const std::vector<plan::PlacedEdge>& edges() const { return edges_; }
@@ -39,20 +41,17 @@ public:
     Num outside() const { return outside_; }
     /// The formula over other leaves, one an edge. Φ is fold(distance).
     Num fold(const std::function<Num(uint32_t edge)>& leaf) const;
-    /// A slot of this field's path, or a fresh one for path 0.
-    Num slot(std::string_view attribute, uint64_t index, double value) const;
     /// The rectangle around the outline moved outward by `out` metres: with the tips of mitred corners, up to 4 times as
     /// far out.
     plan::Box2 boundsOf(double out = 0) const;
     /// `value` cut by the box between two heights and around the outline moved by `out`, a little larger than asked for:
-    /// its bounds hold, lipschitz is 1 and growth 1.
-    Field boxed(Num value, double bottom, double top, double out = 0) const;
+    /// its bounds hold, lipschitz is 1 and growth 1. The box's slots are of `path`, the solid's own.
+    Field boxed(Num value, uint64_t path, double bottom, double top, double out = 0) const;
 
 private:
     const plan::Footprint* footprint_;  ///< the caller's; must outlive this
     const plan::Formula* formula_;
     Point p_;
-    uint64_t path_;
     std::vector<plan::PlacedEdge> edges_;
     std::vector<Num> distances_;
     Num outside_;

@@ -19,6 +19,7 @@ struct RoofFoot {
     Quantity eaves;      ///< height at which slopes cross the outline, metres
     Quantity overhang;   ///< metres beyond the outline, ≥ 0; slopes go on down, gables stand that far out
     Quantity fascia;     ///< height of the upright board at the eaves, metres; 0 for a sharp edge
+    uint64_t path = 0;   ///< keys the roof's own slots (0: fresh ones); no other solid nor the plan may have it
 };
 
 /// A plane that rises inward: through the line `inset` metres inside the edge and `rise` metres above the eaves.
@@ -53,8 +54,8 @@ Field saltboxRoof(const PlanField& plan, const RoofFoot& foot, Quantity frontPit
 Field pyramidRoof(const PlanField& plan, const RoofFoot& foot, Quantity height);
 /// One plane that rises in direction `up` (plan, not zero) from the outline's lowest point; walls go up to it.
 Field shedRoof(const PlanField& plan, const RoofFoot& foot, Quantity pitch, plan::Vec2 up);
-/// Two planes that fall to a valley along `valley` (plan direction, not zero) through the middle of the outline, whose
-/// bottom is at the eaves.
+/// Two planes that fall to a valley along `valley` (plan direction, not zero) through the middle of the outline, at the
+/// height of the fascia above the eaves (0: two wedges that meet in a line).
 Field butterflyRoof(const PlanField& plan, const RoofFoot& foot, Quantity pitch, plan::Vec2 valley);
 /// A slab of `slab` metres on the eaves' height and, round it, a parapet of that height above the slab and thickness.
 Field flatRoof(const PlanField& plan, const RoofFoot& foot, Quantity slab, Quantity parapetHeight, Quantity parapetThickness);

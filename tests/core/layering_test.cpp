@@ -44,7 +44,7 @@ std::string roomOf(const std::string& path) {
 const std::vector<std::string> folders{"modeler", "grammar", "viewer", "cli"};
 
 /// Bottom to top: a room may see those before it.
-const std::vector<std::string> order{"modeler/core",   "modeler/field",   "modeler/eval",  "modeler/plan",
+const std::vector<std::string> order{"modeler/core",   "modeler/plan",    "modeler/field", "modeler/eval",
                                      "modeler/mesh",   "modeler/volume",  "modeler/export", "grammar/syntax",
                                      "grammar/rules",  "grammar/derive", "grammar/operations", "grammar/lower", "grammar/incremental", "viewer", "cli"};
 
@@ -96,7 +96,7 @@ const std::set<std::string> heavyDoors{"modeler/mesh/openmesh.h", "modeler/mesh/
 TEST(Layering, HeavyHeadersStayInSources) {
     for (const Include& include : includesUnder(folders)) {
         const bool heavy = include.to.starts_with("CGAL/") || include.to.starts_with("openvdb/") ||
-                           include.to.starts_with("OpenMesh/") || include.to.starts_with("CLI/") ||
+                           include.to.starts_with("OpenMesh/") || include.to.starts_with("polyclipping/") || include.to.starts_with("CLI/") ||
                            heavyDoors.count(include.to);
         const bool allowed = include.from.ends_with(".cpp") || heavyDoors.count(include.from);
         EXPECT_TRUE(!heavy || allowed) << include.from << " includes " << include.to;

@@ -1,0 +1,97 @@
+#include "modeler/field/plan_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "modeler/core/random.h"
+#include "modeler/field/solids.h"
+
+namespace sgm::field {
+
+namespace {
+
+using plan::FormulaNode;
+
+/// How far a mitred corner may stand out, in offsets.
+constexpr double mitreLimit = 4;
+
+/// Where the corner between two edges goes when both move outward by `out`; a reflex one comes nearer, which is left out.
+plan::Vec2 movedCorner(const plan::PlacedEdge& before, const plan::PlacedEdge& after, double out) {
+    const plan::Vec2 a = before.normal(), b = after.normal(), sum = a + b;
+    const double square = dot(sum, sum);
+    if (square < 1e-12) return after.from + a * (out * mitreLimit);
+    const plan::Vec2 tip = sum * (2 / square);
+    const double reach = std::min(length(tip), mitreLimit);
+    return after.from + tip * (out * reach / length(tip));
+}
+
+}  // namespace
+
+Num pathSlot(Graph& graph, uint64_t path, std::string_view attribute, uint64_t index, double value) {
+    const auto number = static_cast<float>(value);
+    return path == 0 ? graph.slot(number) : graph.slot({path, combine(hashText(attribute), index)}, number);
+}
+
+Quantity fixed(Graph& graph, double value) { return {graph.literal(static_cast<float>(value)), value}; }
+
+PlanField::PlanField(const plan::Footprint& footprint, const plan::Formula& formula, Point p, uint64_t path)
+    : footprint_(&footprint), formula_(&formula), p_(p), edges_(plan::edgesOf(footprint)) {
+    distances_.reserve(edges_.size());
+    for (size_t i = 0; i < edges_.size(); ++i) {
+        const plan::Vec2 n = edges_[i].normal();
+        const double c = dot(n, edges_[i].from);
+        if (n.x == 1 || n.z == 1) {
+            distances_.push_back((n.x == 1 ? p.x : p.z) - pathSlot(p.x.graph(), path, "edge c", i, c));
+        } else if (n.x == -1 || n.z == -1) {
+            distances_.push_back(pathSlot(p.x.graph(), path, "edge c", i, -c) - (n.x == -1 ? p.x : p.z));
+        } else {
+            distances_.push_back(p.x * pathSlot(p.x.graph(), path, "edge x", i, n.x) + p.z * pathSlot(p.x.graph(), path, "edge z", i, n.z) - pathSlot(p.x.graph(), path, "edge c", i, c));
+        }
+    }
+    outside_ = fold([this](uint32_t edge) { return distances_[edge]; });
+}
+
+Num PlanField::fold(const std::function<Num(uint32_t edge)>& leaf) const {
+    std::vector<Num> nodes;
+    nodes.reserve(formula_->nodes.size());
+    for (const FormulaNode& node : formula_->nodes)
+        nodes.push_back(node.kind == FormulaNode::Kind::Edge  ? leaf(node.first)
+                        : node.kind == FormulaNode::Kind::Max ? max(nodes[node.first], nodes[node.second])
+                                                              : min(nodes[node.first], nodes[node.second]));
+    return nodes.back();
+}
+
+plan::Box2 PlanField::boundsOf(double out) const {
+    plan::Box2 box;
+    const auto around = [&](plan::Vec2 p, double r) {
+        box.add({p.x - r, p.z - r});
+        box.add({p.x + r, p.z + r});
+    };
+    for (const plan::PlacedEdge& e : edges_) around(e.from, std::max(out, 0.0));
+    if (out <= 0) return box;
+    for (size_t i = 0; i < edges_.size(); ++i) {
+        if (edges_[i].ring != 0) continue;
+        const plan::Polygon& polygon = footprint_->polygons[edges_[i].polygon];
+        const size_t n = polygon.outer.size(), next = edges_[i].index + 1 == n ? i + 1 - n : i + 1;
+        if (cross(edges_[i].to - edges_[i].from, edges_[next].to - edges_[next].from) > 0)
+            box.add(movedCorner(edges_[i], edges_[next], out));
+    }
+    return box;
+}
+
+Field PlanField::boxed(Num value, uint64_t path, double bottom, double top, double out) const {
+    const plan::Box2 box = boundsOf(out);
+    const plan::Vec2 middle = box.centre(), size = box.size();
+    // A little apart from the solid's own faces, so that rounding decides nothing where they would coincide.
+    const double apart = 1e-3 * std::max({size.x, size.z, top - bottom, 1e-3});
+    const Vec3d centre{middle.x, (bottom + top) / 2, middle.z};
+    const Vec3d half{size.x / 2 + apart, std::max(top - bottom, 0.0) / 2 + apart, size.z / 2 + apart};
+    const Vec3f c = centre.as<float>(), h = half.as<float>();
+    const auto number = [&](std::string_view of, uint64_t axis, double v) { return pathSlot(graph(), path, of, axis, v); };
+    const Point p{p_.x - number("box centre", 0, centre.x), p_.y - number("box centre", 1, centre.y),
+                  p_.z - number("box centre", 2, centre.z)};
+    const Point size3{number("box half", 0, half.x), number("box half", 1, half.y), number("box half", 2, half.z)};
+    return {max(value, solids::boxDistance(p, size3)), {c - h, c + h}, 1, solids::growth(1)};
+}
+
+}  // namespace sgm::field

@@ -1,0 +1,27 @@
+// What the sources of roofs share: planes, the height at which a roof ends below, and its box.
+// Enters: nodes and quantities of one graph. Leaves: the same. Not for other folders.
+#pragma once
+
+#include "modeler/field/roofs.h"
+
+namespace sgm::field::roof_parts {
+
+/// The lower end of a roof.
+struct Foot {
+    Num up;               ///< height above the eaves
+    Num drop;             ///< how far below the eaves the roof ends
+    double dropValue = 0;
+    bool hasFascia = false;
+};
+
+Num tangent(Num angle);
+/// The signed distance to the plane that rises inward of `outside` = −inset from `up` = rise.
+Num slopePlane(Num outside, Num up, const Pitch& pitch);
+/// Slopes of at least the least of the pitches go down to the overhang.
+Foot footOf(const PlanField& plan, const RoofFoot& foot, std::span<const Quantity> pitches);
+/// `sides` above the roof's lower end, with bounds up to `height` metres above the eaves.
+Field onFoot(const PlanField& plan, const RoofFoot& foot, const Foot& at, Num sides, double height);
+/// The greatest depth of the footprint, metres: at most a thousandth too much.
+double depthOf(const PlanField& plan);
+
+}  // namespace sgm::field::roof_parts
