@@ -27,7 +27,8 @@ Field taperedPrism(const PlanField& plan, Quantity bottom, Quantity top, Quantit
     return plan.boxed(max(sides, between(plan, bottom, top)), path, bottom.value, top.value, std::max(out, 0.0));
 }
 
-// The rooms are what lies deeper than the walls, above the floor and below the ceiling; a floor or ceiling of 0 is open.
+// The rooms are what lies deeper than the walls, above the floor and below the ceiling; a floor or ceiling of 0 is
+// open.
 Field shell(const PlanField& plan, Quantity bottom, Quantity top, Quantity wall, Quantity floor, Quantity ceiling,
             uint64_t path) {
     const Num y = plan.position().y;

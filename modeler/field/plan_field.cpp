@@ -15,7 +15,8 @@ using plan::FormulaNode;
 /// How far a mitred corner may stand out, in offsets.
 constexpr double mitreLimit = 4;
 
-/// Where the corner between two edges goes when both move outward by `out`; a reflex one comes nearer, which is left out.
+/// Where the corner between two edges goes when both move outward by `out`; a reflex one comes nearer, which is left
+/// out.
 plan::Vec2 movedCorner(const plan::PlacedEdge& before, const plan::PlacedEdge& after, double out) {
     const plan::Vec2 a = before.normal(), b = after.normal(), sum = a + b;
     const double square = dot(sum, sum);
@@ -45,7 +46,9 @@ PlanField::PlanField(const plan::Footprint& footprint, const plan::Formula& form
         } else if (n.x == -1 || n.z == -1) {
             distances_.push_back(pathSlot(p.x.graph(), path, "edge c", i, -c) - (n.x == -1 ? p.x : p.z));
         } else {
-            distances_.push_back(p.x * pathSlot(p.x.graph(), path, "edge x", i, n.x) + p.z * pathSlot(p.x.graph(), path, "edge z", i, n.z) - pathSlot(p.x.graph(), path, "edge c", i, c));
+            distances_.push_back(p.x * pathSlot(p.x.graph(), path, "edge x", i, n.x) +
+                                 p.z * pathSlot(p.x.graph(), path, "edge z", i, n.z) -
+                                 pathSlot(p.x.graph(), path, "edge c", i, c));
         }
     }
     outside_ = fold([this](uint32_t edge) { return distances_[edge]; });
@@ -87,7 +90,9 @@ Field PlanField::boxed(Num value, uint64_t path, double bottom, double top, doub
     const Vec3d centre{middle.x, (bottom + top) / 2, middle.z};
     const Vec3d half{size.x / 2 + apart, std::max(top - bottom, 0.0) / 2 + apart, size.z / 2 + apart};
     const Vec3f c = centre.as<float>(), h = half.as<float>();
-    const auto number = [&](std::string_view of, uint64_t axis, double v) { return pathSlot(graph(), path, of, axis, v); };
+    const auto number = [&](std::string_view of, uint64_t axis, double v) {
+        return pathSlot(graph(), path, of, axis, v);
+    };
     const Point p{p_.x - number("box centre", 0, centre.x), p_.y - number("box centre", 1, centre.y),
                   p_.z - number("box centre", 2, centre.z)};
     const Point size3{number("box half", 0, half.x), number("box half", 1, half.y), number("box half", 2, half.z)};

@@ -1,6 +1,6 @@
 // A footprint as a field of the plan: every solid over it is a profile of this field and the height.
-// Enters: a sound footprint, its monotone formula, coordinates. Leaves: nodes. Assumes that x and z of the coordinates are
-// the footprint's, in metres; y is up.
+// Enters: a sound footprint, its monotone formula, coordinates. Leaves: nodes. Assumes that x and z of the coordinates
+// are the footprint's, in metres; y is up.
 #pragma once
 
 #include <functional>
@@ -26,8 +26,8 @@ Num pathSlot(Graph& graph, uint64_t path, std::string_view attribute, uint64_t i
 /// The distances to the lines of a footprint's edges, and Φ, their formula.
 class PlanField {
 public:
-    /// One half-plane an edge: nx·x + nz·z − c, numbers in slots keyed by (path, "edge i …"), fresh slots for path 0. Edges
-    /// along an axis need one number. `p` must be of the graph. 5 instructions an edge at most.
+    /// One half-plane an edge: nx·x + nz·z − c, numbers in slots keyed by (path, "edge i …"), fresh slots for path 0.
+    /// Edges along an axis need one number. `p` must be of the graph. 5 instructions an edge at most.
     PlanField(const plan::Footprint& footprint, const plan::Formula& formula, Point p, uint64_t path);
 
     Graph& graph() const { return p_.x.graph(); }
@@ -41,11 +41,11 @@ public:
     Num outside() const { return outside_; }
     /// The formula over other leaves, one an edge. Φ is fold(distance).
     Num fold(const std::function<Num(uint32_t edge)>& leaf) const;
-    /// The rectangle around the outline moved outward by `out` metres: with the tips of mitred corners, up to 4 times as
-    /// far out.
+    /// The rectangle around the outline moved outward by `out` metres: with the tips of mitred corners, up to 4 times
+    /// as far out.
     plan::Box2 boundsOf(double out = 0) const;
-    /// `value` cut by the box between two heights and around the outline moved by `out`, a little larger than asked for:
-    /// its bounds hold, lipschitz is 1 and growth 1. The box's slots are of `path`, the solid's own.
+    /// `value` cut by the box between two heights and around the outline moved by `out`, a little larger than asked
+    /// for: its bounds hold, lipschitz is 1 and growth 1. The box's slots are of `path`, the solid's own.
     Field boxed(Num value, uint64_t path, double bottom, double top, double out = 0) const;
 
 private:

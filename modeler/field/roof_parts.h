@@ -8,8 +8,8 @@ namespace sgm::field::roof_parts {
 
 /// The lower end of a roof.
 struct Foot {
-    Num up;               ///< height above the eaves
-    Num drop;             ///< how far below the eaves the roof ends
+    Num up;    ///< height above the eaves
+    Num drop;  ///< how far below the eaves the roof ends
     double dropValue = 0;
     bool hasFascia = false;
 };

@@ -81,7 +81,8 @@ double peakOf(const PlanField& plan, std::span<const RoofSide* const> sides) {
     }
     const plan::Box2 box = bounds(plan.footprint());
     const double size = std::max(box.size().x, box.size().z);
-    const double least = plan::leastInside(plan.formula(), leaves, distances, box, 1e-3 * steepest * std::min(box.size().x, box.size().z));
+    const double least = plan::leastInside(plan.formula(), leaves, distances, box,
+                                           1e-3 * steepest * std::min(box.size().x, box.size().z));
     return std::clamp(-least, 0.0, 1e3 * size * std::max(steepest, 1.0));
 }
 
@@ -91,10 +92,12 @@ Field uniformRoof(const PlanField& plan, const RoofFoot& foot, const RoofSide& s
     const Foot at = footOf(plan, foot, angles);
     const Num up = at.hasFascia ? at.up - foot.fascia.node : at.up;
     Num sides = slopePlane(plan.outside(), up, side.pitches[0]);
-    for (size_t i = 1; i < side.pitches.size(); ++i) sides = max(sides, slopePlane(plan.outside(), up, side.pitches[i]));
+    for (size_t i = 1; i < side.pitches.size(); ++i)
+        sides = max(sides, slopePlane(plan.outside(), up, side.pitches[i]));
     if (at.hasFascia) sides = max(sides, plan.outside() - foot.overhang.node);
     const Pitch& last = side.pitches.back();
-    const double height = last.rise.value + std::tan(last.angle.value) * std::max(depthOf(plan) - last.inset.value, 0.0);
+    const double height =
+        last.rise.value + std::tan(last.angle.value) * std::max(depthOf(plan) - last.inset.value, 0.0);
     return onFoot(plan, foot, at, sides, height + foot.fascia.value);
 }
 
@@ -141,7 +144,8 @@ Field roof(const PlanField& plan, const RoofFoot& foot, std::span<const RoofSide
         const RoofSide& side = *chosen[edge];
         const bool hasWall = side.pitches.empty() || at.hasFascia || side.pitches.front().rise.value > 0;
         Num value = hasWall ? d - foot.overhang.node : slopePlane(d, up, side.pitches[0]);
-        for (size_t k = hasWall ? 0 : 1; k < side.pitches.size(); ++k) value = max(value, slopePlane(d, up, side.pitches[k]));
+        for (size_t k = hasWall ? 0 : 1; k < side.pitches.size(); ++k)
+            value = max(value, slopePlane(d, up, side.pitches[k]));
         return value;
     });
     return onFoot(plan, foot, at, sidesValue, peakOf(plan, chosen) + foot.fascia.value);
@@ -156,7 +160,8 @@ Field gableRoof(const PlanField& plan, const RoofFoot& foot, Quantity pitch, std
 }
 
 // The hip of an end begins at `share` of the height at which its two neighbours meet over it.
-Field halfHipRoof(const PlanField& plan, const RoofFoot& foot, Quantity pitch, std::span<const uint32_t> ends, Quantity share) {
+Field halfHipRoof(const PlanField& plan, const RoofFoot& foot, Quantity pitch, std::span<const uint32_t> ends,
+                  Quantity share) {
     Graph& g = plan.graph();
     std::vector<RoofSide> sides(plan.edges().size(), RoofSide{{planeOf(plan, pitch)}});
     for (const uint32_t e : ends) {
@@ -177,8 +182,8 @@ Field gambrelRoof(const PlanField& plan, const RoofFoot& foot, Quantity lower, Q
     return roof(plan, foot, sidesWithEnds(plan, brokenSide(plan, lower, height, upper), {}, ends));
 }
 
-Field saltboxRoof(const PlanField& plan, const RoofFoot& foot, Quantity frontPitch, Quantity backPitch, plan::Vec2 front,
-                  std::span<const uint32_t> ends) {
+Field saltboxRoof(const PlanField& plan, const RoofFoot& foot, Quantity frontPitch, Quantity backPitch,
+                  plan::Vec2 front, std::span<const uint32_t> ends) {
     std::vector<RoofSide> sides;
     for (const plan::PlacedEdge& e : plan.edges())
         sides.push_back({{planeOf(plan, dot(e.normal(), front) > 0 ? frontPitch : backPitch)}});

@@ -31,14 +31,13 @@ Num along(const PlanField& plan, uint64_t path, plan::Vec2 way, double from) {
 /// The least and the greatest dot(way, corner).
 std::pair<double, double> extentAlong(const PlanField& plan, plan::Vec2 way) {
     double lo = plan::Box2::far, hi = -lo;
-    for (const plan::PlacedEdge& e : plan.edges()) lo = std::min(lo, dot(way, e.from)), hi = std::max(hi, dot(way, e.from));
+    for (const plan::PlacedEdge& e : plan.edges())
+        lo = std::min(lo, dot(way, e.from)), hi = std::max(hi, dot(way, e.from));
     return {lo, hi};
 }
 
 /// Depth below the outline as a share of `run`, from 1 at the outline to 0 there and beyond.
-Num shareLeft(const PlanField& plan, Quantity run) {
-    return max(plan.outside() + run.node, 0.0f) / run.node;
-}
+Num shareLeft(const PlanField& plan, Quantity run) { return max(plan.outside() + run.node, 0.0f) / run.node; }
 
 /// `run`, or the depth of the footprint where it is 0.
 Quantity wholeRun(const PlanField& plan, const RoofFoot& foot, Quantity run) {
@@ -77,7 +76,8 @@ Field butterflyRoof(const PlanField& plan, const RoofFoot& foot, Quantity pitch,
 Field pyramidRoof(const PlanField& plan, const RoofFoot& foot, Quantity height) {
     const plan::Vec2 apex = centroid(plan.footprint());
     const auto distances = plan::distancesOf(plan.footprint());
-    const bool seen = std::all_of(distances.begin(), distances.end(), [&](const plan::Linear& d) { return d.at(apex) < -1e-6; });
+    const bool seen =
+        std::all_of(distances.begin(), distances.end(), [&](const plan::Linear& d) { return d.at(apex) < -1e-6; });
     const auto pitchFor = [&](uint64_t edge, double depth) {
         const Num run = pathSlot(plan.graph(), foot.path, "depth of the apex", edge, depth);
         return Quantity{atan2(height.node, run), std::atan2(height.value, depth)};
@@ -91,16 +91,19 @@ Field pyramidRoof(const PlanField& plan, const RoofFoot& foot, Quantity height) 
     return roof(plan, foot, sides);
 }
 
-Field flatRoof(const PlanField& plan, const RoofFoot& foot, Quantity slab, Quantity parapetHeight, Quantity parapetThickness) {
+Field flatRoof(const PlanField& plan, const RoofFoot& foot, Quantity slab, Quantity parapetHeight,
+               Quantity parapetThickness) {
     const Foot at = footOf(plan, foot, {});
     const Num inside = walls(plan, foot) + parapetThickness.node;  // < 0 behind the parapet
     const Num basin = min(at.up - slab.node, -inside);
     const Num top = at.up - slab.node - parapetHeight.node;
-    const Num whole = parapetHeight.value > 0 ? max(max(walls(plan, foot), top), basin) : max(walls(plan, foot), at.up - slab.node);
+    const Num whole =
+        parapetHeight.value > 0 ? max(max(walls(plan, foot), top), basin) : max(walls(plan, foot), at.up - slab.node);
     return onFoot(plan, foot, at, whole, slab.value + std::max(parapetHeight.value, 0.0));
 }
 
-// In shares (u, v) of run and height: the quarter of a circle about (run, 0). The gradient is at most 1 over the least scale.
+// In shares (u, v) of run and height: the quarter of a circle about (run, 0). The gradient is at most 1 over the least
+// scale.
 Field domeRoof(const PlanField& plan, const RoofFoot& foot, Quantity height, Quantity run) {
     const Quantity r = wholeRun(plan, foot, run);
     const Foot at = footOf(plan, foot, {});
@@ -109,8 +112,8 @@ Field domeRoof(const PlanField& plan, const RoofFoot& foot, Quantity height, Qua
     return onFoot(plan, foot, at, max(walls(plan, foot), round), height.value);
 }
 
-// Two quarters of circles of half the run and half the height: outside of the one about the foot, inside of the one about
-// the top.
+// Two quarters of circles of half the run and half the height: outside of the one about the foot, inside of the one
+// about the top.
 Field bellRoof(const PlanField& plan, const RoofFoot& foot, Quantity height, Quantity run) {
     const Quantity r = wholeRun(plan, foot, run);
     const Foot at = footOf(plan, foot, {});
@@ -127,16 +130,19 @@ Result<Field> profileRoof(const PlanField& plan, const RoofFoot& foot, std::span
     double top = 0;
     for (size_t i = 0; i < points.size(); ++i) {
         if (!(std::abs(points[i].x) < 1e4 && std::abs(points[i].z) < 1e4) || (i > 0 && points[i].x < points[i - 1].x))
-            return Error{Error::Kind::Input,
-                         fmt::format("point {} of a roof's profile, ({:.6g}, {:.6g}), must lie farther inward than the one before",
-                                     i + 1, points[i].x, points[i].z)};
+            return Error{
+                Error::Kind::Input,
+                fmt::format(
+                    "point {} of a roof's profile, ({:.6g}, {:.6g}), must lie farther inward than the one before",
+                    i + 1, points[i].x, points[i].z)};
         top = std::max(top, points[i].z);
     }
     // The region below the profile, out to where nothing of the roof is, over (Φ, height).
-    const double far = 10 * (top + foot.overhang.value + std::abs(points.back().x) + length(bounds(plan.footprint()).size()));
+    const double far =
+        10 * (top + foot.overhang.value + std::abs(points.back().x) + length(bounds(plan.footprint()).size()));
     std::vector<plan::Vec2> outline{{-points.front().x, -far}, {-far, -far}, {-far, points.back().z}};
     for (size_t i = points.size(); i-- > 0;) outline.push_back({-points[i].x, points[i].z});
-    const plan::Footprint section = plan::cleaned(plan::footprintOf(plan::polygonOf(outline)), 1e-6);
+    const plan::Footprint section = plan::cleaned(plan::footprintOf(plan::polygonOf(outline)), 1e-6, 1e-6);
     const auto formula = plan::monotoneFormula(section);
     if (!formula) return Error{formula.error().kind, "profile of a roof: " + formula.error().message};
     const Foot at = footOf(plan, foot, {});

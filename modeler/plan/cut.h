@@ -36,9 +36,12 @@ struct AlongPart {
     Footprint footprint;
     Vec2 from, to;  ///< its chord: the ends of its piece of the chain
 };
-/// The chain's polygon cut across at the lengths `at_m` along the chain (ascending, inside (0, length)), square to the chain
-/// (at its corners along the bisector), each cut up to the nearest other edge or earlier cut. n + 1 parts for n cuts, in the
-/// chain's order. Error::Input where a length isn't inside the chain or is less than a millimetre behind the one before.
+/// The chain's polygon cut across at the lengths `at_m` along the chain (ascending, inside (0, length)), square to the
+/// chain (at its corners along the bisector; where it bends by less than 30° the direction turns from corner to
+/// corner), each cut up to the nearest other edge or earlier cut. n + 1 parts for n cuts, in the chain's order; a
+/// polygon with courts, and one whose whole outline is the chain, is also cut where the chain begins. Other polygons of
+/// the footprint belong to no part. Error::Input where a length isn't inside the chain or is less than a millimetre
+/// behind the one before.
 Result<std::vector<AlongPart>> splitAlong(const Footprint& footprint, const Chain& chain, std::span<const double> at_m);
 
 /// Parts of the given areas, cut off one after the other along x (axis 0) or z (axis 1); the last part is what is left.

@@ -1,8 +1,8 @@
 // What is done to footprints: booleans, offsets, setbacks, courts, rectifying.
 // Enters: sound footprints (validate.h). Leaves: new sound footprints, empty where nothing is left. Assumes coordinates
-// within 10⁵ m. Booleans and offsets are Clipper's (A. Johnson, 6.4.2; Vatti 1992) on a lattice of 2⁻²⁰ m; slivers below
-// 10⁻⁵ m² and points nearer than 10⁻⁴ m are left out. Edges keep their tags: what runs along a source edge, or along its
-// offset, has that edge's tag and source.
+// within 10⁵ m. Booleans and offsets are Clipper's (A. Johnson, 6.4.2; Vatti 1992) on a lattice of 2⁻²⁰ m; slivers
+// below 10⁻⁵ m² and points nearer than a millimetre are left out, and where rings would touch all is .2 mm smaller.
+// Edges keep their tags: what runs along a source edge, or along its offset, has that edge's tag and source.
 #pragma once
 
 #include <functional>
@@ -16,9 +16,9 @@ namespace sgm::plan {
 
 enum class Boolean { Union, Difference, Intersection };
 /// a ∪ b, a − b or a ∩ b. Edges of `b` that cut `a` are EdgeSource::Cut in a difference. O((n + k) log n), k crossings.
-Footprint combine(Boolean how, const Footprint& a, const Footprint& b);
-/// Outlines that may cross themselves, and courts, resolved by winding ≠ 0: what is left is sound. For outlines drawn by
-/// a turtle. Points beyond 10⁵ m or not finite are Error::Input.
+Footprint boolean(Boolean how, const Footprint& a, const Footprint& b);
+/// Outlines that may cross themselves, and courts, resolved by winding ≠ 0: what is left is sound. For outlines drawn
+/// by a turtle. Points beyond 10⁵ m or not finite are Error::Input.
 Result<Footprint> resolved(const Footprint& footprint);
 
 /// Outward by `distance_m`, inward where negative, with mitred corners (at most 4 times the distance long, bevelled
@@ -26,8 +26,8 @@ Result<Footprint> resolved(const Footprint& footprint);
 Footprint offset(const Footprint& footprint, double distance_m);
 /// The rim of `width_m` inside the outline; what is inside of it is offset(−width).
 Footprint rim(const Footprint& footprint, double width_m);
-/// Every edge moved inward by its own distance ≥ 0, metres, by number as in edgesOf(). Neighbours meet where their moved
-/// lines do; where those meet far off (nearly parallel) a step is left.
+/// Every edge moved inward by its own distance ≥ 0, metres, by number as in edgesOf(). Neighbours meet where their
+/// moved lines do; where those meet far off (nearly parallel) a step is left.
 Footprint setback(const Footprint& footprint, std::span<const double> distances_m);
 /// With a court that leaves wings of `wing_m`; its edges are EdgeSource::Court and tagged "court". Error::Input where
 /// the wings leave no court.

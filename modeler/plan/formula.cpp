@@ -80,9 +80,9 @@ private:
         return done.back();
     }
 
-    /// A corner inside the piece that lies on the convex hull of the piece with its rays: the one of those found that is
-    /// nearest to the middle. The hull's support lies in directions that neither ray goes to; where the two that are square
-    /// to a ray, and their sum, look for it, some corner is found unless all is straight.
+    /// A corner inside the piece that lies on the convex hull of the piece with its rays: the one of those found that
+    /// is nearest to the middle. The hull's support lies in directions that neither ray goes to; where the two that are
+    /// square to a ray, and their sum, look for it, some corner is found unless all is straight.
     size_t cornerOf(const Piece& piece) const {
         const size_t last = piece.begin + piece.count - 1;
         const LatticePoint back = -direction(piece.begin), on = direction(last);
@@ -94,8 +94,10 @@ private:
         } else {
             const LatticePoint a = side > 0 ? -across : across, b = sideOn > 0 ? -acrossOn : acrossOn;
             ways = {a, b};
-            if (side == 0) ways.insert(ways.end(), {-a, -back});
-            else ways.push_back({a.x / 2 + b.x / 2, a.z / 2 + b.z / 2});
+            if (side == 0)
+                ways.insert(ways.end(), {-a, -back});
+            else
+                ways.push_back({a.x / 2 + b.x / 2, a.z / 2 + b.z / 2});
         }
         size_t best = piece.begin + piece.count / 2, bestOff = piece.count;  // all is straight
         for (const LatticePoint way : ways)
@@ -107,8 +109,8 @@ private:
         return best;
     }
 
-    /// The corner farthest towards `way`, the end of what lies level with it that no ray runs along; nothing where rays go
-    /// there or run along both ends.
+    /// The corner farthest towards `way`, the end of what lies level with it that no ray runs along; nothing where rays
+    /// go there or run along both ends.
     std::optional<size_t> extreme(const Piece& piece, LatticePoint way, LatticePoint back, LatticePoint on) const {
         if (way == LatticePoint{} || signOf(wideDot(way, back)) > 0 || signOf(wideDot(way, on)) > 0) return {};
         const LatticePoint from = point(piece.begin + 1);
@@ -167,7 +169,8 @@ double combined(Kind kind, double a, double b) { return kind == Kind::Max ? std:
 Result<Formula> monotoneFormula(const Footprint& footprint) {
     Limits loose;
     loose.leastEdge_m = 0, loose.leastArea_m2 = 0, loose.farthest_m = 1e6, loose.mostPoints = 10'000'000;
-    if (const auto fault = firstFault(footprint, loose)) return Error{Error::Kind::Input, sentenceOf(*fault, footprint)};
+    if (const auto fault = firstFault(footprint, loose))
+        return Error{Error::Kind::Input, sentenceOf(*fault, footprint)};
     Formula formula;
     formula.nodes.reserve(2 * footprint.edgeCount());
     uint32_t firstEdge = 0;
@@ -242,7 +245,8 @@ double leastInside(const Formula& formula, std::span<const Linear> leaves, std::
     const auto add = [&](const Box2& b) {
         if (lowest(formula, outline, b, values) > 0) return;
         const double bound = lowest(formula, leaves, b, values);
-        if (valueOf(formula, outline, b.centre()) <= 0) reached = std::min(reached, valueOf(formula, leaves, b.centre()));
+        if (valueOf(formula, outline, b.centre()) <= 0)
+            reached = std::min(reached, valueOf(formula, leaves, b.centre()));
         if (bound < reached - tolerance) queue.push({bound, b});
     };
     add(box);
@@ -250,8 +254,10 @@ double leastInside(const Formula& formula, std::span<const Linear> leaves, std::
         const Box2 b = queue.top().box;
         queue.pop();
         Box2 low = b, high = b;
-        if (b.size().x > b.size().z) low.hi.x = high.lo.x = b.centre().x;
-        else low.hi.z = high.lo.z = b.centre().z;
+        if (b.size().x > b.size().z)
+            low.hi.x = high.lo.x = b.centre().x;
+        else
+            low.hi.z = high.lo.z = b.centre().z;
         add(low);
         add(high);
     }
@@ -265,7 +271,8 @@ std::vector<uint32_t> gableEnds(const Footprint& footprint, const Formula& formu
     const auto ringStart = [&](size_t i) { return i - edges[i].index; };
     std::vector<size_t> ringEnd(edges.size());
     for (size_t i = edges.size(); i-- > 0;) {
-        const bool last = i + 1 == edges.size() || edges[i + 1].ring != edges[i].ring || edges[i + 1].polygon != edges[i].polygon;
+        const bool last =
+            i + 1 == edges.size() || edges[i + 1].ring != edges[i].ring || edges[i + 1].polygon != edges[i].polygon;
         ringEnd[i] = last ? i + 1 : ringEnd[i + 1];
     }
     struct End {
@@ -277,7 +284,8 @@ std::vector<uint32_t> gableEnds(const Footprint& footprint, const Formula& formu
         const size_t begin = ringStart(i), end = ringEnd[i];
         const size_t before = i == begin ? end - 1 : i - 1, after = i + 1 == end ? begin : i + 1;
         const Vec2 d = edges[i].to - edges[i].from;
-        if (cross(edges[before].to - edges[before].from, d) <= 0 || cross(d, edges[after].to - edges[after].from) <= 0) continue;
+        if (cross(edges[before].to - edges[before].from, d) <= 0 || cross(d, edges[after].to - edges[after].from) <= 0)
+            continue;
         // The point that is as far from the edge as from both neighbours.
         const Linear &a = distances[before], &b = distances[i], &c = distances[after];
         const double px = a.a - b.a, pz = a.b - b.b, qx = c.a - b.a, qz = c.b - b.b;
@@ -290,7 +298,8 @@ std::vector<uint32_t> gableEnds(const Footprint& footprint, const Formula& formu
         if (depth >= 0 || std::abs(valueOf(formula, distances, top) - depth) > 1e-6 * l) continue;
         found.push_back({l, static_cast<uint32_t>(i), static_cast<uint32_t>(before), static_cast<uint32_t>(after)});
     }
-    std::stable_sort(found.begin(), found.end(), [](const End& a, const End& b) { return a.length < b.length * (1 - 1e-9); });
+    std::stable_sort(found.begin(), found.end(),
+                     [](const End& a, const End& b) { return a.length < b.length * (1 - 1e-9); });
     std::vector<bool> taken(edges.size());
     std::vector<uint32_t> ends;
     for (const End& e : found) {

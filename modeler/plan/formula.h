@@ -1,8 +1,8 @@
-// The monotone formula of a footprint: every edge's half-plane once, joined by maxima at convex and minima at reflex corners.
-// Enters: a sound footprint (validate.h). Leaves: a tree as a flat list. Assumes edges that don't cross.
-// Source: D. Dobkin, L. Guibas, J. Hershberger, J. Snoeyink, "An efficient algorithm for finding the CSG representation of
-// a simple polygon", SIGGRAPH 1988: a chain whose end edges go on as rays is split at a corner of its convex hull, again
-// and again. Signs of the formula are those of the polygon exactly, in exact arithmetic.
+// The monotone formula of a footprint: every edge's half-plane once, joined by maxima at convex and minima at reflex
+// corners. Enters: a sound footprint (validate.h). Leaves: a tree as a flat list. Assumes edges that don't cross.
+// Source: D. Dobkin, L. Guibas, J. Hershberger, J. Snoeyink, "An efficient algorithm for finding the CSG representation
+// of a simple polygon", SIGGRAPH 1988: a chain whose end edges go on as rays is split at a corner of its convex hull,
+// again and again. Signs of the formula are those of the polygon exactly, in exact arithmetic.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,8 @@ std::vector<Linear> distancesOf(const Footprint& footprint);
 /// The formula's value at a point with any functions for its leaves. O(n).
 double valueOf(const Formula& formula, std::span<const Linear> leaves, Vec2 p);
 /// The formula's least value where Φ ≤ 0, which `outline` tells (distancesOf), to at most `tolerance` too low and never
-/// too high, by branch and bound: what the height of a roof is found with. `leaves` are at most `slope` steep. O(n · boxes).
+/// too high, by branch and bound: what the height of a roof is found with. `leaves` are at most `slope` steep. O(n ·
+/// boxes).
 double leastInside(const Formula& formula, std::span<const Linear> leaves, std::span<const Linear> outline, Box2 box,
                    double tolerance);
 

@@ -24,7 +24,8 @@ struct LatticePoint {
 };
 
 inline LatticePoint latticePoint(Vec2 p) {
-    return {static_cast<int64_t>(std::llround(p.x * unitsPerMetre)), static_cast<int64_t>(std::llround(p.z * unitsPerMetre))};
+    return {static_cast<int64_t>(std::llround(p.x * unitsPerMetre)),
+            static_cast<int64_t>(std::llround(p.z * unitsPerMetre))};
 }
 inline Vec2 metres(LatticePoint p) {
     return {static_cast<double>(p.x) / unitsPerMetre, static_cast<double>(p.z) / unitsPerMetre};
@@ -32,8 +33,12 @@ inline Vec2 metres(LatticePoint p) {
 
 __extension__ typedef __int128 Wide;
 
-inline Wide wideCross(LatticePoint a, LatticePoint b) { return static_cast<Wide>(a.x) * b.z - static_cast<Wide>(a.z) * b.x; }
-inline Wide wideDot(LatticePoint a, LatticePoint b) { return static_cast<Wide>(a.x) * b.x + static_cast<Wide>(a.z) * b.z; }
+inline Wide wideCross(LatticePoint a, LatticePoint b) {
+    return static_cast<Wide>(a.x) * b.z - static_cast<Wide>(a.z) * b.x;
+}
+inline Wide wideDot(LatticePoint a, LatticePoint b) {
+    return static_cast<Wide>(a.x) * b.x + static_cast<Wide>(a.z) * b.z;
+}
 inline int signOf(Wide v) { return v > 0 ? 1 : v < 0 ? -1 : 0; }
 
 /// 1 where a, b, c turn left, −1 right, 0 straight.

@@ -93,7 +93,8 @@ Ring ringOf(std::vector<Vec2> points, Edge edge) {
 Ring reversed(const Ring& ring) {
     const size_t n = ring.size();
     Ring back{{ring.points.rbegin(), ring.points.rend()}, std::vector<Edge>(ring.edges.size())};
-    for (size_t i = 0; i < ring.edges.size() && n == ring.edges.size(); ++i) back.edges[i] = ring.edges[(2 * n - 2 - i) % n];
+    for (size_t i = 0; i < ring.edges.size() && n == ring.edges.size(); ++i)
+        back.edges[i] = ring.edges[(2 * n - 2 - i) % n];
     return back;
 }
 
@@ -197,8 +198,9 @@ double distanceToEdges(const Footprint& footprint, Vec2 p) {
 }
 
 Footprint placed(const Footprint& footprint, Vec2 scale, Vec2 offset) {
-    return moved(footprint, scale.x * scale.z < 0,
-                 [=](Vec2 p) { return Vec2{p.x * scale.x + offset.x, p.z * scale.z + offset.z}; });
+    return moved(footprint, scale.x * scale.z < 0, [=](Vec2 p) {
+        return Vec2{p.x * scale.x + offset.x, p.z * scale.z + offset.z};
+    });
 }
 
 Footprint turned(const Footprint& footprint, double angle) {

@@ -1,8 +1,8 @@
 // Footprints: polygons with courts in the plan, with a tag and a source for every edge.
-// Enters: points in metres. Leaves: plain values and their measures. Assumes nothing of the numbers; validate.h judges them.
-// The plan is seen with x to the right and z up the page, so "counter-clockwise" is Σ(xᵢ·zᵢ₊₁ − xᵢ₊₁·zᵢ) > 0; in a
-// right-handed space with y up that is clockwise seen from above. Outer rings run counter-clockwise and courts clockwise,
-// so that the solid lies on the left of every edge and (dz, −dx) points out of it.
+// Enters: points in metres. Leaves: plain values and their measures. Assumes nothing of the numbers; validate.h judges
+// them. The plan is seen with x to the right and z up the page, so "counter-clockwise" is Σ(xᵢ·zᵢ₊₁ − xᵢ₊₁·zᵢ) > 0; in
+// a right-handed space with y up that is clockwise seen from above. Outer rings run counter-clockwise and courts
+// clockwise, so that the solid lies on the left of every edge and (dz, −dx) points out of it.
 #pragma once
 
 #include <cmath>
@@ -123,7 +123,8 @@ Footprint placed(const Footprint& footprint, Vec2 scale, Vec2 offset);
 /// Turned about (0, 0) by `angle` radians, from +x towards +z.
 Footprint turned(const Footprint& footprint, double angle);
 
-/// Which side of a box a direction faces: within 45° of +z front, −z back, −x left, +x right; ties go to front and back.
+/// Which side of a box a direction faces: within 45° of +z front, −z back, −x left, +x right; ties go to front and
+/// back.
 enum class Facing : uint8_t { Front, Back, Left, Right };
 Facing facingOf(Vec2 normal);
 

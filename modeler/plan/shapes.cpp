@@ -15,8 +15,8 @@ constexpr double leastLength_m = 2e-3, mostLength_m = 1e5;
 /// The error of a length out of its range.
 std::optional<Error> outOf(std::string_view shape, std::string_view parameter, double value, double lo, double hi) {
     if (value >= lo && value <= hi) return {};
-    return Error{Error::Kind::Input, fmt::format("'{}' of {} is {:.6g} m, it must lie from {:.6g} to {:.6g} m", parameter, shape,
-                                                 value, lo, hi)};
+    return Error{Error::Kind::Input, fmt::format("'{}' of {} is {:.6g} m, it must lie from {:.6g} to {:.6g} m",
+                                                 parameter, shape, value, lo, hi)};
 }
 
 std::optional<Error> badSize(std::string_view shape, double width, double depth) {
@@ -100,8 +100,9 @@ Result<Footprint> arc(double inner_m, double outer_m, double from, double to, in
     const double least = std::max(1e-6, segments * leastLength_m / inner_m);
     const double most = 2 * pi - leastLength_m / inner_m;
     if (!(std::abs(sweep) >= least) || std::abs(sweep) > most)
-        return Error{Error::Kind::Input, fmt::format("arc over {:.6g} degrees: there must be more than {:.3g} and less than {:.6g}",
-                                                     degrees(sweep), degrees(least), degrees(most))};
+        return Error{Error::Kind::Input,
+                     fmt::format("arc over {:.6g} degrees: there must be more than {:.3g} and less than {:.6g}",
+                                 degrees(sweep), degrees(least), degrees(most))};
     if (std::abs(sweep) / segments >= pi)
         return Error{Error::Kind::Input, "arc of too few segments: each must span less than 180 degrees"};
     Footprint result;

@@ -23,8 +23,8 @@ Result<Footprint> ring(double width_m, double depth_m, double wing_m);
 Result<Footprint> ngon(int sides, double radius_m);
 /// As `ngon`, but with the area of the circle, so that it stands for a round plan.
 Result<Footprint> round(int sides, double radius_m);
-/// A piece of a ring about (0, 0) from one angle to the other (from +x towards +z), of `segments` chords along each side;
-/// edges are tagged "outer", "inner" and "end". Not centred: the circle's centre stays at (0, 0).
+/// A piece of a ring about (0, 0) from one angle to the other (from +x towards +z), of `segments` chords along each
+/// side; edges are tagged "outer", "inner" and "end". Not centred: the circle's centre stays at (0, 0).
 Result<Footprint> arc(double inner_m, double outer_m, double from, double to, int segments);
 
 }  // namespace sgm::plan

@@ -51,7 +51,8 @@ std::optional<Fault> faultOfNumbers(const Footprint& footprint, const Limits& li
         if (ring.size() < 3) return faultAt(FaultKind::TooFewPoints, p, r, 0, ring.points[0]);
         if (ring.edges.size() != ring.size()) return faultAt(FaultKind::EdgeList, p, r, 0, ring.points[0]);
         for (size_t i = 0; i < ring.size(); ++i) {
-            if (ring.edges[i].tag >= footprint.tags.size()) return faultAt(FaultKind::EdgeList, p, r, i, ring.points[i]);
+            if (ring.edges[i].tag >= footprint.tags.size())
+                return faultAt(FaultKind::EdgeList, p, r, i, ring.points[i]);
             const double l = length(ring.to(i) - ring.from(i));
             if (latticePoint(ring.to(i)) == latticePoint(ring.from(i)))
                 return faultAt(FaultKind::SamePoint, p, r, i, ring.points[i]);
@@ -175,35 +176,36 @@ std::string nameOfEdge(const Footprint& footprint, size_t polygon, size_t ring, 
     const std::string of = footprint.polygons.size() > 1 ? fmt::format(" of polygon {}", polygon + 1) : "";
     if (ring == 0) return fmt::format("edge {} of the outline{}", edge + 1, of);
     const bool several = footprint.polygons[polygon].courts.size() > 1;
-    return several ? fmt::format("edge {} of court {}{}", edge + 1, ring, of) : fmt::format("edge {} of the court{}", edge + 1, of);
+    return several ? fmt::format("edge {} of court {}{}", edge + 1, ring, of)
+                   : fmt::format("edge {} of the court{}", edge + 1, of);
 }
 
 /// Without the points that aren't needed; empty where nothing is left.
-Ring cleaned(const Ring& ring, double tolerance, bool clockwise) {
+Ring cleaned(const Ring& ring, double near, double straightness, bool clockwise) {
     Ring apart;  // first without points that are one
     for (size_t i = 0; i < ring.size(); ++i) {
-        if (!apart.points.empty() && length(ring.points[i] - apart.points.back()) < tolerance) {
+        if (!apart.points.empty() && length(ring.points[i] - apart.points.back()) < near) {
             apart.edges.back() = ring.edges[i];
             continue;
         }
         apart.points.push_back(ring.points[i]);
         apart.edges.push_back(ring.edges[i]);
     }
-    while (apart.size() > 1 && length(apart.points.back() - apart.points.front()) < tolerance)
+    while (apart.size() > 1 && length(apart.points.back() - apart.points.front()) < near)
         apart.points.pop_back(), apart.edges.pop_back();
     Ring straight;
     for (size_t i = 0; i < apart.size(); ++i) {
-        const Vec2 before = straight.points.empty() ? apart.points.back() : straight.points.back(), at = apart.points[i],
-                   after = apart.to(i);
+        const Vec2 before = straight.points.empty() ? apart.points.back() : straight.points.back(),
+                   at = apart.points[i], after = apart.to(i);
         const Edge arriving = apart.edges[(i + apart.size() - 1) % apart.size()];
         const Vec2 along = after - before;
         const double l = length(along);
         const bool between = dot(at - before, along) > 0 && dot(after - at, along) > 0;
-        if (arriving == apart.edges[i] && between && std::abs(cross(along, at - before)) <= tolerance * l) continue;
+        if (arriving == apart.edges[i] && between && std::abs(cross(along, at - before)) <= straightness * l) continue;
         straight.points.push_back(at);
         straight.edges.push_back(apart.edges[i]);
     }
-    if (straight.size() < 3 || std::abs(signedArea(straight)) < tolerance * tolerance) return {};
+    if (straight.size() < 3 || std::abs(signedArea(straight)) < near * near) return {};
     return (signedArea(straight) < 0) == clockwise ? straight : reversed(straight);
 }
 
@@ -213,7 +215,8 @@ std::optional<Fault> firstFault(const Footprint& footprint, const Limits& limits
     if (const auto fault = faultOfNumbers(footprint, limits)) return fault;
     if (const auto fault = firstCrossing(segmentsOf(footprint))) return fault;
     if (const auto fault = firstOfRings(footprint, [&](const Ring& ring, size_t p, size_t r) -> std::optional<Fault> {
-            if (std::abs(signedArea(ring)) < limits.leastArea_m2) return faultAt(FaultKind::NoArea, p, r, 0, ring.points[0]);
+            if (std::abs(signedArea(ring)) < limits.leastArea_m2)
+                return faultAt(FaultKind::NoArea, p, r, 0, ring.points[0]);
             if ((signedArea(ring) < 0) != (r > 0)) return faultAt(FaultKind::WrongWay, p, r, 0, ring.points[0]);
             return {};
         }))
@@ -226,39 +229,53 @@ std::string sentenceOf(const Fault& fault, const Footprint& footprint) {
     const auto at = [&] { return fmt::format("({:.6g}, {:.6g})", fault.at.x, fault.at.z); };
     const auto other = [&] { return nameOfEdge(footprint, fault.otherPolygon, fault.otherRing, fault.otherEdge); };
     switch (fault.kind) {
-        case FaultKind::Empty: return "an outline has no points; give it three or more";
-        case FaultKind::TooManyPoints: return fmt::format("an outline of {} points is too large; simplify it", fault.edge);
-        case FaultKind::NotFinite: return fmt::format("the first point of {} is not a number", edge());
+        case FaultKind::Empty:
+            return "an outline has no points; give it three or more";
+        case FaultKind::TooManyPoints:
+            return fmt::format("an outline of {} points is too large; simplify it", fault.edge);
+        case FaultKind::NotFinite:
+            return fmt::format("the first point of {} is not a number", edge());
         case FaultKind::TooFar:
-            return fmt::format("{} begins at {}, too far from the origin; move the outline nearer or check its unit", edge(), at());
-        case FaultKind::TooFewPoints: return fmt::format("the ring of {} has fewer than three points", edge());
-        case FaultKind::EdgeList: return fmt::format("{} has no entry in the list of edges or tags", edge());
-        case FaultKind::SamePoint: return fmt::format("{} begins and ends at {}; leave one of the points out", edge(), at());
-        case FaultKind::ShortEdge: return fmt::format("{} at {} is too short; leave one of its points out", edge(), at());
+            return fmt::format("{} begins at {}, too far from the origin; move the outline nearer or check its unit",
+                               edge(), at());
+        case FaultKind::TooFewPoints:
+            return fmt::format("the ring of {} has fewer than three points", edge());
+        case FaultKind::EdgeList:
+            return fmt::format("{} has no entry in the list of edges or tags", edge());
+        case FaultKind::SamePoint:
+            return fmt::format("{} begins and ends at {}; leave one of the points out", edge(), at());
+        case FaultKind::ShortEdge:
+            return fmt::format("{} at {} is too short; leave one of its points out", edge(), at());
         case FaultKind::Crossing:
-            return fmt::format("{} meets {} near {}; outlines may not cross or touch themselves", edge(), other(), at());
-        case FaultKind::NoArea: return fmt::format("the ring of {} encloses no area", edge());
-        case FaultKind::WrongWay: return fmt::format("the ring of {} runs the wrong way round", edge());
+            return fmt::format("{} meets {} near {}; outlines may not cross or touch themselves", edge(), other(),
+                               at());
+        case FaultKind::NoArea:
+            return fmt::format("the ring of {} encloses no area", edge());
+        case FaultKind::WrongWay:
+            return fmt::format("the ring of {} runs the wrong way round", edge());
         case FaultKind::CourtOutside:
             return fmt::format("the ring of {} does not lie inside its outline, or lies in another court", edge());
-        case FaultKind::Overlap: return fmt::format("polygon {} lies in polygon {}", fault.polygon + 1, fault.otherPolygon + 1);
+        case FaultKind::Overlap:
+            return fmt::format("polygon {} lies in polygon {}", fault.polygon + 1, fault.otherPolygon + 1);
     }
     return "the outline is damaged";
 }
 
 Result<Footprint> checked(Footprint footprint, const Limits& limits) {
-    if (const auto fault = firstFault(footprint, limits)) return Error{Error::Kind::Input, sentenceOf(*fault, footprint)};
+    if (const auto fault = firstFault(footprint, limits))
+        return Error{Error::Kind::Input, sentenceOf(*fault, footprint)};
     return footprint;
 }
 
-Footprint cleaned(const Footprint& footprint, double tolerance_m) {
+Footprint cleaned(const Footprint& footprint, double near_m, double straight_m) {
     Footprint result;
     result.tags = footprint.tags;
     for (const Polygon& polygon : footprint.polygons) {
-        Polygon clean{cleaned(polygon.outer, tolerance_m, false), {}};
+        Polygon clean{cleaned(polygon.outer, near_m, straight_m, false), {}};
         if (clean.outer.size() == 0) continue;
         for (const Ring& court : polygon.courts)
-            if (Ring ring = cleaned(court, tolerance_m, true); ring.size() > 0) clean.courts.push_back(std::move(ring));
+            if (Ring ring = cleaned(court, near_m, straight_m, true); ring.size() > 0)
+                clean.courts.push_back(std::move(ring));
         result.polygons.push_back(std::move(clean));
     }
     return result;

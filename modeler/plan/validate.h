@@ -54,9 +54,9 @@ std::string sentenceOf(const Fault& fault, const Footprint& footprint);
 /// The footprint itself where it is sound, else Error::Input with the sentence of its first fault.
 Result<Footprint> checked(Footprint footprint, const Limits& limits = {});
 
-/// The same outline without points nearer than `tolerance_m` to the one before, without points that lie within
-/// `tolerance_m` of the line through their neighbours where both edges are alike, and with every ring in its sense.
-/// Rings that lose their area go. Crossings stay. O(n).
-Footprint cleaned(const Footprint& footprint, double tolerance_m = 1e-3);
+/// The same outline without points nearer than `near_m` to the one before, without points that lie within `straight_m`
+/// of the line through their neighbours where both edges are alike, and with every ring in its sense. Rings that lose
+/// their area go. Crossings stay. O(n).
+Footprint cleaned(const Footprint& footprint, double near_m = 1e-3, double straight_m = 1e-3);
 
 }  // namespace sgm::plan

@@ -18,13 +18,12 @@ namespace sgm::plan::test {
 /// A plan in a graph of its own; the field is set by whoever builds one.
 struct Built {
     explicit Built(Footprint f, uint64_t path = 1)
-        : footprint(std::move(f)), formula(*monotoneFormula(footprint)),
+        : footprint(std::move(f)),
+          formula(*monotoneFormula(footprint)),
           plan(footprint, formula, scene.graph.position(), path) {}
     Built(const Built&) = delete;
 
-    field::Quantity number(double v) {
-        return {scene.graph.slot({77, ++slots}, static_cast<float>(v)), v};
-    }
+    field::Quantity number(double v) { return {scene.graph.slot({77, ++slots}, static_cast<float>(v)), v}; }
     field::RoofFoot foot(double eaves = 0, double overhang = 0, double fascia = 0) {
         return {number(eaves), number(overhang), number(fascia), 99};
     }
@@ -44,7 +43,8 @@ inline mesh::Mesh crispMesh(const mesh::Scene& scene, int resolution, bool judge
     const mesh::Meshed m = mesh::meshOf(scene, resolution, 2, {.surface = mesh::Surface::Crisp});
     EXPECT_TRUE(m.mesh.ok());
     if (!m.mesh.ok()) return {};
-    auto simple = mesh::simplify(*m.mesh, {mesh::usualTolerance(mesh::cellFor(scene.field.bounds, resolution)), 2}, nullptr);
+    auto simple =
+        mesh::simplify(*m.mesh, {mesh::usualTolerance(mesh::cellFor(scene.field.bounds, resolution)), 2}, nullptr);
     EXPECT_TRUE(simple.ok()) << simple.error().message;
     if (!simple.ok()) return {};
     const mesh::MeshFigures f = mesh::measure(*simple);

@@ -70,7 +70,8 @@ TEST(Formula, StraightCornersAndLevelRaysDoNoHarm) {
     for (size_t k = 0; k < outlines.size(); ++k)
         for (int quarter = 0; quarter < 4; ++quarter) {
             Draws draw(k);
-            expectSigns(turned(footprintOf(polygonOf(outlines[k])), quarter * pi / 2), draw, 400, "outline " + std::to_string(k));
+            expectSigns(turned(footprintOf(polygonOf(outlines[k])), quarter * pi / 2), draw, 400,
+                        "outline " + std::to_string(k));
         }
 }
 

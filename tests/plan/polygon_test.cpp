@@ -31,7 +31,8 @@ TEST(Polygon, MeasuresOfShapesAreClosedForms) {
 }
 
 TEST(Polygon, ShapesAreSoundAndCentred) {
-    for (const auto& f : {rectangle(4, 3), ell(16, 14, 8, 5), tee(10, 12, 4, 3), yard(20, 15, 4), ring(20, 15, 4), ngon(4, 2)}) {
+    for (const auto& f :
+         {rectangle(4, 3), ell(16, 14, 8, 5), tee(10, 12, 4, 3), yard(20, 15, 4), ring(20, 15, 4), ngon(4, 2)}) {
         ASSERT_TRUE(f.ok());
         EXPECT_FALSE(firstFault(*f)) << sentenceOf(*firstFault(*f), *f);
         EXPECT_NEAR(length(bounds(*f).centre()), 0, 1e-12);

@@ -18,7 +18,9 @@ class Draws {
 public:
     explicit Draws(uint64_t key) : key_(key) {}
     double real(double lo, double hi) { return uniform(combine(key_, ++counter_), lo, hi); }
-    int whole(int lo, int hi) { return lo + static_cast<int>(pick(combine(key_, ++counter_), static_cast<uint64_t>(hi - lo + 1))); }
+    int whole(int lo, int hi) {
+        return lo + static_cast<int>(pick(combine(key_, ++counter_), static_cast<uint64_t>(hi - lo + 1)));
+    }
     bool chance(double share) { return real(0, 1) < share; }
 
 private:
@@ -39,7 +41,8 @@ inline std::vector<Vec2> untangled(Draws& draw, int n) {
     std::vector<Vec2> p;
     for (int i = 0; i < n; ++i) p.push_back({draw.real(-10, 10), draw.real(-10, 10)});
     const auto crossing = [&](Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-        return (cross(b - a, c - a) > 0) != (cross(b - a, d - a) > 0) && (cross(d - c, a - c) > 0) != (cross(d - c, b - c) > 0);
+        return (cross(b - a, c - a) > 0) != (cross(b - a, d - a) > 0) &&
+               (cross(d - c, a - c) > 0) != (cross(d - c, b - c) > 0);
     };
     for (bool changed = true; changed;) {
         changed = false;
@@ -87,7 +90,8 @@ inline std::vector<Vec2> kochIsland(int passes) {
         std::vector<Vec2> next;
         for (size_t i = 0; i < p.size(); ++i) {
             const Vec2 a = p[i], d = (p[(i + 1) % p.size()] - a) * .25, l{-d.z, d.x};
-            next.insert(next.end(), {a, a + d, a + d + l, a + d * 2 + l, a + d * 2, a + d * 2 - l, a + d * 3 - l, a + d * 3});
+            next.insert(next.end(),
+                        {a, a + d, a + d + l, a + d * 2 + l, a + d * 2, a + d * 2 - l, a + d * 3 - l, a + d * 3});
         }
         p = next;
     }
@@ -111,7 +115,8 @@ inline Footprint rectilinear(Draws& draw, int side, int cells, bool withCourts =
         in[x][z] = 1, ++n;
     }
     std::vector<double> at_x{0}, at_z{0};
-    for (int i = 0; i < side + 2; ++i) at_x.push_back(at_x.back() + draw.real(.8, 4)), at_z.push_back(at_z.back() + draw.real(.8, 4));
+    for (int i = 0; i < side + 2; ++i)
+        at_x.push_back(at_x.back() + draw.real(.8, 4)), at_z.push_back(at_z.back() + draw.real(.8, 4));
     std::map<std::pair<int, int>, std::pair<int, int>> next;  // solid on the left
     for (int x = 1; x <= side; ++x)
         for (int z = 1; z <= side; ++z) {
@@ -132,8 +137,10 @@ inline Footprint rectilinear(Draws& draw, int side, int cells, bool withCourts =
             at = to;
         }
         Ring ring = ringOf(points);
-        if (signedArea(ring) > 0) polygon.outer = ring;
-        else if (withCourts) polygon.courts.push_back(ring);
+        if (signedArea(ring) > 0)
+            polygon.outer = ring;
+        else if (withCourts)
+            polygon.courts.push_back(ring);
     }
     result.polygons.push_back(polygon);
     return cleaned(result);
@@ -159,13 +166,26 @@ inline Footprint anyPlan(uint64_t key) {
         Draws draw(combine(key, attempt));
         Footprint f;
         switch (draw.whole(0, 6)) {
-            case 0: f = footprintOf(polygonOf(star(draw, draw.whole(3, 40), 2, 10))); break;
-            case 1: f = footprintOf(polygonOf(untangled(draw, draw.whole(5, 24)))); break;
-            case 2: f = rectilinear(draw, 9, draw.whole(3, 40)); break;
-            case 3: f = footprintOf(polygonOf(comb(draw, draw.whole(2, 12)))); break;
-            case 4: f = footprintOf(polygonOf(spiral(draw, draw.whole(4, 30)))); break;
-            case 5: f = footprintOf(polygonOf(kochIsland(draw.whole(0, 2)))); break;
-            default: f = footprintOf(polygonOf(star(draw, draw.whole(4, 12), 9, 10)));
+            case 0:
+                f = footprintOf(polygonOf(star(draw, draw.whole(3, 40), 2, 10)));
+                break;
+            case 1:
+                f = footprintOf(polygonOf(untangled(draw, draw.whole(5, 24))));
+                break;
+            case 2:
+                f = rectilinear(draw, 9, draw.whole(3, 40));
+                break;
+            case 3:
+                f = footprintOf(polygonOf(comb(draw, draw.whole(2, 12))));
+                break;
+            case 4:
+                f = footprintOf(polygonOf(spiral(draw, draw.whole(4, 30))));
+                break;
+            case 5:
+                f = footprintOf(polygonOf(kochIsland(draw.whole(0, 2))));
+                break;
+            default:
+                f = footprintOf(polygonOf(star(draw, draw.whole(4, 12), 9, 10)));
         }
         f = turned(f, draw.real(0, 6.28));
         if (firstFault(f)) continue;

@@ -9,7 +9,7 @@
 namespace sgm::plan::test {
 
 struct SkeletonFace {
-    uint32_t edge = 0;           ///< as in edgesOf()
+    uint32_t edge = 0;  ///< as in edgesOf()
     std::vector<Vec2> corners;
     std::vector<double> depths;  ///< of the corners, metres
 };

@@ -20,8 +20,8 @@ constexpr int resolution = 128;
 double volumeOf(const Built& b, int at = resolution) { return mesh::measure(crispMesh(b.scene, at)).volume_m3; }
 
 std::vector<std::pair<std::string, Footprint>> plans() {
-    return {{"rectangle", *rectangle(12, 7)}, {"ell", *ell(16, 14, 6, 5)}, {"tee", *tee(18, 15, 6, 5)},
-            {"yard", *yard(20, 15, 4)},       {"ring", *ring(20, 16, 4)},  {"ngon", *ngon(7, 8)},
+    return {{"rectangle", *rectangle(12, 7)}, {"ell", *ell(16, 14, 6, 5)},       {"tee", *tee(18, 15, 6, 5)},
+            {"yard", *yard(20, 15, 4)},       {"ring", *ring(20, 16, 4)},        {"ngon", *ngon(7, 8)},
             {"round", *round(32, 8)},         {"arc", *arc(11, 16, .2, 2.1, 12)}};
 }
 
@@ -45,7 +45,8 @@ TEST(Solids, PromisesOfFieldsHold) {
         const auto holds = [&](const std::string& what, auto&& make) {
             const auto b = built(turned(f, .4));
             b->field() = make(*b);
-            field::test::expectPromises(b->scene.graph, b->field(), b->field().bounds.as<double>(), ++key, name + " " + what);
+            field::test::expectPromises(b->scene.graph, b->field(), b->field().bounds.as<double>(), ++key,
+                                        name + " " + what);
         };
         holds("prism", [](Built& b) { return field::prism(b.plan, b.number(0), b.number(3)); });
         holds("taper", [](Built& b) { return field::taperedPrism(b.plan, b.number(0), b.number(3), b.number(.2)); });
@@ -58,18 +59,25 @@ TEST(Solids, PromisesOfFieldsHold) {
             return field::gableRoof(b.plan, b.foot(2, .5, .2), b.number(.7), gableEnds(b.footprint, b.formula));
         });
         holds("half-hip", [](Built& b) {
-            return field::halfHipRoof(b.plan, b.foot(2, .5), b.number(.7), gableEnds(b.footprint, b.formula), b.number(.5));
+            return field::halfHipRoof(b.plan, b.foot(2, .5), b.number(.7), gableEnds(b.footprint, b.formula),
+                                      b.number(.5));
         });
-        holds("mansard", [](Built& b) { return field::mansardRoof(b.plan, b.foot(0, .3), b.number(1.2), b.number(1), b.number(.4)); });
+        holds("mansard", [](Built& b) {
+            return field::mansardRoof(b.plan, b.foot(0, .3), b.number(1.2), b.number(1), b.number(.4));
+        });
         holds("pyramid", [](Built& b) { return field::pyramidRoof(b.plan, b.foot(), b.number(3)); });
         holds("shed", [](Built& b) { return field::shedRoof(b.plan, b.foot(0, .2), b.number(.3), {0, 1}); });
         holds("butterfly", [](Built& b) { return field::butterflyRoof(b.plan, b.foot(0, .2), b.number(.3), {1, .2}); });
-        holds("flat", [](Built& b) { return field::flatRoof(b.plan, b.foot(), b.number(.3), b.number(.8), b.number(.4)); });
+        holds("flat",
+              [](Built& b) { return field::flatRoof(b.plan, b.foot(), b.number(.3), b.number(.8), b.number(.4)); });
         holds("dome", [](Built& b) { return field::domeRoof(b.plan, b.foot(), b.number(4), b.number(0)); });
         holds("bell", [](Built& b) { return field::bellRoof(b.plan, b.foot(), b.number(4), b.number(2)); });
-        holds("profile", [](Built& b) { return *field::profileRoof(b.plan, b.foot(), std::vector<Vec2>{{0, 0}, {.5, 2}, {2, 3}}); });
+        holds("profile", [](Built& b) {
+            return *field::profileRoof(b.plan, b.foot(), std::vector<Vec2>{{0, 0}, {.5, 2}, {2, 3}});
+        });
         holds("cornice", [](Built& b) {
-            return *field::moulding(b.plan, std::vector<Vec2>{{0, 0}, {.2, 0}, {.55, .35}, {.55, .5}, {0, .5}}, b.number(3));
+            return *field::moulding(b.plan, std::vector<Vec2>{{0, 0}, {.2, 0}, {.55, .35}, {.55, .5}, {0, .5}},
+                                    b.number(3));
         });
     }
 }
@@ -94,7 +102,8 @@ TEST(Solids, GableRoofsOfClosedForms) {
     EXPECT_NEAR(volumeOf(*b) / (8 * 4 / 2.0 * 12), 1, 1e-5);
     // With an overhang of .5: the section grows by the strip below, the length by 1.
     const auto wide = built(turned(*rectangle(12, 8), .3));
-    wide->field() = field::gableRoof(wide->plan, wide->foot(0, .5), wide->number(pitch), gableEnds(b->footprint, b->formula));
+    wide->field() =
+        field::gableRoof(wide->plan, wide->foot(0, .5), wide->number(pitch), gableEnds(b->footprint, b->formula));
     EXPECT_NEAR(volumeOf(*wide) / (9 * 4.5 / 2.0 * 13), 1, 1e-5);
 }
 
@@ -108,14 +117,15 @@ TEST(Solids, OtherRoofsOfClosedForms) {
     const Vec2 up = turned(footprintOf({ringOf({{0, 1}}), {}}), .2).polygons[0].outer.points[0];
     const std::vector<uint32_t> ends{1, 3};
     const double d45 = radians(45);
-    expectVolume("shed", 8 * 8 / 2.0 * 12, [&](Built& b) { return field::shedRoof(b.plan, b.foot(), b.number(d45), up); });
+    expectVolume("shed", 8 * 8 / 2.0 * 12,
+                 [&](Built& b) { return field::shedRoof(b.plan, b.foot(), b.number(d45), up); });
     expectVolume("butterfly", 4 * 4 / 2.0 * 2 * 12 + 96 * .5, [&](Built& b) {
         return field::butterflyRoof(b.plan, b.foot(0, 0, .5), b.number(d45), {up.z, -up.x});
     });
-    expectVolume("pyramid", 12 * 8 * 5 / 3.0, [&](Built& b) { return field::pyramidRoof(b.plan, b.foot(), b.number(5)); });
-    expectVolume("flat", 12 * 8 * .3 + (12 * 8 - 11 * 7) * .7, [&](Built& b) {
-        return field::flatRoof(b.plan, b.foot(), b.number(.3), b.number(.7), b.number(.5));
-    });
+    expectVolume("pyramid", 12 * 8 * 5 / 3.0,
+                 [&](Built& b) { return field::pyramidRoof(b.plan, b.foot(), b.number(5)); });
+    expectVolume("flat", 12 * 8 * .3 + (12 * 8 - 11 * 7) * .7,
+                 [&](Built& b) { return field::flatRoof(b.plan, b.foot(), b.number(.3), b.number(.7), b.number(.5)); });
     // Lower part: frustum between 12 × 8 and 10 × 6 over 1.7320508 m; upper: hip over 10 × 6 at 30°.
     const double h = std::tan(radians(60)), t = std::tan(radians(30));
     const double frustum = h * (96 + 60 + 4 * (11 * 7.0)) / 6, top = t * (6 * 6 * 10 / 4.0 - 6 * 6 * 6 / 12.0);
@@ -130,9 +140,8 @@ TEST(Solids, OtherRoofsOfClosedForms) {
         return field::saltboxRoof(b.plan, b.foot(), b.number(radians(60)), b.number(radians(30)), up, ends);
     });
     // The gable less two tips of half its height: each a tetrahedron of base 4 × 2 / 2 and 2 m along the ridge.
-    expectVolume("half-hip", 8 * 4 / 2.0 * 12 - 2 * (4 * 2 / 2.0 * 2 / 3), [&](Built& b) {
-        return field::halfHipRoof(b.plan, b.foot(), b.number(d45), ends, b.number(.5));
-    });
+    expectVolume("half-hip", 8 * 4 / 2.0 * 12 - 2 * (4 * 2 / 2.0 * 2 / 3),
+                 [&](Built& b) { return field::halfHipRoof(b.plan, b.foot(), b.number(d45), ends, b.number(.5)); });
     expectVolume("profile", 96 * 1 + 60 * 2.0, [&](Built& b) {
         return *field::profileRoof(b.plan, b.foot(), std::vector<Vec2>{{0, 1}, {1, 1}, {1, 3}});
     });
@@ -148,14 +157,16 @@ TEST(Solids, OtherRoofsOfClosedForms) {
         const double y = (i + .5) * 4 / 20'000, in = 4 - std::sqrt(16 - y * y);
         dome += (12 - 2 * in) * (8 - 2 * in) * 4 / 20'000;
     }
-    expectVolume("dome", dome, [&](Built& b) { return field::domeRoof(b.plan, b.foot(), b.number(4), b.number(4)); }, 2e-3);
+    expectVolume(
+        "dome", dome, [&](Built& b) { return field::domeRoof(b.plan, b.foot(), b.number(4), b.number(4)); }, 2e-3);
     double bell = 0;
     for (int i = 0; i < 20'000; ++i) {
         const double y = (i + .5) * 4 / 20'000;
         const double in = y < 2 ? std::sqrt(4 - (2 - y) * (2 - y)) : 4 - std::sqrt(4 - (y - 2) * (y - 2));
         bell += (12 - 2 * in) * (8 - 2 * in) * 4 / 20'000;
     }
-    expectVolume("bell", bell, [&](Built& b) { return field::bellRoof(b.plan, b.foot(), b.number(4), b.number(4)); }, 3e-3);
+    expectVolume(
+        "bell", bell, [&](Built& b) { return field::bellRoof(b.plan, b.foot(), b.number(4), b.number(4)); }, 3e-3);
 }
 
 TEST(Solids, MouldingsAreSweptWithMitres) {

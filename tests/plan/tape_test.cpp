@@ -42,7 +42,8 @@ TEST(Tape, SignsAreRightATenthOfAMillimetreFromEdges) {
         for (size_t k = 0; k < at.size(); ++k) {
             const Vec2 p{at[k].x, at[k].z};
             if (distanceToEdges(b->footprint, p) <= 1e-4) continue;
-            ASSERT_EQ(values[k] < 0, contains(b->footprint, p)) << "plan " << i << " at " << p.x << ' ' << p.z << ": " << values[k];
+            ASSERT_EQ(values[k] < 0, contains(b->footprint, p))
+                << "plan " << i << " at " << p.x << ' ' << p.z << ": " << values[k];
         }
     }
 }
@@ -56,16 +57,29 @@ Footprint broken(uint64_t key) {
         Vec2& p = ring.points[static_cast<size_t>(draw.whole(0, n - 1))];
         const Vec2 other = ring.points[static_cast<size_t>(draw.whole(0, n - 1))];
         switch (draw.whole(0, 6)) {
-            case 0: p = p + Vec2{draw.real(-1e-3, 1e-3), draw.real(-1e-3, 1e-3)}; break;
-            case 1: p = other; break;
-            case 2: p = other + Vec2{draw.real(-2e-3, 2e-3), draw.real(-2e-3, 2e-3)}; break;
-            case 3: p = p + Vec2{draw.real(-5, 5), draw.real(-5, 5)}; break;
-            case 4: p = p * draw.real(-2, 3); break;
-            case 5: p.x = draw.chance(.5) ? std::nan("") : 1e300; break;
+            case 0:
+                p = p + Vec2{draw.real(-1e-3, 1e-3), draw.real(-1e-3, 1e-3)};
+                break;
+            case 1:
+                p = other;
+                break;
+            case 2:
+                p = other + Vec2{draw.real(-2e-3, 2e-3), draw.real(-2e-3, 2e-3)};
+                break;
+            case 3:
+                p = p + Vec2{draw.real(-5, 5), draw.real(-5, 5)};
+                break;
+            case 4:
+                p = p * draw.real(-2, 3);
+                break;
+            case 5:
+                p.x = draw.chance(.5) ? std::nan("") : 1e300;
+                break;
             default: {  // a hair: out and back
                 const auto at = static_cast<size_t>(draw.whole(0, n - 1));
                 const Vec2 tip = ring.points[at] + Vec2{draw.real(-3, 3), draw.real(-3, 3)};
-                ring.points.insert(ring.points.begin() + static_cast<ptrdiff_t>(at) + 1, {tip, ring.points[at] + Vec2{0, draw.real(0, 2e-3)}});
+                ring.points.insert(ring.points.begin() + static_cast<ptrdiff_t>(at) + 1,
+                                   {tip, ring.points[at] + Vec2{0, draw.real(0, 2e-3)}});
                 ring.edges.resize(ring.points.size());
             }
         }
@@ -90,7 +104,8 @@ TEST(Tape, BrokenPlansAreErrorsOrClosedMeshes) {
         }
         const auto b = built(*sound);
         b->field() = field::hipRoof(b->plan, b->foot(), b->number(radians(40)));
-        const mesh::Meshed m = mesh::meshOf(b->scene, 40, 1, {.surface = i % 2 ? mesh::Surface::Crisp : mesh::Surface::Cubes});
+        const mesh::Meshed m =
+            mesh::meshOf(b->scene, 40, 1, {.surface = i % 2 ? mesh::Surface::Crisp : mesh::Surface::Cubes});
         if (!m.mesh.ok()) continue;
         const mesh::MeshFigures figures = mesh::measure(*m.mesh);
         EXPECT_EQ(figures.boundaryEdges + figures.nonmanifoldEdges, 0u);

@@ -1,0 +1,91 @@
+#include "modeler/plan/edit.h"
+
+#include "modeler/plan/clipper_paths.h"
+#include "modeler/plan/edge_match.h"
+#include "modeler/plan/validate.h"
+
+namespace sgm::plan {
+namespace {
+
+constexpr double farthest_m = 1e5;
+
+/// The sources of two operands in the tags of `result`; those of the second become cuts where they cut.
+std::vector<SourceEdge> sourcesOfBoth(Footprint& result, Boolean how, const Footprint& a, const Footprint& b) {
+    result.tags = a.tags;
+    const std::vector<uint32_t> renumbered = addTags(result, b.tags);
+    std::vector<SourceEdge> sources = sourcesOf(a);
+    for (SourceEdge s : sourcesOf(b)) {
+        s.edge.tag = s.edge.tag < renumbered.size() ? renumbered[s.edge.tag] : 0;
+        if (how != Boolean::Union) s.edge.source = EdgeSource::Cut;
+        sources.push_back(s);
+    }
+    return sources;
+}
+
+PathBoolean pathBoolean(Boolean how) {
+    switch (how) {
+        case Boolean::Difference:
+            return PathBoolean::Difference;
+        case Boolean::Intersection:
+            return PathBoolean::Intersection;
+        case Boolean::Union:
+            break;
+    }
+    return PathBoolean::Union;
+}
+
+}  // namespace
+
+Footprint boolean(Boolean how, const Footprint& a, const Footprint& b) {
+    if (b.empty() && how != Boolean::Intersection) return a;
+    Footprint result = booleanOf(pathBoolean(how), pathsOf(a), pathsOf(b));
+    const std::vector<SourceEdge> sources = sourcesOfBoth(result, how, a, b);
+    matchEdges(result, sources);
+    return tidied(std::move(result));
+}
+
+Result<Footprint> resolved(const Footprint& footprint) {
+    size_t number = 0;
+    for (const PlacedEdge& e : edgesOf(footprint)) {
+        ++number;
+        if (!(std::abs(e.from.x) <= farthest_m && std::abs(e.from.z) <= farthest_m))
+            return Error{Error::Kind::Input, "point " + std::to_string(number) +
+                                                 " of the outline is no number, or more than 100 km from the origin"};
+    }
+    Footprint result = booleanOf(PathBoolean::Union, pathsOf(footprint), {});
+    result.tags = footprint.tags;
+    matchEdges(result, sourcesOf(footprint));
+    return tidied(std::move(result));
+}
+
+Footprint offset(const Footprint& footprint, double distance_m) {
+    if (distance_m == 0 || footprint.empty()) return footprint;
+    Footprint result = offsetOf(pathsOf(footprint), distance_m);
+    result.tags = footprint.tags;
+    matchEdges(result, sourcesOf(footprint, std::vector<double>(footprint.edgeCount(), distance_m)));
+    return tidied(std::move(result));
+}
+
+Footprint rim(const Footprint& footprint, double width_m) {
+    return boolean(Boolean::Difference, footprint, offset(footprint, -width_m));
+}
+
+Result<Footprint> court(const Footprint& footprint, double wing_m) {
+    if (!(wing_m > 0)) return Error{Error::Kind::Input, "the wings around a court must be wider than 0"};
+    const Footprint inner = offset(footprint, -wing_m);
+    if (inner.empty())
+        return Error{Error::Kind::Input,
+                     "wings of " + std::to_string(wing_m) + " m leave no court; make them narrower"};
+    Footprint result = booleanOf(PathBoolean::Difference, pathsOf(footprint), pathsOf(inner));
+    result.tags = footprint.tags;
+    const Edge made{result.tag("court"), EdgeSource::Court};
+    std::vector<SourceEdge> sources = sourcesOf(footprint);
+    for (SourceEdge s : sourcesOf(inner)) {
+        s.edge = made;
+        sources.push_back(s);
+    }
+    matchEdges(result, sources);
+    return tidied(std::move(result));
+}
+
+}  // namespace sgm::plan

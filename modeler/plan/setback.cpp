@@ -1,0 +1,109 @@
+// Setbacks: what is nearer to an edge than its distance goes, by strips along edges and wedges at corners.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "modeler/plan/clipper_paths.h"
+#include "modeler/plan/edge_match.h"
+#include "modeler/plan/edit.h"
+#include "modeler/plan/validate.h"
+
+namespace sgm::plan {
+namespace {
+
+/// How far off the corner of two moved lines may lie, in the larger of their distances.
+constexpr double mitreLimit = 4;
+
+LatticePath strip(std::initializer_list<Vec2> corners) {
+    Ring ring = ringOf(corners);
+    if (signedArea(ring) < 0) ring = reversed(ring);
+    LatticePath path;
+    for (const Vec2 p : ring.points) path.push_back(latticePoint(p));
+    return path;
+}
+
+/// An edge and the one after it in its ring, with their distances.
+struct Corner {
+    const PlacedEdge &before, &after;
+    double in, inAfter;
+};
+
+/// Where the moved lines of both edges cross, if not too far off.
+std::optional<Vec2> movedCorner(const Corner& c) {
+    const Vec2 n = c.before.normal(), m = c.after.normal();
+    const double by = cross(n, m);
+    if (std::abs(by) < 1e-9) return {};
+    // dot(n, p) = −in, dot(m, p) = −inAfter about the corner.
+    const Vec2 p{(-c.in * m.z + c.inAfter * n.z) / by, (-c.inAfter * n.x + c.in * m.x) / by};
+    if (length(p) > mitreLimit * std::max(c.in, c.inAfter)) return {};
+    return c.after.from + p;
+}
+
+/// The part of a strip that hangs together with its edge inside the footprint: not what lies beyond a gap.
+LatticePaths partAt(const PlacedEdge& edge, const LatticePath& whole, const Footprint& footprint) {
+    Footprint inside = booleanOf(PathBoolean::Intersection, pathsOf(footprint), {whole});
+    const Vec2 middle = (edge.from + edge.to) * 0.5;
+    std::erase_if(inside.polygons, [&](const Polygon& p) { return distanceToEdges(footprintOf(p), middle) > 1e-4; });
+    return pathsOf(inside);
+}
+
+/// Whether the strip may reach over other edges than its neighbours.
+bool reachesOver(const std::vector<PlacedEdge>& edges, size_t of, const Box2& box) {
+    for (size_t i = 0; i < edges.size(); ++i) {
+        const PlacedEdge& e = edges[i];
+        if (i == of || e.to == edges[of].from || e.from == edges[of].to) continue;
+        if (std::max(e.from.x, e.to.x) >= box.lo.x && std::min(e.from.x, e.to.x) <= box.hi.x &&
+            std::max(e.from.z, e.to.z) >= box.lo.z && std::min(e.from.z, e.to.z) <= box.hi.z)
+            return true;
+    }
+    return false;
+}
+
+/// All that lies too near to some edge.
+LatticePaths stripsOf(const Footprint& footprint, const std::vector<PlacedEdge>& edges, std::span<const double> in) {
+    LatticePaths strips;
+    for (size_t i = 0, ringBegin = 0; i < edges.size(); ++i) {
+        const PlacedEdge& e = edges[i];
+        if (e.index == 0) ringBegin = i;
+        const bool last = i + 1 == edges.size() || edges[i + 1].index == 0;
+        const size_t next = last ? ringBegin : i + 1;
+        if (in[i] > 0) {
+            const Vec2 deep = e.normal() * -in[i];
+            Box2 box;
+            for (const Vec2 p : {e.from, e.to, e.from + deep, e.to + deep}) box.add(p);
+            const LatticePath whole = strip({e.from, e.to, e.to + deep, e.from + deep});
+            if (!reachesOver(edges, i, box))
+                strips.push_back(whole);
+            else
+                for (LatticePath& part : partAt(e, whole, footprint)) strips.push_back(std::move(part));
+        }
+        const Corner corner{e, edges[next], in[i], in[next]};
+        const Vec2 at = e.to, foot = at - e.normal() * in[i], footAfter = at - edges[next].normal() * in[next];
+        const bool reflex = cross(e.to - e.from, edges[next].to - edges[next].from) < 0;
+        if (const auto tip = movedCorner(corner)) {
+            strips.push_back(strip({at, foot, *tip}));
+            strips.push_back(strip({at, *tip, footAfter}));
+        } else if (reflex) {
+            strips.push_back(strip({at, foot, footAfter}));
+        }
+    }
+    return strips;
+}
+
+}  // namespace
+
+Footprint setback(const Footprint& footprint, std::span<const double> distances_m) {
+    const std::vector<PlacedEdge> edges = edgesOf(footprint);
+    std::vector<double> in(edges.size()), out(edges.size());
+    for (size_t i = 0; i < edges.size(); ++i) {
+        in[i] = i < distances_m.size() && distances_m[i] > 0 ? std::min(distances_m[i], 1e5) : 0;
+        out[i] = -in[i];
+    }
+    if (std::all_of(in.begin(), in.end(), [](double d) { return d == 0; })) return footprint;
+    Footprint result = booleanOf(PathBoolean::Difference, pathsOf(footprint), stripsOf(footprint, edges, in));
+    result.tags = footprint.tags;
+    matchEdges(result, sourcesOf(footprint, out));
+    return tidied(std::move(result));
+}
+
+}  // namespace sgm::plan
