@@ -1,14 +1,37 @@
 #include "grammar/derive/attribute_context.h"
 
 #include "grammar/derive/builder.h"
+#include "modeler/plan/validate.h"
 
 namespace sgm::derive {
 
-Vec3d AttributeContext::metres(const rules::Expr& expr, bool eachDraws) const {
-    const Vector v = vector(expr, eachDraws);
+Vec3d AttributeContext::metres(const Vector& v) const {
     Vec3d m;
     for (int i = 0; i < 3; ++i) m[i] = v.unit[i] == rules::Unit::Share ? v.n[i] * place.scope.size[i] : v.n[i];
     return m;
+}
+
+plan::Footprint AttributeContext::footprint() const {
+    const Scope& scope = out.scope;
+    if (scope.footprint != none) return place.tree->footprints.inMetres(scope.footprint, scope.half());
+    const Vec3d h = scope.half();
+    return plan::footprintOf(plan::polygonOf({{-h.x, -h.z}, {h.x, -h.z}, {h.x, h.z}, {-h.x, h.z}}));
+}
+
+void AttributeContext::setFootprint(plan::Footprint footprint, syntax::SourceSpan span) {
+    footprint = plan::cleaned(footprint);
+    out.ownsFootprint = true;
+    out.vanishes = footprint.empty();
+    if (out.vanishes) return;
+    if (const auto fault = plan::firstFault(footprint)) return fail(plan::sentenceOf(*fault, footprint), span);
+    const plan::Box2 box = bounds(footprint);
+    const plan::Vec2 centre = box.centre();
+    out.moved_m += out.scope.axes * Vec3d{centre.x, 0, centre.z};
+    out.scope.size.x = box.size().x;
+    out.scope.size.z = box.size().z;
+    const auto index = place.builder->tree().footprints.put(plan::placed(footprint, {1, 1}, {-centre.x, -centre.z}), out.scope.half());
+    if (!index.ok()) return fail(index.error().message, span);
+    out.scope.footprint = *index;
 }
 
 const rules::Grammar& AttributeContext::grammar() const { return *place.builder->derivation().grammar; }

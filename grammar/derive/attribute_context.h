@@ -19,6 +19,8 @@ struct EvaluatedAttributes {
     const rules::Expr* colorBy = nullptr;    ///< what gave the colour
     std::optional<float> rough, metal;
     Extras extras;
+    bool ownsFootprint = false;              ///< the element set the scope's footprint itself
+    bool vanishes = false;                   ///< nothing is left of the footprint: no shape is made
     std::optional<syntax::SourceSpan> sizeSpan;  ///< of the attribute that set the size
 };
 
@@ -30,8 +32,14 @@ struct AttributeContext {
     double number(const rules::Expr& expr) const { return derive::number(expr, place); }
     Vector vector(const rules::Expr& expr, bool eachDraws) const { return derive::vector(expr, place, eachDraws); }
     /// Three lengths in metres; shares are of the scope's size.
-    Vec3d metres(const rules::Expr& expr, bool eachDraws) const;
+    Vec3d metres(const Vector& v) const;
+    Vec3d metres(const rules::Expr& expr, bool eachDraws) const { return metres(vector(expr, eachDraws)); }
     SolidValue solid(const rules::Solid& solid) const { return evaluateSolid(solid, place); }
+    /// The footprint of the newcomer's scope, metres about its centre; the rectangle where it has none.
+    plan::Footprint footprint() const;
+    /// Gives the newcomer's scope a footprint (metres about its centre), whose bounding box it becomes along x and z, in its
+    /// place. An empty one lets the newcomer vanish; one that isn't sound is an error located at `span`.
+    void setFootprint(plan::Footprint footprint, syntax::SourceSpan span);
     const rules::Grammar& grammar() const;
     /// Ends the derivation with an error located at `span`.
     void fail(const std::string& what, syntax::SourceSpan span) const;

@@ -3,6 +3,7 @@
 
 #include "grammar/derive/parts_context.h"
 #include "modeler/core/random.h"
+#include "modeler/field/plan_solids.h"
 
 namespace sgm::derive {
 
@@ -26,6 +27,12 @@ const Solid* ownSolid(const Element& e, const rules::Grammar& grammar) {
     }();
     const auto& solid = grammar.symbols[symbol].solid;
     return solid ? &*solid : &cube;
+}
+
+/// A terminal without a solid: it fills its footprint.
+bool fillsFootprint(const Element& e, const rules::Grammar& grammar) {
+    const rules::SymbolId symbol = e.content.symbol();
+    return symbol != rules::none && grammar.symbols[symbol].terminal && !grammar.symbols[symbol].solid;
 }
 
 /// True when parameters alone decide the solid: one value serves all its shapes.
@@ -85,7 +92,19 @@ uint32_t Interpreter::jointSetOf(const Element& e) {
     return static_cast<uint32_t>(sets.size() - 1);
 }
 
-uint32_t Interpreter::solidOf(const Element& e, ElementCache& facts, const Place& place) {
+/// The solid of terminals over a footprint: one for all.
+uint32_t Interpreter::blockSolid() {
+    if (block_ == none) {
+        SolidValue block;
+        block.kind = Solid::Kind::Primitive;
+        block.primitive = field::findPrimitive("block");
+        block_ = builder_.put(std::move(block), true);
+    }
+    return block_;
+}
+
+uint32_t Interpreter::solidOf(const Element& e, ElementCache& facts, const Place& place, const Scope& scope) {
+    if (scope.footprint != none && fillsFootprint(e, grammar_)) return blockSolid();
     const Solid* solid = ownSolid(e, grammar_);
     if (!solid || solid->kind == Solid::Kind::Nil) return none;
     Recording* const recording = builder_.recording();
@@ -112,12 +131,33 @@ bool Interpreter::evaluateAttributes(const Element& e, const Place& place, Evalu
             if (a.operation->apply && (a.operation->phase == Phase::Scope) == scope) a.operation->apply(context, a);
     };
     apply(e.attributes, true);
+    if (out.vanishes) return true;
+    standAsHigh(e, place, out);
     if (const rules::SymbolId symbol = e.content.symbol(); symbol != rules::none) {
         apply(grammar_.symbols[symbol].look, false);
         out.colorBy = nullptr;  // the terminal itself names such a look
     }
     apply(e.attributes, false);
     return inBounds(e, out);
+}
+
+/// A roof is as high as its pitch makes it; where no joint places it, its foot stays that of the scope.
+void Interpreter::standAsHigh(const Element& e, const Place& place, EvaluatedAttributes& out) {
+    const Solid* solid = ownSolid(e, grammar_);
+    if (!solid || !solid->primitive || solid->primitive->plan != field::PlanUse::OwnHeight || builder_.failed()) return;
+    std::vector<field::Argument> arguments;
+    const SolidValue value = evaluateSolid(*solid, place);
+    for (size_t i = 0; i < value.args.size(); ++i) {
+        const field::PrimitiveParameter& parameter = value.primitive->parameters[i];
+        arguments.emplace_back().value[0] = std::clamp(value.args[i].num(), parameter.lo, parameter.hi);
+    }
+    const AttributeContext context{place, out};
+    const plan::Footprint footprint = context.footprint();
+    const auto formula = plan::monotoneFormula(footprint);
+    if (!formula.ok()) return context.fail(formula.error().message, e.span);
+    const double height_m = std::max(1e-3, field::heightOver(*value.primitive, footprint, *formula, arguments));
+    if (e.op == rules::Operator::None) out.moved_m += out.scope.axes.y * ((height_m - out.scope.size.y) / 2);
+    out.scope.size.y = height_m;
 }
 
 /// Refuses numbers that no model can be made of, where they are written.
@@ -192,7 +232,7 @@ Shape Interpreter::shapeOf(const Element& e, EvaluatedAttributes& attributes, co
     s.live = e.live != rules::none || (s.symbol != rules::none && !grammar_.symbols[s.symbol].terminal);
     s.label = facts.label;
     s.jointSet = facts.jointSet;
-    s.solid = solidOf(e, facts, place);
+    s.solid = solidOf(e, facts, place, attributes.scope);
     s.material = materialOf(attributes, e, place);
     s.op = e.op;
     s.amount = attributes.amount;

@@ -92,11 +92,13 @@ private:
     uint32_t labelOf(const rules::Element& e);
     uint32_t jointSetOf(const rules::Element& e);
     bool evaluateAttributes(const rules::Element& e, const Place& place, EvaluatedAttributes& out);
+    void standAsHigh(const rules::Element& e, const Place& place, EvaluatedAttributes& out);
     bool inBounds(const rules::Element& e, const EvaluatedAttributes& attributes);
     std::string nameOfColor(const rules::Expr& e, Vec3f color, const Place& place) const;
     std::string nameOfLook(const EvaluatedAttributes& attributes, uint32_t base, const Place& place) const;
     uint32_t materialOf(const EvaluatedAttributes& attributes, const rules::Element& e, const Place& place);
-    uint32_t solidOf(const rules::Element& e, ElementCache& facts, const Place& place);
+    uint32_t solidOf(const rules::Element& e, ElementCache& facts, const Place& place, const Scope& scope);
+    uint32_t blockSolid();
     Shape shapeOf(const rules::Element& e, EvaluatedAttributes& attributes, const Place& place, uint64_t key);
     bool fill(const rules::Element& e, ShapeId id, const Frame& frame);
 
@@ -115,6 +117,7 @@ private:
     std::map<std::string, uint32_t, std::less<>> labels_;
     std::map<std::array<float, 5>, uint32_t> mixedMaterials_;  ///< by colour, roughness, metalness: those of attributes
     std::vector<rules::Value> locals_;
+    uint32_t block_ = none;      ///< index of blockSolid
     uint32_t chainRule_ = none;  ///< the rule whose chain is being run
 };
 

@@ -1,6 +1,8 @@
 #include "grammar/derive/parts_context.h"
 
 #include "modeler/core/random.h"
+#include "modeler/plan/cut.h"
+#include "modeler/plan/validate.h"
 
 namespace sgm::derive {
 
@@ -8,6 +10,42 @@ rules::Value PartsContext::evaluate(const rules::Expr& expr, uint64_t key) const
     Place place = frame_.place;
     place.key = combine(frame_.key, key);
     return derive::evaluate(expr, place);
+}
+
+plan::Footprint PartsContext::footprint() const {
+    const Vec3d h = scope().half();
+    if (scope().footprint != none) return interpreter_.builder_.tree().footprints.inMetres(scope().footprint, h);
+    return plan::footprintOf(plan::polygonOf({{-h.x, -h.z}, {h.x, -h.z}, {h.x, h.z}, {-h.x, h.z}}));
+}
+
+std::optional<Scope> PartsContext::over(Scope scope, const plan::Footprint& footprint, syntax::SourceSpan span) {
+    const auto index = interpreter_.builder_.tree().footprints.put(footprint, scope.half());
+    if (!index.ok()) {
+        fail(index.error().message, span);
+        return std::nullopt;
+    }
+    scope.footprint = *index;
+    return scope;
+}
+
+std::optional<Scope> PartsContext::cut(int axis, double low_m, double high_m) {
+    Scope part = scope();
+    const double whole_m = part.size[axis];
+    Vec3d moved;
+    moved[axis] = (low_m + high_m - whole_m) / 2;
+    part.centre += part.axes * moved;
+    part.size[axis] = high_m - low_m;
+    if (part.footprint == none || axis == 1) return part;
+    const double lo = low_m <= 0 ? -plan::Limits{}.farthest_m : low_m - whole_m / 2;
+    const double hi = high_m >= whole_m ? plan::Limits{}.farthest_m : high_m - whole_m / 2;
+    const plan::Footprint clipped = plan::cleaned(
+        plan::placed(plan::between(footprint(), axis == 0 ? 0 : 1, lo, hi), {1, 1}, {-moved.x, -moved.z}));
+    part.footprint = none;
+    if (clipped.empty()) return std::nullopt;
+    const Vec3d h = part.half();
+    const plan::Footprint box = plan::footprintOf(plan::polygonOf({{-h.x, -h.z}, {h.x, -h.z}, {h.x, h.z}, {-h.x, h.z}}));
+    const bool isBox = clipped.edgeCount() == 4 && std::abs(area(clipped) - area(box)) < 1e-9 * area(box) && bounds(clipped).size() == bounds(box).size();
+    return isBox ? part : over(part, clipped, syntax::SourceSpan{});
 }
 
 bool PartsContext::run(const rules::Body& body, const Scope& part, uint64_t key) {

@@ -18,6 +18,13 @@ public:
     rules::Value evaluate(const rules::Expr& expr, uint64_t key) const;
     /// What a local of the block (the `i` of a repetition) stands for from now on.
     void setLocal(uint32_t local, rules::Value value) { interpreter_.locals_[local] = std::move(value); }
+    /// The part of the scope between two places along an axis, metres from its low end; the footprint is clipped, but keeps
+    /// what stands out of the scope at its ends. Nothing where no footprint is left.
+    std::optional<Scope> cut(int axis, double low_m, double high_m);
+    /// The scope's footprint in metres about its centre; the rectangle where it has none.
+    plan::Footprint footprint() const;
+    /// `scope` over a footprint in metres about its centre; nothing, after a failure, where it isn't sound.
+    std::optional<Scope> over(Scope scope, const plan::Footprint& footprint, syntax::SourceSpan span);
     /// Runs `body` in a part of the scope; `key` tells the part from its neighbours. False after a failure.
     bool run(const rules::Body& body, const Scope& part, uint64_t key);
     /// Ends the derivation with an error located at `span`; returns false.

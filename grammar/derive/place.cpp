@@ -18,13 +18,15 @@ bool needsGroup(const Element& e, const Shape& shape) {
 }
 
 /// The matched scope as prefix attributes leave it; each sees what those before it made.
-Scope changedScope(const std::vector<Attribute>& prefix, Place place) {
+/// Nothing where no footprint is left.
+std::optional<Scope> changedScope(const std::vector<Attribute>& prefix, Place place) {
     for (const Attribute& a : prefix) {
-        if (a.operation->phase != Phase::Scope || a.args.empty()) continue;
+        if (a.operation->phase != Phase::Scope) continue;
         EvaluatedAttributes out;
         out.scope = place.scope;
         AttributeContext context{place, out};
         a.operation->apply(context, a);
+        if (out.vanishes) return std::nullopt;
         place.scope = out.scope;
         place.scope.centre += out.moved_m;
     }
@@ -43,7 +45,7 @@ void applyWhole(const std::vector<Attribute>& list, const Place& place, Evaluate
 void Interpreter::annotate(const Element& e, Frame& frame, uint64_t key) {
     Place place = frame.place;
     place.key = key;
-    frame.place.scope = changedScope(e.prefix, place);
+    if (const auto scope = changedScope(e.prefix, place)) frame.place.scope = *scope;
     EvaluatedAttributes attributes;
     applyWhole(e.prefix, place, attributes);
     const Extras& x = attributes.extras;
@@ -59,10 +61,15 @@ void Interpreter::annotate(const Element& e, Frame& frame, uint64_t key) {
 bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint64_t key, bool followed) {
     Place place = frame.place;
     place.key = key;
-    if (!e.prefix.empty()) place.scope = changedScope(e.prefix, place);
+    if (!e.prefix.empty()) {
+        const auto scope = changedScope(e.prefix, place);
+        if (!scope || builder_.failed()) return !builder_.failed();
+        place.scope = *scope;
+    }
     EvaluatedAttributes attributes;
     applyWhole(e.prefix, place, attributes);
     if (!evaluateAttributes(e, place, attributes)) return false;
+    if (attributes.vanishes) return true;
     Shape shape = shapeOf(e, attributes, place, key);
     shape.scope = attributes.scope;
     shape.scope.centre += attributes.moved_m;
@@ -181,6 +188,7 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
     }
     EvaluatedAttributes attributes;
     if (!evaluateAttributes(e, place, attributes)) return false;
+    if (attributes.vanishes) return true;
     Mating mating;
     mating.ours = builder_.tree().joint(host, oursIndex);
     if (whole) mating.ours.point = place.scope.centre;
@@ -193,6 +201,7 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
     Shape shape = shapeOf(e, attributes, place, key);
     shape.parent = target.node;
     shape.scope = mate(mating, attributes.scope.axes, attributes.scope.size);
+    shape.scope.footprint = attributes.scope.footprint;
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
     builder_.bond(host, oursIndex, id, theirs);

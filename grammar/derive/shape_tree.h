@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "grammar/derive/footprints.h"
 #include "grammar/rules/grammar.h"
 #include "modeler/core/vec.h"
 
@@ -15,11 +16,12 @@ namespace sgm::derive {
 using ShapeId = uint32_t;
 inline constexpr uint32_t none = rules::none;
 
-/// An oriented box: centre, axes, size in metres.
+/// An oriented box: centre, axes, size in metres; and what it holds of the plan.
 struct Scope {
     Vec3d centre;
     Mat3 axes;             ///< world from local
     Vec3d size{1, 1, 1};   ///< metres, > 0
+    uint32_t footprint = none;  ///< index into ShapeTree::footprints; none: the whole rectangle
 
     Vec3d half() const { return size * 0.5; }
     /// The point at `shares` (−1 … 1) of the half-size.
@@ -130,6 +132,7 @@ struct ShapeTree {
     std::vector<Extras> extras;
     std::vector<std::string> labels;
     std::vector<std::vector<rules::Joint>> namedJoints;  ///< sets of declared joints; set 0 is empty
+    Footprints footprints;
     std::vector<uint32_t> namedBonds;  ///< first bond of each named joint, or none
 
     const SolidValue* solidOf(ShapeId id) const { return shapes[id].solid == none ? nullptr : &solids[shapes[id].solid]; }

@@ -103,7 +103,7 @@ private:
 /// A solid whose field is a convex function, by planes that touch it.
 ConvexPart touching(const SolidValue& solid, const Scope& scope, std::span<const field::SampledGridPtr> meshes) {
     field::Graph graph;
-    const field::Field f = lowerSolid(graph, solid, scope, 1, meshes);
+    const field::Field f = lowerSolid(graph, solid, scope, 1, {}, meshes);
     const eval::Tape tape = eval::compile(graph, f, graph.constants());
     ConvexPart part = SurfaceProbe(tape, scope).tangents();
     if (part.empty()) return {};
@@ -195,12 +195,13 @@ ConvexContent convexSolid(const SolidValue& solid, const Scope& scope, derive::S
     }
     if (solid.kind == rules::Solid::Kind::Morph && (solid.amount <= 0 || solid.amount >= 1))
         return convexSolid(solid.parts[solid.amount >= 1 ? 1 : 0], scope, shape, world, meshes, roundness);
-    if (solid.kind == rules::Solid::Kind::Primitive && solid.primitive->convexParts) {
+    const bool overPlan = scope.footprint != derive::none && solid.primitive && solid.primitive->plan != field::PlanUse::None;
+    if (solid.kind == rules::Solid::Kind::Primitive && solid.primitive->convexParts && !overPlan) {
         for (const ConvexPart& part : solid.primitive->convexParts(scope.half(), argumentsOf(solid), roundness))
             addPart(placed(part, scope));
         return content;
     }
-    const ConvexPart part = isConvex(solid) ? touching(solid, scope, meshes) : ConvexPart{};
+    const ConvexPart part = isConvex(solid) && !overPlan ? touching(solid, scope, meshes) : ConvexPart{};
     content.unknown = part.empty();
     if (!part.empty()) addPart(part);
     return content;

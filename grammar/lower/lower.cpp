@@ -168,7 +168,7 @@ Owned Lowering::displaced(Owned part, ShapeId id) {
 /// The shape's own solid.
 Owned Lowering::solidOf(ShapeId id) {
     const Shape& s = tree_.shapes[id];
-    return {lowerSolid(model_.graph, *tree_.solidOf(id), s.scope, s.key, d_.grammar->meshes), ownerOf(id)};
+    return {lowerSolid(model_.graph, *tree_.solidOf(id), s.scope, s.key, tree_.footprints, d_.grammar->meshes), ownerOf(id)};
 }
 
 void Lowering::enter(ShapeId id) {

@@ -107,6 +107,9 @@ Pending Collector::primitive(const SolidValue& value, ShapeId id) {
         return inexact(emptySolid(), id, fmt::format("is a fractal ({}): no solid is exactly that", name));
     if (name == "mesh")
         return inexact(emptySolid(), id, "is a mesh from a file, of which the model knows samples alone");
+    if (value.primitive->plan == field::PlanUse::OwnHeight || (value.primitive->plan != field::PlanUse::None && scope.footprint != none))
+        return inexact(emptySolid(), id, fmt::format("is a {} over a footprint, which is not written yet", name));
+    if (name == "block") return single(leaf("cube", {}, scope, id));
     std::vector<double> arguments;
     for (size_t i = 0; i < value.args.size(); ++i) {
         const field::PrimitiveParameter& p = value.primitive->parameters[i];

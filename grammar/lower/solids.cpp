@@ -6,6 +6,7 @@
 #include "modeler/core/random.h"
 #include "modeler/field/combine.h"
 #include "modeler/field/domain.h"
+#include "modeler/field/plan_field.h"
 #include "modeler/field/primitives.h"
 
 namespace sgm::lower {
@@ -22,6 +23,7 @@ struct Frame {
     field::Point p, half;
     derive::Scope scope;
     std::span<const field::SampledGridPtr> meshes;
+    const field::PlanField* plan = nullptr;  ///< of the scope's footprint, where the solid asks for it
 };
 
 size_t componentsOf(field::ParameterKind kind) {
@@ -60,7 +62,7 @@ Field primitive(Graph& graph, const SolidValue& solid, const Frame& frame, uint6
     for (size_t i = 0; i < arguments.size(); ++i)
         if (solid.primitive->parameters[i].kind == field::ParameterKind::File)
             arguments[i].grid = frame.meshes[static_cast<size_t>(solid.args[i].num())];
-    Field f = solid.primitive->build({frame.p, frame.half, frame.scope.half(), arguments});
+    Field f = solid.primitive->build({frame.p, frame.half, frame.scope.half(), arguments, frame.plan, key});
     f.bounds = field::toWorld(f.bounds, {frame.scope.centre, frame.scope.axes});
     return f;
 }
@@ -90,17 +92,27 @@ Field build(Graph& graph, const SolidValue& solid, const Frame& frame, uint64_t 
     return field::nothing(graph);
 }
 
+bool standsOverPlan(const SolidValue& solid) {
+    return (solid.primitive && solid.primitive->plan != field::PlanUse::None) ||
+           std::any_of(solid.parts.begin(), solid.parts.end(), standsOverPlan);
+}
+
 Frame frameOf(Graph& graph, const derive::Scope& scope, uint64_t key, std::span<const field::SampledGridPtr> meshes) {
     const Vec3d h = scope.half();
     const auto half = [&](std::string_view name, double value) { return graph.slot({key, hashText(name)}, static_cast<float>(value)); };
-    return {field::toLocal(graph.position(), {scope.centre, scope.axes}, key), {half("size.x", h.x), half("size.y", h.y), half("size.z", h.z)}, scope, meshes};
+    return {field::toLocal(graph.position(), {scope.centre, scope.axes}, key), {half("size.x", h.x), half("size.y", h.y), half("size.z", h.z)}, scope, meshes, nullptr};
 }
 
 }  // namespace
 
 Field lowerSolid(Graph& graph, const SolidValue& solid, const derive::Scope& scope, uint64_t key,
-                 std::span<const field::SampledGridPtr> meshes) {
-    return build(graph, solid, frameOf(graph, scope, key, meshes), key);
+                 const derive::Footprints& footprints, std::span<const field::SampledGridPtr> meshes) {
+    Frame frame = frameOf(graph, scope, key, meshes);
+    if (scope.footprint == derive::none || !standsOverPlan(solid)) return build(graph, solid, frame, key);
+    const plan::Footprint footprint = footprints.inMetres(scope.footprint, scope.half());
+    const field::PlanField plan(footprint, footprints[scope.footprint].formula, frame.p, combine(key, hashText("plan")));
+    frame.plan = &plan;
+    return build(graph, solid, frame, key);
 }
 
 Field lowerClad(Graph& graph, const field::Clad& what, const SolidValue& ornament, const derive::Scope& scope, uint64_t key) {

@@ -23,7 +23,11 @@ constexpr OperationArgument turnArguments[] = {
     {"angle", ArgumentType::Rotation, "about y; (a, b, c) turns about x, then y, then z, through the centre"}};
 
 void applySize(AttributeContext& context, const Attribute& attribute) {
-    context.out.scope.size = context.metres(attribute.args[0], false);
+    const derive::Vector v = context.vector(attribute.args[0], false);
+    // An absolute size asks for a box: what is inherited of the plan stretches by shares alone.
+    const bool isAbsolute = v.unit[0] != rules::Unit::Share || v.unit[2] != rules::Unit::Share;
+    if (isAbsolute && !context.out.ownsFootprint) context.out.scope.footprint = derive::none;
+    context.out.scope.size = context.metres(v);
     context.out.sizeSpan = attribute.span;
 }
 

@@ -143,12 +143,8 @@ bool runSplit(PartsContext& context, const Parts& split) {
         const double to_m = std::min(whole_m, from_m + length.fixed_m + length.floating * layout->perFloat_m);
         const double low_m = std::exchange(from_m, to_m);
         if (to_m - low_m <= leastPart_m) return true;
-        derive::Scope scope = context.scope();
-        Vec3d moved;
-        moved[split.axis] = (low_m + to_m - whole_m) / 2;
-        scope.centre += scope.axes * moved;
-        scope.size[split.axis] = to_m - low_m;
-        return context.run(*part.body, scope, key);
+        const auto scope = context.cut(split.axis, low_m, to_m);
+        return !scope || context.run(*part.body, *scope, key);
     };
     for (size_t p = 0; p < split.parts.size(); ++p) {
         const Part& part = split.parts[p];

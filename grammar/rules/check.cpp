@@ -69,6 +69,7 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     each(&Checker::declare);
     each(&Checker::refuse);
     each(&Checker::parameters);
+    each(&Checker::lsystems);
     each(&Checker::terminals);
     each(&Checker::productions);
     each(&Checker::sayings);

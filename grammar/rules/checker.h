@@ -71,6 +71,7 @@ public:
     void declare(const syntax::Ast& ast);
     /// Checks what stands behind the names.
     void parameters(const syntax::Ast& ast);
+    void lsystems(const syntax::Ast& ast);
     void terminals(const syntax::Ast& ast);
     void productions(const syntax::Ast& ast);
     void sayings(const syntax::Ast& ast);  ///< derives, styles, checks
@@ -157,6 +158,10 @@ private:
     void rule(const syntax::RuleDecl& decl);
     void start(const syntax::StartDecl& decl);
 
+    // lsystems.cpp
+    void declareLsystem(const syntax::LsystemDecl& decl);
+    void lsystem(const syntax::LsystemDecl& decl);
+
     // declarations.cpp
     void parameter(const syntax::ParamDecl& decl);
     void usedDefaults(const syntax::Ast& ast);
@@ -183,14 +188,14 @@ private:
     bool anythingExcused_ = false;   ///< a used file is missing, and nobody knows what it declares
     Loader::Mesh loadMesh_;
     std::map<std::pair<const syntax::Source*, std::string>, size_t> files_;  ///< read so far: places in Grammar::meshes
-    std::set<std::string> unbuilt_;  ///< maps and lsystems: named once, refused once
+    std::set<std::string> unbuilt_;  ///< maps: named once, refused once
     std::set<SymbolId> ruled_;       ///< have a rule
     std::set<SymbolId> placed_;      ///< stand in a start, a body or behind a colon
     std::map<std::string, const syntax::TerminalDecl*> terminalDecls_;
     std::map<std::string, Solid> terminalSolids_;
     std::map<SymbolId, uint32_t> unnamedRules_;  ///< how many so far
     std::vector<std::string> terminalsInWork_;   ///< whose solids are being read: finds a = b, b = a
-    std::map<std::string, SourceSpan> seenParams_, seenTerminals_, seenRules_, seenStarts_, seenStyles_, seenDerives_;
+    std::map<std::string, SourceSpan> seenParams_, seenTerminals_, seenRules_, seenStarts_, seenStyles_, seenDerives_, seenLsystems_;
 };
 
 }  // namespace sgm::rules

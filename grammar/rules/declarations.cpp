@@ -270,7 +270,6 @@ void Checker::sayings(const syntax::Ast& ast) {
 
 void Checker::refuse(const syntax::Ast& ast) {
     for (const auto& decl : ast.maps) diagnostics_.error(decl.span, "maps are not supported yet");
-    for (const auto& decl : ast.lsystems) diagnostics_.error(decl.span, "lsystems are not supported yet");
     for (const auto& decl : ast.overrides) diagnostics_.error(decl.span, "overrides are not supported yet");
 }
 

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "grammar/rules/plans.h"
 #include "grammar/rules/value.h"
 #include "grammar/syntax/ast.h"
 #include "modeler/core/provenance.h"
@@ -102,12 +103,48 @@ struct Solid {
     uint32_t material = none;      ///< of the first terminal in it that has a look, index into Grammar::materials
 };
 
+/// What a footprint is drawn from.
+struct PlanExpr {
+    enum class Kind : uint8_t {
+        Drawn,       ///< row, args: one a parameter
+        Outline,     ///< args: points, vectors of two, all lengths or all shares of the scope
+        Lsystem,     ///< the outline that Grammar::lsystems[index] draws
+        Union,       ///< parts
+        Difference,  ///< parts: the first less the others
+    };
+    Kind kind = Kind::Drawn;
+    SourceSpan span;
+    const PlanRow* row = nullptr;
+    uint32_t index = 0;
+    std::vector<Expr> args;
+    std::vector<PlanExpr> parts;
+    std::optional<Expr> at, turn;  ///< `at: (x, z)` and `turn: angle` of a part
+    bool inShares = false;         ///< Outline: its points are shares
+    std::vector<std::string> words;  ///< of `setback edges(…)`: one an argument of the attribute
+};
+
+/// An L-system: letters rewritten in parallel, read by a turtle.
+struct Lsystem {
+    struct Production {
+        SourceSpan span;
+        char letter = 'F';
+        std::string text;
+        double weight = 1;
+    };
+    std::string name;
+    SourceSpan span;
+    std::string axiom;
+    std::vector<Production> productions;
+    Expr passes, angle, step, shrink;  ///< a whole number; radians; metres; metres that each pass takes from the step
+};
+
 struct Body;
 
 /// The block of a content operation (`split x { … }`): parts of the scope, a body in every one.
 struct Parts {
     struct Part {
         SourceSpan span;
+        std::string label;              ///< a word: `side`, or a tag
         Expr size;                      ///< metres or a share of the scope; floating: a weight, in `{ … }*` wished metres
         bool floating = false;          ///< ~: shares what fixed sizes leave
         std::shared_ptr<const Body> body;
@@ -117,6 +154,7 @@ struct Parts {
     SourceSpan span;
     const Operation* operation = nullptr;
     int axis = 0;                       ///< 0 x, 1 y, 2 z
+    std::vector<Expr> args;             ///< of the operation itself
     std::vector<Part> parts;            ///< in the order of the text
 };
 
@@ -162,6 +200,7 @@ struct Attribute {
     std::vector<Expr> args;
     std::shared_ptr<Solid> pattern;  ///< `clad`: an ornament with the thickness, tile and mirror said beside it
     SymbolId symbol = none;          ///< `clad`: the terminal that named the pattern
+    std::shared_ptr<const PlanExpr> plan;  ///< `footprint`: what draws it
 };
 
 /// `at`, `to`: which joints are asked for.
@@ -298,6 +337,7 @@ struct Grammar {
     std::vector<Rule> rules;
     std::vector<Start> starts;
     std::vector<Derive> derives;
+    std::vector<Lsystem> lsystems;
     std::vector<Style> styles;
     std::vector<Check> checks;
     std::vector<field::SampledGridPtr> meshes;  ///< of a solid's File argument, by its n[0]

@@ -131,7 +131,7 @@ void Checker::declare(const syntax::Ast& ast) {
     for (const auto& decl : ast.params) declareParameter(decl);
     for (const auto& decl : ast.terminals) declareTerminals(decl);
     for (const auto& decl : ast.maps) unbuilt_.insert(decl.name.text);
-    for (const auto& decl : ast.lsystems) unbuilt_.insert(decl.name.text);
+    for (const auto& decl : ast.lsystems) declareLsystem(decl);
     for (const auto& decl : ast.starts) {
         twice(seenStarts_, decl.symbol, "start");
         if (isNonTerminal(decl.symbol.text)) placed_.insert(nonTerminal(decl.symbol));

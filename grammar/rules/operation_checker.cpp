@@ -119,6 +119,12 @@ void OperationChecker::checkRange(const Expr& e, const field::Primitive& row, si
 
 Solid OperationChecker::solidOfRow(SourceSpan span, const field::Primitive& row) { return Checker::solidOfRow(span, row); }
 
+std::optional<uint32_t> OperationChecker::findLsystem(std::string_view name) const {
+    const auto& all = checker_.grammar_.lsystems;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Lsystem& l) { return l.name == name; });
+    return found == all.end() ? std::nullopt : std::optional(static_cast<uint32_t>(found - all.begin()));
+}
+
 std::optional<SymbolId> OperationChecker::findSymbol(std::string_view name) const {
     const auto symbol = checker_.symbols_.find(std::string(name));
     return symbol == checker_.symbols_.end() ? std::nullopt : std::optional(symbol->second);

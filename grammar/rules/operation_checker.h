@@ -60,6 +60,8 @@ public:
     void checkRange(const Expr& e, const field::Primitive& row, size_t parameter);
     static Solid solidOfRow(SourceSpan span, const field::Primitive& row);
 
+    /// The index of an lsystem of the grammar.
+    std::optional<uint32_t> findLsystem(std::string_view name) const;
     std::optional<SymbolId> findSymbol(std::string_view name) const;
     bool isParameter(std::string_view name) const;
     /// True when some terminal or primitive declares a joint of that name.

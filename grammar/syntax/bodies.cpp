@@ -279,7 +279,7 @@ void refuseStray(Cursor& cursor) {
 }  // namespace
 
 bool isLaterOperation(std::string_view word) {
-    constexpr std::string_view words[] = {"inset", "footprint", "extrude", "faces", "balcony"};
+    constexpr std::string_view words[] = {"inset", "balcony"};
     return std::find(std::begin(words), std::end(words), word) != std::end(words);
 }
 

@@ -43,6 +43,7 @@ enum class ArgumentType : uint8_t {
     Solid,     ///< a terminal or solid expression
     Axis,      ///< x, y or z
     Name,      ///< a bare word (a tag)
+    Plan,      ///< a plan by name, ell(16, 12, 5, 6), or a number
 };
 
 /// "a length", "a joint": an argument's type in words.

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "modeler/core/conventions.h"
+#include "modeler/field/plan_solids.h"
 #include "modeler/field/solids.h"
 
 namespace sgm::field {
@@ -70,6 +71,38 @@ constexpr PrimitiveParameter meshParameters[] = {
     {"file", Kind::File, 0, 0, 0, "a closed mesh (.obj, .ply, .stl, .off) in the grammar's own folder"},
 };
 
+// Roofs over a footprint.
+constexpr PrimitiveParameter pitch{"pitch", Kind::Angle, 35 * pi / 180, pi / 180, 85 * pi / 180, "slope of its planes from the level"};
+constexpr PrimitiveParameter overhang{"overhang", Kind::Length, 0, 0, 20, "metres that the eaves stand out"};
+constexpr PrimitiveParameter fascia{"fascia", Kind::Length, 0, 0, 5, "height of the upright board at the eaves"};
+constexpr PrimitiveParameter cover{"cover", Kind::Length, 0, 0, 5, "thickness of a roof that is open below; 0 fills it"};
+constexpr PrimitiveParameter ends{"ends", Kind::Choice, 0, 0, 3,
+                                  "which walls go up to the ridge: where it ends over them, those toward x or z, or all",
+                                  "auto|x|z|all"};
+constexpr PrimitiveParameter lower{"lower", Kind::Angle, 70 * pi / 180, pi / 180, 89 * pi / 180, "slope of the lower planes"};
+constexpr PrimitiveParameter breakAt{"height", Kind::Length, 3, .01, 100, "height at which the upper planes begin"};
+constexpr PrimitiveParameter upper{"upper", Kind::Angle, 22 * pi / 180, pi / 180, 85 * pi / 180, "slope of the upper planes"};
+constexpr PrimitiveParameter hipParameters[] = {pitch, overhang, fascia, cover};
+constexpr PrimitiveParameter gableParameters[] = {pitch, overhang, fascia, cover, ends};
+constexpr PrimitiveParameter halfHipParameters[] = {
+    pitch, overhang, fascia, cover, ends, {"share", Kind::Share, .5, 0, 1, "of a gable's height at which its hip begins"}};
+constexpr PrimitiveParameter mansardParameters[] = {lower, breakAt, upper, overhang, fascia, cover};
+constexpr PrimitiveParameter gambrelParameters[] = {lower, breakAt, upper, overhang, fascia, cover, ends};
+constexpr PrimitiveParameter saltboxParameters[] = {
+    {"front", Kind::Angle, 45 * pi / 180, pi / 180, 85 * pi / 180, "slope of planes toward +z"},
+    {"back", Kind::Angle, 25 * pi / 180, pi / 180, 85 * pi / 180, "slope of the others"},
+    overhang, fascia, cover, ends};
+constexpr PrimitiveParameter shedParameters[] = {
+    pitch, overhang, fascia, cover, {"to", Kind::Choice, 0, 0, 3, "the side toward which it rises", "back|front|left|right"}};
+constexpr PrimitiveParameter butterflyParameters[] = {
+    pitch, overhang, fascia, cover, {"valley", Kind::Choice, 0, 0, 1, "the direction of its valley", "x|z"}};
+constexpr PrimitiveParameter flatParameters[] = {
+    {"slab", Kind::Length, .3, .001, 20, "thickness of the roof"},
+    {"parapet", Kind::Length, .9, 0, 20, "height of the parapet above it; 0 for none"},
+    {"thickness", Kind::Length, .25, .001, 20, "of the parapet"}};
+constexpr PrimitiveParameter pyramidRoofParameters[] = {overhang, fascia};
+constexpr PrimitiveParameter domeParameters[] = {overhang};
+
 constexpr PrimitiveJoint apex[] = {{"apex", {0, 1, 0}, {0, 1, 0}}};
 constexpr PrimitiveJoint ridge[] = {{"ridge", {0, 1, 0}, {0, 1, 0}}};
 
@@ -113,6 +146,32 @@ constexpr Primitive table[] = {
     {"ornament",
      "Storeys and mirrored bays of a fractal filling the scope (McGraw, eq. 4, algorithm 2). What `clad` dresses with.",
      ornamentParameters, solids::ornament},
+    {"block", "Prism over the footprint, or the whole scope where it has none. What a terminal without a solid is.", {},
+     solids::block, true, {}, false, convex::cube, PlanUse::Fills},
+    {"hipRoof", "Roof with a plane over every edge of the footprint.", hipParameters, solids::hipRoof, true, {}, false, nullptr,
+     PlanUse::OwnHeight},
+    {"gableRoof", "Roof whose end walls go up to the ridge.", gableParameters, solids::gableRoof, true, {}, false, nullptr,
+     PlanUse::OwnHeight},
+    {"halfHipRoof", "Gable roof whose points are hipped.", halfHipParameters, solids::halfHipRoof, true, {}, false, nullptr,
+     PlanUse::OwnHeight},
+    {"mansardRoof", "Steep planes over every edge, flatter ones above.", mansardParameters, solids::mansardRoof, true, {},
+     false, nullptr, PlanUse::OwnHeight},
+    {"gambrelRoof", "A mansard roof between gables.", gambrelParameters, solids::gambrelRoof, true, {}, false, nullptr,
+     PlanUse::OwnHeight},
+    {"saltboxRoof", "Gable roof with a pitch of its own toward the front (+z).", saltboxParameters, solids::saltboxRoof, true,
+     {}, false, nullptr, PlanUse::OwnHeight},
+    {"shedRoof", "One plane over the whole footprint.", shedParameters, solids::shedRoof, true, {}, false, nullptr,
+     PlanUse::OwnHeight},
+    {"butterflyRoof", "Two planes that fall to a valley in the middle.", butterflyParameters, solids::butterflyRoof, true, {},
+     false, nullptr, PlanUse::OwnHeight},
+    {"flatRoof", "A slab with a parapet round it.", flatParameters, solids::flatRoof, true, {}, false, nullptr,
+     PlanUse::OwnHeight},
+    {"pyramidRoof", "Planes from every edge to one point at the scope's top.", pyramidRoofParameters, solids::pyramidRoof, true,
+     apex, false, nullptr, PlanUse::Fills},
+    {"domeRoof", "Quarter ellipses over every edge: a dome as high as the scope.", domeParameters, solids::domeRoof, true, apex,
+     false, nullptr, PlanUse::Fills},
+    {"bellRoof", "As the dome, with a hollow foot.", domeParameters, solids::bellRoof, true, apex, false, nullptr,
+     PlanUse::Fills},
     {"halfspace",
      "Everything below the scope's middle plane y = 0. Unbounded: may only cut.",
      {},

@@ -36,12 +36,16 @@ struct Argument {
     SampledGridPtr grid;
 };
 
+class PlanField;
+
 /// What a primitive is built from.
 struct PrimitiveInput {
     Point p;              ///< position in the solid's frame, metres, origin at the scope's centre
     Point half;           ///< half-size of the scope along x, y, z, metres
     Vec3d halfValue;      ///< the same, present numbers
     std::span<const Argument> arguments;  ///< one per row parameter, in row order
+    const PlanField* plan = nullptr;      ///< the scope's footprint about its centre, metres; null: the rectangle
+    uint64_t path = 0;                    ///< keys the slots of a row over a footprint
 };
 
 /// A joint a solid offers besides the shared ones, in shares of the half-size.
@@ -49,6 +53,13 @@ struct PrimitiveJoint {
     std::string_view name;
     Vec3d at;      ///< −1 … 1 of the half-size
     Vec3d facing;  ///< unit direction; zero meets any other
+};
+
+/// What a row does with the footprint of its scope (modeler/plan).
+enum class PlanUse : uint8_t {
+    None,       ///< fills the scope, whatever its footprint
+    Fills,      ///< stands over the footprint and fills the scope's height
+    OwnHeight,  ///< stands over the footprint, as high as its parameters make it (heightOver)
 };
 
 /// One row.
@@ -61,6 +72,7 @@ struct Primitive {
     std::span<const PrimitiveJoint> joints{};
     bool morphs = false;  ///< its first parameter is the share of a morph
     convex::PartsOf convexParts = nullptr;  ///< null where it has none, or where they must be found from its field
+    PlanUse plan = PlanUse::None;
 };
 
 /// The table, in the order of docs/reference.md.

@@ -1,0 +1,37 @@
+// The footprints of a derivation, each once.
+// Enters: sound footprints about their scope's centre. Leaves: indices that scopes carry. Assumes that the table outlives
+// the scopes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "modeler/core/result.h"
+#include "modeler/core/vec.h"
+#include "modeler/plan/formula.h"
+
+namespace sgm::derive {
+
+/// A footprint in shares of a scope's half-size along x and z (−1 … 1), so that it stretches with the scope, and its formula.
+struct PlanShape {
+    plan::Footprint footprint;
+    plan::Formula formula;
+};
+
+class Footprints {
+public:
+    /// The index of a footprint given in metres about the centre of a scope of that half-size: an old one where one is
+    /// alike. Error::Input with the fault's sentence where its edges cross.
+    Result<uint32_t> put(const plan::Footprint& footprint, Vec3d half);
+    const PlanShape& operator[](uint32_t index) const { return *shapes_[index]; }
+    /// The footprint in metres about the centre of a scope of that half-size.
+    plan::Footprint inMetres(uint32_t index, Vec3d half) const;
+
+private:
+    std::vector<std::shared_ptr<const PlanShape>> shapes_;
+    std::unordered_multimap<uint64_t, uint32_t> byHash_;
+};
+
+}  // namespace sgm::derive

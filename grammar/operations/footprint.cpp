@@ -1,0 +1,195 @@
+// footprint, extrude, offset, setback, court, rectify, inner: the plan of a scope (modeler/plan).
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "grammar/operations/operations.h"
+#include "grammar/operations/plan_edges.h"
+#include "grammar/operations/plan_expressions.h"
+#include "modeler/plan/edit.h"
+
+namespace sgm::operations {
+namespace {
+
+using derive::AttributeContext;
+using rules::Attribute;
+using rules::OperationChecker;
+using syntax::ArgumentType;
+using syntax::Operation;
+using syntax::OperationArgument;
+
+constexpr double most_m = 1e5;
+
+constexpr OperationArgument footprintArguments[] = {
+    {"plan", ArgumentType::Plan, "rect, ell, tee, yard, ring, ngon, round, arc, outline((x, z), …), an lsystem, or (a + b), (a - b) of them"}};
+constexpr OperationArgument extrudeArguments[] = {{"height", ArgumentType::Length, "metres above the foot of the scope"}};
+constexpr OperationArgument offsetArguments[] = {{"distance", ArgumentType::Length, "outward; inward where negative"}};
+constexpr OperationArgument setbackArguments[] = {
+    {"distance", ArgumentType::Plan, "metres inward of every edge, or edges(front: 5m, back: 8m, rest: 2m): by side or tag"}};
+constexpr OperationArgument courtArguments[] = {{"wing", ArgumentType::Length, "metres from every edge to the court"}};
+constexpr OperationArgument rectifyArguments[] = {{"within", ArgumentType::Angle, "of the plan's main direction"}};
+
+void checkFootprint(OperationChecker& checker, const syntax::Attribute& written) {
+    if (written.args.empty()) return;
+    Attribute out;
+    out.operation = written.operation;
+    out.span = written.span;
+    checker.beginDraws("footprint");
+    out.plan = checkPlan(checker, written.args[0]);
+    checker.add(std::move(out));
+}
+
+void applyFootprint(AttributeContext& context, const Attribute& attribute) {
+    auto drawn = drawPlan(context, *attribute.plan);
+    if (!drawn) return;
+    // What is drawn in metres comes centred on the scope; an outline of shares keeps its place in it.
+    const Vec3d before = context.out.moved_m;
+    context.setFootprint(std::move(drawn->footprint), attribute.span);
+    if (context.out.vanishes) context.fail("the plan encloses no area: its edges cross, or lie on one line", attribute.span);
+    if (!drawn->fillsScope) context.out.moved_m = before;
+}
+
+/// The foot stays where it is.
+void applyExtrude(AttributeContext& context, const Attribute& attribute) {
+    const double height_m = context.number(attribute.args[0]);
+    context.out.moved_m += context.out.scope.axes.y * ((height_m - context.out.scope.size.y) / 2);
+    context.out.scope.size.y = height_m;
+    context.out.sizeSpan = attribute.span;
+}
+
+void applyOffset(AttributeContext& context, const Attribute& attribute) {
+    context.setFootprint(plan::offset(context.footprint(), context.number(attribute.args[0])), attribute.span);
+}
+
+/// `edges(front: 5m, rest: 2m)`: args are the distances, and the plan's parts hold the words.
+void checkSetback(OperationChecker& checker, const syntax::Attribute& written) {
+    if (written.args.empty()) return;
+    Attribute out;
+    out.operation = written.operation;
+    out.span = written.span;
+    const syntax::Expr& e = written.args[0];
+    checker.beginDraws("setback");
+    auto words = std::make_shared<rules::PlanExpr>();
+    const bool named = e.kind == syntax::Expr::Kind::Call && e.text == "edges";
+    for (size_t i = 0; named && i < e.args.size(); ++i) {
+        if (e.argNames[i].empty()) {
+            checker.error(e.args[i].span, "each distance of 'edges' has the word of its edges before it", "write 'edges(front: 5m, rest: 2m)'");
+            return;
+        }
+        checker.beginDraws("setback." + e.argNames[i]);
+        words->words.push_back(e.argNames[i]);
+        out.args.push_back(checker.expression(e.args[i], rules::Want::Length, "a setback"));
+    }
+    if (!named) {
+        words->words.push_back("side");
+        out.args.push_back(checker.expression(e, rules::Want::Length, "'setback'"));
+    }
+    for (const rules::Expr& arg : out.args)
+        if (const auto value = checker.atDefaults(arg); value && value->num() < 0)
+            checker.error(arg.span, "a setback goes inward and is no less than 0", "write 'offset' to go outward");
+    out.plan = std::move(words);
+    checker.add(std::move(out));
+}
+
+void applySetback(AttributeContext& context, const Attribute& attribute) {
+    const plan::Footprint footprint = context.footprint();
+    std::vector<double> distances;
+    for (const plan::PlacedEdge& edge : plan::edgesOf(footprint)) {
+        const auto& words = attribute.plan->words;
+        const auto word = std::find_if(words.begin(), words.end(), [&](const std::string& w) { return isEdgeCalled(footprint, edge, w); });
+        distances.push_back(word == words.end() ? 0 : std::max(0.0, context.number(attribute.args[static_cast<size_t>(word - words.begin())])));
+    }
+    context.setFootprint(plan::setback(footprint, distances), attribute.span);
+}
+
+void applyCourt(AttributeContext& context, const Attribute& attribute) {
+    auto court = plan::court(context.footprint(), context.number(attribute.args[0]));
+    if (!court.ok()) return context.fail(court.error().message, attribute.span);
+    context.setFootprint(std::move(*court), attribute.span);
+}
+
+void applyRectify(AttributeContext& context, const Attribute& attribute) {
+    context.setFootprint(plan::rectified(context.footprint(), context.number(attribute.args[0])), attribute.span);
+}
+
+void applyInner(AttributeContext& context, const Attribute& attribute) {
+    const auto box = plan::innerRectangle(context.footprint());
+    if (!box) {
+        context.out.vanishes = true;
+        return;
+    }
+    context.setFootprint(plan::footprintOf(plan::polygonOf({box->lo, {box->hi.x, box->lo.z}, box->hi, {box->lo.x, box->hi.z}})),
+                         attribute.span);
+    context.out.scope.footprint = derive::none;
+}
+
+}  // namespace
+
+constinit const Operation footprint{
+    .name = "footprint",
+    .doc = "Gives the scope a plan, which terminals without a solid and roofs stand over; a plan in metres sets its size along x and z.",
+    .example = "footprint ell(16, 12, 5, 6) block",
+    .arguments = footprintArguments,
+    .beforeShape = true,
+    .check = checkFootprint,
+    .apply = applyFootprint,
+};
+
+constinit const Operation extrude{
+    .name = "extrude",
+    .doc = "Sets the height of the scope; its foot stays.",
+    .example = "footprint ngon(6) extrude 9m block",
+    .arguments = extrudeArguments,
+    .range = {1e-6, most_m, "more than 0, and at most 100 km"},
+    .beforeShape = true,
+    .apply = applyExtrude,
+};
+
+constinit const Operation offset{
+    .name = "offset",
+    .doc = "Moves all edges of the footprint outward, with mitred corners; where nothing is left no shape is made.",
+    .example = "footprint ell(16, 12, 5, 6) offset .4m block",
+    .arguments = offsetArguments,
+    .range = {-most_m, most_m, "at most 100 km"},
+    .beforeShape = true,
+    .apply = applyOffset,
+};
+
+constinit const Operation setback{
+    .name = "setback",
+    .doc = "Moves edges of the footprint inward, all or those called by a word: front (+z) back left right side court cut rest, or a tag.",
+    .example = "footprint rect(30, 20) setback edges(front: 5m, rest: 2m) block",
+    .arguments = setbackArguments,
+    .beforeShape = true,
+    .check = checkSetback,
+    .apply = applySetback,
+};
+
+constinit const Operation court{
+    .name = "court",
+    .doc = "Cuts a court out of the footprint that leaves wings of one depth; its edges are called court.",
+    .example = "footprint rect(40, 30) court 11m block",
+    .arguments = courtArguments,
+    .range = {1e-3, most_m, "at least 1 mm"},
+    .beforeShape = true,
+    .apply = applyCourt,
+};
+
+constinit const Operation rectify{
+    .name = "rectify",
+    .doc = "Lays the edges of a surveyed plan along its main directions, where they are nearly so.",
+    .example = "footprint outline((0, 0), (9, .2), (9.1, 6), (0, 6)) rectify 5deg block",
+    .arguments = rectifyArguments,
+    .beforeShape = true,
+    .apply = applyRectify,
+};
+
+constinit const Operation inner{
+    .name = "inner",
+    .doc = "Makes the largest rectangle inside the footprint the scope.",
+    .example = "footprint ell(16, 12, 5, 6) inner cube",
+    .beforeShape = true,
+    .apply = applyInner,
+};
+
+}  // namespace sgm::operations

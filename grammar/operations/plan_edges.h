@@ -1,0 +1,14 @@
+// Words for the edges of a footprint.
+// Enters: an edge and a word. Leaves: whether it is called so. Assumes tags of several words are separated by blanks.
+#pragma once
+
+#include <string_view>
+
+#include "modeler/plan/polygon.h"
+
+namespace sgm::operations {
+
+/// front (+z), back, left, right by its normal, side and rest for every edge, court, cut, or one of the words of its tag.
+bool isEdgeCalled(const plan::Footprint& footprint, const plan::PlacedEdge& edge, std::string_view word);
+
+}  // namespace sgm::operations

@@ -1,0 +1,219 @@
+#include "grammar/operations/plan_expressions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "grammar/derive/builder.h"
+#include "grammar/derive/lsystem.h"
+#include "grammar/rules/checker.h"
+#include "grammar/rules/make.h"
+#include "modeler/core/random.h"
+#include "modeler/plan/edit.h"
+
+namespace sgm::operations {
+namespace {
+
+using derive::AttributeContext;
+using rules::Expr;
+using rules::OperationChecker;
+using rules::PlanExpr;
+using rules::PlanParameter;
+using rules::PlanParameterKind;
+using rules::Unit;
+using rules::Value;
+using rules::Want;
+using Written = syntax::Expr;
+
+Want wantOf(PlanParameterKind kind) {
+    return kind == PlanParameterKind::Length ? Want::Length : kind == PlanParameterKind::Angle ? Want::Angle : Want::Count;
+}
+
+Expr fallbackOf(syntax::SourceSpan span, const PlanParameter& parameter) {
+    return rules::makeConstant(span, Value::number(parameter.fallback));
+}
+
+/// A point (x, z): two lengths, or where `shares` is given two shares.
+Expr checkPoint(OperationChecker& checker, const Written& e, bool* shares) {
+    const rules::Typed point = checker.value(e);
+    const Value& like = point.type.like;
+    const bool two = !point.type.known || (like.kind == Value::Kind::Vector && like.count == 2);
+    const auto every = [&](auto holds) { return holds(like.units[0]) && holds(like.units[1]); };
+    const bool lengths = every([](Unit u) { return u == Unit::None || u == Unit::Metre; });
+    const bool parts = every([](Unit u) { return u == Unit::Share; });
+    if (!two || (point.type.known && !lengths && !(parts && shares)))
+        checker.error(e.span, fmt::format("a point of a plan is (x, z), not {}", describe(point.type)), "write '(4m, 2m)'");
+    if (shares) *shares = point.type.known && parts;
+    return point.expr;
+}
+
+/// `at: (x, z)` and `turn: angle`, which any part of a plan takes; false for another name.
+bool checkPlacement(OperationChecker& checker, const Written& e, size_t i, PlanExpr& plan) {
+    const std::string& name = e.argNames[i];
+    if (name != "at" && name != "turn") return false;
+    checker.beginDraws("footprint." + name);
+    if (name == "at") plan.at = checkPoint(checker, e.args[i], nullptr);
+    else plan.turn = checker.expression(e.args[i], Want::Angle, "'turn' of a plan");
+    return true;
+}
+
+void checkCall(OperationChecker& checker, const Written& e, PlanExpr& plan) {
+    const rules::PlanRow& row = *plan.row;
+    std::vector<bool> given(row.parameters.size(), false);
+    for (const PlanParameter& parameter : row.parameters) plan.args.push_back(fallbackOf(e.span, parameter));
+    size_t next = 0;
+    for (size_t i = 0; i < e.args.size(); ++i) {
+        const std::string& name = e.argNames[i];
+        if (!name.empty() && checkPlacement(checker, e, i, plan)) continue;
+        size_t index = next++;
+        if (!name.empty()) {
+            const auto found = std::find_if(row.parameters.begin(), row.parameters.end(), [&](const auto& p) { return p.name == name; });
+            index = static_cast<size_t>(found - row.parameters.begin());
+        }
+        if (index >= row.parameters.size()) {
+            std::vector<std::string> known{"at", "turn"};
+            for (const PlanParameter& p : row.parameters) known.emplace_back(p.name);
+            checker.error(e.args[i].span, name.empty() ? fmt::format("'{}' takes no more than {} numbers", row.name, row.parameters.size())
+                                                       : fmt::format("'{}' has no parameter '{}'", row.name, name),
+                          checker.nearest(name, known));
+            return;
+        }
+        checker.beginDraws(fmt::format("footprint.{}", row.parameters[index].name));
+        plan.args[index] = checker.expression(e.args[i], wantOf(row.parameters[index].kind),
+                                              fmt::format("'{}' of '{}'", row.parameters[index].name, row.name));
+        given[index] = true;
+    }
+    for (size_t i = 0; i < given.size(); ++i)
+        if (row.parameters[i].required && !given[i]) {
+            checker.error(e.span, fmt::format("'{}' needs its {}: {}", row.name, row.parameters[i].name, row.parameters[i].doc),
+                          fmt::format("as in '{}'", row.example));
+            return;
+        }
+}
+
+void checkOutline(OperationChecker& checker, const Written& e, PlanExpr& plan) {
+    plan.kind = PlanExpr::Kind::Outline;
+    std::optional<bool> inShares;
+    for (size_t i = 0; i < e.args.size(); ++i) {
+        if (!e.argNames[i].empty()) {
+            if (!checkPlacement(checker, e, i, plan))
+                checker.error(e.args[i].span, fmt::format("'outline' has no parameter '{}'", e.argNames[i]));
+            continue;
+        }
+        bool shares = false;
+        checker.beginDraws("footprint.outline");
+        plan.args.push_back(checkPoint(checker, e.args[i], &shares));
+        if (inShares && *inShares != shares)
+            checker.error(e.args[i].span, "the points of an outline are all lengths or all shares of the scope");
+        inShares = shares;
+    }
+    plan.inShares = inShares.value_or(false);
+    if (plan.args.size() < 3) checker.error(e.span, "an outline has three points or more", "write 'outline((0, 0), (8, 0), (8, 6))'");
+}
+
+bool checkInto(OperationChecker& checker, const Written& e, PlanExpr& plan) {
+    plan.span = e.span;
+    const bool isUnion = e.kind == Written::Kind::Binary && e.text == "+";
+    if (isUnion || (e.kind == Written::Kind::Binary && e.text == "-")) {
+        plan.kind = isUnion ? PlanExpr::Kind::Union : PlanExpr::Kind::Difference;
+        plan.parts.resize(2);
+        return checkInto(checker, e.args[0], plan.parts[0]) && checkInto(checker, e.args[1], plan.parts[1]);
+    }
+    if (e.kind == Written::Kind::Call && e.text == "outline") {
+        checkOutline(checker, e, plan);
+        return true;
+    }
+    plan.row = rules::findPlan(e.text);
+    if (plan.row && (e.kind == Written::Kind::Call || e.kind == Written::Kind::Name)) {
+        checkCall(checker, e, plan);
+        return true;
+    }
+    if (const auto index = e.kind == Written::Kind::Name ? checker.findLsystem(e.text) : std::nullopt) {
+        plan.kind = PlanExpr::Kind::Lsystem;
+        plan.index = *index;
+        return true;
+    }
+    if (e.kind == Written::Kind::Error) return false;
+    std::vector<std::string> known{"outline"};
+    for (const rules::PlanRow& row : rules::planRows()) known.emplace_back(row.name);
+    for (const rules::Lsystem& lsystem : checker.grammar().lsystems) known.push_back(lsystem.name);
+    const std::string near = checker.nearest(e.text, known);
+    checker.unknownName(e.span, e.text, fmt::format("'{}' draws no footprint", e.span.text()),
+                        near.empty() ? fmt::format("write one of {}, or the name of an lsystem", fmt::join(known, ", ")) : near);
+    return false;
+}
+
+plan::Vec2 pointOf(const AttributeContext& context, const Expr& e) {
+    const Value v = context.evaluate(e);
+    return {v.n[0], v.count > 1 ? v.n[1] : v.n[0]};
+}
+
+Result<DrawnPlan> drawLsystem(const AttributeContext& context, const PlanExpr& plan) {
+    auto drawn = derive::drawOutline(context.grammar().lsystems[plan.index], context.place);
+    if (!drawn.ok()) return drawn.error();
+    return DrawnPlan{std::move(*drawn), false};
+}
+
+Result<DrawnPlan> draw(const AttributeContext& context, const PlanExpr& plan);
+
+Result<DrawnPlan> drawParts(const AttributeContext& context, const PlanExpr& plan) {
+    Result<DrawnPlan> a = draw(context, plan.parts[0]);
+    if (!a.ok()) return a;
+    Result<DrawnPlan> b = draw(context, plan.parts[1]);
+    if (!b.ok()) return b;
+    const auto how = plan.kind == PlanExpr::Kind::Union ? plan::Boolean::Union : plan::Boolean::Difference;
+    return DrawnPlan{plan::boolean(how, a->footprint, b->footprint), a->fillsScope};
+}
+
+Result<DrawnPlan> drawRow(const AttributeContext& context, const PlanExpr& plan) {
+    std::vector<double> numbers;
+    for (const Expr& arg : plan.args) numbers.push_back(context.number(arg));
+    auto drawn = plan.row->draw(numbers);
+    if (!drawn.ok()) return drawn.error();
+    const int free = plan.row->fillsWithout;
+    const bool fills = free >= 0 && numbers[static_cast<size_t>(free)] == 0;
+    if (!fills) return DrawnPlan{std::move(*drawn), false};
+    // Its bounding box becomes the scope's.
+    const plan::Box2 box = bounds(*drawn);
+    const Vec3d size = context.out.scope.size;
+    const plan::Vec2 scale{size.x / box.size().x, size.z / box.size().z};
+    return DrawnPlan{plan::placed(*drawn, scale, {-box.centre().x * scale.x, -box.centre().z * scale.z}), true};
+}
+
+DrawnPlan drawPoints(const AttributeContext& context, const PlanExpr& plan) {
+    std::vector<plan::Vec2> points;
+    const Vec3d size = context.out.scope.size;
+    for (const Expr& arg : plan.args) {
+        plan::Vec2 p = pointOf(context, arg);
+        if (plan.inShares) p = {(p.x - .5) * size.x, (p.z - .5) * size.z};
+        points.push_back(p);
+    }
+    return {plan::footprintOf(plan::polygonOf(std::move(points))), plan.inShares};
+}
+
+Result<DrawnPlan> draw(const AttributeContext& context, const PlanExpr& plan) {
+    Result<DrawnPlan> drawn = plan.kind == PlanExpr::Kind::Drawn     ? drawRow(context, plan)
+                              : plan.kind == PlanExpr::Kind::Outline ? Result<DrawnPlan>(drawPoints(context, plan))
+                              : plan.kind == PlanExpr::Kind::Lsystem ? drawLsystem(context, plan)
+                                                                     : drawParts(context, plan);
+    if (!drawn.ok()) return drawn;
+    if (plan.turn) drawn->footprint = plan::turned(drawn->footprint, context.number(*plan.turn));
+    if (plan.at) drawn->footprint = plan::placed(drawn->footprint, {1, 1}, pointOf(context, *plan.at));
+    return drawn;
+}
+
+}  // namespace
+
+std::shared_ptr<const PlanExpr> checkPlan(OperationChecker& checker, const Written& e) {
+    auto plan = std::make_shared<PlanExpr>();
+    return checkInto(checker, e, *plan) ? plan : nullptr;
+}
+
+std::optional<DrawnPlan> drawPlan(const AttributeContext& context, const PlanExpr& plan) {
+    auto drawn = draw(context, plan);
+    if (drawn.ok()) return std::move(*drawn);
+    context.place.builder->fail(drawn.error().kind, drawn.error().message, plan.span);
+    return std::nullopt;
+}
+
+}  // namespace sgm::operations

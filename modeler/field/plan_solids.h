@@ -1,0 +1,37 @@
+// The rows of the primitive table that stand over the footprint of their scope: blocks and roofs.
+// Enters: a footprint about the scope's centre, metres. Leaves: heights and fields. Assumes sound footprints
+// (modeler/plan/validate.h) and their formulas.
+#pragma once
+
+#include <span>
+
+#include "modeler/field/primitives.h"
+#include "modeler/plan/formula.h"
+
+namespace sgm::field {
+
+/// The height, metres above its foot, of a row of PlanUse::OwnHeight over a footprint: at most a hundredth too much.
+/// `arguments` need their values alone. O(n log n) and a search of the footprint's depth.
+double heightOver(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
+                  std::span<const Argument> arguments);
+
+namespace solids {
+
+// (pitch, overhang, fascia, cover), then their own; see the table in primitives.cpp
+Field block(const PrimitiveInput& in);
+Field hipRoof(const PrimitiveInput& in);
+Field gableRoof(const PrimitiveInput& in);      ///< …, ends
+Field halfHipRoof(const PrimitiveInput& in);    ///< …, ends, share
+Field mansardRoof(const PrimitiveInput& in);    ///< lower, height, upper, overhang, fascia, cover
+Field gambrelRoof(const PrimitiveInput& in);    ///< the same, ends
+Field saltboxRoof(const PrimitiveInput& in);    ///< front, back, overhang, fascia, cover, ends
+Field shedRoof(const PrimitiveInput& in);       ///< …, to
+Field butterflyRoof(const PrimitiveInput& in);  ///< …, valley
+Field flatRoof(const PrimitiveInput& in);       ///< slab, parapet, thickness
+Field pyramidRoof(const PrimitiveInput& in);    ///< overhang, fascia
+Field domeRoof(const PrimitiveInput& in);       ///< overhang
+Field bellRoof(const PrimitiveInput& in);       ///< overhang
+
+}  // namespace solids
+
+}  // namespace sgm::field

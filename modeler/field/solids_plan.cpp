@@ -1,0 +1,183 @@
+// Blocks and roofs over the footprint of their scope (modeler/field/footprint.h, roofs.h).
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "modeler/core/random.h"
+#include "modeler/field/combine.h"
+#include "modeler/field/footprint.h"
+#include "modeler/field/plan_solids.h"
+#include "modeler/field/roofs.h"
+#include "modeler/field/solids.h"
+#include "modeler/plan/shapes.h"
+
+namespace sgm::field {
+namespace {
+
+Quantity quantity(const Argument& a) { return {a.node[0], a.value[0]}; }
+Quantity number(const PrimitiveInput& in, double value) { return fixed(in.p.x.graph(), value); }
+
+Quantity bottom(const PrimitiveInput& in) { return {-in.half.y, -in.halfValue.y}; }
+Quantity top(const PrimitiveInput& in) { return {in.half.y, in.halfValue.y}; }
+Quantity height(const PrimitiveInput& in) { return {2.0f * in.half.y, 2 * in.halfValue.y}; }
+
+RoofFoot footOf(const PrimitiveInput& in, Quantity overhang, Quantity fascia) {
+    return {bottom(in), overhang, fascia, combine(in.path, hashText("roof"))};
+}
+RoofFoot footAt(const PrimitiveInput& in, size_t overhang) {
+    return footOf(in, quantity(in.arguments[overhang]), quantity(in.arguments[overhang + 1]));
+}
+
+/// The footprint that a roof stands over: that of its scope, else the scope's rectangle.
+class PlanOf {
+public:
+    explicit PlanOf(const PrimitiveInput& in) : plan_(in.plan) {
+        if (plan_) return;
+        rectangle_ = plan::rectangle(2 * in.halfValue.x, 2 * in.halfValue.z).value();
+        formula_ = plan::monotoneFormula(rectangle_).value();
+        plan_ = &own_.emplace(rectangle_, formula_, in.p, combine(in.path, hashText("plan")));
+    }
+    PlanOf(const PlanOf&) = delete;
+    PlanOf& operator=(const PlanOf&) = delete;
+    const PlanField& operator*() const { return *plan_; }
+
+private:
+    const PlanField* plan_;
+    plan::Footprint rectangle_;
+    plan::Formula formula_;
+    std::optional<PlanField> own_;
+};
+
+/// Which edges are gables, as the choice `ends` says.
+enum class Ends { Auto, X, Z, All };
+std::vector<uint32_t> endsOf(const PlanField& plan, const Argument& choice) {
+    const auto ends = static_cast<Ends>(static_cast<int>(choice.value[0]));
+    if (ends == Ends::Auto) return plan::gableEnds(plan.footprint(), plan.formula());
+    std::vector<uint32_t> found;
+    for (uint32_t i = 0; i < plan.edges().size(); ++i) {
+        const plan::Facing facing = plan::facingOf(plan.edges()[i].normal());
+        const bool alongX = facing == plan::Facing::Left || facing == plan::Facing::Right;
+        if (ends == Ends::All || alongX == (ends == Ends::X)) found.push_back(i);
+    }
+    return found;
+}
+
+/// Where the numbers of a roof stand among its arguments.
+struct Cover {
+    size_t pitch, overhang, fascia, thickness;
+};
+
+/// A roof, or where it has a thickness only what lies less than that below its slopes: open to the rooms under it.
+template <class Build>
+Field covered(const PrimitiveInput& in, Cover at, const Build& build) {
+    const PlanOf plan(in);
+    const Quantity overhang = quantity(in.arguments[at.overhang]), fascia = quantity(in.arguments[at.fascia]);
+    const Field whole = build(*plan, footOf(in, overhang, fascia));
+    const Quantity thickness = quantity(in.arguments[at.thickness]), pitch = quantity(in.arguments[at.pitch]);
+    if (thickness.value <= 0) return whole;
+    // The rooms reach beyond the eaves, so that the slopes alone are left.
+    Graph& graph = in.p.x.graph();
+    const double beyond = 1 + overhang.value, down = thickness.value / std::cos(pitch.value);
+    RoofFoot rooms = footOf(in, {overhang.node + 1.0f, beyond}, fixed(graph, 0));
+    rooms.eaves = {rooms.eaves.node + fascia.node - thickness.node / cos(pitch.node), rooms.eaves.value + fascia.value - down};
+    rooms.path = combine(in.path, hashText("rooms"));
+    return difference({whole, 0}, {build(*plan, rooms), 0});
+}
+
+}  // namespace
+
+double heightOver(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
+                  std::span<const Argument> arguments) {
+    Graph graph;
+    std::vector<Argument> own(arguments.begin(), arguments.end());
+    for (Argument& a : own)
+        for (int i = 0; i < 9; ++i) a.node[i] = graph.literal(static_cast<float>(a.value[i]));
+    const PlanField plan(footprint, formula, graph.position(), 0);
+    const Num half = graph.literal(0.5f);
+    const Field f = row.build({graph.position(), {half, half, half}, {.5, .5, .5}, own, &plan, 0});
+    return f.bounds.empty() ? 0 : std::max(0.0, static_cast<double>(f.bounds.hi.y) + .5);
+}
+
+namespace solids {
+
+Field block(const PrimitiveInput& in) {
+    if (!in.plan) return cube(in);
+    return field::prism(*in.plan, bottom(in), top(in), combine(in.path, hashText("block")));
+}
+
+Field hipRoof(const PrimitiveInput& in) {
+    return covered(in, {0, 1, 2, 3}, [&](const PlanField& plan, const RoofFoot& foot) {
+        return field::hipRoof(plan, foot, quantity(in.arguments[0]));
+    });
+}
+
+Field gableRoof(const PrimitiveInput& in) {
+    return covered(in, {0, 1, 2, 3}, [&](const PlanField& plan, const RoofFoot& foot) {
+        return field::gableRoof(plan, foot, quantity(in.arguments[0]), endsOf(plan, in.arguments[4]));
+    });
+}
+
+Field halfHipRoof(const PrimitiveInput& in) {
+    const auto& a = in.arguments;
+    return covered(in, {0, 1, 2, 3}, [&](const PlanField& plan, const RoofFoot& foot) {
+        return field::halfHipRoof(plan, foot, quantity(a[0]), endsOf(plan, a[4]), quantity(a[5]));
+    });
+}
+
+Field mansardRoof(const PrimitiveInput& in) {
+    const auto& a = in.arguments;
+    return covered(in, {2, 3, 4, 5}, [&](const PlanField& plan, const RoofFoot& foot) {
+        return field::mansardRoof(plan, foot, quantity(a[0]), quantity(a[1]), quantity(a[2]));
+    });
+}
+
+Field gambrelRoof(const PrimitiveInput& in) {
+    const auto& a = in.arguments;
+    return covered(in, {2, 3, 4, 5}, [&](const PlanField& plan, const RoofFoot& foot) {
+        return field::gambrelRoof(plan, foot, quantity(a[0]), quantity(a[1]), quantity(a[2]), endsOf(plan, a[6]));
+    });
+}
+
+Field saltboxRoof(const PrimitiveInput& in) {
+    const auto& a = in.arguments;
+    return covered(in, {0, 2, 3, 4}, [&](const PlanField& plan, const RoofFoot& foot) {
+        return field::saltboxRoof(plan, foot, quantity(a[0]), quantity(a[1]), {0, 1}, endsOf(plan, a[5]));
+    });
+}
+
+Field shedRoof(const PrimitiveInput& in) {
+    constexpr plan::Vec2 ways[] = {{0, -1}, {0, 1}, {-1, 0}, {1, 0}};
+    const auto to = std::min<size_t>(static_cast<size_t>(in.arguments[4].value[0]), 3);
+    return covered(in, {0, 1, 2, 3}, [&](const PlanField& plan, const RoofFoot& foot) {
+        return field::shedRoof(plan, foot, quantity(in.arguments[0]), ways[to]);
+    });
+}
+
+Field butterflyRoof(const PrimitiveInput& in) {
+    const plan::Vec2 valley = in.arguments[4].value[0] < .5 ? plan::Vec2{1, 0} : plan::Vec2{0, 1};
+    return covered(in, {0, 1, 2, 3}, [&](const PlanField& plan, const RoofFoot& foot) {
+        return field::butterflyRoof(plan, foot, quantity(in.arguments[0]), valley);
+    });
+}
+
+Field flatRoof(const PrimitiveInput& in) {
+    const auto& a = in.arguments;
+    return field::flatRoof(*PlanOf(in), footOf(in, number(in, 0), number(in, 0)), quantity(a[0]), quantity(a[1]), quantity(a[2]));
+}
+
+Field pyramidRoof(const PrimitiveInput& in) {
+    return field::pyramidRoof(*PlanOf(in), footAt(in, 0), height(in));
+}
+
+Field domeRoof(const PrimitiveInput& in) {
+    return field::domeRoof(*PlanOf(in), footOf(in, quantity(in.arguments[0]), number(in, 0)), height(in), number(in, 0));
+}
+
+Field bellRoof(const PrimitiveInput& in) {
+    return field::bellRoof(*PlanOf(in), footOf(in, quantity(in.arguments[0]), number(in, 0)), height(in), number(in, 0));
+}
+
+}  // namespace solids
+
+}  // namespace sgm::field
