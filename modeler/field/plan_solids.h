@@ -30,7 +30,7 @@ Field butterflyRoof(const PrimitiveInput& in);  ///< …, valley
 Field flatRoof(const PrimitiveInput& in);       ///< slab, parapet, thickness
 Field pyramidRoof(const PrimitiveInput& in);    ///< overhang, fascia
 Field domeRoof(const PrimitiveInput& in);       ///< overhang
-Field bellRoof(const PrimitiveInput& in);       ///< overhang
+Field bellRoof(const PrimitiveInput& in);       ///< overhang, fascia
 
 }  // namespace solids
 

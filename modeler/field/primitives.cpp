@@ -170,7 +170,7 @@ constexpr Primitive table[] = {
      apex, false, nullptr, PlanUse::Fills},
     {"domeRoof", "Quarter ellipses over every edge: a dome as high as the scope.", domeParameters, solids::domeRoof, true, apex,
      false, nullptr, PlanUse::Fills},
-    {"bellRoof", "As the dome, with a hollow foot.", domeParameters, solids::bellRoof, true, apex, false, nullptr,
+    {"bellRoof", "As the dome, with a hollow foot.", pyramidRoofParameters, solids::bellRoof, true, apex, false, nullptr,
      PlanUse::Fills},
     {"halfspace",
      "Everything below the scope's middle plane y = 0. Unbounded: may only cut.",

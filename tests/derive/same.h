@@ -11,7 +11,7 @@ namespace sgm::testing_ {
 
 inline auto told(const derive::Shape& s) {
     return std::tie(s.key, s.parent, s.firstChild, s.lastChild, s.nextSibling, s.symbol, s.label, s.occurrence, s.depth, s.solid, s.material, s.extras,
-                    s.valuesAt, s.body, s.jointSet, s.firstNamedBond, s.madeBy, s.chainRule, s.op, s.live, s.dead, s.amount, s.blend_m, s.scope,
+                    s.valuesAt, s.body, s.jointSet, s.firstNamedBond, s.madeBy, s.chainRule, s.op, s.live, s.dead, s.amount, s.blend_m, s.scope.centre, s.scope.axes, s.scope.size,
                     s.span.source, s.span.begin, s.span.end);
 }
 inline auto told(const derive::Bond& b) {
@@ -31,7 +31,17 @@ void expectSame(const std::vector<T>& a, const std::vector<T>& b, const char* wh
     for (size_t i = 0; i < a.size(); ++i) ASSERT_TRUE(told(a[i]) == told(b[i])) << what << ' ' << i;
 }
 
+/// The plan of a shape's scope, which each derivation numbers by itself; null for none.
+inline const plan::Footprint* planOf(const derive::ShapeTree& tree, const derive::Shape& s) {
+    return s.scope.footprint == derive::none ? nullptr : &tree.footprints[s.scope.footprint].footprint;
+}
+
 inline void expectSame(const derive::Derivation& a, const derive::Derivation& b) {
+    for (size_t i = 0; i < std::min(a.tree.shapes.size(), b.tree.shapes.size()); ++i) {
+        const plan::Footprint *mine = planOf(a.tree, a.tree.shapes[i]), *theirs = planOf(b.tree, b.tree.shapes[i]);
+        ASSERT_EQ(mine == nullptr, theirs == nullptr) << "footprint of shape " << i;
+        ASSERT_TRUE(!mine || *mine == *theirs) << "footprint of shape " << i;
+    }
     expectSame(a.tree.shapes, b.tree.shapes, "shape");
     expectSame(a.tree.bonds, b.tree.bonds, "bond");
     expectSame(a.tree.bodies, b.tree.bodies, "body");
