@@ -84,6 +84,18 @@ ClipperLib::ClipType typeOf(PathBoolean how) {
     return ClipperLib::ctUnion;
 }
 
+Footprint executed(ClipperLib::ClipType how, const LatticePaths& subject, const LatticePaths& clip,
+                   ClipperLib::PolyFillType fill) {
+    ClipperLib::Clipper clipper;
+    clipper.PreserveCollinear(true);
+    clipper.StrictlySimple(true);
+    clipper.AddPaths(pathsFrom(subject), ClipperLib::ptSubject, true);
+    if (!clip.empty()) clipper.AddPaths(pathsFrom(clip), ClipperLib::ptClip, true);
+    ClipperLib::Paths found;
+    clipper.Execute(how, found, fill, fill);
+    return footprintFrom(found);
+}
+
 /// Without rings around next to nothing.
 void dropSlivers(Footprint& footprint) {
     const auto thin = [](const Ring& ring) { return std::abs(signedArea(ring)) < leastArea_m2; };
@@ -110,14 +122,11 @@ LatticePaths pathsOf(const Footprint& footprint) {
 }
 
 Footprint booleanOf(PathBoolean how, const LatticePaths& subject, const LatticePaths& clip) {
-    ClipperLib::Clipper clipper;
-    clipper.PreserveCollinear(true);
-    clipper.StrictlySimple(true);
-    clipper.AddPaths(pathsFrom(subject), ClipperLib::ptSubject, true);
-    if (!clip.empty()) clipper.AddPaths(pathsFrom(clip), ClipperLib::ptClip, true);
-    ClipperLib::Paths found;
-    clipper.Execute(typeOf(how), found, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
-    return footprintFrom(found);
+    return executed(typeOf(how), subject, clip, ClipperLib::pftNonZero);
+}
+
+Footprint evenOddOf(const LatticePaths& paths) {
+    return executed(ClipperLib::ctUnion, paths, {}, ClipperLib::pftEvenOdd);
 }
 
 Footprint offsetOf(const LatticePaths& paths, double distance_m) {

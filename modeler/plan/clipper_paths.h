@@ -19,6 +19,8 @@ enum class PathBoolean { Union, Difference, Intersection };
 LatticePaths pathsOf(const Footprint& footprint);
 /// The boolean of what is wound ≠ 0 by either list, as polygons with courts; without tags, not yet cleaned.
 Footprint booleanOf(PathBoolean how, const LatticePaths& subject, const LatticePaths& clip);
+/// What is wound an odd number of times.
+Footprint evenOddOf(const LatticePaths& paths);
 /// Every ring moved outward by `distance_m` with corners mitred up to 4 times that.
 Footprint offsetOf(const LatticePaths& paths, double distance_m);
 

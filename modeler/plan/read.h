@@ -19,7 +19,7 @@ namespace sgm::plan {
 
 /// What is read at most.
 struct ReadLimits {
-    uint64_t mostBytes = 256ull << 20;
+    uint64_t mostBytes = 64ull << 20;
     size_t mostFeatures = 1'000'000;
     size_t mostPoints = 20'000'000;  ///< of all features together
     Limits footprint;                ///< of each
@@ -41,27 +41,30 @@ struct Feature {
     const std::variant<std::string, double>* find(std::string_view word) const;
 };
 
-/// The features of a file, in metres about `origin`.
+/// The features of a file, in metres.
 struct Features {
     std::vector<Feature> list;
-    bool fromDegrees = false;            ///< coordinates were longitude and latitude
-    double longitude = 0, latitude = 0;  ///< of x = z = 0 where they were, degrees
+    bool fromDegrees = false;    ///< coordinates were longitude and latitude
+    double east = 0, north = 0;  ///< of x = z = 0: degrees where they were, else metres
 };
 
-/// By the name's ending: .geojson and .json, .svg, .obj. Outlines that cross themselves are resolved by winding ≠ 0;
-/// other faults are errors that name file, feature and edge.
+/// By the name's ending: .geojson and .json, .svg, .obj. The error names the file.
 Result<Features> readOutlines(const std::filesystem::path& path, const ReadLimits& limits = {},
                               const Progress* progress = nullptr);
 
+// Outlines that cross or touch themselves are resolved; other faults are errors with the feature's or line's number and
+// the edge. Files without outlines are errors too.
+
 /// RFC 7946 polygons and multipolygons, alone or in features and collections; other geometries are passed over. Degrees
-/// are laid on a plane about the middle of all points (equirectangular: true to length there, .1 % off at 10 km),
-/// metres are taken as they are where a coordinate is no longitude or latitude. x is east, z is south.
+/// are laid on a plane about the middle of all points (true to length there, .1 % off 10 km away), other coordinates
+/// are taken as metres, about the middle where they are large. x is east, z is south. Properties that are texts,
+/// numbers or truth values are kept; a list "tags" tags the edges of the first outline in the file's order.
 Result<Features> readGeoJson(std::string_view bytes, const ReadLimits& limits = {}, const Progress* progress = nullptr);
-/// path (M L H V Z C S Q T and their relative forms; curves become 8 chords), polygon, rect; a path's further rings are
-/// courts by winding ≠ 0. User units are metres; transforms of translate, scale, rotate and matrix count. x is right, z
-/// down.
+/// path, polygon and rect, with the transforms of their groups; each one feature. A path's rings inside others are
+/// courts by turns (even-odd). A curve becomes 8 chords. User units are metres; x is right, z is down. The property
+/// "class" is kept.
 Result<Features> readSvg(std::string_view bytes, const ReadLimits& limits = {}, const Progress* progress = nullptr);
-/// Faces that lie in a level plane, one feature a group (`o`, `g`), joined; x and z are taken, y is left out.
+/// Level faces, one feature a group (`o`, `g`), joined; x and z are taken, y is left out. Other faces are passed over.
 Result<Features> readObjOutlines(std::string_view bytes, const ReadLimits& limits = {},
                                  const Progress* progress = nullptr);
 

@@ -1,0 +1,81 @@
+#include "modeler/plan/read.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "modeler/core/printable.h"
+#include "modeler/core/regular_file.h"
+#include "modeler/plan/clipper_paths.h"
+#include "modeler/plan/edit.h"
+#include "modeler/plan/read_parts.h"
+
+namespace sgm::plan {
+
+std::optional<Error> ReadBudget::addFeature() {
+    if (++features_ <= limits_.mostFeatures) return {};
+    return Error{Error::Kind::Input, fmt::format("it has more than {} features", limits_.mostFeatures)};
+}
+
+std::optional<Error> ReadBudget::addPoints(size_t count) {
+    points_ += count;
+    if (points_ <= limits_.mostPoints) return {};
+    return Error{Error::Kind::Input, fmt::format("it has more than {} points", limits_.mostPoints)};
+}
+
+Result<Footprint> soundFootprint(const Footprint& drawn, const Limits& limits) {
+    Footprint clean = cleaned(drawn, limits.leastEdge_m, 1e-6);
+    if (!firstFault(clean, limits)) return clean;
+    const Footprint& left = clean.empty() ? drawn : clean;  // a bow of no area is cleaned away
+    const auto fault = firstFault(left, limits);
+    if (!fault) return Error{Error::Kind::Input, "the outline encloses no area"};
+    const bool canBeResolved = fault->kind == FaultKind::Crossing || fault->kind == FaultKind::CourtOutside ||
+                               fault->kind == FaultKind::Overlap;
+    if (canBeResolved)
+        if (Result<Footprint> mended = resolved(left); mended.ok() && !mended->empty() && !firstFault(*mended, limits))
+            return mended;
+    return Error{Error::Kind::Input, sentenceOf(*fault, left)};
+}
+
+Error damaged(std::string_view unit, uint64_t number, std::string_view why) {
+    return {Error::Kind::Input, fmt::format("{} {}: {}", unit, number, why)};
+}
+
+std::optional<double> takeNumber(std::string_view& text) {
+    double value = 0;
+    const bool plus = !text.empty() && text[0] == '+';
+    const auto [end, error] = std::from_chars(text.data() + plus, text.data() + text.size(), value);
+    if (error != std::errc{} || !std::isfinite(value)) return {};
+    text.remove_prefix(static_cast<size_t>(end - text.data()));
+    return value;
+}
+
+const std::variant<std::string, double>* Feature::find(std::string_view word) const {
+    const auto at =
+        std::find_if(properties.begin(), properties.end(), [&](const Property& p) { return p.name == word; });
+    return at == properties.end() ? nullptr : &at->value;
+}
+
+Result<Features> readOutlines(const std::filesystem::path& path, const ReadLimits& limits, const Progress* progress) {
+    std::string ending = path.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
+    const auto named = [&](const Error& e) {
+        return e.kind == Error::Kind::Cancelled
+                   ? e
+                   : Error{e.kind, fmt::format("{}: {}", printable(path.string()), e.message)};
+    };
+    const auto read = ending == ".geojson" || ending == ".json" ? readGeoJson
+                      : ending == ".svg"                        ? readSvg
+                      : ending == ".obj"                        ? readObjOutlines
+                                                                : nullptr;
+    if (!read) return named({Error::Kind::Input, "outlines are read from .geojson, .json, .svg and .obj files"});
+    const auto bytes = readRegularFile(path, limits.mostBytes, progress);
+    if (!bytes) return named(bytes.error());
+    Result<Features> features = read(*bytes, limits, progress);
+    return features.ok() ? std::move(features) : Result<Features>(named(features.error()));
+}
+
+}  // namespace sgm::plan

@@ -1,0 +1,223 @@
+// Outlines from files: what is read, and that damaged files are errors with a place.
+#include "modeler/plan/read.h"
+
+#include <gmock/gmock.h>
+
+#include "modeler/plan/formula.h"
+#include "tests/cpu_time.h"
+#include "tests/plan/random_plans.h"
+#include "tests/scratch.h"
+
+namespace sgm::plan {
+namespace {
+
+using testing::HasSubstr;
+
+std::string polygonText(const std::string& coordinates) {
+    return R"({"type":"Polygon","coordinates":)" + coordinates + "}";
+}
+std::string featureText(const std::string& coordinates, const std::string& properties = "{}") {
+    return R"({"type":"Feature","id":"a7","properties":)" + properties + R"(,"geometry":)" + polygonText(coordinates) +
+           "}";
+}
+std::string collection(const std::string& features) {
+    return R"({"type":"FeatureCollection","features":[)" + features + "]}";
+}
+
+constexpr const char* square = "[[[1000,0],[1010,0],[1010,20],[1000,20],[1000,0]]]";
+
+TEST(GeoJson, MetresEastAndNorthBecomeXAndMinusZ) {
+    const auto f =
+        readGeoJson(collection(featureText(square, R"({"height":9.5,"roof:shape":"gabled","flat":true,"x":null,
+        "tags":["street","side"]})")));
+    ASSERT_TRUE(f.ok()) << f.error().message;
+    ASSERT_EQ(f->list.size(), 1u);
+    const Feature& one = f->list[0];
+    EXPECT_EQ(one.name, "a7");
+    EXPECT_DOUBLE_EQ(area(one.footprint), 200);
+    EXPECT_DOUBLE_EQ(std::get<double>(*one.find("height")), 9.5);
+    EXPECT_EQ(std::get<std::string>(*one.find("roof:shape")), "gabled");
+    EXPECT_EQ(std::get<std::string>(*one.find("flat")), "true");
+    EXPECT_EQ(one.find("x"), nullptr);
+    EXPECT_FALSE(f->fromDegrees);
+    for (const PlacedEdge& e : edgesOf(one.footprint)) {
+        const std::string tag = one.footprint.tags[e.edge.tag];
+        EXPECT_EQ(tag, e.from.z == 0 && e.to.z == 0 ? "street" : e.from.x == 1010 && e.to.x == 1010 ? "side" : "");
+    }
+}
+
+TEST(GeoJson, DegreesAreLaidOnAPlane) {
+    // A hundredth of a degree square at 52° N.
+    const auto f = readGeoJson(polygonText("[[[13.40,52.00],[13.41,52.00],[13.41,52.01],[13.40,52.01]]]"));
+    ASSERT_TRUE(f.ok()) << f.error().message;
+    EXPECT_TRUE(f->fromDegrees);
+    EXPECT_NEAR(f->east, 13.405, 1e-9);
+    EXPECT_NEAR(f->north, 52.005, 1e-9);
+    const Vec2 size = bounds(f->list[0].footprint).size();
+    EXPECT_NEAR(size.x, 686.6, .5);
+    EXPECT_NEAR(size.z, 1112.7, .5);
+}
+
+TEST(GeoJson, LargeCoordinatesAreMovedAndCourtsAndSeveralPolygonsKept) {
+    const auto f = readGeoJson(R"({"type":"MultiPolygon","coordinates":[
+        [[[390000,5820000],[390040,5820000],[390040,5820030],[390000,5820030]],
+         [[390010,5820010],[390030,5820010],[390030,5820020],[390010,5820020]]],
+        [[[390100,5820000],[390110,5820000],[390110,5820010]]]]})");
+    ASSERT_TRUE(f.ok()) << f.error().message;
+    EXPECT_EQ(f->list[0].footprint.polygons.size(), 2u);
+    EXPECT_NEAR(area(f->list[0].footprint), 1200 - 200 + 50, 1e-6);
+    EXPECT_GT(f->north, 5.8e6);
+    EXPECT_LT(std::abs(bounds(f->list[0].footprint).lo.x), 100);
+}
+
+TEST(GeoJson, CrossingOutlinesAreResolvedAndOtherFaultsLocated) {
+    const auto bow = readGeoJson(collection(featureText("[[[1000,0],[1010,10],[1010,0],[1000,10]]]")));
+    ASSERT_TRUE(bow.ok());
+    EXPECT_NEAR(area(bow->list[0].footprint), 50, .1);
+    const auto messageOf = [](const std::string& text) {
+        const auto f = readGeoJson(text);
+        return f.ok() ? std::string("no error") : f.error().message;
+    };
+    EXPECT_THAT(messageOf("{\"type\":\n\n oops"), HasSubstr("line 3: this is no JSON"));
+    EXPECT_THAT(messageOf(collection(featureText(square) + "," + featureText("[[[0,0],[1000,1]]]"))),
+                HasSubstr("feature 2: a ring has fewer than three points"));
+    EXPECT_THAT(messageOf(collection(featureText("[[[0,0],[1000,1],[\"a\",2]]]"))), HasSubstr("feature 1: position 3"));
+    EXPECT_THAT(messageOf(collection(featureText("[[[0,0],[1000,0],[2000,0]]]"))), HasSubstr("feature 1: "));
+    EXPECT_THAT(messageOf(polygonText("[[[0,0],[1e999,0],[2,2]]]")), HasSubstr("too large"));
+    EXPECT_THAT(messageOf(R"({"type":"Point","coordinates":[1,2]})"), HasSubstr("no polygons"));
+    EXPECT_THAT(messageOf("[]"), HasSubstr("no polygons"));
+    EXPECT_THAT(messageOf(std::string(100'000, '[')), HasSubstr("nest deeper"));
+    EXPECT_THAT(messageOf(""), HasSubstr("line 1"));
+}
+
+TEST(GeoJson, BoundsHold) {
+    ReadLimits few;
+    few.mostFeatures = 1;
+    EXPECT_FALSE(readGeoJson(collection(featureText(square) + "," + featureText(square)), few).ok());
+    few = {};
+    few.mostPoints = 4;
+    EXPECT_FALSE(readGeoJson(polygonText(square), few).ok());
+    Progress stop;
+    stop.cancel();
+    EXPECT_EQ(readGeoJson(collection(featureText(square)), {}, &stop).error().kind, Error::Kind::Cancelled);
+}
+
+TEST(GeoJson, TenThousandBuildingsTakeAMoment) {
+    std::string text;
+    for (int i = 0; i < 10'000; ++i) {
+        std::string ring;
+        for (int k = 0; k < 16; ++k)
+            ring += "[" + std::to_string(i % 100 * 30 + 9 * std::cos(k * pi / 8) + 1000) + "," +
+                    std::to_string(i / 100 * 30 + 9 * std::sin(k * pi / 8)) + "],";
+        text += (i ? "," : "") +
+                featureText("[[" + ring.substr(0, ring.size() - 1) + "]]", R"({"height":9,"roof:shape":"hipped"})");
+    }
+    text = collection(text);
+    const double before = secondsOf(CLOCK_PROCESS_CPUTIME_ID);
+    const auto f = readGeoJson(text);
+    ASSERT_TRUE(f.ok());
+    EXPECT_EQ(f->list.size(), 10'000u);
+    for (const Feature& feature : f->list) ASSERT_TRUE(monotoneFormula(feature.footprint).ok());
+    EXPECT_LT(secondsOf(CLOCK_PROCESS_CPUTIME_ID) - before, cpuSeconds(1.5));
+}
+
+TEST(Svg, ShapesPathsAndTransforms) {
+    const auto f =
+        readSvg(R"svg(<?xml version="1.0"?><!-- <path d="M0 0"/> --><svg><defs><rect width="9" height="9"/></defs>
+        <g transform="translate(10,20) scale(2)"><rect id="r" class="lot big" x="1" y="2" width="3" height="4"/>
+        <polygon points="0,0 4,0 4,4"/></g>
+        <path id="court" d="M0 0 h10 v10 h-10 z m2 2 h6 v6 h-6 z"/>
+        <path d="M0,0 C 0 5 5 10 10 10 L 10-5 Z"/><path transform="rotate(90 5 5)" d="m0 0l10 0 0 10z"/>
+        <path d="M-5 0 A5 5 0 0110 0 A5 5 0 0 1 -5 0 z"/></svg>)svg");
+    ASSERT_TRUE(f.ok()) << f.error().message;
+    ASSERT_EQ(f->list.size(), 6u);
+    EXPECT_EQ(f->list[0].name, "r");
+    EXPECT_EQ(std::get<std::string>(*f->list[0].find("class")), "lot big");
+    EXPECT_EQ(bounds(f->list[0].footprint).lo, (Vec2{12, 24}));
+    EXPECT_DOUBLE_EQ(area(f->list[0].footprint), 48);
+    EXPECT_DOUBLE_EQ(area(f->list[1].footprint), 32);
+    EXPECT_NEAR(area(f->list[2].footprint), 64, 1e-4);
+    EXPECT_EQ(f->list[2].footprint.polygons[0].courts.size(), 1u);
+    EXPECT_NEAR(area(f->list[4].footprint), 50, 1e-9);
+    EXPECT_NEAR(bounds(f->list[4].footprint).hi.x, 10, 1e-9);
+    EXPECT_EQ(f->list[0].place, 2u);
+    // Two half circles of radius 7.5 (5 is too small and grows), 8 chords each.
+    EXPECT_NEAR(area(f->list[5].footprint), 16 / 2.0 * 7.5 * 7.5 * std::sin(pi / 8), 1e-6);
+}
+
+TEST(Svg, DamageIsLocated) {
+    const auto messageOf = [](const std::string& text) {
+        const auto f = readSvg(text);
+        return f.ok() ? std::string("no error") : f.error().message;
+    };
+    EXPECT_THAT(messageOf("<svg>\n<path d='L 1 1'/></svg>"), HasSubstr("line 2: a path must begin with M"));
+    EXPECT_THAT(messageOf("<svg>\n<path d='M 1 1 X 3'/></svg>"), HasSubstr("line 2: a path has a command"));
+    EXPECT_THAT(messageOf("<svg>\n<polygon points='0 0 1 0 1 nan'/></svg>"), HasSubstr("line 2: a list of numbers"));
+    EXPECT_THAT(messageOf("<svg><g transform='turn(3)'/></svg>"), HasSubstr("'turn' with 1 numbers is no transform"));
+    EXPECT_THAT(messageOf("<svg><path d='M0 0h1v1"), HasSubstr("has no end"));
+    EXPECT_THAT(messageOf("<svg><rect width='1e9' height='3'/></svg>"), HasSubstr("beyond"));
+    EXPECT_THAT(messageOf("<svg/>"), HasSubstr("no outlines"));
+    std::string deep;
+    for (int i = 0; i < 1000; ++i) deep += "<g>";
+    EXPECT_THAT(messageOf(deep), HasSubstr("nest too deep"));
+}
+
+TEST(Obj, LevelFacesOfAGroupAreJoined) {
+    const auto f = readObjOutlines(
+        "v 0 3 0\nv 4 3 0\nv 4 3 4\nv 0 3 4\nv 8 3 0\nv 8 3 4\nv 0 9 0\nv 0 9 4\n"
+        "g east # two quads\nf 1 2 3 4\nf 2/1 5/2 -3/3 3/4\nf 1 4 8 7\ng\no tri\nf 1 3 2\n");
+    ASSERT_TRUE(f.ok()) << f.error().message;
+    ASSERT_EQ(f->list.size(), 2u);
+    EXPECT_EQ(f->list[0].name, "east");
+    EXPECT_NEAR(area(f->list[0].footprint), 32, 1e-4);
+    EXPECT_EQ(f->list[0].footprint.edgeCount(), 4u);
+    EXPECT_NEAR(area(f->list[1].footprint), 8, 1e-4);
+    EXPECT_THAT(readObjOutlines("v 0 0 0\nf 1 2 3\n").error().message, HasSubstr("line 2: a face has a corner"));
+    EXPECT_THAT(readObjOutlines("v 0 zero 0\n").error().message, HasSubstr("line 1: a vertex needs"));
+    EXPECT_THAT(readObjOutlines("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n").error().message, HasSubstr("no level faces"));
+}
+
+TEST(Read, MutatedFilesNeverCrash) {
+    const std::string texts[] = {
+        collection(featureText(square, R"({"tags":["a"],"h":3})")),
+        R"svg(<svg><g transform="rotate(3) scale(2 3)"><path id="a" d="M0 0 C1 2 3 4 5 6 A3 4 5 0 1 9 9 Q 3 3 1 8z"/></g></svg>)svg",
+        "v 0 3 0\nv 4 3 0\nv 4 3 4\nv 0 3 4\ng a\nf 1 2 3 4\n"};
+    const auto read = [](size_t kind, const std::string& text) {
+        return kind == 0 ? readGeoJson(text) : kind == 1 ? readSvg(text) : readObjOutlines(text);
+    };
+    for (uint64_t key = 0; key < 6000; ++key) {
+        test::Draws draw(key);
+        const size_t kind = key % 3;
+        std::string text = texts[kind];
+        for (int i = draw.whole(1, 6); i > 0 && !text.empty(); --i) {
+            const auto at = static_cast<size_t>(draw.whole(0, static_cast<int>(text.size()) - 1));
+            switch (draw.whole(0, 3)) {
+                case 0:
+                    text[at] = static_cast<char>(draw.whole(0, 255));
+                    break;
+                case 1:
+                    text.erase(at, static_cast<size_t>(draw.whole(1, 9)));
+                    break;
+                case 2:
+                    text.insert(at, texts[kind].substr(at / 2, 12));
+                    break;
+                default:
+                    text[at] = "0123456789-.eE,[]{}<>\"' "[draw.whole(0, 23)];
+            }
+        }
+        const auto features = read(kind, text);
+        if (features.ok()) {
+            for (const Feature& feature : features->list) EXPECT_FALSE(firstFault(feature.footprint)) << text;
+        } else {
+            EXPECT_FALSE(features.error().message.empty());
+        }
+    }
+}
+
+TEST(Read, TheErrorNamesTheFile) {
+    EXPECT_THAT(readOutlines("nowhere.geojson").error().message, HasSubstr("nowhere.geojson: "));
+    EXPECT_THAT(readOutlines("plan.dxf").error().message, HasSubstr(".geojson, .json, .svg and .obj"));
+}
+
+}  // namespace
+}  // namespace sgm::plan
