@@ -46,6 +46,9 @@ Quantity wholeRun(const PlanField& plan, const RoofFoot& foot, Quantity run) {
     return {pathSlot(plan.graph(), foot.path, "run", 0, depth), depth};
 }
 
+/// Height above the fascia.
+Num aboveFascia(const RoofFoot& foot, const Foot& at) { return at.hasFascia ? at.up - foot.fascia.node : at.up; }
+
 /// The walls of a curved roof, moved out to the overhang, which begins at the eaves' height.
 Num walls(const PlanField& plan, const RoofFoot& foot) { return plan.outside() - foot.overhang.node; }
 
@@ -56,7 +59,7 @@ Field shedRoof(const PlanField& plan, const RoofFoot& foot, Quantity pitch, plan
     const auto [lo, hi] = extentAlong(plan, way);
     const Quantity pitches[] = {pitch};
     const Foot at = footOf(plan, foot, pitches);
-    const Num raised = at.hasFascia ? at.up - foot.fascia.node : at.up;
+    const Num raised = aboveFascia(foot, at);
     const Num plane = raised * cos(pitch.node) - along(plan, foot.path, way, lo) * sin(pitch.node);
     const double height = std::tan(pitch.value) * (hi - lo + foot.overhang.value * 4) + foot.fascia.value;
     return onFoot(plan, foot, at, max(walls(plan, foot), plane), height);
@@ -107,9 +110,9 @@ Field flatRoof(const PlanField& plan, const RoofFoot& foot, Quantity slab, Quant
 Field domeRoof(const PlanField& plan, const RoofFoot& foot, Quantity height, Quantity run) {
     const Quantity r = wholeRun(plan, foot, run);
     const Foot at = footOf(plan, foot, {});
-    const Num u = shareLeft(plan, r), v = max(at.up, 0.0f) / height.node;
+    const Num u = shareLeft(plan, r), v = max(aboveFascia(foot, at), 0.0f) / height.node;
     const Num round = (sqrt(squareWithLabel(u) + square(v)) - 1.0f) * min(r.node, height.node);
-    return onFoot(plan, foot, at, max(walls(plan, foot), round), height.value);
+    return onFoot(plan, foot, at, max(walls(plan, foot), round), height.value + foot.fascia.value);
 }
 
 // Two quarters of circles of half the run and half the height: outside of the one about the foot, inside of the one
@@ -117,12 +120,12 @@ Field domeRoof(const PlanField& plan, const RoofFoot& foot, Quantity height, Qua
 Field bellRoof(const PlanField& plan, const RoofFoot& foot, Quantity height, Quantity run) {
     const Quantity r = wholeRun(plan, foot, run);
     const Foot at = footOf(plan, foot, {});
-    const Num left = shareLeft(plan, r), v = at.up / height.node;
+    const Num left = shareLeft(plan, r), v = aboveFascia(foot, at) / height.node;
     const Num in = 1.0f - left, half = plan.graph().literal(0.5f);
     const Num upper = sqrt(squareWithLabel(left) + square(max(v - half, 0.0f))) - half;
     const Num hollow = half - sqrt(squareWithLabel(max(in, 0.0f)) + square(max(half - v, 0.0f)));
     const Num bell = min(upper, max(v - half, hollow)) * min(r.node, height.node);
-    return onFoot(plan, foot, at, max(walls(plan, foot), bell), height.value);
+    return onFoot(plan, foot, at, max(walls(plan, foot), bell), height.value + foot.fascia.value);
 }
 
 Result<Field> profileRoof(const PlanField& plan, const RoofFoot& foot, std::span<const plan::Vec2> points) {
@@ -146,8 +149,9 @@ Result<Field> profileRoof(const PlanField& plan, const RoofFoot& foot, std::span
     const auto formula = plan::monotoneFormula(section);
     if (!formula) return Error{formula.error().kind, "profile of a roof: " + formula.error().message};
     const Foot at = footOf(plan, foot, {});
-    const PlanField swept(section, *formula, {plan.outside() - foot.overhang.node, at.up, at.up}, foot.path);
-    return onFoot(plan, foot, at, max(walls(plan, foot), swept.outside()), top);
+    const Num up = aboveFascia(foot, at);
+    const PlanField swept(section, *formula, {plan.outside() - foot.overhang.node, up, up}, foot.path);
+    return onFoot(plan, foot, at, max(walls(plan, foot), swept.outside()), top + foot.fascia.value);
 }
 
 }  // namespace sgm::field

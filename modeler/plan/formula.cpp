@@ -278,6 +278,7 @@ std::vector<uint32_t> gableEnds(const Footprint& footprint, const Formula& formu
     struct End {
         double length;
         uint32_t edge, before, after;
+        bool isApex;  // more than three slopes meet there: a pyramid or a cone
     };
     std::vector<End> found;
     for (size_t i = 0; i < edges.size(); ++i) {
@@ -296,8 +297,14 @@ std::vector<uint32_t> gableEnds(const Footprint& footprint, const Formula& formu
         const double depth = b.at(top);
         const double l = length(d);
         if (depth >= 0 || std::abs(valueOf(formula, distances, top) - depth) > 1e-6 * l) continue;
-        found.push_back({l, static_cast<uint32_t>(i), static_cast<uint32_t>(before), static_cast<uint32_t>(after)});
+        const bool isApex = std::any_of(distances.begin(), distances.end(), [&](const Linear& other) {
+            const auto parallel = [&](const Linear& o) { return other.a * o.a + other.b * o.b > 1 - 1e-9; };
+            return std::abs(other.at(top) - depth) < 1e-6 * l && !parallel(a) && !parallel(b) && !parallel(c);
+        });
+        found.push_back(
+            {l, static_cast<uint32_t>(i), static_cast<uint32_t>(before), static_cast<uint32_t>(after), isApex});
     }
+    if (edges.size() != 4) std::erase_if(found, [](const End& e) { return e.isApex; });
     std::stable_sort(found.begin(), found.end(),
                      [](const End& a, const End& b) { return a.length < b.length * (1 - 1e-9); });
     std::vector<bool> taken(edges.size());

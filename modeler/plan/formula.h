@@ -51,7 +51,7 @@ double leastInside(const Formula& formula, std::span<const Linear> leaves, std::
                    double tolerance);
 
 /// Edges at which a gable stands: those whose two corners are convex and whose ridge ends over them (their face of the
-/// straight skeleton is a triangle), short ones first, no two side by side. Ascending numbers. O(n²) at worst.
+/// straight skeleton is a triangle), short ones first, no two side by side; none of a pyramid or cone but on a square. Ascending numbers. O(n²) at worst.
 std::vector<uint32_t> gableEnds(const Footprint& footprint, const Formula& formula);
 
 }  // namespace sgm::plan

@@ -114,7 +114,8 @@ TEST(Formula, GableEndsAreTheShortSidesOfWings) {
     EXPECT_EQ(endsOf(*rectangle(5, 5)).size(), 2u);
     EXPECT_EQ(endsOf(*ell(16, 16, 6, 6)).size(), 2u);
     EXPECT_EQ(endsOf(*tee(20, 16, 6, 5)).size(), 3u);
-    EXPECT_TRUE(endsOf(*ngon(64, 5)).empty() || endsOf(*ngon(64, 5)).size() <= 32);
+    EXPECT_TRUE(endsOf(*ngon(64, 5)).empty());
+    EXPECT_TRUE(endsOf(*ngon(3, 5)).size() <= 1);
 }
 
 }  // namespace

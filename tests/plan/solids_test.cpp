@@ -1,6 +1,8 @@
 // Prisms and roofs over footprints through crisp meshes: volumes against closed forms, closedness, components, genus.
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <numeric>
 #include <set>
 
 #include "modeler/core/conventions.h"
@@ -183,6 +185,67 @@ TEST(Solids, MouldingsAreSweptWithMitres) {
     EXPECT_NEAR(both.volume_m3 / ((13 * 11 - 12 * 10 + 6 * 4 - 5 * 3) * .25), 1, 1e-5);
     EXPECT_EQ(both.components, 2u);
     EXPECT_FALSE(field::moulding(rect->plan, std::vector<Vec2>{{0, 0}, {1, 1}, {1, 0}, {0, 1}}, rect->number(3)).ok());
+}
+
+/// Every kind of roof, as a function of what it stands on.
+std::vector<std::pair<std::string, std::function<field::Field(Built&)>>> roofs() {
+    const auto ends = [](Built& b) { return gableEnds(b.footprint, b.formula); };
+    return {
+        {"hip", [](Built& b) { return field::hipRoof(b.plan, b.foot(0, .3), b.number(.7)); }},
+        {"gable", [=](Built& b) { return field::gableRoof(b.plan, b.foot(0, .3, .2), b.number(.7), ends(b)); }},
+        {"all gables",
+         [](Built& b) {
+             std::vector<uint32_t> all(b.footprint.edgeCount());
+             std::iota(all.begin(), all.end(), 0u);
+             all.pop_back();
+             return field::gableRoof(b.plan, b.foot(), b.number(.7), all);
+         }},
+        {"half-hip",
+         [=](Built& b) { return field::halfHipRoof(b.plan, b.foot(0, .2), b.number(.7), ends(b), b.number(.5)); }},
+        {"mansard",
+         [](Built& b) { return field::mansardRoof(b.plan, b.foot(), b.number(1.2), b.number(1), b.number(.4)); }},
+        {"gambrel",
+         [=](Built& b) {
+             return field::gambrelRoof(b.plan, b.foot(), b.number(1.2), b.number(1), b.number(.4), ends(b));
+         }},
+        {"saltbox",
+         [=](Built& b) {
+             return field::saltboxRoof(b.plan, b.foot(), b.number(.9), b.number(.4), {1, 1}, ends(b));
+         }},
+        {"pyramid", [](Built& b) { return field::pyramidRoof(b.plan, b.foot(0, .2), b.number(3)); }},
+        {"shed",
+         [](Built& b) {
+             return field::shedRoof(b.plan, b.foot(0, .2), b.number(.3), {1, 2});
+         }},
+        {"butterfly",
+         [](Built& b) {
+             return field::butterflyRoof(b.plan, b.foot(0, .2, .2), b.number(.3), {1, 2});
+         }},
+        {"flat", [](Built& b) { return field::flatRoof(b.plan, b.foot(), b.number(.3), b.number(.8), b.number(.3)); }},
+        {"dome", [](Built& b) { return field::domeRoof(b.plan, b.foot(), b.number(3), b.number(0)); }},
+        {"bell", [](Built& b) { return field::bellRoof(b.plan, b.foot(0, .2, .2), b.number(3), b.number(0)); }},
+        {"profile",
+         [](Built& b) {
+             return *field::profileRoof(b.plan, b.foot(), std::vector<Vec2>{{0, 0}, {.5, 2}, {2, 3}});
+         }},
+    };
+}
+
+TEST(Solids, NoRoofOverRandomPlansFails) {
+    uint64_t key = 0;
+    for (const auto& [name, make] : roofs())
+        for (int i = 0; i < 25; ++i) {
+            SCOPED_TRACE(name + " " + std::to_string(key));
+            const auto b = built(test::anyPlan(++key));
+            b->field() = make(*b);
+            ASSERT_TRUE(b->field().bounds.finite());
+            field::test::expectPromises(b->scene.graph, b->field(), b->field().bounds.as<double>(), key, name);
+            const mesh::Meshed m = mesh::meshOf(b->scene, 64, 2, {.surface = mesh::Surface::Crisp});
+            ASSERT_TRUE(m.mesh.ok());
+            const mesh::MeshFigures figures = mesh::measure(*m.mesh);
+            EXPECT_EQ(figures.boundaryEdges + figures.nonmanifoldEdges, 0u);
+            EXPECT_GT(figures.volume_m3, 0);
+        }
 }
 
 TEST(Solids, FacesAreLabelledSoThatRidgesAreSharp) {
