@@ -35,15 +35,15 @@ Ring ringFrom(const ClipperLib::Path& path, bool isCourt) {
     return (signedArea(ring) < 0) == isCourt ? ring : reversed(ring);
 }
 
-/// A point just inside the solid that a ring bounds, beside the middle of its longest edge.
-Vec2 besideEdge(const Ring& ring) {
-    size_t longest = 0;
-    double most = -1;
-    for (size_t i = 0; i < ring.size(); ++i)
-        if (const double l = length(ring.to(i) - ring.from(i)); l > most) most = l, longest = i;
-    const Vec2 d = ring.to(longest) - ring.from(longest);
-    return (ring.from(longest) + ring.to(longest)) * 0.5 +
-           Vec2{-d.z, d.x} * (2 / (unitsPerMetre * std::max(most, 1e-9)));
+/// Whether a court lies in an outline that it may touch: told by a point of it that is apart from the outline.
+bool liesIn(const Ring& court, const Footprint& outline) {
+    constexpr double apart_m = 1e-4;
+    double farthest = -1;
+    Vec2 witness;
+    for (size_t i = 0; i < court.size() && farthest < apart_m; ++i)
+        for (const Vec2 p : {court.from(i), (court.from(i) + court.to(i)) * 0.5})
+            if (const double away = distanceToEdges(outline, p); away > farthest) farthest = away, witness = p;
+    return contains(outline, witness);
 }
 
 /// Outlines run counter-clockwise and courts clockwise; a court belongs to the least outline around it. Clipper's own
@@ -59,13 +59,16 @@ Footprint footprintFrom(const ClipperLib::Paths& paths) {
     for (const ClipperLib::Path& path : paths) {
         if (path.size() < 3 || ClipperLib::Orientation(path)) continue;
         Ring court = ringFrom(path, true);
-        const Vec2 beside = besideEdge(court);
+        const Box2 within = bounds(court);
+        constexpr double rounding_m = 1e-5;
         size_t home = outlines.size();
         for (size_t i = 0; i < outlines.size(); ++i) {
             const auto& [size, box] = outlines[i];
-            if (beside.x < box.lo.x || beside.x > box.hi.x || beside.z < box.lo.z || beside.z > box.hi.z) continue;
+            if (within.lo.x < box.lo.x - rounding_m || within.hi.x > box.hi.x + rounding_m ||
+                within.lo.z < box.lo.z - rounding_m || within.hi.z > box.hi.z + rounding_m)
+                continue;
             if (home < outlines.size() && outlines[home].first <= size) continue;
-            if (contains(footprintOf({result.polygons[i].outer, {}}), beside)) home = i;
+            if (liesIn(court, footprintOf({result.polygons[i].outer, {}}))) home = i;
         }
         if (home < outlines.size()) result.polygons[home].courts.push_back(std::move(court));
     }
@@ -135,6 +138,14 @@ Footprint offsetOf(const LatticePaths& paths, double distance_m) {
     clipper.AddPaths(pathsFrom(paths), ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
     ClipperLib::Paths found;
     clipper.Execute(found, distance_m * unitsPerMetre);
+    return footprintFrom(found);
+}
+
+Footprint bandOf(const LatticePath& path, double half_m, bool closed) {
+    ClipperLib::ClipperOffset clipper(mitreLimit);
+    clipper.AddPath(pathFrom(path), ClipperLib::jtMiter, closed ? ClipperLib::etClosedLine : ClipperLib::etOpenButt);
+    ClipperLib::Paths found;
+    clipper.Execute(found, half_m * unitsPerMetre);
     return footprintFrom(found);
 }
 

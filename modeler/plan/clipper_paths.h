@@ -24,6 +24,9 @@ Footprint evenOddOf(const LatticePaths& paths);
 /// Every ring moved outward by `distance_m` with corners mitred up to 4 times that.
 Footprint offsetOf(const LatticePaths& paths, double distance_m);
 
+/// What lies within `half_m` of a chain, mitred at its corners; an open one ends square.
+Footprint bandOf(const LatticePath& path, double half_m, bool closed);
+
 /// Without points nearer than 1 mm, without slivers, and sound: where rings touch, all is moved inward by .2 mm, or a
 /// little more where that doesn't do. Tags stay.
 Footprint tidied(Footprint footprint);
