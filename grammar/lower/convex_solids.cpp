@@ -103,7 +103,7 @@ private:
 /// A solid whose field is a convex function, by planes that touch it.
 ConvexPart touching(const SolidValue& solid, const Scope& scope, std::span<const field::SampledGridPtr> meshes) {
     field::Graph graph;
-    const field::Field f = lowerSolid(graph, solid, scope, 1, {}, meshes);
+    const field::Field f = lowerSolid(graph, solid, scope, 1, 1, {}, meshes);
     const eval::Tape tape = eval::compile(graph, f, graph.constants());
     ConvexPart part = SurfaceProbe(tape, scope).tangents();
     if (part.empty()) return {};

@@ -168,7 +168,7 @@ Owned Lowering::displaced(Owned part, ShapeId id) {
 /// The shape's own solid.
 Owned Lowering::solidOf(ShapeId id) {
     const Shape& s = tree_.shapes[id];
-    return {lowerSolid(model_.graph, *tree_.solidOf(id), s.scope, s.key, tree_.footprints, d_.grammar->meshes), ownerOf(id)};
+    return {lowerSolid(model_.graph, *tree_.solidOf(id), s.scope, s.key, tree_.shapes[turnedAt_[id]].key, tree_.footprints, d_.grammar->meshes), ownerOf(id)};
 }
 
 void Lowering::enter(ShapeId id) {
@@ -227,7 +227,18 @@ Status Lowering::walk(ShapeId top, Progress* progress) {
     }
 }
 
+/// By shape: the highest shape above it, or itself, from which on nothing turned.
+void Lowering::findTurns() {
+    turnedAt_.resize(tree_.shapes.size());
+    for (ShapeId id = 0; id < tree_.shapes.size(); ++id) {
+        const Shape& s = tree_.shapes[id];
+        const bool turned = s.parent == none || tree_.shapes[s.parent].scope.axes != s.scope.axes;
+        turnedAt_[id] = turned ? id : turnedAt_[s.parent];
+    }
+}
+
 Status Lowering::run(Progress* progress) {
+    findTurns();
     plain_ = plainSums();
     if (keeps_) {
         known_.resize(tree_.shapes.size());

@@ -53,6 +53,7 @@ public:
     bool again(std::span<const ShapeId> changed);
 
 private:
+    void findTurns();
     Status walk(ShapeId top, Progress* progress);
     void hand(ShapeId id, const Owned& part);
     Owned whole(Content& content, ShapeId id);
@@ -86,6 +87,7 @@ private:
     Model& model_;
     Materials materials_;
     std::vector<Content> open_;
+    std::vector<ShapeId> turnedAt_;
     std::vector<bool> plain_;  ///< by shape: its content is nothing but a sum
     std::vector<OriginId> owners_;  ///< by shape; 0: not asked for
     size_t cladNodes_ = 0;          ///< of the graph, made for cladding

@@ -63,6 +63,7 @@ bool Lowering::again(std::span<const ShapeId> changed) {
     // What dresses a shape hangs on the boxes of all below.
     if (std::any_of(tree_.extras.begin(), tree_.extras.end(), [](const derive::Extras& x) { return !x.clad.empty(); })) return false;
     again_ = true;
+    findTurns();
     open_.clear();
     const size_t nodes = model_.graph.nodeCount(), parts = model_.provenance.parts.size();
     Dirty dirty;

@@ -97,17 +97,17 @@ bool standsOverPlan(const SolidValue& solid) {
            std::any_of(solid.parts.begin(), solid.parts.end(), standsOverPlan);
 }
 
-Frame frameOf(Graph& graph, const derive::Scope& scope, uint64_t key, std::span<const field::SampledGridPtr> meshes) {
+Frame frameOf(Graph& graph, const derive::Scope& scope, uint64_t key, uint64_t rotationKey, std::span<const field::SampledGridPtr> meshes) {
     const Vec3d h = scope.half();
     const auto half = [&](std::string_view name, double value) { return graph.slot({key, hashText(name)}, static_cast<float>(value)); };
-    return {field::toLocal(graph.position(), {scope.centre, scope.axes}, key), {half("size.x", h.x), half("size.y", h.y), half("size.z", h.z)}, scope, meshes, nullptr};
+    return {field::toLocal(graph.position(), {scope.centre, scope.axes}, key, rotationKey), {half("size.x", h.x), half("size.y", h.y), half("size.z", h.z)}, scope, meshes, nullptr};
 }
 
 }  // namespace
 
-Field lowerSolid(Graph& graph, const SolidValue& solid, const derive::Scope& scope, uint64_t key,
+Field lowerSolid(Graph& graph, const SolidValue& solid, const derive::Scope& scope, uint64_t key, uint64_t rotationKey,
                  const derive::Footprints& footprints, std::span<const field::SampledGridPtr> meshes) {
-    Frame frame = frameOf(graph, scope, key, meshes);
+    Frame frame = frameOf(graph, scope, key, rotationKey, meshes);
     if (scope.footprint == derive::none || !standsOverPlan(solid)) return build(graph, solid, frame, key);
     const plan::Footprint footprint = footprints.inMetres(scope.footprint, scope.half());
     const field::PlanField plan(footprint, footprints[scope.footprint].formula, frame.p, combine(key, hashText("plan")));
@@ -116,7 +116,7 @@ Field lowerSolid(Graph& graph, const SolidValue& solid, const derive::Scope& sco
 }
 
 Field lowerClad(Graph& graph, const field::Clad& what, const SolidValue& ornament, const derive::Scope& scope, uint64_t key) {
-    const Frame frame = frameOf(graph, scope, key, {});
+    const Frame frame = frameOf(graph, scope, key, key, {});
     const std::vector<Argument> arguments = argumentsOf(graph, ornament, key);
     return field::clad({frame.p, frame.half, scope.half(), arguments}, what, scope.axes.y);
 }

@@ -11,10 +11,11 @@
 namespace sgm::lower {
 
 /// Slots: (key, "size.x" …) for half-sizes, (key, parameter name) for the solid's own numbers, "morph" for a share;
-/// parts of morphs and combinations add their position to the key. `footprints` are the
-/// tree's, `meshes` the grammar's.
+/// parts of morphs and combinations add their position to the key. Slots of a
+/// rotation are under `rotationKey`: parts of a building that share its axes share them. `footprints` are the tree's, `meshes`
+/// the grammar's.
 field::Field lowerSolid(field::Graph& graph, const derive::SolidValue& solid, const derive::Scope& scope, uint64_t key,
-                        const derive::Footprints& footprints, std::span<const field::SampledGridPtr> meshes);
+                        uint64_t rotationKey, const derive::Footprints& footprints, std::span<const field::SampledGridPtr> meshes);
 /// `what` dressed with an ornament that lies in `scope`.
 field::Field lowerClad(field::Graph& graph, const field::Clad& what, const derive::SolidValue& ornament, const derive::Scope& scope, uint64_t key);
 

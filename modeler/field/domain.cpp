@@ -26,22 +26,22 @@ Num distanceTo(const Box3f& box, Point p) {
 
 }  // namespace
 
-Point toLocal(Point p, const Frame& frame, uint64_t path) {
+Point toLocal(Point p, const Frame& frame, uint64_t path, uint64_t rotationPath) {
     Graph& g = p.x.graph();
-    const Point q = p - Point{named(g, path, "centre.x", frame.centre.x), named(g, path, "centre.y", frame.centre.y),
-                              named(g, path, "centre.z", frame.centre.z)};
-    if (frame.rotation == Mat3{}) return q;
+    const Mat3& r = frame.rotation;
+    const Vec3d centre = r.transposed() * frame.centre;
     constexpr const char* names[3][3] = {{"rotation.xx", "rotation.xy", "rotation.xz"},
                                          {"rotation.yx", "rotation.yy", "rotation.yz"},
                                          {"rotation.zx", "rotation.zy", "rotation.zz"}};
-    // Rᵀq: the dot products with R's columns.
     const auto along = [&](const Vec3d& column, const char* const* name) {
-        return dot(Point{named(g, path, name[0], column.x), named(g, path, name[1], column.y),
-                         named(g, path, name[2], column.z)},
-                   q);
+        for (int axis = 0; axis < 3; ++axis)
+            if (std::abs(column[axis]) == 1) return column[axis] > 0 ? component(p, axis) : -component(p, axis);
+        return dot(Point{named(g, rotationPath, name[0], column.x), named(g, rotationPath, name[1], column.y),
+                         named(g, rotationPath, name[2], column.z)},
+                   p);
     };
-    const Mat3& r = frame.rotation;
-    return {along(r.x, names[0]), along(r.y, names[1]), along(r.z, names[2])};
+    return Point{along(r.x, names[0]), along(r.y, names[1]), along(r.z, names[2])} -
+           Point{named(g, path, "centre.x", centre.x), named(g, path, "centre.y", centre.y), named(g, path, "centre.z", centre.z)};
 }
 
 Box3f toWorld(const Box3f& local, const Frame& frame) {

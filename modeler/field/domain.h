@@ -15,8 +15,10 @@ struct Frame {
     Mat3 rotation;  ///< world from local; identity adds no nodes beyond the translation
 };
 
-/// p in the frame's own axes: Rᵀ(p − centre). The rotation's nine numbers are slots when it isn't the identity.
-Point toLocal(Point p, const Frame& frame, uint64_t path);
+/// p in the frame's own axes: Rᵀp − Rᵀcentre. A rotation that only exchanges and turns round axes adds no numbers; the nine of
+/// any other are slots under `rotationPath`, so that frames which share it share the three dot products.
+Point toLocal(Point p, const Frame& frame, uint64_t path, uint64_t rotationPath);
+inline Point toLocal(Point p, const Frame& frame, uint64_t path) { return toLocal(p, frame, path, path); }
 /// The bounds of `local` (a box in the frame's axes) in the object's frame.
 Box3f toWorld(const Box3f& local, const Frame& frame);
 /// `value` with x, y, z replaced by `p`: the same formula asked at another place. Numbers keep their slots. O(nodes of value).
