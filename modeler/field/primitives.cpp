@@ -101,7 +101,6 @@ constexpr PrimitiveParameter flatParameters[] = {
     {"parapet", Kind::Length, .9, 0, 20, "height of the parapet above it; 0 for none"},
     {"thickness", Kind::Length, .25, .001, 20, "of the parapet"}};
 constexpr PrimitiveParameter pyramidRoofParameters[] = {overhang, fascia};
-constexpr PrimitiveParameter domeParameters[] = {overhang};
 
 constexpr PrimitiveJoint apex[] = {{"apex", {0, 1, 0}, {0, 1, 0}}};
 constexpr PrimitiveJoint ridge[] = {{"ridge", {0, 1, 0}, {0, 1, 0}}};
@@ -168,7 +167,7 @@ constexpr Primitive table[] = {
      PlanUse::OwnHeight},
     {"pyramidRoof", "Planes from every edge to one point at the scope's top.", pyramidRoofParameters, solids::pyramidRoof, true,
      apex, false, nullptr, PlanUse::Fills},
-    {"domeRoof", "Quarter ellipses over every edge: a dome as high as the scope.", domeParameters, solids::domeRoof, true, apex,
+    {"domeRoof", "Quarter ellipses over every edge: a dome as high as the scope.", pyramidRoofParameters, solids::domeRoof, true, apex,
      false, nullptr, PlanUse::Fills},
     {"bellRoof", "As the dome, with a hollow foot.", pyramidRoofParameters, solids::bellRoof, true, apex, false, nullptr,
      PlanUse::Fills},

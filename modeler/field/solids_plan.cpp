@@ -49,6 +49,12 @@ private:
     std::optional<PlanField> own_;
 };
 
+/// The height of the scope above the board at the eaves.
+Quantity aboveFascia(const PrimitiveInput& in) {
+    const Quantity fascia = quantity(in.arguments[1]);
+    return {max(2.0f * in.half.y - fascia.node, 1e-3f), std::max(2 * in.halfValue.y - fascia.value, 1e-3)};
+}
+
 /// Which edges are gables, as the choice `ends` says.
 enum class Ends { Auto, X, Z, All };
 std::vector<uint32_t> endsOf(const PlanField& plan, const Argument& choice) {
@@ -171,21 +177,11 @@ Field pyramidRoof(const PrimitiveInput& in) {
 }
 
 Field domeRoof(const PrimitiveInput& in) {
-    return field::domeRoof(*PlanOf(in), footOf(in, quantity(in.arguments[0]), number(in, 0)), height(in), number(in, 0));
+    return field::domeRoof(*PlanOf(in), footAt(in, 0), aboveFascia(in), number(in, 0));
 }
 
 Field bellRoof(const PrimitiveInput& in) {
-    const PlanOf plan(in);
-    const Quantity overhang = quantity(in.arguments[0]), fascia = quantity(in.arguments[1]), foot = bottom(in);
-    const Quantity eaves{foot.node + fascia.node, foot.value + fascia.value};
-    const Quantity rise{max(2.0f * in.half.y - fascia.node, 1e-3f), std::max(2 * in.halfValue.y - fascia.value, 1e-3)};
-    RoofFoot at = footOf(in, overhang, number(in, 0));
-    at.eaves = eaves;
-    const Field bell = field::bellRoof(*plan, at, rise, number(in, 0));
-    if (fascia.value <= 0) return bell;
-    const Num y = in.p.y, board = max((*plan).outside() - overhang.node, max(foot.node - y, y - eaves.node));
-    const Owned parts[] = {{bell, 0}, {(*plan).boxed(board, combine(in.path, hashText("fascia")), foot.value, eaves.value, overhang.value), 0}};
-    return sum(in.p.x.graph(), parts);
+    return field::bellRoof(*PlanOf(in), footAt(in, 0), aboveFascia(in), number(in, 0));
 }
 
 }  // namespace solids
