@@ -1,4 +1,4 @@
-# Draws docs/pictures/blender.png with Blender's path tracer: the palace from its .glb, a cumulus from its fog in a .vdb.
+# Draws a picture with Blender's path tracer: the palace from its .glb, a cumulus from its fog in a .vdb.
 # blender -b --factory-startup --python docs/blender.py -- PALACE.glb CUMULUS.vdb PICTURE.png
 import math
 import os

@@ -8,30 +8,40 @@
 cd "$(dirname "$0")/.."
 set -eu
 sgm=build/release/cli/sgm
-mkdir -p docs/pictures
+mkdir -p docs/pictures docs/pictures/footprints
+export drawn
+drawn=$(mktemp -d)
+trap 'rm -rf "$drawn"' EXIT
 
-# draw NAME OPTIONS INSIDE RENDER: NAME-mesh.png, the mesh at 256 cells, NAME-RENDER.png, the field itself or a cloud as fog,
-# and NAME-inside.png.
+# keep PNG NAME SIZE: docs/pictures/NAME.jpg, at most SIZE pixels wide and high (apt-get install imagemagick).
+keep() {
+  /usr/bin/convert "$1" -resize "$3x$3>" -background white -flatten -sampling-factor 4:2:0 -quality 82 -strip "docs/pictures/$2.jpg"
+  echo "docs/pictures/$2.jpg"
+}
+
+# draw NAME OPTIONS INSIDE RENDER: NAME-mesh.jpg, the mesh at 256 cells, NAME-RENDER.jpg, the field itself or a cloud as fog,
+# and NAME-inside.jpg.
 draw() {
   local name=$1 view
   for view in mesh "$4"; do
     # shellcheck disable=SC2086  # options are words
-    "$sgm" render $2 --resolution 256 --view "$view" --size 640x640 -q -o "docs/pictures/$name-$view.png"
+    "$sgm" render $2 --resolution 256 --view "$view" --size 640x640 -q -o "$drawn/a.png"
+    keep "$drawn/a.png" "$name-$view" 600
   done
   if [ -n "$3" ]; then
     # shellcheck disable=SC2086,SC2001
-    "$sgm" render $(sed 's/--camera [^ ]*//' <<<"$2") $3 --camera inside --size 640x640 -q -o "docs/pictures/$name-inside.png"
+    "$sgm" render $(sed 's/--camera [^ ]*//' <<<"$2") $3 --camera inside --size 640x640 -q -o "$drawn/a.png"
+    keep "$drawn/a.png" "$name-inside" 600
   fi
-  echo "docs/pictures/$name-*.png"
 }
 
-# small NAME OPTIONS: NAME.png, of 320 pixels unless the options say otherwise
+# small NAME OPTIONS: NAME.jpg, of 320 pixels unless the options say otherwise
 small() {
   local size="--size 320x320"
   case $2 in *--size*) size= ;; esac
   # shellcheck disable=SC2086
-  "$sgm" render $2 $size -q -o "docs/pictures/$1.png"
-  echo "docs/pictures/$1.png"
+  "$sgm" render $2 $size -q -o "$drawn/a.png"
+  keep "$drawn/a.png" "$1" 800
 }
 
 # The last section of the page is what bench prints.
@@ -50,9 +60,9 @@ blender() {
   models=$(mktemp -d)
   "$sgm" build examples/buildings/palace.sgm --resolution 256 -q -o "$models/palace.glb"
   "$sgm" build examples/cumulus.sgm --resolution 160 --format-option grids=fog --format-option edge=60 --format-option wisps=.6 -q -o "$models/cumulus.vdb"
-  command blender -b --factory-startup --python docs/blender.py -- "$models"/palace.glb "$models"/cumulus.vdb docs/pictures/blender.png >/dev/null
+  command blender -b --factory-startup --python docs/blender.py -- "$models"/palace.glb "$models"/cumulus.vdb "$drawn/a.png" >/dev/null
   rm -r "$models"
-  echo docs/pictures/blender.png
+  keep "$drawn/a.png" blender 800
 }
 
 # The window with a shape selected, on a display of its own.
@@ -68,10 +78,10 @@ window() {
     sleep 1
     settled "$1"
     sleep 1
-    import -window root docs/pictures/window.png
+    import -window root "$drawn/a.png"
     kill %1' _ "$report"
   rm -rf "$report" "$report.state"
-  echo docs/pictures/window.png
+  keep "$drawn/a.png" window 800
 }
 
 case $* in times | window | blender) "$*"; exit ;; esac
@@ -82,7 +92,7 @@ while IFS='|' read -r family name options inside; do
   case $family in "#"*) continue ;; cloud*) render=fog ;; esac
   case " $* " in "  " | *" $name "*) ;; *) continue ;; esac
   known=$((known + 1))
-  case $family in kifs*) small "$name" "$options" ;; *) draw "$name" "$options" "${inside:-}" "$render" ;; esac
+  case $family in kifs* | plan*) small "$name" "$options" ;; *) draw "$name" "$options" "${inside:-}" "$render" ;; esac
 done <docs/gallery.txt
 [ $# -eq 0 ] && times
 [ $# -eq 0 ] || [ $known -eq $# ] || { echo "gallery: not all of '$*' are in docs/gallery.txt" >&2; exit 2; }
