@@ -31,6 +31,17 @@ std::string operationsPage() {
     return page;
 }
 
+/// What `footprint` draws by name.
+std::string plansPage() {
+    std::string page = "\n## Plans\n\nWhat `footprint` draws, besides `outline((x, z), …)` and an lsystem. Each takes `at: (x, z)` and `turn: angle`.\n";
+    for (const rules::PlanRow& row : rules::planRows()) {
+        page += fmt::format("\n### `{}`\n\n{}\n", row.name, row.doc);
+        for (const rules::PlanParameter& p : row.parameters) page += fmt::format("- `{}`: {}{}\n", p.name, p.doc, p.required ? "" : " (may be left out)");
+        page += fmt::format("\n    {}\n", row.example);
+    }
+    return page;
+}
+
 /// "ball|cube" as "`ball`, `cube`".
 std::string listed(std::string_view choices) {
     std::string text = "`";
@@ -85,7 +96,7 @@ std::string exportersPage() {
 void addReference(CLI::App& app, int& exitCode) {
     CLI::App* command = app.add_subcommand("reference", "Print the reference page: operations, primitives, functions, formats");
     command->callback([&exitCode] {
-        fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}{}", operationsPage(), primitivesPage(), functionsPage(), exportersPage());
+        fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}{}{}", operationsPage(), plansPage(), primitivesPage(), functionsPage(), exportersPage());
         exitCode = 0;
     });
 }
