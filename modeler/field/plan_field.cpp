@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "modeler/core/random.h"
+#include "modeler/field/bends.h"
 #include "modeler/field/solids.h"
 
 namespace sgm::field {
@@ -36,22 +37,61 @@ Num pathSlot(Graph& graph, uint64_t path, std::string_view attribute, uint64_t i
 Quantity fixed(Graph& graph, double value) { return {graph.literal(static_cast<float>(value)), value}; }
 
 PlanField::PlanField(const plan::Footprint& footprint, const plan::Formula& formula, Point p, uint64_t path)
-    : footprint_(&footprint), formula_(&formula), p_(p), edges_(plan::edgesOf(footprint)) {
-    distances_.reserve(edges_.size());
-    for (size_t i = 0; i < edges_.size(); ++i) {
-        const plan::Vec2 n = edges_[i].normal();
-        const double c = dot(n, edges_[i].from);
-        if (n.x == 1 || n.z == 1) {
-            distances_.push_back((n.x == 1 ? p.x : p.z) - pathSlot(p.x.graph(), path, "edge c", i, c));
-        } else if (n.x == -1 || n.z == -1) {
-            distances_.push_back(pathSlot(p.x.graph(), path, "edge c", i, -c) - (n.x == -1 ? p.x : p.z));
+    : footprint_(&footprint),
+      formula_(&formula),
+      p_(p),
+      edges_(plan::edgesOf(footprint)),
+      path_(path),
+      distances_(edges_.size()) {
+    outside_ = outsideByBends();
+}
+
+Num PlanField::distance(uint32_t edge) const {
+    std::optional<Num>& known = distances_[edge];
+    if (known) return *known;
+    const auto number = [&](std::string_view of, double v) { return pathSlot(graph(), path_, of, edge, v); };
+    const plan::Vec2 n = edges_[edge].normal();
+    const double c = dot(n, edges_[edge].from);
+    if (n.x == 1 || n.z == 1)
+        known = (n.x == 1 ? p_.x : p_.z) - number("edge c", c);
+    else if (n.x == -1 || n.z == -1)
+        known = number("edge c", -c) - (n.x == -1 ? p_.x : p_.z);
+    else
+        known = p_.x * number("edge x", n.x) + p_.z * number("edge z", n.z) - number("edge c", c);
+    return *known;
+}
+
+/// Φ with the edges of bends relative to their bend's plane, and each bend relative to the one around it.
+Num PlanField::outsideByBends() const {
+    const Bends bends = bendsOf(*formula_, edges_);
+    if (bends.planes.empty()) return fold([this](uint32_t edge) { return distance(edge); });
+    const auto relative = [&](std::string_view of, uint64_t index, PlanPlane plane, uint32_t bend) {
+        const PlanPlane base = bend == Bends::none ? PlanPlane{} : bends.planes[bend];
+        const auto number = [&](int axis, double v) {
+            return pathSlot(graph(), path_, of, index * 3 + static_cast<uint64_t>(axis), v);
+        };
+        return p_.x * number(0, plane.normal.x - base.normal.x) + p_.z * number(1, plane.normal.z - base.normal.z) -
+               number(2, plane.offset - base.offset);
+    };
+    std::vector<Num> nodes;
+    nodes.reserve(formula_->nodes.size());
+    for (size_t i = 0; i < formula_->nodes.size(); ++i) {
+        const FormulaNode& node = formula_->nodes[i];
+        Num value;
+        if (node.kind != FormulaNode::Kind::Edge) {
+            const Num a = nodes[node.first], b = nodes[node.second];
+            value = node.kind == FormulaNode::Kind::Max ? max(a, b) : min(a, b);
+        } else if (bends.ofNode[i] == Bends::none) {
+            value = distance(node.first);
         } else {
-            distances_.push_back(p.x * pathSlot(p.x.graph(), path, "edge x", i, n.x) +
-                                 p.z * pathSlot(p.x.graph(), path, "edge z", i, n.z) -
-                                 pathSlot(p.x.graph(), path, "edge c", i, c));
+            const plan::PlacedEdge& e = edges_[node.first];
+            value = relative("edge in bend", node.first, {e.normal(), dot(e.normal(), e.from)}, bends.ofNode[i]);
         }
+        if (const uint32_t bend = bends.beginsAt[i]; bend != Bends::none)
+            value = value + relative("bend", bend, bends.planes[bend], bends.outer[bend]);
+        nodes.push_back(value);
     }
-    outside_ = fold([this](uint32_t edge) { return distances_[edge]; });
+    return nodes.back();
 }
 
 Num PlanField::fold(const std::function<Num(uint32_t edge)>& leaf) const {

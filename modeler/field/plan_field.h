@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,7 +37,7 @@ public:
     const plan::Formula& formula() const { return *formula_; }
     const std::vector<plan::PlacedEdge>& edges() const { return edges_; }
     /// Signed distance to the line of edge i, > 0 outside, metres.
-    Num distance(uint32_t edge) const { return distances_[edge]; }
+    Num distance(uint32_t edge) const;
     /// Φ = −D: < 0 inside, metres; 1-Lipschitz, mitred beyond corners.
     Num outside() const { return outside_; }
     /// The formula over other leaves, one an edge. Φ is fold(distance).
@@ -49,11 +50,14 @@ public:
     Field boxed(Num value, uint64_t path, double bottom, double top, double out = 0) const;
 
 private:
+    Num outsideByBends() const;
+
     const plan::Footprint* footprint_;  ///< the caller's; must outlive this
     const plan::Formula* formula_;
     Point p_;
     std::vector<plan::PlacedEdge> edges_;
-    std::vector<Num> distances_;
+    uint64_t path_;
+    mutable std::vector<std::optional<Num>> distances_;  ///< made when asked for
     Num outside_;
 };
 

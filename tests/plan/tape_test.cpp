@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "modeler/core/conventions.h"
+#include "modeler/field/bends.h"
 #include "tests/field/probe.h"
 #include "tests/plan/built.h"
 #include "tests/plan/random_plans.h"
@@ -46,6 +47,41 @@ TEST(Tape, SignsAreRightATenthOfAMillimetreFromEdges) {
                 << "plan " << i << " at " << p.x << ' ' << p.z << ": " << values[k];
         }
     }
+}
+
+TEST(Tape, RoundWallsAreFoldedRelativeToTheirBends) {
+    Footprint ringed = *round(400, 10);
+    ringed.polygons[0].courts.push_back(reversed(round(300, 4)->polygons[0].outer));
+    for (const Footprint& f : {*ngon(1000, 10), *round(128, 8), *arc(11, 16, .2, 2.9, 90), ringed}) {
+        ASSERT_FALSE(firstFault(f));
+        const auto b = built(turned(f, .3));
+        ASSERT_FALSE(field::bendsOf(b->formula, b->plan.edges()).planes.empty());
+        b->field() = field::prism(b->plan, b->number(-1), b->number(1));
+        field::test::expectPromises(b->scene.graph, b->field(), b->field().bounds.as<double>(), f.edgeCount(), "round");
+        b->field() = {b->plan.outside(), {}, 1, 0};
+        const auto distances = distancesOf(b->footprint);
+        Draws draw(f.edgeCount());
+        field::test::Probe probe(b->scene.graph, b->field());
+        for (int i = 0; i < 3000; ++i) {
+            const Vec2 p{draw.real(-17, 17), draw.real(-17, 17)};
+            const float x = static_cast<float>(p.x), z = static_cast<float>(p.z);
+            ASSERT_NEAR(probe({x, 0, z}), valueOf(b->formula, distances, {x, z}), 1e-5);
+        }
+    }
+}
+
+/// The tape of a round wall's brick holds few of its edges: that is what the bends are for.
+TEST(Tape, BricksOfRoundWallsKeepFewEdges) {
+    const auto b = built(*ngon(1000, 10));
+    b->field() = field::prism(b->plan, b->number(-3), b->number(3), 1);
+    const eval::Tape tape = b->scene.tape();
+    eval::Workspace w;
+    const float half = 8 * 20 / 512.0f / 2;
+    const Vec3f at{10 * std::cos(.7f), 0, 10 * std::sin(.7f)};
+    const Box3f brick{at - Vec3f{half, half, half}, at + Vec3f{half, half, half}};
+    eval::Range range;
+    eval::evaluateRanges(tape, {&brick, 1}, &range, w);
+    EXPECT_LT(eval::shorten(tape, 0, w).code().size(), 300u);
 }
 
 /// Outlines as nobody should draw them: points on one another, hairs, crossings, courts that touch.
