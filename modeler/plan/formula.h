@@ -50,8 +50,23 @@ double valueOf(const Formula& formula, std::span<const Linear> leaves, Vec2 p);
 double leastInside(const Formula& formula, std::span<const Linear> leaves, std::span<const Linear> outline, Box2 box,
                    double tolerance);
 
+/// The point that is deepest inside, and its depth −Φ, metres; both to within a thousandth of the footprint's width.
+struct Deepest {
+    Vec2 at;
+    double depth = 0;
+};
+Deepest deepestPoint(const Footprint& footprint, const Formula& formula);
+
+/// How far the slope of an edge reaches inward, square to the edge, from the point at `share` (0 … 1) of its length: to
+/// the ridge, hip or valley where another leaf takes over. `leaves` rise over the edges: distancesOf() for equal
+/// pitches, else times each pitch's tangent. Metres in plan; 0 where the slope isn't at that point at all. O(n²) at
+/// worst.
+double slopeDepth(const Footprint& footprint, const Formula& formula, std::span<const Linear> leaves, uint32_t edge,
+                  double share);
+
 /// Edges at which a gable stands: those whose two corners are convex and whose ridge ends over them (their face of the
-/// straight skeleton is a triangle), short ones first, no two side by side; none of a pyramid or cone but on a square. Ascending numbers. O(n²) at worst.
+/// straight skeleton is a triangle), short ones first, no two side by side; none of a pyramid or cone but on a square.
+/// Ascending numbers. O(n²) at worst.
 std::vector<uint32_t> gableEnds(const Footprint& footprint, const Formula& formula);
 
 }  // namespace sgm::plan

@@ -107,6 +107,32 @@ TEST(Formula, TheDepthOfARectangleIsHalfItsWidth) {
     EXPECT_GE(least, -2 - 2e-3);
 }
 
+TEST(Formula, SlopesReachTheirRidges) {
+    const Footprint f = *rectangle(10, 4);
+    const Formula formula = *monotoneFormula(f);
+    const auto d = distancesOf(f);
+    EXPECT_NEAR(slopeDepth(f, formula, d, 0, .5), 2, 1e-9);
+    EXPECT_NEAR(slopeDepth(f, formula, d, 0, .1), 1, 1e-9) << "to the hip";
+    EXPECT_NEAR(slopeDepth(f, formula, d, 1, .5), 2, 1e-9);
+    EXPECT_NEAR(slopeDepth(f, formula, d, 1, .25), 1, 1e-9);
+    const Deepest middle = deepestPoint(*ngon(8, 5), *monotoneFormula(*ngon(8, 5)));
+    EXPECT_NEAR(length(middle.at), 0, .1);
+    EXPECT_NEAR(middle.depth, 5 * std::cos(pi / 8), .02);
+    const Footprint l = *ell(16, 14, 6, 4);
+    const Formula ofL = *monotoneFormula(l);
+    const auto dl = distancesOf(l);
+    double deepest = 0;
+    for (uint32_t e = 0; e < 6; ++e)
+        for (const double share : {.1, .3, .5, .7, .9}) {
+            const double depth = slopeDepth(l, ofL, dl, e, share);
+            const PlacedEdge at = edgesOf(l)[e];
+            const Vec2 ridge = at.from + (at.to - at.from) * share - at.normal() * depth;
+            EXPECT_NEAR(valueOf(ofL, dl, ridge), -depth, 1e-9);
+            deepest = std::max(deepest, depth);
+        }
+    EXPECT_NEAR(deepest, 3, .01);
+}
+
 TEST(Formula, GableEndsAreTheShortSidesOfWings) {
     const auto endsOf = [](const Footprint& f) { return gableEnds(f, *monotoneFormula(f)); };
     EXPECT_EQ(endsOf(*rectangle(10, 4)), (std::vector<uint32_t>{1, 3}));

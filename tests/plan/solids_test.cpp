@@ -1,11 +1,13 @@
 // Prisms and roofs over footprints through crisp meshes: volumes against closed forms, closedness, components, genus.
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <functional>
 #include <numeric>
 #include <set>
 
 #include "modeler/core/conventions.h"
+#include "modeler/plan/plates.h"
 #include "tests/field/probe.h"
 #include "tests/plan/built.h"
 #include "tests/plan/random_plans.h"
@@ -245,6 +247,38 @@ TEST(Solids, NoRoofOverRandomPlansFails) {
             const mesh::MeshFigures figures = mesh::measure(*m.mesh);
             EXPECT_EQ(figures.boundaryEdges + figures.nonmanifoldEdges, 0u);
             EXPECT_GT(figures.volume_m3, 0);
+        }
+}
+
+TEST(Solids, PlatesAndTheirCoreAreOneSolid) {
+    for (const double turn : {0.0, .3})
+        for (const auto& [name, plan] : plans()) {
+            SCOPED_TRACE(name);
+            const Footprint f = turned(plan, turn);
+            const Plates plates = *platesOf(f, .5);
+            mesh::Scene s;
+            std::deque<Footprint> footprints;
+            std::deque<Formula> formulas;
+            std::vector<field::Owned> parts;
+            const auto add = [&](const Footprint& part) {
+                footprints.push_back(part);
+                formulas.push_back(*monotoneFormula(part));
+                const uint64_t path = 10 * footprints.size();
+                const field::PlanField in(footprints.back(), formulas.back(), s.graph.position(), path);
+                const field::Quantity bottom{s.graph.slot(0.f), 0}, top{s.graph.slot(3.f), 3};
+                parts.push_back({field::prism(in, bottom, top, path + 1), static_cast<OriginId>(footprints.size())});
+            };
+            for (const Plate& plate : plates.plates) add(plate.footprint);
+            add(plates.core);
+            s.field = field::sum(s.graph, parts);
+            for (const int at : {64, 100}) {
+                const mesh::Meshed m = mesh::meshOf(s, at, 2, {.surface = mesh::Surface::Crisp});
+                ASSERT_TRUE(m.mesh.ok());
+                const mesh::MeshFigures figures = mesh::measure(*m.mesh);
+                EXPECT_EQ(figures.components, 1u) << at;
+                EXPECT_EQ(test::genus(figures), name == "ring" ? 1 : 0) << at;
+                EXPECT_NEAR(figures.volume_m3 / (area(f) * 3), 1, 1e-4) << at;
+            }
         }
 }
 
