@@ -52,5 +52,26 @@ TEST(Skeleton, RandomRectilinearPlansHaveItsDepth) {
     EXPECT_GT(withCourts, 50);
 }
 
+/// Where the depth isn't the skeleton's it is still near it: corners off by up to 5 cm, as surveyors measure.
+TEST(Skeleton, SurveyedPlansAreMostlyExactAndElsewhereNear) {
+    int plans = 0, exact = 0;
+    double most = 0;
+    for (uint64_t key = 0; key < 300; ++key) {
+        test::Draws draw(combine(hashText("surveyed"), key));
+        Footprint f = test::rectilinear(draw, 8, draw.whole(3, 20), false);
+        for (Vec2& p : f.polygons[0].outer.points) p = p + Vec2{draw.real(-.05, .05), draw.real(-.05, .05)};
+        if (firstFault(f)) continue;
+        const double off = mostOff(f);
+        ++plans, exact += off < 1e-6;
+        most = std::max(most, off);
+    }
+    RecordProperty("exact", exact);
+    RecordProperty("plans", plans);
+    RecordProperty("most_mm", static_cast<int>(most * 1000));
+    EXPECT_GT(plans, 250);
+    EXPECT_GT(exact, .9 * plans) << exact << " of " << plans;
+    EXPECT_LT(most, .3) << exact << " of " << plans;
+}
+
 }  // namespace
 }  // namespace sgm::plan
