@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "modeler/core/parallel.h"
+#include "modeler/core/random.h"
 #include "modeler/mesh/decimate_job.h"
 
 namespace sgm::mesh {
@@ -17,8 +18,8 @@ constexpr int mostRounds = 6;
 
 /// Triangles by cubes of space.
 struct Patches {
-    std::vector<uint32_t> triangles, begin;
-    size_t count() const { return begin.size() - 1; }
+    std::vector<uint32_t> triangles, begin, cubes;
+    size_t count() const { return cubes.size(); }
     std::span<const uint32_t> operator[](size_t i) const {
         return {triangles.data() + begin[i], triangles.data() + begin[i + 1]};
     }
@@ -34,56 +35,66 @@ double sideOfPatch(const Decimation& d) {
     return std::sqrt(area / 2 * patchTriangles / (1.5 * static_cast<double>(d.triangles.size())));
 }
 
-/// Cubes of `side` metres whose lattice is shifted by a share of it.
-Patches cluster(const Decimation& d, double side, double shift) {
+/// Cubes of `side` metres about the triangles, shifted by a share of it.
+PatchLattice latticeOf(const Decimation& d, double side, double shift) {
     Box3f box;
-    const auto position = [&](uint32_t v) { return d.input.mesh.positions[v]; };
-    for (const SimpleTriangle& t : d.triangles) box = hull(box, position(t.corners.x));
+    for (const SimpleTriangle& t : d.triangles) box = hull(box, d.input.mesh.positions[t.corners.x]);
+    PatchLattice lattice;
     const double longest = static_cast<double>(maxComponent(box.size()));
-    side = std::max(side, longest / 500);  // so that there are few cubes
-    const Vec3d low = box.lo.as<double>() - Vec3d{1, 1, 1} * (side * (1 + shift));
-    const auto along = [&](int axis) {
-        return static_cast<uint32_t>((static_cast<double>(box.hi[axis]) - low[axis]) / side) + 2;
-    };
-    const uint32_t nx = along(0), ny = along(1);
+    lattice.side_m = std::max(side, longest / 500);  // so that there are few cubes
+    lattice.low = box.lo.as<double>() - Vec3d{1, 1, 1} * (lattice.side_m * (1 + shift));
+    for (int axis = 0; axis < 3; ++axis)
+        lattice.size[axis] =
+            static_cast<uint32_t>((static_cast<double>(box.hi[axis]) - lattice.low[axis]) / lattice.side_m) + 2;
+    return lattice;
+}
+
+Patches cluster(const Decimation& d, const PatchLattice& lattice) {
     Patches patches;
-    patches.begin.assign(static_cast<size_t>(nx) * ny * along(2) + 1, 0);
-    std::vector<uint32_t> cubes(d.triangles.size());
+    std::vector<uint32_t> ends(lattice.cubes() + 1), cubes(d.triangles.size());
     for (size_t i = 0; i < cubes.size(); ++i) {
-        const Vec3d at = (position(d.triangles[i].corners.x).as<double>() - low) / side;
-        cubes[i] = (static_cast<uint32_t>(at.z) * ny + static_cast<uint32_t>(at.y)) * nx + static_cast<uint32_t>(at.x);
-        ++patches.begin[cubes[i] + 1];
+        cubes[i] = lattice.cubeOf(d.input.mesh.positions[d.triangles[i].corners.x]);
+        ++ends[cubes[i] + 1];
     }
-    for (size_t i = 1; i < patches.begin.size(); ++i) patches.begin[i] += patches.begin[i - 1];
-    std::vector<uint32_t> next(patches.begin.begin(), patches.begin.end() - 1);
+    patches.begin.push_back(0);
+    for (uint32_t cube = 0; cube + 1 < ends.size(); ++cube) {
+        const uint32_t count = ends[cube + 1];
+        ends[cube + 1] += ends[cube];
+        if (count == 0) continue;
+        patches.cubes.push_back(cube);
+        patches.begin.push_back(ends[cube + 1]);
+    }
     patches.triangles.resize(cubes.size());
-    for (uint32_t i = 0; i < cubes.size(); ++i) patches.triangles[next[cubes[i]]++] = i;
-    patches.begin.erase(std::unique(patches.begin.begin(), patches.begin.end()), patches.begin.end());
+    for (uint32_t i = 0; i < cubes.size(); ++i) patches.triangles[ends[cubes[i]]++] = i;
     return patches;
 }
 
-void decimatePatches(Decimation& d, const Patches& patches, std::span<uint8_t> settled, bool original, int threads,
-                     Progress* progress) {
-    PageVector<uint32_t> incident(d.input.mesh.positions.size());
-    std::fill(incident.begin(), incident.end(), 0);
-    for (const SimpleTriangle& t : d.triangles)
-        for (int i = 0; i < 3; ++i) ++incident[t.corners[i]];
-    std::vector<DecimationJob> jobs(static_cast<size_t>(threadCount(threads)),
-                                    DecimationJob(d, incident, settled, original));
-    std::vector<DecimatedPatch> done(patches.count());
-    parallelFor(patches.count(), threads, progress, [&](size_t i, int worker) {
-        done[i] = jobs[static_cast<size_t>(worker)].run(patches[i], progress);
-        tick(progress, patches[i].size());
-    });
-    if (cancelled(progress)) return;
-    d.triangles.clear(), d.firstPoint.clear();
-    for (const DecimatedPatch& p : done) {
-        d.triangles.insert(d.triangles.end(), p.triangles.begin(), p.triangles.end());
-        d.firstPoint.insert(d.firstPoint.end(), p.firstPoint.begin(), p.firstPoint.end());
-    }
+/// What tells a triangle of a result with its points from another, as a rule.
+uint64_t fingerprint(const DecimatedPatch& patch, size_t triangle) {
+    const SimpleTriangle& t = patch.triangles[triangle];
+    uint64_t h = t.region;
+    for (int i = 0; i < 3; ++i) h = combine(h, t.corners[i]);
+    for (uint32_t i = triangle == 0 ? 0 : patch.pointsEnd[triangle - 1]; i < patch.pointsEnd[triangle]; ++i)
+        h = combine(h, patch.points[i]);
+    return h;
+}
+
+std::vector<uint64_t> fingerprints(const DecimatedPatch& patch) {
+    std::vector<uint64_t> all(patch.triangles.size());
+    for (size_t t = 0; t < all.size(); ++t) all[t] = fingerprint(patch, t);
+    std::sort(all.begin(), all.end());
+    return all;
 }
 
 }  // namespace
+
+uint32_t PatchLattice::cubeOf(Vec3f p) const {
+    const Vec3d at = (p.as<double>() - low) / side_m;
+    const auto along = [&](int axis) {
+        return static_cast<uint32_t>(std::clamp(at[axis], 0.0, static_cast<double>(size[axis] - 1)));
+    };
+    return (along(2) * size.y + along(1)) * size.x + along(0);
+}
 
 Decimation::Decimation(const DecimationInput& in, const DecimationLimits& within) : input(in), limits(within) {
     const size_t vertices = input.mesh.positions.size();
@@ -106,9 +117,10 @@ Decimation::Decimation(const DecimationInput& in, const DecimationLimits& within
             neighbours[fill[a]++] = b;
         }
     longestEdge_m = 1.0001f * std::sqrt(longestEdge_m);
-    nextPoint.resize(vertices);
-    kept.resize(vertices);
-    std::fill(kept.begin(), kept.end(), uint8_t{0});
+    for (PageVector<uint8_t>* const flags : {&kept, &settled, &changed_}) {
+        flags->resize(vertices);
+        std::fill(flags->begin(), flags->end(), uint8_t{0});
+    }
 
     for (const Chain& c : input.chains.chains) {
         if (c.closed) continue;
@@ -126,7 +138,8 @@ void Decimation::reset() {
         const uint32_t region = input.regions.ofTriangle[t];
         if (!input.planes[region].planar()) triangles.push_back({input.mesh.triangles[t], region});
     }
-    firstPoint.assign(triangles.size(), none);
+    pointsEnd.assign(triangles.size(), 0);
+    points.clear();
     previous.resize(input.chains.vertices.size()), next.resize(input.chains.vertices.size());
     for (const Chain& c : input.chains.chains) {
         for (uint32_t i = c.begin; i < c.end; ++i) previous[i] = i - 1, next[i] = i + 1;
@@ -137,7 +150,7 @@ void Decimation::reset() {
 
 bool Decimation::keepAround(uint32_t triangle) {
     bool fresh = false;
-    for (uint32_t p = firstPoint[triangle]; p != none; p = nextPoint[p]) fresh |= keep(p);
+    for (const uint32_t p : pointsOver(triangle)) fresh |= keep(p);
     for (int i = 0; i < 3; ++i) {
         const uint32_t v = triangles[triangle].corners[i];
         fresh |= keep(v);
@@ -152,20 +165,110 @@ bool Decimation::keepChain(const Chain& chain) {
     return fresh;
 }
 
+bool Decimation::keep(uint32_t vertex) {
+    if (std::exchange(kept[vertex], uint8_t{1})) return false;
+    mark(vertex, 0);
+    return true;
+}
+
+/// Notes that the surface around a vertex differs from that of the last run once so many passes are through.
+void Decimation::mark(uint32_t vertex, size_t passes) {
+    if (std::exchange(changed_[vertex], uint8_t{1})) return;
+    if (settled[vertex] > passes) settled[vertex] = 0;
+}
+
 void Decimation::run(int threads, Progress* progress) {
     reset();
     if (triangles.empty()) return;
-    PageVector<uint8_t> settled(input.mesh.positions.size());
-    std::fill(settled.begin(), settled.end(), uint8_t{0});
-    for (int round = 0; round < mostRounds; ++round) {
-        const size_t before = triangles.size();
-        const double side = sideOfPatch(*this);
-        for (const double shift : {0.0, 0.5}) {
-            decimatePatches(*this, cluster(*this, side, shift), settled, round == 0 && shift == 0, threads, progress);
-            if (cancelled(progress)) return;
+    const bool again = !passes_.empty();
+    size_t before = 0;
+    double side = 0;
+    for (size_t pass = 0; pass < (again ? passes_.size() : 2 * mostRounds); ++pass) {
+        if (!again) {
+            if (pass % 2 == 0) {
+                if (pass > 0 && static_cast<double>(triangles.size()) > worthARound * static_cast<double>(before))
+                    break;
+                before = triangles.size();
+                side = sideOfPatch(*this);
+            }
+            passes_.push_back({latticeOf(*this, side, pass % 2 == 0 ? 0 : 0.5), {}});
         }
-        if (static_cast<double>(triangles.size()) > worthARound * static_cast<double>(before)) break;
+        runPass(pass, threads, progress);
+        if (cancelled(progress)) return;
     }
+    std::fill(changed_.begin(), changed_.end(), uint8_t{0});
+}
+
+bool Decimation::isChanged(std::span<const uint32_t> patch) const {
+    return std::any_of(patch.begin(), patch.end(), [&](uint32_t t) {
+        const Triangle& c = triangles[t].corners;
+        return (changed_[c.x] | changed_[c.y] | changed_[c.z]) != 0;
+    });
+}
+
+/// Notes the vertices of triangles that only one of two results has.
+void Decimation::markDifference(const DecimatedPatch& before, const DecimatedPatch& after, size_t pass) {
+    const auto markOthers = [&](const DecimatedPatch& of, const std::vector<uint64_t>& known) {
+        for (size_t t = 0; t < of.triangles.size(); ++t) {
+            if (std::binary_search(known.begin(), known.end(), fingerprint(of, t))) continue;
+            for (int i = 0; i < 3; ++i) mark(of.triangles[t].corners[i], pass + 1);
+        }
+    };
+    markOthers(before, fingerprints(after));
+    markOthers(after, fingerprints(before));
+}
+
+void Decimation::append(const DecimatedPatch& patch) {
+    const auto first = static_cast<uint32_t>(points.size());
+    triangles.insert(triangles.end(), patch.triangles.begin(), patch.triangles.end());
+    points.insert(points.end(), patch.points.begin(), patch.points.end());
+    for (const uint32_t end : patch.pointsEnd) pointsEnd.push_back(first + end);
+}
+
+/// A patch whose triangles and kept vertices are those of the last run has the same result.
+void Decimation::runPass(size_t number, int threads, Progress* progress) {
+    DecimationPass& pass = passes_[number];
+    const Patches patches = cluster(*this, pass.lattice);
+    std::vector<DecimatedPatch> done(patches.count()), known;
+    known.swap(pass.patches);
+    const bool again = !known.empty();
+    std::vector<size_t> open;
+    std::vector<const DecimatedPatch*> before(patches.count());  // of those that are open
+    const DecimatedPatch nothing;
+    auto old = known.begin();
+    for (size_t i = 0; i < patches.count(); ++i) {
+        for (; old != known.end() && old->cube < patches.cubes[i]; ++old) markDifference(*old, nothing, number);
+        before[i] = &nothing;
+        if (old != known.end() && old->cube == patches.cubes[i]) {
+            if (old->before == patches[i].size() && !isChanged(patches[i])) {
+                for (const uint32_t place : old->unlinked) unlink(place);
+                tick(progress, patches[i].size());
+                done[i] = std::move(*old++);
+                continue;
+            }
+            before[i] = &*old++;
+        }
+        open.push_back(i);
+    }
+    for (; old != known.end(); ++old) markDifference(*old, nothing, number);
+
+    PageVector<uint32_t> incident(input.mesh.positions.size());
+    std::fill(incident.begin(), incident.end(), 0);
+    for (const SimpleTriangle& t : triangles)
+        for (int i = 0; i < 3; ++i) ++incident[t.corners[i]];
+    std::vector<DecimationJob> jobs(static_cast<size_t>(threadCount(threads)), DecimationJob(*this, incident, number));
+    parallelFor(open.size(), threads, progress, [&](size_t i, int worker) {
+        DecimatedPatch& patch = done[open[i]];
+        patch = jobs[static_cast<size_t>(worker)].run(patches[open[i]], progress);
+        patch.cube = patches.cubes[open[i]], patch.before = static_cast<uint32_t>(patches[open[i]].size());
+        tick(progress, patches[open[i]].size());
+    });
+    if (cancelled(progress)) return;
+    if (again)
+        for (const size_t i : open) markDifference(*before[i], done[i], number);
+    triangles.clear(), points.clear(), pointsEnd.clear();
+    for (const DecimatedPatch& patch : done) append(patch);
+    pass.patches = std::move(done);
 }
 
 }  // namespace sgm::mesh

@@ -28,6 +28,32 @@ struct DecimationInput {
     std::span<const Plane> planes;
 };
 
+/// What decimation makes of a patch of triangles.
+struct DecimatedPatch {
+    uint32_t cube = 0;    ///< of the lattice that its triangles were chosen by
+    uint32_t before = 0;  ///< triangles that there were
+    std::vector<SimpleTriangle> triangles;
+    std::vector<uint32_t> pointsEnd;  ///< by triangle: the end of its points
+    std::vector<uint32_t> points;     ///< original vertices that are gone, by the triangle that they lie over
+    std::vector<uint32_t> unlinked;   ///< places in the chains that are gone
+};
+
+/// Cubes of space that divide triangles into patches.
+struct PatchLattice {
+    Vec3d low;
+    double side_m = 0;
+    Vec3<uint32_t> size;
+
+    uint32_t cubeOf(Vec3f p) const;
+    size_t cubes() const { return static_cast<size_t>(size.x) * size.y * size.z; }
+};
+
+/// All triangles once through a lattice, with what became of them the last time.
+struct DecimationPass {
+    PatchLattice lattice;
+    std::vector<DecimatedPatch> patches;  ///< ascending by cube
+};
+
 /// Curved regions while they are decimated, in jobs that share no vertex they move.
 struct Decimation {
     static constexpr uint32_t none = 0xffffffffu;
@@ -35,9 +61,10 @@ struct Decimation {
     DecimationInput input;
     DecimationLimits limits;
     std::vector<SimpleTriangle> triangles;  ///< of curved regions
-    std::vector<uint32_t> firstPoint;       ///< by triangle: an original vertex that lies over it and is gone, or none
-    PageVector<uint32_t> nextPoint;         ///< by vertex that is gone: the next one of its triangle, or none
+    std::vector<uint32_t> pointsEnd;        ///< by triangle: the end of its points
+    std::vector<uint32_t> points;           ///< original vertices that are gone, by the triangle that they lie over
     PageVector<uint8_t> kept;               ///< by vertex: whether it must stay
+    PageVector<uint8_t> settled;            ///< by vertex: the first pass that looked at it, counted from 1, or 0
     std::vector<uint32_t> previous, next;   ///< by place in the chains: the places beside it that are left
     std::vector<uint32_t> neighbours;       ///< of vertices in the original surface, as neighboursBegin tells
     float longestEdge_m = 0;                ///< of the original surface
@@ -48,11 +75,21 @@ struct Decimation {
     Decimation(const DecimationInput& input, const DecimationLimits& limits);
 
     /// Decimates the original triangles on `threads` threads (0: all), with the same result for any number. Vertices
-    /// that are `kept` stay.
+    /// that are `kept` stay. Called again, decimates those patches anew that vertices kept since then have changed.
     void run(int threads, Progress* progress);
 
     /// Whether the vertex at a place of the chains is left.
     bool isLeft(uint32_t place) const { return next[place] != place; }
+    /// Takes the vertex at a place out of its chain.
+    void unlink(uint32_t place) {
+        next[previous[place]] = next[place], previous[next[place]] = previous[place];
+        next[place] = previous[place] = place;
+    }
+    /// The original vertices that are gone and lie over a triangle of the result.
+    std::span<const uint32_t> pointsOver(uint32_t triangle) const {
+        const uint32_t begin = triangle == 0 ? 0 : pointsEnd[triangle - 1];
+        return {points.data() + begin, points.data() + pointsEnd[triangle]};
+    }
     /// Keeps the original vertices around the corners of a triangle of the result, and those that lay over it; whether
     /// one of them was not kept before.
     bool keepAround(uint32_t triangle);
@@ -61,7 +98,15 @@ struct Decimation {
 
 private:
     void reset();
-    bool keep(uint32_t vertex) { return !std::exchange(kept[vertex], uint8_t{1}); }
+    void runPass(size_t number, int threads, Progress* progress);
+    bool isChanged(std::span<const uint32_t> patch) const;
+    void append(const DecimatedPatch& patch);
+    void markDifference(const DecimatedPatch& before, const DecimatedPatch& after, size_t pass);
+    void mark(uint32_t vertex, size_t passes);
+    bool keep(uint32_t vertex);
+
+    std::vector<DecimationPass> passes_;
+    PageVector<uint8_t> changed_;  ///< by vertex: whether it or a triangle at it differs from the last run
 };
 
 }  // namespace sgm::mesh

@@ -19,7 +19,7 @@ DecimatedPatch DecimationJob::run(std::span<const uint32_t> triangles, const Pro
     load(triangles);
     for (const float step : steps) {
         const float tolerance = step * static_cast<float>(all_.limits.surface_m);
-        for (size_t v = 0; v < vertexCount_; ++v) locals_[v].dirty |= !settled_[locals_[v].vertex];
+        for (size_t v = 0; v < vertexCount_; ++v) locals_[v].dirty |= !isSettled(locals_[v].vertex);
         for (int i = 0; i < mostSweeps && !cancelled(progress); ++i)
             if (static_cast<float>(sweep(tolerance)) < worthASweep * static_cast<float>(vertexCount_)) break;
     }
@@ -173,9 +173,8 @@ bool DecimationJob::tryInto(uint32_t u, size_t target, float tolerance) {
 void DecimationJob::collapse(uint32_t u, size_t target) {
     const uint32_t v = ring_[target];
     if (locals_[u].kind == Kind::Chain) {
-        const uint32_t place = chainPlace(u), next = all_.next[place], previous = all_.previous[place];
-        all_.next[previous] = next, all_.previous[next] = previous;
-        all_.next[place] = all_.previous[place] = place;
+        unlinked_.push_back(chainPlace(u));
+        all_.unlink(unlinked_.back());
     }
     for (const uint32_t h : star_) firstPoint_[h / 3] = none;
     if (locals_[u].kind == Kind::Inner) points_.push_back({u, 0, uOver_});

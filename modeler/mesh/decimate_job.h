@@ -7,19 +7,12 @@
 
 namespace sgm::mesh {
 
-/// What decimation of one cluster gives.
-struct DecimatedPatch {
-    std::vector<SimpleTriangle> triangles;
-    std::vector<uint32_t> firstPoint;
-};
-
 /// Reused from patch to patch by one worker.
 class DecimationJob {
 public:
-    /// `incident` by vertex: its triangles in all patches; `settled` by vertex: whether nothing more can be done there;
-    /// `original` when nothing was done anywhere yet.
-    DecimationJob(Decimation& all, std::span<const uint32_t> incident, std::span<uint8_t> settled, bool original)
-        : all_(all), incident_(incident), settled_(settled), original_(original) {}
+    /// `incident` by vertex: its triangles in all patches; `pass` counts from 0.
+    DecimationJob(Decimation& all, std::span<const uint32_t> incident, size_t pass)
+        : all_(all), incident_(incident), pass_(static_cast<uint8_t>(pass)) {}
 
     /// Decimates some of `all`'s triangles; writes to nothing of `all` but what belongs to vertices that it removes.
     DecimatedPatch run(std::span<const uint32_t> triangles, const Progress* progress);
@@ -73,6 +66,8 @@ private:
     void collapse(uint32_t u, size_t target);
     void glue(uint32_t triangle, uint32_t u, uint32_t v);
 
+    /// Whether a pass before this one has looked at a vertex.
+    bool isSettled(uint32_t vertex) const { return all_.settled[vertex] - 1u < pass_; }
     bool traversable(uint32_t v) const { return locals_[v].whole && locals_[v].kind != Kind::Node; }
     uint32_t chainPlace(uint32_t v) const {
         return all_.input.chains.placeOf[all_.input.regions.ofVertex[locals_[v].vertex] & ~SurfaceRegions::borderBit];
@@ -88,8 +83,7 @@ private:
 
     Decimation& all_;
     std::span<const uint32_t> incident_;
-    std::span<uint8_t> settled_;
-    bool original_;
+    uint8_t pass_;
 
     std::vector<Local> locals_;
     size_t vertexCount_ = 0, pointCount_ = 0;  ///< vertices first, then points, then the others
@@ -99,6 +93,7 @@ private:
     std::vector<uint32_t> regions_, firstPoint_;  ///< by triangle
     std::vector<uint32_t> triangleStamps_;        ///< by triangle: of the check that has seen it
     std::vector<bool> dead_;
+    std::vector<uint32_t> unlinked_;                       ///< places in the chains
     std::vector<uint32_t> counts_, begin_, next_, byLow_;  ///< while a patch is loaded
     Vec3f origin_;
     uint32_t lastNeighbours_ = 0;

@@ -12,7 +12,7 @@ uint32_t DecimationJob::localOf(uint32_t vertex) {
         if (table_[at] == none) {
             table_[at] = static_cast<uint32_t>(locals_.size());
             locals_.push_back({all_.input.mesh.positions[vertex] - origin_, vertex, none, none, 0, 0, Kind::Inner,
-                               false, false, !original_});
+                               false, false, pass_ > 0});
             return table_[at];
         }
         if (locals_[table_[at]].vertex == vertex) return table_[at];
@@ -30,7 +30,7 @@ void DecimationJob::growTable() {
 }
 
 void DecimationJob::load(std::span<const uint32_t> triangles) {
-    locals_.clear(), neighbours_.clear();
+    locals_.clear(), neighbours_.clear(), unlinked_.clear();
     const size_t room = std::bit_ceil(std::max<size_t>(1024, 2 * triangles.size()));
     if (table_.size() > room) table_.resize(room);
     std::fill(table_.begin(), table_.end(), none);
@@ -90,7 +90,7 @@ void DecimationJob::matchHalves() {
 void DecimationJob::loadPoints(std::span<const uint32_t> triangles) {
     firstPoint_.assign(triangles.size(), none);
     for (size_t t = 0; t < triangles.size(); ++t)
-        for (uint32_t p = all_.firstPoint[triangles[t]]; p != none; p = all_.nextPoint[p]) {
+        for (const uint32_t p : all_.pointsOver(triangles[t])) {
             const uint32_t local = localOf(p);
             locals_[local].next = firstPoint_[t];
             firstPoint_[t] = local;
@@ -114,15 +114,13 @@ DecimatedPatch DecimationJob::store() {
         if (dead_[t]) continue;
         const auto vertex = [&](uint32_t corner) { return locals_[corners_[3 * t + corner]].vertex; };
         patch.triangles.push_back({{vertex(0), vertex(1), vertex(2)}, regions_[t]});
-        uint32_t first = none;
-        for (uint32_t p = firstPoint_[t]; p != none; p = locals_[p].next) {
-            all_.nextPoint[locals_[p].vertex] = first;
-            first = locals_[p].vertex;
-        }
-        patch.firstPoint.push_back(first);
+        for (uint32_t p = firstPoint_[t]; p != none; p = locals_[p].next) patch.points.push_back(locals_[p].vertex);
+        patch.pointsEnd.push_back(static_cast<uint32_t>(patch.points.size()));
     }
+    patch.unlinked = unlinked_;
     for (size_t v = 0; v < vertexCount_; ++v)
-        if (locals_[v].whole) settled_[locals_[v].vertex] = 1;
+        if (locals_[v].whole && !isSettled(locals_[v].vertex))
+            all_.settled[locals_[v].vertex] = static_cast<uint8_t>(pass_ + 1);
     return patch;
 }
 

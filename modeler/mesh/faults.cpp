@@ -24,6 +24,7 @@ uint32_t spread(uint32_t x) {
 /// What a node bounds: triangles and their unit normals.
 struct Bounds {
     Box3f box, normals;
+    bool fresh = false;  ///< whether one of them is to be compared with all
 
     /// Whether all normals are in one half-space, well off its border.
     bool isNarrow() const {
@@ -34,15 +35,24 @@ struct Bounds {
     bool meets(const Bounds& other) const { return !intersection(box, other.box).empty(); }
 };
 
-Bounds hull(const Bounds& a, const Bounds& b) { return {sgm::hull(a.box, b.box), sgm::hull(a.normals, b.normals)}; }
+Bounds hull(const Bounds& a, const Bounds& b) {
+    return {sgm::hull(a.box, b.box), sgm::hull(a.normals, b.normals), a.fresh || b.fresh};
+}
 
 /// A complete binary tree over triangles in the order of a space-filling curve (Morton 1966); node n has 2n and 2n + 1.
 class Hierarchy {
 public:
-    Hierarchy(std::span<const Vec3f> positions, std::span<const SimpleTriangle> triangles, int threads)
+    /// `fresh` by triangle: whether it is to be compared with all, not only with those.
+    Hierarchy(std::span<const Vec3f> positions, std::span<const SimpleTriangle> triangles,
+              std::span<const uint8_t> fresh, int threads)
         : positions_(positions), triangles_(triangles), own_(triangles.size()) {
         Box3f all;
-        for (size_t i = 0; i < triangles.size(); ++i) all = sgm::hull(all, own_[i].box = boxOf(i));
+        std::vector<Vec3f> centres(triangles.size());
+        for (size_t i = 0; i < triangles.size(); ++i) {
+            const Box3f box = boxOf(i);
+            all = sgm::hull(all, box);
+            centres[i] = box.centre();
+        }
         const Vec3f size = all.size();
         const auto place = [&](Vec3f p, int axis) {
             const float share = size[axis] > 0 ? (p[axis] - all.lo[axis]) / size[axis] : 0;
@@ -50,7 +60,7 @@ public:
         };
         std::vector<uint64_t> keys(triangles.size());
         for (size_t i = 0; i < keys.size(); ++i) {
-            const Vec3f p = own_[i].box.centre();
+            const Vec3f p = centres[i];
             keys[i] = static_cast<uint64_t>(place(p, 0) | place(p, 1) << 1 | place(p, 2) << 2) << 32 | i;
         }
         std::sort(keys.begin(), keys.end());
@@ -58,10 +68,11 @@ public:
         leaves_ = std::bit_ceil(std::max<size_t>(1, (order_.size() + leafTriangles - 1) / leafTriangles));
         nodes_.resize(2 * leaves_);
         parallelFor(leaves_, threads, nullptr, [&](size_t leaf, int) {
-            for (const uint32_t t : trianglesOf(leaves_ + leaf)) {
-                const Vec3f n = normalOf(t);
-                own_[t].normals = {n, n};
-                nodes_[leaves_ + leaf] = hull(nodes_[leaves_ + leaf], own_[t]);
+            const auto [begin, end] = placesOf(leaves_ + leaf);
+            for (size_t i = begin; i < end; ++i) {
+                const Vec3f n = normalOf(order_[i]);
+                own_[i] = {boxOf(order_[i]), {n, n}, fresh[order_[i]] != 0};
+                nodes_[leaves_ + leaf] = hull(nodes_[leaves_ + leaf], own_[i]);
             }
         });
         for (size_t n = leaves_ - 1; n > 0; --n) nodes_[n] = hull(nodes_[2 * n], nodes_[2 * n + 1]);
@@ -74,12 +85,12 @@ public:
     void compare(Pair pair, std::vector<Pair>& open, Found&& found) const {
         const auto [a, b] = pair;
         if (a == b) {
-            if (nodes_[a].isNarrow() || nodes_[a].box.empty()) return;
+            if (!nodes_[a].fresh || nodes_[a].isNarrow() || nodes_[a].box.empty()) return;
             if (a >= leaves_) return compareLeaves(a, b, found);
             open.insert(open.end(), {{2 * a, 2 * a}, {2 * a + 1, 2 * a + 1}, {2 * a, 2 * a + 1}});
             return;
         }
-        if (!nodes_[a].meets(nodes_[b])) return;
+        if (!(nodes_[a].fresh || nodes_[b].fresh) || !nodes_[a].meets(nodes_[b])) return;
         if (a >= leaves_) return compareLeaves(a, b, found);
         for (const uint32_t i : {2 * a, 2 * a + 1})
             for (const uint32_t j : {2 * b, 2 * b + 1}) open.push_back({i, j});
@@ -94,24 +105,28 @@ private:
         const Vec3d a = corner(t, 0).as<double>();
         return normalized(cross(corner(t, 1).as<double>() - a, corner(t, 2).as<double>() - a)).as<float>();
     }
-    std::span<const uint32_t> trianglesOf(size_t leaf) const {
+    /// In order_: the first and the end.
+    std::pair<size_t, size_t> placesOf(size_t leaf) const {
         const size_t begin = std::min(order_.size(), (leaf - leaves_) * leafTriangles);
-        return {order_.data() + begin, std::min<size_t>(leafTriangles, order_.size() - begin)};
+        return {begin, std::min<size_t>(order_.size(), begin + leafTriangles)};
     }
     template <class Found>
     void compareLeaves(uint32_t a, uint32_t b, Found&& found) const {
-        const std::span<const uint32_t> left = trianglesOf(a), right = trianglesOf(b);
-        for (size_t i = 0; i < left.size(); ++i)
-            for (size_t j = a == b ? i + 1 : 0; j < right.size(); ++j) {
-                const uint32_t s = left[i], t = right[j];
-                if (own_[s].meets(own_[t]) && meetWrongly(positions_, triangles_[s].corners, triangles_[t].corners))
-                    found(s), found(t);
+        const auto [firstLeft, endLeft] = placesOf(a);
+        const auto [firstRight, endRight] = placesOf(b);
+        for (size_t i = firstLeft; i < endLeft; ++i) {
+            if (!nodes_[b].meets(own_[i])) continue;
+            for (size_t j = a == b ? i + 1 : firstRight; j < endRight; ++j) {
+                if (!(own_[i].fresh || own_[j].fresh) || !own_[i].meets(own_[j])) continue;
+                const uint32_t s = order_[i], t = order_[j];
+                if (meetWrongly(positions_, triangles_[s].corners, triangles_[t].corners)) found(s), found(t);
             }
+        }
     }
 
     std::span<const Vec3f> positions_;
     std::span<const SimpleTriangle> triangles_;
-    std::vector<Bounds> own_;  ///< by triangle
+    std::vector<Bounds> own_;  ///< of triangles, as order_
     std::vector<uint32_t> order_;
     size_t leaves_ = 0;
     std::vector<Bounds> nodes_;
@@ -156,21 +171,52 @@ void findNonManifold(std::span<const Vec3f> positions, std::span<const SimpleTri
 
 }  // namespace
 
-std::vector<uint32_t> findFaults(std::span<const Vec3f> positions, std::span<const SimpleTriangle> triangles,
-                                 int threads, const Progress* progress) {
+/// Triangles that were not sound in the last surface, or not there.
+std::vector<uint8_t> FaultFinder::findFresh(std::span<const SimpleTriangle> triangles) const {
+    std::vector<uint8_t> fresh(triangles.size(), 1);
+    if (isFirst_) return fresh;
+    for (size_t t = 0; t < triangles.size(); ++t) {
+        const Triangle& c = triangles[t].corners;
+        const std::array<uint32_t, 2> others{c.y, c.z};
+        const auto begin = sound_.begin() + soundBegin_[c.x], end = sound_.begin() + soundBegin_[c.x + 1];
+        fresh[t] = std::find(begin, end, others) == end;
+    }
+    return fresh;
+}
+
+void FaultFinder::remember(std::span<const SimpleTriangle> triangles, std::span<const uint32_t> faults) {
+    isFirst_ = false;
+    soundBegin_.assign(positions_.size() + 1, 0);
+    const auto forSound = [&](auto&& visit) {
+        auto fault = faults.begin();
+        for (uint32_t t = 0; t < triangles.size(); ++t) {
+            if (fault != faults.end() && *fault == t)
+                ++fault;
+            else
+                visit(triangles[t].corners);
+        }
+    };
+    forSound([&](const Triangle& c) { ++soundBegin_[c.x + 1]; });
+    for (size_t v = 1; v < soundBegin_.size(); ++v) soundBegin_[v] += soundBegin_[v - 1];
+    sound_.resize(soundBegin_.back());
+    std::vector<uint32_t> next(soundBegin_.begin(), soundBegin_.end() - 1);
+    forSound([&](const Triangle& c) { sound_[next[c.x]++] = {c.y, c.z}; });
+}
+
+std::vector<uint32_t> FaultFinder::find(std::span<const SimpleTriangle> triangles) {
     std::vector<uint32_t> faults;
     if (triangles.empty()) return faults;
-    findNonManifold(positions, triangles, faults);
-    const Hierarchy hierarchy(positions, triangles, threads);
+    findNonManifold(positions_, triangles, faults);
+    const Hierarchy hierarchy(positions_, triangles, findFresh(triangles), threads_);
     const auto note = [&faults](uint32_t t) { faults.push_back(t); };
     std::vector<Hierarchy::Pair> tasks{{1, 1}}, next;
-    while (!tasks.empty() && tasks.size() < tasksPerThread * static_cast<size_t>(threadCount(threads))) {
+    while (!tasks.empty() && tasks.size() < tasksPerThread * static_cast<size_t>(threadCount(threads_))) {
         next.clear();
         for (const Hierarchy::Pair& pair : tasks) hierarchy.compare(pair, next, note);
         tasks.swap(next);
     }
     std::mutex mutex;
-    parallelFor(tasks.size(), threads, progress, [&](size_t i, int) {
+    parallelFor(tasks.size(), threads_, progress_, [&](size_t i, int) {
         std::vector<uint32_t> found;
         std::vector<Hierarchy::Pair> open{tasks[i]};
         while (!open.empty()) {
@@ -184,6 +230,7 @@ std::vector<uint32_t> findFaults(std::span<const Vec3f> positions, std::span<con
     });
     std::sort(faults.begin(), faults.end());
     faults.erase(std::unique(faults.begin(), faults.end()), faults.end());
+    if (!faults.empty()) remember(triangles, faults);
     return faults;
 }
 

@@ -10,13 +10,32 @@
 
 namespace sgm::mesh {
 
-/// The triangles that meet another one elsewhere than in common vertices and edges, or whose edge another triangle runs
-/// along the same way, or which stand around a vertex together with another fan; ascending. Exact on the coordinates
-/// given. Triangles are compared by a hierarchy of boxes;
-/// nothing is compared within a small part of it whose normals are all in one half-space, for there a closed surface
-/// hardly crosses itself without crossing another part too (after Volino and Magnenat-Thalmann, "Efficient self-collision
-/// detection on smoothly discretized surface animations", 1994). O(n log n) as a rule; `threads` 0: all.
-std::vector<uint32_t> findFaults(std::span<const Vec3f> positions, std::span<const SimpleTriangle> triangles,
-                                 int threads, const Progress* progress);
+/// Finds faults of one surface after another over the same vertices: triangles that the last one had too and that were
+/// sound there aren't compared with each other again.
+class FaultFinder {
+public:
+    /// On `threads` threads (0: all). `positions` have to stay.
+    FaultFinder(std::span<const Vec3f> positions, int threads, const Progress* progress)
+        : positions_(positions), threads_(threads), progress_(progress) {}
+
+    /// The triangles that meet another one elsewhere than in common vertices and edges, or whose edge another triangle
+    /// runs along the same way, or which stand around a vertex together with another fan; ascending. Exact on the
+    /// coordinates given. Triangles are compared by a hierarchy of boxes; nothing is compared within a small part of it
+    /// whose normals are all in one half-space, for there a closed surface hardly crosses itself without crossing
+    /// another part too (after Volino and Magnenat-Thalmann, "Efficient self-collision detection on smoothly
+    /// discretized surface animations", 1994). O(n log n) as a rule.
+    std::vector<uint32_t> find(std::span<const SimpleTriangle> triangles);
+
+private:
+    std::vector<uint8_t> findFresh(std::span<const SimpleTriangle> triangles) const;
+    void remember(std::span<const SimpleTriangle> triangles, std::span<const uint32_t> faults);
+
+    std::span<const Vec3f> positions_;
+    const int threads_;
+    const Progress* const progress_;
+    bool isFirst_ = true;
+    std::vector<uint32_t> soundBegin_;  ///< by vertex and one more: triangles of the last surface that begin there
+    std::vector<std::array<uint32_t, 2>> sound_;  ///< their other corners
+};
 
 }  // namespace sgm::mesh

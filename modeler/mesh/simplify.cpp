@@ -37,13 +37,14 @@ public:
         curved_.emplace(input, DecimationLimits{tolerance_m, chainShare * tolerance_m});
         planar_.emplace(input, chainShare * tolerance_m, rounding_m);
 
+        FaultFinder finder(flat_.positions, options_.threads, progress_);
         for (int round = 0; round < mostRounds; ++round) {
             if (tolerance_m > rounding_m) curved_->run(options_.threads, progress_);
             const bool again = !cancelled(progress_) && planar_->run(*curved_, options_.threads, progress_);
             if (cancelled(progress_)) return cancelledError();
             if (again) continue;
             collect();
-            const auto faults = findFaults(flat_.positions, triangles_, options_.threads, progress_);
+            const auto faults = finder.find(triangles_);
             if (cancelled(progress_)) return cancelledError();
             if (faults.empty()) return composeMesh(mesh_, flat_, regions_, planes_, triangles_);
             if (!refine(faults)) break;

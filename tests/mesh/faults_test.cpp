@@ -1,4 +1,4 @@
-// What findFaults finds: crossings, edges that are there twice, fans that meet in a vertex.
+// What FaultFinder finds: crossings, edges that are there twice, fans that meet in a vertex.
 #include "modeler/mesh/faults.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ void addTetrahedron(std::vector<SimpleTriangle>& to, uint32_t a, uint32_t b, uin
 }
 
 std::vector<uint32_t> faultsOf(const std::vector<Vec3f>& positions, const std::vector<SimpleTriangle>& triangles) {
-    return findFaults(positions, triangles, 2, nullptr);
+    return FaultFinder(positions, 2, nullptr).find(triangles);
 }
 
 const std::vector<Vec3f> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
@@ -46,6 +46,22 @@ TEST(Faults, EdgesThatAreThereTwiceAre) {
     addTetrahedron(triangles, 0, 1, 2, 3), addTetrahedron(triangles, 0, 1, 2, 7);
     const auto faults = faultsOf(corners, triangles);
     EXPECT_TRUE(std::find(faults.begin(), faults.end(), 0u) != faults.end());
+}
+
+TEST(Faults, OfASurfaceThatWasComparedBeforeAreThoseOfOneThatWasNot) {
+    std::vector<Vec3f> positions = corners;
+    for (const Vec3f p : corners) positions.push_back(p + Vec3f{0, 0, 10});
+    std::vector<SimpleTriangle> sound, crossing, doubled;
+    addTetrahedron(sound, 0, 1, 2, 3), addTetrahedron(sound, 4, 5, 6, 7);
+    addTetrahedron(crossing, 0, 1, 2, 3), addTetrahedron(crossing, 4, 5, 6, 2);
+    FaultFinder finder(positions, 2, nullptr);
+    EXPECT_EQ(finder.find(crossing), faultsOf(positions, crossing));
+    ASSERT_FALSE(faultsOf(positions, crossing).empty());
+    EXPECT_EQ(finder.find(crossing), faultsOf(positions, crossing));  // faults stay faults
+    EXPECT_TRUE(finder.find(sound).empty());
+    addTetrahedron(doubled, 0, 1, 2, 3), addTetrahedron(doubled, 8, 9, 10, 3);  // touch in a vertex and cross
+    EXPECT_EQ(finder.find(doubled), faultsOf(positions, doubled));
+    ASSERT_FALSE(faultsOf(positions, doubled).empty());
 }
 
 }  // namespace
