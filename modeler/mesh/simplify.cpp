@@ -5,6 +5,7 @@
 
 #include "modeler/mesh/faults.h"
 #include "modeler/mesh/planar_merge.h"
+#include "modeler/mesh/planar_split.h"
 #include "modeler/mesh/release.h"
 
 namespace sgm::mesh {
@@ -29,9 +30,12 @@ public:
         auto regions = findRegions(flat_, options_.threads);
         if (!regions.ok()) return regions.error();
         regions_ = std::move(*regions);
-        chains_ = findChains(regions_);
         const double rounding_m = roundingShare * largestCoordinate(), tolerance_m = options_.tolerance_m;
-        planes_ = findPlanes(flat_, regions_, std::max(rounding_m, planeShare * tolerance_m), options_.threads);
+        const double planar_m = std::max(rounding_m, planeShare * tolerance_m);
+        planes_ = findPlanes(flat_, regions_, planar_m, options_.threads);
+        const std::vector<uint32_t> separated = separateBumps(flat_, planar_m, regions_, planes_);
+        chains_ = findChains(regions_);
+        rejectTouching(flat_, chains_, separated, planes_, options_.threads);
         if (cancelled(progress_)) return cancelledError();
         const DecimationInput input{flat_, regions_, chains_, planes_};
         curved_.emplace(input, DecimationLimits{tolerance_m, chainShare * tolerance_m});

@@ -19,9 +19,10 @@ struct SimplifyOptions {
 /// What a crisp mesh of such cells is simplified to unless the user says otherwise, metres: a hundredth of a cell.
 inline double usualTolerance(float cell_m) { return 0.01 * static_cast<double>(cell_m); }
 
-/// Moves confined vertices to their creases first, then merges what is planar and decimates what is curved. A region is a connected set of triangles of one origin and
-/// label. Points on a border of regions that aren't needed within the tolerance go, once for both sides; planar regions
-/// are triangulated anew from their borders. The result is closed, oriented, a 2-manifold and crosses itself nowhere.
+/// Moves confined vertices to their creases first, then merges what is planar and decimates what is curved. A region is
+/// a connected set of triangles of one origin and label; one that is planar but for a few bumps is divided. Points on a
+/// border of regions that aren't needed within the tolerance go, once for both sides; planar regions are triangulated
+/// anew from their borders. The result is closed, oriented, a 2-manifold and crosses itself nowhere.
 /// O(n) in the triangles of planar regions.
 /// Error::Usage for a negative tolerance, Error::Input for a mesh that isn't closed, Error::Budget for 2³¹ triangles,
 /// Error::Cancelled.

@@ -78,6 +78,35 @@ TEST(SimplifyPlanar, RandomVoxelsStaySound) {
     }
 }
 
+TEST(SimplifyPlanar, ABumpKeepsNoMoreThanItsOwnTriangles) {
+    for (const Placing& place : placings()) {
+        const Mesh bumpy = surfaceOf(block({1, 1, 1}), 17, [&](Vec3d p) {
+            const bool inside = p.x == 8.0 / 17 && p.y == 1, onEdge = p.x == 1 && p.z == 0 && p.y == 5.0 / 17;
+            return place((inside && p.z == 4.0 / 17) || onEdge ? p * 1.01 : p);
+        });
+        const Mesh simple = simplified(bumpy);
+        expectSound(bumpy, simple, 1e-6);
+        EXPECT_LT(simple.triangleCount(), 60u);
+    }
+}
+
+TEST(SimplifyPlanar, RandomBumpsStaySound) {
+    for (uint64_t key = 0; key < 30; ++key) {
+        SCOPED_TRACE(key);
+        const Placing& place = placings()[key % placings().size()];
+        const Mesh mesh = surfaceOf(randomVoxels(3, 2, 0.4, key), 12, [&](Vec3d p) {
+            uint64_t at = combine(key, 7);
+            for (int axis = 0; axis < 3; ++axis) at = combine(at, static_cast<uint64_t>(std::lround(p[axis] * 12)));
+            const auto some = [&](uint64_t i) { return (uniform(combine(at, i)) - 0.5) * 0.05; };
+            return place(uniform(at) < 0.005 ? p + Vec3d{some(1), some(2), some(3)} : p);
+        });
+        if (mesh.triangleCount() == 0) continue;
+        const Mesh simple = simplified(mesh, key % 2 ? 0.0 : 0.002);
+        expectSound(mesh, simple, key % 2 ? 1e-5 : 1e-2);
+        EXPECT_LT(simple.triangleCount(), mesh.triangleCount() / 4);
+    }
+}
+
 TEST(SimplifyPlanar, RegionsMayTouchInPoints) {
     for (uint64_t key = 0; key < 12; ++key) {
         SCOPED_TRACE(key);
