@@ -20,11 +20,17 @@ struct LoopNode {
     Vec3f at;
     uint32_t label;
     OriginId origin;
-    bool isBreak = false;               ///< the piece before it is another one
-    Vec3f crossing{};                   ///< of a break, see Break
-    int face = -1;                      ///< of a break, the face of the cell that it lies on
-    std::array<PiecePoint, 2> sides{};  ///< of a break, before and after it; of a vertex, itself
+    bool isBreak = false;  ///< the piece before it is another one
+    int8_t face = -1;      ///< of a break, the face of the cell that it lies on
+    /// Of a break, before and after it; of a vertex, itself. They have to stay until all is triangulated.
+    std::array<const PiecePoint*, 2> sides{};
+    const Vec3f* crossing = nullptr;  ///< of a break, see Break
 };
+
+/// The side of a break that has a label, else the nearer guess.
+inline const PiecePoint& sideOf(const LoopNode& node, uint32_t label) {
+    return *node.sides[node.sides[1]->label == label ? 1 : 0];
+}
 
 /// What the pieces of a block's cells are written to.
 struct PieceTriangles {
@@ -90,7 +96,8 @@ private:
     void confirmMeetings(const eval::Tape& tape, eval::Workspace& workspace);
     Vec3f inCell(Vec3i cell, Vec3f p) const;
     void intersect(Corner& corner) const;
-    bool liesInFace(const LoopNode& a, const LoopNode& b) const;
+    bool liesInFace(Vec3f a, Vec3f b) const;
+    size_t bestEar(Vec3d normal) const;
     bool triangulatePolygon(const Polygon& polygon, PieceTriangles& out);
     bool triangulateLoop(const Loop& loop, PieceTriangles& out);
     bool crosses(const PieceTriangles& out, size_t firstTriangle) const;
@@ -102,6 +109,8 @@ private:
 
     const Grid* grid_ = nullptr;
     std::vector<LoopNode> nodes_, scratch_, rest_;
+    std::vector<size_t> breaks_;                    ///< in rest_
+    std::vector<std::pair<uint32_t, Vec3d>> ring_;  ///< what is left of a polygon: nodes and their places
     std::vector<Polygon> polygons_;
     std::vector<Loop> loops_;
     std::vector<Corner> corners_;

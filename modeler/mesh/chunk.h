@@ -16,6 +16,12 @@
 
 namespace sgm::mesh {
 
+/// The sides of a block that a brick touches, as a mask of axes.
+constexpr int lowSidesOf(Vec3i brick) {
+    return (brick.x == 0 ? 1 : 0) | (brick.y == 0 ? 2 : 0) | (brick.z == 0 ? 4 : 0);
+}
+constexpr int highSidesOf(Vec3i brick) { return lowSidesOf(Vec3i{1, 1, 1} * (bricksAlong - 1) - brick); }
+
 /// What one worker reuses from block to block; aligned, so that no two workers write to one line of cache, nor to the
 /// next one, which processors fetch with it.
 class alignas(128) BlockMesher {
@@ -74,7 +80,7 @@ private:
     const Grid grid_;
     const size_t refineSteps_;
     const bool bare_;
-    std::unique_ptr<CrispBlock> crisp_;  ///< null for plain marching cubes
+    std::unique_ptr<CrispBlock> crisp_;          ///< null for plain marching cubes
     PageVector<uint32_t> labels_, foundLabels_;  ///< of a crisp surface, as origins_
     eval::Workspace workspace_;
     BlockSamples samples_;

@@ -115,12 +115,12 @@ int32_t CrispBlock::segmentOf(const SurfaceCell& cell, const CellLoop& loop, int
     const Vec3i corner = low + unit(axis) * (face % 2);
     uint32_t& known = segmentAt_[static_cast<size_t>(4 * edgePlace(corner, axis) + std::min(codes[0], codes[1]))];
     if (known == 0) {
-        FaceSegment segment{first_ + corner, axis, !isAmbiguous(cell.inside, axis, face % 2), {}, 0, 0};
-        for (int end = 0; end < 2; ++end) {
-            const uint32_t p = place[end ^ reversed];
-            segment.ends[end] = {surface_->positions[p], {}, surface_->labels[p], surface_->origins[p]};
-        }
+        FaceSegment segment;
+        segment.face = first_ + corner, segment.axis = axis;
+        segment.alone = !isAmbiguous(cell.inside, axis, face % 2);
+        segment.brick = static_cast<size_t>(brickNumber({low.x / brickCells, low.y / brickCells, low.z / brickCells}));
         segments_.push_back(segment);
+        ends_.push_back({place[reversed], place[1 ^ reversed]});
         codes_.push_back(static_cast<uint8_t>(std::min(codes[0], codes[1])));
         known = static_cast<uint32_t>(segments_.size());
     }
@@ -128,7 +128,7 @@ int32_t CrispBlock::segmentOf(const SurfaceCell& cell, const CellLoop& loop, int
 }
 
 void CrispBlock::findSegments() {
-    segments_.clear(), codes_.clear(), sides_.clear();
+    segments_.clear(), ends_.clear(), codes_.clear(), sides_.clear();
     for (const MixedCell& mixed : mixed_) {
         const SurfaceCell& cell = surface_->cells[mixed.cell];
         const CellLoops& loops = loopsOfCell(mixed);
@@ -138,6 +138,42 @@ void CrispBlock::findSegments() {
     }
     for (size_t s = 0; s < segments_.size(); ++s)
         segmentAt_[static_cast<size_t>(4 * edgePlace(segments_[s].face - first_, segments_[s].axis) + codes_[s])] = 0;
+}
+
+/// Looks at the pieces once at each vertex that ends a segment. Returns at how many.
+uint64_t CrispBlock::evaluateEnds(eval::Workspace& workspace) {
+    samples_.clear(), points_.clear();
+    points_.reserve(surface_->positions.size());  // so that nodes may point there
+    pointOf_.assign(surface_->positions.size(), 0);
+    for (size_t s = 0; s < segments_.size(); ++s)
+        for (const uint32_t p : ends_[s]) {
+            if (pointOf_[p] != 0) continue;
+            samples_.add(surface_->tapes, segments_[s].brick, surface_->positions[p]);
+            points_.push_back({{}, {}, surface_->labels[p], surface_->origins[p]});
+            pointOf_[p] = static_cast<uint32_t>(points_.size());
+        }
+    samples_.evaluate(workspace);
+    std::vector<float> values(samples_.size());
+    for (size_t i = 0; i < values.size(); ++i) {
+        const PiecePoint found = samples_.point(i, values[i]);
+        points_[i].at = found.at, points_[i].gradient = found.gradient;
+    }
+    for (size_t s = 0; s < segments_.size(); ++s)
+        for (size_t end = 0; end < 2; ++end) {
+            const size_t i = pointOf_[ends_[s][end]] - 1;
+            segments_[s].ends[end] = points_[i], segments_[s].values[end] = values[i];
+        }
+    return samples_.size();
+}
+
+/// The piece at a vertex of a mixed cell.
+const PiecePoint& CrispBlock::pointAt(uint32_t place) {
+    if (pointOf_[place] == 0) {
+        points_.push_back(
+            {surface_->positions[place], surface_->normals[place], surface_->labels[place], surface_->origins[place]});
+        pointOf_[place] = static_cast<uint32_t>(points_.size());
+    }
+    return points_[pointOf_[place] - 1];
 }
 
 /// Numbers breaks: own ones after the block's other vertices, those on its low sides as borrowed ones after the others.
@@ -192,13 +228,10 @@ void CrispBlock::addNodes(const SurfaceCell& cell, const CellLoop& loop, size_t&
         const int edge = loop.edges[static_cast<size_t>(i)];
         const uint32_t vertex = surface_->number[edgePlace(low + offset(edgeCorner(edge)), edgeAxis(edge))];
         const uint32_t place = surface_->placeOf(vertex);
-        LoopNode node{vertex, surface_->positions[place], surface_->labels[place], surface_->origins[place]};
-        node.sides[0] = node.sides[1] = {node.at, surface_->normals[place], node.label, node.origin};
+        const PiecePoint& own = pointAt(place);
+        LoopNode node{vertex, own.at, own.label, own.origin};
+        node.sides = {&own, &own};
         const int32_t known = sides_[side];
-        if (known >= 0) {
-            const FaceSegment& segment = segments_[static_cast<size_t>(known / 2)];
-            node.sides[0].gradient = node.sides[1].gradient = segment.ends[known % 2].gradient;
-        }
         nodes_.push_back(node);
         if (known < 0) continue;
         const FaceSegment& segment = segments_[static_cast<size_t>(known / 2)];
@@ -208,11 +241,11 @@ void CrispBlock::addNodes(const SurfaceCell& cell, const CellLoop& loop, size_t&
             const Break& at = creases_.breaks()[b];
             LoopNode& point = nodes_.emplace_back();
             point.vertex = breakVertex_[b], point.at = at.at;
-            point.sides = {at.sides[reversed ? 1 : 0], at.sides[reversed ? 0 : 1]};
-            point.label = point.sides[1].label, point.origin = point.sides[1].origin;
+            point.sides = {&at.sides[reversed ? 1 : 0], &at.sides[reversed ? 0 : 1]};
+            point.label = point.sides[1]->label, point.origin = point.sides[1]->origin;
             point.isBreak = true;
-            point.crossing = at.crossing;
-            point.face = loop.faces[static_cast<size_t>(i)];
+            point.crossing = &at.crossing;
+            point.face = static_cast<int8_t>(loop.faces[static_cast<size_t>(i)]);
         }
     }
 }
@@ -275,13 +308,14 @@ uint64_t CrispBlock::run(const BlockSurface& surface, eval::Workspace& workspace
     if (mixed_.empty()) return 0;
     uint64_t evaluations = joinFaces(workspace);
     findSegments();
-    evaluations += creases_.solve(surface.block->tape, *surface.grid, workspace, segments_);
+    evaluations += evaluateEnds(workspace);
+    evaluations += creases_.solve(surface.tapes, *surface.grid, workspace, segments_);
     numberBreaks();
     splitCells();
     const auto corners = surface.own + static_cast<uint32_t>(out_.positions.size());
     evaluations += pieces_.placeCorners(surface.block->tape, *surface.grid, workspace, corners);
-    pieces_.triangulate(split_, ends_);
-    assemble(ends_);
+    pieces_.triangulate(split_, cellEnds_);
+    assemble(cellEnds_);
     return evaluations;
 }
 

@@ -18,6 +18,7 @@ namespace sgm::mesh {
 /// What marching cubes found in a block. Vertices are own ones by number, then borrowed ones.
 struct BlockSurface {
     const Block* block;
+    BlockTapes tapes;
     const Grid* grid;
     std::span<const SurfaceCell> cells;
     const uint32_t* number;  ///< of the vertex on an edge, by 3 · corner + axis
@@ -55,6 +56,8 @@ private:
     const CellLoops& loopsOfCell(const MixedCell& mixed);
     uint32_t vertexAt(Vec3i low, int edge) const;
     void findSegments();
+    uint64_t evaluateEnds(eval::Workspace& workspace);
+    const PiecePoint& pointAt(uint32_t place);
     int32_t segmentOf(const SurfaceCell& cell, const CellLoop& loop, int side);
     void numberBreaks();
     void splitCells();
@@ -68,6 +71,10 @@ private:
     Vec3i first_;  ///< the block's first cell in the grid
     std::vector<MixedCell> mixed_;
     std::vector<FaceSegment> segments_;
+    std::vector<std::array<uint32_t, 2>> ends_;  ///< of segments: places of their vertices
+    std::vector<uint32_t> pointOf_;              ///< by place: 1 + number of the point there in points_
+    std::vector<PiecePoint> points_;             ///< of vertices of mixed cells
+    PieceSamples samples_;
     std::vector<uint8_t> codes_;  ///< of segments: their order in a face
     std::vector<int32_t> sides_;  ///< by side of a mixed cell's loops: 2 · segment + reversed, or −1
     CellLoops joinedLoops_;
@@ -78,7 +85,7 @@ private:
     CellPieces pieces_;
     std::vector<LoopNode> nodes_;
     PieceTriangles split_, out_;
-    std::vector<uint32_t> ends_;
+    std::vector<uint32_t> cellEnds_;
     std::array<std::vector<uint32_t>, 3> lent_;
     std::array<uint32_t, 3> borrowedCount_{};
 };

@@ -43,23 +43,17 @@ Vec3f between(Vec3f a, Vec3f b, double share) { return (a.as<double>() + (b - a)
 
 }  // namespace
 
-PiecePoint FaceCreases::Samples::point(size_t i, float& value) const {
-    value = rows[i];
-    return {{x[i], y[i], z[i]},
-            {rows[n + i], rows[2 * n + i], rows[3 * n + i]},
-            labelOf(labels[i], origins[i]),
-            origins[i]};
-}
-
-uint64_t FaceCreases::solve(const eval::Tape& tape, const Grid& grid, eval::Workspace& workspace,
+uint64_t FaceCreases::solve(const BlockTapes& tapes, const Grid& grid, eval::Workspace& workspace,
                             std::vector<FaceSegment>& segments) {
-    grid_ = &grid;
-    limit_ = surfaceReach(tape, grid);
+    grid_ = &grid, tapes_ = tapes;
+    limit_ = surfaceReach(*tapes.whole, grid);
     gaps_.clear(), open_.clear(), breaks_.clear();
     for (uint32_t s = 0; s < segments.size(); ++s) {
         Gap gap;
         gap.segment = s;
         gap.a = segments[s].ends[0], gap.b = segments[s].ends[1];
+        gap.valueA = segments[s].values[0], gap.valueB = segments[s].values[1];
+        takeEnds(segments[s], gap, gap.a, gap.b);
         gaps_.push_back(gap);
         open_.push_back(s);
     }
@@ -67,8 +61,8 @@ uint64_t FaceCreases::solve(const eval::Tape& tape, const Grid& grid, eval::Work
     while (!open_.empty()) {
         samples_.clear();
         for (const uint32_t g : open_) ask(segments[gaps_[g].segment], gaps_[g]);
-        evaluations += samples_.n;
-        evaluateSamples(tape, workspace);
+        evaluations += samples_.size();
+        samples_.evaluate(workspace);
         next_.clear();
         size_t sample = 0;
         for (const uint32_t g : open_) {
@@ -79,23 +73,14 @@ uint64_t FaceCreases::solve(const eval::Tape& tape, const Grid& grid, eval::Work
         }
         open_.swap(next_);
     }
-    evaluations += confirmCrossings(tape, workspace);
+    evaluations += confirmCrossings(segments, workspace);
     separate(segments);
     return evaluations;
 }
 
-void FaceCreases::evaluateSamples(const eval::Tape& tape, eval::Workspace& workspace) {
-    const size_t n = samples_.n;
-    samples_.rows.resize(4 * n), samples_.labels.resize(n), samples_.origins.resize(n);
-    float* const rows = samples_.rows.data();
-    eval::evaluatePieces(tape, {samples_.x.data(), samples_.y.data(), samples_.z.data(), n},
-                         {rows, rows + n, rows + 2 * n, rows + 3 * n, samples_.labels.data(), samples_.origins.data()},
-                         workspace);
-}
-
 /// Crossings outside their faces count where both pieces are found beside them, on the surface. Where a third piece
 /// ends the crease before, the crossing is moved to this side of its end and looked at again.
-uint64_t FaceCreases::confirmCrossings(const eval::Tape& tape, eval::Workspace& workspace) {
+uint64_t FaceCreases::confirmCrossings(const std::vector<FaceSegment>& segments, eval::Workspace& workspace) {
     open_.clear();
     for (uint32_t g = 0; g < gaps_.size(); ++g)
         if (gaps_[g].leaves) open_.push_back(g);
@@ -103,11 +88,12 @@ uint64_t FaceCreases::confirmCrossings(const eval::Tape& tape, eval::Workspace& 
     for (int round = 0; round < 2 && !open_.empty(); ++round) {
         samples_.clear();
         for (const uint32_t g : open_) {
-            samples_.add(between(gaps_[g].crossing, gaps_[g].a.at, probeShare));
-            samples_.add(between(gaps_[g].crossing, gaps_[g].b.at, probeShare));
+            const size_t brick = segments[gaps_[g].segment].brick;
+            samples_.add(tapes_, brick, between(gaps_[g].crossing, gaps_[g].a.at, probeShare));
+            samples_.add(tapes_, brick, between(gaps_[g].crossing, gaps_[g].b.at, probeShare));
         }
-        evaluations += samples_.n;
-        evaluateSamples(tape, workspace);
+        evaluations += samples_.size();
+        samples_.evaluate(workspace);
         next_.clear();
         for (size_t i = 0; i < open_.size(); ++i) {
             Gap& gap = gaps_[open_[i]];
@@ -143,23 +129,27 @@ bool FaceCreases::moveBeforeThird(Gap& gap, const PiecePoint& third, float value
     return length(gap.crossing - gap.at) <= leavingReach * cell;
 }
 
-void FaceCreases::ask(const FaceSegment&, const Gap& gap) {
+void FaceCreases::ask(const FaceSegment& segment, const Gap& gap) {
+    const auto add = [&](Vec3f p) { samples_.add(tapes_, segment.brick, p); };
     switch (gap.state) {
         case State::Ends:
-            samples_.add(gap.a.at), samples_.add(gap.b.at);
+            add(gap.a.at), add(gap.b.at);
             break;
         case State::Crease:
-            samples_.add(between(gap.at, gap.a.at, probeShare)), samples_.add(between(gap.at, gap.b.at, probeShare));
+            add(between(gap.at, gap.a.at, probeShare)), add(between(gap.at, gap.b.at, probeShare));
             break;
         default:
-            samples_.add(between(gap.lineA.at, gap.lineB.at, 0.5));
+            add(between(gap.lineA.at, gap.lineB.at, 0.5));
     }
 }
 
 void FaceCreases::take(const FaceSegment& segment, uint32_t gap, size_t sample) {
     switch (gaps_[gap].state) {
-        case State::Ends:
-            return takeEnds(segment, gaps_[gap], sample);
+        case State::Ends: {
+            Gap& split = gaps_[gap];
+            const PiecePoint a = samples_.point(sample, split.valueA), b = samples_.point(sample + 1, split.valueB);
+            return takeEnds(segment, split, a, b);
+        }
         case State::Crease:
             return takeProbes(segment, gap, sample);
         default:
@@ -168,8 +158,8 @@ void FaceCreases::take(const FaceSegment& segment, uint32_t gap, size_t sample) 
 }
 
 /// The ends of a gap lie on the surface: their derivatives begin the search.
-void FaceCreases::takeEnds(const FaceSegment& segment, Gap& gap, size_t sample) {
-    gap.lineA = samples_.point(sample, gap.valueA), gap.lineB = samples_.point(sample + 1, gap.valueB);
+void FaceCreases::takeEnds(const FaceSegment& segment, Gap& gap, const PiecePoint& a, const PiecePoint& b) {
+    gap.lineA = a, gap.lineB = b;
     gap.lineA.label = gap.a.label, gap.lineB.label = gap.b.label;
     gap.lineA.origin = gap.a.origin, gap.lineB.origin = gap.b.origin;
     gap.a.gradient = gap.lineA.gradient, gap.b.gradient = gap.lineB.gradient;

@@ -7,24 +7,9 @@
 
 #include <vector>
 
-#include "modeler/eval/evaluate.h"
-#include "modeler/mesh/subdivide.h"
+#include "modeler/mesh/piece_samples.h"
 
 namespace sgm::mesh {
-
-/// The label of a part's piece, from that of evaluateLabels: pieces of two parts differ.
-constexpr uint32_t labelOf(uint32_t piece, OriginId origin) {
-    const uint32_t h = (piece ^ origin * 0x9e3779b1u) * 0x85ebca6bu;
-    return h ^ (h >> 15);
-}
-
-/// A point of the surface, the piece that it lies on and the field's derivative there.
-struct PiecePoint {
-    Vec3f at;        ///< metres
-    Vec3f gradient;  ///< of the piece's own field
-    uint32_t label = 0;
-    OriginId origin = 0;
-};
 
 /// A point where two pieces meet.
 struct Break {
@@ -35,10 +20,12 @@ struct Break {
 
 /// A segment of marching squares.
 struct FaceSegment {
-    Vec3i face;          ///< low corner of the cell face, counted in the grid
-    int axis = 0;        ///< the normal of the face
-    bool alone = true;   ///< the face has no other segment
-    PiecePoint ends[2];  ///< gradients are found by the solver
+    Vec3i face;         ///< low corner of the cell face, counted in the grid
+    int axis = 0;       ///< the normal of the face
+    bool alone = true;  ///< the face has no other segment
+    size_t brick = 0;   ///< one that the face belongs to
+    PiecePoint ends[2];
+    float values[2] = {};  ///< of the field at the ends
     uint32_t firstBreak = 0, breaks = 0;
 };
 
@@ -46,7 +33,7 @@ struct FaceSegment {
 class FaceCreases {
 public:
     /// Finds the breaks of all segments, listed in their order. Returns how often the field was evaluated.
-    uint64_t solve(const eval::Tape& tape, const Grid& grid, eval::Workspace& workspace,
+    uint64_t solve(const BlockTapes& tapes, const Grid& grid, eval::Workspace& workspace,
                    std::vector<FaceSegment>& segments);
     const std::vector<Break>& breaks() const { return breaks_; }
 
@@ -65,27 +52,16 @@ private:
         Vec3f crossing;       ///< of the two lines, before it was moved into the face
         bool leaves = false;  ///< the crossing lies outside the face, and both pieces were found there
     };
-    struct Samples {
-        std::vector<float> x, y, z, rows;
-        std::vector<uint32_t> labels;
-        std::vector<OriginId> origins;
-        size_t n = 0;
-        void clear() { n = 0, x.clear(), y.clear(), z.clear(); }
-        void add(Vec3f p) { ++n, x.push_back(p.x), y.push_back(p.y), z.push_back(p.z); }
-        PiecePoint point(size_t i, float& value) const;
-    };
-
     void ask(const FaceSegment& segment, const Gap& gap);
     void take(const FaceSegment& segment, uint32_t gap, size_t sample);
-    void takeEnds(const FaceSegment& segment, Gap& gap, size_t sample);
+    void takeEnds(const FaceSegment& segment, Gap& gap, const PiecePoint& a, const PiecePoint& b);
     void takeProbes(const FaceSegment& segment, uint32_t gap, size_t sample);
     void takeMiddle(const FaceSegment& segment, uint32_t gap, size_t sample);
     void aim(const FaceSegment& segment, Gap& gap);
     void projectOntoCrease(Gap& gap, Vec3f from) const;
     void searchBorder(Gap& gap);
-    uint64_t confirmCrossings(const eval::Tape& tape, eval::Workspace& workspace);
+    uint64_t confirmCrossings(const std::vector<FaceSegment>& segments, eval::Workspace& workspace);
     bool moveBeforeThird(Gap& gap, const PiecePoint& third, float value) const;
-    void evaluateSamples(const eval::Tape& tape, eval::Workspace& workspace);
     void split(uint32_t gap, const PiecePoint& between);
     Vec3f inFace(const FaceSegment& segment, Vec3f p) const;
     bool mayLieAt(const FaceSegment& segment, Vec3f p) const;
@@ -99,7 +75,8 @@ private:
     float limit_ = 0;  ///< values beyond it hang on the block's tape
     std::vector<Gap> gaps_;
     std::vector<uint32_t> open_, next_;
-    Samples samples_;
+    BlockTapes tapes_;
+    PieceSamples samples_;
     std::vector<Break> breaks_, chain_;
 };
 

@@ -56,7 +56,7 @@ bool isQuick(const eval::Tape& tape) {
 
 void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts) {
     block_ = &block;
-    inVain_ = 0;
+    inVain_ = 0, whole_ = 0;
     care_ = careOf(block.tape, grid);
     const Vec3i first = block.index * blockCells;
     last_ = grid.cells - first;
@@ -193,16 +193,19 @@ void WholeBricks::enter(const CornerCoordinates& coordinates) {
 const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Counts& counts) {
     const Vec3i at = brickAt(brick), first = at * brickCells;
     if (oneTape_) {
+        whole_ |= 1ull << brick;
         sealBorder(brick);
         return block_->tape;
     }
     const size_t length = block_->tape.size();
     const bool whole = length <= shortEnough || (length <= notLong && inVain_ >= vainEnough);
+    eval::Tape& shortened = tapes_[tapes_.size() == 1 ? 0 : static_cast<size_t>(brick)];
     if (!whole) {
-        eval::shorten(block_->tape, region_[brick], workspace, tape_, care_);
-        inVain_ = tape_.size() < length ? 0 : inVain_ + 1;
+        eval::shorten(block_->tape, region_[brick], workspace, shortened, care_);
+        inVain_ = shortened.size() < length ? 0 : inVain_ + 1;
     }
-    const eval::Tape& tape = whole ? block_->tape : tape_;
+    whole_ |= static_cast<uint64_t>(whole) << brick;
+    const eval::Tape& tape = whole ? block_->tape : shortened;
     if (dear_) {
         coarse_.sample(1ull << brick, active_, tape, coordinates_, last_, values_.data(), workspace, counts);
         sealBorder(brick);

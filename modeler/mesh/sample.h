@@ -55,6 +55,14 @@ public:
     /// is long. To be called in ascending order; the tape lasts until the next call.
     const eval::Tape& sample(int brick, eval::Workspace& workspace, Counts& counts);
 
+    /// The tape that `sample` returned for a brick of this block, where `keepTapes` was called; good in `boxOf` it.
+    const eval::Tape& tapeOf(int brick) const {
+        return whole_ >> brick & 1 ? block_->tape : tapes_[static_cast<size_t>(brick)];
+    }
+    const Box3f& boxOf(int brick) const { return boxes_[region_[static_cast<size_t>(brick)]]; }
+    /// From now on each brick's tape lasts until the block is left.
+    void keepTapes() { tapes_.resize(bricksPerBlock); }
+
     /// The samples of an active brick, once it was sampled. Corners on the grid's border or beyond are never inside.
     BrickValues values(int brick) const {
         if (dear_) return {values_.data() + brickCorner(brickAt(brick)), blockCorners, blockCorners * blockCorners};
@@ -84,7 +92,8 @@ private:
     std::array<uint8_t, bricksPerBlock> region_{};  ///< of a brick, in the last evaluateRanges
     std::array<Box3f, bricksPerBlock> boxes_;       ///< by region
     std::array<eval::Range, bricksPerBlock> ranges_;
-    eval::Tape tape_;
+    std::vector<eval::Tape> tapes_ = std::vector<eval::Tape>(1);  ///< the latest one, or by brick
+    uint64_t whole_ = 0;                                          ///< bricks whose tape is the block's
     int inVain_ = 0;  ///< latest bricks of the block that needed its whole tape
     Vec3i last_;      ///< the highest corner in the grid, counted from the block's first
     PageVector<float> values_ = PageVector<float>(std::max(cornersPerBlock, bricksPerBlock* brickRoom) + rowPadding);

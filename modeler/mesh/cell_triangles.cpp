@@ -1,0 +1,186 @@
+// The pieces of cells as triangles.
+#include "modeler/mesh/cell_pieces.h"
+#include "modeler/mesh/crossing.h"
+
+namespace sgm::mesh {
+namespace {
+
+double square(Vec3d v) { return dot(v, v); }
+
+/// Twice the area of a triangle as far as it faces along unit `n`.
+double facing(Vec3d a, Vec3d b, Vec3d c, Vec3d n) { return dot(cross(b - a, c - a), n); }
+
+bool holds(Vec3d a, Vec3d b, Vec3d c, Vec3d p, Vec3d n) {
+    return facing(a, b, p, n) >= 0 && facing(b, c, p, n) >= 0 && facing(c, a, p, n) >= 0;
+}
+
+}  // namespace
+
+void CellPieces::emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, const Polygon& piece, Vec3f normal,
+                      PieceTriangles& out) {
+    const auto triangle = static_cast<uint32_t>(out.triangles.size());
+    const LoopNode* const corners[] = {&a, &b, &c};
+    for (uint32_t k = 0; k < 3; ++k) {
+        const LoopNode& node = *corners[k];
+        const bool isEdgeVertex = node.sides[0]->label == piece.label && node.sides[1]->label == piece.label &&
+                                  !node.isBreak && (node.vertex < firstVertex_ || (node.vertex & borrowedBit) != 0);
+        if (isEdgeVertex) continue;
+        const PiecePoint& side = sideOf(node, piece.label);
+        const Vec3f n = side.label == piece.label ? normalized(side.gradient) : normal;
+        out.cornerNormals.push_back({3 * triangle + k, n == Vec3f{} ? normal : n});
+    }
+    out.triangles.push_back({a.vertex, b.vertex, c.vertex});
+    places_.push_back({a.at, b.at, c.at});
+    out.labels.push_back(piece.label);
+    out.origins.push_back(piece.origin);
+}
+
+/// Whether a diagonal lies in a face of the cell at hand: it might be the neighbour's too.
+bool CellPieces::liesInFace(Vec3f a, Vec3f b) const {
+    for (int axis = 0; axis < 3; ++axis)
+        if (a[axis] == b[axis] && (a[axis] == low_[axis] || a[axis] == high_[axis])) return true;
+    return false;
+}
+
+/// The place in ring_ of the best shaped ear, ring_.size() for none.
+size_t CellPieces::bestEar(Vec3d normal) const {
+    const size_t count = ring_.size();
+    size_t best = count;
+    double most = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const size_t before = i == 0 ? count - 1 : i - 1, after = i + 1 == count ? 0 : i + 1;
+        const Vec3d a = ring_[before].second, b = ring_[i].second, c = ring_[after].second;
+        const double quality = facing(a, b, c, normal) / (square(b - a) + square(c - b) + square(a - c));
+        if (!(quality > most)) continue;
+        bool ear = !liesInFace(nodes_[ring_[before].first].at, nodes_[ring_[after].first].at);
+        for (size_t k = 0; k < count && ear; ++k)
+            ear = k == before || k == i || k == after || !holds(a, b, c, ring_[k].second, normal);
+        if (ear) best = i, most = quality;
+    }
+    return best;
+}
+
+/// Cuts ears off, the best shaped first. False where none is left that faces outward.
+bool CellPieces::triangulatePolygon(const Polygon& polygon, PieceTriangles& out) {
+    Vec3d expected{};
+    ring_.clear();
+    for (uint32_t i = polygon.first; i < polygon.end; ++i) {
+        ring_.emplace_back(i, nodes_[i].at.as<double>());
+        if (const PiecePoint& side = sideOf(nodes_[i], polygon.label); side.label == polygon.label)
+            expected += normalized(side.gradient.as<double>());
+    }
+    Vec3d sum{};
+    for (size_t i = 1; i + 1 < ring_.size(); ++i)
+        sum += cross(ring_[i].second - ring_[0].second, ring_[i + 1].second - ring_[0].second);
+    if (!(dot(sum, expected) > 0)) return false;
+    const Vec3d n = normalized(sum);
+    const Vec3f normal = n.as<float>();
+    const auto cut = [&](size_t before, size_t at, size_t after) {
+        emit(nodes_[ring_[before].first], nodes_[ring_[at].first], nodes_[ring_[after].first], polygon, normal, out);
+    };
+    while (ring_.size() > 3) {
+        const size_t count = ring_.size(), best = bestEar(n);
+        if (best == count) return false;
+        cut((best + count - 1) % count, best, (best + 1) % count);
+        ring_.erase(ring_.begin() + static_cast<ptrdiff_t>(best));
+    }
+    if (!(facing(ring_[0].second, ring_[1].second, ring_[2].second, n) > 0)) return false;
+    cut(0, 1, 2);
+    return true;
+}
+
+bool CellPieces::triangulateLoop(const Loop& loop, PieceTriangles& out) {
+    for (uint32_t p = loop.firstPolygon; p < loop.endPolygon; ++p)
+        if (!triangulatePolygon(polygons_[p], out)) return false;
+    return true;
+}
+
+bool CellPieces::crosses(const PieceTriangles& out, size_t firstTriangle) const {
+    return anyCross(places_, std::span(out.triangles).subspan(firstTriangle));
+}
+
+/// The middle of all nodes of some loops.
+Vec3f CellPieces::middleOf(uint32_t firstLoop, uint32_t endLoop) const {
+    Vec3f sum{};
+    uint32_t count = 0;
+    for (uint32_t l = firstLoop; l < endLoop; ++l)
+        for (uint32_t i = loops_[l].firstNode; i < loops_[l].endNode; ++i, ++count) sum += nodes_[i].at;
+    return sum * (1.0f / static_cast<float>(count));
+}
+
+/// Whether a loop has two pieces along one crease, and the point amid that.
+bool CellPieces::isOneCrease(std::span<const LoopNode> nodes, Vec3f& middle) {
+    int breaks = 0;
+    Vec3f sum{};
+    for (const LoopNode& node : nodes)
+        if (node.isBreak) ++breaks, sum += *node.crossing;
+    middle = sum * 0.5f;
+    return breaks == 2;
+}
+
+/// Triangles from a point in the cell to all sides of the loop, which never cross each other.
+void CellPieces::fan(uint32_t l, Vec3f middleOfAll, float apart, PieceTriangles& out) {
+    Loop& loop = loops_[l];
+    const auto nodes = std::span(nodes_).subspan(loop.firstNode, loop.endNode - loop.firstNode);
+    static constexpr PiecePoint noPiece{};
+    LoopNode middle{};
+    middle.sides = {&noPiece, &noPiece};
+    middle.isBreak = true;
+    middle.at = middleOf(l, l + 1);
+    middle.at = inCell(loop.cell, middle.at + (middle.at - middleOfAll) * apart);
+    if (loop.corner < 0) {
+        loop.corner = static_cast<int32_t>(corners_.size());
+        corners_.emplace_back();
+    }
+    middle.vertex = firstVertex_ + static_cast<uint32_t>(loop.corner);
+    Corner& corner = corners_[static_cast<size_t>(loop.corner)];
+    if (corner.planes.empty())
+        corner.leaves = isOneCrease(nodes, corner.meeting);
+    else
+        corner.leaves = corner.leaves || corner.meeting == corner.at;
+    corner.at = middle.at;
+    for (size_t i = 0; i < nodes.size(); ++i) {
+        const LoopNode &a = nodes[i], &b = nodes[(i + 1) % nodes.size()];
+        const Polygon piece{0, 0, a.label, a.origin};
+        const PiecePoint& side = sideOf(a, a.label);
+        const Vec3f own = side.label == a.label ? normalized(side.gradient) : Vec3f{};
+        const Vec3d across =
+            cross(a.at.as<double>() - middle.at.as<double>(), b.at.as<double>() - middle.at.as<double>());
+        emit(middle, a, b, piece, own == Vec3f{} ? normalized(across).as<float>() : own, out);
+    }
+}
+
+void CellPieces::triangulate(PieceTriangles& out, std::vector<uint32_t>& cellEnds) {
+    cellEnds.clear();
+    uint32_t next = 0;
+    for (const uint32_t end : cellEnds_) {
+        const size_t triangles = out.triangles.size(), normals = out.cornerNormals.size();
+        const Vec3i cell = loops_[next].cell;
+        low_ = grid_->corner(cell.x, cell.y, cell.z), high_ = grid_->corner(cell.x + 1, cell.y + 1, cell.z + 1);
+        places_.clear();
+        bool good = true;
+        for (uint32_t l = next; l < end && good; ++l) good = triangulateLoop(loops_[l], out);
+        if (!good || crosses(out, triangles)) {
+            // Fans of several loops may cross each other: then their middles are moved apart.
+            for (const float apart : {0.0f, 0.5f, 1.0f, 2.0f, 4.0f}) {
+                out.triangles.resize(triangles), out.labels.resize(triangles), out.origins.resize(triangles);
+                out.cornerNormals.resize(normals);
+                places_.clear();
+                for (uint32_t l = next; l < end; ++l) fan(l, middleOf(next, end), apart, out);
+                if (end - next == 1 || !crosses(out, triangles)) break;
+            }
+        }
+        next = end;
+        cellEnds.push_back(static_cast<uint32_t>(out.triangles.size()));
+    }
+    for (const Corner& corner : corners_) {
+        Vec3f n{};
+        for (const PiecePoint& plane : corner.planes) n += normalized(plane.gradient);
+        if (corner.leaves)
+            out.confined.push_back({firstVertex_ + static_cast<uint32_t>(&corner - corners_.data()), corner.meeting});
+        out.positions.push_back(corner.at);
+        out.normals.push_back(n == Vec3f{} ? Vec3f{0, 1, 0} : normalized(n));
+    }
+}
+
+}  // namespace sgm::mesh
