@@ -27,17 +27,36 @@ private:
             return a.cell != b.cell ? a.cell < b.cell : a.box < b.box;
         }
     };
-    /// Calls `visit` with the number of each cell that a box meets.
-    template <class Visit>
-    void forCells(const Box3f& box, Visit&& visit) const;
-    static size_t bitOf(uint64_t cell) { return static_cast<size_t>(cell * 0x9e3779b97f4a7c15u >> (64 - bits)); }
+    /// Cells that a box meets.
+    struct Cells {
+        Vec3i first, last;
+        /// As many as `coarseness` cells along an axis make one.
+        Cells coarse() const;
+        /// Calls `visit` with the number of each until it returns true; whether one did.
+        template <class Visit>
+        bool any(Visit&& visit) const;
+    };
+    /// Those of a box; false where it is beside all boxes.
+    bool cellsOf(const Box3f& box, Cells& cells) const;
 
-    static constexpr int bits = 20;
+    /// A bit for each hash of a cell.
+    class Marks {
+    public:
+        void set(uint64_t cell) { words_[placeOf(cell) / 64] |= uint64_t{1} << placeOf(cell) % 64; }
+        bool has(uint64_t cell) const { return words_[placeOf(cell) / 64] >> placeOf(cell) % 64 & 1; }
+
+    private:
+        static constexpr int bits = 20;
+        static size_t placeOf(uint64_t cell) { return static_cast<size_t>(cell * 0x9e3779b97f4a7c15u >> (64 - bits)); }
+        std::vector<uint64_t> words_ = std::vector<uint64_t>((size_t{1} << bits) / 64);
+    };
+
+    static constexpr int coarseness = 4;
     std::span<const Box3f> boxes_;
     Box3f around_;
     float cellsPerMetre_ = 0;
-    std::vector<Entry> entries_;   ///< ascending
-    std::vector<uint64_t> marks_;  ///< a bit for each hash of a cell that has entries
+    std::vector<Entry> entries_;  ///< ascending
+    Marks marks_, coarseMarks_;   ///< of cells that have entries
 };
 
 }  // namespace sgm::mesh

@@ -134,6 +134,7 @@ Decimation::Decimation(const DecimationInput& in, const DecimationLimits& within
 
 void Decimation::reset() {
     triangles.clear();
+    triangles.reserve(neighbours.size() / 3);
     for (uint32_t t = 0; t < input.mesh.triangles.size(); ++t) {
         const uint32_t region = input.regions.ofTriangle[t];
         if (!input.planes[region].planar()) triangles.push_back({input.mesh.triangles[t], region});

@@ -60,15 +60,15 @@ struct Decimation {
 
     DecimationInput input;
     DecimationLimits limits;
-    std::vector<SimpleTriangle> triangles;  ///< of curved regions
-    std::vector<uint32_t> pointsEnd;        ///< by triangle: the end of its points
-    std::vector<uint32_t> points;           ///< original vertices that are gone, by the triangle that they lie over
-    PageVector<uint8_t> kept;               ///< by vertex: whether it must stay
-    PageVector<uint8_t> settled;            ///< by vertex: the first pass that looked at it, counted from 1, or 0
-    std::vector<uint32_t> previous, next;   ///< by place in the chains: the places beside it that are left
-    std::vector<uint32_t> neighbours;       ///< of vertices in the original surface, as neighboursBegin tells
-    float longestEdge_m = 0;                ///< of the original surface
-    PageVector<uint32_t> neighboursBegin;   ///< by vertex and one more
+    PageVector<SimpleTriangle> triangles;  ///< of curved regions
+    PageVector<uint32_t> pointsEnd;        ///< by triangle: the end of its points
+    PageVector<uint32_t> points;           ///< original vertices that are gone, by the triangle that they lie over
+    PageVector<uint8_t> kept;              ///< by vertex: whether it must stay
+    PageVector<uint8_t> settled;           ///< by vertex: the first pass that looked at it, counted from 1, or 0
+    std::vector<uint32_t> previous, next;  ///< by place in the chains: the places beside it that are left
+    std::vector<uint32_t> neighbours;      ///< of vertices in the original surface, as neighboursBegin tells
+    float longestEdge_m = 0;               ///< of the original surface
+    PageVector<uint32_t> neighboursBegin;  ///< by vertex and one more
     std::vector<std::array<uint32_t, 2>> planarAtNodes;  ///< ascending: node and planar region beside it
 
     /// The original triangles of curved regions; nothing is kept yet.

@@ -45,7 +45,8 @@ public:
     /// `fresh` by triangle: whether it is to be compared with all, not only with those.
     Hierarchy(std::span<const Vec3f> positions, std::span<const SimpleTriangle> triangles,
               std::span<const uint8_t> fresh, int threads)
-        : positions_(positions), triangles_(triangles), own_(triangles.size()) {
+        : positions_(positions), triangles_(triangles) {
+        own_.resize(triangles.size());
         Box3f all;
         std::vector<Vec3f> centres(triangles.size());
         for (size_t i = 0; i < triangles.size(); ++i) {
@@ -64,6 +65,7 @@ public:
             keys[i] = static_cast<uint64_t>(place(p, 0) | place(p, 1) << 1 | place(p, 2) << 2) << 32 | i;
         }
         std::sort(keys.begin(), keys.end());
+        order_.reserve(keys.size());
         for (const uint64_t key : keys) order_.push_back(static_cast<uint32_t>(key));
         leaves_ = std::bit_ceil(std::max<size_t>(1, (order_.size() + leafTriangles - 1) / leafTriangles));
         nodes_.resize(2 * leaves_);
@@ -126,46 +128,53 @@ private:
 
     std::span<const Vec3f> positions_;
     std::span<const SimpleTriangle> triangles_;
-    std::vector<Bounds> own_;  ///< of triangles, as order_
+    PageVector<Bounds> own_;  ///< of triangles, as order_
     std::vector<uint32_t> order_;
     size_t leaves_ = 0;
     std::vector<Bounds> nodes_;
 };
 
+/// Where an edge ends, and the triangle that it is a side of.
+struct End {
+    uint32_t vertex, triangle;
+};
+
 /// Triangles with an edge that runs the same way as another's, and those around a vertex at which several fans meet.
 void findNonManifold(std::span<const Vec3f> positions, std::span<const SimpleTriangle> triangles,
                      std::vector<uint32_t>& faults) {
-    std::vector<uint32_t> begin(positions.size() + 1);
+    PageVector<uint32_t> begin;
+    begin.assign(positions.size() + 1, 0);
     for (const SimpleTriangle& t : triangles)
         for (int i = 0; i < 3; ++i) ++begin[t.corners[i] + 1];
     for (size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
-    std::vector<uint32_t> next(begin.begin(), begin.end() - 1);
-    std::vector<std::pair<uint32_t, uint32_t>> ends(3 * triangles.size());  // by start: end and triangle
+    PageVector<uint32_t> next(begin.begin(), begin.end() - 1);
+    PageVector<End> ends;  // by start
+    ends.resize(3 * triangles.size());
     for (uint32_t t = 0; t < triangles.size(); ++t)
         for (int i = 0; i < 3; ++i) {
             const uint32_t a = triangles[t].corners[i], b = triangles[t].corners[(i + 1) % 3];
             for (uint32_t k = begin[a]; k < next[a]; ++k)
-                if (ends[k].first == b) faults.insert(faults.end(), {ends[k].second, t});
+                if (ends[k].vertex == b) faults.insert(faults.end(), {ends[k].triangle, t});
             ends[next[a]++] = {b, t};
         }
     for (uint32_t v = 0; v < positions.size(); ++v) {
-        const std::span<const std::pair<uint32_t, uint32_t>> around(ends.data() + begin[v], begin[v + 1] - begin[v]);
+        const std::span<const End> around(ends.data() + begin[v], begin[v + 1] - begin[v]);
         if (around.empty()) continue;
         // From triangle to triangle over the edges at v, back to the first.
         const auto thirdOf = [&](size_t i) {
-            const Triangle& t = triangles[around[i].second].corners;
+            const Triangle& t = triangles[around[i].triangle].corners;
             return t.x == v ? t.z : t.y == v ? t.x : t.y;
         };
         size_t at = 0, seen = 0;
         do {
             const uint32_t third = thirdOf(at);
             at = static_cast<size_t>(
-                std::find_if(around.begin(), around.end(), [&](const auto& e) { return e.first == third; }) -
+                std::find_if(around.begin(), around.end(), [&](const auto& e) { return e.vertex == third; }) -
                 around.begin());
             ++seen;
         } while (at != 0 && at < around.size() && seen < around.size());
         if (at == 0 && seen == around.size()) continue;
-        for (const auto& [end, t] : around) faults.push_back(t);
+        for (const End& end : around) faults.push_back(end.triangle);
     }
 }
 

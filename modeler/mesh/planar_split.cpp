@@ -5,6 +5,7 @@
 #include <span>
 
 #include "modeler/core/parallel.h"
+#include "modeler/mesh/polyline.h"
 #include "modeler/mesh/triangulate.h"
 
 namespace sgm::mesh {
@@ -14,6 +15,7 @@ constexpr size_t leastTriangles = 32;  ///< of a region that is worth it
 constexpr size_t mostBumps = 8;        ///< one in so many triangles may be a bump's
 constexpr double leastFlat = 0.98;     ///< area of the region's shadow on its plane over its area
 constexpr double leastHeight = 1e-5;   ///< of a triangle in the plane, over its longest side
+constexpr size_t mostSamples = 1024;    ///< triangles that a median is of
 /// Of the bound, in turn: vertices this near to the plane so far decide where it is.
 constexpr double nearness[] = {16, 2};
 
@@ -69,11 +71,12 @@ private:
         return cross(at(t.y) - p, at(t.z) - p);
     }
 
-    /// The median of what triangles have, which a few bumps don't move.
+    /// The median of what some of the triangles have, which a few bumps don't move.
     template <class Value>
     double medianOf(std::span<const uint32_t> triangles, Value&& valueOf) {
         values_.clear();
-        for (const uint32_t t : triangles) values_.push_back(valueOf(mesh_.triangles[t]));
+        const size_t step = 1 + triangles.size() / mostSamples;
+        for (size_t i = 0; i < triangles.size(); i += step) values_.push_back(valueOf(mesh_.triangles[triangles[i]]));
         const auto middle = values_.begin() + static_cast<ptrdiff_t>(values_.size() / 2);
         std::nth_element(values_.begin(), middle, values_.end());
         return *middle;
@@ -182,7 +185,8 @@ private:
     SurfaceRegions& regions_;
     std::vector<Plane>& planes_;
     const size_t before_;  ///< regions that there were
-    std::vector<uint32_t> begin_, list_;
+    std::vector<uint32_t> begin_;
+    PageVector<uint32_t> list_;
     Vec3d origin_;  ///< near the region at hand, so that products of positions don't cancel
     Plane plane_;   ///< of the region at hand, from origin_
     std::vector<double> values_;
@@ -197,21 +201,36 @@ std::vector<uint32_t> separateBumps(const FlatMesh& mesh, double bound_m, Surfac
     return Separation(mesh, bound_m, regions, planes).run();
 }
 
-void rejectTouching(const FlatMesh& mesh, const Chains& chains, std::span<const uint32_t> regions,
+void rejectTouching(const FlatMesh& mesh, const Chains& chains, std::span<const uint32_t> regions, double chain_m,
                     std::vector<Plane>& planes, int threads) {
-    parallelFor(regions.size(), threads, nullptr, [&](size_t i, int) {
-        const uint32_t region = regions[i];
+    const auto touches = [&](uint32_t region, double bound_m) {
         std::vector<DirectedEdge> boundary;
+        std::vector<Vec3f> points;
+        std::vector<bool> keep;
         for (const uint32_t c : chains.around(region)) {
             const Chain& chain = chains.chains[c];
+            const std::span<const uint32_t> vertices(chains.vertices.data() + chain.begin, chain.end - chain.begin);
+            points.clear();
+            for (const uint32_t v : vertices) points.push_back(mesh.positions[v]);
+            keep.assign(points.size(), bound_m == 0);
+            if (bound_m > 0) simplifyPolyline(points, chain.closed, bound_m, keep);
             const auto add = [&](uint32_t a, uint32_t b) {
                 boundary.push_back(chain.left == region ? DirectedEdge{a, b} : DirectedEdge{b, a});
             };
-            for (uint32_t v = chain.begin; v + 1 < chain.end; ++v) add(chains.vertices[v], chains.vertices[v + 1]);
-            if (chain.closed) add(chains.vertices[chain.end - 1], chains.vertices[chain.begin]);
+            uint32_t before = Chains::none, first = Chains::none;
+            for (size_t i = 0; i < keep.size(); ++i) {
+                if (!keep[i]) continue;
+                if (before != Chains::none) add(before, vertices[i]);
+                if (first == Chains::none) first = vertices[i];
+                before = vertices[i];
+            }
+            if (chain.closed) add(before, first);
         }
         std::vector<Triangle> triangles;
-        if (!triangulatePlanar(boundary, mesh.positions, planes[region].normal, triangles)) planes[region] = {};
+        return !triangulatePlanar(boundary, mesh.positions, planes[region].normal, triangles);
+    };
+    parallelFor(regions.size(), threads, nullptr, [&](size_t i, int) {
+        if ((chain_m == 0 || touches(regions[i], chain_m)) && touches(regions[i], 0)) planes[regions[i]] = {};
     });
 }
 

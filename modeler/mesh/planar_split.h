@@ -15,8 +15,9 @@ namespace sgm::mesh {
 std::vector<uint32_t> separateBumps(const FlatMesh& mesh, double bound_m, SurfaceRegions& regions,
                                     std::vector<Plane>& planes);
 
-/// Takes the planes from regions whose whole border touches itself in the plane, on `threads` threads (0: all).
-void rejectTouching(const FlatMesh& mesh, const Chains& chains, std::span<const uint32_t> regions,
+/// Takes the planes from regions whose border touches itself in the plane, both simplified within `chain_m` and whole,
+/// on `threads` threads (0: all).
+void rejectTouching(const FlatMesh& mesh, const Chains& chains, std::span<const uint32_t> regions, double chain_m,
                     std::vector<Plane>& planes, int threads);
 
 }  // namespace sgm::mesh

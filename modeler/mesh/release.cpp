@@ -50,6 +50,7 @@ private:
         bool moved = true;
         int exchanges = 0, exchangedIn = 0;  ///< how often, and in which round last
         int centredIn = 0;                   ///< in which round, or 0
+        Vec3f compared = before;             ///< its place when triangles were compared last
     };
     /// A triangle with a vertex that moves.
     struct Touched {
@@ -269,18 +270,26 @@ private:
         return hull(hull(Box3f{flat_.positions[t.x], flat_.positions[t.x]}, flat_.positions[t.y]),
                     flat_.positions[t.z]);
     }
-    bool isMoved(uint32_t v) const { return moveOf_[v] != none && flat_.positions[v] != moves_[moveOf_[v]].before; }
+    /// Whether a corner of a triangle isn't where it was at first, or when triangles were compared last.
+    bool hasMovedFrom(Vec3f Move::*place, const Triangle& t) const {
+        for (int i = 0; i < 3; ++i)
+            if (const uint32_t m = moveOf_[t[i]]; m != none && flat_.positions[t[i]] != moves_[m].*place) return true;
+        return false;
+    }
 
-    /// Triangles that meet others wrongly, one of them with a moved vertex.
-    std::vector<uint32_t> crossingTriangles(int threads, const Progress* progress) const {
-        std::vector<uint32_t> moved;
+    /// Triangles that meet others wrongly, one of them with a vertex that has moved since this was asked last. Those of
+    /// whose vertices none is elsewhere than at first meet no others like that.
+    std::vector<uint32_t> crossingTriangles(int threads, const Progress* progress) {
+        std::vector<uint32_t> changed;
         std::vector<Box3f> boxes;
         for (const Touched& touched : touched_) {
             const Triangle& t = flat_.triangles[touched.triangle];
-            if (!isMoved(t.x) && !isMoved(t.y) && !isMoved(t.z)) continue;
-            moved.push_back(touched.triangle);
+            if (!hasMovedFrom(&Move::compared, t)) continue;
+            changed.push_back(touched.triangle);
             boxes.push_back(boxOf(t));
         }
+        for (Move& move : moves_) move.compared = flat_.positions[move.vertex];
+        const auto isElsewhere = [&](uint32_t t) { return hasMovedFrom(&Move::before, flat_.triangles[t]); };
         const BoxFinder finder(boxes);
         std::mutex mutex;
         std::vector<uint32_t> crossing;
@@ -290,9 +299,12 @@ private:
             const size_t end = std::min(flat_.triangles.size(), (step + 1) * trianglesPerStep);
             for (size_t t = step * trianglesPerStep; t < end; ++t) {
                 finder.find(boxOf(flat_.triangles[t]), beside);
-                for (const uint32_t b : beside)
-                    if (moved[b] != t && meetWrongly(flat_.positions, flat_.triangles[t], flat_.triangles[moved[b]]))
-                        found.insert(found.end(), {static_cast<uint32_t>(t), moved[b]});
+                for (const uint32_t b : beside) {
+                    const uint32_t other = changed[b];
+                    if (other == t || !(isElsewhere(other) || isElsewhere(static_cast<uint32_t>(t)))) continue;
+                    if (meetWrongly(flat_.positions, flat_.triangles[t], flat_.triangles[other]))
+                        found.insert(found.end(), {static_cast<uint32_t>(t), other});
+                }
             }
             if (found.empty()) return;
             const std::lock_guard lock(mutex);
@@ -320,7 +332,7 @@ private:
     const Mesh& mesh_;
     FlatMesh& flat_;
     std::vector<Move> moves_;
-    std::vector<uint32_t> moveOf_;  ///< by vertex
+    PageVector<uint32_t> moveOf_;  ///< by vertex
     std::vector<Touched> touched_;
     std::vector<std::vector<uint64_t>> keysOf_;       ///< by move, ascending
     std::vector<std::vector<uint32_t>> trianglesOf_;  ///< by move

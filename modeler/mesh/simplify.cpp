@@ -35,7 +35,8 @@ public:
         planes_ = findPlanes(flat_, regions_, planar_m, options_.threads);
         const std::vector<uint32_t> separated = separateBumps(flat_, planar_m, regions_, planes_);
         chains_ = findChains(regions_);
-        rejectTouching(flat_, chains_, separated, planes_, options_.threads);
+        rejectTouching(flat_, chains_, separated, std::max(rounding_m, chainShare * tolerance_m), planes_,
+                       options_.threads);
         if (cancelled(progress_)) return cancelledError();
         const DecimationInput input{flat_, regions_, chains_, planes_};
         curved_.emplace(input, DecimationLimits{tolerance_m, chainShare * tolerance_m});
@@ -68,7 +69,7 @@ private:
 
     /// The result so far: curved regions, planar ones, and those that stay as they are.
     void collect() {
-        triangles_ = curved_->triangles;
+        triangles_.assign(curved_->triangles.begin(), curved_->triangles.end());
         bool some = false;
         for (uint32_t r = 0; r < regions_.count(); ++r) {
             if (!planes_[r].planar()) continue;

@@ -16,7 +16,7 @@ struct HalfEdge {
 /// What one part of the mesh leaves to be done when all are through.
 struct Leftover {
     std::vector<uint32_t> foreign;  ///< triangles with vertices of other parts
-    std::vector<HalfEdge> edges;
+    PageVector<HalfEdge> edges;
 };
 
 class RegionFinder {
@@ -85,6 +85,7 @@ private:
         label_.resize(mesh_.positions.size());
         forParts([&](const FlatMesh::Part& part, Leftover& leftover) {
             std::fill_n(label_.begin() + part.firstVertex, part.vertices, none);
+            leftover.edges.reserve(part.triangles);
             for (uint32_t t = part.firstTriangle; t < part.firstTriangle + part.triangles; ++t)
                 joinCorners(t, part, leftover);
         });
@@ -136,7 +137,9 @@ private:
         for (const Leftover& l : leftovers_)
             for (const HalfEdge& e : l.edges) ++end[label_[std::min(e.a, e.b)] + 1];
         for (size_t i = 1; i < end.size(); ++i) end[i] += end[i - 1];
-        std::vector<HalfEdge> sides(end.back());
+        PageVector<HalfEdge> sides;
+        sides.resize(end.back());
+        found_.borders.reserve(end.back() / 2);
         std::vector<uint32_t> next(end.begin(), end.end() - 1);
         for (const Leftover& l : leftovers_)
             for (const HalfEdge& e : l.edges) sides[next[label_[std::min(e.a, e.b)]]++] = e;
