@@ -136,37 +136,43 @@ void LabelPass::nameFaces(const Instruction& in, const Source* sources, const St
     for (uint32_t k = 0; k < Box::operandCount; ++k) o[k] = operand(in, sources, k, c);
     const size_t n = c.count;
     const Names of = combined(in, sources, c), origin = firstOrigin(in, sources, c);
-    std::array<uint32_t, maxBlock> face;
-    const auto nameBy = [&](auto position, auto number) {
+    // By face: up and down along x, y and z. Names that differ from point to point are joined afterwards.
+    std::array<uint32_t, 6> names;
+    for (uint32_t f = 0; f < names.size(); ++f) {
+        const uint32_t label = join(f + 1, of.one);
+        names[f] = of.row ? f + 1 : in.piece == 0 ? label : join(in.piece, label);
+    }
+    uint32_t* const labels = labelRow(in.out);
+    std::array<uint32_t, maxBlock> nearest;
+    const auto nameBy = [&, names](auto position, auto number) {
         for (size_t i = 0; i < n; ++i) {
             const float dx = position(0, i) - number(3, i), dy = position(1, i) - number(4, i),
                         dz = position(2, i) - number(5, i);
             const float x = std::abs(dx) - number(6, i), y = std::abs(dy) - number(7, i),
                         z = std::abs(dz) - number(8, i);
-            const uint32_t fx = dx < 0 ? 1 : 0, fy = dy < 0 ? 3 : 2, fz = dz < 0 ? 5 : 4;
-            const uint32_t xy = y > x ? fy : fx;
-            face[i] = z > (y > x ? y : x) ? fz : xy;
+            const uint32_t nx = dx < 0 ? names[1] : names[0], ny = dy < 0 ? names[3] : names[2],
+                           nz = dz < 0 ? names[5] : names[4];
+            const uint32_t nxy = y > x ? ny : nx;
+            const float xy = y > x ? y : x;
+            nearest[i] = z > xy ? nz : nxy;
         }
     };
     bool usual = true;  // rows of positions, numbers else
     for (uint32_t k = 0; k < Box::operandCount; ++k) usual = usual && (o[k].values != nullptr) == (k < Box::centreAt);
-    if (usual)
+    if (usual) {
+        std::array<float, Box::operandCount> numbers;
+        for (uint32_t k = 0; k < Box::operandCount; ++k) numbers[k] = o[k].constant;
         nameBy([at = std::array{o[0].values, o[1].values, o[2].values}](size_t k, size_t i) { return at[k][i]; },
-               [&](size_t k, size_t) { return o[k].constant; });
-    else
+               [numbers](size_t k, size_t) { return numbers[k]; });
+    } else {
         nameBy([&](size_t k, size_t i) { return o[k].at(i); }, [&](size_t k, size_t i) { return o[k].at(i); });
-    uint32_t* const labels = labelRow(in.out);
+    }
     if (of.row) {
-        for (size_t i = 0; i < n; ++i) labels[i] = join(face[i] + 1, of.row[i]);
+        for (size_t i = 0; i < n; ++i) labels[i] = join(nearest[i], of.row[i]);
         names_[in.out] = {ofPiece(in, settled(labels, n), n), origin};
         return;
     }
-    std::array<uint32_t, 6> names;
-    for (uint32_t f = 0; f < names.size(); ++f) {
-        const uint32_t label = join(f + 1, of.one);
-        names[f] = in.piece == 0 ? label : join(in.piece, label);
-    }
-    for (size_t i = 0; i < n; ++i) labels[i] = names[face[i]];
+    std::copy_n(nearest.data(), n, labels);
     names_[in.out] = {settled(labels, n), origin};
 }
 
