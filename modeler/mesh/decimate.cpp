@@ -35,10 +35,8 @@ double sideOfPatch(const Decimation& d) {
     return std::sqrt(area / 2 * patchTriangles / (1.5 * static_cast<double>(d.triangles.size())));
 }
 
-/// Cubes of `side` metres about the triangles, shifted by a share of it.
-PatchLattice latticeOf(const Decimation& d, double side, double shift) {
-    Box3f box;
-    for (const SimpleTriangle& t : d.triangles) box = hull(box, d.input.mesh.positions[t.corners.x]);
+/// Cubes of `side` metres about a box, shifted by a share of it.
+PatchLattice latticeOf(const Box3f& box, double side, double shift) {
     PatchLattice lattice;
     const double longest = static_cast<double>(maxComponent(box.size()));
     lattice.side_m = std::max(side, longest / 500);  // so that there are few cubes
@@ -184,6 +182,8 @@ void Decimation::run(int threads, Progress* progress) {
     const bool again = !passes_.empty();
     size_t before = 0;
     double side = 0;
+    Box3f box;
+    for (const SimpleTriangle& t : triangles) box = hull(box, input.mesh.positions[t.corners.x]);
     for (size_t pass = 0; pass < (again ? passes_.size() : 2 * mostRounds); ++pass) {
         if (!again) {
             if (pass % 2 == 0) {
@@ -192,7 +192,7 @@ void Decimation::run(int threads, Progress* progress) {
                 before = triangles.size();
                 side = sideOfPatch(*this);
             }
-            passes_.push_back({latticeOf(*this, side, pass % 2 == 0 ? 0 : 0.5), {}});
+            passes_.push_back({latticeOf(box, side, pass % 2 == 0 ? 0 : 0.5), {}});
         }
         runPass(pass, threads, progress);
         if (cancelled(progress)) return;

@@ -1,6 +1,7 @@
 // Decimation of curved regions.
 #include <gtest/gtest.h>
 
+#include "modeler/mesh/decimate.h"
 #include "tests/mesh/gridded.h"
 #include "tests/mesh/mesh_bytes.h"
 #include "tests/mesh/scenes.h"
@@ -125,6 +126,34 @@ TEST(SimplifyCurved, FractalsStaySound) {
 TEST(SimplifyCurved, TheResultIsTheSameAtAnyNumberOfThreads) {
     const Mesh cloud = *meshOf(cloudScene(30, 0.2f, 4), 90).mesh;
     EXPECT_EQ(bytesOf(simplified(cloud, 0.003, 1)), bytesOf(simplified(cloud, 0.003, 5)));
+}
+
+TEST(SimplifyCurved, DecimatingAgainIsAsDecimatingAllWithWhatIsKept) {
+    const FlatMesh flat = flatten(*meshOf(fractal(), 90).mesh, 2);
+    const auto regions = findRegions(flat, 2);
+    ASSERT_TRUE(regions.ok());
+    const Chains chains = findChains(*regions);
+    const std::vector<Plane> planes(regions->count());
+    const DecimationInput input{flat, *regions, chains, planes};
+    const DecimationLimits limits{.surface_m = 0.002, .chain_m = 0.001};
+    Decimation again(input, limits), anew(input, limits);
+    again.run(2, nullptr);
+    const size_t first = again.triangles.size();
+    ASSERT_GT(first, 8000u * 3);  // several patches
+    for (int round = 0; round < 2; ++round) {
+        for (const size_t share : {5, 3}) again.keepAround(static_cast<uint32_t>(again.triangles.size() / share));
+        again.run(1 + round, nullptr);
+    }
+    EXPECT_GT(again.triangles.size(), first);
+    anew.kept = again.kept;
+    anew.run(2, nullptr);
+    ASSERT_EQ(again.triangles.size(), anew.triangles.size());
+    for (size_t t = 0; t < anew.triangles.size(); ++t) {
+        ASSERT_EQ(again.triangles[t].corners, anew.triangles[t].corners) << t;
+        ASSERT_TRUE(
+            std::ranges::equal(again.pointsOver(static_cast<uint32_t>(t)), anew.pointsOver(static_cast<uint32_t>(t))));
+    }
+    EXPECT_EQ(again.next, anew.next);
 }
 
 TEST(SimplifyCurved, NormalsOfSmoothRegionsStay) {
