@@ -2,27 +2,13 @@
 
 #include <algorithm>
 
+#include "grammar/syntax/hints.h"
+
 namespace sgm::syntax {
 
 namespace {
 
 constexpr int deepest = 100;
-
-/// What a person most likely meant by bytes that are no token.
-struct Lookalike {
-    std::string_view bytes, mend;
-};
-constexpr Lookalike lookalikes[] = {
-    {"\u2212", "write '-'"},  {"\u2013", "write '-'"},  {"\u00d7", "write '*'"},       {"\u2192", "write '->'"},
-    {"\u201c", "write '\"'"}, {"\u201d", "write '\"'"}, {"\u00b0", "write 'deg'"},     {"\u2026", "write '..'"},
-    {"\u2265", "write '>='"}, {"\u2264", "write '<='"}, {"'", "text stands in \"…\""},
-};
-
-std::string mendOf(std::string_view unknown) {
-    for (const Lookalike& row : lookalikes)
-        if (unknown.substr(0, row.bytes.size()) == row.bytes) return std::string(row.mend);
-    return {};
-}
 
 }  // namespace
 
@@ -45,6 +31,8 @@ Token Cursor::peek(size_t ahead) const {
     end.begin = end.end = lastEnd_;
     return end;
 }
+
+Token Cursor::previous(size_t back) const { return back > 0 && back <= at_ ? tokens_[at_ - back] : Token{}; }
 
 Token Cursor::take(Token::Role role) {
     if (done()) return peek();
@@ -72,6 +60,11 @@ bool Cursor::expect(std::string_view wanted, std::string_view where, std::string
 bool Cursor::close(const Token& open) {
     const std::string_view opening = text(open);
     const std::string_view closing = opening == "(" ? ")" : opening == "[" ? "]" : "}";
+    const auto isNumber = [](const Token& token) { return token.kind == Token::Kind::Number; };
+    if (opening == "(" && isNumber(previous(1)) && isNumber(peek())) {
+        fail("two numbers stand side by side", "put ',' between them: " + quoted("(" + std::string(text(previous(1))) + ", " + std::string(peekText()) + " …)"));
+        return false;
+    }
     return expect(closing,
                   "to close " + quoted(opening) + " of line " + std::to_string(source_.place(open.begin).line));
 }
@@ -79,12 +72,10 @@ bool Cursor::close(const Token& open) {
 std::string Cursor::found() const { return done() ? "the end of the declaration" : quoted(peekText()); }
 
 void Cursor::fail(std::string message, std::string mend) {
-    if (at(Token::Kind::Unknown)) {
-        const std::string_view bytes = peekText();
-        failAt(span(peek()), "unexpected character " + quoted(bytes), mendOf(bytes));
-    } else {
+    if (auto hint = failed_ ? std::nullopt : findHint(*this, message))
+        failAt(hint->span, std::move(hint->message), std::move(hint->mend));
+    else
         failAt(span(peek()), std::move(message), std::move(mend));
-    }
 }
 
 void Cursor::failAt(SourceSpan span, std::string message, std::string mend) {

@@ -21,6 +21,8 @@ public:
 
     /// The token `ahead` of the next one; End (empty, behind the last one taken) when the slice is used up.
     Token peek(size_t ahead = 0) const;
+    /// The token taken `back` before the next one (1: the last one taken); an empty one before the first.
+    Token previous(size_t back) const;
     std::string_view text(const Token& token) const { return textOf(source_, token); }
     std::string_view peekText(size_t ahead = 0) const { return text(peek(ahead)); }
     SourceSpan span(const Token& token) const { return {&source_, token.begin, token.end}; }

@@ -83,10 +83,29 @@ bool atParamPart(const Cursor& cursor) {
     return cursor.at("in") || cursor.at("of") || cursor.at("group") || cursor.at("key") || cursor.at(Token::Kind::Text);
 }
 
+/// The line with its default before its range: 'param n = 2 in 0..4' for 'param n in 0..4 = 2'.
+std::string defaultFirst(const Cursor& cursor, const Name& name) {
+    std::string part, value = "…";
+    for (size_t i = 0; cursor.peek(i).kind != Token::Kind::End; ++i) {
+        if (cursor.at("=", i)) {
+            if (cursor.peek(i + 1).kind != Token::Kind::End) value = std::string(cursor.peekText(i + 1));
+            break;
+        }
+        if (cursor.at(Token::Kind::Text, i)) break;
+        part += (i > 0 && !cursor.peek(i).glued ? " " : "") + std::string(cursor.peekText(i));
+    }
+    if (value == "…" && cursor.at("in") && cursor.at("..", 2)) value = std::string(cursor.peekText(1));
+    return "write " + quoted("param " + name.text + " = " + value + " " + part);
+}
+
 void readParam(Cursor& cursor, Ast& ast) {
     ParamDecl param;
     const uint32_t begin = cursor.take().begin;
     param.name = readName(cursor, "a parameter");
+    if (atParamPart(cursor) && !cursor.at(Token::Kind::Text)) {
+        cursor.fail("the default of parameter " + quoted(param.name.text) + " comes first", defaultFirst(cursor, param.name));
+        return;
+    }
     cursor.expect("=", "and a default after the parameter's name", equalsMend(cursor, param.name));
     param.value = readExpr(cursor);
     while (atParamPart(cursor)) {

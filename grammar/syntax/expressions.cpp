@@ -205,13 +205,25 @@ private:
             default:
                 break;
         }
-        if (cursor_.at("~")) return prefixed("~", [this] { return simple(); });
+        if (cursor_.at("~")) return prefixed("~", [this] { return floatingSize(); });
         if (cursor_.at("(")) return parenthesised();
         e.span = cursor_.span(token);
         if (cursor_.at("+"))
             cursor_.fail("a number has no '+' before it", "leave '+' out");
         else
             cursor_.fail("expected a value, found " + cursor_.found());
+        return e;
+    }
+
+    /// What follows '~': a calculation without parentheses is reported, and read as it was meant.
+    Expr floatingSize() {
+        const uint32_t begin = cursor_.peek().begin;
+        Expr e = simple();
+        if (!cursor_.at("*") && !cursor_.at("/") && !cursor_.at("+") && !cursor_.at("-")) return e;
+        const Token symbol = cursor_.take();
+        e = joined(*findBinary(cursor_.text(symbol)), std::move(e), binary(sumBinds));
+        const SourceSpan span = cursor_.since(begin);
+        cursor_.complain(span, "a calculated size stands in parentheses", "write " + quoted("~(" + std::string(span.text()) + ")"));
         return e;
     }
 

@@ -5,6 +5,7 @@
 #include "grammar/syntax/bodies.h"
 #include "grammar/syntax/declarations.h"
 #include "grammar/syntax/expressions.h"
+#include "grammar/syntax/hints.h"
 
 namespace sgm::syntax {
 
@@ -28,10 +29,23 @@ void refuse(Cursor& cursor) {
     }
 }
 
+/// The declaration that the token at the cursor begins: also one that another language calls otherwise, which is reported.
+const Declaration* declarationAt(Cursor& cursor) {
+    if (const Declaration* declaration = findDeclaration(cursor.peekText())) return declaration;
+    const ForeignDeclaration* foreign = cursor.peek().columnOne ? findForeignDeclaration(cursor.peekText()) : nullptr;
+    if (!foreign) return nullptr;
+    cursor.complain(cursor.span(cursor.peek()), cursor.found() + " begins no declaration", std::string(foreign->mend));
+    return findDeclaration(foreign->means);
+}
+
 /// The declarations of one slice: one, unless a second wasn't put in column one.
 void readDeclarations(Cursor& cursor, Ast& ast) {
     for (bool first = true; !cursor.done(); first = false) {
-        const Declaration* declaration = findDeclaration(cursor.peekText());
+        if (cursor.at(";")) {
+            cursor.complain(cursor.span(cursor.take()), "unexpected ';'", "a declaration ends with its line: leave ';' out");
+            continue;
+        }
+        const Declaration* declaration = declarationAt(cursor);
         if (!declaration) {
             refuse(cursor);
             return;
@@ -76,7 +90,8 @@ Ast parse(SourcePtr source, std::span<Token> tokens, const OperationTable& opera
     ast.source = source;
     ast.operations = &operations;
     const auto begins = [&](const Token& t) {
-        return t.columnOne && (textOf(*source, t) == "grammar" || findDeclaration(textOf(*source, t)));
+        const std::string_view text = textOf(*source, t);
+        return t.columnOne && (text == "grammar" || findDeclaration(text) || findForeignDeclaration(text));
     };
     size_t begin = 0;
     do {

@@ -1,0 +1,120 @@
+#include "grammar/syntax/hints.h"
+
+#include <algorithm>
+
+namespace sgm::syntax {
+
+namespace {
+
+/// What a person most likely meant by bytes that are no token.
+struct Lookalike {
+    std::string_view bytes, mend;
+};
+constexpr Lookalike lookalikes[] = {
+    {"\u2212", "write '-'"},  {"\u2013", "write '-'"},  {"\u00d7", "write '*'"},       {"\u2192", "write '->'"},
+    {"\u201c", "write '\"'"}, {"\u201d", "write '\"'"}, {"\u00b0", "write 'deg'"},     {"\u2026", "write '..'"},
+    {"\u2265", "write '>='"}, {"\u2264", "write '<='"}, {"'", "text stands in \"…\""}, {"^", "there is no power: write a product, 'x * x'"},
+    {"?", "write 'if(condition, a, b)'"},
+};
+
+constexpr ForeignDeclaration foreignDeclarations[] = {
+    {"import", "use", "write 'use'"},
+    {"include", "use", "write 'use'"},
+    {"require", "use", "write 'use'"},
+    {"let", "param", "there are no constants: write 'param'"},
+    {"const", "param", "there are no constants: write 'param'"},
+    {"var", "param", "there are no variables: write 'param'"},
+    {"parameter", "param", "write 'param'"},
+    {"attr", "param", "write 'param'"},
+};
+
+struct ForeignWord {
+    std::string_view word, mend;
+};
+constexpr ForeignWord foreignAttributes[] = {
+    {"translate", "write 'move'"},
+    {"position", "write 'move'"},
+    {"offset", "write 'move'"},
+    {"rotate", "write 'turn'"},
+    {"rotation", "write 'turn'"},
+    {"scale", "write 'size'"},
+    {"radius", "write 'size' with the whole extent: 'sphere size 2' has a radius of 1m"},
+    {"diameter", "write 'size'"},
+    {"width", "write 'size (x, y, z)': x is the width"},
+    {"height", "write 'size (x, y, z)': y is the height"},
+    {"depth", "write 'size (x, y, z)': z is the depth"},
+    {"free", "write 'at free(…)'"},
+    {"last", "write 'on last'"},
+    {"material", "name a terminal, as 'stone' of std/walls.sgm, or write 'color #c8b090'"},
+    {"roughness", "write 'rough'"},
+    {"metalness", "write 'metal'"},
+};
+
+constexpr std::string_view ifMend = "bodies choose by 'when condition { … }', values by 'if(condition, a, b)'";
+
+/// The word before the parenthesis that the token before the cursor closes.
+std::string_view calledBefore(const Cursor& cursor) {
+    int depth = 0;
+    for (size_t back = 1;; ++back) {
+        const std::string_view text = cursor.text(cursor.previous(back));
+        if (text.empty()) return {};
+        depth += (text == ")") - (text == "(");
+        if (depth == 0) return text == "(" ? cursor.text(cursor.previous(back + 1)) : std::string_view();
+    }
+}
+
+/// 2,5 where nothing of a vector could stand; the cursor is at the comma or behind it.
+std::optional<Hint> decimalComma(const Cursor& cursor) {
+    const bool behind = cursor.text(cursor.previous(1)) == ",";
+    const Token whole = cursor.previous(behind ? 2 : 1), comma = behind ? cursor.previous(1) : cursor.peek();
+    const Token fraction = cursor.peek(behind ? 0 : 1);
+    if (whole.kind != Token::Kind::Number || cursor.text(comma) != "," || fraction.kind != Token::Kind::Number) return {};
+    if (!comma.glued || !fraction.glued) return {};
+    const std::string written = std::string(cursor.text(whole)) + "." + std::string(cursor.text(fraction));
+    const SourceSpan span = join(cursor.span(whole), cursor.span(fraction));
+    return Hint{span, quoted(span.text()) + " is no number", "a decimal point is '.': write " + quoted(written)};
+}
+
+Hint unknownCharacter(const Cursor& cursor) {
+    const std::string_view bytes = cursor.peekText();
+    Hint hint{cursor.span(cursor.peek()), "unexpected character " + quoted(bytes), {}};
+    for (const Lookalike& row : lookalikes)
+        if (bytes.substr(0, row.bytes.size()) == row.bytes) hint.mend = std::string(row.mend);
+    const bool beyondAscii = static_cast<unsigned char>(bytes.front()) >= 0x80;
+    if (hint.mend.empty() && beyondAscii) hint.mend = "names are made of a-z, A-Z, 0-9 and _; text in quotes may hold anything";
+    return hint;
+}
+
+}  // namespace
+
+std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
+    const Token token = cursor.peek();
+    const std::string_view text = cursor.text(token), before = cursor.text(cursor.previous(1));
+    if (token.kind == Token::Kind::Unknown) return unknownCharacter(cursor);
+    if (auto comma = decimalComma(cursor)) return comma;
+    if (token.kind == Token::Kind::Color && (text == "#" || token.columnOne))
+        return Hint{cursor.span(token), "a comment doesn't begin with '#'", "a comment begins with '//' and ends with its line"};
+    if (text == "else")
+        return Hint{cursor.span(token), "there is no 'else'", "write 'when not condition { … }' for the other case"};
+    if (text == "if" && !(cursor.at("(", 1) && cursor.peek(1).glued)) return Hint{cursor.span(token), "there is no 'if' here", std::string(ifMend)};
+    if (before == "if") return Hint{cursor.span(cursor.previous(1)), "there is no 'if' here", std::string(ifMend)};
+    if (text == "{" && before == ")" && calledBefore(cursor) == "if")
+        return Hint{cursor.span(token), "there is no 'if' here", std::string(ifMend)};
+    if (text == "*" && message.starts_with("unexpected"))
+        return Hint{cursor.span(token), "unexpected '*'", "what two shapes share is 'a & b'; a calculation stands in parentheses"};
+    return std::nullopt;
+}
+
+const ForeignDeclaration* findForeignDeclaration(std::string_view word) {
+    const auto row = std::find_if(std::begin(foreignDeclarations), std::end(foreignDeclarations),
+                                  [&](const ForeignDeclaration& d) { return d.word == word; });
+    return row == std::end(foreignDeclarations) ? nullptr : row;
+}
+
+std::string foreignAttributeHint(std::string_view word) {
+    const auto row = std::find_if(std::begin(foreignAttributes), std::end(foreignAttributes),
+                                  [&](const ForeignWord& w) { return w.word == word; });
+    return row == std::end(foreignAttributes) ? std::string() : std::string(row->mend);
+}
+
+}  // namespace sgm::syntax
