@@ -116,7 +116,6 @@ void say(const BuildRequest& request, const Model& model, const mesh::MeshFigure
     if (!request.floor.empty()) fmt::print("wrote {}\n", request.floor);
     if (!request.out.collider.empty()) fmt::print("{} collider{} ({})\n", colliders.all.size(), colliders.all.size() == 1 ? "" : "s", request.out.collider);
     for (const std::string& note : colliders.notes) printMessage("note: collider: {}\n", note);
-    printDiagnostics(derive::ungrown(model.derivation));
     sayFloating(model, support);
 }
 
@@ -244,6 +243,7 @@ Status buildOne(const BuildRequest& request) {
     Watch watch(request.quiet);
     const auto model = makeModel(request.model, stages, watch.progress());
     if (!model.ok()) return model.error();
+    if (!request.quiet) printWarnings(*model);
     if (request.stream) return stream(request, *model, watch.progress());
     if (const Status s = writeSolids(request, *model, stages, watch.progress()); !s.ok()) return s;
     if (solidsWillDo(request)) {
@@ -325,6 +325,7 @@ Status buildFrames(const BuildRequest& request) {
         options->params = animation->values(still, frame);
         const auto model = makeModel(grammar, *options, stages, watch.progress());
         if (!model.ok()) return model.error();
+        if (frame == 0 && !request.quiet) printWarnings(*model);
         const BuildRequest framed = *requestOf(request, frame);
         if (const Status s = writeSolids(framed, *model, stages, watch.progress()); !s.ok()) return s;
         if (!request.quiet) fmt::print("frame {} of {}, {}: ", frame + 1, animation->frames, animation->text(*grammar, frame));

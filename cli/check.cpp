@@ -1,4 +1,5 @@
-// sgm check: every problem of every file, then the grammar's own `check … expect` tests.
+// sgm check: every problem of every file, those of the models that `sgm build` would make of it among them, then the
+// grammar's own `check … expect` tests.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +10,7 @@
 #include "cli/messages.h"
 #include "cli/numbers.h"
 #include "cli/pipeline.h"
+#include "cli/trials.h"
 #include "cli/watch.h"
 #include "grammar/operations/operations.h"
 #include "grammar/syntax/parser.h"
@@ -20,7 +22,8 @@ namespace {
 struct CheckRequest {
     std::vector<std::string> files;
     uint64_t seed = 1;
-    double seconds = 60;  ///< for all `check` lines of a file
+    double seconds = 60;       ///< for all `check` lines of a file, and for the model that `sgm build` makes
+    double otherSeconds = 5;   ///< for the models of other starts, styles and ends of ranges
     bool json = false;
 };
 
@@ -34,19 +37,30 @@ int runGrammarChecks(std::shared_ptr<const rules::Grammar> grammar, const CheckR
     return 0;
 }
 
+/// What `sgm build` would refuse, and what other settings would; the exit code.
+int tryGrammar(const std::string& file, const std::shared_ptr<const rules::Grammar>& grammar, const CheckRequest& request, syntax::Diagnostics& diagnostics) {
+    Watch watch(false);
+    const auto trials = tryModels(grammar, {request.seed, request.seconds, request.otherSeconds}, watch.progress(), diagnostics);
+    if (!trials.ok()) return fail(trials.error());
+    if (trials->tried < trials->all && !request.json)
+        printMessage("note: {}: {} of {} settings were tried in {:g} s (--try-seconds)\n", file, trials->tried, trials->all, request.otherSeconds);
+    return trials->budgetSpent ? 3 : 0;
+}
+
 int checkOne(const std::string& file, const CheckRequest& request, nlohmann::json& found) {
     const auto source = viewer::readSource(file);
     if (!source.ok()) return fail(source.error());
     syntax::Diagnostics diagnostics;
     const auto grammar = rules::load(*source, operations::table(), viewer::fileLoader(), diagnostics);
-    const int code = grammar ? runGrammarChecks(grammar, request, diagnostics) : 0;
+    int code = grammar ? tryGrammar(file, grammar, request, diagnostics) : 0;
+    if (grammar && code != 130) code = std::max(code, runGrammarChecks(grammar, request, diagnostics));
     if (request.json) {
         for (auto& entry : nlohmann::json::parse(syntax::toJson(diagnostics))) found.push_back(std::move(entry));
     } else {
         printDiagnostics(diagnostics);
         if (!diagnostics.hasErrors() && code == 0) fmt::print("{}: fine\n", file);
     }
-    return diagnostics.hasErrors() ? 1 : code;
+    return diagnostics.hasErrors() ? std::max(1, code) : code;
 }
 
 int check(const CheckRequest& request) {
@@ -60,11 +74,13 @@ int check(const CheckRequest& request) {
 }  // namespace
 
 void addCheck(CLI::App& app, int& exitCode) {
-    CLI::App* command = app.add_subcommand("check", "Show every problem of grammar files and run their `check` lines");
+    CLI::App* command = app.add_subcommand("check", "Show every problem of grammar files, also of what they derive, and run their `check` lines");
     auto request = std::make_shared<CheckRequest>();
     command->add_option("FILE", request->files, "Grammar files (.sgm)")->required();
     command->add_option("--seed", request->seed, "Seed for the `check` lines")->capture_default_str();
-    command->add_option("--max-seconds", request->seconds, "Budget of time for all `check` lines of a file")->check(between(1e-3, 1e9))->capture_default_str();
+    command->add_option("--max-seconds", request->seconds, "Budget of time for all `check` lines of a file, and for the model that `sgm build` makes of it")->check(between(1e-3, 1e9))->capture_default_str();
+    command->add_option("--try-seconds", request->otherSeconds, "Budget of time for the other models: each start, style and `derive` way, and each parameter at the ends of its range")
+        ->check(between(0, 1e9))->capture_default_str();
     command->add_flag("--json", request->json, "Problems as JSON, for editors");
     command->callback([request, &exitCode] { exitCode = check(*request); });
 }

@@ -88,6 +88,7 @@ Result<std::vector<Variation>> search(const MutateRequest& request, const std::s
         }
         auto one = tried(request, grammar, values, progress);
         if (!one.ok()) return one.error();
+        if (k == 0 && one->model && !request.quiet) printWarnings(*one->model);
         if (one->model) found.push_back({std::move(values), std::move(*one->model)});
         else ++rejected[one->why];
     }

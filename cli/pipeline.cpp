@@ -70,6 +70,8 @@ Result<Model> makeModel(const ModelRequest& request, Stages& stages, Progress* p
     return makeModel(*grammar, *options, stages, progress);
 }
 
+void printWarnings(const Model& model) { printDiagnostics(derive::warnings(model.derivation)); }
+
 mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request) {
     return mesh::gridFor(bounds, request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution));
 }

@@ -48,6 +48,9 @@ Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& re
 /// A model from the file on.
 Result<Model> makeModel(const ModelRequest& request, Stages& stages, Progress* progress);
 
+/// Prints derive::warnings, what every command about a model tells.
+void printWarnings(const Model& model);
+
 /// How the mesher is to work; `bare` as in PolygonizeOptions.
 mesh::PolygonizeOptions meshingOf(const GridRequest& request, bool bare = false);
 /// The grid that is asked for over these bounds.

@@ -180,6 +180,7 @@ Status drawAll(const RenderRequest& request) {
     Watch watch(request.quiet);
     const auto model = makeModel(request.model, stages, watch.progress());
     if (!model.ok()) return model.error();
+    if (!request.quiet) printWarnings(*model);
     const Box3f bounds = viewer::tighten(model->tape, model->lowered->field.bounds);
     const auto camera = parseCamera(request, *model, bounds, static_cast<double>(options->width) / options->height);
     if (!camera.ok()) return camera.error();

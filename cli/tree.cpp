@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/pipeline.h"
 #include "cli/watch.h"
 #include "grammar/derive/print.h"
@@ -26,6 +27,7 @@ int tree(const TreeRequest& request) {
     if (!options.ok()) return fail(options.error());
     const auto derivation = derive::derive(*grammar, *options, watch.progress());
     if (!derivation.ok()) return fail(derivation.error());
+    printDiagnostics(derive::warnings(*derivation));
     fmt::print("{}", request.json ? derive::toJson(*derivation) : derive::toText(*derivation, request.steps));
     return 0;
 }

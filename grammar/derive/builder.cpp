@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <tuple>
 
 namespace sgm::derive {
@@ -32,7 +33,17 @@ void TreeBuilder::fail(Error::Kind kind, const std::string& what, syntax::Source
     text += rule_ == none ? std::string(" in the start") : fmt::format(" in rule '{}'", grammar.rules[rule_].name);
     if (shape_ < tree().shapes.size()) text += fmt::format(" at {}", tree().path(shape_));
     text += fmt::format(", seed {}", derivation_.seed);
+    for (const Remark& r : derivation_.remarks)  // what was remarked in the text that fails is the cause as a rule
+        if (r.span.source == span.source && r.span.begin >= span.begin && r.span.end <= span.end) text += "; " + r.message;
     failure_ = Error{kind, std::move(text)};
+}
+
+void TreeBuilder::remark(syntax::SourceSpan span, std::string message, std::string mend) {
+    constexpr size_t most = 300;
+    auto& remarks = derivation_.remarks;
+    if (runsAgain() || remarks.size() >= most) return;
+    const auto isHere = [&](const Remark& r) { return r.span.source == span.source && r.span.begin == span.begin && r.span.end == span.end; };
+    if (std::none_of(remarks.begin(), remarks.end(), isHere)) remarks.push_back({span, std::move(message), std::move(mend)});
 }
 
 syntax::SourceSpan TreeBuilder::here() const {

@@ -49,6 +49,8 @@ public:
     void resume(Progress* progress) { progress_ = progress, begin_ = std::chrono::steady_clock::now(), work_ = 0; }
     /// Ends the derivation with a sentence located at `span` and the present rule, path and seed.
     void fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span);
+    /// Adds a remark to the derivation, once a place; a second run of a recording adds none.
+    void remark(syntax::SourceSpan span, std::string message, std::string mend);
     /// From now on notes all that another run with other numbers has to know; null for nobody.
     void record(Recording* recording) { recording_ = recording; }
     Recording* recording() const { return recording_; }

@@ -1,6 +1,8 @@
 // A grammar's own tests: `check START { settings } expect EXPR`.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "grammar/derive/derive.h"
 #include "grammar/derive/expressions.h"
 #include "grammar/derive/support.h"
@@ -36,16 +38,30 @@ std::string floatersOf(const Derivation& d) {
     return text;
 }
 
+/// `e` as the number that it turned out to be, which `told` gets too.
+Expr constantOf(Expr e, double n, std::string& told) {
+    told += fmt::format("{}{} is {}", told.empty() ? "" : ", ", e.span.text(), n);
+    e.kind = Expr::Kind::Constant;
+    e.args.clear();
+    e.value = rules::Value::number(n);
+    e.value.integer = true;
+    return e;
+}
+
 /// Puts numbers in place of figures, and tells what they were.
 Expr withFigures(Expr e, const Derivation& d, std::string& told) {
     if (e.kind == Expr::Kind::Figure) {
-        const double n = figureOf(d, static_cast<Figure>(e.index));
-        told += fmt::format("{}{} is {}", told.empty() ? "" : ", ", e.span.text(), n);
-        if (static_cast<Figure>(e.index) == Figure::Floating && n > 0) told += ": " + floatersOf(d);
-        e.kind = Expr::Kind::Constant;
-        e.value = rules::Value::number(n);
-        e.value.integer = true;
-        return e;
+        const auto figure = static_cast<Figure>(e.index);
+        const double n = figureOf(d, figure);
+        Expr number = constantOf(std::move(e), n, told);
+        if (figure == Figure::Floating && n > 0) told += ": " + floatersOf(d);
+        return number;
+    }
+    if (e.kind == Expr::Kind::Call && static_cast<rules::Fn>(e.index) == rules::Fn::Count) {
+        const auto symbol = static_cast<rules::SymbolId>(e.args[0].value.num());
+        const auto& shapes = d.tree.shapes;
+        const auto n = std::count_if(shapes.begin(), shapes.end(), [&](const Shape& s) { return s.symbol == symbol; });
+        return constantOf(std::move(e), static_cast<double>(n), told);
     }
     for (Expr& arg : e.args) arg = withFigures(std::move(arg), d, told);
     return e;

@@ -33,11 +33,18 @@ struct Closed {
     uint64_t count = 0;       ///< how often
 };
 
+/// Something that was derived and is hardly meant, as a division by zero; told once a place.
+struct Remark {
+    syntax::SourceSpan span;
+    std::string message, mend;
+};
+
 struct Derivation {
     std::shared_ptr<const rules::Grammar> grammar;
     ShapeTree tree;
     std::vector<Step> steps;
     std::vector<Closed> closed;       ///< one an element, in the order they first met a closed joint
+    std::vector<Remark> remarks;      ///< in the order they were met, the first few hundred
     std::vector<Material> materials;  ///< the grammar's, then those given by attributes
     std::vector<rules::Value> params;
     uint32_t start = 0;               ///< index into Grammar::starts
@@ -59,6 +66,13 @@ struct Derivation {
 
 /// A warning for every element that a closed joint kept from growing wherever it came.
 syntax::Diagnostics ungrown(const Derivation& derivation);
+
+/// A warning for every difference that removes nothing wherever it was derived: nothing stands there to be cut, or it
+/// lies beside what does. Boxes decide, so that a cutter that only its box lets touch its host isn't told.
+syntax::Diagnostics uncut(const Derivation& derivation);
+
+/// All warnings of a derivation, in the order of the text: its remarks, `ungrown` and `uncut`.
+syntax::Diagnostics warnings(const Derivation& derivation);
 
 /// Limits of a derivation; what passes one ends in Error::Budget.
 struct Budget {

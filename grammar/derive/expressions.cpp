@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "grammar/derive/builder.h"
+#include "grammar/rules/doubts.h"
 #include "grammar/rules/evaluate.h"
 #include "modeler/core/random.h"
 
@@ -75,6 +76,8 @@ Value called(const Expr& expr, const Place& place) {
     std::vector<Value> args;
     args.reserve(expr.args.size());
     for (const Expr& arg : expr.args) args.push_back(evaluate(arg, place));
+    if (place.builder)
+        if (auto doubt = rules::findDoubt(expr, args)) place.builder->remark(doubt->span, std::move(doubt->message), std::move(doubt->mend));
     return rules::applyFunction(fn, args);
 }
 

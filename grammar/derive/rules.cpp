@@ -1,4 +1,6 @@
 // Matching and applying rules: single applications, chains of `repeat`, and their `finally`.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "grammar/derive/interpreter.h"
@@ -133,6 +135,8 @@ void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
     chainRule_ = index;
     builder_.at(index, root, none);
     const double steps = wholeNumber(*rule.repeat, placeOf(root));
+    if (steps < 0)
+        builder_.remark(rule.repeat->span, fmt::format("'repeat' is {:g} here, so the rule adds nothing", steps), "write 'max(0, …)' where that is meant");
     const uint64_t key = combine(builder_.tree().shapes[root].key, facts_[index].hash);
     Links links;
     links.root = links.last = links.newest = root;

@@ -81,6 +81,8 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     }
     checker.unused(files.asts.back());
     findUnreachable(grammar, diagnostics);
+    findShadowed(grammar, diagnostics);
+    findSharesOfNothing(grammar, diagnostics);
     findEndless(grammar, diagnostics);
 }
 

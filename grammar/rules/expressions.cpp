@@ -7,6 +7,7 @@
 
 #include "grammar/rules/checker.h"
 #include "grammar/rules/color.h"
+#include "grammar/rules/doubts.h"
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/functions.h"
 #include "grammar/rules/make.h"
@@ -85,7 +86,11 @@ Typed Checker::applied(Expr::Kind kind, Fn fn, SourceSpan span, std::vector<Type
     }
     if (!result.type.known) return {std::move(result.expr), Type::unknown()};
     result.type = Type::of(applyFunction(fn, samples));
-    if (auto value = fold(result.expr, {})) return makeTyped(span, std::move(*value));
+    if (auto value = fold(result.expr, {})) {
+        if (auto doubt = findDoubtWithin(result.expr, {}))
+            diagnostics_.warning(doubt->span, std::move(doubt->message), std::move(doubt->mend));
+        return makeTyped(span, std::move(*value));
+    }
     return result;
 }
 
@@ -142,6 +147,8 @@ Typed Checker::unknownName(const Place& place, const Written& e) {
     if (place.where == Where::Expect) known.assign(figureWords.begin(), figureWords.end());
     std::string mend = nearest(e.text, known);
     if (e.text == "i") mend = "'i' counts the steps inside a rule with 'repeat'";
+    if (place.where == Where::Expect && mend.empty())
+        mend = fmt::format("a check may ask for {} and count(Name)", fmt::join(figureWords, ", "));
     if (std::find(colorWords.begin(), colorWords.end(), e.text) != colorWords.end() && mend.empty())
         mend = "a colour is written #rrggbb, as #c8b090";
     if (symbols_.contains(e.text)) return failed(e.span, fmt::format("'{}' is a shape, not a value", e.text));

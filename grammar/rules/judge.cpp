@@ -6,7 +6,9 @@
 #include <set>
 
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/params.h"
 #include "grammar/rules/traverse.h"
+#include "grammar/rules/value.h"
 
 namespace sgm::rules {
 namespace {
@@ -231,6 +233,66 @@ void findUnreachable(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
         if (!found.contains(rule.symbol) && rule.span.source == grammar.sources[0].get())
             diagnostics.warning(rule.symbolSpan, fmt::format("this rule never runs: no start leads to a '{}'",
                                                              grammar.symbols[rule.symbol].name));
+}
+
+void findShadowed(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
+    const auto lineOf = [](const Rule& rule) { return rule.symbolSpan.source->place(rule.symbolSpan.begin).line; };
+    const auto isPlain = [](const Rule& rule) { return !rule.when && rule.beside == none; };
+    for (const Symbol& symbol : grammar.symbols) {
+        const Rule* always = nullptr;
+        const Rule* plain = nullptr;
+        for (const uint32_t index : symbol.rules) {
+            const Rule& rule = grammar.rules[index];
+            if (!always && rule.when && alwaysHolds(rule.when) && rule.beside == none && !rule.repeat) always = &rule;
+            if (!plain && isPlain(rule)) plain = &rule;
+        }
+        bool behind = false;
+        for (const uint32_t index : symbol.rules) {
+            const Rule& rule = grammar.rules[index];
+            if (&rule == always) {
+                behind = true;
+            } else if (rule.symbolSpan.source != grammar.sources[0].get()) {
+                continue;
+            } else if (always && (behind || !rule.when)) {
+                diagnostics.warning(rule.symbolSpan,
+                                    always->body.grows
+                                        ? fmt::format("this rule runs only where the one of line {} has no joint left: its condition always holds", lineOf(*always))
+                                        : fmt::format("this rule never runs: the condition of the one of line {} always holds", lineOf(*always)),
+                                    "leave that 'when' out to draw by weight, or give it a condition that may fail");
+            } else if (plain && rule.beside != none && !rule.when) {
+                diagnostics.warning(rule.symbolSpan,
+                                    fmt::format("this rule is drawn by weight against the one of line {}, also beside a '{}'", lineOf(*plain),
+                                                grammar.symbols[rule.beside].name),
+                                    "write 'when true' after it: a condition that holds wins");
+            }
+        }
+    }
+}
+
+void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
+    const auto isShare = [](const Value& v) {
+        for (size_t i = 0; i < std::min<size_t>(v.count, v.units.size()); ++i)
+            if (v.units[i] == Unit::Share && v.n[i] != 1 && v.n[i] != 0) return true;
+        return false;
+    };
+    for (uint32_t s = 0; s < grammar.starts.size(); ++s) {
+        const std::vector<Value> params = valuesOf(grammar, s);
+        for (const auto& chain : grammar.starts[s].body.siblings) {
+            if (chain.empty() || chain[0].kind != Element::Kind::Shape || chain[0].content.empty()) continue;
+            const auto takes = [](const Attribute& a, syntax::ArgumentType type) {
+                return !a.args.empty() && !a.operation->arguments.empty() && a.operation->arguments[0].type == type;
+            };
+            const auto sizes = [&](const Attribute& a) { return takes(a, syntax::ArgumentType::Size); };
+            if (std::any_of(chain[0].prefix.begin(), chain[0].prefix.end(), sizes)) continue;
+            for (const Attribute& a : chain[0].attributes) {
+                const bool moves = a.operation->phase == Operation::Phase::Scope && takes(a, syntax::ArgumentType::Vector);
+                if (!sizes(a) && !moves) continue;
+                const auto value = fold(a.args[0], params);
+                if (value && isShare(*value))
+                    diagnostics.warning(a.span, "a share of what? A start's own scope is 1m", "write lengths, such as '.5m' for 50%");
+            }
+        }
+    }
 }
 
 void findEndless(const Grammar& grammar, syntax::Diagnostics& diagnostics) {

@@ -10,6 +10,13 @@ namespace sgm::rules {
 /// Warns of rules of the main file that no start can reach.
 void findUnreachable(const Grammar& grammar, syntax::Diagnostics& diagnostics);
 
+/// Warns of rules of the main file that another rule for their symbol shadows: one whose condition always holds comes
+/// first; and of `beside` rules that a rule without a condition is drawn against.
+void findShadowed(const Grammar& grammar, syntax::Diagnostics& diagnostics);
+
+/// Warns of shares (%) at the first shapes of a start, which have no scope but the start's own of 1 m.
+void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostics);
+
 /// Refuses reachable rules that never end: whose symbol always makes another live one of its kind, with no guard,
 /// repeat, choice, or joint that could run out to stop it.
 void findEndless(const Grammar& grammar, syntax::Diagnostics& diagnostics);

@@ -15,6 +15,12 @@ constexpr std::array<std::string_view, 18> taken{"axes", "sides", "last", "any",
                                                  "nil",  "scope", "i",    "true",   "false", "morph",
                                                  "x",    "y",     "z",    "billow", "fbm"};
 
+/// Operations of one short word that join or look up: a parameter of that name reads as one of them.
+bool isJoining(std::string_view name) {
+    constexpr std::array<std::string_view, 6> words{"at", "to", "on", "by", "with", "tag"};
+    return std::find(words.begin(), words.end(), name) != words.end();
+}
+
 }  // namespace
 
 bool isNonTerminal(std::string_view name) { return !name.empty() && std::isupper(static_cast<unsigned char>(name[0])); }
@@ -48,6 +54,9 @@ void Checker::declareParameter(const syntax::ParamDecl& decl) {
     if (isTaken(decl.name.text))
         diagnostics_.error(decl.name.span,
                            fmt::format("'{}' is a word of the language and can't name a parameter", decl.name.text));
+    if (isJoining(decl.name.text))
+        diagnostics_.warning(decl.name.span, fmt::format("'{0}' is an operation as well: 'size {0} …' is hard to read", decl.name.text),
+                             "give the parameter another name");
     params_.emplace(decl.name.text, static_cast<uint32_t>(grammar_.params.size()));
     Param param;
     param.name = decl.name.text;

@@ -104,5 +104,38 @@ TEST(Live, NamesNearARulesAreWarnedOf) {
     EXPECT_EQ(checkedBody("start S -> cube : Done\n").messages(), "") << "recognised, and left as it is";
 }
 
+TEST(Shadowed, ARuleBehindOneThatAlwaysHoldsIsTold) {
+    EXPECT_EQ(judged("rule A when 1 == 1 -> sphere\nrule A when 2 == 2 -> cube\n"),
+              "warning: this rule never runs: the condition of the one of line 3 always holds\n");
+    EXPECT_EQ(judged("rule A -> cube\nrule A when true -> sphere\n"),
+              "warning: this rule never runs: the condition of the one of line 4 always holds\n");
+    EXPECT_EQ(judged("rule A when 1 == 1 -> + cube at +x\nrule A when 2 == 2 -> + sphere at +y\n"),
+              "warning: this rule runs only where the one of line 3 has no joint left: its condition always holds\n");
+    EXPECT_EQ(judged("rule A when scope.x > 1 -> sphere\nrule A -> cube\n"), "");
+    EXPECT_EQ(judged("rule A when false -> sphere\nrule A when 1 < 2 -> cube\n"), "") << "the second is the one that runs";
+}
+
+TEST(Shadowed, ANeighbourIsDrawnAgainstAPlainRule) {
+    EXPECT_EQ(judged("rule A beside A -> sphere\nrule A -> cube\n"),
+              "warning: this rule is drawn by weight against the one of line 4, also beside a 'A'\n");
+    EXPECT_EQ(judged("rule A beside A when true -> sphere\nrule A -> cube\n"), "");
+    EXPECT_EQ(judged("rule A beside A -> sphere\n"), "");
+}
+
+TEST(Shares, OfAStartsOwnScopeAreTold) {
+    EXPECT_EQ(checkedBody("start A -> cube size 50%\n").messages(), "warning: a share of what? A start's own scope is 1m\n");
+    EXPECT_EQ(checkedBody("start A -> cube size 4 move (50%, 0, 0)\n").messages(), "warning: a share of what? A start's own scope is 1m\n");
+    EXPECT_EQ(checkedBody("start A -> cube size 100% + cube size 50% at +x\n").messages(), "");
+    EXPECT_EQ(checkedBody("start A -> size 4 cube size 50%\n").messages(), "");
+}
+
+TEST(Doubts, OfConstantsAreToldAtOnce) {
+    EXPECT_EQ(checkedBody("start A -> cube color rgb(255, 0, 0)\n").messages(), "warning: 'rgb' takes shares 0 … 1, but this is 255\n");
+    EXPECT_EQ(checkedBody("start A -> cube move (4 / 0, 0, 0)\n").messages(), "warning: divided by 0\n");
+    EXPECT_EQ(checkedBody("start A -> cube move (sqrt(-1), 0, 0)\n").messages(), "warning: square root of a negative number: -1\n");
+    EXPECT_EQ(checkedBody("param at = 3\nstart A -> cube size at\n").messages(), "warning: 'at' is an operation as well: 'size at …' is hard to read\n");
+    EXPECT_EQ(checkedBody("param blend = 3\nstart A -> cube size blend\n").messages(), "");
+}
+
 }  // namespace
 }  // namespace sgm::rules

@@ -213,8 +213,9 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
         if (good) {
             if (*shown != shown_) news.model = *shown;
             shown_ = *shown;
-            const std::vector<Problem> ungrown = problemsOf(derive::ungrown(shown_->model.derivation));
-            problems.insert(problems.end(), ungrown.begin(), ungrown.end());
+            // While a slider is dragged the last ones stay: to look for them takes as long as a frame.
+            if (!follow) derivedProblems_ = problemsOf(derive::warnings(shown_->model.derivation));
+            problems.insert(problems.end(), derivedProblems_.begin(), derivedProblems_.end());
         } else if (shown.error().kind != Error::Kind::Cancelled) {
             problems.push_back(problemOf(shown.error()));
         } else if (superseded()) {

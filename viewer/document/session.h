@@ -153,6 +153,7 @@ private:
     std::shared_ptr<const syntax::Ast> ast_;
     std::shared_ptr<const rules::Grammar> grammar_;
     std::vector<Problem> checkProblems_;
+    std::vector<Problem> derivedProblems_;  ///< warnings of the derivation that was last made anew
     std::vector<UsedFile> usedByCheck_;
     std::optional<Following> following_;  ///< while a slider is held
     std::shared_ptr<const Shown> shown_;

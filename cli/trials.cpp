@@ -1,0 +1,181 @@
+#include "cli/trials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "cli/pipeline.h"
+#include "grammar/rules/params.h"
+#include "modeler/core/printable.h"
+#include "modeler/core/stopwatch.h"
+#include "viewer/document/problems.h"
+
+namespace sgm::cli {
+namespace {
+
+/// One choice of start, values and way.
+struct Setting {
+    derive::Options options;
+    std::string words;  ///< "with floors = 20"; empty for a start as it is
+};
+
+/// Where an error says it is, if that is in one of the grammar's files.
+syntax::SourceSpan placeOf(const viewer::Problem& problem, const rules::Grammar& grammar) {
+    for (const syntax::SourcePtr& source : grammar.sources) {
+        if (printable(source->name()) != problem.file || problem.line == 0) continue;
+        const std::string_view line = source->line(problem.line);
+        const auto begin = static_cast<uint32_t>(line.data() - source->text().data()) + problem.column - 1;
+        return {source.get(), begin, begin + 1};
+    }
+    return {};
+}
+
+class Trial {
+public:
+    Trial(std::shared_ptr<const rules::Grammar> grammar, const TrialOptions& options, Progress* progress, syntax::Diagnostics& diagnostics)
+        : grammar_(std::move(grammar)), options_(options), progress_(progress), diagnostics_(diagnostics) {
+        for (const syntax::Diagnostic& d : diagnostics.all()) warned_.insert({d.span.source, d.span.begin, d.span.end});
+    }
+
+    Result<Trials> run() {
+        Trials trials;
+        const Status main = attempt({optionsOf(0), {}}, options_.mainSeconds, true);
+        if (!main.ok() && main.error().kind == Error::Kind::Cancelled) return main.error();
+        if (!main.ok()) tell(main.error(), {}, true);
+        trials.budgetSpent = !main.ok() && main.error().kind == Error::Kind::Budget;
+        const std::vector<Setting> others = settings();
+        trials.all = 1 + others.size();
+        trials.tried = 1;
+        const Stopwatch watch;
+        for (const Setting& setting : others) {
+            const double left = options_.otherSeconds - watch.seconds();
+            if (left <= 0) break;
+            const Status done = attempt(setting, left, setting.words.empty());
+            ++trials.tried;
+            if (done.ok()) continue;
+            if (done.error().kind == Error::Kind::Cancelled) return done.error();
+            // A time that ran out says nothing of the grammar.
+            if (done.error().kind != Error::Kind::Budget || watch.seconds() < options_.otherSeconds) tell(done.error(), setting.words, false);
+        }
+        return trials;
+    }
+
+private:
+    using Key = std::tuple<const syntax::Source*, uint32_t, std::string>;
+    static Key keyOf(syntax::SourceSpan span, std::string message) { return {span.source, span.begin, std::move(message)}; }
+
+    derive::Options optionsOf(uint32_t start) const {
+        derive::Options options;
+        options.start = start;
+        options.seed = options_.seed;
+        options.params = rules::valuesOf(*grammar_, start);
+        return options;
+    }
+
+    /// All settings but the main one: starts, styles, ways, then parameters one at a time.
+    std::vector<Setting> settings() const {
+        std::vector<Setting> list;
+        const auto starts = static_cast<uint32_t>(grammar_->starts.size());
+        for (uint32_t s = 1; s < starts; ++s) list.push_back({optionsOf(s), {}});
+        for (const rules::Style& style : grammar_->styles)
+            for (uint32_t s = 0; s < starts; ++s) {
+                if (style.start != rules::none && style.start != s) continue;
+                Setting setting{optionsOf(s), fmt::format("with style '{}'", style.name)};
+                for (const rules::Setting& value : style.settings) setting.options.params[value.param] = value.value;
+                list.push_back(std::move(setting));
+            }
+        if (starts == 1)  // a way belongs to a start, and nothing says which
+            for (const rules::Derive& way : grammar_->derives) {
+                list.push_back({optionsOf(0), fmt::format("with derive '{}'", way.name)});
+                list.back().options.derive = way.name;
+            }
+        for (uint32_t s = 0; s < starts; ++s)
+            for (uint32_t p = 0; p < grammar_->params.size(); ++p) {
+                if (grammar_->params[p].span.source != grammar_->sources[0].get()) continue;  // a library's own matter
+                for (rules::Value& value : endsOf(grammar_->params[p])) {
+                    Setting setting{optionsOf(s), {}};
+                    if (setting.options.params[p] == value) continue;
+                    setting.words = fmt::format("with {} = {}", grammar_->params[p].name, rules::toText(value));
+                    setting.options.params[p] = std::move(value);
+                    list.push_back(std::move(setting));
+                }
+            }
+        return list;
+    }
+
+    /// What a parameter can be at the most and at the least; all choices, and both truths.
+    static std::vector<rules::Value> endsOf(const rules::Param& param) {
+        std::vector<rules::Value> ends;
+        if (param.lo) ends.push_back(*param.lo);
+        if (param.hi) ends.push_back(*param.hi);
+        for (const std::string& word : param.choices) {
+            ends.push_back(param.value);
+            ends.back().text = word;
+        }
+        if (param.value.kind == rules::Value::Kind::Bool) ends.push_back(rules::Value::boolean(!param.value.truth()));
+        return ends;
+    }
+
+    /// Derives, lowers and looks whether anything is left. `thorough`: all warnings; else only what was remarked.
+    Status attempt(const Setting& setting, double seconds, bool thorough) {
+        derive::Options options = setting.options;
+        options.budget.seconds = seconds;
+        Stages stages;
+        auto derivation = derive::derive(grammar_, options, progress_);
+        if (!derivation.ok()) return derivation.error();
+        syntax::Diagnostics found;
+        if (thorough) found = derive::warnings(*derivation);
+        else
+            for (const derive::Remark& r : derivation->remarks) found.warning(r.span, r.message, r.mend);
+        for (const syntax::Diagnostic& d : found.all())
+            if (warned_.insert({d.span.source, d.span.begin, d.span.end}).second)
+                diagnostics_.warning(d.span, prefixed(setting.words, d.message), d.mend);
+        const auto model = makeModel(std::move(*derivation), stages, progress_);
+        if (!model.ok()) return model.error();
+        return hasSurface(*model);
+    }
+
+    /// Fails when intervals prove that there is no surface; what is thinner than a cell isn't lost by them.
+    Status hasSurface(const Model& model) const {
+        constexpr int cells = 64;
+        const Box3f& bounds = model.lowered->field.bounds;
+        mesh::Counts counts;
+        const auto blocks = mesh::subdivide(model.tape, mesh::gridFor(bounds, mesh::cellFor(bounds, cells)), 0, progress_, counts);
+        if (!blocks.ok()) return blocks.error();
+        if (!blocks->empty()) return Done{};
+        const derive::Shape& root = model.derivation.tree.shapes[0];
+        return Error{Error::Kind::Input, fmt::format("{}nothing solid is left of '{}': all is cut away", syntax::placeText(root.span), model.derivation.tree.path(0))};
+    }
+
+    static std::string prefixed(const std::string& words, const std::string& message) {
+        return words.empty() ? message : fmt::format("{}: {}", words, message);
+    }
+
+    /// An error of the main model, or a warning for another; once a place and sentence.
+    void tell(const Error& error, const std::string& words, bool isMain) {
+        const viewer::Problem problem = viewer::problemOf(error);
+        const syntax::SourceSpan span = placeOf(problem, *grammar_);
+        // One warning a place: at other settings it is another number or path.
+        if (!said_.insert(keyOf(span, words.empty() ? problem.message : std::string())).second) return;
+        const std::string message = prefixed(words, span.source ? problem.message : error.message);
+        if (isMain) diagnostics_.error(span, message);
+        else diagnostics_.warning(span, message);
+    }
+
+    std::shared_ptr<const rules::Grammar> grammar_;
+    TrialOptions options_;
+    Progress* progress_;
+    syntax::Diagnostics& diagnostics_;
+    std::set<Key> said_;                                                        ///< errors
+    std::set<std::tuple<const syntax::Source*, uint32_t, uint32_t>> warned_;    ///< places: one warning each
+};
+
+}  // namespace
+
+Result<Trials> tryModels(std::shared_ptr<const rules::Grammar> grammar, const TrialOptions& options, Progress* progress,
+                         syntax::Diagnostics& diagnostics) {
+    return Trial(std::move(grammar), options, progress, diagnostics).run();
+}
+
+}  // namespace sgm::cli

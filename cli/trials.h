@@ -1,0 +1,31 @@
+// The models that `sgm check` makes of a grammar: what `sgm build` would refuse is told without building.
+// Enters: a checked grammar. Leaves: diagnostics in its text. Assumes the grammar is kept while they are read.
+#pragma once
+
+#include <memory>
+
+#include "grammar/derive/derive.h"
+#include "modeler/core/progress.h"
+#include "modeler/core/result.h"
+
+namespace sgm::cli {
+
+struct TrialOptions {
+    uint64_t seed = 1;
+    double mainSeconds = 60;    ///< for the model that `sgm build` makes without options
+    double otherSeconds = 5;    ///< for all others together; those that are left then aren't tried
+};
+
+/// How the trials went.
+struct Trials {
+    size_t tried = 0, all = 0;  ///< settings
+    bool budgetSpent = false;   ///< the main model's error was one of a budget
+};
+
+/// Derives and lowers the first start as it is, whose problems are those of `sgm build`: errors are errors. Then every
+/// other start, every style and `derive` way, and every parameter of the main file at the ends of its range or at each
+/// choice, one at a time: what fails there is a warning that names the setting. Error::Cancelled.
+Result<Trials> tryModels(std::shared_ptr<const rules::Grammar> grammar, const TrialOptions& options, Progress* progress,
+                         syntax::Diagnostics& diagnostics);
+
+}  // namespace sgm::cli

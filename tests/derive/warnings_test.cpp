@@ -1,0 +1,64 @@
+// What a derivation does that is hardly meant, and says.
+#include "tests/derive/grammars.h"
+
+namespace sgm {
+namespace {
+
+using namespace testing_;
+
+/// "line:column message", one a line.
+std::string told(const std::string& body) {
+    const auto d = derived("grammar 1\n" + body);
+    std::string text;
+    const syntax::Diagnostics found = derive::warnings(d);
+    for (const syntax::Diagnostic& w : found.all()) {
+        const auto place = w.span.source->place(w.span.begin);
+        text += std::to_string(place.line) + ":" + std::to_string(place.column) + " " + w.message + "\n";
+    }
+    return text;
+}
+
+TEST(Warnings, ACutThatRemovesNothingIsTold) {
+    EXPECT_EQ(told("start A -> cube size 4 : B\nrule B -> - cube size 1 move (9,0,0)\n"), "3:11 this cuts nothing: it lies beside 'B'\n");
+    EXPECT_EQ(told("start A -> cube size 4 : B\nrule B -> - cube size 1 move (2,0,0)\n"), "");
+    EXPECT_EQ(told("start A -> cube size (8, 6, .6) : B\nrule B -> + Front size (100%, 100%, .6m)\n"
+                   "rule Front -> split x { { ~2m: Win }* }\nrule Win -> - cube size (1m, 3m, 300%)\n"),
+              "5:13 this cuts nothing: 'Win' holds no solid before it\n");
+    EXPECT_EQ(told("start A -> cube size (8, 6, .6) : B\nrule B -> - Front size (100%, 100%, .6m)\n"
+                   "rule Front -> split x { { ~2m: Win }* }\nrule Win -> cube size (1m, 3m, 300%)\n"),
+              "");
+}
+
+TEST(Warnings, ACutThatRemovesSomethingSomewhereIsFine) {
+    EXPECT_EQ(told("start A -> cube size 4 : B\nrule B -> for k in 0..3 { - cube size 1 move (3 * k, 0, 0) }\n"), "");
+    EXPECT_EQ(told("start A -> cube size 4 - (cube size 1 move (9,0,0), cube size 1)\n"), "") << "a part of the cutter reaches it";
+    EXPECT_EQ(told("start A -> cube size 4 - halfspace move (0, 1, 0)\n"), "") << "without bounds";
+    EXPECT_EQ(told("start A -> cube size 4 displace billow(1m, 1/m) - cube size 1 move (0, 2.6, 0)\n"), "") << "noise reaches out of its box";
+}
+
+TEST(Warnings, DivisionByZeroNamesTheDivisor) {
+    EXPECT_EQ(told("param n = 0 in 0..4\nstart A -> cube size 2 move (4 / n, 0, 0)\n"), "3:30 divided by 0: 'n' is 0\n");
+    EXPECT_EQ(told("param n = 0 in 0..4\nstart A -> cube size 2 move (5 % n, 0, 0)\n"), "3:30 divided by 0: 'n' is 0\n");
+    EXPECT_EQ(told("param n = 0 in 0..4\nstart A -> cube size 2 move (if(n > 0, 4 / n, 0), 0, 0)\n"), "") << "not taken";
+    EXPECT_EQ(told("param n = 0 in 0..4\nstart A -> cube for k in 1..9 { + cube move (4 / n, k, 0) }\n"), "3:46 divided by 0: 'n' is 0\n") << "once a place";
+}
+
+TEST(Warnings, RootsRepeatsAndColours) {
+    EXPECT_EQ(told("param n = -4 in -4..4\nstart A -> cube move (sqrt(n), 0, 0)\n"), "3:23 square root of a negative number: -4\n");
+    EXPECT_EQ(told("param n = 2 in -3..4\nstart A -> cube : B\nrule B repeat n - 4 -> + cube at +x : B\n"), "4:15 'repeat' is -2 here, so the rule adds nothing\n");
+    EXPECT_EQ(told("param n = 200 in 0..255\nstart A -> cube color rgb(n, 0, 0)\n"), "3:27 'rgb' takes shares 0 … 1, but this is 200\n");
+}
+
+TEST(Warnings, WhatAClosedJointKeepsFromGrowingIsAmongThem) {
+    EXPECT_EQ(told("start A -> cube size 2 : B\nrule B -> + cube size (2,1,1) at +x + sphere size 3 at +x\n"),
+              "3:37 another shape has closed its joint, so this grows nowhere\n");
+}
+
+TEST(Warnings, AFailureNamesWhatWasRemarkedInItsText) {
+    const auto failed = derive::derive(grammarOf("grammar 1\nstart A -> cube with n = 1 : B\nrule B -> + cube size (4m / (1 - n)) at +x\n"), {}, nullptr);
+    ASSERT_FALSE(failed.ok());
+    EXPECT_NE(failed.error().message.find("divided by 0: '(1 - n)' is 0"), std::string::npos) << failed.error().message;
+}
+
+}  // namespace
+}  // namespace sgm
