@@ -12,6 +12,7 @@
 #include "cli/colliders.h"
 #include "cli/commands.h"
 #include "cli/floating.h"
+#include "cli/gaps.h"
 #include "cli/levels.h"
 #include "cli/missing.h"
 #include "cli/messages.h"
@@ -106,7 +107,7 @@ Result<mesh::Mesh> edited(mesh::Mesh mesh, const BuildRequest& request, float ce
     return mesh;
 }
 
-void say(const BuildRequest& request, const Model& model, const mesh::MeshFigures& f, const Support& support, const Colliders& colliders, const Stages& stages) {
+void say(const BuildRequest& request, const Model& model, const mesh::MeshFigures& f, const Support& support, float cell_m, const Colliders& colliders, const Stages& stages) {
     double total = 0;
     for (const auto& stage : stages) total += stage.second;
     fmt::print("{} shapes, {} bonds, {} rules; {} triangles in {} component{}, {:.4g} m³; {:.2f} s\n", model.derivation.tree.shapes.size(),
@@ -116,7 +117,7 @@ void say(const BuildRequest& request, const Model& model, const mesh::MeshFigure
     if (!request.floor.empty()) fmt::print("wrote {}\n", request.floor);
     if (!request.out.collider.empty()) fmt::print("{} collider{} ({})\n", colliders.all.size(), colliders.all.size() == 1 ? "" : "s", request.out.collider);
     for (const std::string& note : colliders.notes) printMessage("note: collider: {}\n", note);
-    sayFloating(model, support);
+    sayFloating(model, support, cell_m);
 }
 
 mesh::Keep keepOf(const BuildRequest& request) {
@@ -147,6 +148,7 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
     if (!request.quiet || !request.report.empty()) {
         figures = mesh::measure(*mesh);
         support = supportOf(model, *mesh, meshed.grid.cell_m);
+        timed(stages, "gaps", [&] { return findCauses(model, *mesh, meshed.grid.cell_m, missing, support), 0; });
     }
     if (request.inward) mesh::turnInsideOut(*mesh);
 
@@ -192,7 +194,7 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
     if (!request.report.empty())
         if (const Status s = viewer::writeText(request.report, reportJson(model, meshed, figures, support, missing, cave, stages, request.grid.threads)); !s.ok()) return s;
     if (request.quiet) return Done{};
-    say(request, model, figures, support, colliders, stages);
+    say(request, model, figures, support, meshed.grid.cell_m, colliders, stages);
     fmt::print("{}", levelTable(*levels, mesh->triangleCount()));
     printMissingParts(model, meshed.grid, missing);
     if (cave && request.cave) fmt::print("{}", caveTable(*cave));

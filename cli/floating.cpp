@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "cli/gaps.h"
 #include "cli/messages.h"
 #include "grammar/derive/support.h"
 
@@ -37,17 +38,18 @@ Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m) {
     Support support;
     support.pieces = pieces.size();
     for (uint32_t i = 0; i < pieces.size(); ++i)
-        if (pieces[i].floats) support.floating.push_back({pieces[i], beginOf(model, pieceOf, i, pieces[i])});
+        if (pieces[i].floats) support.floating.push_back({pieces[i], beginOf(model, pieceOf, i, pieces[i]), {}});
     return support;
 }
 
-void sayFloating(const Model& model, const Support& support) {
+void sayFloating(const Model& model, const Support& support, float cell_m) {
     constexpr size_t most = 5;
     for (size_t i = 0; i < std::min(support.floating.size(), most); ++i) {
         const Floating& f = support.floating[i];
         const Vec3f at = f.piece.bounds.centre();
-        printMessage("warning: {} floats: {:.3g} m³ about ({:.2f}, {:.2f}, {:.2f})\n", derive::madeBy(model.derivation, f.shape),
-                   f.piece.volume_m3, at.x, at.y, at.z);
+        const std::string cause = causeText(model, f.cause, cell_m);
+        printMessage("warning: {} floats: {:.3g} m³ about ({:.2f}, {:.2f}, {:.2f}){}{}\n", derive::madeBy(model.derivation, f.shape),
+                     f.piece.volume_m3, at.x, at.y, at.z, cause.empty() ? "" : "; ", cause);
     }
     if (support.floating.size() > most) printMessage("warning: {} more pieces float\n", support.floating.size() - most);
 }

@@ -9,9 +9,26 @@
 
 namespace sgm::cli {
 
+/// Why a piece hangs alone, as findCauses tells (cli/gaps.h).
+struct FloatCause {
+    enum class Kind {
+        Unknown,
+        Gap,    ///< nothing reaches it
+        Touch,  ///< the field joins both, by less than the mesh shows
+        Thin,   ///< a part that the mesh lacks holds it
+    };
+    Kind kind = Kind::Unknown;
+    double width_m = 0;  ///< of the gap in the mesh; of the thin part
+    double cell_m = 0;   ///< Thin: cells no larger than this show it
+    Vec3d at;            ///< Gap, Touch: between the nearest points
+    OriginId ours = 0;   ///< Gap, Touch: the part of the piece that is nearest
+    OriginId theirs = 0; ///< Gap, Touch: the nearest part of anything else. Thin: the thin part
+};
+
 struct Floating {
     mesh::Piece piece;
     derive::ShapeId shape = 0;  ///< where the piece begins in the shape tree
+    FloatCause cause;
 };
 struct Support {
     uint64_t pieces = 0;  ///< separate solids
@@ -19,8 +36,8 @@ struct Support {
 };
 Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m);
 
-/// A warning on stderr for each floating piece, the first few of many.
-void sayFloating(const Model& model, const Support& support);
+/// A warning on stderr for each floating piece of a mesh of such cells, the first few of many.
+void sayFloating(const Model& model, const Support& support, float cell_m);
 
 /// Drops debris and floating components as `keep` says, and prints what was dropped unless `quiet`.
 void keepOnly(mesh::Keep keep, MeshedModel& meshed, int threads, bool quiet);

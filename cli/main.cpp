@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/memory.h"
 #include "cli/messages.h"
+#include "cli/usage.h"
 
 namespace {
 
@@ -26,7 +27,10 @@ int run(CLI::App& app, int argc, char** argv, const int& exitCode) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : 2;
+        const std::string problem = e.get_exit_code() == 0 ? "" : sgm::cli::usageProblem(app, argc, argv);
+        if (problem.empty()) return app.exit(e) == 0 ? 0 : 2;
+        printMessage("sgm: {}\nRun with --help for more information.\n", problem);
+        return 2;
     } catch (const std::bad_alloc&) {
         printMessage("sgm: out of memory; try a lower --resolution or a smaller model, or allow more with --max-memory\n");
         return 3;

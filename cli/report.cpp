@@ -35,7 +35,23 @@ Json meshFigures(const mesh::MeshFigures& f) {
             {"bounds", {{f.bounds.lo.x, f.bounds.lo.y, f.bounds.lo.z}, {f.bounds.hi.x, f.bounds.hi.y, f.bounds.hi.z}}}};
 }
 
-/// The solids that float and the shapes that made them.
+/// Why a solid floats; empty where that isn't known.
+Json causeOf(const Model& model, const FloatCause& cause) {
+    if (cause.kind == FloatCause::Kind::Unknown) return {};
+    const auto partOf = [&](OriginId origin) {
+        const Part& part = model.lowered->provenance.parts[origin];
+        return Json{{"path", part.path}, {"file", part.file}, {"line", part.line}};
+    };
+    if (cause.kind == FloatCause::Kind::Thin)
+        return {{"kind", "thin"}, {"thickness_m", cause.width_m}, {"cell_m", cause.cell_m}, {"part", partOf(cause.theirs)}};
+    return {{"kind", cause.kind == FloatCause::Kind::Gap ? "gap" : "touch"},
+            {"width_m", cause.width_m},
+            {"at", {cause.at.x, cause.at.y, cause.at.z}},
+            {"from", partOf(cause.ours)},
+            {"to", partOf(cause.theirs)}};
+}
+
+/// The solids that float, why, and the shapes that made them.
 Json floatingFigures(const Model& model, const Support& support) {
     const derive::Derivation& d = model.derivation;
     Json list = Json::array();
@@ -49,6 +65,7 @@ Json floatingFigures(const Model& model, const Support& support) {
         entry["triangles"] = f.piece.triangles;
         entry["volume_m3"] = f.piece.volume_m3;
         entry["bounds"] = {{b.lo.x, b.lo.y, b.lo.z}, {b.hi.x, b.hi.y, b.hi.z}};
+        if (Json cause = causeOf(model, f.cause); !cause.empty()) entry["cause"] = std::move(cause);
         list.push_back(std::move(entry));
     }
     return list;

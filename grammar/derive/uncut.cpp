@@ -78,7 +78,7 @@ private:
     bool meet() const {
         for (const ShapeId a : cutting_)
             for (const ShapeId b : standing_)
-                if (penetration(tree_.shapes[a].scope, tree_.shapes[b].scope) > 0) return true;
+                if (penetration(tree_.shapes[a].scope, tree_.shapes[b].scope) > 1e-9 * maxComponent(tree_.shapes[b].scope.size)) return true;  // rounding
         return false;
     }
 

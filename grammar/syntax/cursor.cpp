@@ -88,6 +88,10 @@ void Cursor::complain(SourceSpan span, std::string message, std::string mend) {
     if (!failed_) diagnostics_.error(span, std::move(message), std::move(mend));
 }
 
+void Cursor::warn(SourceSpan span, std::string message, std::string mend) {
+    if (!failed_) diagnostics_.warning(span, std::move(message), std::move(mend));
+}
+
 Cursor::Nest::Nest(Cursor& cursor) : cursor_(cursor) {
     if (++cursor_.depth_ > deepest)
         cursor_.fail("nested more than " + std::to_string(deepest) + " deep", "give a part its own rule or name");

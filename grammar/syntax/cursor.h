@@ -51,6 +51,8 @@ public:
     void failAt(SourceSpan span, std::string message, std::string mend = {});
     /// Reports and goes on: the meaning is clear all the same.
     void complain(SourceSpan span, std::string message, std::string mend = {});
+    /// Warns and goes on.
+    void warn(SourceSpan span, std::string message, std::string mend = {});
 
     /// Holds one level of nesting; gives up the slice when there are too many: the stack must not end first.
     class Nest {

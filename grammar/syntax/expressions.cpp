@@ -4,6 +4,8 @@
 #include <charconv>
 #include <numbers>
 
+#include "modeler/core/printable.h"
+
 namespace sgm::syntax {
 
 namespace {
@@ -54,6 +56,14 @@ bool atAxis(const Cursor& cursor) {
 std::string plain(double number) {
     char text[32];
     return {text, std::to_chars(text, text + sizeof text, number, std::chars_format::general, 6).ptr};
+}
+
+/// False where a byte belongs to no character.
+bool isUtf8(std::string_view text) {
+    const std::string shown = printable(text);
+    for (size_t i = 0; i < text.size(); ++i)
+        if (static_cast<unsigned char>(text[i]) >= 0x80 && shown[i] == '?') return false;
+    return true;
 }
 
 /// Reads one expression and counts its operators.
@@ -260,6 +270,7 @@ private:
         Expr e;
         e.kind = Kind::Text;
         e.span = cursor_.span(token);
+        if (!isUtf8(written)) cursor_.warn(e.span, "this text is no UTF-8", "save the file as UTF-8");
         for (size_t i = 0; i < written.size(); ++i) {
             const bool escape = written[i] == '\\' && i + 1 < written.size();
             if (!escape && written[i] == '"') return e;

@@ -89,5 +89,32 @@ TEST_F(Check, JsonHoldsWhatWasDerived) {
     EXPECT_EQ(list[0]["severity"], "error");
 }
 
+TEST_F(Check, ATextThatIsNoUtf8IsTold) {
+    expectWarned("param n = 2 in 0..4 \"Zahl der T\xfcren\"\nstart A -> cube size (n + 1)\n", "2:21", "this text is no UTF-8");
+    EXPECT_EQ(checked("param n = 2 in 0..4 \"Zahl der T\xc3\xbcren\"\nstart A -> cube size (n + 1)\n").out.find("warning"), std::string::npos);
+}
+
+TEST_F(Check, AUsedFileThatIsMissingNamesTheNearestOne) {
+    const Outcome run = checked("use \"std/wals.sgm\"\nstart A -> cube\n");
+    EXPECT_NE(run.out.find("can't use \"std/wals.sgm\": there is no such file; did you mean \"std/walls.sgm\"?"), std::string::npos) << run.out;
+    EXPECT_NE(checked("use \"std/zzzzzz.sgm\"\nstart A -> cube\n").out.find("there is no such file\n"), std::string::npos);
+}
+
+TEST(Usage, NamesTheCommandThatWasMeant) {
+    const Outcome run = sgm("biuld x.sgm");
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.out.find("no command 'biuld'; did you mean 'build'?"), std::string::npos) << run.out;
+    EXPECT_NE(sgm("--max-memory 1GB biuld x.sgm").out.find("did you mean 'build'?"), std::string::npos);
+    EXPECT_NE(sgm("paint x.sgm").out.find("no command 'paint': there are build, render"), std::string::npos);
+}
+
+TEST(Usage, NamesTheCommandThatHasAnOption) {
+    const Outcome run = sgm("render examples/morphs.sgm -o a.png --animate twist=0..6:4");
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.out.find("'sgm render' has no option --animate: it belongs to 'sgm build'"), std::string::npos) << run.out;
+    EXPECT_NE(sgm("build examples/morphs.sgm --resolutoin 4").out.find("'sgm build' has no option --resolutoin; did you mean --resolution?"), std::string::npos);
+    EXPECT_NE(sgm("build").out.find("FILE is required"), std::string::npos) << "other mistakes as before";
+}
+
 }  // namespace
 }  // namespace sgm::cli

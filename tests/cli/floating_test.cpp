@@ -38,5 +38,51 @@ TEST_F(Cli, AFloatingStalactiteIsReported) {
     EXPECT_EQ(attached.out.find("floats"), std::string::npos) << attached.out;
 }
 
+TEST_F(Cli, AGapIsMeasuredBetweenTheNearestParts) {
+    const std::string file = grammar(
+        "start House -> cube size (8, 3, 6) : Storey\n"
+        "rule Build: Storey repeat 3\n"
+        "  -> + cube size (8, 3, 6) at +y move (0, if(i == 2, 1, 0), 0) : Storey\n");
+    const Outcome run = sgm("build " + file + " --resolution 32 --report " + path("r.json"));
+    EXPECT_NE(run.out.find("a gap of 1 m lies between its 'House/Storey/Storey[2]' (" + file + ":4) and 'House/Storey/Storey' (" + file + ":4) at ("), std::string::npos) << run.out;
+    const Json cause = Json::parse(read(path("r.json")))["floating"][0]["cause"];
+    EXPECT_EQ(cause["kind"], "gap");
+    EXPECT_NEAR(cause["width_m"].get<double>(), 1, 1e-4);
+    EXPECT_NEAR(cause["at"][1].get<double>(), 5, 1e-4);
+}
+
+TEST_F(Cli, AGapBetweenAPostAndAPlateIsMeasuredAtThePost) {
+    const std::string file = grammar("start A -> cube size (20, .5, 20), cylinder size (.6, 3, .6) move (3.3, 1.75, 2.1), cube size (20, .5, 20) move (0, 3.95, 0)\n");
+    const Outcome run = sgm("build " + file + " --cell .25 --report " + path("r.json"));
+    const Json floating = Json::parse(read(path("r.json")))["floating"];
+    ASSERT_EQ(floating.size(), 1u) << run.out;
+    EXPECT_NEAR(floating[0]["cause"]["width_m"].get<double>(), .45, .001);
+    EXPECT_NEAR(floating[0]["cause"]["at"][0].get<double>(), 3.3, .31);
+    EXPECT_EQ(floating[0]["cause"]["to"]["path"], "A/cylinder");
+}
+
+TEST_F(Cli, AFloatingPieceNamesTheThinPartThatHoldsIt) {
+    const std::string file = grammar(
+        "start A -> cube size (20, .5, 20) : Base\n"
+        "rule Base -> + cube size (.12, 3, .12) at +y move (.13, 0, .13) : Post\n"
+        "rule Post -> + sphere size .9 at +y overlap .3\n");
+    const Outcome coarse = sgm("build " + file + " --cell .29 --report " + path("r.json"));
+    EXPECT_NE(coarse.out.find("'A/Base/Post' (" + file + ":3), 0.12 m thick, holds it and is thinner than a cell of 0.29 m: --resolution "), std::string::npos) << coarse.out;
+    const Json cause = Json::parse(read(path("r.json")))["floating"][0]["cause"];
+    EXPECT_EQ(cause["kind"], "thin");
+    EXPECT_EQ(cause["part"]["line"], 3);
+    const Outcome fine = sgm("build " + file + " --cell " + std::to_string(cause["cell_m"].get<double>()));
+    EXPECT_EQ(fine.out.find("floats"), std::string::npos) << fine.out;
+}
+
+TEST_F(Cli, PartsThatMeetByLessThanACellAreToldFromAGap) {
+    const auto built = [&](const char* place, const char* cell) {
+        return sgm("build " + grammar(std::string("start A -> sphere size 4, sphere size 4 move ") + place + "\n") + " --cell " + cell).out;
+    };
+    EXPECT_NE(built("(.3, 3.965, .05)", ".7").find("by less than a cell of 0.7 m: let them overlap more"), std::string::npos);
+    EXPECT_NE(built("(.2, 3.97, 0)", ".7").find("by less than a cell of 0.7 m: let them overlap more"), std::string::npos);
+    EXPECT_NE(built("(.3, 4.3, .05)", ".4").find("a gap of 0.3"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace sgm::cli

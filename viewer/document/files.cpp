@@ -57,6 +57,18 @@ std::optional<fs::path> pathOf(const std::string& name, const syntax::Source& fr
     return {};
 }
 
+/// Why a file that isn't there can't be read, in the words of the grammar: no path of this machine, and the nearest name.
+std::string missingFile(const std::string& name, const fs::path& path) {
+    std::vector<std::string> names;
+    std::error_code failed;
+    for (const auto& entry : fs::directory_iterator(path.parent_path(), failed))
+        if (entry.path().extension() == path.extension()) names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    const std::string near = syntax::didYouMean(path.filename().string(), names);
+    const std::string folder = name.substr(0, name.find_last_of('/') + 1);
+    return near.empty() ? "there is no such file" : fmt::format("there is no such file; did you mean \"{}{}\"?", folder, near);
+}
+
 /// Whether a text begins as a grammar does. What doesn't is never quoted in a message: it may be anything.
 bool beginsAsGrammar(const syntax::Source& source) {
     constexpr size_t enough = 1 << 16;  // of comments before the first word
@@ -109,6 +121,8 @@ rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) 
         const auto path = pathOf(name, from, why);
         if (!path) return nullptr;
         note(*path);
+        std::error_code failed;
+        if (!fs::exists(*path, failed) && !failed) return why = missingFile(name, *path), nullptr;
         Result<syntax::SourcePtr> source = readSource(*path);
         if (source.ok() && beginsAsGrammar(**source)) return *source;
         why = source.ok() ? "it is no grammar: one begins with 'grammar 1'" : source.error().message;

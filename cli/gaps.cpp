@@ -1,0 +1,397 @@
+#include "cli/gaps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include "grammar/derive/boxes.h"
+#include "modeler/eval/evaluate.h"
+#include "modeler/mesh/components.h"
+#include "modeler/mesh/flat_mesh.h"
+
+namespace sgm::cli {
+namespace {
+
+constexpr size_t mostPieces = 20;
+constexpr uint32_t mixed = 0xffffffffu;
+
+/// The point of the triangle a b c that is nearest to p (Ericson, "Real-Time Collision Detection", 2005, 5.1.5).
+Vec3d closestPoint(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
+    const Vec3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+    const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+    if (d1 <= 0 && d2 <= 0) return a;
+    if (d3 >= 0 && d4 <= d3) return b;
+    if (d6 >= 0 && d5 <= d6) return c;
+    const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 / (d1 - d3));
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 / (d2 - d6));
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    const double sum = va + vb + vc;
+    return sum > 0 ? a + ab * (vb / sum) + ac * (vc / sum) : a;
+}
+
+/// The nearest point found so far.
+struct Nearest {
+    double squared_m2 = std::numeric_limits<double>::infinity();
+    uint32_t triangle = 0;
+    Vec3d at;
+};
+
+/// A tree of boxes over a mesh's triangles, each of which belongs to a connected surface.
+class TriangleTree {
+public:
+    explicit TriangleTree(const mesh::FlatMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()), surfaces_(mesh.triangles.size()) {
+        mesh::Components surfaces(mesh.positions.size());
+        for (const mesh::Triangle& t : mesh.triangles) surfaces.join(surfaces.join(t.x, t.y), t.z);
+        for (uint32_t i = 0; i < surfaces_.size(); ++i) surfaces_[i] = surfaces.find(mesh.triangles[i].x);
+        std::iota(order_.begin(), order_.end(), 0u);
+        if (!order_.empty()) build(0, static_cast<uint32_t>(order_.size()));
+    }
+
+    uint32_t surfaceOf(uint32_t triangle) const { return surfaces_[triangle]; }
+    Vec3d corner(uint32_t triangle, int k) const {
+        const mesh::Triangle& t = mesh_.triangles[triangle];
+        return mesh_.positions[k == 0 ? t.x : k == 1 ? t.y : t.z].as<double>();
+    }
+
+    /// Lowers `found` to the triangle nearest to p among those of the surfaces that `accept` takes.
+    template <class Accept>
+    void nearest(Vec3d p, Accept accept, Nearest& found) const {
+        uint32_t stack[96];
+        size_t top = 0;
+        stack[top++] = 0;
+        while (top > 0) {
+            const Node& node = nodes_[stack[--top]];
+            if (!(away(node.box, p) < found.squared_m2) || (node.surface != mixed && !accept(node.surface))) continue;
+            if (node.right == 0) {
+                for (uint32_t i = node.begin; i < node.end; ++i) consider(p, order_[i], accept, found);
+                continue;
+            }
+            const uint32_t left = static_cast<uint32_t>(&node - nodes_.data()) + 1;
+            const bool leftFirst = away(nodes_[left].box, p) < away(nodes_[node.right].box, p);
+            stack[top++] = leftFirst ? node.right : left;
+            stack[top++] = leftFirst ? left : node.right;
+        }
+    }
+
+private:
+    struct Node {
+        Box3d box;
+        uint32_t begin = 0, end = 0;
+        uint32_t right = 0;  ///< 0: a leaf; the left child follows its parent
+        uint32_t surface = mixed;
+    };
+
+    template <class Accept>
+    void consider(Vec3d p, uint32_t triangle, Accept accept, Nearest& found) const {
+        if (!accept(surfaces_[triangle])) return;
+        const Vec3d at = closestPoint(p, corner(triangle, 0), corner(triangle, 1), corner(triangle, 2));
+        const double squared = dot(p - at, p - at);
+        if (squared < found.squared_m2) found = {squared, triangle, at};
+    }
+
+    static double away(const Box3d& box, Vec3d p) {
+        double sum = 0;
+        for (int i = 0; i < 3; ++i) {
+            const double d = std::max({0.0, box.lo[i] - p[i], p[i] - box.hi[i]});
+            sum += d * d;
+        }
+        return sum;
+    }
+
+    uint32_t build(uint32_t begin, uint32_t end) {
+        constexpr uint32_t leaf = 8;
+        const auto id = static_cast<uint32_t>(nodes_.size());
+        Node node{{}, begin, end, 0, surfaces_[order_[begin]]};
+        for (uint32_t i = begin; i < end; ++i) {
+            for (int k = 0; k < 3; ++k) node.box = hull(node.box, corner(order_[i], k));
+            if (surfaces_[order_[i]] != node.surface) node.surface = mixed;
+        }
+        nodes_.push_back(node);
+        if (end - begin <= leaf) return id;
+        const Vec3d size = node.box.size();
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const auto middle = [&](uint32_t t) { return corner(t, 0)[axis] + corner(t, 1)[axis] + corner(t, 2)[axis]; };
+        const uint32_t half = begin + (end - begin) / 2;
+        std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end, [&](uint32_t a, uint32_t b) {
+            const double m = middle(a), n = middle(b);
+            return m != n ? m < n : a < b;
+        });
+        build(begin, half);
+        const uint32_t right = build(half, end);
+        nodes_[id].right = right;
+        return id;
+    }
+
+    const mesh::FlatMesh& mesh_;
+    std::vector<uint32_t> order_, surfaces_;
+    std::vector<Node> nodes_;
+};
+
+/// A connected surface of the mesh.
+struct Surface {
+    uint32_t id = 0;
+    Box3d box;
+    double sixfold_m3 = 0;  ///< negative around air
+    std::vector<uint32_t> triangles;
+};
+
+/// The nearest points of a floating piece and of everything else.
+struct Closest {
+    double width_m = 0;
+    Vec3d from, to;
+    uint32_t ours = 0, theirs = 0;  ///< triangles
+};
+
+class GapFinder {
+public:
+    explicit GapFinder(const mesh::Mesh& mesh) : mesh_(mesh::flatten(mesh, 0)), tree_(mesh_) {
+        std::vector<uint32_t> numberOf(mesh_.positions.size(), mixed);
+        for (uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+            uint32_t& number = numberOf[tree_.surfaceOf(t)];
+            if (number == mixed) {
+                number = static_cast<uint32_t>(surfaces_.size());
+                surfaces_.push_back({tree_.surfaceOf(t), {}, 0, {}});
+            }
+            Surface& s = surfaces_[number];
+            const Vec3d a = tree_.corner(t, 0), b = tree_.corner(t, 1), c = tree_.corner(t, 2);
+            s.box = hull(hull(hull(s.box, a), b), c);
+            s.sixfold_m3 += dot(a, cross(b, c));
+            s.triangles.push_back(t);
+        }
+    }
+
+    OriginId originOf(uint32_t triangle) const { return mesh::FlatMesh::originOf(mesh_.keys[triangle]); }
+
+    std::optional<Closest> find(const mesh::Piece& piece, double cell_m) const {
+        const Surface* own = surfaceOf(piece);
+        if (!own) return {};
+        std::set<uint32_t> inside{own->id};  // its cavities aren't others
+        for (const Surface& s : surfaces_)
+            if (s.sixfold_m3 < 0 && own->sixfold_m3 > 0 && contains(own->box, s.box)) inside.insert(s.id);
+        const auto isOther = [&](uint32_t s) { return !inside.contains(s); };
+        const auto isOwn = [&](uint32_t s) { return s == own->id; };
+        Nearest theirs, ours;
+        Vec3d from;
+        forPoints(*own, cell_m, [&](Vec3d p) {
+            const double before = theirs.squared_m2;
+            tree_.nearest(p, isOther, theirs);
+            if (theirs.squared_m2 < before) from = p;
+        });
+        if (!std::isfinite(theirs.squared_m2)) return {};
+        // From the nearest sample to the nearest point: each side's nearest to the other's in turn.
+        for (int i = 0; i < 32; ++i) {
+            ours = {}, tree_.nearest(theirs.at, isOwn, ours);
+            Nearest next;
+            tree_.nearest(ours.at, isOther, next);
+            const bool settled = next.squared_m2 > .9999 * theirs.squared_m2;
+            theirs = next;
+            if (settled) break;
+        }
+        return Closest{std::sqrt(theirs.squared_m2), ours.at, theirs.at, ours.triangle, theirs.triangle};
+    }
+
+private:
+    static bool contains(const Box3d& a, const Box3d& b) {
+        for (int i = 0; i < 3; ++i)
+            if (b.lo[i] < a.lo[i] || b.hi[i] > a.hi[i]) return false;
+        return true;
+    }
+
+    /// The surface that fills the piece's box.
+    const Surface* surfaceOf(const mesh::Piece& piece) const {
+        const Surface* best = nullptr;
+        double least = std::numeric_limits<double>::infinity();
+        for (const Surface& s : surfaces_) {
+            double off = 0;
+            for (int i = 0; i < 3; ++i)
+                off += std::abs(s.box.lo[i] - static_cast<double>(piece.bounds.lo[i])) + std::abs(s.box.hi[i] - static_cast<double>(piece.bounds.hi[i]));
+            if (off < least) least = off, best = &s;
+        }
+        return best;
+    }
+
+    /// Points on the surface, a cell apart, or farther where there would be too many.
+    template <class Visit>
+    void forPoints(const Surface& surface, double cell_m, Visit visit) const {
+        constexpr double mostPoints = 50'000;
+        const Vec3d size = surface.box.size();
+        const double area = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
+        const double step = std::max(cell_m, std::sqrt(area / mostPoints));
+        const size_t stride = std::max<size_t>(1, surface.triangles.size() / static_cast<size_t>(mostPoints));
+        for (size_t i = 0; i < surface.triangles.size(); i += stride) {
+            const uint32_t t = surface.triangles[i];
+            const Vec3d a = tree_.corner(t, 0), ab = tree_.corner(t, 1) - a, ac = tree_.corner(t, 2) - a;
+            const double longest = std::sqrt(std::max({dot(ab, ab), dot(ac, ac), dot(ac - ab, ac - ab)}));
+            const int n = static_cast<int>(std::clamp(std::ceil(longest / step), 1.0, 256.0));
+            for (int u = 0; u <= n; ++u)
+                for (int v = 0; u + v <= n; ++v) visit(a + ab * (static_cast<double>(u) / n) + ac * (static_cast<double>(v) / n));
+        }
+    }
+
+    mesh::FlatMesh mesh_;
+    TriangleTree tree_;
+    std::vector<Surface> surfaces_;
+};
+
+/// Follows boxes that touch from a floating piece through parts that the mesh lacks to something else.
+class ThinLinks {
+public:
+    ThinLinks(const Model& model, const std::vector<lower::ThinPart>& missing) : model_(model), shapes_(model.derivation.tree.shapes), missing_(missing) {}
+
+    /// The thinnest of the missing parts that hold the piece; null where none does.
+    const lower::ThinPart* find(const mesh::Piece& piece) const {
+        if (missing_.empty() || missing_.size() * shapes_.size() > mostPairs) return nullptr;
+        std::set<derive::ShapeId> own;
+        for (const OriginId origin : piece.origins) own.insert(model_.lowered->shapeOf[origin]);
+        std::vector<bool> reached(missing_.size(), false);
+        std::vector<size_t> open;
+        const auto reach = [&](derive::ShapeId from) {
+            for (size_t i = 0; i < missing_.size(); ++i)
+                if (!reached[i] && touch(from, shapeOf(i))) reached[i] = true, open.push_back(i);
+        };
+        for (const derive::ShapeId s : own)
+            if (s != derive::none && shapes_[s].solid != derive::none) reach(s);
+        const lower::ThinPart* thinnest = nullptr;
+        bool holds = false;
+        while (!open.empty()) {
+            const size_t i = open.back();
+            open.pop_back();
+            if (!thinnest || missing_[i].cell_m < thinnest->cell_m) thinnest = &missing_[i];
+            for (derive::ShapeId s = 0; s < shapes_.size() && !holds; ++s)
+                holds = shapes_[s].solid != derive::none && s != shapeOf(i) && !own.contains(s) && !isMissing(s) && touch(s, shapeOf(i));
+            reach(shapeOf(i));
+        }
+        return holds ? thinnest : nullptr;
+    }
+
+private:
+    static constexpr size_t mostPairs = 20'000'000;
+
+    derive::ShapeId shapeOf(size_t i) const { return model_.lowered->shapeOf[missing_[i].part]; }
+    bool isMissing(derive::ShapeId s) const {
+        for (size_t i = 0; i < missing_.size(); ++i)
+            if (shapeOf(i) == s) return true;
+        return false;
+    }
+    bool touch(derive::ShapeId a, derive::ShapeId b) const { return derive::penetration(shapes_[a].scope, shapes_[b].scope) >= -derive::boxSlack_m; }
+
+    const Model& model_;
+    const std::vector<derive::Shape>& shapes_;
+    const std::vector<lower::ThinPart>& missing_;
+};
+
+/// The field around a place, an eighth of a cell apart, and which of its nodes hang together.
+class Surroundings {
+public:
+    Surroundings(const eval::Tape& tape, Vec3d middle, double cell_m) : low_(middle - Vec3d{2, 2, 2} * cell_m), step_m_(4 * cell_m / (side - 1)) {
+        std::vector<float> x, y, z, values(nodes);
+        for (int i = 0; i < nodes; ++i) {
+            const Vec3f p = at(i).as<float>();
+            x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
+        }
+        eval::Workspace workspace;
+        eval::evaluate(tape, {x.data(), y.data(), z.data(), nodes}, values.data(), workspace);
+        for (const float v : values) solid_.push_back(v < 0);
+    }
+
+    /// Whether solid leads from about one point to about the other.
+    bool joins(Vec3d from, Vec3d to) const {
+        const int begin = nearestSolid(from), end = nearestSolid(to);
+        if (begin < 0 || end < 0) return false;
+        std::vector<bool> seen(nodes, false);
+        std::vector<int> open{begin};
+        seen[static_cast<size_t>(begin)] = true;
+        while (!open.empty()) {
+            const int node = open.back();
+            open.pop_back();
+            if (node == end) return true;
+            for (const int stride : {1, side, side * side})
+                for (const int way : {-1, 1}) {
+                    const int place = node / stride % side + way, next = node + way * stride;
+                    if (place < 0 || place >= side || !solid_[static_cast<size_t>(next)] || seen[static_cast<size_t>(next)]) continue;
+                    seen[static_cast<size_t>(next)] = true;
+                    open.push_back(next);
+                }
+        }
+        return false;
+    }
+
+private:
+    static constexpr int side = 33, nodes = side * side * side;
+
+    Vec3d at(int node) const { return low_ + Vec3d{double(node % side), double(node / side % side), double(node / side / side)} * step_m_; }
+    int nearestSolid(Vec3d p) const {
+        int best = -1;
+        double least = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < nodes; ++i) {
+            const Vec3d off = at(i) - p;
+            if (solid_[static_cast<size_t>(i)] && dot(off, off) < least) least = dot(off, off), best = i;
+        }
+        return best;
+    }
+
+    Vec3d low_;
+    double step_m_;
+    std::vector<bool> solid_;
+};
+
+/// Whether the field joins what the mesh shows apart, near its nearest points.
+bool meets(const eval::Tape& tape, const Closest& closest, double cell_m) {
+    if (closest.width_m > 2 * cell_m) return false;
+    if (closest.width_m <= 0) return true;
+    const Vec3d inward = (closest.from - closest.to) * (0.5 * cell_m / closest.width_m);
+    return Surroundings(tape, (closest.from + closest.to) * 0.5, cell_m).joins(closest.from + inward, closest.to - inward);
+}
+
+std::string partText(const Model& model, OriginId origin) {
+    const Part& part = model.lowered->provenance.parts[origin];
+    return fmt::format("'{}' ({}:{})", part.path, part.file, part.line);
+}
+
+}  // namespace
+
+void findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const std::vector<lower::ThinPart>& missing, Support& support) {
+    if (support.floating.empty() || mesh.isBare()) return;
+    const ThinLinks links(model, missing);
+    std::optional<GapFinder> gaps;
+    for (size_t i = 0; i < std::min(support.floating.size(), mostPieces); ++i) {
+        Floating& f = support.floating[i];
+        if (const lower::ThinPart* thin = links.find(f.piece)) {
+            f.cause = {FloatCause::Kind::Thin, thin->thickness_m, thin->cell_m, {}, 0, thin->part};
+            continue;
+        }
+        if (!gaps) gaps.emplace(mesh);
+        const auto closest = gaps->find(f.piece, static_cast<double>(cell_m));
+        if (!closest) continue;
+        const OriginId ours = gaps->originOf(closest->ours), theirs = gaps->originOf(closest->theirs);
+        const bool touches = meets(model.tape, *closest, static_cast<double>(cell_m));
+        f.cause = {touches ? FloatCause::Kind::Touch : FloatCause::Kind::Gap, closest->width_m, 0, (closest->from + closest->to) * 0.5, ours, theirs};
+    }
+}
+
+std::string causeText(const Model& model, const FloatCause& cause, float cell_m) {
+    const Vec3d at = cause.at;
+    switch (cause.kind) {
+        case FloatCause::Kind::Unknown: return {};
+        case FloatCause::Kind::Gap:
+            return fmt::format("a gap of {:.3g} m lies between its {} and {} at ({:.2f}, {:.2f}, {:.2f})", cause.width_m, partText(model, cause.ours),
+                               partText(model, cause.theirs), at.x, at.y, at.z);
+        case FloatCause::Kind::Touch:
+            return fmt::format("its {} and {} meet at ({:.2f}, {:.2f}, {:.2f}) by less than a cell of {:.3g} m: let them overlap more, or take smaller cells",
+                               partText(model, cause.ours), partText(model, cause.theirs), at.x, at.y, at.z, cell_m);
+        case FloatCause::Kind::Thin: {
+            const double extent_m = static_cast<double>(maxComponent(model.lowered->field.bounds.size()));
+            return fmt::format("{}, {:.3g} m thick, holds it and is thinner than a cell of {:.3g} m: --resolution {} shows it", partText(model, cause.theirs),
+                               cause.width_m, cell_m, static_cast<int>(std::ceil(extent_m / cause.cell_m)));
+        }
+    }
+    return {};
+}
+
+}  // namespace sgm::cli
