@@ -23,6 +23,7 @@ struct CheckRequest {
     std::vector<std::string> files;
     uint64_t seed = 1;
     double seconds = 60;       ///< for all `check` lines of a file, and for the model that `sgm build` makes
+    uint64_t shapes = derive::Budget{}.shapes;
     double otherSeconds = 5;   ///< for the models of other starts, styles and ends of ranges
     bool json = false;
 };
@@ -40,7 +41,7 @@ int runGrammarChecks(std::shared_ptr<const rules::Grammar> grammar, const CheckR
 /// What `sgm build` would refuse, and what other settings would; the exit code.
 int tryGrammar(const std::string& file, const std::shared_ptr<const rules::Grammar>& grammar, const CheckRequest& request, syntax::Diagnostics& diagnostics) {
     Watch watch(false);
-    const auto trials = tryModels(grammar, {request.seed, request.seconds, request.otherSeconds}, watch.progress(), diagnostics);
+    const auto trials = tryModels(grammar, {request.seed, request.seconds, request.shapes, request.otherSeconds}, watch.progress(), diagnostics);
     if (!trials.ok()) return fail(trials.error());
     if (trials->tried < trials->all && !request.json)
         printMessage("note: {}: {} of {} settings were tried in {:g} s (--try-seconds)\n", file, trials->tried, trials->all, request.otherSeconds);
@@ -79,6 +80,7 @@ void addCheck(CLI::App& app, int& exitCode) {
     command->add_option("FILE", request->files, "Grammar files (.sgm)")->required();
     command->add_option("--seed", request->seed, "Seed for the `check` lines")->capture_default_str();
     command->add_option("--max-seconds", request->seconds, "Budget of time for all `check` lines of a file, and for the model that `sgm build` makes of it")->check(between(1e-3, 1e9))->capture_default_str();
+    command->add_option("--max-shapes", request->shapes, "Budget of derived shapes of each model")->check(CLI::Range(uint64_t{1}, uint64_t{4'000'000'000}))->capture_default_str();
     command->add_option("--try-seconds", request->otherSeconds, "Budget of time for the other models: each start, style and `derive` way, and each parameter at the ends of its range")
         ->check(between(0, 1e9))->capture_default_str();
     command->add_flag("--json", request->json, "Problems as JSON, for editors");

@@ -121,6 +121,7 @@ private:
     Status attempt(const Setting& setting, double seconds, bool thorough) {
         derive::Options options = setting.options;
         options.budget.seconds = seconds;
+        options.budget.shapes = options_.shapes;
         Stages stages;
         auto derivation = derive::derive(grammar_, options, progress_);
         if (!derivation.ok()) return derivation.error();

@@ -1,4 +1,7 @@
 // Putting shapes: where a newcomer stands (SG-M III-F) and what it is bonded to.
+#include <algorithm>
+#include <cmath>
+
 #include "grammar/derive/interpreter.h"
 #include "modeler/core/random.h"
 
@@ -31,6 +34,12 @@ std::optional<Scope> changedScope(const std::vector<Attribute>& prefix, Place pl
         place.scope.centre += out.moved_m;
     }
     return place.scope;
+}
+
+/// The angle of the rotation that takes one frame to the other, 0 … pi.
+double angleBetween(const Mat3& a, const Mat3& b) {
+    const double trace = dot(a.x, b.x) + dot(a.y, b.y) + dot(a.z, b.z);
+    return std::acos(std::clamp((trace - 1) / 2, -1.0, 1.0));
 }
 
 void applyWhole(const std::vector<Attribute>& list, const Place& place, EvaluatedAttributes& out) {
@@ -161,6 +170,18 @@ bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& targe
     return true;
 }
 
+/// Joints that face each other leave of a `turn` what goes about them: the rest is told.
+void Interpreter::remarkLostTurn(const Element& e, const Mating& mating, const Mat3& asked, const Place& place, const Mat3& axes) {
+    const auto turn = std::find_if(e.attributes.begin(), e.attributes.end(), [](const Attribute& a) { return a.operation->turnsShape; });
+    if (turn == e.attributes.end() || mating.ours.direction == Vec3d{} || mating.theirs.facing == Vec3d{}) return;
+    constexpr double slack = 1e-3;
+    bool lost = angleBetween(axes, asked) > slack;
+    if (e.to) lost = angleBetween(axes, mate(mating, place.scope.axes, place.scope.size).axes) < angleBetween(asked, place.scope.axes) - slack;
+    if (lost)
+        builder_.remark(turn->span, "the joints face each other all the same: only the turn about them is left",
+                        "turn what a group holds, as in '+ (cube turn (30deg, 0deg, 0deg)) size (1, 3, 1) at +y', or place it by 'move'");
+}
+
 bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Target& target, uint64_t key) {
     ElementCache& facts = factsOf(e);
     Place place = frame.place;
@@ -202,6 +223,7 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
     shape.parent = target.node;
     shape.scope = mate(mating, attributes.scope.axes, attributes.scope.size);
     shape.scope.footprint = attributes.scope.footprint;
+    remarkLostTurn(e, mating, attributes.scope.axes, place, shape.scope.axes);
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
     builder_.bond(host, oursIndex, id, theirs);

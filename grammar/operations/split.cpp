@@ -1,5 +1,7 @@
 // split: cuts a scope along one of its axes and runs a body in every part (the split of CGA shape grammars: Müller, Wonka,
 // Haegler, Ulmer, Van Gool, "Procedural modeling of buildings", 2006).
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "grammar/derive/parts_context.h"
@@ -140,7 +142,11 @@ bool runSplit(PartsContext& context, const Parts& split) {
     if (!layout) return false;
     double from_m = 0;
     const auto run = [&](const Part& part, const Length& length, uint64_t key) {
-        const double to_m = std::min(whole_m, from_m + length.fixed_m + length.floating * layout->perFloat_m);
+        const double wanted_m = length.fixed_m + length.floating * layout->perFloat_m, left_m = whole_m - from_m;
+        if (left_m > leastPart_m && wanted_m > left_m + 1e-6 * std::max(1.0, whole_m))  // the first one speaks for those behind it
+            context.remark(part.span, fmt::format("this part is cut off: {:.4g}m are left for its {:.4g}m", std::max(0.0, left_m), wanted_m),
+                           "write '~' before a size, so that it gives way, or make the sizes fit");
+        const double to_m = std::min(whole_m, from_m + wanted_m);
         const double low_m = std::exchange(from_m, to_m);
         if (to_m - low_m <= leastPart_m) return true;
         const auto scope = context.cut(split.axis, low_m, to_m);

@@ -12,6 +12,14 @@ namespace sgm::rules {
 
 using Written = syntax::Expr;
 
+namespace {
+
+/// What other programs call faces.
+constexpr std::pair<std::string_view, std::string_view> sides[] = {{"top", "+y"},   {"up", "+y"},     {"bottom", "-y"}, {"down", "-y"}, {"right", "+x"},
+                                                                   {"left", "-x"}, {"front", "+z"}, {"back", "-z"},   {"middle", "centre"}};
+
+}  // namespace
+
 /// A joint by name, or a value that is a direction: a local, or one that `with` sets.
 Expr Checker::joint(Place& place, const Written& e) {
     const bool local =
@@ -25,6 +33,9 @@ Expr Checker::joint(Place& place, const Written& e) {
         std::string mend = nearest(e.text, known);
         if (mend.empty() && (e.text == "x" || e.text == "y" || e.text == "z"))
             mend = fmt::format("write '+{0}' or '-{0}'", e.text);
+        for (const auto& [side, axis] : sides)
+            if (e.text == side) mend = fmt::format("joints are +x -x +y -y +z -z and centre; here '{}'", axis);
+        if (mend.empty()) mend = "joints are +x -x +y -y +z -z, centre, and those that a terminal declares";
         unknown(e.span, e.text, fmt::format("unknown joint '{}'", e.text), std::move(mend));
         return word;
     }

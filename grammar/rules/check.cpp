@@ -61,7 +61,7 @@ void sortInto(syntax::Diagnostics& out, const syntax::Diagnostics& found,
 
 /// Everything behind the names, and what follows from it all.
 void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax::Diagnostics& unread, syntax::Diagnostics& diagnostics) {
-    Checker checker(grammar, diagnostics, load.mesh);
+    Checker checker(grammar, diagnostics, load);
     checker.excuse(unread, files.missing);
     const auto each = [&](void (Checker::*step)(const syntax::Ast&)) {
         for (const syntax::Ast& part : files.asts) (checker.*step)(part);

@@ -24,6 +24,8 @@ struct Loader {
     /// The source behind `use "name"` of `from`. A file is known by its source's name(). Diagnostics point into the source:
     /// whoever loads keeps it for as long as they are read.
     Use use;
+    /// The file that a `use` would have to name for a terminal or rule of that name to be known, or "". May be empty.
+    std::function<std::string(const std::string& name)> declares;
     /// The distances to the mesh behind `mesh("name")` of `from`.
     Mesh mesh;
 };

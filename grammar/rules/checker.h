@@ -61,8 +61,8 @@ struct Place {
 
 class Checker {
 public:
-    Checker(Grammar& grammar, syntax::Diagnostics& diagnostics, Loader::Mesh loadMesh = {})
-        : grammar_(grammar), diagnostics_(diagnostics), loadMesh_(std::move(loadMesh)) {}
+    Checker(Grammar& grammar, syntax::Diagnostics& diagnostics, Loader load = {})
+        : grammar_(grammar), diagnostics_(diagnostics), load_(std::move(load)) {}
 
     /// Names that stand in a line that couldn't be read may be declared there, and any name in a file that is missing:
     /// nothing is said of them.
@@ -186,7 +186,7 @@ private:
     std::set<std::string> jointNames_;  ///< declared by a terminal or a primitive
     std::set<std::string> excused_;
     bool anythingExcused_ = false;   ///< a used file is missing, and nobody knows what it declares
-    Loader::Mesh loadMesh_;
+    Loader load_;
     std::map<std::pair<const syntax::Source*, std::string>, size_t> files_;  ///< read so far: places in Grammar::meshes
     std::set<std::string> unbuilt_;  ///< maps: named once, refused once
     std::set<SymbolId> ruled_;       ///< have a rule

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "grammar/rules/checker.h"
+#include "grammar/rules/doubts.h"
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/make.h"
 
@@ -73,7 +74,9 @@ void OperationChecker::checkArguments(const syntax::Attribute& written) {
             for (size_t i = 0; i < v.count && !said && (v.kind == Value::Kind::Number || v.kind == Value::Kind::Vector); ++i) {
                 if (v.n[i] >= range.lo && v.n[i] <= range.hi) continue;
                 said = true;
-                error(e.span, fmt::format("'{}' is {}, but must be {}", operation.name, toText(v), range.text));
+                const std::string outside = fmt::format("'{}' is {}, but must be {}", operation.name, toText(v), range.text);
+                if (auto doubt = findDoubtWithin(e, checker_.defaults_)) error(doubt->span, doubt->message + ", so " + outside, "keep what is divided by from 0");
+                else error(e.span, outside);
             }
         });
     }

@@ -88,6 +88,8 @@ constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
 std::string Checker::unknownSolid(std::string_view word) const {
     for (const auto& [theirs, mend] : elsewhere)
         if (theirs == word) return std::string(mend);
+    const std::string file = load_.declares ? load_.declares(std::string(word)) : std::string();
+    if (!file.empty()) return fmt::format("it is declared in {0}: write 'use \"{0}\"'", file);
     std::vector<std::string> known = symbolNames(true);
     for (const field::Primitive& row : field::primitives()) known.emplace_back(row.name);
     return nearest(word, known);
@@ -129,7 +131,7 @@ Expr Checker::fileArgument(const Written& e, const field::Primitive& row) {
     }
     std::string why = "no files can be read here";
     const auto known = files_.try_emplace({e.span.source, e.text}, grammar_.meshes.size());
-    if (known.second) grammar_.meshes.push_back(loadMesh_ ? loadMesh_(e.text, *e.span.source, why) : nullptr);
+    if (known.second) grammar_.meshes.push_back(load_.mesh ? load_.mesh(e.text, *e.span.source, why) : nullptr);
     file.n[0] = static_cast<double>(known.first->second);
     if (known.second && !grammar_.meshes.back()) diagnostics_.error(e.span, fmt::format("can't use \"{}\": {}", e.text, why));
     return makeConstant(e.span, file);

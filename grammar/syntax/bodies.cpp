@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "grammar/syntax/expressions.h"
+#include "grammar/syntax/hints.h"
 
 namespace sgm::syntax {
 
@@ -263,7 +264,8 @@ std::vector<Element> readChain(Cursor& cursor) {
 void refuseStray(Cursor& cursor) {
     const Token token = cursor.peek();
     if (token.kind == Token::Kind::Word && !isReserved(cursor.text(token)) && !token.columnOne) {
-        const std::string near = nearestWord(cursor.operations(), cursor.text(token));
+        const std::string foreign = foreignAttributeHint(cursor.text(token));
+        const std::string near = foreign.empty() ? nearestWord(cursor.operations(), cursor.text(token)) : foreign;
         cursor.fail(cursor.found() + " can't follow a shape",
                     near.empty() ? "name an attribute (size, color …), join shapes with + - & morph, or list them with ','" : near);
     } else if (cursor.at("(")) {

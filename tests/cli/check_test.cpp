@@ -100,6 +100,13 @@ TEST_F(Check, AUsedFileThatIsMissingNamesTheNearestOne) {
     EXPECT_NE(checked("use \"std/zzzzzz.sgm\"\nstart A -> cube\n").out.find("there is no such file\n"), std::string::npos);
 }
 
+TEST_F(Check, ANameOfTheLibraryNamesItsFile) {
+    EXPECT_NE(checked("start A -> cube size 4 clad palazzo\n").out.find("write 'use \"std/kifs.sgm\"'"), std::string::npos);
+    EXPECT_NE(checked("start A -> stone\n").out.find("write 'use \"std/walls.sgm\"'"), std::string::npos);
+    EXPECT_NE(checked("start A -> Storey\n").out.find("write 'use \"std/house.sgm\"'"), std::string::npos);
+    EXPECT_EQ(checked("start A -> spere\n").out.find("use"), std::string::npos);
+}
+
 TEST(Usage, NamesTheCommandThatWasMeant) {
     const Outcome run = sgm("biuld x.sgm");
     EXPECT_EQ(run.code, 2);

@@ -54,6 +54,26 @@ TEST(Warnings, WhatAClosedJointKeepsFromGrowingIsAmongThem) {
               "3:37 another shape has closed its joint, so this grows nowhere\n");
 }
 
+TEST(Warnings, ATurnThatTheJointUndoesIsTold) {
+    const std::string lost = " the joints face each other all the same: only the turn about them is left\n", start = "start A -> cube size 2 : B\nrule B -> + cube size (.5, 3, .5) at ";
+    EXPECT_EQ(told(start + "+y turn (30deg, 0deg, 0deg)\n"), "3:41" + lost);
+    EXPECT_EQ(told(start + "+y turn (30deg, 40deg, 0deg)\n"), "3:41" + lost);
+    EXPECT_EQ(told(start + "+x to -y turn (0deg, 0deg, 30deg)\n"), "3:47" + lost);
+    EXPECT_EQ(told(start + "+y turn 40deg\n"), "") << "about the joint";
+    EXPECT_EQ(told(start + "+y turn (90deg, 0deg, 0deg)\n"), "") << "another face takes the joint's place";
+    EXPECT_EQ(told(start + "+x to -y turn 40deg\n"), "") << "about its own joint";
+    EXPECT_EQ(told(start + "centre turn (30deg, 0deg, 0deg)\n"), "") << "a centre faces nowhere";
+    EXPECT_EQ(told("start A -> cube size 2 + (cube turn (30deg, 0deg, 0deg)) size (.5, 3, .5) at +y\n"), "") << "the fix";
+}
+
+TEST(Warnings, ASplitThatOverflowsIsTold) {
+    EXPECT_EQ(told("start A -> size 10 split x { 8m: cube | 8m: sphere }\n"), "2:41 this part is cut off: 2m are left for its 8m\n");
+    EXPECT_EQ(told("start A -> size 10 split x { 8m: cube | 2m: sphere }\n"), "");
+    EXPECT_EQ(told("start A -> size 10 split x { ~8m: cube | ~8m: sphere }\n"), "");
+    EXPECT_EQ(told("start A -> size 10 split x { 60%: cube | 60%: sphere }\n"), "2:42 this part is cut off: 4m are left for its 6m\n");
+    EXPECT_EQ(told("start A -> size 10 split x { { 3m: cube }* | 1m: sphere }\n"), "");
+}
+
 TEST(Warnings, AFailureNamesWhatWasRemarkedInItsText) {
     const auto failed = derive::derive(grammarOf("grammar 1\nstart A -> cube with n = 1 : B\nrule B -> + cube size (4m / (1 - n)) at +x\n"), {}, nullptr);
     ASSERT_FALSE(failed.ok());

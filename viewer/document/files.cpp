@@ -77,6 +77,44 @@ bool beginsAsGrammar(const syntax::Source& source) {
     return !tokens.empty() && head.text().substr(tokens[0].begin, tokens[0].end - tokens[0].begin) == "grammar";
 }
 
+/// The names that the files of the standard library declare, with their files; read when first asked for.
+class LibraryNames {
+public:
+    std::string operator()(const std::string& name) {
+        if (!read_) read();
+        const auto file = files_.find(name);
+        return file == files_.end() ? std::string() : file->second;
+    }
+
+private:
+    void read() {
+        read_ = true;
+        std::vector<fs::path> paths;
+        std::error_code failed;
+        for (const auto& entry : fs::directory_iterator(standardLibrary(), failed))
+            if (entry.path().extension() == ".sgm") paths.push_back(entry.path());
+        std::sort(paths.begin(), paths.end());
+        for (const fs::path& path : paths)
+            if (const auto source = readSource(path); source.ok()) note(**source, "std/" + path.filename().string());
+    }
+
+    /// `terminal a, b = …` and `rule Name: Symbol …`: the words before what follows names.
+    void note(const syntax::Source& source, const std::string& file) {
+        const std::vector<syntax::Token> tokens = syntax::lexSignificant(source);
+        const auto text = [&](size_t i) { return i < tokens.size() ? syntax::textOf(source, tokens[i]) : std::string_view(); };
+        for (size_t i = 0; i < tokens.size(); ++i) {
+            if (!tokens[i].columnOne || (text(i) != "terminal" && text(i) != "rule")) continue;
+            size_t at = i + 1;
+            if (text(i) == "rule" && text(at + 1) == ":") at += 2;
+            files_.try_emplace(std::string(text(at)), file);
+            for (; text(i) == "terminal" && text(at + 1) == ","; at += 2) files_.try_emplace(std::string(text(at + 2)), file);
+        }
+    }
+
+    bool read_ = false;
+    std::map<std::string, std::string> files_;
+};
+
 /// Meshes read so far. A text is checked again at every edit, and distances take a good part of a second.
 class Meshes {
 public:
@@ -137,6 +175,7 @@ rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) 
         why = grid.error().message;
         return nullptr;
     };
+    loader.declares = [names = LibraryNames()](const std::string& name) mutable { return names(name); };
     return loader;
 }
 
