@@ -44,6 +44,7 @@ void Checker::lsystem(const syntax::LsystemDecl& decl) {
     for (const LsystemSetting& setting : rows)
         out.*setting.field = makeConstant(decl.span, Value::number(setting.fallback));
     for (const syntax::Setting& written : decl.settings) {
+        if (written.name.empty()) continue;  // the parser spoke of it
         const auto row = std::find_if(std::begin(rows), std::end(rows), [&](const auto& s) { return s.name == written.name.text; });
         if (row == std::end(rows)) {
             std::vector<std::string> known;

@@ -74,8 +74,8 @@ TEST(Parser, SketchParsesWithoutDiagnostics) {
     EXPECT_EQ(ast.params.size(), 9u);
     EXPECT_EQ(ast.maps.size(), 1u);
     EXPECT_EQ(ast.terminals.size(), 8u);
-    EXPECT_EQ(ast.starts.size(), 7u);
-    EXPECT_EQ(ast.rules.size(), 20u);
+    EXPECT_EQ(ast.starts.size(), 6u);
+    EXPECT_EQ(ast.rules.size(), 19u);
     EXPECT_EQ(ast.derives.size(), 2u);
     EXPECT_EQ(ast.lsystems.size(), 1u);
     EXPECT_EQ(ast.styles.size(), 1u);
