@@ -11,6 +11,7 @@
 #include "cli/cave.h"
 #include "cli/colliders.h"
 #include "cli/commands.h"
+#include "cli/edits.h"
 #include "cli/floating.h"
 #include "cli/gaps.h"
 #include "cli/levels.h"
@@ -41,10 +42,7 @@ struct BuildRequest {
     OutputRequest out;
     std::vector<std::string> animations;  ///< "NAME=FROM..TO:FRAMES"
     std::string report, agent, floor;  ///< agent as `parseAgent` reads it, "" for the usual one
-    int smooth = 0;
-    double simplify = 1;
-    std::optional<double> tolerance_m;  ///< none: see toleranceOf
-    std::string keep = "all";
+    EditRequest edits;
     bool validate = false, cave = false, inward = false, stream = false, quiet = false;
 };
 
@@ -55,12 +53,12 @@ bool wantsLevelSet(const BuildRequest& request) { return wantsVolume(request.out
 
 /// Whether nobody asks for the mesh's normals and origins: neither the files nor edits, the floor and the figures.
 bool bareWillDo(const BuildRequest& request) {
-    return request.quiet && request.report.empty() && request.smooth == 0 && request.simplify == 1 && !request.tolerance_m && !surveys(request) && bareWillDo(request.out);
+    return request.quiet && request.report.empty() && request.edits.smooth == 0 && request.edits.simplify == 1 && !request.edits.tolerance_m && !surveys(request) && bareWillDo(request.out);
 }
 
 /// A streamed build never has the whole mesh; Error::Usage names what would need it.
 Status checkStream(const BuildRequest& request) {
-    const std::pair<bool, const char*> whole[] = {{request.smooth > 0, "--smooth"}, {request.simplify < 1 || request.tolerance_m, "--simplify and --tolerance"}, {request.keep != "all", "--keep"},
+    const std::pair<bool, const char*> whole[] = {{request.edits.smooth > 0, "--smooth"}, {request.edits.simplify < 1 || request.edits.tolerance_m, "--simplify and --tolerance"}, {request.edits.keep != "all", "--keep"},
                                                   {request.validate, "--validate"}, {surveys(request), "--cave and --floor"}, {request.out.lod > 1, "--lod"}, {request.inward, "--inward"},
                                                   {!request.report.empty(), "--report"}, {!request.animations.empty(), "--animate"}};
     for (const auto& [asked, option] : whole)
@@ -82,31 +80,6 @@ Status checkRequest(const BuildRequest& request) {
     return Done{};
 }
 
-/// How far simplification may move the surface, metres: of a crisp mesh a hundredth of a cell, unless the user says
-/// otherwise or smooths it.
-double toleranceOf(const BuildRequest& request, float cell_m) {
-    if (request.tolerance_m) return *request.tolerance_m;
-    return request.grid.surface == mesh::Surface::Crisp && request.smooth == 0 ? mesh::usualTolerance(cell_m) : 0;
-}
-
-Result<mesh::Mesh> edited(mesh::Mesh mesh, const BuildRequest& request, float cell_m, Stages& stages, Progress* progress) {
-    if (request.smooth > 0) {
-        auto result = timed(stages, "smooth", [&] { return mesh::smooth(mesh, request.smooth, progress); });
-        if (!result.ok()) return result;
-        mesh = std::move(*result);
-    }
-    const double tolerance_m = toleranceOf(request, cell_m);
-    if ((request.simplify < 1 || tolerance_m > 0) && mesh.triangleCount() > 0) {
-        auto result = timed(stages, "simplify", [&] {
-            return request.simplify < 1 ? mesh::simplifyToShare(mesh, request.simplify, request.grid.threads, progress)
-                                        : mesh::simplify(mesh, {tolerance_m, request.grid.threads}, progress);
-        });
-        if (!result.ok()) return result;
-        mesh = std::move(*result);
-    }
-    return mesh;
-}
-
 void say(const BuildRequest& request, const Model& model, const mesh::MeshFigures& f, const Support& support, float cell_m, const Colliders& colliders, const Stages& stages) {
     double total = 0;
     for (const auto& stage : stages) total += stage.second;
@@ -120,10 +93,6 @@ void say(const BuildRequest& request, const Model& model, const mesh::MeshFigure
     sayFloating(model, support, cell_m);
 }
 
-mesh::Keep keepOf(const BuildRequest& request) {
-    return request.keep == "all" ? mesh::Keep::All : request.keep == "grounded" ? mesh::Keep::Grounded : mesh::Keep::Largest;
-}
-
 /// From a mesh to what was asked for: edits, validation, files, figures.
 Status deliver(const BuildRequest& request, const Model& model, const viewer::Division& division, MeshedModel meshed, Stages& stages, Progress* progress) {
     std::vector<lower::ThinPart> missing;
@@ -132,8 +101,8 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
         if (!found.ok()) return found.error();
         missing = std::move(*found);
     }
-    keepOnly(keepOf(request), meshed, request.grid.threads, request.quiet);
-    auto mesh = edited(std::move(meshed.mesh), request, meshed.grid.cell_m, stages, progress);
+    keepOnly(keepOf(request.edits), meshed, request.grid.threads, request.quiet);
+    auto mesh = edited(std::move(meshed.mesh), request.edits, request.grid, meshed.grid.cell_m, stages, progress);
     if (!mesh.ok()) return mesh.error();
     if (mesh->triangleCount() == 0 && !allFiles(request.out).empty()) {
         Error error = viewer::noSurface(model, meshed.grid.cell_m);
@@ -142,7 +111,7 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
     }
     if (request.validate)
         if (const Status s = validated(*mesh, stages); !s.ok()) return s;
-    if (request.smooth > 0 && !request.validate && !request.quiet) warnOfFaults(*mesh, stages);
+    if (request.edits.smooth > 0 && !request.validate && !request.quiet) warnOfFaults(*mesh, stages);
     mesh::MeshFigures figures;  // of the solid, before it is turned inside out
     Support support;
     if (!request.quiet || !request.report.empty()) {
@@ -164,7 +133,7 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
         input.colliders = colliders.all;
     }
     const auto levels = timed(stages, "levels of detail", [&] {
-        return makeLevels({request.out.lod, meshed.grid.cell_m, meshingOf(request.grid), keepOf(request), request.inward}, model, *mesh, progress);
+        return makeLevels({request.out.lod, meshed.grid.cell_m, meshingOf(request.grid), keepOf(request.edits), request.inward}, model, *mesh, progress);
     });
     if (!levels.ok()) return levels.error();
     input.levels = *levels;
@@ -174,7 +143,7 @@ Status deliver(const BuildRequest& request, const Model& model, const viewer::Di
             return volume::sample(meshed.blocks, model.tape, meshed.grid, volume::usualHalfWidth, request.grid.threads, progress);
         });
         if (!sampled.ok()) return sampled.error();
-        if (const Status s = volume::keepOnly(*sampled, keepOf(request), meshed.grid.cell_m, progress); !s.ok()) return s;
+        if (const Status s = volume::keepOnly(*sampled, keepOf(request.edits), meshed.grid.cell_m, progress); !s.ok()) return s;
         level = std::move(*sampled);
         input.volume = &*level;
     }
@@ -370,17 +339,7 @@ void addBuild(CLI::App& app, int& exitCode) {
     command->add_option("--agent", request->agent, "Who walks through the cave: RADIUS,HEIGHT[,SLOPE] in metres and degrees")->default_str(".3,1.8,45");
     command->add_option("--floor", request->floor, "Write the floor on which the agent can stand, as a mesh");
     command->add_flag("--inward", request->inward, "Write the surface facing inward: the model is a hollow, seen from inside");
-    command->add_option("--keep", request->keep, "Which separate solids stay: all, those that stand and aren't crumbs, or the largest one; the latter two fill closed cavities")
-        ->check(CLI::IsMember({"all", "grounded", "largest"}))->capture_default_str();
-    command->add_option("--smooth", request->smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
-    auto* share = command->add_option("--simplify", request->simplify, "Simplify to at most this share of the triangles");
-    share->check(between(0.001, 1));
-    command
-        ->add_option("--tolerance", request->tolerance_m,
-                     "How far simplification may move the surface: 5mm, 2cm, .01m; 0 keeps all [a crisp mesh: .01 cell]")
-        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"mm", .001}, {"cm", .01}, {"m", 1}}))
-        ->check(between(0, 1e6))
-        ->excludes(share);
+    addEditOptions(*command, request->edits);
     command->add_flag("--validate", request->validate, "Validate with CGAL: closed, oriented, no self-intersections");
     addRenamedFlag(*command, "--judge", "--validate", request->validate);
     command->add_flag("--stream", request->stream, "Mesh and write layer by layer, for a mesh larger than memory: one " + exporter::streamedExtensions() + " file, and nothing that needs the whole mesh");

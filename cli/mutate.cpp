@@ -6,6 +6,7 @@
 #include <map>
 
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/numbers.h"
 #include "cli/variations.h"
 #include "cli/watch.h"
@@ -191,6 +192,7 @@ Status mutated(const MutateRequest& request) {
     }
     if (!request.quiet)
         for (size_t k = 0; k < found->size(); ++k) fmt::print("{}: {}\n", k, worded((*found)[k].values));
+    if (request.output.empty() && request.pick < 0 && !request.quiet) printMessage("note: nothing was drawn: add -o sheet.png\n");
     if (request.pick < 0) return Done{};
     if (const Status s = saveChoice(request, *grammar, *found); !s.ok()) return s;
     if (!request.quiet) fmt::print("wrote style {} into {}\n", request.save, request.model.file);

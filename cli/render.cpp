@@ -8,12 +8,13 @@
 
 #include "cli/animation.h"
 #include "cli/commands.h"
+#include "cli/edits.h"
+#include "cli/floating.h"
 #include "cli/ids.h"
 #include "cli/numbers.h"
 #include "cli/pipeline.h"
 #include "cli/watch.h"
 #include "modeler/core/conventions.h"
-#include "modeler/mesh/simplify.h"
 #include "viewer/fog_scene.h"
 #include "viewer/offscreen.h"
 
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 struct RenderRequest {
     ModelRequest model;
     GridRequest grid{.resolution = 256};
+    EditRequest edits;
     std::string output, size = "960x720", view = "field", camera, rays = "best";
     std::vector<std::string> layers;
     double extinction = 0;
@@ -69,6 +71,7 @@ Status checkRequest(const RenderRequest& request) {
     if (!request.layers.empty() && !isExr(request)) return wrong(fmt::format("--aov: layers need a file that holds floats: -o {}", fs::path(output).replace_extension(".exr").string()));
     if (isExr(request) && request.view != "field") return wrong(fmt::format("'{}': layers are of the field; with --view {} write a .png", request.output, request.view));
     if (request.wires && !drawsMesh(request)) return wrong("--wires are the edges of a mesh's triangles: add --view mesh, labels or creases");
+    if (request.edits.isAsked() && !drawsMesh(request)) return wrong("--keep, --smooth, --simplify and --tolerance change a mesh: add --view mesh, labels or creases");
     if (request.extinction > 0 && request.view != "fog") return wrong("--extinction is of fog: add --view fog");
     if (request.stats && (request.view != "field" || request.turntable > 0)) return wrong("--stats counts evaluations of the field for one picture: leave out --view and --turntable");
     if (request.turntable == 0) return Done{};
@@ -103,8 +106,8 @@ Result<mesh::Mesh> meshAsBuilt(const RenderRequest& request, const Model& model,
     Stages stages;
     auto meshed = makeMesh(model, request.grid, stages, progress);
     if (!meshed.ok()) return meshed.error();
-    if (request.grid.surface != mesh::Surface::Crisp || meshed->mesh.triangleCount() == 0) return std::move(meshed->mesh);
-    return mesh::simplify(meshed->mesh, {mesh::usualTolerance(meshed->grid.cell_m), request.grid.threads}, progress);
+    keepOnly(keepOf(request.edits), *meshed, request.grid.threads, request.quiet);
+    return edited(std::move(meshed->mesh), request.edits, request.grid, meshed->grid.cell_m, stages, progress);
 }
 
 /// What every picture of the model shares is done here.
@@ -227,6 +230,7 @@ void addRender(CLI::App& app, int& exitCode) {
     auto request = std::make_shared<RenderRequest>();
     addModelOptions(*command, request->model);
     addGridOptions(*command, request->grid);
+    addEditOptions(*command, request->edits);
     command->add_option("-o,--output", request->output, "Picture to write (.png, or .exr for floats)")->required();
     command->add_option("--size", request->size, "Pixels, WxH")->capture_default_str();
     command->add_option("--view", request->view, "What is drawn: the field, its mesh, the mesh with a hue for each smooth piece (labels) or with its hard edges (creases), fog in its place, or the facade ids and storeys of what is clad")

@@ -63,9 +63,11 @@ syntax::Diagnostics ungrown(const Derivation& derivation) {
             return s.span.source == closed.span.source && s.span.begin == closed.span.begin && s.span.end == closed.span.end;
         };
         const auto& shapes = derivation.tree.shapes;
+        const bool asksFree = closed.span.text().find("at free") != std::string_view::npos;
         if (std::none_of(shapes.begin(), shapes.end(), isOf))
-            warnings.warning(closed.span, "another shape has closed its joint, so this grows nowhere",
-                             "choose another joint of ours, 'at free(…)', or place it by 'move'");
+            warnings.warning(closed.span,
+                             asksFree ? "none of these joints is free any more, so this grows nowhere" : "another shape has closed its joint, so this grows nowhere",
+                             asksFree ? "name more joints in 'free(…)', or place it by 'move'" : "choose another joint of ours, 'at free(…)', or place it by 'move'");
     }
     return warnings;
 }

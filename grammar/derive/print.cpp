@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
@@ -88,7 +89,8 @@ void printShape(const Derivation& d, ShapeId id, uint32_t bond, std::back_insert
     if (s.occurrence > 1) fmt::format_to(out, "[{}]", s.occurrence);
     if (const SolidValue* solid = d.tree.solidOf(id); solid && solidName(*solid) != d.tree.labels[s.label]) fmt::format_to(out, " = {}", solidName(*solid));
     if (s.live) fmt::format_to(out, " (live)");
-    const Vec3d &c = s.scope.centre, &z = s.scope.size;
+    const auto settled = [](double v) { return std::abs(v) < 1e-12 ? 0.0 : v; };  // what turns leave of 0
+    const Vec3d &z = s.scope.size, c{settled(s.scope.centre.x), settled(s.scope.centre.y), settled(s.scope.centre.z)};
     fmt::format_to(out, "  size ({:.4g}, {:.4g}, {:.4g}) at ({:.4g}, {:.4g}, {:.4g})", z.x, z.y, z.z, c.x, c.y, c.z);
     if (bond != none) {
         const Bond& b = d.tree.bonds[bond];

@@ -103,5 +103,22 @@ TEST_F(Render, AnInterruptLeavesWholePictures) {
         }
 }
 
+TEST_F(Cli, APictureOfAMeshTakesTheEditsOfABuild) {
+    const std::string file = grammar("start A -> cube size (9, 1, 9), sphere size 4 move (0, 2, 0), sphere size 2 move (0, 7, 0)\n");
+    const auto drawn = [&](const std::string& options) {
+        const Outcome run = sgm("render " + file + " --size 64x64 --resolution 48 --view mesh -q -o " + path("a.png") + " " + options);
+        EXPECT_EQ(run.code, 0) << options << run.out;
+        return read(path("a.png"));
+    };
+    const std::string plain = drawn("");
+    EXPECT_NE(drawn("--keep grounded"), plain) << "the ball in the air is left out";
+    EXPECT_NE(drawn("--simplify .02"), plain);
+    EXPECT_NE(drawn("--smooth 20"), plain);
+    EXPECT_EQ(drawn("--keep all"), plain);
+    const Outcome field = sgm("render " + file + " -o " + path("b.png") + " --keep grounded");
+    EXPECT_EQ(field.code, 2);
+    EXPECT_NE(field.out.find("add --view mesh"), std::string::npos) << field.out;
+}
+
 }  // namespace
 }  // namespace sgm::cli

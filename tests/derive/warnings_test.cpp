@@ -52,6 +52,8 @@ TEST(Warnings, RootsRepeatsAndColours) {
 TEST(Warnings, WhatAClosedJointKeepsFromGrowingIsAmongThem) {
     EXPECT_EQ(told("start A -> cube size 2 : B\nrule B -> + cube size (2,1,1) at +x + sphere size 3 at +x\n"),
               "3:37 another shape has closed its joint, so this grows nowhere\n");
+    EXPECT_EQ(told("start A -> cube size 2 + cube size 1 at free(-y) + sphere size 1 at free(-y)\n"),
+              "2:50 none of these joints is free any more, so this grows nowhere\n");
 }
 
 TEST(Warnings, ATurnThatTheJointUndoesIsTold) {
