@@ -21,7 +21,7 @@ using syntax::OperationArgument;
 constexpr double most_m = 1e5;
 
 constexpr OperationArgument footprintArguments[] = {
-    {"plan", ArgumentType::Plan, "rect, ell, tee, yard, ring, ngon, round, arc, outline((x, z), …), an lsystem, or (a + b), (a - b) of them"}};
+    {"plan", ArgumentType::Plan, "rect, ell, tee, yard, ring, ngon, round, arc, outline((x, z), …), file(\"lots.geojson\", n), an lsystem, or (a + b), (a - b) of them"}};
 constexpr OperationArgument extrudeArguments[] = {{"height", ArgumentType::Length, "metres above the foot of the scope"}};
 constexpr OperationArgument offsetArguments[] = {{"distance", ArgumentType::Length, "outward; inward where negative"}};
 constexpr OperationArgument setbackArguments[] = {
@@ -42,11 +42,11 @@ void checkFootprint(OperationChecker& checker, const syntax::Attribute& written)
 void applyFootprint(AttributeContext& context, const Attribute& attribute) {
     auto drawn = drawPlan(context, *attribute.plan);
     if (!drawn) return;
-    // What is drawn in metres comes centred on the scope; an outline of shares keeps its place in it.
+    // What is drawn in metres comes centred on the scope; shares of the scope and outlines of files keep their place.
     const Vec3d before = context.out.moved_m;
     context.setFootprint(std::move(drawn->footprint), attribute.span);
     if (context.out.vanishes) context.fail("the plan encloses no area: its edges cross, or lie on one line", attribute.span);
-    if (!drawn->fillsScope) context.out.moved_m = before;
+    if (!drawn->keepsPlace) context.out.moved_m = before;
 }
 
 /// The foot stays where it is.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "grammar/derive/builder.h"
 #include "grammar/derive/lsystem.h"
@@ -111,6 +112,26 @@ void checkOutline(OperationChecker& checker, const Written& e, PlanExpr& plan) {
     if (plan.args.size() < 3) checker.error(e.span, "an outline has three points or more", "write 'outline((0, 0), (8, 0), (8, 6))'");
 }
 
+/// file("lots.geojson", n)
+bool checkFile(OperationChecker& checker, const Written& e, PlanExpr& plan) {
+    plan.kind = PlanExpr::Kind::File;
+    plan.args.push_back(rules::makeConstant(e.span, Value::number(1)));
+    size_t next = 0;
+    for (size_t i = 0; i < e.args.size(); ++i) {
+        if (!e.argNames[i].empty() && checkPlacement(checker, e, i, plan)) continue;
+        checker.beginDraws("footprint.file");
+        if (next == 1) plan.args[0] = checker.expression(e.args[i], Want::Count, "the number of an outline");
+        if (next++ == 0 && e.args[i].kind != Written::Kind::Text) break;
+    }
+    if (next == 0 || next > 2 || e.args[0].kind != Written::Kind::Text) {
+        checker.error(e.span, "'file' takes the name of a file in quotes, and maybe which of its outlines", "write 'file(\"lots.geojson\", 3)'");
+        return false;
+    }
+    const auto index = checker.readOutlines(e.args[0]);
+    plan.index = index.value_or(0);
+    return index.has_value();
+}
+
 bool checkInto(OperationChecker& checker, const Written& e, PlanExpr& plan) {
     plan.span = e.span;
     const bool isUnion = e.kind == Written::Kind::Binary && e.text == "+";
@@ -123,6 +144,7 @@ bool checkInto(OperationChecker& checker, const Written& e, PlanExpr& plan) {
         checkOutline(checker, e, plan);
         return true;
     }
+    if (e.kind == Written::Kind::Call && e.text == "file") return checkFile(checker, e, plan);
     plan.row = rules::findPlan(e.text);
     if (plan.row && (e.kind == Written::Kind::Call || e.kind == Written::Kind::Name)) {
         checkCall(checker, e, plan);
@@ -134,7 +156,7 @@ bool checkInto(OperationChecker& checker, const Written& e, PlanExpr& plan) {
         return true;
     }
     if (e.kind == Written::Kind::Error) return false;
-    std::vector<std::string> known{"outline"};
+    std::vector<std::string> known{"outline", "file"};
     for (const rules::PlanRow& row : rules::planRows()) known.emplace_back(row.name);
     for (const rules::Lsystem& lsystem : checker.grammar().lsystems) known.push_back(lsystem.name);
     const std::string near = checker.nearest(e.text, known);
@@ -154,6 +176,14 @@ Result<DrawnPlan> drawLsystem(const AttributeContext& context, const PlanExpr& p
     return DrawnPlan{std::move(*drawn), false};
 }
 
+/// An outline of a file stays where the file has it.
+Result<DrawnPlan> drawFile(const AttributeContext& context, const PlanExpr& plan) {
+    const std::vector<plan::Feature>& list = context.grammar().outlines[plan.index]->list;
+    const double n = std::floor(context.number(plan.args[0]));
+    if (n >= 1 && n <= static_cast<double>(list.size())) return DrawnPlan{list[static_cast<size_t>(n) - 1].footprint, true};
+    return Error{Error::Kind::Input, fmt::format("the file has {} outlines, and none is number {:g}", list.size(), n)};
+}
+
 Result<DrawnPlan> draw(const AttributeContext& context, const PlanExpr& plan);
 
 Result<DrawnPlan> drawParts(const AttributeContext& context, const PlanExpr& plan) {
@@ -162,7 +192,7 @@ Result<DrawnPlan> drawParts(const AttributeContext& context, const PlanExpr& pla
     Result<DrawnPlan> b = draw(context, plan.parts[1]);
     if (!b.ok()) return b;
     const auto how = plan.kind == PlanExpr::Kind::Union ? plan::Boolean::Union : plan::Boolean::Difference;
-    return DrawnPlan{plan::boolean(how, a->footprint, b->footprint), a->fillsScope};
+    return DrawnPlan{plan::boolean(how, a->footprint, b->footprint), a->keepsPlace && b->keepsPlace};
 }
 
 Result<DrawnPlan> drawRow(const AttributeContext& context, const PlanExpr& plan) {
@@ -195,6 +225,7 @@ Result<DrawnPlan> draw(const AttributeContext& context, const PlanExpr& plan) {
     Result<DrawnPlan> drawn = plan.kind == PlanExpr::Kind::Drawn     ? drawRow(context, plan)
                               : plan.kind == PlanExpr::Kind::Outline ? Result<DrawnPlan>(drawPoints(context, plan))
                               : plan.kind == PlanExpr::Kind::Lsystem ? drawLsystem(context, plan)
+                              : plan.kind == PlanExpr::Kind::File    ? drawFile(context, plan)
                                                                      : drawParts(context, plan);
     if (!drawn.ok()) return drawn;
     if (plan.turn) drawn->footprint = plan::turned(drawn->footprint, context.number(*plan.turn));

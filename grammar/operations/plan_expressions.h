@@ -15,7 +15,7 @@ std::shared_ptr<const rules::PlanExpr> checkPlan(rules::OperationChecker& checke
 /// A drawn plan.
 struct DrawnPlan {
     plan::Footprint footprint;  ///< metres; about the scope's centre where it fills the scope
-    bool fillsScope = false;    ///< it was drawn in shares of the scope
+    bool keepsPlace = false;    ///< it was drawn in shares of the scope, or in the coordinates of a file
 };
 /// The plan in the scope of `context`; nothing after a failure.
 std::optional<DrawnPlan> drawPlan(const derive::AttributeContext& context, const rules::PlanExpr& plan);

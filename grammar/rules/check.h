@@ -8,6 +8,7 @@
 
 #include "grammar/rules/grammar.h"
 #include "modeler/core/result.h"
+#include "modeler/plan/read.h"
 
 namespace sgm::rules {
 
@@ -15,6 +16,7 @@ namespace sgm::rules {
 struct Loader {
     using Use = std::function<syntax::SourcePtr(const std::string& name, const syntax::Source& from, std::string& why)>;
     using Mesh = std::function<field::SampledGridPtr(const std::string& name, const syntax::Source& from, std::string& why)>;
+    using Outlines = std::function<std::shared_ptr<const plan::Features>(const std::string& name, const syntax::Source& from, std::string& why)>;
 
     Loader() = default;
     /// One that reads grammars alone.
@@ -28,6 +30,8 @@ struct Loader {
     std::function<std::string(const std::string& name)> declares;
     /// The distances to the mesh behind `mesh("name")` of `from`.
     Mesh mesh;
+    /// The outlines of the file behind `footprint file("name")` of `from`.
+    Outlines outlines;
 };
 
 /// Null when `diagnostics` has errors. Reports everything wrong in one run, in the order of the text, used files first:

@@ -187,6 +187,7 @@ private:
     std::set<std::string> excused_;
     bool anythingExcused_ = false;   ///< a used file is missing, and nobody knows what it declares
     Loader load_;
+    std::map<std::pair<const syntax::Source*, std::string>, size_t> outlineFiles_;  ///< places in Grammar::outlines
     std::map<std::pair<const syntax::Source*, std::string>, size_t> files_;  ///< read so far: places in Grammar::meshes
     std::set<std::string> unbuilt_;  ///< maps: named once, refused once
     std::set<SymbolId> ruled_;       ///< have a rule

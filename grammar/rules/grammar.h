@@ -15,6 +15,7 @@
 #include "grammar/syntax/ast.h"
 #include "modeler/core/provenance.h"
 #include "modeler/field/primitives.h"
+#include "modeler/plan/read.h"
 
 namespace sgm::rules {
 
@@ -109,6 +110,7 @@ struct PlanExpr {
         Drawn,       ///< row, args: one a parameter
         Outline,     ///< args: points, vectors of two, all lengths or all shares of the scope
         Lsystem,     ///< the outline that Grammar::lsystems[index] draws
+        File,        ///< args[0]: which outline of Grammar::outlines[index], from 1
         Union,       ///< parts
         Difference,  ///< parts: the first less the others
     };
@@ -340,6 +342,7 @@ struct Grammar {
     std::vector<Lsystem> lsystems;
     std::vector<Style> styles;
     std::vector<Check> checks;
+    std::vector<std::shared_ptr<const plan::Features>> outlines;  ///< of files that footprints name, each once
     std::vector<field::SampledGridPtr> meshes;  ///< of a solid's File argument, by its n[0]
 };
 

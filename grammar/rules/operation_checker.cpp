@@ -122,6 +122,17 @@ void OperationChecker::checkRange(const Expr& e, const field::Primitive& row, si
 
 Solid OperationChecker::solidOfRow(SourceSpan span, const field::Primitive& row) { return Checker::solidOfRow(span, row); }
 
+std::optional<uint32_t> OperationChecker::readOutlines(const syntax::Expr& name) {
+    auto& all = checker_.grammar_.outlines;
+    const auto [known, fresh] = checker_.outlineFiles_.try_emplace({name.span.source, name.text}, all.size());
+    if (fresh) {
+        std::string why = "no files can be read here";
+        all.push_back(checker_.load_.outlines ? checker_.load_.outlines(name.text, *name.span.source, why) : nullptr);
+        if (!all.back()) error(name.span, fmt::format("can't use \"{}\": {}", name.text, why));
+    }
+    return all[known->second] ? std::optional(static_cast<uint32_t>(known->second)) : std::nullopt;
+}
+
 std::optional<uint32_t> OperationChecker::findLsystem(std::string_view name) const {
     const auto& all = checker_.grammar_.lsystems;
     const auto found = std::find_if(all.begin(), all.end(), [&](const Lsystem& l) { return l.name == name; });

@@ -60,6 +60,8 @@ public:
     void checkRange(const Expr& e, const field::Primitive& row, size_t parameter);
     static Solid solidOfRow(SourceSpan span, const field::Primitive& row);
 
+    /// The place in Grammar::outlines of the file that `name` (a text) stands for, read here; nothing after an error.
+    std::optional<uint32_t> readOutlines(const syntax::Expr& name);
     /// The index of an lsystem of the grammar.
     std::optional<uint32_t> findLsystem(std::string_view name) const;
     std::optional<SymbolId> findSymbol(std::string_view name) const;

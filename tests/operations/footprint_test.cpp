@@ -133,6 +133,33 @@ TEST(Footprints, EveryRoofStandsOverAnyPlanAndOverNone) {
     }
 }
 
+TEST(Footprints, OutlinesOfAFileKeepTheirPlace) {
+    plan::Features features;
+    for (const double x : {-20.0, 30.0})
+        features.list.push_back({"", plan::footprintOf(plan::polygonOf({{x, 0}, {x + 8, 0}, {x + 8, 6}, {x, 6}})), {}, 1});
+    rules::Loader loader;
+    loader.outlines = [&](const std::string& name, const syntax::Source&, std::string& why) -> std::shared_ptr<const plan::Features> {
+        if (name == "lots.geojson") return std::make_shared<const plan::Features>(features);
+        why = "there is no such file";
+        return nullptr;
+    };
+    const auto load = [&](const std::string& file, syntax::Diagnostics& diagnostics) {
+        const auto text = "grammar 1\nterminal wall\nstart A -> for k in 1..2 { wall footprint file(\"" + file + "\", k) }\n";
+        return rules::load(std::make_shared<const syntax::Source>("f.sgm", text), operations::table(), loader, diagnostics);
+    };
+    syntax::Diagnostics diagnostics;
+    const auto grammar = load("lots.geojson", diagnostics);
+    ASSERT_TRUE(grammar);
+    const auto d = derive::derive(grammar, {}, nullptr);
+    ASSERT_TRUE(d.ok()) << d.error().message;
+    const auto walls = solidsCalled(*d, "wall");
+    ASSERT_EQ(walls.size(), 2u);
+    expectNear(walls[0]->scope.centre, {-16, 0, 3}, 1e-3);
+    expectNear(walls[1]->scope.centre, {34, 0, 3}, 1e-3);
+    EXPECT_FALSE(load("other.svg", diagnostics));
+    EXPECT_EQ(diagnostics.all().back().message, "can't use \"other.svg\": there is no such file");
+}
+
 TEST(Footprints, WhatCannotBeDrawnIsSaidWhereItStands) {
     EXPECT_NE(errorOf("start A -> footprint outline((0, 0), (4, 4), (4, 0), (0, 4)) wall\n").find("test.sgm:3"), std::string::npos);
     EXPECT_NE(errorOf("start A -> footprint ell(4, 4, 9, 1) wall\n").find("wing"), std::string::npos);

@@ -139,6 +139,31 @@ private:
     std::map<std::string, Read> known_;
 };
 
+/// Outlines read so far.
+class OutlineFiles {
+public:
+    explicit OutlineFiles(const Progress* progress) : progress_(progress) {}
+
+    Result<std::shared_ptr<const plan::Features>> operator()(const fs::path& path) {
+        std::error_code failed;
+        const auto time = fs::last_write_time(path, failed);
+        Read& read = known_[path.string()];
+        if (!failed && read.features && read.time == time) return read.features;
+        auto features = plan::readOutlines(path, {}, progress_);
+        if (!features.ok()) return features.error();
+        read = {time, std::make_shared<const plan::Features>(std::move(*features))};
+        return read.features;
+    }
+
+private:
+    struct Read {
+        fs::file_time_type time;
+        std::shared_ptr<const plan::Features> features;
+    };
+    const Progress* progress_;
+    std::map<std::string, Read> known_;
+};
+
 }  // namespace
 
 Result<syntax::SourcePtr> readSource(const fs::path& path) {
@@ -173,6 +198,15 @@ rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) 
         const auto grid = meshes(*path);
         if (grid.ok()) return *grid;
         why = grid.error().message;
+        return nullptr;
+    };
+    loader.outlines = [note, files = OutlineFiles(progress)](const std::string& name, const syntax::Source& from, std::string& why) mutable -> std::shared_ptr<const plan::Features> {
+        const auto path = pathOf(name, from, why);
+        if (!path) return nullptr;
+        note(*path);
+        const auto features = files(*path);
+        if (features.ok()) return *features;
+        why = features.error().message;
         return nullptr;
     };
     loader.declares = [names = LibraryNames()](const std::string& name) mutable { return names(name); };

@@ -285,6 +285,12 @@ bool Session::checked(const ShowRequest& request, Stages& stages, std::vector<Pr
             usedByCheck_.push_back({path, timeOf(path)});
             return loader_.mesh ? loader_.mesh(name, from, why) : nullptr;
         };
+        noting.outlines = [&](const std::string& name, const syntax::Source& from, std::string& why) -> std::shared_ptr<const plan::Features> {
+            const std::string path = (std::filesystem::path(from.name()).parent_path() / name).string();
+            usedByCheck_.push_back({path, timeOf(path)});
+            return loader_.outlines ? loader_.outlines(name, from, why) : nullptr;
+        };
+        noting.declares = loader_.declares;
         syntax::Diagnostics diagnostics = request.syntaxProblems;
         ast_ = request.ast;
         stages.emplace_back("parse", request.parseSeconds);
