@@ -52,7 +52,7 @@ constexpr ForeignWord foreignAttributes[] = {
 
 constexpr std::string_view ifMend = "bodies choose by 'when condition { … }', values by 'if(condition, a, b)'";
 
-constexpr std::string_view roofForms[] = {"hip", "gable", "mansard", "shed", "gambrel", "flat"};
+constexpr std::string_view roofForms[] = {"hip", "gable", "halfHip", "mansard", "gambrel", "saltbox", "shed", "butterfly", "flat", "pyramid", "dome", "bell"};
 
 /// The word before the parenthesis that the token before the cursor closes.
 std::string_view calledBefore(const Cursor& cursor) {
@@ -103,7 +103,7 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
     if (text == "{" && before == ")" && calledBefore(cursor) == "if")
         return Hint{cursor.span(token), "there is no 'if' here", std::string(ifMend)};
     if (before == "roof" && std::find(std::begin(roofForms), std::end(roofForms), text) != std::end(roofForms))
-        return Hint{cursor.span(token), "'roof' has no form " + quoted(text), "'roof(.3)' lies between a pyramid (0) and a dome (1); 'prism' is a gable"};
+        return Hint{cursor.span(token), "'roof' has no form " + quoted(text), "write " + quoted(std::string(text) + "Roof")};
     if (text == "*" && message.starts_with("unexpected"))
         return Hint{cursor.span(token), "unexpected '*'", "what two shapes share is 'a & b'; a calculation stands in parentheses"};
     return std::nullopt;

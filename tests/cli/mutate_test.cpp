@@ -66,7 +66,7 @@ TEST_F(Cli, MutateJudgesAlikeAtAnyResolution) {
     for (const char* cells : {"24", "64", "160"})
         EXPECT_NE(sgm("mutate " + bare + " --rows 1 --cols 1 --resolution " + cells).out.find("featureless"), std::string::npos) << cells;
     const std::string clad = grammar("use \"std/kifs.sgm\"\nparam width = 12m in 8m..16m\nstart House -> Box size (width, 8, 8) clad casement\n");
-    for (const char* cells : {"24", "64", "160"}) EXPECT_EQ(sgm("mutate " + clad + " --rows 1 --cols 1 --resolution " + cells).out, "0: as it is\n") << cells;
+    for (const char* cells : {"24", "64", "160"}) EXPECT_EQ(sgm("mutate " + clad + " --rows 1 --cols 1 --resolution " + cells).out, "note: nothing was drawn: add -o sheet.png\n0: as it is\n") << cells;
 }
 
 TEST_F(Cli, MutateSaysWhatIsWrong) {
