@@ -101,6 +101,7 @@ private:
     bool triangulatePolygon(const Polygon& polygon, PieceTriangles& out);
     bool triangulateLoop(const Loop& loop, PieceTriangles& out);
     bool crosses(const PieceTriangles& out, size_t firstTriangle) const;
+    bool isPartedByCrease(const Loop& loop) const;
     Vec3f middleOf(uint32_t firstLoop, uint32_t endLoop) const;
     static bool isOneCrease(std::span<const LoopNode> nodes, Vec3f& middle);
     void fan(uint32_t loop, Vec3f middleOfAll, float apart, PieceTriangles& out);
@@ -119,6 +120,7 @@ private:
     uint32_t firstVertex_ = 0;
     Vec3f low_, high_;                          ///< of the cell at hand
     std::vector<std::array<Vec3f, 3>> places_;  ///< of its triangles
+    std::vector<Vec3d> normals_;                ///< of its polygons
 };
 
 }  // namespace sgm::mesh

@@ -1,9 +1,14 @@
 // The pieces of cells as triangles.
+#include <algorithm>
+
 #include "modeler/mesh/cell_pieces.h"
 #include "modeler/mesh/crossing.h"
 
 namespace sgm::mesh {
 namespace {
+
+constexpr uint32_t mostSmall = 6;      ///< nodes of a polygon whose ears lie beside each other
+constexpr double leastSquare = 1e-16;  ///< of the sine between a plane and the way to a point beside it
 
 double square(Vec3d v) { return dot(v, v); }
 
@@ -75,6 +80,7 @@ bool CellPieces::triangulatePolygon(const Polygon& polygon, PieceTriangles& out)
     if (!(dot(sum, expected) > 0)) return false;
     const Vec3d n = normalized(sum);
     const Vec3f normal = n.as<float>();
+    normals_.push_back(n);
     const auto cut = [&](size_t before, size_t at, size_t after) {
         emit(nodes_[ring_[before].first], nodes_[ring_[at].first], nodes_[ring_[after].first], polygon, normal, out);
     };
@@ -93,6 +99,28 @@ bool CellPieces::triangulateLoop(const Loop& loop, PieceTriangles& out) {
     for (uint32_t p = loop.firstPolygon; p < loop.endPolygon; ++p)
         if (!triangulatePolygon(polygons_[p], out)) return false;
     return true;
+}
+
+/// Whether two small polygons lie on either side of the plane along the crease between them, and amid their own: so
+/// their triangles don't cross.
+bool CellPieces::isPartedByCrease(const Loop& loop) const {
+    if (loop.endPolygon - loop.firstPolygon != 2) return false;
+    const Polygon &a = polygons_[loop.firstPolygon], &b = polygons_[loop.firstPolygon + 1];
+    if (std::max(a.end - a.first, b.end - b.first) > mostSmall) return false;
+    // The first one was cut off between its ends.
+    const LoopNode &begin = nodes_[a.first], &end = nodes_[a.end - 1];
+    const Vec3d from = begin.at.as<double>();
+    const Vec3d across = cross(end.at.as<double>() - from, normals_[0] + normals_[1]);
+    const auto liesBeside = [&](const Polygon& polygon, Vec3d direction) {
+        for (uint32_t i = polygon.first; i < polygon.end; ++i) {
+            if (nodes_[i].vertex == begin.vertex || nodes_[i].vertex == end.vertex) continue;
+            const Vec3d way = nodes_[i].at.as<double>() - from;
+            const double beyond = dot(direction, way);
+            if (!(beyond > 0 && beyond * beyond > leastSquare * square(direction) * square(way))) return false;
+        }
+        return true;
+    };
+    return (liesBeside(a, across) && liesBeside(b, -across)) || (liesBeside(a, -across) && liesBeside(b, across));
 }
 
 bool CellPieces::crosses(const PieceTriangles& out, size_t firstTriangle) const {
@@ -157,10 +185,11 @@ void CellPieces::triangulate(PieceTriangles& out, std::vector<uint32_t>& cellEnd
         const size_t triangles = out.triangles.size(), normals = out.cornerNormals.size();
         const Vec3i cell = loops_[next].cell;
         low_ = grid_->corner(cell.x, cell.y, cell.z), high_ = grid_->corner(cell.x + 1, cell.y + 1, cell.z + 1);
-        places_.clear();
+        places_.clear(), normals_.clear();
         bool good = true;
         for (uint32_t l = next; l < end && good; ++l) good = triangulateLoop(loops_[l], out);
-        if (!good || crosses(out, triangles)) {
+        const bool parted = good && end - next == 1 && isPartedByCrease(loops_[next]);
+        if (!good || (!parted && crosses(out, triangles))) {
             // Fans of several loops may cross each other: then their middles are moved apart.
             for (const float apart : {0.0f, 0.5f, 1.0f, 2.0f, 4.0f}) {
                 out.triangles.resize(triangles), out.labels.resize(triangles), out.origins.resize(triangles);
