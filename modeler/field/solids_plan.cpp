@@ -55,6 +55,11 @@ Quantity aboveFascia(const PrimitiveInput& in) {
     return {max(2.0f * in.half.y - fascia.node, 1e-3f), std::max(2 * in.halfValue.y - fascia.value, 1e-3)};
 }
 
+/// The upper slope of a broken roof, no steeper than the lower one.
+Quantity upperOf(const Argument& lower, const Argument& upper) {
+    return {min(lower.node[0], upper.node[0]), std::min(lower.value[0], upper.value[0])};
+}
+
 /// Which edges are gables, as the choice `ends` says.
 enum class Ends { Auto, X, Z, All };
 std::vector<uint32_t> endsOf(const PlanField& plan, const Argument& choice) {
@@ -134,14 +139,14 @@ Field halfHipRoof(const PrimitiveInput& in) {
 Field mansardRoof(const PrimitiveInput& in) {
     const auto& a = in.arguments;
     return covered(in, {2, 3, 4, 5}, [&](const PlanField& plan, const RoofFoot& foot) {
-        return field::mansardRoof(plan, foot, quantity(a[0]), quantity(a[1]), quantity(a[2]));
+        return field::mansardRoof(plan, foot, quantity(a[0]), quantity(a[1]), upperOf(a[0], a[2]));
     });
 }
 
 Field gambrelRoof(const PrimitiveInput& in) {
     const auto& a = in.arguments;
     return covered(in, {2, 3, 4, 5}, [&](const PlanField& plan, const RoofFoot& foot) {
-        return field::gambrelRoof(plan, foot, quantity(a[0]), quantity(a[1]), quantity(a[2]), endsOf(plan, a[6]));
+        return field::gambrelRoof(plan, foot, quantity(a[0]), quantity(a[1]), upperOf(a[0], a[2]), endsOf(plan, a[6]));
     });
 }
 
