@@ -24,7 +24,8 @@ struct ConvexParts {
 };
 
 /// The union of the tree's solids, with its booleans carried out on polyhedra: a cut splits what it reaches into pieces
-/// around it, so holes stay open. Boxes, pyramids, prisms, wedges and half-spaces are exact, round solids have 12 sides
+/// around it, so holes stay open. Boxes, pyramids, prisms, wedges, half-spaces, blocks over footprints and their hip and gable
+/// roofs are exact, round solids have 12 sides
 /// or 54 faces and the same volume to 1 %, round cuts 8 or 22; roofs between their ends and morphs of solids are
 /// bounded by planes that touch them. Blends count as sharp, noise and cladding don't count; fractals and meshes from
 /// files are left out, as parts and as cuts. `notes` says so. Pieces that another one holds are left out, and so is

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grammar/lower/convex_plans.h"
 #include "grammar/lower/solids.h"
 #include "modeler/core/conventions.h"
 #include "modeler/eval/evaluate.h"
@@ -171,18 +172,18 @@ void ConvexContent::intersect(const ConvexContent& other) {
 
 /// Recursion follows the solid's text, which nests a few levels at most.
 ConvexContent convexSolid(const SolidValue& solid, const Scope& scope, derive::ShapeId shape, const Box3d& world,
-                          std::span<const field::SampledGridPtr> meshes, Roundness roundness) {
+                          const derive::Footprints& footprints, std::span<const field::SampledGridPtr> meshes, Roundness roundness) {
     ConvexContent content;
     const auto addPart = [&](const ConvexPart& part) {
         if (auto piece = ConvexPolyhedron::of(part, world)) content.add(std::move(*piece), shape);
     };
     if (solid.kind == rules::Solid::Kind::Nil) return content;
     if (solid.kind == rules::Solid::Kind::Combination) {
-        content = convexSolid(solid.parts[0], scope, shape, world, meshes, roundness);
+        content = convexSolid(solid.parts[0], scope, shape, world, footprints, meshes, roundness);
         for (size_t i = 1; i < solid.parts.size(); ++i) {
             const bool cuts = solid.op == Operator::Difference;
             ConvexContent part =
-                convexSolid(solid.parts[i], scope, shape, world, meshes, cuts ? Roundness::Coarse : roundness);
+                convexSolid(solid.parts[i], scope, shape, world, footprints, meshes, cuts ? Roundness::Coarse : roundness);
             content.unknown |= part.unknown;
             if (cuts)
                 content.subtract(part);
@@ -194,14 +195,20 @@ ConvexContent convexSolid(const SolidValue& solid, const Scope& scope, derive::S
         return content;
     }
     if (solid.kind == rules::Solid::Kind::Morph && (solid.amount <= 0 || solid.amount >= 1))
-        return convexSolid(solid.parts[solid.amount >= 1 ? 1 : 0], scope, shape, world, meshes, roundness);
-    const bool overPlan = scope.footprint != derive::none && solid.primitive && solid.primitive->plan != field::PlanUse::None;
-    if (solid.kind == rules::Solid::Kind::Primitive && solid.primitive->convexParts && !overPlan) {
+        return convexSolid(solid.parts[solid.amount >= 1 ? 1 : 0], scope, shape, world, footprints, meshes, roundness);
+    const bool overPlan = solid.primitive && (solid.primitive->plan == field::PlanUse::OwnHeight ||
+                                              (solid.primitive->plan != field::PlanUse::None && scope.footprint != derive::none));
+    if (overPlan) {
+        if (auto standing = convexOverPlan(solid, scope, shape, world, footprints)) return *std::move(standing);
+        content.unknown = true;
+        return content;
+    }
+    if (solid.kind == rules::Solid::Kind::Primitive && solid.primitive->convexParts) {
         for (const ConvexPart& part : solid.primitive->convexParts(scope.half(), argumentsOf(solid), roundness))
             addPart(placed(part, scope));
         return content;
     }
-    const ConvexPart part = isConvex(solid) && !overPlan ? touching(solid, scope, meshes) : ConvexPart{};
+    const ConvexPart part = isConvex(solid) ? touching(solid, scope, meshes) : ConvexPart{};
     content.unknown = part.empty();
     if (!part.empty()) addPart(part);
     return content;

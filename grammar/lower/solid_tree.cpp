@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "grammar/lower/plan_planes.h"
+
 namespace sgm::lower {
 namespace {
 
@@ -48,6 +50,9 @@ private:
     Pending solid(const SolidValue& value, ShapeId id);
     Pending primitive(const SolidValue& value, ShapeId id);
     Pending combination(const SolidValue& value, ShapeId id);
+    Pending overPlan(const SolidValue& value, ShapeId id);
+    uint32_t halfSpace(const field::HalfSpace& plane, ShapeId id);
+    uint32_t risen(const plan::Formula& formula, const PlanRise& rise, ShapeId id);
     uint32_t leaf(std::string_view primitive, std::vector<double> arguments, const derive::Scope& scope, ShapeId id);
     Pending inexact(Pending part, ShapeId id, std::string what);
     Result<SolidTree> compacted(uint32_t root) const;
@@ -108,7 +113,7 @@ Pending Collector::primitive(const SolidValue& value, ShapeId id) {
     if (name == "mesh")
         return inexact(emptySolid(), id, "is a mesh from a file, of which the model knows samples alone");
     if (value.primitive->plan == field::PlanUse::OwnHeight || (value.primitive->plan != field::PlanUse::None && scope.footprint != none))
-        return inexact(emptySolid(), id, fmt::format("is a {} over a footprint, which is not written yet", name));
+        return overPlan(value, id);
     if (name == "block") return single(leaf("cube", {}, scope, id));
     std::vector<double> arguments;
     for (size_t i = 0; i < value.args.size(); ++i) {
@@ -127,6 +132,43 @@ Pending Collector::primitive(const SolidValue& value, ShapeId id) {
     whole.size.y *= 2;
     whole.centre = scope.point({0, -1, 0});
     return {Op::Intersection, {leaf("ellipsoid", {}, whole, id), leaf("cube", {}, scope, id)}, true, 0};
+}
+
+/// A half-space given about the scope's centre.
+uint32_t Collector::halfSpace(const field::HalfSpace& plane, ShapeId id) {
+    const derive::Scope& scope = tree_.shapes[id].scope;
+    const field::HalfSpace world = inObject(plane, scope);
+    const Vec3d up = world.normal, side = std::abs(up.y) < .9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
+    const Vec3d x = normalized(cross(side, up));
+    derive::Scope placed;
+    placed.centre = scope.centre + up * (world.offset - dot(up, scope.centre));
+    placed.axes = {x, up, cross(x, up)};
+    return leaf("halfspace", {}, placed, id);
+}
+
+/// The formula of a footprint as booleans of half-spaces, between two heights.
+uint32_t Collector::risen(const plan::Formula& formula, const PlanRise& rise, ShapeId id) {
+    std::vector<uint32_t> made;
+    for (const plan::FormulaNode& node : formula.nodes) {
+        if (node.kind != plan::FormulaNode::Kind::Edge) {
+            const Op op = node.kind == plan::FormulaNode::Kind::Max ? Op::Intersection : Op::Union;
+            made.push_back(this->node({op, 0, {made[node.first], made[node.second]}}));
+            continue;
+        }
+        std::vector<uint32_t> planes;
+        for (const field::HalfSpace& plane : rise.sides[node.first]) planes.push_back(halfSpace(plane, id));
+        made.push_back(planes.size() == 1 ? planes[0] : this->node({Op::Intersection, 0, std::move(planes)}));
+    }
+    const uint32_t top = halfSpace({{0, 1, 0}, rise.top_m}, id), bottom = halfSpace({{0, -1, 0}, -rise.bottom_m}, id);
+    return node({Op::Intersection, 0, {top, bottom, made.back()}});
+}
+
+Pending Collector::overPlan(const SolidValue& value, ShapeId id) {
+    const auto planes = planesOver(value, tree_.shapes[id].scope, tree_.footprints);
+    const bool whole = planes && value.primitive->name != "flatRoof";
+    if (!whole) return inexact(emptySolid(), id, fmt::format("is a {}, which isn't written as planes", value.primitive->name));
+    const uint32_t outer = risen(planes->formula, planes->outer, id);
+    return single(planes->rooms ? node({Op::Difference, 0, {outer, risen(planes->formula, *planes->rooms, id)}}) : outer);
 }
 
 /// Not as a content of shapes: what is cut from nothing stays nothing, and what cuts may be nothing.

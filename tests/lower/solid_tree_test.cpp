@@ -141,6 +141,8 @@ TEST(SolidTree, IsTheInsideOfTheBuildings) {
     expectSameInside(example("examples/buildings/cloister.sgm"), 20000);
     expectSameInside(example("examples/buildings/hall.sgm", {{"peak", 0}}), 20000);
     expectSameInside(example("examples/buildings/terrace.sgm"), 20000);
+    expectSameInside(example("examples/buildings/villa.sgm"), 20000);
+    expectSameInside(example("examples/buildings/perimeter.sgm", {{"wing", 10}}), 2000);
     expectSameInside(example("examples/buildings/skyscraper.sgm", {{"peak", 0}}), 5000);
 }
 
