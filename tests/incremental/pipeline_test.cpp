@@ -95,8 +95,7 @@ INSTANTIATE_TEST_SUITE_P(Examples, Walk,
                          testing::Values("examples/tower.sgm", "examples/grotto.sgm", "examples/cumulus.sgm",
                                          "examples/buildings/hall.sgm", "examples/caves/branching.sgm",
                                          "tests/bench/scenes/buildings.sgm", "examples/morphs.sgm",
-                                         "examples/buildings/terrace.sgm", "examples/buildings/villa.sgm",
-                                         "examples/buildings/lsystem.sgm"));
+                                         "examples/buildings/terrace.sgm", "examples/buildings/villa.sgm"));
 
 /// 200 buildings, of which one is dragged, then all.
 TEST(District, OneBuildingIsDragged) {
