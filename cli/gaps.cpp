@@ -242,7 +242,11 @@ private:
 /// Follows boxes that touch from a floating piece through parts that the mesh lacks to something else.
 class ThinLinks {
 public:
-    ThinLinks(const Model& model, const std::vector<lower::ThinPart>& missing) : model_(model), shapes_(model.derivation.tree.shapes), missing_(missing) {}
+    ThinLinks(const Model& model, const std::vector<lower::ThinPart>& missing)
+        : model_(model), shapes_(model.derivation.tree.shapes), missing_(missing), isMissing_(shapes_.size(), false) {
+        for (size_t i = 0; i < missing_.size(); ++i)
+            if (shapeOf(i) != derive::none) isMissing_[shapeOf(i)] = true;
+    }
 
     /// The thinnest of the missing parts that hold the piece; null where none does.
     const lower::ThinPart* find(const mesh::Piece& piece) const {
@@ -264,26 +268,22 @@ public:
             open.pop_back();
             if (!thinnest || missing_[i].cell_m < thinnest->cell_m) thinnest = &missing_[i];
             for (derive::ShapeId s = 0; s < shapes_.size() && !holds; ++s)
-                holds = shapes_[s].solid != derive::none && s != shapeOf(i) && !own.contains(s) && !isMissing(s) && touch(s, shapeOf(i));
+                holds = shapes_[s].solid != derive::none && s != shapeOf(i) && !own.contains(s) && !isMissing_[s] && touch(s, shapeOf(i));
             reach(shapeOf(i));
         }
         return holds ? thinnest : nullptr;
     }
 
 private:
-    static constexpr size_t mostPairs = 20'000'000;
+    static constexpr size_t mostPairs = 2'000'000;
 
     derive::ShapeId shapeOf(size_t i) const { return model_.lowered->shapeOf[missing_[i].part]; }
-    bool isMissing(derive::ShapeId s) const {
-        for (size_t i = 0; i < missing_.size(); ++i)
-            if (shapeOf(i) == s) return true;
-        return false;
-    }
     bool touch(derive::ShapeId a, derive::ShapeId b) const { return derive::penetration(shapes_[a].scope, shapes_[b].scope) >= -derive::boxSlack_m; }
 
     const Model& model_;
     const std::vector<derive::Shape>& shapes_;
     const std::vector<lower::ThinPart>& missing_;
+    std::vector<bool> isMissing_;  ///< by shape
 };
 
 /// The field around a place, an eighth of a cell apart, and which of its nodes hang together.
@@ -295,8 +295,14 @@ public:
             const Vec3f p = at(i).as<float>();
             x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
         }
+        // What matters near here is a small part of a large field.
         eval::Workspace workspace;
-        eval::evaluate(tape, {x.data(), y.data(), z.data(), nodes}, values.data(), workspace);
+        eval::Tape local;
+        eval::Range range{};
+        const Box3f box = Box3d{low_, low_ + Vec3d{4, 4, 4} * cell_m}.as<float>();
+        eval::evaluateRanges(tape, {&box, 1}, &range, workspace);
+        eval::shorten(tape, 0, workspace, local);
+        eval::evaluate(local, {x.data(), y.data(), z.data(), nodes}, values.data(), workspace);
         for (const float v : values) solid_.push_back(v < 0);
     }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <numbers>
 #include <unordered_set>
 
@@ -18,7 +19,8 @@ constexpr double lineReach = 1.02;              ///< of a scope's half extent, s
 constexpr int halvings = 6;                     ///< of a step around a crossing
 constexpr int fewestCrossings = 3;              ///< of a part that isn't buried
 constexpr double leastMissing = 0.1;            ///< share of the surface that a part in the list lacks
-constexpr size_t partsPerStep = 16;             ///< of a parallel loop
+constexpr size_t partsPerGroup = 64;            ///< of a parallel loop
+constexpr size_t partsPerTape = 4;              ///< that are probed with one shortened tape
 
 /// Cells as large as the mesh's that hold triangles of thin parts.
 class Presence {
@@ -70,15 +72,62 @@ struct Rows {
     eval::Points points() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };
 
+/// A thin part, and the share of its surface that the mesh lacks; 0 where it is buried.
+struct Candidate {
+    OriginId part = 0;
+    const derive::Scope* scope = nullptr;
+    double missing = 0;
+};
+
+/// The box that a part is looked for in.
+Box3f boxOf(const derive::Scope& scope) {
+    Box3f box;
+    for (int corner = 0; corner < 8; ++corner)
+        box = hull(box, scope.point(Vec3d{corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0} * (1.1 * lineReach))
+                            .as<float>());
+    return box;
+}
+
+/// Orders parts so that halves of the list, and halves of these, lie beside each other. O(n log² n).
+void orderByPlace(std::span<Candidate> parts) {
+    if (parts.size() <= partsPerTape) return;
+    Box3d box;
+    for (const Candidate& c : parts) box = hull(box, c.scope->centre);
+    const Vec3d size = box.size();
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto middle = parts.begin() + static_cast<ptrdiff_t>(parts.size() / 2);
+    std::nth_element(parts.begin(), middle, parts.end(), [&](const Candidate& a, const Candidate& b) {
+        return std::pair(a.scope->centre[axis], a.part) < std::pair(b.scope->centre[axis], b.part);
+    });
+    orderByPlace(parts.first(parts.size() / 2));
+    orderByPlace(parts.subspan(parts.size() / 2));
+}
+
 /// One worker's.
 class Prober {
 public:
     Prober(const eval::Tape& tape, const Presence& presence, float cell_m)
         : tape_(tape), presence_(presence), cell_m_(static_cast<double>(cell_m)) {}
 
-    /// Share of a part's surface that the mesh lacks; 0 where it is buried.
-    double missing(OriginId part, const derive::Scope& scope) {
-        if (!shortenTo(scope)) return 0;
+    /// Looks for parts that lie beside each other. The tape is shortened to all, to halves of them, and so on, so that none is
+    /// asked with the whole tape.
+    void probe(std::span<Candidate> parts, size_t depth = 0) {
+        Box3f box;
+        for (const Candidate& c : parts) box = hull(box, boxOf(*c.scope));
+        const eval::Tape& above = depth == 0 ? tape_ : tapes_[depth - 1];
+        if (depth == tapes_.size()) tapes_.emplace_back();
+        if (!shortenTo(above, box, tapes_[depth])) return;
+        if (parts.size() > partsPerTape) {
+            probe(parts.first(parts.size() / 2), depth + 1);
+            probe(parts.subspan(parts.size() / 2), depth + 1);
+            return;
+        }
+        for (Candidate& c : parts) c.missing = missing(c.part, *c.scope, tapes_[depth]);
+    }
+
+private:
+    double missing(OriginId part, const derive::Scope& scope, const eval::Tape& tape) {
+        if (!shortenTo(tape, boxOf(scope), local_)) return 0;
         findCrossings(scope);
         if (inside_.empty()) return 0;
         owners_.resize(middles_.x.size());
@@ -91,20 +140,12 @@ public:
         return met < fewestCrossings ? 0 : static_cast<double>(lacks) / met;
     }
 
-private:
-    /// Leaves in local_ what matters near the scope; whether the surface may be there.
-    bool shortenTo(const derive::Scope& scope) {
-        Box3f box;
-        for (int corner = 0; corner < 8; ++corner)
-            box =
-                hull(box, scope
-                              .point(Vec3d{corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0} *
-                                     (1.1 * lineReach))
-                              .as<float>());
+    /// Leaves in `to` what matters in the box; whether the surface may be there.
+    bool shortenTo(const eval::Tape& from, const Box3f& box, eval::Tape& to) {
         eval::Range range{};
-        eval::evaluateRanges(tape_, {&box, 1}, &range, workspace_);
+        eval::evaluateRanges(from, {&box, 1}, &range, workspace_);
         if (range.lo > 0 || range.hi < 0) return false;
-        eval::shorten(tape_, 0, workspace_, local_);
+        eval::shorten(from, 0, workspace_, to);
         return true;
     }
 
@@ -152,6 +193,7 @@ private:
     const eval::Tape& tape_;
     const Presence& presence_;
     const double cell_m_;
+    std::deque<eval::Tape> tapes_;  ///< by depth; a deque, for references stay
     eval::Tape local_;
     eval::Workspace workspace_;
     Rows rows_, middles_;
@@ -178,36 +220,34 @@ double cellThatHolds(const derive::Scope& scope) {
 Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
                                                int threads, Progress* progress) {
-    std::vector<OriginId> thin;
+    std::vector<Candidate> thin;
     std::vector<bool> isThin(model.shapeOf.size());
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
         if (model.shapeOf[part] == derive::none) continue;
         const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[part]];
         if (shape.solid == derive::none || !(cellThatHolds(shape.scope) < static_cast<double>(cell_m))) continue;
-        thin.push_back(part);
+        thin.push_back({part, &shape.scope, 0});
         isThin[part] = true;
     }
     if (thin.empty() || mesh.isBare()) return std::vector<ThinPart>{};
     const Presence presence(mesh, isThin, cell_m);
-    std::vector<double> missing(thin.size());
+    orderByPlace(thin);
     std::vector<Prober> probers;
     probers.reserve(static_cast<size_t>(threadCount(threads)));
     for (int w = 0; w < threadCount(threads); ++w) probers.emplace_back(tape, presence, cell_m);
     if (progress) progress->begin("thin parts", thin.size());
-    parallelFor((thin.size() + partsPerStep - 1) / partsPerStep, threads, progress, [&](size_t step, int worker) {
-        for (size_t i = step * partsPerStep; i < std::min(thin.size(), (step + 1) * partsPerStep); ++i) {
-            const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[thin[i]]];
-            missing[i] = probers[static_cast<size_t>(worker)].missing(thin[i], shape.scope);
-            tick(progress);
-        }
+    const size_t groups = (thin.size() + partsPerGroup - 1) / partsPerGroup;
+    parallelFor(groups, threads, progress, [&](size_t group, int worker) {
+        const std::span<Candidate> all(thin);
+        const auto of = all.subspan(group * partsPerGroup, std::min(partsPerGroup, thin.size() - group * partsPerGroup));
+        probers[static_cast<size_t>(worker)].probe(of);
+        for (size_t i = 0; i < of.size(); ++i) tick(progress);
     });
     if (cancelled(progress)) return cancelledError();
+    std::sort(thin.begin(), thin.end(), [](const Candidate& a, const Candidate& b) { return a.part < b.part; });
     std::vector<ThinPart> found;
-    for (size_t i = 0; i < thin.size(); ++i) {
-        if (!(missing[i] > leastMissing)) continue;
-        const derive::Scope& scope = derivation.tree.shapes[model.shapeOf[thin[i]]].scope;
-        found.push_back({thin[i], minComponent(scope.size), cellThatHolds(scope), missing[i]});
-    }
+    for (const Candidate& c : thin)
+        if (c.missing > leastMissing) found.push_back({c.part, minComponent(c.scope->size), cellThatHolds(*c.scope), c.missing});
     return found;
 }
 

@@ -185,5 +185,18 @@ TEST(Order, NothingIsSharedWithTheEmptyShape) {
     EXPECT_FALSE(later.inside({0.8f, 0, 0}));
 }
 
+/// Parts of a turned wall share their dot products; turned by quarters they need none.
+TEST(Rotations, ATurnedWallHasTheTapeOfAStraightOne) {
+    const auto wall = [](const std::string& turn) {
+        return Lowered("grammar 1\nterminal brick, glass\nstart F -> Wall size (30, 20, .6)" + turn +
+                       "\nrule Wall -> split y { { ~3m: split x { { ~2m: brick | 1m: glass }* } }* }\n");
+    };
+    const Lowered straight = wall(""), quarter = wall(" turn 90deg"), turned = wall(" turn 30deg"), tilted = wall(" turn (10deg, 30deg, -5deg)");
+    EXPECT_GT(straight.tape().size(), 100u);
+    EXPECT_LE(quarter.tape().size(), straight.tape().size() + 2);
+    EXPECT_LE(turned.tape().size(), straight.tape().size() + 20);
+    EXPECT_LE(tilted.tape().size(), straight.tape().size() + 20);
+}
+
 }  // namespace
 }  // namespace sgm
