@@ -11,7 +11,6 @@ namespace {
 std::vector<float> valuesOf(const Program& program, const GpuQuery& query) {
     std::vector<uint32_t> words;
     const uint32_t start = eval::appendTape(*query.tape, words);
-    if (words.size() > TexelBuffer::mostTexels()) return {};
     const TexelBuffer texels = TexelBuffer::of(words, 4), single = texels.as(1);
     std::vector<std::array<float, 4>> positions;
     for (const Vec3f& p : query.points) positions.push_back({p.x, p.y, p.z, 0});

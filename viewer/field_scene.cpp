@@ -22,20 +22,10 @@ Result<std::shared_ptr<const FieldPrograms>> programsFor(const PreparedField& fi
     return std::make_shared<const FieldPrograms>(FieldPrograms{std::move(*shade), std::move(rays)});
 }
 
-namespace {
-
-/// Shaders where there are some and they can reach the whole field, else the processor.
-std::unique_ptr<Tracer> tracerFor(const std::shared_ptr<const PreparedField>& field, const FieldPrograms& programs, int threads) {
-    auto tracer = programs.rays ? gpuTracer(field, programs.rays) : nullptr;
-    return tracer ? std::move(tracer) : processorTracer(field, threads);
-}
-
-}  // namespace
-
 FieldScene::FieldScene(PreparedField field, std::shared_ptr<const FieldPrograms> programs, int threads)
     : field_(std::make_shared<const PreparedField>(std::move(field))),
       programs_(std::move(programs)),
-      tracer_(tracerFor(field_, *programs_, threads)),
+      tracer_(programs_->rays ? gpuTracer(field_, programs_->rays) : processorTracer(field_, threads)),
       materials_(uploadMaterials(field_->materials)),
       threads_(threads) {}
 

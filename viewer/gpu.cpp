@@ -195,11 +195,6 @@ TexelBuffer TexelBuffer::of(std::span<const uint32_t> words, int wordsPerTexel) 
     texels.buffer_ = std::make_shared<const Buffer>(Buffer::of(words));
     return texels.as(wordsPerTexel);
 }
-size_t TexelBuffer::mostTexels() {
-    GLint most = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-    return static_cast<size_t>(most);
-}
 TexelBuffer TexelBuffer::as(int wordsPerTexel) const {
     TexelBuffer texels;
     texels.buffer_ = buffer_;

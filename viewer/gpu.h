@@ -116,8 +116,6 @@ class TexelBuffer {
 public:
     /// `wordsPerTexel` 1 (R32UI) or 4 (RGBA32UI).
     static TexelBuffer of(std::span<const uint32_t> words, int wordsPerTexel);
-    /// How many texels shaders can reach (GL_MAX_TEXTURE_BUFFER_SIZE): reads beyond give zeros.
-    static size_t mostTexels();
     /// The same memory in other texels.
     TexelBuffer as(int wordsPerTexel) const;
     /// Makes it the texture of a unit.

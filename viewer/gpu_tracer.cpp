@@ -27,16 +27,11 @@ public:
                            std::bit_cast<uint32_t>(tree.ranges[i].hi), 0});
         if (words.empty()) words.resize(4);
         if (leaves.empty()) leaves.resize(4);
-        fits_ = std::max(words.size(), tree.nodes.size()) <= TexelBuffer::mostTexels();
-        if (!fits_) return;
         words_ = TexelBuffer::of(words, 4);
         single_ = words_.as(1);
         nodes_ = TexelBuffer::of(tree.nodes, 1);
         leaves_ = TexelBuffer::of(leaves, 4);
     }
-
-    /// False where shaders can't reach all of the tapes.
-    bool fits() const { return fits_; }
 
     void look(const PictureOptions& options, double fine) override {
         const float side = field_->sideOf(options.camera.eye.as<float>());
@@ -96,7 +91,6 @@ private:
 
     std::shared_ptr<const PreparedField> field_;
     std::shared_ptr<const RayPrograms> programs_;
-    bool fits_ = true;
     TexelBuffer words_, single_, nodes_, leaves_;              // the tapes by instruction and by word; the tree
     size_t tracePiece_ = 2048, lightPiece_[2] = {2048, 2048};  // jobs a dispatch
 };
@@ -124,8 +118,7 @@ Result<std::shared_ptr<const RayPrograms>> rayProgramsFor(const PreparedField& f
 
 std::unique_ptr<Tracer> gpuTracer(std::shared_ptr<const PreparedField> field,
                                   std::shared_ptr<const RayPrograms> programs) {
-    auto tracer = std::make_unique<GpuTracer>(std::move(field), std::move(programs));
-    return tracer->fits() ? std::move(tracer) : nullptr;
+    return std::make_unique<GpuTracer>(std::move(field), std::move(programs));
 }
 
 /// Every piece takes about 15 ms, so that no draw holds the screen and nothing waits long for a cancel.

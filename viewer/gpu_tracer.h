@@ -24,7 +24,7 @@ struct RayPrograms {
 Result<std::shared_ptr<const RayPrograms>> rayProgramsFor(const PreparedField& field,
                                                           std::shared_ptr<const RayPrograms> before);
 
-/// `programs` must cover the field. Null where shaders of this driver can't reach all of its tapes.
+/// `programs` must cover the field.
 std::unique_ptr<Tracer> gpuTracer(std::shared_ptr<const PreparedField> field,
                                   std::shared_ptr<const RayPrograms> programs);
 

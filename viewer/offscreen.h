@@ -163,8 +163,7 @@ Status writeExr(const Layers& layers, const std::vector<std::string>& names,
 
 /// Values of the GLSL interpreter at points, read back; for tests that compare with the CPU.
 Result<std::vector<float>> evaluateOnGpu(const eval::Tape& tape, const std::vector<Vec3f>& points);
-/// The same for several tapes by one shader: a list of values for each, empty where the tape is larger than what shaders of
-/// this driver can reach.
+/// The same for several tapes by one shader: a list of values for each.
 struct GpuQuery {
     const eval::Tape* tape;
     std::vector<Vec3f> points;
