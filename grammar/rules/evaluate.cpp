@@ -170,6 +170,14 @@ Value applyFunction(Fn fn, std::span<const Value> a) {
             return Value::number(std::sin(x));
         case Fn::Cos:
             return Value::number(std::cos(x));
+        case Fn::Tan:
+            return Value::number(std::tan(x));
+        case Fn::Atan2:
+            return Value::number(std::atan2(x, y), Unit::Angle);
+        case Fn::Pow: {
+            const double power = std::pow(x, y);
+            return Value::number(std::isfinite(power) ? power : 0);
+        }
         case Fn::Clamp:
             return componentwise(componentwise(a[0], a[1], larger, either), a[2], smaller, either);
         case Fn::Lerp:

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 #include <array>
 #include <cmath>
 
@@ -133,6 +134,9 @@ Typed Checker::number(const Written& e) {
     Value value = Value::number(e.number);
     value.integer = e.unit.empty() && e.span.text().find_first_of(".eE") == std::string_view::npos;
     if (e.unit == "m") value.units[0] = Unit::Metre;
+    if (e.unit == "km") value = Value::number(e.number * 1000, Unit::Metre);
+    if (e.unit == "cm") value = Value::number(e.number / 100, Unit::Metre);
+    if (e.unit == "mm") value = Value::number(e.number / 1000, Unit::Metre);
     if (e.unit == "/m") value.units[0] = Unit::PerMetre;
     if (e.unit == "deg") value = Value::number(radians(e.number), Unit::Angle);
     if (e.unit == "%") value = Value::number(e.number / 100, Unit::Share);
@@ -200,6 +204,7 @@ Typed Checker::name(Place& place, const Written& e) {
         result.type = Type::unknown();
         return result;
     }
+    if (e.text == "pi") return makeTyped(e.span, Value::number(std::numbers::pi));
     return unknownName(place, e);
 }
 

@@ -7,7 +7,7 @@ namespace sgm::rules {
 namespace {
 
 constexpr uint8_t many = 16;
-constexpr std::array<Function, 17> table = {{
+constexpr std::array<Function, 20> table = {{
     {"min", Fn::Min, 1, many, Signature::Alike, "the least of its arguments, or of one vector's components"},
     {"max", Fn::Max, 1, many, Signature::Alike, "the greatest of its arguments, or of one vector's components"},
     {"abs", Fn::Abs, 1, 1, Signature::Alike, "without its sign"},
@@ -18,6 +18,9 @@ constexpr std::array<Function, 17> table = {{
     {"sqrt", Fn::Sqrt, 1, 1, Signature::Plain, "square root; 0 of a negative number"},
     {"sin", Fn::Sin, 1, 1, Signature::Angle, "sine of an angle"},
     {"cos", Fn::Cos, 1, 1, Signature::Angle, "cosine of an angle"},
+    {"tan", Fn::Tan, 1, 1, Signature::Angle, "tangent of an angle"},
+    {"atan2", Fn::Atan2, 2, 2, Signature::Alike, "atan2(rise, run): the angle whose tangent is rise / run, from -180deg to 180deg"},
+    {"pow", Fn::Pow, 2, 2, Signature::Plain, "pow(x, y): x to the power of y; 0 where that is no number"},
     {"lerp", Fn::Lerp, 3, 3, Signature::Lerp, "lerp(a, b, t): from a (t = 0) to b (t = 1)"},
     {"if", Fn::If, 3, 3, Signature::If, "if(condition, a, b): a where the condition holds, else b"},
     {"rotX", Fn::RotX, 1, 1, Signature::Angle, "rotation about x"},

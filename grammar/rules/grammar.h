@@ -79,6 +79,9 @@ enum class Fn : uint32_t {
     Sqrt,
     Sin,
     Cos,
+    Tan,
+    Atan2,  ///< an angle
+    Pow,
     Clamp,
     Lerp,
     If,

@@ -253,11 +253,11 @@ private:
     }
 
     void checkUnit(Expr& number) {
-        constexpr std::string_view units[] = {"", "m", "deg", "%", "/m"};
+        constexpr std::string_view units[] = {"", "m", "km", "cm", "mm", "deg", "%", "/m"};
         if (std::find(std::begin(units), std::end(units), number.unit) != std::end(units)) return;
-        std::string mend = "a number is plain or has m, deg, % or /m";
-        if (number.unit == "cm") mend = "write " + quoted(plain(number.number / 100) + "m");
-        if (number.unit == "mm") mend = "write " + quoted(plain(number.number / 1000) + "m");
+        std::string mend = "a number is plain or has m, km, cm, mm, deg, % or /m";
+        if (number.unit == "ft") mend = "write " + quoted(plain(number.number * .3048) + "m");
+        if (number.unit == "in") mend = "write " + quoted(plain(number.number * .0254) + "m");
         if (number.unit == "rad")
             mend = "angles are in degrees: write " + quoted(plain(number.number * 180 / std::numbers::pi) + "deg");
         cursor_.complain(number.span, "there is no unit " + quoted(number.unit), mend);
