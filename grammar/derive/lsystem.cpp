@@ -120,7 +120,9 @@ Error errorOf(Error::Kind kind, const rules::Lsystem& lsystem, std::string_view 
 
 Result<std::string> rewritten(const rules::Lsystem& lsystem, const Place& place) {
     const double passes = std::floor(number(lsystem.passes, place));
+    constexpr size_t lettersPerTurn = 64;  // of the derivation's budget, which also looks for a cancel
     std::vector<Letter> letters, next;
+    size_t read = 0;
     const uint64_t seed = combine(place.key, hashText(lsystem.name));
     for (size_t i = 0; i < lsystem.axiom.size(); ++i) letters.push_back({lsystem.axiom[i], combine(seed, i)});
     for (double pass = 0; pass < passes; ++pass) {
@@ -136,7 +138,8 @@ Result<std::string> rewritten(const rules::Lsystem& lsystem, const Place& place)
             for (size_t i = 0; i < production->text.size(); ++i) next.push_back({production->text[i], combine(letter.key, i + 1)});
             if (next.size() > mostLetters)
                 return errorOf(Error::Kind::Budget, lsystem, fmt::format("has more than {} letters after {} passes; give it fewer", mostLetters, pass + 1));
-            if (place.builder && !place.builder->work()) return errorOf(Error::Kind::Budget, lsystem, "takes too long");
+            if (++read % lettersPerTurn == 0 && place.builder && !place.builder->work())
+                return errorOf(Error::Kind::Budget, lsystem, "takes too long");
         }
         std::swap(letters, next);
         if (!changed) break;
