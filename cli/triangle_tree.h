@@ -1,5 +1,6 @@
 // The nearest triangle of a mesh to a point.
-// Enters: a flat mesh. Leaves: nearest points, among the surfaces that the caller accepts. Assumes that the mesh outlives the tree.
+// Enters: a flat mesh. Leaves: nearest points, among the surfaces that the caller accepts. Assumes that the mesh
+// outlives the tree.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,8 @@ namespace sgm::cli {
 /// The point of the triangle a b c that is nearest to p (Ericson, "Real-Time Collision Detection", 2005, 5.1.5).
 inline Vec3d closestPoint(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
     const Vec3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-    const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+    const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+                 d6 = dot(ac, cp);
     if (d1 <= 0 && d2 <= 0) return a;
     if (d3 >= 0 && d4 <= d3) return b;
     if (d6 >= 0 && d5 <= d6) return c;
@@ -40,7 +42,8 @@ public:
     /// No surface: of a box that holds several.
     static constexpr uint32_t mixed = 0xffffffffu;
 
-    explicit TriangleTree(const mesh::FlatMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()), surfaces_(mesh.triangles.size()) {
+    explicit TriangleTree(const mesh::FlatMesh& mesh)
+        : mesh_(mesh), order_(mesh.triangles.size()), surfaces_(mesh.triangles.size()) {
         mesh::Components surfaces(mesh.positions.size());
         for (const mesh::Triangle& t : mesh.triangles) surfaces.join(surfaces.join(t.x, t.y), t.z);
         for (uint32_t i = 0; i < surfaces_.size(); ++i) surfaces_[i] = surfaces.find(mesh.triangles[i].x);
@@ -113,10 +116,11 @@ private:
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         const auto middle = [&](uint32_t t) { return corner(t, 0)[axis] + corner(t, 1)[axis] + corner(t, 2)[axis]; };
         const uint32_t half = begin + (end - begin) / 2;
-        std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end, [&](uint32_t a, uint32_t b) {
-            const double m = middle(a), n = middle(b);
-            return m != n ? m < n : a < b;
-        });
+        std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end,
+                         [&](uint32_t a, uint32_t b) {
+                             const double m = middle(a), n = middle(b);
+                             return m != n ? m < n : a < b;
+                         });
         build(begin, half);
         const uint32_t right = build(half, end);
         nodes_[id].right = right;

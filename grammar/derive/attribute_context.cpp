@@ -29,7 +29,8 @@ void AttributeContext::setFootprint(plan::Footprint footprint, syntax::SourceSpa
     out.moved_m += out.scope.axes * Vec3d{centre.x, 0, centre.z};
     out.scope.size.x = box.size().x;
     out.scope.size.z = box.size().z;
-    const auto index = place.builder->tree().footprints.put(plan::placed(footprint, {1, 1}, {-centre.x, -centre.z}), out.scope.half());
+    const auto index =
+        place.builder->tree().footprints.put(plan::placed(footprint, {1, 1}, {-centre.x, -centre.z}), out.scope.half());
     if (!index.ok()) return fail(index.error().message, span);
     out.scope.footprint = *index;
 }

@@ -43,15 +43,27 @@ public:
     void read(char letter) {
         switch (letter) {
             case 'F':
-            case 'G': return draw();
+            case 'G':
+                return draw();
             case 'f':
-            case 'g': return jump();
-            case '+': heading_ += angle_; return;
-            case '-': heading_ -= angle_; return;
-            case '|': heading_ += pi; return;
-            case '[': kept_.push_back({at_, heading_, step_m_}); return;
-            case ']': return recall();
-            default: return tag(letter);
+            case 'g':
+                return jump();
+            case '+':
+                heading_ += angle_;
+                return;
+            case '-':
+                heading_ -= angle_;
+                return;
+            case '|':
+                heading_ += pi;
+                return;
+            case '[':
+                kept_.push_back({at_, heading_, step_m_});
+                return;
+            case ']':
+                return recall();
+            default:
+                return tag(letter);
         }
     }
 
@@ -98,8 +110,10 @@ private:
         plan::Ring ring = std::exchange(ring_, {});
         if (ring.points.size() < 3) return;
         const bool isClosed = length(ring.points.back() - ring.points.front()) < near_m;
-        if (isClosed) ring.points.pop_back();
-        else ring.edges.emplace_back();  // the wall that encloses it
+        if (isClosed)
+            ring.points.pop_back();
+        else
+            ring.edges.emplace_back();  // the wall that encloses it
         if (ring.points.size() < 3) return;
         plan::Polygon& polygon = drawn_.polygons.emplace_back();
         polygon.outer = plan::signedArea(ring) < 0 ? plan::reversed(ring) : std::move(ring);
@@ -135,9 +149,12 @@ Result<std::string> rewritten(const rules::Lsystem& lsystem, const Place& place)
                 continue;
             }
             changed = true;
-            for (size_t i = 0; i < production->text.size(); ++i) next.push_back({production->text[i], combine(letter.key, i + 1)});
+            for (size_t i = 0; i < production->text.size(); ++i)
+                next.push_back({production->text[i], combine(letter.key, i + 1)});
             if (next.size() > mostLetters)
-                return errorOf(Error::Kind::Budget, lsystem, fmt::format("has more than {} letters after {} passes; give it fewer", mostLetters, pass + 1));
+                return errorOf(
+                    Error::Kind::Budget, lsystem,
+                    fmt::format("has more than {} letters after {} passes; give it fewer", mostLetters, pass + 1));
             if (++read % lettersPerTurn == 0 && place.builder && !place.builder->work())
                 return errorOf(Error::Kind::Budget, lsystem, "takes too long");
         }
@@ -156,7 +173,8 @@ Result<plan::Footprint> drawOutline(const rules::Lsystem& lsystem, const Place& 
     for (const char letter : *letters) turtle.read(letter);
     auto outline = plan::resolved(turtle.take());
     if (!outline.ok()) return errorOf(outline.error().kind, lsystem, "draws no plan: " + outline.error().message);
-    if (outline->empty()) return errorOf(Error::Kind::Input, lsystem, "draws no outline with an area: its walls lie on one line");
+    if (outline->empty())
+        return errorOf(Error::Kind::Input, lsystem, "draws no outline with an area: its walls lie on one line");
     return std::move(*outline);
 }
 

@@ -43,8 +43,10 @@ std::optional<Scope> PartsContext::cut(int axis, double low_m, double high_m) {
     part.footprint = none;
     if (clipped.empty()) return std::nullopt;
     const Vec3d h = part.half();
-    const plan::Footprint box = plan::footprintOf(plan::polygonOf({{-h.x, -h.z}, {h.x, -h.z}, {h.x, h.z}, {-h.x, h.z}}));
-    const bool isBox = clipped.edgeCount() == 4 && std::abs(area(clipped) - area(box)) < 1e-9 * area(box) && bounds(clipped).size() == bounds(box).size();
+    const plan::Footprint box =
+        plan::footprintOf(plan::polygonOf({{-h.x, -h.z}, {h.x, -h.z}, {h.x, h.z}, {-h.x, h.z}}));
+    const bool isBox = clipped.edgeCount() == 4 && std::abs(area(clipped) - area(box)) < 1e-9 * area(box) &&
+                       bounds(clipped).size() == bounds(box).size();
     return isBox ? part : over(part, clipped, syntax::SourceSpan{});
 }
 

@@ -10,7 +10,8 @@ namespace sgm::derive {
 
 class PartsContext {
 public:
-    PartsContext(Interpreter& interpreter, const Interpreter::Frame& frame) : interpreter_(interpreter), frame_(frame) {}
+    PartsContext(Interpreter& interpreter, const Interpreter::Frame& frame)
+        : interpreter_(interpreter), frame_(frame) {}
 
     /// The scope that the operation cuts.
     const Scope& scope() const { return frame_.place.scope; }
@@ -18,8 +19,8 @@ public:
     rules::Value evaluate(const rules::Expr& expr, uint64_t key) const;
     /// What a local of the block (the `i` of a repetition) stands for from now on.
     void setLocal(uint32_t local, rules::Value value) { interpreter_.locals_[local] = std::move(value); }
-    /// The part of the scope between two places along an axis, metres from its low end; the footprint is clipped, but keeps
-    /// what stands out of the scope at its ends. Nothing where no footprint is left.
+    /// The part of the scope between two places along an axis, metres from its low end; the footprint is clipped, but
+    /// keeps what stands out of the scope at its ends. Nothing where no footprint is left.
     std::optional<Scope> cut(int axis, double low_m, double high_m);
     /// The scope's footprint in metres about its centre; the rectangle where it has none.
     plan::Footprint footprint() const;

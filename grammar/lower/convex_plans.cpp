@@ -14,7 +14,8 @@ using mesh::ConvexPolyhedron;
 constexpr size_t mostPieces = 512;
 
 /// The formula on polyhedra: minima unite, what is there already is taken off first, and maxima intersect.
-std::optional<ConvexContent> carriedOut(const plan::Formula& formula, const PlanRise& rise, const Scope& scope, ShapeId shape, const Box3d& world) {
+std::optional<ConvexContent> carriedOut(const plan::Formula& formula, const PlanRise& rise, const Scope& scope,
+                                        ShapeId shape, const Box3d& world) {
     using Kind = plan::FormulaNode::Kind;
     const ConvexPart slab{inObject({{0, 1, 0}, rise.top_m}, scope), inObject({{0, -1, 0}, -rise.bottom_m}, scope)};
     std::vector<ConvexContent> contents;
@@ -44,8 +45,8 @@ std::optional<ConvexContent> carriedOut(const plan::Formula& formula, const Plan
 
 }  // namespace
 
-std::optional<ConvexContent> convexOverPlan(const derive::SolidValue& solid, const Scope& scope, ShapeId shape, const Box3d& world,
-                                            const derive::Footprints& footprints) {
+std::optional<ConvexContent> convexOverPlan(const derive::SolidValue& solid, const Scope& scope, ShapeId shape,
+                                            const Box3d& world, const derive::Footprints& footprints) {
     const auto planes = planesOver(solid, scope, footprints);
     if (!planes) return std::nullopt;
     auto content = carriedOut(planes->formula, planes->outer, scope, shape, world);

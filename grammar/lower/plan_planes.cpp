@@ -36,7 +36,8 @@ HalfSpace wall(const plan::PlacedEdge& edge, double out) {
     return {{n.x, 0, n.z}, dot(n, edge.from) + out};
 }
 
-/// A plane that rises inward by `pitch` through the line `inset` metres inside an edge and `rise` metres above the eaves.
+/// A plane that rises inward by `pitch` through the line `inset` metres inside an edge and `rise` metres above the
+/// eaves.
 struct Slope {
     double pitch, inset = 0, rise = 0;
 };
@@ -55,7 +56,8 @@ std::vector<bool> edgesAtReflexCorners(const Plan& plan) {
         const plan::Polygon& polygon = plan.footprint.polygons[edge.polygon];
         const size_t n = edge.ring == 0 ? polygon.outer.size() : polygon.courts[edge.ring - 1].size();
         const size_t next = edge.index + 1 == n ? i + 1 - n : i + 1;
-        if (cross(edge.to - edge.from, plan.edges[next].to - plan.edges[next].from) <= 0) reflex[i] = reflex[next] = true;
+        if (cross(edge.to - edge.from, plan.edges[next].to - plan.edges[next].from) <= 0)
+            reflex[i] = reflex[next] = true;
     }
     return reflex;
 }
@@ -81,7 +83,8 @@ struct Pitched {
     double overhang, eaves;  ///< metres; the height of the slopes over the outline, about the scope's centre
 };
 
-PlanRise pitchedRise(const Plan& plan, const Scope& scope, const Pitched& roof, const std::vector<bool>& gables, double bottom) {
+PlanRise pitchedRise(const Plan& plan, const Scope& scope, const Pitched& roof, const std::vector<bool>& gables,
+                     double bottom) {
     PlanRise rise{bottom, scope.half().y, {}};
     for (size_t i = 0; i < plan.edges.size(); ++i) {
         ConvexPart& side = rise.sides.emplace_back(ConvexPart{wall(plan.edges[i], roof.overhang)});
@@ -99,9 +102,11 @@ HalfSpace inObject(HalfSpace plane, const Scope& scope) {
     return plane;
 }
 
-std::optional<PlanPlanes> planesOver(const derive::SolidValue& solid, const Scope& scope, const derive::Footprints& footprints) {
+std::optional<PlanPlanes> planesOver(const derive::SolidValue& solid, const Scope& scope,
+                                     const derive::Footprints& footprints) {
     const std::string_view name = solid.primitive->name;
-    const bool isPrism = name == "block" || name == "flatRoof", hasGables = name == "gableRoof" || name == "gambrelRoof";
+    const bool isPrism = name == "block" || name == "flatRoof",
+               hasGables = name == "gableRoof" || name == "gambrelRoof";
     const bool isBroken = name == "mansardRoof" || name == "gambrelRoof";
     if (!isPrism && !isBroken && name != "gableRoof" && name != "hipRoof") return std::nullopt;
     const double half = scope.half().y;

@@ -1,6 +1,6 @@
 // Solids over footprints as half-spaces: what polyhedra and exact solids are made from.
-// Enters: a SolidValue of a row over a footprint, and its scope. Leaves: half-spaces joined by the footprint's formula. Assumes
-// sound footprints.
+// Enters: a SolidValue of a row over a footprint, and its scope. Leaves: half-spaces joined by the footprint's formula.
+// Assumes sound footprints.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace sgm::lower {
 
-/// What rises over the edges of a footprint between two heights, about the scope's centre and in its axes. It is the formula
-/// with, for an edge, what its planes share.
+/// What rises over the edges of a footprint between two heights, about the scope's centre and in its axes. It is the
+/// formula with, for an edge, what its planes share.
 struct PlanRise {
     double bottom_m = 0, top_m = 0;
     std::vector<field::ConvexPart> sides;  ///< by edge
@@ -24,7 +24,8 @@ struct PlanPlanes {
 };
 
 /// The planes of a block, a hip, gable, mansard, gambrel or flat roof (its slab alone); nothing for other rows.
-std::optional<PlanPlanes> planesOver(const derive::SolidValue& solid, const derive::Scope& scope, const derive::Footprints& footprints);
+std::optional<PlanPlanes> planesOver(const derive::SolidValue& solid, const derive::Scope& scope,
+                                     const derive::Footprints& footprints);
 
 /// A half-space of a scope's axes about its centre, in the object's frame.
 field::HalfSpace inObject(field::HalfSpace plane, const derive::Scope& scope);

@@ -64,7 +64,8 @@ void checkClad(OperationChecker& checker, const syntax::Attribute& written) {
         checker.error(e.span, fmt::format("'clad' takes an ornament or a kifs, not '{}'", e.span.text()),
                       "write 'clad ornament(…)', or name a terminal that is one");
     } else if (good && fractal && !isDistance(checker, given)) {
-        checker.error(e.span, "a kifs with a jump or a bailout has no distance to clad with", "leave 'form' and 'bailout' out");
+        checker.error(e.span, "a kifs with a jump or a bailout has no distance to clad with",
+                      "leave 'form' and 'bailout' out");
     } else if (good) {
         out.pattern = std::make_shared<Solid>(fractal ? OperationChecker::solidOfRow(e.span, ornamentRow()) : given);
         if (fractal) std::copy_n(given.args.begin(), static_cast<size_t>(Parameter::Bay), out.pattern->args.begin());
@@ -73,8 +74,10 @@ void checkClad(OperationChecker& checker, const syntax::Attribute& written) {
 }
 
 void applyClad(AttributeContext& context, const Attribute& attribute) {
-    const rules::Symbol* named = attribute.symbol == rules::none ? nullptr : &context.grammar().symbols[attribute.symbol];
-    context.out.extras.clad = {{context.solid(*attribute.pattern), named ? named->name : "", named ? named->material : rules::none}};
+    const rules::Symbol* named =
+        attribute.symbol == rules::none ? nullptr : &context.grammar().symbols[attribute.symbol];
+    context.out.extras.clad = {
+        {context.solid(*attribute.pattern), named ? named->name : "", named ? named->material : rules::none}};
 }
 
 Expr component(const Expr& vector, size_t i) {
@@ -85,7 +88,8 @@ Expr component(const Expr& vector, size_t i) {
     return e;
 }
 
-/// What a detail of `clad` sets: `count` parameters from `first` on, one a component; 0: the whole vector is one parameter.
+/// What a detail of `clad` sets: `count` parameters from `first` on, one a component; 0: the whole vector is one
+/// parameter.
 struct Detail {
     Parameter first;
     size_t count;
@@ -108,9 +112,11 @@ void checkDetail(OperationChecker& checker, const syntax::Attribute& written, co
     const size_t given = one ? 1 : t.like.count;
     bool good = !t.known || (t.numeric() && given == (detail.count == 0 ? 3 : 2)) || (t.known && one && detail.one);
     for (size_t i = 0; t.known && i < given; ++i)
-        good = good && (t.like.units[i] == Unit::None || t.like.units[i] == (detail.count == 0 ? Unit::Share : Unit::Metre));
+        good = good &&
+               (t.like.units[i] == Unit::None || t.like.units[i] == (detail.count == 0 ? Unit::Share : Unit::Metre));
     if (!good) {
-        checker.error(written.args[0].span, fmt::format("'{}' takes {}, not {}", written.name.text, detail.wants, describe(t)),
+        checker.error(written.args[0].span,
+                      fmt::format("'{}' takes {}, not {}", written.name.text, detail.wants, describe(t)),
                       std::string(detail.fix));
         return;
     }
@@ -120,27 +126,32 @@ void checkDetail(OperationChecker& checker, const syntax::Attribute& written, co
         cladding->pattern->args[index] = std::move(e);
     };
     const auto first = static_cast<size_t>(detail.first);
-    if (detail.count == 0 || one) set(first, value.expr);
+    if (detail.count == 0 || one)
+        set(first, value.expr);
     else
         for (size_t i = 0; i < detail.count; ++i) set(first + i, component(value.expr, i));
 }
 
 void checkThickness(OperationChecker& checker, const syntax::Attribute& written) {
-    checkDetail(checker, written, {Parameter::Wall, 2, true, "a length, or two: of walls and below the top",
-                                   "write 'thickness .4m' or 'thickness (.4m, .1m)'"});
+    checkDetail(checker, written,
+                {Parameter::Wall, 2, true, "a length, or two: of walls and below the top",
+                 "write 'thickness .4m' or 'thickness (.4m, .1m)'"});
 }
 void checkTile(OperationChecker& checker, const syntax::Attribute& written) {
     checkDetail(checker, written, {Parameter::Bay, 2, false, "two lengths: along and up", "write 'tile (6m, 3m)'"});
 }
 void checkMirror(OperationChecker& checker, const syntax::Attribute& written) {
-    checkDetail(checker, written, {Parameter::Mirror, 0, false, "three plain numbers", "write 'mirror (.25, .125, .4)'"});
+    checkDetail(checker, written,
+                {Parameter::Mirror, 0, false, "three plain numbers", "write 'mirror (.25, .125, .4)'"});
 }
 
 }  // namespace
 
 constinit const Operation clad{
     .name = "clad",
-    .doc = "Dresses all that a shape holds: inner + (outer & pattern), where outer is what it holds and inner is that less the thickness.",
+    .doc =
+        "Dresses all that a shape holds: inner + (outer & pattern), where outer is what it holds and inner is that "
+        "less the thickness.",
     .example = "cube clad ornate thickness .4m",
     .arguments = cladArguments,
     .phase = Phase::Whole,

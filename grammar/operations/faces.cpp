@@ -1,6 +1,6 @@
 // faces: takes a block apart into plates along its edges, a top, a bottom and a core (the component split of CGA shape
-// grammars: Müller et al., "Procedural modeling of buildings", 2006, 3.3), as solids: the plates are mitred, so that corners
-// neither overlap nor gape.
+// grammars: Müller et al., "Procedural modeling of buildings", 2006, 3.3), as solids: the plates are mitred, so that
+// corners neither overlap nor gape.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,8 +37,9 @@ std::shared_ptr<Parts> checkFaces(OperationChecker& checker, const syntax::Attri
     out->span = written.span;
     out->operation = written.operation;
     checker.beginDraws("faces");
-    out->args.push_back(written.args.empty() ? rules::makeConstant(written.span, rules::Value::number(.2, rules::Unit::Metre))
-                                             : checker.expression(written.args[0], rules::Want::Length, "'faces'"));
+    out->args.push_back(written.args.empty()
+                            ? rules::makeConstant(written.span, rules::Value::number(.2, rules::Unit::Metre))
+                            : checker.expression(written.args[0], rules::Want::Length, "'faces'"));
     if (const auto value = checker.atDefaults(out->args[0]); value && !(value->num() > 0))
         checker.error(out->args[0].span, "the plates of 'faces' are thicker than 0");
     for (const syntax::Case& c : written.cases) {
@@ -61,14 +62,16 @@ std::shared_ptr<Parts> checkFaces(OperationChecker& checker, const syntax::Attri
 }
 
 const Part* findPart(const Parts& faces, std::string_view label) {
-    const auto part = std::find_if(faces.parts.begin(), faces.parts.end(), [&](const Part& p) { return p.label == label; });
+    const auto part =
+        std::find_if(faces.parts.begin(), faces.parts.end(), [&](const Part& p) { return p.label == label; });
     return part == faces.parts.end() ? nullptr : &*part;
 }
 
 /// The first part whose word the edge is called by; top, bottom and rest are no words for edges.
 const Part* partOf(const Parts& faces, const plan::Footprint& footprint, const PlacedEdge& edge) {
     for (const Part& part : faces.parts)
-        if (part.label != "top" && part.label != "bottom" && part.label != "rest" && isEdgeCalled(footprint, edge, part.label))
+        if (part.label != "top" && part.label != "bottom" && part.label != "rest" &&
+            isEdgeCalled(footprint, edge, part.label))
             return &part;
     return nullptr;
 }
@@ -81,20 +84,29 @@ struct Levels {
 class Faces {
 public:
     Faces(PartsContext& context, const Parts& faces, double thickness_m, plan::Plates plates)
-        : context_(context), faces_(faces), footprint_(context.footprint()), edges_(plan::edgesOf(footprint_)), thickness_m_(thickness_m), plates_(std::move(plates)) {}
+        : context_(context),
+          faces_(faces),
+          footprint_(context.footprint()),
+          edges_(plan::edgesOf(footprint_)),
+          thickness_m_(thickness_m),
+          plates_(std::move(plates)) {}
 
     bool run() {
         plan::Footprint core = std::move(plates_.core);
         for (plan::Plate& plate : plates_.plates) {
             const Part* part = partOf(faces_, footprint_, edges_[plate.edge]);
             if (part && !runSide(*part, plate)) return false;
-            if (!part) core = core.empty() ? std::move(plate.footprint) : plan::boolean(plan::Boolean::Union, core, plate.footprint);
+            if (!part)
+                core = core.empty() ? std::move(plate.footprint)
+                                    : plan::boolean(plan::Boolean::Union, core, plate.footprint);
         }
         if (core.empty()) return true;
-        const Part *top = findPart(faces_, "top"), *bottom = findPart(faces_, "bottom"), *rest = findPart(faces_, "rest");
+        const Part *top = findPart(faces_, "top"), *bottom = findPart(faces_, "bottom"),
+                   *rest = findPart(faces_, "rest");
         const double half = context_.scope().size.y / 2, plate_m = std::min(thickness_m_, half);
         const Levels inner{bottom ? -half + plate_m : -half, top ? half - plate_m : half};
-        return (!top || runLevel(*top, core, {inner.top_m, half}, 1)) && (!bottom || runLevel(*bottom, core, {-half, inner.bottom_m}, 2)) &&
+        return (!top || runLevel(*top, core, {inner.top_m, half}, 1)) &&
+               (!bottom || runLevel(*bottom, core, {-half, inner.bottom_m}, 2)) &&
                (!rest || runLevel(*rest, core, inner, 3));
     }
 
@@ -151,10 +163,14 @@ bool runFaces(PartsContext& context, const Parts& faces) {
 
 constinit const Operation faces{
     .name = "faces",
-    .doc = "Takes a block apart: plates along the edges of its footprint, called side, front (+z), back, left, right, court or by a tag; "
-           "top and bottom plates; and rest, the core. The first word that fits an edge wins; in a plate x runs from left to right seen "
-           "from outside and z outward.",
-    .example = "footprint ell(16, 12, 5, 6) extrude 6m faces .3m { front: split x { ~1: wall } | side: wall | rest: nil }",
+    .doc =
+        "Takes a block apart: plates along the edges of its footprint, called side, front (+z), back, left, right, "
+        "court or by a tag; "
+        "top and bottom plates; and rest, the core. The first word that fits an edge wins; in a plate x runs from left "
+        "to right seen "
+        "from outside and z outward.",
+    .example =
+        "footprint ell(16, 12, 5, 6) extrude 6m faces .3m { front: split x { ~1: wall } | side: wall | rest: nil }",
     .arguments = facesArguments,
     .phase = Operation::Phase::Content,
     .blockLabel = "side",

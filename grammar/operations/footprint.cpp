@@ -21,11 +21,15 @@ using syntax::OperationArgument;
 constexpr double most_m = 1e5;
 
 constexpr OperationArgument footprintArguments[] = {
-    {"plan", ArgumentType::Plan, "rect, ell, tee, yard, ring, ngon, round, arc, outline((x, z), …), file(\"lots.geojson\", n), an lsystem, or (a + b), (a - b) of them"}};
-constexpr OperationArgument extrudeArguments[] = {{"height", ArgumentType::Length, "metres above the foot of the scope"}};
+    {"plan", ArgumentType::Plan,
+     "rect, ell, tee, yard, ring, ngon, round, arc, outline((x, z), …), file(\"lots.geojson\", n), an lsystem, or (a + "
+     "b), (a - b) of them"}};
+constexpr OperationArgument extrudeArguments[] = {
+    {"height", ArgumentType::Length, "metres above the foot of the scope"}};
 constexpr OperationArgument offsetArguments[] = {{"distance", ArgumentType::Length, "outward; inward where negative"}};
 constexpr OperationArgument setbackArguments[] = {
-    {"distance", ArgumentType::Plan, "metres inward of every edge, or edges(front: 5m, back: 8m, rest: 2m): by side or tag"}};
+    {"distance", ArgumentType::Plan,
+     "metres inward of every edge, or edges(front: 5m, back: 8m, rest: 2m): by side or tag"}};
 constexpr OperationArgument courtArguments[] = {{"wing", ArgumentType::Length, "metres from every edge to the court"}};
 constexpr OperationArgument rectifyArguments[] = {{"within", ArgumentType::Angle, "of the plan's main direction"}};
 
@@ -45,7 +49,8 @@ void applyFootprint(AttributeContext& context, const Attribute& attribute) {
     // What is drawn in metres comes centred on the scope; shares of the scope and outlines of files keep their place.
     const Vec3d before = context.out.moved_m;
     context.setFootprint(std::move(drawn->footprint), attribute.span);
-    if (context.out.vanishes) context.fail("the plan encloses no area: its edges cross, or lie on one line", attribute.span);
+    if (context.out.vanishes)
+        context.fail("the plan encloses no area: its edges cross, or lie on one line", attribute.span);
     if (!drawn->keepsPlace) context.out.moved_m = before;
 }
 
@@ -73,7 +78,8 @@ void checkSetback(OperationChecker& checker, const syntax::Attribute& written) {
     const bool named = e.kind == syntax::Expr::Kind::Call && e.text == "edges";
     for (size_t i = 0; named && i < e.args.size(); ++i) {
         if (e.argNames[i].empty()) {
-            checker.error(e.args[i].span, "each distance of 'edges' has the word of its edges before it", "write 'edges(front: 5m, rest: 2m)'");
+            checker.error(e.args[i].span, "each distance of 'edges' has the word of its edges before it",
+                          "write 'edges(front: 5m, rest: 2m)'");
             return;
         }
         checker.beginDraws("setback." + e.argNames[i]);
@@ -96,8 +102,12 @@ void applySetback(AttributeContext& context, const Attribute& attribute) {
     std::vector<double> distances;
     for (const plan::PlacedEdge& edge : plan::edgesOf(footprint)) {
         const auto& words = attribute.plan->words;
-        const auto word = std::find_if(words.begin(), words.end(), [&](const std::string& w) { return isEdgeCalled(footprint, edge, w); });
-        distances.push_back(word == words.end() ? 0 : std::max(0.0, context.number(attribute.args[static_cast<size_t>(word - words.begin())])));
+        const auto word = std::find_if(words.begin(), words.end(),
+                                       [&](const std::string& w) { return isEdgeCalled(footprint, edge, w); });
+        distances.push_back(
+            word == words.end()
+                ? 0
+                : std::max(0.0, context.number(attribute.args[static_cast<size_t>(word - words.begin())])));
     }
     context.setFootprint(plan::setback(footprint, distances), attribute.span);
 }
@@ -118,8 +128,9 @@ void applyInner(AttributeContext& context, const Attribute& attribute) {
         context.out.vanishes = true;
         return;
     }
-    context.setFootprint(plan::footprintOf(plan::polygonOf({box->lo, {box->hi.x, box->lo.z}, box->hi, {box->lo.x, box->hi.z}})),
-                         attribute.span);
+    context.setFootprint(
+        plan::footprintOf(plan::polygonOf({box->lo, {box->hi.x, box->lo.z}, box->hi, {box->lo.x, box->hi.z}})),
+        attribute.span);
     context.out.scope.footprint = derive::none;
 }
 
@@ -127,7 +138,9 @@ void applyInner(AttributeContext& context, const Attribute& attribute) {
 
 constinit const Operation footprint{
     .name = "footprint",
-    .doc = "Gives the scope a plan, which terminals without a solid and roofs stand over; a plan in metres sets its size along x and z.",
+    .doc =
+        "Gives the scope a plan, which terminals without a solid and roofs stand over; a plan in metres sets its size "
+        "along x and z.",
     .example = "footprint ell(16, 12, 5, 6) block",
     .arguments = footprintArguments,
     .beforeShape = true,
@@ -157,7 +170,9 @@ constinit const Operation offset{
 
 constinit const Operation setback{
     .name = "setback",
-    .doc = "Moves edges of the footprint inward, all or those called by a word: front (+z) back left right side court cut rest, or a tag.",
+    .doc =
+        "Moves edges of the footprint inward, all or those called by a word: front (+z) back left right side court cut "
+        "rest, or a tag.",
     .example = "footprint rect(30, 20) setback edges(front: 5m, rest: 2m) block",
     .arguments = setbackArguments,
     .beforeShape = true,

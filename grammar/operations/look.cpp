@@ -18,8 +18,7 @@ using syntax::OperationRange;
 constexpr OperationArgument colorArguments[] = {
     {"color", ArgumentType::Color, "#rrggbb, or a parameter that holds one"}};
 constexpr OperationArgument roughArguments[] = {{"roughness", ArgumentType::Number, "0 is a mirror, 1 is chalk"}};
-constexpr OperationArgument metalArguments[] = {
-    {"metalness", ArgumentType::Number, "0 is a dielectric, 1 is a metal"}};
+constexpr OperationArgument metalArguments[] = {{"metalness", ArgumentType::Number, "0 is a dielectric, 1 is a metal"}};
 constexpr OperationRange share{0, 1, "0 … 1"};
 
 Vec3f colorOf(const Value& value) { return Vec3d{value.n[0], value.n[1], value.n[2]}.as<float>(); }
@@ -32,8 +31,12 @@ void applyColor(AttributeContext& context, const Attribute& attribute) {
     context.out.color = colorOf(context.evaluate(attribute.args[0]));
     context.out.colorBy = &attribute.args[0];
 }
-void applyRough(AttributeContext& context, const Attribute& attribute) { context.out.rough = shareOf(context, attribute); }
-void applyMetal(AttributeContext& context, const Attribute& attribute) { context.out.metal = shareOf(context, attribute); }
+void applyRough(AttributeContext& context, const Attribute& attribute) {
+    context.out.rough = shareOf(context, attribute);
+}
+void applyMetal(AttributeContext& context, const Attribute& attribute) {
+    context.out.metal = shareOf(context, attribute);
+}
 
 void setColor(const Value& value, Material& material) { material.color = colorOf(value); }
 void setRough(const Value& value, Material& material) { material.roughness = static_cast<float>(value.num()); }

@@ -28,17 +28,20 @@ using Written = syntax::Expr;
 constexpr double most_m = 1e6;
 
 constexpr OperationArgument atArguments[] = {
-    {"ours", ArgumentType::Joint, "our joint: a face, centre, a declared name, free(…) or the variable of 'for d in axes'"}};
+    {"ours", ArgumentType::Joint,
+     "our joint: a face, centre, a declared name, free(…) or the variable of 'for d in axes'"}};
 constexpr OperationArgument toArguments[] = {
-    {"theirs", ArgumentType::Joint, "the newcomer's joint; the opposite face unless said; centre puts its centre on our joint"}};
+    {"theirs", ArgumentType::Joint,
+     "the newcomer's joint; the opposite face unless said; centre puts its centre on our joint"}};
 constexpr OperationArgument overlapArguments[] = {
-    {"share", ArgumentType::Number, "how far the newcomer moves inward along the joint: 0 touches, 1 puts its centre there"}};
+    {"share", ArgumentType::Number,
+     "how far the newcomer moves inward along the joint: 0 touches, 1 puts its centre there"}};
 constexpr OperationArgument shiftArguments[] = {
     {"shift", ArgumentType::Vector,
      "moves the mating point (S_J) along x, y, z of the matched scope: shares of the newcomer's half-size, or metres"}};
-constexpr OperationArgument onArguments[] = {
-    {"host", ArgumentType::Shape,
-     "last: the newest shape of the chain; any(d): one placed toward d in the step before; each(Name): all of that name"}};
+constexpr OperationArgument onArguments[] = {{"host", ArgumentType::Shape,
+                                              "last: the newest shape of the chain; any(d): one placed toward d in the "
+                                              "step before; each(Name): all of that name"}};
 constexpr OperationArgument byArguments[] = {
     {"amount", ArgumentType::Number, "a of the morph (eq. 14): 0 keeps what stands, 1 gives the newcomer"}};
 constexpr OperationArgument blendArguments[] = {
@@ -62,7 +65,8 @@ JointChoice readJoints(OperationChecker& checker, const syntax::Attribute& writt
     checker.beginDraws(std::string(written.operation->name));
     const Written& e = written.args[0];
     choice.free = isCalled(e, "free");
-    if (!choice.free) choice.joints.push_back(checker.joint(e));
+    if (!choice.free)
+        choice.joints.push_back(checker.joint(e));
     else
         for (const Written& candidate : e.args) choice.joints.push_back(checker.joint(candidate));
     return choice;
@@ -78,7 +82,8 @@ void checkTo(OperationChecker& checker, const syntax::Attribute& written) {
     if (written.args.empty()) return;
     JointChoice choice = readJoints(checker, written);
     if (choice.free)
-        checker.error(written.args[0].span, "the newcomer's joints are all free: name one", "write 'to centre' or 'to +y'");
+        checker.error(written.args[0].span, "the newcomer's joints are all free: name one",
+                      "write 'to centre' or 'to +y'");
     checker.element().to = std::move(choice);
 }
 
@@ -105,13 +110,17 @@ void checkOn(OperationChecker& checker, const syntax::Attribute& written) {
     host.span = written.span;
     if (isCalled(e, "last")) {
         if (!checker.isInChain() && !checker.isInFinally())
-            checker.error(e.span, "'last' is the newest shape of a chain, and there is none here", "give the rule a 'repeat'");
+            checker.error(e.span, "'last' is the newest shape of a chain, and there is none here",
+                          "give the rule a 'repeat'");
     } else if (isCalled(e, "any")) {
         host.kind = HostChoice::Kind::Any;
         if (!checker.isInChain())
-            checker.error(e.span, "'any(d)' draws among the shapes of a chain, and there is none here", "give the rule a 'repeat'");
-        if (e.args.size() == 1) host.of = checker.expression(e.args[0], Want::Axis, "'any'");
-        else checker.error(e.span, "'any' takes one direction", "write 'any(+x)' or 'any(d)'");
+            checker.error(e.span, "'any(d)' draws among the shapes of a chain, and there is none here",
+                          "give the rule a 'repeat'");
+        if (e.args.size() == 1)
+            host.of = checker.expression(e.args[0], Want::Axis, "'any'");
+        else
+            checker.error(e.span, "'any' takes one direction", "write 'any(+x)' or 'any(d)'");
     } else if (isCalled(e, "each")) {
         readEach(checker, e, host);
     } else if (e.kind != Written::Kind::Error) {
@@ -123,7 +132,8 @@ void checkOn(OperationChecker& checker, const syntax::Attribute& written) {
 void needOperator(OperationChecker& checker, const Element& element, const Attribute& attribute) {
     if (element.op != Operator::None) return;
     checker.error(attribute.span,
-                  fmt::format("'{}' joins a newcomer to what stands, but no operator joins this shape", attribute.operation->name),
+                  fmt::format("'{}' joins a newcomer to what stands, but no operator joins this shape",
+                              attribute.operation->name),
                   "put '+', '-', '&' or 'morph' before it");
 }
 
@@ -142,7 +152,8 @@ void needJoint(OperationChecker& checker, const Element& element, const Attribut
 /// `to NAME` where the newcomer is known: it must have that joint.
 void agreeTo(OperationChecker& checker, const Element& element, const Attribute& attribute) {
     needJoint(checker, element, attribute);
-    if (!element.to || element.to->joints.size() != 1 || element.to->joints[0].value.kind != rules::Value::Kind::Word) return;
+    if (!element.to || element.to->joints.size() != 1 || element.to->joints[0].value.kind != rules::Value::Kind::Word)
+        return;
     std::vector<std::string> known;
     const rules::Solid* solid = element.content.solid();
     if (const rules::SymbolId id = element.content.symbol(); id != rules::none) {
@@ -158,7 +169,8 @@ void agreeTo(OperationChecker& checker, const Element& element, const Attribute&
     const rules::Expr& joint = element.to->joints[0];
     const std::string& wanted = joint.value.text;
     if (std::find(known.begin(), known.end(), wanted) == known.end() && checker.isJoint(wanted))
-        checker.error(joint.span, fmt::format("'{}' has no joint '{}'", element.label, wanted), checker.nearest(wanted, known));
+        checker.error(joint.span, fmt::format("'{}' has no joint '{}'", element.label, wanted),
+                      checker.nearest(wanted, known));
 }
 
 void agreeBy(OperationChecker& checker, const Element& element, const Attribute& attribute) {
@@ -170,7 +182,8 @@ void agreeBy(OperationChecker& checker, const Element& element, const Attribute&
 void agreeBlend(OperationChecker& checker, const Element& element, const Attribute& attribute) {
     needOperator(checker, element, attribute);
     if (element.op == Operator::Intersection)
-        checker.error(attribute.span, "what is shared keeps its edge", "leave 'blend' out, or cut with '-' what lies outside");
+        checker.error(attribute.span, "what is shared keeps its edge",
+                      "leave 'blend' out, or cut with '-' what lies outside");
     if (element.op == Operator::Morph)
         checker.error(attribute.span, "a morph has no edge that could be blended", "leave 'blend' out");
 }
@@ -183,8 +196,7 @@ void applyOverlap(AttributeContext& context, const Attribute& attribute) {
 void applyShift(AttributeContext& context, const Attribute& attribute) {
     const derive::Vector v = context.vector(attribute.args[0], true);
     Vec3d m;
-    for (int i = 0; i < 3; ++i)
-        m[i] = v.unit[i] == rules::Unit::Metre ? v.n[i] : v.n[i] * context.out.scope.half()[i];
+    for (int i = 0; i < 3; ++i) m[i] = v.unit[i] == rules::Unit::Metre ? v.n[i] : v.n[i] * context.out.scope.half()[i];
     context.out.moved_m += context.place.scope.axes * m;
 }
 

@@ -8,7 +8,8 @@
 
 namespace sgm::operations {
 
-/// front (+z), back, left, right by its normal, side and rest for every edge, court, cut, or one of the words of its tag.
+/// front (+z), back, left, right by its normal, side and rest for every edge, court, cut, or one of the words of its
+/// tag.
 bool isEdgeCalled(const plan::Footprint& footprint, const plan::PlacedEdge& edge, std::string_view word);
 
 }  // namespace sgm::operations

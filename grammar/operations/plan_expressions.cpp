@@ -27,7 +27,9 @@ using rules::Want;
 using Written = syntax::Expr;
 
 Want wantOf(PlanParameterKind kind) {
-    return kind == PlanParameterKind::Length ? Want::Length : kind == PlanParameterKind::Angle ? Want::Angle : Want::Count;
+    return kind == PlanParameterKind::Length  ? Want::Length
+           : kind == PlanParameterKind::Angle ? Want::Angle
+                                              : Want::Count;
 }
 
 Expr fallbackOf(syntax::SourceSpan span, const PlanParameter& parameter) {
@@ -43,7 +45,8 @@ Expr checkPoint(OperationChecker& checker, const Written& e, bool* shares) {
     const bool lengths = every([](Unit u) { return u == Unit::None || u == Unit::Metre; });
     const bool parts = every([](Unit u) { return u == Unit::Share; });
     if (!two || (point.type.known && !lengths && !(parts && shares)))
-        checker.error(e.span, fmt::format("a point of a plan is (x, z), not {}", describe(point.type)), "write '(4m, 2m)'");
+        checker.error(e.span, fmt::format("a point of a plan is (x, z), not {}", describe(point.type)),
+                      "write '(4m, 2m)'");
     if (shares) *shares = point.type.known && parts;
     return point.expr;
 }
@@ -53,8 +56,10 @@ bool checkPlacement(OperationChecker& checker, const Written& e, size_t i, PlanE
     const std::string& name = e.argNames[i];
     if (name != "at" && name != "turn") return false;
     checker.beginDraws("footprint." + name);
-    if (name == "at") plan.at = checkPoint(checker, e.args[i], nullptr);
-    else plan.turn = checker.expression(e.args[i], Want::Angle, "'turn' of a plan");
+    if (name == "at")
+        plan.at = checkPoint(checker, e.args[i], nullptr);
+    else
+        plan.turn = checker.expression(e.args[i], Want::Angle, "'turn' of a plan");
     return true;
 }
 
@@ -68,14 +73,17 @@ void checkCall(OperationChecker& checker, const Written& e, PlanExpr& plan) {
         if (!name.empty() && checkPlacement(checker, e, i, plan)) continue;
         size_t index = next++;
         if (!name.empty()) {
-            const auto found = std::find_if(row.parameters.begin(), row.parameters.end(), [&](const auto& p) { return p.name == name; });
+            const auto found = std::find_if(row.parameters.begin(), row.parameters.end(),
+                                            [&](const auto& p) { return p.name == name; });
             index = static_cast<size_t>(found - row.parameters.begin());
         }
         if (index >= row.parameters.size()) {
             std::vector<std::string> known{"at", "turn"};
             for (const PlanParameter& p : row.parameters) known.emplace_back(p.name);
-            checker.error(e.args[i].span, name.empty() ? fmt::format("'{}' takes no more than {} numbers", row.name, row.parameters.size())
-                                                       : fmt::format("'{}' has no parameter '{}'", row.name, name),
+            checker.error(e.args[i].span,
+                          name.empty()
+                              ? fmt::format("'{}' takes no more than {} numbers", row.name, row.parameters.size())
+                              : fmt::format("'{}' has no parameter '{}'", row.name, name),
                           checker.nearest(name, known));
             return;
         }
@@ -86,7 +94,8 @@ void checkCall(OperationChecker& checker, const Written& e, PlanExpr& plan) {
     }
     for (size_t i = 0; i < given.size(); ++i)
         if (row.parameters[i].required && !given[i]) {
-            checker.error(e.span, fmt::format("'{}' needs its {}: {}", row.name, row.parameters[i].name, row.parameters[i].doc),
+            checker.error(e.span,
+                          fmt::format("'{}' needs its {}: {}", row.name, row.parameters[i].name, row.parameters[i].doc),
                           fmt::format("as in '{}'", row.example));
             return;
         }
@@ -109,7 +118,8 @@ void checkOutline(OperationChecker& checker, const Written& e, PlanExpr& plan) {
         inShares = shares;
     }
     plan.inShares = inShares.value_or(false);
-    if (plan.args.size() < 3) checker.error(e.span, "an outline has three points or more", "write 'outline((0, 0), (8, 0), (8, 6))'");
+    if (plan.args.size() < 3)
+        checker.error(e.span, "an outline has three points or more", "write 'outline((0, 0), (8, 0), (8, 6))'");
 }
 
 /// file("lots.geojson", n)
@@ -124,7 +134,8 @@ bool checkFile(OperationChecker& checker, const Written& e, PlanExpr& plan) {
         if (next++ == 0 && e.args[i].kind != Written::Kind::Text) break;
     }
     if (next == 0 || next > 2 || e.args[0].kind != Written::Kind::Text) {
-        checker.error(e.span, "'file' takes the name of a file in quotes, and maybe which of its outlines", "write 'file(\"lots.geojson\", 3)'");
+        checker.error(e.span, "'file' takes the name of a file in quotes, and maybe which of its outlines",
+                      "write 'file(\"lots.geojson\", 3)'");
         return false;
     }
     const auto index = checker.readOutlines(e.args[0]);
@@ -160,8 +171,9 @@ bool checkInto(OperationChecker& checker, const Written& e, PlanExpr& plan) {
     for (const rules::PlanRow& row : rules::planRows()) known.emplace_back(row.name);
     for (const rules::Lsystem& lsystem : checker.grammar().lsystems) known.push_back(lsystem.name);
     const std::string near = checker.nearest(e.text, known);
-    checker.unknownName(e.span, e.text, fmt::format("'{}' draws no footprint", e.span.text()),
-                        near.empty() ? fmt::format("write one of {}, or the name of an lsystem", fmt::join(known, ", ")) : near);
+    checker.unknownName(
+        e.span, e.text, fmt::format("'{}' draws no footprint", e.span.text()),
+        near.empty() ? fmt::format("write one of {}, or the name of an lsystem", fmt::join(known, ", ")) : near);
     return false;
 }
 
@@ -180,7 +192,8 @@ Result<DrawnPlan> drawLsystem(const AttributeContext& context, const PlanExpr& p
 Result<DrawnPlan> drawFile(const AttributeContext& context, const PlanExpr& plan) {
     const std::vector<plan::Feature>& list = context.grammar().outlines[plan.index]->list;
     const double n = std::floor(context.number(plan.args[0]));
-    if (n >= 1 && n <= static_cast<double>(list.size())) return DrawnPlan{list[static_cast<size_t>(n) - 1].footprint, true};
+    if (n >= 1 && n <= static_cast<double>(list.size()))
+        return DrawnPlan{list[static_cast<size_t>(n) - 1].footprint, true};
     return Error{Error::Kind::Input, fmt::format("the file has {} outlines, and none is number {:g}", list.size(), n)};
 }
 

@@ -1,5 +1,6 @@
 // What `footprint` draws: calls of plans, outlines, L-systems, and their unions and differences.
-// Enters: written expressions, then scopes. Leaves: checked plans, then footprints in metres. Assumes one newcomer at a time.
+// Enters: written expressions, then scopes. Leaves: checked plans, then footprints in metres. Assumes one newcomer at a
+// time.
 #pragma once
 
 #include <memory>

@@ -16,7 +16,8 @@ using syntax::OperationArgument;
 constexpr double most_m = 1e6;
 
 constexpr OperationArgument sizeArguments[] = {
-    {"size", ArgumentType::Size, "metres, shares of the scope, or (x, y, z) of them; one number serves all three axes"}};
+    {"size", ArgumentType::Size,
+     "metres, shares of the scope, or (x, y, z) of them; one number serves all three axes"}};
 constexpr OperationArgument moveArguments[] = {
     {"offset", ArgumentType::Vector, "along x, y, z of the matched scope; bare numbers are metres"}};
 constexpr OperationArgument turnArguments[] = {

@@ -1,5 +1,5 @@
-// split: cuts a scope along one of its axes and runs a body in every part (the split of CGA shape grammars: Müller, Wonka,
-// Haegler, Ulmer, Van Gool, "Procedural modeling of buildings", 2006).
+// split: cuts a scope along one of its axes and runs a body in every part (the split of CGA shape grammars: Müller,
+// Wonka, Haegler, Ulmer, Van Gool, "Procedural modeling of buildings", 2006).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -38,7 +38,8 @@ Part checkPart(OperationChecker& checker, const syntax::Case& written) {
         if (const auto value = checker.atDefaults(out.size); value && value->num() < 0)
             checker.error(size.span, "the size of a part is no less than 0");
     } else if (!written.tag.empty()) {
-        checker.error(written.tag.span, "a part of a split has a size, not a tag", "write '4m: …', '30%: …' or '~1: …'");
+        checker.error(written.tag.span, "a part of a split has a size, not a tag",
+                      "write '4m: …', '30%: …' or '~1: …'");
     }
     out.body = written.body ? checker.body(*written.body) : std::make_shared<const rules::Body>();
     if (out.body->grows)
@@ -143,9 +144,12 @@ bool runSplit(PartsContext& context, const Parts& split) {
     double from_m = 0;
     const auto run = [&](const Part& part, const Length& length, uint64_t key) {
         const double wanted_m = length.fixed_m + length.floating * layout->perFloat_m, left_m = whole_m - from_m;
-        if (left_m > leastPart_m && wanted_m > left_m + 1e-6 * std::max(1.0, whole_m))  // the first one speaks for those behind it
-            context.remark(part.span, fmt::format("this part is cut off: {:.4g}m are left for its {:.4g}m", std::max(0.0, left_m), wanted_m),
-                           "write '~' before a size, so that it gives way, or make the sizes fit");
+        if (left_m > leastPart_m &&
+            wanted_m > left_m + 1e-6 * std::max(1.0, whole_m))  // the first one speaks for those behind it
+            context.remark(
+                part.span,
+                fmt::format("this part is cut off: {:.4g}m are left for its {:.4g}m", std::max(0.0, left_m), wanted_m),
+                "write '~' before a size, so that it gives way, or make the sizes fit");
         const double to_m = std::min(whole_m, from_m + wanted_m);
         const double low_m = std::exchange(from_m, to_m);
         if (to_m - low_m <= leastPart_m) return true;
@@ -174,7 +178,9 @@ bool runSplit(PartsContext& context, const Parts& split) {
 
 constinit const Operation split{
     .name = "split",
-    .doc = "Cuts the scope along an axis: sizes are absolute (4m), relative (30%) or floating (~1); { … }* repeats to fit.",
+    .doc =
+        "Cuts the scope along an axis: sizes are absolute (4m), relative (30%) or floating (~1); { … }* repeats to "
+        "fit.",
     .example = "split x { 1m: wall | { ~2.4m: Tile }* | 1m: wall }",
     .arguments = splitArguments,
     .phase = Operation::Phase::Content,

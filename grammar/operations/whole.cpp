@@ -38,8 +38,10 @@ void checkDisplace(OperationChecker& checker, const syntax::Attribute& written) 
     const bool fbm = e.text == "fbm";
     if (e.kind != Written::Kind::Call || !(fbm || e.text == "billow")) {
         if (e.kind != Written::Kind::Error)
-            checker.error(e.span, fmt::format("'displace' takes billow(amplitude, frequency) or fbm(amplitude, frequency, "
-                                              "octaves), not '{}'", e.span.text()));
+            checker.error(e.span,
+                          fmt::format("'displace' takes billow(amplitude, frequency) or fbm(amplitude, frequency, "
+                                      "octaves), not '{}'",
+                                      e.span.text()));
         return;
     }
     if (e.args.size() < 2 || e.args.size() > 3) {
@@ -56,7 +58,8 @@ void checkDisplace(OperationChecker& checker, const syntax::Attribute& written) 
     out.args.push_back(checker.expression(e.args[0], Want::Length, fmt::format("the amplitude of '{}'", e.text)));
     out.args.push_back(checker.expression(e.args[1], Want::Frequency, fmt::format("the frequency of '{}'", e.text)));
     Expr octaves = rules::makeConstant(e.span, rules::makeWhole(fbm ? 3 : 2));
-    if (e.args.size() == 3) octaves = checker.expression(e.args[2], Want::Count, fmt::format("the octaves of '{}'", e.text));
+    if (e.args.size() == 3)
+        octaves = checker.expression(e.args[2], Want::Count, fmt::format("the octaves of '{}'", e.text));
     if (const auto n = checker.atDefaults(octaves); n && (n->num() < 1 || n->num() > 8))
         checker.error(octaves.span, fmt::format("noise has 1 … 8 octaves, not {}", rules::toText(*n)));
     out.args.push_back(std::move(octaves));
@@ -73,8 +76,9 @@ void applyDisplace(AttributeContext& context, const Attribute& attribute) {
     noise.octaves = static_cast<int>(std::clamp(context.number(attribute.args[octavesAt]), 1.0, 8.0));
     constexpr double finest_per_m = 1e5, highest_m = 1e6;
     if (!(std::abs(noise.amplitude_m) <= highest_m && std::abs(noise.frequency) <= finest_per_m))
-        context.fail(fmt::format("noise is at most {:g} m high and has at most {:g} waves a metre", highest_m, finest_per_m),
-                     attribute.span);
+        context.fail(
+            fmt::format("noise is at most {:g} m high and has at most {:g} waves a metre", highest_m, finest_per_m),
+            attribute.span);
     context.out.extras.displace.push_back(noise);
 }
 

@@ -45,18 +45,22 @@ void Checker::lsystem(const syntax::LsystemDecl& decl) {
         out.*setting.field = makeConstant(decl.span, Value::number(setting.fallback));
     for (const syntax::Setting& written : decl.settings) {
         if (written.name.empty()) continue;  // the parser spoke of it
-        const auto row = std::find_if(std::begin(rows), std::end(rows), [&](const auto& s) { return s.name == written.name.text; });
+        const auto row =
+            std::find_if(std::begin(rows), std::end(rows), [&](const auto& s) { return s.name == written.name.text; });
         if (row == std::end(rows)) {
             std::vector<std::string> known;
             for (const LsystemSetting& s : rows) known.emplace_back(s.name);
-            diagnostics_.error(written.name.span, fmt::format("an lsystem has no '{}', but {}", written.name.text, fmt::join(known, ", ")),
+            diagnostics_.error(written.name.span,
+                               fmt::format("an lsystem has no '{}', but {}", written.name.text, fmt::join(known, ", ")),
                                nearest(written.name.text, known));
             continue;
         }
         place.enter("lsystem." + written.name.text);
         Expr value = expression(place, written.value, row->want, fmt::format("'{}'", row->name));
-        if (const auto number = fold(value, defaults_); number && !(number->num() >= row->lo && number->num() <= row->hi))
-            diagnostics_.error(written.value.span, fmt::format("'{}' is {}, but must be {}", row->name, toText(*number), row->text));
+        if (const auto number = fold(value, defaults_);
+            number && !(number->num() >= row->lo && number->num() <= row->hi))
+            diagnostics_.error(written.value.span,
+                               fmt::format("'{}' is {}, but must be {}", row->name, toText(*number), row->text));
         out.*row->field = std::move(value);
     }
     out.axiom = decl.axiom.text;
@@ -64,7 +68,8 @@ void Checker::lsystem(const syntax::LsystemDecl& decl) {
         diagnostics_.error(decl.axiom.span, "an axiom has at least one letter", "write 'axiom \"F+F+F+F\"'");
     for (const auto& production : decl.productions) {
         if (production.symbol.text.size() != 1) {
-            diagnostics_.error(production.symbol.span, fmt::format("a production rewrites one letter, not '{}'", production.symbol.text));
+            diagnostics_.error(production.symbol.span,
+                               fmt::format("a production rewrites one letter, not '{}'", production.symbol.text));
             continue;
         }
         Lsystem::Production& p = out.productions.emplace_back();

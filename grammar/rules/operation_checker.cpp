@@ -71,12 +71,16 @@ void OperationChecker::checkArguments(const syntax::Attribute& written) {
     for (const Expr& arg : out.args) {
         bool said = range.text.empty();
         eachConstant(arg, checker_.defaults_, [&](const Expr& e, const Value& v) {
-            for (size_t i = 0; i < v.count && !said && (v.kind == Value::Kind::Number || v.kind == Value::Kind::Vector); ++i) {
+            for (size_t i = 0; i < v.count && !said && (v.kind == Value::Kind::Number || v.kind == Value::Kind::Vector);
+                 ++i) {
                 if (v.n[i] >= range.lo && v.n[i] <= range.hi) continue;
                 said = true;
-                const std::string outside = fmt::format("'{}' is {}, but must be {}", operation.name, toText(v), range.text);
-                if (auto doubt = findDoubtWithin(e, checker_.defaults_)) error(doubt->span, doubt->message + ", so " + outside, "keep what is divided by from 0");
-                else error(e.span, outside);
+                const std::string outside =
+                    fmt::format("'{}' is {}, but must be {}", operation.name, toText(v), range.text);
+                if (auto doubt = findDoubtWithin(e, checker_.defaults_))
+                    error(doubt->span, doubt->message + ", so " + outside, "keep what is divided by from 0");
+                else
+                    error(e.span, outside);
             }
         });
     }
@@ -120,7 +124,9 @@ void OperationChecker::checkRange(const Expr& e, const field::Primitive& row, si
     checker_.inRange(e, row, parameter);
 }
 
-Solid OperationChecker::solidOfRow(SourceSpan span, const field::Primitive& row) { return Checker::solidOfRow(span, row); }
+Solid OperationChecker::solidOfRow(SourceSpan span, const field::Primitive& row) {
+    return Checker::solidOfRow(span, row);
+}
 
 std::optional<uint32_t> OperationChecker::readOutlines(const syntax::Expr& name) {
     auto& all = checker_.grammar_.outlines;

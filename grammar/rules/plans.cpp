@@ -14,20 +14,26 @@ using Numbers = std::span<const double>;
 constexpr PlanParameter width{"width", Kind::Length, 0, "along x"};
 constexpr PlanParameter depth{"depth", Kind::Length, 0, "along z"};
 constexpr PlanParameter wing{"wing", Kind::Length, 0, "depth of the wings round the yard"};
-constexpr PlanParameter radius{"radius", Kind::Length, 0, "of the circle round it; left out: it fills the scope", false};
+constexpr PlanParameter radius{"radius", Kind::Length, 0, "of the circle round it; left out: it fills the scope",
+                               false};
 
 constexpr PlanParameter rectParameters[] = {width, depth};
-constexpr PlanParameter ellParameters[] = {width, depth, {"wingX", Kind::Length, 0, "depth of the wing along x"},
+constexpr PlanParameter ellParameters[] = {width,
+                                           depth,
+                                           {"wingX", Kind::Length, 0, "depth of the wing along x"},
                                            {"wingZ", Kind::Length, 0, "width of the wing along z"}};
-constexpr PlanParameter teeParameters[] = {width, depth, {"bar", Kind::Length, 0, "depth of the bar along its -z side"},
+constexpr PlanParameter teeParameters[] = {width,
+                                           depth,
+                                           {"bar", Kind::Length, 0, "depth of the bar along its -z side"},
                                            {"stem", Kind::Length, 0, "width of the stem"}};
 constexpr PlanParameter yardParameters[] = {width, depth, wing};
 constexpr PlanParameter ngonParameters[] = {{"sides", Kind::Count, 6, "3 or more"}, radius};
 constexpr PlanParameter roundParameters[] = {{"sides", Kind::Count, 24, "that stand for the circle", false}, radius};
-constexpr PlanParameter arcParameters[] = {
-    {"inner", Kind::Length, 0, "radius of the inner side"},       {"outer", Kind::Length, 0, "radius of the outer side"},
-    {"from", Kind::Angle, 0, "where it begins, from +x towards +z"}, {"to", Kind::Angle, 0, "where it ends"},
-    {"segments", Kind::Count, 16, "chords along each side", false}};
+constexpr PlanParameter arcParameters[] = {{"inner", Kind::Length, 0, "radius of the inner side"},
+                                           {"outer", Kind::Length, 0, "radius of the outer side"},
+                                           {"from", Kind::Angle, 0, "where it begins, from +x towards +z"},
+                                           {"to", Kind::Angle, 0, "where it ends"},
+                                           {"segments", Kind::Count, 16, "chords along each side", false}};
 
 int whole(double n) { return static_cast<int>(std::clamp(n, -1e6, 1e6)); }
 /// A radius of 0 draws a circle of radius 1, which is then stretched into the scope.

@@ -91,7 +91,8 @@ Field covered(const PrimitiveInput& in, Cover at, const Build& build) {
     Graph& graph = in.p.x.graph();
     const double beyond = 1 + overhang.value, down = thickness.value / std::cos(pitch.value);
     RoofFoot rooms = footOf(in, {overhang.node + 1.0f, beyond}, fixed(graph, 0));
-    rooms.eaves = {rooms.eaves.node + fascia.node - thickness.node / cos(pitch.node), rooms.eaves.value + fascia.value - down};
+    rooms.eaves = {rooms.eaves.node + fascia.node - thickness.node / cos(pitch.node),
+                   rooms.eaves.value + fascia.value - down};
     rooms.path = combine(in.path, hashText("rooms"));
     return difference({whole, 0}, {build(*plan, rooms), 0});
 }
@@ -174,12 +175,11 @@ Field butterflyRoof(const PrimitiveInput& in) {
 
 Field flatRoof(const PrimitiveInput& in) {
     const auto& a = in.arguments;
-    return field::flatRoof(*PlanOf(in), footOf(in, number(in, 0), number(in, 0)), quantity(a[0]), quantity(a[1]), quantity(a[2]));
+    return field::flatRoof(*PlanOf(in), footOf(in, number(in, 0), number(in, 0)), quantity(a[0]), quantity(a[1]),
+                           quantity(a[2]));
 }
 
-Field pyramidRoof(const PrimitiveInput& in) {
-    return field::pyramidRoof(*PlanOf(in), footAt(in, 0), height(in));
-}
+Field pyramidRoof(const PrimitiveInput& in) { return field::pyramidRoof(*PlanOf(in), footAt(in, 0), height(in)); }
 
 Field domeRoof(const PrimitiveInput& in) {
     return field::domeRoof(*PlanOf(in), footAt(in, 0), aboveFascia(in), number(in, 0));

@@ -105,7 +105,8 @@ TEST_F(OwnOperations, ArgumentsAreCheckedAgainstTheRow) {
 }
 
 TEST_F(OwnOperations, ContentOperationMakesParts) {
-    const derive::ShapeTree made = tree("grammar 1\nstart A -> size (4, 2, 2) halves { left: cube | right: Right }\nrule Right -> sphere\n");
+    const derive::ShapeTree made =
+        tree("grammar 1\nstart A -> size (4, 2, 2) halves { left: cube | right: Right }\nrule Right -> sphere\n");
     std::vector<double> centres;
     for (const derive::Shape& shape : made.shapes)
         if (shape.solid != derive::none) centres.push_back(shape.scope.centre.x);

@@ -18,20 +18,27 @@ std::map<std::string, double> volumesOf(const Derivation& d) {
     for (const Shape& s : d.tree.shapes) {
         if (s.solid == derive::none) continue;
         const Vec3d size = s.scope.size;
-        const double area_m2 = s.scope.footprint == derive::none ? size.x * size.z : area(d.tree.footprints.inMetres(s.scope.footprint, s.scope.half()));
+        const double area_m2 = s.scope.footprint == derive::none
+                                   ? size.x * size.z
+                                   : area(d.tree.footprints.inMetres(s.scope.footprint, s.scope.half()));
         volumes[d.tree.labels[s.label]] += area_m2 * size.y;
     }
     return volumes;
 }
 
 std::string block(const std::string& plan, const std::string& faces) {
-    return "grammar 1\nterminal front, wall, deck, ground, core\nstart A -> footprint " + plan + " extrude 4m Mass\nrule Mass -> " + faces + "\n";
+    return "grammar 1\nterminal front, wall, deck, ground, core\nstart A -> footprint " + plan +
+           " extrude 4m Mass\nrule Mass -> " + faces + "\n";
 }
 
 TEST(Faces, PlatesAndCoreSumToTheBlock) {
-    for (const auto& [plan, area_m2] : std::initializer_list<std::pair<const char*, double>>{
-             {"rect(10, 6)", 60}, {"ell(16, 12, 6, 5)", 126}, {"ring(20, 16, 5)", 320 - 60}, {"ngon(6, 5m)", 64.9519052838}}) {
-        const auto volumes = volumesOf(derived(block(plan, "faces .4m { side: wall | top: deck | bottom: ground | rest: core }")));
+    for (const auto& [plan, area_m2] :
+         std::initializer_list<std::pair<const char*, double>>{{"rect(10, 6)", 60},
+                                                               {"ell(16, 12, 6, 5)", 126},
+                                                               {"ring(20, 16, 5)", 320 - 60},
+                                                               {"ngon(6, 5m)", 64.9519052838}}) {
+        const auto volumes =
+            volumesOf(derived(block(plan, "faces .4m { side: wall | top: deck | bottom: ground | rest: core }")));
         double sum = 0;
         for (const auto& [label, volume] : volumes) sum += volume;
         EXPECT_EQ(volumes.size(), 4u) << plan;
@@ -40,9 +47,11 @@ TEST(Faces, PlatesAndCoreSumToTheBlock) {
 }
 
 TEST(Faces, PlatesFillTheBlockWithoutOverlap) {
-    const Lowered whole(block("ell(16, 12, 6, 5)", "wall")), parts(block("ell(16, 12, 6, 5)", "faces .4m { side: wall | rest: core }"));
+    const Lowered whole(block("ell(16, 12, 6, 5)", "wall")),
+        parts(block("ell(16, 12, 6, 5)", "faces .4m { side: wall | rest: core }"));
     for (uint64_t i = 0; i < 3000; ++i) {
-        const Vec3f p{static_cast<float>(uniform(combine(1, i), -9, 9)), 1, static_cast<float>(uniform(combine(2, i), -7, 7))};
+        const Vec3f p{static_cast<float>(uniform(combine(1, i), -9, 9)), 1,
+                      static_cast<float>(uniform(combine(2, i), -7, 7))};
         const float a = whole.value(p), b = parts.value(p);
         if (std::abs(a) < 1e-3f || std::abs(b) < 1e-3f) continue;
         EXPECT_EQ(a < 0, b < 0) << p.x << ' ' << p.z;
@@ -50,7 +59,8 @@ TEST(Faces, PlatesFillTheBlockWithoutOverlap) {
 }
 
 TEST(Faces, TheFirstWordThatFitsAnEdgeWins) {
-    const auto volumes = volumesOf(derived(block("rect(10, 6)", "faces .5m { front: front | side: wall | rest: nil }")));
+    const auto volumes =
+        volumesOf(derived(block("rect(10, 6)", "faces .5m { front: front | side: wall | rest: nil }")));
     EXPECT_NEAR(volumes.at("front"), (10 + 9) / 2. * .5 * 4, 1e-2) << "a trapezoid along the front";
     EXPECT_NEAR(volumes.at("wall"), ((10 + 9) / 2. + 2 * (6 + 5) / 2.) * .5 * 4, 1e-2);
     EXPECT_FALSE(volumes.contains("core"));
@@ -63,7 +73,8 @@ TEST(Faces, WhereNoPlateStandsTheCoreGoesToTheEdge) {
 }
 
 TEST(Faces, APlateLooksOutwardAndCanBeSplit) {
-    const Derivation d = derived(block("rect(10, 6)", "faces .5m { left: split x { 2m: front | ~1: wall } | rest: nil }"));
+    const Derivation d =
+        derived(block("rect(10, 6)", "faces .5m { left: split x { 2m: front | ~1: wall } | rest: nil }"));
     for (const Shape& s : d.tree.shapes) {
         if (s.solid == derive::none) continue;
         expectNear(s.scope.axes.z, {-1, 0, 0});  // outward
@@ -75,14 +86,16 @@ TEST(Faces, APlateLooksOutwardAndCanBeSplit) {
 }
 
 TEST(Faces, EdgesOfACourtAreCalledSo) {
-    const auto volumes = volumesOf(derived(block("rect(20, 16) court 5m", "faces .5m { court: front | side: wall | rest: core }")));
+    const auto volumes =
+        volumesOf(derived(block("rect(20, 16) court 5m", "faces .5m { court: front | side: wall | rest: core }")));
     EXPECT_GT(volumes.at("wall"), volumes.at("front"));
     EXPECT_NEAR(volumes.at("front"), ((10.5) * 2 + 6.5 * 2) * .5 * 4, .1);
 }
 
 TEST(Faces, MessagesNameTheirPlace) {
     syntax::Diagnostics diagnostics;
-    const auto source = std::make_shared<const syntax::Source>("f.sgm", "grammar 1\nterminal wall\nstart A -> faces 0m { 2m: wall | side: + wall }\n");
+    const auto source = std::make_shared<const syntax::Source>(
+        "f.sgm", "grammar 1\nterminal wall\nstart A -> faces 0m { 2m: wall | side: + wall }\n");
     EXPECT_FALSE(rules::load(source, operations::table(), {}, diagnostics));
     ASSERT_EQ(diagnostics.all().size(), 3u);
     EXPECT_EQ(diagnostics.all()[0].message, "the plates of 'faces' are thicker than 0");

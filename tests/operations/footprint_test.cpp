@@ -41,7 +41,8 @@ std::string errorOf(const std::string& text) {
 }
 
 TEST(Footprints, APlanInMetresSetsTheSizeAndAnExtrusionKeepsTheFoot) {
-    const Derivation d = derived("grammar 1\nterminal wall\nstart A -> footprint ell(16, 12, 6, 5) extrude 7m Mass\nrule Mass -> wall\n");
+    const Derivation d = derived(
+        "grammar 1\nterminal wall\nstart A -> footprint ell(16, 12, 6, 5) extrude 7m Mass\nrule Mass -> wall\n");
     const Shape& s = *solidsCalled(d, "wall")[0];
     expectNear(s.scope.size, {16, 7, 12});
     expectNear(s.scope.centre, {0, -.5 + 3.5, 0});  // the root's foot is at -.5
@@ -74,7 +75,9 @@ TEST(Footprints, PlansAreUnitedAndCutWithPlacesOfTheirOwn) {
 }
 
 TEST(Footprints, SharesFillTheScopeAndStretchWithIt) {
-    EXPECT_NEAR(areaOf("start A -> size (8, 3, 6) B\nrule B -> footprint outline((0%, 0%), (100%, 0%), (50%, 100%)) wall\n"), 24, 1e-9);
+    EXPECT_NEAR(
+        areaOf("start A -> size (8, 3, 6) B\nrule B -> footprint outline((0%, 0%), (100%, 0%), (50%, 100%)) wall\n"),
+        24, 1e-9);
     EXPECT_NEAR(areaOf("start A -> wall footprint ngon(4) size (8, 3, 6)\n"), 48, 1e-9);
     EXPECT_NEAR(areaOf("start A -> footprint ell(8, 8, 4, 4) B\nrule B -> wall size (200%, 100%, 50%)\n"), 48, 1e-9);
 }
@@ -92,18 +95,22 @@ TEST(Footprints, OffsetSetbackCourtAndInnerChangeThePlan) {
 }
 
 TEST(Footprints, ASetbackMovesTheScopeToWhatIsLeft) {
-    const Derivation d = derived("grammar 1\nterminal wall\nstart A -> footprint rect(10, 6) setback edges(front: 2m) wall\n");
+    const Derivation d =
+        derived("grammar 1\nterminal wall\nstart A -> footprint rect(10, 6) setback edges(front: 2m) wall\n");
     expectNear(solidsCalled(d, "wall")[0]->scope.centre, {0, 0, -1}, 1e-3);
 }
 
 TEST(Footprints, WhereNothingIsLeftNoShapeIsMade) {
-    const Derivation d = derived("grammar 1\nterminal wall\nstart A -> footprint rect(10, 6) B\nrule B -> wall, Inner\nrule Inner -> setback 4m wall size 50%\n");
+    const Derivation d = derived(
+        "grammar 1\nterminal wall\nstart A -> footprint rect(10, 6) B\nrule B -> wall, Inner\nrule Inner -> setback 4m "
+        "wall size 50%\n");
     EXPECT_EQ(solidsCalled(d, "wall").size(), 1u);
 }
 
 TEST(Footprints, ASplitClipsThem) {
-    const Derivation d = derived("grammar 1\nterminal wall, glass\nstart A -> footprint ell(16, 12, 6, 5) extrude 4m Mass\n"
-                                 "rule Mass -> split x { 4m: wall | ~1: glass }\n");
+    const Derivation d = derived(
+        "grammar 1\nterminal wall, glass\nstart A -> footprint ell(16, 12, 6, 5) extrude 4m Mass\n"
+        "rule Mass -> split x { 4m: wall | ~1: glass }\n");
     const Shape &wall = *solidsCalled(d, "wall")[0], &glass = *solidsCalled(d, "glass")[0];
     EXPECT_NEAR(wall.scope.size.x, 4, 1e-9);
     EXPECT_EQ(wall.scope.footprint, derive::none) << "a rectangle is a box";
@@ -111,8 +118,9 @@ TEST(Footprints, ASplitClipsThem) {
 }
 
 TEST(Footprints, ARoofIsAsHighAsItsPitchMakesItAndStandsOnItsHost) {
-    const Derivation d = derived("grammar 1\nterminal wall\nterminal tiles = hipRoof(45deg)\nstart A -> footprint rect(10, 6) extrude 4m Mass\n"
-                                 "rule Mass -> wall + tiles at +y\n");
+    const Derivation d = derived(
+        "grammar 1\nterminal wall\nterminal tiles = hipRoof(45deg)\nstart A -> footprint rect(10, 6) extrude 4m Mass\n"
+        "rule Mass -> wall + tiles at +y\n");
     const Shape& roof = *solidsCalled(d, "tiles")[0];
     EXPECT_NEAR(roof.scope.size.y, 3, .02);
     EXPECT_NEAR(roof.scope.point({0, -1, 0}).y, 3.5, 1e-9);
@@ -125,8 +133,10 @@ TEST(Footprints, ARoofIsAsHighAsItsPitchMakesItAndStandsOnItsHost) {
 TEST(Footprints, EveryRoofStandsOverAnyPlanAndOverNone) {
     for (const field::Primitive& row : field::primitives()) {
         if (row.plan == field::PlanUse::None) continue;
-        for (const char* plan : {"footprint yard(14, 12, 4) ", "footprint ring(20, 16, 5) ", "footprint ngon(7, 5m) ", "size (9, 3, 6) "}) {
-            const Lowered model("grammar 1\nstart A -> " + std::string(plan) + "extrude 3m B\nrule B -> " + std::string(row.name) + "\n");
+        for (const char* plan : {"footprint yard(14, 12, 4) ", "footprint ring(20, 16, 5) ", "footprint ngon(7, 5m) ",
+                                 "size (9, 3, 6) "}) {
+            const Lowered model("grammar 1\nstart A -> " + std::string(plan) + "extrude 3m B\nrule B -> " +
+                                std::string(row.name) + "\n");
             ASSERT_TRUE(model.model) << row.name << ' ' << plan;
             EXPECT_FALSE(model.model->field.bounds.empty()) << row.name;
         }
@@ -136,16 +146,20 @@ TEST(Footprints, EveryRoofStandsOverAnyPlanAndOverNone) {
 TEST(Footprints, OutlinesOfAFileKeepTheirPlace) {
     plan::Features features;
     for (const double x : {-20.0, 30.0})
-        features.list.push_back({"", plan::footprintOf(plan::polygonOf({{x, 0}, {x + 8, 0}, {x + 8, 6}, {x, 6}})), {}, 1});
+        features.list.push_back(
+            {"", plan::footprintOf(plan::polygonOf({{x, 0}, {x + 8, 0}, {x + 8, 6}, {x, 6}})), {}, 1});
     rules::Loader loader;
-    loader.outlines = [&](const std::string& name, const syntax::Source&, std::string& why) -> std::shared_ptr<const plan::Features> {
+    loader.outlines = [&](const std::string& name, const syntax::Source&,
+                          std::string& why) -> std::shared_ptr<const plan::Features> {
         if (name == "lots.geojson") return std::make_shared<const plan::Features>(features);
         why = "there is no such file";
         return nullptr;
     };
     const auto load = [&](const std::string& file, syntax::Diagnostics& diagnostics) {
-        const auto text = "grammar 1\nterminal wall\nstart A -> for k in 1..2 { wall footprint file(\"" + file + "\", k) }\n";
-        return rules::load(std::make_shared<const syntax::Source>("f.sgm", text), operations::table(), loader, diagnostics);
+        const auto text =
+            "grammar 1\nterminal wall\nstart A -> for k in 1..2 { wall footprint file(\"" + file + "\", k) }\n";
+        return rules::load(std::make_shared<const syntax::Source>("f.sgm", text), operations::table(), loader,
+                           diagnostics);
     };
     syntax::Diagnostics diagnostics;
     const auto grammar = load("lots.geojson", diagnostics);
@@ -161,7 +175,8 @@ TEST(Footprints, OutlinesOfAFileKeepTheirPlace) {
 }
 
 TEST(Footprints, WhatCannotBeDrawnIsSaidWhereItStands) {
-    EXPECT_NE(errorOf("start A -> footprint outline((0, 0), (4, 4), (4, 0), (0, 4)) wall\n").find("test.sgm:3"), std::string::npos);
+    EXPECT_NE(errorOf("start A -> footprint outline((0, 0), (4, 4), (4, 0), (0, 4)) wall\n").find("test.sgm:3"),
+              std::string::npos);
     EXPECT_NE(errorOf("start A -> footprint ell(4, 4, 9, 1) wall\n").find("wing"), std::string::npos);
     EXPECT_NE(errorOf("start A -> footprint rect(4, 4) court 3m wall\n").find("court"), std::string::npos);
 }

@@ -15,7 +15,8 @@ struct Grown {
     std::vector<rules::Value> params;
     derive::Place place;
 
-    explicit Grown(const std::string& lsystem, uint64_t key = 1) : grammar(grammarOf("grammar 1\n" + lsystem + "\nstart A -> cube\n")) {
+    explicit Grown(const std::string& lsystem, uint64_t key = 1)
+        : grammar(grammarOf("grammar 1\n" + lsystem + "\nstart A -> cube\n")) {
         for (const auto& p : grammar->params) params.push_back(p.value);
         place.params = params;
         place.key = key;
@@ -41,7 +42,9 @@ TEST(Lsystems, RewriteInParallel) {
 TEST(Lsystems, DrawByWeight) {
     std::map<std::string, int> counts;
     for (uint64_t key = 0; key < 4000; ++key)
-        ++counts[Grown("lsystem Plan passes 1\n  axiom \"F\"\n  F -> \"A\" : 3\n  F -> \"B\" : 1\n  F -> \"C\" : 0", key).letters()];
+        ++counts[Grown("lsystem Plan passes 1\n  axiom \"F\"\n  F -> \"A\" : 3\n  F -> \"B\" : 1\n  F -> \"C\" : 0",
+                       key)
+                     .letters()];
     EXPECT_EQ(counts.size(), 2u);
     EXPECT_NEAR(counts["A"], 3000, 110);  // four standard deviations
 }
@@ -55,9 +58,11 @@ TEST(Lsystems, ASquareIsClosedAndTagged) {
 }
 
 TEST(Lsystems, ParametersAreSettings) {
-    const plan::Footprint small = Grown("param n = 3m in 1m..9m\nlsystem Plan passes 0 angle 90deg step n\n  axiom \"F+F+F+F\"").outline();
+    const plan::Footprint small =
+        Grown("param n = 3m in 1m..9m\nlsystem Plan passes 0 angle 90deg step n\n  axiom \"F+F+F+F\"").outline();
     EXPECT_NEAR(area(small), 9, 1e-4);
-    const plan::Footprint shrinking = Grown("lsystem Plan passes 0 angle 90deg step 4m shrink 1m\n  axiom \"F+F+F\"").outline();
+    const plan::Footprint shrinking =
+        Grown("lsystem Plan passes 0 angle 90deg step 4m shrink 1m\n  axiom \"F+F+F\"").outline();
     EXPECT_NEAR(area(shrinking), 4 * 3 - (4 - 2) * 3 / 2., 1e-4) << "4, 3, 2 and what encloses them";
 }
 
@@ -74,13 +79,15 @@ TEST(Lsystems, TooManyLettersAreABudget) {
 }
 
 TEST(Lsystems, FootprintsStandOnThem) {
-    const auto d = derived("grammar 1\nlsystem Plan passes 1 angle 90deg step 3m\n  axiom \"F+F+F+F\"\n  F -> \"FF\"\nterminal wall\n"
-                           "start A -> footprint Plan extrude 3m wall\n");
+    const auto d = derived(
+        "grammar 1\nlsystem Plan passes 1 angle 90deg step 3m\n  axiom \"F+F+F+F\"\n  F -> \"FF\"\nterminal wall\n"
+        "start A -> footprint Plan extrude 3m wall\n");
     expectNear(d.tree.shapes.back().scope.size, {6, 3, 6}, 1e-5);
 }
 
 TEST(Lsystems, WallsOnOneLineDrawNoPlan) {
-    const auto d = tryDerive("grammar 1\nlsystem Line passes 0\n  axiom \"FFF\"\nterminal wall\nstart A -> footprint Line wall\n");
+    const auto d =
+        tryDerive("grammar 1\nlsystem Line passes 0\n  axiom \"FFF\"\nterminal wall\nstart A -> footprint Line wall\n");
     ASSERT_FALSE(d.ok());
     EXPECT_NE(d.error().message.find("on one line"), std::string::npos) << d.error().message;
 }
