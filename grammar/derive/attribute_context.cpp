@@ -1,6 +1,7 @@
 #include "grammar/derive/attribute_context.h"
 
 #include "grammar/derive/builder.h"
+#include "grammar/derive/scope_footprint.h"
 #include "modeler/plan/validate.h"
 
 namespace sgm::derive {
@@ -11,12 +12,7 @@ Vec3d AttributeContext::metres(const Vector& v) const {
     return m;
 }
 
-plan::Footprint AttributeContext::footprint() const {
-    const Scope& scope = out.scope;
-    if (scope.footprint != none) return place.tree->footprints.inMetres(scope.footprint, scope.half());
-    const Vec3d h = scope.half();
-    return plan::footprintOf(plan::polygonOf({{-h.x, -h.z}, {h.x, -h.z}, {h.x, h.z}, {-h.x, h.z}}));
-}
+plan::Footprint AttributeContext::footprint() const { return footprintOf(out.scope, place.tree->footprints); }
 
 void AttributeContext::setFootprint(plan::Footprint footprint, syntax::SourceSpan span) {
     footprint = plan::cleaned(footprint);

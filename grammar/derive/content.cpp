@@ -1,4 +1,4 @@
-// What a shape is made of and attributes like: solids, materials, declared joints, evaluated attributes, and what fills it.
+// What a shape is made of and looks like: solids, materials, declared joints, evaluated attributes, and what fills it.
 #include <cmath>
 
 #include "grammar/derive/parts_context.h"

@@ -1,5 +1,6 @@
 #include "grammar/derive/parts_context.h"
 
+#include "grammar/derive/scope_footprint.h"
 #include "modeler/core/random.h"
 #include "modeler/plan/cut.h"
 #include "modeler/plan/validate.h"
@@ -13,9 +14,7 @@ rules::Value PartsContext::evaluate(const rules::Expr& expr, uint64_t key) const
 }
 
 plan::Footprint PartsContext::footprint() const {
-    const Vec3d h = scope().half();
-    if (scope().footprint != none) return interpreter_.builder_.tree().footprints.inMetres(scope().footprint, h);
-    return plan::footprintOf(plan::polygonOf({{-h.x, -h.z}, {h.x, -h.z}, {h.x, h.z}, {-h.x, h.z}}));
+    return footprintOf(scope(), interpreter_.builder_.tree().footprints);
 }
 
 std::optional<Scope> PartsContext::over(Scope scope, const plan::Footprint& footprint, syntax::SourceSpan span) {
@@ -42,9 +41,7 @@ std::optional<Scope> PartsContext::cut(int axis, double low_m, double high_m) {
         plan::placed(plan::between(footprint(), axis == 0 ? 0 : 1, lo, hi), {1, 1}, {-moved.x, -moved.z}));
     part.footprint = none;
     if (clipped.empty()) return std::nullopt;
-    const Vec3d h = part.half();
-    const plan::Footprint box =
-        plan::footprintOf(plan::polygonOf({{-h.x, -h.z}, {h.x, -h.z}, {h.x, h.z}, {-h.x, h.z}}));
+    const plan::Footprint box = footprintOf(part, interpreter_.builder_.tree().footprints);
     const bool isBox = clipped.edgeCount() == 4 && std::abs(area(clipped) - area(box)) < 1e-9 * area(box) &&
                        bounds(clipped).size() == bounds(box).size();
     return isBox ? part : over(part, clipped, syntax::SourceSpan{});

@@ -50,10 +50,10 @@ std::optional<ConvexContent> convexOverPlan(const derive::SolidValue& solid, con
     const auto planes = planesOver(solid, scope, footprints);
     if (!planes) return std::nullopt;
     auto content = carriedOut(planes->formula, planes->outer, scope, shape, world);
-    if (!content || !planes->rooms) return content;
-    const auto rooms = carriedOut(planes->formula, *planes->rooms, scope, shape, world);
-    if (!rooms) return std::nullopt;
-    content->subtract(*rooms);
+    if (!content || !planes->hollow) return content;
+    const auto hollow = carriedOut(planes->formula, *planes->hollow, scope, shape, world);
+    if (!hollow) return std::nullopt;
+    content->subtract(*hollow);
     return content;
 }
 

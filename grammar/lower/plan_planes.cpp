@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grammar/derive/scope_footprint.h"
+
 namespace sgm::lower {
 namespace {
 
@@ -18,15 +20,9 @@ struct Plan {
 };
 
 Plan planOf(const Scope& scope, const derive::Footprints& footprints) {
-    Plan plan;
-    const Vec3d h = scope.half();
-    if (scope.footprint != derive::none) {
-        plan.footprint = footprints.inMetres(scope.footprint, h);
-        plan.formula = footprints[scope.footprint].formula;
-    } else {
-        plan.footprint = plan::footprintOf(plan::polygonOf({{-h.x, -h.z}, {h.x, -h.z}, {h.x, h.z}, {-h.x, h.z}}));
-        plan.formula = plan::monotoneFormula(plan.footprint).value();
-    }
+    Plan plan{derive::footprintOf(scope, footprints), {}, {}};
+    const bool known = scope.footprint != derive::none;
+    plan.formula = known ? footprints[scope.footprint].formula : plan::monotoneFormula(plan.footprint).value();
     plan.edges = plan::edgesOf(plan.footprint);
     return plan;
 }
@@ -117,8 +113,13 @@ std::optional<PlanPlanes> planesOver(const derive::SolidValue& solid, const Scop
     const Plan plan = planOf(scope, footprints);
     PlanPlanes planes{plan.formula, {}, std::nullopt};
     if (isPrism) {
-        planes.outer = {-half, name == "block" ? half : -half + number(0), {}};
+        const bool isFlat = name == "flatRoof";
+        const double slab = isFlat ? number(0) : 0, parapet = isFlat ? number(1) : 0;
+        planes.outer = {-half, isFlat ? -half + slab + parapet : half, {}};
         for (const plan::PlacedEdge& edge : plan.edges) planes.outer.sides.push_back({wall(edge, 0)});
+        if (parapet <= 0) return planes;
+        planes.hollow = {-half + slab, -half + slab + parapet + 1, {}};
+        for (const plan::PlacedEdge& edge : plan.edges) planes.hollow->sides.push_back({wall(edge, -number(2))});
         return planes;
     }
     const size_t first = isBroken ? 3 : 1;  // of overhang, fascia, cover, ends
@@ -132,7 +133,7 @@ std::optional<PlanPlanes> planesOver(const derive::SolidValue& solid, const Scop
     if (cover <= 0) return planes;
     roof.overhang += 1;
     roof.eaves -= cover / std::cos(roof.slopes.back().pitch);
-    planes.rooms = pitchedRise(plan, scope, roof, gables, bottom - 1);
+    planes.hollow = pitchedRise(plan, scope, roof, gables, bottom - 1);
     return planes;
 }
 

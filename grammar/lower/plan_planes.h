@@ -20,10 +20,10 @@ struct PlanRise {
 struct PlanPlanes {
     plan::Formula formula;
     PlanRise outer;
-    std::optional<PlanRise> rooms;  ///< taken away from `outer`: below a roof that is open
+    std::optional<PlanRise> hollow;  ///< taken away from `outer`: below a roof that is open, behind a parapet
 };
 
-/// The planes of a block, a hip, gable, mansard, gambrel or flat roof (its slab alone); nothing for other rows.
+/// The planes of a block, a hip, gable, mansard, gambrel or flat roof; nothing for other rows.
 std::optional<PlanPlanes> planesOver(const derive::SolidValue& solid, const derive::Scope& scope,
                                      const derive::Footprints& footprints);
 

@@ -165,10 +165,9 @@ uint32_t Collector::risen(const plan::Formula& formula, const PlanRise& rise, Sh
 
 Pending Collector::overPlan(const SolidValue& value, ShapeId id) {
     const auto planes = planesOver(value, tree_.shapes[id].scope, tree_.footprints);
-    const bool whole = planes && value.primitive->name != "flatRoof";
-    if (!whole) return inexact(emptySolid(), id, fmt::format("is a {}, which isn't written as planes", value.primitive->name));
+    if (!planes) return inexact(emptySolid(), id, fmt::format("is a {}, which isn't written as planes", value.primitive->name));
     const uint32_t outer = risen(planes->formula, planes->outer, id);
-    return single(planes->rooms ? node({Op::Difference, 0, {outer, risen(planes->formula, *planes->rooms, id)}}) : outer);
+    return single(planes->hollow ? node({Op::Difference, 0, {outer, risen(planes->formula, *planes->hollow, id)}}) : outer);
 }
 
 /// Not as a content of shapes: what is cut from nothing stays nothing, and what cuts may be nothing.

@@ -1,0 +1,16 @@
+// The plan that a scope stands for.
+// Enters: a scope and the footprints of its tree. Leaves: a polygon. Assumes that the scope's index is of that table.
+#pragma once
+
+#include "grammar/derive/shape_tree.h"
+
+namespace sgm::derive {
+
+/// The footprint of a scope in metres about its centre; its rectangle where it has none. O(edges).
+inline plan::Footprint footprintOf(const Scope& scope, const Footprints& footprints) {
+    const Vec3d h = scope.half();
+    if (scope.footprint != none) return footprints.inMetres(scope.footprint, h);
+    return plan::footprintOf(plan::polygonOf({{-h.x, -h.z}, {h.x, -h.z}, {h.x, h.z}, {-h.x, h.z}}));
+}
+
+}  // namespace sgm::derive
