@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "grammar/derive/scope_footprint.h"
+#include "modeler/field/plan_solids.h"
 
 namespace sgm::lower {
 namespace {
@@ -44,33 +45,10 @@ HalfSpace slopeOver(const plan::PlacedEdge& edge, const Slope& slope, double eav
     return {{n.x * s, c, n.z * s}, (dot(n, edge.from) - slope.inset) * s + (eaves + slope.rise) * c};
 }
 
-/// By edge: whether one of its corners is reflex or straight; no gable stands there.
-std::vector<bool> edgesAtReflexCorners(const Plan& plan) {
-    std::vector<bool> reflex(plan.edges.size(), false);
-    for (size_t i = 0; i < reflex.size(); ++i) {
-        const plan::PlacedEdge& edge = plan.edges[i];
-        const plan::Polygon& polygon = plan.footprint.polygons[edge.polygon];
-        const size_t n = edge.ring == 0 ? polygon.outer.size() : polygon.courts[edge.ring - 1].size();
-        const size_t next = edge.index + 1 == n ? i + 1 - n : i + 1;
-        if (cross(edge.to - edge.from, plan.edges[next].to - plan.edges[next].from) <= 0)
-            reflex[i] = reflex[next] = true;
-    }
-    return reflex;
-}
-
-/// The edges over which a gable's walls go up, as the choice `ends` says.
-std::vector<bool> gablesOf(const Plan& plan, int ends) {
+/// By edge: whether a wall goes up there.
+std::vector<bool> gablesOf(const Plan& plan, field::GableEnds ends) {
     std::vector<bool> gables(plan.edges.size(), false);
-    if (ends == 0) {
-        for (const uint32_t edge : plan::gableEnds(plan.footprint, plan.formula)) gables[edge] = true;
-        return gables;
-    }
-    const std::vector<bool> reflex = edgesAtReflexCorners(plan);
-    for (size_t i = 0; i < gables.size(); ++i) {
-        const plan::Facing facing = plan::facingOf(plan.edges[i].normal());
-        const bool alongX = facing == plan::Facing::Left || facing == plan::Facing::Right;
-        gables[i] = !reflex[i] && (ends == 3 || alongX == (ends == 1));
-    }
+    for (const uint32_t edge : field::gablesOf(plan.footprint, plan.formula, ends)) gables[edge] = true;
     return gables;
 }
 
@@ -127,7 +105,8 @@ std::optional<PlanPlanes> planesOver(const derive::SolidValue& solid, const Scop
     Pitched roof{{{number(0)}}, overhang, -half + fascia};
     if (isBroken) roof.slopes.push_back({std::min(number(0), number(2)), number(1) / std::tan(number(0)), number(1)});
     const std::vector<bool> gables =
-        hasGables ? gablesOf(plan, static_cast<int>(number(first + 3))) : std::vector<bool>(plan.edges.size(), false);
+        hasGables ? gablesOf(plan, static_cast<field::GableEnds>(static_cast<int>(number(first + 3))))
+                  : std::vector<bool>(plan.edges.size(), false);
     const double bottom = -half - overhang * std::tan(number(0));
     planes.outer = pitchedRise(plan, scope, roof, gables, bottom);
     if (cover <= 0) return planes;

@@ -3,7 +3,9 @@
 // (modeler/plan/validate.h) and their formulas.
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "modeler/field/primitives.h"
 #include "modeler/plan/formula.h"
@@ -14,6 +16,11 @@ namespace sgm::field {
 /// `arguments` need their values alone. O(n log n) and a search of the footprint's depth.
 double heightOver(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
                   std::span<const Argument> arguments);
+
+/// Which edges of a footprint a roof leaves as gables: where a ridge ends over them, those that face x or z, or all that can.
+enum class GableEnds : uint8_t { Auto, X, Z, All };
+/// Their numbers, ascending, as in edgesOf(); edges at reflex corners can't be gables.
+std::vector<uint32_t> gablesOf(const plan::Footprint& footprint, const plan::Formula& formula, GableEnds ends);
 
 namespace solids {
 

@@ -5,6 +5,7 @@
 #include "modeler/core/conventions.h"
 #include "modeler/field/combine.h"
 #include "modeler/field/roof_parts.h"
+#include "modeler/plan/reflex.h"
 
 namespace sgm::field {
 
@@ -51,19 +52,6 @@ double depthOf(const PlanField& plan) {
 namespace {
 
 using namespace roof_parts;
-
-/// Per edge: whether one of its corners is reflex or straight.
-std::vector<bool> edgesAtReflexCorners(const PlanField& plan) {
-    const auto& edges = plan.edges();
-    std::vector<bool> reflex(edges.size());
-    for (size_t i = 0; i < edges.size(); ++i) {
-        const plan::Polygon& polygon = plan.footprint().polygons[edges[i].polygon];
-        const size_t n = edges[i].ring == 0 ? polygon.outer.size() : polygon.courts[edges[i].ring - 1].size();
-        const size_t next = edges[i].index + 1 == n ? i + 1 - n : i + 1;
-        if (cross(edges[i].to - edges[i].from, edges[next].to - edges[next].from) <= 0) reflex[i] = reflex[next] = true;
-    }
-    return reflex;
-}
 
 /// Height of the roof's highest point above the eaves: each side's last plane, walls without end.
 double peakOf(const PlanField& plan, std::span<const RoofSide* const> sides) {
@@ -127,7 +115,7 @@ Field roof(const PlanField& plan, const RoofFoot& foot, std::span<const RoofSide
     if (sides.size() == 1) return uniformRoof(plan, foot, sides[0]);
 
     const size_t n = plan.edges().size();
-    const std::vector<bool> reflex = edgesAtReflexCorners(plan);
+    const std::vector<bool> reflex = plan::edgesAtReflexCorners(plan.footprint());
     std::vector<const RoofSide*> chosen(n, &*pitched);
     for (size_t i = 0; i < std::min(n, sides.size()); ++i)
         if (!sides[i].pitches.empty() || !reflex[i]) chosen[i] = &sides[i];

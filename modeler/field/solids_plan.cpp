@@ -10,6 +10,7 @@
 #include "modeler/field/plan_solids.h"
 #include "modeler/field/roofs.h"
 #include "modeler/field/solids.h"
+#include "modeler/plan/reflex.h"
 #include "modeler/plan/shapes.h"
 
 namespace sgm::field {
@@ -60,20 +61,6 @@ Quantity upperOf(const Argument& lower, const Argument& upper) {
     return {min(lower.node[0], upper.node[0]), std::min(lower.value[0], upper.value[0])};
 }
 
-/// Which edges are gables, as the choice `ends` says.
-enum class Ends { Auto, X, Z, All };
-std::vector<uint32_t> endsOf(const PlanField& plan, const Argument& choice) {
-    const auto ends = static_cast<Ends>(static_cast<int>(choice.value[0]));
-    if (ends == Ends::Auto) return plan::gableEnds(plan.footprint(), plan.formula());
-    std::vector<uint32_t> found;
-    for (uint32_t i = 0; i < plan.edges().size(); ++i) {
-        const plan::Facing facing = plan::facingOf(plan.edges()[i].normal());
-        const bool alongX = facing == plan::Facing::Left || facing == plan::Facing::Right;
-        if (ends == Ends::All || alongX == (ends == Ends::X)) found.push_back(i);
-    }
-    return found;
-}
-
 /// Where the numbers of a roof stand among its arguments.
 struct Cover {
     size_t pitch, overhang, fascia, thickness;
@@ -97,7 +84,25 @@ Field covered(const PrimitiveInput& in, Cover at, const Build& build) {
     return difference({whole, 0}, {build(*plan, rooms), 0});
 }
 
+/// Gables as the argument says.
+std::vector<uint32_t> endsOf(const PlanField& plan, const Argument& choice) {
+    return gablesOf(plan.footprint(), plan.formula(), static_cast<GableEnds>(static_cast<int>(choice.value[0])));
+}
+
 }  // namespace
+
+std::vector<uint32_t> gablesOf(const plan::Footprint& footprint, const plan::Formula& formula, GableEnds ends) {
+    if (ends == GableEnds::Auto) return plan::gableEnds(footprint, formula);
+    const std::vector<bool> reflex = plan::edgesAtReflexCorners(footprint);
+    const std::vector<plan::PlacedEdge> edges = plan::edgesOf(footprint);
+    std::vector<uint32_t> found;
+    for (uint32_t i = 0; i < edges.size(); ++i) {
+        const plan::Facing facing = plan::facingOf(edges[i].normal());
+        const bool alongX = facing == plan::Facing::Left || facing == plan::Facing::Right;
+        if (!reflex[i] && (ends == GableEnds::All || alongX == (ends == GableEnds::X))) found.push_back(i);
+    }
+    return found;
+}
 
 double heightOver(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
                   std::span<const Argument> arguments) {
