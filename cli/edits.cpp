@@ -10,7 +10,7 @@
 namespace sgm::cli {
 
 void addEditOptions(CLI::App& command, EditRequest& request) {
-    command.add_option("--keep", request.keep, "Which separate solids stay: all, those that stand and aren't crumbs, or the largest one; the latter two fill closed cavities")
+    command.add_option("--keep", request.keep, "Which separate solids stay: all, those that stand and aren't debris, or the largest one; the latter two fill closed cavities")
         ->check(CLI::IsMember({"all", "grounded", "largest"}))->capture_default_str();
     command.add_option("--smooth", request.smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
     auto* share = command.add_option("--simplify", request.simplify, "Simplify to at most this share of the triangles");

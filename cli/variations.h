@@ -19,7 +19,7 @@ namespace sgm::cli {
 std::vector<viewer::edits::NamedValue> variation(const rules::Grammar& grammar, const viewer::ModelChoice& choice,
                                                  const std::set<std::string>& locked, double spread, uint64_t seed);
 
-/// Why a model isn't worth a look: nothing solid; mostly crumbs; parts in the air; or a few bare planes. Empty for a good
+/// Why a model isn't worth a look: nothing solid; mostly debris; parts in the air; or a few bare planes. Empty for a good
 /// one. `cell_m` is that of the mesh.
 std::optional<std::string> degenerate(const mesh::Mesh& mesh, float cell_m);
 

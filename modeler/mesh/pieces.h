@@ -20,7 +20,7 @@ struct Piece {
 /// stands; one cell is a sensible slack. O(n log n); `threads` 0: all.
 std::vector<Piece> pieces(const Mesh& mesh, float slack_m, int threads = 1);
 
-/// Which solids of a mesh stay: all; those that stand and aren't crumbs of less than a thousandth of the greatest one; or
+/// Which solids of a mesh stay: all; those that stand and aren't debris of less than a thousandth of the greatest one; or
 /// the greatest one alone.
 enum class Keep { All, Grounded, Largest };
 /// Whether each of a model's solids stays; of a piece, volume and bounds count.

@@ -87,15 +87,18 @@ TEST_P(Walk, KeepsTheBytes) {
         followed.expectSame(options);
         if (testing::Test::HasFatalFailure()) return;
     }
-    EXPECT_GT(followed.blocksKept, 0u);
-    EXPECT_GT(followed.followed, 0u);
+    // Every parameter of the L-system's house moves all of its walls.
+    const bool movesAll = std::string(GetParam()) == "examples/buildings/lsystem.sgm";
+    EXPECT_TRUE(followed.blocksKept > 0 || movesAll);
+    EXPECT_TRUE(followed.followed > 0 || movesAll);
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, Walk,
                          testing::Values("examples/tower.sgm", "examples/grotto.sgm", "examples/cumulus.sgm",
                                          "examples/buildings/hall.sgm", "examples/caves/branching.sgm",
                                          "tests/bench/scenes/buildings.sgm", "examples/morphs.sgm",
-                                         "examples/buildings/terrace.sgm", "examples/buildings/villa.sgm"));
+                                         "examples/buildings/terrace.sgm", "examples/buildings/villa.sgm",
+                                         "examples/buildings/lsystem.sgm"));
 
 /// 200 buildings, of which one is dragged, then all.
 TEST(District, OneBuildingIsDragged) {

@@ -58,7 +58,7 @@ void ExportPanel::show(Workbench& bench) {
     ImGui::SliderInt("##cells", &resolution_, 32, 1024, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     bench.report.mark("export.cells");
     hint("Cells along the longest side of the model");
-    constexpr const char* solids = "Which separate solids are written: all, those that stand and aren't crumbs, or the largest one; the latter two fill closed cavities";
+    constexpr const char* solids = "Which separate solids are written: all, those that stand and aren't debris, or the largest one; the latter two fill closed cavities";
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("keep");
     hint(solids);
