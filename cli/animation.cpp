@@ -16,7 +16,9 @@ namespace {
 
 constexpr int mostFrames = 100'000;
 
-Error usage(const std::string& text, const std::string& what) { return {Error::Kind::Usage, fmt::format("--animate {}: {}", text, what)}; }
+Error usage(const std::string& text, const std::string& what) {
+    return {Error::Kind::Usage, fmt::format("--animate {}: {}", text, what)};
+}
 
 /// NAME=FROM..TO:FRAMES in its parts.
 struct Written {
@@ -27,8 +29,10 @@ struct Written {
 Result<Written> parts(const std::string& text) {
     const size_t equals = text.find('='), colon = text.rfind(':');
     const size_t dots = equals == std::string::npos ? equals : text.find("..", equals);
-    if (dots == std::string::npos || colon == std::string::npos || colon < dots) return usage(text, "write NAME=FROM..TO:FRAMES, as in peak=0..1:48");
-    Written w{text.substr(0, equals), text.substr(equals + 1, dots - equals - 1), text.substr(dots + 2, colon - dots - 2), 0};
+    if (dots == std::string::npos || colon == std::string::npos || colon < dots)
+        return usage(text, "write NAME=FROM..TO:FRAMES, as in peak=0..1:48");
+    Written w{text.substr(0, equals), text.substr(equals + 1, dots - equals - 1),
+              text.substr(dots + 2, colon - dots - 2), 0};
     const char* const end = text.data() + text.size();
     const auto [stop, bad] = std::from_chars(text.data() + colon + 1, end, w.frames);
     if (bad != std::errc() || stop != end || w.frames < 2 || w.frames > mostFrames)
@@ -37,12 +41,14 @@ Result<Written> parts(const std::string& text) {
 }
 
 Result<Animation::Track> track(const rules::Grammar& grammar, const std::string& text, const Written& written) {
-    const auto param = std::find_if(grammar.params.begin(), grammar.params.end(), [&](const rules::Param& p) { return p.name == written.name; });
+    const auto param = std::find_if(grammar.params.begin(), grammar.params.end(),
+                                    [&](const rules::Param& p) { return p.name == written.name; });
     if (param == grammar.params.end()) {
         std::vector<std::string> names;
         for (const rules::Param& p : grammar.params) names.push_back(p.name);
         const std::string near = syntax::didYouMean(written.name, names);
-        return usage(text, fmt::format("no parameter is called '{}'{}", written.name, near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near)));
+        return usage(text, fmt::format("no parameter is called '{}'{}", written.name,
+                                       near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near)));
     }
     using Kind = rules::Value::Kind;
     if (const Kind kind = param->value.kind; kind != Kind::Number && kind != Kind::Vector && kind != Kind::Color)
@@ -73,7 +79,9 @@ std::vector<rules::Value> Animation::values(std::vector<rules::Value> values, in
 
 std::string Animation::text(const rules::Grammar& grammar, int frame) const {
     std::string text;
-    for (const Track& t : tracks) text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", grammar.params[t.param].name, rules::toText(value(t, frame)));
+    for (const Track& t : tracks)
+        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", grammar.params[t.param].name,
+                            rules::toText(value(t, frame)));
     return text;
 }
 
@@ -83,7 +91,8 @@ Result<Animation> readAnimation(const rules::Grammar& grammar, const std::vector
         const auto written = parts(text);
         if (!written.ok()) return written.error();
         if (animation.frames && animation.frames != written->frames)
-            return usage(text, fmt::format("all parameters run over the same frames, and another has {}", animation.frames));
+            return usage(text,
+                         fmt::format("all parameters run over the same frames, and another has {}", animation.frames));
         animation.frames = written->frames;
         auto one = track(grammar, text, *written);
         if (!one.ok()) return one.error();
@@ -95,8 +104,9 @@ Result<Animation> readAnimation(const rules::Grammar& grammar, const std::vector
 }
 
 Result<std::string> frameName(const std::string& pattern, int frame, const char* option) {
-    const Error wrong{Error::Kind::Usage, fmt::format("'{}': with {} the name needs one number, as in roof_%04d{}", pattern, option,
-                                                      std::filesystem::path(pattern).extension().string())};
+    const Error wrong{Error::Kind::Usage,
+                      fmt::format("'{}': with {} the name needs one number, as in roof_%04d{}", pattern, option,
+                                  std::filesystem::path(pattern).extension().string())};
     std::string name;
     int numbers = 0;
     for (size_t i = 0; i < pattern.size(); ++i) {
@@ -107,7 +117,8 @@ Result<std::string> frameName(const std::string& pattern, int frame, const char*
         } else {
             int width = 0;
             const bool zeros = pattern.compare(i, 2, "%0") == 0;
-            for (++i; i < pattern.size() && std::isdigit(static_cast<unsigned char>(pattern[i])); ++i) width = std::min(width * 10 + (pattern[i] - '0'), 20);
+            for (++i; i < pattern.size() && std::isdigit(static_cast<unsigned char>(pattern[i])); ++i)
+                width = std::min(width * 10 + (pattern[i] - '0'), 20);
             if (i == pattern.size() || pattern[i] != 'd') return wrong;
             name += zeros ? fmt::format("{:0{}}", frame + 1, width) : fmt::format("{:{}}", frame + 1, width);
             ++numbers;

@@ -1,6 +1,6 @@
 // `--animate NAME=FROM..TO:FRAMES` and the names of frames.
-// Enters: what the user wrote, a checked grammar. Leaves: parameter values frame by frame, file names. Assumes frames are
-// counted from 1 in file names and from 0 here.
+// Enters: what the user wrote, a checked grammar. Leaves: parameter values frame by frame, file names. Assumes frames
+// are counted from 1 in file names and from 0 here.
 #pragma once
 
 #include <string>
@@ -28,8 +28,8 @@ struct Animation {
     std::string text(const rules::Grammar& grammar, int frame) const;
 };
 
-/// Reads every "NAME=FROM..TO:FRAMES". Error::Usage for a text that isn't that, for an unknown parameter and for counts of
-/// frames that differ; Error::Input for values that the parameter doesn't take.
+/// Reads every "NAME=FROM..TO:FRAMES". Error::Usage for a text that isn't that, for an unknown parameter and for counts
+/// of frames that differ; Error::Input for values that the parameter doesn't take.
 Result<Animation> readAnimation(const rules::Grammar& grammar, const std::vector<std::string>& texts);
 
 /// The file of a frame: "roof_%04d.glb" gives "roof_0001.glb" for frame 0; "%%" is a percent sign. Error::Usage, which

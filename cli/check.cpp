@@ -22,14 +22,15 @@ namespace {
 struct CheckRequest {
     std::vector<std::string> files;
     uint64_t seed = 1;
-    double seconds = 60;       ///< for all `check` lines of a file, and for the model that `sgm build` makes
+    double seconds = 60;  ///< for all `check` lines of a file, and for the model that `sgm build` makes
     uint64_t shapes = derive::Budget{}.shapes;
-    double otherSeconds = 5;   ///< for the models of other starts, styles and ends of ranges
+    double otherSeconds = 5;  ///< for the models of other starts, styles and ends of ranges
     bool json = false;
 };
 
 /// Failed checks become errors at their `check` line, so that text and JSON show them like any other problem.
-int runGrammarChecks(std::shared_ptr<const rules::Grammar> grammar, const CheckRequest& request, syntax::Diagnostics& diagnostics) {
+int runGrammarChecks(std::shared_ptr<const rules::Grammar> grammar, const CheckRequest& request,
+                     syntax::Diagnostics& diagnostics) {
     Watch watch(false);
     const auto verdicts = derive::runChecks(std::move(grammar), request.seed, watch.progress(), request.seconds);
     if (!verdicts.ok()) return fail(verdicts.error());
@@ -39,12 +40,15 @@ int runGrammarChecks(std::shared_ptr<const rules::Grammar> grammar, const CheckR
 }
 
 /// What `sgm build` would refuse, and what other settings would; the exit code.
-int tryGrammar(const std::string& file, const std::shared_ptr<const rules::Grammar>& grammar, const CheckRequest& request, syntax::Diagnostics& diagnostics) {
+int tryGrammar(const std::string& file, const std::shared_ptr<const rules::Grammar>& grammar,
+               const CheckRequest& request, syntax::Diagnostics& diagnostics) {
     Watch watch(false);
-    const auto trials = tryModels(grammar, {request.seed, request.seconds, request.shapes, request.otherSeconds}, watch.progress(), diagnostics);
+    const auto trials = tryModels(grammar, {request.seed, request.seconds, request.shapes, request.otherSeconds},
+                                  watch.progress(), diagnostics);
     if (!trials.ok()) return fail(trials.error());
     if (trials->tried < trials->all && !request.json)
-        printMessage("note: {}: {} of {} settings were tried in {:g} s (--try-seconds)\n", file, trials->tried, trials->all, request.otherSeconds);
+        printMessage("note: {}: {} of {} settings were tried in {:g} s (--try-seconds)\n", file, trials->tried,
+                     trials->all, request.otherSeconds);
     return trials->budgetSpent ? 3 : 0;
 }
 
@@ -75,14 +79,25 @@ int check(const CheckRequest& request) {
 }  // namespace
 
 void addCheck(CLI::App& app, int& exitCode) {
-    CLI::App* command = app.add_subcommand("check", "Show every problem of grammar files, also of what they derive, and run their `check` lines");
+    CLI::App* command = app.add_subcommand(
+        "check", "Show every problem of grammar files, also of what they derive, and run their `check` lines");
     auto request = std::make_shared<CheckRequest>();
     command->add_option("FILE", request->files, "Grammar files (.sgm)")->required();
     command->add_option("--seed", request->seed, "Seed for the `check` lines")->capture_default_str();
-    command->add_option("--max-seconds", request->seconds, "Budget of time for all `check` lines of a file, and for the model that `sgm build` makes of it")->check(between(1e-3, 1e9))->capture_default_str();
-    command->add_option("--max-shapes", request->shapes, "Budget of derived shapes of each model")->check(CLI::Range(uint64_t{1}, uint64_t{4'000'000'000}))->capture_default_str();
-    command->add_option("--try-seconds", request->otherSeconds, "Budget of time for the other models: each start, style and `derive` way, and each parameter at the ends of its range")
-        ->check(between(0, 1e9))->capture_default_str();
+    command
+        ->add_option("--max-seconds", request->seconds,
+                     "Budget of time for all `check` lines of a file, and for the model that `sgm build` makes of it")
+        ->check(between(1e-3, 1e9))
+        ->capture_default_str();
+    command->add_option("--max-shapes", request->shapes, "Budget of derived shapes of each model")
+        ->check(CLI::Range(uint64_t{1}, uint64_t{4'000'000'000}))
+        ->capture_default_str();
+    command
+        ->add_option("--try-seconds", request->otherSeconds,
+                     "Budget of time for the other models: each start, style and `derive` way, and each parameter at "
+                     "the ends of its range")
+        ->check(between(0, 1e9))
+        ->capture_default_str();
     command->add_flag("--json", request->json, "Problems as JSON, for editors");
     command->callback([request, &exitCode] { exitCode = check(*request); });
 }

@@ -10,8 +10,12 @@
 namespace sgm::cli {
 
 void addEditOptions(CLI::App& command, EditRequest& request) {
-    command.add_option("--keep", request.keep, "Which separate solids stay: all, those that stand and aren't debris, or the largest one; the latter two fill closed cavities")
-        ->check(CLI::IsMember({"all", "grounded", "largest"}))->capture_default_str();
+    command
+        .add_option("--keep", request.keep,
+                    "Which separate solids stay: all, those that stand and aren't debris, or the largest one; the "
+                    "latter two fill closed cavities")
+        ->check(CLI::IsMember({"all", "grounded", "largest"}))
+        ->capture_default_str();
     command.add_option("--smooth", request.smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
     auto* share = command.add_option("--simplify", request.simplify, "Simplify to at most this share of the triangles");
     share->check(between(0.001, 1));
@@ -24,7 +28,9 @@ void addEditOptions(CLI::App& command, EditRequest& request) {
 }
 
 mesh::Keep keepOf(const EditRequest& request) {
-    return request.keep == "all" ? mesh::Keep::All : request.keep == "grounded" ? mesh::Keep::Grounded : mesh::Keep::Largest;
+    return request.keep == "all"        ? mesh::Keep::All
+           : request.keep == "grounded" ? mesh::Keep::Grounded
+                                        : mesh::Keep::Largest;
 }
 
 double toleranceOf(const EditRequest& request, mesh::Surface surface, float cell_m) {
@@ -32,7 +38,8 @@ double toleranceOf(const EditRequest& request, mesh::Surface surface, float cell
     return surface == mesh::Surface::Crisp && request.smooth == 0 ? mesh::usualTolerance(cell_m) : 0;
 }
 
-Result<mesh::Mesh> edited(mesh::Mesh mesh, const EditRequest& request, const GridRequest& grid, float cell_m, Stages& stages, Progress* progress) {
+Result<mesh::Mesh> edited(mesh::Mesh mesh, const EditRequest& request, const GridRequest& grid, float cell_m,
+                          Stages& stages, Progress* progress) {
     if (request.smooth > 0) {
         auto result = timed(stages, "smooth", [&] { return mesh::smooth(mesh, request.smooth, progress); });
         if (!result.ok()) return result;

@@ -1,6 +1,5 @@
-// What is done to a mesh after it was made: the options that `build` and `render` share, so that a picture of a mesh is the
-// mesh that is written.
-// Enters: a mesh as it comes from makeMesh. Leaves: the edited one.
+// What is done to a mesh after it was made: the options that `build` and `render` share, so that a picture of a mesh is
+// the mesh that is written. Enters: a mesh as it comes from makeMesh. Leaves: the edited one.
 #pragma once
 
 #include <optional>
@@ -29,6 +28,7 @@ mesh::Keep keepOf(const EditRequest& request);
 double toleranceOf(const EditRequest& request, mesh::Surface surface, float cell_m);
 
 /// Smooths and simplifies; separate solids were dropped before (keepOnly).
-Result<mesh::Mesh> edited(mesh::Mesh mesh, const EditRequest& request, const GridRequest& grid, float cell_m, Stages& stages, Progress* progress);
+Result<mesh::Mesh> edited(mesh::Mesh mesh, const EditRequest& request, const GridRequest& grid, float cell_m,
+                          Stages& stages, Progress* progress);
 
 }  // namespace sgm::cli

@@ -23,7 +23,8 @@ std::vector<uint32_t> piecesByShape(const Model& model, const std::vector<mesh::
 }
 
 /// A piece of shapes that other pieces share is named after the one that has most of its surface.
-derive::ShapeId beginOf(const Model& model, std::span<const uint32_t> pieceOf, uint32_t index, const mesh::Piece& piece) {
+derive::ShapeId beginOf(const Model& model, std::span<const uint32_t> pieceOf, uint32_t index,
+                        const mesh::Piece& piece) {
     const derive::ShapeId begin = derive::beginOf(model.derivation.tree, pieceOf, index);
     if (begin != derive::none) return begin;
     const derive::ShapeId owner = model.lowered->shapeOf[piece.origins.front()];
@@ -48,8 +49,9 @@ void sayFloating(const Model& model, const Support& support, float cell_m) {
         const Floating& f = support.floating[i];
         const Vec3f at = f.piece.bounds.centre();
         const std::string cause = causeText(model, f.cause, cell_m);
-        printMessage("warning: {} floats: {:.3g} m³ about ({:.2f}, {:.2f}, {:.2f}){}{}\n", derive::madeBy(model.derivation, f.shape),
-                     f.piece.volume_m3, at.x, at.y, at.z, cause.empty() ? "" : "; ", cause);
+        printMessage("warning: {} floats: {:.3g} m³ about ({:.2f}, {:.2f}, {:.2f}){}{}\n",
+                     derive::madeBy(model.derivation, f.shape), f.piece.volume_m3, at.x, at.y, at.z,
+                     cause.empty() ? "" : "; ", cause);
     }
     if (support.floating.size() > most) printMessage("warning: {} more pieces float\n", support.floating.size() - most);
 }

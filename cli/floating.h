@@ -18,11 +18,11 @@ struct FloatCause {
         Thin,   ///< a part that the mesh lacks holds it
     };
     Kind kind = Kind::Unknown;
-    double width_m = 0;  ///< of the gap in the mesh; of the thin part
-    double cell_m = 0;   ///< Thin: cells no larger than this show it
-    Vec3d at;            ///< Gap, Touch: between the nearest points
-    OriginId ours = 0;   ///< Gap, Touch: the part of the piece that is nearest
-    OriginId theirs = 0; ///< Gap, Touch: the nearest part of anything else. Thin: the thin part
+    double width_m = 0;   ///< of the gap in the mesh; of the thin part
+    double cell_m = 0;    ///< Thin: cells no larger than this show it
+    Vec3d at;             ///< Gap, Touch: between the nearest points
+    OriginId ours = 0;    ///< Gap, Touch: the part of the piece that is nearest
+    OriginId theirs = 0;  ///< Gap, Touch: the nearest part of anything else. Thin: the thin part
 };
 
 struct Floating {

@@ -94,7 +94,8 @@ private:
         for (const Surface& s : surfaces_) {
             double off = 0;
             for (int i = 0; i < 3; ++i)
-                off += std::abs(s.box.lo[i] - static_cast<double>(piece.bounds.lo[i])) + std::abs(s.box.hi[i] - static_cast<double>(piece.bounds.hi[i]));
+                off += std::abs(s.box.lo[i] - static_cast<double>(piece.bounds.lo[i])) +
+                       std::abs(s.box.hi[i] - static_cast<double>(piece.bounds.hi[i]));
             if (off < least) least = off, best = &s;
         }
         return best;
@@ -114,7 +115,8 @@ private:
             const double longest = std::sqrt(std::max({dot(ab, ab), dot(ac, ac), dot(ac - ab, ac - ab)}));
             const int n = static_cast<int>(std::clamp(std::ceil(longest / step), 1.0, 256.0));
             for (int u = 0; u <= n; ++u)
-                for (int v = 0; u + v <= n; ++v) visit(a + ab * (static_cast<double>(u) / n) + ac * (static_cast<double>(v) / n));
+                for (int v = 0; u + v <= n; ++v)
+                    visit(a + ab * (static_cast<double>(u) / n) + ac * (static_cast<double>(v) / n));
         }
     }
 
@@ -152,7 +154,8 @@ public:
             open.pop_back();
             if (!thinnest || missing_[i].cell_m < thinnest->cell_m) thinnest = &missing_[i];
             for (derive::ShapeId s = 0; s < shapes_.size() && !holds; ++s)
-                holds = shapes_[s].solid != derive::none && s != shapeOf(i) && !own.contains(s) && !isMissing_[s] && touch(s, shapeOf(i));
+                holds = shapes_[s].solid != derive::none && s != shapeOf(i) && !own.contains(s) && !isMissing_[s] &&
+                        touch(s, shapeOf(i));
             reach(shapeOf(i));
         }
         return holds ? thinnest : nullptr;
@@ -162,7 +165,9 @@ private:
     static constexpr size_t mostPairs = 2'000'000;
 
     derive::ShapeId shapeOf(size_t i) const { return model_.lowered->shapeOf[missing_[i].part]; }
-    bool touch(derive::ShapeId a, derive::ShapeId b) const { return derive::penetration(shapes_[a].scope, shapes_[b].scope) >= -derive::boxSlack_m; }
+    bool touch(derive::ShapeId a, derive::ShapeId b) const {
+        return derive::penetration(shapes_[a].scope, shapes_[b].scope) >= -derive::boxSlack_m;
+    }
 
     const Model& model_;
     const std::vector<derive::Shape>& shapes_;
@@ -173,7 +178,8 @@ private:
 /// The field around a place, an eighth of a cell apart, and which of its nodes hang together.
 class Surroundings {
 public:
-    Surroundings(const eval::Tape& tape, Vec3d middle, double cell_m) : low_(middle - Vec3d{2, 2, 2} * cell_m), step_m_(4 * cell_m / (side - 1)) {
+    Surroundings(const eval::Tape& tape, Vec3d middle, double cell_m)
+        : low_(middle - Vec3d{2, 2, 2} * cell_m), step_m_(4 * cell_m / (side - 1)) {
         std::vector<float> x, y, z, values(nodes);
         for (int i = 0; i < nodes; ++i) {
             const Vec3f p = at(i).as<float>();
@@ -204,7 +210,9 @@ public:
             for (const int stride : {1, side, side * side})
                 for (const int way : {-1, 1}) {
                     const int place = node / stride % side + way, next = node + way * stride;
-                    if (place < 0 || place >= side || !solid_[static_cast<size_t>(next)] || seen[static_cast<size_t>(next)]) continue;
+                    if (place < 0 || place >= side || !solid_[static_cast<size_t>(next)] ||
+                        seen[static_cast<size_t>(next)])
+                        continue;
                     seen[static_cast<size_t>(next)] = true;
                     open.push_back(next);
                 }
@@ -215,7 +223,9 @@ public:
 private:
     static constexpr int side = 33, nodes = side * side * side;
 
-    Vec3d at(int node) const { return low_ + Vec3d{double(node % side), double(node / side % side), double(node / side / side)} * step_m_; }
+    Vec3d at(int node) const {
+        return low_ + Vec3d{double(node % side), double(node / side % side), double(node / side / side)} * step_m_;
+    }
     int nearestSolid(Vec3d p) const {
         int best = -1;
         double least = std::numeric_limits<double>::infinity();
@@ -236,7 +246,8 @@ bool meets(const eval::Tape& tape, const Closest& closest, double cell_m) {
     if (closest.width_m > 2 * cell_m) return false;
     if (closest.width_m <= 0) return true;
     const Vec3d inward = (closest.from - closest.to) * (0.5 * cell_m / closest.width_m);
-    return Surroundings(tape, (closest.from + closest.to) * 0.5, cell_m).joins(closest.from + inward, closest.to - inward);
+    return Surroundings(tape, (closest.from + closest.to) * 0.5, cell_m)
+        .joins(closest.from + inward, closest.to - inward);
 }
 
 std::string partText(const Model& model, OriginId origin) {
@@ -246,7 +257,8 @@ std::string partText(const Model& model, OriginId origin) {
 
 }  // namespace
 
-void findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const std::vector<lower::ThinPart>& missing, Support& support) {
+void findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const std::vector<lower::ThinPart>& missing,
+                Support& support) {
     if (support.floating.empty() || mesh.isBare()) return;
     const ThinLinks links(model, missing);
     std::optional<GapFinder> gaps;
@@ -261,24 +273,35 @@ void findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const 
         if (!closest) continue;
         const OriginId ours = gaps->originOf(closest->ours), theirs = gaps->originOf(closest->theirs);
         const bool touches = meets(model.tape, *closest, static_cast<double>(cell_m));
-        f.cause = {touches ? FloatCause::Kind::Touch : FloatCause::Kind::Gap, closest->width_m, 0, (closest->from + closest->to) * 0.5, ours, theirs};
+        f.cause = {touches ? FloatCause::Kind::Touch : FloatCause::Kind::Gap,
+                   closest->width_m,
+                   0,
+                   (closest->from + closest->to) * 0.5,
+                   ours,
+                   theirs};
     }
 }
 
 std::string causeText(const Model& model, const FloatCause& cause, float cell_m) {
     const Vec3d at = cause.at;
     switch (cause.kind) {
-        case FloatCause::Kind::Unknown: return {};
+        case FloatCause::Kind::Unknown:
+            return {};
         case FloatCause::Kind::Gap:
-            return fmt::format("a gap of {:.3g} m lies between its {} and {} at ({:.2f}, {:.2f}, {:.2f})", cause.width_m, partText(model, cause.ours),
-                               partText(model, cause.theirs), at.x, at.y, at.z);
+            return fmt::format("a gap of {:.3g} m lies between its {} and {} at ({:.2f}, {:.2f}, {:.2f})",
+                               cause.width_m, partText(model, cause.ours), partText(model, cause.theirs), at.x, at.y,
+                               at.z);
         case FloatCause::Kind::Touch:
-            return fmt::format("its {} and {} meet at ({:.2f}, {:.2f}, {:.2f}) by less than a cell of {:.3g} m: let them overlap more, or take smaller cells",
-                               partText(model, cause.ours), partText(model, cause.theirs), at.x, at.y, at.z, cell_m);
+            return fmt::format(
+                "its {} and {} meet at ({:.2f}, {:.2f}, {:.2f}) by less than a cell of {:.3g} m: let them overlap "
+                "more, or take smaller cells",
+                partText(model, cause.ours), partText(model, cause.theirs), at.x, at.y, at.z, cell_m);
         case FloatCause::Kind::Thin: {
             const double extent_m = static_cast<double>(maxComponent(model.lowered->field.bounds.size()));
-            return fmt::format("{}, {:.3g} m thick, holds it and is thinner than a cell of {:.3g} m: --resolution {} shows it", partText(model, cause.theirs),
-                               cause.width_m, cell_m, static_cast<int>(std::ceil(extent_m / cause.cell_m)));
+            return fmt::format(
+                "{}, {:.3g} m thick, holds it and is thinner than a cell of {:.3g} m: --resolution {} shows it",
+                partText(model, cause.theirs), cause.width_m, cell_m,
+                static_cast<int>(std::ceil(extent_m / cause.cell_m)));
         }
     }
     return {};

@@ -9,6 +9,7 @@ namespace sgm::cli {
 
 /// A hue for each facade id (of the wall's own axis), every other storey darker; what isn't clad is grey.
 /// Error::Input where nothing is clad.
-Result<viewer::Image> drawIds(const Model& model, const Box3f& bounds, const viewer::PictureOptions& options, Progress* progress);
+Result<viewer::Image> drawIds(const Model& model, const Box3f& bounds, const viewer::PictureOptions& options,
+                              Progress* progress);
 
 }  // namespace sgm::cli

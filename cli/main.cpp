@@ -32,7 +32,8 @@ int run(CLI::App& app, int argc, char** argv, const int& exitCode) {
         printMessage("sgm: {}\nRun with --help for more information.\n", problem);
         return 2;
     } catch (const std::bad_alloc&) {
-        printMessage("sgm: out of memory; try a lower --resolution or a smaller model, or allow more with --max-memory\n");
+        printMessage(
+            "sgm: out of memory; try a lower --resolution or a smaller model, or allow more with --max-memory\n");
         return 3;
     } catch (const std::length_error&) {  // a size that no memory holds
         printMessage("sgm: out of memory: the input needs more than any machine has\n");
@@ -60,7 +61,9 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", SGM_VERSION);
     app.fallthrough();
     uint64_t memory_bytes = usualMemory_bytes();
-    app.add_option("--max-memory", memory_bytes, "Memory that the command may take, as 4GB or 500MB (default: three quarters of what is there; 0: no limit)")
+    app.add_option(
+           "--max-memory", memory_bytes,
+           "Memory that the command may take, as 4GB or 500MB (default: three quarters of what is there; 0: no limit)")
         ->transform(CLI::AsSizeValue(false));
     int exitCode = 0;
     addBuild(app, exitCode);

@@ -37,7 +37,8 @@ uint64_t limitOfGroups() {
     for (std::string line; std::getline(list, line);) {
         const size_t first = line.find(':'), second = line.find(':', first + 1);
         if (first == std::string::npos || second == std::string::npos) continue;
-        const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",", group = line.substr(second + 1);
+        const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",",
+                          group = line.substr(second + 1);
         if (controllers == ",,") least = std::min(least, limitOfGroup("/sys/fs/cgroup", group, "memory.max"));
         if (controllers.find(",memory,") != std::string::npos)
             least = std::min(least, limitOfGroup("/sys/fs/cgroup/memory", group, "memory.limit_in_bytes"));
@@ -49,7 +50,8 @@ uint64_t limitOfGroups() {
 
 uint64_t usualMemory_bytes() {
     const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
-    const uint64_t machine = pages > 0 && page_bytes > 0 ? static_cast<uint64_t>(pages) * static_cast<uint64_t>(page_bytes) : unlimited;
+    const uint64_t machine =
+        pages > 0 && page_bytes > 0 ? static_cast<uint64_t>(pages) * static_cast<uint64_t>(page_bytes) : unlimited;
     const uint64_t allowed = std::min(machine, limitOfGroups());
     return allowed == unlimited ? 0 : allowed / 4 * 3;
 }

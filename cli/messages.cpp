@@ -18,7 +18,8 @@ void printDiagnostics(const syntax::Diagnostics& diagnostics) {
     constexpr size_t most = 100;
     size_t errors = 0, warnings = 0;
     for (const syntax::Diagnostic& d : diagnostics.all())
-        if ((d.severity == syntax::Severity::Error ? errors : warnings)++ < most) printMessage("{}\n", syntax::render(d));
+        if ((d.severity == syntax::Severity::Error ? errors : warnings)++ < most)
+            printMessage("{}\n", syntax::render(d));
     if (errors > most) printMessage("{} more errors\n", errors - most);
     if (warnings > most) printMessage("{} more warnings\n", warnings - most);
 }

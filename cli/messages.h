@@ -1,6 +1,6 @@
 // What a command says beside its product.
-// Enters: words. Leaves: lines on stderr. Assumes nothing of stderr: where it is closed or full, the words are lost and the
-// work goes on.
+// Enters: words. Leaves: lines on stderr. Assumes nothing of stderr: where it is closed or full, the words are lost and
+// the work goes on.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,7 +21,8 @@ void printMessage(fmt::format_string<Arguments...> text, Arguments&&... argument
     writeMessage(fmt::format(text, std::forward<Arguments>(arguments)...));
 }
 
-/// Prints problems with the lines they stand in: at most a hundred errors and as many warnings, and how many more there are.
+/// Prints problems with the lines they stand in: at most a hundred errors and as many warnings, and how many more there
+/// are.
 void printDiagnostics(const syntax::Diagnostics& diagnostics);
 
 /// Opens the standard streams that are closed on /dev/null, so that no file of ours becomes one of them.

@@ -48,7 +48,8 @@ struct Tried {
     std::optional<Model> model;
     std::string why;
 };
-Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const rules::Grammar>& grammar, const std::vector<NamedValue>& values, Progress* progress) {
+Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const rules::Grammar>& grammar,
+                    const std::vector<NamedValue>& values, Progress* progress) {
     const auto options = optionsFor(*grammar, with(request, values));
     if (!options.ok()) return options.error();
     Stages stages;
@@ -73,8 +74,11 @@ std::string worded(const std::vector<NamedValue>& values) {
     return text.empty() ? "as it is" : text;
 }
 
-/// Good variations until the sheet is full, none of them twice; a candidate is known by its number, so that the same sheet comes again.
-Result<std::vector<Variation>> search(const MutateRequest& request, const std::shared_ptr<const rules::Grammar>& grammar, size_t wanted, Progress* progress) {
+/// Good variations until the sheet is full, none of them twice; a candidate is known by its number, so that the same
+/// sheet comes again.
+Result<std::vector<Variation>> search(const MutateRequest& request,
+                                      const std::shared_ptr<const rules::Grammar>& grammar, size_t wanted,
+                                      Progress* progress) {
     std::vector<Variation> found;
     std::map<std::string, int> rejected;
     const std::set<std::string> locked(request.lock.begin(), request.lock.end());
@@ -90,12 +94,17 @@ Result<std::vector<Variation>> search(const MutateRequest& request, const std::s
         auto one = tried(request, grammar, values, progress);
         if (!one.ok()) return one.error();
         if (k == 0 && one->model && !request.quiet) printWarnings(*one->model);
-        if (one->model) found.push_back({std::move(values), std::move(*one->model)});
-        else ++rejected[one->why];
+        if (one->model)
+            found.push_back({std::move(values), std::move(*one->model)});
+        else
+            ++rejected[one->why];
     }
     if (!request.quiet)
         for (const auto& [why, count] : rejected) fmt::print("rejected {}: {}\n", count, why);
-    if (found.empty()) return Error{Error::Kind::Input, fmt::format("none of {} variations is worth a look: all are empty, dust, floating or featureless", most)};
+    if (found.empty())
+        return Error{
+            Error::Kind::Input,
+            fmt::format("none of {} variations is worth a look: all are empty, dust, floating or featureless", most)};
     return found;
 }
 
@@ -109,13 +118,19 @@ void stamp(viewer::Image& image, int x, int y, int number) {
             if (!(digits[text[k] - '0'] >> (14 - bit) & 1)) continue;
             for (int i = 0; i < 2 * dot; ++i)
                 for (int j = 0; j < 2 * dot; ++j) {
-                    const int px = x + (static_cast<int>(k) * 4 + bit % 3) * 2 * dot + i, py = y + bit / 3 * 2 * dot + j;
-                    for (int c = 0; c < 3; ++c) image.rgb[(static_cast<size_t>(py) * static_cast<size_t>(image.width) + static_cast<size_t>(px)) * 3 + static_cast<size_t>(c)] = 20;
+                    const int px = x + (static_cast<int>(k) * 4 + bit % 3) * 2 * dot + i,
+                              py = y + bit / 3 * 2 * dot + j;
+                    for (int c = 0; c < 3; ++c)
+                        image.rgb[(static_cast<size_t>(py) * static_cast<size_t>(image.width) +
+                                   static_cast<size_t>(px)) *
+                                      3 +
+                                  static_cast<size_t>(c)] = 20;
                 }
         }
 }
 
-Result<viewer::Image> sheet(const MutateRequest& request, const std::vector<Variation>& found, viewer::PictureOptions options, Progress* progress) {
+Result<viewer::Image> sheet(const MutateRequest& request, const std::vector<Variation>& found,
+                            viewer::PictureOptions options, Progress* progress) {
     viewer::Image all{request.columns * options.width, request.rows * options.height, {}};
     all.rgb.assign(static_cast<size_t>(all.width) * static_cast<size_t>(all.height) * 3, 255);
     const double aspect = static_cast<double>(options.width) / options.height;
@@ -125,9 +140,11 @@ Result<viewer::Image> sheet(const MutateRequest& request, const std::vector<Vari
         options.camera = viewer::frame(model.tape, bounds, aspect);
         const auto image = viewer::drawField(model.tape, bounds, model.lowered->provenance, options, progress);
         if (!image.ok()) return image.error();
-        const int left = static_cast<int>(k) % request.columns * options.width, top = static_cast<int>(k) / request.columns * options.height;
+        const int left = static_cast<int>(k) % request.columns * options.width,
+                  top = static_cast<int>(k) / request.columns * options.height;
         for (int y = 0; y < options.height; ++y)
-            std::copy_n(image->rgb.begin() + static_cast<ptrdiff_t>(y) * options.width * 3, static_cast<ptrdiff_t>(options.width) * 3,
+            std::copy_n(image->rgb.begin() + static_cast<ptrdiff_t>(y) * options.width * 3,
+                        static_cast<ptrdiff_t>(options.width) * 3,
                         all.rgb.begin() + (static_cast<ptrdiff_t>(top + y) * all.width + left) * 3);
         stamp(all, left + 8, top + 8, static_cast<int>(k));
     }
@@ -136,7 +153,9 @@ Result<viewer::Image> sheet(const MutateRequest& request, const std::vector<Vari
 
 /// The chosen one's values as a style of the file.
 Status saveChoice(const MutateRequest& request, const rules::Grammar& grammar, const std::vector<Variation>& found) {
-    if (request.pick >= static_cast<int>(found.size())) return Error{Error::Kind::Usage, fmt::format("--pick {}: the sheet has 0 … {}", request.pick, found.size() - 1)};
+    if (request.pick >= static_cast<int>(found.size()))
+        return Error{Error::Kind::Usage,
+                     fmt::format("--pick {}: the sheet has 0 … {}", request.pick, found.size() - 1)};
     const auto source = viewer::readSource(request.model.file);
     if (!source.ok()) return source.error();
     syntax::Diagnostics diagnostics;
@@ -159,9 +178,12 @@ Status saveChoice(const MutateRequest& request, const rules::Grammar& grammar, c
 }
 
 Status checkRequest(const MutateRequest& request, const rules::Grammar& grammar) {
-    if ((request.pick >= 0) != !request.save.empty()) return Error{Error::Kind::Usage, "--pick NUMBER and --save NAME go together: which one, and the style it becomes"};
+    if ((request.pick >= 0) != !request.save.empty())
+        return Error{Error::Kind::Usage,
+                     "--pick NUMBER and --save NAME go together: which one, and the style it becomes"};
     for (const std::string& name : request.lock)
-        if (std::none_of(grammar.params.begin(), grammar.params.end(), [&](const rules::Param& p) { return p.name == name; }))
+        if (std::none_of(grammar.params.begin(), grammar.params.end(),
+                         [&](const rules::Param& p) { return p.name == name; }))
             return Error{Error::Kind::Usage, fmt::format("--lock {}: no parameter is called so", name)};
     return Done{};
 }
@@ -169,9 +191,11 @@ Status checkRequest(const MutateRequest& request, const rules::Grammar& grammar)
 Status mutated(const MutateRequest& request) {
     viewer::PictureOptions options;
     int used = 0;
-    if (std::sscanf(request.size.c_str(), "%dx%d%n", &options.width, &options.height, &used) != 2 || used != static_cast<int>(request.size.size()) ||
-        std::min(options.width, options.height) < 32 || std::max(options.width, options.height) > 4096)
-        return Error{Error::Kind::Usage, fmt::format("--size {}: write WIDTHxHEIGHT of one picture in pixels, as 320x240", request.size)};
+    if (std::sscanf(request.size.c_str(), "%dx%d%n", &options.width, &options.height, &used) != 2 ||
+        used != static_cast<int>(request.size.size()) || std::min(options.width, options.height) < 32 ||
+        std::max(options.width, options.height) > 4096)
+        return Error{Error::Kind::Usage,
+                     fmt::format("--size {}: write WIDTHxHEIGHT of one picture in pixels, as 320x240", request.size)};
     if (const Status s = checkTargets(request.model.targets); !s.ok()) return s;
     Stages stages;
     Watch watch(request.quiet);
@@ -192,7 +216,8 @@ Status mutated(const MutateRequest& request) {
     }
     if (!request.quiet)
         for (size_t k = 0; k < found->size(); ++k) fmt::print("{}: {}\n", k, worded((*found)[k].values));
-    if (request.output.empty() && request.pick < 0 && !request.quiet) printMessage("note: nothing was drawn: add -o sheet.png\n");
+    if (request.output.empty() && request.pick < 0 && !request.quiet)
+        printMessage("note: nothing was drawn: add -o sheet.png\n");
     if (request.pick < 0) return Done{};
     if (const Status s = saveChoice(request, *grammar, *found); !s.ok()) return s;
     if (!request.quiet) fmt::print("wrote style {} into {}\n", request.save, request.model.file);
@@ -208,21 +233,33 @@ int mutate(MutateRequest request) {
 }  // namespace
 
 void addMutate(CLI::App& app, int& exitCode) {
-    CLI::App* command = app.add_subcommand("mutate", "Draw a sheet of variations of a model; write the chosen one back as a style");
+    CLI::App* command =
+        app.add_subcommand("mutate", "Draw a sheet of variations of a model; write the chosen one back as a style");
     auto request = std::make_shared<MutateRequest>();
     addModelOptions(*command, request->model);
     command->add_option("-o,--output", request->output, "Sheet to write (.png)");
     command->add_option("--rows", request->rows, "Rows of the sheet")->check(CLI::Range(1, 20))->capture_default_str();
-    command->add_option("--cols", request->columns, "Columns of the sheet")->check(CLI::Range(1, 20))->capture_default_str();
+    command->add_option("--cols", request->columns, "Columns of the sheet")
+        ->check(CLI::Range(1, 20))
+        ->capture_default_str();
     command->add_option("--size", request->size, "Pixels of one picture, WxH")->capture_default_str();
-    command->add_option("--lock", request->lock, "Leave a parameter as it is; may be given again")->allow_extra_args(false);
-    command->add_option("--spread", request->spread, "How far values go: 0 not at all, 1 anywhere in their ranges")->check(between(0, 1))->capture_default_str();
-    command->add_option("--resolution", request->resolution, "Cells along the longest side of the mesh that is judged")->check(CLI::Range(16, 1024))->capture_default_str();
-    command->add_option("--threads", request->threads, "Threads (0: all)")->check(CLI::Range(0, 1024))->capture_default_str();
+    command->add_option("--lock", request->lock, "Leave a parameter as it is; may be given again")
+        ->allow_extra_args(false);
+    command->add_option("--spread", request->spread, "How far values go: 0 not at all, 1 anywhere in their ranges")
+        ->check(between(0, 1))
+        ->capture_default_str();
+    command->add_option("--resolution", request->resolution, "Cells along the longest side of the mesh that is judged")
+        ->check(CLI::Range(16, 1024))
+        ->capture_default_str();
+    command->add_option("--threads", request->threads, "Threads (0: all)")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
     command->add_option("--pick", request->pick, "Number of the variation to keep")->check(CLI::NonNegativeNumber);
     command->add_option("--save", request->save, "Name of the style it becomes");
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
-    command->footer("Examples:\n  sgm mutate examples/kifs/mcgraw.sgm --rows 3 --cols 4 --lock mass -o sheet.png\n  sgm mutate mine.sgm --pick 7 --save Lucky");
+    command->footer(
+        "Examples:\n  sgm mutate examples/kifs/mcgraw.sgm --rows 3 --cols 4 --lock mass -o sheet.png\n  sgm mutate "
+        "mine.sgm --pick 7 --save Lucky");
     command->callback([request, &exitCode] { exitCode = mutate(*request); });
 }
 

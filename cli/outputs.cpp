@@ -24,12 +24,14 @@ Status checkFile(const std::string& file) {
     std::vector<std::string> known;
     for (const Exporter& e : exporter::exporters()) known.emplace_back(e.extension);
     if (!formatOf(file))
-        return Error{Error::Kind::Usage, fmt::format("'{}': no format has the ending '{}'; there are {}", file, fs::path(file).extension().string(), fmt::join(known, " "))};
+        return Error{Error::Kind::Usage, fmt::format("'{}': no format has the ending '{}'; there are {}", file,
+                                                     fs::path(file).extension().string(), fmt::join(known, " "))};
     return Done{};
 }
 
 bool has(const Exporter& row, std::string_view name) {
-    return std::any_of(row.options.begin(), row.options.end(), [&](const exporter::ExportOption& o) { return o.name == name; });
+    return std::any_of(row.options.begin(), row.options.end(),
+                       [&](const exporter::ExportOption& o) { return o.name == name; });
 }
 
 /// Those of the options that the format has.
@@ -44,73 +46,121 @@ exporter::ExportOptions optionsFor(const OutputRequest& request, const Exporter&
 
 /// Colliders need a file that holds them, and a file's names for colliders need some.
 Status checkCollider(const OutputRequest& request) {
-    const auto named = std::find_if(request.options.begin(), request.options.end(), [](const std::string& text) { return text.starts_with("engine="); });
+    const auto named = std::find_if(request.options.begin(), request.options.end(),
+                                    [](const std::string& text) { return text.starts_with("engine="); });
     if (request.collider.empty()) {
         if (named == request.options.end()) return Done{};
-        return Error{Error::Kind::Usage, fmt::format("--format-option {} names colliders: add --collider boxes, convex or mesh", *named)};
+        return Error{Error::Kind::Usage,
+                     fmt::format("--format-option {} names colliders: add --collider boxes, convex or mesh", *named)};
     }
     if (request.collider == "mesh" && named != request.options.end() && *named == "engine=unreal")
-        return Error{Error::Kind::Usage, "--collider mesh: Unreal imports convex colliders alone; take boxes or convex"};
-    if (std::any_of(request.files.begin(), request.files.end(), [](const std::string& file) { return exporter::holdsColliders(*formatOf(file)); })) return Done{};
-    return Error{Error::Kind::Usage, fmt::format("--collider {}: colliders go into .glb and .gltf, and no such file is asked for", request.collider)};
+        return Error{Error::Kind::Usage,
+                     "--collider mesh: Unreal imports convex colliders alone; take boxes or convex"};
+    if (std::any_of(request.files.begin(), request.files.end(),
+                    [](const std::string& file) { return exporter::holdsColliders(*formatOf(file)); }))
+        return Done{};
+    return Error{Error::Kind::Usage,
+                 fmt::format("--collider {}: colliders go into .glb and .gltf, and no such file is asked for",
+                             request.collider)};
 }
 
 /// Objects need a file that holds them.
 Status checkObjects(const OutputRequest& request) {
     const auto choice = lower::parseObjects(request.objects.empty() ? "material" : request.objects);
     if (!choice.ok()) return Error{Error::Kind::Usage, "--objects: " + choice.error().message};
-    const auto instances = std::find_if(request.options.begin(), request.options.end(), [](const std::string& text) { return text.starts_with("instances="); });
+    const auto instances = std::find_if(request.options.begin(), request.options.end(),
+                                        [](const std::string& text) { return text.starts_with("instances="); });
     if (!choice->divides() && instances != request.options.end())
-        return Error{Error::Kind::Usage, fmt::format("--format-option {} is about objects: add --objects shape or the symbols whose shapes are objects", *instances)};
+        return Error{
+            Error::Kind::Usage,
+            fmt::format(
+                "--format-option {} is about objects: add --objects shape or the symbols whose shapes are objects",
+                *instances)};
     if (request.objects.empty()) return Done{};
     const auto unreal = std::find(request.options.begin(), request.options.end(), "engine=unreal");
     if (choice->divides() && unreal != request.options.end())
-        return Error{Error::Kind::Usage, fmt::format("--objects {}: Unreal takes colliders by the name of one mesh; leave out the objects or the colliders", request.objects)};
-    if (std::any_of(request.files.begin(), request.files.end(), [](const std::string& file) { return formatOf(file)->holdsObjects; })) return Done{};
+        return Error{
+            Error::Kind::Usage,
+            fmt::format(
+                "--objects {}: Unreal takes colliders by the name of one mesh; leave out the objects or the colliders",
+                request.objects)};
+    if (std::any_of(request.files.begin(), request.files.end(),
+                    [](const std::string& file) { return formatOf(file)->holdsObjects; }))
+        return Done{};
     std::vector<std::string> endings;
     for (const Exporter& e : exporter::exporters())
         if (e.holdsObjects) endings.emplace_back(e.extension);
-    return Error{Error::Kind::Usage, fmt::format("--objects {}: objects go into {}, and no such file is asked for", request.objects, fmt::join(endings, " "))};
+    return Error{Error::Kind::Usage, fmt::format("--objects {}: objects go into {}, and no such file is asked for",
+                                                 request.objects, fmt::join(endings, " "))};
 }
 
 /// Levels need a file that holds them, and an option about levels needs some.
 Status checkLevels(const OutputRequest& request) {
-    const auto said = std::find_if(request.options.begin(), request.options.end(), [](const std::string& text) { return text.starts_with("levels="); });
+    const auto said = std::find_if(request.options.begin(), request.options.end(),
+                                   [](const std::string& text) { return text.starts_with("levels="); });
     if (request.lod == 1) {
         if (said == request.options.end()) return Done{};
-        return Error{Error::Kind::Usage, fmt::format("--format-option {} is about levels of detail: add --lod 3", *said)};
+        return Error{Error::Kind::Usage,
+                     fmt::format("--format-option {} is about levels of detail: add --lod 3", *said)};
     }
-    if (std::any_of(request.files.begin(), request.files.end(), [](const std::string& file) { return formatOf(file)->holdsLevels; })) return Done{};
-    return Error{Error::Kind::Usage, fmt::format("--lod {}: levels of detail go into {}, and no such file is asked for", request.lod, exporter::leveledExtensions())};
+    if (std::any_of(request.files.begin(), request.files.end(),
+                    [](const std::string& file) { return formatOf(file)->holdsLevels; }))
+        return Done{};
+    return Error{Error::Kind::Usage, fmt::format("--lod {}: levels of detail go into {}, and no such file is asked for",
+                                                 request.lod, exporter::leveledExtensions())};
 }
 
 /// An option that none of the files takes says so, rather than do nothing.
 Status checkOption(const OutputRequest& request, const std::string& text) {
     const std::string name = text.substr(0, text.find('='));
-    if (name.size() == text.size()) return Error{Error::Kind::Usage, fmt::format("write --format-option NAME=VALUE instead of '{}'", text)};
+    if (name.size() == text.size())
+        return Error{Error::Kind::Usage, fmt::format("write --format-option NAME=VALUE instead of '{}'", text)};
     for (const std::string& file : allFiles(request))
         if (has(*formatOf(file), name)) return Done{};
     std::vector<std::string> endings;
     for (const Exporter& e : exporter::exporters())
         if (has(e, name)) endings.emplace_back(e.extension);
-    if (endings.empty()) return Error{Error::Kind::Usage, fmt::format("--format-option {}: no format has that option (see `sgm reference`)", text)};
-    return Error{Error::Kind::Usage, fmt::format("--format-option {}: an option of {}, and no such file is asked for", text, fmt::join(endings, " "))};
+    if (endings.empty())
+        return Error{Error::Kind::Usage,
+                     fmt::format("--format-option {}: no format has that option (see `sgm reference`)", text)};
+    return Error{Error::Kind::Usage, fmt::format("--format-option {}: an option of {}, and no such file is asked for",
+                                                 text, fmt::join(endings, " "))};
 }
 
 }  // namespace
 
 void addOutputOptions(CLI::App& command, OutputRequest& request) {
-    command.add_option("-o,--output", request.files, "Output file, format by its ending; may be given again")->allow_extra_args(false);
-    command.add_option("--format-option", request.options, "Option of a file format, NAME=VALUE (see `sgm reference`); may be given again")->allow_extra_args(false);
+    command.add_option("-o,--output", request.files, "Output file, format by its ending; may be given again")
+        ->allow_extra_args(false);
+    command
+        .add_option("--format-option", request.options,
+                    "Option of a file format, NAME=VALUE (see `sgm reference`); may be given again")
+        ->allow_extra_args(false);
     addRenamedOption(command, "--export", "--format-option", request.options);
-    command.add_option("--objects", request.objects, "Objects in .glb .gltf .obj .usda: none (one piece, colours alone), material (one object divided by material), shape (every shape that shows), or the shapes of symbols: Storey,Window")
+    command
+        .add_option("--objects", request.objects,
+                    "Objects in .glb .gltf .obj .usda: none (one piece, colours alone), material (one object divided "
+                    "by material), shape (every shape that shows), or the shapes of symbols: Storey,Window")
         ->option_text("none|material|shape|SYMBOL[,SYMBOL…] [material]");
-    command.add_option("--lod", request.lod, "Levels of detail, the finest included; each further one is off by twice as much: see docs/programs.md")
-        ->check(CLI::Range(1, mesh::mostLevels))->capture_default_str();
-    command.add_option("--collider", request.collider, "Add colliders to .glb and .gltf: boxes or convex parts made from the terminals, or the mesh, simplified")
+    command
+        .add_option(
+            "--lod", request.lod,
+            "Levels of detail, the finest included; each further one is off by twice as much: see docs/programs.md")
+        ->check(CLI::Range(1, mesh::mostLevels))
+        ->capture_default_str();
+    command
+        .add_option(
+            "--collider", request.collider,
+            "Add colliders to .glb and .gltf: boxes or convex parts made from the terminals, or the mesh, simplified")
         ->check(CLI::IsMember({"boxes", "convex", "mesh"}));
-    auto* proxy = command.add_option("--proxy", request.proxy, "Mesh file for a coarse closed mesh around the model; goes with the next version: see --collider");
-    command.add_option("--proxy-tolerance", request.proxyTolerance_m, "Metres the proxy may stand off (default: a twentieth of the longest side)")->check(between(1e-6, 1e6))->needs(proxy);
+    auto* proxy = command.add_option(
+        "--proxy", request.proxy,
+        "Mesh file for a coarse closed mesh around the model; goes with the next version: see --collider");
+    command
+        .add_option("--proxy-tolerance", request.proxyTolerance_m,
+                    "Metres the proxy may stand off (default: a twentieth of the longest side)")
+        ->check(between(1e-6, 1e6))
+        ->needs(proxy);
 }
 
 std::vector<std::string> allFiles(const OutputRequest& request) {
@@ -124,7 +174,8 @@ Status checkMeshFile(const char* option, const std::string& file) {
     const Exporter& row = *formatOf(file);
     if (!row.wantsVolume && !row.wantsSolids) return Done{};
     const char* held = row.wantsVolume ? "volumes" : "solid trees";
-    return Error{Error::Kind::Usage, fmt::format("{} {}: this is a mesh; '{}' holds {}", option, file, row.extension, held)};
+    return Error{Error::Kind::Usage,
+                 fmt::format("{} {}: this is a mesh; '{}' holds {}", option, file, row.extension, held)};
 }
 
 Status checkOutputs(const OutputRequest& request) {
@@ -140,17 +191,20 @@ Status checkOutputs(const OutputRequest& request) {
     for (const std::string& text : request.options)
         if (const Status s = checkOption(request, text); !s.ok()) return s;
     for (const std::string& file : allFiles(request))
-        if (const Status s = exporter::checkOptions(*formatOf(file), optionsFor(request, *formatOf(file))); !s.ok()) return s;
+        if (const Status s = exporter::checkOptions(*formatOf(file), optionsFor(request, *formatOf(file))); !s.ok())
+            return s;
     return Done{};
 }
 
 bool wantsVolume(const OutputRequest& request) {
-    return std::any_of(request.files.begin(), request.files.end(), [](const std::string& file) { return formatOf(file)->wantsVolume; });
+    return std::any_of(request.files.begin(), request.files.end(),
+                       [](const std::string& file) { return formatOf(file)->wantsVolume; });
 }
 
 bool solidsWillDo(const OutputRequest& request) {
     return !request.files.empty() && request.proxy.empty() &&
-           std::all_of(request.files.begin(), request.files.end(), [](const std::string& file) { return formatOf(file)->wantsSolids; });
+           std::all_of(request.files.begin(), request.files.end(),
+                       [](const std::string& file) { return formatOf(file)->wantsSolids; });
 }
 
 bool bareWillDo(const OutputRequest& request) {
@@ -164,7 +218,9 @@ Status checkStreamed(const OutputRequest& request) {
     if (request.files.size() != 1 || !request.proxy.empty())
         return Error{Error::Kind::Usage, "--stream writes one file, without a proxy: give a single -o"};
     if (formatOf(request.files[0])->stream) return Done{};
-    return Error{Error::Kind::Usage, fmt::format("--stream: {} wants the whole mesh; chunk by chunk there are {}", formatOf(request.files[0])->extension, exporter::streamedExtensions())};
+    return Error{Error::Kind::Usage,
+                 fmt::format("--stream: {} wants the whole mesh; chunk by chunk there are {}",
+                             formatOf(request.files[0])->extension, exporter::streamedExtensions())};
 }
 
 Status streamOutput(const OutputRequest& request, exporter::ExportInput input, const exporter::ChunkSource& chunks) {
@@ -198,7 +254,9 @@ Status writeOutputs(const OutputRequest& request, const Model& model, exporter::
     }
     if (request.proxy.empty()) return Done{};
     const Vec3f side = model.lowered->field.bounds.size();
-    const double tolerance_m = request.proxyTolerance_m > 0 ? request.proxyTolerance_m : static_cast<double>(std::max({side.x, side.y, side.z})) / 20;
+    const double tolerance_m = request.proxyTolerance_m > 0
+                                   ? request.proxyTolerance_m
+                                   : static_cast<double>(std::max({side.x, side.y, side.z})) / 20;
     const auto around = mesh::proxy(model.lowered->graph, model.lowered->field, tolerance_m, threads, input.progress);
     if (!around.ok()) return around.error();
     input.mesh = &*around;

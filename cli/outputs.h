@@ -25,7 +25,8 @@ std::vector<std::string> allFiles(const OutputRequest& request);
 /// Error::Usage for endings, options and values that no format takes; Error::Input for folders that aren't there.
 Status checkOutputs(const OutputRequest& request);
 
-/// Error::Usage unless `file`, which `option` names, has the ending of a mesh format; Error::Input for a missing folder.
+/// Error::Usage unless `file`, which `option` names, has the ending of a mesh format; Error::Input for a missing
+/// folder.
 Status checkMeshFile(const char* option, const std::string& file);
 
 /// True when one of the files holds a volume.
@@ -45,7 +46,8 @@ Status streamOutput(const OutputRequest& request, exporter::ExportInput input, c
 /// Writes the files that hold the model's solid tree, if any. Error::Input, located, where the model isn't exactly one.
 Status writeSolids(const OutputRequest& request, const Model& model, exporter::ExportInput input);
 
-/// Writes every other file. `input` has the mesh, the level set where one of the files wants it, and what is known of the model.
+/// Writes every other file. `input` has the mesh, the level set where one of the files wants it, and what is known of
+/// the model.
 Status writeOutputs(const OutputRequest& request, const Model& model, exporter::ExportInput input, int threads);
 
 }  // namespace sgm::cli

@@ -30,10 +30,12 @@ int params(const std::string& file, bool json) {
     const auto values = rules::valuesOf(*grammar, 0);
     for (size_t i = 0; i < values.size(); ++i) {
         const rules::Param& p = grammar->params[i];
-        fmt::print("{:16} {:20} {:28} {}{}\n", p.name, rules::toText(values[i]), rangeText(p), p.label, p.group.empty() ? "" : fmt::format("  [{}]", p.group));
+        fmt::print("{:16} {:20} {:28} {}{}\n", p.name, rules::toText(values[i]), rangeText(p), p.label,
+                   p.group.empty() ? "" : fmt::format("  [{}]", p.group));
     }
     for (const rules::Style& s : grammar->styles)
-        fmt::print("style {}{}\n", s.name, s.start == rules::none ? "" : " for " + grammar->symbols[grammar->starts[s.start].symbol].name);
+        fmt::print("style {}{}\n", s.name,
+                   s.start == rules::none ? "" : " for " + grammar->symbols[grammar->starts[s.start].symbol].name);
     return 0;
 }
 

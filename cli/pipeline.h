@@ -41,8 +41,10 @@ struct GridRequest {
 void addGridOptions(CLI::App& command, GridRequest& request);
 
 /// Parse and check. Prints diagnostics to stderr; when there were errors, the error is empty, as they are told already.
-/// Error::Usage where a target of the request is a file that was read; all of these are added to `read` unless it is null.
-Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& request, Stages& stages, const Progress* progress = nullptr,
+/// Error::Usage where a target of the request is a file that was read; all of these are added to `read` unless it is
+/// null.
+Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& request, Stages& stages,
+                                                          const Progress* progress = nullptr,
                                                           std::vector<std::filesystem::path>* read = nullptr);
 
 /// A model from the file on.
@@ -56,7 +58,8 @@ mesh::PolygonizeOptions meshingOf(const GridRequest& request, bool bare = false)
 /// The grid that is asked for over these bounds.
 mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request);
 /// The mesh of the model over its own bounds, `bare` or with normals and origins.
-Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress, bool bare = false);
+Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Stages& stages, Progress* progress,
+                             bool bare = false);
 
 /// Prints "sgm: …" to stderr and gives the exit code: 1 input, 2 usage, 3 budget, 130 cancelled.
 int fail(const Error& error);

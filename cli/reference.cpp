@@ -16,7 +16,8 @@ namespace {
 
 std::string argumentList(const syntax::Operation& operation) {
     std::string text;
-    for (const syntax::OperationArgument& a : operation.arguments) text += a.optional ? fmt::format(" [{}]", a.name) : fmt::format(" {}", a.name);
+    for (const syntax::OperationArgument& a : operation.arguments)
+        text += a.optional ? fmt::format(" [{}]", a.name) : fmt::format(" {}", a.name);
     return text;
 }
 
@@ -33,10 +34,13 @@ std::string operationsPage() {
 
 /// What `footprint` draws by name.
 std::string plansPage() {
-    std::string page = "\n## Plans\n\nWhat `footprint` draws, besides `outline((x, z), …)` and an lsystem. Each takes `at: (x, z)` and `turn: angle`.\n";
+    std::string page =
+        "\n## Plans\n\nWhat `footprint` draws, besides `outline((x, z), …)` and an lsystem. Each takes `at: (x, z)` "
+        "and `turn: angle`.\n";
     for (const rules::PlanRow& row : rules::planRows()) {
         page += fmt::format("\n### `{}`\n\n{}\n", row.name, row.doc);
-        for (const rules::PlanParameter& p : row.parameters) page += fmt::format("- `{}`: {}{}\n", p.name, p.doc, p.required ? "" : " (may be left out)");
+        for (const rules::PlanParameter& p : row.parameters)
+            page += fmt::format("- `{}`: {}{}\n", p.name, p.doc, p.required ? "" : " (may be left out)");
         page += fmt::format("\n    {}\n", row.example);
     }
     return page;
@@ -58,16 +62,22 @@ std::string parameterText(const field::PrimitiveParameter& p) {
     const bool angle = p.kind == Kind::Angle;
     const double unit = angle ? 180 / 3.14159265358979323846 : 1;
     const char* name = angle ? "deg" : p.kind == Kind::Length ? "m" : "";
-    return fmt::format("{}{:.4g}{} in {:.4g}{}..{:.4g}{}", each, p.fallback * unit, name, p.lo * unit, name, p.hi * unit, name);
+    return fmt::format("{}{:.4g}{} in {:.4g}{}..{:.4g}{}", each, p.fallback * unit, name, p.lo * unit, name,
+                       p.hi * unit, name);
 }
 
 std::string primitivesPage() {
-    std::string page = "\n## Primitives\n\nA solid fills its scope. Every one has the joints `+x -x +y -y +z -z` and `centre`.\n";
+    std::string page =
+        "\n## Primitives\n\nA solid fills its scope. Every one has the joints `+x -x +y -y +z -z` and `centre`.\n";
     for (const field::Primitive& row : field::primitives()) {
-        page += fmt::format("\n### `{}`\n\n{}{}\n", row.name, row.doc, row.bounded ? "" : " Unbounded: it may only cut.");
+        page +=
+            fmt::format("\n### `{}`\n\n{}{}\n", row.name, row.doc, row.bounded ? "" : " Unbounded: it may only cut.");
         if (!row.parameters.empty()) page += "\n| parameter | default and range | |\n|---|---|---|\n";
-        for (const field::PrimitiveParameter& p : row.parameters) page += fmt::format("| `{}` | {} | {} |\n", p.name, parameterText(p), p.doc);
-        for (const field::PrimitiveJoint& j : row.joints) page += fmt::format("\nJoint `{}` at ({:.3g}, {:.3g}, {:.3g}) of the half-size.\n", j.name, j.at.x, j.at.y, j.at.z);
+        for (const field::PrimitiveParameter& p : row.parameters)
+            page += fmt::format("| `{}` | {} | {} |\n", p.name, parameterText(p), p.doc);
+        for (const field::PrimitiveJoint& j : row.joints)
+            page += fmt::format("\nJoint `{}` at ({:.3g}, {:.3g}, {:.3g}) of the half-size.\n", j.name, j.at.x, j.at.y,
+                                j.at.z);
     }
     return page;
 }
@@ -75,17 +85,25 @@ std::string primitivesPage() {
 std::string functionsPage() {
     std::string page = "\n## Functions\n\nWhat an expression may call.\n\n| function | arguments | |\n|---|---|---|\n";
     for (const rules::Function& f : rules::functions())
-        page += fmt::format("| `{}` | {} | {} |\n", f.name, f.least == f.most ? fmt::format("{}", f.least) : f.most == 255 ? fmt::format("{} or more", f.least) : fmt::format("{} to {}", f.least, f.most), f.doc);
+        page += fmt::format("| `{}` | {} | {} |\n", f.name,
+                            f.least == f.most ? fmt::format("{}", f.least)
+                            : f.most == 255   ? fmt::format("{} or more", f.least)
+                                              : fmt::format("{} to {}", f.least, f.most),
+                            f.doc);
     return page;
 }
 
 std::string exportersPage() {
-    std::string page = "\n## File formats\n\n`sgm build FILE -o NAME.ENDING`; options by `--format-option NAME=VALUE`.\n\n| ending | | options |\n|---|---|---|\n";
+    std::string page =
+        "\n## File formats\n\n`sgm build FILE -o NAME.ENDING`; options by `--format-option NAME=VALUE`.\n\n| ending | "
+        "| options |\n|---|---|---|\n";
     for (const exporter::Exporter& e : exporter::exporters()) {
         std::string options;
         for (const exporter::ExportOption& o : e.options)
             options += fmt::format("{}`{}={}`: {}{}", options.empty() ? "" : "<br>", o.name, o.fallback, o.doc,
-                                   !o.choices.empty() ? fmt::format(" ({})", listed(o.choices)) : o.lo < o.hi ? fmt::format(" ({} to {})", o.lo, o.hi) : "");
+                                   !o.choices.empty() ? fmt::format(" ({})", listed(o.choices))
+                                   : o.lo < o.hi      ? fmt::format(" ({} to {})", o.lo, o.hi)
+                                                      : "");
         page += fmt::format("| `{}` | {} | {} |\n", e.extension, e.doc, options);
     }
     return page;
@@ -94,9 +112,11 @@ std::string exportersPage() {
 }  // namespace
 
 void addReference(CLI::App& app, int& exitCode) {
-    CLI::App* command = app.add_subcommand("reference", "Print the reference page: operations, primitives, functions, formats");
+    CLI::App* command =
+        app.add_subcommand("reference", "Print the reference page: operations, primitives, functions, formats");
     command->callback([&exitCode] {
-        fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}{}{}", operationsPage(), plansPage(), primitivesPage(), functionsPage(), exportersPage());
+        fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}{}{}",
+                   operationsPage(), plansPage(), primitivesPage(), functionsPage(), exportersPage());
         exitCode = 0;
     });
 }

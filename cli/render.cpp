@@ -35,28 +35,38 @@ struct RenderRequest {
 };
 
 /// Whether the view draws a mesh.
-bool drawsMesh(const RenderRequest& request) { return request.view == "mesh" || request.view == "labels" || request.view == "creases"; }
+bool drawsMesh(const RenderRequest& request) {
+    return request.view == "mesh" || request.view == "labels" || request.view == "creases";
+}
 
 Result<viewer::PictureOptions> parseSize(const std::string& text) {
     constexpr int longestSide = 16384;
     viewer::PictureOptions options;
     int used = 0;
-    if (std::sscanf(text.c_str(), "%dx%d%n", &options.width, &options.height, &used) != 2 || used != static_cast<int>(text.size()) ||
-        std::min(options.width, options.height) < 1 || std::max(options.width, options.height) > longestSide)
-        return Error{Error::Kind::Usage, fmt::format("--size {}: write WIDTHxHEIGHT in pixels, as 960x720; no side is longer than {}", text, longestSide)};
+    if (std::sscanf(text.c_str(), "%dx%d%n", &options.width, &options.height, &used) != 2 ||
+        used != static_cast<int>(text.size()) || std::min(options.width, options.height) < 1 ||
+        std::max(options.width, options.height) > longestSide)
+        return Error{Error::Kind::Usage,
+                     fmt::format("--size {}: write WIDTHxHEIGHT in pixels, as 960x720; no side is longer than {}", text,
+                                 longestSide)};
     return options;
 }
 
 /// "ex,ey,ez,ax,ay,az": where the eye is and what it looks at, metres; "inside"; or nothing for the default frame.
-Result<viewer::Camera> parseCamera(const RenderRequest& request, const Model& model, const Box3f& bounds, double aspect) {
+Result<viewer::Camera> parseCamera(const RenderRequest& request, const Model& model, const Box3f& bounds,
+                                   double aspect) {
     const std::string& text = request.camera;
-    if (text.empty()) return request.turntable > 0 ? viewer::frameTurning(model.tape, bounds, aspect) : viewer::frame(model.tape, bounds, aspect);
+    if (text.empty())
+        return request.turntable > 0 ? viewer::frameTurning(model.tape, bounds, aspect)
+                                     : viewer::frame(model.tape, bounds, aspect);
     if (text == "inside") return viewer::inside(model.tape, bounds);
     viewer::Camera c;
     int used = 0;
-    if (std::sscanf(text.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf%n", &c.eye.x, &c.eye.y, &c.eye.z, &c.at.x, &c.at.y, &c.at.z, &used) != 6 ||
+    if (std::sscanf(text.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf%n", &c.eye.x, &c.eye.y, &c.eye.z, &c.at.x, &c.at.y, &c.at.z,
+                    &used) != 6 ||
         used != static_cast<int>(text.size()) || c.eye == c.at)
-        return Error{Error::Kind::Usage, fmt::format("--camera {}: write EYE,AT as x,y,z,x,y,z in metres, or 'inside'", text)};
+        return Error{Error::Kind::Usage,
+                     fmt::format("--camera {}: write EYE,AT as x,y,z,x,y,z in metres, or 'inside'", text)};
     return c;
 }
 
@@ -68,12 +78,19 @@ Status checkRequest(const RenderRequest& request) {
     const fs::path output = request.output;
     if (output.extension() != ".png" && output.extension() != ".exr")
         return wrong(fmt::format("'{}': pictures are .png, or .exr for floats", request.output));
-    if (!request.layers.empty() && !isExr(request)) return wrong(fmt::format("--aov: layers need a file that holds floats: -o {}", fs::path(output).replace_extension(".exr").string()));
-    if (isExr(request) && request.view != "field") return wrong(fmt::format("'{}': layers are of the field; with --view {} write a .png", request.output, request.view));
-    if (request.wires && !drawsMesh(request)) return wrong("--wires are the edges of a mesh's triangles: add --view mesh, labels or creases");
-    if (request.edits.isAsked() && !drawsMesh(request)) return wrong("--keep, --smooth, --simplify and --tolerance change a mesh: add --view mesh, labels or creases");
+    if (!request.layers.empty() && !isExr(request))
+        return wrong(fmt::format("--aov: layers need a file that holds floats: -o {}",
+                                 fs::path(output).replace_extension(".exr").string()));
+    if (isExr(request) && request.view != "field")
+        return wrong(
+            fmt::format("'{}': layers are of the field; with --view {} write a .png", request.output, request.view));
+    if (request.wires && !drawsMesh(request))
+        return wrong("--wires are the edges of a mesh's triangles: add --view mesh, labels or creases");
+    if (request.edits.isAsked() && !drawsMesh(request))
+        return wrong("--keep, --smooth, --simplify and --tolerance change a mesh: add --view mesh, labels or creases");
     if (request.extinction > 0 && request.view != "fog") return wrong("--extinction is of fog: add --view fog");
-    if (request.stats && (request.view != "field" || request.turntable > 0)) return wrong("--stats counts evaluations of the field for one picture: leave out --view and --turntable");
+    if (request.stats && (request.view != "field" || request.turntable > 0))
+        return wrong("--stats counts evaluations of the field for one picture: leave out --view and --turntable");
     if (request.turntable == 0) return Done{};
     const auto name = frameName(request.output, 0, "--turntable");
     return name.ok() ? Status(Done{}) : Status(name.error());
@@ -88,17 +105,23 @@ struct Painter {
 };
 
 Result<Painter> fogPainter(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
-    const auto grid = viewer::fogGrid(model.tape, gridOver(bounds, request.grid), bounds, request.grid.threads, progress);
+    const auto grid =
+        viewer::fogGrid(model.tape, gridOver(bounds, request.grid), bounds, request.grid.threads, progress);
     if (!grid.ok()) return grid.error();
     viewer::FogLook look = viewer::usualFog(*grid);
     look.extinction_per_m = static_cast<float>(request.extinction);
     const auto painter = viewer::FogPainter::create(grid->dense, bounds, look, request.grid.threads, progress);
     if (!painter.ok()) return painter.error();
-    return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress); }, {}};
+    return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable {
+                       return p.draw(options, progress);
+                   },
+                   {}};
 }
 
 viewer::TracedBy tracedBy(const std::string& name) {
-    return name == "shaders" ? viewer::TracedBy::Gpu : name == "processor" ? viewer::TracedBy::Processor : viewer::TracedBy::Best;
+    return name == "shaders"     ? viewer::TracedBy::Gpu
+           : name == "processor" ? viewer::TracedBy::Processor
+                                 : viewer::TracedBy::Best;
 }
 
 /// The mesh that `sgm build` writes.
@@ -114,14 +137,20 @@ Result<mesh::Mesh> meshAsBuilt(const RenderRequest& request, const Model& model,
 Result<Painter> painterOf(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
     const Provenance& provenance = model.lowered->provenance;
     if (request.view == "field") {
-        const auto painter = viewer::FieldPainter::create(model.tape, bounds, provenance, request.grid.threads, progress, tracedBy(request.rays));
+        const auto painter = viewer::FieldPainter::create(model.tape, bounds, provenance, request.grid.threads,
+                                                          progress, tracedBy(request.rays));
         if (!painter.ok()) return painter.error();
-        return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers* layers) mutable { return p.draw(options, progress, layers); },
+        return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers* layers) mutable {
+                           return p.draw(options, progress, layers);
+                       },
                        [p = *painter] { return p.cost(); }};
     }
     if (request.view == "fog") return fogPainter(request, model, bounds, progress);
     if (request.view == "ids")
-        return Painter{[&model, bounds](const auto& options, Progress* progress, viewer::Layers*) { return drawIds(model, bounds, options, progress); }, {}};
+        return Painter{[&model, bounds](const auto& options, Progress* progress, viewer::Layers*) {
+                           return drawIds(model, bounds, options, progress);
+                       },
+                       {}};
     const auto mesh = meshAsBuilt(request, model, progress);
     if (!mesh.ok()) return mesh.error();
     const auto painter = viewer::MeshPainter::create(*mesh, provenance, progress);
@@ -130,7 +159,10 @@ Result<Painter> painterOf(const RenderRequest& request, const Model& model, cons
     style.wireframe = request.wires;
     if (request.view == "labels") style.look = viewer::MeshLook::Labels;
     if (request.view == "creases") style.look = viewer::MeshLook::Creases;
-    return Painter{[p = *painter, style](const auto& options, Progress* progress, viewer::Layers*) mutable { return p.draw(options, progress, style); }, {}};
+    return Painter{[p = *painter, style](const auto& options, Progress* progress, viewer::Layers*) mutable {
+                       return p.draw(options, progress, style);
+                   },
+                   {}};
 }
 
 /// What the numbers of a file with layers mean.
@@ -138,29 +170,45 @@ std::map<std::string, std::string> metadataOf(const RenderRequest& request, cons
     nlohmann::ordered_json origins = nlohmann::ordered_json::object();
     for (size_t id = 1; id < provenance.parts.size(); ++id) {
         const Part& part = provenance.parts[id];
-        origins[std::to_string(id)] = {{"shape", part.path}, {"symbol", part.symbol}, {"rule", part.rule}, {"line", part.line}};
+        origins[std::to_string(id)] = {
+            {"shape", part.path}, {"symbol", part.symbol}, {"rule", part.rule}, {"line", part.line}};
     }
-    return {{"model", request.model.file}, {"seed", std::to_string(request.model.seed)}, {"units", "metres, Y up"}, {"origins", origins.dump()}};
+    return {{"model", request.model.file},
+            {"seed", std::to_string(request.model.seed)},
+            {"units", "metres, Y up"},
+            {"origins", origins.dump()}};
 }
 
 /// Evaluations of the field beside those of plain sphere tracing for the same samples, and seconds.
-void printStatistics(const viewer::DrawCost& cost, const Model& model, const Box3f& bounds, const viewer::PictureOptions& options, const Stages& stages) {
-    const double pixels = static_cast<double>(options.width) * options.height, samples = static_cast<double>(cost.samples) / pixels;
-    const double hits = static_cast<double>(cost.hitEvaluations) / pixels, light = static_cast<double>(cost.lightEvaluations) / pixels, all = std::max(hits + light, 1e-9);
+void printStatistics(const viewer::DrawCost& cost, const Model& model, const Box3f& bounds,
+                     const viewer::PictureOptions& options, const Stages& stages) {
+    const double pixels = static_cast<double>(options.width) * options.height,
+                 samples = static_cast<double>(cost.samples) / pixels;
+    const double hits = static_cast<double>(cost.hitEvaluations) / pixels,
+                 light = static_cast<double>(cost.lightEvaluations) / pixels, all = std::max(hits + light, 1e-9);
     const double plain = viewer::plainEvaluations(model.tape, bounds, options, cost.probes) * samples;
-    const double length = static_cast<double>(cost.instructions) / pixels / all, whole = static_cast<double>(model.tape.size());
+    const double length = static_cast<double>(cost.instructions) / pixels / all,
+                 whole = static_cast<double>(model.tape.size());
     fmt::print("samples a pixel       {:9.2f}\n", samples);
-    fmt::print("evaluations a pixel   {:9.2f}  of {:.0f} instructions ({:.2f} for hits, {:.2f} for normals and light)\n", hits + light, length, hits, light);
-    fmt::print("plain sphere tracing  {:9.2f}  of {:.0f}: {:.1f} times the evaluations, {:.0f} times the instructions\n", plain, whole, plain / all, plain * whole / (all * length));
+    fmt::print(
+        "evaluations a pixel   {:9.2f}  of {:.0f} instructions ({:.2f} for hits, {:.2f} for normals and light)\n",
+        hits + light, length, hits, light);
+    fmt::print(
+        "plain sphere tracing  {:9.2f}  of {:.0f}: {:.1f} times the evaluations, {:.0f} times the instructions\n",
+        plain, whole, plain / all, plain * whole / (all * length));
     for (const auto& [stage, seconds] : stages) fmt::print("{:<21} {:9.3f} s\n", stage, seconds);
-    fmt::print("cells, upload         {:9.3f} s\ndraw                  {:9.3f} s  ({:.3f} s of the processor's time)\n", cost.prepareSeconds, cost.drawSeconds, cost.drawProcessorSeconds);
+    fmt::print("cells, upload         {:9.3f} s\ndraw                  {:9.3f} s  ({:.3f} s of the processor's time)\n",
+               cost.prepareSeconds, cost.drawSeconds, cost.drawProcessorSeconds);
 }
 
-Status drawOne(const RenderRequest& request, const Painter& paint, const viewer::PictureOptions& options, const Provenance& provenance, const std::string& file, Progress* progress) {
+Status drawOne(const RenderRequest& request, const Painter& paint, const viewer::PictureOptions& options,
+               const Provenance& provenance, const std::string& file, Progress* progress) {
     viewer::Layers layers;
     const auto image = paint.draw(options, progress, isExr(request) ? &layers : nullptr);
     if (!image.ok()) return image.error();
-    const Status written = isExr(request) ? viewer::writeExr(layers, request.layers, metadataOf(request, provenance), file) : viewer::writePng(*image, file);
+    const Status written = isExr(request)
+                               ? viewer::writeExr(layers, request.layers, metadataOf(request, provenance), file)
+                               : viewer::writePng(*image, file);
     if (written.ok() && !request.quiet) fmt::print("wrote {}\n", file);
     std::fflush(stdout);
     return written;
@@ -211,7 +259,8 @@ Status drawAll(const RenderRequest& request) {
 std::vector<Target> targetsOf(const RenderRequest& request) {
     std::vector<Target> targets;
     for (int i = 0; i < std::max(request.turntable, 1); ++i)
-        targets.push_back({"-o", request.turntable == 0 ? request.output : *frameName(request.output, i, "--turntable")});
+        targets.push_back(
+            {"-o", request.turntable == 0 ? request.output : *frameName(request.output, i, "--turntable")});
     return targets;
 }
 
@@ -233,24 +282,49 @@ void addRender(CLI::App& app, int& exitCode) {
     addEditOptions(*command, request->edits);
     command->add_option("-o,--output", request->output, "Picture to write (.png, or .exr for floats)")->required();
     command->add_option("--size", request->size, "Pixels, WxH")->capture_default_str();
-    command->add_option("--view", request->view, "What is drawn: the field, its mesh, the mesh with a hue for each smooth piece (labels) or with its hard edges (creases), fog in its place, or the facade ids and storeys of what is clad")
-        ->check(CLI::IsMember({"field", "mesh", "labels", "creases", "fog", "ids"}))->capture_default_str();
-    command->add_option("--camera", request->camera, "x,y,z,x,y,z: the eye and what it looks at; or 'inside' for a cave");
-    command->add_option("--aov", request->layers, "Layers beside the colour of an .exr: depth, normal, position, origin, ao; metres, ids of shapes with their names in the file")
-        ->delimiter(',')->allow_extra_args(false)->check(CLI::IsMember(viewer::layerNames()));
-    command->add_option("--turntable", request->turntable, "Draw this many pictures around the model; -o needs a number: turn_%04d.png")->check(CLI::Range(1, 10'000));
-    command->add_option("--extinction", request->extinction, "Of fog, per metre (default: 180 over the model's diagonal)")->check(between(1e-6, 1e6));
-    command->add_option("--samples", request->samples, "Samples a pixel, for smooth edges")->check(CLI::Range(1, 64))->capture_default_str();
-    command->add_option("--rays", request->rays, "Who walks the rays of a field: shaders, the processor, or what is best here, the processor where OpenGL has no GPU")
-        ->check(CLI::IsMember({"best", "shaders", "processor"}))->capture_default_str();
+    command
+        ->add_option("--view", request->view,
+                     "What is drawn: the field, its mesh, the mesh with a hue for each smooth piece (labels) or with "
+                     "its hard edges (creases), fog in its place, or the facade ids and storeys of what is clad")
+        ->check(CLI::IsMember({"field", "mesh", "labels", "creases", "fog", "ids"}))
+        ->capture_default_str();
+    command->add_option("--camera", request->camera,
+                        "x,y,z,x,y,z: the eye and what it looks at; or 'inside' for a cave");
+    command
+        ->add_option("--aov", request->layers,
+                     "Layers beside the colour of an .exr: depth, normal, position, origin, ao; metres, ids of shapes "
+                     "with their names in the file")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember(viewer::layerNames()));
+    command
+        ->add_option("--turntable", request->turntable,
+                     "Draw this many pictures around the model; -o needs a number: turn_%04d.png")
+        ->check(CLI::Range(1, 10'000));
+    command
+        ->add_option("--extinction", request->extinction, "Of fog, per metre (default: 180 over the model's diagonal)")
+        ->check(between(1e-6, 1e6));
+    command->add_option("--samples", request->samples, "Samples a pixel, for smooth edges")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    command
+        ->add_option("--rays", request->rays,
+                     "Who walks the rays of a field: shaders, the processor, or what is best here, the processor where "
+                     "OpenGL has no GPU")
+        ->check(CLI::IsMember({"best", "shaders", "processor"}))
+        ->capture_default_str();
     command->add_flag("--wires", request->wires, "Draw the edges of the mesh's triangles");
     command->add_flag("--no-ground", request->noGround, "Leave out the ground");
-    command->add_flag("--stats", request->stats, "Print how often the field was evaluated a pixel, beside plain sphere tracing, and the times");
+    command->add_flag("--stats", request->stats,
+                      "Print how often the field was evaluated a pixel, beside plain sphere tracing, and the times");
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
-    command->footer("Examples:\n  sgm render examples/cumulus.sgm -o cumulus.png --size 640x640\n  sgm render examples/grotto.sgm -o in.png --camera inside\n"
+    command->footer(
+        "Examples:\n  sgm render examples/cumulus.sgm -o cumulus.png --size 640x640\n  sgm render examples/grotto.sgm "
+        "-o in.png --camera inside\n"
         "  sgm render examples/cumulus.sgm -o sky.png --view fog --no-ground\n"
         "  sgm render examples/tower.sgm -o mesh.png --view mesh --wires\n"
-        "  sgm render examples/tower.sgm -o tower.exr --aov depth,normal,origin\n  sgm render examples/tower.sgm -o turn_%04d.png --turntable 36");
+        "  sgm render examples/tower.sgm -o tower.exr --aov depth,normal,origin\n  sgm render examples/tower.sgm -o "
+        "turn_%04d.png --turntable 36");
     command->callback([request, &exitCode] { exitCode = render(*request); });
 }
 

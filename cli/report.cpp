@@ -43,7 +43,8 @@ Json causeOf(const Model& model, const FloatCause& cause) {
         return Json{{"path", part.path}, {"file", part.file}, {"line", part.line}};
     };
     if (cause.kind == FloatCause::Kind::Thin)
-        return {{"kind", "thin"}, {"thickness_m", cause.width_m}, {"cell_m", cause.cell_m}, {"part", partOf(cause.theirs)}};
+        return {
+            {"kind", "thin"}, {"thickness_m", cause.width_m}, {"cell_m", cause.cell_m}, {"part", partOf(cause.theirs)}};
     return {{"kind", cause.kind == FloatCause::Kind::Gap ? "gap" : "touch"},
             {"width_m", cause.width_m},
             {"at", {cause.at.x, cause.at.y, cause.at.z}},
@@ -94,8 +95,8 @@ uint64_t peakMemory_bytes() {
 
 }  // namespace
 
-std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Support& support,
-                       const std::vector<lower::ThinPart>& missing,
+std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures,
+                       const Support& support, const std::vector<lower::ThinPart>& missing,
                        const std::optional<volume::Cave>& cave, const Stages& stages, int threads) {
     const derive::Derivation& d = model.derivation;
     Json json;

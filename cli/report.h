@@ -15,7 +15,8 @@ namespace sgm::cli {
 
 /// stages, shapes, terminals, bonds, rules_applied, field, mesh, pieces, floating, cave where it was surveyed,
 /// peak_memory_bytes, threads, seed.
-std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures, const Support& support, const std::vector<lower::ThinPart>& missing,
+std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures,
+                       const Support& support, const std::vector<lower::ThinPart>& missing,
                        const std::optional<volume::Cave>& cave, const Stages& stages, int threads);
 
 }  // namespace sgm::cli

@@ -58,7 +58,8 @@ private:
 
 std::string_view trimmed(std::string_view text) {
     const size_t begin = text.find_first_not_of(" \t\r");
-    return begin == std::string_view::npos ? std::string_view() : text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
+    return begin == std::string_view::npos ? std::string_view()
+                                           : text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
 }
 
 Error refusal(std::string what) { return Error{Error::Kind::Input, std::move(what)}; }
@@ -69,13 +70,15 @@ void Dialogue::list() {
     const auto live = session_.live();
     for (const derive::ShapeId s : live) {
         const Vec3d size = tree.shapes[s].scope.size;
-        fmt::print("{}  {}, {:.4g} x {:.4g} x {:.4g} m\n", tree.path(s), grammar_->symbols[tree.shapes[s].symbol].name, size.x, size.y, size.z);
+        fmt::print("{}  {}, {:.4g} x {:.4g} x {:.4g} m\n", tree.path(s), grammar_->symbols[tree.shapes[s].symbol].name,
+                   size.x, size.y, size.z);
         const auto rules = session_.rulesFor(s);
         if (rules.empty()) fmt::print("      no rule matches\n");
         for (const uint32_t r : rules) {
             listed_.push_back({r, s});
             const syntax::SourceSpan span = grammar_->rules[r].span;
-            fmt::print("{:5} {}  {}, line {}\n", listed_.size(), grammar_->rules[r].name, span.source->name(), span.source->place(span.begin).line);
+            fmt::print("{:5} {}  {}, line {}\n", listed_.size(), grammar_->rules[r].name, span.source->name(),
+                       span.source->place(span.begin).line);
         }
     }
     if (live.empty()) fmt::print("nothing is live: every shape is finished\n");
@@ -92,7 +95,9 @@ Status Dialogue::applied(const Status& done, size_t shapesBefore) {
 
 Status Dialogue::applyNumber(size_t number) {
     if (number == 0 || number > listed_.size())
-        return refusal(listed_.empty() ? "no rule matches a live shape" : fmt::format("there is no number {} in the list: it has 1 to {}", number, listed_.size()));
+        return refusal(listed_.empty()
+                           ? "no rule matches a live shape"
+                           : fmt::format("there is no number {} in the list: it has 1 to {}", number, listed_.size()));
     const size_t before = session_.tree().shapes.size();
     Watch watch(false);
     return applied(session_.apply(listed_[number - 1], watch.progress()), before);
@@ -103,7 +108,8 @@ Status Dialogue::applyOne(std::string_view step) {
     const size_t end = std::min(step.find_first_of(" \t"), step.size());
     const std::string name(step.substr(0, end));
     const std::string_view rest = trimmed(step.substr(end));
-    if (!rest.empty() && !rest.starts_with("at ")) return refusal(fmt::format("'{}' is no step: write RULE or RULE at PATH, or 'help'", step));
+    if (!rest.empty() && !rest.starts_with("at "))
+        return refusal(fmt::format("'{}' is no step: write RULE or RULE at PATH, or 'help'", step));
     const std::string place(rest.empty() ? rest : trimmed(rest.substr(3)));
     std::vector<std::string> known;
     for (uint32_t r = 0; r < grammar_->rules.size(); ++r) {
@@ -116,13 +122,15 @@ Status Dialogue::applyOne(std::string_view step) {
         return applied(session_.apply({r, *shape}, watch.progress()), before);
     }
     const std::string near = syntax::didYouMean(name, known);
-    return refusal(fmt::format("no command and no rule is called '{}'{}", name, near.empty() ? ": write 'help'" : fmt::format(" (did you mean '{}'?)", near)));
+    return refusal(fmt::format("no command and no rule is called '{}'{}", name,
+                               near.empty() ? ": write 'help'" : fmt::format(" (did you mean '{}'?)", near)));
 }
 
 Status Dialogue::applyAll(std::string_view steps) {
     while (true) {
         const size_t arrow = steps.find("=>");
-        if (const Status s = applyOne(trimmed(steps.substr(0, arrow))); !s.ok() || arrow == std::string_view::npos) return s;
+        if (const Status s = applyOne(trimmed(steps.substr(0, arrow))); !s.ok() || arrow == std::string_view::npos)
+            return s;
         steps.remove_prefix(arrow + 2);
     }
 }
@@ -138,14 +146,16 @@ Result<std::string> Dialogue::wayLine(const std::string& name) const {
 Status Dialogue::save(const std::string& name) {
     const auto now = viewer::readSource(request_.file);
     if (!now.ok()) return now.error();
-    if ((*now)->text() != grammar_->sources[0]->text()) return refusal(fmt::format("'{}' was changed by another program: nothing was saved", request_.file));
+    if ((*now)->text() != grammar_->sources[0]->text())
+        return refusal(fmt::format("'{}' was changed by another program: nothing was saved", request_.file));
     const auto options = optionsFor(*grammar_, request_);
     if (!options.ok()) return options.error();
     const auto saved = viewer::withWay(session_, *grammar_, *options, name, viewer::fileLoader());
     if (!saved.ok()) return saved.error();
     if (const Status s = viewer::writeText(request_.file, saved->text); !s.ok()) return s;
     grammar_ = saved->grammar;
-    fmt::print("saved; run it with: sgm tree {} --derive {}{}\n", request_.file, name, request_.seed == 1 ? "" : fmt::format(" --seed {}", request_.seed));
+    fmt::print("saved; run it with: sgm tree {} --derive {}{}\n", request_.file, name,
+               request_.seed == 1 ? "" : fmt::format(" --seed {}", request_.seed));
     return Done{};
 }
 
@@ -154,7 +164,8 @@ Status Dialogue::obey(const std::string& line) {
     const size_t end = std::min(text.find_first_of(" \t"), text.size());
     const std::string_view word = text.substr(0, end), rest = trimmed(text.substr(end));
     size_t number = 0;
-    if (const auto [stop, bad] = std::from_chars(text.data(), text.data() + text.size(), number); bad == std::errc() && stop == text.data() + text.size())
+    if (const auto [stop, bad] = std::from_chars(text.data(), text.data() + text.size(), number);
+        bad == std::errc() && stop == text.data() + text.size())
         return applyNumber(number);
     if (word == "apply") return obey(std::string(rest));
     if (word == "save") return rest.empty() ? Status(refusal("write 'save NAME'")) : save(std::string(rest));
@@ -172,7 +183,8 @@ Status Dialogue::obey(const std::string& line) {
         return d.ok() ? Status(Done{}) : d.error();
     }
     if (word == "undo" || word == "redo") {
-        if (!(word == "undo" ? session_.canUndo() : session_.canRedo())) return refusal(fmt::format("there is nothing to {}", word));
+        if (!(word == "undo" ? session_.canUndo() : session_.canRedo()))
+            return refusal(fmt::format("there is nothing to {}", word));
         if (const Status s = word == "undo" ? session_.undo() : session_.redo(); !s.ok()) return s;
         return list(), Done{};
     }
@@ -215,7 +227,8 @@ int step(const ModelRequest& request) {
     auto session = derive::Session::begin(grammar, *options);
     if (!session.ok()) return fail(session.error());
     if (!options->derive.empty()) {
-        const auto way = std::find_if(grammar->derives.begin(), grammar->derives.end(), [&](const auto& d) { return d.name == options->derive; });
+        const auto way = std::find_if(grammar->derives.begin(), grammar->derives.end(),
+                                      [&](const auto& d) { return d.name == options->derive; });
         for (const rules::Derive::Step& s : way->steps) {
             const auto shape = session->meant(s.rule, s.place);
             if (!shape.ok()) return fail(shape.error());
@@ -232,7 +245,8 @@ void addStep(CLI::App& app, int& exitCode) {
     auto request = std::make_shared<ModelRequest>();
     addModelOptions(*command, *request);
     command->footer(std::string(commandList) +
-                    "\nWith --derive the way's steps are done first. Commands may come from a pipe; it ends at the first that fails.\n\n"
+                    "\nWith --derive the way's steps are done first. Commands may come from a pipe; it ends at the "
+                    "first that fails.\n\n"
                     "Examples:\n  sgm step examples/figure1.sgm\n"
                     "  printf 'R0\\nR2 => R4\\ntree\\n' | sgm step examples/figure1.sgm\n"
                     "  echo rest | sgm step examples/tower.sgm --set floors=3");

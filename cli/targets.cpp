@@ -22,7 +22,8 @@ Status checkTargets(const std::vector<Target>& targets) {
             if (const Status s = checkTarget(file); !s.ok()) return s;
             const auto [writer, fresh] = writers.emplace(identityOf(file), &target);
             if (fresh) continue;
-            return Error{Error::Kind::Usage, fmt::format("{} {} and {} {} both write '{}': give one another name", writer->second->option, writer->second->file.string(),
+            return Error{Error::Kind::Usage, fmt::format("{} {} and {} {} both write '{}': give one another name",
+                                                         writer->second->option, writer->second->file.string(),
                                                          target.option, target.file.string(), file.string())};
         }
     }
@@ -35,8 +36,9 @@ Status checkAgainstInputs(const std::vector<Target>& targets, const std::vector<
     for (const Target& target : targets)
         for (const fs::path& file : exporter::filesOf(target.file))
             if (read.contains(identityOf(file)))
-                return Error{Error::Kind::Usage, fmt::format("{} {} would replace '{}', which the model is made from: give it another name", target.option,
-                                                             target.file.string(), file.string())};
+                return Error{Error::Kind::Usage,
+                             fmt::format("{} {} would replace '{}', which the model is made from: give it another name",
+                                         target.option, target.file.string(), file.string())};
     return Done{};
 }
 

@@ -33,7 +33,8 @@ syntax::SourceSpan placeOf(const viewer::Problem& problem, const rules::Grammar&
 
 class Trial {
 public:
-    Trial(std::shared_ptr<const rules::Grammar> grammar, const TrialOptions& options, Progress* progress, syntax::Diagnostics& diagnostics)
+    Trial(std::shared_ptr<const rules::Grammar> grammar, const TrialOptions& options, Progress* progress,
+          syntax::Diagnostics& diagnostics)
         : grammar_(std::move(grammar)), options_(options), progress_(progress), diagnostics_(diagnostics) {
         for (const syntax::Diagnostic& d : diagnostics.all()) warned_.insert({d.span.source, d.span.begin, d.span.end});
     }
@@ -56,14 +57,17 @@ public:
             if (done.ok()) continue;
             if (done.error().kind == Error::Kind::Cancelled) return done.error();
             // A time that ran out says nothing of the grammar.
-            if (done.error().kind != Error::Kind::Budget || watch.seconds() < options_.otherSeconds) tell(done.error(), setting.words, false);
+            if (done.error().kind != Error::Kind::Budget || watch.seconds() < options_.otherSeconds)
+                tell(done.error(), setting.words, false);
         }
         return trials;
     }
 
 private:
     using Key = std::tuple<const syntax::Source*, uint32_t, std::string>;
-    static Key keyOf(syntax::SourceSpan span, std::string message) { return {span.source, span.begin, std::move(message)}; }
+    static Key keyOf(syntax::SourceSpan span, std::string message) {
+        return {span.source, span.begin, std::move(message)};
+    }
 
     derive::Options optionsOf(uint32_t start) const {
         derive::Options options;
@@ -126,7 +130,8 @@ private:
         auto derivation = derive::derive(grammar_, options, progress_);
         if (!derivation.ok()) return derivation.error();
         syntax::Diagnostics found;
-        if (thorough) found = derive::warnings(*derivation);
+        if (thorough)
+            found = derive::warnings(*derivation);
         else
             for (const derive::Remark& r : derivation->remarks) found.warning(r.span, r.message, r.mend);
         for (const syntax::Diagnostic& d : found.all())
@@ -142,11 +147,13 @@ private:
         constexpr int cells = 64;
         const Box3f& bounds = model.lowered->field.bounds;
         mesh::Counts counts;
-        const auto blocks = mesh::subdivide(model.tape, mesh::gridFor(bounds, mesh::cellFor(bounds, cells)), 0, progress_, counts);
+        const auto blocks =
+            mesh::subdivide(model.tape, mesh::gridFor(bounds, mesh::cellFor(bounds, cells)), 0, progress_, counts);
         if (!blocks.ok()) return blocks.error();
         if (!blocks->empty()) return Done{};
         const derive::Shape& root = model.derivation.tree.shapes[0];
-        return Error{Error::Kind::Input, fmt::format("{}nothing solid is left of '{}': all is cut away", syntax::placeText(root.span), model.derivation.tree.path(0))};
+        return Error{Error::Kind::Input, fmt::format("{}nothing solid is left of '{}': all is cut away",
+                                                     syntax::placeText(root.span), model.derivation.tree.path(0))};
     }
 
     static std::string prefixed(const std::string& words, const std::string& message) {
@@ -160,16 +167,18 @@ private:
         // One warning a place: at other settings it is another number or path.
         if (!said_.insert(keyOf(span, words.empty() ? problem.message : std::string())).second) return;
         const std::string message = prefixed(words, span.source ? problem.message : error.message);
-        if (isMain) diagnostics_.error(span, message);
-        else diagnostics_.warning(span, message);
+        if (isMain)
+            diagnostics_.error(span, message);
+        else
+            diagnostics_.warning(span, message);
     }
 
     std::shared_ptr<const rules::Grammar> grammar_;
     TrialOptions options_;
     Progress* progress_;
     syntax::Diagnostics& diagnostics_;
-    std::set<Key> said_;                                                        ///< errors
-    std::set<std::tuple<const syntax::Source*, uint32_t, uint32_t>> warned_;    ///< places: one warning each
+    std::set<Key> said_;                                                      ///< errors
+    std::set<std::tuple<const syntax::Source*, uint32_t, uint32_t>> warned_;  ///< places: one warning each
 };
 
 }  // namespace

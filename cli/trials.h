@@ -12,9 +12,9 @@ namespace sgm::cli {
 
 struct TrialOptions {
     uint64_t seed = 1;
-    double mainSeconds = 60;    ///< for the model that `sgm build` makes without options
+    double mainSeconds = 60;                    ///< for the model that `sgm build` makes without options
     uint64_t shapes = derive::Budget{}.shapes;  ///< of each model, as `sgm build` has it
-    double otherSeconds = 5;    ///< for all others together; those that are left then aren't tried
+    double otherSeconds = 5;                    ///< for all others together; those that are left then aren't tried
 };
 
 /// How the trials went.

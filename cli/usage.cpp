@@ -13,7 +13,8 @@ namespace {
 
 /// "--cell" of "--cell=.1"; empty for what is no option. A negative number is a value.
 std::string optionName(std::string_view word) {
-    const bool isOption = word.size() > 1 && word[0] == '-' && (word[1] == '-' || std::isalpha(static_cast<unsigned char>(word[1])));
+    const bool isOption =
+        word.size() > 1 && word[0] == '-' && (word[1] == '-' || std::isalpha(static_cast<unsigned char>(word[1])));
     if (!isOption || word == "--") return {};
     if (word[1] != '-') return std::string(word.substr(0, 2));  // -o and what is glued to it
     return std::string(word.substr(0, word.find('=')));
@@ -30,7 +31,8 @@ bool has(const CLI::App& app, const std::string& option) { return app.get_option
 
 std::string commandProblem(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) names.push_back(command->get_name());
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
     const std::string near = syntax::didYouMean(word, names);
     if (!near.empty()) return fmt::format("no command '{}'; did you mean '{}'?", word, near);
     return fmt::format("no command '{}': there are {}", word, fmt::join(names, ", "));
@@ -40,9 +42,12 @@ std::string optionProblem(const CLI::App& app, const CLI::App& command, const st
     std::vector<std::string> others;
     for (const CLI::App* other : app.get_subcommands([](const CLI::App*) { return true; }))
         if (other != &command && has(*other, option)) others.push_back(fmt::format("'sgm {}'", other->get_name()));
-    if (!others.empty()) return fmt::format("'sgm {}' has no option {}: it belongs to {}", command.get_name(), option, fmt::join(others, ", "));
+    if (!others.empty())
+        return fmt::format("'sgm {}' has no option {}: it belongs to {}", command.get_name(), option,
+                           fmt::join(others, ", "));
     const std::string near = syntax::didYouMean(option, optionsOf(command));
-    return fmt::format("'sgm {}' has no option {}{}", command.get_name(), option, near.empty() ? "" : fmt::format("; did you mean {}?", near));
+    return fmt::format("'sgm {}' has no option {}{}", command.get_name(), option,
+                       near.empty() ? "" : fmt::format("; did you mean {}?", near));
 }
 
 }  // namespace

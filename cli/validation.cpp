@@ -9,10 +9,12 @@ namespace sgm::cli {
 Status validated(const mesh::Mesh& mesh, Stages& stages) {
     const auto judgement = timed(stages, "validate", [&] { return mesh::judge(mesh); });
     if (!judgement.ok()) return judgement.error();
-    const std::string verdict = fmt::format("CGAL: {}, {}, {}, {:.6g} m³", judgement->closed ? "closed" : "not closed",
-                                            judgement->outward ? "outward" : "not outward",
-                                            judgement->selfIntersects ? "crosses itself" : "free of self-intersections", judgement->volume_m3);
-    if (!judgement->closed || !judgement->outward || judgement->selfIntersects) return Error{Error::Kind::Input, verdict};
+    const std::string verdict =
+        fmt::format("CGAL: {}, {}, {}, {:.6g} m³", judgement->closed ? "closed" : "not closed",
+                    judgement->outward ? "outward" : "not outward",
+                    judgement->selfIntersects ? "crosses itself" : "free of self-intersections", judgement->volume_m3);
+    if (!judgement->closed || !judgement->outward || judgement->selfIntersects)
+        return Error{Error::Kind::Input, verdict};
     fmt::print("{}\n", verdict);
     return Done{};
 }
@@ -20,8 +22,10 @@ Status validated(const mesh::Mesh& mesh, Stages& stages) {
 void warnOfFaults(const mesh::Mesh& mesh, Stages& stages) {
     const auto judgement = timed(stages, "validate", [&] { return mesh::judge(mesh); });
     if (!judgement.ok() || (judgement->closed && !judgement->selfIntersects)) return;
-    printMessage("warning: the mesh {} since it was smoothed: smooth less, or take smaller cells (--validate makes this an error)\n",
-         judgement->closed ? "crosses itself" : "has holes");
+    printMessage(
+        "warning: the mesh {} since it was smoothed: smooth less, or take smaller cells (--validate makes this an "
+        "error)\n",
+        judgement->closed ? "crosses itself" : "has holes");
 }
 
 }  // namespace sgm::cli

@@ -56,7 +56,8 @@ std::vector<Plane> largestPlanes(const mesh::Mesh& mesh, const std::vector<Vec3f
             const double size = length(n);
             if (size <= 0) continue;
             const auto step = [](double v, double by) { return static_cast<int>(std::lround(v / by)); };
-            Plane& plane = planes[{step(n.x / size, 0.1), step(n.y / size, 0.1), step(n.z / size, 0.1), step(dot(n, p) / size, cell_m)}];
+            Plane& plane = planes[{step(n.x / size, 0.1), step(n.y / size, 0.1), step(n.z / size, 0.1),
+                                   step(dot(n, p) / size, cell_m)}];
             plane.normal += n, plane.along += dot(n, p), plane.area += size;
         }
     std::vector<Plane> sorted;
@@ -66,8 +67,8 @@ std::vector<Plane> largestPlanes(const mesh::Mesh& mesh, const std::vector<Vec3f
     return sorted;
 }
 
-/// Share of the surface whose corners lie on the two dozen largest planes. Where cells cut an edge off, the corners of the
-/// cut do: so coarse meshes and fine ones are judged alike.
+/// Share of the surface whose corners lie on the two dozen largest planes. Where cells cut an edge off, the corners of
+/// the cut do: so coarse meshes and fine ones are judged alike.
 double shareOnFewPlanes(const mesh::Mesh& mesh, float cell_m) {
     std::vector<Vec3f> at;
     const Vec3f middle = mesh.bounds().centre();
@@ -76,7 +77,8 @@ double shareOnFewPlanes(const mesh::Mesh& mesh, float cell_m) {
     const std::vector<Plane> planes = largestPlanes(mesh, at, cell_m, 24);
     std::vector<bool> plain;
     for (const Vec3f& p : at)
-        plain.push_back(std::any_of(planes.begin(), planes.end(), [&](const Plane& q) { return q.holds(p.as<double>(), 0.1 * cell_m); }));
+        plain.push_back(std::any_of(planes.begin(), planes.end(),
+                                    [&](const Plane& q) { return q.holds(p.as<double>(), 0.1 * cell_m); }));
     double all = 0, bare = 0;
     for (const mesh::Chunk& c : mesh.chunks)
         for (const mesh::Triangle& local : c.triangles) {

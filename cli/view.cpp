@@ -16,7 +16,8 @@ namespace {
 /// Becomes the other program; comes back only where that can't be.
 int become(std::vector<std::string> words) {
     std::error_code ignored;
-    const std::filesystem::path beside = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / "sgm-viewer";
+    const std::filesystem::path beside =
+        std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / "sgm-viewer";
     words.insert(words.begin(), beside.string());
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
@@ -31,7 +32,8 @@ int become(std::vector<std::string> words) {
 void addView(CLI::App& app, int& exitCode) {
     CLI::App* command = app.add_subcommand("view", "Open the window: see the model at once, change it by hand");
     command->prefix_command();
-    command->footer("All that follows goes to sgm-viewer; see sgm-viewer --help.\nExample:\n  sgm view examples/grotto.sgm");
+    command->footer(
+        "All that follows goes to sgm-viewer; see sgm-viewer --help.\nExample:\n  sgm view examples/grotto.sgm");
     command->callback([command, &exitCode] { exitCode = become(command->remaining()); });
 }
 

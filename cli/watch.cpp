@@ -53,7 +53,8 @@ Watch::Watch(bool quiet) {
 
 Watch::~Watch() {
     interrupted = nullptr;
-    for (size_t i = 0; i < std::size(signals); ++i) std::signal(signals[i], before_[i] == SIG_ERR ? SIG_DFL : before_[i]);
+    for (size_t i = 0; i < std::size(signals); ++i)
+        std::signal(signals[i], before_[i] == SIG_ERR ? SIG_DFL : before_[i]);
     stop_ = true;
     if (line_.joinable()) line_.join();
 }

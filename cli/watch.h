@@ -9,8 +9,8 @@
 
 namespace sgm::cli {
 
-/// While it lives, Ctrl-C (and SIGTERM, and a terminal that is closed) cancels `progress()`, and a line on stderr shows the stage once a second has passed
-/// (on a terminal only, and not when quiet).
+/// While it lives, Ctrl-C (and SIGTERM, and a terminal that is closed) cancels `progress()`, and a line on stderr shows
+/// the stage once a second has passed (on a terminal only, and not when quiet).
 class Watch {
 public:
     explicit Watch(bool quiet);

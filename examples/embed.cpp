@@ -9,7 +9,8 @@
 
 int main() {
     using namespace sgm;
-    const auto source = std::make_shared<const syntax::Source>("embed.sgm", "grammar 1\nstart A -> cube size 2 : B\nrule B -> + sphere at +y to centre blend .3m\n");
+    const auto source = std::make_shared<const syntax::Source>(
+        "embed.sgm", "grammar 1\nstart A -> cube size 2 : B\nrule B -> + sphere at +y to centre blend .3m\n");
     syntax::Diagnostics problems;
     const auto grammar = rules::load(source, operations::table(), {}, problems);
     for (const auto& problem : problems.all()) std::fputs(syntax::render(problem).c_str(), stderr);
@@ -28,7 +29,8 @@ int main() {
     if (!blocks.ok()) return 1;
     const auto mesh = mesh::polygonize(*blocks, grid, {}, nullptr, counts);
     if (!mesh.ok()) return 1;
-    std::printf("%zu triangles from %llu field evaluations\n", mesh->triangleCount(), static_cast<unsigned long long>(counts.pointEvaluations));
+    std::printf("%zu triangles from %llu field evaluations\n", mesh->triangleCount(),
+                static_cast<unsigned long long>(counts.pointEvaluations));
     exporter::ExportInput input;
     input.mesh = &*mesh;
     input.provenance = &provenance;

@@ -1,5 +1,6 @@
 // Sphere tracing (Hart 1996) of anything that gives distances, many rays at once; and how often it goes wrong.
-// Enters: values(x, y, z, n, out) and rays. Leaves: the length of each ray to the first surface. Assumes unit directions.
+// Enters: values(x, y, z, n, out) and rays. Leaves: the length of each ray to the first surface. Assumes unit
+// directions.
 #pragma once
 
 #include <cmath>
@@ -19,13 +20,15 @@ struct Picture {
 
     /// `side` pixels to a side, of which every `stride`-th is kept, in both directions.
     Picture(Box3f box, int side, int stride) {
-        const Vec3f toEye = normalized(Vec3f{0.58f, 0.38f, 0.85f}), right = normalized(cross(Vec3f{0, 1, 0}, toEye)), up = cross(toEye, right);
+        const Vec3f toEye = normalized(Vec3f{0.58f, 0.38f, 0.85f}), right = normalized(cross(Vec3f{0, 1, 0}, toEye)),
+                    up = cross(toEye, right);
         const float reach = length(box.size());
         eye = box.centre() + toEye * (1.25f * reach);
         pixel = 0.8f / static_cast<float>(side);
         for (int j = stride / 2; j < side; j += stride)
             for (int i = stride / 2; i < side; i += stride) {
-                const float x = (static_cast<float>(i) + 0.5f) * pixel - 0.4f, y = (static_cast<float>(j) + 0.5f) * pixel - 0.4f;
+                const float x = (static_cast<float>(i) + 0.5f) * pixel - 0.4f,
+                            y = (static_cast<float>(j) + 0.5f) * pixel - 0.4f;
                 add(box, normalized(right * x + up * y - toEye));
             }
     }
@@ -42,8 +45,8 @@ private:
     }
 };
 
-/// How far each ray goes until the value is below a hundredth of a pixel, infinite for those that leave the box. A step is
-/// the value times `share`.
+/// How far each ray goes until the value is below a hundredth of a pixel, infinite for those that leave the box. A step
+/// is the value times `share`.
 template <class Values>
 std::vector<float> traced(const Picture& picture, float share, const Values& values) {
     std::vector<float> at = picture.from, x, y, z, f;
@@ -62,8 +65,10 @@ std::vector<float> traced(const Picture& picture, float share, const Values& val
             const size_t ray = going[k];
             if (f[k] < 0.01f * picture.pixel * at[ray]) continue;  // there
             at[ray] += f[k] * share;
-            if (at[ray] > picture.to[ray]) at[ray] = std::numeric_limits<float>::infinity();
-            else going[left++] = ray;
+            if (at[ray] > picture.to[ray])
+                at[ray] = std::numeric_limits<float>::infinity();
+            else
+                going[left++] = ray;
         }
         going.resize(left);
     }
@@ -73,7 +78,8 @@ std::vector<float> traced(const Picture& picture, float share, const Values& val
 /// Rays whose surface lies more than two pixels from where steps of a twentieth find it.
 template <class Values>
 size_t wrongRays(const Picture& picture, float lipschitz, const Values& values) {
-    const std::vector<float> coarse = traced(picture, 1 / lipschitz, values), fine = traced(picture, 0.05f / lipschitz, values);
+    const std::vector<float> coarse = traced(picture, 1 / lipschitz, values),
+                             fine = traced(picture, 0.05f / lipschitz, values);
     size_t wrong = 0;
     for (size_t i = 0; i < coarse.size(); ++i) {
         if (std::isinf(coarse[i]) && std::isinf(fine[i])) continue;

@@ -34,9 +34,7 @@ const std::vector<float>& Answers::of(const std::vector<Question>& questions, Tr
     values_.resize(questions.size());
     byTape(
         questions, cost,
-        [&](const eval::Tape& tape, eval::Points places) {
-            eval::evaluate(tape, places, answers_.data(), workspace_);
-        },
+        [&](const eval::Tape& tape, eval::Points places) { eval::evaluate(tape, places, answers_.data(), workspace_); },
         [&](uint32_t i, size_t k) { values_[i] = answers_[k]; });
     return values_;
 }
@@ -49,7 +47,9 @@ const std::vector<Answers::Slope>& Answers::slopesOf(const std::vector<Question>
             for (std::vector<float>* d : {&dx_, &dy_, &dz_}) d->resize(places.n);
             eval::evaluateGradient(tape, places, answers_.data(), dx_.data(), dy_.data(), dz_.data(), workspace_);
         },
-        [&](uint32_t i, size_t k) { slopes_[i] = {answers_[k], {dx_[k], dy_[k], dz_[k]}}; });
+        [&](uint32_t i, size_t k) {
+            slopes_[i] = {answers_[k], {dx_[k], dy_[k], dz_[k]}};
+        });
     return slopes_;
 }
 

@@ -36,7 +36,8 @@ void setGrid(const Program& program, const mesh::Grid& grid) {
 /// Room for so many triangles.
 GpuTriangles roomFor(size_t count) {
     const auto room = [](size_t bytes) { return Buffer::ofBytes(nullptr, std::max<size_t>(bytes, 4)); };
-    return {count, room(count * 9 * sizeof(float)), room(count * 9 * sizeof(float)), room(count * 3 * sizeof(uint32_t))};
+    return {count, room(count * 9 * sizeof(float)), room(count * 9 * sizeof(float)),
+            room(count * 3 * sizeof(uint32_t))};
 }
 
 }  // namespace
@@ -57,14 +58,16 @@ Result<PreparedBlocks> prepareBlocks(const eval::Tape& tape, const mesh::Grid& g
     return prepared;
 }
 
-Result<std::shared_ptr<const BlockPrograms>> programsFor(const PreparedBlocks& blocks, std::shared_ptr<const BlockPrograms> before) {
+Result<std::shared_ptr<const BlockPrograms>> programsFor(const PreparedBlocks& blocks,
+                                                         std::shared_ptr<const BlockPrograms> before) {
     if (before && before->cover(blocks)) return before;
     const auto programs = std::make_shared<BlockPrograms>();
     programs->registers = std::max(before ? before->registers : 0, blocks.registers);
     programs->ops = (before ? before->ops : eval::OpSet()) | blocks.ops;
     programs->cases = caseWords();
     for (auto [name, into] : {std::pair{"corners", &programs->corners}, std::pair{"triangles", &programs->triangles}}) {
-        Result<Program> made = Program::compute(shaderText(name, eval::interpreterGlsl(programs->registers, programs->ops)));
+        Result<Program> made =
+            Program::compute(shaderText(name, eval::interpreterGlsl(programs->registers, programs->ops)));
         if (!made) return made.error();
         *into = std::move(*made);
     }
@@ -110,7 +113,8 @@ Result<GpuTriangles> polygonizeOnGpu(const PreparedBlocks& blocks, const BlockPr
 std::vector<OriginId> ownersOf(const PreparedBlocks& blocks, const GpuTriangles& triangles, int threads) {
     const std::vector<Vec3f> corners = triangles.positions.read<Vec3f>(triangles.count * 3);
     std::map<std::array<int, 3>, size_t> blockAt;
-    for (size_t b = 0; b < blocks.blocks.size(); ++b) blockAt[{blocks.blocks[b][0], blocks.blocks[b][1], blocks.blocks[b][2]}] = b;
+    for (size_t b = 0; b < blocks.blocks.size(); ++b)
+        blockAt[{blocks.blocks[b][0], blocks.blocks[b][1], blocks.blocks[b][2]}] = b;
     struct Members {
         std::vector<float> x, y, z;
         std::vector<size_t> triangles;
@@ -118,7 +122,8 @@ std::vector<OriginId> ownersOf(const PreparedBlocks& blocks, const GpuTriangles&
     std::vector<Members> members(blocks.blocks.size());
     const float edge = cellsPerEdge * blocks.grid.cell_m;
     for (size_t t = 0; t < triangles.count; ++t) {
-        const Vec3f middle = (corners[3 * t] + corners[3 * t + 1] + corners[3 * t + 2]) / 3.0f, place = (middle - blocks.grid.origin) / edge;
+        const Vec3f middle = (corners[3 * t] + corners[3 * t + 1] + corners[3 * t + 2]) / 3.0f,
+                    place = (middle - blocks.grid.origin) / edge;
         const auto index = [](float v) { return static_cast<int>(std::floor(v)); };
         const auto block = blockAt.find({index(place.x), index(place.y), index(place.z)});
         if (block == blockAt.end()) continue;  // rounded across the border of all blocks
@@ -132,7 +137,8 @@ std::vector<OriginId> ownersOf(const PreparedBlocks& blocks, const GpuTriangles&
         const Members& m = members[b];
         if (m.triangles.empty()) return;
         std::vector<OriginId> found(m.triangles.size());
-        eval::evaluateOrigin(blocks.tapes[b], {m.x.data(), m.y.data(), m.z.data(), found.size()}, found.data(), workspaces[size_t(worker)]);
+        eval::evaluateOrigin(blocks.tapes[b], {m.x.data(), m.y.data(), m.z.data(), found.size()}, found.data(),
+                             workspaces[size_t(worker)]);
         for (size_t i = 0; i < found.size(); ++i) owners[m.triangles[i]] = found[i];
     });
     return owners;

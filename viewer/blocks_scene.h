@@ -1,6 +1,6 @@
-// A mesh made on the GPU from one moment to the next: blocks of 32³ cells polygonised by compute shaders (SG-M III-G), for
-// a look at what a hand is changing. Enters: a tape and a grid. Leaves: triangles in GPU memory, without refinement, owners
-// and shared vertices. Assumes a current GL 4.3 context for all but `prepareBlocks`.
+// A mesh made on the GPU from one moment to the next: blocks of 32³ cells polygonised by compute shaders (SG-M III-G),
+// for a look at what a hand is changing. Enters: a tape and a grid. Leaves: triangles in GPU memory, without
+// refinement, owners and shared vertices. Assumes a current GL 4.3 context for all but `prepareBlocks`.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace sgm::viewer {
 /// Everything about the blocks that needs no GPU, so that any thread can make it.
 struct PreparedBlocks {
     mesh::Grid grid;
-    std::vector<uint32_t> words;                ///< the blocks' tapes
+    std::vector<uint32_t> words;                 ///< the blocks' tapes
     std::vector<std::array<int32_t, 4>> blocks;  ///< index of the block, texel where its tape starts
     std::vector<eval::Tape> tapes;               ///< the same tapes, for `ownersOf`
     uint32_t registers = 0;
@@ -32,10 +32,13 @@ struct BlockPrograms {
     Buffer cases;
     uint32_t registers = 0;
     eval::OpSet ops;
-    bool cover(const PreparedBlocks& blocks) const { return blocks.registers <= registers && (blocks.ops & ~ops).none(); }
+    bool cover(const PreparedBlocks& blocks) const {
+        return blocks.registers <= registers && (blocks.ops & ~ops).none();
+    }
 };
 /// Programs for these blocks and those that `before` covers (null: none): `before` itself where it covers them.
-Result<std::shared_ptr<const BlockPrograms>> programsFor(const PreparedBlocks& blocks, std::shared_ptr<const BlockPrograms> before);
+Result<std::shared_ptr<const BlockPrograms>> programsFor(const PreparedBlocks& blocks,
+                                                         std::shared_ptr<const BlockPrograms> before);
 
 /// A list of triangles, three vertices each.
 struct GpuTriangles {

@@ -51,9 +51,9 @@ std::vector<Vec3d> solidPoints(const eval::Tape& tape, const Box3f& bounds) {
 Camera frame(const Box3f& bounds, double aspect) {
     std::vector<Vec3d> corners;
     for (int i = 0; i < 8; ++i)
-        corners.push_back(
-            Vec3f{i & 1 ? bounds.hi.x : bounds.lo.x, i & 2 ? bounds.hi.y : bounds.lo.y, i & 4 ? bounds.hi.z : bounds.lo.z}
-                .as<double>());
+        corners.push_back(Vec3f{i & 1 ? bounds.hi.x : bounds.lo.x, i & 2 ? bounds.hi.y : bounds.lo.y,
+                                i & 4 ? bounds.hi.z : bounds.lo.z}
+                              .as<double>());
     return framePoints(corners, bounds.as<double>(), aspect);
 }
 
@@ -72,7 +72,8 @@ Camera frameTurning(const eval::Tape& tape, const Box3f& bounds, double aspect) 
     std::vector<Vec3d> points;
     for (const auto& [height, radius] : radiusAt)
         for (int i = 0; i < 64; ++i)
-            points.push_back({axis.x + radius * std::cos(i * pi / 32), height, axis.z + radius * std::sin(i * pi / 32)});
+            points.push_back(
+                {axis.x + radius * std::cos(i * pi / 32), height, axis.z + radius * std::sin(i * pi / 32)});
     return points.empty() ? frame(bounds, aspect) : framePoints(points, bounds.as<double>(), aspect);
 }
 

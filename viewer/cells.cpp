@@ -99,10 +99,9 @@ Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float
                     eval::Tape& shortened = children[i].tapes[taken++];
                     index = static_cast<uint32_t>(tree.tapes.size());
                     const eval::Range range = children[i].ranges[c];
-                    const bool deeper = level + 1 < usual
-                                            ? shortened.size() > shortTape
-                                            : level + 1 < levels && shortened.size() > longTape &&
-                                                  range.lo <= 0 && range.hi >= 0;
+                    const bool deeper = level + 1 < usual ? shortened.size() > shortTape
+                                                          : level + 1 < levels && shortened.size() > longTape &&
+                                                                range.lo <= 0 && range.hi >= 0;
                     if (deeper)
                         next.push_back(
                             {static_cast<uint32_t>(tree.nodes.size()), children[i].lows[c], std::move(shortened)});

@@ -26,11 +26,11 @@ enum class CellState : uint32_t {
 struct CellTree {
     static constexpr int depth = 3;         ///< usually at most 64 cells along an edge of the root,
     static constexpr int surfaceDepth = 4;  ///< 256 where there may be surface among many parts
-    Vec3f low;                       ///< the root cube's corner, metres
-    float edge = 1;                  ///< of the root cube, metres
-    float margin = 0;                ///< metres
+    Vec3f low;                              ///< the root cube's corner, metres
+    float edge = 1;                         ///< of the root cube, metres
+    float margin = 0;                       ///< metres
     std::vector<uint32_t> nodes;
-    std::vector<eval::Tape> tapes;  ///< of near leaves; each is exact a 32nd of its cell's edge beyond the cell
+    std::vector<eval::Tape> tapes;    ///< of near leaves; each is exact a 32nd of its cell's edge beyond the cell
     std::vector<eval::Range> ranges;  ///< of the field in the same leaves
 
     static constexpr CellState stateOf(uint32_t word) { return CellState(word >> 30); }

@@ -41,7 +41,13 @@ double secondsNow() {
 Layers emptyLayers(int width, int height) {
     const size_t count = size_t(width) * size_t(height);
     const std::vector<Vec3f> none(count, Vec3f{});
-    return {width, height, none, std::vector<float>(count, Layers::farAway), none, none, std::vector<float>(count, 0.0f),
+    return {width,
+            height,
+            none,
+            std::vector<float>(count, Layers::farAway),
+            none,
+            none,
+            std::vector<float>(count, 0.0f),
             std::vector<float>(count, 1.0f)};
 }
 
@@ -83,10 +89,12 @@ Result<Image> FieldPainter::draw(const PictureOptions& options, Progress* progre
     if (layers) *layers = emptyLayers(options.width, options.height);
     PixelSums sums(options.width, options.height);
     const std::vector<Job> first = firstSamples(options.width, options.height);
-    if (Status status = addJobs(first, scene, sums, view, layers, parts_->cost, progress); !status) return status.error();
+    if (Status status = addJobs(first, scene, sums, view, layers, parts_->cost, progress); !status)
+        return status.error();
     if (options.samples > 1) {
         const std::vector<Job> more = edgeSamples(first, sums, options.samples);
-        if (Status status = addJobs(more, scene, sums, view, nullptr, parts_->cost, progress); !status) return status.error();
+        if (Status status = addJobs(more, scene, sums, view, nullptr, parts_->cost, progress); !status)
+            return status.error();
     }
     for (size_t i = 0; layers && i < layers->color.size(); ++i) {
         const float* sum = &sums.rgba[i * 4];

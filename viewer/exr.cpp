@@ -20,18 +20,25 @@ struct Channel {
     size_t stride;
 };
 
-void addVector(std::vector<Channel>& channels, const std::vector<std::string>& names, const std::vector<Vec3f>& values) {
+void addVector(std::vector<Channel>& channels, const std::vector<std::string>& names,
+               const std::vector<Vec3f>& values) {
     static_assert(sizeof(Vec3f) == 3 * sizeof(float));
     for (size_t c = 0; c < 3; ++c) channels.push_back({names[c], &values.front().x + c, 3});
 }
 
 bool addLayer(std::vector<Channel>& channels, const std::string& name, const Layers& layers) {
-    if (name == "depth") channels.push_back({"depth.Z", layers.depth.data(), 1});
-    else if (name == "normal") addVector(channels, {"normal.X", "normal.Y", "normal.Z"}, layers.normal);
-    else if (name == "position") addVector(channels, {"position.X", "position.Y", "position.Z"}, layers.position);
-    else if (name == "origin") channels.push_back({"origin.V", layers.origin.data(), 1});
-    else if (name == "ao") channels.push_back({"ao.V", layers.ao.data(), 1});
-    else return false;
+    if (name == "depth")
+        channels.push_back({"depth.Z", layers.depth.data(), 1});
+    else if (name == "normal")
+        addVector(channels, {"normal.X", "normal.Y", "normal.Z"}, layers.normal);
+    else if (name == "position")
+        addVector(channels, {"position.X", "position.Y", "position.Z"}, layers.position);
+    else if (name == "origin")
+        channels.push_back({"origin.V", layers.origin.data(), 1});
+    else if (name == "ao")
+        channels.push_back({"ao.V", layers.ao.data(), 1});
+    else
+        return false;
     return true;
 }
 

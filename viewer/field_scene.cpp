@@ -71,7 +71,8 @@ Status FieldScene::light(std::span<const Job> jobs, Rays& rays, Progress* progre
             if (key || !take(i, seen_.surface(jobs[i], rays.hits[i], rays.origins[i]))) unknown.push_back(i);
         }
         std::vector<uint32_t> bare;
-        std::ranges::copy_if(unknown, std::back_inserter(bare), [&](uint32_t i) { return rays.lits[i].normal == Vec3f{}; });
+        std::ranges::copy_if(unknown, std::back_inserter(bare),
+                             [&](uint32_t i) { return rays.lits[i].normal == Vec3f{}; });
         // A pixel's first sample stands for all of it, until its others add what they meet.
         const auto isFirst = [&](uint32_t i) { return jobs[i].sample == 0; };
         const std::vector<uint32_t> others(std::ranges::stable_partition(bare, isFirst).begin(), bare.end());
@@ -88,7 +89,8 @@ Status FieldScene::light(std::span<const Job> jobs, Rays& rays, Progress* progre
 }
 
 Result<Rays> FieldScene::trace(std::span<const Job> jobs, Progress* progress) {
-    Rays rays{std::vector<Hit>(jobs.size()), std::vector<Lit>(jobs.size(), Lit{}), {}, std::vector<OriginId>(jobs.size(), 0)};
+    Rays rays{
+        std::vector<Hit>(jobs.size()), std::vector<Lit>(jobs.size(), Lit{}), {}, std::vector<OriginId>(jobs.size(), 0)};
     for (const bool leading : {true, false}) {
         std::vector<uint32_t> which;
         std::vector<Ray> some;

@@ -62,7 +62,8 @@ void spread(std::vector<uint8_t>& distance, Vec3i count) {
 
 void findBricks(const Dense& grid, FogTexels& texels) {
     constexpr int edge = FogTexels::brickEdge;
-    texels.brickCount = {(grid.count.x + edge - 1) / edge, (grid.count.y + edge - 1) / edge, (grid.count.z + edge - 1) / edge};
+    texels.brickCount = {(grid.count.x + edge - 1) / edge, (grid.count.y + edge - 1) / edge,
+                         (grid.count.z + edge - 1) / edge};
     const Vec3i n = texels.brickCount;
     texels.bricks.assign(size_t(n.x) * size_t(n.y) * size_t(n.z), 255);
     // Interpolation reaches one voxel on, so a voxel counts for the bricks of its neighbours too.
@@ -176,16 +177,19 @@ std::vector<uint8_t> billows(int edge) {
                     for (int k = 0; k < 27; ++k) {
                         const Vec3i to = cell + Vec3i{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
                         const auto wrap = [&](int a) { return size_t((a + cells) % cells); };
-                        const Vec3f& jitter = points[(wrap(to.z) * size_t(cells) + wrap(to.y)) * size_t(cells) + wrap(to.x)];
+                        const Vec3f& jitter =
+                            points[(wrap(to.z) * size_t(cells) + wrap(to.y)) * size_t(cells) + wrap(to.x)];
                         const Vec3f d = to.as<float>() + jitter - p;
                         nearest = std::min(nearest, dot(d, d));
                     }
-                    sums[(z * size_t(edge) + size_t(y)) * size_t(edge) + size_t(x)] += weight * (1 - std::sqrt(nearest));
+                    sums[(z * size_t(edge) + size_t(y)) * size_t(edge) + size_t(x)] +=
+                        weight * (1 - std::sqrt(nearest));
                 }
         });
     }
     std::vector<uint8_t> bytes;
-    for (const float sum : sums) bytes.push_back(static_cast<uint8_t>(std::lround(255 * std::clamp(sum / weights, 0.0f, 1.0f))));
+    for (const float sum : sums)
+        bytes.push_back(static_cast<uint8_t>(std::lround(255 * std::clamp(sum / weights, 0.0f, 1.0f))));
     return bytes;
 }
 

@@ -20,14 +20,15 @@ std::vector<float> opticalDepth(const volume::Dense& grid, Vec3f towardsLight, i
 struct FogTexels {
     static constexpr float mostSunDepth = 60;
     std::vector<uint16_t> rgba;
-    /// For bricks of 8³ voxels, in the same order: how many bricks away fog is, 0 where it is inside; 255 for 255 or more.
+    /// For bricks of 8³ voxels, in the same order: how many bricks away fog is, 0 where it is inside; 255 for 255 or
+    /// more.
     std::vector<uint8_t> bricks;
     Vec3i brickCount;
     static constexpr int brickEdge = 8;
 };
 
-/// `extinction_per_m`: of a grid value of 1. `thin` is subtracted from the values first, as much as noise eats on average.
-/// Error::Cancelled when `progress` says so.
+/// `extinction_per_m`: of a grid value of 1. `thin` is subtracted from the values first, as much as noise eats on
+/// average. Error::Cancelled when `progress` says so.
 Result<FogTexels> lightFog(const volume::Dense& grid, float extinction_per_m, float thin, Vec3f towardsSun, int threads,
                            Progress* progress);
 

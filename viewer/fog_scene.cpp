@@ -19,7 +19,8 @@ Box3f boxOf(const volume::Dense& grid) {
 
 }  // namespace
 
-Result<FogGrid> fogGrid(const eval::Tape& tape, const mesh::Grid& grid, const Box3f& bounds, int threads, Progress* progress) {
+Result<FogGrid> fogGrid(const eval::Tape& tape, const mesh::Grid& grid, const Box3f& bounds, int threads,
+                        Progress* progress) {
     mesh::Counts counts;
     const auto blocks = mesh::subdivide(tape, grid, threads, progress, counts);
     if (!blocks.ok()) return blocks.error();
@@ -47,8 +48,8 @@ Result<std::shared_ptr<const FogPrograms>> FogPrograms::create() {
     Result<Program> program = Program::compute(shaderText("fog"));
     if (!program) return program.error();
     programs->program = std::move(*program);
-    programs->billows =
-        VolumeTexture::of(viewer::billows(billowEdge), {billowEdge, billowEdge, billowEdge}, VolumeTexture::Edge::Repeat);
+    programs->billows = VolumeTexture::of(viewer::billows(billowEdge), {billowEdge, billowEdge, billowEdge},
+                                          VolumeTexture::Edge::Repeat);
     return std::shared_ptr<const FogPrograms>(programs);
 }
 

@@ -1,6 +1,6 @@
 // Fog in GPU memory, ready for rays: a grid of density with the light that reaches each voxel, marched by one shader.
-// Enters: a field's tape, or a ramp of fog. Leaves: the light of every job. Assumes a current GL 4.3 context for all but
-// `fogGrid` and `prepareFog`.
+// Enters: a field's tape, or a ramp of fog. Leaves: the light of every job. Assumes a current GL 4.3 context for all
+// but `fogGrid` and `prepareFog`.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ namespace sgm::viewer {
 /// Everything about fog that needs no GPU, so that any thread can make it.
 struct PreparedFog {
     FogTexels texels;
-    Vec3i count;         ///< voxels
-    Box3f box, bounds;   ///< the grid's outer faces; of the model, metres
+    Vec3i count;        ///< voxels
+    Box3f box, bounds;  ///< the grid's outer faces; of the model, metres
     float voxel_m = 1, extinction_per_m = 1, lump_m = 1;
 };
 
@@ -29,7 +29,8 @@ struct FogGrid {
     volume::Dense dense;  ///< rises from 0 at the surface to 1 at the depth to which billows may eat the edge
     float edge_m = 0;     ///< that depth: a fifteenth of the bounds' least side
 };
-Result<FogGrid> fogGrid(const eval::Tape& tape, const mesh::Grid& grid, const Box3f& bounds, int threads, Progress* progress);
+Result<FogGrid> fogGrid(const eval::Tape& tape, const mesh::Grid& grid, const Box3f& bounds, int threads,
+                        Progress* progress);
 
 /// Lights the fog. Error::Cancelled when `progress` says so.
 Result<PreparedFog> prepareFog(const volume::Dense& grid, const Box3f& bounds, const FogLook& look, int threads,

@@ -11,7 +11,8 @@ namespace {
 
 Error internal(std::string message) { return {Error::Kind::Internal, std::move(message)}; }
 
-/// Whether a limit of address space (ulimit -v) leaves enough for OpenGL drivers, which end the program where it doesn't.
+/// Whether a limit of address space (ulimit -v) leaves enough for OpenGL drivers, which end the program where it
+/// doesn't.
 bool hasAddressSpace() {
     constexpr rlim_t least_bytes = rlim_t{700} << 20;
     rlimit limit{};
@@ -106,8 +107,10 @@ Texture makeTexture(GLenum format, int width, int height) {
     glGenTextures(1, &id);
     glBindTexture(GL_TEXTURE_2D, id);
     glTexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+        glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
     return Texture(id);
 }
 
@@ -149,8 +152,8 @@ std::string GpuContext::description() const {
 
 bool softwareGl() {
     const std::string_view renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    return renderer.starts_with("llvmpipe") || renderer.starts_with("softpipe") || renderer.find("Software Rasterizer") != renderer.npos ||
-           renderer.find("SwiftShader") != renderer.npos;
+    return renderer.starts_with("llvmpipe") || renderer.starts_with("softpipe") ||
+           renderer.find("Software Rasterizer") != renderer.npos || renderer.find("SwiftShader") != renderer.npos;
 }
 
 Result<Program> Program::compute(const std::string& source) { return link({{GL_COMPUTE_SHADER, &source}}); }
@@ -212,7 +215,8 @@ void TexelBuffer::bind(uint32_t unit) const {
 
 namespace {
 
-Texture makeVolume(GLenum stored, GLenum format, GLenum type, const void* values, Vec3i count, VolumeTexture::Edge edge) {
+Texture makeVolume(GLenum stored, GLenum format, GLenum type, const void* values, Vec3i count,
+                   VolumeTexture::Edge edge) {
     GLuint id = 0;
     glGenTextures(1, &id);
     glBindTexture(GL_TEXTURE_3D, id);

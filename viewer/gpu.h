@@ -188,7 +188,7 @@ private:
 /// A stack of square maps with one number a pixel: depths, or blurred functions of them.
 struct MapStack {
     enum class Kind { Depth, Number };
-    Texture texture;  ///< a 2D array; depths 0 … 1 unfiltered, numbers filtered linearly
+    Texture texture;                  ///< a 2D array; depths 0 … 1 unfiltered, numbers filtered linearly
     mutable Framebuffer framebuffer;  ///< made in the context that first draws, for contexts don't share them
     Kind kind = Kind::Depth;
     int edge = 0;  ///< pixels

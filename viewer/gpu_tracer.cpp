@@ -62,7 +62,8 @@ public:
         hits.bindStorage(2);
         free.bindStorage(3);
         if (Status s = run(programs_->trace, rays.size(), tracePiece_, progress); !s) return s.error();
-        return Met{hits.read<Hit>(rays.size()), std::vector<Vec3f>(rays.size(), Vec3f{}), free.read<float>(rays.size())};
+        return Met{hits.read<Hit>(rays.size()), std::vector<Vec3f>(rays.size(), Vec3f{}),
+                   free.read<float>(rays.size())};
     }
 
     Status light(What what, std::span<const Hit> hits, std::span<Lit> lits, Progress* progress) override {

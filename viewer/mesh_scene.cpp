@@ -16,7 +16,7 @@ namespace sgm::viewer {
 namespace {
 
 constexpr size_t batchTriangles = 1u << 17;  // a draw
-constexpr float lineWidth = 1.6f;  // of hard edges, pixels
+constexpr float lineWidth = 1.6f;            // of hard edges, pixels
 constexpr int sunMapEdge = 2048, skyMapEdge = 256;
 constexpr size_t leastSkyMaps = 12, mostSkyMaps = 40;  // the latter as in visibility.glsl
 
@@ -137,7 +137,8 @@ std::vector<PreparedMesh::Owner> ownersFrom(std::span<const OriginId> origins, c
 
 TexelBuffer upload(const std::vector<PreparedMesh::Owner>& owners) {
     std::vector<uint32_t> words;
-    for (const PreparedMesh::Owner& owner : owners) words.insert(words.end(), {owner.material, owner.rule, owner.component, owner.piece});
+    for (const PreparedMesh::Owner& owner : owners)
+        words.insert(words.end(), {owner.material, owner.rule, owner.component, owner.piece});
     if (words.empty()) words.push_back(0);  // buffers hold something
     return TexelBuffer::of(words, 1);
 }
@@ -198,8 +199,8 @@ MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshProgram
     makeMaps();
 }
 
-MeshScene::MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, const Box3f& bounds, const Provenance& provenance,
-                     std::shared_ptr<const MeshPrograms> programs)
+MeshScene::MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, const Box3f& bounds,
+                     const Provenance& provenance, std::shared_ptr<const MeshPrograms> programs)
     : programs_(std::move(programs)),
       bounds_(bounds),
       triangleCount_(triangles.count),
@@ -207,7 +208,8 @@ MeshScene::MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, c
       materials_(uploadMaterials(provenance.materials)),
       skyCount_(leastSkyMaps) {
     const std::vector<float> flat(triangleCount_ * 3 + 1, 0.0f);
-    triangles_ = TriangleBuffers::of(std::move(triangles.positions), std::move(triangles.normals), Buffer::of<float>(flat), std::move(triangles.indices));
+    triangles_ = TriangleBuffers::of(std::move(triangles.positions), std::move(triangles.normals),
+                                     Buffer::of<float>(flat), std::move(triangles.indices));
     makeMaps();
 }
 

@@ -43,13 +43,14 @@ struct MeshPrograms {
 class MeshScene {
 public:
     MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs);
-    /// Of triangles that a shader has made, with the owner of each: all of one component, a piece a part, without curvature and hard
-    /// edges.
-    MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, const Box3f& bounds, const Provenance& provenance,
-              std::shared_ptr<const MeshPrograms> programs);
+    /// Of triangles that a shader has made, with the owner of each: all of one component, a piece a part, without
+    /// curvature and hard edges.
+    MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, const Box3f& bounds,
+              const Provenance& provenance, std::shared_ptr<const MeshPrograms> programs);
     /// Draws all maps of shadow and sky.
     Status light(Progress* progress);
-    /// Draws the next map: first the sun's, then those of the sky, which count once all are there. True when none is left.
+    /// Draws the next map: first the sun's, then those of the sky, which count once all are there. True when none is
+    /// left.
     Result<bool> lightMore(Progress* progress);
     /// The part of the picture whose lower left pixel, from the bottom left, is (x0, y0), as large as `target`.
     Status draw(const ColorTarget& target, int x0, int y0, const PictureOptions& options, const MeshStyle& style,

@@ -81,14 +81,14 @@ struct PicturePlace {
 struct DrawCost {
     uint64_t samples = 0;
     uint64_t hitEvaluations = 0, lightEvaluations = 0;  ///< of the field by shortened tapes, for all samples
-    uint64_t instructions = 0;                           ///< of those tapes
-    std::vector<PicturePlace> probes;                           ///< every 64th sample's place in the picture, pixels
-    double prepareSeconds = 0, drawSeconds = 0;          ///< once a field; this picture
-    double drawProcessorSeconds = 0;                     ///< of all threads, the software GL's too
+    uint64_t instructions = 0;                          ///< of those tapes
+    std::vector<PicturePlace> probes;                   ///< every 64th sample's place in the picture, pixels
+    double prepareSeconds = 0, drawSeconds = 0;         ///< once a field; this picture
+    double drawProcessorSeconds = 0;                    ///< of all threads, the software GL's too
 };
 
-/// Who walks the rays: shaders, the processor's own vectors, or what is quicker here, the processor where the driver has no
-/// GPU. The pictures are the same to the eye.
+/// Who walks the rays: shaders, the processor's own vectors, or what is quicker here, the processor where the driver
+/// has no GPU. The pictures are the same to the eye.
 enum class TracedBy { Best, Gpu, Processor };
 
 /// A field ready for pictures from any side: what no camera changes is done once. Keeps a GPU context of its own, so

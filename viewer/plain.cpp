@@ -26,7 +26,8 @@ struct Walk {
 std::pair<float, float> span(const Box3f& box, Vec3f origin, Vec3f direction) {
     float near = 0, far = INFINITY;
     for (int axis = 0; axis < 3; ++axis) {
-        const float a = (box.lo[axis] - origin[axis]) / direction[axis], b = (box.hi[axis] - origin[axis]) / direction[axis];
+        const float a = (box.lo[axis] - origin[axis]) / direction[axis],
+                    b = (box.hi[axis] - origin[axis]) / direction[axis];
         near = std::max(near, std::min(a, b));
         far = std::min(far, std::max(a, b));
     }
@@ -79,10 +80,14 @@ double plainEvaluations(const eval::Tape& tape, const Box3f& bounds, const Pictu
     Walk sunward;
     for (size_t i = 0; i < seen.t.size(); ++i) {
         const Vec3f d = seen.directions[i];
-        const float toGround = options.ground && d.y < 0 && eye.y > bounds.lo.y ? (bounds.lo.y - eye.y) / d.y : INFINITY;
-        if (seen.hit[i] && seen.t[i] < toGround) evaluations += forNormal;
-        else if (toGround < 60 * size) seen.t[i] = toGround;
-        else continue;
+        const float toGround =
+            options.ground && d.y < 0 && eye.y > bounds.lo.y ? (bounds.lo.y - eye.y) / d.y : INFINITY;
+        if (seen.hit[i] && seen.t[i] < toGround)
+            evaluations += forNormal;
+        else if (toGround < 60 * size)
+            seen.t[i] = toGround;
+        else
+            continue;
         evaluations += forOcclusion;
         sunward.add(seen.at(i), sunDirection());
     }

@@ -26,7 +26,8 @@ public:
     }
 
     Result<Met> trace(std::span<const Ray> rays, Progress* progress) override {
-        Met met{std::vector<Hit>(rays.size()), std::vector<Vec3f>(rays.size(), Vec3f{}), std::vector<float>(rays.size())};
+        Met met{std::vector<Hit>(rays.size()), std::vector<Vec3f>(rays.size(), Vec3f{}),
+                std::vector<float>(rays.size())};
         const Status done =
             inPieces(rays.size(), progress, [&](size_t low, size_t high, Answers& answers, TraceCost& cost) {
                 tracePiece(rays.subspan(low, high - low), met, low, answers, cost);
@@ -137,9 +138,10 @@ private:
         return cells.side * normalized(slope.gradient + Vec3f{0, 1e-20f, 0});
     }
 
-    /// The field's derivatives at every hit of an object, a little before it: behind an edge begin other faces. Wide ones are
-    /// means of four, some sixth of a pixel about it.
-    void setNormals(bool wide, std::span<const Hit> hits, std::span<Lit> lits, Answers& answers, TraceCost& cost) const {
+    /// The field's derivatives at every hit of an object, a little before it: behind an edge begin other faces. Wide
+    /// ones are means of four, some sixth of a pixel about it.
+    void setNormals(bool wide, std::span<const Hit> hits, std::span<Lit> lits, Answers& answers,
+                    TraceCost& cost) const {
         const CellSpace cells = space();
         const Vec3f eye = view_.eye.as<float>();
         std::vector<Question> questions;
@@ -157,7 +159,8 @@ private:
             }
             const Vec3f back = eye - hits[i].position;
             const float reach = 0.15f * pixelAngle() * length(back);
-            const Vec3f aside = normalized(cross(back, Vec3f{0.3f, 1, 0.2f})) * reach, up = normalized(cross(back, aside)) * reach;
+            const Vec3f aside = normalized(cross(back, Vec3f{0.3f, 1, 0.2f})) * reach,
+                        up = normalized(cross(back, aside)) * reach;
             for (const Vec3f off : {aside + 0.4f * up, -aside - 0.4f * up, up - 0.4f * aside, 0.4f * aside - up})
                 questions.push_back({place + off, cell.tape});
         }

@@ -32,10 +32,12 @@ Samples sample(const eval::Tape& tape, const Box3f& bounds) {
     std::vector<std::vector<size_t>> members;
     for (int part = 0; part < splits * splits * splits; ++part) {
         const Vec3i lo{part % splits * edge, part / splits % splits * edge, part / splits / splits * edge};
-        const Vec3i hi{std::min(lo.x + edge, grid.count.x), std::min(lo.y + edge, grid.count.y), std::min(lo.z + edge, grid.count.z)};
+        const Vec3i hi{std::min(lo.x + edge, grid.count.x), std::min(lo.y + edge, grid.count.y),
+                       std::min(lo.z + edge, grid.count.z)};
         if (lo.x >= hi.x || lo.y >= hi.y || lo.z >= hi.z) continue;
         boxes.push_back(hull(Box3f{grid.at(lo.x, lo.y, lo.z), grid.at(lo.x, lo.y, lo.z)},
-                             Box3f{grid.at(hi.x - 1, hi.y - 1, hi.z - 1), grid.at(hi.x - 1, hi.y - 1, hi.z - 1)}).inflated(grid.cell / 4));
+                             Box3f{grid.at(hi.x - 1, hi.y - 1, hi.z - 1), grid.at(hi.x - 1, hi.y - 1, hi.z - 1)})
+                            .inflated(grid.cell / 4));
         members.emplace_back();
         for (int k = lo.z; k < hi.z; ++k)
             for (int j = lo.y; j < hi.y; ++j)
@@ -48,7 +50,10 @@ Samples sample(const eval::Tape& tape, const Box3f& bounds) {
     for (size_t part = 0; part < boxes.size(); ++part) tapes.push_back(shorten(tape, part, workspace));
     for (size_t part = 0; part < boxes.size(); ++part) {
         std::vector<Vec3f> points;
-        for (const size_t i : members[part]) points.push_back(grid.at(static_cast<int>(i) % grid.count.x, static_cast<int>(i) / grid.count.x % grid.count.y, static_cast<int>(i) / grid.count.x / grid.count.y));
+        for (const size_t i : members[part])
+            points.push_back(grid.at(static_cast<int>(i) % grid.count.x,
+                                     static_cast<int>(i) / grid.count.x % grid.count.y,
+                                     static_cast<int>(i) / grid.count.x / grid.count.y));
         const std::vector<float> values = valuesAt(tapes[part], points);
         for (size_t k = 0; k < values.size(); ++k) grid.values[members[part][k]] = values[k];
     }

@@ -8,7 +8,8 @@ namespace {
 
 /// Larger pictures don't keep their pixels, which would take a gigabyte.
 constexpr size_t mostPixels = size_t(1) << 24;
-/// Of the weights by distance, pixels²: a pixel's own light on ornament counts little more than that of those around it.
+/// Of the weights by distance, pixels²: a pixel's own light on ornament counts little more than that of those around
+/// it.
 constexpr float softness = 1;
 
 }  // namespace

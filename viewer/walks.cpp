@@ -56,8 +56,7 @@ std::array<float, 2> CellSpace::span(Vec3f origin, Vec3f inverseDirection) const
     return {near, far};
 }
 
-SurfaceWalk::SurfaceWalk(const CellSpace& space, Vec3f origin, Vec3f direction, float pixelAngle,
-                         const Ray& ray)
+SurfaceWalk::SurfaceWalk(const CellSpace& space, Vec3f origin, Vec3f direction, float pixelAngle, const Ray& ray)
     : origin_(origin),
       direction_(direction),
       inverse_(inverseOf(direction)),
@@ -83,7 +82,8 @@ bool SurfaceWalk::ask(const CellSpace& space, Question& question) {
             while (cell_.least > 0 && t_ <= end_) {
                 const float from = t_;
                 t_ += cell_.exit(origin_ + t_ * direction_, inverse_);
-                const float spare = cell_.least * space.inverseLipschitz - beside_ * t_;  // of a ball about any of the way
+                const float spare =
+                    cell_.least * space.inverseLipschitz - beside_ * t_;  // of a ball about any of the way
                 if (spare >= 0) setFree(from - spare, t_);
                 cell_ = space.cellAt(origin_ + t_ * direction_);
             }
@@ -127,11 +127,7 @@ void SurfaceWalk::answer(const CellSpace& space, float value) {
 }
 
 DiscWalk::DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float radius, float pixel)
-    : place_(place),
-      direction_(direction),
-      inverse_(inverseOf(direction)),
-      radius_(radius),
-      pixel_(pixel) {
+    : place_(place), direction_(direction), inverse_(inverseOf(direction)), radius_(radius), pixel_(pixel) {
     const auto [near, far] = space.span(place, inverse_);
     t_ = std::max(near, 3e-4f * space.size);
     end_ = far;

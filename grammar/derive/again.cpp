@@ -1,5 +1,5 @@
-// The builder while a derivation runs again with other numbers: what is put is there already, and must be the same but for
-// numbers.
+// The builder while a derivation runs again with other numbers: what is put is there already, and must be the same but
+// for numbers.
 #include <tuple>
 
 #include "grammar/derive/builder.h"
@@ -35,8 +35,10 @@ uint32_t TreeBuilder::put(SolidValue solid, bool shared) {
         return static_cast<uint32_t>(solids.size() - 1);
     }
     const uint32_t index = shared ? none : recording_->nextSolid();
-    if (index == none) deviate();
-    else replace(index, std::move(solid));
+    if (index == none)
+        deviate();
+    else
+        replace(index, std::move(solid));
     return index;
 }
 
@@ -59,11 +61,13 @@ uint32_t TreeBuilder::put(Extras extras) {
     }
     Extras& known = all[index];
     const auto sameName = [](const auto& a, const auto& b) { return a.first == b.first; };
-    if (known.tags != extras.tags || !std::equal(known.values.begin(), known.values.end(), extras.values.begin(), extras.values.end(), sameName) ||
+    if (known.tags != extras.tags ||
+        !std::equal(known.values.begin(), known.values.end(), extras.values.begin(), extras.values.end(), sameName) ||
         known.clad.size() != extras.clad.size() || known.displace.size() != extras.displace.size())
         deviate();
     const bool looks = known.clad != extras.clad || known.displace != extras.displace;
-    extrasChange_ = static_cast<uint8_t>((looks ? Recording::Looks : 0) | (known.values != extras.values ? Recording::Values : 0));
+    extrasChange_ =
+        static_cast<uint8_t>((looks ? Recording::Looks : 0) | (known.values != extras.values ? Recording::Values : 0));
     if (extrasChange_ != 0) known = std::move(extras);
     return index;
 }
@@ -77,9 +81,11 @@ ShapeId TreeBuilder::addAgain(const Shape& made) {
     }
     Shape& known = t.shapes[id];
     const auto told = [](const Shape& s) {
-        return std::tie(s.key, s.parent, s.symbol, s.label, s.jointSet, s.material, s.extras, s.chainRule, s.op, s.span.source, s.span.begin, s.span.end);
+        return std::tie(s.key, s.parent, s.symbol, s.label, s.jointSet, s.material, s.extras, s.chainRule, s.op,
+                        s.span.source, s.span.begin, s.span.end);
     };
-    const bool shares = made.parent != none && made.parent != 0 && made.op == rules::Operator::None && made.scope == t.shapes[made.parent].scope;
+    const bool shares = made.parent != none && made.parent != 0 && made.op == rules::Operator::None &&
+                        made.scope == t.shapes[made.parent].scope;
     const bool cleared = recording_->isCleared(id);
     if (recording_->isAnnotated(id) || told(known) != told(made) || known.madeBy != step_ || shares == ownsBody(id) ||
         (!cleared && known.solid != made.solid)) {
@@ -105,7 +111,8 @@ void TreeBuilder::bondAgain(ShapeId a, uint32_t jointA, ShapeId b, uint32_t join
     const Bond& known = tree().bonds[index];
     const std::tuple told(known.shape[0], known.joint[0], known.shape[1], known.joint[1]);
     // A centre that came to a face closes the newcomer's face that looks back: which one, hangs on how both are turned.
-    const bool turned = !known.directed && (recording_->has(a, Recording::Turned) || recording_->has(b, Recording::Turned));
+    const bool turned =
+        !known.directed && (recording_->has(a, Recording::Turned) || recording_->has(b, Recording::Turned));
     if (told != std::tuple(a, jointA, b, jointB) || turned) deviate();
 }
 
@@ -133,12 +140,15 @@ bool TreeBuilder::settleMeetings() {
             const Joint joint = t.joint(id, j);
             bool same = true;
             if (joint.direction != Vec3d{})
-                joints_.forFacing(t, joint, [&](JointIndex::Entry e) { same = same && (e < JointIndex::Entry{id, j} || asBefore(e)); });
+                joints_.forFacing(t, joint, [&](JointIndex::Entry e) {
+                    same = same && (e < JointIndex::Entry{id, j} || asBefore(e));
+                });
             if (!same) return false;
         }
     }
     for (Bond& b : t.bonds)
-        if (moved(b.shape[0]) || moved(b.shape[1])) b.shift = t.joint(b.shape[1], b.joint[1]).point - t.joint(b.shape[0], b.joint[0]).point;
+        if (moved(b.shape[0]) || moved(b.shape[1]))
+            b.shift = t.joint(b.shape[1], b.joint[1]).point - t.joint(b.shape[0], b.joint[0]).point;
     return true;
 }
 

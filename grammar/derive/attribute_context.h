@@ -1,6 +1,6 @@
 // An element's attributes, evaluated, and what the `apply` of an operation works with.
-// Enters: checked attributes and where they stand. Leaves: numbers for the newcomer. Assumes attributes of phase Scope are
-// applied before the others, which may ask for the newcomer's size.
+// Enters: checked attributes and where they stand. Leaves: numbers for the newcomer. Assumes attributes of phase Scope
+// are applied before the others, which may ask for the newcomer's size.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,15 @@ namespace sgm::derive {
 
 /// What an element's attributes say of its newcomer, or of the matched shape where no shape stands beside them.
 struct EvaluatedAttributes {
-    Scope scope;                             ///< size and axes; the centre comes from the mating
-    Vec3d moved_m;                           ///< added to where it is placed, in the object's frame
+    Scope scope;    ///< size and axes; the centre comes from the mating
+    Vec3d moved_m;  ///< added to where it is placed, in the object's frame
     double overlap = 0, amount = 0.5, blend_m = 0;
-    std::optional<Vec3f> color;              ///< linear RGB
-    const rules::Expr* colorBy = nullptr;    ///< what gave the colour
+    std::optional<Vec3f> color;            ///< linear RGB
+    const rules::Expr* colorBy = nullptr;  ///< what gave the colour
     std::optional<float> rough, metal;
     Extras extras;
-    bool ownsFootprint = false;              ///< the element set the scope's footprint itself
-    bool vanishes = false;                   ///< nothing is left of the footprint: no shape is made
+    bool ownsFootprint = false;                  ///< the element set the scope's footprint itself
+    bool vanishes = false;                       ///< nothing is left of the footprint: no shape is made
     std::optional<syntax::SourceSpan> sizeSpan;  ///< of the attribute that set the size
 };
 
@@ -37,8 +37,8 @@ struct AttributeContext {
     SolidValue solid(const rules::Solid& solid) const { return evaluateSolid(solid, place); }
     /// The footprint of the newcomer's scope, metres about its centre; the rectangle where it has none.
     plan::Footprint footprint() const;
-    /// Gives the newcomer's scope a footprint (metres about its centre), whose bounding box it becomes along x and z, in its
-    /// place. An empty one lets the newcomer vanish; one that isn't sound is an error located at `span`.
+    /// Gives the newcomer's scope a footprint (metres about its centre), whose bounding box it becomes along x and z,
+    /// in its place. An empty one lets the newcomer vanish; one that isn't sound is an error located at `span`.
     void setFootprint(plan::Footprint footprint, syntax::SourceSpan span);
     const rules::Grammar& grammar() const;
     /// Ends the derivation with an error located at `span`.

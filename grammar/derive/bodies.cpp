@@ -65,13 +65,17 @@ bool Interpreter::runElements(const Elements& elements, Frame& frame, Target& ta
 
 bool Interpreter::runElement(const Element& e, Frame& frame, Target& target, uint64_t loop, bool followed) {
     switch (e.kind) {
-        case Element::Kind::For: return runFor(e, frame, target, loop, followed);
-        case Element::Kind::While: return runWhile(e, frame, target, loop, followed);
-        case Element::Kind::Choose: return runChoose(e, frame, target, loop, followed);
+        case Element::Kind::For:
+            return runFor(e, frame, target, loop, followed);
+        case Element::Kind::While:
+            return runWhile(e, frame, target, loop, followed);
+        case Element::Kind::Choose:
+            return runChoose(e, frame, target, loop, followed);
         case Element::Kind::When:
             frame.place.key = combine(combine(frame.key, hashText("when")), loop);
             return !e.guard || !holds(*e.guard, frame.place) || runInner(*e.body, frame, target, loop, followed);
-        case Element::Kind::Shape: break;
+        case Element::Kind::Shape:
+            break;
     }
     const uint64_t key = combine(combine(frame.key, factsOf(e).hash), loop);
     if (e.content.empty()) {
@@ -80,7 +84,8 @@ bool Interpreter::runElement(const Element& e, Frame& frame, Target& target, uin
     }
     const bool nil = e.content.solid() && e.content.solid()->kind == rules::Solid::Kind::Nil;
     if (nil && e.op != rules::Operator::Intersection) return true;
-    return e.op == rules::Operator::None ? placeHead(e, frame, target, key, followed) : placeGrown(e, frame, target, key);
+    return e.op == rules::Operator::None ? placeHead(e, frame, target, key, followed)
+                                         : placeGrown(e, frame, target, key);
 }
 
 bool Interpreter::runFor(const Element& e, Frame& frame, Target& target, uint64_t loop, bool followed) {

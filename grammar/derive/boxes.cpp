@@ -6,7 +6,8 @@ namespace sgm::derive {
 
 double reach(const Scope& s, Vec3d axis) {
     const Vec3d h = s.half();
-    return std::abs(dot(s.axes.x, axis)) * h.x + std::abs(dot(s.axes.y, axis)) * h.y + std::abs(dot(s.axes.z, axis)) * h.z;
+    return std::abs(dot(s.axes.x, axis)) * h.x + std::abs(dot(s.axes.y, axis)) * h.y +
+           std::abs(dot(s.axes.z, axis)) * h.z;
 }
 
 namespace {

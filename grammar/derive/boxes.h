@@ -31,7 +31,9 @@ void forPairs(const ShapeTree& tree, double margin, F f) {
     int axis = 0;
     const auto boxes = solidsInOrder(tree, axis);
     const int second = (axis + 1) % 3, third = (axis + 2) % 3;
-    const auto apart = [&](const Box3d& a, const Box3d& b, int i) { return a.hi[i] + margin < b.lo[i] || b.hi[i] + margin < a.lo[i]; };
+    const auto apart = [&](const Box3d& a, const Box3d& b, int i) {
+        return a.hi[i] + margin < b.lo[i] || b.hi[i] + margin < a.lo[i];
+    };
     for (size_t i = 0; i < boxes.size(); ++i)
         for (size_t k = i + 1; k < boxes.size() && boxes[k].box.lo[axis] <= boxes[i].box.hi[axis] + margin; ++k)
             if (!apart(boxes[i].box, boxes[k].box, second) && !apart(boxes[i].box, boxes[k].box, third) &&

@@ -34,7 +34,8 @@ void TreeBuilder::fail(Error::Kind kind, const std::string& what, syntax::Source
     if (shape_ < tree().shapes.size()) text += fmt::format(" at {}", tree().path(shape_));
     text += fmt::format(", seed {}", derivation_.seed);
     for (const Remark& r : derivation_.remarks)  // what was remarked in the text that fails is the cause as a rule
-        if (r.span.source == span.source && r.span.begin >= span.begin && r.span.end <= span.end) text += "; " + r.message;
+        if (r.span.source == span.source && r.span.begin >= span.begin && r.span.end <= span.end)
+            text += "; " + r.message;
     failure_ = Error{kind, std::move(text)};
 }
 
@@ -42,8 +43,11 @@ void TreeBuilder::remark(syntax::SourceSpan span, std::string message, std::stri
     constexpr size_t most = 300;
     auto& remarks = derivation_.remarks;
     if (runsAgain() || remarks.size() >= most) return;
-    const auto isHere = [&](const Remark& r) { return r.span.source == span.source && r.span.begin == span.begin && r.span.end == span.end; };
-    if (std::none_of(remarks.begin(), remarks.end(), isHere)) remarks.push_back({span, std::move(message), std::move(mend)});
+    const auto isHere = [&](const Remark& r) {
+        return r.span.source == span.source && r.span.begin == span.begin && r.span.end == span.end;
+    };
+    if (std::none_of(remarks.begin(), remarks.end(), isHere))
+        remarks.push_back({span, std::move(message), std::move(mend)});
 }
 
 syntax::SourceSpan TreeBuilder::here() const {
@@ -54,11 +58,13 @@ syntax::SourceSpan TreeBuilder::here() const {
 void TreeBuilder::poll() {
     const syntax::SourceSpan span = here();
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
-    if (cancelled(progress_)) failure_ = Error{Error::Kind::Cancelled, "cancelled while deriving"};
+    if (cancelled(progress_))
+        failure_ = Error{Error::Kind::Cancelled, "cancelled while deriving"};
     else if (spent.count() > budget_.seconds)
         fail(Error::Kind::Budget, fmt::format("the budget of {:g} seconds is spent", budget_.seconds), span);
     else if (derivation_.memory() + joints_.memory() > budget_.memory_bytes)
-        fail(Error::Kind::Budget, fmt::format("the budget of {} MiB of memory is spent", budget_.memory_bytes >> 20), span);
+        fail(Error::Kind::Budget, fmt::format("the budget of {} MiB of memory is spent", budget_.memory_bytes >> 20),
+             span);
 }
 
 bool TreeBuilder::work() {
@@ -82,15 +88,21 @@ ShapeId TreeBuilder::add(Shape shape) {
         Shape& parent = t.shapes[shape.parent];
         shape.depth = parent.depth + 1;
         if (shape.depth > budget_.depth) {
-            fail(Error::Kind::Budget, fmt::format("the budget of {} levels of depth is spent", budget_.depth), shape.span);
+            fail(Error::Kind::Budget, fmt::format("the budget of {} levels of depth is spent", budget_.depth),
+                 shape.span);
             return none;
         }
-        if (shape.extras == none || t.extras[shape.extras].values.empty()) shape.valuesAt = parent.valuesAt;
-        else shape.valuesAt = id;
+        if (shape.extras == none || t.extras[shape.extras].values.empty())
+            shape.valuesAt = parent.valuesAt;
+        else
+            shape.valuesAt = id;
         // The root's box is only where the start begins: nothing stands there to be met.
-        if (shape.parent != 0 && shape.op == rules::Operator::None && shape.scope == parent.scope) shape.body = parent.body;
-        if (parent.firstChild == none) parent.firstChild = id;
-        else t.shapes[parent.lastChild].nextSibling = id;
+        if (shape.parent != 0 && shape.op == rules::Operator::None && shape.scope == parent.scope)
+            shape.body = parent.body;
+        if (parent.firstChild == none)
+            parent.firstChild = id;
+        else
+            t.shapes[parent.lastChild].nextSibling = id;
         parent.lastChild = id;
     }
     if (shape.body == none) {
@@ -127,7 +139,9 @@ uint32_t TreeBuilder::beginStep(Step step) {
         return static_cast<uint32_t>(steps.size() - 1);
     }
     const uint32_t index = recording_->nextStep();
-    const auto told = [](const Step& s) { return std::tie(s.rule, s.shape, s.generation, s.chainIndex, s.closing, s.firstMade); };
+    const auto told = [](const Step& s) {
+        return std::tie(s.rule, s.shape, s.generation, s.chainIndex, s.closing, s.firstMade);
+    };
     if (index != none && told(steps[index]) == told(step)) return index;
     deviate();
     return 0;
@@ -151,7 +165,8 @@ ShapeId TreeBuilder::nextShape() const {
 
 uint32_t& TreeBuilder::firstBondAt(ShapeId id, uint32_t joint) {
     const Shape& s = tree().shapes[id];
-    return joint < firstNamedJoint ? tree().bodies[s.body].bond[joint] : tree().namedBonds[s.firstNamedBond + joint - firstNamedJoint];
+    return joint < firstNamedJoint ? tree().bodies[s.body].bond[joint]
+                                   : tree().namedBonds[s.firstNamedBond + joint - firstNamedJoint];
 }
 
 void TreeBuilder::linkBond(uint32_t index, int end) {
@@ -163,19 +178,23 @@ void TreeBuilder::linkBond(uint32_t index, int end) {
 }
 
 void TreeBuilder::bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
-    if (runsAgain()) bondAgain(a, jointA, b, jointB);
-    else join(a, jointA, b, jointB);
+    if (runsAgain())
+        bondAgain(a, jointA, b, jointB);
+    else
+        join(a, jointA, b, jointB);
 }
 
 void TreeBuilder::join(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
     const Joint ja = tree().joint(a, jointA), jb = tree().joint(b, jointB);
     const auto index = static_cast<uint32_t>(tree().bonds.size());
-    tree().bonds.push_back({{a, b}, {jointA, jointB}, jb.point - ja.point, isDirected(ja) && isDirected(jb), {none, none}});
+    tree().bonds.push_back(
+        {{a, b}, {jointA, jointB}, jb.point - ja.point, isDirected(ja) && isDirected(jb), {none, none}});
     linkBond(index, 0);
     linkBond(index, 1);
     if (isDirected(ja) && !isDirected(jb)) {
         const uint32_t back = opposedFace(tree().shapes[b].scope.axes, ja.direction);
-        if (dot(tree().joint(b, back).direction, ja.direction) < -0.999 && firstBondAt(b, back) == none) firstBondAt(b, back) = index;
+        if (dot(tree().joint(b, back).direction, ja.direction) < -0.999 && firstBondAt(b, back) == none)
+            firstBondAt(b, back) = index;
     }
 }
 
@@ -184,7 +203,8 @@ void TreeBuilder::meetNeighbours(ShapeId id) {
     if (runsAgain()) return meetAgain(id);
     meeting_.clear();
     for (uint32_t j = 0; j < tree().jointCount(id); ++j)
-        if (const Joint joint = tree().joint(id, j); isDirected(joint)) meeting_.push_back({j, joint, joints_.expect(joint)});
+        if (const Joint joint = tree().joint(id, j); isDirected(joint))
+            meeting_.push_back({j, joint, joints_.expect(joint)});
     for (const auto& [j, joint, spot] : meeting_) {
         const auto partner = joints_.add(tree(), {id, j}, joint, spot);
         if (partner && recording_) recording_->met({id, j}, *partner);
@@ -244,14 +264,16 @@ std::vector<uint32_t> TreeBuilder::sweepShapes() {
     for (ShapeId s = 0; s < t.shapes.size(); ++s) {
         if (newId[s] == none) continue;
         Shape shape = t.shapes[s];
-        for (ShapeId* link : {&shape.parent, &shape.firstChild, &shape.lastChild, &shape.nextSibling, &shape.valuesAt}) *link = renamed(*link);
+        for (ShapeId* link : {&shape.parent, &shape.firstChild, &shape.lastChild, &shape.nextSibling, &shape.valuesAt})
+            *link = renamed(*link);
         t.shapes[newId[s]] = shape;
     }
     t.shapes.resize(kept);
     return newId;
 }
 
-void TreeBuilder::sweepBonds(std::vector<Bond> old, const std::vector<uint32_t>& newId, const std::vector<uint32_t>& ownerOf) {
+void TreeBuilder::sweepBonds(std::vector<Bond> old, const std::vector<uint32_t>& newId,
+                             const std::vector<uint32_t>& ownerOf) {
     ShapeTree& t = tree();
     for (Body& body : t.bodies) body = Body{};
     for (ShapeId s = 0; s < t.shapes.size(); ++s) {

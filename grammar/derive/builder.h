@@ -17,8 +17,8 @@ public:
     /// Adds `shape` as the last child of shape.parent and indexes its joints; none (and a failure) when a budget is
     /// spent. Content (op None) of its parent's very scope shares the parent's joints.
     ShapeId add(Shape shape);
-    /// Joins two joints; the shift is what lies between their points. A directed bond closes both, any other leaves them
-    /// open. Where a centre came to our face, the newcomer's face that looks back counts as bonded too.
+    /// Joins two joints; the shift is what lies between their points. A directed bond closes both, any other leaves
+    /// them open. Where a centre came to our face, the newcomer's face that looks back counts as bonded too.
     void bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
     /// Bonds every face of `id` that coincides with another's, so that no rule grows there again. Call after the bond
     /// that placed it.
@@ -62,8 +62,8 @@ public:
     void watch(Progress* progress) { progress_ = progress, begin_ = std::chrono::steady_clock::now(); }
     /// Where the lists end.
     Piece::Place end() const;
-    /// Runs a piece again with numbers that changed: what it makes goes where it is already. False when it takes another
-    /// course; then the derivation is of no use any more.
+    /// Runs a piece again with numbers that changed: what it makes goes where it is already. False when it takes
+    /// another course; then the derivation is of no use any more.
     template <class Run>
     bool again(size_t piece, Run&& run) {
         Piece& p = recording_->enter(piece);

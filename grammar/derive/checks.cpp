@@ -17,13 +17,20 @@ using rules::Figure;
 
 double figureOf(const Derivation& d, Figure figure) {
     switch (figure) {
-        case Figure::Bonds: return static_cast<double>(d.tree.bonds.size());
-        case Figure::Overlaps: return static_cast<double>(d.overlaps());
-        case Figure::Shapes: return static_cast<double>(d.tree.shapes.size());
-        case Figure::Terminals: return static_cast<double>(d.terminals());
-        case Figure::Classic: return static_cast<double>(d.classic);
-        case Figure::Morphic: return static_cast<double>(d.morphic);
-        case Figure::Floating: return static_cast<double>(d.floating());
+        case Figure::Bonds:
+            return static_cast<double>(d.tree.bonds.size());
+        case Figure::Overlaps:
+            return static_cast<double>(d.overlaps());
+        case Figure::Shapes:
+            return static_cast<double>(d.tree.shapes.size());
+        case Figure::Terminals:
+            return static_cast<double>(d.terminals());
+        case Figure::Classic:
+            return static_cast<double>(d.classic);
+        case Figure::Morphic:
+            return static_cast<double>(d.morphic);
+        case Figure::Floating:
+            return static_cast<double>(d.floating());
     }
     return 0;
 }
@@ -69,7 +76,8 @@ Expr withFigures(Expr e, const Derivation& d, std::string& told) {
 
 }  // namespace
 
-Result<std::vector<Verdict>> runChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t seed, Progress* progress, double seconds) {
+Result<std::vector<Verdict>> runChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t seed, Progress* progress,
+                                       double seconds) {
     std::vector<Verdict> verdicts;
     const Stopwatch watch;
     for (const rules::Check& check : grammar->checks) {
@@ -78,7 +86,8 @@ Result<std::vector<Verdict>> runChecks(std::shared_ptr<const rules::Grammar> gra
         options.seed = seed;
         options.budget.seconds = seconds - watch.seconds();
         if (options.budget.seconds <= 0)
-            return Error{Error::Kind::Budget, fmt::format("{}the budget of {:g} seconds for all checks of a file is spent: take a smaller model here, or raise --max-seconds",
+            return Error{Error::Kind::Budget, fmt::format("{}the budget of {:g} seconds for all checks of a file is "
+                                                          "spent: take a smaller model here, or raise --max-seconds",
                                                           syntax::placeText(check.span), seconds)};
         options.params = rules::valuesOf(*grammar, check.start);
         for (const rules::Setting& s : check.settings) options.params[s.param] = s.value;

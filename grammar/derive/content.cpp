@@ -37,7 +37,9 @@ bool fillsFootprint(const Element& e, const rules::Grammar& grammar) {
 
 /// True when parameters alone decide the solid: one value serves all its shapes.
 bool isConstant(const Solid& solid) {
-    const auto plain = [](const rules::Expr& x) { return x.kind == rules::Expr::Kind::Constant || x.kind == rules::Expr::Kind::Param; };
+    const auto plain = [](const rules::Expr& x) {
+        return x.kind == rules::Expr::Kind::Constant || x.kind == rules::Expr::Kind::Param;
+    };
     if (!plain(solid.amount)) return false;
     for (const auto& arg : solid.args)
         if (!plain(arg)) return false;
@@ -83,9 +85,11 @@ uint32_t Interpreter::labelOf(const Element& e) {
 uint32_t Interpreter::jointSetOf(const Element& e) {
     std::vector<rules::Joint> set;
     for (const rules::SymbolId symbol : {e.content.symbol(), e.live})
-        if (symbol != rules::none) set.insert(set.end(), grammar_.symbols[symbol].joints.begin(), grammar_.symbols[symbol].joints.end());
+        if (symbol != rules::none)
+            set.insert(set.end(), grammar_.symbols[symbol].joints.begin(), grammar_.symbols[symbol].joints.end());
     if (const Solid* solid = ownSolid(e, grammar_); solid && solid->primitive)
-        for (const field::PrimitiveJoint& j : solid->primitive->joints) set.push_back({std::string(j.name), j.at, j.facing});
+        for (const field::PrimitiveJoint& j : solid->primitive->joints)
+            set.push_back({std::string(j.name), j.at, j.facing});
     if (set.empty()) return 0;
     auto& sets = builder_.tree().namedJoints;
     sets.push_back(std::move(set));
@@ -165,7 +169,9 @@ bool Interpreter::inBounds(const Element& e, const EvaluatedAttributes& attribut
     for (int i = 0; i < 3; ++i) {
         const double s = attributes.scope.size[i];
         if (s > 0 && s < 1e9 && std::abs(attributes.moved_m[i]) < 1e9) continue;
-        builder_.fail(Error::Kind::Input, s > 0 ? "the shape would be larger or farther away than 1e9 metres" : "the size of the shape isn't positive",
+        builder_.fail(Error::Kind::Input,
+                      s > 0 ? "the shape would be larger or farther away than 1e9 metres"
+                            : "the size of the shape isn't positive",
                       attributes.sizeSpan.value_or(e.span));
         return false;
     }
@@ -206,7 +212,9 @@ std::string Interpreter::nameOfLook(const EvaluatedAttributes& attributes, uint3
 uint32_t Interpreter::materialOf(const EvaluatedAttributes& attributes, const Element& e, const Place& place) {
     const rules::SymbolId symbol = e.content.symbol();
     const bool terminal = symbol != rules::none && grammar_.symbols[symbol].terminal;
-    const uint32_t base = terminal ? grammar_.symbols[symbol].material : e.content.solid() ? e.content.solid()->material : rules::none;
+    const uint32_t base = terminal            ? grammar_.symbols[symbol].material
+                          : e.content.solid() ? e.content.solid()->material
+                                              : rules::none;
     if (!attributes.color && !attributes.rough && !attributes.metal) return base;
     auto& materials = builder_.derivation().materials;
     Material m = base == rules::none ? materials[0] : materials[base];
@@ -245,7 +253,8 @@ Shape Interpreter::shapeOf(const Element& e, EvaluatedAttributes& attributes, co
     return s;
 }
 
-/// What stands inside a shape: the non-terminal that `: Name` wraps, the shapes of a group, or the parts of a content operation.
+/// What stands inside a shape: the non-terminal that `: Name` wraps, the shapes of a group, or the parts of a content
+/// operation.
 bool Interpreter::fill(const Element& e, ShapeId id, const Frame& frame) {
     const Shape& s = builder_.tree().shapes[id];
     if (e.content.group() || e.content.parts()) {
@@ -271,7 +280,8 @@ bool Interpreter::fill(const Element& e, ShapeId id, const Frame& frame) {
     inner.live = true;
     inner.scope = s.scope;
     inner.span = e.span;
-    const auto [at, fresh] = labels_.try_emplace(grammar_.symbols[inner.symbol].name, static_cast<uint32_t>(labels_.size()));
+    const auto [at, fresh] =
+        labels_.try_emplace(grammar_.symbols[inner.symbol].name, static_cast<uint32_t>(labels_.size()));
     if (fresh) builder_.tree().labels.push_back(at->first);
     inner.label = at->second;
     return builder_.add(inner) != none;

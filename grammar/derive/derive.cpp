@@ -12,7 +12,8 @@ namespace sgm::derive {
 using rules::Grammar;
 
 Result<Derivation> emptyDerivation(std::shared_ptr<const Grammar> grammar, const Options& options) {
-    if (options.start >= grammar->starts.size()) return Error{Error::Kind::Usage, "the grammar has no start to derive from"};
+    if (options.start >= grammar->starts.size())
+        return Error{Error::Kind::Usage, "the grammar has no start to derive from"};
     Derivation d;
     d.materials = grammar->materials;
     if (d.materials.empty()) d.materials.emplace_back();
@@ -27,8 +28,10 @@ Result<Derivation> emptyDerivation(std::shared_ptr<const Grammar> grammar, const
 Result<Derivation> derive(std::shared_ptr<const Grammar> grammar, const Options& options, Progress* progress) {
     const rules::Derive* way = nullptr;
     if (!options.derive.empty()) {
-        const auto found = std::find_if(grammar->derives.begin(), grammar->derives.end(), [&](const rules::Derive& d) { return d.name == options.derive; });
-        if (found == grammar->derives.end()) return Error{Error::Kind::Usage, fmt::format("the grammar has no derive way '{}'", options.derive)};
+        const auto found = std::find_if(grammar->derives.begin(), grammar->derives.end(),
+                                        [&](const rules::Derive& d) { return d.name == options.derive; });
+        if (found == grammar->derives.end())
+            return Error{Error::Kind::Usage, fmt::format("the grammar has no derive way '{}'", options.derive)};
         way = &*found;
     }
     auto d = emptyDerivation(grammar, options);
@@ -38,8 +41,10 @@ Result<Derivation> derive(std::shared_ptr<const Grammar> grammar, const Options&
     TreeBuilder builder(*d, options.budget, progress);
     Rewriter rewriter(builder, d->params);
     rewriter.start(grammar->starts[options.start], options.seed);
-    if (way) rewriter.along(*way);
-    else rewriter.automatic();
+    if (way)
+        rewriter.along(*way);
+    else
+        rewriter.automatic();
     if (builder.failed()) return builder.takeFailure();
     builder.finish();
     return d;

@@ -1,7 +1,8 @@
 // Growing the shape tree: SG-M's engine (eqs. 1–8, 15–16).
 // Enters: a Grammar, parameter values, a seed, a budget. Leaves: a Derivation: the ShapeTree and the log of steps.
-// Assumes a grammar that passed `check`. A generation reads the state at its start and commits in key order; conflicts go
-// to the lower key. Every draw is keyed by the shape's path, so editing one branch leaves the draws of the others alone.
+// Assumes a grammar that passed `check`. A generation reads the state at its start and commits in key order; conflicts
+// go to the lower key. Every draw is keyed by the shape's path, so editing one branch leaves the draws of the others
+// alone.
 #pragma once
 
 #include <memory>
@@ -18,12 +19,12 @@ namespace sgm::derive {
 /// One rule application; a `repeat` logs one a step of its chain and one for `finally`.
 struct Step {
     uint32_t rule = 0;
-    ShapeId shape = none;         ///< the matched one
-    uint32_t generation = 0;      ///< from 1
-    uint32_t chainIndex = 0;      ///< i of a repeat, 0 otherwise
-    bool morphic = false;         ///< R_M: its body morphs, or made a roof(a) with 0 < a < 1; else R_C
-    bool closing = false;         ///< the `finally` of a chain
-    ShapeId firstMade = 0;        ///< it made the shapes firstMade … firstMade + madeCount − 1
+    ShapeId shape = none;     ///< the matched one
+    uint32_t generation = 0;  ///< from 1
+    uint32_t chainIndex = 0;  ///< i of a repeat, 0 otherwise
+    bool morphic = false;     ///< R_M: its body morphs, or made a roof(a) with 0 < a < 1; else R_C
+    bool closing = false;     ///< the `finally` of a chain
+    ShapeId firstMade = 0;    ///< it made the shapes firstMade … firstMade + madeCount − 1
     uint32_t madeCount = 0;
 };
 
@@ -47,7 +48,7 @@ struct Derivation {
     std::vector<Remark> remarks;      ///< in the order they were met, the first few hundred
     std::vector<Material> materials;  ///< the grammar's, then those given by attributes
     std::vector<rules::Value> params;
-    uint32_t start = 0;               ///< index into Grammar::starts
+    uint32_t start = 0;  ///< index into Grammar::starts
     uint64_t seed = 0;
     uint64_t classic = 0, morphic = 0;  ///< rule applications of R_C and R_M
 
@@ -76,16 +77,16 @@ syntax::Diagnostics warnings(const Derivation& derivation);
 
 /// Limits of a derivation; what passes one ends in Error::Budget.
 struct Budget {
-    uint64_t shapes = 250'000;            ///< a runaway reaches it within a second
-    uint32_t depth = 10'000;               ///< levels of the shape tree
-    uint64_t memory_bytes = 4ull << 30;    ///< of the tree and the log
+    uint64_t shapes = 250'000;           ///< a runaway reaches it within a second
+    uint32_t depth = 10'000;             ///< levels of the shape tree
+    uint64_t memory_bytes = 4ull << 30;  ///< of the tree and the log
     double seconds = 600;
 };
 
 struct Options {
-    uint32_t start = 0;                  ///< index into Grammar::starts
-    std::string derive;                  ///< name of a `derive` way; empty: automatic
-    std::vector<rules::Value> params;    ///< by index; empty: the start's defaults (rules::valuesOf)
+    uint32_t start = 0;                ///< index into Grammar::starts
+    std::string derive;                ///< name of a `derive` way; empty: automatic
+    std::vector<rules::Value> params;  ///< by index; empty: the start's defaults (rules::valuesOf)
     uint64_t seed = 1;
     Budget budget;
 };
@@ -96,8 +97,13 @@ struct Options {
 Result<Derivation> derive(std::shared_ptr<const rules::Grammar> grammar, const Options& options, Progress* progress);
 
 /// One check's verdict, for `sgm check`.
-struct Verdict { bool passed = false; std::string message; syntax::SourceSpan span; };
+struct Verdict {
+    bool passed = false;
+    std::string message;
+    syntax::SourceSpan span;
+};
 /// Runs every `check` of the grammar with its settings over the defaults; Error::Budget once they take longer together.
-Result<std::vector<Verdict>> runChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t seed, Progress* progress, double seconds = 60);
+Result<std::vector<Verdict>> runChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t seed, Progress* progress,
+                                       double seconds = 60);
 
 }  // namespace sgm::derive

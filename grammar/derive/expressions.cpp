@@ -26,7 +26,8 @@ Recording* noting(const Place& place) { return place.builder ? place.builder->re
 /// The value where it stands already, without a copy; null when it must be computed.
 const Value* stored(const Expr& expr, const Place& place) {
     switch (expr.kind) {
-        case Kind::Constant: return &expr.value;
+        case Kind::Constant:
+            return &expr.value;
         case Kind::Param:
             if (Recording* r = noting(place)) r->readsParam(expr.index);
             return &place.params[expr.index];
@@ -42,9 +43,12 @@ const Value* stored(const Expr& expr, const Place& place) {
                 s = parent == none ? none : place.tree->shapes[parent].valuesAt;
             }
             if (place.builder)
-                place.builder->fail(Error::Kind::Input, "neither this shape nor any above it sets '" + expr.value.text + "' by 'with'", expr.span);
+                place.builder->fail(Error::Kind::Input,
+                                    "neither this shape nor any above it sets '" + expr.value.text + "' by 'with'",
+                                    expr.span);
             return &expr.value;
-        default: return nullptr;
+        default:
+            return nullptr;
     }
 }
 
@@ -77,7 +81,8 @@ Value called(const Expr& expr, const Place& place) {
     args.reserve(expr.args.size());
     for (const Expr& arg : expr.args) args.push_back(evaluate(arg, place));
     if (place.builder)
-        if (auto doubt = rules::findDoubt(expr, args)) place.builder->remark(doubt->span, std::move(doubt->message), std::move(doubt->mend));
+        if (auto doubt = rules::findDoubt(expr, args))
+            place.builder->remark(doubt->span, std::move(doubt->message), std::move(doubt->mend));
     return rules::applyFunction(fn, args);
 }
 
@@ -85,16 +90,35 @@ Value called(const Expr& expr, const Place& place) {
 bool arithmetic(Fn fn, const Expr& expr, const Place& place, double& out) {
     const auto arg = [&](size_t i) { return number(expr.args[i], place); };
     switch (fn) {
-        case Fn::Add: out = arg(0) + arg(1); return true;
-        case Fn::Sub: out = arg(0) - arg(1); return true;
-        case Fn::Less: out = arg(0) < arg(1); return true;
-        case Fn::LessEq: out = arg(0) <= arg(1); return true;
-        case Fn::Greater: out = arg(0) > arg(1); return true;
-        case Fn::GreaterEq: out = arg(0) >= arg(1); return true;
-        case Fn::And: out = arg(0) != 0 && arg(1) != 0; return true;
-        case Fn::Or: out = arg(0) != 0 || arg(1) != 0; return true;
-        case Fn::Not: out = arg(0) == 0; return true;
-        default: return false;
+        case Fn::Add:
+            out = arg(0) + arg(1);
+            return true;
+        case Fn::Sub:
+            out = arg(0) - arg(1);
+            return true;
+        case Fn::Less:
+            out = arg(0) < arg(1);
+            return true;
+        case Fn::LessEq:
+            out = arg(0) <= arg(1);
+            return true;
+        case Fn::Greater:
+            out = arg(0) > arg(1);
+            return true;
+        case Fn::GreaterEq:
+            out = arg(0) >= arg(1);
+            return true;
+        case Fn::And:
+            out = arg(0) != 0 && arg(1) != 0;
+            return true;
+        case Fn::Or:
+            out = arg(0) != 0 || arg(1) != 0;
+            return true;
+        case Fn::Not:
+            out = arg(0) == 0;
+            return true;
+        default:
+            return false;
     }
 }
 
@@ -103,8 +127,10 @@ bool arithmetic(Fn fn, const Expr& expr, const Place& place, double& out) {
 Value evaluate(const Expr& expr, const Place& place) {
     if (const Value* v = stored(expr, place)) return *v;
     switch (expr.kind) {
-        case Kind::Scope: return Value::number(place.scope.size[static_cast<int>(expr.index)], Unit::Metre);
-        case Kind::Element: return rules::component(evaluate(expr.args[0], place), evaluate(expr.args[1], place));
+        case Kind::Scope:
+            return Value::number(place.scope.size[static_cast<int>(expr.index)], Unit::Metre);
+        case Kind::Element:
+            return rules::component(evaluate(expr.args[0], place), evaluate(expr.args[1], place));
         case Kind::Tuple: {
             std::vector<Value> parts;
             parts.reserve(expr.args.size());
@@ -113,18 +139,24 @@ Value evaluate(const Expr& expr, const Place& place) {
         }
         case Kind::Unary:
         case Kind::Binary:
-        case Kind::Call: return called(expr, place);
-        case Kind::Range: return drawn(expr, place);
-        case Kind::Choose: return evaluate(chosen(expr, place), place);
-        case Kind::Ramp: return rules::interpolate(evaluate(expr.args[0], place), evaluate(expr.args[1], place), place.ramp);
-        default: return {};
+        case Kind::Call:
+            return called(expr, place);
+        case Kind::Range:
+            return drawn(expr, place);
+        case Kind::Choose:
+            return evaluate(chosen(expr, place), place);
+        case Kind::Ramp:
+            return rules::interpolate(evaluate(expr.args[0], place), evaluate(expr.args[1], place), place.ramp);
+        default:
+            return {};
     }
 }
 
 double number(const Expr& expr, const Place& place) {
     if (const Value* v = stored(expr, place)) return v->num();
     switch (expr.kind) {
-        case Kind::Scope: return place.scope.size[static_cast<int>(expr.index)];
+        case Kind::Scope:
+            return place.scope.size[static_cast<int>(expr.index)];
         case Kind::Element:
             if (const Value* v = stored(expr.args[0], place)) {
                 Value index;
@@ -136,15 +168,18 @@ double number(const Expr& expr, const Place& place) {
             const double a = number(expr.args[0], place), b = number(expr.args[1], place);
             return a + (b - a) * place.ramp;
         }
-        case Kind::Range: return uniform(drawKey(expr, place, 0), number(expr.args[0], place), number(expr.args[1], place));
-        case Kind::Choose: return number(chosen(expr, place), place);
+        case Kind::Range:
+            return uniform(drawKey(expr, place, 0), number(expr.args[0], place), number(expr.args[1], place));
+        case Kind::Choose:
+            return number(chosen(expr, place), place);
         case Kind::Unary:
         case Kind::Binary: {
             double out = 0;
             if (arithmetic(static_cast<Fn>(expr.index), expr, place, out)) return out;
             break;
         }
-        default: break;
+        default:
+            break;
     }
     return evaluate(expr, place).num();
 }
@@ -188,7 +223,8 @@ Vector vector(const Expr& expr, const Place& place, bool eachDraws) {
 }
 
 Mat3 rotation(const Value& v) {
-    if (v.kind == Value::Kind::Rotation) return {{v.n[0], v.n[1], v.n[2]}, {v.n[3], v.n[4], v.n[5]}, {v.n[6], v.n[7], v.n[8]}};
+    if (v.kind == Value::Kind::Rotation)
+        return {{v.n[0], v.n[1], v.n[2]}, {v.n[3], v.n[4], v.n[5]}, {v.n[6], v.n[7], v.n[8]}};
     if (v.count == 1) return Mat3::rotation({0, 1, 0}, v.n[0]);
     return Mat3::rotation({0, 0, 1}, v.n[2]) * Mat3::rotation({0, 1, 0}, v.n[1]) * Mat3::rotation({1, 0, 0}, v.n[0]);
 }

@@ -1,6 +1,7 @@
 // Expressions against a shape: its scope, inherited values, locals, chain position and random stream.
 // Enters: a checked Expr and where it stands. Leaves: values. Assumes kinds as `check` left them.
-// A range draws by key = hash(shape's key, attribute, component): a pure function, so order and neighbours can't matter.
+// A range draws by key = hash(shape's key, attribute, component): a pure function, so order and neighbours can't
+// matter.
 #pragma once
 
 #include <span>
@@ -15,13 +16,13 @@ class TreeBuilder;
 struct Place {
     const ShapeTree* tree = nullptr;
     std::span<const rules::Value> params;
-    std::span<const uint64_t> counts;        ///< derived shapes by symbol, for count(Name)
-    std::span<const rules::Value> locals;    ///< `for` variables and the i of `repeat`
-    Scope scope;                             ///< the matched scope
-    ShapeId valuesAt = none;                 ///< nearest shape with `with` values
-    uint64_t key = 0;                        ///< the stream that draws
-    double ramp = 0;                         ///< position in the chain, 0 first … 1 last
-    TreeBuilder* builder = nullptr;          ///< told of values that nothing above the shape sets; may be null
+    std::span<const uint64_t> counts;      ///< derived shapes by symbol, for count(Name)
+    std::span<const rules::Value> locals;  ///< `for` variables and the i of `repeat`
+    Scope scope;                           ///< the matched scope
+    ShapeId valuesAt = none;               ///< nearest shape with `with` values
+    uint64_t key = 0;                      ///< the stream that draws
+    double ramp = 0;                       ///< position in the chain, 0 first … 1 last
+    TreeBuilder* builder = nullptr;        ///< told of values that nothing above the shape sets; may be null
 };
 
 /// Any expression but a Figure.

@@ -30,20 +30,24 @@ std::vector<std::pair<uint32_t, uint32_t>> intervals(const ShapeTree& tree) {
         order.push_back(s);
     }
     for (auto it = order.rbegin(); it != order.rend(); ++it)
-        if (const ShapeId parent = tree.shapes[*it].parent; parent != none) out[parent].second = std::max(out[parent].second, out[*it].second);
+        if (const ShapeId parent = tree.shapes[*it].parent; parent != none)
+            out[parent].second = std::max(out[parent].second, out[*it].second);
     return out;
 }
 
 }  // namespace
 
 uint64_t Derivation::terminals() const {
-    return static_cast<uint64_t>(std::count_if(tree.shapes.begin(), tree.shapes.end(), [](const Shape& s) { return s.solid != none; }));
+    return static_cast<uint64_t>(
+        std::count_if(tree.shapes.begin(), tree.shapes.end(), [](const Shape& s) { return s.solid != none; }));
 }
 
 uint64_t Derivation::overlaps() const {
     const auto bonded = bondedPlaces(tree);
     const auto spans = intervals(tree);
-    const auto above = [&](ShapeId a, ShapeId b) { return spans[a].first <= spans[b].first && spans[b].first <= spans[a].second; };
+    const auto above = [&](ShapeId a, ShapeId b) {
+        return spans[a].first <= spans[b].first && spans[b].first <= spans[a].second;
+    };
     uint64_t count = 0;
     forPairs(tree, 0, [&](ShapeId a, ShapeId b) {
         const Shape &p = tree.shapes[a], &q = tree.shapes[b];
@@ -60,14 +64,17 @@ syntax::Diagnostics ungrown(const Derivation& derivation) {
     syntax::Diagnostics warnings;
     for (const Closed& closed : derivation.closed) {
         const auto isOf = [&](const Shape& s) {
-            return s.span.source == closed.span.source && s.span.begin == closed.span.begin && s.span.end == closed.span.end;
+            return s.span.source == closed.span.source && s.span.begin == closed.span.begin &&
+                   s.span.end == closed.span.end;
         };
         const auto& shapes = derivation.tree.shapes;
         const bool asksFree = closed.span.text().find("at free") != std::string_view::npos;
         if (std::none_of(shapes.begin(), shapes.end(), isOf))
             warnings.warning(closed.span,
-                             asksFree ? "none of these joints is free any more, so this grows nowhere" : "another shape has closed its joint, so this grows nowhere",
-                             asksFree ? "name more joints in 'free(…)', or place it by 'move'" : "choose another joint of ours, 'at free(…)', or place it by 'move'");
+                             asksFree ? "none of these joints is free any more, so this grows nowhere"
+                                      : "another shape has closed its joint, so this grows nowhere",
+                             asksFree ? "name more joints in 'free(…)', or place it by 'move'"
+                                      : "choose another joint of ours, 'at free(…)', or place it by 'move'");
     }
     return warnings;
 }

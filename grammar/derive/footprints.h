@@ -1,6 +1,6 @@
 // The footprints of a derivation, each once.
-// Enters: sound footprints about their scope's centre. Leaves: indices that scopes carry. Assumes that the table outlives
-// the scopes.
+// Enters: sound footprints about their scope's centre. Leaves: indices that scopes carry. Assumes that the table
+// outlives the scopes.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,8 @@
 
 namespace sgm::derive {
 
-/// A footprint in shares of a scope's half-size along x and z (−1 … 1), so that it stretches with the scope, and its formula.
+/// A footprint in shares of a scope's half-size along x and z (−1 … 1), so that it stretches with the scope, and its
+/// formula.
 struct PlanShape {
     plan::Footprint footprint;
     plan::Formula formula;

@@ -1,8 +1,8 @@
 // Runs the bodies of rules: what an application of a rule adds to the tree.
-// Enters: a rule and the shape it matched. Leaves: new shapes and bonds in the builder, steps in the log. Assumes checked
-// rules. Recursion follows the nesting of the text, never the depth of the tree.
-// Sources: rules.cpp matches and applies, bodies.cpp runs control, place.cpp puts shapes, content.cpp fills them; content operations cut
-// their scopes through parts_context.h.
+// Enters: a rule and the shape it matched. Leaves: new shapes and bonds in the builder, steps in the log. Assumes
+// checked rules. Recursion follows the nesting of the text, never the depth of the tree. Sources: rules.cpp matches and
+// applies, bodies.cpp runs control, place.cpp puts shapes, content.cpp fills them; content operations cut their scopes
+// through parts_context.h.
 #pragma once
 
 #include <array>
@@ -83,9 +83,11 @@ private:
     ShapeId hostOf(const rules::Element& e, const Frame& frame, const Target& target, const Place& place) const;
     std::vector<uint32_t> openJoints(const rules::JointChoice& at, ShapeId host, const Place& place);
     uint32_t jointNamed(const rules::Expr& expr, ShapeId host, const Place& place);
-    uint32_t theirJoint(const rules::Element& e, const ElementCache& facts, const Joint& ours, const Mat3& axes, const Place& place);
+    uint32_t theirJoint(const rules::Element& e, const ElementCache& facts, const Joint& ours, const Mat3& axes,
+                        const Place& place);
     rules::Joint jointShares(uint32_t joint, uint32_t jointSet) const;
-    void remarkLostTurn(const rules::Element& e, const Mating& mating, const Mat3& asked, const Place& place, const Mat3& axes);
+    void remarkLostTurn(const rules::Element& e, const Mating& mating, const Mat3& asked, const Place& place,
+                        const Mat3& axes);
     void remember(const rules::Element& e, const Frame& frame, ShapeId id, uint32_t ours);
 
     // content.cpp

@@ -15,14 +15,18 @@ constexpr double cosineTolerance = 1e-9;
 
 bool directed(Vec3d d) { return d != Vec3d{}; }
 
-/// Joints of one direction begin at one slot and those that look the other way at its neighbour, in the same cache line.
+/// Joints of one direction begin at one slot and those that look the other way at its neighbour, in the same cache
+/// line.
 uint64_t cellHash(int64_t x, int64_t y, int64_t z, Vec3d direction) {
-    const auto coarse = [](double d) { return std::abs(d) < 2 ? static_cast<int64_t>(d * 4 + std::copysign(0.5, d)) : int64_t{8}; };
+    const auto coarse = [](double d) {
+        return std::abs(d) < 2 ? static_cast<int64_t>(d * 4 + std::copysign(0.5, d)) : int64_t{8};
+    };
     int64_t looks = coarse(direction.x) * 289 + coarse(direction.y) * 17 + coarse(direction.z);
     const bool flipped = looks < 0;
     if (flipped) looks = -looks;
-    const uint64_t h = mix(static_cast<uint64_t>(x) * 0x9e3779b97f4a7c15ull ^ static_cast<uint64_t>(y) * 0xc2b2ae3d27d4eb4full ^
-                           static_cast<uint64_t>(z) * 0x165667b19e3779f9ull ^ static_cast<uint64_t>(looks));
+    const uint64_t h =
+        mix(static_cast<uint64_t>(x) * 0x9e3779b97f4a7c15ull ^ static_cast<uint64_t>(y) * 0xc2b2ae3d27d4eb4full ^
+            static_cast<uint64_t>(z) * 0x165667b19e3779f9ull ^ static_cast<uint64_t>(looks));
     return (h & ~uint64_t{1}) | (flipped ? 1 : 0);
 }
 
@@ -87,7 +91,8 @@ void JointIndex::search(const ShapeTree& tree, uint64_t cell, const Joint& joint
     const auto full = fullCells_.find(cell);
     if (full == fullCells_.end()) return;
     for (auto entry = full->second.rbegin(); entry != full->second.rend() && (!newest || *newest < *entry); ++entry)
-        if (!tree.shapes[entry->shape].dead && faceEachOther(joint, tree.joint(entry->shape, entry->joint))) newest = *entry;
+        if (!tree.shapes[entry->shape].dead && faceEachOther(joint, tree.joint(entry->shape, entry->joint)))
+            newest = *entry;
 }
 
 /// Puts an entry into a free slot; false where its cell has its share of them already.
@@ -103,8 +108,10 @@ bool JointIndex::insert(Slot slot) {
 
 void JointIndex::enter(Slot slot) {
     if ((used_ + 1) * 2 > slots_.size()) grow();
-    if (insert(slot)) ++used_;
-    else inFullCells_ += fullCells_[slot.cell].insert(slot.entry).second;
+    if (insert(slot))
+        ++used_;
+    else
+        inFullCells_ += fullCells_[slot.cell].insert(slot.entry).second;
 }
 
 void JointIndex::grow() {
@@ -116,7 +123,9 @@ void JointIndex::grow() {
 JointIndex::Spot JointIndex::expect(const Joint& joint) const {
     const Vec3d p = offset(joint.point);
     const int64_t x = cellOf(p.x), y = cellOf(p.y), z = cellOf(p.z);
-    const auto inside = [](double v, int64_t cell) { return cellOf(v - jointTolerance_m) == cell && cellOf(v + jointTolerance_m) == cell; };
+    const auto inside = [](double v, int64_t cell) {
+        return cellOf(v - jointTolerance_m) == cell && cellOf(v + jointTolerance_m) == cell;
+    };
     const Spot spot{cellHash(x, y, z, joint.direction), inside(p.x, x) && inside(p.y, y) && inside(p.z, z)};
     __builtin_prefetch(&slots_[spot.cell & (slots_.size() - 1)]);
     return spot;
@@ -124,8 +133,10 @@ JointIndex::Spot JointIndex::expect(const Joint& joint) const {
 
 std::optional<JointIndex::Entry> JointIndex::add(const ShapeTree& tree, Entry entry, const Joint& joint, Spot spot) {
     std::optional<Entry> partner;
-    if (spot.inside) search(tree, opposite(spot.cell), joint, partner);
-    else forCells(offset(joint.point), -joint.direction, [&](uint64_t cell) { search(tree, cell, joint, partner); });
+    if (spot.inside)
+        search(tree, opposite(spot.cell), joint, partner);
+    else
+        forCells(offset(joint.point), -joint.direction, [&](uint64_t cell) { search(tree, cell, joint, partner); });
     enter({spot.cell, entry});
     return partner;
 }

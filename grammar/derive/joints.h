@@ -75,17 +75,18 @@ private:
 
     std::vector<Slot> slots_ = std::vector<Slot>(64);  ///< a power of two, at least half of them empty
     size_t used_ = 0;
-    /// By cell: the entries beyond the first few, so that shapes that all stand at one place don't make long runs of slots.
+    /// By cell: the entries beyond the first few, so that shapes that all stand at one place don't make long runs of
+    /// slots.
     std::unordered_map<uint64_t, std::set<Entry>> fullCells_;
     size_t inFullCells_ = 0;
 };
 
 /// What a newcomer asks for: its size and orientation are given, its place follows from the joints.
 struct Mating {
-    Joint ours;             ///< the host's joint
-    rules::Joint theirs;    ///< the newcomer's, in its own shares
-    Vec3d moved_m;          ///< S_J and `move`, in the object's frame
-    double overlap = 0;     ///< 0 touches, 1 puts the newcomer's centre on a face it is mated with
+    Joint ours;           ///< the host's joint
+    rules::Joint theirs;  ///< the newcomer's, in its own shares
+    Vec3d moved_m;        ///< S_J and `move`, in the object's frame
+    double overlap = 0;   ///< 0 touches, 1 puts the newcomer's centre on a face it is mated with
 };
 
 /// The scope of the newcomer: `axes` and `size` as asked, turned as little as possible so that directions oppose, and

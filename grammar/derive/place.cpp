@@ -118,7 +118,11 @@ uint32_t Interpreter::jointNamed(const rules::Expr& expr, ShapeId host, const Pl
     const rules::Value v = evaluate(expr, place);
     if (v.kind != rules::Value::Kind::Word) return static_cast<uint32_t>(v.num());
     const uint32_t joint = builder_.tree().findJoint(host, v.text);
-    if (joint == none) builder_.fail(Error::Kind::Input, "'" + builder_.tree().labels[builder_.tree().shapes[host].label] + "' has no joint '" + v.text + "'", expr.span);
+    if (joint == none)
+        builder_.fail(
+            Error::Kind::Input,
+            "'" + builder_.tree().labels[builder_.tree().shapes[host].label] + "' has no joint '" + v.text + "'",
+            expr.span);
     return joint;
 }
 
@@ -144,7 +148,8 @@ rules::Joint Interpreter::jointShares(uint32_t joint, uint32_t jointSet) const {
     return {std::string(faceName(joint)), faceDirection(joint), faceDirection(joint)};
 }
 
-uint32_t Interpreter::theirJoint(const Element& e, const ElementCache& facts, const Joint& ours, const Mat3& axes, const Place& place) {
+uint32_t Interpreter::theirJoint(const Element& e, const ElementCache& facts, const Joint& ours, const Mat3& axes,
+                                 const Place& place) {
     if (!e.to) return ours.direction == Vec3d{} ? centreJoint : opposedFace(axes, ours.direction);
     const rules::Value v = evaluate(e.to->joints[0], place);
     if (v.kind != rules::Value::Kind::Word) return static_cast<uint32_t>(v.num());
@@ -158,7 +163,8 @@ uint32_t Interpreter::theirJoint(const Element& e, const ElementCache& facts, co
 bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& target, uint64_t key) {
     Place place = frame.place;
     place.key = key;
-    if (!e.on || e.on->kind != HostChoice::Kind::Each) return placeOn(hostOf(e, frame, target, place), e, frame, target, key);
+    if (!e.on || e.on->kind != HostChoice::Kind::Each)
+        return placeOn(hostOf(e, frame, target, place), e, frame, target, key);
     const ShapeTree& tree = builder_.tree();
     if (builder_.recording()) builder_.recording()->readsWorld();
     const auto symbol = static_cast<rules::SymbolId>(e.on->of.value.num());
@@ -171,15 +177,20 @@ bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& targe
 }
 
 /// Joints that face each other leave of a `turn` what goes about them: the rest is told.
-void Interpreter::remarkLostTurn(const Element& e, const Mating& mating, const Mat3& asked, const Place& place, const Mat3& axes) {
-    const auto turn = std::find_if(e.attributes.begin(), e.attributes.end(), [](const Attribute& a) { return a.operation->turnsShape; });
+void Interpreter::remarkLostTurn(const Element& e, const Mating& mating, const Mat3& asked, const Place& place,
+                                 const Mat3& axes) {
+    const auto turn = std::find_if(e.attributes.begin(), e.attributes.end(),
+                                   [](const Attribute& a) { return a.operation->turnsShape; });
     if (turn == e.attributes.end() || mating.ours.direction == Vec3d{} || mating.theirs.facing == Vec3d{}) return;
     constexpr double slack = 1e-3;
     bool lost = angleBetween(axes, asked) > slack;
-    if (e.to) lost = angleBetween(axes, mate(mating, place.scope.axes, place.scope.size).axes) < angleBetween(asked, place.scope.axes) - slack;
+    if (e.to)
+        lost = angleBetween(axes, mate(mating, place.scope.axes, place.scope.size).axes) <
+               angleBetween(asked, place.scope.axes) - slack;
     if (lost)
         builder_.remark(turn->span, "the joints face each other all the same: only the turn about them is left",
-                        "turn what a group holds, as in '+ (cube turn (30deg, 0deg, 0deg)) size (1, 3, 1) at +y', or place it by 'move'");
+                        "turn what a group holds, as in '+ (cube turn (30deg, 0deg, 0deg)) size (1, 3, 1) at +y', or "
+                        "place it by 'move'");
 }
 
 bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Target& target, uint64_t key) {

@@ -15,14 +15,14 @@ namespace sgm::derive {
 struct Piece {
     enum class Kind : uint8_t { Start, Choice, Match, Application };
     Kind kind = Kind::Start;
-    uint32_t rule = none;       ///< the one chosen, matched or applied
+    uint32_t rule = none;  ///< the one chosen, matched or applied
     ShapeId shape = none;
     uint32_t generation = 0;
-    bool matched = false;       ///< what a Match answered
-    bool inherits = false;      ///< it read values that `with` sets
-    bool readsWorld = false;    ///< it asked for counts, neighbours or what stands below its shape
-    uint64_t params = 0;        ///< bit i % 64 for every parameter i that it read
-    uint64_t work = 0;          ///< turns it took of the budget
+    bool matched = false;     ///< what a Match answered
+    bool inherits = false;    ///< it read values that `with` sets
+    bool readsWorld = false;  ///< it asked for counts, neighbours or what stands below its shape
+    uint64_t params = 0;      ///< bit i % 64 for every parameter i that it read
+    uint64_t work = 0;        ///< turns it took of the budget
     /// Where in the lists begins what it made and what it was answered; it ends where the next piece begins.
     struct Place {
         size_t shape = 0, solid = 0, extras = 0, bond = 0, step = 0, answer = 0;

@@ -9,7 +9,10 @@ namespace sgm::derive {
 /// A finished derivation, with all that made it still at hand.
 struct Regrowth::State {
     State(Derivation empty, const Options& chosen, Progress* progress)
-        : options(chosen), derivation(std::move(empty)), builder(derivation, options.budget, progress), rewriter(builder, derivation.params) {
+        : options(chosen),
+          derivation(std::move(empty)),
+          builder(derivation, options.budget, progress),
+          rewriter(builder, derivation.params) {
         builder.record(&recording);
     }
 
@@ -104,9 +107,11 @@ Status Regrowth::to(std::shared_ptr<const rules::Grammar> grammar, const Options
         return Done{};
     }
     constexpr size_t mostMoved = 4;  // times the joints there are: then those that moved away are swept out
-    const bool alike = state_ && state_->derivation.grammar == grammar && state_->recording.fit() && state_->options.derive.empty() &&
-                       state_->options.start == options.start && state_->options.seed == options.seed && sameBudget(state_->options.budget, options.budget) &&
-                       options.params.size() == state_->derivation.params.size() && state_->builder.jointsIndexed() <= mostMoved * state_->joints;
+    const bool alike = state_ && state_->derivation.grammar == grammar && state_->recording.fit() &&
+                       state_->options.derive.empty() && state_->options.start == options.start &&
+                       state_->options.seed == options.seed && sameBudget(state_->options.budget, options.budget) &&
+                       options.params.size() == state_->derivation.params.size() &&
+                       state_->builder.jointsIndexed() <= mostMoved * state_->joints;
     if (alike && follow(options, progress)) {
         whole_ = false;
         return Done{};

@@ -38,7 +38,9 @@ uint32_t Rewriter::draw(ShapeId shape, const std::vector<uint32_t>& rules) {
     const uint32_t at = drawByWeight(weights, combine(place.key, hashText("rule")));
     if (at != none) return rules[at];
     builder_.at(rules[0], shape, none);
-    builder_.fail(Error::Kind::Input, fmt::format("every rule for '{}' that matches has weight 0", grammar_.symbols[builder_.tree().shapes[shape].symbol].name),
+    builder_.fail(Error::Kind::Input,
+                  fmt::format("every rule for '{}' that matches has weight 0",
+                              grammar_.symbols[builder_.tree().shapes[shape].symbol].name),
                   grammar_.rules[rules[0]].weight->span);
     return none;
 }
@@ -59,8 +61,10 @@ std::vector<Rewriter::Decision> Rewriter::decide(std::vector<ShapeId>& waiting) 
         if (!builder_.work()) return {};
         const uint32_t rule = choose(s);
         if (Recording* r = builder_.recording()) r->now().rule = rule;
-        if (rule != none) decisions.push_back({shape.key, {rule, s}});
-        else if (mayMatchLater(s)) later.push_back(s);
+        if (rule != none)
+            decisions.push_back({shape.key, {rule, s}});
+        else if (mayMatchLater(s))
+            later.push_back(s);
     }
     std::sort(decisions.begin(), decisions.end(), [](const Decision& a, const Decision& b) {
         return a.key != b.key ? a.key < b.key : a.application.shape < b.application.shape;
@@ -79,8 +83,10 @@ void Rewriter::automatic() {
             const Application& a = d.application;
             if (!builder_.tree().shapes[a.shape].live) continue;
             // A lower key may have taken the joint: the shape then waits for the next generation.
-            if (stillMatches(a)) apply(a, generation);
-            else waiting.push_back(a.shape);
+            if (stillMatches(a))
+                apply(a, generation);
+            else
+                waiting.push_back(a.shape);
             if (builder_.failed()) return;
         }
         const auto made = builder_.takeLive();
@@ -103,10 +109,16 @@ bool Rewriter::stillMatches(Application a) {
 bool Rewriter::repeat(const Piece& piece) {
     const Derivation& d = builder_.derivation();
     switch (piece.kind) {
-        case Piece::Kind::Start: interpreter_.start(grammar_.starts[d.start], d.seed); return true;
-        case Piece::Kind::Choice: return builder_.work() && choose(piece.shape) == piece.rule;
-        case Piece::Kind::Match: return interpreter_.matches(piece.rule, piece.shape) == piece.matched;
-        case Piece::Kind::Application: interpreter_.apply(piece.rule, piece.shape, piece.generation); return true;
+        case Piece::Kind::Start:
+            interpreter_.start(grammar_.starts[d.start], d.seed);
+            return true;
+        case Piece::Kind::Choice:
+            return builder_.work() && choose(piece.shape) == piece.rule;
+        case Piece::Kind::Match:
+            return interpreter_.matches(piece.rule, piece.shape) == piece.matched;
+        case Piece::Kind::Application:
+            interpreter_.apply(piece.rule, piece.shape, piece.generation);
+            return true;
     }
     return false;
 }
@@ -150,8 +162,10 @@ Result<ShapeId> Rewriter::meant(uint32_t index, const std::string& place) {
         if (usable({index, s})) found.push_back(s);
     if (found.size() == 1) return found[0];
     if (found.empty())
-        return refuse(fmt::format("rule '{}' matches nothing here: no live shape is a '{}' that it could rewrite", rule.name, grammar_.symbols[rule.symbol].name));
-    return refuse(fmt::format("rule '{}' matches {} shapes here: write 'at {}' or another of them", rule.name, found.size(), tree.path(found[0])));
+        return refuse(fmt::format("rule '{}' matches nothing here: no live shape is a '{}' that it could rewrite",
+                                  rule.name, grammar_.symbols[rule.symbol].name));
+    return refuse(fmt::format("rule '{}' matches {} shapes here: write 'at {}' or another of them", rule.name,
+                              found.size(), tree.path(found[0])));
 }
 
 void Rewriter::along(const rules::Derive& way) {

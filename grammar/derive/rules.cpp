@@ -22,7 +22,9 @@ bool asksForCount(const rules::Expr& e) {
 
 /// A primitive that is a morph by itself, and at neither end of it.
 bool morphs(const SolidValue& solid) {
-    if (solid.kind == rules::Solid::Kind::Primitive && solid.primitive->morphs && solid.args[0].num() > 0 && solid.args[0].num() < 1) return true;
+    if (solid.kind == rules::Solid::Kind::Primitive && solid.primitive->morphs && solid.args[0].num() > 0 &&
+        solid.args[0].num() < 1)
+        return true;
     return std::any_of(solid.parts.begin(), solid.parts.end(), morphs);
 }
 
@@ -127,7 +129,8 @@ void Interpreter::apply(uint32_t index, ShapeId id, uint32_t generation) {
     Links links;
     links.root = links.last = links.newest = id;
     const uint64_t key = combine(combine(builder_.tree().shapes[id].key, facts_[index].hash), 0);
-    runLogged(rule.body, {id, id, key, placeOf(id), &links, false}, {index, id, generation, 0, rule.morphic, false, 0, 0});
+    runLogged(rule.body, {id, id, key, placeOf(id), &links, false},
+              {index, id, generation, 0, rule.morphic, false, 0, 0});
 }
 
 void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
@@ -136,13 +139,15 @@ void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
     builder_.at(index, root, none);
     const double steps = wholeNumber(*rule.repeat, placeOf(root));
     if (steps < 0)
-        builder_.remark(rule.repeat->span, fmt::format("'repeat' is {:g} here, so the rule adds nothing", steps), "write 'max(0, …)' where that is meant");
+        builder_.remark(rule.repeat->span, fmt::format("'repeat' is {:g} here, so the rule adds nothing", steps),
+                        "write 'max(0, …)' where that is meant");
     const uint64_t key = combine(builder_.tree().shapes[root].key, facts_[index].hash);
     Links links;
     links.root = links.last = links.newest = root;
     for (double i = 1; i <= steps; ++i) {
         const ShapeId host = links.newest;
-        Frame frame{host, rule.body.grows ? root : host, combine(key, static_cast<uint64_t>(i)), placeOf(host), &links, false};
+        Frame frame{host, rule.body.grows ? root : host, combine(key, static_cast<uint64_t>(i)), placeOf(host), &links,
+                    false};
         frame.place.ramp = steps > 1 ? (i - 1) / (steps - 1) : 0;
         if (rule.stepLocal != none) {
             locals_[rule.stepLocal] = rules::Value::number(i);
@@ -151,7 +156,9 @@ void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
         if (!canGrow(rule.body, host, frame.place)) break;
         if (!rule.body.grows) builder_.clearContent(host), builder_.tree().shapes[host].live = false;
         links.ownSymbol = false;
-        if (!runLogged(rule.body, frame, {index, host, generation, static_cast<uint32_t>(i), rule.morphic, false, 0, 0})) return;
+        if (!runLogged(rule.body, frame,
+                       {index, host, generation, static_cast<uint32_t>(i), rule.morphic, false, 0, 0}))
+            return;
         for (size_t d = 0; d < faceCount; ++d)
             if (!links.placed[d].empty()) links.toward[d] = std::exchange(links.placed[d], {});
     }

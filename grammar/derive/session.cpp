@@ -9,14 +9,17 @@ namespace sgm::derive {
 /// A derivation under way: what `derive` holds while it runs.
 struct Session::State {
     State(Derivation begun, const Options& options, Progress* progress)
-        : derivation(std::move(begun)), builder(derivation, options.budget, progress), rewriter(builder, derivation.params) {}
+        : derivation(std::move(begun)),
+          builder(derivation, options.budget, progress),
+          rewriter(builder, derivation.params) {}
 
     Derivation derivation;
     TreeBuilder builder;
     Rewriter rewriter;
 };
 
-Result<std::shared_ptr<Session::State>> Session::begun(std::shared_ptr<const rules::Grammar> grammar, const Options& options, Progress* progress) {
+Result<std::shared_ptr<Session::State>> Session::begun(std::shared_ptr<const rules::Grammar> grammar,
+                                                       const Options& options, Progress* progress) {
     auto empty = emptyDerivation(grammar, options);
     if (!empty.ok()) return empty.error();
     auto state = std::make_shared<State>(std::move(*empty), options, progress);
@@ -138,7 +141,10 @@ Result<std::vector<rules::Derive::Step>> Session::way() const {
         for (const Application& a : step) {
             const auto& rule = grammar_->rules[a.rule];
             if (!rewriter.usable(a))
-                return Error{Error::Kind::Input, fmt::format("step {}, rule '{}', can't stand in a 'derive' line: its guard counts shapes that stood otherwise when it was chosen", steps.size() + 1, rule.name)};
+                return Error{Error::Kind::Input,
+                             fmt::format("step {}, rule '{}', can't stand in a 'derive' line: its guard counts shapes "
+                                         "that stood otherwise when it was chosen",
+                                         steps.size() + 1, rule.name)};
             const auto meant = rewriter.meant(a.rule, "");
             if ((*state)->builder.failed()) (void)(*state)->builder.takeFailure();
             steps.push_back({a.rule, meant.ok() ? "" : placeOf((*state)->derivation.tree, a.shape), {}});

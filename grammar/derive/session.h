@@ -13,7 +13,8 @@ namespace sgm::derive {
 class Session {
 public:
     /// Runs the start's body. Error::Usage where there is no such start; Error::Input, Budget as `derive`.
-    static Result<Session> begin(std::shared_ptr<const rules::Grammar> grammar, Options options, Progress* progress = nullptr);
+    static Result<Session> begin(std::shared_ptr<const rules::Grammar> grammar, Options options,
+                                 Progress* progress = nullptr);
 
     const rules::Grammar& grammar() const { return *grammar_; }
     /// The tree as it stands; ids hold until the next undo or redo.
@@ -44,7 +45,8 @@ public:
 private:
     struct State;
     using Applications = std::vector<Application>;
-    static Result<std::shared_ptr<State>> begun(std::shared_ptr<const rules::Grammar> grammar, const Options& options, Progress* progress);
+    static Result<std::shared_ptr<State>> begun(std::shared_ptr<const rules::Grammar> grammar, const Options& options,
+                                                Progress* progress);
     Result<std::shared_ptr<State>> replayed(const std::vector<Applications>& steps) const;
     Status settled(Applications step);
 

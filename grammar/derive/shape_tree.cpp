@@ -140,7 +140,8 @@ Scope ShapeTree::contentBox(ShapeId root) const {
             const Mat3 axes = localFromWorld * scope.axes;
             const Vec3d centre = localFromWorld * (scope.centre - own.centre), h = scope.half();
             Vec3d reach;
-            for (int i = 0; i < 3; ++i) reach[i] = std::abs(axes.x[i]) * h.x + std::abs(axes.y[i]) * h.y + std::abs(axes.z[i]) * h.z;
+            for (int i = 0; i < 3; ++i)
+                reach[i] = std::abs(axes.x[i]) * h.x + std::abs(axes.y[i]) * h.y + std::abs(axes.z[i]) * h.z;
             box = hull(box, Box3d{centre - reach, centre + reach});
         }
         s = next(s, root, cuts);

@@ -1,6 +1,6 @@
 // The shape tree: scopes, joints (SG-M eq. 15), bonds (eq. 16), and the nodes they join.
-// Enters: what the interpreter places. Leaves: flat arrays that `lower` and `sgm tree` walk. Assumes parents come before
-// their children. Nothing here recurses: a chain may be thousands of shapes deep.
+// Enters: what the interpreter places. Leaves: flat arrays that `lower` and `sgm tree` walk. Assumes parents come
+// before their children. Nothing here recurses: a chain may be thousands of shapes deep.
 #pragma once
 
 #include <string>
@@ -19,8 +19,8 @@ inline constexpr uint32_t none = rules::none;
 /// An oriented box: centre, axes, size in metres; and what it holds of the plan.
 struct Scope {
     Vec3d centre;
-    Mat3 axes;             ///< world from local
-    Vec3d size{1, 1, 1};   ///< metres, > 0
+    Mat3 axes;                  ///< world from local
+    Vec3d size{1, 1, 1};        ///< metres, > 0
     uint32_t footprint = none;  ///< index into ShapeTree::footprints; none: the whole rectangle
 
     Vec3d half() const { return size * 0.5; }
@@ -36,8 +36,8 @@ inline constexpr uint32_t faceCount = 6, centreJoint = 6, firstNamedJoint = 7;
 struct Joint {
     std::string_view name;  ///< "+x" … "-z", "centre", or declared
     Vec3d point;
-    Vec3d direction;        ///< unit; zero meets any other
-    uint32_t bond = none;   ///< the first bond that met it
+    Vec3d direction;       ///< unit; zero meets any other
+    uint32_t bond = none;  ///< the first bond that met it
 };
 
 /// B = (J₁, J₂) ⇔ J₁.P = J₂.P ∧ J₁.D = −J₂.D, eq. 16, or a D of zero, which meets any other.
@@ -59,7 +59,7 @@ struct SolidValue {
     std::vector<rules::Value> args;  ///< one per row parameter
     std::vector<SolidValue> parts;   ///< Morph: two; Combination: in order
     rules::Operator op = rules::Operator::None;
-    double amount = 0;               ///< Morph: a in 0 … 1
+    double amount = 0;  ///< Morph: a in 0 … 1
     friend bool operator==(const SolidValue&, const SolidValue&) = default;
 };
 
@@ -89,38 +89,40 @@ struct Extras {
 
 /// A node of the shape tree. Its field is its own solid combined with its children in order.
 struct Shape {
-    uint64_t key = 0;                      ///< hash(parent's key, rule, label, ordinal, repeat index): its random stream
+    uint64_t key = 0;  ///< hash(parent's key, rule, label, ordinal, repeat index): its random stream
     ShapeId parent = none;
     ShapeId firstChild = none, lastChild = none, nextSibling = none;  ///< children in joining order
-    rules::SymbolId symbol = rules::none;  ///< none for an anonymous solid or group
-    uint32_t label = 0;                    ///< index into ShapeTree::labels: symbol or primitive name
-    uint32_t occurrence = 0;               ///< 1 for the first child of this label under its parent; 0: not yet counted
-    uint32_t depth = 0;                    ///< 0 at the root
-    uint32_t solid = none;                 ///< index into ShapeTree::solids
-    uint32_t material = none;              ///< index into Derivation::materials; none inherits
-    uint32_t extras = none;                ///< index into ShapeTree::extras
-    ShapeId valuesAt = none;               ///< nearest shape, itself or above, that sets values by `with`
-    uint32_t body = none;                  ///< index into ShapeTree::bodies
-    uint32_t jointSet = 0;                 ///< index into ShapeTree::namedJoints
-    uint32_t firstNamedBond = none;        ///< index into ShapeTree::namedBonds, one a named joint
-    uint32_t madeBy = none;                ///< step that made it; none for the start
-    uint32_t chainRule = none;             ///< the `repeat` rule whose chain it is a link of: starts no such chain itself
+    rules::SymbolId symbol = rules::none;                             ///< none for an anonymous solid or group
+    uint32_t label = 0;              ///< index into ShapeTree::labels: symbol or primitive name
+    uint32_t occurrence = 0;         ///< 1 for the first child of this label under its parent; 0: not yet counted
+    uint32_t depth = 0;              ///< 0 at the root
+    uint32_t solid = none;           ///< index into ShapeTree::solids
+    uint32_t material = none;        ///< index into Derivation::materials; none inherits
+    uint32_t extras = none;          ///< index into ShapeTree::extras
+    ShapeId valuesAt = none;         ///< nearest shape, itself or above, that sets values by `with`
+    uint32_t body = none;            ///< index into ShapeTree::bodies
+    uint32_t jointSet = 0;           ///< index into ShapeTree::namedJoints
+    uint32_t firstNamedBond = none;  ///< index into ShapeTree::namedBonds, one a named joint
+    uint32_t madeBy = none;          ///< step that made it; none for the start
+    uint32_t chainRule = none;       ///< the `repeat` rule whose chain it is a link of: starts no such chain itself
     rules::Operator op = rules::Operator::None;  ///< how it joins what its parent holds so far; None: as its content
-    bool live = false;                     ///< rules may still rewrite it
-    bool dead = false;                     ///< replaced; swept away before `derive` returns
-    double amount = 0.5;                   ///< for op Morph: a (`by`)
-    double blend_m = 0;                    ///< melts into what stands with this radius
+    bool live = false;                           ///< rules may still rewrite it
+    bool dead = false;                           ///< replaced; swept away before `derive` returns
+    double amount = 0.5;                         ///< for op Morph: a (`by`)
+    double blend_m = 0;                          ///< melts into what stands with this radius
     Scope scope;
-    syntax::SourceSpan span;               ///< the text that made it
+    syntax::SourceSpan span;  ///< the text that made it
 };
 
 /// The joints of one place in space, shared by a shape and the content that fills its scope exactly: A, rewritten to a
 /// B of the same scope, hands its bonds on to B.
 struct Body {
-    ShapeId owner = none;        ///< the first shape that stood here
-    uint32_t bond[7];            ///< by joint: the first bond that met it, or none
-    uint32_t firstBond = none;   ///< list of all its bonds, linked by Bond::next
-    Body() { for (uint32_t& b : bond) b = none; }
+    ShapeId owner = none;       ///< the first shape that stood here
+    uint32_t bond[7];           ///< by joint: the first bond that met it, or none
+    uint32_t firstBond = none;  ///< list of all its bonds, linked by Bond::next
+    Body() {
+        for (uint32_t& b : bond) b = none;
+    }
 };
 
 /// The shape tree; shapes[0] is the root.
@@ -135,8 +137,12 @@ struct ShapeTree {
     Footprints footprints;
     std::vector<uint32_t> namedBonds;  ///< first bond of each named joint, or none
 
-    const SolidValue* solidOf(ShapeId id) const { return shapes[id].solid == none ? nullptr : &solids[shapes[id].solid]; }
-    const Extras* extrasOf(ShapeId id) const { return shapes[id].extras == none ? nullptr : &extras[shapes[id].extras]; }
+    const SolidValue* solidOf(ShapeId id) const {
+        return shapes[id].solid == none ? nullptr : &solids[shapes[id].solid];
+    }
+    const Extras* extrasOf(ShapeId id) const {
+        return shapes[id].extras == none ? nullptr : &extras[shapes[id].extras];
+    }
     /// The joints of a shape are 0 … jointCount − 1.
     uint32_t jointCount(ShapeId id) const;
     Joint joint(ShapeId id, uint32_t index) const;

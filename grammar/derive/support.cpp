@@ -34,7 +34,8 @@ std::vector<uint32_t> touchingGroups(const ShapeTree& tree) {
     std::iota(parent.begin(), parent.end(), 0u);
     forPairs(tree, boxSlack_m, [&](ShapeId a, ShapeId b) {
         if (!adds[a] || !adds[b] || rootOf(parent, a) == rootOf(parent, b)) return true;
-        if (penetration(tree.shapes[a].scope, tree.shapes[b].scope) >= -boxSlack_m) parent[rootOf(parent, a)] = rootOf(parent, b);
+        if (penetration(tree.shapes[a].scope, tree.shapes[b].scope) >= -boxSlack_m)
+            parent[rootOf(parent, a)] = rootOf(parent, b);
         return true;
     });
     std::vector<uint32_t> groupOf(tree.shapes.size(), none), number(tree.shapes.size(), none);
@@ -79,7 +80,8 @@ ShapeId beginOf(const ShapeTree& tree, std::span<const uint32_t> groupOf, uint32
 std::string madeBy(const Derivation& d, ShapeId id) {
     const Shape& s = d.tree.shapes[id];
     std::string text = fmt::format("'{}', made by ", d.tree.path(id));
-    text += s.madeBy == none ? std::string("the start") : fmt::format("rule '{}'", d.grammar->rules[d.steps[s.madeBy].rule].name);
+    text += s.madeBy == none ? std::string("the start")
+                             : fmt::format("rule '{}'", d.grammar->rules[d.steps[s.madeBy].rule].name);
     if (s.span.source) text += fmt::format(" ({}:{})", s.span.source->name(), s.span.source->place(s.span.begin).line);
     return text;
 }
@@ -87,7 +89,8 @@ std::string madeBy(const Derivation& d, ShapeId id) {
 uint64_t Derivation::floating() const {
     const auto groupOf = touchingGroups(tree);
     const auto floats = floatingGroups(tree, groupOf);
-    return static_cast<uint64_t>(std::count_if(groupOf.begin(), groupOf.end(), [&](uint32_t g) { return g != none && floats[g]; }));
+    return static_cast<uint64_t>(
+        std::count_if(groupOf.begin(), groupOf.end(), [&](uint32_t g) { return g != none && floats[g]; }));
 }
 
 std::vector<ShapeId> Derivation::floatingShapes() const {

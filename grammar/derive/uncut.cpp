@@ -32,12 +32,15 @@ public:
 
     const auto& found() const { return found_; }
     /// The name of what the cutter joins.
-    const std::string& hostOf(const Cutter& c) const { return tree_.labels[tree_.shapes[tree_.shapes[c.shape].parent].label]; }
+    const std::string& hostOf(const Cutter& c) const {
+        return tree_.labels[tree_.shapes[tree_.shapes[c.shape].parent].label];
+    }
 
 private:
     void examine(ShapeId id) {
         const Shape& s = tree_.shapes[id];
-        Cutter& cutter = found_.try_emplace({s.span.begin, s.span.end, s.span.source}, Cutter{id, false, false, 0}).first->second;
+        Cutter& cutter =
+            found_.try_emplace({s.span.begin, s.span.end, s.span.source}, Cutter{id, false, false, 0}).first->second;
         if (cutter.cuts) return;
         cutting_.clear(), standing_.clear();
         bool unclear = !gather(id, cutting_);
@@ -47,7 +50,8 @@ private:
             if (tree_.shapes[c].op != Operator::Difference) unclear = !gather(c, standing_) || unclear;
         cutter.beside = cutter.beside || !standing_.empty();
         cutter.pairs += cutting_.size() * standing_.size();
-        // What cuts nothing because it is itself empty, and what noise or ornament makes larger than its box, isn't judged.
+        // What cuts nothing because it is itself empty, and what noise or ornament makes larger than its box, isn't
+        // judged.
         cutter.cuts = unclear || cutting_.empty() || cutter.pairs > mostPairs || meet();
     }
 
@@ -72,13 +76,16 @@ private:
     }
 
     static bool isUnbounded(const SolidValue& solid) {
-        return (solid.primitive && !solid.primitive->bounded) || std::any_of(solid.parts.begin(), solid.parts.end(), isUnbounded);
+        return (solid.primitive && !solid.primitive->bounded) ||
+               std::any_of(solid.parts.begin(), solid.parts.end(), isUnbounded);
     }
 
     bool meet() const {
         for (const ShapeId a : cutting_)
             for (const ShapeId b : standing_)
-                if (penetration(tree_.shapes[a].scope, tree_.shapes[b].scope) > 1e-9 * maxComponent(tree_.shapes[b].scope.size)) return true;  // rounding
+                if (penetration(tree_.shapes[a].scope, tree_.shapes[b].scope) >
+                    1e-9 * maxComponent(tree_.shapes[b].scope.size))
+                    return true;  // rounding
         return false;
     }
 
@@ -96,11 +103,14 @@ syntax::Diagnostics uncut(const Derivation& derivation) {
         if (cutter.cuts) continue;
         const std::string& host = cutters.hostOf(cutter);
         if (cutter.beside)
-            warnings.warning(derivation.tree.shapes[cutter.shape].span, fmt::format("this cuts nothing: it lies beside '{}'", host),
+            warnings.warning(derivation.tree.shapes[cutter.shape].span,
+                             fmt::format("this cuts nothing: it lies beside '{}'", host),
                              "move it into what it shall cut ('at', 'move'), or make it larger");
         else
-            warnings.warning(derivation.tree.shapes[cutter.shape].span, fmt::format("this cuts nothing: '{}' holds no solid before it", host),
-                             "'-' cuts what stands in the same body; to cut a wall by parts of a split, write '- Front …' and fill its parts with what is cut out");
+            warnings.warning(derivation.tree.shapes[cutter.shape].span,
+                             fmt::format("this cuts nothing: '{}' holds no solid before it", host),
+                             "'-' cuts what stands in the same body; to cut a wall by parts of a split, write '- Front "
+                             "…' and fill its parts with what is cut out");
     }
     return warnings;
 }
@@ -112,7 +122,8 @@ syntax::Diagnostics warnings(const Derivation& derivation) {
         list.insert(list.end(), found.all().begin(), found.all().end());
     const auto& sources = derivation.grammar->sources;
     const auto rank = [&](const syntax::Diagnostic& d) {
-        const auto at = std::find_if(sources.begin(), sources.end(), [&](const auto& s) { return s.get() == d.span.source; });
+        const auto at =
+            std::find_if(sources.begin(), sources.end(), [&](const auto& s) { return s.get() == d.span.source; });
         return std::pair(at - sources.begin(), d.span.begin);
     };
     std::stable_sort(list.begin(), list.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });

@@ -5,7 +5,8 @@
 
 namespace sgm::derive {
 
-std::string wayText(const rules::Grammar& grammar, const std::string& name, std::span<const rules::Derive::Step> steps) {
+std::string wayText(const rules::Grammar& grammar, const std::string& name,
+                    std::span<const rules::Derive::Step> steps) {
     constexpr size_t widest = 100;
     std::string text, line = "derive " + name + ":";
     for (size_t i = 0; i < steps.size(); ++i) {
@@ -25,7 +26,9 @@ std::string fileWithWay(const rules::Grammar& grammar, const std::string& name, 
     bool follows = false;
     for (const rules::Derive& d : grammar.derives) {
         if (d.span.source != &file) continue;
-        if (d.name == name) return std::string(text.substr(0, d.span.begin)) + line.substr(0, line.size() - 1) + std::string(text.substr(d.span.end));
+        if (d.name == name)
+            return std::string(text.substr(0, d.span.begin)) + line.substr(0, line.size() - 1) +
+                   std::string(text.substr(d.span.end));
         // What follows on the same line, a comment, stays there.
         after = std::min(text.find('\n', d.span.end), text.size() - 1) + 1;
         follows = true;

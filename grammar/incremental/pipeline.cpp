@@ -4,7 +4,8 @@
 
 namespace sgm::incremental {
 
-Status Pipeline::derive(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Progress* progress) {
+Status Pipeline::derive(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options,
+                        Progress* progress) {
     const Status done = regrowth_.to(std::move(grammar), options, progress);
     lowered_ = lowered_ && done.ok() && !regrowth_.whole();
     return done;
@@ -12,14 +13,17 @@ Status Pipeline::derive(std::shared_ptr<const rules::Grammar> grammar, const der
 
 Status Pipeline::lower(Progress* progress) {
     const bool follows = std::exchange(lowered_, false);
-    const Status done = follows ? relowering_.follow(derivation(), regrowth_.changed(), progress) : relowering_.startOver(derivation(), progress);
+    const Status done = follows ? relowering_.follow(derivation(), regrowth_.changed(), progress)
+                                : relowering_.startOver(derivation(), progress);
     lowered_ = done.ok();
     return done;
 }
 
 void Pipeline::compile() {
-    if (relowering_.whole()) recompiler_.startOver(model().graph, model().field);
-    else recompiler_.follow(model().graph, model().field);
+    if (relowering_.whole())
+        recompiler_.startOver(model().graph, model().field);
+    else
+        recompiler_.follow(model().graph, model().field);
 }
 
 Status Pipeline::to(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Progress* progress) {

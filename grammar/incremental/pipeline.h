@@ -1,7 +1,7 @@
 // From a grammar to a mesh again and again while parameters change: every stage keeps what the change doesn't reach.
-// Enters: options, a grid. Leaves: the derivation, model, tape and mesh that `derive`, `lower`, `compile`, `subdivide` and
-// `polygonize` give, but for the order of the tape's constants. Assumes one caller at a time. What was asked for last
-// changes in place: copy what is to stay. For a model once, call the doors themselves.
+// Enters: options, a grid. Leaves: the derivation, model, tape and mesh that `derive`, `lower`, `compile`, `subdivide`
+// and `polygonize` give, but for the order of the tape's constants. Assumes one caller at a time. What was asked for
+// last changes in place: copy what is to stay. For a model once, call the doors themselves.
 #pragma once
 
 #include "grammar/derive/regrowth.h"
@@ -30,7 +30,9 @@ public:
     /// Blocks that the last mesh made anew and kept.
     const mesh::Rebuild& rebuild() const { return rebuild_; }
     /// Shapes that the last derivation made anew.
-    size_t shapesMade() const { return regrowth_.whole() ? derivation().tree.shapes.size() : regrowth_.changed().size(); }
+    size_t shapesMade() const {
+        return regrowth_.whole() ? derivation().tree.shapes.size() : regrowth_.changed().size();
+    }
     /// True when no stage up to the tape started over.
     bool followed() const { return !regrowth_.whole() && !relowering_.whole() && !recompiler_.whole(); }
 

@@ -66,8 +66,9 @@ private:
         open_.emplace_back();
         cutting_ += tree_.shapes[id].op == Operator::Difference;
         if (tree_.shapes[id].solid == none) return;
-        open_.back() = convexSolid(*tree_.solidOf(id), tree_.shapes[id].scope, id, world_, tree_.footprints, d_.grammar->meshes,
-                                   cutting_ > 0 ? field::convex::Roundness::Coarse : field::convex::Roundness::Fine);
+        open_.back() =
+            convexSolid(*tree_.solidOf(id), tree_.shapes[id].scope, id, world_, tree_.footprints, d_.grammar->meshes,
+                        cutting_ > 0 ? field::convex::Roundness::Coarse : field::convex::Roundness::Fine);
         if (open_.back().unknown) note(cutting_ > 0 ? Unlike::Uncut : Unlike::Missing, id);
     }
 

@@ -24,13 +24,12 @@ struct ConvexParts {
 };
 
 /// The union of the tree's solids, with its booleans carried out on polyhedra: a cut splits what it reaches into pieces
-/// around it, so holes stay open. Boxes, pyramids, prisms, wedges, half-spaces, blocks over footprints and their hip and gable
-/// roofs are exact, round solids have 12 sides
-/// or 54 faces and the same volume to 1 %, round cuts 8 or 22; roofs between their ends and morphs of solids are
-/// bounded by planes that touch them. Blends count as sharp, noise and cladding don't count; fractals and meshes from
-/// files are left out, as parts and as cuts. `notes` says so. Pieces that another one holds are left out, and so is
-/// what is thinner than a millimetre. Error::Budget beyond 20,000 pieces, Error::Input where no piece is left,
-/// Error::Cancelled.
+/// around it, so holes stay open. Boxes, pyramids, prisms, wedges, half-spaces, blocks over footprints and their hip
+/// and gable roofs are exact, round solids have 12 sides or 54 faces and the same volume to 1 %, round cuts 8 or 22;
+/// roofs between their ends and morphs of solids are bounded by planes that touch them. Blends count as sharp, noise
+/// and cladding don't count; fractals and meshes from files are left out, as parts and as cuts. `notes` says so. Pieces
+/// that another one holds are left out, and so is what is thinner than a millimetre. Error::Budget beyond 20,000
+/// pieces, Error::Input where no piece is left, Error::Cancelled.
 Result<ConvexParts> convexParts(const derive::Derivation& derivation, const Model& model, Progress* progress);
 
 /// The pieces as boxes along the axes of their shapes. What isn't a box becomes up to five, one above the other, each

@@ -172,7 +172,8 @@ void ConvexContent::intersect(const ConvexContent& other) {
 
 /// Recursion follows the solid's text, which nests a few levels at most.
 ConvexContent convexSolid(const SolidValue& solid, const Scope& scope, derive::ShapeId shape, const Box3d& world,
-                          const derive::Footprints& footprints, std::span<const field::SampledGridPtr> meshes, Roundness roundness) {
+                          const derive::Footprints& footprints, std::span<const field::SampledGridPtr> meshes,
+                          Roundness roundness) {
     ConvexContent content;
     const auto addPart = [&](const ConvexPart& part) {
         if (auto piece = ConvexPolyhedron::of(part, world)) content.add(std::move(*piece), shape);
@@ -182,8 +183,8 @@ ConvexContent convexSolid(const SolidValue& solid, const Scope& scope, derive::S
         content = convexSolid(solid.parts[0], scope, shape, world, footprints, meshes, roundness);
         for (size_t i = 1; i < solid.parts.size(); ++i) {
             const bool cuts = solid.op == Operator::Difference;
-            ConvexContent part =
-                convexSolid(solid.parts[i], scope, shape, world, footprints, meshes, cuts ? Roundness::Coarse : roundness);
+            ConvexContent part = convexSolid(solid.parts[i], scope, shape, world, footprints, meshes,
+                                             cuts ? Roundness::Coarse : roundness);
             content.unknown |= part.unknown;
             if (cuts)
                 content.subtract(part);
@@ -196,8 +197,9 @@ ConvexContent convexSolid(const SolidValue& solid, const Scope& scope, derive::S
     }
     if (solid.kind == rules::Solid::Kind::Morph && (solid.amount <= 0 || solid.amount >= 1))
         return convexSolid(solid.parts[solid.amount >= 1 ? 1 : 0], scope, shape, world, footprints, meshes, roundness);
-    const bool overPlan = solid.primitive && (solid.primitive->plan == field::PlanUse::OwnHeight ||
-                                              (solid.primitive->plan != field::PlanUse::None && scope.footprint != derive::none));
+    const bool overPlan =
+        solid.primitive && (solid.primitive->plan == field::PlanUse::OwnHeight ||
+                            (solid.primitive->plan != field::PlanUse::None && scope.footprint != derive::none));
     if (overPlan) {
         if (auto standing = convexOverPlan(solid, scope, shape, world, footprints)) return *std::move(standing);
         content.unknown = true;

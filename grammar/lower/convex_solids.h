@@ -29,7 +29,7 @@ struct ConvexContent {
 
 /// The solid as a union of convex polyhedra, cut to `world`; coarse for one that is cut away.
 ConvexContent convexSolid(const derive::SolidValue& solid, const derive::Scope& scope, derive::ShapeId shape,
-                          const Box3d& world, const derive::Footprints& footprints, std::span<const field::SampledGridPtr> meshes,
-                          field::convex::Roundness roundness);
+                          const Box3d& world, const derive::Footprints& footprints,
+                          std::span<const field::SampledGridPtr> meshes, field::convex::Roundness roundness);
 
 }  // namespace sgm::lower

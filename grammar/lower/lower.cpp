@@ -25,7 +25,9 @@ std::vector<bool> Lowering::plainSums() const {
 }
 
 /// True when the shape's terms belong to its parent's sum.
-bool Lowering::pours(ShapeId id) const { return tree_.shapes[id].parent != none && isSum(tree_.shapes[id]) && plain_[id]; }
+bool Lowering::pours(ShapeId id) const {
+    return tree_.shapes[id].parent != none && isSum(tree_.shapes[id]) && plain_[id];
+}
 
 /// Who owns surface: the part is made when it is first asked for.
 OriginId Lowering::ownerOf(ShapeId id) {
@@ -52,7 +54,8 @@ Owned Lowering::take(Content& content) {
     if (content.cuts.terms.empty()) return stands;
     const double blend_m = content.cuts.blend_m;
     if (blend_m <= 0) return {field::difference(stands, takeParts(content.cuts)), 0};
-    const field::Num radius = model_.graph.slot({content.cuts.blendKey, hashText("blend")}, static_cast<float>(blend_m));
+    const field::Num radius =
+        model_.graph.slot({content.cuts.blendKey, hashText("blend")}, static_cast<float>(blend_m));
     const field::Field cut = field::difference(stands, content.cuts.terms, radius, blend_m);
     content.cuts = {};
     return {cut, 0};
@@ -65,9 +68,13 @@ void Lowering::settle(Content& content) {
 
 Owned Lowering::takeParts(Parts& content) {
     Owned result{field::nothing(model_.graph), 0};
-    if (content.terms.size() == 1) result = content.terms[0];
+    if (content.terms.size() == 1)
+        result = content.terms[0];
     else if (content.blend_m > 0)
-        result.field = field::blend(model_.graph, content.terms, model_.graph.slot({content.blendKey, hashText("blend")}, static_cast<float>(content.blend_m)), content.blend_m);
+        result.field =
+            field::blend(model_.graph, content.terms,
+                         model_.graph.slot({content.blendKey, hashText("blend")}, static_cast<float>(content.blend_m)),
+                         content.blend_m);
     else if (!content.terms.empty())
         result.field = field::sum(model_.graph, content.terms);
     content.terms.clear();
@@ -107,16 +114,18 @@ void Lowering::join(Content& content, ShapeId id, Owned part) {
         return;
     }
     const Owned stands = take(content);
-    if (s.op == Operator::Intersection) content.terms = {{field::intersection(stands, part), 0}};
-    else if (empty) content.terms = {part};
+    if (s.op == Operator::Intersection)
+        content.terms = {{field::intersection(stands, part), 0}};
+    else if (empty)
+        content.terms = {part};
     else {
         const field::Num t = model_.graph.slot({s.key, hashText("by")}, static_cast<float>(s.amount));
         content.terms = {{field::morph(stands.field, part.field, t, s.amount, ownerOf(id)), ownerOf(id)}};
     }
 }
 
-/// A cladding holds its content twice, so that cladding in cladding grows with 2 to the power of its depth. A few levels
-/// are fine, and one level however large its content is.
+/// A cladding holds its content twice, so that cladding in cladding grows with 2 to the power of its depth. A few
+/// levels are fine, and one level however large its content is.
 bool Lowering::cladsTooMuch() const {
     constexpr size_t always = 100'000, share = 3;
     return cladNodes_ > always + share * (model_.graph.nodeCount() - cladNodes_);
@@ -143,7 +152,9 @@ Owned Lowering::dressed(Owned part, ShapeId id) {
     }
     const derive::Scope box = tree_.contentBox(id);
     const size_t before = model_.graph.nodeCount();
-    const Owned whole{lowerClad(model_.graph, {part.field, part.origin, ornament}, clad.ornament, box, combine(tree_.shapes[id].key, hashText("clad"))), 0};
+    const Owned whole{lowerClad(model_.graph, {part.field, part.origin, ornament}, clad.ornament, box,
+                                combine(tree_.shapes[id].key, hashText("clad"))),
+                      0};
     cladNodes_ += model_.graph.nodeCount() - before;
     return whole;
 }
@@ -156,10 +167,11 @@ Owned Lowering::displaced(Owned part, ShapeId id) {
     for (size_t i = 0; i < x->displace.size(); ++i) {
         const derive::Displacement& n = x->displace[i];
         const uint64_t key = combine(s.key, i);
-        part.field = field::displace(part.field, model_.graph.position(), n.fbm ? field::Noise::Fbm : field::Noise::Billow,
-                                     model_.graph.slot({key, hashText("displace.amplitude")}, static_cast<float>(n.amplitude_m)), n.amplitude_m,
-                                     model_.graph.slot({key, hashText("displace.frequency")}, static_cast<float>(n.frequency)), n.frequency, n.octaves,
-                                     static_cast<uint32_t>(key >> 32));
+        part.field = field::displace(
+            part.field, model_.graph.position(), n.fbm ? field::Noise::Fbm : field::Noise::Billow,
+            model_.graph.slot({key, hashText("displace.amplitude")}, static_cast<float>(n.amplitude_m)), n.amplitude_m,
+            model_.graph.slot({key, hashText("displace.frequency")}, static_cast<float>(n.frequency)), n.frequency,
+            n.octaves, static_cast<uint32_t>(key >> 32));
     }
     if (isBounded && !part.field.bounds.finite() && boundless_ == none) boundless_ = id;
     return part;
@@ -168,7 +180,9 @@ Owned Lowering::displaced(Owned part, ShapeId id) {
 /// The shape's own solid.
 Owned Lowering::solidOf(ShapeId id) {
     const Shape& s = tree_.shapes[id];
-    return {lowerSolid(model_.graph, *tree_.solidOf(id), s.scope, s.key, tree_.shapes[turnedAt_[id]].key, tree_.footprints, d_.grammar->meshes), ownerOf(id)};
+    return {lowerSolid(model_.graph, *tree_.solidOf(id), s.scope, s.key, tree_.shapes[turnedAt_[id]].key,
+                       tree_.footprints, d_.grammar->meshes),
+            ownerOf(id)};
 }
 
 void Lowering::enter(ShapeId id) {
@@ -187,8 +201,10 @@ void Lowering::leave(ShapeId id) {
     Owned part = displaced(dressed(whole(open_.back(), id), id), id);
     open_.pop_back();
     if (keeps_) known_[id] = part;
-    if (id == 0) model_.field = field::sum(model_.graph, std::span(&part, 1));  // one part alone keeps its owner
-    else if (!open_.empty()) hand(id, part);
+    if (id == 0)
+        model_.field = field::sum(model_.graph, std::span(&part, 1));  // one part alone keeps its owner
+    else if (!open_.empty())
+        hand(id, part);
 }
 
 /// All that the node holds; a large plain sum is kept.
@@ -203,8 +219,10 @@ Owned Lowering::whole(Content& content, ShapeId id) {
 
 /// Gives a finished child to the node that is open.
 void Lowering::hand(ShapeId id, const Owned& part) {
-    if (!part.field.bounds.empty()) join(open_.back(), id, part);
-    else if (tree_.shapes[id].op == Operator::Intersection) take(open_.back());  // nothing is shared with ε
+    if (!part.field.bounds.empty())
+        join(open_.back(), id, part);
+    else if (tree_.shapes[id].op == Operator::Intersection)
+        take(open_.back());  // nothing is shared with ε
 }
 
 /// Enters and leaves the shapes below `top`, and itself; the second time parts below it are known.
@@ -212,10 +230,13 @@ Status Lowering::walk(ShapeId top, Progress* progress) {
     uint32_t visited = 0;
     for (ShapeId s = top;;) {
         const bool known = again_ && s != top && !pours(s);
-        if (known) hand(s, known_[s]);
-        else enter(s);
+        if (known)
+            hand(s, known_[s]);
+        else
+            enter(s);
         if (progress) progress->tick();
-        if (++visited % 256 == 0 && cancelled(progress)) return Error{Error::Kind::Cancelled, "cancelled while lowering"};
+        if (++visited % 256 == 0 && cancelled(progress))
+            return Error{Error::Kind::Cancelled, "cancelled while lowering"};
         if (!known && tree_.shapes[s].firstChild != none) {
             s = tree_.shapes[s].firstChild;
             continue;
@@ -249,17 +270,22 @@ Status Lowering::run(Progress* progress) {
     model_.shapeOf.push_back(none);
     if (const Status done = walk(0, progress); !done.ok()) return done;
     if (refused_ != none)
-        return Error{Error::Kind::Budget, fmt::format("{}'{}' is cladding in cladding in cladding: each level doubles the work; clad the parts, or fewer levels",
-                                                      syntax::placeText(tree_.shapes[refused_].span), tree_.path(refused_))};
+        return Error{Error::Kind::Budget,
+                     fmt::format("{}'{}' is cladding in cladding in cladding: each level doubles the work; clad the "
+                                 "parts, or fewer levels",
+                                 syntax::placeText(tree_.shapes[refused_].span), tree_.path(refused_))};
     if (boundless_ != none)
-        return Error{Error::Kind::Input, fmt::format("{}'{}': so much noise lies on noise that nobody can tell how far it reaches; displace less often, or by less",
-                                                     syntax::placeText(tree_.shapes[boundless_].span), tree_.path(boundless_))};
+        return Error{Error::Kind::Input,
+                     fmt::format("{}'{}': so much noise lies on noise that nobody can tell how far it reaches; "
+                                 "displace less often, or by less",
+                                 syntax::placeText(tree_.shapes[boundless_].span), tree_.path(boundless_))};
     nameTheWhole();
     mergeMaterials();
     const bool nothing = model_.field.bounds.empty();
     if (!nothing && model_.field.bounds.finite()) return Done{};
     const std::string path = tree_.path(0);
-    const std::string what = nothing ? fmt::format("nothing solid is left of '{}'", path) : fmt::format("'{}' has no end: a half-space may only cut", path);
+    const std::string what = nothing ? fmt::format("nothing solid is left of '{}'", path)
+                                     : fmt::format("'{}' has no end: a half-space may only cut", path);
     return Error{Error::Kind::Input, syntax::placeText(tree_.shapes[0].span) + what};
 }
 

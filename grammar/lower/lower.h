@@ -1,7 +1,7 @@
 // Shape tree to field.
 // Enters: a Derivation. Leaves: a Model: graph, field and the provenance behind its origins. Assumes a finite tree.
-// The field of a node is its own solid combined with its children in order, so a difference cuts what its own node holds
-// so far and nothing else. Slots are keyed by (shape key, attribute).
+// The field of a node is its own solid combined with its children in order, so a difference cuts what its own node
+// holds so far and nothing else. Slots are keyed by (shape key, attribute).
 #pragma once
 
 #include "grammar/derive/derive.h"
@@ -12,8 +12,8 @@ namespace sgm::lower {
 
 struct Model {
     field::Graph graph;
-    field::Field field;      ///< a node of `graph`
-    Provenance provenance;   ///< parts[id] for every origin in the field
+    field::Field field;                    ///< a node of `graph`
+    Provenance provenance;                 ///< parts[id] for every origin in the field
     std::vector<derive::ShapeId> shapeOf;  ///< by OriginId; none for 0
 };
 

@@ -1,6 +1,6 @@
 // The walk from shapes to fields, and what it leaves for a second one.
-// Enters: a derivation. Leaves: graph, field and parts in the model. Assumes parents before their children. The doors are
-// lower.h, for a model once, and relowering.h, for one that follows its derivation.
+// Enters: a derivation. Leaves: graph, field and parts in the model. Assumes parents before their children. The doors
+// are lower.h, for a model once, and relowering.h, for one that follows its derivation.
 #pragma once
 
 #include <set>
@@ -32,7 +32,8 @@ struct KeptSum {
     field::Num value;
 };
 
-/// What a node holds so far. Cuts in a row are gathered, for a − b − c = a − (b + c) and one sum of many parts is cheap.
+/// What a node holds so far. Cuts in a row are gathered, for a − b − c = a − (b + c) and one sum of many parts is
+/// cheap.
 struct Content : Parts {
     ShapeId shape = none;       ///< the node whose content this is
     std::vector<ShapeId> from;  ///< who gave each term, while they are a plain sum
@@ -48,8 +49,8 @@ public:
         : d_(d), tree_(d.tree), model_(model), materials_(d), owners_(d.tree.shapes.size()), keeps_(keeps) {}
 
     Status run(Progress* progress);
-    /// After `run`, when the derivation changed in place: the parts that hold one of these shapes, again. False where the
-    /// field has another structure now; then the model is of no use any more.
+    /// After `run`, when the derivation changed in place: the parts that hold one of these shapes, again. False where
+    /// the field has another structure now; then the model is of no use any more.
     bool again(std::span<const ShapeId> changed);
 
 private:
@@ -88,7 +89,7 @@ private:
     Materials materials_;
     std::vector<Content> open_;
     std::vector<ShapeId> turnedAt_;
-    std::vector<bool> plain_;  ///< by shape: its content is nothing but a sum
+    std::vector<bool> plain_;       ///< by shape: its content is nothing but a sum
     std::vector<OriginId> owners_;  ///< by shape; 0: not asked for
     size_t cladNodes_ = 0;          ///< of the graph, made for cladding
     ShapeId refused_ = none;        ///< the first shape whose cladding was one too much
@@ -96,11 +97,11 @@ private:
 
     // For a second run.
     const bool keeps_;
-    bool again_ = false;            ///< parts below the top of a walk are known
-    std::vector<bool> joins_;       ///< by shape: isSum
-    std::vector<Owned> known_;      ///< by shape: the part it is, unless it pours
+    bool again_ = false;                         ///< parts below the top of a walk are known
+    std::vector<bool> joins_;                    ///< by shape: isSum
+    std::vector<Owned> known_;                   ///< by shape: the part it is, unless it pours
     std::unordered_map<ShapeId, KeptSum> sums_;  ///< by the shape whose content it is
-    std::vector<uint32_t> termOf_;  ///< by shape: its place among the terms of a kept sum, or none
+    std::vector<uint32_t> termOf_;               ///< by shape: its place among the terms of a kept sum, or none
 };
 
 }  // namespace sgm::lower

@@ -1,6 +1,6 @@
 // Which material a shape's surface has: its own, or inherited down the tree.
-// Enters: shapes in tree order. Leaves: indices into Derivation::materials. Assumes `enter` is called for a parent before
-// its children and for elder siblings' subtrees before the younger.
+// Enters: shapes in tree order. Leaves: indices into Derivation::materials. Assumes `enter` is called for a parent
+// before its children and for elder siblings' subtrees before the younger.
 #pragma once
 
 #include <vector>
@@ -14,17 +14,19 @@ public:
     explicit Materials(const derive::Derivation& derivation)
         : tree_(derivation.tree), own_(tree_.shapes.size(), 0), first_(tree_.shapes.size(), derive::none) {}
 
-    /// Its own material where one is named, else its parent's; a cutter that names none takes that of the first solid it
-    /// cuts, so that the wall of the cut looks like its host.
+    /// Its own material where one is named, else its parent's; a cutter that names none takes that of the first solid
+    /// it cuts, so that the wall of the cut looks like its host.
     void enter(derive::ShapeId id) {
         const derive::Shape& s = tree_.shapes[id];
-        if (s.material != derive::none) own_[id] = s.material;
+        if (s.material != derive::none)
+            own_[id] = s.material;
         else if (s.parent != derive::none) {
             const bool cuts = s.op == rules::Operator::Difference && first_[s.parent] != derive::none;
             own_[id] = cuts ? first_[s.parent] : own_[s.parent];
         }
         if (s.solid == derive::none) return;
-        for (derive::ShapeId a = id; a != derive::none && first_[a] == derive::none; a = tree_.shapes[a].parent) first_[a] = own_[id];
+        for (derive::ShapeId a = id; a != derive::none && first_[a] == derive::none; a = tree_.shapes[a].parent)
+            first_[a] = own_[id];
     }
     uint32_t of(derive::ShapeId id) const { return own_[id]; }
 

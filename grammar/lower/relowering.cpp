@@ -7,7 +7,9 @@
 namespace sgm::lower {
 namespace {
 
-bool sameNode(const Owned& a, const Owned& b) { return a.field.value.id() == b.field.value.id() && a.origin == b.origin; }
+bool sameNode(const Owned& a, const Owned& b) {
+    return a.field.value.id() == b.field.value.id() && a.origin == b.origin;
+}
 
 bool sameReach(const field::Field& a, const field::Field& b) {
     return a.bounds == b.bounds && a.lipschitz == b.lipschitz && a.growth == b.growth;
@@ -61,7 +63,8 @@ bool Lowering::againPart(ShapeId id, Dirty& dirty) {
 
 bool Lowering::again(std::span<const ShapeId> changed) {
     // What dresses a shape hangs on the boxes of all below.
-    if (std::any_of(tree_.extras.begin(), tree_.extras.end(), [](const derive::Extras& x) { return !x.clad.empty(); })) return false;
+    if (std::any_of(tree_.extras.begin(), tree_.extras.end(), [](const derive::Extras& x) { return !x.clad.empty(); }))
+        return false;
     again_ = true;
     findTurns();
     open_.clear();
@@ -80,7 +83,8 @@ bool Lowering::again(std::span<const ShapeId> changed) {
     }
     poseTheWhole();
     const Box3f& bounds = model_.field.bounds;
-    return model_.graph.nodeCount() == nodes && model_.provenance.parts.size() == parts && !bounds.empty() && bounds.finite();
+    return model_.graph.nodeCount() == nodes && model_.provenance.parts.size() == parts && !bounds.empty() &&
+           bounds.finite();
 }
 
 Relowering::Relowering() = default;

@@ -20,11 +20,13 @@ public:
 
     /// Lowers from the start; errors as of `lower`, after which nothing is kept.
     Status startOver(const derive::Derivation& derivation, Progress* progress);
-    /// The same after `changed` shapes of that derivation got other numbers (derive::Regrowth): starts over where it must.
+    /// The same after `changed` shapes of that derivation got other numbers (derive::Regrowth): starts over where it
+    /// must.
     Status follow(const derive::Derivation& derivation, std::span<const derive::ShapeId> changed, Progress* progress);
     /// Of the last good call; changes in place with the next one.
     Model& model() const { return *model_; }
-    /// True when the last call started over; else the graph has the same nodes and slots as before, and parts their ids.
+    /// True when the last call started over; else the graph has the same nodes and slots as before, and parts their
+    /// ids.
     bool whole() const { return whole_; }
 
 private:

@@ -112,7 +112,8 @@ Pending Collector::primitive(const SolidValue& value, ShapeId id) {
         return inexact(emptySolid(), id, fmt::format("is a fractal ({}): no solid is exactly that", name));
     if (name == "mesh")
         return inexact(emptySolid(), id, "is a mesh from a file, of which the model knows samples alone");
-    if (value.primitive->plan == field::PlanUse::OwnHeight || (value.primitive->plan != field::PlanUse::None && scope.footprint != none))
+    if (value.primitive->plan == field::PlanUse::OwnHeight ||
+        (value.primitive->plan != field::PlanUse::None && scope.footprint != none))
         return overPlan(value, id);
     if (name == "block") return single(leaf("cube", {}, scope, id));
     std::vector<double> arguments;
@@ -165,9 +166,11 @@ uint32_t Collector::risen(const plan::Formula& formula, const PlanRise& rise, Sh
 
 Pending Collector::overPlan(const SolidValue& value, ShapeId id) {
     const auto planes = planesOver(value, tree_.shapes[id].scope, tree_.footprints);
-    if (!planes) return inexact(emptySolid(), id, fmt::format("is a {}, which isn't written as planes", value.primitive->name));
+    if (!planes)
+        return inexact(emptySolid(), id, fmt::format("is a {}, which isn't written as planes", value.primitive->name));
     const uint32_t outer = risen(planes->formula, planes->outer, id);
-    return single(planes->hollow ? node({Op::Difference, 0, {outer, risen(planes->formula, *planes->hollow, id)}}) : outer);
+    return single(planes->hollow ? node({Op::Difference, 0, {outer, risen(planes->formula, *planes->hollow, id)}})
+                                 : outer);
 }
 
 /// Not as a content of shapes: what is cut from nothing stays nothing, and what cuts may be nothing.

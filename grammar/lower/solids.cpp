@@ -47,13 +47,15 @@ Argument numbersOf(const field::PrimitiveParameter& parameter, const rules::Valu
 Argument argumentOf(Graph& graph, const field::PrimitiveParameter& parameter, const rules::Value& value, uint64_t key) {
     Argument a = numbersOf(parameter, value);
     const uint64_t attribute = hashText(parameter.name);
-    for (size_t i = 0; i < componentsOf(parameter.kind); ++i) a.node[i] = graph.slot({key, combine(attribute, i)}, static_cast<float>(a.value[i]));
+    for (size_t i = 0; i < componentsOf(parameter.kind); ++i)
+        a.node[i] = graph.slot({key, combine(attribute, i)}, static_cast<float>(a.value[i]));
     return a;
 }
 
 std::vector<Argument> argumentsOf(Graph& graph, const SolidValue& solid, uint64_t key) {
     std::vector<Argument> arguments;
-    for (size_t i = 0; i < solid.args.size(); ++i) arguments.push_back(argumentOf(graph, solid.primitive->parameters[i], solid.args[i], key));
+    for (size_t i = 0; i < solid.args.size(); ++i)
+        arguments.push_back(argumentOf(graph, solid.primitive->parameters[i], solid.args[i], key));
     return arguments;
 }
 
@@ -77,17 +79,22 @@ Field combination(Graph& graph, Field a, Field b, Operator op) {
 /// Recursion follows the solid's text, which nests a few levels at most.
 Field build(Graph& graph, const SolidValue& solid, const Frame& frame, uint64_t key) {
     switch (solid.kind) {
-        case rules::Solid::Kind::Primitive: return primitive(graph, solid, frame, key);
+        case rules::Solid::Kind::Primitive:
+            return primitive(graph, solid, frame, key);
         case rules::Solid::Kind::Morph: {
-            const Field a = build(graph, solid.parts[0], frame, combine(key, 0)), b = build(graph, solid.parts[1], frame, combine(key, 1));
-            return field::morph(a, b, graph.slot({key, hashText("morph")}, static_cast<float>(solid.amount)), solid.amount, 0);
+            const Field a = build(graph, solid.parts[0], frame, combine(key, 0)),
+                        b = build(graph, solid.parts[1], frame, combine(key, 1));
+            return field::morph(a, b, graph.slot({key, hashText("morph")}, static_cast<float>(solid.amount)),
+                                solid.amount, 0);
         }
         case rules::Solid::Kind::Combination: {
             Field f = build(graph, solid.parts[0], frame, combine(key, 0));
-            for (size_t i = 1; i < solid.parts.size(); ++i) f = combination(graph, f, build(graph, solid.parts[i], frame, combine(key, i)), solid.op);
+            for (size_t i = 1; i < solid.parts.size(); ++i)
+                f = combination(graph, f, build(graph, solid.parts[i], frame, combine(key, i)), solid.op);
             return f;
         }
-        case rules::Solid::Kind::Nil: break;
+        case rules::Solid::Kind::Nil:
+            break;
     }
     return field::nothing(graph);
 }
@@ -97,10 +104,17 @@ bool standsOverPlan(const SolidValue& solid) {
            std::any_of(solid.parts.begin(), solid.parts.end(), standsOverPlan);
 }
 
-Frame frameOf(Graph& graph, const derive::Scope& scope, uint64_t key, uint64_t rotationKey, std::span<const field::SampledGridPtr> meshes) {
+Frame frameOf(Graph& graph, const derive::Scope& scope, uint64_t key, uint64_t rotationKey,
+              std::span<const field::SampledGridPtr> meshes) {
     const Vec3d h = scope.half();
-    const auto half = [&](std::string_view name, double value) { return graph.slot({key, hashText(name)}, static_cast<float>(value)); };
-    return {field::toLocal(graph.position(), {scope.centre, scope.axes}, key, rotationKey), {half("size.x", h.x), half("size.y", h.y), half("size.z", h.z)}, scope, meshes, nullptr};
+    const auto half = [&](std::string_view name, double value) {
+        return graph.slot({key, hashText(name)}, static_cast<float>(value));
+    };
+    return {field::toLocal(graph.position(), {scope.centre, scope.axes}, key, rotationKey),
+            {half("size.x", h.x), half("size.y", h.y), half("size.z", h.z)},
+            scope,
+            meshes,
+            nullptr};
 }
 
 }  // namespace
@@ -110,12 +124,14 @@ Field lowerSolid(Graph& graph, const SolidValue& solid, const derive::Scope& sco
     Frame frame = frameOf(graph, scope, key, rotationKey, meshes);
     if (scope.footprint == derive::none || !standsOverPlan(solid)) return build(graph, solid, frame, key);
     const plan::Footprint footprint = footprints.inMetres(scope.footprint, scope.half());
-    const field::PlanField plan(footprint, footprints[scope.footprint].formula, frame.p, combine(key, hashText("plan")));
+    const field::PlanField plan(footprint, footprints[scope.footprint].formula, frame.p,
+                                combine(key, hashText("plan")));
     frame.plan = &plan;
     return build(graph, solid, frame, key);
 }
 
-Field lowerClad(Graph& graph, const field::Clad& what, const SolidValue& ornament, const derive::Scope& scope, uint64_t key) {
+Field lowerClad(Graph& graph, const field::Clad& what, const SolidValue& ornament, const derive::Scope& scope,
+                uint64_t key) {
     const Frame frame = frameOf(graph, scope, key, key, {});
     const std::vector<Argument> arguments = argumentsOf(graph, ornament, key);
     return field::clad({frame.p, frame.half, scope.half(), arguments}, what, scope.axes.y);
@@ -127,7 +143,8 @@ std::optional<field::FacadeCell> facadeCellAt(const derive::ShapeTree& tree, der
         if (!x || x->clad.empty()) continue;
         const SolidValue& ornament = x->clad[0].ornament;
         std::vector<Argument> arguments;
-        for (size_t i = 0; i < ornament.args.size(); ++i) arguments.push_back(numbersOf(ornament.primitive->parameters[i], ornament.args[i]));
+        for (size_t i = 0; i < ornament.args.size(); ++i)
+            arguments.push_back(numbersOf(ornament.primitive->parameters[i], ornament.args[i]));
         const derive::Scope box = tree.contentBox(shape);
         return field::facadeCell(arguments, box.half(), box.axes.transposed() * (p - box.centre));
     }

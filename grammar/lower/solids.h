@@ -1,5 +1,6 @@
 // One evaluated solid to a field in the object's frame.
-// Enters: a SolidValue, the scope it fills, the stream key that names its slots. Leaves: a Field. Assumes checked values.
+// Enters: a SolidValue, the scope it fills, the stream key that names its slots. Leaves: a Field. Assumes checked
+// values.
 #pragma once
 
 #include <optional>
@@ -12,14 +13,17 @@ namespace sgm::lower {
 
 /// Slots: (key, "size.x" …) for half-sizes, (key, parameter name) for the solid's own numbers, "morph" for a share;
 /// parts of morphs and combinations add their position to the key. Slots of a
-/// rotation are under `rotationKey`: parts of a building that share its axes share them. `footprints` are the tree's, `meshes`
-/// the grammar's.
+/// rotation are under `rotationKey`: parts of a building that share its axes share them. `footprints` are the tree's,
+/// `meshes` the grammar's.
 field::Field lowerSolid(field::Graph& graph, const derive::SolidValue& solid, const derive::Scope& scope, uint64_t key,
-                        uint64_t rotationKey, const derive::Footprints& footprints, std::span<const field::SampledGridPtr> meshes);
+                        uint64_t rotationKey, const derive::Footprints& footprints,
+                        std::span<const field::SampledGridPtr> meshes);
 /// `what` dressed with an ornament that lies in `scope`.
-field::Field lowerClad(field::Graph& graph, const field::Clad& what, const derive::SolidValue& ornament, const derive::Scope& scope, uint64_t key);
+field::Field lowerClad(field::Graph& graph, const field::Clad& what, const derive::SolidValue& ornament,
+                       const derive::Scope& scope, uint64_t key);
 
-/// In which cell of its facade a place on a shape is: that of the nearest clad shape, itself or above; none without one.
+/// In which cell of its facade a place on a shape is: that of the nearest clad shape, itself or above; none without
+/// one.
 std::optional<field::FacadeCell> facadeCellAt(const derive::ShapeTree& tree, derive::ShapeId shape, Vec3d p);
 
 }  // namespace sgm::lower

@@ -83,7 +83,9 @@ struct Candidate {
 Box3f boxOf(const derive::Scope& scope) {
     Box3f box;
     for (int corner = 0; corner < 8; ++corner)
-        box = hull(box, scope.point(Vec3d{corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0} * (1.1 * lineReach))
+        box = hull(box, scope
+                            .point(Vec3d{corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0} *
+                                   (1.1 * lineReach))
                             .as<float>());
     return box;
 }
@@ -109,8 +111,8 @@ public:
     Prober(const eval::Tape& tape, const Presence& presence, float cell_m)
         : tape_(tape), presence_(presence), cell_m_(static_cast<double>(cell_m)) {}
 
-    /// Looks for parts that lie beside each other. The tape is shortened to all, to halves of them, and so on, so that none is
-    /// asked with the whole tape.
+    /// Looks for parts that lie beside each other. The tape is shortened to all, to halves of them, and so on, so that
+    /// none is asked with the whole tape.
     void probe(std::span<Candidate> parts, size_t depth = 0) {
         Box3f box;
         for (const Candidate& c : parts) box = hull(box, boxOf(*c.scope));
@@ -239,7 +241,8 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
     const size_t groups = (thin.size() + partsPerGroup - 1) / partsPerGroup;
     parallelFor(groups, threads, progress, [&](size_t group, int worker) {
         const std::span<Candidate> all(thin);
-        const auto of = all.subspan(group * partsPerGroup, std::min(partsPerGroup, thin.size() - group * partsPerGroup));
+        const auto of =
+            all.subspan(group * partsPerGroup, std::min(partsPerGroup, thin.size() - group * partsPerGroup));
         probers[static_cast<size_t>(worker)].probe(of);
         for (size_t i = 0; i < of.size(); ++i) tick(progress);
     });
@@ -247,7 +250,8 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
     std::sort(thin.begin(), thin.end(), [](const Candidate& a, const Candidate& b) { return a.part < b.part; });
     std::vector<ThinPart> found;
     for (const Candidate& c : thin)
-        if (c.missing > leastMissing) found.push_back({c.part, minComponent(c.scope->size), cellThatHolds(*c.scope), c.missing});
+        if (c.missing > leastMissing)
+            found.push_back({c.part, minComponent(c.scope->size), cellThatHolds(*c.scope), c.missing});
     return found;
 }
 

@@ -15,8 +15,9 @@ using Written = syntax::Expr;
 namespace {
 
 /// What other programs call faces.
-constexpr std::pair<std::string_view, std::string_view> sides[] = {{"top", "+y"},   {"up", "+y"},     {"bottom", "-y"}, {"down", "-y"}, {"right", "+x"},
-                                                                   {"left", "-x"}, {"front", "+z"}, {"back", "-z"},   {"middle", "centre"}};
+constexpr std::pair<std::string_view, std::string_view> sides[] = {
+    {"top", "+y"},  {"up", "+y"},    {"bottom", "-y"}, {"down", "-y"},      {"right", "+x"},
+    {"left", "-x"}, {"front", "+z"}, {"back", "-z"},   {"middle", "centre"}};
 
 }  // namespace
 
@@ -49,7 +50,8 @@ Expr Checker::joint(Place& place, const Written& e) {
 }
 
 /// Operations that speak of another one come last: it may stand behind them.
-std::vector<Attribute> Checker::attributes(Place& place, Element& element, const std::vector<syntax::Attribute>& written) {
+std::vector<Attribute> Checker::attributes(Place& place, Element& element,
+                                           const std::vector<syntax::Attribute>& written) {
     std::vector<Attribute> result;
     OperationChecker checker(*this, place, element, result);
     std::vector<const Operation*> seen;

@@ -17,8 +17,7 @@ using Written = syntax::Expr;
 
 bool isNil(const Body& body) {
     return body.siblings.size() == 1 && body.siblings[0].size() == 1 &&
-           body.siblings[0][0].kind == Element::Kind::Shape &&
-           body.siblings[0][0].content.solid() &&
+           body.siblings[0][0].kind == Element::Kind::Shape && body.siblings[0][0].content.solid() &&
            body.siblings[0][0].content.solid()->kind == Solid::Kind::Nil;
 }
 
@@ -80,8 +79,8 @@ void Checker::content(Place& place, const Written& e, Element& out) {
     out.content = Content(std::move(made));
 }
 
-/// The content operation that an element consists of; null where there is none or, with a message, where it stands beside a
-/// shape.
+/// The content operation that an element consists of; null where there is none or, with a message, where it stands
+/// beside a shape.
 const syntax::Attribute* Checker::contentOperation(const syntax::Element& written) {
     const bool alone = written.kind == syntax::Element::Kind::Shape && !written.solid;
     const syntax::Attribute* found = nullptr;

@@ -21,7 +21,9 @@ namespace {
 /// The first line of the declaration around a span: the last one that doesn't begin with a blank.
 uint32_t declarationOf(SourceSpan span) {
     uint32_t line = span.source->place(span.begin).line;
-    while (line > 1 && (span.source->line(line).empty() || std::isspace(static_cast<unsigned char>(span.source->line(line)[0])))) --line;
+    while (line > 1 &&
+           (span.source->line(line).empty() || std::isspace(static_cast<unsigned char>(span.source->line(line)[0]))))
+        --line;
     return line;
 }
 
@@ -36,7 +38,8 @@ syntax::Diagnostics withoutEchoes(const syntax::Diagnostics& found, const syntax
     syntax::Diagnostics kept;
     for (const syntax::Diagnostic& d : found.all()) {
         if (echoes(d)) continue;
-        d.severity == syntax::Severity::Error ? kept.error(d.span, d.message, d.mend) : kept.warning(d.span, d.message, d.mend);
+        d.severity == syntax::Severity::Error ? kept.error(d.span, d.message, d.mend)
+                                              : kept.warning(d.span, d.message, d.mend);
     }
     return kept;
 }
@@ -60,7 +63,8 @@ void sortInto(syntax::Diagnostics& out, const syntax::Diagnostics& found,
 }
 
 /// Everything behind the names, and what follows from it all.
-void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax::Diagnostics& unread, syntax::Diagnostics& diagnostics) {
+void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax::Diagnostics& unread,
+          syntax::Diagnostics& diagnostics) {
     Checker checker(grammar, diagnostics, load);
     checker.excuse(unread, files.missing);
     const auto each = [&](void (Checker::*step)(const syntax::Ast&)) {
@@ -101,8 +105,8 @@ std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load,
     return diagnostics.hasErrors() ? nullptr : grammar;
 }
 
-std::shared_ptr<const Grammar> load(syntax::SourcePtr source, const syntax::OperationTable& operations, const Loader& load,
-                                    syntax::Diagnostics& diagnostics) {
+std::shared_ptr<const Grammar> load(syntax::SourcePtr source, const syntax::OperationTable& operations,
+                                    const Loader& load, syntax::Diagnostics& diagnostics) {
     return check(syntax::parse(std::move(source), operations, diagnostics), load, diagnostics);
 }
 

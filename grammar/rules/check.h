@@ -15,16 +15,18 @@ namespace sgm::rules {
 /// Reads what a grammar names: files are read by cli/ and viewer/ only. Both give null with `why` set where they can't.
 struct Loader {
     using Use = std::function<syntax::SourcePtr(const std::string& name, const syntax::Source& from, std::string& why)>;
-    using Mesh = std::function<field::SampledGridPtr(const std::string& name, const syntax::Source& from, std::string& why)>;
-    using Outlines = std::function<std::shared_ptr<const plan::Features>(const std::string& name, const syntax::Source& from, std::string& why)>;
+    using Mesh =
+        std::function<field::SampledGridPtr(const std::string& name, const syntax::Source& from, std::string& why)>;
+    using Outlines = std::function<std::shared_ptr<const plan::Features>(const std::string& name,
+                                                                         const syntax::Source& from, std::string& why)>;
 
     Loader() = default;
     /// One that reads grammars alone.
     template <class Fn>
     requires(std::is_constructible_v<Use, Fn>) Loader(Fn fn) : use(std::move(fn)) {}
 
-    /// The source behind `use "name"` of `from`. A file is known by its source's name(). Diagnostics point into the source:
-    /// whoever loads keeps it for as long as they are read.
+    /// The source behind `use "name"` of `from`. A file is known by its source's name(). Diagnostics point into the
+    /// source: whoever loads keeps it for as long as they are read.
     Use use;
     /// The file that a `use` would have to name for a terminal or rule of that name to be known, or "". May be empty.
     std::function<std::string(const std::string& name)> declares;
@@ -40,8 +42,8 @@ struct Loader {
 std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load, syntax::Diagnostics& diagnostics);
 
 /// parse + check of one source.
-std::shared_ptr<const Grammar> load(syntax::SourcePtr source, const syntax::OperationTable& operations, const Loader& load,
-                                    syntax::Diagnostics& diagnostics);
+std::shared_ptr<const Grammar> load(syntax::SourcePtr source, const syntax::OperationTable& operations,
+                                    const Loader& load, syntax::Diagnostics& diagnostics);
 
 /// Parses and checks "NAME=VALUE" text against a parameter (`--set`): type, unit, range, choices.
 Result<Value> parseValue(const Param& param, const std::string& text);

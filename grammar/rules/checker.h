@@ -185,18 +185,19 @@ private:
     std::set<std::string> withNames_;   ///< set by `with` somewhere
     std::set<std::string> jointNames_;  ///< declared by a terminal or a primitive
     std::set<std::string> excused_;
-    bool anythingExcused_ = false;   ///< a used file is missing, and nobody knows what it declares
+    bool anythingExcused_ = false;  ///< a used file is missing, and nobody knows what it declares
     Loader load_;
     std::map<std::pair<const syntax::Source*, std::string>, size_t> outlineFiles_;  ///< places in Grammar::outlines
     std::map<std::pair<const syntax::Source*, std::string>, size_t> files_;  ///< read so far: places in Grammar::meshes
-    std::set<std::string> unbuilt_;  ///< maps: named once, refused once
-    std::set<SymbolId> ruled_;       ///< have a rule
-    std::set<SymbolId> placed_;      ///< stand in a start, a body or behind a colon
+    std::set<std::string> unbuilt_;                                          ///< maps: named once, refused once
+    std::set<SymbolId> ruled_;                                               ///< have a rule
+    std::set<SymbolId> placed_;  ///< stand in a start, a body or behind a colon
     std::map<std::string, const syntax::TerminalDecl*> terminalDecls_;
     std::map<std::string, Solid> terminalSolids_;
     std::map<SymbolId, uint32_t> unnamedRules_;  ///< how many so far
     std::vector<std::string> terminalsInWork_;   ///< whose solids are being read: finds a = b, b = a
-    std::map<std::string, SourceSpan> seenParams_, seenTerminals_, seenRules_, seenStarts_, seenStyles_, seenDerives_, seenLsystems_;
+    std::map<std::string, SourceSpan> seenParams_, seenTerminals_, seenRules_, seenStarts_, seenStyles_, seenDerives_,
+        seenLsystems_;
 };
 
 }  // namespace sgm::rules

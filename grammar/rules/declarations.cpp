@@ -72,7 +72,8 @@ void Checker::parameter(const syntax::ParamDecl& decl) {
         diagnostics_.error(decl.value.span, fitted.error().message);
         brokenParams_.insert(params_.at(decl.name.text));
     } else if (param.value.integer && param.value.count == 1 && param.lo->num() == 0 && param.hi->num() == 1) {
-        diagnostics_.warning(decl.range->span, fmt::format("'{}' is a whole number, so it is 0 or 1 and nothing between", param.name),
+        diagnostics_.warning(decl.range->span,
+                             fmt::format("'{}' is a whole number, so it is 0 or 1 and nothing between", param.name),
                              "write '0..1.0' for a real number, or 'true' for a switch");
     }
 }
@@ -83,7 +84,8 @@ void Checker::usedDefaults(const syntax::Ast& ast) {
         for (const Setting& s : settings(use.settings)) {
             Param& p = grammar_.params[s.param];
             if (p.span.source == ast.source.get()) {
-                diagnostics_.error(s.span, fmt::format("'{}' is this file's own parameter", p.name), "give it another default where it is declared");
+                diagnostics_.error(s.span, fmt::format("'{}' is this file's own parameter", p.name),
+                                   "give it another default where it is declared");
                 continue;
             }
             p.value = s.value;
@@ -253,7 +255,8 @@ void Checker::sayings(const syntax::Ast& ast) {
     for (const auto& decl : ast.derives) derive(decl);
     for (const auto& decl : ast.styles) {
         const bool plain = decl.start.empty();
-        if (twice(seenStyles_, {decl.name.text + (plain ? "" : " for " + decl.start.text), decl.name.span}, "style")) continue;
+        if (twice(seenStyles_, {decl.name.text + (plain ? "" : " for " + decl.start.text), decl.name.span}, "style"))
+            continue;
         grammar_.styles.push_back(
             {decl.name.text, plain ? none : startCalled(decl.start), settings(decl.settings), decl.span});
     }

@@ -10,7 +10,8 @@ namespace sgm::rules {
 namespace {
 
 bool hasZero(const Value& v) {
-    return v.kind != Value::Kind::Rotation && std::any_of(v.n.begin(), v.n.begin() + v.count, [](double n) { return n == 0; });
+    return v.kind != Value::Kind::Rotation &&
+           std::any_of(v.n.begin(), v.n.begin() + v.count, [](double n) { return n == 0; });
 }
 
 Doubt divisionByZero(const Expr& call) {
@@ -18,7 +19,8 @@ Doubt divisionByZero(const Expr& call) {
     const bool literal = divisor.kind == Expr::Kind::Constant;
     return {call.span, literal ? "divided by 0" : fmt::format("divided by 0: '{}' is 0", divisor.span.text()),
             literal ? "the result counts as 0"
-                    : fmt::format("the result counts as 0: keep '{0}' from 0, or write 'max({0}, …)'", divisor.span.text())};
+                    : fmt::format("the result counts as 0: keep '{0}' from 0, or write 'max({0}, …)'",
+                                  divisor.span.text())};
 }
 
 std::optional<Doubt> rgbDoubt(const Expr& call, std::span<const Value> args) {

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "grammar/rules/checker.h"
 #include "grammar/rules/color.h"
@@ -34,8 +34,8 @@ void adapt(Expr& e, Want want) {
         (e.value.kind == Value::Kind::Number || e.value.kind == Value::Kind::Vector)) {
         e.value.integer = false;
         const Unit bare = want == Want::Length || want == Want::Size || want == Want::Extent ? Unit::Metre
-                          : want == Want::Frequency                  ? Unit::PerMetre
-                                                                     : Unit::None;
+                          : want == Want::Frequency                                          ? Unit::PerMetre
+                                                                                             : Unit::None;
         for (size_t i = 0; i < std::min<size_t>(e.value.count, e.value.units.size()); ++i)
             if (e.value.units[i] == Unit::None) e.value.units[i] = bare;
     }

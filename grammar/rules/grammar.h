@@ -49,7 +49,8 @@ struct Expr {
     SourceSpan span;
     Value value;
     uint32_t index = 0;
-    uint64_t draw = 0;  ///< Range, Choose: hash of the attribute's name (and ordinal where one attribute has several ranges)
+    uint64_t draw =
+        0;  ///< Range, Choose: hash of the attribute's name (and ordinal where one attribute has several ranges)
     std::vector<Expr> args;
 };
 
@@ -123,8 +124,8 @@ struct PlanExpr {
     uint32_t index = 0;
     std::vector<Expr> args;
     std::vector<PlanExpr> parts;
-    std::optional<Expr> at, turn;  ///< `at: (x, z)` and `turn: angle` of a part
-    bool inShares = false;         ///< Outline: its points are shares
+    std::optional<Expr> at, turn;    ///< `at: (x, z)` and `turn: angle` of a part
+    bool inShares = false;           ///< Outline: its points are shares
     std::vector<std::string> words;  ///< of `setback edges(…)`: one an argument of the attribute
 };
 
@@ -149,18 +150,18 @@ struct Body;
 struct Parts {
     struct Part {
         SourceSpan span;
-        std::string label;              ///< a word: `side`, or a tag
-        Expr size;                      ///< metres or a share of the scope; floating: a weight, in `{ … }*` wished metres
-        bool floating = false;          ///< ~: shares what fixed sizes leave
+        std::string label;      ///< a word: `side`, or a tag
+        Expr size;              ///< metres or a share of the scope; floating: a weight, in `{ … }*` wished metres
+        bool floating = false;  ///< ~: shares what fixed sizes leave
         std::shared_ptr<const Body> body;
-        std::vector<Part> repeated;     ///< of `{ … }*`; then size and body say nothing
-        uint32_t local = none;          ///< the local that counts repetitions from 1
+        std::vector<Part> repeated;  ///< of `{ … }*`; then size and body say nothing
+        uint32_t local = none;       ///< the local that counts repetitions from 1
     };
     SourceSpan span;
     const Operation* operation = nullptr;
-    int axis = 0;                       ///< 0 x, 1 y, 2 z
-    std::vector<Expr> args;             ///< of the operation itself
-    std::vector<Part> parts;            ///< in the order of the text
+    int axis = 0;             ///< 0 x, 1 y, 2 z
+    std::vector<Expr> args;   ///< of the operation itself
+    std::vector<Part> parts;  ///< in the order of the text
 };
 
 /// What joins the tree when an element runs: nothing, a solid, a symbol, a group or the parts of a content operation.
@@ -203,8 +204,8 @@ struct Attribute {
     const Operation* operation = nullptr;
     SourceSpan span;
     std::vector<Expr> args;
-    std::shared_ptr<Solid> pattern;  ///< `clad`: an ornament with the thickness, tile and mirror said beside it
-    SymbolId symbol = none;          ///< `clad`: the terminal that named the pattern
+    std::shared_ptr<Solid> pattern;        ///< `clad`: an ornament with the thickness, tile and mirror said beside it
+    SymbolId symbol = none;                ///< `clad`: the terminal that named the pattern
     std::shared_ptr<const PlanExpr> plan;  ///< `footprint`: what draws it
 };
 
@@ -236,10 +237,10 @@ struct Element {
     Content content;
     std::vector<Attribute> attributes;
     std::optional<JointChoice> at, to;
-    std::optional<HostChoice> on;   ///< none: the matched shape
-    SymbolId live = none;  ///< `: Name`
-    uint32_t ordinal = 0;  ///< ordinal of this symbol in the rule's body: part of the child's key
-    std::string label;     ///< key text: symbol or primitive name
+    std::optional<HostChoice> on;  ///< none: the matched shape
+    SymbolId live = none;          ///< `: Name`
+    uint32_t ordinal = 0;          ///< ordinal of this symbol in the rule's body: part of the child's key
+    std::string label;             ///< key text: symbol or primitive name
     /// For: `local` runs over `over` (a Tuple whose args are the values, or a Range of whole numbers) where `guard`
     /// holds.
     uint32_t local = 0;
@@ -346,7 +347,7 @@ struct Grammar {
     std::vector<Style> styles;
     std::vector<Check> checks;
     std::vector<std::shared_ptr<const plan::Features>> outlines;  ///< of files that footprints name, each once
-    std::vector<field::SampledGridPtr> meshes;  ///< of a solid's File argument, by its n[0]
+    std::vector<field::SampledGridPtr> meshes;                    ///< of a solid's File argument, by its n[0]
 };
 
 }  // namespace sgm::rules

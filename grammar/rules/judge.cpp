@@ -145,7 +145,8 @@ private:
         forEachElement(rule.body, [&](const Element& e) {
             const auto axisOf = [](const JointChoice& choice) -> std::optional<double> {
                 const Expr* joint = choice.joints.empty() ? nullptr : &choice.joints[0];
-                const bool axis = joint && joint->kind == Expr::Kind::Constant && joint->value.kind == Value::Kind::Axis;
+                const bool axis =
+                    joint && joint->kind == Expr::Kind::Constant && joint->value.kind == Value::Kind::Axis;
                 return axis ? std::optional(joint->value.num()) : std::nullopt;
             };
             if (e.at) {
@@ -254,16 +255,21 @@ void findShadowed(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
             } else if (rule.symbolSpan.source != grammar.sources[0].get()) {
                 continue;
             } else if (always && (behind || !rule.when)) {
-                diagnostics.warning(rule.symbolSpan,
-                                    always->body.grows
-                                        ? fmt::format("this rule runs only where the one of line {} has no joint left: its condition always holds", lineOf(*always))
-                                        : fmt::format("this rule never runs: the condition of the one of line {} always holds", lineOf(*always)),
-                                    "leave that 'when' out to draw by weight, or give it a condition that may fail");
+                diagnostics.warning(
+                    rule.symbolSpan,
+                    always->body.grows
+                        ? fmt::format("this rule runs only where the one of line {} has no joint left: its condition "
+                                      "always holds",
+                                      lineOf(*always))
+                        : fmt::format("this rule never runs: the condition of the one of line {} always holds",
+                                      lineOf(*always)),
+                    "leave that 'when' out to draw by weight, or give it a condition that may fail");
             } else if (plain && rule.beside != none && !rule.when) {
-                diagnostics.warning(rule.symbolSpan,
-                                    fmt::format("this rule is drawn by weight against the one of line {}, also beside a '{}'", lineOf(*plain),
-                                                grammar.symbols[rule.beside].name),
-                                    "write 'when true' after it: a condition that holds wins");
+                diagnostics.warning(
+                    rule.symbolSpan,
+                    fmt::format("this rule is drawn by weight against the one of line {}, also beside a '{}'",
+                                lineOf(*plain), grammar.symbols[rule.beside].name),
+                    "write 'when true' after it: a condition that holds wins");
             }
         }
     }
@@ -285,11 +291,13 @@ void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostic
             const auto sizes = [&](const Attribute& a) { return takes(a, syntax::ArgumentType::Size); };
             if (std::any_of(chain[0].prefix.begin(), chain[0].prefix.end(), sizes)) continue;
             for (const Attribute& a : chain[0].attributes) {
-                const bool moves = a.operation->phase == Operation::Phase::Scope && takes(a, syntax::ArgumentType::Vector);
+                const bool moves =
+                    a.operation->phase == Operation::Phase::Scope && takes(a, syntax::ArgumentType::Vector);
                 if (!sizes(a) && !moves) continue;
                 const auto value = fold(a.args[0], params);
                 if (value && isShare(*value))
-                    diagnostics.warning(a.span, "a share of what? A start's own scope is 1m", "write lengths, such as '.5m' for 50%");
+                    diagnostics.warning(a.span, "a share of what? A start's own scope is 1m",
+                                        "write lengths, such as '.5m' for 50%");
             }
         }
     }

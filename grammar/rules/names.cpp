@@ -11,9 +11,9 @@
 namespace sgm::rules {
 namespace {
 
-constexpr std::array<std::string_view, 18> taken{"axes", "sides", "last", "any",    "free",  "centre", "each",
-                                                 "nil",  "scope", "i",    "true",   "false", "morph",
-                                                 "x",    "y",     "z",    "billow", "fbm"};
+constexpr std::array<std::string_view, 18> taken{"axes",  "sides", "last",  "any", "free",   "centre",
+                                                 "each",  "nil",   "scope", "i",   "true",   "false",
+                                                 "morph", "x",     "y",     "z",   "billow", "fbm"};
 
 /// Operations of one short word that join or look up: a parameter of that name reads as one of them.
 bool isJoining(std::string_view name) {
@@ -55,7 +55,8 @@ void Checker::declareParameter(const syntax::ParamDecl& decl) {
         diagnostics_.error(decl.name.span,
                            fmt::format("'{}' is a word of the language and can't name a parameter", decl.name.text));
     if (isJoining(decl.name.text))
-        diagnostics_.warning(decl.name.span, fmt::format("'{0}' is an operation as well: 'size {0} …' is hard to read", decl.name.text),
+        diagnostics_.warning(decl.name.span,
+                             fmt::format("'{0}' is an operation as well: 'size {0} …' is hard to read", decl.name.text),
                              "give the parameter another name");
     params_.emplace(decl.name.text, static_cast<uint32_t>(grammar_.params.size()));
     Param param;

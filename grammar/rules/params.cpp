@@ -109,7 +109,9 @@ Result<Value> conform(const Param& param, Value value) {
     if ((value.count != param.value.count && !spread) || !compatible(type, wanted))
         return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
     if (param.value.integer && !value.integer)
-        return refuse(fmt::format("'{}' is a whole number, not {}: with a point in its default or range (0..1.0) it would be a real one", param.name, toText(value)));
+        return refuse(fmt::format(
+            "'{}' is a whole number, not {}: with a point in its default or range (0..1.0) it would be a real one",
+            param.name, toText(value)));
     if (std::string problem = bareAngle(value, param.value); !problem.empty()) return refuse(std::move(problem));
     Value fitted = adopted(value, param.value);
     fitted.integer = param.value.integer;

@@ -33,8 +33,9 @@ std::string_view kindName(const Value& value);
 std::string_view unitName(Unit unit);
 
 /// The parameters as JSON for other programs' panels: a list of {name, kind (integer, real, vector, choice, color,
-/// boolean, text), unit, default (for the first start), minimum, maximum, choices, label, group, key, file, line}; members that don't apply
-/// are left out. Lengths are in metres, angles in degrees, shares in percent, colours "#rrggbb".
+/// boolean, text), unit, default (for the first start), minimum, maximum, choices, label, group, key, file, line};
+/// members that don't apply are left out. Lengths are in metres, angles in degrees, shares in percent, colours
+/// "#rrggbb".
 std::string paramsJson(const Grammar& grammar);
 
 }  // namespace sgm::rules

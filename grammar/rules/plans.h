@@ -15,7 +15,7 @@ enum class PlanParameterKind : uint8_t { Length, Angle, Count };
 struct PlanParameter {
     std::string_view name;
     PlanParameterKind kind;
-    double fallback;        ///< metres, radians or a number
+    double fallback;  ///< metres, radians or a number
     std::string_view doc;
     bool required = true;
 };

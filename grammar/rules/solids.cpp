@@ -81,8 +81,9 @@ Operator operatorOf(std::string_view text) {
 
 /// What other programs call our solids and operators.
 constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
-    {"box", "did you mean 'cube'?"},      {"ball", "did you mean 'sphere'?"},    {"tube", "did you mean 'cylinder'?"},
-    {"ring", "did you mean 'torus'?"},    {"union", "join shapes with '+'"},     {"difference", "cut with '-'"},
+    {"box", "did you mean 'cube'?"},      {"ball", "did you mean 'sphere'?"},
+    {"tube", "did you mean 'cylinder'?"}, {"ring", "did you mean 'torus'?"},
+    {"union", "join shapes with '+'"},    {"difference", "cut with '-'"},
     {"subtract", "cut with '-'"},         {"intersection", "keep with '&' what both share"}};
 
 std::string Checker::unknownSolid(std::string_view word) const {
@@ -125,7 +126,8 @@ Expr Checker::fileArgument(const Written& e, const field::Primitive& row) {
     file.kind = Value::Kind::Text;
     file.text = e.text;
     if (e.kind != Written::Kind::Text) {
-        diagnostics_.error(e.span, fmt::format("'{}' takes the name of a file in quotes, not '{}'", row.name, e.span.text()),
+        diagnostics_.error(e.span,
+                           fmt::format("'{}' takes the name of a file in quotes, not '{}'", row.name, e.span.text()),
                            fmt::format("write '{}(\"statue.obj\")'", row.name));
         return makeConstant(e.span, file);
     }
@@ -133,7 +135,8 @@ Expr Checker::fileArgument(const Written& e, const field::Primitive& row) {
     const auto known = files_.try_emplace({e.span.source, e.text}, grammar_.meshes.size());
     if (known.second) grammar_.meshes.push_back(load_.mesh ? load_.mesh(e.text, *e.span.source, why) : nullptr);
     file.n[0] = static_cast<double>(known.first->second);
-    if (known.second && !grammar_.meshes.back()) diagnostics_.error(e.span, fmt::format("can't use \"{}\": {}", e.text, why));
+    if (known.second && !grammar_.meshes.back())
+        diagnostics_.error(e.span, fmt::format("can't use \"{}\": {}", e.text, why));
     return makeConstant(e.span, file);
 }
 
@@ -144,9 +147,10 @@ void Checker::inRange(const Expr& expr, const field::Primitive& row, size_t inde
     if (!value || parameter.kind == ParameterKind::Rotation || value->kind == Value::Kind::Word) return;
     for (size_t i = 0; i < value->count; ++i)
         if (value->n[i] < parameter.lo || value->n[i] > parameter.hi) {
-            diagnostics_.error(expr.span, fmt::format("'{}' of '{}' is {}, but must be {} … {}", parameter.name, row.name,
-                                                      toText(*value), toText(plainValue(parameter.kind, parameter.lo)),
-                                                      toText(plainValue(parameter.kind, parameter.hi))));
+            diagnostics_.error(expr.span,
+                               fmt::format("'{}' of '{}' is {}, but must be {} … {}", parameter.name, row.name,
+                                           toText(*value), toText(plainValue(parameter.kind, parameter.lo)),
+                                           toText(plainValue(parameter.kind, parameter.hi))));
             break;
         }
 }
@@ -200,7 +204,8 @@ Solid Checker::primitiveSolid(Place& place, const Written& e, const field::Primi
     }
     for (size_t i = 0; i < given.size() && e.args.empty(); ++i)
         if (row.parameters[i].kind == ParameterKind::File)
-            diagnostics_.error(e.span, fmt::format("'{}' takes the name of a file", row.name), fmt::format("write '{}(\"statue.obj\")'", row.name));
+            diagnostics_.error(e.span, fmt::format("'{}' takes the name of a file", row.name),
+                               fmt::format("write '{}(\"statue.obj\")'", row.name));
     return solid;
 }
 

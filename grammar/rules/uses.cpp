@@ -12,8 +12,8 @@
 namespace sgm::rules {
 namespace {
 
-constexpr size_t mostOpen = 100;                 ///< files that wait for those they use
-constexpr size_t mostText_bytes = 64u << 20;     ///< of all files together
+constexpr size_t mostOpen = 100;              ///< files that wait for those they use
+constexpr size_t mostText_bytes = 64u << 20;  ///< of all files together
 constexpr size_t shownName_bytes = 200;
 
 class Gatherer {
@@ -51,7 +51,8 @@ private:
         }
         if (done_.contains(source->name())) return;
         if (chain_.size() >= mostOpen)
-            refuse(use, fmt::format("more than {} files use each other in a row", mostOpen), "let the main file use them");
+            refuse(use, fmt::format("more than {} files use each other in a row", mostOpen),
+                   "let the main file use them");
         else if (text_bytes_ + source->text().size() > mostText_bytes)
             refuse(use, fmt::format("the files used so far hold more than {} MiB", mostText_bytes >> 20));
         else

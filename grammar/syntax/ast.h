@@ -1,5 +1,6 @@
 // The syntax tree of a grammar file, every node with its span.
-// Enters: tokens, from the parser. Leaves: what was written, names unresolved. Assumes the Source outlives it (held here).
+// Enters: tokens, from the parser. Leaves: what was written, names unresolved. Assumes the Source outlives it (held
+// here).
 #pragma once
 
 #include <memory>
@@ -39,8 +40,8 @@ struct Expr {
         Error,     ///< stands where an expression could not be read; a diagnostic was given
     };
     Kind kind = Kind::Error;
-    SourceSpan span;     ///< with its parentheses, where it has some
-    double number = 0;   ///< as written: 30% is 30 with the unit "%"
+    SourceSpan span;    ///< with its parentheses, where it has some
+    double number = 0;  ///< as written: 30% is 30 with the unit "%"
     std::string unit, text;
     std::vector<Expr> args;
     std::vector<std::string> argNames;
@@ -79,12 +80,12 @@ struct Element {
     std::vector<Attribute> before;  ///< prefix attributes (change the matched scope when there is no operator)
     std::optional<Expr> solid;      ///< Shape: a Name or Call; empty when only attributes are given (all in `before`)
     std::vector<Attribute> after;
-    Name live;                      ///< `: Name`
-    std::shared_ptr<Body> body;     ///< Group: ( … ); For, While, When: { … }
-    Name variable;                  ///< For: the word after `for`
-    std::optional<Expr> over;       ///< For: what follows `in`; While and When: the condition
-    std::optional<Expr> guard;      ///< For: what follows `when`
-    std::vector<Case> cases;        ///< Choose: weight: body
+    Name live;                   ///< `: Name`
+    std::shared_ptr<Body> body;  ///< Group: ( … ); For, While, When: { … }
+    Name variable;               ///< For: the word after `for`
+    std::optional<Expr> over;    ///< For: what follows `in`; While and When: the condition
+    std::optional<Expr> guard;   ///< For: what follows `when`
+    std::vector<Case> cases;     ///< Choose: weight: body
 };
 
 /// Siblings by comma; each a chain of elements joined by operators.
@@ -93,29 +94,46 @@ struct Body {
     std::vector<std::vector<Element>> siblings;
 };
 
-struct Setting { SourceSpan span; Name name; Expr value; };
+struct Setting {
+    SourceSpan span;
+    Name name;
+    Expr value;
+};
 struct ParamDecl {
     SourceSpan span;
     Name name;
-    Expr value;                       ///< default
-    std::optional<Expr> range;        ///< after `in`
-    std::vector<Name> choices;        ///< after `of`
+    Expr value;                 ///< default
+    std::optional<Expr> range;  ///< after `in`
+    std::vector<Name> choices;  ///< after `of`
     std::string label, group;
     Name key;
 };
-struct MapDecl { SourceSpan span; Name name; Expr file; std::optional<Expr> range; };
+struct MapDecl {
+    SourceSpan span;
+    Name name;
+    Expr file;
+    std::optional<Expr> range;
+};
 struct TerminalDecl {
     SourceSpan span;
-    std::vector<Name> names;          ///< several may share a line
+    std::vector<Name> names;  ///< several may share a line
     std::vector<Attribute> attributes;
-    std::optional<Expr> solid;        ///< after `=`
-    struct JointDecl { SourceSpan span; Name name; Expr at, facing; };
+    std::optional<Expr> solid;  ///< after `=`
+    struct JointDecl {
+        SourceSpan span;
+        Name name;
+        Expr at, facing;
+    };
     std::vector<JointDecl> joints;
 };
-struct StartDecl { SourceSpan span; Name symbol; Body body; };
+struct StartDecl {
+    SourceSpan span;
+    Name symbol;
+    Body body;
+};
 struct RuleDecl {
     SourceSpan span;
-    Name name;                        ///< R0, or empty
+    Name name;  ///< R0, or empty
     Name symbol;
     Name beside;
     std::optional<Expr> when, weight, repeat;
@@ -125,19 +143,46 @@ struct RuleDecl {
 struct DeriveDecl {
     SourceSpan span;
     Name name;
-    struct Step { Name rule; Expr at; bool hasPlace = false; std::string place; };  ///< place "Cave/Cell[3]"
+    struct Step {
+        Name rule;
+        Expr at;
+        bool hasPlace = false;
+        std::string place;
+    };  ///< place "Cave/Cell[3]"
     std::vector<Step> steps;
 };
-struct StyleDecl { SourceSpan span; Name name, start; std::vector<Setting> settings; };
-struct CheckDecl { SourceSpan span; Name start; std::vector<Setting> settings; std::optional<Expr> expect; };
-struct OverrideDecl { SourceSpan span; std::string path; std::vector<Setting> settings; };
-struct UseDecl { SourceSpan span; Expr file; std::vector<Setting> settings; };
+struct StyleDecl {
+    SourceSpan span;
+    Name name, start;
+    std::vector<Setting> settings;
+};
+struct CheckDecl {
+    SourceSpan span;
+    Name start;
+    std::vector<Setting> settings;
+    std::optional<Expr> expect;
+};
+struct OverrideDecl {
+    SourceSpan span;
+    std::string path;
+    std::vector<Setting> settings;
+};
+struct UseDecl {
+    SourceSpan span;
+    Expr file;
+    std::vector<Setting> settings;
+};
 struct LsystemDecl {
     SourceSpan span;
     Name name;
-    std::vector<Setting> settings;    ///< passes, angle, step
+    std::vector<Setting> settings;  ///< passes, angle, step
     Expr axiom;
-    struct Production { SourceSpan span; Name symbol; Expr text; std::optional<Expr> weight; };
+    struct Production {
+        SourceSpan span;
+        Name symbol;
+        Expr text;
+        std::optional<Expr> weight;
+    };
     std::vector<Production> productions;
 };
 

@@ -160,8 +160,9 @@ void readArguments(Cursor& cursor, const Operation& row, Attribute& attribute) {
     for (const OperationArgument& argument : row.arguments) {
         if (!fits(cursor, argument.type)) {
             if (argument.optional) continue;
-            cursor.fail("'" + plain(row.name) + "' needs " + plain(describe(argument.type)) + ", found " + cursor.found(),
-                        "as in '" + plain(row.example) + "'");
+            cursor.fail(
+                "'" + plain(row.name) + "' needs " + plain(describe(argument.type)) + ", found " + cursor.found(),
+                "as in '" + plain(row.example) + "'");
             return;
         }
         attribute.args.push_back(readTyped(cursor, argument.type));
@@ -267,7 +268,9 @@ void refuseStray(Cursor& cursor) {
         const std::string foreign = foreignAttributeHint(cursor.text(token));
         const std::string near = foreign.empty() ? nearestWord(cursor.operations(), cursor.text(token)) : foreign;
         cursor.fail(cursor.found() + " can't follow a shape",
-                    near.empty() ? "name an attribute (size, color …), join shapes with + - & morph, or list them with ','" : near);
+                    near.empty()
+                        ? "name an attribute (size, color …), join shapes with + - & morph, or list them with ','"
+                        : near);
     } else if (cursor.at("(")) {
         cursor.fail("'(' can't follow a shape",
                     "write it without a blank before '(' for arguments, or join with an operator");

@@ -22,8 +22,13 @@ std::string quoted(std::string_view text) {
     return out;
 }
 
-Cursor::Cursor(const Source& source, std::span<Token> tokens, const OperationTable& operations, Diagnostics& diagnostics)
-    : source_(source), tokens_(tokens), operations_(operations), diagnostics_(diagnostics), lastEnd_(tokens.empty() ? 0 : tokens[0].begin) {}
+Cursor::Cursor(const Source& source, std::span<Token> tokens, const OperationTable& operations,
+               Diagnostics& diagnostics)
+    : source_(source),
+      tokens_(tokens),
+      operations_(operations),
+      diagnostics_(diagnostics),
+      lastEnd_(tokens.empty() ? 0 : tokens[0].begin) {}
 
 Token Cursor::peek(size_t ahead) const {
     if (ahead < tokens_.size() - at_) return tokens_[at_ + ahead];
@@ -62,7 +67,9 @@ bool Cursor::close(const Token& open) {
     const std::string_view closing = opening == "(" ? ")" : opening == "[" ? "]" : "}";
     const auto isNumber = [](const Token& token) { return token.kind == Token::Kind::Number; };
     if (opening == "(" && isNumber(previous(1)) && isNumber(peek())) {
-        fail("two numbers stand side by side", "put ',' between them: " + quoted("(" + std::string(text(previous(1))) + ", " + std::string(peekText()) + " …)"));
+        fail("two numbers stand side by side",
+             "put ',' between them: " +
+                 quoted("(" + std::string(text(previous(1))) + ", " + std::string(peekText()) + " …)"));
         return false;
     }
     return expect(closing,

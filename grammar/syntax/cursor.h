@@ -1,6 +1,7 @@
 // A walk over the tokens of one declaration.
-// Enters: a slice of tokens without blanks and comments. Leaves: tokens one at a time, and diagnostics. After the first failure
-// the slice counts as used up, so nothing more is said about it and every loop ends; nodes made then are empty but well formed.
+// Enters: a slice of tokens without blanks and comments. Leaves: tokens one at a time, and diagnostics. After the first
+// failure the slice counts as used up, so nothing more is said about it and every loop ends; nodes made then are empty
+// but well formed.
 #pragma once
 
 #include <span>

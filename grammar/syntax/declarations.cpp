@@ -103,7 +103,8 @@ void readParam(Cursor& cursor, Ast& ast) {
     const uint32_t begin = cursor.take().begin;
     param.name = readName(cursor, "a parameter");
     if (atParamPart(cursor) && !cursor.at(Token::Kind::Text)) {
-        cursor.fail("the default of parameter " + quoted(param.name.text) + " comes first", defaultFirst(cursor, param.name));
+        cursor.fail("the default of parameter " + quoted(param.name.text) + " comes first",
+                    defaultFirst(cursor, param.name));
         return;
     }
     cursor.expect("=", "and a default after the parameter's name", equalsMend(cursor, param.name));

@@ -233,7 +233,8 @@ private:
         const Token symbol = cursor_.take();
         e = joined(*findBinary(cursor_.text(symbol)), std::move(e), binary(sumBinds));
         const SourceSpan span = cursor_.since(begin);
-        cursor_.complain(span, "a calculated size stands in parentheses", "write " + quoted("~(" + std::string(span.text()) + ")"));
+        cursor_.complain(span, "a calculated size stands in parentheses",
+                         "write " + quoted("~(" + std::string(span.text()) + ")"));
         return e;
     }
 

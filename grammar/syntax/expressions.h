@@ -1,5 +1,6 @@
 // Expressions, by precedence climbing.
-// Enters: a Cursor at an expression. Leaves: the Expr; an Error node where none could be read (the cursor then has failed).
+// Enters: a Cursor at an expression. Leaves: the Expr; an Error node where none could be read (the cursor then has
+// failed).
 #pragma once
 
 #include "grammar/syntax/ast.h"

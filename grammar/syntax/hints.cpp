@@ -11,9 +11,18 @@ struct Lookalike {
     std::string_view bytes, mend;
 };
 constexpr Lookalike lookalikes[] = {
-    {"\u2212", "write '-'"},  {"\u2013", "write '-'"},  {"\u00d7", "write '*'"},       {"\u2192", "write '->'"},
-    {"\u201c", "write '\"'"}, {"\u201d", "write '\"'"}, {"\u00b0", "write 'deg'"},     {"\u2026", "write '..'"},
-    {"\u2265", "write '>='"}, {"\u2264", "write '<='"}, {"'", "text stands in \"…\""}, {"^", "there is no power: write a product, 'x * x'"},
+    {"\u2212", "write '-'"},
+    {"\u2013", "write '-'"},
+    {"\u00d7", "write '*'"},
+    {"\u2192", "write '->'"},
+    {"\u201c", "write '\"'"},
+    {"\u201d", "write '\"'"},
+    {"\u00b0", "write 'deg'"},
+    {"\u2026", "write '..'"},
+    {"\u2265", "write '>='"},
+    {"\u2264", "write '<='"},
+    {"'", "text stands in \"…\""},
+    {"^", "there is no power: write a product, 'x * x'"},
     {"?", "write 'if(condition, a, b)'"},
 };
 
@@ -52,7 +61,8 @@ constexpr ForeignWord foreignAttributes[] = {
 
 constexpr std::string_view ifMend = "bodies choose by 'when condition { … }', values by 'if(condition, a, b)'";
 
-constexpr std::string_view roofForms[] = {"hip", "gable", "halfHip", "mansard", "gambrel", "saltbox", "shed", "butterfly", "flat", "pyramid", "dome", "bell"};
+constexpr std::string_view roofForms[] = {"hip",  "gable",     "halfHip", "mansard", "gambrel", "saltbox",
+                                          "shed", "butterfly", "flat",    "pyramid", "dome",    "bell"};
 
 /// The word before the parenthesis that the token before the cursor closes.
 std::string_view calledBefore(const Cursor& cursor) {
@@ -70,7 +80,8 @@ std::optional<Hint> decimalComma(const Cursor& cursor) {
     const bool behind = cursor.text(cursor.previous(1)) == ",";
     const Token whole = cursor.previous(behind ? 2 : 1), comma = behind ? cursor.previous(1) : cursor.peek();
     const Token fraction = cursor.peek(behind ? 0 : 1);
-    if (whole.kind != Token::Kind::Number || cursor.text(comma) != "," || fraction.kind != Token::Kind::Number) return {};
+    if (whole.kind != Token::Kind::Number || cursor.text(comma) != "," || fraction.kind != Token::Kind::Number)
+        return {};
     if (!comma.glued || !fraction.glued) return {};
     const std::string written = std::string(cursor.text(whole)) + "." + std::string(cursor.text(fraction));
     const SourceSpan span = join(cursor.span(whole), cursor.span(fraction));
@@ -83,7 +94,8 @@ Hint unknownCharacter(const Cursor& cursor) {
     for (const Lookalike& row : lookalikes)
         if (bytes.substr(0, row.bytes.size()) == row.bytes) hint.mend = std::string(row.mend);
     const bool beyondAscii = static_cast<unsigned char>(bytes.front()) >= 0x80;
-    if (hint.mend.empty() && beyondAscii) hint.mend = "names are made of a-z, A-Z, 0-9 and _; text in quotes may hold anything";
+    if (hint.mend.empty() && beyondAscii)
+        hint.mend = "names are made of a-z, A-Z, 0-9 and _; text in quotes may hold anything";
     return hint;
 }
 
@@ -95,17 +107,21 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
     if (token.kind == Token::Kind::Unknown) return unknownCharacter(cursor);
     if (auto comma = decimalComma(cursor)) return comma;
     if (token.kind == Token::Kind::Color && (text == "#" || token.columnOne))
-        return Hint{cursor.span(token), "a comment doesn't begin with '#'", "a comment begins with '//' and ends with its line"};
+        return Hint{cursor.span(token), "a comment doesn't begin with '#'",
+                    "a comment begins with '//' and ends with its line"};
     if (text == "else")
         return Hint{cursor.span(token), "there is no 'else'", "write 'when not condition { … }' for the other case"};
-    if (text == "if" && !(cursor.at("(", 1) && cursor.peek(1).glued)) return Hint{cursor.span(token), "there is no 'if' here", std::string(ifMend)};
+    if (text == "if" && !(cursor.at("(", 1) && cursor.peek(1).glued))
+        return Hint{cursor.span(token), "there is no 'if' here", std::string(ifMend)};
     if (before == "if") return Hint{cursor.span(cursor.previous(1)), "there is no 'if' here", std::string(ifMend)};
     if (text == "{" && before == ")" && calledBefore(cursor) == "if")
         return Hint{cursor.span(token), "there is no 'if' here", std::string(ifMend)};
     if (before == "roof" && std::find(std::begin(roofForms), std::end(roofForms), text) != std::end(roofForms))
-        return Hint{cursor.span(token), "'roof' has no form " + quoted(text), "write " + quoted(std::string(text) + "Roof")};
+        return Hint{cursor.span(token), "'roof' has no form " + quoted(text),
+                    "write " + quoted(std::string(text) + "Roof")};
     if (text == "*" && message.starts_with("unexpected"))
-        return Hint{cursor.span(token), "unexpected '*'", "what two shapes share is 'a & b'; a calculation stands in parentheses"};
+        return Hint{cursor.span(token), "unexpected '*'",
+                    "what two shapes share is 'a & b'; a calculation stands in parentheses"};
     return std::nullopt;
 }
 

@@ -1,6 +1,6 @@
 // Text to tokens. Every byte belongs to exactly one token, blanks and comments included.
-// Enters: a Source, any bytes. Leaves: tokens in order, whose texts joined give the file back. Never fails: what is no token
-// of the language is Unknown, and the parser says so where it meets it.
+// Enters: a Source, any bytes. Leaves: tokens in order, whose texts joined give the file back. Never fails: what is no
+// token of the language is Unknown, and the parser says so where it meets it.
 #pragma once
 
 #include <vector>

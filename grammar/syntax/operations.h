@@ -1,6 +1,7 @@
 // What a rule operation is: the words a rule body may use on a shape, and what each stage does with them.
-// Enters: nothing. Leaves: the type of a row and of the table. Assumes grammar/operations defines the rows, one file a family:
-// the parser reads names and arguments from a row, the checker calls `check` and `agree`, derivation `apply` and `run`.
+// Enters: nothing. Leaves: the type of a row and of the table. Assumes grammar/operations defines the rows, one file a
+// family: the parser reads names and arguments from a row, the checker calls `check` and `agree`, derivation `apply`
+// and `run`.
 #pragma once
 
 #include <cstdint>
@@ -74,7 +75,8 @@ struct Operation {
         Content,    ///< is the shape's content: makes parts of the scope, and runs a body in each
     };
     using Check = void (*)(rules::OperationChecker& checker, const Attribute& written);
-    using Agree = void (*)(rules::OperationChecker& checker, const rules::Element& element, const rules::Attribute& attribute);
+    using Agree = void (*)(rules::OperationChecker& checker, const rules::Element& element,
+                           const rules::Attribute& attribute);
     using Apply = void (*)(derive::AttributeContext& context, const rules::Attribute& attribute);
     using Decorate = void (*)(const rules::Value& value, Material& material);
     using CheckParts = std::shared_ptr<rules::Parts> (*)(rules::OperationChecker& checker, const Attribute& written);
@@ -95,7 +97,8 @@ struct Operation {
     Check check = nullptr;
     /// Refuses what contradicts the element's operator or its other attributes; null: nothing does.
     Agree agree = nullptr;
-    /// Evaluates the attribute for a newcomer or the matched shape; null: nothing to evaluate (it was checked into the element).
+    /// Evaluates the attribute for a newcomer or the matched shape; null: nothing to evaluate (it was checked into the
+    /// element).
     Apply apply = nullptr;
     /// Phase Look: gives a terminal's material a constant value.
     Decorate decorate = nullptr;

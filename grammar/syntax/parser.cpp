@@ -29,7 +29,8 @@ void refuse(Cursor& cursor) {
     }
 }
 
-/// The declaration that the token at the cursor begins: also one that another language calls otherwise, which is reported.
+/// The declaration that the token at the cursor begins: also one that another language calls otherwise, which is
+/// reported.
 const Declaration* declarationAt(Cursor& cursor) {
     if (const Declaration* declaration = findDeclaration(cursor.peekText())) return declaration;
     const ForeignDeclaration* foreign = cursor.peek().columnOne ? findForeignDeclaration(cursor.peekText()) : nullptr;
@@ -42,7 +43,8 @@ const Declaration* declarationAt(Cursor& cursor) {
 void readDeclarations(Cursor& cursor, Ast& ast) {
     for (bool first = true; !cursor.done(); first = false) {
         if (cursor.at(";")) {
-            cursor.complain(cursor.span(cursor.take()), "unexpected ';'", "a declaration ends with its line: leave ';' out");
+            cursor.complain(cursor.span(cursor.take()), "unexpected ';'",
+                            "a declaration ends with its line: leave ';' out");
             continue;
         }
         const Declaration* declaration = declarationAt(cursor);

@@ -92,7 +92,8 @@ std::string_view Source::line(uint32_t number) const {
 std::string placeText(SourceSpan span) {
     if (!span.source) return {};
     const Source::Place place = span.source->place(span.begin);
-    return printable(span.source->name()) + ':' + std::to_string(place.line) + ':' + std::to_string(place.column) + ": ";
+    return printable(span.source->name()) + ':' + std::to_string(place.line) + ':' + std::to_string(place.column) +
+           ": ";
 }
 
 SourceSpan join(SourceSpan a, SourceSpan b) {
@@ -121,7 +122,8 @@ std::string render(const Diagnostic& diagnostic) {
         const std::string line = printable(shown);
         const size_t from = place.column - 1 - begin;
         const size_t to = from + (diagnostic.span.end - diagnostic.span.begin);
-        out += std::string(severity) + ": " + messageOf(diagnostic) + "\n  " + line + "\n  " + caretLine(line, from, to);
+        out +=
+            std::string(severity) + ": " + messageOf(diagnostic) + "\n  " + line + "\n  " + caretLine(line, from, to);
     } else {
         out += std::string(severity) + ": " + messageOf(diagnostic);
     }

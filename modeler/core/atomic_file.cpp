@@ -45,12 +45,13 @@ void removeAbandoned(const fs::path& folder) {
     std::error_code failed;
     for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) {
         const std::string name = at->path().filename().string();
-        if (name.starts_with(beginning) && name.ends_with(ending) && isAbandoned(at->path())) unlink(at->path().c_str());
+        if (name.starts_with(beginning) && name.ends_with(ending) && isAbandoned(at->path()))
+            unlink(at->path().c_str());
     }
 }
 
-/// A file that is removed at the end of its scope, unless it was renamed away. Its lock tells other processes that it is
-/// in use.
+/// A file that is removed at the end of its scope, unless it was renamed away. Its lock tells other processes that it
+/// is in use.
 class Temporary {
 public:
     /// Creates an empty file in `folder` under a name nobody else has; errno says why when path() stays empty.

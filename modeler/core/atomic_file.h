@@ -18,12 +18,12 @@ namespace sgm {
 Status replaceFile(const std::filesystem::path& target,
                    const std::function<Status(const std::filesystem::path& temporary)>& fill);
 
-/// Whether `replaceFile` could begin: the folder is there and can be written, and what stands at `target` is a regular file
-/// or nothing. The error is that of `replaceFile`.
+/// Whether `replaceFile` could begin: the folder is there and can be written, and what stands at `target` is a regular
+/// file or nothing. The error is that of `replaceFile`.
 Status checkTarget(const std::filesystem::path& target);
 
-/// A text that is equal for two paths to the same file, whatever their spelling and the links on the way; of a file that
-/// isn't there yet, by the place where `replaceFile` would make it.
+/// A text that is equal for two paths to the same file, whatever their spelling and the links on the way; of a file
+/// that isn't there yet, by the place where `replaceFile` would make it.
 std::string identityOf(const std::filesystem::path& path);
 
 /// "cannot write 'path': cause", the form of every file error here.

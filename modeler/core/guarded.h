@@ -1,6 +1,6 @@
 // Work on a thread that nobody catches for.
-// Enters: a function that gives a Result. Leaves: its Result, or an Error in place of an exception. Assumes that what the
-// work leaves half done is its own.
+// Enters: a function that gives a Result. Leaves: its Result, or an Error in place of an exception. Assumes that what
+// the work leaves half done is its own.
 #pragma once
 
 #include <exception>

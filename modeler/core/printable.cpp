@@ -10,7 +10,12 @@ constexpr bool continues(unsigned char c) { return (c & 0xc0) == 0x80; }
 /// Bytes of the UTF-8 character at the beginning of `text`, with its code point; 0 where there is none.
 size_t decode(std::string_view text, uint32_t& code) {
     const auto first = static_cast<unsigned char>(text[0]);
-    const size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+    const size_t length = first < 0x80   ? 1
+                          : first < 0xc2 ? 0
+                          : first < 0xe0 ? 2
+                          : first < 0xf0 ? 3
+                          : first < 0xf5 ? 4
+                                         : 0;
     if (length == 0 || length > text.size()) return 0;
     code = length == 1 ? first : first & (0x7fu >> length);
     for (size_t i = 1; i < length; ++i) {
@@ -27,7 +32,8 @@ bool isShown(uint32_t code, bool keepsLines) {
     if (code == '\n') return keepsLines;
     if (code < 0x20) return code == '\t';
     const bool control = code >= 0x7f && code < 0xa0;
-    const bool turns = code == 0x200e || code == 0x200f || (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+    const bool turns =
+        code == 0x200e || code == 0x200f || (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
     return !control && !turns;
 }
 

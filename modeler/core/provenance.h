@@ -40,7 +40,8 @@ struct Part {
     Pose pose;              ///< of the shape's scope
 };
 
-/// The table behind OriginId and material indices. parts[0] and materials[0] always exist; no two materials look the same.
+/// The table behind OriginId and material indices. parts[0] and materials[0] always exist; no two materials look the
+/// same.
 struct Provenance {
     std::vector<Part> parts{Part{}};
     std::vector<Material> materials{Material{}};

@@ -106,10 +106,11 @@ struct Box3 {
         return {lo.template as<U>(), hi.template as<U>()};
     }
     /// The whole space.
-    static constexpr Box3 everything() {
-        return {{-limit(), -limit(), -limit()}, {limit(), limit(), limit()}};
+    static constexpr Box3 everything() { return {{-limit(), -limit(), -limit()}, {limit(), limit(), limit()}}; }
+    static constexpr T limit() {
+        return std::numeric_limits<T>::has_infinity ? std::numeric_limits<T>::infinity()
+                                                    : std::numeric_limits<T>::max();
     }
-    static constexpr T limit() { return std::numeric_limits<T>::has_infinity ? std::numeric_limits<T>::infinity() : std::numeric_limits<T>::max(); }
 };
 
 using Box3f = Box3<float>;
@@ -137,9 +138,7 @@ struct Mat3 {
     friend constexpr bool operator==(const Mat3&, const Mat3&) = default;
     friend constexpr Vec3d operator*(const Mat3& m, Vec3d v) { return m.x * v.x + m.y * v.y + m.z * v.z; }
     friend constexpr Mat3 operator*(const Mat3& a, const Mat3& b) { return {a * b.x, a * b.y, a * b.z}; }
-    constexpr Mat3 transposed() const {
-        return {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}};
-    }
+    constexpr Mat3 transposed() const { return {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}; }
     /// Rotation by `angle` radians about `axis` (need not be unit length), right-handed.
     static Mat3 rotation(Vec3d axis, double angle) {
         const Vec3d u = normalized(axis);

@@ -165,7 +165,8 @@ TapeBuilder::Scale Compiler::scaleOf(const field::Field& field) const {
         if (pieces_[id] != 0 && isInput(id)) chosen |= 1u << graph_.node(id).data;
     if (box.empty() || !box.finite()) return {field.lipschitz, 0, chosen};
     float most = 0;
-    for (const Vec3f& end : {box.lo, box.hi}) most = std::max({most, std::abs(end.x), std::abs(end.y), std::abs(end.z)});
+    for (const Vec3f& end : {box.lo, box.hi})
+        most = std::max({most, std::abs(end.x), std::abs(end.y), std::abs(end.z)});
     constexpr int bits = 20;  // of a float's 24
     int exponent = 0;
     std::frexp(most, &exponent);

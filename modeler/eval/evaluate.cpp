@@ -95,7 +95,8 @@ void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, 
     const auto apart = static_cast<size_t>(dx - value);
     const bool atOnce = points.padded && endsInResult(tape) && dx > value && dy == dx + apart && dz == dy + apart &&
                         apart % pointPadding == 0;
-    runBlocks(tape, points, exact ? w.pieceGradients.data() : w.kernels.gradients, 4, w, atOnce ? ResultRows{value, apart} : ResultRows{}, nothingBefore,
+    runBlocks(tape, points, exact ? w.pieceGradients.data() : w.kernels.gradients, 4, w,
+              atOnce ? ResultRows{value, apart} : ResultRows{}, nothingBefore,
               [&](const StepContext& c, size_t first, size_t n) {
                   for (size_t plane = 0; plane < 4 && !atOnce; ++plane)
                       storeResult(tape, c, w.kernels.store, 4, plane, out[plane] + first, n);

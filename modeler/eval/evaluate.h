@@ -66,8 +66,9 @@ void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& w
 /// Names the smooth piece of surface that each point lies on: the operand that every minimum and maximum takes, down
 /// to the face of a box and the sign of a mirrored coordinate. Values within Tape::tieMargin of each other tie, and a
 /// tie goes to the first operand. What a blend joins is one piece with it, also where a field lies alone; a number to
-/// which a value is clamped has label 0, and a square forgets what its operand chose. `labels` and `origins` get n entries; origins are those of the operands taken. A shortened tape
-/// gives the same names inside its region wherever `care` tells its value apart. Costs about two evaluations.
+/// which a value is clamped has label 0, and a square forgets what its operand chose. `labels` and `origins` get n
+/// entries; origins are those of the operands taken. A shortened tape gives the same names inside its region wherever
+/// `care` tells its value apart. Costs about two evaluations.
 void evaluateLabels(const Tape& tape, Points points, uint32_t* labels, OriginId* origins, Workspace& workspace);
 
 /// Value, derivatives and labels of each point. Unlike those of evaluateGradient the derivatives of a shortened tape

@@ -18,10 +18,9 @@ using field::OpCode;
 //   y  first operand: a register, or the float itself; of a listed op the word of its first operand
 //   z  second operand; of a listed op the number of operands
 //   w  the op's structural integer
-// A listed operand is a word, a float or a register in the low half of a NaN that no constant is; lists begin with a texel.
-// Before the first tape of a buffer lie its grids, the words of each from a texel on; `data` of an op that reads one is that
-// texel.
-// A tape starts with a texel (end of code, result is a float, result, 0).
+// A listed operand is a word, a float or a register in the low half of a NaN that no constant is; lists begin with a
+// texel. Before the first tape of a buffer lie its grids, the words of each from a texel on; `data` of an op that reads
+// one is that texel. A tape starts with a texel (end of code, result is a float, result, 0).
 constexpr uint32_t aIsFloat = 1u << 8, bIsFloat = 1u << 9, isHeavy = 1u << 10;
 constexpr uint32_t registerNan = 0x7fc00000u, otherNan = 0x7fe00000u;
 

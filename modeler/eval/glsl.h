@@ -27,8 +27,8 @@ OpSet opsOf(const Tape& tape);
 /// for all of them at every instruction, so a short list is faster.
 std::string interpreterGlsl(uint32_t maxRegisters, const OpSet& ops = allOps());
 
-/// Appends a tape to `buffer`, four words a texel, and returns the texel where it starts. The first tape of a buffer brings
-/// its grids along; all of a buffer have the same, as the shortened forms of one tape do.
+/// Appends a tape to `buffer`, four words a texel, and returns the texel where it starts. The first tape of a buffer
+/// brings its grids along; all of a buffer have the same, as the shortened forms of one tape do.
 uint32_t appendTape(const Tape& tape, std::vector<uint32_t>& buffer);
 
 }  // namespace sgm::eval

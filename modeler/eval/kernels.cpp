@@ -242,11 +242,12 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
         float args[count];
         for (size_t k = moving; k < count; ++k) args[k] = c.constants[indexOf(sources[k])];
         const typename Row::template Numbers<float> numbers(std::span<const float>(args, count), in.data);
-        Row::visitPath(numbers.form, [&]<auto path>() {
-            using Two = std::conditional_t<std::is_same_v<V, Float>, Pair<Float>, Dual<Pair<Float>>>;
-            const size_t i = stepByNumbers<Row, path, Two>(0, places, numbers, out, c);
-            stepByNumbers<Row, path, V>(i, places, numbers, out, c);
-        });
+        Row::visitPath(
+            numbers.form, [&]<auto path>() {
+                using Two = std::conditional_t<std::is_same_v<V, Float>, Pair<Float>, Dual<Pair<Float>>>;
+                const size_t i = stepByNumbers<Row, path, Two>(0, places, numbers, out, c);
+                stepByNumbers<Row, path, V>(i, places, numbers, out, c);
+            });
     } else {
         if constexpr (std::is_same_v<V, Dual<Float>> && requires { &Row::template slopes<Float, float (*)(size_t)>; }) {
             if (sources[0] == 0 && sources[1] == 1 && sources[2] == 2) {

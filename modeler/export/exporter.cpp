@@ -11,9 +11,10 @@
 namespace sgm::exporter {
 namespace {
 
-constexpr ExportOption uv{"uv", "scope", "scope|box|none",
-                          "texture coordinates in metres: in the plane of each face, turned with the scope of its shape, "
-                          "or projected along the nearest axis"};
+constexpr ExportOption uv{
+    "uv", "scope", "scope|box|none",
+    "texture coordinates in metres: in the plane of each face, turned with the scope of its shape, "
+    "or projected along the nearest axis"};
 constexpr ExportOption lightMap{"lightmap", "none", "none|256|512|1024|2048|4096",
                                 "a second set of texture coordinates, without overlaps, for a light map of so many "
                                 "texels a side for each object"};
@@ -70,13 +71,20 @@ constexpr Exporter table[] = {
      withoutAttributes, writePly, streamPly},
     {".stl", "STL, binary: positions only", false, plainOptions, always, writeStl, streamStl},
     {".off", "OFF: positions and triangles as text", false, plainOptions, always, writeOff, streamOff},
-    {".usda", "OpenUSD as text: normals, display colours, a subset and preview surface a material", false,
-     usdOptions, nullptr, writeUsda, nullptr, false, true, true},
+    {".usda", "OpenUSD as text: normals, display colours, a subset and preview surface a material", false, usdOptions,
+     nullptr, writeUsda, nullptr, false, true, true},
     {".vdb", "OpenVDB: a narrow-band level set, fog for renderers, or both; voxels in metres", true, volumeOptions,
      always, writeVdb, nullptr},
-    {".csg.json", "The solid tree as JSON: booleans of primitives with their parts and materials, of models that are exactly that",
-     false, {}, always, writeCsgJson, nullptr, true},
-    {".scad", "The solid tree as an OpenSCAD program: a module a boolean, of the same models", false, scadOptions, always, writeScad, nullptr, true},
+    {".csg.json",
+     "The solid tree as JSON: booleans of primitives with their parts and materials, of models that are exactly that",
+     false,
+     {},
+     always,
+     writeCsgJson,
+     nullptr,
+     true},
+    {".scad", "The solid tree as an OpenSCAD program: a module a boolean, of the same models", false, scadOptions,
+     always, writeScad, nullptr, true},
 };
 
 /// The name in lower case, by ASCII.
@@ -172,7 +180,8 @@ Status checkOptions(const Exporter& row, const ExportOptions& options) {
 std::span<const Exporter> exporters() { return table; }
 
 bool holdsColliders(const Exporter& row) {
-    return std::any_of(row.options.begin(), row.options.end(), [](const ExportOption& o) { return o.name == "engine"; });
+    return std::any_of(row.options.begin(), row.options.end(),
+                       [](const ExportOption& o) { return o.name == "engine"; });
 }
 
 bool takesBare(const Exporter& row, const ExportOptions& options) { return row.takesBare && row.takesBare(options); }
@@ -186,8 +195,9 @@ const Exporter* findExporter(std::string_view extension) {
 
 const Exporter* exporterFor(const Path& path) {
     const std::string name = lowered(path.filename().string());
-    const auto row =
-        std::find_if(std::begin(table), std::end(table), [&](const Exporter& e) { return name.size() > e.extension.size() && name.ends_with(e.extension); });
+    const auto row = std::find_if(std::begin(table), std::end(table), [&](const Exporter& e) {
+        return name.size() > e.extension.size() && name.ends_with(e.extension);
+    });
     return row == std::end(table) ? nullptr : row;
 }
 

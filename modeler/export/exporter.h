@@ -1,6 +1,7 @@
 // The exporter table: one row a format.
-// Enters: a mesh (or a level set, or a solid tree) with its provenance. Leaves: a file, written beside its target and renamed into
-// place, so that a good earlier file is never lost. Assumes metres, Y up; options say otherwise for formats that can't.
+// Enters: a mesh (or a level set, or a solid tree) with its provenance. Leaves: a file, written beside its target and
+// renamed into place, so that a good earlier file is never lost. Assumes metres, Y up; options say otherwise for
+// formats that can't.
 #pragma once
 
 #include <filesystem>
@@ -39,13 +40,13 @@ struct ExportInput {
     const volume::Volume* volume = nullptr;
     const field::SolidTree* solids = nullptr;
     const Provenance* provenance = nullptr;
-    std::span<const Collider> colliders;        ///< written by formats that hold colliders
-    const ObjectTree* objects = nullptr;        ///< into which formats that hold objects divide the mesh; null: one object
-    bool byMaterial = true;                     ///< formats that hold objects divide each by material; else colours alone
+    std::span<const Collider> colliders;  ///< written by formats that hold colliders
+    const ObjectTree* objects = nullptr;  ///< into which formats that hold objects divide the mesh; null: one object
+    bool byMaterial = true;               ///< formats that hold objects divide each by material; else colours alone
     std::span<const mesh::LevelOfDetail> levels;  ///< coarser meshes, written by formats that hold levels of detail
-    std::string name = "model";                 ///< of the object in the file
-    std::map<std::string, std::string> extras;  ///< grammar, seed, parameters: kept where the format can hold them
-    ExportOptions options;                      ///< those of the format, checked by `write`
+    std::string name = "model";                   ///< of the object in the file
+    std::map<std::string, std::string> extras;    ///< grammar, seed, parameters: kept where the format can hold them
+    ExportOptions options;                        ///< those of the format, checked by `write`
     Progress* progress = nullptr;
 };
 

@@ -98,7 +98,7 @@ private:
     std::filesystem::path target_;
     std::vector<char> buffer_ = std::vector<char>(blockBytes + 2 * rowRoom);
     const Progress* progress_;
-    size_t used_ = 0;  ///< less than a block between calls
+    size_t used_ = 0;       ///< less than a block between calls
     bool stopped_ = false;  ///< cancelled
     int fd_ = -1;
     int error_ = 0;  ///< errno of the first failure

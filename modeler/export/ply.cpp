@@ -52,7 +52,8 @@ public:
         const std::vector<uint32_t> materials = vertexMaterials(chunk);
         for (size_t i = 0; i < chunk.positions.size() && !out.failed(); ++i) {
             const Vec3f normal = unitNormal(chunk.normals[i]);
-            out.raw(place_.position(chunk.positions[i]), place_.direction(normal), boxProjection(chunk.positions[i], facing(normal)), colors_[materials[i]]);
+            out.raw(place_.position(chunk.positions[i]), place_.direction(normal),
+                    boxProjection(chunk.positions[i], facing(normal)), colors_[materials[i]]);
         }
     }
 

@@ -31,9 +31,9 @@ struct SharedObjects {
 /// Every node shows its own surface.
 SharedObjects keepOwnSurfaces(const ObjectTree& objects);
 
-/// Finds objects of equal likeness whose surfaces touch no other object's: whole connected surfaces with the same bounds
-/// to two hundredths of their diagonal and the same volume to a hundredth. The first one in the tree's order keeps its
-/// surface. O(triangles + nodes).
+/// Finds objects of equal likeness whose surfaces touch no other object's: whole connected surfaces with the same
+/// bounds to two hundredths of their diagonal and the same volume to a hundredth. The first one in the tree's order
+/// keeps its surface. O(triangles + nodes).
 SharedObjects shareObjects(const mesh::Mesh& mesh, const ObjectTree& objects);
 
 }  // namespace sgm::exporter

@@ -1,8 +1,8 @@
 // The order-free n-ary melt as an op: Σ max(0, c − fᵢ)² = k², f = c − k.
-// Enters: operand 0 is the radius k ≥ 0, the others are the fields. Leaves: their melt; exactly their minimum, in every bit,
-// where no two are within k of each other. Assumes nothing about the order or number of the fields.
-// Solved relative to the least field m: with dᵢ = fᵢ − m and c' = c − m, Newton's iteration from c' = k falls monotonically
-// on the convex Σ max(0, c' − dᵢ)² − k². A field with dᵢ ≥ k adds only zeros, so dropping it can't change a bit.
+// Enters: operand 0 is the radius k ≥ 0, the others are the fields. Leaves: their melt; exactly their minimum, in every
+// bit, where no two are within k of each other. Assumes nothing about the order or number of the fields. Solved
+// relative to the least field m: with dᵢ = fᵢ − m and c' = c − m, Newton's iteration from c' = k falls monotonically on
+// the convex Σ max(0, c' − dᵢ)² − k². A field with dᵢ ≥ k adds only zeros, so dropping it can't change a bit.
 #pragma once
 
 #include <span>
@@ -44,8 +44,8 @@ struct Blend {
         return melt(s, args[0]);
     }
 
-    /// f falls with k and rises with every field. Sums of n squares are off by n ulps, which moves c' by n/2 ulps of k at
-    /// most; the differences to m by one of k, the result by one of m.
+    /// f falls with k and rises with every field. Sums of n squares are off by n ulps, which moves c' by n/2 ulps of k
+    /// at most; the differences to m by one of k, the result by one of m.
     template <class I>
     static I interval(std::span<const I> args, uint32_t) {
         using V = typename I::Value;
@@ -107,7 +107,8 @@ private:
         return s.least - (k - s.c);
     }
 
-    /// `field(i)` for i in [1, count). Lanes that have converged no longer move, so their bits don't depend on the others.
+    /// `field(i)` for i in [1, count). Lanes that have converged no longer move, so their bits don't depend on the
+    /// others.
     template <class V, class Get>
     static Solution<V> solve(size_t count, const V& k, const Get& field) {
         V m = field(1);

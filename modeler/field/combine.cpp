@@ -63,7 +63,8 @@ Num owned(const Owned& part) {
     return part.field.value.graph().apply(codeOf<ops::Min>, twice);
 }
 
-/// Appends a part to a blend's operands; a blend of the same radius gives its own, so that grouping can't change the shape.
+/// Appends a part to a blend's operands; a blend of the same radius gives its own, so that grouping can't change the
+/// shape.
 void spliceBlend(const Graph& graph, const Owned& part, std::vector<Operand>& operands) {
     const NodeId id = part.field.value.id();
     const auto inner = graph.operands(id);

@@ -41,7 +41,8 @@ Point toLocal(Point p, const Frame& frame, uint64_t path, uint64_t rotationPath)
                    p);
     };
     return Point{along(r.x, names[0]), along(r.y, names[1]), along(r.z, names[2])} -
-           Point{named(g, path, "centre.x", centre.x), named(g, path, "centre.y", centre.y), named(g, path, "centre.z", centre.z)};
+           Point{named(g, path, "centre.x", centre.x), named(g, path, "centre.y", centre.y),
+                 named(g, path, "centre.z", centre.z)};
 }
 
 Box3f toWorld(const Box3f& local, const Frame& frame) {

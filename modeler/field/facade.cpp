@@ -81,7 +81,8 @@ double leastStretch(std::span<const Argument> a, const std::vector<FacadeBay>& b
     double least[2] = {1e30, 1e30};
     for (int axis = 0; axis < 2; ++axis)
         for (const FacadeBay& b : bays)
-            least[axis] = std::min(least[axis], std::abs(number(a, Zoom, b.id)) * 2 / (t.period[axis] * t.shrink[axis]));
+            least[axis] =
+                std::min(least[axis], std::abs(number(a, Zoom, b.id)) * 2 / (t.period[axis] * t.shrink[axis]));
     return std::max({least[0], least[1], number(a, Rise) / t.storey});
 }
 
@@ -118,7 +119,8 @@ Pattern pattern(const PrimitiveInput& in, Num outer, Num inner, double most) {
     if (t.storeys > 1) most = std::min(most, 0.49 * t.storey);  // farther storeys could be nearer than that
 
     double extent = 2 + number(a, Rise);
-    for (const FacadeBay& b : bays) extent = std::max(extent, std::abs(number(a, Zoom, b.id)) + std::abs(number(a, Pan, b.id)) + 2);
+    for (const FacadeBay& b : bays)
+        extent = std::max(extent, std::abs(number(a, Zoom, b.id)) + std::abs(number(a, Pan, b.id)) + 2);
     std::vector<Operand> operands;
     const auto add = [&](Num n) { operands.push_back({n.id(), 0}); };
     for (const Num n : {q.x, q.y, q.z, outer, inner}) add(n);
@@ -182,13 +184,15 @@ FacadeCell facadeCell(std::span<const Argument> arguments, Vec3d half, Vec3d p) 
 Field clad(const PrimitiveInput& in, const Clad& c, Vec3d up) {
     Graph& graph = in.p.x.graph();
     const double wall = number(in.arguments, Wall), top = number(in.arguments, Top);
-    // Erosion by `wall`, then stretched about the middle, down by `wall` and up by wall − top: nowhere by more than `wall`,
-    // so that the inner shell stays inside the outer one whatever the solid is.
+    // Erosion by `wall`, then stretched about the middle, down by `wall` and up by wall − top: nowhere by more than
+    // `wall`, so that the inner shell stays inside the outer one whatever the solid is.
     const auto slot = [&](double v) { return graph.slot(static_cast<float>(v)); };
     const Num shift = min(in.p.y + slot(wall), max(in.p.y - slot(wall - top), 0.0f)) - in.p.y;
     Point moved = graph.position();
-    if (up == Vec3d{0, 1, 0}) moved.y = moved.y + shift;
-    else moved = moved + Point{shift * slot(up.x), shift * slot(up.y), shift * slot(up.z)};
+    if (up == Vec3d{0, 1, 0})
+        moved.y = moved.y + shift;
+    else
+        moved = moved + Point{shift * slot(up.x), shift * slot(up.y), shift * slot(up.z)};
     const Num outer = c.solid.value, shell = substitute(outer, moved) + slot(wall);
     const Pattern p = pattern(in, outer, shell, wall);
     const auto chosen = [&](OpCode op, Num a, OriginId ofA, Num b, OriginId ofB) {
@@ -209,7 +213,8 @@ Field ornament(const PrimitiveInput& in) {
     const Num box = boxDistance(in.p, in.half);
     const Tiling t = tilingOf(in.arguments, in.halfValue);
     const Pattern p = pattern(in, box, box + 1e6f, std::max(t.storey, t.period[0]));
-    return {max(box, in.arguments[size_t(FacadeParameter::Round)].value[0] > 0 ? min(p.inner, p.value) : p.value), scopeBox(in), 1, growth(1)};
+    return {max(box, in.arguments[size_t(FacadeParameter::Round)].value[0] > 0 ? min(p.inner, p.value) : p.value),
+            scopeBox(in), 1, growth(1)};
 }
 
 }  // namespace solids

@@ -1,6 +1,6 @@
 // Facades: a KIFS mapped onto walls, storey by storey and bay by bay, and cladding of any solid with it.
-// Enters: the arguments of the primitive row `ornament` over a scope. Leaves: the facade filling its scope, or a solid clad
-// with it, g = min(inner, max(outer, fractal)) (McGraw, section 3). Assumes half-sizes > 0.
+// Enters: the arguments of the primitive row `ornament` over a scope. Leaves: the facade filling its scope, or a solid
+// clad with it, g = min(inner, max(outer, fractal)) (McGraw, section 3). Assumes half-sizes > 0.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,26 @@ namespace sgm::field {
 
 /// Arguments of the row `ornament`, in its order. The first six are also those of `kifs`.
 enum class FacadeParameter : size_t {
-    Center, Scale, Fold, Turn, Passes, Terminal,
-    Bay, Storey, Mirror, Zoom, Pan, Rise, Wall, Top, Fit, Round, Core, Along, Across, Swing
+    Center,
+    Scale,
+    Fold,
+    Turn,
+    Passes,
+    Terminal,
+    Bay,
+    Storey,
+    Mirror,
+    Zoom,
+    Pan,
+    Rise,
+    Wall,
+    Top,
+    Fit,
+    Round,
+    Core,
+    Along,
+    Across,
+    Swing
 };
 
 /// A stretch of half a period that has one facade id.
@@ -20,8 +38,8 @@ struct FacadeBay {
     double from;  ///< share of half a period, 0 … 1, where triangle wave |2(mod(x, w)/w − 1/2)| begins to be in it
     int id;       ///< 0 … 3
 };
-/// Algorithm 2's three folds at r, read as |2(mod(x, w)/w − 1/2)| and |u − r| − r, over half a period: bays in the order
-/// of the triangle wave. Slivers below a thousandth are left out.
+/// Algorithm 2's three folds at r, read as |2(mod(x, w)/w − 1/2)| and |u − r| − r, over half a period: bays in the
+/// order of the triangle wave. Slivers below a thousandth are left out.
 std::vector<FacadeBay> baysOf(const double r[3]);
 
 /// Which cell of the facade a place is in.

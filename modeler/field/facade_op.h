@@ -3,10 +3,10 @@
 // outer and the inner shell, and numbers from modeler/field/facade.cpp. Leaves: a bound of the distance to the infinite
 // facade, at most `most`; exactly `most` where a shell decides anyway (outer ≥ most or inner ≤ −deepest), so that the
 // fractal costs nothing there. Assumes the continuous form of the fractal.
-// Space is cut into cells: storeys in y, and in x and z the bays of one facade id, which the paper's folds make of half a
-// period. Inside a cell the map is continuous; from cell to cell it jumps. The field is the least over all cells of
-// max(distance to the cell's fractal, distance to the cell's slab): the same solid, but 1-Lipschitz. A slab reaches `slack`
-// over its border, so that no surface stays between two cells that are full there.
+// Space is cut into cells: storeys in y, and in x and z the bays of one facade id, which the paper's folds make of half
+// a period. Inside a cell the map is continuous; from cell to cell it jumps. The field is the least over all cells of
+// max(distance to the cell's fractal, distance to the cell's slab): the same solid, but 1-Lipschitz. A slab reaches
+// `slack` over its border, so that no surface stays between two cells that are full there.
 #pragma once
 
 #include <limits>
@@ -29,15 +29,15 @@ struct Facade {
     /// Places of the operands; the fractal's parameters lie as in Kifs, from its centre to its turn.
     enum Operand : size_t {
         position,
-        outer = 3,  ///< distance to the outer shell
-        inner,      ///< distance to the inner shell
-        fractal,  ///< from the centre of scaling to the turn
+        outer = 3,                        ///< distance to the outer shell
+        inner,                            ///< distance to the inner shell
+        fractal,                          ///< from the centre of scaling to the turn
         period = fractal + fractalCount,  ///< along x and along z, metres
-        shrink = period + 2,                                     ///< least world length of a metre of x, of z
-        mirrors = shrink + 2,                                    ///< r₁ r₂ r₃
-        storey = mirrors + 3,                                    ///< height, metres
-        storeys,                                                 ///< how many
-        rise,                                                    ///< s_y
+        shrink = period + 2,              ///< least world length of a metre of x, of z
+        mirrors = shrink + 2,             ///< r₁ r₂ r₃
+        storey = mirrors + 3,             ///< height, metres
+        storeys,                          ///< how many
+        rise,                             ///< s_y
         most,
         deepest,
         slack,
@@ -49,8 +49,8 @@ struct Facade {
     static constexpr float noBay = 3;
     static constexpr uint32_t pack(const Kifs::Form& form) { return Kifs::pack(form); }
 
-    /// The operands from the fractal on have to be constants here, as modeler/field/facade.cpp makes them: fetching them from
-    /// registers too took a third of a picture's time.
+    /// The operands from the fractal on have to be constants here, as modeler/field/facade.cpp makes them: fetching
+    /// them from registers too took a third of a picture's time.
     static constexpr std::string_view glsl = R"(
 #define number(at) uintBitsToFloat(texelFetch(tapeWords, int(at)).x)
 float most = number(first + 37u);
@@ -144,8 +144,8 @@ return best;)";
             V reach;  ///< metres of the world of half a period, at least
         } axis[2];
         V mirror[3], storey, perStorey, lastStorey, rise, perRise, most, deepest, slack;
-        /// From `from` on in half a period, to where the next one begins: its scale and shift, and along either axis the
-        /// least metres of the world that its map makes one of.
+        /// From `from` on in half a period, to where the next one begins: its scale and shift, and along either axis
+        /// the least metres of the world that its map makes one of.
         struct Bay {
             V from, zoom, pan, shrink[2];
         } bay[mostBays + 1];
@@ -153,9 +153,16 @@ return best;)";
 
         /// Of `args` the parameters are read, at their places.
         [[gnu::always_inline]] Numbers(std::span<const V> args, uint32_t data)
-            : form(Kifs::unpack(data)), folds(args.subspan(fractal - size_t{Kifs::centreOfScale}), data), storey(args[Facade::storey]),
-              perStorey(V(1.0f) / storey), lastStorey(args[storeys] - V(1.0f)), rise(args[Facade::rise]), perRise(storey / rise),
-              most(args[Facade::most]), deepest(args[Facade::deepest]), slack(args[Facade::slack]) {
+            : form(Kifs::unpack(data)),
+              folds(args.subspan(fractal - size_t{Kifs::centreOfScale}), data),
+              storey(args[Facade::storey]),
+              perStorey(V(1.0f) / storey),
+              lastStorey(args[storeys] - V(1.0f)),
+              rise(args[Facade::rise]),
+              perRise(storey / rise),
+              most(args[Facade::most]),
+              deepest(args[Facade::deepest]),
+              slack(args[Facade::slack]) {
             for (size_t i = 0; i < 2; ++i) {
                 const V& length = args[period + i];
                 axis[i] = {V(1.0f) / length, length * args[Facade::shrink + i] * V(0.5f)};
@@ -249,17 +256,21 @@ private:
     template <class V, class W, class N = NumberOf<V, W>>
     struct Along {
         uint32_t axis;
-        V raw, u;     ///< 0 … 1: before and after the paper's folds
-        V off;        ///< signed distance to the own bay, metres
+        V raw, u;  ///< 0 … 1: before and after the paper's folds
+        V off;     ///< signed distance to the own bay, metres
         Seen<N> own;
 
-        Seen<N> bay(uint32_t i, const Numbers<W>& n) const { return {n.bay[i].zoom, n.bay[i].pan, n.bay[i].shrink[axis]}; }
+        Seen<N> bay(uint32_t i, const Numbers<W>& n) const {
+            return {n.bay[i].zoom, n.bay[i].pan, n.bay[i].shrink[axis]};
+        }
         /// Signed distance to a bay, metres.
         V to(uint32_t i, const Numbers<W>& n) const { return between(n.bay[i].from, n.bay[i + 1].from, n); }
         V between(const N& from, const N& end, const Numbers<W>& n) const {
             return max(from - raw, raw - end) * N(n.axis[axis].reach);
         }
-        auto within(uint32_t i, const Numbers<W>& n) const { return (raw >= V(n.bay[i].from)) & (raw < V(n.bay[i + 1].from)); }
+        auto within(uint32_t i, const Numbers<W>& n) const {
+            return (raw >= V(n.bay[i].from)) & (raw < V(n.bay[i + 1].from));
+        }
     };
     /// The storeys around a height.
     template <class V>
@@ -278,7 +289,8 @@ private:
         a.raw = abs((turn - floor(turn)) * N(2.0f) - N(1.0f));
         a.u = a.raw;
         for (const W& r : n.mirror) a.u = abs(abs(a.u - N(r)) - N(r));
-        N from = n.bay[0].from, end = n.bay[1].from, zoom = n.bay[0].zoom, pan = n.bay[0].pan, shrink = n.bay[0].shrink[axis];
+        N from = n.bay[0].from, end = n.bay[1].from, zoom = n.bay[0].zoom, pan = n.bay[0].pan,
+          shrink = n.bay[0].shrink[axis];
         for (uint32_t i = 1; i < n.bays; ++i) {
             const auto here = a.raw >= V(n.bay[i].from);
             if (!any(here)) break;
@@ -304,8 +316,8 @@ private:
 
     /// Distance to one cell's fractal, its map continued beyond the cell; divided by the map's greatest stretch.
     template <Path path, class V, class W, class N = NumberOf<V, W>>
-    [[gnu::always_inline]] static V cell(const Numbers<W>& n, const Along<V, W>& x, const Seen<N>& inX, const Along<V, W>& z,
-                                         const Seen<N>& inZ, const V& v) {
+    [[gnu::always_inline]] static V cell(const Numbers<W>& n, const Along<V, W>& x, const Seen<N>& inX,
+                                         const Along<V, W>& z, const Seen<N>& inZ, const V& v) {
         const V at[] = {x.u * inX.zoom + inX.pan, v * N(n.rise), z.u * inZ.zoom + inZ.pan};
         return Kifs::folded<path>(at, n.folds) * min(min(inX.shrink, inZ.shrink), N(n.perRise));
     }

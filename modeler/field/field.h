@@ -13,8 +13,8 @@ struct Field {
     Num value;
     /// Every point with f < 0 lies in this box. Not finite for a half-space; empty for the empty shape.
     Box3f bounds;
-    /// |f(p) − f(q)| ≤ lipschitz · |p − q| everywhere; 1 for a true distance. Infinite where the field jumps (a KIFS with
-    /// a bailout or a turned jump): intervals still hold, but a tracer must choose its own steps.
+    /// |f(p) − f(q)| ≤ lipschitz · |p − q| everywhere; 1 for a true distance. Infinite where the field jumps (a KIFS
+    /// with a bailout or a turned jump): intervals still hold, but a tracer must choose its own steps.
     float lipschitz = 1;
     /// f(p) ≥ growth · distance(p, bounds) outside the bounds: lets unions drop far groups. 0 when nothing is known.
     float growth = 1;

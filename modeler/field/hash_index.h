@@ -1,6 +1,7 @@
 // Ids by hash: a table of open addresses, for collections that only grow and keep their items elsewhere.
-// Enters: 64-bit hashes, of which the low half counts, spread over their range, and ids. Leaves: the id whose item the caller recognises. Assumes ids below 2³² − 1.
-// Linear probing, at most half full (Knuth, "The Art of Computer Programming" 6.4, algorithm L): no allocation an item.
+// Enters: 64-bit hashes, of which the low half counts, spread over their range, and ids. Leaves: the id whose item the
+// caller recognises. Assumes ids below 2³² − 1. Linear probing, at most half full (Knuth, "The Art of Computer
+// Programming" 6.4, algorithm L): no allocation an item.
 #pragma once
 
 #include <cstddef>

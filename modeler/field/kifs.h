@@ -1,10 +1,9 @@
-// The kaleidoscopic iterated function system (KIFS) as an op: McGraw, "Interactive generation of buildings…", algorithm 1,
-// with the errata of docs/papers.md.
-// Enters: operands in the order of `Kifs::Operand` and `data` from `Kifs::pack`. Leaves: a bound of the distance to the
-// fractal. Assumes scale > 1 and rotations that are rotations.
-// One pass: turn (R₁), the folds of the Menger sponge (|x|, sort descending), fold (R₂), scale about the centre, and the
-// last fold in z. In the continuous form every step but the scaling is an isometry or a reflection, so the value, divided
-// by the product of the scales, is exactly 1-Lipschitz. The jump form (z − 2h for z > h, as printed) gives the same values
+// The kaleidoscopic iterated function system (KIFS) as an op: McGraw, "Interactive generation of buildings…", algorithm
+// 1, with the errata of docs/papers.md. Enters: operands in the order of `Kifs::Operand` and `data` from `Kifs::pack`.
+// Leaves: a bound of the distance to the fractal. Assumes scale > 1 and rotations that are rotations. One pass: turn
+// (R₁), the folds of the Menger sponge (|x|, sort descending), fold (R₂), scale about the centre, and the last fold in
+// z. In the continuous form every step but the scaling is an isometry or a reflection, so the value, divided by the
+// product of the scales, is exactly 1-Lipschitz. The jump form (z − 2h for z > h, as printed) gives the same values
 // when R₁ = I and is discontinuous otherwise; so is any bailout.
 #pragma once
 
@@ -140,8 +139,8 @@ struct Kifs {
         return value;
     }
 
-    /// The value at a point, by numbers that are V themselves or plain floats; with derivatives where V has them and the
-    /// numbers have none.
+    /// The value at a point, by numbers that are V themselves or plain floats; with derivatives where V has them and
+    /// the numbers have none.
     template <Path path, class V, class W>
     [[gnu::always_inline]] static V byNumbers(const V* at, const Numbers<W>& numbers) {
         const auto stretched = [&](size_t i) {
@@ -173,15 +172,15 @@ struct Kifs {
         using Type = V;
     };
     template <class V, class W>
-        requires(!std::is_same_v<V, W>) && requires { typename V::Value; }
+    requires(!std::is_same_v<V, W>) && requires { typename V::Value; }
     struct Beside<V, W> {
         using Type = typename V::Value;
     };
     template <class V, class W>
     using NumberOf = typename Beside<V, W>::Type;
 
-    /// With fixed parameters and a continuous form: f(centre) ± the radius of the box, not below the terminal solid's depth.
-    /// Otherwise the passes over intervals.
+    /// With fixed parameters and a continuous form: f(centre) ± the radius of the box, not below the terminal solid's
+    /// depth. Otherwise the passes over intervals.
     template <class I>
     static I interval(std::span<const I> args, uint32_t data) {
         using V = typename I::Value;

@@ -1,8 +1,8 @@
 // Value noise as an op, in octaves: billow Σ 2⁻ⁱ|vᵢ| and fbm Σ 2⁻ⁱ vᵢ, both divided by Σ 2⁻ⁱ, v in [−1, 1].
 // Enters: operands x, y, z in lattice cells; `data` from `Noise::pack`. Leaves: billow in [0, 1], fbm in [−1, 1].
-// Assumes |coordinates| < 2²² in the last octave, where cells still have fractions. Lattice values are integer hashes, the
-// same on every machine; mixer: lowbias32 (Wellons, "Prospecting for Hash Functions", 2018); fade: Perlin, "Improving
-// Noise", 2002.
+// Assumes |coordinates| < 2²² in the last octave, where cells still have fractions. Lattice values are integer hashes,
+// the same on every machine; mixer: lowbias32 (Wellons, "Prospecting for Hash Functions", 2018); fade: Perlin,
+// "Improving Noise", 2002.
 #pragma once
 
 #include <span>
@@ -23,9 +23,9 @@ struct Noise {
         return static_cast<uint32_t>(octaves - 1) | (fbm ? 8u : 0u) | (mixed(seed) << 4);
     }
 
-    /// Lipschitz bound per lattice cell. One octave of v: the greatest slope of a trilinear patch with corners ±1 under the
-    /// fade is 2 · 15/8 = 3.75, across a step from −1 to 1 (found over all 2⁸ corners and a fine grid of places). Octave i is 2ⁱ times as
-    /// steep and 2⁻ⁱ times as high.
+    /// Lipschitz bound per lattice cell. One octave of v: the greatest slope of a trilinear patch with corners ±1 under
+    /// the fade is 2 · 15/8 = 3.75, across a step from −1 to 1 (found over all 2⁸ corners and a fine grid of places).
+    /// Octave i is 2ⁱ times as steep and 2⁻ⁱ times as high.
     static constexpr float lipschitz(int octaves) {
         float weights = 0, weight = 1;
         for (int i = 0; i < octaves; ++i, weight *= 0.5f) weights += weight;

@@ -7,29 +7,36 @@
 //   name, arity                          operands: 1, 2, or `variadic`
 //   V apply(a) | apply(a, b) | apply(span<const V> args, uint32_t data)      the op itself, over any V
 // and, where the default won't do or could be better:
-//   operandCount, moving                 of a variadic row: it always has so many operands, and those from `moving` on are
+//   operandCount, moving                 of a variadic row: it always has so many operands, and those from `moving` on
+//   are
 //                                        mostly numbers: kernels are fast then
 //   commutative = true                   operands may be ordered
 //   I interval(…same operands as I…)     an enclosure of apply's floats, rounding included; operands' bounds are never
 //                                        NaN. The default is apply over intervals: rounding is monotone, so it encloses
 //   D gradient(…same operands as D…)     value (same bits as apply) and derivatives; the default is apply over Dual
-//   Slopes<V> slopes<V>(at)              for a row of a position and numbers, at(i) its operands: the value and its derivatives by
+//   Slopes<V> slopes<V>(at)              for a row of a position and numbers, at(i) its operands: the value and its
+//   derivatives by
 //                                        the position, all that is needed where that is x, y, z themselves
-//   Numbers<V>(args, data)               for a row most of whose operands are numbers: what it makes of those, once for all
+//   Numbers<V>(args, data)               for a row most of whose operands are numbers: what it makes of those, once for
+//   all
 //                                        points. V byNumbers<path>(const V* moving, numbers) gives apply's bits from
-//                                        numbers that are V, or floats: then with derivatives where V has them; paths are
-//                                        told apart by visitPath(numbers.form, …)
+//                                        numbers that are V, or floats: then with derivatives where V has them; paths
+//                                        are told apart by visitPath(numbers.form, …)
 //   owner                                which operand owns the surface (Owner)
-//   V reach(span<const I>, uint32_t)     for Owner::Least (Greatest): an operand that lies above (below) it can't matter:
+//   V reach(span<const I>, uint32_t)     for Owner::Least (Greatest): an operand that lies above (below) it can't
+//   matter:
 //                                        the bits stay the same without it or with any other number beyond it. With one
-//                                        operand left the op is that operand, bit for bit. Operands before `firstChoice`
-//                                        are never dropped
-//   readsGrid = true                     `data` is the number of a SampledGrid in the graph, and every function above that
-//                                        takes `uint32_t data` takes the grid's words, `const float* grid`, in its place
+//                                        operand left the op is that operand, bit for bit. Operands before
+//                                        `firstChoice` are never dropped
+//   readsGrid = true                     `data` is the number of a SampledGrid in the graph, and every function above
+//   that
+//                                        takes `uint32_t data` takes the grid's words, `const float* grid`, in its
+//                                        place
 //   selects = true                       the result is one of the operands, so that what the consumer of the result
 //                                        doesn't care for needn't be told apart in the operands either
 //   hasSides = true                      the surface has an edge where its two operands are equal, as at their maximum
-//   glsl                                 body of `float op_NAME(uint first, uint count, uint data)`, in which operand i is
+//   glsl                                 body of `float op_NAME(uint first, uint count, uint data)`, in which operand i
+//   is
 //                                        `arg(first + i)`; needed by variadic rows: a loop can't become one expression.
 //                                        word(data, i) is the i-th word of the grid
 #pragma once
@@ -332,10 +339,10 @@ template <class... Rows>
 struct TypeList {
     static constexpr size_t size = sizeof...(Rows);
 };
-using OpTable = TypeList<ops::Input, ops::Literal, ops::Slot, ops::Copy, ops::Add, ops::Sub, ops::Mul, ops::Div,
-                         ops::Neg, ops::Abs, ops::Sqrt, ops::Square, ops::Floor, ops::Mod, ops::Min, ops::Max,
-                         ops::Rim, ops::Morph, ops::Sin, ops::Cos, ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend, ops::Ball, ops::Box,
-                         ops::Sampled, ops::Facade>;
+using OpTable =
+    TypeList<ops::Input, ops::Literal, ops::Slot, ops::Copy, ops::Add, ops::Sub, ops::Mul, ops::Div, ops::Neg, ops::Abs,
+             ops::Sqrt, ops::Square, ops::Floor, ops::Mod, ops::Min, ops::Max, ops::Rim, ops::Morph, ops::Sin, ops::Cos,
+             ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend, ops::Ball, ops::Box, ops::Sampled, ops::Facade>;
 
 namespace detail {
 template <class Row, class... Rows>

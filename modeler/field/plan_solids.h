@@ -17,7 +17,8 @@ namespace sgm::field {
 double heightOver(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
                   std::span<const Argument> arguments);
 
-/// Which edges of a footprint a roof leaves as gables: where a ridge ends over them, those that face x or z, or all that can.
+/// Which edges of a footprint a roof leaves as gables: where a ridge ends over them, those that face x or z, or all
+/// that can.
 enum class GableEnds : uint8_t { Auto, X, Z, All };
 /// Their numbers, ascending, as in edgesOf(); edges at reflex corners can't be gables.
 std::vector<uint32_t> gablesOf(const plan::Footprint& footprint, const plan::Formula& formula, GableEnds ends);

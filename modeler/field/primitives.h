@@ -28,8 +28,8 @@ struct PrimitiveParameter {
 };
 
 /// A value with the node(s) that carry it (slots, or expressions over them) and its present number(s) for bounds.
-/// A Share/Length/Angle/Count/Choice uses [0]; a Vector three; PerId four; a Rotation nine (matrix by columns, world from local);
-/// a File what was read from it.
+/// A Share/Length/Angle/Count/Choice uses [0]; a Vector three; PerId four; a Rotation nine (matrix by columns, world
+/// from local); a File what was read from it.
 struct Argument {
     Num node[9];
     double value[9]{};
@@ -40,9 +40,9 @@ class PlanField;
 
 /// What a primitive is built from.
 struct PrimitiveInput {
-    Point p;              ///< position in the solid's frame, metres, origin at the scope's centre
-    Point half;           ///< half-size of the scope along x, y, z, metres
-    Vec3d halfValue;      ///< the same, present numbers
+    Point p;                              ///< position in the solid's frame, metres, origin at the scope's centre
+    Point half;                           ///< half-size of the scope along x, y, z, metres
+    Vec3d halfValue;                      ///< the same, present numbers
     std::span<const Argument> arguments;  ///< one per row parameter, in row order
     const PlanField* plan = nullptr;      ///< the scope's footprint about its centre, metres; null: the rectangle
     uint64_t path = 0;                    ///< keys the slots of a row over a footprint
@@ -70,7 +70,7 @@ struct Primitive {
     Field (*build)(const PrimitiveInput&);
     bool bounded = true;  ///< false: fills half of space, may only cut
     std::span<const PrimitiveJoint> joints{};
-    bool morphs = false;  ///< its first parameter is the share of a morph
+    bool morphs = false;                    ///< its first parameter is the share of a morph
     convex::PartsOf convexParts = nullptr;  ///< null where it has none, or where they must be found from its field
     PlanUse plan = PlanUse::None;
 };

@@ -1,8 +1,8 @@
-// A sampled grid as an op: its samples, interpolated along the three axes; beyond the grid a lower bound of the distance.
-// Enters: operands x, y, z in the grid's own frame, and the words of a SampledGrid. Leaves: the distance. Assumes that the
-// samples on the grid's border are positive.
-// Beyond the grid: with q the nearest place of its box, √(f(q)² + |p − q|²). The two gradients are square to each other, so
-// it is as steep as f at most, and no more than the true distance, since the box is convex.
+// A sampled grid as an op: its samples, interpolated along the three axes; beyond the grid a lower bound of the
+// distance. Enters: operands x, y, z in the grid's own frame, and the words of a SampledGrid. Leaves: the distance.
+// Assumes that the samples on the grid's border are positive. Beyond the grid: with q the nearest place of its box,
+// √(f(q)² + |p − q|²). The two gradients are square to each other, so it is as steep as f at most, and no more than the
+// true distance, since the box is convex.
 #pragma once
 
 #include <limits>
@@ -24,8 +24,10 @@ struct Sampled {
         "vec3 low = vec3(word(data, 0u), word(data, 1u), word(data, 2u));\n"
         "vec3 cells = vec3(word(data, 7u), word(data, 8u), word(data, 9u));\n"
         "vec3 u = (vec3(arg(first), arg(first + 1u), arg(first + 2u)) - low) * word(data, 4u);\n"
-        "vec3 q = clamp(u, vec3(0.0), cells), c = min(floor(q), cells - 1.0), t = q - c, off = (u - q) * word(data, 3u);\n"
-        "uint sy = uint(word(data, 10u)), sz = uint(word(data, 11u)), at = 12u + uint(c.x) + uint(c.y) * sy + uint(c.z) * sz;\n"
+        "vec3 q = clamp(u, vec3(0.0), cells), c = min(floor(q), cells - 1.0), t = q - c, off = (u - q) * word(data, "
+        "3u);\n"
+        "uint sy = uint(word(data, 10u)), sz = uint(word(data, 11u)), at = 12u + uint(c.x) + uint(c.y) * sy + "
+        "uint(c.z) * sz;\n"
         "vec4 y = vec4(word(data, at), word(data, at + sy), word(data, at + sz), word(data, at + sy + sz));\n"
         "++at;\n"
         "y += t.x * (vec4(word(data, at), word(data, at + sy), word(data, at + sz), word(data, at + sy + sz)) - y);\n"
@@ -46,10 +48,12 @@ struct Sampled {
         const V centres[] = {centre(args[0]), centre(args[1]), centre(args[2])};
         const V rx = radius(args[0]), ry = radius(args[1]), rz = radius(args[2]);
         const float bound = grid[SampledGrid::lipschitzBound], least = grid[SampledGrid::least];
-        const float corner = abs(grid[SampledGrid::low]) + abs(grid[SampledGrid::low + 1]) + abs(grid[SampledGrid::low + 2]);
+        const float corner =
+            abs(grid[SampledGrid::low]) + abs(grid[SampledGrid::low + 1]) + abs(grid[SampledGrid::low + 2]);
         // Rounding: of the place in the grid, as steep as the field, and of the sums.
         const V value = apply<V>(centres, grid);
-        const V ulps = (abs(centres[0]) + abs(centres[1]) + abs(centres[2]) + V(corner)) * 4e-7f + abs(value) * 2e-6f + V(abs(least) * 2e-6f);
+        const V ulps = (abs(centres[0]) + abs(centres[1]) + abs(centres[2]) + V(corner)) * 4e-7f + abs(value) * 2e-6f +
+                       V(abs(least) * 2e-6f);
         const V reach = (sqrt(rx * rx + ry * ry + rz * rz) * 1.000001f + ulps) * bound;
         return around<I>(value, reach, least * 1.00001f, std::numeric_limits<float>::infinity());
     }
@@ -57,7 +61,8 @@ struct Sampled {
     template <class D>
     static D gradient(std::span<const D> args, const float* grid) {
         using V = typename D::Value;
-        const Place<V> x = place(args[0].value, grid, 0), y = place(args[1].value, grid, 1), z = place(args[2].value, grid, 2);
+        const Place<V> x = place(args[0].value, grid, 0), y = place(args[1].value, grid, 1),
+                       z = place(args[2].value, grid, 2);
         const Patch<V> f = patch(x, y, z, grid);
         const V value = beyond(f.value, x, y, z);
         const auto inside = !(square(x, y, z) > V(0.0f));
@@ -107,17 +112,21 @@ private:
     template <class V>
     static Patch<V> patch(const Place<V>& x, const Place<V>& y, const Place<V>& z, const float* grid) {
         using Int = IntOf<V>;
-        const auto rowStep = static_cast<uint32_t>(grid[SampledGrid::nodesX]), layerStep = static_cast<uint32_t>(grid[SampledGrid::nodesXY]);
+        const auto rowStep = static_cast<uint32_t>(grid[SampledGrid::nodesX]),
+                   layerStep = static_cast<uint32_t>(grid[SampledGrid::nodesXY]);
         const Int at = toInt(x.cell) + toInt(y.cell) * Int(rowStep) + toInt(z.cell) * Int(layerStep);
         const auto from = [&](uint32_t step) { return grid + SampledGrid::firstSample + step; };
         const auto low = [&](uint32_t step) { return gather(from(step), at); };
         const V v00 = low(0), v10 = low(rowStep), v01 = low(layerStep), v11 = low(layerStep + rowStep);
-        const V d00 = low(1) - v00, d10 = low(rowStep + 1) - v10, d01 = low(layerStep + 1) - v01, d11 = low(layerStep + rowStep + 1) - v11;
-        const V e00 = v00 + x.share * d00, e10 = v10 + x.share * d10, e01 = v01 + x.share * d01, e11 = v11 + x.share * d11;
+        const V d00 = low(1) - v00, d10 = low(rowStep + 1) - v10, d01 = low(layerStep + 1) - v01,
+                d11 = low(layerStep + rowStep + 1) - v11;
+        const V e00 = v00 + x.share * d00, e10 = v10 + x.share * d10, e01 = v01 + x.share * d01,
+                e11 = v11 + x.share * d11;
         const V near = e00 + y.share * (e10 - e00), far = e01 + y.share * (e11 - e01);
         const V dxNear = d00 + y.share * (d10 - d00), dxFar = d01 + y.share * (d11 - d01);
         const V dyNear = e10 - e00, dyFar = e11 - e01;
-        return {near + z.share * (far - near), dxNear + z.share * (dxFar - dxNear), dyNear + z.share * (dyFar - dyNear), far - near};
+        return {near + z.share * (far - near), dxNear + z.share * (dxFar - dxNear), dyNear + z.share * (dyFar - dyNear),
+                far - near};
     }
 };
 

@@ -33,8 +33,9 @@ ops::Kifs::Form kifsForm(std::span<const Argument> arguments) {
             .turns = !isIdentity(arguments[Turn])};
 }
 
-// The fractal's cube [−max c, max c]³ (c the centre of scaling) fills the scope and is cut by it: terminal balls and turned
-// branches reach over. Scaled coordinates are made good by the least scale; the maximum with the box gives growth 1.
+// The fractal's cube [−max c, max c]³ (c the centre of scaling) fills the scope and is cut by it: terminal balls and
+// turned branches reach over. Scaled coordinates are made good by the least scale; the maximum with the box gives
+// growth 1.
 Field kifs(const PrimitiveInput& in) {
     Graph& graph = in.p.x.graph();
     const auto& [cx, cy, cz] =

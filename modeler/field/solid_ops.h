@@ -160,9 +160,10 @@ struct Box {
             const V size = select(outside, away * share, face);
             return select(along < zero, -size, size);
         };
-        return {distance(q),
-                {slope(d.x, out.x, select(inX, one, zero)), slope(d.y, out.y, select(inX, zero, select(inY, one, zero))),
-                 slope(d.z, out.z, select(inX | inY, zero, one))}};
+        return {
+            distance(q),
+            {slope(d.x, out.x, select(inX, one, zero)), slope(d.y, out.y, select(inX, zero, select(inY, one, zero))),
+             slope(d.z, out.z, select(inX | inY, zero, one))}};
     }
 
 private:

@@ -1,7 +1,7 @@
 // The field of each solid in the primitive table.
-// Enters: PrimitiveInput (primitives.h). Leaves: a Field filling the scope [−half, half]; the input's arguments are read in
-// the row's order. Assumes half-sizes > 0. SG-M III-E with the errata in docs/papers.md; a formula on coordinates scaled
-// by the half-sizes is multiplied by the least scale, so that it stays 1-Lipschitz (f(p/s)·min s).
+// Enters: PrimitiveInput (primitives.h). Leaves: a Field filling the scope [−half, half]; the input's arguments are
+// read in the row's order. Assumes half-sizes > 0. SG-M III-E with the errata in docs/papers.md; a formula on
+// coordinates scaled by the half-sizes is multiplied by the least scale, so that it stays 1-Lipschitz (f(p/s)·min s).
 #pragma once
 
 #include "modeler/field/kifs.h"
@@ -35,8 +35,8 @@ Field ornament(const PrimitiveInput& in);  ///< (FacadeParameter, modeler/field/
 // solid_mesh.cpp
 Field mesh(const PrimitiveInput& in);  ///< (file)
 
-/// The scope's box about the origin; a solid whose field is a maximum with the cube's or the ellipsoid's has f ≥ 0 outside
-/// it in every bit, because −, ÷ and √ round monotonically.
+/// The scope's box about the origin; a solid whose field is a maximum with the cube's or the ellipsoid's has f ≥ 0
+/// outside it in every bit, because −, ÷ and √ round monotonically.
 Box3f scopeBox(const PrimitiveInput& in);
 /// `g` as a growth: rounded down by more than the float formulas' own rounding.
 float growth(double g);

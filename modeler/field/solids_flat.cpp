@@ -8,8 +8,8 @@ namespace sgm::field::solids {
 
 namespace {
 
-/// Signed distance to the plane through (half, −halfY) and (0, halfY), the slanted face over an axis: `across` ≥ 0 is the
-/// distance from that axis, `y` the height.
+/// Signed distance to the plane through (half, −halfY) and (0, halfY), the slanted face over an axis: `across` ≥ 0 is
+/// the distance from that axis, `y` the height.
 Num slope(Num across, Num y, Num half, Num halfY) {
     const Num rise = 2.0f * halfY;
     return ((across - half) * rise + (y + halfY) * half) / sqrt(square(rise) + square(half));
@@ -66,8 +66,9 @@ Field wedge(const PrimitiveInput& in) {
     return insideScope(in, plane);
 }
 
-// Papers guide, section 3 "Architecture": max(lerp(pyramid sides, ellipsoid (w, H, d), a), −y), y from the foot. Morphing
-// a closed pyramid instead would curl its base up. The foot is a face of the scope, so the cut is part of the box.
+// Papers guide, section 3 "Architecture": max(lerp(pyramid sides, ellipsoid (w, H, d), a), −y), y from the foot.
+// Morphing a closed pyramid instead would curl its base up. The foot is a face of the scope, so the cut is part of the
+// box.
 Field roof(const PrimitiveInput& in) {
     const Num foot = in.p.y + in.half.y, height = 2.0f * in.half.y;
     const Num dome = (length(Point{in.p.x / in.half.x, foot / height, in.p.z / in.half.z}) - 1.0f) *

@@ -1,5 +1,6 @@
 // Round solids. Cross-sections may be elliptical: (|p/s| − 1)·min s is 1-Lipschitz and exact for a circle.
-// Growth: a solid whose exact distance is measured in coordinates v = p/m, times min m, grows by min m / max m at least.
+// Growth: a solid whose exact distance is measured in coordinates v = p/m, times min m, grows by min m / max m at
+// least.
 #include "modeler/field/ops.h"
 #include "modeler/field/solids.h"
 
@@ -27,14 +28,16 @@ Num cylinderDistance(const PrimitiveInput& in) {
 Field ellipsoid(const PrimitiveInput& in) {
     const Num r = min(min(in.half.x, in.half.y), in.half.z);
     const auto [p, c] = placed(in.p);
-    const Num value = r.graph().apply(
-        codeOf<ops::Ball>, {p.x, p.y, p.z, c.x, c.y, c.z, r / in.half.x, r / in.half.y, r / in.half.z, r});
+    const Num value = r.graph().apply(codeOf<ops::Ball>,
+                                      {p.x, p.y, p.z, c.x, c.y, c.z, r / in.half.x, r / in.half.y, r / in.half.z, r});
     const double most = maxComponent(in.halfValue), share = minComponent(in.halfValue) / most;
-    return {value, share == 1 ? scopeBox(in) : scopeBox(in).inflated(2e-6f * static_cast<float>(most)), 1, growth(share)};
+    return {value, share == 1 ? scopeBox(in) : scopeBox(in).inflated(2e-6f * static_cast<float>(most)), 1,
+            growth(share)};
 }
 
-// In the scope's ellipse as unit circle the rim is 1 and the tube's radius `tube`; y is scaled so that the tube is as high
-// as the scope. The two parts of the inner length have orthogonal gradients of at most 1/min(half x, z) and tube/half y.
+// In the scope's ellipse as unit circle the rim is 1 and the tube's radius `tube`; y is scaled so that the tube is as
+// high as the scope. The two parts of the inner length have orthogonal gradients of at most 1/min(half x, z) and
+// tube/half y.
 Field torus(const PrimitiveInput& in) {
     const Num tube = in.arguments[0].node[0];
     const Num across = radial(in) - (1.0f - tube);
@@ -49,7 +52,8 @@ Field cylinder(const PrimitiveInput& in) {
     return {cylinderDistance(in), scopeBox(in), 1, growth(roundness(in.halfValue.x, in.halfValue.z))};
 }
 
-// The slanted side from the rim of the foot to the apex, exact inside; the cylinder closes the foot and gives the growth.
+// The slanted side from the rim of the foot to the apex, exact inside; the cylinder closes the foot and gives the
+// growth.
 Field cone(const PrimitiveInput& in) {
     const Num radius = min(in.half.x, in.half.z), rise = 2.0f * in.half.y;
     const Num side = ((radial(in) - 1.0f) * rise * radius + (in.p.y + in.half.y) * radius) / hypot(rise, radius);

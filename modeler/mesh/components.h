@@ -1,6 +1,6 @@
 // What hangs together: union-find with path halving, and the connected surfaces of a mesh.
-// Enters: n things and the pairs that belong together, or triangles. Leaves: the lowest member of each group; the surface of
-// each vertex.
+// Enters: n things and the pairs that belong together, or triangles. Leaves: the lowest member of each group; the
+// surface of each vertex.
 #pragma once
 
 #include <algorithm>
@@ -41,13 +41,13 @@ private:
 /// Which connected surface each vertex of a mesh is on.
 struct SurfaceLabels {
     static constexpr uint32_t none = 0xffffffffu;  ///< the vertex has no triangle
-    PageVector<uint32_t> of;                       ///< by vertex: 0 … count − 1, in the order of the surfaces' first triangles
-    std::vector<uint32_t> numbers;                 ///< by the label that a triangle was given: the same
+    PageVector<uint32_t> of;        ///< by vertex: 0 … count − 1, in the order of the surfaces' first triangles
+    std::vector<uint32_t> numbers;  ///< by the label that a triangle was given: the same
     uint32_t count = 0;
 };
 
-/// Labels vertices as pixels are (Rosenfeld and Pfaltz, "Sequential Operations in Digital Picture Processing", 1966): a triangle
-/// hands on the label that it finds, and labels that meet are one. There are far fewer labels than vertices.
+/// Labels vertices as pixels are (Rosenfeld and Pfaltz, "Sequential Operations in Digital Picture Processing", 1966): a
+/// triangle hands on the label that it finds, and labels that meet are one. There are far fewer labels than vertices.
 class Labeller {
 public:
     /// Forgets all; for so many vertices.
@@ -64,7 +64,8 @@ public:
         low = low < c ? low : c;
         int32_t high = signedOf(a) > signedOf(b) ? signedOf(a) : signedOf(b);
         high = high > signedOf(c) ? high : signedOf(c);
-        if ((static_cast<uint32_t>(high) != low) | (low == none)) [[unlikely]] low = met(a, b, c);
+        if ((static_cast<uint32_t>(high) != low) | (low == none)) [[unlikely]]
+            low = met(a, b, c);
         return x = y = z = low;
     }
     /// What was found; begin anew then.

@@ -21,8 +21,8 @@ constexpr uint32_t nobody = std::numeric_limits<uint32_t>::max();
 /// Cells around the mesh. Not whole, so that walls along the axes lie between nodes.
 constexpr float margin = 2.37f;
 
-/// A triangle in the frame of the grid: cells from the first node. Its corners lie together, for sweeps ask for triangles
-/// in no order.
+/// A triangle in the frame of the grid: cells from the first node. Its corners lie together, for sweeps ask for
+/// triangles in no order.
 using Corners = std::array<Vec3f, 3>;
 
 TriangleSoup soupOf(const Mesh& mesh) {
@@ -49,7 +49,8 @@ void weld(TriangleSoup& soup) {
     });
     std::vector<uint32_t> first(order.size());
     for (size_t i = 0; i < order.size(); ++i)
-        first[order[i].vertex] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1].vertex] : order[i].vertex;
+        first[order[i].vertex] =
+            i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1].vertex] : order[i].vertex;
     for (Triangle& t : soup.triangles) t = {first[t.x], first[t.y], first[t.z]};
 }
 
@@ -85,7 +86,8 @@ public:
         for (uint32_t t = 0; t < triangles_.size(); ++t) {
             if (t % 8 == 0 && cancelled(progress_)) return cancelledError();
             seed(t, triangles_[t]);
-            if (offers_ > mostOffers()) return Error{Error::Kind::Budget, "has too many large triangles, one over the other: simplify it"};
+            if (offers_ > mostOffers())
+                return Error{Error::Kind::Budget, "has too many large triangles, one over the other: simplify it"};
         }
         for (int way = 0; way < 8; ++way) {
             if (cancelled(progress_)) return cancelledError();
@@ -99,7 +101,8 @@ public:
     }
 
 private:
-    /// Small triangles are offered to few nodes each; large ones cover the box three hundred times before this is spent.
+    /// Small triangles are offered to few nodes each; large ones cover the box three hundred times before this is
+    /// spent.
     uint64_t mostOffers() const { return 500'000'000 + 200 * uint64_t{triangles_.size()}; }
 
     size_t size() const {
@@ -116,7 +119,8 @@ private:
         if (nearest_[node] == triangle) return;
         const Corners& c = triangles_[triangle];
         const Vec3f p = Vec3i{i, j, k}.as<float>();
-        // Most triangles are farther away than the nearest one so far by their boxes alone; rounding is well below the margin.
+        // Most triangles are farther away than the nearest one so far by their boxes alone; rounding is well below the
+        // margin.
         constexpr float slack = 1.0001f;
         const Vec3f off = max(max(min(min(c[0], c[1]), c[2]) - p, p - max(max(c[0], c[1]), c[2])), Vec3f{});
         if (dot(off, off) > squared_[node] * slack) return;
@@ -136,7 +140,8 @@ private:
             return;
         }
         const auto nodes = [&](int axis) {
-            return std::pair(std::max(static_cast<int>(lo[axis]) - 1, 0), std::min(static_cast<int>(hi[axis]) + 2, count_[axis] - 1));
+            return std::pair(std::max(static_cast<int>(lo[axis]) - 1, 0),
+                             std::min(static_cast<int>(hi[axis]) + 2, count_[axis] - 1));
         };
         const auto [x0, x1] = nodes(0);
         const auto [y0, y1] = nodes(1);
@@ -179,7 +184,8 @@ private:
     void cross(const Corners& c, std::vector<int>& result) const {
         const Vec3f lo = min(min(c[0], c[1]), c[2]), hi = max(max(c[0], c[1]), c[2]);
         for (int k = std::max(static_cast<int>(lo.z), 0); k <= std::min(static_cast<int>(hi.z) + 1, count_.z - 1); ++k)
-            for (int j = std::max(static_cast<int>(lo.y), 0); j <= std::min(static_cast<int>(hi.y) + 1, count_.y - 1); ++j) {
+            for (int j = std::max(static_cast<int>(lo.y), 0); j <= std::min(static_cast<int>(hi.y) + 1, count_.y - 1);
+                 ++j) {
                 const double s0 = side(c[1], c[2], j, k), s1 = side(c[2], c[0], j, k), s2 = side(c[0], c[1], j, k);
                 const bool positive = s0 > 0;
                 if ((s1 > 0) != positive || (s2 > 0) != positive) continue;
@@ -207,8 +213,8 @@ private:
     std::vector<uint32_t> nearest_;
 };
 
-/// Where the grid's own frame lies in the file's. Single precision is fine near 0 and near 1 alone: the middle becomes the
-/// origin, and sizes that nobody builds in become some between 1 and 2.
+/// Where the grid's own frame lies in the file's. Single precision is fine near 0 and near 1 alone: the middle becomes
+/// the origin, and sizes that nobody builds in become some between 1 and 2.
 struct GridFrame {
     Vec3d origin;
     double scale = 1;  ///< a power of 2, so that nothing is rounded
@@ -216,7 +222,7 @@ struct GridFrame {
 GridFrame frameOf(const Box3d& bounds) {
     constexpr int usual = 20;  // from a thousandth of a millimetre to a thousand kilometres
     const Vec3d size = bounds.size();
-    constexpr int most = 1000;     // its power of 2 is a number still
+    constexpr int most = 1000;  // its power of 2 is a number still
     const int exponent = std::clamp(std::ilogb(maxComponent(size)), -most, most);
     return {bounds.lo + size * 0.5, std::abs(exponent) <= usual ? 1.0 : std::ldexp(1.0, -exponent)};
 }
@@ -234,8 +240,8 @@ Result<field::SampledGridPtr> toDistances(TriangleSoup soup, int cells, const Pr
     if (const auto at = hole(soup))
         return Error{
             Error::Kind::Input,
-            fmt::format("is open near ({:.10g}, {:.10g}, {:.10g}): close its holes and let its faces look outward", at->x,
-                        at->y, at->z)};
+            fmt::format("is open near ({:.10g}, {:.10g}, {:.10g}): close its holes and let its faces look outward",
+                        at->x, at->y, at->z)};
     const GridFrame frame = frameOf(given);
     const Vec3d half = given.size() * (0.5 * frame.scale);
     const Box3f bounds{(-half).as<float>(), half.as<float>()};

@@ -1,7 +1,7 @@
 // The signed distance to a closed mesh, as samples (Bridson, "Fluid Simulation for Computer Graphics", 2008: exact near
 // the triangles, then the nearest triangle handed on from node to node; signs by counting crossings along rows).
-// Enters: triangles anywhere, of any size. Leaves: a SampledGrid about the middle of their box, in their unit unless that is
-// far too small or large for single precision. Assumes finite coordinates.
+// Enters: triangles anywhere, of any size. Leaves: a SampledGrid about the middle of their box, in their unit unless
+// that is far too small or large for single precision. Assumes finite coordinates.
 #pragma once
 
 #include <filesystem>
@@ -18,9 +18,10 @@ namespace sgm::mesh {
 inline constexpr int distanceCells = 128;
 
 /// Negative where the mesh winds around a node: shells within shells, turned inside out, are hollows, and shells that
-/// overlap are one solid. Error::Input when the mesh is open (with the place of a hole), flat, or inside out; Error::Budget
-/// when its triangles lie over each other so often that it would take minutes.
-Result<field::SampledGridPtr> toDistances(TriangleSoup soup, int cells = distanceCells, const Progress* progress = nullptr);
+/// overlap are one solid. Error::Input when the mesh is open (with the place of a hole), flat, or inside out;
+/// Error::Budget when its triangles lie over each other so often that it would take minutes.
+Result<field::SampledGridPtr> toDistances(TriangleSoup soup, int cells = distanceCells,
+                                          const Progress* progress = nullptr);
 /// The same of a mesh of ours.
 Result<field::SampledGridPtr> toDistances(const Mesh& mesh, int cells = distanceCells);
 

@@ -61,10 +61,10 @@ struct Chunk {
     PageVector<Label> labels;        ///< one per triangle; none where creases were not looked for
     /// Ascending by corner: replace the vertex's normal in `normals` for that corner alone.
     std::vector<CornerNormal> cornerNormals;
-    SeamList borrowed;               ///< indices in the whole mesh of vertices that lower blocks own
-    SeamList lent;                   ///< own vertices that higher blocks borrow
+    SeamList borrowed;                     ///< indices in the whole mesh of vertices that lower blocks own
+    SeamList lent;                         ///< own vertices that higher blocks borrow
     std::vector<ConfinedVertex> confined;  ///< ascending by vertex; see `releaseConfined`
-    std::vector<uint32_t> faceted;   ///< own vertices without derivative: their normals come from the triangles
+    std::vector<uint32_t> faceted;         ///< own vertices without derivative: their normals come from the triangles
 
     /// A corner's or a triangle's vertices, counted in the whole mesh.
     uint32_t inMesh(uint32_t corner) const {

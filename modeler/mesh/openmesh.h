@@ -16,7 +16,8 @@ struct HalfEdgeTraits : OpenMesh::DefaultTraits {
 };
 using HalfEdgeMesh = OpenMesh::TriMesh_ArrayKernelT<HalfEdgeTraits>;
 
-/// Vertices in mesh order; a face property "origin" (OriginId). Normals and origins of a bare mesh are 0. Faces OpenMesh refuses (non-manifold) are left out.
+/// Vertices in mesh order; a face property "origin" (OriginId). Normals and origins of a bare mesh are 0. Faces
+/// OpenMesh refuses (non-manifold) are left out.
 HalfEdgeMesh toOpenMesh(const Mesh& mesh);
 /// Back: one chunk with vertex normals recomputed from faces where `keepNormals` is false.
 Mesh fromOpenMesh(const HalfEdgeMesh& mesh, bool keepNormals);

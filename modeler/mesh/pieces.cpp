@@ -222,7 +222,9 @@ Surfaces surfacesOf(const Mesh& mesh, int threads) {
         break;
     }
     std::vector<PartFinder> workers(static_cast<size_t>(threadCount(threads)), PartFinder(mesh, near));
-    parallelFor(mesh.chunks.size(), threads, nullptr, [&](size_t c, int worker) { found.parts[c] = workers[static_cast<size_t>(worker)].find(mesh.chunks[c]); });
+    parallelFor(mesh.chunks.size(), threads, nullptr, [&](size_t c, int worker) {
+        found.parts[c] = workers[static_cast<size_t>(worker)].find(mesh.chunks[c]);
+    });
     Components joined = joinedParts(mesh, found.parts);
     found.pieceOf.resize(joined.size());
     uint32_t part = 0;
@@ -291,8 +293,8 @@ public:
         for (size_t part = 0; part < partStays_.size(); ++part) partStays_[part] = pieceStays[surfaces.pieceOf[part]];
     }
 
-    /// Drops what is gone of chunk c. What is left of the borders keeps its order in both chunks; what it borrows is to be
-    /// named, and all chunks are to be numbered.
+    /// Drops what is gone of chunk c. What is left of the borders keeps its order in both chunks; what it borrows is to
+    /// be named, and all chunks are to be numbered.
     void drop(size_t c) {
         if (allStays(surfaces_.parts[c])) return;
         const uint32_t left = findCorners(c);
@@ -315,7 +317,8 @@ private:
     bool stays(uint32_t part) const { return part != none && partStays_[part] != 0; }
     bool allStays(const Parts& parts) const {
         const auto first = partStays_.begin() + parts.first;
-        return std::all_of(first, first + static_cast<ptrdiff_t>(parts.sums.size()), [](uint8_t stays) { return stays != 0; }) &&
+        return std::all_of(first, first + static_cast<ptrdiff_t>(parts.sums.size()),
+                           [](uint8_t stays) { return stays != 0; }) &&
                std::find(parts.of.begin(), parts.of.end(), none) == parts.of.end();
     }
     /// What becomes of the corners of chunk c, by place; returns how many vertices of its own are left.
@@ -358,7 +361,9 @@ private:
             if (hasOrigins) chunk.origins[left] = chunk.origins[i];
             if (hasLabels) chunk.labels[left] = chunk.labels[i];
             for (; h < hard.size() && hard[h].corner / 3 == i; ++h)
-                if (stays) chunk.cornerNormals[leftHard++] = {static_cast<uint32_t>(3 * left) + hard[h].corner % 3, hard[h].normal};
+                if (stays)
+                    chunk.cornerNormals[leftHard++] = {static_cast<uint32_t>(3 * left) + hard[h].corner % 3,
+                                                       hard[h].normal};
             left += stays;
         }
         chunk.triangles.resize(left);

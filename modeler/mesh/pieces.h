@@ -10,7 +10,7 @@ namespace sgm::mesh {
 /// One connected surface that encloses solid.
 struct Piece {
     uint64_t triangles = 0;
-    double volume_m3 = 0;           ///< of what the surface encloses, its cavities included
+    double volume_m3 = 0;  ///< of what the surface encloses, its cavities included
     Box3f bounds;
     std::vector<OriginId> origins;  ///< who owns it, most triangles first
     bool floats = false;            ///< neither the greatest nor standing on the model's lowest level
@@ -20,8 +20,8 @@ struct Piece {
 /// stands; one cell is a sensible slack. O(n log n); `threads` 0: all.
 std::vector<Piece> pieces(const Mesh& mesh, float slack_m, int threads = 1);
 
-/// Which solids of a mesh stay: all; those that stand and aren't debris of less than a thousandth of the greatest one; or
-/// the greatest one alone.
+/// Which solids of a mesh stay: all; those that stand and aren't debris of less than a thousandth of the greatest one;
+/// or the greatest one alone.
 enum class Keep { All, Grounded, Largest };
 /// Whether each of a model's solids stays; of a piece, volume and bounds count.
 std::vector<bool> staying(std::vector<Piece> solids, Keep keep, float slack_m);
@@ -32,7 +32,8 @@ struct Dropped {
     uint64_t cavities = 0;  ///< surfaces around air that no way leads to: filled
     double filled_m3 = 0;
 };
-/// Takes away what doesn't stay, and the closed cavities of what does. Nothing with Keep::All. Vertices are numbered anew.
+/// Takes away what doesn't stay, and the closed cavities of what does. Nothing with Keep::All. Vertices are numbered
+/// anew.
 Dropped keepOnly(Mesh& mesh, Keep keep, float slack_m, int threads = 1);
 
 }  // namespace sgm::mesh

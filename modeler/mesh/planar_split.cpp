@@ -15,7 +15,7 @@ constexpr size_t leastTriangles = 32;  ///< of a region that is worth it
 constexpr size_t mostBumps = 8;        ///< one in so many triangles may be a bump's
 constexpr double leastFlat = 0.98;     ///< area of the region's shadow on its plane over its area
 constexpr double leastHeight = 1e-5;   ///< of a triangle in the plane, over its longest side
-constexpr size_t mostSamples = 1024;    ///< triangles that a median is of
+constexpr size_t mostSamples = 1024;   ///< triangles that a median is of
 /// Of the bound, in turn: vertices this near to the plane so far decide where it is.
 constexpr double nearness[] = {16, 2};
 

@@ -13,11 +13,14 @@ constexpr size_t mostHeader_bytes = 1 << 16, mostElements = 100, mostProperties 
 
 std::optional<PlyType> typeOf(std::string_view name) {
     constexpr std::pair<std::string_view, PlyType> names[] = {
-        {"char", PlyType::Int8},    {"int8", PlyType::Int8},      {"uchar", PlyType::Uint8},    {"uint8", PlyType::Uint8},
-        {"short", PlyType::Int16},  {"int16", PlyType::Int16},    {"ushort", PlyType::Uint16},  {"uint16", PlyType::Uint16},
-        {"int", PlyType::Int32},    {"int32", PlyType::Int32},    {"uint", PlyType::Uint32},    {"uint32", PlyType::Uint32},
-        {"float", PlyType::Float},  {"float32", PlyType::Float},  {"double", PlyType::Double},  {"float64", PlyType::Double}};
-    const auto* found = std::find_if(std::begin(names), std::end(names), [&](const auto& n) { return n.first == name; });
+        {"char", PlyType::Int8},     {"int8", PlyType::Int8},     {"uchar", PlyType::Uint8},
+        {"uint8", PlyType::Uint8},   {"short", PlyType::Int16},   {"int16", PlyType::Int16},
+        {"ushort", PlyType::Uint16}, {"uint16", PlyType::Uint16}, {"int", PlyType::Int32},
+        {"int32", PlyType::Int32},   {"uint", PlyType::Uint32},   {"uint32", PlyType::Uint32},
+        {"float", PlyType::Float},   {"float32", PlyType::Float}, {"double", PlyType::Double},
+        {"float64", PlyType::Double}};
+    const auto* found =
+        std::find_if(std::begin(names), std::end(names), [&](const auto& n) { return n.first == name; });
     return found == std::end(names) ? std::nullopt : std::optional(found->second);
 }
 
@@ -57,10 +60,14 @@ private:
     Status readFormat() {
         const std::string_view name = text_.wordOfLine();
         hasFormat_ = true;
-        if (name == "ascii") header_.format = PlyHeader::Format::Text;
-        else if (name == "binary_little_endian") header_.format = PlyHeader::Format::LittleEndian;
-        else if (name == "binary_big_endian") header_.format = PlyHeader::Format::BigEndian;
-        else return damaged(text_.line(), "the format is ascii, binary_little_endian or binary_big_endian");
+        if (name == "ascii")
+            header_.format = PlyHeader::Format::Text;
+        else if (name == "binary_little_endian")
+            header_.format = PlyHeader::Format::LittleEndian;
+        else if (name == "binary_big_endian")
+            header_.format = PlyHeader::Format::BigEndian;
+        else
+            return damaged(text_.line(), "the format is ascii, binary_little_endian or binary_big_endian");
         return Done{};
     }
 
@@ -92,7 +99,8 @@ private:
         if (!type || name.empty()) return damaged(text_.line(), "a property has a type and a name");
         property.type = *type;
         property.isCorners = isFace_ && property.isList && (name == "vertex_indices" || name == "vertex_index");
-        if (element.isVertices && !property.isList && name.size() == 1 && name[0] >= 'x' && name[0] <= 'z') property.axis = name[0] - 'x';
+        if (element.isVertices && !property.isList && name.size() == 1 && name[0] >= 'x' && name[0] <= 'z')
+            property.axis = name[0] - 'x';
         element.properties.push_back(property);
         return Done{};
     }
@@ -115,20 +123,25 @@ private:
 size_t sizeOf(PlyType type) {
     switch (type) {
         case PlyType::Int8:
-        case PlyType::Uint8: return 1;
+        case PlyType::Uint8:
+            return 1;
         case PlyType::Int16:
-        case PlyType::Uint16: return 2;
+        case PlyType::Uint16:
+            return 2;
         case PlyType::Int32:
         case PlyType::Uint32:
-        case PlyType::Float: return 4;
-        case PlyType::Double: return 8;
+        case PlyType::Float:
+            return 4;
+        case PlyType::Double:
+            return 8;
     }
     return 8;
 }
 
 double PlyHeader::Element::leastRow_bytes(bool isText) const {
     double bytes = 0;
-    for (const Property& p : properties) bytes += isText ? 2.0 : static_cast<double>(sizeOf(p.isList ? p.countType : p.type));  // "0 "
+    for (const Property& p : properties)
+        bytes += isText ? 2.0 : static_cast<double>(sizeOf(p.isList ? p.countType : p.type));  // "0 "
     return bytes;
 }
 

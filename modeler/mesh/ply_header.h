@@ -1,6 +1,6 @@
 // The header of a PLY file.
-// Enters: a file's bytes. Leaves: what its body holds. Assumes nothing: a header has at most 64 KiB, 100 elements and 1000
-// properties.
+// Enters: a file's bytes. Leaves: what its body holds. Assumes nothing: a header has at most 64 KiB, 100 elements and
+// 1000 properties.
 #pragma once
 
 #include <cstdint>

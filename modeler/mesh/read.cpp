@@ -43,17 +43,20 @@ Status checkSoup(const TriangleSoup& soup) {
         return Error{Error::Kind::Input, fmt::format("holds more than {} triangles: simplify it", mostTriangles)};
     const auto known = [&](const Triangle& t) { return std::max({t.x, t.y, t.z}) < soup.positions.size(); };
     if (!std::all_of(soup.triangles.begin(), soup.triangles.end(), known))
-        return Error{Error::Kind::Input, fmt::format("is damaged: a face has a corner that is none of its {} vertices", soup.positions.size())};
+        return Error{Error::Kind::Input, fmt::format("is damaged: a face has a corner that is none of its {} vertices",
+                                                     soup.positions.size())};
     return Done{};
 }
 
 Error damaged(uint64_t line, std::string_view why) {
-    return {Error::Kind::Input, line == 0 ? fmt::format("is damaged: {}", why) : fmt::format("is damaged, line {}: {}", line, why)};
+    return {Error::Kind::Input,
+            line == 0 ? fmt::format("is damaged: {}", why) : fmt::format("is damaged, line {}: {}", line, why)};
 }
 
 Result<TriangleSoup> readMesh(const std::filesystem::path& path, const Progress* progress) {
     const std::string ending = lowerCase(path.extension().string());
-    const auto* format = std::find_if(std::begin(formats), std::end(formats), [&](const Format& f) { return f.ending == ending; });
+    const auto* format =
+        std::find_if(std::begin(formats), std::end(formats), [&](const Format& f) { return f.ending == ending; });
     if (format == std::end(formats))
         return about(path, {Error::Kind::Input, "is no mesh that can be read: save it as .obj, .ply, .stl or .off"});
     const Result<std::string> bytes = readRegularFile(path, mostFile_bytes, progress);

@@ -1,6 +1,6 @@
 // Meshes from files.
-// Enters: a path. Leaves: triangles in double precision. Assumes nothing of the file: whatever its bytes are, reading takes
-// time and memory that grow with its size alone.
+// Enters: a path. Leaves: triangles in double precision. Assumes nothing of the file: whatever its bytes are, reading
+// takes time and memory that grow with its size alone.
 #pragma once
 
 #include <filesystem>
@@ -11,9 +11,9 @@
 
 namespace sgm::mesh {
 
-/// The mesh in an OBJ, PLY, STL or OFF file of at most 1 GiB, by its ending; polygons are cut into fans, other files that
-/// it names are not opened. Error::Input, which begins with the file's name, when it can't be read, is damaged, holds no
-/// triangle or a coordinate that is no number; Error::Cancelled when `progress` says so.
+/// The mesh in an OBJ, PLY, STL or OFF file of at most 1 GiB, by its ending; polygons are cut into fans, other files
+/// that it names are not opened. Error::Input, which begins with the file's name, when it can't be read, is damaged,
+/// holds no triangle or a coordinate that is no number; Error::Cancelled when `progress` says so.
 Result<TriangleSoup> readMesh(const std::filesystem::path& path, const Progress* progress = nullptr);
 
 }  // namespace sgm::mesh

@@ -12,8 +12,8 @@
 
 namespace sgm::mesh {
 
-/// Wavefront OBJ: `v` and `f`; everything else is skipped, material libraries too (Wavefront, Advanced Visualizer Manual,
-/// appendix B).
+/// Wavefront OBJ: `v` and `f`; everything else is skipped, material libraries too (Wavefront, Advanced Visualizer
+/// Manual, appendix B).
 Status readObj(std::string_view bytes, TriangleSoup& soup, const Progress* progress);
 /// PLY, ascii and binary of either byte order (Turk, "The PLY Polygon File Format", 1994).
 Status readPly(std::string_view bytes, TriangleSoup& soup, const Progress* progress);
@@ -22,8 +22,8 @@ Status readStl(std::string_view bytes, TriangleSoup& soup, const Progress* progr
 /// Ascii OFF with any of its prefixes but 4 and n (Geomview manual, "OFF Files").
 Status readOff(std::string_view bytes, TriangleSoup& soup, const Progress* progress);
 
-/// What holds for every format: there are triangles, not too many, with finite corners that are in range. The error is without
-/// the file's name.
+/// What holds for every format: there are triangles, not too many, with finite corners that are in range. The error is
+/// without the file's name.
 Status checkSoup(const TriangleSoup& soup);
 
 /// "is damaged, line 12: …", or without the line where it is 0.

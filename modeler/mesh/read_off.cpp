@@ -19,10 +19,12 @@ Status readOff(std::string_view bytes, TriangleSoup& soup, const Progress* progr
     if (isHeader(word)) word = text.word();
     if (word == "BINARY") return Error{Error::Kind::Input, "is a binary OFF: save it as text"};
     const auto vertices = numberOf<uint64_t>(word), faces = numberOf<uint64_t>(text.word());
-    if (!vertices || !faces) return damaged(text.line(), "it begins with OFF and the counts of vertices, faces and edges");
+    if (!vertices || !faces)
+        return damaged(text.line(), "it begins with OFF and the counts of vertices, faces and edges");
     text.nextLine();  // the edges, which nobody counts
     // "0 0 0\n" and "0\n" are the shortest rows.
-    if (*vertices > bytes.size() / 6 + 1 || *faces > bytes.size() / 2 + 1) return damaged(0, "it promises more than it holds, or is cut short");
+    if (*vertices > bytes.size() / 6 + 1 || *faces > bytes.size() / 2 + 1)
+        return damaged(0, "it promises more than it holds, or is cut short");
 
     soup.positions.reserve(*vertices);
     for (uint64_t i = 0; i < *vertices; ++i) {

@@ -32,7 +32,8 @@ private:
 
 class BinaryBody {
 public:
-    BinaryBody(std::string_view bytes, size_t begin, bool bigEndian) : bytes_(bytes), at_(begin), bigEndian_(bigEndian) {}
+    BinaryBody(std::string_view bytes, size_t begin, bool bigEndian)
+        : bytes_(bytes), at_(begin), bigEndian_(bigEndian) {}
     double next(PlyType type) {
         const size_t size = sizeOf(type);
         good_ = good_ && bytes_.size() - at_ >= size;
@@ -40,14 +41,22 @@ public:
         const char* const number = bytes_.data() + at_;
         at_ += size;
         switch (type) {
-            case PlyType::Int8: return numberAt<int8_t>(number);
-            case PlyType::Uint8: return numberAt<uint8_t>(number);
-            case PlyType::Int16: return numberAt<int16_t>(number, bigEndian_);
-            case PlyType::Uint16: return numberAt<uint16_t>(number, bigEndian_);
-            case PlyType::Int32: return numberAt<int32_t>(number, bigEndian_);
-            case PlyType::Uint32: return numberAt<uint32_t>(number, bigEndian_);
-            case PlyType::Float: return numberAt<float>(number, bigEndian_);
-            case PlyType::Double: return numberAt<double>(number, bigEndian_);
+            case PlyType::Int8:
+                return numberAt<int8_t>(number);
+            case PlyType::Uint8:
+                return numberAt<uint8_t>(number);
+            case PlyType::Int16:
+                return numberAt<int16_t>(number, bigEndian_);
+            case PlyType::Uint16:
+                return numberAt<uint16_t>(number, bigEndian_);
+            case PlyType::Int32:
+                return numberAt<int32_t>(number, bigEndian_);
+            case PlyType::Uint32:
+                return numberAt<uint32_t>(number, bigEndian_);
+            case PlyType::Float:
+                return numberAt<float>(number, bigEndian_);
+            case PlyType::Double:
+                return numberAt<double>(number, bigEndian_);
         }
         return 0;
     }
@@ -125,11 +134,13 @@ Status readPly(std::string_view bytes, TriangleSoup& soup, const Progress* progr
     const bool isText = header->format == PlyHeader::Format::Text;
     for (const Element& element : header->elements) {
         const double row_bytes = element.leastRow_bytes(isText);
-        if (row_bytes * static_cast<double>(element.count) > static_cast<double>(bytes.size() - header->end + 1)) return cutShort();
+        if (row_bytes * static_cast<double>(element.count) > static_cast<double>(bytes.size() - header->end + 1))
+            return cutShort();
         if (element.isVertices) soup.positions.reserve(element.count);
     }
     if (isText) return readBody(TextBody(bytes, header->end), *header, soup, progress);
-    return readBody(BinaryBody(bytes, header->end, header->format == PlyHeader::Format::BigEndian), *header, soup, progress);
+    return readBody(BinaryBody(bytes, header->end, header->format == PlyHeader::Format::BigEndian), *header, soup,
+                    progress);
 }
 
 }  // namespace sgm::mesh

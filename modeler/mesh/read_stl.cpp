@@ -14,7 +14,8 @@ Status readBinary(std::string_view bytes, uint32_t triangles, TriangleSoup& soup
         if (t % 4096 == 0 && cancelled(progress)) return cancelledError();
         const char* corner = bytes.data() + head_bytes + t * row_bytes + 12;  // behind the normal
         for (int i = 0; i < 3; ++i, corner += 12)
-            soup.positions.push_back({numberAt<float>(corner), numberAt<float>(corner + 4), numberAt<float>(corner + 8)});
+            soup.positions.push_back(
+                {numberAt<float>(corner), numberAt<float>(corner + 4), numberAt<float>(corner + 8)});
         soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
     }
     return Done{};

@@ -66,7 +66,7 @@ private:
     float tieMargin_ = 0;
     eval::Fingerprint tape_;                             ///< of the last tape, where it was asked for
     std::shared_ptr<const std::vector<float>> numbers_;  ///< the last tape's constants
-    Regions regions_;  ///< all that may hold surface, blocks (level 0) and above
+    Regions regions_;                                    ///< all that may hold surface, blocks (level 0) and above
     Mesh mesh_;
     eval::ChangedParts parts_;
     Near near_;  ///< of the last change of numbers

@@ -9,8 +9,8 @@
 namespace sgm::mesh {
 
 /// Moves the vertices in Chunk::confined to their places, all but those whose triangles would fold over or cross
-/// others; their neighbours on creases may move along these. Returns how many confined vertices were moved. `threads` 0: all; the result is the same for any number. O(n) where few
-/// vertices are confined.
+/// others; their neighbours on creases may move along these. Returns how many confined vertices were moved. `threads`
+/// 0: all; the result is the same for any number. O(n) where few vertices are confined.
 size_t releaseConfined(const Mesh& mesh, FlatMesh& flat, int threads, const Progress* progress);
 
 }  // namespace sgm::mesh

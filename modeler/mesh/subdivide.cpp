@@ -28,8 +28,7 @@ std::vector<Region> split(const eval::Tape& tape, Vec3i index, int part, int par
                           const RegionFilter& filter, eval::Workspace& workspace, Counts& counts) {
     const int blocks = childCells / blockCells;
     Children children(index, childCells, splits * part / parts, splits * (part + 1) / parts, grid);
-    if (filter.skips)
-        children.leaveOut(filter.skips({children.indices.data(), children.n}, blocks));
+    if (filter.skips) children.leaveOut(filter.skips({children.indices.data(), children.n}, blocks));
     if (children.n == 0) return {};
     std::array<eval::Range, splits * splits * splits> ranges;
     eval::evaluateRanges(tape, {children.boxes.data(), children.n}, ranges.data(), workspace);

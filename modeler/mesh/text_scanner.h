@@ -11,8 +11,8 @@ namespace sgm::mesh {
 
 class TextScanner {
 public:
-    /// `comment` begins a remark up to the end of its line; '\0': there are none. With `joinsLines` a '\' before the end of
-    /// a line joins the next one to it.
+    /// `comment` begins a remark up to the end of its line; '\0': there are none. With `joinsLines` a '\' before the
+    /// end of a line joins the next one to it.
     explicit TextScanner(std::string_view text, char comment = '\0', bool joinsLines = false)
         : text_(text), comment_(comment), joinsLines_(joinsLines) {}
 

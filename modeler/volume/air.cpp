@@ -65,9 +65,9 @@ void measure(Air& air, const FloatGrid& level, const FloatGrid& distance, const 
             if (c[axis] == box.min()[axis]) air.rim[i] |= static_cast<uint8_t>(2u << 2 * axis);
         }
         if (air.next[i][3] != nowhere || (air.rim[i] & 8)) continue;
-        air.floor_m[i] =
-            air.place(i).y - air.voxel_m * depthOfFloor(sign * sampled.getValue(c), -sign * sampled.getValue(c + steps[3]),
-                                                        -sign * sampled.getValue(c + steps[3] + steps[3]), air.voxel_m);
+        air.floor_m[i] = air.place(i).y -
+                         air.voxel_m * depthOfFloor(sign * sampled.getValue(c), -sign * sampled.getValue(c + steps[3]),
+                                                    -sign * sampled.getValue(c + steps[3] + steps[3]), air.voxel_m);
     }
     // A distance can't grow faster than the way: takes away single voxels at the surface that the sweep left far.
     for (size_t i = 0; i < air.size(); ++i)

@@ -84,7 +84,8 @@ mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave) {
             }
             while (hard != c.cornerNormals.end() && hard->corner < 3 * t) ++hard;
             for (; hard != c.cornerNormals.end() && hard->corner < 3 * t + 3; ++hard)
-                kept.cornerNormals.push_back({static_cast<uint32_t>(3 * kept.triangles.size()) + hard->corner % 3, hard->normal});
+                kept.cornerNormals.push_back(
+                    {static_cast<uint32_t>(3 * kept.triangles.size()) + hard->corner % 3, hard->normal});
             kept.triangles.push_back(own);
             if (!bare) kept.origins.push_back(c.origins[t]);
             if (!c.labels.empty()) kept.labels.push_back(c.labels[t]);

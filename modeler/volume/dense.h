@@ -7,8 +7,8 @@
 namespace sgm::volume {
 
 struct Dense {
-    Vec3i count;             ///< voxels along x, y, z
-    Vec3f low;               ///< place of voxel (0, 0, 0), metres
+    Vec3i count;  ///< voxels along x, y, z
+    Vec3f low;    ///< place of voxel (0, 0, 0), metres
     float voxel_m = 1;
     std::vector<float> values;  ///< x runs fastest, then y
 

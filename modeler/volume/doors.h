@@ -1,7 +1,7 @@
 // The functions of this room that need OpenVDB, as one table.
-// Enters: nothing. Leaves: their addresses. `sgm` and the window read it from a module, loaded when they first need a volume
-// (on_demand.cpp), for binding OpenVDB's 70,000 symbols takes longer than most of what sgm is asked for; tests and bench
-// link the functions themselves.
+// Enters: nothing. Leaves: their addresses. `sgm` and the window read it from a module, loaded when they first need a
+// volume (on_demand.cpp), for binding OpenVDB's 70,000 symbols takes longer than most of what sgm is asked for; tests
+// and bench link the functions themselves.
 #pragma once
 
 #include "modeler/volume/air.h"
@@ -22,8 +22,8 @@ struct Doors {
     decltype(&volume::keepOnly) keepOnly;
     decltype(&volume::renormalize) renormalize;
     decltype(&volume::sample) sample;
-    /// Has TBB start its threads, at most so many, while there is room for them: later it ends the program where it gets
-    /// none.
+    /// Has TBB start its threads, at most so many, while there is room for them: later it ends the program where it
+    /// gets none.
     void (*startThreads)(int most);
 };
 

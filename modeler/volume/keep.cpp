@@ -85,10 +85,14 @@ private:
         };
         const uint32_t right = beside(8, 0, 0), above = beside(0, 8, 0), behind = beside(0, 0, 8);
         for (uint32_t c = 0; c < columns; ++c) {
-            if (c < 56) joinColumns(n, c, n, c + 8, runs);
-            else if (right != UINT32_MAX) joinColumns(n, c, right, c - 56, runs);
-            if (c % 8 < 7) joinColumns(n, c, n, c + 1, runs);
-            else if (above != UINT32_MAX) joinColumns(n, c, above, c - 7, runs);
+            if (c < 56)
+                joinColumns(n, c, n, c + 8, runs);
+            else if (right != UINT32_MAX)
+                joinColumns(n, c, right, c - 56, runs);
+            if (c % 8 < 7)
+                joinColumns(n, c, n, c + 1, runs);
+            else if (above != UINT32_MAX)
+                joinColumns(n, c, above, c - 7, runs);
             if (behind != UINT32_MAX && column(*leaves_[n], c) >> 7 && (column(*leaves_[behind], c) & 1))
                 runs.join(runAt(n, c, 7), runAt(behind, c, 0));
         }
@@ -137,7 +141,8 @@ void fillCavities(BoolTree& solid) {
     const Parts parts(air);
     std::vector<bool> closed(parts.count(), true);
     parts.forRuns([&](const auto& leaf, uint32_t c, int z, int, uint32_t part) {
-        if (leaf.origin() + Coord(static_cast<int>(c / 8), static_cast<int>(c % 8), z) == box.min()) closed[part] = false;
+        if (leaf.origin() + Coord(static_cast<int>(c / 8), static_cast<int>(c % 8), z) == box.min())
+            closed[part] = false;
     });
     solid.topologyUnion(*only(parts, closed));
 }
@@ -149,8 +154,9 @@ void setSigns(FloatGrid& grid, const BoolTree& solid, int voxels) {
     openvdb::tools::erodeActiveValues(deep, voxels, openvdb::tools::NN_FACE_EDGE_VERTEX, openvdb::tools::IGNORE_TILES);
     const float band = grid.background();
     openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid.tree());
-    leaves.foreach([&](auto& leaf, size_t) {
-        const auto *in = solid.probeConstLeaf(leaf.origin()), *around = near.probeConstLeaf(leaf.origin()), *core = deep.probeConstLeaf(leaf.origin());
+    leaves.foreach ([&](auto& leaf, size_t) {
+        const auto *in = solid.probeConstLeaf(leaf.origin()), *around = near.probeConstLeaf(leaf.origin()),
+                   *core = deep.probeConstLeaf(leaf.origin());
         for (openvdb::Index i = 0; i < leaf.SIZE; ++i) {
             const float sign = in && in->isValueOn(i) ? -1.0f : 1.0f;
             const bool banded = leaf.isValueOn(i) && around && around->isValueOn(i) && !(core && core->isValueOn(i));

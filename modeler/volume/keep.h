@@ -8,8 +8,9 @@
 
 namespace sgm::volume {
 
-/// Nothing with Keep::All. `slack_m` as in mesh::keepOnly. Beside what was taken away, values are bounds of the distance
-/// rather than distances. Error::Budget for more than 2²⁸ voxels inside, or in the box around them; Error::Cancelled.
+/// Nothing with Keep::All. `slack_m` as in mesh::keepOnly. Beside what was taken away, values are bounds of the
+/// distance rather than distances. Error::Budget for more than 2²⁸ voxels inside, or in the box around them;
+/// Error::Cancelled.
 Status keepOnly(Volume& level, mesh::Keep keep, float slack_m, Progress* progress);
 
 }  // namespace sgm::volume

@@ -34,13 +34,17 @@ bool canStart(int threads) {
 
 /// A module that is there but can't be loaded: there is no memory for it, or a library is missing.
 Error unloadable(const std::string& why) {
-    const bool memory = why.find("failed to map") != std::string::npos || why.find("annot allocate") != std::string::npos;
-    return {memory ? Error::Kind::Budget : Error::Kind::Internal, "volumes: " + why + (memory ? ": out of memory" : "")};
+    const bool memory =
+        why.find("failed to map") != std::string::npos || why.find("annot allocate") != std::string::npos;
+    return {memory ? Error::Kind::Budget : Error::Kind::Internal,
+            "volumes: " + why + (memory ? ": out of memory" : "")};
 }
 
 /// The table. Error::Internal where the module or OpenVDB isn't to be found, Error::Budget where there are no threads.
 Result<const Doors*> load() {
-    const Error noThreads{Error::Kind::Budget, "volumes: the system gives no more threads: allow more processes (ulimit -u, or the container's limit) or memory"};
+    const Error noThreads{Error::Kind::Budget,
+                          "volumes: the system gives no more threads: allow more processes (ulimit -u, or the "
+                          "container's limit) or memory"};
     if (!canStart(threadCount(0))) return noThreads;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
     for (const auto& path : {program / moduleName, program.parent_path() / "lib/sgm" / moduleName}) {
@@ -53,7 +57,8 @@ Result<const Doors*> load() {
         table->startThreads(threadCount(0));
         return table;
     }
-    return Error{Error::Kind::Internal, std::string("volumes: ") + moduleName + " is neither beside " + program.string() + "/sgm nor in lib/sgm"};
+    return Error{Error::Kind::Internal, std::string("volumes: ") + moduleName + " is neither beside " +
+                                            program.string() + "/sgm nor in lib/sgm"};
 }
 
 /// Loaded once and for good.
@@ -71,12 +76,14 @@ Outcome through(Arguments&&... arguments) {
 
 }  // namespace
 
-Result<Air> airOf(const Volume& level, bool hollow, Progress* progress) { return through<&Doors::airOf, Result<Air>>(level, hollow, progress); }
+Result<Air> airOf(const Volume& level, bool hollow, Progress* progress) {
+    return through<&Doors::airOf, Result<Air>>(level, hollow, progress);
+}
 
 Result<Dense> dense(const Volume& volume, int border) { return through<&Doors::dense, Result<Dense>>(volume, border); }
 
-Status fillVdb(const std::vector<NamedVolume>& volumes, const std::filesystem::path& file, const std::filesystem::path& target,
-               const VdbOptions& options, const Progress* progress) {
+Status fillVdb(const std::vector<NamedVolume>& volumes, const std::filesystem::path& file,
+               const std::filesystem::path& target, const VdbOptions& options, const Progress* progress) {
     return through<&Doors::fillVdb, Status>(volumes, file, target, options, progress);
 }
 
@@ -92,8 +99,8 @@ Result<Volume> renormalize(const Volume& level, int threads, Progress* progress)
     return through<&Doors::renormalize, Result<Volume>>(level, threads, progress);
 }
 
-Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& whole, const mesh::Grid& grid, int halfWidth, int threads,
-                      Progress* progress) {
+Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& whole, const mesh::Grid& grid,
+                      int halfWidth, int threads, Progress* progress) {
     return through<&Doors::sample, Result<Volume>>(blocks, whole, grid, halfWidth, threads, progress);
 }
 

@@ -99,7 +99,8 @@ Result<Volume> readVdb(const std::filesystem::path& path, const std::string& nam
         in.exceptions(std::ios::failbit | std::ios::badbit);
         openvdb::io::Stream stream(in, false);  // all at once: the file may be replaced while the volume lives
         for (const openvdb::GridBase::Ptr& grid : *stream.getGrids())
-            if (const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid); floats && (name.empty() || grid->getName() == name))
+            if (const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+                floats && (name.empty() || grid->getName() == name))
                 return Volume(std::make_shared<Volume::Impl>(Volume::Impl{floats}));
     } catch (const std::exception& e) {
         return failed(e.what());

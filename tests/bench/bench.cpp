@@ -174,7 +174,8 @@ int main(int argc, char** argv) {
     request.measure.dense = !request.noDense;
 
     if (!request.gallery.empty() || request.kifs) {
-        const auto section = request.kifs ? kifsTables(request.measure.running.clock) : galleryTimes(request.gallery, request.measure);
+        const auto section =
+            request.kifs ? kifsTables(request.measure.running.clock) : galleryTimes(request.gallery, request.measure);
         if (!section.ok()) return fail(section.error());
         fmt::print("{}", *section);
         return 0;

@@ -59,13 +59,15 @@ Result<std::string> foldingRow(const SceneEntry& entry, Clock clock) {
     if (!foldByHand(fractal, batch.points(), batch.out.data()))
         return Error{Error::Kind::Input, "--kifs: this processor has no AVX-512 to compare with"};
     for (size_t i = 0; i < ours.size(); ++i)
-        if (std::abs(ours[i] - batch.out[i]) > 1e-4f) return Error{Error::Kind::Internal, fmt::format("{}: the loop computes something else", entry.name)};
+        if (std::abs(ours[i] - batch.out[i]) > 1e-4f)
+            return Error{Error::Kind::Internal, fmt::format("{}: the loop computes something else", entry.name)};
     const auto [tape, hand] = leastOf(
         clock, [&] { eval::evaluate(scene->tape, batch.points(), batch.out.data(), workspace); },
         [&] { foldByHand(fractal, batch.points(), batch.out.data()); });
     const int folds = fractal.passes;
     const auto rate = [&](double seconds) { return 1e-6 * 4096 * folds / seconds; };
-    return fmt::format("| {} | {} | {:.0f} | {:.0f} | {:.2f} |\n", entry.name, folds, rate(tape), rate(hand), hand / tape);
+    return fmt::format("| {} | {} | {:.0f} | {:.0f} | {:.2f} |\n", entry.name, folds, rate(tape), rate(hand),
+                       hand / tape);
 }
 
 /// The shells of a facade, and from where on they decide.
@@ -146,16 +148,20 @@ Result<std::string> shellRow(const SceneEntry& entry) {
         for (int j = 0; j < along(grid.cells.y); ++j)
             for (int i = 0; i < along(grid.cells.x); ++i) count(shells, grid, {i, j, k}, workspace, everywhere);
     for (const mesh::Block& b : *blocks) count(shells, grid, b.index, workspace, sampled);
-    const auto percent = [](uint64_t part, uint64_t whole) { return 100.0 * static_cast<double>(part) / static_cast<double>(whole); };
+    const auto percent = [](uint64_t part, uint64_t whole) {
+        return 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+    };
     const uint64_t asked = counts.pointEvaluations + counts.refinementEvaluations;
-    return fmt::format("| {} | {:.0f} % | {:.0f} % | {:.0f} % | {:.0f} % | {:.0f} % |\n", entry.start, percent(everywhere.alone, everywhere.places),
-                       percent(everywhere.together, everywhere.places), percent(sampled.together, sampled.places),
-                       percent(asked, everywhere.places), percent(foldedPoints(tally), everywhere.places));
+    return fmt::format("| {} | {:.0f} % | {:.0f} % | {:.0f} % | {:.0f} % | {:.0f} % |\n", entry.start,
+                       percent(everywhere.alone, everywhere.places), percent(everywhere.together, everywhere.places),
+                       percent(sampled.together, sampled.places), percent(asked, everywhere.places),
+                       percent(foldedPoints(tally), everywhere.places));
 }
 
 constexpr const char* facades = "tests/bench/scenes/facades.sgm";
-constexpr SceneEntry shelled[] = {{"facades", facades, "Palazzo"}, {"facades", facades, "Tracery"}, {"facades", facades, "Loggia"},
-                                  {"facades", facades, "Grid"},    {"facades", facades, "Court"},   {"facades", facades, "Arena"}};
+constexpr SceneEntry shelled[] = {{"facades", facades, "Palazzo"}, {"facades", facades, "Tracery"},
+                                  {"facades", facades, "Loggia"},  {"facades", facades, "Grid"},
+                                  {"facades", facades, "Court"},   {"facades", facades, "Arena"}};
 
 }  // namespace
 
@@ -167,7 +173,9 @@ Result<std::string> kifsTables(Clock clock) {
             if (!row.ok()) return row;
             text += *row;
         }
-    text += "\n| facade at 256 | a shell decides | whole vectors | in blocks with surface | mesher asks | of it folded |\n|---|---|---|---|---|---|\n";
+    text +=
+        "\n| facade at 256 | a shell decides | whole vectors | in blocks with surface | mesher asks | of it folded "
+        "|\n|---|---|---|---|---|---|\n";
     for (const SceneEntry& entry : shelled) {
         const auto row = shellRow(entry);
         if (!row.ok()) return row;

@@ -1,5 +1,6 @@
-// Kaleidoscopic fractals: how fast a tape folds beside a loop by hand, and how often a facade's shells spare the folding.
-// Enters: nothing; the scenes are S2, S9 and tests/bench/scenes/facades.sgm. Leaves: tables as text. Assumes a calm machine.
+// Kaleidoscopic fractals: how fast a tape folds beside a loop by hand, and how often a facade's shells spare the
+// folding. Enters: nothing; the scenes are S2, S9 and tests/bench/scenes/facades.sgm. Leaves: tables as text. Assumes a
+// calm machine.
 #pragma once
 
 #include "tests/bench/scenes.h"

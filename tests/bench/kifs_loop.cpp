@@ -1,5 +1,5 @@
-// The folds of modeler/field/kifs.h by hand, in AVX-512 with fused operations: two vectors at a time stay in registers from
-// the first pass to the last.
+// The folds of modeler/field/kifs.h by hand, in AVX-512 with fused operations: two vectors at a time stay in registers
+// from the first pass to the last.
 #include "tests/bench/kifs.h"
 
 #if defined(__x86_64__)
@@ -50,22 +50,31 @@ __attribute__((target("avx512f,avx512dq,fma"))) void run(const Fractal& f, eval:
     for (size_t i = 0; i + lanes * together <= points.n; i += lanes * together) {
         __m512 x[together], y[together], z[together];
         for (size_t k = 0; k < together; ++k) {
-            x[k] = _mm512_mul_ps(_mm512_sub_ps(_mm512_loadu_ps(points.x + i + k * lanes), all(m.x)), all(reach / half.x));
-            y[k] = _mm512_mul_ps(_mm512_sub_ps(_mm512_loadu_ps(points.y + i + k * lanes), all(m.y)), all(reach / half.y));
-            z[k] = _mm512_mul_ps(_mm512_sub_ps(_mm512_loadu_ps(points.z + i + k * lanes), all(m.z)), all(reach / half.z));
+            x[k] =
+                _mm512_mul_ps(_mm512_sub_ps(_mm512_loadu_ps(points.x + i + k * lanes), all(m.x)), all(reach / half.x));
+            y[k] =
+                _mm512_mul_ps(_mm512_sub_ps(_mm512_loadu_ps(points.y + i + k * lanes), all(m.y)), all(reach / half.y));
+            z[k] =
+                _mm512_mul_ps(_mm512_sub_ps(_mm512_loadu_ps(points.z + i + k * lanes), all(m.z)), all(reach / half.z));
         }
         for (int p = 0; p < f.passes; ++p)
             for (size_t k = 0; k < together; ++k) pass<turned>(n, x[k], y[k], z[k]);
         for (size_t k = 0; k < together; ++k) {
-            const __m512 cube = _mm512_sub_ps(_mm512_max_ps(_mm512_abs_ps(x[k]), _mm512_max_ps(_mm512_abs_ps(y[k]), _mm512_abs_ps(z[k]))), all(reach));
+            const __m512 cube = _mm512_sub_ps(
+                _mm512_max_ps(_mm512_abs_ps(x[k]), _mm512_max_ps(_mm512_abs_ps(y[k]), _mm512_abs_ps(z[k]))),
+                all(reach));
             const __m512 square = _mm512_fmadd_ps(x[k], x[k], _mm512_fmadd_ps(y[k], y[k], _mm512_mul_ps(z[k], z[k])));
             const __m512 ball = _mm512_sub_ps(_mm512_sqrt_ps(square), all(2));
-            const auto beyond = [&](const float* at, float centre, float size) __attribute__((target("avx512f,avx512dq,fma"))) {
-                return _mm512_sub_ps(_mm512_abs_ps(_mm512_sub_ps(_mm512_loadu_ps(at + i + k * lanes), all(centre))), all(size));
+            const auto beyond = [&](const float* at, float centre, float size)
+                __attribute__((target("avx512f,avx512dq,fma"))) {
+                return _mm512_sub_ps(_mm512_abs_ps(_mm512_sub_ps(_mm512_loadu_ps(at + i + k * lanes), all(centre))),
+                                     all(size));
             };
-            const __m512 qx = beyond(points.x, m.x, half.x), qy = beyond(points.y, m.y, half.y), qz = beyond(points.z, m.z, half.z), none = all(0);
+            const __m512 qx = beyond(points.x, m.x, half.x), qy = beyond(points.y, m.y, half.y),
+                         qz = beyond(points.z, m.z, half.z), none = all(0);
             const __m512 ox = _mm512_max_ps(qx, none), oy = _mm512_max_ps(qy, none), oz = _mm512_max_ps(qz, none);
-            const __m512 outside = _mm512_sqrt_ps(_mm512_fmadd_ps(ox, ox, _mm512_fmadd_ps(oy, oy, _mm512_mul_ps(oz, oz))));
+            const __m512 outside =
+                _mm512_sqrt_ps(_mm512_fmadd_ps(ox, ox, _mm512_fmadd_ps(oy, oy, _mm512_mul_ps(oz, oz))));
             const __m512 box = _mm512_add_ps(outside, _mm512_min_ps(_mm512_max_ps(qx, _mm512_max_ps(qy, qz)), none));
             _mm512_storeu_ps(out + i + k * lanes, _mm512_max_ps(_mm512_mul_ps(f.cubes ? cube : ball, unscale), box));
         }

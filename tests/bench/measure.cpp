@@ -174,7 +174,8 @@ Result<Measurement> measure(const Scene& scene, int resolution, const MeasureOpt
     if (options.peers) contestants.push_back(openVdb(scene, cube, running, m.openvdb));
     if (Status status = takeTurns(contestants, options.repeats); !status) return status.error();
     if (options.oneThread)  // again by themselves: a sweep of gigabytes just before costs two threads more than one
-        if (Status status = takeTurns(std::span(contestants).first(2), 2 * options.repeats); !status) return status.error();
+        if (Status status = takeTurns(std::span(contestants).first(2), 2 * options.repeats); !status)
+            return status.error();
     if (Status status = measureField(scene, cube, running, std::min(options.repeats, 5), m); !status)
         return status.error();
     return m;

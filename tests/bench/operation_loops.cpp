@@ -71,8 +71,8 @@ V call(auto... args) {
         return Row::apply(args...);
 }
 
-/// Makes new operands of those that change from point to point: else the compiler would compute what hangs on the others
-/// once for all.
+/// Makes new operands of those that change from point to point: else the compiler would compute what hangs on the
+/// others once for all.
 template <class Row, class V>
 inline void renew(V* args) {
     if constexpr (requires { Row::moving; }) {
@@ -106,22 +106,23 @@ double measuredByNumbers(const eval::Operation& operation) {
     for (size_t i = 0; i < Row::moving; ++i) args[i] = Two(plain[i]);
     const typename Row::template Numbers<float> numbers(std::span<const float>(plain, operation.count), operation.data);
     double seconds = 0;
-    Row::visitPath(numbers.form, [&]<auto path>() {
-        seconds = leastOf([&] {
-            for (int c = 0; c < chains; ++c) {
-                renew<Row>(args);
-                if constexpr (gradient) {
-                    eval::Dual<Two> at[Row::moving];
-                    for (size_t k = 0; k < Row::moving; ++k) at[k] = {args[k], Two(0.5f), Two(0.25f), Two(0.125f)};
-                    auto out = Row::template byNumbers<path>(at, numbers);
-                    opaque(out);
-                } else {
-                    Two out = Row::template byNumbers<path>(args, numbers);
-                    opaque(out);
+    Row::visitPath(
+        numbers.form, [&]<auto path>() {
+            seconds = leastOf([&] {
+                for (int c = 0; c < chains; ++c) {
+                    renew<Row>(args);
+                    if constexpr (gradient) {
+                        eval::Dual<Two> at[Row::moving];
+                        for (size_t k = 0; k < Row::moving; ++k) at[k] = {args[k], Two(0.5f), Two(0.25f), Two(0.125f)};
+                        auto out = Row::template byNumbers<path>(at, numbers);
+                        opaque(out);
+                    } else {
+                        Two out = Row::template byNumbers<path>(args, numbers);
+                        opaque(out);
+                    }
                 }
-            }
+            });
         });
-    });
     return seconds / (2 * chains);
 }
 
@@ -167,9 +168,12 @@ namespace SGM_ISA {
 double secondsPerPoint(const eval::Operation& operation) {
     const double vector = field::visitOp(operation.op, [&]<class Row>() {
         switch (operation.asked) {
-            case eval::Asked::Gradient: return measured<Row, Dual>(operation);
-            case eval::Asked::Range: return measured<Row, Interval>(operation);
-            case eval::Asked::Value: break;
+            case eval::Asked::Gradient:
+                return measured<Row, Dual>(operation);
+            case eval::Asked::Range:
+                return measured<Row, Interval>(operation);
+            case eval::Asked::Value:
+                break;
         }
         return measured<Row, Float>(operation);
     });

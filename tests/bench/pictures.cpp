@@ -18,12 +18,14 @@ struct Subject {
 };
 
 /// Who walks the rays, and what a row says of it.
-const std::pair<viewer::TracedBy, const char*> tracers[] = {{viewer::TracedBy::Best, ""}, {viewer::TracedBy::Gpu, ", shaders"}};
+const std::pair<viewer::TracedBy, const char*> tracers[] = {{viewer::TracedBy::Best, ""},
+                                                            {viewer::TracedBy::Gpu, ", shaders"}};
 
 const Subject subjects[] = {{{"5,000 spheres", "tests/bench/cloud5000.sgm", ""}, "", 0},
                             {{"12 storeys", "examples/kifs/mcgraw.sgm", ""}, "floors", 12}};
 
-Result<PictureResult> measured(const Subject& subject, const std::pair<viewer::TracedBy, const char*>& tracer, int repeats, Running running) {
+Result<PictureResult> measured(const Subject& subject, const std::pair<viewer::TracedBy, const char*>& tracer,
+                               int repeats, Running running) {
     auto grammar = loadGrammar(subject.entry);
     if (!grammar.ok()) return grammar.error();
     const auto& params = grammar->grammar->params;
@@ -32,7 +34,8 @@ Result<PictureResult> measured(const Subject& subject, const std::pair<viewer::T
     const auto scene = makeScene(*grammar, running);
     if (!scene.ok()) return scene.error();
     const Box3f bounds = viewer::tighten(scene->tape, scene->model->field.bounds);
-    auto painter = viewer::FieldPainter::create(scene->tape, bounds, scene->model->provenance, running.threads, nullptr, tracer.first);
+    auto painter = viewer::FieldPainter::create(scene->tape, bounds, scene->model->provenance, running.threads, nullptr,
+                                                tracer.first);
     if (!painter.ok()) return painter.error();
     viewer::PictureOptions coarse, full;
     full.width = full.height = fullEdge;
@@ -70,18 +73,21 @@ Result<std::vector<PictureResult>> measurePictures(int repeats, Running running)
     for (const Subject& subject : subjects)
         for (const auto& tracer : tracers) {
             auto result = measured(subject, tracer, repeats, running);
-            if (!result.ok()) return Error{result.error().kind, fmt::format("{}: {}", subject.entry.name, result.error().message)};
+            if (!result.ok())
+                return Error{result.error().kind, fmt::format("{}: {}", subject.entry.name, result.error().message)};
             results.push_back(std::move(*result));
         }
     return results;
 }
 
 std::string pictureTable(const std::vector<PictureResult>& results) {
-    std::string table = fmt::format("{:<23} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}\n", "640 x 640", "cells s", "coarse s", "full s",
-                                    "cpu s", "samples", "hits", "light", "plain", "ratio");
+    std::string table =
+        fmt::format("{:<23} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}\n", "640 x 640", "cells s",
+                    "coarse s", "full s", "cpu s", "samples", "hits", "light", "plain", "ratio");
     for (const PictureResult& r : results)
-        table += fmt::format("{:<23} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:6.2f}\n", r.name, r.cellsSeconds, r.coarseSeconds,
-                             r.fullSeconds, r.fullProcessorSeconds, r.samples, r.hits, r.light, r.plain, r.ratio());
+        table += fmt::format("{:<23} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:6.2f}\n", r.name,
+                             r.cellsSeconds, r.coarseSeconds, r.fullSeconds, r.fullProcessorSeconds, r.samples, r.hits,
+                             r.light, r.plain, r.ratio());
     return table;
 }
 

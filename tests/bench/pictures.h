@@ -1,6 +1,6 @@
 // What the window asks of itself: how long a picture of a field takes, and how often it evaluates the field.
-// Enters: nothing; draws a cloud of 5,000 spheres and a KIFS building of 12 storeys at 640 × 640. Leaves: a table and bars.
-// Assumes an OpenGL driver, software or not.
+// Enters: nothing; draws a cloud of 5,000 spheres and a KIFS building of 12 storeys at 640 × 640. Leaves: a table and
+// bars. Assumes an OpenGL driver, software or not.
 #pragma once
 
 #include <string>

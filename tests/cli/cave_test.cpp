@@ -13,7 +13,8 @@ start Void -> Air
 )";
 
 TEST_F(Cli, TheCaveReportTellsRoomsAndPassages) {
-    const Outcome run = sgm("build " + grammar(threeRooms) + " --cave --agent .5,1.8 --cell .15 --report " + path("r.json") + " --floor " + path("f.obj"));
+    const Outcome run = sgm("build " + grammar(threeRooms) + " --cave --agent .5,1.8 --cell .15 --report " +
+                            path("r.json") + " --floor " + path("f.obj"));
     ASSERT_EQ(run.code, 0) << run.out;
     EXPECT_NE(run.out.find("too narrow"), std::string::npos) << run.out;
     const Json cave = Json::parse(read(path("r.json")))["cave"];
@@ -34,7 +35,10 @@ TEST_F(Cli, WithoutCaveThereIsNoSurvey) {
 TEST_F(Cli, AHollowFacesInward) {
     const std::string file = grammar(threeRooms);
     ASSERT_EQ(sgm("build " + file + " --start Void --cell .2 -q -o " + path("out.obj")).code, 0);
-    ASSERT_EQ(sgm("build " + file + " --start Void --cell .2 -q --inward --cave --agent .5,1.8 --report " + path("r.json") + " -o " + path("in.obj")).code, 0);
+    ASSERT_EQ(sgm("build " + file + " --start Void --cell .2 -q --inward --cave --agent .5,1.8 --report " +
+                  path("r.json") + " -o " + path("in.obj"))
+                  .code,
+              0);
     const Json report = Json::parse(read(path("r.json")));
     EXPECT_EQ(report["cave"]["rooms"].size(), 3u);
     EXPECT_TRUE(report["cave"]["entrances"].empty());
@@ -55,7 +59,9 @@ TEST_F(Cli, AHollowFacesInward) {
                 std::string corner;
                 for (size_t& i : at) words >> corner, i = std::stoul(corner) - 1;
                 const auto &a = v[at[0]], &b = v[at[1]], &c = v[at[2]];
-                sum += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6;
+                sum += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                        a[2] * (b[0] * c[1] - b[1] * c[0])) /
+                       6;
             }
         }
         return sum;
@@ -77,8 +83,10 @@ TEST_F(Cli, WrongCaveOptionsAreTwo) {
 
 // Frames kept from each other have no blocks, and a survey wants them.
 TEST_F(Cli, EveryFrameHasItsOwnSurvey) {
-    const std::string file = grammar("param w = 1m in .5m..4m\nstart Rock -> cube size (12, 6, 6) - cube size (8, 3, w)\n");
-    const Outcome run = sgm("build " + file + " --cell .2 --cave --animate w=1..3:2 --report " + path("r%d.json") + " -o " + path("f%d.off") + " --floor " + path("g%d.off"));
+    const std::string file =
+        grammar("param w = 1m in .5m..4m\nstart Rock -> cube size (12, 6, 6) - cube size (8, 3, w)\n");
+    const Outcome run = sgm("build " + file + " --cell .2 --cave --animate w=1..3:2 --report " + path("r%d.json") +
+                            " -o " + path("f%d.off") + " --floor " + path("g%d.off"));
     ASSERT_EQ(run.code, 0) << run.out;
     const auto air = [&](const char* name) { return Json::parse(read(path(name)))["cave"]["air_m3"].get<double>(); };
     EXPECT_NEAR(air("r1.json"), 24, 5);  // whole voxels count

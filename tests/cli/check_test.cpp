@@ -6,7 +6,9 @@ namespace {
 
 class Check : public Cli {
 protected:
-    Outcome checked(const std::string& text, const std::string& options = "") const { return sgm("check " + grammar(text) + options); }
+    Outcome checked(const std::string& text, const std::string& options = "") const {
+        return sgm("check " + grammar(text) + options);
+    }
     /// Both refuse the grammar, and `check` says so with this place and sentence.
     void expectRefused(const std::string& text, const std::string& where, const std::string& sentence) const {
         const Outcome check = checked(text), build = sgm("build " + grammar(text) + " -q -o " + path("a.stl"));
@@ -24,15 +26,19 @@ protected:
 };
 
 TEST_F(Check, RefusesWhatBuildRefuses) {
-    expectRefused("start A -> cube : B\nrule B repeat 1000000000 -> + cube at +x : B\n", "3:29", "the budget of 250000 shapes is spent");
-    expectRefused("start A -> cube : B\nrule B -> for k in 1..100000000 { + cube move (k,0,0) }\n", "3:35", "the budget of 250000 shapes is spent");
+    expectRefused("start A -> cube : B\nrule B repeat 1000000000 -> + cube at +x : B\n", "3:29",
+                  "the budget of 250000 shapes is spent");
+    expectRefused("start A -> cube : B\nrule B -> for k in 1..100000000 { + cube move (k,0,0) }\n", "3:35",
+                  "the budget of 250000 shapes is spent");
     expectRefused("start A -> cube & sphere move (9,0,0)\n", "2:1", "nothing solid is left of 'A'");
     expectRefused("start A -> nil\n", "2:1", "nothing solid is left of 'A'");
     expectRefused("start A -> cube size 2 - cube size 4\n", "2:1", "nothing solid is left of 'A'");
-    expectRefused("start A -> cube with n = n : B\nrule B -> + cube size n at +x\n", "2:26", "neither this shape nor any above it sets 'n'");
+    expectRefused("start A -> cube with n = n : B\nrule B -> + cube size n at +x\n", "2:26",
+                  "neither this shape nor any above it sets 'n'");
     expectRefused("start A -> size 10 split x { { 0m: cube }* }\n", "2:30", "what repeats has no extent");
     expectRefused("start A -> size 10 split x { ~0: cube | ~0: sphere }\n", "2:1", "nothing solid is left");
-    expectRefused("start A -> Foo with n = 5\nrule Foo when n > 0 -> cube + Foo at +x with n = n\n", "3:29", "levels of depth is spent");
+    expectRefused("start A -> Foo with n = 5\nrule Foo when n > 0 -> cube + Foo at +x with n = n\n", "3:29",
+                  "levels of depth is spent");
 }
 
 TEST_F(Check, BudgetsAreExitCodeThree) {
@@ -40,12 +46,18 @@ TEST_F(Check, BudgetsAreExitCodeThree) {
 }
 
 TEST_F(Check, WarnsOfWhatOtherSettingsComeTo) {
-    expectWarned("param n = 2 in 0..4\nstart A -> cube : B\nrule B -> + cube size (2m / (4 - n)) at +x\n", "4:18", "with n = 4: the size of the shape isn't positive in rule 'B#1' at A/B, seed 1; divided by 0: '(4 - n)' is 0");
-    expectWarned("param n = 2 in 0..4\nstart A -> cube move (2m / (4 - n), 0, 0)\n", "3:23", "with n = 4: divided by 0: '(4 - n)' is 0");
-    expectWarned("param deep = false\nstart A -> cube : B\nrule B when deep -> + B\n", "4:21", "with deep = true: the budget of");
+    expectWarned(
+        "param n = 2 in 0..4\nstart A -> cube : B\nrule B -> + cube size (2m / (4 - n)) at +x\n", "4:18",
+        "with n = 4: the size of the shape isn't positive in rule 'B#1' at A/B, seed 1; divided by 0: '(4 - n)' is 0");
+    expectWarned("param n = 2 in 0..4\nstart A -> cube move (2m / (4 - n), 0, 0)\n", "3:23",
+                 "with n = 4: divided by 0: '(4 - n)' is 0");
+    expectWarned("param deep = false\nstart A -> cube : B\nrule B when deep -> + B\n", "4:21",
+                 "with deep = true: the budget of");
     expectWarned("start A -> cube\nstart B -> nil\n", "3:1", "nothing solid is left of 'B'");
-    expectWarned("param n = 1 in 0..3\nstart A -> cube - cube size (n / 2 + .1)\nstyle none { n = 3 }\n", "3:1", "with style 'none'");
-    expectWarned("start A -> cube : B\nrule R: B -> + cube at +x\nderive d: R => R\n", "4:16", "with derive 'd': rule 'R' matches nothing here");
+    expectWarned("param n = 1 in 0..3\nstart A -> cube - cube size (n / 2 + .1)\nstyle none { n = 3 }\n", "3:1",
+                 "with style 'none'");
+    expectWarned("start A -> cube : B\nrule R: B -> + cube at +x\nderive d: R => R\n", "4:16",
+                 "with derive 'd': rule 'R' matches nothing here");
 }
 
 TEST_F(Check, LeavesTheLibrarysRangesAlone) {
@@ -63,17 +75,23 @@ TEST_F(Check, SaysHowManySettingsItTried) {
 }
 
 TEST_F(Check, CountsInExpectAreTold) {
-    EXPECT_EQ(checked("start A -> cube : Tile\nrule Tile -> + Other at +x\nrule Other -> cube\ncheck A expect count(Tile) == 1 and count(Other) == 1\n").code, 0);
+    EXPECT_EQ(checked("start A -> cube : Tile\nrule Tile -> + Other at +x\nrule Other -> cube\ncheck A expect "
+                      "count(Tile) == 1 and count(Other) == 1\n")
+                  .code,
+              0);
     const Outcome wrong = checked("start A -> cube : Tile\ncheck A expect count(Tile) == 5\n");
     EXPECT_EQ(wrong.code, 1);
     EXPECT_NE(wrong.out.find("error: count(Tile) is 1"), std::string::npos) << wrong.out;
 }
 
 TEST_F(Check, TheSameWarningsComeFromEveryCommand) {
-    const std::string file = grammar("start A -> cube size 4 : B\nrule B -> - cube size 1 move (9,0,0) + cone size 3 at +y\n");
+    const std::string file =
+        grammar("start A -> cube size 4 : B\nrule B -> - cube size 1 move (9,0,0) + cone size 3 at +y\n");
     const std::string warning = "test.sgm:3:11: warning: this cuts nothing: it lies beside 'B'";
-    for (const std::string& command : {"check " + file, "build " + file + " -o " + path("a.stl"), "render " + file + " --size 32x32 -o " + path("a.png"),
-                                       "mutate " + file + " --rows 1 --cols 1 --size 32x32 -o " + path("b.png"), "tree " + file}) {
+    for (const std::string& command :
+         {"check " + file, "build " + file + " -o " + path("a.stl"),
+          "render " + file + " --size 32x32 -o " + path("a.png"),
+          "mutate " + file + " --rows 1 --cols 1 --size 32x32 -o " + path("b.png"), "tree " + file}) {
         const Outcome run = sgm(command);
         EXPECT_EQ(run.code, 0) << command << run.out;
         EXPECT_NE(run.out.find(warning), std::string::npos) << command << "\n" << run.out;
@@ -90,18 +108,25 @@ TEST_F(Check, JsonHoldsWhatWasDerived) {
 }
 
 TEST_F(Check, ATextThatIsNoUtf8IsTold) {
-    expectWarned("param n = 2 in 0..4 \"Zahl der T\xfcren\"\nstart A -> cube size (n + 1)\n", "2:21", "this text is no UTF-8");
-    EXPECT_EQ(checked("param n = 2 in 0..4 \"Zahl der T\xc3\xbcren\"\nstart A -> cube size (n + 1)\n").out.find("warning"), std::string::npos);
+    expectWarned("param n = 2 in 0..4 \"Zahl der T\xfcren\"\nstart A -> cube size (n + 1)\n", "2:21",
+                 "this text is no UTF-8");
+    EXPECT_EQ(
+        checked("param n = 2 in 0..4 \"Zahl der T\xc3\xbcren\"\nstart A -> cube size (n + 1)\n").out.find("warning"),
+        std::string::npos);
 }
 
 TEST_F(Check, AUsedFileThatIsMissingNamesTheNearestOne) {
     const Outcome run = checked("use \"std/wals.sgm\"\nstart A -> cube\n");
-    EXPECT_NE(run.out.find("can't use \"std/wals.sgm\": there is no such file; did you mean \"std/walls.sgm\"?"), std::string::npos) << run.out;
-    EXPECT_NE(checked("use \"std/zzzzzz.sgm\"\nstart A -> cube\n").out.find("there is no such file\n"), std::string::npos);
+    EXPECT_NE(run.out.find("can't use \"std/wals.sgm\": there is no such file; did you mean \"std/walls.sgm\"?"),
+              std::string::npos)
+        << run.out;
+    EXPECT_NE(checked("use \"std/zzzzzz.sgm\"\nstart A -> cube\n").out.find("there is no such file\n"),
+              std::string::npos);
 }
 
 TEST_F(Check, ANameOfTheLibraryNamesItsFile) {
-    EXPECT_NE(checked("start A -> cube size 4 clad palazzo\n").out.find("write 'use \"std/kifs.sgm\"'"), std::string::npos);
+    EXPECT_NE(checked("start A -> cube size 4 clad palazzo\n").out.find("write 'use \"std/kifs.sgm\"'"),
+              std::string::npos);
     EXPECT_NE(checked("start A -> stone\n").out.find("write 'use \"std/walls.sgm\"'"), std::string::npos);
     EXPECT_NE(checked("start A -> Storey\n").out.find("write 'use \"std/house.sgm\"'"), std::string::npos);
     EXPECT_EQ(checked("start A -> spere\n").out.find("use"), std::string::npos);
@@ -118,8 +143,11 @@ TEST(Usage, NamesTheCommandThatWasMeant) {
 TEST(Usage, NamesTheCommandThatHasAnOption) {
     const Outcome run = sgm("render examples/morphs.sgm -o a.png --animate twist=0..6:4");
     EXPECT_EQ(run.code, 2);
-    EXPECT_NE(run.out.find("'sgm render' has no option --animate: it belongs to 'sgm build'"), std::string::npos) << run.out;
-    EXPECT_NE(sgm("build examples/morphs.sgm --resolutoin 4").out.find("'sgm build' has no option --resolutoin; did you mean --resolution?"), std::string::npos);
+    EXPECT_NE(run.out.find("'sgm render' has no option --animate: it belongs to 'sgm build'"), std::string::npos)
+        << run.out;
+    EXPECT_NE(sgm("build examples/morphs.sgm --resolutoin 4")
+                  .out.find("'sgm build' has no option --resolutoin; did you mean --resolution?"),
+              std::string::npos);
     EXPECT_NE(sgm("build").out.find("FILE is required"), std::string::npos) << "other mistakes as before";
 }
 

@@ -15,7 +15,9 @@ namespace {
 double secondsOfChildren() {
     rusage use{};
     getrusage(RUSAGE_CHILDREN, &use);
-    const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
     return seconds(use.ru_utime) + seconds(use.ru_stime);
 }
 
@@ -63,7 +65,8 @@ TEST_F(Cli, EveryBadGrammarIsRefusedAndWritesNothing) {
 }
 
 TEST_F(Cli, RunawayThatOnlyShowsWhileDerivingEndsInTheBudget) {
-    const std::string file = grammar("start A -> cube : Grow\nrule Grow when scope.x > 0m -> + cube size 100% at +x : Grow\n");
+    const std::string file =
+        grammar("start A -> cube : Grow\nrule Grow when scope.x > 0m -> + cube size 100% at +x : Grow\n");
     const double before = secondsOfChildren();
     const Outcome run = sgm("build " + file + " --max-shapes 20000 -o " + path("a.glb"));
     EXPECT_LT(secondsOfChildren() - before, cpuSeconds(5));
@@ -80,12 +83,15 @@ TEST_F(Cli, ProvablyEndlessRuleIsRefusedByTheCheck) {
 
 TEST_F(Cli, SevenFormatsAtOnceAndTheReport) {
     std::string command = "build examples/joints.sgm --resolution 48 --report " + path("r.json");
-    for (const char* ending : {"glb", "gltf", "obj", "ply", "stl", "off", "vdb"}) command += " -o " + path(std::string("a.") + ending);
+    for (const char* ending : {"glb", "gltf", "obj", "ply", "stl", "off", "vdb"})
+        command += " -o " + path(std::string("a.") + ending);
     const Outcome run = sgm(command);
     ASSERT_EQ(run.code, 0) << run.out;
-    for (const char* ending : {"glb", "gltf", "obj", "ply", "stl", "off", "vdb"}) EXPECT_GT(fs::file_size(path(std::string("a.") + ending)), 1000u) << ending;
+    for (const char* ending : {"glb", "gltf", "obj", "ply", "stl", "off", "vdb"})
+        EXPECT_GT(fs::file_size(path(std::string("a.") + ending)), 1000u) << ending;
     const Json report = Json::parse(read(path("r.json")));
-    for (const char* stage : {"parse", "check", "derive", "lower", "compile", "subdivide", "sample", "polygonize", "write"})
+    for (const char* stage :
+         {"parse", "check", "derive", "lower", "compile", "subdivide", "sample", "polygonize", "write"})
         EXPECT_TRUE(report["stages"].contains(stage)) << stage;
     EXPECT_EQ(report["mesh"]["boundary_edges"], 0);
     EXPECT_EQ(report["mesh"]["nonmanifold_edges"], 0);
@@ -102,7 +108,8 @@ TEST_F(Cli, SameBytesAtAnyThreadCount) {
         std::string first;
         for (const std::string threads : {"1", "2", "5"}) {
             const std::string out = path("t.ply");
-            const Outcome run = sgm("build examples/" + example + ".sgm --resolution 64 --seed 5 --threads " + threads + " -o " + out);
+            const Outcome run =
+                sgm("build examples/" + example + ".sgm --resolution 64 --seed 5 --threads " + threads + " -o " + out);
             ASSERT_EQ(run.code, 0) << run.out;
             const std::string bytes = read(out);
             if (first.empty()) first = bytes;
@@ -115,7 +122,10 @@ TEST_F(Cli, AnotherSeedChangesOnlyWhatHasChoices) {
     for (const std::string example : {"grotto", "cumulus", "tower"}) {
         std::string bytes[2];
         for (const int k : {0, 1}) {  // .off holds nothing but the surface
-            ASSERT_EQ(sgm("build examples/" + example + ".sgm --resolution 48 --seed " + std::to_string(5 + k) + " -o " + path("s.off")).code, 0);
+            ASSERT_EQ(sgm("build examples/" + example + ".sgm --resolution 48 --seed " + std::to_string(5 + k) +
+                          " -o " + path("s.off"))
+                          .code,
+                      0);
             bytes[k] = read(path("s.off"));
         }
         EXPECT_EQ(bytes[0] != bytes[1], example != "tower") << example;
@@ -128,7 +138,8 @@ TEST_F(Cli, KilledInTheMiddleOfWritingLeavesTheOldFile) {
     const pid_t child = fork();
     if (child == 0) {
         freopen("/dev/null", "w", stdout);
-        execl(SGM_PROGRAM, SGM_PROGRAM, "build", "examples/tower.sgm", "--resolution", "400", "-o", out.c_str(), static_cast<char*>(nullptr));
+        execl(SGM_PROGRAM, SGM_PROGRAM, "build", "examples/tower.sgm", "--resolution", "400", "-o", out.c_str(),
+              static_cast<char*>(nullptr));
         _exit(127);
     }
     // Kill as soon as anything is being written beside the target.
@@ -156,11 +167,13 @@ TEST_F(Cli, InterruptCancelsWith130AndLeavesNothing) {
     const pid_t child = fork();
     if (child == 0) {
         freopen("/dev/null", "w", stderr);
-        execl(SGM_PROGRAM, SGM_PROGRAM, "build", "examples/grotto.sgm", "--resolution", "1500", "-o", out.c_str(), static_cast<char*>(nullptr));
+        execl(SGM_PROGRAM, SGM_PROGRAM, "build", "examples/grotto.sgm", "--resolution", "1500", "-o", out.c_str(),
+              static_cast<char*>(nullptr));
         _exit(127);
     }
     int status = 0;
-    while (!catches(child, SIGINT) && waitpid(child, &status, WNOHANG) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (!catches(child, SIGINT) && waitpid(child, &status, WNOHANG) == 0)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));  // into the work
     kill(child, SIGINT);
     waitpid(child, &status, 0);
@@ -192,11 +205,14 @@ TEST_F(Cli, ExamplesCheckFine) {
 }
 
 TEST_F(Cli, WhatAClosedJointKeepsFromGrowingIsTold) {
-    const Outcome run = sgm("build --resolution 16 " + grammar("start A -> cube : B\nrule B -> + cube size .5 at +x + sphere at +x\n"));
+    const Outcome run =
+        sgm("build --resolution 16 " + grammar("start A -> cube : B\nrule B -> + cube size .5 at +x + sphere at +x\n"));
     EXPECT_EQ(run.code, 0);
     EXPECT_NE(run.out.find("test.sgm:3:32: warning: another shape has closed its joint"), std::string::npos) << run.out;
     // A chain that finds its end there, and what grew elsewhere, are no mistakes.
-    const Outcome chain = sgm("build --resolution 16 " + grammar("start A -> cube : B\nrule B repeat 9 -> + cube at +x to -y + cube size .2 at -x : B\n"));
+    const Outcome chain =
+        sgm("build --resolution 16 " +
+            grammar("start A -> cube : B\nrule B repeat 9 -> + cube at +x to -y + cube size .2 at -x : B\n"));
     EXPECT_EQ(chain.out.find("closed its joint"), std::string::npos) << chain.out;
     for (const auto& entry : fs::recursive_directory_iterator("examples")) {
         if (entry.path().extension() != ".sgm") continue;
@@ -237,7 +253,9 @@ TEST_F(Cli, ParamsAndTreePrintJson) {
     EXPECT_FALSE(tree.empty());
 }
 
-TEST_F(Cli, ReferencePageIsUpToDate) { EXPECT_EQ(sgm("reference").out, read("docs/reference.md")) << "run: sgm reference > docs/reference.md"; }
+TEST_F(Cli, ReferencePageIsUpToDate) {
+    EXPECT_EQ(sgm("reference").out, read("docs/reference.md")) << "run: sgm reference > docs/reference.md";
+}
 
 TEST_F(Cli, StylesAndSettingsChangeTheModel) {
     const std::string file = grammar("param n = 2m in 1m..9m\nstart A -> cube size n\nstyle Big for A { n = 4m }\n");
@@ -253,7 +271,8 @@ TEST_F(Cli, StylesAndSettingsChangeTheModel) {
 
 TEST_F(Cli, ExamplesAreClosedAndFreeOfSelfIntersections) {
     for (const std::string example : {"grotto", "cumulus", "tower", "joints"}) {
-        const Outcome run = sgm("build examples/" + example + ".sgm --resolution 128 --validate --report " + path("r.json"));
+        const Outcome run =
+            sgm("build examples/" + example + ".sgm --resolution 128 --validate --report " + path("r.json"));
         EXPECT_EQ(run.code, 0) << example << ": " << run.out;
         const Json mesh = Json::parse(read(path("r.json")))["mesh"];
         EXPECT_EQ(mesh["boundary_edges"], 0) << example;
@@ -275,7 +294,8 @@ TEST_F(Cli, GrottoIsOneConnectedVoid) {
 }
 
 TEST_F(Cli, SmoothAndSimplifyKeepTheMeshClosed) {
-    ASSERT_EQ(sgm("build examples/joints.sgm --resolution 64 --smooth 3 --simplify 0.3 --report " + path("r.json")).code, 0);
+    ASSERT_EQ(
+        sgm("build examples/joints.sgm --resolution 64 --smooth 3 --simplify 0.3 --report " + path("r.json")).code, 0);
     const Json mesh = Json::parse(read(path("r.json")))["mesh"];
     EXPECT_EQ(mesh["boundary_edges"], 0);
     EXPECT_EQ(mesh["nonmanifold_edges"], 0);
@@ -284,7 +304,9 @@ TEST_F(Cli, SmoothAndSimplifyKeepTheMeshClosed) {
 TEST_F(Cli, OptionsGoToTheOutputsThatKnowThem) {
     const std::string start = "build examples/joints.sgm --resolution 32 -o " + path("a.glb") + " -o " + path("a.vdb");
     EXPECT_EQ(sgm(start + " --format-option half=yes --format-option uv=none").code, 0);
-    EXPECT_EQ(sgm("build examples/joints.sgm --resolution 32 -o " + path("b.glb") + " --format-option half=yes").code, 2) << "does nothing";
+    EXPECT_EQ(sgm("build examples/joints.sgm --resolution 32 -o " + path("b.glb") + " --format-option half=yes").code,
+              2)
+        << "does nothing";
     EXPECT_EQ(sgm(start + " --format-option half").code, 2);
     // Before the work, and before anything is written.
     fs::remove(path("a.glb"));
@@ -294,7 +316,8 @@ TEST_F(Cli, OptionsGoToTheOutputsThatKnowThem) {
 
 TEST_F(Cli, OldNamesOfOptionsWorkAndSayTheNewOnes) {
     const std::string start = "build examples/joints.sgm --resolution 32 -o ";
-    ASSERT_EQ(sgm(start + path("new.ply") + " --format-option up=z --format-option attributes=none").out.find("note"), std::string::npos);
+    ASSERT_EQ(sgm(start + path("new.ply") + " --format-option up=z --format-option attributes=none").out.find("note"),
+              std::string::npos);
     const Outcome old = sgm(start + path("old.ply") + " --export up=z --export attributes=none --judge");
     EXPECT_EQ(old.code, 0) << old.out;
     EXPECT_EQ(read(path("old.ply")), read(path("new.ply")));
@@ -311,7 +334,8 @@ TEST_F(Cli, OldNamesOfOptionsWorkAndSayTheNewOnes) {
 
 TEST_F(Cli, CollidersGoIntoFilesThatHoldThem) {
     const std::string start = "build examples/joints.sgm --resolution 32 ";
-    const Outcome run = sgm(start + "--collider convex --format-option engine=unreal -o " + path("a.gltf") + " -o " + path("a.stl"));
+    const Outcome run =
+        sgm(start + "--collider convex --format-option engine=unreal -o " + path("a.gltf") + " -o " + path("a.stl"));
     EXPECT_EQ(run.code, 0) << run.out;
     EXPECT_NE(run.out.find(" colliders (convex)"), std::string::npos) << run.out;
     const Json file = Json::parse(read(path("a.gltf")));
@@ -340,7 +364,10 @@ TEST_F(Cli, LevelsOfDetailGoIntoFilesThatHoldThem) {
     EXPECT_EQ(sgm(start + "--stream --lod 2 -o " + path("b.stl")).code, 2);
     // Turned inside out, coarser levels are as well; the same bytes at any number of threads.
     for (const char* threads : {"1", "4"})
-        ASSERT_EQ(sgm(start + "-q --start Void --inward --lod 6 --threads " + threads + " -o " + path(std::string("in") + threads + ".glb")).code, 0);
+        ASSERT_EQ(sgm(start + "-q --start Void --inward --lod 6 --threads " + threads + " -o " +
+                      path(std::string("in") + threads + ".glb"))
+                      .code,
+                  0);
     EXPECT_EQ(read(path("in1.glb")), read(path("in4.glb")));
 }
 
@@ -354,7 +381,8 @@ TEST_F(Cli, CollidersSayWhatTheyLeaveOut) {
 }
 
 TEST_F(Cli, ProxyIsASecondCoarseMesh) {
-    const Outcome run = sgm("build examples/joints.sgm --resolution 64 -o " + path("a.off") + " --proxy " + path("p.off"));
+    const Outcome run =
+        sgm("build examples/joints.sgm --resolution 64 -o " + path("a.off") + " --proxy " + path("p.off"));
     ASSERT_EQ(run.code, 0) << run.out;
     EXPECT_NE(run.out.find("note: --proxy is now --collider"), std::string::npos) << run.out;
     EXPECT_LT(fs::file_size(path("p.off")), fs::file_size(path("a.off")) / 10);

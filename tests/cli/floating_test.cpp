@@ -11,7 +11,8 @@ TEST_F(Cli, AFloatingStoreyIsReportedWithItsRuleAndLine) {
         "  -> + cube size (8, 3, 6) at +y move (0, if(i == 2, 1, 0), 0) : Storey\n");
     const Outcome run = sgm("build " + file + " --resolution 32 --report " + path("r.json"));
     ASSERT_EQ(run.code, 0) << run.out;
-    EXPECT_NE(run.out.find("'House/Storey/Storey[2]', made by rule 'Build' (" + file + ":4) floats"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("'House/Storey/Storey[2]', made by rule 'Build' (" + file + ":4) floats"), std::string::npos)
+        << run.out;
     const Json report = Json::parse(read(path("r.json")));
     EXPECT_EQ(report["pieces"], 2);
     ASSERT_EQ(report["floating"].size(), 1u);
@@ -24,13 +25,17 @@ TEST_F(Cli, AStalactiteThatHangsInTheAirIsReported) {
     const std::string cave = "start Cave -> cube size 20 - sphere size 16 + Drip size (1, 4, 1) move (0, ";
     const std::string file = grammar(cave + "3, 0)\nrule Drip -> cone turn (180deg, 0deg, 0deg)\n");
     const Outcome run = sgm("build " + file + " --resolution 64");
-    EXPECT_NE(run.out.find("'Cave/cube/Drip', made by the start (" + file + ":2) floats"), std::string::npos) << run.out;
-    const Outcome hangs = sgm("build " + grammar(cave + "6.5, 0)\nrule Drip -> cone turn (180deg, 0deg, 0deg)\n") + " --resolution 64");
+    EXPECT_NE(run.out.find("'Cave/cube/Drip', made by the start (" + file + ":2) floats"), std::string::npos)
+        << run.out;
+    const Outcome hangs =
+        sgm("build " + grammar(cave + "6.5, 0)\nrule Drip -> cone turn (180deg, 0deg, 0deg)\n") + " --resolution 64");
     EXPECT_EQ(hangs.out.find("floats"), std::string::npos) << hangs.out;
 }
 
 TEST_F(Cli, AFloatingStalactiteIsReported) {
-    const std::string hanging = "start Rock -> cube size (8, 6, 8) - cube size (6, 4, 6) + cone size (1, 2, 1) turn (180deg, 0deg, 0deg) move (0, ";
+    const std::string hanging =
+        "start Rock -> cube size (8, 6, 8) - cube size (6, 4, 6) + cone size (1, 2, 1) turn (180deg, 0deg, 0deg) move "
+        "(0, ";
     const Outcome floats = sgm("build " + grammar(hanging + ".5, 0)\n") + " --cell .1");
     EXPECT_EQ(floats.code, 0);
     EXPECT_NE(floats.out.find("floats"), std::string::npos) << floats.out;
@@ -44,7 +49,10 @@ TEST_F(Cli, AGapIsMeasuredBetweenTheNearestParts) {
         "rule Build: Storey repeat 3\n"
         "  -> + cube size (8, 3, 6) at +y move (0, if(i == 2, 1, 0), 0) : Storey\n");
     const Outcome run = sgm("build " + file + " --resolution 32 --report " + path("r.json"));
-    EXPECT_NE(run.out.find("a gap of 1 m lies between its 'House/Storey/Storey[2]' (" + file + ":4) and 'House/Storey/Storey' (" + file + ":4) at ("), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("a gap of 1 m lies between its 'House/Storey/Storey[2]' (" + file +
+                           ":4) and 'House/Storey/Storey' (" + file + ":4) at ("),
+              std::string::npos)
+        << run.out;
     const Json cause = Json::parse(read(path("r.json")))["floating"][0]["cause"];
     EXPECT_EQ(cause["kind"], "gap");
     EXPECT_NEAR(cause["width_m"].get<double>(), 1, 1e-4);
@@ -52,7 +60,9 @@ TEST_F(Cli, AGapIsMeasuredBetweenTheNearestParts) {
 }
 
 TEST_F(Cli, AGapBetweenAPostAndAPlateIsMeasuredAtThePost) {
-    const std::string file = grammar("start A -> cube size (20, .5, 20), cylinder size (.6, 3, .6) move (3.3, 1.75, 2.1), cube size (20, .5, 20) move (0, 3.95, 0)\n");
+    const std::string file = grammar(
+        "start A -> cube size (20, .5, 20), cylinder size (.6, 3, .6) move (3.3, 1.75, 2.1), cube size (20, .5, 20) "
+        "move (0, 3.95, 0)\n");
     const Outcome run = sgm("build " + file + " --cell .25 --report " + path("r.json"));
     const Json floating = Json::parse(read(path("r.json")))["floating"];
     ASSERT_EQ(floating.size(), 1u) << run.out;
@@ -67,7 +77,10 @@ TEST_F(Cli, AFloatingPieceNamesTheThinPartThatHoldsIt) {
         "rule Base -> + cube size (.12, 3, .12) at +y move (.13, 0, .13) : Post\n"
         "rule Post -> + sphere size .9 at +y overlap .3\n");
     const Outcome coarse = sgm("build " + file + " --cell .29 --report " + path("r.json"));
-    EXPECT_NE(coarse.out.find("'A/Base/Post' (" + file + ":3), 0.12 m thick, holds it and is thinner than a cell of 0.29 m: --resolution "), std::string::npos) << coarse.out;
+    EXPECT_NE(coarse.out.find("'A/Base/Post' (" + file +
+                              ":3), 0.12 m thick, holds it and is thinner than a cell of 0.29 m: --resolution "),
+              std::string::npos)
+        << coarse.out;
     const Json cause = Json::parse(read(path("r.json")))["floating"][0]["cause"];
     EXPECT_EQ(cause["kind"], "thin");
     EXPECT_EQ(cause["part"]["line"], 3);
@@ -77,10 +90,14 @@ TEST_F(Cli, AFloatingPieceNamesTheThinPartThatHoldsIt) {
 
 TEST_F(Cli, PartsThatMeetByLessThanACellAreToldFromAGap) {
     const auto built = [&](const char* place, const char* cell) {
-        return sgm("build " + grammar(std::string("start A -> sphere size 4, sphere size 4 move ") + place + "\n") + " --cell " + cell).out;
+        return sgm("build " + grammar(std::string("start A -> sphere size 4, sphere size 4 move ") + place + "\n") +
+                   " --cell " + cell)
+            .out;
     };
-    EXPECT_NE(built("(.3, 3.965, .05)", ".7").find("by less than a cell of 0.7 m: let them overlap more"), std::string::npos);
-    EXPECT_NE(built("(.2, 3.97, 0)", ".7").find("by less than a cell of 0.7 m: let them overlap more"), std::string::npos);
+    EXPECT_NE(built("(.3, 3.965, .05)", ".7").find("by less than a cell of 0.7 m: let them overlap more"),
+              std::string::npos);
+    EXPECT_NE(built("(.2, 3.97, 0)", ".7").find("by less than a cell of 0.7 m: let them overlap more"),
+              std::string::npos);
     EXPECT_NE(built("(.3, 4.3, .05)", ".4").find("a gap of 0.3"), std::string::npos);
 }
 

@@ -33,13 +33,15 @@ protected:
             line << "v " << x + (i & 1) << ' ' << y + (i >> 1 & 1) << ' ' << z + (i >> 2) << '\n';
             text += line.str();
         }
-        return scratch_.write(name, text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n").string();
+        return scratch_.write(name, text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n")
+            .string();
     }
 };
 
 TEST_F(Hostile, GrammarsReachNoFileElsewhere) {
     scratch_.write("secret", "root:x:0:0\n");
-    for (const std::string& name : {std::string("std//etc/passwd"), "std/" + path("secret"), path("secret"), std::string("secret")})
+    for (const std::string& name :
+         {std::string("std//etc/passwd"), "std/" + path("secret"), path("secret"), std::string("secret")})
         for (const char* how : {"use \"%\"\nstart A -> cube\n", "start A -> mesh(\"%\")\n"}) {
             std::string text = how;
             text.replace(text.find('%'), 1, name);
@@ -61,7 +63,8 @@ TEST_F(Hostile, PipesAndDevicesAreNoGrammars) {
 }
 
 TEST_F(Hostile, MessagesSendNothingToTheTerminal) {
-    const Outcome run = quick("check " + grammar("use \"\x1b[31mred.sgm\"\nstart A -> \x1b[2Jcube \xc2\x9b" "31m\n"));
+    const Outcome run = quick("check " + grammar("use \"\x1b[31mred.sgm\"\nstart A -> \x1b[2Jcube \xc2\x9b"
+                                                 "31m\n"));
     EXPECT_EQ(run.code, 1);
     EXPECT_EQ(run.out.find('\x1b'), std::string::npos);
     EXPECT_EQ(run.out.find("\xc2\x9b"), std::string::npos);
@@ -85,7 +88,8 @@ TEST_F(Hostile, OneFileIsOneFileHoweverItIsSpelt) {
 TEST_F(Hostile, MeshesFarAwayAreTheSameSolid) {
     const auto built_from = [&](double x, double y, double z) {
         cubeAt("cube.obj", x, y, z);
-        const Json mesh = built(grammar("start A -> mesh(\"cube.obj\") size 1\n") + " --resolution 40 -o " + path("out.ply"))["mesh"];
+        const Json mesh =
+            built(grammar("start A -> mesh(\"cube.obj\") size 1\n") + " --resolution 40 -o " + path("out.ply"))["mesh"];
         EXPECT_NEAR(mesh.is_null() ? 0.0 : mesh["volume_m3"].get<double>(), 1, 0.01);
         return read(path("out.ply"));
     };
@@ -101,9 +105,11 @@ TEST_F(Hostile, OutputsReplaceNoInputAndNoOutput) {
     const std::string file = grammar("use \"part.sgm\"\nstart A -> mesh(\"statue.obj\")\n"), text = read(file);
     fs::create_symlink(statue, path("link.obj"));
     const std::string out = " -o " + path("x.glb");
-    for (const std::string& arguments : {" -o " + statue, " -o " + path("./statue.obj"), " -o " + path("link.obj"), out + " --report " + file, out + " --report " + path("part.sgm"),
-                                         out + " --report " + path("x.glb"), out + out, out + " --proxy " + path("../") + scratch_.path().filename().string() + "/x.glb",
-                                         " -o " + path("y.obj") + " --report " + path("y.mtl")}) {
+    for (const std::string& arguments :
+         {" -o " + statue, " -o " + path("./statue.obj"), " -o " + path("link.obj"), out + " --report " + file,
+          out + " --report " + path("part.sgm"), out + " --report " + path("x.glb"), out + out,
+          out + " --proxy " + path("../") + scratch_.path().filename().string() + "/x.glb",
+          " -o " + path("y.obj") + " --report " + path("y.mtl")}) {
         const Outcome run = quick("build -q " + file + " --resolution 20" + arguments);
         EXPECT_EQ(run.code, 2) << arguments << run.out;
         EXPECT_NE(run.out.find("another name"), std::string::npos) << run.out;
@@ -111,15 +117,22 @@ TEST_F(Hostile, OutputsReplaceNoInputAndNoOutput) {
     EXPECT_EQ(read(statue), before);
     EXPECT_EQ(read(file), text);
     EXPECT_FALSE(fs::exists(path("x.glb"))) << "refused before the work";
-    EXPECT_EQ(quick("build -q " + grammar("param n = 1 in 0..2\nstart A -> cube size (1 + n)\n") + " --resolution 8 --animate n=0..1:12 -o " + path("a_%d.ply") + " -o " + path("a_%02d.ply")).code, 2);
-    EXPECT_EQ(quick("render -q " + file + " -o " + path("folder.png"), "mkdir -p " + path("folder.png") + "; ").code, 1);
+    EXPECT_EQ(quick("build -q " + grammar("param n = 1 in 0..2\nstart A -> cube size (1 + n)\n") +
+                    " --resolution 8 --animate n=0..1:12 -o " + path("a_%d.ply") + " -o " + path("a_%02d.ply"))
+                  .code,
+              2);
+    EXPECT_EQ(quick("render -q " + file + " -o " + path("folder.png"), "mkdir -p " + path("folder.png") + "; ").code,
+              1);
 }
 
 TEST_F(Hostile, TargetsAreLookedAtBeforeTheWork) {
-    const std::string endless = grammar("start A -> cube : B\nrule B weight 1 -> + cube at +x : B\nrule B weight 1 -> + cube at +y : B\n");
+    const std::string endless =
+        grammar("start A -> cube : B\nrule B weight 1 -> + cube at +x : B\nrule B weight 1 -> + cube at +y : B\n");
     ASSERT_EQ(mkfifo(path("pipe.ply").c_str(), 0600), 0);
     fs::create_directory(path("folder.ply"));
-    for (const std::string& arguments : {"-o " + path("folder.ply"), "-o " + path("pipe.ply"), "-o " + path("gone/x.ply"), "-o " + path("x.ply") + " --report " + path("gone/r.json")}) {
+    for (const std::string& arguments :
+         {"-o " + path("folder.ply"), "-o " + path("pipe.ply"), "-o " + path("gone/x.ply"),
+          "-o " + path("x.ply") + " --report " + path("gone/r.json")}) {
         const Outcome run = quick("build -q " + endless + " " + arguments);
         EXPECT_EQ(run.code, 1) << run.out;
         EXPECT_NE(run.out.find("cannot write"), std::string::npos) << run.out;
@@ -127,15 +140,18 @@ TEST_F(Hostile, TargetsAreLookedAtBeforeTheWork) {
 }
 
 TEST_F(Hostile, AFloorThatCantBeMadeLeavesNothing) {
-    const Outcome run = quick("build -q " + grammar("start A -> sphere size 2\n") + " --resolution 24 -o " + path("x.ply") + " --report " + path("r.json") +
-                              " --floor " + path("f.ply") + " --agent 50,100");
+    const Outcome run =
+        quick("build -q " + grammar("start A -> sphere size 2\n") + " --resolution 24 -o " + path("x.ply") +
+              " --report " + path("r.json") + " --floor " + path("f.ply") + " --agent 50,100");
     EXPECT_EQ(run.code, 1) << run.out;
     EXPECT_NE(run.out.find("stand nowhere"), std::string::npos) << run.out;
     for (const char* file : {"x.ply", "r.json", "f.ply"}) EXPECT_FALSE(fs::exists(path(file))) << file;
 }
 
 TEST_F(Hostile, SmoothingThatMakesTheSurfaceCrossItselfSaysSo) {
-    const auto said = [&](const char* options) { return quick("build examples/kifs/minster.sgm --resolution 32 -o " + path("x.ply") + options); };
+    const auto said = [&](const char* options) {
+        return quick("build examples/kifs/minster.sgm --resolution 32 -o " + path("x.ply") + options);
+    };
     const Outcome smoothed = said(" --smooth 3");
     EXPECT_EQ(smoothed.code, 0);
     EXPECT_NE(smoothed.out.find("crosses itself"), std::string::npos) << smoothed.out;
@@ -177,9 +193,12 @@ TEST_F(Hostile, NumbersWithoutEndAreToldWhereTheyAre) {
 
 TEST_F(Hostile, OptionsAreNumbersInTheirRange) {
     const std::string file = grammar("start A -> cube\n");
-    for (const std::string option : {"--cell nan", "--cell inf", "--cell -1", "--simplify nan", "--max-seconds nan", "--max-seconds -1", "--max-seconds 0", "--max-shapes -1",
-                                     "--max-shapes 99999999999999999999", "--tolerance nan", "--max-memory x", "--proxy-tolerance nan --proxy"}) {
-        const Outcome run = quick("build -q " + file + " -o " + path("x.ply") + " " + option + (option.ends_with("--proxy") ? " " + path("y.ply") : ""));
+    for (const std::string option :
+         {"--cell nan", "--cell inf", "--cell -1", "--simplify nan", "--max-seconds nan", "--max-seconds -1",
+          "--max-seconds 0", "--max-shapes -1", "--max-shapes 99999999999999999999", "--tolerance nan",
+          "--max-memory x", "--proxy-tolerance nan --proxy"}) {
+        const Outcome run = quick("build -q " + file + " -o " + path("x.ply") + " " + option +
+                                  (option.ends_with("--proxy") ? " " + path("y.ply") : ""));
         EXPECT_EQ(run.code, 2) << option << run.out;
     }
 }
@@ -187,7 +206,8 @@ TEST_F(Hostile, OptionsAreNumbersInTheirRange) {
 TEST_F(Hostile, ASystemWithoutThreadsIsToldOf) {
     if (geteuid() != 0) GTEST_SKIP() << "a limit of processes binds other users than root alone";
     fs::permissions(scratch_.path(), fs::perms::all);
-    const std::string file = grammar("start A -> sphere\n"), nobody = "prlimit --nproc=1 setpriv --reuid=65534 --clear-groups ";
+    const std::string file = grammar("start A -> sphere\n"),
+                      nobody = "prlimit --nproc=1 setpriv --reuid=65534 --clear-groups ";
     EXPECT_EQ(quick("build -q " + file + " -o " + path("x.ply"), nobody).code, 0) << "one thread will do";
     for (const std::string& arguments : {"-o " + path("x.vdb"), "--cave -o " + path("y.ply")}) {
         const Outcome run = quick("build -q " + file + " " + arguments, nobody);
@@ -201,12 +221,15 @@ TEST_F(Hostile, ClosedAndFullStreamsHarmNoFile) {
     for (const char* streams : {"2>&-", ">&- 2>&-", "<&- >&- 2>&-", "2>/dev/full"}) {
         const std::string out = path("x.off");
         fs::remove(out);
-        const int status = std::system((SGM_PROGRAM " build " + file + " --resolution 8 -o " + out + " " + streams + (std::string(streams).find(">&- ") == std::string::npos ? " >/dev/null" : "")).c_str());
+        const int status = std::system((SGM_PROGRAM " build " + file + " --resolution 8 -o " + out + " " + streams +
+                                        (std::string(streams).find(">&- ") == std::string::npos ? " >/dev/null" : ""))
+                                           .c_str());
         EXPECT_TRUE(WIFEXITED(status)) << streams;
         EXPECT_EQ(read(out).substr(0, 3), "OFF") << streams;
     }
     for (const char* command : {"check ", "params --json ", "tree ", "check --json "}) {
-        const int status = std::system((std::string(SGM_PROGRAM " ") + command + file + " >/dev/full 2>" + path("said")).c_str());
+        const int status =
+            std::system((std::string(SGM_PROGRAM " ") + command + file + " >/dev/full 2>" + path("said")).c_str());
         EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << command;
         EXPECT_NE(read(path("said")).find("standard output"), std::string::npos) << command << read(path("said"));
     }
@@ -216,14 +239,17 @@ TEST_F(Hostile, MemoryThatRunsOutIsAMessage) {
     if (isSanitized) GTEST_SKIP() << "memory isn't limited under AddressSanitizer";
     const std::string out = path("x.ply"), was = "as it was";
     scratch_.write("x.ply", was);
-    for (const char* limits : {"--max-memory 300MB", "--max-memory 300MB --threads 1", "--max-memory 500MB --threads 8", "--max-memory 400MB --stream"}) {
-        const Outcome run = quick(std::string("build -q examples/kifs/mcgraw.sgm --resolution 4096 -o ") + out + " " + limits);
+    for (const char* limits : {"--max-memory 300MB", "--max-memory 300MB --threads 1", "--max-memory 500MB --threads 8",
+                               "--max-memory 400MB --stream"}) {
+        const Outcome run =
+            quick(std::string("build -q examples/kifs/mcgraw.sgm --resolution 4096 -o ") + out + " " + limits);
         EXPECT_EQ(run.code, 3) << limits << run.out;
         EXPECT_NE(run.out.find("memory"), std::string::npos) << run.out;
         EXPECT_EQ(read(out), was);
     }
     for (const int limit_kB : {200'000, 300'000}) {
-        const Outcome run = sgm("build -q examples/grotto.sgm --resolution 1024 -o " + out, "ulimit -v " + std::to_string(limit_kB) + "; ");
+        const Outcome run = sgm("build -q examples/grotto.sgm --resolution 1024 -o " + out,
+                                "ulimit -v " + std::to_string(limit_kB) + "; ");
         EXPECT_TRUE(run.code == 3 || run.code == 0) << limit_kB << ": " << run.code << run.out;
     }
     EXPECT_EQ(scratch_.fileCount(), 1u) << "no temporary file is left";

@@ -29,7 +29,8 @@ bool installed(const std::string& program) {
     return std::system(("command -v " + program + " > /dev/null").c_str()) == 0;
 }
 
-/// Debian's Blender runs the system's Python, and its glTF importer and our script want numpy, which the package only recommends.
+/// Debian's Blender runs the system's Python, and its glTF importer and our script want numpy, which the package only
+/// recommends.
 bool blenderWorks() { return installed("blender") && std::system("python3 -c 'import numpy' 2> /dev/null") == 0; }
 
 class Importers : public Cli {
@@ -44,15 +45,16 @@ protected:
         for (size_t axis = 0; axis < 3; ++axis) size_[axis] = hi[axis].get<double>() - lo[axis].get<double>();
     }
 
-    /// What a script of tests/cli/importers prints of the models in the folder, once Godot's editor has imported them and
-    /// `done`, shell text, succeeds there.
+    /// What a script of tests/cli/importers prints of the models in the folder, once Godot's editor has imported them
+    /// and `done`, shell text, succeeds there.
     std::map<std::string, Json> godotOn(const std::string& script, const std::string& done) {
         scratch_.write("project.godot", "config_version=4\n[application]\nconfig/name=\"tower\"\n");
         const std::string folder = path("");
         const std::string godot = "HOME=" + folder + " timeout 60 godot3-server --path " + folder + " ";
         // Godot 3.2 doesn't always end by --quit.
-        const std::string import = godot + "--editor --quit > /dev/null 2>&1 & while kill -0 $! 2> /dev/null; do sleep .2; (cd " +
-                                   folder + " && " + done + ") > /dev/null 2>&1 && kill $!; done; true";
+        const std::string import =
+            godot + "--editor --quit > /dev/null 2>&1 & while kill -0 $! 2> /dev/null; do sleep .2; (cd " + folder +
+            " && " + done + ") > /dev/null 2>&1 && kill $!; done; true";
         EXPECT_NE(std::system(import.c_str()), -1);
         fs::copy("tests/cli/importers/" + script, path(script));
         return factsFrom(godot + "-s " + script);
@@ -89,8 +91,9 @@ TEST_F(Importers, BlenderSeesObjectsInATree) {
     if (!blenderWorks()) GTEST_SKIP() << "blender or python3-numpy isn't installed";
     report_ = built("examples/tower.sgm --resolution 64 --objects Storey,Roof -o " + path("tower.glb") + " -o " +
                     path("tower.obj"))["mesh"];
-    std::map<std::string, Json> facts = factsFrom("blender -b --factory-startup --python tests/cli/importers/blender.py -- --tree " +
-                                                  path("tower.glb") + " " + path("tower.obj"));
+    std::map<std::string, Json> facts =
+        factsFrom("blender -b --factory-startup --python tests/cli/importers/blender.py -- --tree " +
+                  path("tower.glb") + " " + path("tower.obj"));
     const Json& glb = facts["tower.glb"];
     ASSERT_EQ(glb["roots"].size(), 1u);
     const Json& tower = glb["roots"][0];
@@ -106,8 +109,7 @@ TEST_F(Importers, BlenderSeesObjectsInATree) {
     std::set<std::string> names;
     for (const Json& above : storey["below"]) names.insert(above["name"]);
     EXPECT_TRUE(names.contains("Storey_2") && names.contains("Storey_9") && names.contains("Roof"));
-    for (const Json& above : storey["below"])
-        EXPECT_EQ(above["known"]["rule"], "Storey#1");
+    for (const Json& above : storey["below"]) EXPECT_EQ(above["known"]["rule"], "Storey#1");
     // .obj has no tree: the whole, nine storeys and the roof stand beside each other.
     EXPECT_EQ(facts["tower.obj"]["roots"].size(), 11u);
     EXPECT_EQ(facts["tower.obj"]["triangles"], report_["triangles"]);
@@ -137,12 +139,14 @@ TEST_F(Importers, GodotTakesColliders) {
     if (!installed("godot3-server")) GTEST_SKIP() << "godot3-server isn't installed";
     // Godot 3.2 takes a tenth of a second for each collider.
     const std::string wall = grammar(
-        "terminal stone = cube\nstart A -> stone size (4, 3, .4) - cube size 1 at centre to centre move (.5, 0, 0) + pyramid size (4, 1, .4) at +y\n");
+        "terminal stone = cube\nstart A -> stone size (4, 3, .4) - cube size 1 at centre to centre move (.5, 0, 0) + "
+        "pyramid size (4, 1, .4) at +y\n");
     std::map<std::string, int> written{{"boxes.glb", 6}, {"convex.glb", 5}, {"mesh.glb", 1}};
     for (const std::string kind : {"boxes", "convex", "mesh"}) {
         const Outcome run = sgm("build " + wall + " --resolution 64 --collider " + kind + " -o " + path(kind + ".glb"));
         ASSERT_EQ(run.code, 0) << run.out;
-        EXPECT_NE(run.out.find("\n" + std::to_string(written[kind + ".glb"]) + " collider"), std::string::npos) << run.out;
+        EXPECT_NE(run.out.find("\n" + std::to_string(written[kind + ".glb"]) + " collider"), std::string::npos)
+            << run.out;
     }
     const auto facts = godotOn("godot_colliders.gd", "test $(ls .import/*.scn | wc -l) = 3");
     EXPECT_EQ(facts.size(), 3u);

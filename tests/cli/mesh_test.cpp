@@ -37,7 +37,8 @@ TEST_F(Meshes, SayWhereTheFileIsNamedAndWhatToMend) {
 TEST_F(Meshes, ThatHoldNothingAreToldWithTheCell) {
     for (const char* body : {"cube size (1000, 1, .001)", "sphere - cube size 4"})
         for (const char* ending : {".ply", ".vdb"}) {
-            const Outcome run = sgm("build -q " + grammar(std::string("start A -> ") + body + "\n") + " -o " + path(std::string("x") + ending));
+            const Outcome run = sgm("build -q " + grammar(std::string("start A -> ") + body + "\n") + " -o " +
+                                    path(std::string("x") + ending));
             EXPECT_EQ(run.code, 1) << body;
             EXPECT_NE(run.out.find("no surface at cells of"), std::string::npos) << run.out;
             EXPECT_FALSE(fs::exists(path(std::string("x") + ending)));
@@ -47,15 +48,17 @@ TEST_F(Meshes, ThatHoldNothingAreToldWithTheCell) {
 TEST_F(Meshes, StreamedFilesHaveTheSameBytes) {
     const std::string file = grammar("start A -> torus size (3, 1, 3) + sphere size 2 move (0, 1, 0)\n");
     for (const char* ending : {".ply", ".stl", ".off"}) {
-        const std::string whole = path(std::string("whole") + ending), streamed = path(std::string("streamed") + ending);
+        const std::string whole = path(std::string("whole") + ending),
+                          streamed = path(std::string("streamed") + ending);
         // What is streamed isn't simplified.
         ASSERT_EQ(sgm("build -q " + file + " --resolution 100 --tolerance 0 -o " + whole).code, 0);
         const Outcome run = sgm("build -q " + file + " --resolution 100 --stream -o " + streamed);
         ASSERT_EQ(run.code, 0) << run.out;
         EXPECT_EQ(read(streamed), read(whole)) << ending;
     }
-    for (const std::string& refused : {" -o " + path("a.glb"), " -o " + path("a.ply") + " -o " + path("b.stl"), " -o " + path("a.ply") + " --smooth 2",
-                                      " -o " + path("a.ply") + " --report " + path("r.json")}) {
+    for (const std::string& refused :
+         {" -o " + path("a.glb"), " -o " + path("a.ply") + " -o " + path("b.stl"),
+          " -o " + path("a.ply") + " --smooth 2", " -o " + path("a.ply") + " --report " + path("r.json")}) {
         const Outcome run = sgm("build -q " + file + " --stream" + refused);
         EXPECT_EQ(run.code, 2) << refused;
         EXPECT_NE(run.out.find("--stream"), std::string::npos) << run.out;
@@ -67,10 +70,17 @@ TEST_F(Meshes, OfTheShapeAloneHaveTheSameBytesWhateverElseIsAsked) {
     const std::string file = grammar("start A -> torus size (3, 1, 3) + sphere size .8 move (0, 3, 0)\n");
     for (const char* keep : {"", " --keep largest --inward"}) {
         const std::string common = file + " --resolution 60 --format-option attributes=none" + keep;
-        ASSERT_EQ(sgm("build -q " + common + " -o " + path("q.ply") + " -o " + path("q.stl") + " -o " + path("q.off")).code, 0);
-        ASSERT_EQ(sgm("build " + common + " -o " + path("s.ply") + " -o " + path("s.stl") + " -o " + path("s.off")).code, 0);
-        ASSERT_EQ(sgm("build -q " + common + " -o " + path("g.ply") + " -o " + path("g.glb") + " --report " + path("r.json")).code, 0);
-        for (const char* ending : {".ply", ".stl", ".off"}) EXPECT_EQ(read(path("q") + ending), read(path("s") + ending)) << ending << keep;
+        ASSERT_EQ(
+            sgm("build -q " + common + " -o " + path("q.ply") + " -o " + path("q.stl") + " -o " + path("q.off")).code,
+            0);
+        ASSERT_EQ(
+            sgm("build " + common + " -o " + path("s.ply") + " -o " + path("s.stl") + " -o " + path("s.off")).code, 0);
+        ASSERT_EQ(
+            sgm("build -q " + common + " -o " + path("g.ply") + " -o " + path("g.glb") + " --report " + path("r.json"))
+                .code,
+            0);
+        for (const char* ending : {".ply", ".stl", ".off"})
+            EXPECT_EQ(read(path("q") + ending), read(path("s") + ending)) << ending << keep;
         EXPECT_EQ(read(path("g.ply")), read(path("q.ply"))) << keep;
     }
     for (const char* edit : {" --smooth 1", " --simplify .5", " --validate", " --cave"})
@@ -78,10 +88,12 @@ TEST_F(Meshes, OfTheShapeAloneHaveTheSameBytesWhateverElseIsAsked) {
 }
 
 TEST_F(Meshes, AreDividedIntoObjectsOfSymbols) {
-    const std::string file = grammar("start A -> cube size 2 : Wall\nrule Wall -> cube size 2 + Post at +y + Post at +x\n"
-                                     "rule Post -> cube size .5\n");
+    const std::string file = grammar(
+        "start A -> cube size 2 : Wall\nrule Wall -> cube size 2 + Post at +y + Post at +x\n"
+        "rule Post -> cube size .5\n");
     const std::string out = path("a.gltf");
-    ASSERT_EQ(sgm("build -q " + file + " --resolution 32 --objects Post --format-option instances=no -o " + out).code, 0);
+    ASSERT_EQ(sgm("build -q " + file + " --resolution 32 --objects Post --format-option instances=no -o " + out).code,
+              0);
     const Json gltf = Json::parse(read(out));
     std::vector<std::string> names;
     for (const Json& node : gltf["nodes"]) names.push_back(node["name"]);
@@ -96,7 +108,8 @@ TEST_F(Meshes, AreDividedIntoObjectsOfSymbols) {
     const auto triangles = [](const Json& model) {
         size_t count = 0;
         for (const Json& mesh : model["meshes"])
-            for (const Json& p : mesh["primitives"]) count += model["accessors"][p["indices"].get<size_t>()]["count"].get<size_t>() / 3;
+            for (const Json& p : mesh["primitives"])
+                count += model["accessors"][p["indices"].get<size_t>()]["count"].get<size_t>() / 3;
         return count;
     };
     EXPECT_EQ(triangles(gltf), triangles(Json::parse(read(path("b.gltf")))));
@@ -126,9 +139,11 @@ TEST_F(Meshes, RefuseObjectsThatNobodyHolds) {
     const std::pair<std::string, std::string> refused[] = {
         {"--objects Wal -o " + path("a.glb"), "no shape is called 'Wal' (did you mean 'Wall'?); there are A, "},
         {"--objects Wall, -o " + path("a.glb"), "--objects: objects 'Wall,': write none, material, shape"},
-        {"--objects Wall -o " + path("a.stl"), "--objects Wall: objects go into .glb .gltf .obj .usda, and no such file is asked for"},
+        {"--objects Wall -o " + path("a.stl"),
+         "--objects Wall: objects go into .glb .gltf .obj .usda, and no such file is asked for"},
         {"--format-option instances=no -o " + path("a.glb"), "instances=no is about objects: add --objects"},
-        {"--objects Wall --collider boxes --format-option engine=unreal -o " + path("a.glb"), "Unreal takes colliders by the name of one mesh"}};
+        {"--objects Wall --collider boxes --format-option engine=unreal -o " + path("a.glb"),
+         "Unreal takes colliders by the name of one mesh"}};
     for (const auto& [arguments, message] : refused) {
         const Outcome run = sgm("build " + file + " --resolution 16 " + arguments);
         EXPECT_EQ(run.code, 2) << arguments;

@@ -1,5 +1,5 @@
-// `sgm mutate`: degenerate variations are left out, the same sheet comes again, and the chosen one written back as a style
-// is the same model. And what goes with facades: --keep and --view ids.
+// `sgm mutate`: degenerate variations are left out, the same sheet comes again, and the chosen one written back as a
+// style is the same model. And what goes with facades: --keep and --view ids.
 #include "tests/cli/program.h"
 
 namespace sgm::cli {
@@ -8,7 +8,8 @@ namespace {
 /// A grammar whose word `kind` makes one sound model and one degenerate.
 std::string planted(const std::string& bad) {
     return "param kind = good of good, bad\nparam width = 4 in 2..8.0\n"
-           "start House -> Part\nrule Part when kind == bad -> " + bad + "\nrule Part -> sphere size (width, 3, 3)\n";
+           "start House -> Part\nrule Part when kind == bad -> " +
+           bad + "\nrule Part -> sphere size (width, 3, 3)\n";
 }
 
 TEST_F(Cli, MutateLeavesDegeneratesOut) {
@@ -28,9 +29,11 @@ TEST_F(Cli, MutateLeavesDegeneratesOut) {
 }
 
 TEST_F(Cli, MutateWritesTheChosenOneBack) {
-    const std::string file = grammar("param width = 4 in 2..8.0\nparam rounds = .5 in 0..1.0\nparam high = 3m in 1m..9m  // kept\n"
-                                     "start House -> morph(cube, sphere, rounds) size (width, high, 3)\n");
-    const std::string before = read(file), command = "mutate " + file + " --rows 1 --cols 4 --resolution 32 --lock high";
+    const std::string file = grammar(
+        "param width = 4 in 2..8.0\nparam rounds = .5 in 0..1.0\nparam high = 3m in 1m..9m  // kept\n"
+        "start House -> morph(cube, sphere, rounds) size (width, high, 3)\n");
+    const std::string before = read(file),
+                      command = "mutate " + file + " --rows 1 --cols 4 --resolution 32 --lock high";
     const Outcome list = sgm(command);
     ASSERT_EQ(list.code, 0) << list.out;
     EXPECT_EQ(read(file), before) << "nothing is written without --pick";
@@ -51,7 +54,9 @@ TEST_F(Cli, MutateWritesTheChosenOneBack) {
 }
 
 TEST_F(Cli, MutateShowsNothingTwice) {
-    const std::string file = grammar("param n = 1 in 1..4\nstart A -> cube : B\nrule B repeat n -> + sphere size .8 at free(+x, +y, +z) overlap .4 : B\n");
+    const std::string file = grammar(
+        "param n = 1 in 1..4\nstart A -> cube : B\nrule B repeat n -> + sphere size .8 at free(+x, +y, +z) overlap .4 "
+        ": B\n");
     const Outcome run = sgm("mutate " + file + " --rows 3 --cols 4 --spread 1 --resolution 32");
     ASSERT_EQ(run.code, 0) << run.out;
     for (const char* line : {"0: as it is\n", " n=2\n", " n=3\n", " n=4\n", ": the same as another\n"}) {
@@ -62,11 +67,19 @@ TEST_F(Cli, MutateShowsNothingTwice) {
 }
 
 TEST_F(Cli, MutateJudgesAlikeAtAnyResolution) {
-    const std::string bare = grammar("param width = 4 in 2..8.0\nstart House -> cube size (width, 3, 3) + cube size (3, 3, width) + cube size (1.7, 5, 1.3) turn 20deg\n");
+    const std::string bare = grammar(
+        "param width = 4 in 2..8.0\nstart House -> cube size (width, 3, 3) + cube size (3, 3, width) + cube size (1.7, "
+        "5, 1.3) turn 20deg\n");
     for (const char* cells : {"24", "64", "160"})
-        EXPECT_NE(sgm("mutate " + bare + " --rows 1 --cols 1 --resolution " + cells).out.find("featureless"), std::string::npos) << cells;
-    const std::string clad = grammar("use \"std/kifs.sgm\"\nparam width = 12m in 8m..16m\nstart House -> Box size (width, 8, 8) clad casement\n");
-    for (const char* cells : {"24", "64", "160"}) EXPECT_EQ(sgm("mutate " + clad + " --rows 1 --cols 1 --resolution " + cells).out, "note: nothing was drawn: add -o sheet.png\n0: as it is\n") << cells;
+        EXPECT_NE(sgm("mutate " + bare + " --rows 1 --cols 1 --resolution " + cells).out.find("featureless"),
+                  std::string::npos)
+            << cells;
+    const std::string clad = grammar(
+        "use \"std/kifs.sgm\"\nparam width = 12m in 8m..16m\nstart House -> Box size (width, 8, 8) clad casement\n");
+    for (const char* cells : {"24", "64", "160"})
+        EXPECT_EQ(sgm("mutate " + clad + " --rows 1 --cols 1 --resolution " + cells).out,
+                  "note: nothing was drawn: add -o sheet.png\n0: as it is\n")
+            << cells;
 }
 
 TEST_F(Cli, MutateSaysWhatIsWrong) {
@@ -74,7 +87,9 @@ TEST_F(Cli, MutateSaysWhatIsWrong) {
     EXPECT_EQ(sgm("mutate " + file + " --pick 1").code, 2);
     EXPECT_EQ(sgm("mutate " + file + " --rows 1 --cols 2 --pick 7 --save A").code, 2);
     EXPECT_EQ(sgm("mutate " + file + " --lock nothing").code, 2);
-    const Outcome none = sgm("mutate " + grammar("param width = 4 in 2..8.0\nstart House -> cube size (width, 3, 3)\n") + " --resolution 24 --rows 1 --cols 1");
+    const Outcome none =
+        sgm("mutate " + grammar("param width = 4 in 2..8.0\nstart House -> cube size (width, 3, 3)\n") +
+            " --resolution 24 --rows 1 --cols 1");
     EXPECT_EQ(none.code, 1);
     EXPECT_NE(none.out.find("featureless"), std::string::npos) << none.out;
 }
@@ -84,14 +99,20 @@ TEST_F(Cli, KeepLeavesOutWhatFloats) {
     EXPECT_EQ(built(file + " --resolution 40")["mesh"]["components"], 2);
     EXPECT_EQ(built(file + " --resolution 40 --keep grounded")["mesh"]["components"], 1);
     EXPECT_EQ(built(file + " --resolution 40 --keep largest")["mesh"]["components"], 1);
-    for (const char* keep : {"all", "grounded"}) ASSERT_EQ(sgm("build " + file + " --resolution 40 -q --keep " + keep + " -o " + path(std::string(keep) + ".vdb")).code, 0);
+    for (const char* keep : {"all", "grounded"})
+        ASSERT_EQ(
+            sgm("build " + file + " --resolution 40 -q --keep " + keep + " -o " + path(std::string(keep) + ".vdb"))
+                .code,
+            0);
     EXPECT_LT(fs::file_size(path("grounded.vdb")), fs::file_size(path("all.vdb")));
     EXPECT_EQ(sgm("build " + file + " --keep some").code, 2);
 }
 
 TEST_F(Cli, IdsAreDrawnOfWhatIsClad) {
     const std::string size = " --size 64x64 --samples 1 --view ids -o " + path("ids.png");
-    EXPECT_EQ(sgm("render " + grammar("use \"std/kifs.sgm\"\nstart House -> Box size (12, 8, 8) clad palazzo\n") + size).code, 0);
+    EXPECT_EQ(
+        sgm("render " + grammar("use \"std/kifs.sgm\"\nstart House -> Box size (12, 8, 8) clad palazzo\n") + size).code,
+        0);
     EXPECT_TRUE(fs::exists(path("ids.png")));
     const Outcome bare = sgm("render " + grammar("start House -> cube\n") + size);
     EXPECT_EQ(bare.code, 1);

@@ -41,7 +41,9 @@ inline std::string read(const fs::path& path) { return contentOf(path); }
 class Cli : public testing::Test {
 protected:
     std::string path(const std::string& name) const { return (scratch_ / name).string(); }
-    std::string grammar(const std::string& text) const { return scratch_.write("test.sgm", "grammar 1\n" + text).string(); }
+    std::string grammar(const std::string& text) const {
+        return scratch_.write("test.sgm", "grammar 1\n" + text).string();
+    }
     /// What `sgm build ARGUMENTS` reports as JSON; null where it failed.
     Json built(const std::string& arguments) const {
         const std::string file = path("report.json");

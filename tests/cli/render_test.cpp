@@ -17,7 +17,8 @@ protected:
     }
     size_t filesLike(const std::string& start) const {
         size_t count = 0;
-        for (const auto& entry : fs::directory_iterator(scratch_.path())) count += entry.path().filename().string().starts_with(start) ? 1 : 0;
+        for (const auto& entry : fs::directory_iterator(scratch_.path()))
+            count += entry.path().filename().string().starts_with(start) ? 1 : 0;
         return count;
     }
     std::string file_;
@@ -28,7 +29,8 @@ TEST_F(Render, LayersGoIntoAnExr) {
     EXPECT_EQ(run.code, 0) << run.out;
     const std::string bytes = read(path("a.exr"));
     EXPECT_EQ(bytes.substr(0, 4), "\x76\x2f\x31\x01");
-    for (const char* name : {"depth.Z", "origin.V", "\"shape\":", "metres, Y up"}) EXPECT_NE(bytes.find(name), std::string::npos) << name;
+    for (const char* name : {"depth.Z", "origin.V", "\"shape\":", "metres, Y up"})
+        EXPECT_NE(bytes.find(name), std::string::npos) << name;
     EXPECT_EQ(bytes.find("normal.X"), std::string::npos);
 }
 
@@ -49,8 +51,10 @@ TEST_F(Render, RefusesWhatItCannotWrite) {
 
 TEST_F(Render, MeshesHaveViewsOfLabelsCreasesAndWires) {
     std::set<std::string> pictures;
-    for (const std::string view : {"mesh", "mesh --wires", "labels", "creases", "creases --wires", "mesh --surface cubes --wires"}) {
-        const Outcome run = sgm("render " + file_ + " --resolution 24 --size 40x30 -q -o " + path("a.png") + " --view " + view);
+    for (const std::string view :
+         {"mesh", "mesh --wires", "labels", "creases", "creases --wires", "mesh --surface cubes --wires"}) {
+        const Outcome run =
+            sgm("render " + file_ + " --resolution 24 --size 40x30 -q -o " + path("a.png") + " --view " + view);
         EXPECT_EQ(run.code, 0) << run.out;
         pictures.insert(read(path("a.png")));
     }
@@ -69,7 +73,8 @@ TEST_F(Render, FogIsOneOfTheViews) {
 TEST_F(Render, StatisticsStandBesidePlainSphereTracing) {
     const Outcome run = sgm("render " + file_ + " --size 40x30 --stats -o " + path("a.png"));
     EXPECT_EQ(run.code, 0) << run.out;
-    for (const char* line : {"evaluations a pixel", "plain sphere tracing", "samples a pixel", "draw"}) EXPECT_NE(run.out.find(line), std::string::npos) << line;
+    for (const char* line : {"evaluations a pixel", "plain sphere tracing", "samples a pixel", "draw"})
+        EXPECT_NE(run.out.find(line), std::string::npos) << line;
     EXPECT_EQ(sgm("render " + file_ + " --view mesh --stats -o " + path("a.png")).code, 2);
 }
 
@@ -80,12 +85,16 @@ TEST_F(Render, TurntableGoesAroundTheModel) {
     // Every side has another light; all are whole.
     for (int i = 1; i <= 4; ++i)
         for (int j = 1; j < i; ++j)
-            EXPECT_NE(read(path("turn_0" + std::to_string(i) + ".png")), read(path("turn_0" + std::to_string(j) + ".png")));
+            EXPECT_NE(read(path("turn_0" + std::to_string(i) + ".png")),
+                      read(path("turn_0" + std::to_string(j) + ".png")));
 }
 
 TEST_F(Render, AnInterruptLeavesWholePictures) {
     const std::string name = path("turn_%04d.png");
-    FILE* pipe = popen((SGM_PROGRAM " render " + file_ + " --size 64x64 --turntable 10000 -o " + name + " & echo $!; wait $!; echo code $?").c_str(), "r");
+    FILE* pipe = popen((SGM_PROGRAM " render " + file_ + " --size 64x64 --turntable 10000 -o " + name +
+                        " & echo $!; wait $!; echo code $?")
+                           .c_str(),
+                       "r");
     ASSERT_TRUE(pipe);
     char line[4096];
     ASSERT_TRUE(fgets(line, sizeof line, pipe));
@@ -104,9 +113,11 @@ TEST_F(Render, AnInterruptLeavesWholePictures) {
 }
 
 TEST_F(Cli, APictureOfAMeshTakesTheEditsOfABuild) {
-    const std::string file = grammar("start A -> cube size (9, 1, 9), sphere size 4 move (0, 2, 0), sphere size 2 move (0, 7, 0)\n");
+    const std::string file =
+        grammar("start A -> cube size (9, 1, 9), sphere size 4 move (0, 2, 0), sphere size 2 move (0, 7, 0)\n");
     const auto drawn = [&](const std::string& options) {
-        const Outcome run = sgm("render " + file + " --size 64x64 --resolution 48 --view mesh -q -o " + path("a.png") + " " + options);
+        const Outcome run =
+            sgm("render " + file + " --size 64x64 --resolution 48 --view mesh -q -o " + path("a.png") + " " + options);
         EXPECT_EQ(run.code, 0) << options << run.out;
         return read(path("a.png"));
     };

@@ -5,13 +5,16 @@ namespace sgm::cli {
 namespace {
 
 /// What `sgm step FILE` says when these lines are piped to it.
-Outcome stepped(const std::string& commands, const std::string& file) { return sgm("step " + file, "printf '" + commands + "' | "); }
+Outcome stepped(const std::string& commands, const std::string& file) {
+    return sgm("step " + file, "printf '" + commands + "' | ");
+}
 
 TEST_F(Cli, StepSavesFigureOnesWays) {
     const std::string file = path("figure1.sgm");
     const std::string text = read("examples/figure1.sgm");
     std::ofstream(file) << text;
-    const Outcome run = stepped("R0\\nundo\\nredo\\nR1\\nundo\\nR2 at Figure/A\\n1\\nway\\nsave mine\\nsave right\\n", file);
+    const Outcome run =
+        stepped("R0\\nundo\\nredo\\nR1\\nundo\\nR2 at Figure/A\\n1\\nway\\nsave mine\\nsave right\\n", file);
     ASSERT_EQ(run.code, 0) << run.out;
     EXPECT_NE(run.out.find("derive way: R0 => R2 => R4\n"), std::string::npos) << run.out;
     EXPECT_EQ(read(file), text + "derive mine: R0 => R2 => R4\n");

@@ -25,16 +25,20 @@ std::vector<fs::path> grammars() {
     return files;
 }
 
-/// The text with one to three of its numbers, names or signs replaced by others of the text or by numbers that are rarely meant.
+/// The text with one to three of its numbers, names or signs replaced by others of the text or by numbers that are
+/// rarely meant.
 std::string mutant(const syntax::Source& source, uint64_t key) {
     const std::vector<syntax::Token> tokens = syntax::lexSignificant(source);
-    constexpr std::string_view numbers[] = {"0", "1", "-1", "2", "7", "1000", ".001", "3m", "50%", "90deg", "(1, 2, 3)", "#808080"};
+    constexpr std::string_view numbers[] = {"0",    "1",  "-1",  "2",     "7",         "1000",
+                                            ".001", "3m", "50%", "90deg", "(1, 2, 3)", "#808080"};
     std::vector<std::pair<size_t, std::string>> edits;
     for (uint64_t i = 0; i < 1 + pick(combine(key, 1), 3); ++i) {
         const size_t at = pick(combine(key, 10 + i), tokens.size());
         const syntax::Token& other = tokens[pick(combine(key, 20 + i), tokens.size())];
-        if (tokens[at].kind == syntax::Token::Kind::Number) edits.emplace_back(at, numbers[pick(combine(key, 30 + i), std::size(numbers))]);
-        else if (other.kind == tokens[at].kind) edits.emplace_back(at, syntax::textOf(source, other));
+        if (tokens[at].kind == syntax::Token::Kind::Number)
+            edits.emplace_back(at, numbers[pick(combine(key, 30 + i), std::size(numbers))]);
+        else if (other.kind == tokens[at].kind)
+            edits.emplace_back(at, syntax::textOf(source, other));
     }
     std::sort(edits.begin(), edits.end());
     std::string text(source.text());
@@ -70,7 +74,8 @@ TEST(Agreement, CheckPassesWhereBuildDoes) {
         const auto original = viewer::readSource(file);
         ASSERT_TRUE(original.ok());
         for (uint64_t k = 0; k < each; ++k) {
-            const std::string text = k == 0 ? std::string((*original)->text()) : mutant(**original, combine(mix(k), pick(k, 1000)));
+            const std::string text =
+                k == 0 ? std::string((*original)->text()) : mutant(**original, combine(mix(k), pick(k, 1000)));
             const auto source = std::make_shared<const syntax::Source>(file.string(), text);
             syntax::Diagnostics diagnostics;
             const auto grammar = rules::load(source, operations::table(), viewer::fileLoader(), diagnostics);

@@ -44,9 +44,10 @@ std::string roomOf(const std::string& path) {
 const std::vector<std::string> folders{"modeler", "grammar", "viewer", "cli"};
 
 /// Bottom to top: a room may see those before it.
-const std::vector<std::string> order{"modeler/core",   "modeler/plan",    "modeler/field", "modeler/eval",
-                                     "modeler/mesh",   "modeler/volume",  "modeler/export", "grammar/syntax",
-                                     "grammar/rules",  "grammar/derive", "grammar/operations", "grammar/lower", "grammar/incremental", "viewer", "cli"};
+const std::vector<std::string> order{
+    "modeler/core",       "modeler/plan",   "modeler/field",       "modeler/eval",  "modeler/mesh",
+    "modeler/volume",     "modeler/export", "grammar/syntax",      "grammar/rules", "grammar/derive",
+    "grammar/operations", "grammar/lower",  "grammar/incremental", "viewer",        "cli"};
 
 TEST(Layering, NoUpwardInclude) {
     std::map<std::string, size_t> level;
@@ -96,8 +97,8 @@ const std::set<std::string> heavyDoors{"modeler/mesh/openmesh.h", "modeler/mesh/
 TEST(Layering, HeavyHeadersStayInSources) {
     for (const Include& include : includesUnder(folders)) {
         const bool heavy = include.to.starts_with("CGAL/") || include.to.starts_with("openvdb/") ||
-                           include.to.starts_with("OpenMesh/") || include.to.starts_with("polyclipping/") || include.to.starts_with("CLI/") ||
-                           heavyDoors.count(include.to);
+                           include.to.starts_with("OpenMesh/") || include.to.starts_with("polyclipping/") ||
+                           include.to.starts_with("CLI/") || heavyDoors.count(include.to);
         const bool allowed = include.from.ends_with(".cpp") || heavyDoors.count(include.from);
         EXPECT_TRUE(!heavy || allowed) << include.from << " includes " << include.to;
     }
@@ -110,7 +111,8 @@ TEST(Layering, OnlyTheWindowKnowsWindows) {
         EXPECT_TRUE(window || (!include.to.starts_with("GLFW/") && !include.to.starts_with("imgui")))
             << include.from << " includes " << include.to;
         const bool door = include.to == "viewer/window/app.h";
-        EXPECT_TRUE(window || door || !include.to.starts_with("viewer/window/")) << include.from << " includes " << include.to;
+        EXPECT_TRUE(window || door || !include.to.starts_with("viewer/window/"))
+            << include.from << " includes " << include.to;
     }
 }
 

@@ -38,8 +38,14 @@ TEST(RegularFile, IsLetGoWhenCancelled) {
 TEST(Printable, KeepsTextAndNoControls) {
     EXPECT_EQ(printable("größer → 木 \t!"), "größer → 木 \t!");
     EXPECT_EQ(printable("\x1b[31mred\x07\x7f"), "?[31mred??");
-    EXPECT_EQ(printable("\xc2\x9b" "31m"), "??31m") << "a control sequence in one character";
-    EXPECT_EQ(printable("a\xe2\x80\xae" "b"), "a???b") << "right to left";
+    EXPECT_EQ(printable("\xc2\x9b"
+                        "31m"),
+              "??31m")
+        << "a control sequence in one character";
+    EXPECT_EQ(printable("a\xe2\x80\xae"
+                        "b"),
+              "a???b")
+        << "right to left";
     EXPECT_EQ(printable("\xff\xc0\x80\xed\xa0\x80"), "??????") << "no UTF-8, an overlong NUL, a surrogate";
     EXPECT_EQ(printable("\xe6\x9c"), "??") << "cut in two";
     EXPECT_EQ(printable("a\nb"), "a?b");

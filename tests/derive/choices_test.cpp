@@ -14,7 +14,9 @@ std::array<int, 6> grownToward(const derive::Derivation& d) {
 }
 
 TEST(Choices, DirectionsAreDrawnByWeight) {
-    const auto d = derived("grammar 1\nstart S -> for k in 1..600 { cube move (3 * k, 0, 0) : A }\nrule A -> + sphere at choose { 4: +y | 2: -y | 0: +z } to centre\n");
+    const auto d = derived(
+        "grammar 1\nstart S -> for k in 1..600 { cube move (3 * k, 0, 0) : A }\nrule A -> + sphere at choose { 4: +y | "
+        "2: -y | 0: +z } to centre\n");
     const auto n = grownToward(d);
     EXPECT_EQ(n[2] + n[3], 600);
     EXPECT_NEAR(n[2], 400, 40);
@@ -36,7 +38,9 @@ start S -> for k in 1..300 { cube size choose { share: 1m | 1 - share: 2..3 } mo
 }
 
 TEST(Choices, DeclaredJointsAndLoops) {
-    const auto d = derived("grammar 1\nstart S -> cone : A\nrule A repeat choose { 0: 1 | 1: 3 } -> + cone size 1 at choose { 1: apex } to centre : A\n");
+    const auto d = derived(
+        "grammar 1\nstart S -> cone : A\nrule A repeat choose { 0: 1 | 1: 3 } -> + cone size 1 at choose { 1: apex } "
+        "to centre : A\n");
     EXPECT_EQ(d.terminals(), 4u);
 }
 
@@ -49,8 +53,10 @@ TEST(Choices, NothingToDrawIsALocatedError) {
     };
     expectError("start S -> cube size choose { none: 1 | none: 2 }\n", "test.sgm:3:22: all weights are 0");
     expectError("start S -> choose { none: cube | none: sphere }\n", "test.sgm:3:12: all weights are 0");
-    expectError("start S -> A\nrule A weight none -> cube\nrule A weight none -> sphere\n", "test.sgm:4:15: every rule for 'A' that matches has weight 0");
-    expectError("start S -> A\nrule A weight none -> cube\n", "test.sgm:4:15: every rule for 'A' that matches has weight 0");
+    expectError("start S -> A\nrule A weight none -> cube\nrule A weight none -> sphere\n",
+                "test.sgm:4:15: every rule for 'A' that matches has weight 0");
+    expectError("start S -> A\nrule A weight none -> cube\n",
+                "test.sgm:4:15: every rule for 'A' that matches has weight 0");
 }
 
 }  // namespace

@@ -10,17 +10,20 @@ using namespace testing_;
 std::string equation(const derive::Derivation& d) {
     std::string text;
     for (derive::ShapeId s = 0; s != derive::none; s = d.tree.next(s))
-        if (d.tree.shapes[s].solid != derive::none) text += (text.empty() ? "" : " ∪ ") + d.tree.labels[d.tree.shapes[s].label];
+        if (d.tree.shapes[s].solid != derive::none)
+            text += (text.empty() ? "" : " ∪ ") + d.tree.labels[d.tree.shapes[s].label];
     return text;
 }
 
-std::string after(const std::string& steps) { return equation(derived(std::string(figure1) + "derive part: " + steps + "\n", way("part"))); }
+std::string after(const std::string& steps) {
+    return equation(derived(std::string(figure1) + "derive part: " + steps + "\n", way("part")));
+}
 
 TEST(Figure1, StatesAreTheEquations) {
-    EXPECT_EQ(after("R0"), "I0 ∪ A");                    // eq. 2
-    EXPECT_EQ(after("R0 => R1"), "I0 ∪ B");              // eq. 3
-    EXPECT_EQ(after("R0 => R2"), "I0 ∪ A ∪ DE");         // eq. 4
-    EXPECT_EQ(after("R0 => R1 => R3"), "I0 ∪ B ∪ C");    // eqs. 5, 7
+    EXPECT_EQ(after("R0"), "I0 ∪ A");                      // eq. 2
+    EXPECT_EQ(after("R0 => R1"), "I0 ∪ B");                // eq. 3
+    EXPECT_EQ(after("R0 => R2"), "I0 ∪ A ∪ DE");           // eq. 4
+    EXPECT_EQ(after("R0 => R1 => R3"), "I0 ∪ B ∪ C");      // eqs. 5, 7
     EXPECT_EQ(after("R0 => R2 => R4"), "I0 ∪ A ∪ F ∪ G");  // eqs. 6, 8
 }
 

@@ -31,7 +31,9 @@ inline std::shared_ptr<const rules::Grammar> grammarOf(const std::string& text) 
         why = "there is no such file";
         return syntax::SourcePtr();
     });
-    fromGrammar.mesh = [](const std::string&, const syntax::Source&, std::string&) { return field::test::sampledTorus(16); };
+    fromGrammar.mesh = [](const std::string&, const syntax::Source&, std::string&) {
+        return field::test::sampledTorus(16);
+    };
     auto grammar = rules::load(source, operations::table(), fromGrammar, diagnostics);
     for (const auto& d : diagnostics.all())
         if (d.severity == syntax::Severity::Error) ADD_FAILURE() << syntax::render(d);

@@ -24,10 +24,11 @@ void expectEquation16(const derive::Derivation& d, bool unmoved) {
 
 /// A chain of boxes at random joints, turned and sized at random.
 std::string randomGrammar(uint64_t seed) {
-    const char* joints[] = {"free()", "free(+x, -z, +y)", "+y", "free() to +x", "free() to centre", "free(+z, -z, -x) to -y"};
+    const char* joints[] = {"free()",       "free(+x, -z, +y)", "+y",
+                            "free() to +x", "free() to centre", "free(+z, -z, -x) to -y"};
     const char* turns[] = {"", " turn 90deg", " turn 0deg..360deg", " turn (10deg, 20deg, 30deg)"};
-    return "grammar 1\nstart S -> cube : A\nrule A repeat 20 -> + cube size (.5 .. 2, .5 .. 2, .5 .. 2) at " + std::string(joints[pick(seed, 6)]) +
-           turns[pick(mix(seed), 4)] + " : A\n";
+    return "grammar 1\nstart S -> cube : A\nrule A repeat 20 -> + cube size (.5 .. 2, .5 .. 2, .5 .. 2) at " +
+           std::string(joints[pick(seed, 6)]) + turns[pick(mix(seed), 4)] + " : A\n";
 }
 
 TEST(Joints, EveryBondObeysEquation16) {
@@ -50,8 +51,10 @@ TEST(Joints, FaceToFaceByDefault) {
 }
 
 TEST(Joints, CentreOverlapAndShift) {
-    const auto centre = derived("grammar 1\nstart S -> cube size 2 + sphere size 1 at +x to centre shift (0, .5, .25m)\n");
-    expectNear(at(centre, "S/cube/sphere").scope.centre, {1, 0.25, 0.25});  // half of the half-size; a quarter of a metre
+    const auto centre =
+        derived("grammar 1\nstart S -> cube size 2 + sphere size 1 at +x to centre shift (0, .5, .25m)\n");
+    expectNear(at(centre, "S/cube/sphere").scope.centre,
+               {1, 0.25, 0.25});  // half of the half-size; a quarter of a metre
     const auto overlap = derived("grammar 1\nstart S -> cube size 2 + sphere size 1 at +x overlap 1\n");
     expectNear(at(overlap, "S/cube/sphere").scope.centre, {1, 0, 0});
     const auto alone = derived("grammar 1\nstart S -> cube size 2 + sphere size 50% move (0, 3, 0)\n");
@@ -60,7 +63,9 @@ TEST(Joints, CentreOverlapAndShift) {
 }
 
 TEST(Joints, NewcomerIsTurnedUntilDirectionsOppose) {
-    const auto d = derived("grammar 1\nterminal gate = cube joint door at (.5, 0, 0) facing -z\nstart S -> cube size 2 + gate size (1, 1, 3) at +x to door\n");
+    const auto d = derived(
+        "grammar 1\nterminal gate = cube joint door at (.5, 0, 0) facing -z\nstart S -> cube size 2 + gate size (1, 1, "
+        "3) at +x to door\n");
     const auto& gate = at(d, "S/cube/gate");
     expectNear(gate.scope.axes * Vec3d{0, 0, -1}, {-1, 0, 0});
     expectEquation16(d, true);
@@ -69,7 +74,8 @@ TEST(Joints, NewcomerIsTurnedUntilDirectionsOppose) {
 TEST(Joints, ABondClosesFacesButNotCentres) {
     // The second box finds +y taken; spheres on a joint's point leave it open.
     EXPECT_EQ(derived("grammar 1\nstart S -> cube + cube at +y + cone at +y\n").tree.bonds.size(), 1u);
-    EXPECT_EQ(derived("grammar 1\nstart S -> cube + sphere at +y to centre + cone at +y to centre\n").tree.bonds.size(), 2u);
+    EXPECT_EQ(derived("grammar 1\nstart S -> cube + sphere at +y to centre + cone at +y to centre\n").tree.bonds.size(),
+              2u);
 }
 
 TEST(Joints, CoincidingFacesAreBonded) {
@@ -87,19 +93,23 @@ rule D -> + sphere at free(-z, +z)
 }
 
 TEST(Joints, WithoutAFreeJointTheRuleDoesntMatch) {
-    const auto d = derived("grammar 1\nstart S -> cube : A\nrule A -> + cube at +x : B\nrule B -> + cube at free(-x)\n");
+    const auto d =
+        derived("grammar 1\nstart S -> cube : A\nrule A -> + cube at +x : B\nrule B -> + cube at free(-x)\n");
     EXPECT_EQ(d.steps.size(), 1u);
     EXPECT_TRUE(at(d, "S/A/B").live);
 }
 
 TEST(Joints, BesideAsksForANeighbour) {
-    const auto d = derived("grammar 1\nstart S -> cube : A\nrule A -> + cube at +x : B, + cube at -x to centre : C\nrule B beside A -> sphere\nrule C beside B -> sphere\n");
+    const auto d = derived(
+        "grammar 1\nstart S -> cube : A\nrule A -> + cube at +x : B, + cube at -x to centre : C\nrule B beside A -> "
+        "sphere\nrule C beside B -> sphere\n");
     EXPECT_NE(d.tree.find("S/A/B/sphere"), derive::none);
     EXPECT_EQ(at(d, "S/A/C").firstChild, derive::none);
 }
 
 TEST(Figures, OverlapsAndFloating) {
-    const auto d = derived("grammar 1\nstart S -> cube, cube move (.5, 0, 0), cube move (5, 3, 0), cube move (1.5, 0, 0)\n");
+    const auto d =
+        derived("grammar 1\nstart S -> cube, cube move (.5, 0, 0), cube move (5, 3, 0), cube move (1.5, 0, 0)\n");
     EXPECT_EQ(d.overlaps(), 1u);
     EXPECT_EQ(d.floating(), 1u);
     EXPECT_EQ(d.terminals(), 4u);
@@ -107,7 +117,8 @@ TEST(Figures, OverlapsAndFloating) {
 }
 
 TEST(Figures, ChecksRun) {
-    const auto verdicts = derive::runChecks(grammarOf(std::string(house) + "check House { floors = 2 } expect bonds == 7\n"), 1, nullptr);
+    const auto verdicts =
+        derive::runChecks(grammarOf(std::string(house) + "check House { floors = 2 } expect bonds == 7\n"), 1, nullptr);
     ASSERT_TRUE(verdicts.ok());
     ASSERT_EQ(verdicts->size(), 2u);
     EXPECT_TRUE((*verdicts)[0].passed) << (*verdicts)[0].message;
@@ -125,13 +136,16 @@ TEST(Bonds, NothingMeetsTheBoxWhereTheStartBegins) {
 }
 
 TEST(Bonds, AClosedJointIsCountedWhereNothingGrew) {
-    const auto d = derived("grammar 1\nstart S -> cube : A\nrule A -> + cube at +x + cube at +x for k in 1..3 { + cube at +x }\n");
+    const auto d =
+        derived("grammar 1\nstart S -> cube : A\nrule A -> + cube at +x + cube at +x for k in 1..3 { + cube at +x }\n");
     EXPECT_EQ(d.terminals(), 2u);
     ASSERT_EQ(d.closed.size(), 2u);
     EXPECT_EQ(d.closed[0].count, 1u);
     EXPECT_EQ(d.closed[0].span.text(), "+ cube at +x");
     EXPECT_EQ(d.closed[1].count, 3u);
-    EXPECT_NE(derive::toText(d, true).find("test.sgm:3:24: its joint was closed once, so nothing grew there"), std::string::npos) << derive::toText(d, true);
+    EXPECT_NE(derive::toText(d, true).find("test.sgm:3:24: its joint was closed once, so nothing grew there"),
+              std::string::npos)
+        << derive::toText(d, true);
 }
 
 TEST(OnEach, GrowsOnEveryShapeOfTheName) {
@@ -149,7 +163,8 @@ rule Hole -> sphere size (1 + n)
     // A value passed on is the host's.
     std::vector<double> sizes;
     for (const auto& s : d.tree.shapes)
-        if (s.solid != derive::none && s.parent != derive::none && d.tree.labels[s.label] == "sphere") sizes.push_back(s.scope.size.x);
+        if (s.solid != derive::none && s.parent != derive::none && d.tree.labels[s.label] == "sphere")
+            sizes.push_back(s.scope.size.x);
     std::sort(sizes.begin(), sizes.end());
     EXPECT_EQ(sizes, (std::vector<double>{1, 2, 3, 4, 5}));
 }
@@ -165,7 +180,8 @@ TEST(Joints, ShapesThatAllStandAtOnePlaceTakeNoLongerThanOthers) {
     const auto last = static_cast<derive::ShapeId>(d.tree.shapes.size() - 1);
     size_t met = 0;
     for (const derive::Bond& b : d.tree.bonds)
-        if (b.directed && (b.shape[0] == last || b.shape[1] == last)) met += b.shape[0] == last - 1 || b.shape[1] == last - 1;
+        if (b.directed && (b.shape[0] == last || b.shape[1] == last))
+            met += b.shape[0] == last - 1 || b.shape[1] == last - 1;
     EXPECT_EQ(met, 1u);
 }
 

@@ -20,8 +20,10 @@ void expectSame(Regrowth& regrowth, const std::shared_ptr<const rules::Grammar>&
     const auto whole = derive(grammar, options, nullptr);
     const Status done = regrowth.to(grammar, options, nullptr);
     ASSERT_EQ(done.ok(), whole.ok());
-    if (done.ok()) testing_::expectSame(regrowth.derivation(), *whole);
-    else EXPECT_EQ(done.error().message, whole.error().message);
+    if (done.ok())
+        testing_::expectSame(regrowth.derivation(), *whole);
+    else
+        EXPECT_EQ(done.error().message, whole.error().message);
 }
 
 class Walk : public testing::TestWithParam<const char*> {};
@@ -38,9 +40,11 @@ TEST_P(Walk, IsTheSameAsFromTheStart) {
         uint64_t key = hashText(GetParam()) + start;
         for (int step = 0; step < 12; ++step, key = mix(key)) {
             const size_t which = pick(key, grammar->params.size());
-            if (step > 0) options.params[which] = drawn(grammar->params[which], options.params[which], combine(key, which));
+            if (step > 0)
+                options.params[which] = drawn(grammar->params[which], options.params[which], combine(key, which));
             if (step == 9) options.seed = 2;
-            SCOPED_TRACE(grammar->symbols[grammar->starts[start].symbol].name + ", " + grammar->params[which].name + ", step " + std::to_string(step));
+            SCOPED_TRACE(grammar->symbols[grammar->starts[start].symbol].name + ", " + grammar->params[which].name +
+                         ", step " + std::to_string(step));
             expectSame(regrowth, grammar, options);
             if (testing::Test::HasFatalFailure()) return;
         }
@@ -49,7 +53,8 @@ TEST_P(Walk, IsTheSameAsFromTheStart) {
 
 INSTANTIATE_TEST_SUITE_P(Grammars, Walk,
                          testing::Values("examples/tower.sgm", "examples/grotto.sgm", "examples/cumulus.sgm",
-                                         "examples/buildings/hall.sgm", "examples/caves/branching.sgm", "tests/bench/scenes/buildings.sgm"));
+                                         "examples/buildings/hall.sgm", "examples/caves/branching.sgm",
+                                         "tests/bench/scenes/buildings.sgm"));
 
 constexpr const char* street =
     "grammar 1\nparam a = 3m in 1m..6m\nparam b = 3m in 1m..6m\nparam gap = 9m in 2m..20m\nparam many = 2 in 1..5\n"

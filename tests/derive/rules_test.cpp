@@ -33,7 +33,8 @@ TEST(Chains, CaveRunsOnTheNewestAndNeverTurnsBack) {
 }
 
 TEST(Chains, MorphsGoFromFirstToLast) {
-    const auto d = derived("grammar 1\nstart S -> sphere : A\nrule A repeat 5 -> + morph(sphere, cube, 0 ~> 1) size 2 ~> 1 at +x : A\n");
+    const auto d = derived(
+        "grammar 1\nstart S -> sphere : A\nrule A repeat 5 -> + morph(sphere, cube, 0 ~> 1) size 2 ~> 1 at +x : A\n");
     for (int i = 1; i <= 5; ++i) {
         const auto& shape = at(d, "S/A/A" + (i > 1 ? "[" + std::to_string(i) + "]" : ""));
         EXPECT_DOUBLE_EQ(d.tree.solids[shape.solid].amount, (i - 1) / 4.0);
@@ -58,14 +59,17 @@ TEST(Chains, HouseStacksStoreysAndPutsTheRoofOnTheLast) {
 /// A roof is a morph of pyramid and ellipsoid, but for its two ends.
 TEST(Rules, ARoofBetweenItsEndsIsAMorphicRule) {
     for (const auto& [peak, morphic] : {std::pair("0", 0u), {"0.4", 1u}, {"1", 0u}, {".2..0.3", 1u}}) {
-        const auto only = derived("grammar 1\nstart S -> cube : A\nrule A -> + roof(" + std::string(peak) + ") at +y\n");
+        const auto only =
+            derived("grammar 1\nstart S -> cube : A\nrule A -> + roof(" + std::string(peak) + ") at +y\n");
         EXPECT_EQ(only.morphic, morphic) << peak;
         EXPECT_EQ(only.classic, 1u - morphic) << peak;
     }
 }
 
 TEST(Chains, AnyDrawsAmongTheStepBefore) {
-    const auto d = derived("grammar 1\nstart S -> cube : A\nrule A repeat 3 -> for k in 1..2 { + cube size .5 on any(+x) at +x to centre : A }\n");
+    const auto d = derived(
+        "grammar 1\nstart S -> cube : A\nrule A repeat 3 -> for k in 1..2 { + cube size .5 on any(+x) at +x to centre "
+        ": A }\n");
     for (const derive::Bond& b : d.tree.bonds) {
         if (b.directed) continue;  // faces that happen to coincide
         const uint32_t step = d.steps[d.tree.shapes[b.shape[1]].madeBy].chainIndex;
@@ -75,7 +79,9 @@ TEST(Chains, AnyDrawsAmongTheStepBefore) {
 }
 
 TEST(Rules, GuardsWinInFileOrderAndWeightsDraw) {
-    const std::string text = "grammar 1\nparam n = 1 in 0..9\nstart S -> for k in 1..400 { cube move (2 * k, 0, 0) : A }\nrule A when n > 1 -> sphere\nrule A when n > 0 -> cone\nrule A -> torus\nrule A weight 3 -> cylinder\n";
+    const std::string text =
+        "grammar 1\nparam n = 1 in 0..9\nstart S -> for k in 1..400 { cube move (2 * k, 0, 0) : A }\nrule A when n > 1 "
+        "-> sphere\nrule A when n > 0 -> cone\nrule A -> torus\nrule A weight 3 -> cylinder\n";
     const auto count = [&](double n, const char* label) {
         derive::Options options;
         options.params = {rules::Value::number(n)};
@@ -100,7 +106,9 @@ TEST(Rules, ReplacingDropsGrowingKeeps) {
 }
 
 TEST(Rules, CountReadsTheGenerationsStart) {
-    const auto d = derived("grammar 1\nstart S -> cube : A, cube move (3, 0, 0) : A\nrule A when count(B) < 1 -> cube : B\nrule B when count(B) > 2 -> cone\n");
+    const auto d = derived(
+        "grammar 1\nstart S -> cube : A, cube move (3, 0, 0) : A\nrule A when count(B) < 1 -> cube : B\nrule B when "
+        "count(B) > 2 -> cone\n");
     EXPECT_EQ(d.steps.size(), 2u);  // both saw no B
 }
 
@@ -112,22 +120,29 @@ TEST(Rules, ValuesAreInherited) {
 std::string sizesOf(const derive::Derivation& d, const std::string& under) {
     std::string text;
     const derive::ShapeId root = d.tree.find(under);
-    for (derive::ShapeId s = root; s != derive::none; s = d.tree.next(s, root)) text += std::to_string(d.tree.shapes[s].scope.size.x) + " ";
+    for (derive::ShapeId s = root; s != derive::none; s = d.tree.next(s, root))
+        text += std::to_string(d.tree.shapes[s].scope.size.x) + " ";
     return text;
 }
 
 TEST(Draws, EditingOneBranchLeavesTheOthersAlone) {
     const std::string rules = "rule Right -> cube size .2..1 + sphere size .2..1 at free()\n";
-    const auto before = sizesOf(derived("grammar 1\nstart S -> Left, Right\nrule Left -> cube size .2..1\n" + rules), "S/Right");
-    for (const char* edit : {"start S -> Right, Left\nrule Left -> cube size .2..1\n", "start S -> cone, Left, Right\nrule Left -> sphere, sphere size .2..1\n",
-                             "start S -> Port, Right\nrule Port -> cube size .2..1\n", "start S -> Left, Right\nrule Other: Left -> for d in axes { sphere size .2..1 }\n"})
+    const auto before =
+        sizesOf(derived("grammar 1\nstart S -> Left, Right\nrule Left -> cube size .2..1\n" + rules), "S/Right");
+    for (const char* edit : {"start S -> Right, Left\nrule Left -> cube size .2..1\n",
+                             "start S -> cone, Left, Right\nrule Left -> sphere, sphere size .2..1\n",
+                             "start S -> Port, Right\nrule Port -> cube size .2..1\n",
+                             "start S -> Left, Right\nrule Other: Left -> for d in axes { sphere size .2..1 }\n"})
         EXPECT_EQ(sizesOf(derived("grammar 1\n" + std::string(edit) + rules), "S/Right"), before) << edit;
-    EXPECT_NE(sizesOf(derived("grammar 1\nstart S -> Left, Right\nrule Left -> cube size .2..1\n" + rules, withSeed(2)), "S/Right"), before);
+    EXPECT_NE(sizesOf(derived("grammar 1\nstart S -> Left, Right\nrule Left -> cube size .2..1\n" + rules, withSeed(2)),
+                      "S/Right"),
+              before);
 }
 
 TEST(Draws, ALoopsTurnsAreKeyedByTheirValue) {
     const auto size = [](const std::string& axes) {
-        const auto d = derived("grammar 1\nstart S -> cube + cube size 3 : A\nrule A -> for d in (" + axes + ") { + sphere size .2..1 at d }\n");
+        const auto d = derived("grammar 1\nstart S -> cube + cube size 3 : A\nrule A -> for d in (" + axes +
+                               ") { + sphere size .2..1 at d }\n");
         for (const auto& b : d.tree.bonds)
             if (b.joint[0] == 5) return d.tree.shapes[b.shape[1]].scope.size.x;
         return 0.0;
@@ -137,11 +152,14 @@ TEST(Draws, ALoopsTurnsAreKeyedByTheirValue) {
 }
 
 TEST(Derive, SameSeedSameTree) {
-    for (const char* text : {cave, cloud, house}) EXPECT_EQ(derive::toJson(derived(text, withSeed(7))), derive::toJson(derived(text, withSeed(7))));
+    for (const char* text : {cave, cloud, house})
+        EXPECT_EQ(derive::toJson(derived(text, withSeed(7))), derive::toJson(derived(text, withSeed(7))));
     EXPECT_NE(derive::toJson(derived(cave, withSeed(7))), derive::toJson(derived(cave, withSeed(8))));
 }
 
-const char* const runaway = "grammar 1\nparam stop = 0 in 0..1\nstart S -> cube : X\nrule Grow: X when stop < 1 -> + cube size 50% at +x : X, + cube size 50% at +y : X\n";
+const char* const runaway =
+    "grammar 1\nparam stop = 0 in 0..1\nstart S -> cube : X\nrule Grow: X when stop < 1 -> + cube size 50% at +x : X, "
+    "+ cube size 50% at +y : X\n";
 
 TEST(Budgets, ShapesDepthMemorySecondsEndWithAPlace) {
     const auto expectBudget = [](const char* text, derive::Budget budget, const char* what) {
@@ -157,7 +175,9 @@ TEST(Budgets, ShapesDepthMemorySecondsEndWithAPlace) {
     expectBudget(runaway, {.depth = 12}, "12 levels");
     expectBudget(runaway, {.memory_bytes = 1 << 20}, "1 MiB");
     expectBudget(runaway, {.seconds = 0}, "seconds");
-    const char* loop = "grammar 1\nparam stop = 0 in 0..1\nstart S -> cube : X\nrule Grow: X -> cube while stop < 1 { when stop > 2 { + cube } }\n";
+    const char* loop =
+        "grammar 1\nparam stop = 0 in 0..1\nstart S -> cube : X\nrule Grow: X -> cube while stop < 1 { when stop > 2 { "
+        "+ cube } }\n";
     expectBudget(loop, {.shapes = 10000}, "no end");
 }
 
@@ -170,7 +190,8 @@ TEST(Budgets, CancelEndsTheDerivation) {
 }
 
 TEST(Budgets, DeepTreesDontRecurse) {
-    const auto d = derived("grammar 1\nstart S -> cube : X\nrule X when scope.x > .1 -> + cube size (scope.x - .0001, 1, 1) at +y : X\n");
+    const auto d = derived(
+        "grammar 1\nstart S -> cube : X\nrule X when scope.x > .1 -> + cube size (scope.x - .0001, 1, 1) at +y : X\n");
     EXPECT_EQ(d.tree.shapes.back().depth, 9002u) << d.tree.shapes.size();
     EXPECT_LT(d.tree.path(static_cast<derive::ShapeId>(d.tree.shapes.size() - 1)).size(), 200u);
     EXPECT_GT(derive::toText(d, false).size(), 9000u);
@@ -181,11 +202,15 @@ TEST(Values, WhatNothingAboveSetsIsAnError) {
     const auto d = tryDerive(text);
     ASSERT_FALSE(d.ok());
     EXPECT_EQ(d.error().kind, Error::Kind::Input);
-    EXPECT_EQ(d.error().message, "test.sgm:3:21: neither this shape nor any above it sets 'n' by 'with' in rule 'A#1' at S/A[2], seed 1");
+    EXPECT_EQ(d.error().message,
+              "test.sgm:3:21: neither this shape nor any above it sets 'n' by 'with' in rule 'A#1' at S/A[2], seed 1");
     // A guard asks too, and says which rule it belongs to.
-    const auto guarded = tryDerive("grammar 1\nstart S -> A with n = 2, B\nrule A -> cube size n\nrule B when n > 1 -> cube\n");
+    const auto guarded =
+        tryDerive("grammar 1\nstart S -> A with n = 2, B\nrule A -> cube size n\nrule B when n > 1 -> cube\n");
     ASSERT_FALSE(guarded.ok());
-    EXPECT_NE(guarded.error().message.find("test.sgm:4:13: neither this shape nor any above it sets 'n' by 'with' in rule 'B#1' at S/B"), std::string::npos)
+    EXPECT_NE(guarded.error().message.find(
+                  "test.sgm:4:13: neither this shape nor any above it sets 'n' by 'with' in rule 'B#1' at S/B"),
+              std::string::npos)
         << guarded.error().message;
     EXPECT_TRUE(tryDerive("grammar 1\nstart S -> A with n = 2\nrule A -> B : C\nrule B -> cube size n\n").ok());
 }
@@ -198,7 +223,10 @@ TEST(Values, AnInheritedVectorIsIndexed) {
 
 TEST(Ways, AFailingStepNamesItsOwnRule) {
     derive::Options options = way("w");
-    const auto d = tryDerive("grammar 1\nstart S -> cube : A\nrule R0: A -> + cube at +x : B, + cube at -x : B\nrule R1: B -> sphere\nderive w: R0 => R1\n", options);
+    const auto d = tryDerive(
+        "grammar 1\nstart S -> cube : A\nrule R0: A -> + cube at +x : B, + cube at -x : B\nrule R1: B -> "
+        "sphere\nderive w: R0 => R1\n",
+        options);
     ASSERT_FALSE(d.ok());
     EXPECT_NE(d.error().message.find("matches 2 shapes here"), std::string::npos);
     EXPECT_EQ(d.error().message.find("'R0'"), std::string::npos) << d.error().message;

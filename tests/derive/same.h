@@ -10,8 +10,9 @@
 namespace sgm::testing_ {
 
 inline auto told(const derive::Shape& s) {
-    return std::tie(s.key, s.parent, s.firstChild, s.lastChild, s.nextSibling, s.symbol, s.label, s.occurrence, s.depth, s.solid, s.material, s.extras,
-                    s.valuesAt, s.body, s.jointSet, s.firstNamedBond, s.madeBy, s.chainRule, s.op, s.live, s.dead, s.amount, s.blend_m, s.scope.centre, s.scope.axes, s.scope.size,
+    return std::tie(s.key, s.parent, s.firstChild, s.lastChild, s.nextSibling, s.symbol, s.label, s.occurrence, s.depth,
+                    s.solid, s.material, s.extras, s.valuesAt, s.body, s.jointSet, s.firstNamedBond, s.madeBy,
+                    s.chainRule, s.op, s.live, s.dead, s.amount, s.blend_m, s.scope.centre, s.scope.axes, s.scope.size,
                     s.span.source, s.span.begin, s.span.end);
 }
 inline auto told(const derive::Bond& b) {
@@ -53,7 +54,8 @@ inline void expectSame(const derive::Derivation& a, const derive::Derivation& b)
     EXPECT_TRUE(a.materials == b.materials);
     EXPECT_TRUE(a.params == b.params);
     EXPECT_EQ(a.closed.size(), b.closed.size());
-    for (size_t i = 0; i < std::min(a.closed.size(), b.closed.size()); ++i) EXPECT_EQ(a.closed[i].count, b.closed[i].count);
+    for (size_t i = 0; i < std::min(a.closed.size(), b.closed.size()); ++i)
+        EXPECT_EQ(a.closed[i].count, b.closed[i].count);
     EXPECT_EQ(std::pair(a.classic, a.morphic), std::pair(b.classic, b.morphic));
 }
 

@@ -114,7 +114,9 @@ TEST(Sessions, UndoAndRedoLeadBackToTheSameTree) {
 }
 
 TEST(Sessions, AFailedStepChangesNothing) {
-    Session s = begun("grammar 1\nstart S -> cube : A\nrule Good: A -> + sphere at +x : B\nrule Bad: A -> + sphere size (scope.x - 1m) at +x : B\n");
+    Session s = begun(
+        "grammar 1\nstart S -> cube : A\nrule Good: A -> + sphere at +x : B\nrule Bad: A -> + sphere size (scope.x - "
+        "1m) at +x : B\n");
     const std::string before = sessionTree(s);
     const Status bad = step(s, "Bad");
     ASSERT_FALSE(bad.ok());
@@ -125,7 +127,9 @@ TEST(Sessions, AFailedStepChangesNothing) {
 }
 
 TEST(Sessions, WaysNamePlacesAndUnnamedRulesAndRunAgain) {
-    const std::string text = "grammar 1\nstart S -> for k in 1..3 { cube move (3 * k, 0, 0) : A }\nrule A -> + sphere at +y : B\nrule A weight 2 -> + cone at +y : A\nrule B -> torus\n";
+    const std::string text =
+        "grammar 1\nstart S -> for k in 1..3 { cube move (3 * k, 0, 0) : A }\nrule A -> + sphere at +y : B\nrule A "
+        "weight 2 -> + cone at +y : A\nrule B -> torus\n";
     for (uint64_t seed = 1; seed <= 5; ++seed) {
         Session s = begun(text, withSeed(seed));
         ASSERT_TRUE(step(s, "A#2", "S/A[2]").ok());
@@ -139,7 +143,9 @@ TEST(Sessions, WaysNamePlacesAndUnnamedRulesAndRunAgain) {
 }
 
 TEST(Sessions, AGuardThatCountsMayNotBeSaidInAWay) {
-    Session s = begun("grammar 1\nstart S -> cube : A, cube move (3, 0, 0) : A\nrule A when count(B) < 1 -> cube : B\nrule B when count(B) > 2 -> cone\n");
+    Session s = begun(
+        "grammar 1\nstart S -> cube : A, cube move (3, 0, 0) : A\nrule A when count(B) < 1 -> cube : B\nrule B when "
+        "count(B) > 2 -> cone\n");
     ASSERT_TRUE(s.applyRest().ok());
     EXPECT_EQ(s.derivation()->steps.size(), 2u);
     EXPECT_FALSE(s.way().ok());
@@ -148,10 +154,13 @@ TEST(Sessions, AGuardThatCountsMayNotBeSaidInAWay) {
 TEST(Ways, AreWrittenWithoutTouchingTheRest) {
     const auto grammar = grammarOf(std::string(figure1) + "derive other: R0 // stays\n\n// the end");
     const std::string text(grammar->sources[0]->text());
-    EXPECT_EQ(derive::fileWithWay(*grammar, "new", "derive new: R0 => R2\n"), std::string(figure1) + "derive other: R0 // stays\nderive new: R0 => R2\n\n// the end");
-    EXPECT_EQ(derive::fileWithWay(*grammar, "other", "derive other: R0 => R2\n"), std::string(figure1) + "derive other: R0 => R2 // stays\n\n// the end");
+    EXPECT_EQ(derive::fileWithWay(*grammar, "new", "derive new: R0 => R2\n"),
+              std::string(figure1) + "derive other: R0 // stays\nderive new: R0 => R2\n\n// the end");
+    EXPECT_EQ(derive::fileWithWay(*grammar, "other", "derive other: R0 => R2\n"),
+              std::string(figure1) + "derive other: R0 => R2 // stays\n\n// the end");
     const auto bare = grammarOf("grammar 1\nstart S -> cube : A\nrule R: A -> nil");
-    EXPECT_EQ(derive::fileWithWay(*bare, "w", "derive w: R\n"), "grammar 1\nstart S -> cube : A\nrule R: A -> nil\n\nderive w: R\n");
+    EXPECT_EQ(derive::fileWithWay(*bare, "w", "derive w: R\n"),
+              "grammar 1\nstart S -> cube : A\nrule R: A -> nil\n\nderive w: R\n");
 }
 
 TEST(Ways, BreakLongLines) {
@@ -159,7 +168,8 @@ TEST(Ways, BreakLongLines) {
     const std::vector<rules::Derive::Step> steps(30, {0, "Figure/I0", {}});
     const std::string line = derive::wayText(*grammar, "long", steps);
     size_t widest = 0;
-    for (size_t at = 0; at < line.size(); at = line.find('\n', at) + 1) widest = std::max(widest, line.find('\n', at) - at);
+    for (size_t at = 0; at < line.size(); at = line.find('\n', at) + 1)
+        widest = std::max(widest, line.find('\n', at) - at);
     EXPECT_LE(widest, 100u);
     EXPECT_TRUE(grammarOf(std::string(figure1) + line));
 }

@@ -19,7 +19,8 @@ std::vector<std::pair<double, double>> extents(const derive::Derivation& d, int 
 
 void expectCuts(const std::string& body, std::vector<double> lengths, double from = -5) {
     SCOPED_TRACE(body);
-    const auto found = extents(derived("grammar 1\nparam pane = 2m in 0m..4m\nstart A -> size (10, 3, 2) " + body + "\n"), 0);
+    const auto found =
+        extents(derived("grammar 1\nparam pane = 2m in 0m..4m\nstart A -> size (10, 3, 2) " + body + "\n"), 0);
     ASSERT_EQ(found.size(), lengths.size());
     for (size_t i = 0; i < lengths.size(); ++i) {
         EXPECT_NEAR(found[i].first, from, 1e-9) << i;
@@ -41,7 +42,8 @@ TEST(Split, RepeatsToFit) {
     expectCuts("split x { 8m: cube | { ~9m: cube }* }", {8, 2});  // alone it comes at least once
     expectCuts("split x { 8m: cube | { ~9m: cube }* | ~1: cube }", {8, 2});
     expectCuts("split x { { (i * 1m): cube }* }", std::vector<double>(10, 1));  // sizes are those of the first time
-    const auto grown = extents(derived("grammar 1\nstart A -> size (10, 3, 2) split x { { 2m: cube size (100%, i * .1m, 1m) }* }\n"), 1);
+    const auto grown = extents(
+        derived("grammar 1\nstart A -> size (10, 3, 2) split x { { 2m: cube size (100%, i * .1m, 1m) }* }\n"), 1);
     ASSERT_EQ(grown.size(), 5u);
     for (size_t k = 0; k < 5; ++k) EXPECT_NEAR(grown[k].second, (k + 1) * .05, 1e-9);
 }
@@ -66,7 +68,9 @@ rule Tile -> cube size (100%, 50%, 100%)
 }
 
 TEST(Split, ANewcomerMayBeSplitAndCut) {
-    const auto d = derived("grammar 1\nstart A -> cube size 4 - split y { ~1: nil | 1m: cube | ~1: nil } size (4, 4, 9) at centre + cube size 1 at +y\n");
+    const auto d = derived(
+        "grammar 1\nstart A -> cube size 4 - split y { ~1: nil | 1m: cube | ~1: nil } size (4, 4, 9) at centre + cube "
+        "size 1 at +y\n");
     expectNear(at(d, "A/cube/split/cube").scope.size, {4, 1, 9});
     EXPECT_EQ(at(d, "A/cube/split").op, rules::Operator::Difference);
     expectNear(at(d, "A/cube/cube").scope.centre, {0, 2.5, 0});

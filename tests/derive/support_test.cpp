@@ -26,7 +26,8 @@ TEST(Support, AFloatingStoreyIsNamedWithItsRuleAndLine) {
     const auto verdicts = derive::runChecks(grammarOf(raised), 1, nullptr);
     ASSERT_TRUE(verdicts.ok());
     EXPECT_FALSE((*verdicts)[0].passed);
-    EXPECT_NE((*verdicts)[0].message.find("made by rule 'Build' (test.sgm:5)"), std::string::npos) << (*verdicts)[0].message;
+    EXPECT_NE((*verdicts)[0].message.find("made by rule 'Build' (test.sgm:5)"), std::string::npos)
+        << (*verdicts)[0].message;
     EXPECT_TRUE((*verdicts)[1].passed) << (*verdicts)[1].message;
 }
 
@@ -42,9 +43,11 @@ rule Level -> cube - cube size (90%, 70%, 200%) + sphere size .5 at +x to centre
 }
 
 TEST(Support, CuttersHoldNothingUp) {
-    const auto cut = derived("grammar 1\nstart A -> cube size 2 - cube size (1, 6, 1) move (0, 4, 0) + cube size 1 move (0, 7, 0)\n");
+    const auto cut = derived(
+        "grammar 1\nstart A -> cube size 2 - cube size (1, 6, 1) move (0, 4, 0) + cube size 1 move (0, 7, 0)\n");
     EXPECT_EQ(cut.floating(), 1u);
-    const auto added = derived("grammar 1\nstart A -> cube size 2 + cube size (1, 6, 1) move (0, 4, 0) + cube size 1 move (0, 7, 0)\n");
+    const auto added = derived(
+        "grammar 1\nstart A -> cube size 2 + cube size (1, 6, 1) move (0, 4, 0) + cube size 1 move (0, 7, 0)\n");
     EXPECT_EQ(added.floating(), 0u);
 }
 

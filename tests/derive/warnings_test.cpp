@@ -19,7 +19,8 @@ std::string told(const std::string& body) {
 }
 
 TEST(Warnings, ACutThatRemovesNothingIsTold) {
-    EXPECT_EQ(told("start A -> cube size 4 : B\nrule B -> - cube size 1 move (9,0,0)\n"), "3:11 this cuts nothing: it lies beside 'B'\n");
+    EXPECT_EQ(told("start A -> cube size 4 : B\nrule B -> - cube size 1 move (9,0,0)\n"),
+              "3:11 this cuts nothing: it lies beside 'B'\n");
     EXPECT_EQ(told("start A -> cube size 4 : B\nrule B -> - cube size 1 move (2,0,0)\n"), "");
     EXPECT_EQ(told("start A -> cube size (8, 6, .6) : B\nrule B -> + Front size (100%, 100%, .6m)\n"
                    "rule Front -> split x { { ~2m: Win }* }\nrule Win -> - cube size (1m, 3m, 300%)\n"),
@@ -31,22 +32,32 @@ TEST(Warnings, ACutThatRemovesNothingIsTold) {
 
 TEST(Warnings, ACutThatRemovesSomethingSomewhereIsFine) {
     EXPECT_EQ(told("start A -> cube size 4 : B\nrule B -> for k in 0..3 { - cube size 1 move (3 * k, 0, 0) }\n"), "");
-    EXPECT_EQ(told("start A -> cube size 4 - (cube size 1 move (9,0,0), cube size 1)\n"), "") << "a part of the cutter reaches it";
+    EXPECT_EQ(told("start A -> cube size 4 - (cube size 1 move (9,0,0), cube size 1)\n"), "")
+        << "a part of the cutter reaches it";
     EXPECT_EQ(told("start A -> cube size 4 - halfspace move (0, 1, 0)\n"), "") << "without bounds";
-    EXPECT_EQ(told("start A -> cube size 4 displace billow(1m, 1/m) - cube size 1 move (0, 2.6, 0)\n"), "") << "noise reaches out of its box";
+    EXPECT_EQ(told("start A -> cube size 4 displace billow(1m, 1/m) - cube size 1 move (0, 2.6, 0)\n"), "")
+        << "noise reaches out of its box";
 }
 
 TEST(Warnings, DivisionByZeroNamesTheDivisor) {
-    EXPECT_EQ(told("param n = 0 in 0..4\nstart A -> cube size 2 move (4 / n, 0, 0)\n"), "3:30 divided by 0: 'n' is 0\n");
-    EXPECT_EQ(told("param n = 0 in 0..4\nstart A -> cube size 2 move (5 % n, 0, 0)\n"), "3:30 divided by 0: 'n' is 0\n");
-    EXPECT_EQ(told("param n = 0 in 0..4\nstart A -> cube size 2 move (if(n > 0, 4 / n, 0), 0, 0)\n"), "") << "not taken";
-    EXPECT_EQ(told("param n = 0 in 0..4\nstart A -> cube for k in 1..9 { + cube move (4 / n, k, 0) }\n"), "3:46 divided by 0: 'n' is 0\n") << "once a place";
+    EXPECT_EQ(told("param n = 0 in 0..4\nstart A -> cube size 2 move (4 / n, 0, 0)\n"),
+              "3:30 divided by 0: 'n' is 0\n");
+    EXPECT_EQ(told("param n = 0 in 0..4\nstart A -> cube size 2 move (5 % n, 0, 0)\n"),
+              "3:30 divided by 0: 'n' is 0\n");
+    EXPECT_EQ(told("param n = 0 in 0..4\nstart A -> cube size 2 move (if(n > 0, 4 / n, 0), 0, 0)\n"), "")
+        << "not taken";
+    EXPECT_EQ(told("param n = 0 in 0..4\nstart A -> cube for k in 1..9 { + cube move (4 / n, k, 0) }\n"),
+              "3:46 divided by 0: 'n' is 0\n")
+        << "once a place";
 }
 
 TEST(Warnings, RootsRepeatsAndColours) {
-    EXPECT_EQ(told("param n = -4 in -4..4\nstart A -> cube move (sqrt(n), 0, 0)\n"), "3:23 square root of a negative number: -4\n");
-    EXPECT_EQ(told("param n = 2 in -3..4\nstart A -> cube : B\nrule B repeat n - 4 -> + cube at +x : B\n"), "4:15 'repeat' is -2 here, so the rule adds nothing\n");
-    EXPECT_EQ(told("param n = 200 in 0..255\nstart A -> cube color rgb(n, 0, 0)\n"), "3:27 'rgb' takes shares 0 … 1, but this is 200\n");
+    EXPECT_EQ(told("param n = -4 in -4..4\nstart A -> cube move (sqrt(n), 0, 0)\n"),
+              "3:23 square root of a negative number: -4\n");
+    EXPECT_EQ(told("param n = 2 in -3..4\nstart A -> cube : B\nrule B repeat n - 4 -> + cube at +x : B\n"),
+              "4:15 'repeat' is -2 here, so the rule adds nothing\n");
+    EXPECT_EQ(told("param n = 200 in 0..255\nstart A -> cube color rgb(n, 0, 0)\n"),
+              "3:27 'rgb' takes shares 0 … 1, but this is 200\n");
 }
 
 TEST(Warnings, WhatAClosedJointKeepsFromGrowingIsAmongThem) {
@@ -57,7 +68,8 @@ TEST(Warnings, WhatAClosedJointKeepsFromGrowingIsAmongThem) {
 }
 
 TEST(Warnings, ATurnThatTheJointUndoesIsTold) {
-    const std::string lost = " the joints face each other all the same: only the turn about them is left\n", start = "start A -> cube size 2 : B\nrule B -> + cube size (.5, 3, .5) at ";
+    const std::string lost = " the joints face each other all the same: only the turn about them is left\n",
+                      start = "start A -> cube size 2 : B\nrule B -> + cube size (.5, 3, .5) at ";
     EXPECT_EQ(told(start + "+y turn (30deg, 0deg, 0deg)\n"), "3:41" + lost);
     EXPECT_EQ(told(start + "+y turn (30deg, 40deg, 0deg)\n"), "3:41" + lost);
     EXPECT_EQ(told(start + "+x to -y turn (0deg, 0deg, 30deg)\n"), "3:47" + lost);
@@ -65,19 +77,24 @@ TEST(Warnings, ATurnThatTheJointUndoesIsTold) {
     EXPECT_EQ(told(start + "+y turn (90deg, 0deg, 0deg)\n"), "") << "another face takes the joint's place";
     EXPECT_EQ(told(start + "+x to -y turn 40deg\n"), "") << "about its own joint";
     EXPECT_EQ(told(start + "centre turn (30deg, 0deg, 0deg)\n"), "") << "a centre faces nowhere";
-    EXPECT_EQ(told("start A -> cube size 2 + (cube turn (30deg, 0deg, 0deg)) size (.5, 3, .5) at +y\n"), "") << "the fix";
+    EXPECT_EQ(told("start A -> cube size 2 + (cube turn (30deg, 0deg, 0deg)) size (.5, 3, .5) at +y\n"), "")
+        << "the fix";
 }
 
 TEST(Warnings, ASplitThatOverflowsIsTold) {
-    EXPECT_EQ(told("start A -> size 10 split x { 8m: cube | 8m: sphere }\n"), "2:41 this part is cut off: 2m are left for its 8m\n");
+    EXPECT_EQ(told("start A -> size 10 split x { 8m: cube | 8m: sphere }\n"),
+              "2:41 this part is cut off: 2m are left for its 8m\n");
     EXPECT_EQ(told("start A -> size 10 split x { 8m: cube | 2m: sphere }\n"), "");
     EXPECT_EQ(told("start A -> size 10 split x { ~8m: cube | ~8m: sphere }\n"), "");
-    EXPECT_EQ(told("start A -> size 10 split x { 60%: cube | 60%: sphere }\n"), "2:42 this part is cut off: 4m are left for its 6m\n");
+    EXPECT_EQ(told("start A -> size 10 split x { 60%: cube | 60%: sphere }\n"),
+              "2:42 this part is cut off: 4m are left for its 6m\n");
     EXPECT_EQ(told("start A -> size 10 split x { { 3m: cube }* | 1m: sphere }\n"), "");
 }
 
 TEST(Warnings, AFailureNamesWhatWasRemarkedInItsText) {
-    const auto failed = derive::derive(grammarOf("grammar 1\nstart A -> cube with n = 1 : B\nrule B -> + cube size (4m / (1 - n)) at +x\n"), {}, nullptr);
+    const auto failed = derive::derive(
+        grammarOf("grammar 1\nstart A -> cube with n = 1 : B\nrule B -> + cube size (4m / (1 - n)) at +x\n"), {},
+        nullptr);
     ASSERT_FALSE(failed.ok());
     EXPECT_NE(failed.error().message.find("divided by 0: '(1 - n)' is 0"), std::string::npos) << failed.error().message;
 }

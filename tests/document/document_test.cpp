@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/scratch.h"
 #include "tests/document/texts.h"
+#include "tests/scratch.h"
 
 namespace sgm::viewer {
 namespace {

@@ -1,6 +1,6 @@
 // Every verb of the panels: what it does to the text, and that nothing else moves.
-#include "grammar/operations/operations.h"
 #include "viewer/document/edits.h"
+#include "grammar/operations/operations.h"
 
 #include "tests/document/texts.h"
 
@@ -79,7 +79,8 @@ TEST_F(Edits, ReorderRules) {
 
 TEST(Ways, GoOnMeaningTheSameRules) {
     const std::string text =
-        "grammar 1\nstart A -> cube : Cell\nrule Cell -> cone\nrule Up: Cell -> sphere\nrule Cell -> cube\nderive w: Cell#1 => Up => Cell#2\n";
+        "grammar 1\nstart A -> cube : Cell\nrule Cell -> cone\nrule Up: Cell -> sphere\nrule Cell -> cube\nderive w: "
+        "Cell#1 => Up => Cell#2\n";
     const syntax::Ast ast = parsed(text);
     const auto wayAfter = [&](const Edit& edit) {
         EXPECT_TRUE(edit.ok()) << edit.error().message;

@@ -39,14 +39,17 @@ TEST_F(Reach, ItsFolderAndTheLibraryAndNothingElse) {
     EXPECT_TRUE(use("std/walls.sgm")) << why_;
     EXPECT_TRUE(mesh("box.obj")) << why_;
     const std::string absolute = (scratch_ / "outside.sgm").string();
-    for (const std::string& name : {"std/" + absolute, "std//" + absolute, "std/.//" + absolute}) EXPECT_FALSE(use(name)) << "not even below std/: " << name;
-    for (const std::string& name : {absolute, std::string("../outside.sgm"), std::string("std/../../outside.sgm"), std::string("parts/../../outside.sgm"),
-                                    std::string("std/../std/../../outside.sgm")}) {
+    for (const std::string& name : {"std/" + absolute, "std//" + absolute, "std/.//" + absolute})
+        EXPECT_FALSE(use(name)) << "not even below std/: " << name;
+    for (const std::string& name :
+         {absolute, std::string("../outside.sgm"), std::string("std/../../outside.sgm"),
+          std::string("parts/../../outside.sgm"), std::string("std/../std/../../outside.sgm")}) {
         EXPECT_FALSE(use(name)) << name;
         EXPECT_NE(why_.find("its own folder or in std/"), std::string::npos) << name << ": " << why_;
     }
     const std::string mesh_file = (scratch_ / "outside.obj").string();
-    for (const std::string& name : {mesh_file, "std/" + mesh_file, std::string("../outside.obj")}) EXPECT_FALSE(mesh(name)) << name;
+    for (const std::string& name : {mesh_file, "std/" + mesh_file, std::string("../outside.obj")})
+        EXPECT_FALSE(mesh(name)) << name;
 }
 
 TEST_F(Reach, LinksOnlyWhereTheyStayInside) {
@@ -70,7 +73,8 @@ TEST_F(Reach, OneNameForEverySpelling) {
 }
 
 TEST_F(Reach, RegularFilesAlone) {
-    for (const char* name : {"pipe.sgm", "pipe.obj"}) ASSERT_EQ(mkfifo((scratch_ / ("inside/" + std::string(name))).c_str(), 0600), 0);
+    for (const char* name : {"pipe.sgm", "pipe.obj"})
+        ASSERT_EQ(mkfifo((scratch_ / ("inside/" + std::string(name))).c_str(), 0600), 0);
     EXPECT_FALSE(use("pipe.sgm"));
     EXPECT_NE(why_.find("it is a pipe"), std::string::npos) << why_;
     EXPECT_FALSE(mesh("pipe.obj"));
@@ -91,7 +95,8 @@ TEST_F(Reach, QuoteNothingThatIsNoGrammar) {
 }
 
 TEST_F(Reach, NoNamesWithControlCharacters) {
-    for (const std::string& name : {std::string("std/walls.sgm\0/etc/passwd", 25), std::string("\x1b[31mparts/wall.sgm"), std::string("a\nb.sgm")}) {
+    for (const std::string& name : {std::string("std/walls.sgm\0/etc/passwd", 25),
+                                    std::string("\x1b[31mparts/wall.sgm"), std::string("a\nb.sgm")}) {
         EXPECT_FALSE(use(name));
         EXPECT_NE(why_.find("control characters"), std::string::npos) << why_;
     }

@@ -1,8 +1,8 @@
 // What the panels show: rules, shapes, parameters, colours, export options.
 #include <algorithm>
 
-#include "tests/scratch.h"
 #include "tests/document/shown.h"
+#include "tests/scratch.h"
 #include "viewer/document/colours.h"
 #include "viewer/document/export_job.h"
 #include "viewer/document/param_rows.h"
@@ -284,7 +284,8 @@ TEST(Exports, WriteObjects) {
     const auto model = shown(Document("grammar 1\nstart A -> cube size 2 : Wall\n"));
     const auto outcome = [&](const std::string& objects) {
         ExportJob job;
-        EXPECT_TRUE(job.start(model, {.file = scratch / "a.gltf", .options = {}, .resolution = 16, .objects = objects}).ok());
+        EXPECT_TRUE(
+            job.start(model, {.file = scratch / "a.gltf", .options = {}, .resolution = 16, .objects = objects}).ok());
         std::optional<Status> done;
         while (!(done = job.take())) std::this_thread::yield();
         return *done;

@@ -76,7 +76,8 @@ private:
     static std::string called(const std::vector<RuleDecl>& rules, const RuleDecl& rule) {
         if (!rule.name.empty()) return rule.name.text;
         int number = 0;
-        for (const RuleDecl* r = rules.data(); r <= &rule; ++r) number += r->name.empty() && r->symbol.text == rule.symbol.text;
+        for (const RuleDecl* r = rules.data(); r <= &rule; ++r)
+            number += r->name.empty() && r->symbol.text == rule.symbol.text;
         return rule.symbol.text + "#" + std::to_string(number);
     }
 
@@ -87,12 +88,18 @@ private:
         Edit edit = changeRuleAlone();
         for (syntax::DeriveDecl& way : expected.derives)
             for (auto& step : way.steps) {
-                const auto was = std::find_if(before.begin(), before.end(), [&](const RuleDecl& r) { return called(before, r) == step.rule.text; });
+                const auto was = std::find_if(before.begin(), before.end(),
+                                              [&](const RuleDecl& r) { return called(before, r) == step.rule.text; });
                 if (was == before.end()) continue;
-                const auto is = std::find_if(expected.rules.begin(), expected.rules.end(), [&](const RuleDecl& r) { return r.span.begin == was->span.begin; });
-                if (is != expected.rules.end()) step.rule.text = called(expected.rules, *is);
+                const auto is = std::find_if(expected.rules.begin(), expected.rules.end(),
+                                             [&](const RuleDecl& r) { return r.span.begin == was->span.begin; });
+                if (is != expected.rules.end())
+                    step.rule.text = called(expected.rules, *is);
                 else if (was->name.empty())
-                    step.rule.text = was->symbol.text + "#" + std::to_string(std::count_if(before.begin(), before.end(), [&](const RuleDecl& r) { return r.name.empty() && r.symbol.text == was->symbol.text; }));
+                    step.rule.text = was->symbol.text + "#" +
+                                     std::to_string(std::count_if(before.begin(), before.end(), [&](const RuleDecl& r) {
+                                         return r.name.empty() && r.symbol.text == was->symbol.text;
+                                     }));
             }
         return edit;
     }
@@ -232,16 +239,18 @@ private:
                 return edit;
             }
             case 7: {
-                const Id id = one<Id>({&operations::size, &operations::shift, &operations::at, &operations::blend, &operations::rough});
+                const Id id = one<Id>(
+                    {&operations::size, &operations::shift, &operations::at, &operations::blend, &operations::rough});
                 const Edit edit = edits::removeAttribute(now, element, *id);
                 if (edit.ok()) drop(e, id);
                 return edit;
             }
             default: {
-                const Id id = one<Id>({&operations::size, &operations::shift, &operations::blend, &operations::rough, &operations::color});
+                const Id id = one<Id>({&operations::size, &operations::shift, &operations::blend, &operations::rough,
+                                       &operations::color});
                 const std::string value =
                     id == &operations::color ? "#aabbcc"
-                                    : one<std::string>({"2", "1 ~> .5", "floors + 1", "-.1..(.2)", "(a * b)"});
+                                             : one<std::string>({"2", "1 ~> .5", "floors + 1", "-.1..(.2)", "(a * b)"});
                 const Edit edit = edits::setAttribute(now, element, *id, value);
                 if (edit.ok()) put(e, id, expression(value));
                 return edit;

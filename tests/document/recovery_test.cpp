@@ -10,8 +10,8 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "tests/scratch.h"
 #include "tests/document/texts.h"
+#include "tests/scratch.h"
 
 namespace sgm::viewer {
 namespace {
@@ -122,7 +122,8 @@ TEST(Recoveries, LeaveNoLocksOfProcessesThatAreGone) {
         std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now() - std::chrono::minutes(5));
         return path;
     };
-    const auto idle = aged("1-0.lock"), held = aged("2-0.lock"), guarding = aged("3-0.lock"), fresh = scratch.write("4-0.lock", "");
+    const auto idle = aged("1-0.lock"), held = aged("2-0.lock"), guarding = aged("3-0.lock"),
+               fresh = scratch.write("4-0.lock", "");
     scratch.write("3-0.recovery", "sgm-recovery 0\ngrammar 1\n");
     const int fd = open(held.c_str(), O_RDWR);
     ASSERT_EQ(flock(fd, LOCK_EX), 0);

@@ -2,9 +2,9 @@
 #include "viewer/document/session.h"
 
 #include "modeler/mesh/validate.h"
-#include "tests/scratch.h"
 #include "tests/document/shown.h"
 #include "tests/mesh/mesh_bytes.h"
+#include "tests/scratch.h"
 #include "viewer/document/meshing.h"
 
 namespace sgm::viewer {
@@ -212,28 +212,34 @@ protected:
         const Model &ours = session.model()->model, &theirs = opened->model;
         EXPECT_EQ(ours.lowered->shapeOf, theirs.lowered->shapeOf);
         const auto &shapes = ours.derivation.tree.shapes, &others = theirs.derivation.tree.shapes;
-        EXPECT_TRUE(std::equal(shapes.begin(), shapes.end(), others.begin(), others.end(), [](const derive::Shape& a, const derive::Shape& b) {
-            return std::tie(a.key, a.scope, a.material, a.live, a.op) == std::tie(b.key, b.scope, b.material, b.live, b.op);
-        }));
+        EXPECT_TRUE(std::equal(shapes.begin(), shapes.end(), others.begin(), others.end(),
+                               [](const derive::Shape& a, const derive::Shape& b) {
+                                   return std::tie(a.key, a.scope, a.material, a.live, a.op) ==
+                                          std::tie(b.key, b.scope, b.material, b.live, b.op);
+                               }));
         EXPECT_EQ(bytesOf(ours), bytesOf(theirs));
     }
     static std::vector<unsigned char> bytesOf(const Model& model) {
         const Box3f& bounds = model.lowered->field.bounds;
         Stages stages;
-        const auto made = makeMesh(model, mesh::gridFor(bounds, mesh::cellFor(bounds, 24)), {.threads = 1}, stages, nullptr);
+        const auto made =
+            makeMesh(model, mesh::gridFor(bounds, mesh::cellFor(bounds, 24)), {.threads = 1}, stages, nullptr);
         EXPECT_TRUE(made.ok());
         return mesh::bytesOf(made->mesh);
     }
 };
 
 TEST_F(HeldSliders, DeriveOnlyWhatTheyReach) {
-    document = Document("grammar 1\nparam wide = 2.5 in 1..9.0\nstart A -> cube size 3 + cone size 1.5 at -x + sphere size wide at +x + cone at +y\n");
+    document = Document(
+        "grammar 1\nparam wide = 2.5 in 1..9.0\nstart A -> cube size 3 + cone size 1.5 at -x + sphere size wide at +x "
+        "+ cone at +y\n");
     show(session, document);
     const auto taken = session.model();
     document.beginDrag();
     show(session, document);
     EXPECT_EQ(session.model(), taken) << "nothing has moved yet";
-    for (const auto& [from, to] : {std::pair{"wide = 2.5", "wide = 2.75"}, {"wide = 2.75", "wide = 3.0"}, {"wide = 3.0", "wide = 8.25"}}) {
+    for (const auto& [from, to] :
+         {std::pair{"wide = 2.5", "wide = 2.75"}, {"wide = 2.75", "wide = 3.0"}, {"wide = 3.0", "wide = 8.25"}}) {
         drag(from, to);
         EXPECT_TRUE(session.model()->held);
         EXPECT_FALSE(stageRan("check"));

@@ -49,7 +49,8 @@ inline std::string replaced(std::string text, std::string_view from, std::string
 
 inline syntax::Ast parsed(const std::string& text) {
     syntax::Diagnostics problems;
-    syntax::Ast ast = syntax::parse(std::make_shared<const syntax::Source>("t.sgm", text), operations::table(), problems);
+    syntax::Ast ast =
+        syntax::parse(std::make_shared<const syntax::Source>("t.sgm", text), operations::table(), problems);
     for (const auto& d : problems.all()) ADD_FAILURE() << syntax::render(d);
     return ast;
 }

@@ -60,7 +60,9 @@ std::vector<Num> sampleNodes(field::Graph& g, field::OpCode op) {
         if (row.name == "box") operands.pop_back();
         return {g.apply(op, operands)};
     }
-    if (row.readsGrid) return {g.apply(op, {a, b, g.z()}, g.grid(field::test::sampledTorus(5))), g.apply(op, {b, a, g.z() * 0.3f}, g.grid(field::test::sampledTorus(9)))};
+    if (row.readsGrid)
+        return {g.apply(op, {a, b, g.z()}, g.grid(field::test::sampledTorus(5))),
+                g.apply(op, {b, a, g.z() * 0.3f}, g.grid(field::test::sampledTorus(9)))};
     std::vector<Num> nodes;
     if (row.name == "noise")
         for (const bool fbm : {false, true})
@@ -91,8 +93,8 @@ std::vector<Num> sampleNodes(field::Graph& g, field::OpCode op) {
         for (int rotation = 0; rotation < 2; ++rotation)
             for (const Vec3d& column : {turn.x, turn.y, turn.z})
                 for (int i = 0; i < 3; ++i) numbers.push_back(static_cast<float>(column[i]));
-        for (const float v : {1.3f, 1.1f, 1.0f, 0.8f, 0.25f, 0.125f, 0.4f, 0.9f, 3.0f, 0.9f, 0.4f, 0.05f, 1e-4f, 1e-5f, 0.0f,
-                              1.0f, 0.0f, 0.5f, 1.4f, 0.1f, 0.75f, 1.8f, 0.2f, Op::noBay})
+        for (const float v : {1.3f,  1.1f,  1.0f, 0.8f, 0.25f, 0.125f, 0.4f, 0.9f, 3.0f,  0.9f, 0.4f, 0.05f,
+                              1e-4f, 1e-5f, 0.0f, 1.0f, 0.0f,  0.5f,   1.4f, 0.1f, 0.75f, 1.8f, 0.2f, Op::noBay})
             numbers.push_back(v);
         numbers.resize(Op::operandCount - Op::moving, 0);
         for (const float v : numbers) operands.push_back({g.literal(v).id(), 0});
@@ -149,7 +151,8 @@ TEST_F(Glsl, RunsSeveralTapesFromOneBuffer) {
     const uint32_t startA = eval::appendTape(a, words), startB = eval::appendTape(b, words);
     EXPECT_EQ(startA, 0u);
     // One ball, whose list of ten operands takes three texels.
-    EXPECT_EQ(words[0] + (a.sources().size() + 3) / 4, startB) << "the second tape starts behind the first one's code and lists";
+    EXPECT_EQ(words[0] + (a.sources().size() + 3) / 4, startB)
+        << "the second tape starts behind the first one's code and lists";
     EXPECT_EQ(words.size() % 4, 0u);
 }
 

@@ -146,8 +146,8 @@ inline Example facadeExample(ops::Kifs::Form form) {
     const Example fractal = kifsExample(form);
     Example e{{{-2, 2}, {-1, 3}, {-2, 2}, {-0.5f, 0.7f}, {-0.3f, 0.5f}}, Op::pack(form)};
     e.operands.insert(e.operands.end(), fractal.operands.begin() + 3, fractal.operands.begin() + ops::Kifs::bailout);
-    const float numbers[] = {1.3f, 1.1f, 1, 0.8f, 0.25f, 0.125f, 0.4f, 0.9f, 3, 0.9f, 0.4f, 0.05f, 1e-4f, 1e-5f,
-                             0, 1, 0, 0.5f, 1.4f, 0.1f, 0.75f, 1.8f, 0.2f, Op::noBay};
+    const float numbers[] = {1.3f,  1.1f,  1, 0.8f, 0.25f, 0.125f, 0.4f, 0.9f, 3,     0.9f, 0.4f, 0.05f,
+                             1e-4f, 1e-5f, 0, 1,    0,     0.5f,   1.4f, 0.1f, 0.75f, 1.8f, 0.2f, Op::noBay};
     for (const float n : numbers) e.operands.push_back({n, n, false});
     e.operands.resize(Op::operandCount, {0, 0, false});
     return e;
@@ -188,7 +188,8 @@ std::vector<Example> examplesOf() {
         return {kifsExample({3, false, false, false, true, true}), kifsExample({2, true, true, false, true, false}),
                 kifsExample({4, true, false, true, true, true})};
     else if constexpr (std::is_same_v<Row, ops::Facade>)
-        return {facadeExample({3, false, false, false, true, true}), facadeExample({2, true, false, false, true, false})};
+        return {facadeExample({3, false, false, false, true, true}),
+                facadeExample({2, true, false, false, true, false})};
     else if constexpr (Row::arity == 1)
         return {{{{-r, r}}}, {{{0.001f, 1}}}};
     else

@@ -225,7 +225,8 @@ TEST(Abandoned, TemporaryFilesAreRemovedByTheNextWriter) {
         return path;
     };
     using std::chrono_literals::operator""min;
-    const auto dead = make(".sgm-1-0.tmp", 5min), fresh = make(".sgm-1-1.tmp", 0min), held = make(".sgm-1-2.tmp", 5min), other = make(".sgm-notes", 5min);
+    const auto dead = make(".sgm-1-0.tmp", 5min), fresh = make(".sgm-1-1.tmp", 0min), held = make(".sgm-1-2.tmp", 5min),
+               other = make(".sgm-notes", 5min);
     const int fd = open(held.c_str(), O_RDONLY);
     ASSERT_EQ(flock(fd, LOCK_EX), 0) << "as its living process does";
     ASSERT_TRUE(replaceFile(folder / "a", [](const std::filesystem::path&) -> Status { return Done{}; }).ok());

@@ -54,8 +54,9 @@ TEST_F(Judged, GltfValidatorFindsNothing) {
     input.options = {};
     input.byMaterial = false;
     ASSERT_TRUE(write(input, piece).ok());
-    const int code = run("node tests/export/validate_gltf.js " + glb.string() + " " + gltf.string() + " " +
-                         plain.string() + " " + tree.string() + " " + piece.string() + " > " + verdict.string() + " 2>/dev/null");
+    const int code =
+        run("node tests/export/validate_gltf.js " + glb.string() + " " + gltf.string() + " " + plain.string() + " " +
+            tree.string() + " " + piece.string() + " > " + verdict.string() + " 2>/dev/null");
     if (code == 3 || code == 127)
         GTEST_SKIP() << "gltf-validator isn't installed: npm install --prefix build gltf-validator";
     ASSERT_EQ(code, 0);

@@ -241,7 +241,8 @@ TEST(RoundTrip, AwkwardMaterialNamesStayApart) {
     f.provenance.materials[1].name = "wet#stone";
     const std::string obj = contentOf(f.write("my cave.obj"));
     const std::string library = "my_cave-" + obj.substr(obj.find("mtllib my_cave-") + 15, 8) + ".mtl";
-    EXPECT_NE(obj.find("mtllib " + library + "\n"), std::string::npos) << "a name of its own, for my_cave.obj has one too";
+    EXPECT_NE(obj.find("mtllib " + library + "\n"), std::string::npos)
+        << "a name of its own, for my_cave.obj has one too";
     EXPECT_NE(obj.find("usemtl wet_stone\n"), std::string::npos);
     EXPECT_NE(obj.find("usemtl wet_stone_2\n"), std::string::npos);
     EXPECT_NE(contentOf(f.folder / library).find("newmtl wet_stone_2\n"), std::string::npos);

@@ -1,4 +1,5 @@
-// Facades against the paper's formulas (McGraw, eqs. 4–6, algorithms 1 and 2; errata in docs/papers.md), and their promises.
+// Facades against the paper's formulas (McGraw, eqs. 4–6, algorithms 1 and 2; errata in docs/papers.md), and their
+// promises.
 #include "modeler/field/facade.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +55,8 @@ double fractal(const Ornament& o, Vec3d p) {
         if (p.x < p.z) std::swap(p.x, p.z);
         if (p.y < p.z) std::swap(p.y, p.z);
         p = f * p;
-        p = {s * (p.x - o.value(P::Center)) + o.value(P::Center), s * (p.y - o.value(P::Center, 1)) + o.value(P::Center, 1), s * p.z};
+        p = {s * (p.x - o.value(P::Center)) + o.value(P::Center),
+             s * (p.y - o.value(P::Center, 1)) + o.value(P::Center, 1), s * p.z};
         p.z = h - std::abs(p.z - h);
         scales *= s;
     }
@@ -141,13 +143,15 @@ TEST(Facade, RaysFindItsSurfaceAndMissThePapers) {
     o.put(P::Fit, {1}), o.put(P::Bay, {1});  // as the paper has it: the map stretches four times
     const sgm::test::Picture picture(Box3d{-half, half}.as<float>(), 640, 8);
     Probe ours(o.graph, o.clad("cube", half));
-    const size_t missed = sgm::test::wrongRays(picture, 1, [&](const float* x, const float* y, const float* z, size_t n, float* out) {
-        eval::Workspace workspace;
-        eval::evaluate(ours.tape(), {x, y, z, n}, out, workspace);
-    });
-    const size_t papers = sgm::test::wrongRays(picture, 1, [&](const float* x, const float* y, const float* z, size_t n, float* out) {
-        for (size_t i = 0; i < n; ++i) out[i] = static_cast<float>(paperValue(o, half, {x[i], y[i], z[i]}));
-    });
+    const size_t missed =
+        sgm::test::wrongRays(picture, 1, [&](const float* x, const float* y, const float* z, size_t n, float* out) {
+            eval::Workspace workspace;
+            eval::evaluate(ours.tape(), {x, y, z, n}, out, workspace);
+        });
+    const size_t papers =
+        sgm::test::wrongRays(picture, 1, [&](const float* x, const float* y, const float* z, size_t n, float* out) {
+            for (size_t i = 0; i < n; ++i) out[i] = static_cast<float>(paperValue(o, half, {x[i], y[i], z[i]}));
+        });
     EXPECT_LE(double(missed), 1e-3 * double(picture.ways.size()));
     EXPECT_GT(double(papers), 0.02 * double(picture.ways.size()));
 }
@@ -171,7 +175,8 @@ void expectContinuous(Ornament& o, const Field& field, Vec3d half, uint64_t key)
         const auto straddle = [&](int axis, double plane) { p[axis] = plane - way[axis] * apart * draw.uniform(0, 1); };
         if (i % 4 == 1) straddle(1, -half.y + h * std::floor(draw.uniform(1, 2.99)));
         if (i % 4 == 3 && bays.size() > 1)
-            straddle(0, -half.x + w * ((1 + bays[1 + size_t(draw.uniform(0, double(bays.size()) - 1.001))].from) / 2 + std::floor(draw.uniform(0, 3))));
+            straddle(0, -half.x + w * ((1 + bays[1 + size_t(draw.uniform(0, double(bays.size()) - 1.001))].from) / 2 +
+                                       std::floor(draw.uniform(0, 3))));
         const Vec3d q = p + way * apart;
         astride += cell(p) != cell(q);
         a.push_back(p.as<float>()), b.push_back(q.as<float>());
@@ -220,7 +225,9 @@ TEST(Facade, CladdingStaysBetweenItsShells) {
             const Vec3f p = draw.in(Box3d{-half, half}.inflated(0.5)).as<float>();
             const float f = whole(p), g = dressed(p);
             ASSERT_GE(g, f - 1e-5f);
-            if (f < -2 * wall) { ASSERT_LT(g, 1e-5f); }
+            if (f < -2 * wall) {
+                ASSERT_LT(g, 1e-5f);
+            }
             carved += f < -0.01f && g > 0;
         }
         EXPECT_GT(carved, 0u);

@@ -1,4 +1,5 @@
-// The KIFS op against the Menger sponge's own definition and against algorithm 1 as printed (McGraw; errata in docs/papers.md).
+// The KIFS op against the Menger sponge's own definition and against algorithm 1 as printed (McGraw; errata in
+// docs/papers.md).
 #include "modeler/field/kifs.h"
 
 #include <gtest/gtest.h>

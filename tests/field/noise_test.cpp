@@ -107,7 +107,8 @@ TEST(Noise, IntervalsEnclose) {
     }
 }
 
-/// The same bits on every machine, compiler and vector width: a digest of values of the tape, and of the plain function.
+/// The same bits on every machine, compiler and vector width: a digest of values of the tape, and of the plain
+/// function.
 TEST(Noise, BitsNeverChange) {
     Graph graph;
     const uint32_t data = Noise::pack(true, 4, 2024);

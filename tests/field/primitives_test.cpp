@@ -26,7 +26,8 @@ std::vector<Argument> randomArguments(Graph& graph, const Primitive& row, Draws&
         else if (p.kind == ParameterKind::Choice)
             list.push_back(argument(graph, {double(draw.uniform(0, 1) < 0.5)}));
         else if (p.kind == ParameterKind::Length)
-            list.push_back(argument(graph, {p.lo == 0 && draw.uniform(0, 1) < 0.5 ? 0 : draw.size(std::max(p.lo, 0.05), 50)}));
+            list.push_back(
+                argument(graph, {p.lo == 0 && draw.uniform(0, 1) < 0.5 ? 0 : draw.size(std::max(p.lo, 0.05), 50)}));
         else if (p.name == "bailout")
             list.push_back(argument(graph, {draw.uniform(0, 1) < 0.7 ? 0 : a}));
         else

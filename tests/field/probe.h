@@ -113,8 +113,8 @@ inline double distance(const Box3f& box, Vec3f p) {
     return std::sqrt(d);
 }
 
-/// Holds `field` to its bounds, growth and Lipschitz constant on random points around `region` (the bounds when finite).
-/// An infinite Lipschitz constant promises nothing. `solid` asks for some inside point.
+/// Holds `field` to its bounds, growth and Lipschitz constant on random points around `region` (the bounds when
+/// finite). An infinite Lipschitz constant promises nothing. `solid` asks for some inside point.
 inline void expectPromises(const Graph& graph, const Field& field, Box3d region, uint64_t key, const std::string& what,
                            bool solid = true) {
     SCOPED_TRACE(what);

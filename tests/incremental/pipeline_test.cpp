@@ -1,5 +1,5 @@
-// Walks over the parameters of grammars: after every step tree, field, parts and mesh of what was kept and what changed are
-// those of a build from the start, byte for byte.
+// Walks over the parameters of grammars: after every step tree, field, parts and mesh of what was kept and what changed
+// are those of a build from the start, byte for byte.
 #include "grammar/incremental/pipeline.h"
 
 #include "tests/derive/same.h"
@@ -15,7 +15,8 @@ auto told(const Part& p) { return std::tie(p.path, p.symbol, p.rule, p.file, p.l
 /// A model followed through options, on one lattice.
 class Followed {
 public:
-    Followed(std::shared_ptr<const rules::Grammar> grammar, int resolution) : grammar_(std::move(grammar)), resolution_(resolution) {}
+    Followed(std::shared_ptr<const rules::Grammar> grammar, int resolution)
+        : grammar_(std::move(grammar)), resolution_(resolution) {}
 
     /// Brings the pipeline there, and compares with a build from the start; where that fails, so must the pipeline.
     void expectSame(const derive::Options& options) {
@@ -29,7 +30,8 @@ public:
         }
         testing_::expectSame(pipeline.derivation(), *derivation);
         const auto &parts = pipeline.model().provenance.parts, &wholeParts = (*model)->provenance.parts;
-        ASSERT_TRUE(std::equal(parts.begin(), parts.end(), wholeParts.begin(), wholeParts.end(), [](const Part& a, const Part& b) { return told(a) == told(b); }));
+        ASSERT_TRUE(std::equal(parts.begin(), parts.end(), wholeParts.begin(), wholeParts.end(),
+                               [](const Part& a, const Part& b) { return told(a) == told(b); }));
         EXPECT_EQ(pipeline.model().shapeOf, (*model)->shapeOf);
         const eval::Tape tape = eval::compile((*model)->graph, (*model)->field, (*model)->graph.constants());
         ASSERT_EQ(eval::fingerprint(pipeline.tape()), eval::fingerprint(tape));
@@ -82,7 +84,8 @@ TEST_P(Walk, KeepsTheBytes) {
     for (int step = 0; step < 10; ++step, key = mix(key)) {
         const size_t which = pick(key, grammar->params.size());
         SCOPED_TRACE("step " + std::to_string(step) + ", " + grammar->params[which].name);
-        if (step > 0 && step != 4) options.params[which] = drawn(grammar->params[which], options.params[which], combine(key, which));
+        if (step > 0 && step != 4)
+            options.params[which] = drawn(grammar->params[which], options.params[which], combine(key, which));
         if (step == 8) options.seed = 7;
         followed.expectSame(options);
         if (testing::Test::HasFatalFailure()) return;
@@ -123,7 +126,8 @@ TEST(District, OneBuildingIsDragged) {
 /// Parts that cut, melt, mirror each other's surface, shrink to a morph's end or to nothing special (0, 1).
 constexpr const char* mixed =
     "grammar 1\n"
-    "param a = .4 in 0..1\nparam b = 1m in 0m..2m\nparam c = 1.5m in .5m..3m\nparam t = 20deg in 0deg..45deg\nparam n = 2 in 1..4\n"
+    "param a = .4 in 0..1\nparam b = 1m in 0m..2m\nparam c = 1.5m in .5m..3m\nparam t = 20deg in 0deg..45deg\nparam n "
+    "= 2 in 1..4\n"
     "param melt = .2m in 0m..1m\nparam rough = .05m in 0m..0.2m\nparam paint = #ff0000\n"
     "terminal red = cube color paint\n"
     "start All -> Row, Melted move (0, 0, 8m), Noisy move (0, 0, -8m)\n"
@@ -148,9 +152,12 @@ TEST(Mixed, EveryParameterKeepsTheBytes) {
         rules::Value& value = options.params[which];
         const rules::Param& param = grammar->params[which];
         const double end = pick(key, 6);
-        if (step > 0 && param.lo && end < 2) value.n[0] = end == 0 ? param.lo->n[0] : param.hi->n[0];
-        else if (step > 0 && param.lo) value = drawn(param, value, key);
-        else if (step > 0) value.n[1] = uniform(key);
+        if (step > 0 && param.lo && end < 2)
+            value.n[0] = end == 0 ? param.lo->n[0] : param.hi->n[0];
+        else if (step > 0 && param.lo)
+            value = drawn(param, value, key);
+        else if (step > 0)
+            value.n[1] = uniform(key);
         followed.expectSame(options);
         if (testing::Test::HasFatalFailure()) return;
     }
@@ -159,7 +166,9 @@ TEST(Mixed, EveryParameterKeepsTheBytes) {
 }
 
 TEST(Pipeline, AfterAnErrorItStartsAfresh) {
-    const auto grammar = grammarOf("grammar 1\nparam n = 2 in 0..9\nparam w = 1m in .1m..2m\nstart A -> for k in 1..3 when k <= n { cube size w move (2m * k, 0, 0) }\n");
+    const auto grammar = grammarOf(
+        "grammar 1\nparam n = 2 in 0..9\nparam w = 1m in .1m..2m\nstart A -> for k in 1..3 when k <= n { cube size w "
+        "move (2m * k, 0, 0) }\n");
     ASSERT_TRUE(grammar);
     derive::Options options = defaults(*grammar);
     Followed followed(grammar, 30);

@@ -42,7 +42,8 @@ void expectClad(const std::string& solid, const std::string& clad) {
 }
 
 TEST(Clad, EveryMassModel) {
-    const std::pair<const char*, double> masses[] = {{"Box", 1}, {"Tee", 5.0 / 9}, {"Aitch", 7.0 / 9}, {"Ell", 0.64}, {"You", 2.0 / 3}, {"Court", 0.75}};
+    const std::pair<const char*, double> masses[] = {{"Box", 1},    {"Tee", 5.0 / 9}, {"Aitch", 7.0 / 9},
+                                                     {"Ell", 0.64}, {"You", 2.0 / 3}, {"Court", 0.75}};
     for (const auto& [mass, share] : masses) {
         const std::string solid = std::string(mass) + " size (24, 12, 24)";
         expectClad(solid, "clad palazzo");
@@ -51,21 +52,31 @@ TEST(Clad, EveryMassModel) {
         eachPlace(bare, 8000, [&](Vec3f p) { in += bare.inside(p); });
         EXPECT_NEAR(in / 8000.0, share, 0.02) << mass;
     }
-    for (const char* mass : {"Drum", "Ring", "Arc"}) expectClad(std::string(mass) + " size (24, 12, 24)", "clad ornament(center: (.93, .93, .33), zoom: 1.6, pan: .5, round: 12m, core: 2m, bay: 4m)");
+    for (const char* mass : {"Drum", "Ring", "Arc"})
+        expectClad(std::string(mass) + " size (24, 12, 24)",
+                   "clad ornament(center: (.93, .93, .33), zoom: 1.6, pan: .5, round: 12m, core: 2m, bay: 4m)");
 }
 
 TEST(Clad, AnySolidOfTheGrammar) {
-    for (const char* solid : {"sphere size 14", "torus(.4) size (20, 8, 20)", "cone size 14", "morph(sphere, cube, .5) size (16, 12, 10)",
-                              "(cube size (18, 14, 10) + sphere size 16 - cylinder size (5, 20, 5) turn 20deg)", "roof(.4) size (16, 9, 12)"})
+    for (const char* solid :
+         {"sphere size 14", "torus(.4) size (20, 8, 20)", "cone size 14", "morph(sphere, cube, .5) size (16, 12, 10)",
+          "(cube size (18, 14, 10) + sphere size 16 - cylinder size (5, 20, 5) turn 20deg)",
+          "roof(.4) size (16, 9, 12)"})
         expectClad(solid, "clad loggia thickness .8m tile (4m, 3m)");
 }
 
 TEST(Clad, AKifsOfTheSketchLiesAsItIsTold) {
-    const char* ornate = "terminal ornate = kifs(center: (.93, .93, .33), scale: 3, fold: rotY(12deg), passes: 6) color #ffffff\n";
-    const Lowered model(text("(cube size (18, 24, 10) + cube size (8, 24, 22)) clad ornate thickness .4m tile (6m, 3m) mirror (.25, .125, .4)", ornate));
+    const char* ornate =
+        "terminal ornate = kifs(center: (.93, .93, .33), scale: 3, fold: rotY(12deg), passes: 6) color #ffffff\n";
+    const Lowered model(
+        text("(cube size (18, 24, 10) + cube size (8, 24, 22)) clad ornate thickness .4m tile (6m, 3m) mirror (.25, "
+             ".125, .4)",
+             ornate));
     ASSERT_TRUE(model.model);
     const derive::Cladding& clad = model.derivation.tree.extras.at(model.derivation.tree.shapes[1].extras).clad.at(0);
-    const auto value = [&](field::FacadeParameter p, size_t i = 0) { return clad.ornament.args[static_cast<size_t>(p)].n[i]; };
+    const auto value = [&](field::FacadeParameter p, size_t i = 0) {
+        return clad.ornament.args[static_cast<size_t>(p)].n[i];
+    };
     EXPECT_EQ(value(field::FacadeParameter::Bay), 6);
     EXPECT_EQ(value(field::FacadeParameter::Storey), 3);
     EXPECT_EQ(value(field::FacadeParameter::Wall), 0.4);
@@ -75,14 +86,18 @@ TEST(Clad, AKifsOfTheSketchLiesAsItIsTold) {
     // What stands in the middle is the solid's own, what sticks out the ornament's.
     EXPECT_EQ(model.owner({0, 0, 0}).symbol, "cube");
     int ornaments = 0;
-    eachPlace(model, 20000, [&](Vec3f p) { ornaments += std::abs(model.value(p)) < 0.05f && model.owner(p).symbol == "ornate"; });
+    eachPlace(model, 20000,
+              [&](Vec3f p) { ornaments += std::abs(model.value(p)) < 0.05f && model.owner(p).symbol == "ornate"; });
     EXPECT_GT(ornaments, 0);
 }
 
 /// One facade id's numbers change the wall there and nowhere else.
 TEST(Clad, FreeValuesForAnId) {
     const auto facade = [](const std::string& zoom) {
-        return text("cube size (12, 9, 8) clad ornament(center: (.93, .93, .33), bay: 4m, storey: 3m, mirror: (.25, .125, .4), zoom: " + zoom + ", pan: .4)");
+        return text(
+            "cube size (12, 9, 8) clad ornament(center: (.93, .93, .33), bay: 4m, storey: 3m, mirror: (.25, .125, .4), "
+            "zoom: " +
+            zoom + ", pan: .4)");
     };
     const Lowered plain(facade("(1.4, 1.4, 1.4, 1.4)")), other(facade("(1.4, 2.2, 1.4, 1.4)"));
     const derive::ShapeTree& tree = plain.derivation.tree;
@@ -100,7 +115,8 @@ TEST(Clad, FreeValuesForAnId) {
 TEST(Clad, BandsOfStoreysAndPatternsThatChangeAlongAChain) {
     const Lowered bands(text("split y { 4m: cube clad palazzo | ~1: cube clad loggia } size (16, 12, 12)"));
     const Lowered chain(text("cube size (12, 4, 12) clad palazzo : Storey",
-                             "rule Storey repeat 4 -> + cube size (12, 4, 12) at +y clad ornament(center: (.93, .93, .33) ~> (1.04, .92, .3), "
+                             "rule Storey repeat 4 -> + cube size (12, 4, 12) at +y clad ornament(center: (.93, .93, "
+                             ".33) ~> (1.04, .92, .3), "
                              "zoom: 1.4 ~> 3, pan: .4, bay: 4m, storey: 4m) : Storey\n"));
     for (const Lowered* model : {&bands, &chain}) {
         ASSERT_TRUE(model->model);

@@ -94,11 +94,14 @@ TEST(ConvexParts, BuildingsAreNoFatterThanTheyAre) {
 }
 
 TEST(ConvexParts, SolidsOverFootprintsAreExact) {
-    for (const char* plan : {"ell(16, 12, 6, 5)", "ring(20, 16, 5)", "ngon(7, 6m)", "outline((0, 0), (12, -1), (17, 4), (13, 10), (8, 7), (2, 9))"})
-        for (const char* solid : {"block", "hipRoof(35deg, overhang: .5m)", "gableRoof(40deg, overhang: .4m, fascia: .2m, cover: .3m)",
-                                  "flatRoof(.3m, 1m, .5m)", "mansardRoof(65deg, 1.5m, 20deg)", "gambrelRoof(60deg, 1.4m, 25deg, ends: x)"}) {
+    for (const char* plan : {"ell(16, 12, 6, 5)", "ring(20, 16, 5)", "ngon(7, 6m)",
+                             "outline((0, 0), (12, -1), (17, 4), (13, 10), (8, 7), (2, 9))"})
+        for (const char* solid : {"block", "hipRoof(35deg, overhang: .5m)",
+                                  "gableRoof(40deg, overhang: .4m, fascia: .2m, cover: .3m)", "flatRoof(.3m, 1m, .5m)",
+                                  "mansardRoof(65deg, 1.5m, 20deg)", "gambrelRoof(60deg, 1.4m, 25deg, ends: x)"}) {
             SCOPED_TRACE(std::string(plan) + " " + solid);
-            const Lowered model("grammar 1\nstart A -> footprint " + std::string(plan) + " extrude 4m turn 20deg B\nrule B -> " + solid + "\n");
+            const Lowered model("grammar 1\nstart A -> footprint " + std::string(plan) +
+                                " extrude 4m turn 20deg B\nrule B -> " + solid + "\n");
             const ConvexParts parts = partsOf(model);
             const Overlay convex(model, polyhedra(parts));
             EXPECT_NEAR(convex.pieces, 1, 0.005);

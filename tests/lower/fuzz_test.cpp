@@ -45,7 +45,8 @@ bool grow(const std::shared_ptr<const rules::Grammar>& grammar, const std::strin
 
 TEST(Fuzz, MutantsGrowOrSayWhyNot) {
     uint64_t key = 0, checked = 0, solid = 0;
-    for (const char* const seed : {"examples/joints.sgm", "examples/figure1.sgm", "examples/cumulus.sgm", "tests/rules/sketch.sgm"}) {
+    for (const char* const seed :
+         {"examples/joints.sgm", "examples/figure1.sgm", "examples/cumulus.sgm", "tests/rules/sketch.sgm"}) {
         const syntax::Mutator mutate(rules::readText(seed));
         for (uint64_t i = 0; i < mutantCount() / 4; ++i) {
             const std::string text = mutate(++key);

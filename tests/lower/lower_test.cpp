@@ -20,7 +20,7 @@ TEST(Order, ADifferenceCutsWhatItsNodeHoldsSoFar) {
 
 TEST(Order, ADifferenceCutsNothingElse) {
     const Lowered d("grammar 1\nstart S -> cube size 4, cube size 4 move (6, 0, 0) - cube size (20, 1, 1)\n");
-    EXPECT_TRUE(d.inside({0, 0, 0}));   // the first sibling stays whole
+    EXPECT_TRUE(d.inside({0, 0, 0}));  // the first sibling stays whole
     EXPECT_FALSE(d.inside({6, 0, 0}));
 }
 
@@ -39,7 +39,8 @@ TEST(Order, ConsecutiveBlendsAreOneMelt) {
     // Equal balls around a point: the melt doesn't depend on their order.
     const char* parts[] = {" + sphere size 2 move (1, 0, 0) blend .5", " + sphere size 2 move (0, 1, 0) blend .5"};
     const std::string head = "grammar 1\nstart S -> sphere size 2";
-    const Lowered ab(head + parts[0] + parts[1] + "\n"), ba(head + parts[1] + parts[0] + "\n"), sharp(head + " + sphere size 2 move (1, 0, 0) + sphere size 2 move (0, 1, 0)\n");
+    const Lowered ab(head + parts[0] + parts[1] + "\n"), ba(head + parts[1] + parts[0] + "\n"),
+        sharp(head + " + sphere size 2 move (1, 0, 0) + sphere size 2 move (0, 1, 0)\n");
     for (const Vec3f p : {Vec3f{0.9f, 0.9f, 0}, Vec3f{0.5f, 0.5f, 0.8f}}) {
         EXPECT_NEAR(ab.value(p), ba.value(p), 1e-6);
         EXPECT_LT(ab.value(p), sharp.value(p) - 1e-3);
@@ -67,7 +68,8 @@ TEST(Order, DisplacementMovesTheWholeContent) {
     const Lowered plain("grammar 1\nstart S -> (cube size 2 + sphere size 2 at +y)\n");
     const Lowered rough("grammar 1\nstart S -> (cube size 2 + sphere size 2 at +y) displace billow(.1m, 2/m)\n");
     int changed = 0;
-    for (float y = -1; y < 3; y += 0.25f) changed += std::abs(plain.value({1, y, 0.1f}) - rough.value({1, y, 0.1f})) > 1e-4f;
+    for (float y = -1; y < 3; y += 0.25f)
+        changed += std::abs(plain.value({1, y, 0.1f}) - rough.value({1, y, 0.1f})) > 1e-4f;
     EXPECT_GT(changed, 8);
     EXPECT_NE(rough.owner({1, 0, 0}).path, "");
 }
@@ -81,8 +83,10 @@ TEST(Shapes, TurnedAndPlacedScopes) {
 }
 
 TEST(Owners, SurfaceTellsItsShapeAndLine) {
-    const Lowered d("grammar 1\nterminal wall color #ff0000\nterminal glass color #0000ff\nstart S -> wall : A\n"
-                    "rule Cut: A -> - cube size .5 at +x to centre, - glass size .5 at -x to centre, + sphere size .5 at +y to centre\n");
+    const Lowered d(
+        "grammar 1\nterminal wall color #ff0000\nterminal glass color #0000ff\nstart S -> wall : A\n"
+        "rule Cut: A -> - cube size .5 at +x to centre, - glass size .5 at -x to centre, + sphere size .5 at +y to "
+        "centre\n");
     const auto material = [&](const Part& p) { return d.model->provenance.materials[p.material].name; };
     EXPECT_EQ(d.owner({0, 0, 0.5f}).symbol, "A");
     EXPECT_EQ(material(d.owner({0, 0, 0.5f})), "wall");
@@ -99,16 +103,19 @@ TEST(Owners, SurfaceTellsItsShapeAndLine) {
 }
 
 TEST(Owners, ARoughenedSurfaceIsStillItsPartsOwn) {
-    const Lowered d("grammar 1\nterminal wall color #ff0000\nterminal glass color #0000ff\n"
-                    "start S -> (wall size 2 + glass size 1 at +y - cube size (4, .2, 4) move (0, .5, 0)) displace fbm(.05m, 2/m)\n");
+    const Lowered d(
+        "grammar 1\nterminal wall color #ff0000\nterminal glass color #0000ff\n"
+        "start S -> (wall size 2 + glass size 1 at +y - cube size (4, .2, 4) move (0, .5, 0)) displace fbm(.05m, "
+        "2/m)\n");
     EXPECT_EQ(d.owner({1, 0, 0}).symbol, "wall");
     EXPECT_EQ(d.owner({0.5f, 1.5f, 0}).symbol, "glass");
     EXPECT_EQ(d.owner({0, 0.4f, 0}).symbol, "cube");
 }
 
 TEST(Owners, AMorphLooksLikeTheFirstOfItsSolidsThatHasALook) {
-    const Lowered d("grammar 1\nterminal wall color #ff0000\nterminal glass color #0000ff\n"
-                    "start S -> cube size 2 + morph(sphere, wall, .5) size 2 at +x + (glass + wall) size 2 at -x\n");
+    const Lowered d(
+        "grammar 1\nterminal wall color #ff0000\nterminal glass color #0000ff\n"
+        "start S -> cube size 2 + morph(sphere, wall, .5) size 2 at +x + (glass + wall) size 2 at -x\n");
     const auto material = [&](Vec3f p) { return d.model->provenance.materials[d.owner(p).material].name; };
     EXPECT_EQ(material({2, 1, 0}), "wall");
     EXPECT_EQ(material({-2, 1, 0}), "glass");
@@ -116,7 +123,9 @@ TEST(Owners, AMorphLooksLikeTheFirstOfItsSolidsThatHasALook) {
 }
 
 TEST(Slots, AChangedNumberKeepsTheStructure) {
-    const std::string text = "grammar 1\nparam r = 1 in .5..2\nstart S -> cube : A\nrule A repeat 5 -> + morph(sphere, cube, r / 2) size r at free() : A\n";
+    const std::string text =
+        "grammar 1\nparam r = 1 in .5..2\nstart S -> cube : A\nrule A repeat 5 -> + morph(sphere, cube, r / 2) size r "
+        "at free() : A\n";
     derive::Options other;
     other.params = {rules::Value::number(1.5)};
     const Lowered a(text), b(text, other);
@@ -157,7 +166,9 @@ TEST(Scale, CavesAndCloudsOfThousands) {
     const Lowered puffs(cloud, reach);
     EXPECT_EQ(puffs.derivation.terminals(), 6u * 820 + 2);
     // A tree 2,000 deep, not only wide.
-    const Lowered deep("grammar 1\nstart S -> cube : X\nrule X when scope.x > .8 -> + sphere size (scope.x - .0001, 1, 1) at +y : X\n");
+    const Lowered deep(
+        "grammar 1\nstart S -> cube : X\nrule X when scope.x > .8 -> + sphere size (scope.x - .0001, 1, 1) at +y : "
+        "X\n");
     EXPECT_GT(deep.derivation.tree.shapes.back().depth, 1990u);
     EXPECT_TRUE(deep.inside({0, 1000, 0}));
     EXPECT_LT(secondsOf(CLOCK_PROCESS_CPUTIME_ID) - begin, cpuSeconds(3));
@@ -170,7 +181,8 @@ TEST(Determinism, EqualDerivationsGiveEqualGraphs) {
         EXPECT_EQ(a.model->graph.node(i).op, b.model->graph.node(i).op);
         EXPECT_EQ(a.model->graph.node(i).first, b.model->graph.node(i).first);
     }
-    EXPECT_TRUE(std::equal(a.model->graph.constants().begin(), a.model->graph.constants().end(), b.model->graph.constants().begin()));
+    EXPECT_TRUE(std::equal(a.model->graph.constants().begin(), a.model->graph.constants().end(),
+                           b.model->graph.constants().begin()));
 }
 
 TEST(Order, NothingIsSharedWithTheEmptyShape) {
@@ -191,7 +203,8 @@ TEST(Rotations, ATurnedWallHasTheTapeOfAStraightOne) {
         return Lowered("grammar 1\nterminal brick, glass\nstart F -> Wall size (30, 20, .6)" + turn +
                        "\nrule Wall -> split y { { ~3m: split x { { ~2m: brick | 1m: glass }* } }* }\n");
     };
-    const Lowered straight = wall(""), quarter = wall(" turn 90deg"), turned = wall(" turn 30deg"), tilted = wall(" turn (10deg, 30deg, -5deg)");
+    const Lowered straight = wall(""), quarter = wall(" turn 90deg"), turned = wall(" turn 30deg"),
+                  tilted = wall(" turn (10deg, 30deg, -5deg)");
     EXPECT_GT(straight.tape().size(), 100u);
     EXPECT_LE(quarter.tape().size(), straight.tape().size() + 2);
     EXPECT_LE(turned.tape().size(), straight.tape().size() + 20);

@@ -37,11 +37,14 @@ TEST(Materials, LooksOfOneNameAreNumbered) {
 }
 
 TEST(Materials, TerminalsNameTheirLookAndWhatChangesTheRestOfIt) {
-    EXPECT_EQ(namesIn("terminal stone color #c2b59b rough .9\nstart S -> stone + stone rough .1 at +y + stone color #ff0000 at +x\n"),
+    EXPECT_EQ(namesIn("terminal stone color #c2b59b rough .9\nstart S -> stone + stone rough .1 at +y + stone color "
+                      "#ff0000 at +x\n"),
               (Names{"stone", "stone_2", "stone_3"}));
-    EXPECT_EQ(namesIn("terminal stone color #c2b59b\nparam tint = #112233\nstart S -> stone color tint\n"), (Names{"tint"}));
+    EXPECT_EQ(namesIn("terminal stone color #c2b59b\nparam tint = #112233\nstart S -> stone color tint\n"),
+              (Names{"tint"}));
     // A terminal that nobody uses doesn't name a look.
-    EXPECT_EQ(namesIn("terminal stone color #c2b59b\nparam tint = #c2b59b\nstart S -> cube color tint\n"), (Names{"tint"}));
+    EXPECT_EQ(namesIn("terminal stone color #c2b59b\nparam tint = #c2b59b\nstart S -> cube color tint\n"),
+              (Names{"tint"}));
     EXPECT_EQ(namesIn("terminal stone color #c2b59b\nparam tint = #c2b59b\nstart S -> cube color tint + stone at +y\n"),
               (Names{"stone"}));
 }

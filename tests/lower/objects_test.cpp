@@ -125,7 +125,8 @@ TEST(Objects, AreAlikeWhereOnlyTheirPlaceDiffers) {
     for (const char* differs : {" turn (10deg * k)", " size (1 + k, 1, 1)", " with n = k"}) {
         SCOPED_TRACE(differs);
         const bool takesN = std::string(differs).find("with") != std::string::npos;
-        const auto all = likenessesOf(street + differs + " }\n" + (takesN ? "rule House -> cube size (1, n, 1)" : house) + "\n", "House");
+        const auto all = likenessesOf(
+            street + differs + " }\n" + (takesN ? "rule House -> cube size (1, n, 1)" : house) + "\n", "House");
         ASSERT_EQ(all.size(), 3u);
         EXPECT_NE(all[0], all[1]);
     }

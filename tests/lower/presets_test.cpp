@@ -1,6 +1,6 @@
 // Every pattern of grammar/std/kifs.sgm on a box: its distances hold, rays find its surface, its mesh is one solid.
-// Environment, for longer runs than the suite's: SGM_POINTS, points over all patterns (1000000); SGM_RAYS, pixels along a
-// side of the traced picture, all of them (640, every eighth); SGM_CELLS, a list of cells along the box ("256 512").
+// Environment, for longer runs than the suite's: SGM_POINTS, points over all patterns (1000000); SGM_RAYS, pixels along
+// a side of the traced picture, all of them (640, every eighth); SGM_CELLS, a list of cells along the box ("256 512").
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -42,10 +42,14 @@ class Presets : public testing::TestWithParam<std::string> {
 protected:
     /// The pattern on a box of that size.
     static Lowered on(Vec3d size) {
-        return Lowered(fmt::format("grammar 1\nuse \"std/kifs.sgm\"\nstart Test -> Box size ({}, {}, {}) clad {}\n", size.x, size.y, size.z, GetParam()));
+        return Lowered(fmt::format("grammar 1\nuse \"std/kifs.sgm\"\nstart Test -> Box size ({}, {}, {}) clad {}\n",
+                                   size.x, size.y, size.z, GetParam()));
     }
     static double number(const Lowered& model, field::FacadeParameter p) {
-        return model.derivation.tree.extras.at(model.derivation.tree.shapes[1].extras).clad.at(0).ornament.args[static_cast<size_t>(p)].num();
+        return model.derivation.tree.extras.at(model.derivation.tree.shapes[1].extras)
+            .clad.at(0)
+            .ornament.args[static_cast<size_t>(p)]
+            .num();
     }
     static size_t points() { return std::stoul(environment("SGM_POINTS", "1000000")) / presets().size() + 1; }
 };
@@ -116,7 +120,8 @@ TEST_P(Presets, NoStepCrossesASurface) {
         const std::vector<float> g = there.values(model.tape());
         for (size_t i = 0; i < ways.size(); ++i) {
             if (std::abs(f[i]) * (1 - share) < rounding_m) continue;
-            ASSERT_EQ(g[i] < 0, f[i] < 0) << "at " << from.at(i).x << ' ' << from.at(i).y << ' ' << from.at(i).z << ": " << f[i] << ", then " << g[i];
+            ASSERT_EQ(g[i] < 0, f[i] < 0) << "at " << from.at(i).x << ' ' << from.at(i).y << ' ' << from.at(i).z << ": "
+                                          << f[i] << ", then " << g[i];
             air += f[i] > 0;
         }
     }
@@ -136,7 +141,9 @@ std::array<std::vector<float>, 3> bordersOf(const Lowered& model) {
         };
         constexpr int steps = 400;
         for (int i = 0; i < steps; ++i) {
-            const auto step = [&](int k) { return box.lo[axis] + box.size()[axis] * (static_cast<float>(k) + 0.37f) / (steps + 1); };
+            const auto step = [&](int k) {
+                return box.lo[axis] + box.size()[axis] * (static_cast<float>(k) + 0.37f) / (steps + 1);
+            };
             float a = step(i), b = step(i + 1);
             if (cellAt(a) == cellAt(b)) continue;
             for (int halving = 0; halving < 20; ++halving) (cellAt((a + b) / 2) == cellAt(a) ? a : b) = (a + b) / 2;
@@ -162,7 +169,8 @@ TEST_P(Presets, ChangeNoFasterThanTheirBound) {
         if (i % 2) {
             size_t axis = static_cast<size_t>(draws.draw(0, 2.999f));
             if (planes[axis].empty()) axis = 1;
-            const float plane = planes[axis][static_cast<size_t>(draws.draw(0, static_cast<float>(planes[axis].size()) - 0.01f))];
+            const float plane =
+                planes[axis][static_cast<size_t>(draws.draw(0, static_cast<float>(planes[axis].size()) - 0.01f))];
             p[static_cast<int>(axis)] = plane - way[static_cast<int>(axis)] * apart * draws.draw(0, 1);
         }
         a.add(p), b.add(p + way * apart);
@@ -183,14 +191,17 @@ TEST_P(Presets, RaysFindWhatFineStepsFind) {
     ASSERT_TRUE(model.model);
     const std::string all = environment("SGM_RAYS", "");
     const test::Picture picture(model.model->field.bounds, all.empty() ? 640 : std::stoi(all), all.empty() ? 8 : 1);
-    const size_t wrong = test::wrongRays(picture, model.model->field.lipschitz, [&](const float* x, const float* y, const float* z, size_t n, float* out) {
-        constexpr size_t some = 4096;
-        parallelFor((n + some - 1) / some, 2, nullptr, [&](size_t k, int) {
-            thread_local eval::Workspace workspace;
-            const size_t first = k * some;
-            eval::evaluate(model.tape(), {x + first, y + first, z + first, std::min(some, n - first)}, out + first, workspace);
+    const size_t wrong = test::wrongRays(
+        picture, model.model->field.lipschitz,
+        [&](const float* x, const float* y, const float* z, size_t n, float* out) {
+            constexpr size_t some = 4096;
+            parallelFor((n + some - 1) / some, 2, nullptr, [&](size_t k, int) {
+                thread_local eval::Workspace workspace;
+                const size_t first = k * some;
+                eval::evaluate(model.tape(), {x + first, y + first, z + first, std::min(some, n - first)}, out + first,
+                               workspace);
+            });
         });
-    });
     if (!all.empty()) fmt::print("{}: {} of {} rays\n", GetParam(), wrong, picture.ways.size());
     EXPECT_LE(static_cast<double>(wrong), 1e-3 * static_cast<double>(picture.ways.size()));
 }
@@ -219,7 +230,9 @@ TEST_P(Presets, StandInOnePiece) {
         EXPECT_NEAR(figures.volume_m3, all - dropped.volume_m3 + dropped.filled_m3, 1e-3 * all);
         EXPECT_GE(figures.volume_m3, 0.95 * all);
         EXPECT_LE(dropped.volume_m3, 0.05 * (all - inner)) << "of what stands outside the inner shell";
-        if (whole) fmt::print("{} at {}: {} triangles, {:.2f} % of the ornament left out\n", GetParam(), n, figures.triangles, 100 * dropped.volume_m3 / (all - inner));
+        if (whole)
+            fmt::print("{} at {}: {} triangles, {:.2f} % of the ornament left out\n", GetParam(), n, figures.triangles,
+                       100 * dropped.volume_m3 / (all - inner));
     }
 }
 

@@ -182,10 +182,11 @@ TEST(SolidTree, NamesWhatIsNoSolid) {
               "test.sgm:3:3: 'S/cube/sphere' morphs what stands, 0.4 of the way: 0 and 1 alone are solids");
     EXPECT_EQ(refusal("+ morph(cube, sphere, .5) size 4"),
               "test.sgm:3:3: 'S/cube/morph' is a morph, 0.5 of the way: 0 and 1 alone are solids");
-    EXPECT_EQ(
-        refusal("+ roof(.3) size 4 at +y"),
-        "test.sgm:3:3: 'S/cube/roof' is a roof 0.3 of the way from a pyramid to an ellipsoid: 0 and 1 alone are solids");
-    EXPECT_EQ(refusal("+ kifs size 4 at +y"), "test.sgm:3:3: 'S/cube/kifs' is a fractal (kifs): no solid is exactly that");
+    EXPECT_EQ(refusal("+ roof(.3) size 4 at +y"),
+              "test.sgm:3:3: 'S/cube/roof' is a roof 0.3 of the way from a pyramid to an ellipsoid: 0 and 1 alone are "
+              "solids");
+    EXPECT_EQ(refusal("+ kifs size 4 at +y"),
+              "test.sgm:3:3: 'S/cube/kifs' is a fractal (kifs): no solid is exactly that");
     EXPECT_EQ(refusal("+ sphere size 4 at +y displace billow(.05m, 2/m)"),
               "test.sgm:3:3: 'S/cube/sphere' is displaced by noise");
     EXPECT_EQ(refusal("+ cube size 4 at +y clad ornament()"), "test.sgm:3:3: 'S/cube/cube' is clad with an ornament");

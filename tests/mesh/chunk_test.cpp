@@ -57,7 +57,8 @@ TEST(Chunk, VerticesThatWaitForTheNextBricksAreTheSame) {
     alone.field = field::sum(alone.graph, one);
     std::vector<field::Owned> parts{ballOf(among)};
     for (int i = 0; i < 60; ++i) {
-        const float z = static_cast<float>(2 * i + 1) / 60 - 1, turn = 2.4f * static_cast<float>(i), r = std::sqrt(1 - z * z);
+        const float z = static_cast<float>(2 * i + 1) / 60 - 1, turn = 2.4f * static_cast<float>(i),
+                    r = std::sqrt(1 - z * z);
         parts.push_back({ball(among.graph, Vec3f{r * std::cos(turn), r * std::sin(turn), z} * 1.4f, 0.05f), 2});
     }
     among.field = field::sum(among.graph, parts);

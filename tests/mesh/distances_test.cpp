@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-
 namespace sgm::mesh {
 namespace {
 
@@ -137,7 +136,8 @@ TEST(Distances, AreTheSameWhereverTheMeshStands) {
     const std::vector<float> near = gridOf({0, 0, 0}, 1);
     ASSERT_FALSE(near.empty());
     // A surveyor's coordinates, single precision's last whole numbers and far beyond them.
-    for (const Vec3d lo : {Vec3d{500000, 5400000, 200}, {0, 0, 16777216}, {-1e12, 3e9, 7}}) EXPECT_EQ(gridOf(lo, 1), near) << lo.x;
+    for (const Vec3d lo : {Vec3d{500000, 5400000, 200}, {0, 0, 16777216}, {-1e12, 3e9, 7}})
+        EXPECT_EQ(gridOf(lo, 1), near) << lo.x;
 }
 
 TEST(Distances, AreFoundOfMeshesOfAnySize) {
@@ -168,7 +168,9 @@ TEST(Distances, RefuseMoreLargeTrianglesThanMinutesAllow) {
         addBox(chunk, {o, o, o}, {1 + o, 1 + o, 1 + o});
     }
     Mesh few;
-    for (int i = 0; i < 20; ++i) addBox(few.chunks.empty() ? few.chunks.emplace_back() : few.chunks[0], {0, 0, 0}, {1, 1, 1 + 0.01f * static_cast<float>(i)});
+    for (int i = 0; i < 20; ++i)
+        addBox(few.chunks.empty() ? few.chunks.emplace_back() : few.chunks[0], {0, 0, 0},
+               {1, 1, 1 + 0.01f * static_cast<float>(i)});
     EXPECT_TRUE(toDistances(few).ok());
     const auto grid = toDistances(mesh);
     ASSERT_FALSE(grid.ok());

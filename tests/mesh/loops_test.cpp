@@ -230,7 +230,8 @@ struct RandomEdges {
 
 TEST(Loops, EdgesArePlacedBetweenTheirEnds) {
     const Samples at = randomSamples(9), values = randomSamples(10);
-    const EdgeEnds ends{{at.data(), at.data() + 20, at.data() + 40}, values.data(), {1, side, side * side}, {1, 30, 900}};
+    const EdgeEnds ends{
+        {at.data(), at.data() + 20, at.data() + 40}, values.data(), {1, side, side * side}, {1, 30, 900}};
     for (const size_t n : {1, 16, 37})
         for (const Loops& l : loopsHere()) {
             CutEdges edges;

@@ -46,7 +46,8 @@ TEST(Pieces, KeepLeavesClosedSolidsAndFillsCavities) {
     Scene s;
     auto& g = s.graph;
     const field::Field rock = field::difference({box(g, {0, 4, 0}, {4, 4, 4}), 1}, {ball(g, {0, 4, 0}, 3), 1});
-    const field::Owned parts[] = {{rock, 1}, {ball(g, {0, 5, 0}, 1), 2}, {box(g, {7, 1, 0}, {1, 1, 1}), 3}, {ball(g, {7, 0.2f, 3}, 0.2f), 4}};
+    const field::Owned parts[] = {
+        {rock, 1}, {ball(g, {0, 5, 0}, 1), 2}, {box(g, {7, 1, 0}, {1, 1, 1}), 3}, {ball(g, {7, 0.2f, 3}, 0.2f), 4}};
     s.field = field::sum(g, parts);
     const Mesh whole = meshed(s);
     for (const Keep keep : {Keep::All, Keep::Grounded, Keep::Largest}) {
@@ -56,8 +57,13 @@ TEST(Pieces, KeepLeavesClosedSolidsAndFillsCavities) {
         EXPECT_EQ(f.boundaryEdges + f.nonmanifoldEdges, 0u);
         EXPECT_EQ(f.components, keep == Keep::All ? 5u : keep == Keep::Grounded ? 2u : 1u);
         EXPECT_EQ(dropped.cavities, keep == Keep::All ? 0u : 1u);
-        EXPECT_EQ(dropped.pieces, keep == Keep::All ? 0u : keep == Keep::Grounded ? 2u : 3u) << "the ball in the air, the crumb, the box";
-        if (keep == Keep::Largest) { EXPECT_NEAR(f.volume_m3, 512, 1); }
+        EXPECT_EQ(dropped.pieces, keep == Keep::All        ? 0u
+                                  : keep == Keep::Grounded ? 2u
+                                                           : 3u)
+            << "the ball in the air, the crumb, the box";
+        if (keep == Keep::Largest) {
+            EXPECT_NEAR(f.volume_m3, 512, 1);
+        }
         uint32_t next = 0;
         for (const Chunk& c : mesh.chunks) {
             EXPECT_EQ(c.firstVertex, next);
@@ -78,7 +84,8 @@ TEST(Pieces, OfManyBlocksAreThoseOfTheWhole) {
         uint64_t triangles = 0;
         double volume_m3 = 0;
         Box3f bounds;
-        for (const Piece& p : found) triangles += p.triangles, volume_m3 += p.volume_m3, bounds = hull(bounds, p.bounds);
+        for (const Piece& p : found)
+            triangles += p.triangles, volume_m3 += p.volume_m3, bounds = hull(bounds, p.bounds);
         EXPECT_EQ(triangles, mesh.triangleCount());
         EXPECT_NEAR(volume_m3, whole.volume_m3, 1e-9);
         EXPECT_EQ(bounds, mesh.bounds());
@@ -99,9 +106,11 @@ TEST(Pieces, KeepLeavesTheSameSeamsAtAnyThreadCountAndOfABareMeshTheSameShape) {
                 const uint32_t first = c.borrowed.begin[kind], count = c.borrowed.begin[kind + 1] - first;
                 if (count == 0) continue;
                 const Chunk& lender = ownerOf(again.chunks, c.borrowed.vertices[first]);
-                ASSERT_EQ(lender.lent.begin[kind + 1] - lender.lent.begin[kind], count) << "both sides of a seam list the same vertices";
+                ASSERT_EQ(lender.lent.begin[kind + 1] - lender.lent.begin[kind], count)
+                    << "both sides of a seam list the same vertices";
                 for (uint32_t i = 0; i < count; ++i)
-                    EXPECT_EQ(c.borrowed.vertices[first + i], lender.firstVertex + lender.lent.vertices[lender.lent.begin[kind] + i]);
+                    EXPECT_EQ(c.borrowed.vertices[first + i],
+                              lender.firstVertex + lender.lent.vertices[lender.lent.begin[kind] + i]);
             }
             c.normals.clear(), c.origins.clear();
         }

@@ -198,7 +198,7 @@ TEST(Polygonize, ABareMeshIsTheShapeOfAFullOne) {
     Scene steps;  // without derivative
     steps.field = {floor(field::length(steps.graph.position())) - 0.5f, {{-1, -1, -1}, {1, 1, 1}}, 100, 0};
     const Scene one = ballScene();  // one tape and one owner
-    const Scene dear = fractal();  // refined by values
+    const Scene dear = fractal();   // refined by values
     const Scene cloud = cloudScene(60, 0.12f, 5);
     for (const Scene* s : std::initializer_list<const Scene*>{&steps, &one, &dear, &cloud})
         for (const int refineSteps : {0, 1, 3}) {

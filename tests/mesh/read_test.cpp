@@ -22,7 +22,9 @@ const std::string plyHead =
 
 class ReadMesh : public testing::Test {
 protected:
-    Result<TriangleSoup> read(const std::string& name, const std::string& bytes) { return readMesh(scratch_.write(name, bytes)); }
+    Result<TriangleSoup> read(const std::string& name, const std::string& bytes) {
+        return readMesh(scratch_.write(name, bytes));
+    }
     /// What is said of a file that can't be read; "" where it can.
     std::string refusal(const std::string& name, const std::string& bytes) {
         const auto mesh = read(name, bytes);
@@ -63,9 +65,12 @@ std::string binaryStl(const std::string& head = "x") {
 
 std::string binaryPly(bool bigEndian) {
     std::string out = std::string("ply\nformat binary_") + (bigEndian ? "big" : "little") +
-                      "_endian 1.0\ncomment C:\\models\\\nelement vertex 5\nproperty double x\nproperty float y\nproperty float z\nproperty uchar red\n"
-                      "element face 6\nproperty uchar flags\nproperty list int uint vertex_index\nelement edge 2\nproperty short a\nend_header\n";
-    for (const auto& p : points) put(out, double{p[0]}, bigEndian), put(out, p[1], bigEndian), put(out, p[2], bigEndian), out += 'r';
+                      "_endian 1.0\ncomment C:\\models\\\nelement vertex 5\nproperty double x\nproperty float "
+                      "y\nproperty float z\nproperty uchar red\n"
+                      "element face 6\nproperty uchar flags\nproperty list int uint vertex_index\nelement edge "
+                      "2\nproperty short a\nend_header\n";
+    for (const auto& p : points)
+        put(out, double{p[0]}, bigEndian), put(out, p[1], bigEndian), put(out, p[2], bigEndian), out += 'r';
     for (const auto& side : sides) {
         out += 'f';
         put(out, int32_t{3}, bigEndian);
@@ -76,7 +81,10 @@ std::string binaryPly(bool bigEndian) {
 
 TEST_F(ReadMesh, ReadsEveryDialect) {
     expectPyramid("a.obj", corners + "f 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
-    expectPyramid("b.OBJ", "# a\r\nmtllib /etc/passwd\r\n" + corners + "vt 0 0\nvn 0 0 1\no x\nusemtl y\nf -2/1/1 -3//1 \\\n -4 -5/1 # base\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5");
+    expectPyramid(
+        "b.OBJ",
+        "# a\r\nmtllib /etc/passwd\r\n" + corners +
+            "vt 0 0\nvn 0 0 1\no x\nusemtl y\nf -2/1/1 -3//1 \\\n -4 -5/1 # base\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5");
     expectPyramid("c.ply", plyHead + plyRows);
     expectPyramid("d.ply", "ply\r\ncomment before the format\r\n" + plyHead.substr(4) + plyRows);
     expectPyramid("e.ply", binaryPly(false));
@@ -86,31 +94,44 @@ TEST_F(ReadMesh, ReadsEveryDialect) {
     std::string text = "solid a b c\n";
     for (const auto& side : sides) {
         text += "facet normal 0 0 0\n outer loop\n";
-        for (const uint32_t v : side) text += "  vertex " + std::to_string(points[v][0]) + " " + std::to_string(points[v][1]) + " " + std::to_string(points[v][2]) + "\n";
+        for (const uint32_t v : side)
+            text += "  vertex " + std::to_string(points[v][0]) + " " + std::to_string(points[v][1]) + " " +
+                    std::to_string(points[v][2]) + "\n";
         text += " endloop\nendfacet\n";
     }
     expectPyramid("i.stl", text + "endsolid a b c\n");
     expectPyramid("j.off", "OFF\n# a\n5 5 0\n" + plyRows);
-    expectPyramid("k.off", "COFF 5 5 0\n0 0 0 255 0 0 255\n1 0 0 1 1 1 1\n1 1 0\n0 1 0 # b\n.5 .5 1\n4 3 2 1 0 .5 .5 .5\n3 0 1 4 255 0 0\n3 1 2 4\n3 2 3 4\n3 3 0 4");
+    expectPyramid("k.off",
+                  "COFF 5 5 0\n0 0 0 255 0 0 255\n1 0 0 1 1 1 1\n1 1 0\n0 1 0 # b\n.5 .5 1\n4 3 2 1 0 .5 .5 .5\n3 0 1 "
+                  "4 255 0 0\n3 1 2 4\n3 2 3 4\n3 3 0 4");
 }
 
 TEST_F(ReadMesh, KeepsTheDigitsOfFarCoordinates) {
-    const auto mesh = read("far.obj", "v 500000.123 5400000.456 200\nv 500001 5400000 200\nv 500000 5400001 200\nf 1 2 3\n");
+    const auto mesh =
+        read("far.obj", "v 500000.123 5400000.456 200\nv 500001 5400000 200\nv 500000 5400001 200\nf 1 2 3\n");
     ASSERT_TRUE(mesh.ok());
     EXPECT_EQ(mesh->positions[0], (Vec3d{500000.123, 5400000.456, 200}));
 }
 
 TEST_F(ReadMesh, SaysWhatIsWrongAndWhereWithoutQuotingIt) {
-    EXPECT_NE(refusal("a.obj", corners + "v 1 secret 2\n").find("a.obj' is damaged, line 6: a vertex needs three numbers"), std::string::npos) << refusal("a.obj", corners + "v 1 secret 2\n");
-    EXPECT_NE(refusal("b.ply", "ply\nformat ascii 1.0\nproperty float x\nend_header\n").find("line 3: a property stands before its element"), std::string::npos);
+    EXPECT_NE(
+        refusal("a.obj", corners + "v 1 secret 2\n").find("a.obj' is damaged, line 6: a vertex needs three numbers"),
+        std::string::npos)
+        << refusal("a.obj", corners + "v 1 secret 2\n");
+    EXPECT_NE(refusal("b.ply", "ply\nformat ascii 1.0\nproperty float x\nend_header\n")
+                  .find("line 3: a property stands before its element"),
+              std::string::npos);
     EXPECT_NE(refusal("c.fbx", "x").find("is no mesh that can be read"), std::string::npos);
-    EXPECT_NE(readMesh(scratch_ / "missing.obj").error().message.find("can't be read: No such file"), std::string::npos);
+    EXPECT_NE(readMesh(scratch_ / "missing.obj").error().message.find("can't be read: No such file"),
+              std::string::npos);
     EXPECT_NE(readMesh("/dev/zero.obj").error().message.find("can't be read"), std::string::npos);
 }
 
 TEST_F(ReadMesh, BelievesNoCount) {
-    const std::string list = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
-                             "element face 1\nproperty list int int vertex_indices\nend_header\n" + std::string(12, '\0');
+    const std::string list =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list int int vertex_indices\nend_header\n" +
+        std::string(12, '\0');
     for (const auto& [name, bytes] : {
              std::pair("a.stl", std::string("solid cut\n")),
              {"b.stl", binaryStl().substr(0, 300)},
@@ -135,14 +156,16 @@ TEST_F(ReadMesh, BelievesNoCount) {
              {"u.off", std::string("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-3 0 2 1\n")},
              {"v.off", std::string("OFF BINARY\n")},
              {"w.off", std::string()},
-             {"x.ply", std::string("ply\nformat ascii 1.0\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n3 0 1 2\n")},
+             {"x.ply", std::string("ply\nformat ascii 1.0\nelement face 3\nproperty list uchar int "
+                                   "vertex_indices\nend_header\n3 0 1 2\n")},
          })
         EXPECT_EQ(refusal(name, bytes).rfind("'", 0), 0u) << name;
 }
 
 TEST_F(ReadMesh, TakesAFaceOfAnyLength) {
     std::string text = "v 0 0 0\n", face = "f";
-    for (int64_t i = 0; i < 50000; ++i) text += "v " + std::to_string(i) + " " + std::to_string(i * i) + " 0\n", face += " " + std::to_string(i + 1);
+    for (int64_t i = 0; i < 50000; ++i)
+        text += "v " + std::to_string(i) + " " + std::to_string(i * i) + " 0\n", face += " " + std::to_string(i + 1);
     const auto mesh = read("long.obj", text + face + "\n");
     ASSERT_TRUE(mesh.ok());
     EXPECT_EQ(mesh->triangles.size(), 49998u);
@@ -158,8 +181,12 @@ TEST_F(ReadMesh, StopsWhenItIsCancelled) {
 
 /// Every file cut anywhere, and with bytes changed: read or refused, at once. SGM_FUZZ_MUTANTS sets how many.
 TEST_F(ReadMesh, SurvivesWhateverTheBytesAre) {
-    const std::pair<const char*, std::string> files[] = {{"m.obj", corners + "f 4 3 2 1\nf 1/1 2/2 5//1\n"}, {"m.ply", plyHead + plyRows}, {"n.ply", binaryPly(false)},
-                                                         {"o.ply", binaryPly(true)}, {"m.stl", binaryStl()}, {"m.off", "OFF\n5 5 0\n" + plyRows}};
+    const std::pair<const char*, std::string> files[] = {{"m.obj", corners + "f 4 3 2 1\nf 1/1 2/2 5//1\n"},
+                                                         {"m.ply", plyHead + plyRows},
+                                                         {"n.ply", binaryPly(false)},
+                                                         {"o.ply", binaryPly(true)},
+                                                         {"m.stl", binaryStl()},
+                                                         {"m.off", "OFF\n5 5 0\n" + plyRows}};
     const char* wanted = std::getenv("SGM_FUZZ_MUTANTS");
     const int mutants = wanted ? std::atoi(wanted) : 300;
     std::mt19937 random(7);
@@ -172,10 +199,17 @@ TEST_F(ReadMesh, SurvivesWhateverTheBytesAre) {
             for (uint32_t k = 1 + random() % 4; k > 0; --k) {
                 const size_t at = random() % mutant.size();
                 switch (random() % 4) {
-                    case 0: mutant[at] = static_cast<char>(random()); break;
-                    case 1: mutant[at] ^= static_cast<char>(1 << random() % 8); break;
-                    case 2: mutant.erase(at, 1 + random() % 8); break;
-                    default: mutant.insert(at, mutant.substr(random() % mutant.size(), random() % 40));
+                    case 0:
+                        mutant[at] = static_cast<char>(random());
+                        break;
+                    case 1:
+                        mutant[at] ^= static_cast<char>(1 << random() % 8);
+                        break;
+                    case 2:
+                        mutant.erase(at, 1 + random() % 8);
+                        break;
+                    default:
+                        mutant.insert(at, mutant.substr(random() % mutant.size(), random() % 40));
                 }
                 if (mutant.empty()) break;
             }

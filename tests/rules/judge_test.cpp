@@ -70,7 +70,8 @@ TEST(Endless, IsFoundOfLongChainsAtOnce) {
         const Checked ends = checkedBody(chain(40'000, true, backwards));
         EXPECT_EQ(ends.messages(), "");
         const Checked circle = checkedBody(chain(40'000, false, backwards));
-        EXPECT_NE(circle.messages().find("'R0' (R0#1) -> 'R1' (R1#1) -> "), std::string::npos) << circle.messages().substr(0, 300);
+        EXPECT_NE(circle.messages().find("'R0' (R0#1) -> 'R1' (R1#1) -> "), std::string::npos)
+            << circle.messages().substr(0, 300);
         EXPECT_LT(circle.messages().size(), 2000u);
         const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - started;
         EXPECT_LT(spent.count(), 4) << "quadratic work takes minutes";
@@ -112,7 +113,8 @@ TEST(Shadowed, ARuleBehindOneThatAlwaysHoldsIsTold) {
     EXPECT_EQ(judged("rule A when 1 == 1 -> + cube at +x\nrule A when 2 == 2 -> + sphere at +y\n"),
               "warning: this rule runs only where the one of line 3 has no joint left: its condition always holds\n");
     EXPECT_EQ(judged("rule A when scope.x > 1 -> sphere\nrule A -> cube\n"), "");
-    EXPECT_EQ(judged("rule A when false -> sphere\nrule A when 1 < 2 -> cube\n"), "") << "the second is the one that runs";
+    EXPECT_EQ(judged("rule A when false -> sphere\nrule A when 1 < 2 -> cube\n"), "")
+        << "the second is the one that runs";
 }
 
 TEST(Shadowed, ANeighbourIsDrawnAgainstAPlainRule) {
@@ -123,17 +125,22 @@ TEST(Shadowed, ANeighbourIsDrawnAgainstAPlainRule) {
 }
 
 TEST(Shares, OfAStartsOwnScopeAreTold) {
-    EXPECT_EQ(checkedBody("start A -> cube size 50%\n").messages(), "warning: a share of what? A start's own scope is 1m\n");
-    EXPECT_EQ(checkedBody("start A -> cube size 4 move (50%, 0, 0)\n").messages(), "warning: a share of what? A start's own scope is 1m\n");
+    EXPECT_EQ(checkedBody("start A -> cube size 50%\n").messages(),
+              "warning: a share of what? A start's own scope is 1m\n");
+    EXPECT_EQ(checkedBody("start A -> cube size 4 move (50%, 0, 0)\n").messages(),
+              "warning: a share of what? A start's own scope is 1m\n");
     EXPECT_EQ(checkedBody("start A -> cube size 100% + cube size 50% at +x\n").messages(), "");
     EXPECT_EQ(checkedBody("start A -> size 4 cube size 50%\n").messages(), "");
 }
 
 TEST(Doubts, OfConstantsAreToldAtOnce) {
-    EXPECT_EQ(checkedBody("start A -> cube color rgb(255, 0, 0)\n").messages(), "warning: 'rgb' takes shares 0 … 1, but this is 255\n");
+    EXPECT_EQ(checkedBody("start A -> cube color rgb(255, 0, 0)\n").messages(),
+              "warning: 'rgb' takes shares 0 … 1, but this is 255\n");
     EXPECT_EQ(checkedBody("start A -> cube move (4 / 0, 0, 0)\n").messages(), "warning: divided by 0\n");
-    EXPECT_EQ(checkedBody("start A -> cube move (sqrt(-1), 0, 0)\n").messages(), "warning: square root of a negative number: -1\n");
-    EXPECT_EQ(checkedBody("param at = 3\nstart A -> cube size at\n").messages(), "warning: 'at' is an operation as well: 'size at …' is hard to read\n");
+    EXPECT_EQ(checkedBody("start A -> cube move (sqrt(-1), 0, 0)\n").messages(),
+              "warning: square root of a negative number: -1\n");
+    EXPECT_EQ(checkedBody("param at = 3\nstart A -> cube size at\n").messages(),
+              "warning: 'at' is an operation as well: 'size at …' is hard to read\n");
     EXPECT_EQ(checkedBody("param blend = 3\nstart A -> cube size blend\n").messages(), "");
 }
 

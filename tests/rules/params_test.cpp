@@ -64,7 +64,9 @@ TEST_F(Params, AreSetFromText) {
 
 TEST_F(Params, SayWhyAValueIsRefused) {
     EXPECT_EQ(set(0, "10"), "'count' is 10, outside its range 1..9");
-    EXPECT_EQ(set(0, "2.5"), "'count' is a whole number, not 2.5: with a point in its default or range (0..1.0) it would be a real one");
+    EXPECT_EQ(
+        set(0, "2.5"),
+        "'count' is a whole number, not 2.5: with a point in its default or range (0..1.0) it would be a real one");
     EXPECT_EQ(set(2, "30deg"), "'width' is a length, but this is an angle");
     EXPECT_EQ(set(3, "30"), "an angle needs its unit: write '30deg'");
     EXPECT_EQ(set(4, "(1, 2)"), "'size' is a vector of 3, but this is a vector of 2");

@@ -31,7 +31,8 @@ protected:
                              [&](const Symbol& s) { return s.name == name; });
     }
     static const Attribute& attribute(const Element& e, Id id) {
-        return *std::find_if(e.attributes.begin(), e.attributes.end(), [&](const Attribute& a) { return a.operation == id; });
+        return *std::find_if(e.attributes.begin(), e.attributes.end(),
+                             [&](const Attribute& a) { return a.operation == id; });
     }
 
     static inline Checked* sketch_ = nullptr;
@@ -112,7 +113,8 @@ TEST_F(Sketch, BuildingChoosesItsProfileByGuard) {
     const auto& chain = convex.body.siblings[0];
     ASSERT_EQ(chain.size(), 2u);
     EXPECT_EQ(chain[1].over->args.size(), 4u) << "sides";
-    EXPECT_EQ(attribute(chain[1].body->siblings[0][0], &operations::size).args[0].value, Value::number(.3, Unit::Share));
+    EXPECT_EQ(attribute(chain[1].body->siblings[0][0], &operations::size).args[0].value,
+              Value::number(.3, Unit::Share));
     EXPECT_EQ(rule("Level#2").body.siblings[0][1].body->siblings[0][0].op, Operator::Difference);
     EXPECT_EQ(symbolCalled("Level").rules.size(), 3u);
 

@@ -17,13 +17,19 @@ class Types : public testing::TestWithParam<Case> {};
 
 TEST(Slips, AreReportedOnce) {
     EXPECT_EQ(checkedBody("start S -> cube ++ sphere at +x\n").messages(), "expected a shape, found '+'\n");
-    EXPECT_EQ(checkedBody("start S -> cube\n  + morph(sphere cube, .5) at +x\n").messages().find('\n'), checkedBody("start S -> cube\n  + morph(sphere cube, .5) at +x\n").messages().size() - 1);
-    EXPECT_EQ(checkedBody("use std/walls.sgm\nstart S -> stone\n").messages(), "expected a file's name in quotes, found 'std'\n");
-    EXPECT_EQ(checkedBody("start S -> cube ++ sphere\nrule S -> spere\n").messages(), "expected a shape, found '+'\nunknown solid 'spere'\n") << "other declarations still speak";
+    EXPECT_EQ(checkedBody("start S -> cube\n  + morph(sphere cube, .5) at +x\n").messages().find('\n'),
+              checkedBody("start S -> cube\n  + morph(sphere cube, .5) at +x\n").messages().size() - 1);
+    EXPECT_EQ(checkedBody("use std/walls.sgm\nstart S -> stone\n").messages(),
+              "expected a file's name in quotes, found 'std'\n");
+    EXPECT_EQ(checkedBody("start S -> cube ++ sphere\nrule S -> spere\n").messages(),
+              "expected a shape, found '+'\nunknown solid 'spere'\n")
+        << "other declarations still speak";
 }
 
 TEST(Parameters, WholeNumbersBetweenZeroAndOneAreWarnedOf) {
-    const auto said = [](const std::string& range) { return checkedBody("param n = " + range + "\nstart S -> cube size (1 + n)\n").messages(); };
+    const auto said = [](const std::string& range) {
+        return checkedBody("param n = " + range + "\nstart S -> cube size (1 + n)\n").messages();
+    };
     EXPECT_EQ(said("1 in 0..1"), "warning: 'n' is a whole number, so it is 0 or 1 and nothing between\n");
     for (const char* real : {"1 in 0..1.0", ".5 in 0..1", "1m in 0..1", "1 in 0..2"}) EXPECT_EQ(said(real), "") << real;
 }
@@ -51,9 +57,12 @@ INSTANTIATE_TEST_SUITE_P(
              "'size' takes a length, a share (30%) or (x, y, z) of them, but this is a vector of 2"},
         Case{"+ cube size choose { n: 2m | 1: w } at choose { 3: +x | 1: -z } turn choose { 1: a | 1: 0deg }", ""},
         Case{"+ cube size choose { 1: 2m | 1: a } at +x", "can't choose between a length and an angle"},
-        Case{"+ cube size choose { a: 2m | 1: w } at +x", "the weight of a choice takes a plain number, but this is an angle"},
+        Case{"+ cube size choose { a: 2m | 1: w } at +x",
+             "the weight of a choice takes a plain number, but this is an angle"},
         Case{"+ cube size choose { 0: 2m | 0: 1m } at +x", "all weights are 0, so nothing could be chosen"},
-        Case{"+ cube size choose { -1: 2m | 1: 0 } at choose { 1: +x | 1: dor }", "a weight is no less than 0, not -1\n'size' is 0m, but must be at least 0.000001m, and at most 1000 km\nunknown joint 'dor'"},
+        Case{"+ cube size choose { -1: 2m | 1: 0 } at choose { 1: +x | 1: dor }",
+             "a weight is no less than 0, not -1\n'size' is 0m, but must be at least 0.000001m, and at most 1000 "
+             "km\nunknown joint 'dor'"},
         Case{"+ cube size 0 at +x", "'size' is 0m, but must be at least 0.000001m, and at most 1000 km"},
         Case{"+ cube size -1..1 at +x", "'size' is -1m, but must be at least 0.000001m, and at most 1000 km"},
         Case{"+ cube size 2..1 at +x", "the range runs backwards"}, Case{"+ cube turn a at +x", ""},

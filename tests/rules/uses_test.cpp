@@ -41,7 +41,8 @@ TEST(Uses, RefuseChainsWithoutEnd) {
         return std::make_shared<const syntax::Source>(std::to_string(next), "grammar 1\nuse \"next\"\n");
     });
     syntax::Diagnostics diagnostics;
-    EXPECT_FALSE(load(std::make_shared<const syntax::Source>("test.sgm", "grammar 1\nuse \"next\"\nstart S -> cube\n"), operations::table(), endless, diagnostics));
+    EXPECT_FALSE(load(std::make_shared<const syntax::Source>("test.sgm", "grammar 1\nuse \"next\"\nstart S -> cube\n"),
+                      operations::table(), endless, diagnostics));
     ASSERT_EQ(diagnostics.all().size(), 1u);
     EXPECT_EQ(diagnostics.all()[0].message, "more than 100 files use each other in a row");
 }
@@ -59,9 +60,13 @@ TEST(Uses, PointIntoTheUsedFile) {
 }
 
 TEST(Uses, GiveOtherDefaults) {
-    const std::map<std::string, std::string> files{{"a.sgm", "grammar 1\nuse \"b.sgm\" { far = 2m }\nparam near = 1m in 0m..9m\nparam kind = flat of flat, steep\nterminal wall color #000000 rough even\n"},
-                                                   {"b.sgm", "grammar 1\nparam far = 3m in 0m..9m\nparam even = .5 in 0..1\n"}};
-    const Checked c = checked("grammar 1\nuse \"a.sgm\" { near = 4 kind = steep even = .25 }\nstart S -> wall size (near + far)\n", files);
+    const std::map<std::string, std::string> files{
+        {"a.sgm",
+         "grammar 1\nuse \"b.sgm\" { far = 2m }\nparam near = 1m in 0m..9m\nparam kind = flat of flat, steep\nterminal "
+         "wall color #000000 rough even\n"},
+        {"b.sgm", "grammar 1\nparam far = 3m in 0m..9m\nparam even = .5 in 0..1\n"}};
+    const Checked c = checked(
+        "grammar 1\nuse \"a.sgm\" { near = 4 kind = steep even = .25 }\nstart S -> wall size (near + far)\n", files);
     ASSERT_TRUE(c.grammar) << c.messages();
     const auto value = [&](const char* name) -> const Param& {
         for (const Param& p : c.grammar->params)
@@ -79,7 +84,10 @@ TEST(Uses, GiveOtherDefaults) {
 TEST(Uses, RefuseDefaultsThatDontFit) {
     const std::map<std::string, std::string> files{{"a.sgm", "grammar 1\nparam near = 1m in 0m..9m\n"}};
     const auto said = [&](const std::string& settings) {
-        return checked("grammar 1\nuse \"a.sgm\" { " + settings + " }\nparam own = 1 in 0..9\nstart S -> cube size (near * own)\n", files).messages();
+        return checked("grammar 1\nuse \"a.sgm\" { " + settings +
+                           " }\nparam own = 1 in 0..9\nstart S -> cube size (near * own)\n",
+                       files)
+            .messages();
     };
     EXPECT_EQ(said("near = 10m"), "'near' is 10m, outside its range 0m..9m\n");
     EXPECT_EQ(said("naer = 1m"), "there is no parameter 'naer'\n");
@@ -89,14 +97,19 @@ TEST(Uses, RefuseDefaultsThatDontFit) {
 }
 
 TEST(Styles, ADefaultOneCountsForItsStart) {
-    const Checked c = checkedBody("param n = 1 in 0..9\nparam m = 1 in 0..9\nstart A -> cube size (n, m, 1)\nstart B -> cube\nstart C -> cube\n"
-                                  "style default for A { n = 2 }\nstyle default for B { n = 3 }\nstyle default { m = 4 }\nstyle Big for A { n = 9 }\n");
+    const Checked c = checkedBody(
+        "param n = 1 in 0..9\nparam m = 1 in 0..9\nstart A -> cube size (n, m, 1)\nstart B -> cube\nstart C -> cube\n"
+        "style default for A { n = 2 }\nstyle default for B { n = 3 }\nstyle default { m = 4 }\nstyle Big for A { n = "
+        "9 }\n");
     ASSERT_TRUE(c.grammar) << c.messages();
-    const auto values = [&](uint32_t start) { return toText(valuesOf(*c.grammar, start)[0]) + " " + toText(valuesOf(*c.grammar, start)[1]); };
+    const auto values = [&](uint32_t start) {
+        return toText(valuesOf(*c.grammar, start)[0]) + " " + toText(valuesOf(*c.grammar, start)[1]);
+    };
     EXPECT_EQ(values(0), "2 1");
     EXPECT_EQ(values(1), "3 1");
     EXPECT_EQ(values(2), "1 4");
-    EXPECT_EQ(checkedBody("start A -> cube\nstyle default for A { }\nstyle default for A { }\n").messages(), "there is already a style 'default for A' in test.sgm, line 3\n");
+    EXPECT_EQ(checkedBody("start A -> cube\nstyle default for A { }\nstyle default for A { }\n").messages(),
+              "there is already a style 'default for A' in test.sgm, line 3\n");
 }
 
 TEST(Uses, DontWarnOfWhatALibraryOffers) {

@@ -56,7 +56,8 @@ TEST(Functions, SpreadNumbersOverVectors) {
     EXPECT_EQ(apply(Fn::Mul, {vec(1, 2, 3), Value::number(2)}).n[2], 6);
     EXPECT_EQ(apply(Fn::Max, {vec(4, 9, 3)}), Value::number(9));
     EXPECT_NEAR(apply(Fn::Tan, {Value::number(pi / 4, Unit::Angle)}).num(), 1, 1e-12);
-    EXPECT_NEAR(apply(Fn::Atan2, {Value::number(-3, Unit::Metre), Value::number(-3, Unit::Metre)}).num(), -3 * pi / 4, 1e-12);
+    EXPECT_NEAR(apply(Fn::Atan2, {Value::number(-3, Unit::Metre), Value::number(-3, Unit::Metre)}).num(), -3 * pi / 4,
+                1e-12);
     EXPECT_EQ(apply(Fn::Atan2, {Value::number(1), Value::number(2)}).units[0], Unit::Angle);
     EXPECT_EQ(apply(Fn::Pow, {Value::number(2), Value::number(10)}), Value::number(1024));
     EXPECT_EQ(apply(Fn::Pow, {Value::number(-8), Value::number(.5)}), Value::number(0)) << "no number";

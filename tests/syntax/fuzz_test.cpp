@@ -41,7 +41,8 @@ std::string judge(const std::string& text, size_t& parsed) {
     ++parsed;
     const SourcePtr once = makeSource(format(*source, operations::table()));
     Diagnostics again;
-    if (Dump(parse(once, operations::table(), again)).text() != dump.text()) return "formatting changed the meaning\n" + renderAll(again);
+    if (Dump(parse(once, operations::table(), again)).text() != dump.text())
+        return "formatting changed the meaning\n" + renderAll(again);
     return format(*once, operations::table()) == once->text() ? "" : "formatting twice is not formatting once";
 }
 

@@ -1,6 +1,6 @@
 // The parser on good input: the language's sketch, what its nodes hold, and where they say they stand.
-#include "grammar/operations/operations.h"
 #include "grammar/syntax/parser.h"
+#include "grammar/operations/operations.h"
 
 #include <gtest/gtest.h>
 
@@ -251,15 +251,16 @@ TEST(Parser, OtherDeclarations) {
 
 TEST(Parser, ByteOrderMarkAndCarriageReturnsAreBlank) {
     Diagnostics diagnostics;
-    const Ast ast =
-        parse(makeSource("\xef\xbb\xbfgrammar 1\r\nstart A -> cube\r\nrule B -> cube // c\r\n"), operations::table(), diagnostics);
+    const Ast ast = parse(makeSource("\xef\xbb\xbfgrammar 1\r\nstart A -> cube\r\nrule B -> cube // c\r\n"),
+                          operations::table(), diagnostics);
     EXPECT_EQ(renderAll(diagnostics), "");
     EXPECT_EQ(ast.rules.size(), 1u);
 }
 
 TEST(Parser, DeclarationsWithProblemsKeepTheirNames) {
     Diagnostics diagnostics;
-    const Ast ast = parse(makeSource("grammar 1\nrule A -> cube size\nparam p = \nstart S -> cube )\n"), operations::table(), diagnostics);
+    const Ast ast = parse(makeSource("grammar 1\nrule A -> cube size\nparam p = \nstart S -> cube )\n"),
+                          operations::table(), diagnostics);
     EXPECT_EQ(diagnostics.all().size(), 3u);
     EXPECT_EQ(ast.rules.at(0).symbol.text, "A");
     EXPECT_EQ(ast.params.at(0).name.text, "p");

@@ -1,6 +1,6 @@
 // The formatter: canonical layout that keeps every token, every comment and the meaning.
-#include "grammar/operations/operations.h"
 #include "grammar/syntax/printer.h"
+#include "grammar/operations/operations.h"
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,8 @@ TEST(Printer, BlanksAreCanonical) {
               "grammar 1\nstart A -> cube size (1, 2, 3) at +x to centre : B, nil\n");
     EXPECT_EQ(formatted("grammar 1\nrule R : A when(a+b*-c)>=d [ 1 ]and not e . x->choose{8:cube|2 : nil}\n"),
               "grammar 1\nrule R: A when (a + b * -c) >= d[1] and not e.x -> choose { 8: cube | 2: nil }\n");
-    EXPECT_EQ(formatted("grammar 1\nstart A -> cube size choose{a[0]:1m|2 : 2m+b}\n"), "grammar 1\nstart A -> cube size choose { a[0]: 1m | 2: 2m + b }\n");
+    EXPECT_EQ(formatted("grammar 1\nstart A -> cube size choose{a[0]:1m|2 : 2m+b}\n"),
+              "grammar 1\nstart A -> cube size choose { a[0]: 1m | 2: 2m + b }\n");
     EXPECT_EQ(formatted("grammar 1\nstart A -> split y{{ ~ 3m:Row } * | - .2...2: morph( cube,a : - x,b:-x )}\n"),
               "grammar 1\nstart A -> split y { { ~3m: Row }* | -.2 .. .2: morph(cube, a: - x, b: -x) }\n");
     EXPECT_EQ(formatted("grammar 1\nderive d:R0=>R1 at A / B[ 3 ]\nstyle S{a=1   b= - 2}\n"),

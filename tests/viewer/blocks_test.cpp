@@ -27,14 +27,16 @@ protected:
         EXPECT_GT(cpu->triangleCount(), 1000u);
         EXPECT_EQ(gpu->size(), cpu->triangleCount() * 3);
         std::vector<Vec3f> ours, theirs = *gpu;
-        for (const mesh::Chunk& chunk : cpu->chunks) ours.insert(ours.end(), chunk.positions.begin(), chunk.positions.end());
+        for (const mesh::Chunk& chunk : cpu->chunks)
+            ours.insert(ours.end(), chunk.positions.begin(), chunk.positions.end());
         const auto before = [](const Vec3f& a, const Vec3f& b) { return a.x < b.x; };
         std::sort(ours.begin(), ours.end(), before);
         std::sort(theirs.begin(), theirs.end(), before);
         const float near = 2e-4f * cell_m;
         const auto missing = [&](const std::vector<Vec3f>& from, const std::vector<Vec3f>& in) {
             return std::count_if(from.begin(), from.end(), [&](const Vec3f& p) {
-                for (auto q = std::lower_bound(in.begin(), in.end(), Vec3f{p.x - near, 0, 0}, before); q != in.end() && q->x <= p.x + near; ++q)
+                for (auto q = std::lower_bound(in.begin(), in.end(), Vec3f{p.x - near, 0, 0}, before);
+                     q != in.end() && q->x <= p.x + near; ++q)
                     if (length(*q - p) < near) return false;
                 return true;
             });

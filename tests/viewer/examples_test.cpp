@@ -10,9 +10,9 @@
 #include "modeler/core/random.h"
 #include "modeler/eval/evaluate.h"
 #include "tests/viewer/gpu_fixture.h"
+#include "viewer/document/document.h"
 #include "viewer/document/files.h"
 #include "viewer/document/model.h"
-#include "viewer/document/document.h"
 #include "viewer/offscreen.h"
 
 namespace sgm::viewer::test {
@@ -56,7 +56,9 @@ std::vector<Example> everyExample() {
 std::vector<Vec3f> pointsIn(const Box3f& box, int count) {
     std::vector<Vec3f> points;
     for (int i = 0; i < count; ++i) {
-        const auto draw = [&](uint64_t axis) { return static_cast<float>(uniform(combine(mix(axis), static_cast<uint64_t>(i)), 0, 1)); };
+        const auto draw = [&](uint64_t axis) {
+            return static_cast<float>(uniform(combine(mix(axis), static_cast<uint64_t>(i)), 0, 1));
+        };
         points.push_back(box.lo + Vec3f{draw(1) * box.size().x, draw(2) * box.size().y, draw(3) * box.size().z});
     }
     return points;
@@ -72,8 +74,8 @@ TEST_F(Examples, AreTheSameFieldOnTheGpu) {
         queries.push_back({&example.model.tape, pointsIn(example.model.lowered->field.bounds, 128)});
     const auto gpu = evaluateOnGpu(queries);
     ASSERT_TRUE(gpu.ok()) << gpu.error().message;
-    // Software GL seems to end the loops of a shader early: pictures walk short tapes of cells, but whole ones of more than
-    // 10,000 instructions come out wrong there, while 9,900 are right.
+    // Software GL seems to end the loops of a shader early: pictures walk short tapes of cells, but whole ones of more
+    // than 10,000 instructions come out wrong there, while 9,900 are right.
     constexpr size_t mostInstructions = 9000;
     size_t compared = 0;
     for (size_t e = 0; e < examples.size(); ++e) {

@@ -18,7 +18,8 @@ volume::Dense cube(int n, F&& value) {
     grid.low = Vec3f{-1, -1, -1} + Vec3f{half, half, half};
     for (int z = 0; z < n; ++z)
         for (int y = 0; y < n; ++y)
-            for (int x = 0; x < n; ++x) grid.values.push_back(value(grid.low + Vec3f{float(x), float(y), float(z)} * grid.voxel_m));
+            for (int x = 0; x < n; ++x)
+                grid.values.push_back(value(grid.low + Vec3f{float(x), float(y), float(z)} * grid.voxel_m));
     return grid;
 }
 
@@ -29,7 +30,8 @@ volume::Dense ball(int n) {
 
 TEST(FogLight, DepthIsThatOfTheChord) {
     const volume::Dense grid = cube(48, [](Vec3f p) { return length(p) < 0.8f ? 1.0f : 0.0f; });
-    for (const Vec3f direction : {Vec3f{0, 1, 0}, Vec3f{-1, 0, 0}, normalized(Vec3f{-0.4f, 0.7f, 0.6f}), normalized(Vec3f{1, -1, 0.2f})}) {
+    for (const Vec3f direction :
+         {Vec3f{0, 1, 0}, Vec3f{-1, 0, 0}, normalized(Vec3f{-0.4f, 0.7f, 0.6f}), normalized(Vec3f{1, -1, 0.2f})}) {
         const std::vector<float> depth = opticalDepth(grid, direction, 2);
         for (int i = 4; i < 44; i += 5) {
             const Vec3f p = grid.low + Vec3f{float(i), float(47 - i), float(i / 2 + 12)} * grid.voxel_m;
@@ -42,7 +44,8 @@ TEST(FogLight, DepthIsThatOfTheChord) {
 
 TEST(FogLight, IsTheSameOnAnyNumberOfThreads) {
     const volume::Dense grid = ball(20);
-    const auto one = lightFog(grid, 20, 0.4f, {0, 1, 0}, 1, nullptr), three = lightFog(grid, 20, 0.4f, {0, 1, 0}, 3, nullptr);
+    const auto one = lightFog(grid, 20, 0.4f, {0, 1, 0}, 1, nullptr),
+               three = lightFog(grid, 20, 0.4f, {0, 1, 0}, 3, nullptr);
     ASSERT_TRUE(one.ok() && three.ok());
     EXPECT_EQ(one->rgba, three->rgba);
     const auto at = [&](int y, int channel) { return one->rgba[grid.index(10, y, 10) * 4 + size_t(channel)]; };
@@ -55,7 +58,9 @@ TEST(FogLight, IsTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(FogLight, BricksSayHowFarFogIs) {
-    const volume::Dense grid = cube(64, [](Vec3f p) { return length(p - Vec3f{-0.9f, -0.9f, -0.9f}) < 0.05f ? 1.0f : 0.0f; });
+    const volume::Dense grid = cube(64, [](Vec3f p) {
+        return length(p - Vec3f{-0.9f, -0.9f, -0.9f}) < 0.05f ? 1.0f : 0.0f;
+    });
     const auto texels = lightFog(grid, 1, 0.4f, {0, 1, 0}, 0, nullptr);
     ASSERT_TRUE(texels.ok());
     ASSERT_EQ(texels->brickCount, (Vec3i{8, 8, 8}));
@@ -84,7 +89,8 @@ protected:
         options.width = options.height = 96;
         options.camera = {ground ? Vec3d{0, 5, 4} : Vec3d{0, 0.3, 6}, {0, 0, 0}};
         options.ground = ground;
-        auto painter = FogPainter::create(ball(40), {{-0.8f, -0.8f, -0.8f}, {0.8f, 0.8f, 0.8f}}, {extinction_per_m, 1.2f}, 0, nullptr);
+        auto painter = FogPainter::create(ball(40), {{-0.8f, -0.8f, -0.8f}, {0.8f, 0.8f, 0.8f}},
+                                          {extinction_per_m, 1.2f}, 0, nullptr);
         if (!painter.ok()) return painter.error();
         return painter->draw(options, progress);
     }
@@ -101,7 +107,8 @@ TEST_F(Fog, IsWhiteWhereItIsThickAndSkyBesideIt) {
     EXPECT_GT(middle[0], 190);
     EXPECT_LT(middle[2] - middle[0], 25) << "white";
     EXPECT_GT(sky[2] - sky[0], 40) << "blue";
-    for (const auto& [x, y] : {std::pair{3, 3}, std::pair{92, 50}, std::pair{48, 93}}) EXPECT_EQ(at(*thick, x, y), at(*none, x, y));
+    for (const auto& [x, y] : {std::pair{3, 3}, std::pair{92, 50}, std::pair{48, 93}})
+        EXPECT_EQ(at(*thick, x, y), at(*none, x, y));
     // The sun stands high: the ball is darker below.
     EXPECT_GT(at(*thick, 44, 36)[0], at(*thick, 56, 66)[0] + 15);
 }

@@ -138,7 +138,8 @@ TEST_F(Picture, TheSunStandsInTheSky) {
     ball.camera = {sun * 3, sun * 9};
     for (const auto& image : {ball.draw(false), ball.draw(true)}) {
         ASSERT_TRUE(image.ok()) << image.error().message;
-        const auto middle = colorAt(*image, ball.camera, sun * 9), corner = std::array<int, 3>{image->rgb[0], image->rgb[1], image->rgb[2]};
+        const auto middle = colorAt(*image, ball.camera, sun * 9),
+                   corner = std::array<int, 3>{image->rgb[0], image->rgb[1], image->rgb[2]};
         EXPECT_GT(middle[0], 240);
         EXPECT_GT(middle[2], 220);
         EXPECT_LT(corner[0] + 40, middle[0]);
@@ -172,14 +173,18 @@ size_t differentPixels(const Image& a, const Image& b) {
 TEST_F(Picture, ShadersAndProcessorTraceTheSame) {
     Scene scene;
     for (int i = 0; i < 27; ++i)
-        scene.add(i % 2 ? "sphere" : "cube", {2.5 * (i % 3), 2.5 * (i / 3 % 3), 2.5 * (i / 9)}, {1.1, 1, 1.2}, i % 3 ? red : green);
+        scene.add(i % 2 ? "sphere" : "cube", {2.5 * (i % 3), 2.5 * (i / 3 % 3), 2.5 * (i / 9)}, {1.1, 1, 1.2},
+                  i % 3 ? red : green);
     const field::Field spheres = scene.sum();
-    const field::Field rock = scene.solid("cube", {0, 0, 0}, {4, 3, 3}), hollow = scene.solid("sphere", {1, 0.5, 0}, {2, 2, 2}),
+    const field::Field rock = scene.solid("cube", {0, 0, 0}, {4, 3, 3}),
+                       hollow = scene.solid("sphere", {1, 0.5, 0}, {2, 2, 2}),
                        shaft = scene.solid("cube", {1, 3, 0}, {0.6, 6, 0.6});
-    const field::Field cave = field::difference({field::difference({rock, scene.origin({0.5f, 0.4f, 0.3f})}, {hollow, 0}), 0}, {shaft, 0});
+    const field::Field cave =
+        field::difference({field::difference({rock, scene.origin({0.5f, 0.4f, 0.3f})}, {hollow, 0}), 0}, {shaft, 0});
     for (const auto& [field, within] : {std::pair{spheres, false}, {cave, true}, {spheres, true}}) {
         const eval::Tape tape = scene.compile(field);
-        const PictureOptions options = optionsAt(within ? inside(tape, field.bounds) : frame(tape, field.bounds, 1), !within);
+        const PictureOptions options =
+            optionsAt(within ? inside(tape, field.bounds) : frame(tape, field.bounds, 1), !within);
         std::vector<Image> images;
         for (const TracedBy by : {TracedBy::Gpu, TracedBy::Processor}) {
             auto painter = FieldPainter::create(tape, field.bounds, scene.provenance, 0, nullptr, by);
@@ -194,8 +199,10 @@ TEST_F(Picture, ShadersAndProcessorTraceTheSame) {
 
 TEST_F(Picture, RaysStartWhereTheConeBesideAnotherIsFree) {
     Scene scene;
-    for (int i = 0; i < 9; ++i) scene.add(i % 2 ? "sphere" : "cube", {2.5 * (i % 3), 2.5 * (i / 3), 0}, {1.1, 1, 1.2}, red);
-    for (int i = 0; i < 6; ++i) scene.add("cube", {1.2 * i, 2.5, 3.0}, {0.03, 4, 0.03}, green);  // posts, narrower than a pixel
+    for (int i = 0; i < 9; ++i)
+        scene.add(i % 2 ? "sphere" : "cube", {2.5 * (i % 3), 2.5 * (i / 3), 0}, {1.1, 1, 1.2}, red);
+    for (int i = 0; i < 6; ++i)
+        scene.add("cube", {1.2 * i, 2.5, 3.0}, {0.03, 4, 0.03}, green);  // posts, narrower than a pixel
     const field::Field solid = scene.sum();
     const eval::Tape tape = scene.compile(solid);
     auto field = prepareField(tape, solid.bounds, scene.provenance, 1, nullptr);
@@ -205,7 +212,8 @@ TEST_F(Picture, RaysStartWhereTheConeBesideAnotherIsFree) {
     tracer->look(options, 1);
     const View view = viewOf(options.camera, edge, edge);
     std::vector<Ray> first, whole, started;
-    for (const Job& job : firstSamples(edge, edge)) first.push_back({job, 0, 0, static_cast<float>(0.75 * view.pixelAngle)});
+    for (const Job& job : firstSamples(edge, edge))
+        first.push_back({job, 0, 0, static_cast<float>(0.75 * view.pixelAngle)});
     const auto met = tracer->trace(first, nullptr);
     ASSERT_TRUE(met.ok());
     for (size_t i = 0; i < first.size(); ++i) {
@@ -223,14 +231,17 @@ TEST_F(Picture, RaysStartWhereTheConeBesideAnotherIsFree) {
     for (size_t i = 0; i < whole.size(); ++i) {
         const Hit &a = all->hits[i], &b = rest->hits[i];
         const double pixel = view.pixelAngle * length(a.position.as<double>() - view.eye);
-        different += a.kind() != b.kind() || (a.kind() == HitKind::Object && length(a.position - b.position) > 3 * pixel) ? 1 : 0;
+        different +=
+            a.kind() != b.kind() || (a.kind() == HitKind::Object && length(a.position - b.position) > 3 * pixel) ? 1
+                                                                                                                 : 0;
     }
     EXPECT_LT(different, size_t(edge) * edge / 500);
 }
 
 TEST_F(Picture, SharedLightLooksLikeEverySamplesOwn) {
     Scene scene;
-    for (int i = 0; i < 5; ++i) scene.add(i % 2 ? "sphere" : "cube", {2.5 * i, 0.3 * i, 0.7 * i}, {1.1, 1, 1.2}, i % 3 ? red : green);
+    for (int i = 0; i < 5; ++i)
+        scene.add(i % 2 ? "sphere" : "cube", {2.5 * i, 0.3 * i, 0.7 * i}, {1.1, 1, 1.2}, i % 3 ? red : green);
     const field::Field field = scene.sum();
     const eval::Tape tape = scene.compile(field);
     auto painter = FieldPainter::create(tape, field.bounds, scene.provenance, 0, nullptr);
@@ -281,7 +292,8 @@ TEST_F(Picture, InsideStandsInTheHollow) {
 
 TEST_F(Picture, InsidePrefersAnOpenPitToTheSolid) {
     Scene scene;
-    const field::Field rock = scene.solid("cube", {0, 0, 0}, {6, 3, 4}), pit = scene.solid("cube", {1, 2, 0}, {3, 3, 1.5});
+    const field::Field rock = scene.solid("cube", {0, 0, 0}, {6, 3, 4}),
+                       pit = scene.solid("cube", {1, 2, 0}, {3, 3, 1.5});
     const field::Field field = field::difference({rock, scene.origin({0.5f, 0.4f, 0.3f})}, {pit, 0});
     const Camera camera = inside(scene.compile(field), field.bounds);
     EXPECT_LT(length(Vec3d{(camera.eye.x - 1) / 3, 0, camera.eye.z / 1.5}), 1.5);
@@ -314,7 +326,8 @@ TEST_F(Picture, NeedsFewEvaluationsOfShortTapes) {
     const DrawCost& cost = painter->cost();
     EXPECT_GT(cost.samples, size_t(edge) * edge);
     EXPECT_EQ(cost.probes.size(), (cost.samples + 63) / 64);
-    const double evaluations = double(cost.hitEvaluations + cost.lightEvaluations), plain = plainEvaluations(tape, field.bounds, options, cost.probes);
+    const double evaluations = double(cost.hitEvaluations + cost.lightEvaluations),
+                 plain = plainEvaluations(tape, field.bounds, options, cost.probes);
     EXPECT_LT(evaluations, plain * double(cost.samples));
     EXPECT_LT(double(cost.instructions) * 30, plain * double(cost.samples) * double(tape.size()));
 }
@@ -323,7 +336,8 @@ TEST_F(Picture, PlainSphereTracingOfABallCountsItsSteps) {
     RedBall ball;
     const eval::Tape tape = ball.scene.compile(ball.field);
     const PictureOptions options = optionsAt(ball.camera, false);
-    // Straight at the ball: into the bounds, a step to the surface; 4 for the normal, 4 for occlusion; out towards the sun.
+    // Straight at the ball: into the bounds, a step to the surface; 4 for the normal, 4 for occlusion; out towards the
+    // sun.
     const double middle = plainEvaluations(tape, ball.field.bounds, options, {{edge / 2.0, edge / 2.0}});
     EXPECT_GE(middle, 10);
     EXPECT_LE(middle, 18);

@@ -32,7 +32,8 @@ TEST(Keep, TakesOutWhatFloatsAndFillsWhatIsClosed) {
         EXPECT_TRUE(keepOnly(level, keep, level.voxel_m(), nullptr).ok());
         return level;
     };
-    const Volume all = kept(mesh::Keep::All), grounded = kept(mesh::Keep::Grounded), largest = kept(mesh::Keep::Largest);
+    const Volume all = kept(mesh::Keep::All), grounded = kept(mesh::Keep::Grounded),
+                 largest = kept(mesh::Keep::Largest);
     EXPECT_NEAR(all.enclosed_m3(), Four::volume(1) - Four::volume(0.4) + 2 * Four::volume(0.5), 0.02);
     EXPECT_NEAR(grounded.enclosed_m3(), Four::volume(1) + Four::volume(0.5), 0.02);
     EXPECT_NEAR(largest.enclosed_m3(), Four::volume(1), 0.02);
@@ -41,7 +42,8 @@ TEST(Keep, TakesOutWhatFloatsAndFillsWhatIsClosed) {
     EXPECT_EQ(mesh::measure(*toMesh(all)).components, 5u);
     EXPECT_EQ(mesh::measure(*toMesh(grounded)).components, 2u);
     EXPECT_EQ(mesh::measure(*toMesh(largest)).components, 1u);
-    for (const Vec3f p : {Vec3f{0.95f, 0.1f, 0}, Vec3f{0, -0.98f, 0.05f}, Vec3f{0.6f, 0.6f, 0.55f}}) EXPECT_EQ(largest.at(p), all.at(p));
+    for (const Vec3f p : {Vec3f{0.95f, 0.1f, 0}, Vec3f{0, -0.98f, 0.05f}, Vec3f{0.6f, 0.6f, 0.55f}})
+        EXPECT_EQ(largest.at(p), all.at(p));
 }
 
 /// Voxels and mesh judge alike, at the surface of the very same solids.
@@ -77,11 +79,14 @@ TEST(Keep, WaysAcrossLeavesAreFound) {
     KnownSolid solid;
     field::Graph& g = *solid.graph;
     const auto rod = [&](Vec3f from, Vec3f to) {
-        const auto across = [&](field::Num v, float a, float b) { return abs(v - (a + b) / 2) - (std::abs(b - a) / 2 + 0.07f); };
+        const auto across = [&](field::Num v, float a, float b) {
+            return abs(v - (a + b) / 2) - (std::abs(b - a) / 2 + 0.07f);
+        };
         return max(max(across(g.x(), from.x, to.x), across(g.y(), from.y, to.y)), across(g.z(), from.z, to.z));
     };
     // From the ground up, then along x, z, and down again, without touching it; a rod of its own hangs beside.
-    solid.field.value = min(min(rod({0, 0, 0}, {0, 3, 0}), rod({0, 3, 0}, {3, 3, 0})), min(rod({3, 3, 0}, {3, 3, 3}), rod({3, 1, 3}, {3, 3, 3})));
+    solid.field.value = min(min(rod({0, 0, 0}, {0, 3, 0}), rod({0, 3, 0}, {3, 3, 0})),
+                            min(rod({3, 3, 0}, {3, 3, 3}), rod({3, 1, 3}, {3, 3, 3})));
     solid.field.value = min(solid.field.value, rod({1, 1, 1}, {2, 1, 1}));
     solid.field.bounds = {{-0.1f, -0.1f, -0.1f}, {3.1f, 3.1f, 3.1f}};
     Volume level = *levelSetOf(solid, 0.05f);

@@ -65,8 +65,10 @@ Result<std::string> argumentsOf(const syntax::Operation& row, std::string_view w
 }
 
 /// The edit, not yet tried, that sets an attribute.
-Edit attributeEdit(const Ast& ast, const Element& element, const syntax::Operation& operation, std::string_view written) {
-    if (isControl(element)) return refused(fmt::format("'{}' belongs to a shape, not to a loop or a choice", operation.name));
+Edit attributeEdit(const Ast& ast, const Element& element, const syntax::Operation& operation,
+                   std::string_view written) {
+    if (isControl(element))
+        return refused(fmt::format("'{}' belongs to a shape, not to a loop or a choice", operation.name));
     const auto arguments = argumentsOf(operation, written);
     if (!arguments.ok()) return arguments.error();
     const Attribute* present = find(element, operation);
@@ -74,7 +76,8 @@ Edit attributeEdit(const Ast& ast, const Element& element, const syntax::Operati
     if (operation.namesValue) present = nullptr;
     if (present && !present->args.empty())
         return TextEdit{present->args.front().span.begin, present->args.back().span.end, *arguments};
-    if (present) return TextEdit{present->span.begin, present->span.end, fmt::format("{} {}", operation.name, *arguments)};
+    if (present)
+        return TextEdit{present->span.begin, present->span.end, fmt::format("{} {}", operation.name, *arguments)};
     const uint32_t at = attributesEnd(ast, element);
     return TextEdit{at, at, fmt::format(" {} {}", operation.name, *arguments)};
 }
@@ -176,15 +179,15 @@ Edit setLive(const Ast& ast, const Element& element, std::string_view name) {
     return tried(ast, {element.span.end, element.span.end, fmt::format(" : {}", *written)});
 }
 
-Edit setAttribute(const Ast& ast, const Element& element, const syntax::Operation& operation, std::string_view arguments) {
+Edit setAttribute(const Ast& ast, const Element& element, const syntax::Operation& operation,
+                  std::string_view arguments) {
     const Edit edit = attributeEdit(ast, element, operation, arguments);
     return edit.ok() ? tried(ast, *edit) : edit;
 }
 
 Edit removeAttribute(const Ast& ast, const Element& element, const syntax::Operation& operation) {
     const Attribute* present = find(element, operation);
-    if (!present)
-        return refused(fmt::format("there is no '{}' to take out", operation.name));
+    if (!present) return refused(fmt::format("there is no '{}' to take out", operation.name));
     return tried(ast, removalOf(ast, *present));
 }
 

@@ -115,7 +115,8 @@ Edit duplicateRule(const Ast& ast, const RuleDecl& rule) {
     if (!rule.name.empty())
         copy.replace(rule.name.span.begin - lines.begin, rule.name.text.size(), freeName(ast, rule.name.text));
     std::vector<ListedRule> rules = listed(ast);
-    rules.insert(rules.begin() + placeOf(ast, rule) + 1, {nullptr, rule.symbol.text, rule.name.empty() ? "" : freeName(ast, rule.name.text)});
+    rules.insert(rules.begin() + placeOf(ast, rule) + 1,
+                 {nullptr, rule.symbol.text, rule.name.empty() ? "" : freeName(ast, rule.name.text)});
     return withWays(ast, insertion(text, lines.end, std::move(copy)), rules);
 }
 
@@ -134,7 +135,8 @@ Edit moveRule(const Ast& ast, const RuleDecl& rule, const RuleDecl* before) {
     }
     std::vector<ListedRule> rules = listed(ast);
     const ListedRule taken = rules[static_cast<size_t>(placeOf(ast, rule))];
-    rules.insert(rules.begin() + (before ? placeOf(ast, *before) : static_cast<std::ptrdiff_t>(rules.size())), {taken.rule, taken.symbol, taken.name});
+    rules.insert(rules.begin() + (before ? placeOf(ast, *before) : static_cast<std::ptrdiff_t>(rules.size())),
+                 {taken.rule, taken.symbol, taken.name});
     rules.erase(rules.begin() + placeOf(ast, rule) + (before && before < &rule ? 1 : 0));
     return withWays(ast, merged(text, {removalOf(text, lines), put}), rules);
 }

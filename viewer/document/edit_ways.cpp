@@ -33,13 +33,16 @@ Edit withWays(const Ast& ast, TextEdit edit, const std::vector<ListedRule>& now)
             size_t old = 0;
             while (old < before.size() && calledAs(before, old) != step.rule.text) ++old;
             if (old == before.size()) continue;
-            const auto kept = std::find_if(now.begin(), now.end(), [&](const ListedRule& r) { return r.rule == before[old].rule; });
+            const auto kept =
+                std::find_if(now.begin(), now.end(), [&](const ListedRule& r) { return r.rule == before[old].rule; });
             std::string called = step.rule.text;
             if (kept != now.end()) {
                 called = calledAs(now, static_cast<size_t>(kept - now.begin()));
             } else if (before[old].name.empty()) {
                 // Its number must not come to mean the next rule: the last one is free now, and `check` says so.
-                const auto count = std::count_if(before.begin(), before.end(), [&](const ListedRule& r) { return r.name.empty() && r.symbol == before[old].symbol; });
+                const auto count = std::count_if(before.begin(), before.end(), [&](const ListedRule& r) {
+                    return r.name.empty() && r.symbol == before[old].symbol;
+                });
                 called = fmt::format("{}#{}", before[old].symbol, count);
             }
             if (called != step.rule.text) all.push_back({step.rule.span.begin, step.rule.span.end, called});

@@ -21,7 +21,8 @@ using syntax::RuleDecl;
 using Edit = Result<TextEdit>;
 
 // --- Rules ---
-// `derive` lines follow: a rule keeps being called in them, by its name or as "Cell#2" by its number among the nameless.
+// `derive` lines follow: a rule keeps being called in them, by its name or as "Cell#2" by its number among the
+// nameless.
 
 /// A new rule "rule SYMBOL -> BODY", behind `after`, or else behind the last rule of that symbol, else of all.
 Edit addRule(const Ast& ast, std::string_view symbol, std::string_view body, const RuleDecl* after = nullptr);
@@ -60,7 +61,8 @@ Edit setSolid(const Ast& ast, const Element& element, std::string_view solid);
 Edit setLive(const Ast& ast, const Element& element, std::string_view name);
 /// What an attribute says, "+x" for At, "(0, .2, 0)" for Shift: changes the one that stands there, or adds it. A
 /// calculation is put in parentheses.
-Edit setAttribute(const Ast& ast, const Element& element, const syntax::Operation& operation, std::string_view arguments);
+Edit setAttribute(const Ast& ast, const Element& element, const syntax::Operation& operation,
+                  std::string_view arguments);
 /// Nothing to take out is an error.
 Edit removeAttribute(const Ast& ast, const Element& element, const syntax::Operation& operation);
 /// Joins the element at `joint` of its host: `at JOINT`, and no `to` that named a face. What dragging a shape onto a

@@ -99,7 +99,9 @@ Status ExportJob::start(std::shared_ptr<const Shown> shown, ExportRequest reques
         if (const Status s = checkTarget(file); !s.ok()) return s;
         for (const fs::path& input : request.inputs)
             if (identityOf(file) == identityOf(input))
-                return Error{Error::Kind::Input, fmt::format("'{}' is what the model is made from: give the export another name", file.string())};
+                return Error{
+                    Error::Kind::Input,
+                    fmt::format("'{}' is what the model is made from: give the export another name", file.string())};
     }
     progress_ = std::make_shared<Progress>();
     done_ = false;

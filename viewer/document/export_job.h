@@ -34,8 +34,8 @@ struct ExportRequest {
     int resolution = 128;  ///< cells along the longest side
     double cell_m = 0;     ///< > 0 wins over resolution
     int threads = 0;
-    mesh::Keep keep = mesh::Keep::All;  ///< which separate solids are written
-    std::string objects = {};           ///< as lower::parseObjects reads it, for formats that hold objects
+    mesh::Keep keep = mesh::Keep::All;               ///< which separate solids are written
+    std::string objects = {};                        ///< as lower::parseObjects reads it, for formats that hold objects
     std::vector<std::filesystem::path> inputs = {};  ///< what the model is made from, which is never replaced
 };
 

@@ -34,30 +34,39 @@ constexpr const char* outside = "a grammar may only use files in its own folder 
 bool beginsWith(const fs::path& path, const char* name) { return !path.empty() && *path.begin() == name; }
 
 bool hasControlCharacter(const std::string& name) {
-    return std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+    return std::any_of(name.begin(), name.end(),
+                       [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
 }
 
-/// Where a name that stands in `from` lies, or nothing with `why` set. Every spelling of a file gives the same path, and
-/// so does a link within the folder; one that leads out of it is refused like "../".
+/// Where a name that stands in `from` lies, or nothing with `why` set. Every spelling of a file gives the same path,
+/// and so does a link within the folder; one that leads out of it is refused like "../".
 std::optional<fs::path> pathOf(const std::string& name, const syntax::Source& from, std::string& why) {
     const fs::path wanted = fs::path(name).lexically_normal();
-    if (hasControlCharacter(name)) why = "a file's name holds no control characters";
-    else if (wanted.is_absolute() || beginsWith(wanted, "..")) why = outside;
+    if (hasControlCharacter(name))
+        why = "a file's name holds no control characters";
+    else if (wanted.is_absolute() || beginsWith(wanted, ".."))
+        why = outside;
     else {
         const bool standard = beginsWith(wanted, "std") && wanted != "std";
         const fs::path folder = standard ? standardLibrary() : fs::path(from.name()).parent_path();
         std::error_code failed;
         const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, failed);
-        const fs::path real = failed ? fs::path() : fs::weakly_canonical(root / (standard ? wanted.lexically_relative("std") : wanted), failed);
+        const fs::path real =
+            failed ? fs::path()
+                   : fs::weakly_canonical(root / (standard ? wanted.lexically_relative("std") : wanted), failed);
         const fs::path within = real.lexically_relative(root);
-        if (failed) why = failed.message();
-        else if (within.empty() || beginsWith(within, "..")) why = outside;
-        else return folder / within;
+        if (failed)
+            why = failed.message();
+        else if (within.empty() || beginsWith(within, ".."))
+            why = outside;
+        else
+            return folder / within;
     }
     return {};
 }
 
-/// Why a file that isn't there can't be read, in the words of the grammar: no path of this machine, and the nearest name.
+/// Why a file that isn't there can't be read, in the words of the grammar: no path of this machine, and the nearest
+/// name.
 std::string missingFile(const std::string& name, const fs::path& path) {
     std::vector<std::string> names;
     std::error_code failed;
@@ -66,7 +75,8 @@ std::string missingFile(const std::string& name, const fs::path& path) {
     std::sort(names.begin(), names.end());
     const std::string near = syntax::didYouMean(path.filename().string(), names);
     const std::string folder = name.substr(0, name.find_last_of('/') + 1);
-    return near.empty() ? "there is no such file" : fmt::format("there is no such file; did you mean \"{}{}\"?", folder, near);
+    return near.empty() ? "there is no such file"
+                        : fmt::format("there is no such file; did you mean \"{}{}\"?", folder, near);
 }
 
 /// Whether a text begins as a grammar does. What doesn't is never quoted in a message: it may be anything.
@@ -101,13 +111,16 @@ private:
     /// `terminal a, b = …` and `rule Name: Symbol …`: the words before what follows names.
     void note(const syntax::Source& source, const std::string& file) {
         const std::vector<syntax::Token> tokens = syntax::lexSignificant(source);
-        const auto text = [&](size_t i) { return i < tokens.size() ? syntax::textOf(source, tokens[i]) : std::string_view(); };
+        const auto text = [&](size_t i) {
+            return i < tokens.size() ? syntax::textOf(source, tokens[i]) : std::string_view();
+        };
         for (size_t i = 0; i < tokens.size(); ++i) {
             if (!tokens[i].columnOne || (text(i) != "terminal" && text(i) != "rule")) continue;
             size_t at = i + 1;
             if (text(i) == "rule" && text(at + 1) == ":") at += 2;
             files_.try_emplace(std::string(text(at)), file);
-            for (; text(i) == "terminal" && text(at + 1) == ","; at += 2) files_.try_emplace(std::string(text(at + 2)), file);
+            for (; text(i) == "terminal" && text(at + 1) == ","; at += 2)
+                files_.try_emplace(std::string(text(at + 2)), file);
         }
     }
 
@@ -180,18 +193,20 @@ rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) 
     const auto note = [read](const fs::path& path) {
         if (read) read->push_back(path);
     };
-    rules::Loader loader([note](const std::string& name, const syntax::Source& from, std::string& why) -> syntax::SourcePtr {
-        const auto path = pathOf(name, from, why);
-        if (!path) return nullptr;
-        note(*path);
-        std::error_code failed;
-        if (!fs::exists(*path, failed) && !failed) return why = missingFile(name, *path), nullptr;
-        Result<syntax::SourcePtr> source = readSource(*path);
-        if (source.ok() && beginsAsGrammar(**source)) return *source;
-        why = source.ok() ? "it is no grammar: one begins with 'grammar 1'" : source.error().message;
-        return nullptr;
-    });
-    loader.mesh = [note, meshes = Meshes(progress)](const std::string& name, const syntax::Source& from, std::string& why) mutable -> field::SampledGridPtr {
+    rules::Loader loader(
+        [note](const std::string& name, const syntax::Source& from, std::string& why) -> syntax::SourcePtr {
+            const auto path = pathOf(name, from, why);
+            if (!path) return nullptr;
+            note(*path);
+            std::error_code failed;
+            if (!fs::exists(*path, failed) && !failed) return why = missingFile(name, *path), nullptr;
+            Result<syntax::SourcePtr> source = readSource(*path);
+            if (source.ok() && beginsAsGrammar(**source)) return *source;
+            why = source.ok() ? "it is no grammar: one begins with 'grammar 1'" : source.error().message;
+            return nullptr;
+        });
+    loader.mesh = [note, meshes = Meshes(progress)](const std::string& name, const syntax::Source& from,
+                                                    std::string& why) mutable -> field::SampledGridPtr {
         const auto path = pathOf(name, from, why);
         if (!path) return nullptr;
         note(*path);
@@ -200,7 +215,9 @@ rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) 
         why = grid.error().message;
         return nullptr;
     };
-    loader.outlines = [note, files = OutlineFiles(progress)](const std::string& name, const syntax::Source& from, std::string& why) mutable -> std::shared_ptr<const plan::Features> {
+    loader.outlines = [note, files = OutlineFiles(progress)](
+                          const std::string& name, const syntax::Source& from,
+                          std::string& why) mutable -> std::shared_ptr<const plan::Features> {
         const auto path = pathOf(name, from, why);
         if (!path) return nullptr;
         note(*path);

@@ -16,10 +16,10 @@ namespace sgm::viewer {
 Result<syntax::SourcePtr> readSource(const std::filesystem::path& path);
 
 /// Finds "std/…" in the standard library shipped with the program and other names beside the file that uses them;
-/// refuses names that lead outside these two folders, also through links, files that aren't regular, and used files that
-/// don't begin as a grammar does, without a word of what they hold. A loader reads a mesh
-/// again only when its file has changed; reading one ends early when `progress` says so.
-/// The paths of all files that are asked for are added to `read`, unless it is null; both outlive the loader.
+/// refuses names that lead outside these two folders, also through links, files that aren't regular, and used files
+/// that don't begin as a grammar does, without a word of what they hold. A loader reads a mesh again only when its file
+/// has changed; reading one ends early when `progress` says so. The paths of all files that are asked for are added to
+/// `read`, unless it is null; both outlive the loader.
 rules::Loader fileLoader(const Progress* progress = nullptr, std::vector<std::filesystem::path>* read = nullptr);
 
 /// Writes text beside `path` and renames it into place.

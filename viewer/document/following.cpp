@@ -13,7 +13,8 @@ std::optional<rules::Grammar> withValueOf(const rules::Grammar& grammar, std::st
     if (before == text) return changed;
     const auto shorter = static_cast<std::ptrdiff_t>(std::min(before.size(), text.size()));
     const auto head = std::mismatch(before.begin(), before.begin() + shorter, text.begin()).first - before.begin();
-    const auto tail = std::mismatch(before.rbegin(), before.rbegin() + (shorter - head), text.rbegin()).first - before.rbegin();
+    const auto tail =
+        std::mismatch(before.rbegin(), before.rbegin() + (shorter - head), text.rbegin()).first - before.rbegin();
     const size_t end = before.size() - static_cast<size_t>(tail);
     const auto take = [&](const rules::Param& param, const syntax::SourceSpan& span, rules::Value& into) {
         if (span.source != &source || static_cast<size_t>(head) < span.begin || end > span.end) return false;

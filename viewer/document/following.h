@@ -1,6 +1,6 @@
-// A model that follows a slider: while a hand holds it only a value of the text changes, so the grammar of the moment it
-// was taken stays, and every stage keeps what the value doesn't reach.
-// Enters: that grammar, then texts that differ from its own in one value. Leaves: models. Assumes one caller at a time.
+// A model that follows a slider: while a hand holds it only a value of the text changes, so the grammar of the moment
+// it was taken stays, and every stage keeps what the value doesn't reach. Enters: that grammar, then texts that differ
+// from its own in one value. Leaves: models. Assumes one caller at a time.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace sgm::viewer {
 
-/// `grammar` with the value of a parameter, as default or in a style, that `text` has where the grammar's own source has
-/// another. Nothing where the text differs in more than one value, or in one that its parameter doesn't take.
+/// `grammar` with the value of a parameter, as default or in a style, that `text` has where the grammar's own source
+/// has another. Nothing where the text differs in more than one value, or in one that its parameter doesn't take.
 std::optional<rules::Grammar> withValueOf(const rules::Grammar& grammar, std::string_view text);
 
 class Following {

@@ -166,7 +166,8 @@ TextEdit removal(std::string_view text, uint32_t begin, uint32_t end) {
 Edit tried(const Ast& ast, TextEdit edit) {
     Diagnostics before, after;
     syntax::parse(ast.source, *ast.operations, before);
-    syntax::parse(std::make_shared<const syntax::Source>(ast.source->name(), applied(ast.source->text(), edit)), *ast.operations, after);
+    syntax::parse(std::make_shared<const syntax::Source>(ast.source->name(), applied(ast.source->text(), edit)),
+                  *ast.operations, after);
     if (errorsOf(after) <= errorsOf(before)) return edit;
     const auto first = std::find_if(after.all().begin(), after.all().end(),
                                     [](const auto& d) { return d.severity == syntax::Severity::Error; });

@@ -48,7 +48,8 @@ void removeIdleLock(const fs::path& lock) {
     std::error_code failed;
     fs::path kept = lock;
     if (fs::exists(kept.replace_extension(ending), failed)) return;
-    if (fs::file_time_type::clock::now() - fs::last_write_time(lock, failed) < 1min || failed) return;  // about to be taken
+    if (fs::file_time_type::clock::now() - fs::last_write_time(lock, failed) < 1min || failed)
+        return;  // about to be taken
     const int fd = lockFile(lock, O_NOFOLLOW);
     if (fd < 0) return;
     fs::remove(lock, failed);

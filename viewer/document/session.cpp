@@ -208,7 +208,8 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
     bool good = follow || checked(request, stages, problems);
     news.used = usedByCheck_;
     if (good) {
-        auto shown = follow ? followed(request, problems, progress) : made(request, std::move(stages), problems, progress);
+        auto shown =
+            follow ? followed(request, problems, progress) : made(request, std::move(stages), problems, progress);
         good = shown.ok();
         if (good) {
             if (*shown != shown_) news.model = *shown;
@@ -232,7 +233,8 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
 
 /// No file that the grammar uses has changed since it was checked.
 bool Session::asChecked() const {
-    return std::none_of(usedByCheck_.begin(), usedByCheck_.end(), [](const UsedFile& used) { return timeOf(used.path) != used.time; });
+    return std::none_of(usedByCheck_.begin(), usedByCheck_.end(),
+                        [](const UsedFile& used) { return timeOf(used.path) != used.time; });
 }
 
 /// Whether the request can be shown by the grammar of the moment the slider was taken; else that grammar is let go.
@@ -246,7 +248,8 @@ bool Session::follows(const ShowRequest& request) {
 }
 
 /// The model of a request that `follows`.
-Result<std::shared_ptr<const Shown>> Session::followed(const ShowRequest& request, std::vector<Problem>& problems, Progress& progress) {
+Result<std::shared_ptr<const Shown>> Session::followed(const ShowRequest& request, std::vector<Problem>& problems,
+                                                       Progress& progress) {
     problems = checkProblems_;
     const std::optional<rules::Grammar> changed = withValueOf(*following_->grammar(), request.ast->source->text());
     auto options = optionsFor(*changed, wordsOf(request.choice, *changed, problems));
@@ -262,7 +265,8 @@ Result<std::shared_ptr<const Shown>> Session::followed(const ShowRequest& reques
     shown.model = std::move(*model);
     shown.shapesMade = following_->shapesMade();
     // What the slider stood at when it was taken is shown already.
-    if (shown_ && shown_->grammar == shown.grammar && !handShown_ && sameOptions(shown_->options, shown.options)) return shown_;
+    if (shown_ && shown_->grammar == shown.grammar && !handShown_ && sameOptions(shown_->options, shown.options))
+        return shown_;
     handShown_ = nullptr;
     return finished(std::move(shown));
 }
@@ -285,7 +289,8 @@ bool Session::checked(const ShowRequest& request, Stages& stages, std::vector<Pr
             usedByCheck_.push_back({path, timeOf(path)});
             return loader_.mesh ? loader_.mesh(name, from, why) : nullptr;
         };
-        noting.outlines = [&](const std::string& name, const syntax::Source& from, std::string& why) -> std::shared_ptr<const plan::Features> {
+        noting.outlines = [&](const std::string& name, const syntax::Source& from,
+                              std::string& why) -> std::shared_ptr<const plan::Features> {
             const std::string path = (std::filesystem::path(from.name()).parent_path() / name).string();
             usedByCheck_.push_back({path, timeOf(path)});
             return loader_.outlines ? loader_.outlines(name, from, why) : nullptr;
@@ -307,7 +312,8 @@ Result<std::shared_ptr<const Shown>> Session::made(const ShowRequest& request, S
     auto options = optionsFor(*grammar_, wordsOf(request.choice, *grammar_, problems));
     if (!options.ok()) return options.error();
     options->budget = request.budget;
-    if (shown_ && !shown_->held && shown_->grammar == grammar_ && handShown_ == request.byHand && sameOptions(shown_->options, *options))
+    if (shown_ && !shown_->held && shown_->grammar == grammar_ && handShown_ == request.byHand &&
+        sameOptions(shown_->options, *options))
         return shown_;
     auto model = request.byHand ? makeModel(derive::Derivation(*request.byHand), stages, &progress)
                                 : makeModel(grammar_, *options, stages, &progress);

@@ -28,11 +28,11 @@ struct Shown {
     std::shared_ptr<const rules::Grammar> grammar;
     derive::Options options;
     Model model;
-    bool byHand = false;  ///< its derivation came from the Step panel
-    bool held = false;    ///< follows a slider in a hand: `grammar`, and with it every span, is of the text before
+    bool byHand = false;    ///< its derivation came from the Step panel
+    bool held = false;      ///< follows a slider in a hand: `grammar`, and with it every span, is of the text before
     size_t shapesMade = 0;  ///< derived anew; the others were kept from the model before
     eval::Fingerprint fingerprint;  ///< of the tape: the same for two models, the same surface, bit for bit
-    Stages stages;  ///< seconds of what ran: parse, check, derive, lower, compile
+    Stages stages;                  ///< seconds of what ran: parse, check, derive, lower, compile
 };
 /// Both are the same to the eye: surface and materials.
 bool looksLike(const Shown& a, const Shown& b);
@@ -54,7 +54,8 @@ struct ShowRequest {
     double parseSeconds = 0;                 ///< for the report of times
     Choice choice;
     uint64_t revision = 0;
-    /// A hand holds a slider: only what its value reaches is derived again. The text that it leaves is shown without this.
+    /// A hand holds a slider: only what its value reaches is derived again. The text that it leaves is shown without
+    /// this.
     bool dragging = false;
     /// Set by the Step panel: shown instead of deriving.
     std::shared_ptr<const derive::Derivation> byHand;
@@ -121,7 +122,8 @@ private:
     bool asChecked() const;
     bool follows(const ShowRequest& request);
     bool checked(const ShowRequest& request, Stages& stages, std::vector<Problem>& problems);
-    Result<std::shared_ptr<const Shown>> followed(const ShowRequest& request, std::vector<Problem>& problems, Progress& progress);
+    Result<std::shared_ptr<const Shown>> followed(const ShowRequest& request, std::vector<Problem>& problems,
+                                                  Progress& progress);
     Result<std::shared_ptr<const Shown>> made(const ShowRequest& request, Stages stages, std::vector<Problem>& problems,
                                               Progress& progress);
     void meshIt(const ShowRequest& request, Progress& progress);

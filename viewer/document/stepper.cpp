@@ -100,8 +100,8 @@ Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& gr
     if (!steps.ok()) return steps.error();
     std::string text = derive::fileWithWay(grammar, name, derive::wayText(grammar, name, *steps));
     syntax::Diagnostics problems;
-    const auto changed =
-        rules::load(std::make_shared<const syntax::Source>(grammar.sources[0]->name(), text), operations::table(), loader, problems);
+    const auto changed = rules::load(std::make_shared<const syntax::Source>(grammar.sources[0]->name(), text),
+                                     operations::table(), loader, problems);
     if (!changed) return refused(fmt::format("can't save this way as '{}': {}", name, problems.all()[0].message));
     options.derive = name;
     const auto derived = derive::derive(changed, options, nullptr), here = session.derivation();

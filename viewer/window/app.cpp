@@ -17,10 +17,10 @@
 namespace sgm::viewer {
 namespace {
 
-constexpr int settlingFrames = 3;       // after an event, until ImGui's hover and layout have settled
-constexpr double shownEvery = 0.06;     // seconds between pictures of a view that refines itself
-constexpr double refinedEvery = 0.1;    // seconds between pieces of the picture while frames are owed to a hand
-constexpr double listenFor = 0.5;       // seconds between looks at the file while nothing happens
+constexpr int settlingFrames = 3;     // after an event, until ImGui's hover and layout have settled
+constexpr double shownEvery = 0.06;   // seconds between pictures of a view that refines itself
+constexpr double refinedEvery = 0.1;  // seconds between pieces of the picture while frames are owed to a hand
+constexpr double listenFor = 0.5;     // seconds between looks at the file while nothing happens
 
 /// Columns and rows of the window.
 class Workspace {
@@ -33,7 +33,8 @@ private:
     bool begin(const char* name, ImVec2 low, ImVec2 size, bool above = false);
     void left(ImVec2 low, ImVec2 size);
     void right(ImVec2 low, ImVec2 size);
-    void splitter(const char* name, float x, float y, float height, float width, std::optional<float>& chosen, float sign);
+    void splitter(const char* name, float x, float y, float height, float width, std::optional<float>& chosen,
+                  float sign);
 
     Workbench& bench_;
     Bars bars_;
@@ -50,12 +51,15 @@ bool Workspace::begin(const char* name, ImVec2 low, ImVec2 size, bool above) {
     ImGui::SetNextWindowPos(low);
     ImGui::SetNextWindowSize(size);
     return ImGui::Begin(name, nullptr,
-                        ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
-                            (above ? ImGuiWindowFlags_NoBackground : ImGuiWindowFlags_NoBringToFrontOnFocus) | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
+                        ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                            ImGuiWindowFlags_NoCollapse |
+                            (above ? ImGuiWindowFlags_NoBackground : ImGuiWindowFlags_NoBringToFrontOnFocus) |
+                            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
                             ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoNavFocus);
 }
 
-void Workspace::splitter(const char* name, float x, float y, float height, float width, std::optional<float>& chosen, float sign) {
+void Workspace::splitter(const char* name, float x, float y, float height, float width, std::optional<float>& chosen,
+                         float sign) {
     constexpr float grab = 6;
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));  // it would hide all of so narrow a window
     if (begin(name, {x - grab / 2, y}, {grab, height}, true)) {
@@ -78,7 +82,8 @@ void Workspace::left(ImVec2 low, ImVec2 size) {
     ImGui::End();
     if (begin("Shapes", {low.x, low.y + above}, {size.x, size.y - above})) shapes_.show(bench_);
     ImGui::End();
-    ImGui::GetForegroundDrawList()->AddLine({low.x, low.y + above}, {low.x + size.x, low.y + above}, ImGui::GetColorU32(ImGuiCol_Border));
+    ImGui::GetForegroundDrawList()->AddLine({low.x, low.y + above}, {low.x + size.x, low.y + above},
+                                            ImGui::GetColorU32(ImGuiCol_Border));
 }
 
 void Workspace::right(ImVec2 low, ImVec2 size) {
@@ -149,7 +154,8 @@ void describe(const Workbench& bench, nlohmann::json& state) {
     state["redo"] = bench.document.redoLabel();
     state["notice"] = bench.notice;
     state["problems"] = nlohmann::json::array();
-    for (const Problem& p : bench.session.problems()) state["problems"].push_back({{"line", p.line}, {"message", p.message}});
+    for (const Problem& p : bench.session.problems())
+        state["problems"].push_back({{"line", p.line}, {"message", p.message}});
     state["selection"] = bench.selected() == derive::none ? "" : bench.tree()->path(bench.selected(), true);
     state["hover"] = bench.hover ? bench.hover->text : "";
     state["shapes"] = bench.tree() ? bench.tree()->shapes.size() : 0;
@@ -162,13 +168,22 @@ void describe(const Workbench& bench, nlohmann::json& state) {
     state["locked"] = bench.document.choice().locked;
     state["seed"] = bench.document.choice().seed;
     const Look& look = bench.look;
-    state["look"] = {{"mesh", static_cast<int>(look.mesh.look)}, {"wire", look.mesh.wireframe}, {"section", look.section}, {"axis", look.sectionAxis},
-                     {"share", look.sectionShare}, {"cells", look.meshResolution}, {"ground", look.ground}, {"joints", static_cast<int>(look.joints)}, {"hands", static_cast<int>(look.hands)}};
+    state["look"] = {{"mesh", static_cast<int>(look.mesh.look)},
+                     {"wire", look.mesh.wireframe},
+                     {"section", look.section},
+                     {"axis", look.sectionAxis},
+                     {"share", look.sectionShare},
+                     {"cells", look.meshResolution},
+                     {"ground", look.ground},
+                     {"joints", static_cast<int>(look.joints)},
+                     {"hands", static_cast<int>(look.hands)}};
     state["preview"] = bench.previewed;
     state["lamp"] = bench.orbit.lamp_m;
     state["fog"] = bench.field.drawsFog();
     state["turning"] = bench.turntable.has_value();
-    state["choice"] = {{"start", bench.document.choice().start}, {"style", bench.document.choice().style}, {"way", bench.document.choice().way}};
+    state["choice"] = {{"start", bench.document.choice().start},
+                       {"style", bench.document.choice().style},
+                       {"way", bench.document.choice().way}};
     state["question"] = bench.question ? bench.question->text : "";
 }
 
@@ -245,7 +260,8 @@ int runApp(const AppOptions& options) {
         if (!taken || *taken) wanted = settlingFrames;
         turn.was("pictures");
         // Where frames are dear, most of the time still goes to the picture.
-        if (wanted > 0 || ended || ((refining || working) && sinceShown.seconds() >= std::max(shownEvery, 3 * frameSeconds))) {
+        if (wanted > 0 || ended ||
+            ((refining || working) && sinceShown.seconds() >= std::max(shownEvery, 3 * frameSeconds))) {
             if (wanted > 0) --wanted;
             sinceShown = {};
             window.setTitle(titleOf(bench.document));
@@ -261,7 +277,12 @@ int runApp(const AppOptions& options) {
             describe(bench, report.state());
             const Window::Given& given = window.given();
             report.state()["still"] = wanted == 0 && !window.pending();
-            report.state()["input"] = {{"x", given.x}, {"y", given.y}, {"buttons", given.buttons}, {"keys", given.keys}, {"releases", given.releases}, {"wheel", given.wheel}};
+            report.state()["input"] = {{"x", given.x},
+                                       {"y", given.y},
+                                       {"buttons", given.buttons},
+                                       {"keys", given.keys},
+                                       {"releases", given.releases},
+                                       {"wheel", given.wheel}};
             report.write();
             turn.was("report");
         }

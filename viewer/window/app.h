@@ -12,7 +12,7 @@ struct AppOptions {
     std::filesystem::path file;    ///< empty for a new document
     std::filesystem::path report;  ///< empty, or the JSON that tells tests where the widgets are
     int width = 1280, height = 800;
-    bool benchmark = false;        ///< measures, prints and closes
+    bool benchmark = false;  ///< measures, prints and closes
 };
 
 /// Runs until the window is closed. Prints errors to stderr; 0 or 1.

@@ -17,7 +17,8 @@ using namespace widgets;
 void gap() {
     ImGui::SameLine(0, 14);
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::GetWindowDrawList()->AddLine({at.x, at.y + 3}, {at.x, at.y + ImGui::GetFrameHeight() - 3}, ImGui::GetColorU32(ImGuiCol_Border));
+    ImGui::GetWindowDrawList()->AddLine({at.x, at.y + 3}, {at.x, at.y + ImGui::GetFrameHeight() - 3},
+                                        ImGui::GetColorU32(ImGuiCol_Border));
     ImGui::SameLine(0, 15);
 }
 
@@ -35,17 +36,22 @@ void Bars::top(Workbench& bench) {
     ImGui::SameLine(0, 10);
     if (quietButton(report, "bar.open", "Open", "Open a grammar (Ctrl+O), or drop it on the window")) opening_ = true;
     ImGui::SameLine(0, 2);
-    if (quietButton(report, "bar.save", "Save", "Write the file (Ctrl+S)", document.dirty())) document.path().empty() ? void(naming_ = true) : bench.save();
+    if (quietButton(report, "bar.save", "Save", "Write the file (Ctrl+S)", document.dirty()))
+        document.path().empty() ? void(naming_ = true) : bench.save();
     ImGui::SameLine(0, 2);
-    const std::string undo = fmt::format("Take back: {} (Ctrl+Z)", document.undoLabel()), redo = fmt::format("Do again: {} (Ctrl+Y)", document.redoLabel());
-    if (quietButton(report, "bar.undo", "Undo", document.canUndo() ? undo.c_str() : nullptr, document.canUndo())) bench.undo();
+    const std::string undo = fmt::format("Take back: {} (Ctrl+Z)", document.undoLabel()),
+                      redo = fmt::format("Do again: {} (Ctrl+Y)", document.redoLabel());
+    if (quietButton(report, "bar.undo", "Undo", document.canUndo() ? undo.c_str() : nullptr, document.canUndo()))
+        bench.undo();
     ImGui::SameLine(0, 2);
-    if (quietButton(report, "bar.redo", "Redo", document.canRedo() ? redo.c_str() : nullptr, document.canRedo())) bench.redo();
+    if (quietButton(report, "bar.redo", "Redo", document.canRedo() ? redo.c_str() : nullptr, document.canRedo()))
+        bench.redo();
     gap();
     int pane = static_cast<int>(bench.look.pane);
     constexpr std::array panes{"Field", "Fog", "Mesh", "Split"};
-    constexpr std::array meanings{"The field itself, by rays: exact, and there at once", "The solid as a cloud of that shape",
-                                  "The mesh that would be exported", "Field and mesh side by side"};
+    constexpr std::array meanings{"The field itself, by rays: exact, and there at once",
+                                  "The solid as a cloud of that shape", "The mesh that would be exported",
+                                  "Field and mesh side by side"};
     if (oneOf(report, "pane", panes, pane, meanings)) bench.look.pane = static_cast<Pane>(pane);
     gap();
     lookControls(bench);
@@ -69,13 +75,15 @@ void Bars::lookControls(Workbench& bench) {
     Report& report = bench.report;
     static const std::vector<std::string> joints{"No joints", "Its joints", "All joints"};
     int shown = static_cast<int>(bench.look.joints);
-    if (choice(report, "look.joints", joints, shown, ImGui::GetFontSize() * 7)) bench.look.joints = static_cast<JointsShown>(shown);
+    if (choice(report, "look.joints", joints, shown, ImGui::GetFontSize() * 7))
+        bench.look.joints = static_cast<JointsShown>(shown);
     hint("Joints of the selected shape or of all: red joins to a centre, green face to face, bonded ones filled");
     ImGui::SameLine();
     toggle(report, "look.ground", "Ground", bench.look.ground, "Stand the model on a plane that takes its shadow");
     ImGui::SameLine();
     const bool within = bench.orbit.lamp_m > 0;
-    if (button(report, "look.inside", within ? "Outside" : "Inside", "Stand in the largest hollow with a lamp, or leave it", bench.field.hasField()))
+    if (button(report, "look.inside", within ? "Outside" : "Inside",
+               "Stand in the largest hollow with a lamp, or leave it", bench.field.hasField()))
         within ? bench.frameAll() : bench.stepInside();
     ImGui::SameLine();
     if (quietButton(report, "bar.help", "?", "Keys and buttons (H)")) help_ = !help_;
@@ -83,16 +91,19 @@ void Bars::lookControls(Workbench& bench) {
 
 void Bars::meshControls(Workbench& bench) {
     Report& report = bench.report;
-    static const std::vector<std::string> looks{"Materials", "Normals", "Curvature", "Rules", "Components", "Labels", "Creases"};
+    static const std::vector<std::string> looks{"Materials",  "Normals", "Curvature", "Rules",
+                                                "Components", "Labels",  "Creases"};
     int look = static_cast<int>(bench.look.mesh.look);
-    if (choice(report, "mesh.look", looks, look, ImGui::GetFontSize() * 7)) bench.look.mesh.look = static_cast<MeshLook>(look);
+    if (choice(report, "mesh.look", looks, look, ImGui::GetFontSize() * 7))
+        bench.look.mesh.look = static_cast<MeshLook>(look);
     hint("What the mesh's colours tell");
     ImGui::SameLine();
     static const std::vector<std::string> sizes{"64", "128", "192", "256", "384"};
     int size = 0;
     for (int i = 0; i < static_cast<int>(sizes.size()); ++i)
         if (std::stoi(sizes[size_t(i)]) == bench.look.meshResolution) size = i;
-    if (choice(report, "mesh.cells", sizes, size, ImGui::GetFontSize() * 4)) bench.look.meshResolution = std::stoi(sizes[size_t(size)]);
+    if (choice(report, "mesh.cells", sizes, size, ImGui::GetFontSize() * 4))
+        bench.look.meshResolution = std::stoi(sizes[size_t(size)]);
     hint("Cells along the longest side: more are finer and slower");
     ImGui::SameLine();
     toggle(report, "mesh.wire", "Wire", bench.look.mesh.wireframe, "The edges of the triangles");
@@ -114,7 +125,8 @@ void Bars::status(Workbench& bench) {
     ImGui::AlignTextToFramePadding();
     const auto progress = [&](std::string_view stage, double fraction, const char* name, const char* hint) {
         ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 3);
-        ImGui::ProgressBar(static_cast<float>(fraction), {ImGui::GetFontSize() * 10, ImGui::GetFrameHeight() - 6}, std::string(stage).c_str());
+        ImGui::ProgressBar(static_cast<float>(fraction), {ImGui::GetFontSize() * 10, ImGui::GetFrameHeight() - 6},
+                           std::string(stage).c_str());
         ImGui::SameLine();
         ImGui::SetCursorPosY(ImGui::GetCursorPosY() - 3);
         const bool cancelled = button(bench.report, name, "Cancel", hint);
@@ -123,11 +135,14 @@ void Bars::status(Workbench& bench) {
     };
     if (bench.busy()) {
         const bool deriving = bench.session.busy();
-        if (progress(deriving ? bench.session.stage() : bench.preparer.stage(), deriving ? bench.session.fraction() : bench.preparer.fraction(), "progress.cancel",
+        if (progress(deriving ? bench.session.stage() : bench.preparer.stage(),
+                     deriving ? bench.session.fraction() : bench.preparer.fraction(), "progress.cancel",
                      "Keep the model as it is; Esc while a slider is held"))
             bench.cancel();
     }
-    if (bench.exporting.running() && progress(bench.exporting.stage(), bench.exporting.fraction(), "export.cancel", "Stop the export; the file stays as it was")) bench.exporting.cancel();
+    if (bench.exporting.running() && progress(bench.exporting.stage(), bench.exporting.fraction(), "export.cancel",
+                                              "Stop the export; the file stays as it was"))
+        bench.exporting.cancel();
     ImGui::PushStyleColor(ImGuiCol_Text, bench.noticeIsProblem ? tint::error : tint::faint);
     ImGui::TextUnformatted(bench.hover && !bench.noticeIsProblem ? bench.hover->text.c_str() : bench.notice.c_str());
     ImGui::PopStyleColor();
@@ -139,8 +154,10 @@ void Bars::status(Workbench& bench) {
             stages += fmt::format("{}  {:.1f} ms\n", stage, took * 1000);
         }
         stages += fmt::format("cells for the rays  {:.1f} ms", bench.fieldTimes.prepare * 1000);
-        facts = fmt::format("{} shapes  ·  {} steps  ·  made in {:.0f} ms", bench.tree()->shapes.size(), bench.shown()->model.derivation.steps.size(), seconds * 1000);
-        if (bench.wantsMesh() && bench.mesh.hasMesh()) facts += fmt::format("  ·  {} triangles", bench.mesh.triangleCount());
+        facts = fmt::format("{} shapes  ·  {} steps  ·  made in {:.0f} ms", bench.tree()->shapes.size(),
+                            bench.shown()->model.derivation.steps.size(), seconds * 1000);
+        if (bench.wantsMesh() && bench.mesh.hasMesh())
+            facts += fmt::format("  ·  {} triangles", bench.mesh.triangleCount());
     }
     ImGui::SameLine(right - ImGui::CalcTextSize(facts.c_str()).x - 12);
     faint(facts);
@@ -164,7 +181,9 @@ void Bars::keys(Workbench& bench) {
         return;
     }
     if (bench.typing) return;
-    const auto free = [&](int key) { return pressed(key) && bench.hotkeys.find(static_cast<char>(std::tolower(key))) == std::string::npos; };
+    const auto free = [&](int key) {
+        return pressed(key) && bench.hotkeys.find(static_cast<char>(std::tolower(key))) == std::string::npos;
+    };
     if (free(GLFW_KEY_H)) help_ = !help_;
     if (free(GLFW_KEY_P)) bench.pictureWanted = true;
     if (free(GLFW_KEY_T)) bench.startTurntable(36);
@@ -180,13 +199,26 @@ void Bars::dialogs(Workbench& bench) {
 void Bars::cheatSheet(Workbench& bench) {
     const bool blender = bench.look.hands == Hands::Blender;
     const std::pair<const char*, const char*> rows[] = {
-        {blender ? "MMB drag" : "LMB drag", "Turn"}, {blender ? "Shift MMB" : "MMB drag", "Move"}, {blender ? "Ctrl MMB" : "RMB drag", "Nearer, farther"},
-        {"Wheel", "Nearer, farther"}, {"Click", "Select what is there, and its text"}, {"Ctrl+Click", "On a slider: type its value"}, {"F", "Frame the selection"}, {"A", "Frame all"}, {"Home", "All, from the usual side"},
-        {"1 - 7", "Front, back, right, left, top, bottom, three-quarter"}, {"P", "Picture of the view beside the file"}, {"T", "Turntable: 36 pictures"},
-        {"Ctrl+S  Ctrl+O", "Save, open"}, {"Ctrl+Z  Ctrl+Y", "Undo, redo"}, {"H", "This sheet"}};
+        {blender ? "MMB drag" : "LMB drag", "Turn"},
+        {blender ? "Shift MMB" : "MMB drag", "Move"},
+        {blender ? "Ctrl MMB" : "RMB drag", "Nearer, farther"},
+        {"Wheel", "Nearer, farther"},
+        {"Click", "Select what is there, and its text"},
+        {"Ctrl+Click", "On a slider: type its value"},
+        {"F", "Frame the selection"},
+        {"A", "Frame all"},
+        {"Home", "All, from the usual side"},
+        {"1 - 7", "Front, back, right, left, top, bottom, three-quarter"},
+        {"P", "Picture of the view beside the file"},
+        {"T", "Turntable: 36 pictures"},
+        {"Ctrl+S  Ctrl+O", "Save, open"},
+        {"Ctrl+Z  Ctrl+Y", "Undo, redo"},
+        {"H", "This sheet"}};
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-    if (ImGui::Begin("Keys and buttons", &help_, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
+    if (ImGui::Begin(
+            "Keys and buttons", &help_,
+            ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
         if (ImGui::BeginTable("keys", 2)) {
             const auto row = [](const char* key, const char* what) {
                 ImGui::TableNextColumn();
@@ -199,13 +231,17 @@ void Bars::cheatSheet(Workbench& bench) {
             for (const auto& [key, what] : rows) row(key, what);
             if (bench.shown())
                 for (const rules::Param& param : bench.shown()->grammar->params)
-                    if (!param.key.empty()) row(param.key.c_str(), fmt::format("{} (Shift reverses)", param.label.empty() ? param.name : param.label).c_str());
+                    if (!param.key.empty())
+                        row(param.key.c_str(),
+                            fmt::format("{} (Shift reverses)", param.label.empty() ? param.name : param.label).c_str());
             ImGui::EndTable();
         }
         int hands = static_cast<int>(bench.look.hands);
         constexpr std::array presets{"Usual hands", "Blender's"};
         if (oneOf(bench.report, "hands", presets, hands)) bench.look.hands = static_cast<Hands>(hands);
-        bench.report.mark("help", ImGui::GetWindowPos(), {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
+        bench.report.mark(
+            "help", ImGui::GetWindowPos(),
+            {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
     }
     ImGui::End();
 }
@@ -213,7 +249,8 @@ void Bars::cheatSheet(Workbench& bench) {
 void Bars::openDialog(Workbench& bench) {
     namespace fs = std::filesystem;
     if (std::exchange(opening_, false)) {
-        const fs::path here = bench.document.path().empty() ? fs::current_path() : fs::absolute(bench.document.path()).parent_path();
+        const fs::path here =
+            bench.document.path().empty() ? fs::current_path() : fs::absolute(bench.document.path()).parent_path();
         folder_ = here.lexically_normal().string();
         ImGui::OpenPopup("Open a grammar");
     }
@@ -225,8 +262,10 @@ void Bars::openDialog(Workbench& bench) {
     if (fs::is_directory(folder_, failed))
         for (const fs::directory_entry& entry : fs::directory_iterator(folder_, failed)) {
             if (entry.path().filename().string().starts_with('.')) continue;
-            if (entry.is_directory(failed)) folders.push_back(entry.path());
-            else if (entry.path().extension() == ".sgm") files.push_back(entry.path());
+            if (entry.is_directory(failed))
+                folders.push_back(entry.path());
+            else if (entry.path().extension() == ".sgm")
+                files.push_back(entry.path());
         }
     std::sort(folders.begin(), folders.end());
     std::sort(files.begin(), files.end());
@@ -234,7 +273,9 @@ void Bars::openDialog(Workbench& bench) {
         const fs::path parent = fs::path(folder_).parent_path();
         if (ImGui::Selectable("..", false, ImGuiSelectableFlags_DontClosePopups)) folder_ = parent.string();
         for (const fs::path& path : folders)
-            if (ImGui::Selectable((path.filename().string() + "/").c_str(), false, ImGuiSelectableFlags_DontClosePopups)) folder_ = path.string();
+            if (ImGui::Selectable((path.filename().string() + "/").c_str(), false,
+                                  ImGuiSelectableFlags_DontClosePopups))
+                folder_ = path.string();
         for (const fs::path& path : files) {
             if (ImGui::Selectable(path.filename().c_str())) {
                 bench.drop(path);
@@ -244,7 +285,8 @@ void Bars::openDialog(Workbench& bench) {
         }
     }
     ImGui::EndChild();
-    if (button(bench.report, "open.cancel", "Cancel") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE)) ImGui::CloseCurrentPopup();
+    if (button(bench.report, "open.cancel", "Cancel") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE))
+        ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }
 
@@ -270,7 +312,10 @@ void Bars::questions(Workbench& bench) {
     if (bench.question && !ImGui::IsPopupOpen("Question")) ImGui::OpenPopup("Question");
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-    if (!ImGui::BeginPopupModal("Question", nullptr, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize)) return;
+    if (!ImGui::BeginPopupModal(
+            "Question", nullptr,
+            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize))
+        return;
     if (bench.question) {
         ImGui::PushTextWrapPos(ImGui::GetFontSize() * 28);
         ImGui::TextUnformatted(bench.question->text.c_str());

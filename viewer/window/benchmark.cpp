@@ -34,11 +34,14 @@ bool Benchmark::begin(Workbench& bench) {
     compiles_ = bench.compiles;
     waiting_ = true;
     if (phase_ == Phase::Drag) {
-        const std::vector<ParamRow> rows = paramRows(*bench.shown()->grammar, bench.shown()->options, bench.document.choice());
+        const std::vector<ParamRow> rows =
+            paramRows(*bench.shown()->grammar, bench.shown()->options, bench.document.choice());
         const ParamRow* slider = firstSlider(rows);
         if (slider && drags_.size() < mostDrags) {
             if (drags_.empty()) bench.document.beginDrag();
-            bench.edit(setParams(*bench.document.ast(), bench.document.choice(), {stepped(*slider, drags_.size() % 2 == 1)}), "Drag");
+            bench.edit(
+                setParams(*bench.document.ast(), bench.document.choice(), {stepped(*slider, drags_.size() % 2 == 1)}),
+                "Drag");
             return true;
         }
         bench.document.endDrag();
@@ -65,12 +68,17 @@ bool Benchmark::go(Workbench& bench, const Turn& turn) {
     if (phase_ == Phase::Load) {
         if (!bench.field.finished()) return true;
         first_ = bench.shown()->stages;
-        for (const auto& [name, seconds] : {std::pair{"cells", bench.fieldTimes.prepare}, {"upload", bench.fieldTimes.upload}, {"compile shaders", bench.fieldTimes.compile}, {"coarse frame", times.coarse}, {"full frame", times.full}})
+        for (const auto& [name, seconds] : {std::pair{"cells", bench.fieldTimes.prepare},
+                                            {"upload", bench.fieldTimes.upload},
+                                            {"compile shaders", bench.fieldTimes.compile},
+                                            {"coarse frame", times.coarse},
+                                            {"full frame", times.full}})
             first_.emplace_back(name, seconds);
         phase_ = Phase::Drag;
         return begin(bench);
     }
-    if (waiting_ && (bench.busy() || !bench.field.visible() || bench.shown()->revision != bench.document.revision())) return since_.seconds() < 60;
+    if (waiting_ && (bench.busy() || !bench.field.visible() || bench.shown()->revision != bench.document.revision()))
+        return since_.seconds() < 60;
     (phase_ == Phase::Drag ? drags_ : structures_).push_back({since_.seconds(), bench.compiles - compiles_});
     return begin(bench);
 }
@@ -78,7 +86,8 @@ bool Benchmark::go(Workbench& bench, const Turn& turn) {
 void Benchmark::print(const Workbench& bench, const std::string& driver) const {
     fmt::print("{}\n{}\n", bench.document.path().string(), driver);
     for (const auto& [stage, seconds] : first_) fmt::print("  {:<16} {:8.1f} ms\n", stage, seconds * 1000);
-    for (const auto& [name, changes] : {std::pair{"slider to coarse frame", &drags_}, {"shape to coarse frame", &structures_}}) {
+    for (const auto& [name, changes] :
+         {std::pair{"slider to coarse frame", &drags_}, {"shape to coarse frame", &structures_}}) {
         if (changes->empty()) continue;
         std::vector<double> times;
         int compiles = 0;
@@ -87,13 +96,18 @@ void Benchmark::print(const Workbench& bench, const std::string& driver) const {
             compiles += change.compiles;
         }
         std::sort(times.begin(), times.end());
-        fmt::print("  {:<22} median {:.1f} ms, longest {:.1f} ms, {} times, {} compiles\n", name, times[times.size() / 2] * 1000, times.back() * 1000, times.size(), compiles);
+        fmt::print("  {:<22} median {:.1f} ms, longest {:.1f} ms, {} times, {} compiles\n", name,
+                   times[times.size() / 2] * 1000, times.back() * 1000, times.size(), compiles);
     }
-    fmt::print("  longest gap between looks at the hands, drawing excluded: {:.1f} ms; by the processor's clock, without what other "
-               "programs took: {:.1f} ms\n",
-               gap_.wall * 1000, gap_.processor * 1000);
+    fmt::print(
+        "  longest gap between looks at the hands, drawing excluded: {:.1f} ms; by the processor's clock, without what "
+        "other "
+        "programs took: {:.1f} ms\n",
+        gap_.wall * 1000, gap_.processor * 1000);
     for (const auto& [name, spent] : longest_)
-        if (spent.wall >= 5e-5) fmt::print("    {:<30} {:6.1f} ms, of the processor's {:.1f} ms\n", name, spent.wall * 1000, spent.processor * 1000);
+        if (spent.wall >= 5e-5)
+            fmt::print("    {:<30} {:6.1f} ms, of the processor's {:.1f} ms\n", name, spent.wall * 1000,
+                       spent.processor * 1000);
 }
 
 }  // namespace sgm::viewer

@@ -1,6 +1,6 @@
-// How fast the window answers, measured in the window itself: stages to the first picture, a slider that is dragged, shapes
-// that come and go, and the gaps between looks at the person's hands.
-// Enters: the workbench, once a turn of the loop. Leaves: a table on stdout. Assumes a grammar that can be shown.
+// How fast the window answers, measured in the window itself: stages to the first picture, a slider that is dragged,
+// shapes that come and go, and the gaps between looks at the person's hands. Enters: the workbench, once a turn of the
+// loop. Leaves: a table on stdout. Assumes a grammar that can be shown.
 #pragma once
 
 #include <string>
@@ -28,8 +28,8 @@ private:
     Phase phase_ = Phase::Load;
     std::vector<Change> drags_, structures_;
     std::vector<std::pair<std::string, double>> first_;  ///< seconds by stage
-    Spent gap_;     ///< the longest on each clock
-    std::vector<Turn::Part> longest_;  ///< of the turn that took longest by the wall's
+    Spent gap_;                                          ///< the longest on each clock
+    std::vector<Turn::Part> longest_;                    ///< of the turn that took longest by the wall's
     Stopwatch since_;
     int compiles_ = 0;
     bool waiting_ = false;

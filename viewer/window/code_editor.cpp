@@ -15,19 +15,30 @@ namespace {
 
 ImU32 tintOf(TextColour color) {
     switch (color) {
-        case TextColour::Keyword: return IM_COL32(198, 146, 220, 255);
-        case TextColour::Operation: return IM_COL32(110, 184, 200, 255);
+        case TextColour::Keyword:
+            return IM_COL32(198, 146, 220, 255);
+        case TextColour::Operation:
+            return IM_COL32(110, 184, 200, 255);
         case TextColour::Solid:
-        case TextColour::Terminal: return IM_COL32(232, 140, 120, 255);
-        case TextColour::NonTerminal: return IM_COL32(110, 164, 236, 255);
-        case TextColour::Parameter: return IM_COL32(226, 190, 120, 255);
+        case TextColour::Terminal:
+            return IM_COL32(232, 140, 120, 255);
+        case TextColour::NonTerminal:
+            return IM_COL32(110, 164, 236, 255);
+        case TextColour::Parameter:
+            return IM_COL32(226, 190, 120, 255);
         case TextColour::Number:
-        case TextColour::Hex: return IM_COL32(150, 200, 130, 255);
-        case TextColour::Text: return IM_COL32(178, 196, 120, 255);
-        case TextColour::Comment: return IM_COL32(112, 120, 132, 255);
-        case TextColour::Sign: return IM_COL32(176, 182, 192, 255);
-        case TextColour::Wrong: return tint::error;
-        case TextColour::Plain: break;
+        case TextColour::Hex:
+            return IM_COL32(150, 200, 130, 255);
+        case TextColour::Text:
+            return IM_COL32(178, 196, 120, 255);
+        case TextColour::Comment:
+            return IM_COL32(112, 120, 132, 255);
+        case TextColour::Sign:
+            return IM_COL32(176, 182, 192, 255);
+        case TextColour::Wrong:
+            return tint::error;
+        case TextColour::Plain:
+            break;
     }
     return tint::text;
 }
@@ -43,7 +54,9 @@ uint32_t before(const std::string& text, uint32_t at) {
     while (at > 0 && continues(text[at])) --at;
     return at;
 }
-bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || (static_cast<unsigned char>(c) & 0x80); }
+bool isWord(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || (static_cast<unsigned char>(c) & 0x80);
+}
 
 float widthOf(const std::string& text, uint32_t begin, uint32_t end) {
     return codeFont()->CalcTextSizeA(codeFont()->FontSize, FLT_MAX, 0, text.data() + begin, text.data() + end).x;
@@ -63,7 +76,9 @@ uint32_t CodeEditor::lineOf(uint32_t offset) const {
 uint32_t CodeEditor::endOf(const std::string& text, uint32_t line) const {
     return line + 1 < starts_.size() ? starts_[line + 1] - 1 : static_cast<uint32_t>(text.size());
 }
-float CodeEditor::xOf(const std::string& text, uint32_t line, uint32_t offset) const { return gutter_ + widthOf(text, starts_[line], offset); }
+float CodeEditor::xOf(const std::string& text, uint32_t line, uint32_t offset) const {
+    return gutter_ + widthOf(text, starts_[line], offset);
+}
 
 uint32_t CodeEditor::offsetAt(const std::string& text, uint32_t line, float x) const {
     uint32_t at = starts_[line];
@@ -96,29 +111,37 @@ void CodeEditor::layOut(const std::string& text, const std::vector<LineNote>& no
     }
 }
 
-void CodeEditor::drawLine(const std::string& text, uint32_t line, const std::vector<Coloured>& colors, const std::vector<LineNote>& notes, ImVec2 low) {
+void CodeEditor::drawLine(const std::string& text, uint32_t line, const std::vector<Coloured>& colors,
+                          const std::vector<LineNote>& notes, ImVec2 low) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     ImFont* font = codeFont();
     const uint32_t start = starts_[line], end = endOf(text, line);
     const auto [from, to] = selection();
     if (from < to && from <= end && to > start) {
         const float right = xOf(text, line, std::min(to, end)) + (to > end ? 5 : 0);
-        list.AddRectFilled({low.x + xOf(text, line, std::max(from, start)), low.y}, {low.x + right, low.y + height_}, ImGui::GetColorU32(ImGuiCol_TextSelectedBg));
+        list.AddRectFilled({low.x + xOf(text, line, std::max(from, start)), low.y}, {low.x + right, low.y + height_},
+                           ImGui::GetColorU32(ImGuiCol_TextSelectedBg));
     }
     const std::string number = fmt::format("{}", line + 1);
-    list.AddText(font, font->FontSize, {low.x + gutter_ - 14 - widthOf(number, 0, static_cast<uint32_t>(number.size())), low.y},
+    list.AddText(font, font->FontSize,
+                 {low.x + gutter_ - 14 - widthOf(number, 0, static_cast<uint32_t>(number.size())), low.y},
                  line == lineOf(caret_) ? tint::text : IM_COL32(92, 98, 108, 255), number.c_str());
     for (const Coloured& c : colors) {
         const uint32_t a = std::min(start + c.begin, end), b = std::min(start + c.end, end);
-        if (a < b) list.AddText(font, font->FontSize, {low.x + xOf(text, line, a), low.y}, tintOf(c.colour), text.data() + a, text.data() + b);
+        if (a < b)
+            list.AddText(font, font->FontSize, {low.x + xOf(text, line, a), low.y}, tintOf(c.colour), text.data() + a,
+                         text.data() + b);
     }
     for (const LineNote& note : notes) {
         if (note.line != line) continue;
-        const float a = low.x + xOf(text, line, std::min(start + note.begin, end)), b = low.x + xOf(text, line, std::min(start + note.end, end));
+        const float a = low.x + xOf(text, line, std::min(start + note.begin, end)),
+                    b = low.x + xOf(text, line, std::min(start + note.end, end));
         list.AddLine({a, low.y + height_ - 1}, {std::max(b, a + 6), low.y + height_ - 1}, note.color, 1.5f);
     }
     // The caret blinks with half a second, by the frames there are.
-    if (active_ && line == lineOf(caret_)) list.AddLine({low.x + xOf(text, line, caret_), low.y}, {low.x + xOf(text, line, caret_), low.y + height_}, tint::text, 1.5f);
+    if (active_ && line == lineOf(caret_))
+        list.AddLine({low.x + xOf(text, line, caret_), low.y}, {low.x + xOf(text, line, caret_), low.y + height_},
+                     tint::text, 1.5f);
 }
 
 void CodeEditor::mouse(const std::string& text, ImVec2 origin) {
@@ -128,7 +151,8 @@ void CodeEditor::mouse(const std::string& text, ImVec2 origin) {
     if (ImGui::IsMouseClicked(0) && !hovered) active_ = false;
     if (!hovered && !(active_ && ImGui::IsMouseDown(0))) return;
     if (hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_TextInput);
-    const auto row = static_cast<size_t>(std::clamp((io.MousePos.y - origin.y) / height_, 0.0f, static_cast<float>(rows_.size() - 1)));
+    const auto row = static_cast<size_t>(
+        std::clamp((io.MousePos.y - origin.y) / height_, 0.0f, static_cast<float>(rows_.size() - 1)));
     const uint32_t at = offsetAt(text, rows_[row].line, io.MousePos.x - origin.x);
     if (hovered && ImGui::IsMouseClicked(0)) {
         active_ = true;
@@ -161,7 +185,8 @@ void CodeEditor::moveBy(const std::string& text) {
     const uint32_t was = caret_, line = lineOf(caret_);
     const auto pressed = [](int key) { return ImGui::IsKeyPressed(key); };
     const int page = std::max(1, static_cast<int>(ImGui::GetWindowHeight() / height_) - 1);
-    int rows = (pressed(GLFW_KEY_DOWN) ? 1 : 0) - (pressed(GLFW_KEY_UP) ? 1 : 0) + (pressed(GLFW_KEY_PAGE_DOWN) ? page : 0) - (pressed(GLFW_KEY_PAGE_UP) ? page : 0);
+    int rows = (pressed(GLFW_KEY_DOWN) ? 1 : 0) - (pressed(GLFW_KEY_UP) ? 1 : 0) +
+               (pressed(GLFW_KEY_PAGE_DOWN) ? page : 0) - (pressed(GLFW_KEY_PAGE_UP) ? page : 0);
     if (rows != 0) {
         if (wantedX_ < 0) wantedX_ = xOf(text, line, caret_);
         const int to = std::clamp(static_cast<int>(line) + rows, 0, static_cast<int>(starts_.size()) - 1);
@@ -193,7 +218,8 @@ std::optional<std::string> CodeEditor::keys(const std::string& text) {
     const bool selected = from < to;
     if (io.KeyCtrl && !io.KeyAlt) {
         if (pressed(GLFW_KEY_A)) anchor_ = 0, caret_ = static_cast<uint32_t>(text.size());
-        if ((pressed(GLFW_KEY_C) || pressed(GLFW_KEY_X)) && selected) ImGui::SetClipboardText(text.substr(from, to - from).c_str());
+        if ((pressed(GLFW_KEY_C) || pressed(GLFW_KEY_X)) && selected)
+            ImGui::SetClipboardText(text.substr(from, to - from).c_str());
         if (pressed(GLFW_KEY_X) && selected) return replaced(text, from, to, "");
         if (pressed(GLFW_KEY_V))
             if (const char* clip = ImGui::GetClipboardText()) return replaced(text, from, to, clip);
@@ -218,15 +244,19 @@ std::optional<std::string> CodeEditor::keys(const std::string& text) {
     return replaced(text, from, to, typed);
 }
 
-std::optional<std::string> CodeEditor::show(Report& report, const std::string& text, const std::vector<std::vector<Coloured>>& colors,
+std::optional<std::string> CodeEditor::show(Report& report, const std::string& text,
+                                            const std::vector<std::vector<Coloured>>& colors,
                                             const std::vector<LineNote>& notes) {
     height_ = std::round(codeFont()->FontSize * 1.32f);
     layOut(text, notes);
     gutter_ = widthOf("99999", 0, starts_.size() > 999 ? 5 : 4) + 14;
     std::optional<std::string> changed;
     ImGui::PushStyleColor(ImGuiCol_ChildBg, IM_COL32(27, 28, 31, 255));
-    if (ImGui::BeginChild("code", {0, 0}, false, ImGuiWindowFlags_HorizontalScrollbar | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove)) {
-        report.mark("text", ImGui::GetWindowPos(), {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
+    if (ImGui::BeginChild("code", {0, 0}, false,
+                          ImGuiWindowFlags_HorizontalScrollbar | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove)) {
+        report.mark(
+            "text", ImGui::GetWindowPos(),
+            {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
         const ImVec2 origin = ImGui::GetCursorScreenPos();
         mouse(text, origin);
         if (active_) {
@@ -236,20 +266,28 @@ std::optional<std::string> CodeEditor::show(Report& report, const std::string& t
         const auto first = static_cast<size_t>(std::max(0.0f, ImGui::GetScrollY() / height_));
         const size_t last = std::min(rows_.size(), first + static_cast<size_t>(ImGui::GetWindowHeight() / height_) + 2);
         float widest = 0;
-        for (uint32_t line = 0; line < starts_.size(); ++line) widest = std::max(widest, xOf(text, line, endOf(text, line)));
+        for (uint32_t line = 0; line < starts_.size(); ++line)
+            widest = std::max(widest, xOf(text, line, endOf(text, line)));
         ImDrawList& list = *ImGui::GetWindowDrawList();
         static const std::vector<Coloured> plain;
         for (size_t i = first; i < last; ++i) {
             const Row& row = rows_[i];
             const ImVec2 low(origin.x, origin.y + static_cast<float>(i) * height_);
             if (row.note < 0) {
-                if (row.line == rows_[rowOf_[lineOf(std::min<uint32_t>(caret_, static_cast<uint32_t>(text.size())))]].line && active_)
-                    list.AddRectFilled({ImGui::GetWindowPos().x, low.y}, {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), low.y + height_}, IM_COL32(255, 255, 255, 8));
+                if (row.line ==
+                        rows_[rowOf_[lineOf(std::min<uint32_t>(caret_, static_cast<uint32_t>(text.size())))]].line &&
+                    active_)
+                    list.AddRectFilled({ImGui::GetWindowPos().x, low.y},
+                                       {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), low.y + height_},
+                                       IM_COL32(255, 255, 255, 8));
                 drawLine(text, row.line, row.line < colors.size() ? colors[row.line] : plain, notes, low);
-                report.mark(fmt::format("line.{}", row.line + 1), {low.x + gutter_, low.y}, {low.x + xOf(text, row.line, endOf(text, row.line)), low.y + height_});
+                report.mark(fmt::format("line.{}", row.line + 1), {low.x + gutter_, low.y},
+                            {low.x + xOf(text, row.line, endOf(text, row.line)), low.y + height_});
             } else {
                 const LineNote& note = notes[size_t(row.note)];
-                list.AddRectFilled({ImGui::GetWindowPos().x, low.y}, {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), low.y + height_}, (note.color & 0x00ffffff) | 0x24000000);
+                list.AddRectFilled({ImGui::GetWindowPos().x, low.y},
+                                   {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), low.y + height_},
+                                   (note.color & 0x00ffffff) | 0x24000000);
                 list.AddText({low.x + gutter_, low.y + 1}, note.color, note.text.c_str());
                 widest = std::max(widest, gutter_ + ImGui::CalcTextSize(note.text.c_str()).x);
             }
@@ -259,7 +297,8 @@ std::optional<std::string> CodeEditor::show(Report& report, const std::string& t
             const uint32_t at = std::min(caret_, static_cast<uint32_t>(text.size()));
             const uint32_t row = rowOf_[lineOf(std::min(anchor_, at))];
             const float y = static_cast<float>(row) * height_;
-            if (y < ImGui::GetScrollY() + height_ || y > ImGui::GetScrollY() + ImGui::GetWindowHeight() - 3 * height_) ImGui::SetScrollY(std::max(0.0f, y - ImGui::GetWindowHeight() * 0.35f));
+            if (y < ImGui::GetScrollY() + height_ || y > ImGui::GetScrollY() + ImGui::GetWindowHeight() - 3 * height_)
+                ImGui::SetScrollY(std::max(0.0f, y - ImGui::GetWindowHeight() * 0.35f));
         }
     }
     ImGui::EndChild();

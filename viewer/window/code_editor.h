@@ -18,8 +18,8 @@ namespace sgm::viewer {
 
 /// A sentence under a line, and what of the line it is about.
 struct LineNote {
-    uint32_t line = 0;                    ///< from 0
-    uint32_t begin = 0, end = 0;          ///< bytes of the line, underlined; may be empty
+    uint32_t line = 0;            ///< from 0
+    uint32_t begin = 0, end = 0;  ///< bytes of the line, underlined; may be empty
     std::string text;
     ImU32 color = 0;
 };
@@ -28,7 +28,8 @@ class CodeEditor {
 public:
     /// Fills the rest of the window. The text after what was typed, or nothing where it stays. `colors` are of this
     /// very text, a list a line.
-    std::optional<std::string> show(Report& report, const std::string& text, const std::vector<std::vector<Coloured>>& colors,
+    std::optional<std::string> show(Report& report, const std::string& text,
+                                    const std::vector<std::vector<Coloured>>& colors,
                                     const std::vector<LineNote>& notes);
     /// Selects bytes [begin, end) and scrolls there.
     void reveal(uint32_t begin, uint32_t end);
@@ -47,7 +48,8 @@ private:
         int note;  ///< −1: the line itself
     };
     void layOut(const std::string& text, const std::vector<LineNote>& notes);
-    void drawLine(const std::string& text, uint32_t line, const std::vector<Coloured>& colors, const std::vector<LineNote>& notes, ImVec2 low);
+    void drawLine(const std::string& text, uint32_t line, const std::vector<Coloured>& colors,
+                  const std::vector<LineNote>& notes, ImVec2 low);
     void mouse(const std::string& text, ImVec2 origin);
     std::optional<std::string> keys(const std::string& text);
     void moveBy(const std::string& text);
@@ -59,9 +61,9 @@ private:
     uint32_t caret_ = 0, anchor_ = 0;  ///< bytes; equal without a selection
     float wantedX_ = -1;               ///< where a caret that moves up and down would stand
     bool active_ = false, follow_ = false, clicked_ = false;
-    std::vector<uint32_t> starts_;     ///< of lines
+    std::vector<uint32_t> starts_;  ///< of lines
     std::vector<Row> rows_;
-    std::vector<uint32_t> rowOf_;      ///< by line
+    std::vector<uint32_t> rowOf_;  ///< by line
     float gutter_ = 0, height_ = 0;
 };
 

@@ -67,9 +67,7 @@ void FieldView::setLook(const PictureOptions& options) {
     restart();
 }
 
-void FieldView::restart() {
-    phase_ = scene_ && look_.width > 0 && look_.height > 0 ? Phase::Coarse : Phase::Idle;
-}
+void FieldView::restart() { phase_ = scene_ && look_.width > 0 && look_.height > 0 ? Phase::Coarse : Phase::Idle; }
 
 double FieldView::share() const {
     if (phase_ < Phase::First) return 0;
@@ -121,7 +119,8 @@ Status FieldView::drawBatch() {
     std::set<std::pair<int, int>> tiles;
     for (const Job& job : chunk) tiles.emplace(static_cast<int>(job.x()) / tile, static_cast<int>(job.y()) / tile);
     for (const auto& [i, j] : tiles) {
-        const int x = i * tile, y = j * tile, width = std::min(tile, look_.width - x), height = std::min(tile, look_.height - y);
+        const int x = i * tile, y = j * tile, width = std::min(tile, look_.width - x),
+                  height = std::min(tile, look_.height - y);
         fine_.write(sums_.bytes(x, y, width, height), x, y, width, height);
     }
     times_.full += watch.seconds();

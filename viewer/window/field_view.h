@@ -1,6 +1,7 @@
-// A view of a field, or of fog in its place, that gets better by itself: coarse at once, then every pixel from the middle
-// outwards, then edges. Enters: scenes and a look. Leaves: two textures, one over the other. Assumes a current GL context; every
-// `step` takes about 20 ms, but for the coarse picture, whose pixels are chosen to take about 50 ms together.
+// A view of a field, or of fog in its place, that gets better by itself: coarse at once, then every pixel from the
+// middle outwards, then edges. Enters: scenes and a look. Leaves: two textures, one over the other. Assumes a current
+// GL context; every `step` takes about 20 ms, but for the coarse picture, whose pixels are chosen to take about 50 ms
+// together.
 #pragma once
 
 #include <memory>

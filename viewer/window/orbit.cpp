@@ -60,19 +60,33 @@ void Orbit::move(double x, double y) {
 }
 
 void Orbit::approach(double factor) {
-    if (lamp_m > 0) at += towardsEye(*this) * (distance * (factor - 1));
-    else distance = std::clamp(distance * factor, 1e-3, 1e6);
+    if (lamp_m > 0)
+        at += towardsEye(*this) * (distance * (factor - 1));
+    else
+        distance = std::clamp(distance * factor, 1e-3, 1e6);
 }
 
 void Orbit::look(StandardView view) {
     constexpr double quarter = 0.5 * pi;
     switch (view) {
-        case StandardView::Front: yaw = 0, pitch = 0; break;
-        case StandardView::Back: yaw = pi, pitch = 0; break;
-        case StandardView::Right: yaw = quarter, pitch = 0; break;
-        case StandardView::Left: yaw = -quarter, pitch = 0; break;
-        case StandardView::Top: yaw = 0, pitch = steepest; break;
-        case StandardView::Bottom: yaw = 0, pitch = -steepest; break;
+        case StandardView::Front:
+            yaw = 0, pitch = 0;
+            break;
+        case StandardView::Back:
+            yaw = pi, pitch = 0;
+            break;
+        case StandardView::Right:
+            yaw = quarter, pitch = 0;
+            break;
+        case StandardView::Left:
+            yaw = -quarter, pitch = 0;
+            break;
+        case StandardView::Top:
+            yaw = 0, pitch = steepest;
+            break;
+        case StandardView::Bottom:
+            yaw = 0, pitch = -steepest;
+            break;
         case StandardView::ThreeQuarter: {
             const Orbit usual = from(viewer::frame(Box3f{{-1, -1, -1}, {1, 1, 1}}, 1));
             yaw = usual.yaw, pitch = usual.pitch;
@@ -89,8 +103,10 @@ void Orbit::frame(const Box3d& bounds) {
     distance = 1e-3;
     for (int i = 0; i < 8; ++i) {
         const Vec3d v = Vec3d{i & 1 ? bounds.hi.x : bounds.lo.x, i & 2 ? bounds.hi.y : bounds.lo.y,
-                              i & 4 ? bounds.hi.z : bounds.lo.z} - at;
-        distance = std::max({distance, std::abs(dot(v, right)) / reach + dot(v, back), std::abs(dot(v, up)) / reach + dot(v, back)});
+                              i & 4 ? bounds.hi.z : bounds.lo.z} -
+                        at;
+        distance = std::max(
+            {distance, std::abs(dot(v, right)) / reach + dot(v, back), std::abs(dot(v, up)) / reach + dot(v, back)});
     }
 }
 

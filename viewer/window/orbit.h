@@ -11,12 +11,12 @@ enum class StandardView { Front = 1, Back, Right, Left, Top, Bottom, ThreeQuarte
 
 /// A camera about a point. Plain values; `camera` makes what the pictures take.
 struct Orbit {
-    Vec3d at;               ///< what it turns about, metres
-    double distance = 10;   ///< from eye to `at`, metres
-    double yaw = 0;         ///< radians about +y; 0 looks along −z
-    double pitch = 0.4;     ///< radians above the horizon, −π/2 … π/2
+    Vec3d at;              ///< what it turns about, metres
+    double distance = 10;  ///< from eye to `at`, metres
+    double yaw = 0;        ///< radians about +y; 0 looks along −z
+    double pitch = 0.4;    ///< radians above the horizon, −π/2 … π/2
     double fieldOfView = Camera{}.fieldOfView;
-    double lamp_m = 0;      ///< as Camera::lamp_m
+    double lamp_m = 0;  ///< as Camera::lamp_m
 
     static Orbit from(const Camera& camera);
     Camera camera() const;

@@ -12,18 +12,22 @@ constexpr size_t mostMarks = 4000;  // more would only be a cloud of dots
 }  // namespace
 
 Projection::Projection(const Camera& camera, ImVec2 low, ImVec2 size)
-    : view(viewOf(camera, std::max(1, static_cast<int>(size.x)), std::max(1, static_cast<int>(size.y)))), low(low), size(size) {}
+    : view(viewOf(camera, std::max(1, static_cast<int>(size.x)), std::max(1, static_cast<int>(size.y)))),
+      low(low),
+      size(size) {}
 
 std::optional<ImVec2> Projection::operator()(Vec3d p) const {
     const Vec3d v = p - view.eye;
     const double depth = dot(v, view.forward);
     if (depth < 1e-6) return std::nullopt;
-    const double x = dot(v, view.right) / dot(view.right, view.right) / depth, y = dot(v, view.up) / dot(view.up, view.up) / depth;
+    const double x = dot(v, view.right) / dot(view.right, view.right) / depth,
+                 y = dot(v, view.up) / dot(view.up, view.up) / depth;
     if (std::abs(x) > 50 || std::abs(y) > 50) return std::nullopt;
     return ImVec2(low.x + static_cast<float>((x + 1) / 2) * size.x, low.y + static_cast<float>((1 - y) / 2) * size.y);
 }
 
-std::vector<ScreenJoint> screenJoints(const derive::ShapeTree& tree, const std::vector<derive::ShapeId>& shapes, const Projection& project) {
+std::vector<ScreenJoint> screenJoints(const derive::ShapeTree& tree, const std::vector<derive::ShapeId>& shapes,
+                                      const Projection& project) {
     std::vector<ScreenJoint> joints;
     for (const derive::ShapeId shape : shapes) {
         if (joints.size() > mostMarks) break;
@@ -66,22 +70,27 @@ void drawJoints(const std::vector<ScreenJoint>& joints, ImDrawList& list) {
 void drawBonds(const Workbench& bench, const Projection& project, ImDrawList& list) {
     const derive::ShapeTree* tree = bench.tree();
     const JointsShown shown = bench.look.joints;
-    if (!tree || shown == JointsShown::None || (shown == JointsShown::Selected && bench.selected() == derive::none)) return;
+    if (!tree || shown == JointsShown::None || (shown == JointsShown::Selected && bench.selected() == derive::none))
+        return;
     for (const BondMark& bond : bondMarks(*tree, mostMarks)) {
-        if (shown == JointsShown::Selected && bond.shapes[0] != bench.selected() && bond.shapes[1] != bench.selected()) continue;
+        if (shown == JointsShown::Selected && bond.shapes[0] != bench.selected() && bond.shapes[1] != bench.selected())
+            continue;
         const auto from = project(bond.from), at = project(bond.at), to = project(bond.to);
         const ImU32 color = bond.toCentre ? tint::terminal : tint::good;
         if (from && at) list.AddLine(*from, *at, (color & 0x00ffffff) | 0x90000000, 1.6f);
         if (at && to) list.AddLine(*at, *to, (color & 0x00ffffff) | 0x90000000, 1.6f);
     }
-    drawJoints(screenJoints(*tree, shown == JointsShown::All ? everyOwner(*tree) : std::vector{bench.selected()}, project), list);
+    drawJoints(
+        screenJoints(*tree, shown == JointsShown::All ? everyOwner(*tree) : std::vector{bench.selected()}, project),
+        list);
 }
 
 void drawScope(const Workbench& bench, derive::ShapeId shape, const Projection& project, ImDrawList& list) {
     const derive::Shape& s = bench.tree()->shapes[shape];
     const bool terminal = isTerminal(bench.shown()->model.derivation, shape);
     std::optional<ImVec2> corners[8];
-    for (int i = 0; i < 8; ++i) corners[i] = project(s.scope.point({i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0}));
+    for (int i = 0; i < 8; ++i)
+        corners[i] = project(s.scope.point({i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0}));
     for (int i = 0; i < 8; ++i)
         for (const int bit : {1, 2, 4}) {
             if (i & bit || !corners[i] || !corners[i | bit]) continue;
@@ -94,11 +103,17 @@ void drawAxes(const Projection& project, ImDrawList& list) {
     const float reach = ImGui::GetFontSize() * 1.7f;
     const ImVec2 centre(project.low.x + reach * 1.6f, project.low.y + project.size.y - reach * 1.6f);
     const Vec3d right = normalized(project.view.right), up = normalized(project.view.up);
-    const struct { Vec3d axis; ImU32 color; const char* name; } axes[] = {
-        {{1, 0, 0}, IM_COL32(214, 92, 84, 255), "x"}, {{0, 1, 0}, IM_COL32(120, 178, 92, 255), "y"}, {{0, 0, 1}, IM_COL32(90, 140, 220, 255), "z"}};
+    const struct {
+        Vec3d axis;
+        ImU32 color;
+        const char* name;
+    } axes[] = {{{1, 0, 0}, IM_COL32(214, 92, 84, 255), "x"},
+                {{0, 1, 0}, IM_COL32(120, 178, 92, 255), "y"},
+                {{0, 0, 1}, IM_COL32(90, 140, 220, 255), "z"}};
     list.AddCircleFilled(centre, reach * 1.35f, IM_COL32(20, 22, 26, 110), 32);
     for (const auto& a : axes) {
-        const float x = static_cast<float>(dot(a.axis, right)) * reach, y = static_cast<float>(-dot(a.axis, up)) * reach;
+        const float x = static_cast<float>(dot(a.axis, right)) * reach,
+                    y = static_cast<float>(-dot(a.axis, up)) * reach;
         const ImVec2 end(centre.x + x, centre.y + y);
         list.AddLine(centre, end, a.color, 2);
         const ImVec2 half = ImGui::CalcTextSize(a.name);

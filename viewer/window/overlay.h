@@ -1,5 +1,6 @@
 // What is drawn over the view: joints and bonds as in SG-M's figure 11, the selected shape's scope, the axes.
-// Enters: a camera and a rectangle of the screen. Leaves: lines and dots in ImGui's draw list. Assumes a frame of ImGui.
+// Enters: a camera and a rectangle of the screen. Leaves: lines and dots in ImGui's draw list. Assumes a frame of
+// ImGui.
 #pragma once
 
 #include <imgui.h>
@@ -27,7 +28,8 @@ struct ScreenJoint {
     JointMark mark;
     ImVec2 at;
 };
-std::vector<ScreenJoint> screenJoints(const derive::ShapeTree& tree, const std::vector<derive::ShapeId>& shapes, const Projection& project);
+std::vector<ScreenJoint> screenJoints(const derive::ShapeTree& tree, const std::vector<derive::ShapeId>& shapes,
+                                      const Projection& project);
 /// The shapes that own a place in space: contents that fill one exactly share its joints.
 std::vector<derive::ShapeId> everyOwner(const derive::ShapeTree& tree);
 /// The joint within `reach` pixels of a place, or null.

@@ -79,7 +79,7 @@ private:
     std::vector<RuleRow> rows_;
     std::optional<uint32_t> at_;  ///< first byte of the selected row's node
     RuleRow::Kind kind_ = RuleRow::Kind::Rule;
-    bool scroll_ = false;        ///< the selected row is to be seen
+    bool scroll_ = false;  ///< the selected row is to be seen
     /// Where a rule that is dragged would go.
     struct Drop {
         size_t rule, before;  ///< of the syntax tree
@@ -125,7 +125,7 @@ private:
 
     size_t format_ = 0;  // row of the table
     int resolution_ = 192;
-    int keep_ = 0;        // mesh::Keep
+    int keep_ = 0;  // mesh::Keep
     std::string objects_ = "material";
     std::filesystem::path document_;  // that `file_` was named after
     std::vector<ExportRow> options_;

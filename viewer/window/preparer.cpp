@@ -110,7 +110,8 @@ Status Preparer::makeField(std::shared_ptr<const Shown> model, bool withCamera, 
     Stopwatch watch;
     const lower::Model& lowered = *model->model.lowered;
     const eval::Tape& tape = model->model.tape;
-    Result<PreparedField> field = prepareField(tape, tighten(tape, lowered.field.bounds), lowered.provenance, 0, &progress, levelsFor(*model));
+    Result<PreparedField> field =
+        prepareField(tape, tighten(tape, lowered.field.bounds), lowered.provenance, 0, &progress, levelsFor(*model));
     if (!field) return field.error();
     ready.times.prepare = watch.seconds();
     if (withCamera) ready.camera = frame(tape, field->bounds, 1);
@@ -137,7 +138,8 @@ Status Preparer::makeFog(std::shared_ptr<const Shown> model, int resolution, Pro
     Stopwatch watch;
     const eval::Tape& tape = model->model.tape;
     const Box3f bounds = tighten(tape, model->model.lowered->field.bounds);
-    const Result<FogGrid> grid = fogGrid(tape, mesh::gridFor(bounds, mesh::cellFor(bounds, resolution)), bounds, 0, &progress);
+    const Result<FogGrid> grid =
+        fogGrid(tape, mesh::gridFor(bounds, mesh::cellFor(bounds, resolution)), bounds, 0, &progress);
     if (!grid) return grid.error();
     const Result<PreparedFog> fog = viewer::prepareFog(grid->dense, bounds, usualFog(*grid), 0, &progress);
     if (!fog) return fog.error();
@@ -198,7 +200,8 @@ Status Preparer::makePreview(std::shared_ptr<const Shown> model, int resolution,
     const lower::Model& lowered = *model->model.lowered;
     const Stopwatch watch;
     const Box3f bounds = tighten(model->model.tape, lowered.field.bounds);  // the ground lies where the field's does
-    const Result<PreparedBlocks> blocks = prepareBlocks(model->model.tape, mesh::gridFor(bounds, mesh::cellFor(bounds, resolution)), 0, &progress);
+    const Result<PreparedBlocks> blocks =
+        prepareBlocks(model->model.tape, mesh::gridFor(bounds, mesh::cellFor(bounds, resolution)), 0, &progress);
     if (!blocks) return blocks.error();
     auto programs = programsFor(*blocks, blockPrograms_);
     if (!programs) return programs.error();

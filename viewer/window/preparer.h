@@ -1,7 +1,6 @@
-// Makes what the session gives ready for the screen, beside the window: cells, fog and lists of meshes, their upload, and
-// the shaders they need.
-// Enters: the newest model and mesh. Leaves: scenes to be drawn. Assumes that one thread (the window's) calls it, every
-// frame `poll`, and a GL context of its own that shares with that thread's.
+// Makes what the session gives ready for the screen, beside the window: cells, fog and lists of meshes, their upload,
+// and the shaders they need. Enters: the newest model and mesh. Leaves: scenes to be drawn. Assumes that one thread
+// (the window's) calls it, every frame `poll`, and a GL context of its own that shares with that thread's.
 #pragma once
 
 #include <condition_variable>

@@ -24,7 +24,8 @@ public:
     void mark(const std::string& name, ImVec2 low, ImVec2 high);
     /// Values of this frame, a member each.
     nlohmann::json& state();
-    /// Writes {"frame": n, "widgets": {name: [x, y, width, height]}, "state": {…}} beside the file and renames it there.
+    /// Writes {"frame": n, "widgets": {name: [x, y, width, height]}, "state": {…}} beside the file and renames it
+    /// there.
     void write();
 
 private:

@@ -1,5 +1,5 @@
-// Time on two clocks: the wall's, and the processor's for this thread alone, which other programs don't disturb; and where a
-// turn of the window's loop spends it.
+// Time on two clocks: the wall's, and the processor's for this thread alone, which other programs don't disturb; and
+// where a turn of the window's loop spends it.
 #pragma once
 
 #include <ctime>

@@ -12,7 +12,8 @@ namespace {
 void addFont(std::initializer_list<const char*> files, float size, float scale) {
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
     // Latin, Greek, punctuation, arrows, operators and shapes: what labels and the panels' signs need.
-    static const ImWchar ranges[] = {0x20, 0x17f, 0x370, 0x3ff, 0x2010, 0x2044, 0x2190, 0x21ff, 0x2200, 0x22ff, 0x25a0, 0x25ff, 0x2713, 0x2717, 0};
+    static const ImWchar ranges[] = {0x20,   0x17f,  0x370,  0x3ff,  0x2010, 0x2044, 0x2190, 0x21ff,
+                                     0x2200, 0x22ff, 0x25a0, 0x25ff, 0x2713, 0x2717, 0};
     std::error_code ignored;
     for (const char* file : files)
         if (std::filesystem::exists(file, ignored)) {
@@ -82,10 +83,13 @@ void dress(float scale) {
     fonts.FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
     fonts.FontBuilderFlags = ImGuiFreeTypeBuilderFlags_LightHinting;
     addFont({"/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf",
-             "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"}, 15, scale);
-    addFont({"/usr/share/fonts/truetype/hack/Hack-Regular.ttf", "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf"}, 14, scale);
+             "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"},
+            15, scale);
+    addFont({"/usr/share/fonts/truetype/hack/Hack-Regular.ttf", "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf"},
+            14, scale);
     addFont({"/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Medium.ttf",
-             "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"}, 15, scale);
+             "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"},
+            15, scale);
     ImGuiStyle& style = ImGui::GetStyle();
     style.WindowPadding = {10, 8};
     style.FramePadding = {8, 4};

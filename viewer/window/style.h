@@ -23,7 +23,7 @@ inline constexpr ImU32 selected = IM_COL32(255, 184, 77, 255);
 inline constexpr ImU32 error = IM_COL32(235, 104, 92, 255);
 inline constexpr ImU32 warning = IM_COL32(226, 178, 84, 255);
 inline constexpr ImU32 good = IM_COL32(122, 190, 130, 255);
-inline constexpr ImU32 terminal = IM_COL32(226, 102, 88, 255);     ///< figure 1 of the SG-M paper
+inline constexpr ImU32 terminal = IM_COL32(226, 102, 88, 255);  ///< figure 1 of the SG-M paper
 inline constexpr ImU32 nonTerminal = IM_COL32(98, 152, 226, 255);
 }  // namespace tint
 

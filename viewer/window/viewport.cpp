@@ -38,10 +38,17 @@ void moveCamera(Workbench& bench, float height) {
     const ImGuiIO& io = ImGui::GetIO();
     const double x = io.MouseDelta.x / height, y = io.MouseDelta.y / height;
     switch (gripOf(bench.look.hands)) {
-        case Grip::Turn: bench.orbit.turn(x, y); break;
-        case Grip::Move: bench.orbit.move(x, y); break;
-        case Grip::Approach: bench.orbit.approach(std::exp(2.5 * (y - x))); break;
-        case Grip::None: break;
+        case Grip::Turn:
+            bench.orbit.turn(x, y);
+            break;
+        case Grip::Move:
+            bench.orbit.move(x, y);
+            break;
+        case Grip::Approach:
+            bench.orbit.approach(std::exp(2.5 * (y - x)));
+            break;
+        case Grip::None:
+            break;
     }
 }
 
@@ -59,13 +66,15 @@ void takeShape(Workbench& bench, const Projection& project, ImDrawList& list) {
     drawJoints(joints, list);
     for (const ScreenJoint& joint : joints) {
         const float r = ImGui::GetFontSize() * 0.3f;
-        bench.report.mark(fmt::format("joint.{}.{}", bench.tree()->path(joint.mark.shape, true), joint.mark.name), {joint.at.x - r, joint.at.y - r}, {joint.at.x + r, joint.at.y + r});
+        bench.report.mark(fmt::format("joint.{}.{}", bench.tree()->path(joint.mark.shape, true), joint.mark.name),
+                          {joint.at.x - r, joint.at.y - r}, {joint.at.x + r, joint.at.y + r});
     }
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const ScreenJoint* nearest = nearestJoint(joints, mouse, ImGui::GetFontSize());
     if (nearest) list.AddCircle(nearest->at, ImGui::GetFontSize() * 0.5f, tint::selected, 0, 2.5f);
     if (!ImGui::BeginDragDropTarget()) return;
-    if (const ImGuiPayload* dropped = ImGui::AcceptDragDropPayload("shape", ImGuiDragDropFlags_AcceptNoDrawDefaultRect); dropped && nearest)
+    if (const ImGuiPayload* dropped = ImGui::AcceptDragDropPayload("shape", ImGuiDragDropFlags_AcceptNoDrawDefaultRect);
+        dropped && nearest)
         bench.attach(*static_cast<const derive::ShapeId*>(dropped->Data), nearest->mark.shape, nearest->mark.joint);
     ImGui::EndDragDropTarget();
 }
@@ -96,7 +105,8 @@ void showMesh(Workbench& bench, ImVec2 low, ImVec2 size) {
     if (!bench.mesh.visible())
         if (const Status s = bench.mesh.step(); !s) bench.say(s.error().message, true);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    if (bench.mesh.visible()) list.AddImage(textureOf(bench.mesh.texture()), low, ImVec2(low.x + size.x, low.y + size.y));
+    if (bench.mesh.visible())
+        list.AddImage(textureOf(bench.mesh.texture()), low, ImVec2(low.x + size.x, low.y + size.y));
     if (bench.mesh.hasMesh()) return;
     const char* text = bench.busy() ? "Meshing…" : "No mesh";
     const ImVec2 half = ImGui::CalcTextSize(text);
@@ -106,7 +116,9 @@ void showMesh(Workbench& bench, ImVec2 low, ImVec2 size) {
 /// One picture with its hands and overlays; `name` is what the report calls it.
 void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMesh) {
     ImGui::SetCursorScreenPos(low);
-    ImGui::InvisibleButton(name, size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);
+    ImGui::InvisibleButton(
+        name, size,
+        ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);
     bench.report.mark(name);
     const ImGuiIO& io = ImGui::GetIO();
     const bool hovered = ImGui::IsItemHovered();
@@ -128,7 +140,8 @@ void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMe
         bench.hover = hoverAt(bench, low, io.MousePos);
     }
     const ImVec2 wandered = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0);
-    const bool click = hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && std::hypot(wandered.x, wandered.y) < clickSlack;
+    const bool click =
+        hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && std::hypot(wandered.x, wandered.y) < clickSlack;
     if (click) {
         bench.hover = hoverAt(bench, low, io.MousePos);
         bench.select(bench.hover ? bench.hover->shape : derive::none);
@@ -163,7 +176,10 @@ void viewKeys(Workbench& bench) {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.KeyCtrl || io.KeyAlt || io.KeySuper) return;
     // The grammar's own keys go first.
-    const auto pressed = [&](int key) { return ImGui::IsKeyPressed(key, false) && bench.hotkeys.find(static_cast<char>(std::tolower(key & 127))) == std::string::npos; };
+    const auto pressed = [&](int key) {
+        return ImGui::IsKeyPressed(key, false) &&
+               bench.hotkeys.find(static_cast<char>(std::tolower(key & 127))) == std::string::npos;
+    };
     if (pressed(GLFW_KEY_F)) bench.frameSelection();
     if (pressed(GLFW_KEY_A)) bench.frameAll();
     if (ImGui::IsKeyPressed(GLFW_KEY_HOME, false)) {
@@ -171,7 +187,8 @@ void viewKeys(Workbench& bench) {
         bench.frameAll();
     }
     for (int view = 1; view <= 7; ++view)
-        if (pressed(GLFW_KEY_0 + view) || pressed(GLFW_KEY_KP_0 + view)) bench.orbit.look(static_cast<StandardView>(view));
+        if (pressed(GLFW_KEY_0 + view) || pressed(GLFW_KEY_KP_0 + view))
+            bench.orbit.look(static_cast<StandardView>(view));
 }
 
 }  // namespace sgm::viewer

@@ -34,13 +34,15 @@ bool quietButton(Report& report, const std::string& name, const char* label, con
     return pressed;
 }
 
-bool oneOf(Report& report, const std::string& name, std::span<const char* const> labels, int& value, std::span<const char* const> hints) {
+bool oneOf(Report& report, const std::string& name, std::span<const char* const> labels, int& value,
+           std::span<const char* const> hints) {
     const int before = value;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(1, ImGui::GetStyle().ItemSpacing.y));
     for (int i = 0; i < static_cast<int>(labels.size()); ++i) {
         if (i > 0) ImGui::SameLine();
         if (i == before) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_HeaderActive));
-        const bool pressed = button(report, name + "." + labels[size_t(i)], labels[size_t(i)], hints.empty() ? nullptr : hints[size_t(i)]);
+        const bool pressed = button(report, name + "." + labels[size_t(i)], labels[size_t(i)],
+                                    hints.empty() ? nullptr : hints[size_t(i)]);
         if (i == before) ImGui::PopStyleColor();
         if (pressed) value = i;
     }
@@ -62,7 +64,8 @@ bool choice(Report& report, const std::string& name, std::span<const std::string
     const bool known = value >= 0 && value < static_cast<int>(items.size());
     ImGui::SetNextItemWidth(width > 0 ? width : -FLT_MIN);
     ImGui::PushID(name.c_str());
-    const bool open = ImGui::BeginCombo("##choice", known ? items[size_t(value)].c_str() : "", ImGuiComboFlags_HeightLargest);
+    const bool open =
+        ImGui::BeginCombo("##choice", known ? items[size_t(value)].c_str() : "", ImGuiComboFlags_HeightLargest);
     if (!open) report.mark(name);
     if (open) {
         for (int i = 0; i < static_cast<int>(items.size()); ++i) {

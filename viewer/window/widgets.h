@@ -10,11 +10,14 @@
 namespace sgm::viewer::widgets {
 
 /// A button; `hint` explains it while the pointer rests on it.
-bool button(Report& report, const std::string& name, const char* label, const char* hint = nullptr, bool enabled = true);
+bool button(Report& report, const std::string& name, const char* label, const char* hint = nullptr,
+            bool enabled = true);
 /// A button that is only its text.
-bool quietButton(Report& report, const std::string& name, const char* label, const char* hint = nullptr, bool enabled = true);
+bool quietButton(Report& report, const std::string& name, const char* label, const char* hint = nullptr,
+                 bool enabled = true);
 /// One of several, side by side, each explained by its hint where there are any. True when another was chosen.
-bool oneOf(Report& report, const std::string& name, std::span<const char* const> labels, int& value, std::span<const char* const> hints = {});
+bool oneOf(Report& report, const std::string& name, std::span<const char* const> labels, int& value,
+           std::span<const char* const> hints = {});
 bool toggle(Report& report, const std::string& name, const char* label, bool& value, const char* hint = nullptr);
 /// A combo box of `width` pixels (0: what is left). Its items are reported as NAME.ITEM while it is open.
 bool choice(Report& report, const std::string& name, std::span<const std::string> items, int& value, float width = 0);

@@ -63,14 +63,19 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
     // These replace ImGui's, which know the state at the frame alone.
     using Kind = Event::Kind;
     glfwSetKeyCallback(made, [](GLFWwindow* w, int key, int, int action, int) {
-        if (key >= 0 && key < IM_ARRAYSIZE(ImGuiIO::KeysDown) && action != GLFW_REPEAT) self(w).receive({.kind = Kind::Key, .code = key, .down = action == GLFW_PRESS});
+        if (key >= 0 && key < IM_ARRAYSIZE(ImGuiIO::KeysDown) && action != GLFW_REPEAT)
+            self(w).receive({.kind = Kind::Key, .code = key, .down = action == GLFW_PRESS});
     });
-    glfwSetCharCallback(made, [](GLFWwindow* w, unsigned letter) { self(w).receive({.kind = Kind::Letter, .letter = letter}); });
-    glfwSetCursorPosCallback(made, [](GLFWwindow* w, double x, double y) { self(w).receive({.kind = Kind::Move, .x = x, .y = y}); });
+    glfwSetCharCallback(
+        made, [](GLFWwindow* w, unsigned letter) { self(w).receive({.kind = Kind::Letter, .letter = letter}); });
+    glfwSetCursorPosCallback(
+        made, [](GLFWwindow* w, double x, double y) { self(w).receive({.kind = Kind::Move, .x = x, .y = y}); });
     glfwSetMouseButtonCallback(made, [](GLFWwindow* w, int button, int action, int) {
-        if (button >= 0 && button < ImGuiMouseButton_COUNT) self(w).receive({.kind = Kind::Button, .code = button, .down = action == GLFW_PRESS});
+        if (button >= 0 && button < ImGuiMouseButton_COUNT)
+            self(w).receive({.kind = Kind::Button, .code = button, .down = action == GLFW_PRESS});
     });
-    glfwSetScrollCallback(made, [](GLFWwindow* w, double x, double y) { self(w).receive({.kind = Kind::Wheel, .x = x, .y = y}); });
+    glfwSetScrollCallback(
+        made, [](GLFWwindow* w, double x, double y) { self(w).receive({.kind = Kind::Wheel, .x = x, .y = y}); });
     glfwGetCursorPos(made, &window->given_.x, &window->given_.y);
     ImGui_ImplOpenGL3_Init("#version 430 core");
     ImGui_ImplOpenGL3_CreateDeviceObjects();  // letters and shaders: before anybody waits for an answer
@@ -118,8 +123,8 @@ void Window::giveInput() {
     ImGuiIO& io = ImGui::GetIO();
     const auto either = [&](int left, int right) { return io.KeysDown[left] || io.KeysDown[right]; };
     const auto isModifier = [](int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; };
-    bool command = false;     // a key that stands for more than its letter
-    bool button = false;      // of the mouse; its wheel holds nothing up, for it turns while the pointer moves
+    bool command = false;  // a key that stands for more than its letter
+    bool button = false;   // of the mouse; its wheel holds nothing up, for it turns while the pointer moves
     bool letters = false;
     std::vector<int> turned;  // keys that went down or up
     /// False where the event must wait for the next frame.
@@ -145,12 +150,15 @@ void Window::giveInput() {
                 io.MouseWheel += static_cast<float>(event.y);
                 given_.wheel += event.y;
                 return true;
-            case Kind::Key: break;
+            case Kind::Key:
+                break;
         }
         const bool isLetter = event.code < 256 && !either(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
         // A text takes letters, so their keys may come and go; elsewhere they are commands and stay for a frame.
         const bool ofText = io.WantTextInput && (isLetter || isModifier(event.code));
-        if (!ofText && (event.down ? std::find(turned.begin(), turned.end(), event.code) != turned.end() : !turned.empty())) return false;
+        if (!ofText &&
+            (event.down ? std::find(turned.begin(), turned.end(), event.code) != turned.end() : !turned.empty()))
+            return false;
         const bool commands = event.down && !isLetter && !isModifier(event.code);
         if (commands && letters) return false;
         command = commands;
@@ -167,7 +175,8 @@ void Window::giveInput() {
     io.KeyAlt = either(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
     io.KeySuper = either(GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER);
     // ImGui's own look at the pointer says whether it is ours at all.
-    if (ImGui::IsMousePosValid(&io.MousePos)) io.MousePos = {static_cast<float>(given_.x), static_cast<float>(given_.y)};
+    if (ImGui::IsMousePosValid(&io.MousePos))
+        io.MousePos = {static_cast<float>(given_.x), static_cast<float>(given_.y)};
     for (int i = 0; i < ImGuiMouseButton_COUNT; ++i) io.MouseDown[i] = given_.buttons >> i & 1;
 }
 

@@ -75,14 +75,14 @@ private:
     Window() = default;
     struct Event {
         enum class Kind { Key, Letter, Move, Button, Wheel } kind;
-        int code = 0;         ///< GLFW's of a key or a button
+        int code = 0;  ///< GLFW's of a key or a button
         bool down = false;
         unsigned letter = 0;  ///< UTF-32
         double x = 0, y = 0;
     };
     void receive(Event event);
-    /// Gives ImGui the input of one frame in its order. What would hide an earlier event waits for the next frame, so that
-    /// a slow frame loses no click and no command.
+    /// Gives ImGui the input of one frame in its order. What would hide an earlier event waits for the next frame, so
+    /// that a slow frame loses no click and no command.
     void giveInput();
 
     GLFWwindow* window_ = nullptr;

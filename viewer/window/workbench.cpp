@@ -72,7 +72,9 @@ void Workbench::refresh() {
     // While a hand drags, the GPU's own mesh does.
     const int resolution = wantsMesh() && !document.dragging() ? look.meshResolution : 0;
     const bool dragging = document.dragging() && !stepper;  // steps belong to a text and its spans
-    if (asked_ == document.revision() && askedResolution_ == resolution && askedDragging_ == dragging && askedByHand_ == byHand_.get()) return;
+    if (asked_ == document.revision() && askedResolution_ == resolution && askedDragging_ == dragging &&
+        askedByHand_ == byHand_.get())
+        return;
     ShowRequest request = requestOf(document);
     request.dragging = dragging;
     request.meshResolution = resolution;
@@ -164,11 +166,13 @@ void Workbench::select(derive::ShapeId shape, bool quiet) {
 
 void Workbench::revealPlace(const Problem& problem) {
     const syntax::Source& source = *document.ast()->source;
-    if (problem.file != source.name() || !problem.line) return say(fmt::format("{}:{}: {}", problem.file, problem.line, problem.message), true);
+    if (problem.file != source.name() || !problem.line)
+        return say(fmt::format("{}:{}: {}", problem.file, problem.line, problem.message), true);
     const std::string_view line = source.line(problem.line);
     const auto start = static_cast<uint32_t>(line.data() - source.text().data());
     const uint32_t begin = start + std::min<uint32_t>(problem.column - 1, static_cast<uint32_t>(line.size()));
-    const uint32_t end = problem.endLine == problem.line ? start + problem.endColumn - 1 : start + static_cast<uint32_t>(line.size());
+    const uint32_t end =
+        problem.endLine == problem.line ? start + problem.endColumn - 1 : start + static_cast<uint32_t>(line.size());
     reveal = {begin, std::max(begin, end)};
 }
 
@@ -182,21 +186,26 @@ void Workbench::selectText(uint32_t offset) {
     if (made.empty()) return;
     const auto present = std::find(made.begin(), made.end(), selected_);
     select(present == made.end() || present + 1 == made.end() ? made.front() : present[1], true);
-    if (made.size() > 1) say(fmt::format("One of {} shapes that this text made; click again for the next", made.size()));
+    if (made.size() > 1)
+        say(fmt::format("One of {} shapes that this text made; click again for the next", made.size()));
 }
 
 std::optional<Hover> Workbench::hoverOf(const Pick& pick) const {
     if (pick.kind != HitKind::Object || !shown()) return std::nullopt;
     const auto picked = viewer::pick(*shown(), pick.origin);
     if (!picked) return std::nullopt;
-    Hover hover{pick.position, picked->shape, fmt::format("{}  ·  {}", picked->symbol, picked->rule.empty() ? "start" : "rule " + picked->rule)};
+    Hover hover{pick.position, picked->shape,
+                fmt::format("{}  ·  {}", picked->symbol, picked->rule.empty() ? "start" : "rule " + picked->rule)};
     if (picked->element.source)
-        hover.text += fmt::format("  ·  {}:{}", std::filesystem::path(picked->element.source->name()).filename().string(), picked->element.source->place(picked->element.begin).line);
+        hover.text +=
+            fmt::format("  ·  {}:{}", std::filesystem::path(picked->element.source->name()).filename().string(),
+                        picked->element.source->place(picked->element.begin).line);
     return hover;
 }
 
 void Workbench::attach(derive::ShapeId moved, derive::ShapeId host, uint32_t joint) {
-    edit(viewer::attach(document, *shown(), moved, host, joint), fmt::format("Join at {}", tree()->joint(host, joint).name));
+    edit(viewer::attach(document, *shown(), moved, host, joint),
+         fmt::format("Join at {}", tree()->joint(host, joint).name));
 }
 
 void Workbench::beginSteps(const std::string& way) {
@@ -242,7 +251,8 @@ Box3d Workbench::boundsOf(derive::ShapeId shape) const {
     const derive::ShapeTree& shapes = *tree();
     for (derive::ShapeId id = shape; id != derive::none; id = shapes.next(id, shape))
         for (int corner = 0; corner < 8; ++corner)
-            box = hull(box, shapes.shapes[id].scope.point({corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0}));
+            box = hull(box, shapes.shapes[id].scope.point(
+                                {corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0}));
     return box;
 }
 
@@ -263,7 +273,8 @@ MeshStyle Workbench::meshStyle() const {
         const Box3d box = bounds();
         Section section{{0, 0, 0}, 0};
         section.normal[look.sectionAxis] = 1;
-        section.offset = static_cast<float>(box.lo[look.sectionAxis] + box.size()[look.sectionAxis] * look.sectionShare);
+        section.offset =
+            static_cast<float>(box.lo[look.sectionAxis] + box.size()[look.sectionAxis] * look.sectionShare);
         style.section = section;
     }
     return style;
@@ -275,19 +286,19 @@ void Workbench::stepInside() {
     settled_ = false;
 }
 
-void Workbench::startTurntable(int count) {
-    turntable = Turntable{0, count, orbit.yaw};
-}
+void Workbench::startTurntable(int count) { turntable = Turntable{0, count, orbit.yaw}; }
 
 Result<bool> Workbench::takePictures() {
     const bool whole = look.pane == Pane::Mesh ? mesh.visible() && mesh.finished() : field.finished();
     if (!whole || (!pictureWanted && !turntable)) return false;
-    const std::filesystem::path stem = document.path().empty() ? "untitled" : std::filesystem::path(document.path()).replace_extension();
+    const std::filesystem::path stem =
+        document.path().empty() ? "untitled" : std::filesystem::path(document.path()).replace_extension();
     std::string name;
     if (turntable) {
         name = fmt::format("{}-turn-{:03}.png", stem.string(), turntable->next);
     } else {
-        for (int n = 1; name.empty() || std::filesystem::exists(name); ++n) name = fmt::format("{}-{}.png", stem.string(), n);
+        for (int n = 1; name.empty() || std::filesystem::exists(name); ++n)
+            name = fmt::format("{}-{}.png", stem.string(), n);
     }
     if (const Status s = writePng(look.pane == Pane::Mesh ? mesh.image() : field.image(), name); !s) return s.error();
     say("Wrote " + name);
@@ -306,14 +317,21 @@ void Workbench::offerAbandoned() {
     if (left.empty()) return;
     std::error_code ignored;
     const std::filesystem::path here = std::filesystem::absolute(document.path(), ignored);
-    const auto about = document.path().empty() ? left.begin() : std::find_if(left.begin(), left.end(), [&](const Abandoned& a) { return sameFile(a.document, here); });
-    const auto nameOf = [](const Abandoned& a) { return a.document.empty() ? "a grammar without a name" : a.document.filename().string(); };
+    const auto about =
+        document.path().empty()
+            ? left.begin()
+            : std::find_if(left.begin(), left.end(), [&](const Abandoned& a) { return sameFile(a.document, here); });
+    const auto nameOf = [](const Abandoned& a) {
+        return a.document.empty() ? "a grammar without a name" : a.document.filename().string();
+    };
     if (about == left.end())
-        return say(fmt::format("Unsaved work on {} is kept; {} to go on with it", nameOf(left.front()), left.front().document.empty() ? "start without a file" : "open it"));
+        return say(fmt::format("Unsaved work on {} is kept; {} to go on with it", nameOf(left.front()),
+                               left.front().document.empty() ? "start without a file" : "open it"));
     const Abandoned work = *about;
     const std::string name = nameOf(work);
     question = Question{fmt::format("The window was closed by force; unsaved work on {} was kept.", name),
-                        {{"Go on with it", [this, work] {
+                        {{"Go on with it",
+                          [this, work] {
                               document = Document::recovered(work.document, work.text);
                               selected_ = derive::none;
                               framed_ = false;
@@ -331,27 +349,47 @@ void Workbench::drop(const std::filesystem::path& path) {
         offerAbandoned();
     };
     if (!document.dirty()) return go();
-    question = Question{fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
-                        {{"Save and open", [this, go] { save(); if (!document.dirty()) go(); }}, {"Open without saving", go}, {"Stay", {}}}};
+    question = Question{
+        fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
+        {{"Save and open",
+          [this, go] {
+              save();
+              if (!document.dirty()) go();
+          }},
+         {"Open without saving", go},
+         {"Stay", {}}}};
 }
 
 bool Workbench::mayClose() {
     if (!document.dirty()) return true;
-    question = Question{fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
-                        {{"Save and close", [this] { save(); leaving = !document.dirty(); }}, {"Close without saving", [this] { leaving = true; }}, {"Stay", {}}}};
+    question = Question{
+        fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
+        {{"Save and close",
+          [this] {
+              save();
+              leaving = !document.dirty();
+          }},
+         {"Close without saving", [this] { leaving = true; }},
+         {"Stay", {}}}};
     return false;
 }
 
 bool Workbench::lookAtFiles() {
     if (session.usedFilesChanged()) asked_ = ~uint64_t(0);
     switch (document.poll()) {
-        case Document::Outside::Same: return asked_ == ~uint64_t(0);
-        case Document::Outside::Reloaded: say("The file was changed by another program, and is read again"); break;
-        case Document::Outside::Gone: say("The file can't be read any more; save to write it again", true); break;
+        case Document::Outside::Same:
+            return asked_ == ~uint64_t(0);
+        case Document::Outside::Reloaded:
+            say("The file was changed by another program, and is read again");
+            break;
+        case Document::Outside::Gone:
+            say("The file can't be read any more; save to write it again", true);
+            break;
         case Document::Outside::Conflict:
             if (question) return false;
             question = Question{"Another program has changed the file, and so have you.",
-                                {{"Take the file", [this] { (void)document.takeOutside(); }}, {"Keep mine", [this] { (void)document.keepMine(); }}}};
+                                {{"Take the file", [this] { (void)document.takeOutside(); }},
+                                 {"Keep mine", [this] { (void)document.keepMine(); }}}};
     }
     return true;
 }

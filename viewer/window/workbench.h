@@ -29,10 +29,10 @@ enum class JointsShown { None, Selected, All };
 struct Look {
     Pane pane = Pane::Field;
     MeshStyle mesh;
-    int sectionAxis = 0;         ///< 0 x, 1 y, 2 z
-    float sectionShare = 0.5f;   ///< of the bounds, from low to high
+    int sectionAxis = 0;        ///< 0 x, 1 y, 2 z
+    float sectionShare = 0.5f;  ///< of the bounds, from low to high
     bool section = false;
-    int meshResolution = 128;    ///< cells along the longest side
+    int meshResolution = 128;  ///< cells along the longest side
     bool ground = true;
     JointsShown joints = JointsShown::Selected;
     Hands hands = Hands::Usual;
@@ -69,8 +69,8 @@ public:
     void undo();
     void redo();
     void save(bool overwrite = false);
-    /// Asks whether to go on with what a crash left behind of this document; where none is open, of any. Says so where it
-    /// left something of another one.
+    /// Asks whether to go on with what a crash left behind of this document; where none is open, of any. Says so where
+    /// it left something of another one.
     void offerAbandoned();
     /// Opens another file; asks first where the present text isn't saved.
     void drop(const std::filesystem::path& path);
@@ -122,7 +122,9 @@ public:
     MeshStyle meshStyle() const;
     bool wantsMesh() const { return look.pane == Pane::Mesh || look.pane == Pane::Split; }
     /// The field shown will make room for another: not worth a finer picture.
-    bool outdated() const { return preparer.makesField() || (session.busy() && session.attempted() != document.revision()); }
+    bool outdated() const {
+        return preparer.makesField() || (session.busy() && session.attempted() != document.revision());
+    }
     /// All that the window shows is whole.
     bool drawn() const;
     /// Stops what runs; what is shown stays.
@@ -144,16 +146,16 @@ public:
     bool noticeIsProblem = false;
     std::optional<std::pair<uint32_t, uint32_t>> reveal;  ///< bytes of the text to show, taken by the Text panel
     std::optional<uint32_t> revealRule;                   ///< a byte of the rule to show, taken by the Rules panel
-    std::optional<Stepper> stepper;  ///< while a person derives by hand
-    std::string hotkeys;             ///< of the grammar's parameters: they go before the view's
-    bool typing = false;             ///< the text takes keys
+    std::optional<Stepper> stepper;                       ///< while a person derives by hand
+    std::string hotkeys;                                  ///< of the grammar's parameters: they go before the view's
+    bool typing = false;                                  ///< the text takes keys
     std::optional<Question> question;
     std::optional<Turntable> turntable;
     bool pictureWanted = false;
-    bool leaving = false;  ///< the window may close
+    bool leaving = false;    ///< the window may close
     bool previewed = false;  ///< the mesh shown is the GPU's, of a model that a hand is changing
-    ReadyTimes fieldTimes;  ///< that the last field took
-    int compiles = 0;       ///< of shaders for fields, so far
+    ReadyTimes fieldTimes;   ///< that the last field took
+    int compiles = 0;        ///< of shaders for fields, so far
 
 private:
     void resolveSelection();
@@ -173,7 +175,7 @@ private:
     std::shared_ptr<const Shown> askedFog_, prepared_;  ///< the last that the preparer was given
     const derive::Derivation* askedByHand_ = nullptr;
     bool settled_ = false;  ///< all that was computed has been taken over
-    bool framed_ = false;  ///< the camera has been set for this file
+    bool framed_ = false;   ///< the camera has been set for this file
 };
 
 }  // namespace sgm::viewer

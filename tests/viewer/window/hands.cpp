@@ -22,7 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-bool isInstalled(const std::string& program) { return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0; }
+bool isInstalled(const std::string& program) {
+    return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+}
 
 /// Starts a program; `prepare` runs in the child before it.
 pid_t spawn(const std::vector<std::string>& words, const std::function<void()>& prepare) {
@@ -52,9 +54,12 @@ std::string contentOf(const fs::path& path) {
 unsigned bitOf(int button) { return button == 2 ? 4 : button == 3 ? 2 : 1; }
 
 /// Keys in a chord such as "ctrl+z".
-uint64_t keysIn(const std::string& chord) { return static_cast<uint64_t>(std::count(chord.begin(), chord.end(), '+') + 1); }
+uint64_t keysIn(const std::string& chord) {
+    return static_cast<uint64_t>(std::count(chord.begin(), chord.end(), '+') + 1);
+}
 
-/// The screen that Xvfb keeps in a file of X's own dump format (XWD): a header of big-endian words, colours, rows of BGRX.
+/// The screen that Xvfb keeps in a file of X's own dump format (XWD): a header of big-endian words, colours, rows of
+/// BGRX.
 Image screenOf(const fs::path& dump) {
     const std::string bytes = contentOf(dump);
     const auto word = [&](size_t i) {
@@ -67,7 +72,8 @@ Image screenOf(const fs::path& dump) {
     Image image{static_cast<int>(width), static_cast<int>(height), {}};
     for (size_t y = 0; y < height; ++y)
         for (size_t x = 0; x < width; ++x)
-            for (const size_t c : {2u, 1u, 0u}) image.rgb.push_back(static_cast<uint8_t>(bytes.at(begin + y * row + x * 4 + c)));
+            for (const size_t c : {2u, 1u, 0u})
+                image.rgb.push_back(static_cast<uint8_t>(bytes.at(begin + y * row + x * 4 + c)));
     return image;
 }
 
@@ -83,7 +89,9 @@ void Hands::SetUpTestSuite() {
     fs::create_directories(screen_);
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
-    server_ = spawn({"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-fbdir", screen_.string()}, silence);
+    server_ = spawn({"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1280x800x24", "-nolisten", "tcp",
+                     "-fbdir", screen_.string()},
+                    silence);
     close(ends[1]);
     // The number of the display comes once the server is ready.
     std::string number;
@@ -149,10 +157,14 @@ void Hands::kill() {
 
 nlohmann::json Hands::report() const {
     const auto parsed = nlohmann::json::parse(contentOf(folder / "report.json"), nullptr, false);
-    return parsed.is_object() ? parsed : nlohmann::json{{"frame", 0}, {"widgets", nlohmann::json::object()}, {"state", {{"shapes", 0}, {"busy", true}, {"still", false}}}};
+    return parsed.is_object() ? parsed
+                              : nlohmann::json{{"frame", 0},
+                                               {"widgets", nlohmann::json::object()},
+                                               {"state", {{"shapes", 0}, {"busy", true}, {"still", false}}}};
 }
 
-nlohmann::json Hands::until(const std::string& what, const std::function<bool(const nlohmann::json&)>& holds, double seconds) {
+nlohmann::json Hands::until(const std::string& what, const std::function<bool(const nlohmann::json&)>& holds,
+                            double seconds) {
     for (double waited = 0; waited < seconds; waited += 0.01) {
         const nlohmann::json now = state();
         if (now.contains("text") && holds(now)) return now;
@@ -175,15 +187,18 @@ void Hands::send(const std::vector<std::string>& arguments, const std::function<
 }
 
 void Hands::move(int x, int y) {
-    send({"mousemove", std::to_string(x), std::to_string(y)}, [&](const auto& input) { return input["x"] == x && input["y"] == y; });
+    send({"mousemove", std::to_string(x), std::to_string(y)},
+         [&](const auto& input) { return input["x"] == x && input["y"] == y; });
 }
 
 void Hands::press(int button) {
-    send({"mousedown", std::to_string(button)}, [&](const auto& input) { return (input["buttons"].template get<unsigned>() & bitOf(button)) != 0; });
+    send({"mousedown", std::to_string(button)},
+         [&](const auto& input) { return (input["buttons"].template get<unsigned>() & bitOf(button)) != 0; });
 }
 
 void Hands::release(int button) {
-    send({"mouseup", std::to_string(button)}, [&](const auto& input) { return (input["buttons"].template get<unsigned>() & bitOf(button)) == 0; });
+    send({"mouseup", std::to_string(button)},
+         [&](const auto& input) { return (input["buttons"].template get<unsigned>() & bitOf(button)) == 0; });
     settled();
 }
 
@@ -199,8 +214,10 @@ void Hands::tool(const std::vector<std::string>& arguments) const {
 
 std::pair<int, int> Hands::placeOf(const std::string& widget, double x, double y) {
     nlohmann::json box;
-    until("the widget " + widget, [&](const auto&) { return !(box = report()["widgets"].value(widget, nlohmann::json())).is_null(); });
-    return {static_cast<int>(box[0].get<double>() + x * box[2].get<double>()), static_cast<int>(box[1].get<double>() + y * box[3].get<double>())};
+    until("the widget " + widget,
+          [&](const auto&) { return !(box = report()["widgets"].value(widget, nlohmann::json())).is_null(); });
+    return {static_cast<int>(box[0].get<double>() + x * box[2].get<double>()),
+            static_cast<int>(box[1].get<double>() + y * box[3].get<double>())};
 }
 
 void Hands::point(const std::string& widget, double x, double y) {
@@ -262,17 +279,21 @@ void Hands::dragTo(const std::string& from, int x, int y) {
 void Hands::wheel(const std::string& widget, int clicks) {
     point(widget);
     const double wanted = state()["input"]["wheel"].get<double>() + clicks;
-    send({"click", "--repeat", std::to_string(std::abs(clicks)), "--delay", "10", clicks > 0 ? "4" : "5"}, [&](const auto& input) { return input["wheel"] == wanted; });
+    send({"click", "--repeat", std::to_string(std::abs(clicks)), "--delay", "10", clicks > 0 ? "4" : "5"},
+         [&](const auto& input) { return input["wheel"] == wanted; });
     settled();
 }
 
 void Hands::burst(const std::string& widget, const std::vector<std::string>& keys) {
     const auto [x, y] = placeOf(widget, 0.5, 0.5);
-    std::vector<std::string> words{"mousemove", std::to_string(x), std::to_string(y), "mousedown", "1", "mouseup", "1", "key", "--delay", "4"};  // GLFW takes one press of a key a millisecond
+    std::vector<std::string> words{
+        "mousemove", std::to_string(x), std::to_string(y), "mousedown", "1", "mouseup", "1", "key", "--delay",
+        "4"};  // GLFW takes one press of a key a millisecond
     words.insert(words.end(), keys.begin(), keys.end());
     uint64_t wanted = state()["input"]["releases"];
     for (const std::string& k : keys) wanted += keysIn(k);
-    send(words, [&](const auto& input) { return input["releases"] >= wanted && input["keys"] == 0 && input["buttons"] == 0; });
+    send(words,
+         [&](const auto& input) { return input["releases"] >= wanted && input["keys"] == 0 && input["buttons"] == 0; });
     settled();
 }
 
@@ -298,7 +319,8 @@ void Hands::keys(const std::vector<std::string>& keys) {
 
 void Hands::type(const std::string& text) {
     const uint64_t wanted = state()["input"]["releases"].get<uint64_t>() + text.size();
-    send({"type", "--delay", "5", text}, [&](const auto& input) { return input["releases"] >= wanted && input["keys"] == 0; });
+    send({"type", "--delay", "5", text},
+         [&](const auto& input) { return input["releases"] >= wanted && input["keys"] == 0; });
     settled();
 }
 

@@ -1,5 +1,5 @@
-// A person at the window: a display of its own (Xvfb), the program, real clicks and keys (xdotool), and what the program
-// reports of its widgets and its state. Pictures of every step are kept under build/window/.
+// A person at the window: a display of its own (Xvfb), the program, real clicks and keys (xdotool), and what the
+// program reports of its widgets and its state. Pictures of every step are kept under build/window/.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -32,9 +32,13 @@ protected:
     nlohmann::json state() const { return report()["state"]; }
     std::string text() const { return state()["text"]; }
     /// Waits until the state is so; throws after 30 s, saying what it waited for.
-    nlohmann::json until(const std::string& what, const std::function<bool(const nlohmann::json& state)>& holds, double seconds = 30);
+    nlohmann::json until(const std::string& what, const std::function<bool(const nlohmann::json& state)>& holds,
+                         double seconds = 30);
     /// Until every pixel is final.
-    void drawn() { until("the whole picture", [](const auto& s) { return s["drawn"] == true && !s["busy"]; }, 120); }
+    void drawn() {
+        until(
+            "the whole picture", [](const auto& s) { return s["drawn"] == true && !s["busy"]; }, 120);
+    }
     /// Until nothing is computed any more.
     nlohmann::json settled();
     bool has(const std::string& widget) const { return report()["widgets"].contains(widget); }

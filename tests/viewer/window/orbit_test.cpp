@@ -45,9 +45,11 @@ TEST(Orbit, FramesWholeInAnyPicture) {
         const View view = viewOf(orbit.camera(static_cast<double>(width) / height), width, height);
         double most = 0;
         for (int i = 0; i < 8; ++i) {
-            const Vec3d v = Vec3d{i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z} - view.eye;
+            const Vec3d v =
+                Vec3d{i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z} - view.eye;
             const double depth = dot(v, view.forward);
-            most = std::max({most, std::abs(dot(v, view.right) / dot(view.right, view.right) / depth), std::abs(dot(v, view.up) / dot(view.up, view.up) / depth)});
+            most = std::max({most, std::abs(dot(v, view.right) / dot(view.right, view.right) / depth),
+                             std::abs(dot(v, view.up) / dot(view.up, view.up) / depth)});
         }
         EXPECT_LT(most, 1.0);
         EXPECT_GT(most, 0.4);

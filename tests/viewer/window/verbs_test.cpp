@@ -1,4 +1,5 @@
-// The verbs that window_test.cpp leaves: every one by a real click or key. docs/viewer.md lists which test drives which.
+// The verbs that window_test.cpp leaves: every one by a real click or key. docs/viewer.md lists which test drives
+// which.
 #include "tests/viewer/window/hands.h"
 
 #include <fstream>
@@ -48,7 +49,8 @@ TEST_F(Verbs, RulesAndShapes) {
     click("attribute.add");
     click("attribute.add.shift");
     fill("edit.shift", "(.2, 0, 0)");
-    EXPECT_NE(lineOf(text(), 7).find("size wide at +y shift (.2, 0, 0) : Ball"), std::string::npos) << lineOf(text(), 7);
+    EXPECT_NE(lineOf(text(), 7).find("size wide at +y shift (.2, 0, 0) : Ball"), std::string::npos)
+        << lineOf(text(), 7);
     while (state()["undo"] != "") key("ctrl+z");
     EXPECT_EQ(text(), hall);
 
@@ -93,7 +95,8 @@ TEST_F(Verbs, RulesAndShapes) {
 TEST_F(Verbs, Parameters) {
     openText(hall);
     keys({"w", "w"});
-    EXPECT_EQ(lineOf(text(), 2), "param wide = 2.3m in 1m..4m \"Width\" group Size key w") << "both steps count, though the model was late";
+    EXPECT_EQ(lineOf(text(), 2), "param wide = 2.3m in 1m..4m \"Width\" group Size key w")
+        << "both steps count, though the model was late";
     keys({"n", "n", "n", "shift+n"});
     EXPECT_EQ(lineOf(text(), 4), "param count = 4 in 1..9 \"Columns\" key n");
     while (state()["undo"] != "") key("ctrl+z");
@@ -168,7 +171,9 @@ TEST_F(Verbs, TheView) {
     until("a mesh", [](const auto& s) { return s["triangles"] > 1000; });
     click("mesh.cells");
     click("mesh.cells.64");
-    EXPECT_LT(until("a coarser mesh", [](const auto& s) { return s["look"]["cells"] == 64 && !s["busy"]; })["triangles"], 30000);
+    EXPECT_LT(
+        until("a coarser mesh", [](const auto& s) { return s["look"]["cells"] == 64 && !s["busy"]; })["triangles"],
+        30000);
     for (int look = 1; const char* name : {"Normals", "Curvature", "Rules", "Components", "Labels", "Creases"}) {
         click("mesh.look");
         click(std::string("mesh.look.") + name);
@@ -186,10 +191,12 @@ TEST_F(Verbs, TheView) {
     until("a picture of the mesh", [&](const auto&) { return fs::exists(folder / "test-1.png"); });
 
     click("pane.Fog");
-    until("fog", [](const auto& s) { return s["fog"] == true && s["drawn"] == true; }, 120);
+    until(
+        "fog", [](const auto& s) { return s["fog"] == true && s["drawn"] == true; }, 120);
     shoot("fog");
     key("t");
-    until("a turntable", [&](const auto&) { return fs::exists(folder / "test-turn-001.png"); }, 120);
+    until(
+        "a turntable", [&](const auto&) { return fs::exists(folder / "test-turn-001.png"); }, 120);
     key("Escape");
     EXPECT_EQ(state()["turning"], false);
 }
@@ -197,8 +204,13 @@ TEST_F(Verbs, TheView) {
 TEST_F(Verbs, AMeshFollowsTheHand) {
     openText(hall);
     click("pane.Split");
-    const int before = until("a mesh", [](const auto& s) { return s["triangles"] > 1000 && !s["busy"] && s["preview"] == false; })["triangles"];
-    hold("param.tall", [&] { until("the GPU's mesh", [](const auto& s) { return s["preview"] == true; }, 60); });
+    const int before = until("a mesh", [](const auto& s) {
+        return s["triangles"] > 1000 && !s["busy"] && s["preview"] == false;
+    })["triangles"];
+    hold("param.tall", [&] {
+        until(
+            "the GPU's mesh", [](const auto& s) { return s["preview"] == true; }, 60);
+    });
     const auto after = until("the real mesh", [](const auto& s) { return s["preview"] == false && !s["busy"]; });
     EXPECT_GT(after["triangles"], before / 2);
 }
@@ -220,7 +232,8 @@ TEST_F(Verbs, EveryFormatIsExported) {
         click(format);
         const std::string extension = format.substr(14, format.find(' ') - 14);
         click("export.export");
-        until("a file of " + extension, [&](const auto& s) { return std::string(s["notice"]).ends_with("test" + extension); });
+        until("a file of " + extension,
+              [&](const auto& s) { return std::string(s["notice"]).ends_with("test" + extension); });
         EXPECT_GT(fs::file_size(folder / ("test" + extension)), 100u) << extension;
     }
 }
@@ -239,7 +252,10 @@ TEST_F(Verbs, FilesAreOpened) {
     until("the other file again", [](const auto& s) { return s["text"] != hall && !s["busy"]; });
     drag("export.cells", 0.5, 0.5, 0.05, 0.5);
     click("export.export");
-    EXPECT_TRUE(std::string(until("its mesh", [](const auto& s) { return std::string(s["notice"]).starts_with("Wrote "); })["notice"]).ends_with("other.glb"));
+    EXPECT_TRUE(
+        std::string(
+            until("its mesh", [](const auto& s) { return std::string(s["notice"]).starts_with("Wrote "); })["notice"])
+            .ends_with("other.glb"));
     dropFile(folder / "test.sgm");
     until("the first file again", [](const auto& s) { return s["text"] == hall && !s["busy"]; });
     click("param.tall", 0.9);
@@ -251,7 +267,9 @@ TEST_F(Verbs, FilesAreOpened) {
 }
 
 TEST_F(Verbs, WorkIsCancelled) {
-    openText("grammar 1\nparam n = 1 in 1..60000\nstart A -> cube : B\nrule B repeat n -> + sphere size .9 ~> .2 on any(+x) at free(+x, +y, +z) : B\n");
+    openText(
+        "grammar 1\nparam n = 1 in 1..60000\nstart A -> cube : B\nrule B repeat n -> + sphere size .9 ~> .2 on any(+x) "
+        "at free(+x, +y, +z) : B\n");
     const int shapes = state()["shapes"];
     poke("param.n", 0.97);
     until("work", [&](const auto& s) { return s["busy"] == true && has("progress.cancel"); });
@@ -266,9 +284,11 @@ TEST_F(Verbs, WorkIsCancelled) {
     bool stopped = false;
     for (int tries = 0; tries < 10 && !stopped; ++tries)
         dragAtWork("param.n", 0.97, [&] {
-            until("work on what the slider says", [&](const auto& s) { return ended(s) || (s["busy"] == true && s["notice"] == "Set n"); });
+            until("work on what the slider says",
+                  [&](const auto& s) { return ended(s) || (s["busy"] == true && s["notice"] == "Set n"); });
             press("Escape");
-            stopped = cancelled(until("rest in the hand", [&](const auto& s) { return !s["busy"] && (cancelled(s) || ended(s)); }));
+            stopped = cancelled(
+                until("rest in the hand", [&](const auto& s) { return !s["busy"] && (cancelled(s) || ended(s)); }));
         });
     EXPECT_TRUE(stopped);
 }

@@ -56,7 +56,8 @@ TEST_F(Window, ACaveIsChangedByHandAndTakenBack) {
     const std::string grown = "rule.26.+ morph(sphere, cube, 0..square) : Cell";
     click(grown);
     click("op.-");
-    EXPECT_EQ(lineOf(text(), 26), "  -> - morph(sphere, cube, 0..square) size wide ~> narrow at free(+x, +x, +z, -z) to centre");
+    EXPECT_EQ(lineOf(text(), 26),
+              "  -> - morph(sphere, cube, 0..square) size wide ~> narrow at free(+x, +x, +z, -z) to centre");
     shoot("3-cut");
 
     click("joint.+y");
@@ -66,7 +67,8 @@ TEST_F(Window, ACaveIsChangedByHandAndTakenBack) {
 
     click("tab.Step");
     click("step.begin");
-    const size_t before = until("the start", [](const auto& s) { return s["stepping"] == true && s["shapes"] < 8; })["shapes"];
+    const size_t before =
+        until("the start", [](const auto& s) { return s["stepping"] == true && s["shapes"] < 8; })["shapes"];
     click("live.Grotto/rock/Cave");
     EXPECT_EQ(state()["selection"], "Grotto/rock/Cave");
     click("apply.Grotto/rock/Cave.Cave#1");
@@ -120,7 +122,8 @@ TEST_F(Window, HandsMoveTheCamera) {
     shoot("sheet");
     click("hands.Blender's");
     key("Escape");
-    EXPECT_EQ(cameraAfter([&] { drag("view.field", 0.5, 0.8, 0.6, 0.7); }), still) << "Blender's left button only selects";
+    EXPECT_EQ(cameraAfter([&] { drag("view.field", 0.5, 0.8, 0.6, 0.7); }), still)
+        << "Blender's left button only selects";
     EXPECT_EQ(cameraAfter([&] { drag("view.field", 0.5, 0.8, 0.6, 0.7, 2); }), turned);
 }
 
@@ -134,12 +137,15 @@ TEST_F(Window, WhatIsSeenLeadsToItsTextAndBack) {
     until("a label", [](const auto& s) { return std::string(s["hover"]).find("test.sgm:6") != std::string::npos; });
     click("view.field", 0.32, 0.55);
     EXPECT_EQ(state()["selection"], "Pair/Base");
-    EXPECT_EQ(until("its text", [](const auto& s) { return s["textSelection"] != ""; })["textSelection"], "cube size (wide, 2, 2) : Base");
+    EXPECT_EQ(until("its text", [](const auto& s) { return s["textSelection"] != ""; })["textSelection"],
+              "cube size (wide, 2, 2) : Base");
     shoot("picked");
     click("line.7", 0.55);
     EXPECT_EQ(state()["selection"], "Pair/Base/Ball") << "the place in the text that made it";
     click("shape.Pair/Base/Ball/Cap");
-    EXPECT_EQ(until("the text", [](const auto& s) { return s["textSelection"] == "+ cylinder size 1 at +y : Cap"; })["selection"], "Pair/Base/Ball/Cap");
+    EXPECT_EQ(until("the text",
+                    [](const auto& s) { return s["textSelection"] == "+ cylinder size 1 at +y : Cap"; })["selection"],
+              "Pair/Base/Ball/Cap");
     click("look.joints");
     click("look.joints.All joints");
     shoot("joints");
@@ -179,7 +185,8 @@ TEST_F(Window, TextIsTyped) {
     shoot("problem");
     for (int i = 0; i < 10; ++i) key("BackSpace");
     type("lor #ff0000");
-    EXPECT_EQ(until("no problem", [](const auto& s) { return s["problems"].empty(); })["text"], std::string(pair).insert(std::string(pair).size() - 1, " color #ff0000"));
+    EXPECT_EQ(until("no problem", [](const auto& s) { return s["problems"].empty(); })["text"],
+              std::string(pair).insert(std::string(pair).size() - 1, " color #ff0000"));
     key("Escape");
     while (state()["undo"] != "") key("ctrl+z");
     EXPECT_EQ(text(), pair);
@@ -234,11 +241,16 @@ TEST_F(Window, AShapeIsDraggedOntoAJoint) {
     // Joints show while something is dragged.
     const auto joint = [&] {
         nlohmann::json place;
-        hold("shape.Pair/Base/Ball", [&] { until("the joints", [&](const auto&) { return !(place = report()["widgets"].value("joint.Pair/Base.+y", nlohmann::json())).is_null(); }); });
+        hold("shape.Pair/Base/Ball", [&] {
+            until("the joints", [&](const auto&) {
+                return !(place = report()["widgets"].value("joint.Pair/Base.+y", nlohmann::json())).is_null();
+            });
+        });
         return place;
     }();
     ASSERT_TRUE(joint.is_array());
-    dragTo("shape.Pair/Base/Ball", static_cast<int>(joint[0].get<double>() + joint[2].get<double>() / 2), static_cast<int>(joint[1].get<double>() + joint[3].get<double>() / 2));
+    dragTo("shape.Pair/Base/Ball", static_cast<int>(joint[0].get<double>() + joint[2].get<double>() / 2),
+           static_cast<int>(joint[1].get<double>() + joint[3].get<double>() / 2));
     EXPECT_EQ(lineOf(text(), 7), "rule R0: Base -> + sphere size 1.5 at +y : Ball   // the ball");
 }
 
@@ -346,7 +358,8 @@ TEST_F(Window, AChangeFromOutsideIsTakenOver) {
     click("shape.Pair/Base/Ball");
     const auto before = state();
     std::ofstream(file) << pair << "// from outside\n";
-    const auto now = until("the new text", [](const auto& s) { return std::string(s["text"]).ends_with("// from outside\n"); });
+    const auto now =
+        until("the new text", [](const auto& s) { return std::string(s["text"]).ends_with("// from outside\n"); });
     EXPECT_EQ(settled()["eye"], before["eye"]);
     EXPECT_EQ(state()["selection"], before["selection"]);
 }

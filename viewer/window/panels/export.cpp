@@ -30,7 +30,8 @@ void ExportPanel::option(Workbench& bench, ExportRow& row) {
 void ExportPanel::show(Workbench& bench) {
     const auto formats = exporter::exporters();
     std::vector<std::string> names;
-    for (const exporter::Exporter& f : formats) names.push_back(fmt::format("{}  {}", f.extension, f.doc.substr(0, f.doc.find(':'))));
+    for (const exporter::Exporter& f : formats)
+        names.push_back(fmt::format("{}  {}", f.extension, f.doc.substr(0, f.doc.find(':'))));
     const auto take = [&](size_t format) {
         format_ = format;
         options_ = exportRows(formats[format]);
@@ -44,7 +45,8 @@ void ExportPanel::show(Workbench& bench) {
         const exporter::Exporter* before = exporter::exporterFor(file_);
         if (before) file_.resize(file_.size() - before->extension.size());
         take(size_t(format));
-        file_ = (before ? file_ : std::filesystem::path(file_).replace_extension().string()).append(formats[format_].extension);
+        file_ = (before ? file_ : std::filesystem::path(file_).replace_extension().string())
+                    .append(formats[format_].extension);
     }
     ImGui::PushTextWrapPos(0);
     faint(std::string(formats[format_].doc));
@@ -55,10 +57,13 @@ void ExportPanel::show(Workbench& bench) {
     ImGui::TextUnformatted("cells");
     ImGui::SameLine(left + width * 0.4f);
     ImGui::SetNextItemWidth(-FLT_MIN);
-    ImGui::SliderInt("##cells", &resolution_, 32, 1024, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    ImGui::SliderInt("##cells", &resolution_, 32, 1024, "%d",
+                     ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     bench.report.mark("export.cells");
     hint("Cells along the longest side of the model");
-    constexpr const char* solids = "Which separate solids are written: all, those that stand and aren't debris, or the largest one; the latter two fill closed cavities";
+    constexpr const char* solids =
+        "Which separate solids are written: all, those that stand and aren't debris, or the largest one; the latter "
+        "two fill closed cavities";
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("keep");
     hint(solids);
@@ -67,7 +72,8 @@ void ExportPanel::show(Workbench& bench) {
     choice(bench.report, "export.keep", kept, keep_);
     hint(solids);
     if (formats[format_].holdsObjects) {
-        constexpr const char* divided = "Into which objects the surface is divided: none, material, shape, or the shapes of symbols: Storey,Window";
+        constexpr const char* divided =
+            "Into which objects the surface is divided: none, material, shape, or the shapes of symbols: Storey,Window";
         ImGui::AlignTextToFramePadding();
         ImGui::TextUnformatted("objects");
         hint(divided);

@@ -21,7 +21,8 @@ bool lockButton(Report& report, const std::string& name, bool locked) {
     const bool pressed = ImGui::InvisibleButton(name.c_str(), {size * 0.8f, size});
     report.mark(name);
     hint(locked ? "A re-roll leaves it alone" : "Lock it against re-rolls");
-    const ImU32 color = locked ? tint::selected : ImGui::GetColorU32(ImGuiCol_TextDisabled, ImGui::IsItemHovered() ? 1.0f : 0.45f);
+    const ImU32 color =
+        locked ? tint::selected : ImGui::GetColorU32(ImGuiCol_TextDisabled, ImGui::IsItemHovered() ? 1.0f : 0.45f);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 c(low.x + size * 0.4f, low.y + size * 0.5f);
     const float r = size * 0.13f;
@@ -98,7 +99,8 @@ void ParametersPanel::choices(Workbench& bench) {
         hint("What the derivation starts from");
     }
     std::vector<std::string> styles = stylesFor(grammar, bench.shown()->options.start), ways = waysOf(grammar);
-    const auto oneOfNames = [&](const char* name, std::vector<std::string>& names, const char* none, std::string& chosen, const char* why, float width) {
+    const auto oneOfNames = [&](const char* name, std::vector<std::string>& names, const char* none,
+                                std::string& chosen, const char* why, float width) {
         int at = 0;
         names.insert(names.begin(), none);
         for (size_t i = 1; i < names.size(); ++i)
@@ -108,10 +110,13 @@ void ParametersPanel::choices(Workbench& bench) {
         hint(why);
         return changed;
     };
-    if (!styles.empty() && oneOfNames("choice.style", styles, "No style", choice.style, "A named set of values; changes are written to it", ways.empty() ? room : (room - gap) / 2))
+    if (!styles.empty() &&
+        oneOfNames("choice.style", styles, "No style", choice.style, "A named set of values; changes are written to it",
+                   ways.empty() ? room : (room - gap) / 2))
         bench.document.choose(choice, "Style");
     if (!styles.empty() && !ways.empty()) ImGui::SameLine();
-    if (!ways.empty() && oneOfNames("choice.way", ways, "Automatic", choice.way, "A `derive` line, or the automatic derivation", 0))
+    if (!ways.empty() &&
+        oneOfNames("choice.way", ways, "Automatic", choice.way, "A `derive` line, or the automatic derivation", 0))
         bench.document.choose(choice, "Way");
     const float button = ImGui::CalcTextSize("Re-roll").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::AlignTextToFramePadding();
@@ -145,8 +150,12 @@ bool ParametersPanel::control(Workbench& bench, ParamRow& row) {
                 ImGui::SetNextItemWidth(each);
                 ImGui::PushID(static_cast<int>(i));
                 double value = row.number[i];
-                const bool moved = row.lo.empty() ? ImGui::DragScalar("##n", ImGuiDataType_Double, &value, std::max(0.01f, std::abs(static_cast<float>(value)) * 0.01f), nullptr, nullptr, format.c_str())
-                                                  : ImGui::SliderScalar("##n", ImGuiDataType_Double, &value, &row.lo[i], &row.hi[i], format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+                const bool moved = row.lo.empty()
+                                       ? ImGui::DragScalar("##n", ImGuiDataType_Double, &value,
+                                                           std::max(0.01f, std::abs(static_cast<float>(value)) * 0.01f),
+                                                           nullptr, nullptr, format.c_str())
+                                       : ImGui::SliderScalar("##n", ImGuiDataType_Double, &value, &row.lo[i],
+                                                             &row.hi[i], format.c_str(), ImGuiSliderFlags_AlwaysClamp);
                 if (moved) row.number[i] = row.kind == ParamRow::Kind::Integer ? std::round(value) : value;
                 changed |= moved;
                 bench.report.mark(row.number.size() == 1 ? name : fmt::format("{}.{}", name, i));
@@ -163,13 +172,17 @@ bool ParametersPanel::control(Workbench& bench, ParamRow& row) {
             int at = 0;
             for (size_t i = 0; i < row.choices.size(); ++i)
                 if (row.choices[i] == row.word) at = static_cast<int>(i);
-            changed = choice(bench.report, name, row.choices, at, ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight());
+            changed =
+                choice(bench.report, name, row.choices, at, ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight());
             if (changed) row.word = row.choices[size_t(at)];
             break;
         }
         case ParamRow::Kind::Color: {
             // ImGui's swatch speaks sRGB.
-            const auto curve = [](double v, bool back) { return back ? (v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4)) : (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055); };
+            const auto curve = [](double v, bool back) {
+                return back ? (v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4))
+                            : (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+            };
             float rgb[3];
             for (size_t i = 0; i < 3; ++i) rgb[i] = static_cast<float>(curve(row.color[i], false));
             changed = ImGui::ColorEdit3("##color", rgb, ImGuiColorEditFlags_NoInputs);
@@ -185,7 +198,10 @@ bool ParametersPanel::control(Workbench& bench, ParamRow& row) {
             row.number[0] = truth;
             break;
         }
-        case ParamRow::Kind::Text: changed = field(bench.report, name, row.word, nullptr, ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight()); break;
+        case ParamRow::Kind::Text:
+            changed = field(bench.report, name, row.word, nullptr,
+                            ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight());
+            break;
     }
     return changed;
 }
@@ -199,7 +215,8 @@ void ParametersPanel::row(Workbench& bench, ParamRow row) {
     const bool wide = row.number.size() >= 3;
     const float labelWidth = wide ? 0 : labelShare_ * width;
     ImGui::TextUnformatted(shortened(row.label, (wide ? width - ImGui::GetFrameHeight() : labelWidth) - 6).c_str());
-    const std::string why = fmt::format("{} ({}){}", row.label, row.name, row.key ? fmt::format(", key {}", row.key) : "");
+    const std::string why =
+        fmt::format("{} ({}){}", row.label, row.name, row.key ? fmt::format(", key {}", row.key) : "");
     hint(why.c_str());
     if (!wide) ImGui::SameLine(left + labelWidth);
     const bool active = held_.has_value();
@@ -221,9 +238,12 @@ void ParametersPanel::styles(Workbench& bench) {
     if (rows_.empty()) return faint("The grammar has no parameters.");
     heading("Keep these values");
     const float button = ImGui::CalcTextSize("Save style").x + 2 * ImGui::GetStyle().FramePadding.x;
-    field(bench.report, "style.name", styleName_, "Name of a style", ImGui::GetContentRegionAvail().x - button - ImGui::GetStyle().ItemSpacing.x);
+    field(bench.report, "style.name", styleName_, "Name of a style",
+          ImGui::GetContentRegionAvail().x - button - ImGui::GetStyle().ItemSpacing.x);
     ImGui::SameLine();
-    if (!widgets::button(bench.report, "style.save", "Save style", "Write a `style` with all values into the text", !styleName_.empty())) return;
+    if (!widgets::button(bench.report, "style.save", "Save style", "Write a `style` with all values into the text",
+                         !styleName_.empty()))
+        return;
     std::vector<edits::NamedValue> values;
     for (const ParamRow& r : rows_) values.push_back({r.name, valueText(r)});
     const rules::Grammar& grammar = *bench.shown()->grammar;

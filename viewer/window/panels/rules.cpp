@@ -31,12 +31,16 @@ std::string argumentsOf(const syntax::Attribute& attribute) {
 ImU32 colorOf(const RuleRow& row) {
     switch (row.kind) {
         case Kind::Start:
-        case Kind::Rule: return tint::text;
+        case Kind::Rule:
+            return tint::text;
         case Kind::Element:
             if (row.element->kind != Element::Kind::Shape) return tint::accent;
-            if (row.element->solid && row.element->solid->text.size() && std::isupper(static_cast<unsigned char>(row.element->solid->text[0]))) return tint::nonTerminal;
+            if (row.element->solid && row.element->solid->text.size() &&
+                std::isupper(static_cast<unsigned char>(row.element->solid->text[0])))
+                return tint::nonTerminal;
             return row.element->live.empty() ? tint::terminal : tint::nonTerminal;
-        default: return tint::faint;
+        default:
+            return tint::faint;
     }
 }
 
@@ -45,7 +49,8 @@ std::string firstArgument(std::string_view text) {
     text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
     int open = 0;
     size_t end = 0;
-    for (; end < text.size() && (open > 0 || text[end] != ' '); ++end) open += text[end] == '(' ? 1 : text[end] == ')' ? -1 : 0;
+    for (; end < text.size() && (open > 0 || text[end] != ' '); ++end)
+        open += text[end] == '(' ? 1 : text[end] == ')' ? -1 : 0;
     return std::string(text.substr(0, end));
 }
 
@@ -73,7 +78,8 @@ void RulesPanel::show(Workbench& bench) {
     if (at_)
         for (size_t i = rows_.size(); i-- > 0;)
             if (rows_[i].span.begin == *at_ && (rows_[i].kind == kind_ || selected == rows_.size())) selected = i;
-    const float below = selected < rows_.size() ? ImGui::GetContentRegionAvail().y * 0.46f : ImGui::GetFrameHeightWithSpacing() * 1.3f;
+    const float below =
+        selected < rows_.size() ? ImGui::GetContentRegionAvail().y * 0.46f : ImGui::GetFrameHeightWithSpacing() * 1.3f;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(8, 2));
     if (ImGui::BeginChild("rows", {0, -below})) {
         ImGuiListClipper clipper;
@@ -82,29 +88,35 @@ void RulesPanel::show(Workbench& bench) {
             for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) row(bench, size_t(i));
         if (!listed_->uses.empty()) {
             std::string used;
-            for (const syntax::UseDecl& use : listed_->uses) used += (used.empty() ? "" : ", ") + std::string(use.file.span.text());
+            for (const syntax::UseDecl& use : listed_->uses)
+                used += (used.empty() ? "" : ", ") + std::string(use.file.span.text());
             ImGui::Dummy({0, 4});
             ImGui::PushTextWrapPos(0);
             faint("and the rules of " + used);
             ImGui::PopTextWrapPos();
             hint("They are used and not part of this text; Shapes tells which of them made a shape");
         }
-        if (std::exchange(scroll_, false)) ImGui::SetScrollY(std::max(0.0f, (ImGui::GetTextLineHeight() + 6) * static_cast<float>(selected) - ImGui::GetWindowHeight() / 3));
+        if (std::exchange(scroll_, false))
+            ImGui::SetScrollY(std::max(
+                0.0f, (ImGui::GetTextLineHeight() + 6) * static_cast<float>(selected) - ImGui::GetWindowHeight() / 3));
     }
     ImGui::EndChild();
     ImGui::PopStyleVar();
     if (const auto drop = std::exchange(drop_, std::nullopt); drop && drop->rule < listed_->rules.size()) {
         const syntax::RuleDecl* before = drop->before < listed_->rules.size() ? &listed_->rules[drop->before] : nullptr;
-        bench.edit(edits::moveRule(*listed_, listed_->rules[drop->rule], before), "Move rule " + listed_->rules[drop->rule].symbol.text);
+        bench.edit(edits::moveRule(*listed_, listed_->rules[drop->rule], before),
+                   "Move rule " + listed_->rules[drop->rule].symbol.text);
     }
     ImGui::Separator();
     if (ImGui::BeginChild("inspector")) {
         if (selected < rows_.size()) inspector(bench, rows_[selected]);
         const float width = ImGui::CalcTextSize("Add rule").x + 2 * ImGui::GetStyle().FramePadding.x;
-        field(bench.report, "rule.new", newRule_, "Name -> body", ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
+        field(bench.report, "rule.new", newRule_, "Name -> body",
+              ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
         ImGui::SameLine();
         const size_t arrow = newRule_.find("->");
-        if (button(bench.report, "rule.add", "Add rule", "A new rule, behind the selected one or the last of its shape", arrow != std::string::npos)) {
+        if (button(bench.report, "rule.add", "Add rule", "A new rule, behind the selected one or the last of its shape",
+                   arrow != std::string::npos)) {
             std::string symbol = newRule_.substr(0, arrow);
             while (!symbol.empty() && symbol.back() == ' ') symbol.pop_back();
             const syntax::RuleDecl* after = selected < rows_.size() ? rows_[selected].rule : nullptr;
@@ -145,7 +157,8 @@ void RulesPanel::dragRule(const RuleRow& row, ImVec2 low) {
         ImGui::EndDragDropSource();
     }
     if (!ImGui::BeginDragDropTarget()) return;
-    constexpr ImGuiDragDropFlags quiet = ImGuiDragDropFlags_AcceptBeforeDelivery | ImGuiDragDropFlags_AcceptNoDrawDefaultRect;
+    constexpr ImGuiDragDropFlags quiet =
+        ImGuiDragDropFlags_AcceptBeforeDelivery | ImGuiDragDropFlags_AcceptNoDrawDefaultRect;
     if (const ImGuiPayload* dragged = ImGui::AcceptDragDropPayload("rule", quiet)) {
         const float height = ImGui::GetTextLineHeight() + 6;
         const bool below = ImGui::GetIO().MousePos.y > low.y + height / 2;
@@ -176,25 +189,35 @@ void RulesPanel::part(Workbench& bench, const char* name, const std::string& val
 
 void RulesPanel::inspector(Workbench& bench, const RuleRow& row) {
     const syntax::Ast& ast = *listed_;
-    if (row.kind == Kind::Element || row.kind == Kind::Attribute) elementInspector(bench, row);
-    else if (row.rule) ruleInspector(bench, row);
-    else if (row.start) part(bench, "body", std::string(row.start->body.span.text()), [&](const std::string& t) { return edits::setBody(ast, row.start->body, t); });
-    if (row.kind == Kind::Case && row.expression) part(bench, "label", std::string(row.expression->span.text()), [&](const std::string& t) { return edits::setExpression(ast, *row.expression, t); });
+    if (row.kind == Kind::Element || row.kind == Kind::Attribute)
+        elementInspector(bench, row);
+    else if (row.rule)
+        ruleInspector(bench, row);
+    else if (row.start)
+        part(bench, "body", std::string(row.start->body.span.text()),
+             [&](const std::string& t) { return edits::setBody(ast, row.start->body, t); });
+    if (row.kind == Kind::Case && row.expression)
+        part(bench, "label", std::string(row.expression->span.text()),
+             [&](const std::string& t) { return edits::setExpression(ast, *row.expression, t); });
 }
 
 void RulesPanel::ruleInspector(Workbench& bench, const RuleRow& row) {
     const syntax::Ast& ast = *listed_;
     const syntax::RuleDecl& rule = *row.rule;
     const std::string called = rule.name.empty() ? rule.symbol.text : rule.name.text;
-    if (button(bench.report, "rule.duplicate", "Duplicate")) bench.edit(edits::duplicateRule(ast, rule), "Duplicate rule " + called);
+    if (button(bench.report, "rule.duplicate", "Duplicate"))
+        bench.edit(edits::duplicateRule(ast, rule), "Duplicate rule " + called);
     ImGui::SameLine();
-    if (button(bench.report, "rule.delete", "Delete")) bench.edit(edits::removeRule(ast, rule), "Delete rule " + called);
+    if (button(bench.report, "rule.delete", "Delete"))
+        bench.edit(edits::removeRule(ast, rule), "Delete rule " + called);
     const auto at = static_cast<size_t>(&rule - ast.rules.data());
     ImGui::SameLine();
-    if (button(bench.report, "rule.up", "Up", nullptr, at > 0)) bench.edit(edits::moveRule(ast, rule, &ast.rules[at - 1]), "Move rule " + called);
+    if (button(bench.report, "rule.up", "Up", nullptr, at > 0))
+        bench.edit(edits::moveRule(ast, rule, &ast.rules[at - 1]), "Move rule " + called);
     ImGui::SameLine();
     if (button(bench.report, "rule.down", "Down", nullptr, at + 1 < ast.rules.size()))
-        bench.edit(edits::moveRule(ast, rule, at + 2 < ast.rules.size() ? &ast.rules[at + 2] : nullptr), "Move rule " + called);
+        bench.edit(edits::moveRule(ast, rule, at + 2 < ast.rules.size() ? &ast.rules[at + 2] : nullptr),
+                   "Move rule " + called);
     part(bench, "name", rule.name.text, [&](const std::string& t) { return edits::setName(ast, rule, t); });
     part(bench, "shape", rule.symbol.text, [&](const std::string& t) { return edits::setSymbol(ast, rule, t); });
     part(bench, "when", textOf(rule.when), [&](const std::string& t) { return edits::setGuard(ast, rule, t); });
@@ -209,19 +232,24 @@ void RulesPanel::elementInspector(Workbench& bench, const RuleRow& row) {
     constexpr std::array operators{"content", "+", "-", "&", "morph"};
     int op = static_cast<int>(element.op);
     if (oneOf(bench.report, "op", operators, op))
-        bench.edit(edits::setOperator(ast, element, static_cast<Operator>(op)), fmt::format("{} becomes {}", operators[static_cast<size_t>(element.op)], operators[size_t(op)]));
-    if (button(bench.report, "element.duplicate", "Duplicate")) bench.edit(edits::duplicateElement(ast, element), "Duplicate a shape");
+        bench.edit(edits::setOperator(ast, element, static_cast<Operator>(op)),
+                   fmt::format("{} becomes {}", operators[static_cast<size_t>(element.op)], operators[size_t(op)]));
+    if (button(bench.report, "element.duplicate", "Duplicate"))
+        bench.edit(edits::duplicateElement(ast, element), "Duplicate a shape");
     ImGui::SameLine();
-    if (button(bench.report, "element.delete", "Delete")) bench.edit(edits::removeElement(ast, element), "Delete a shape");
+    if (button(bench.report, "element.delete", "Delete"))
+        bench.edit(edits::removeElement(ast, element), "Delete a shape");
     ImGui::SameLine();
     if (button(bench.report, "element.up", "Up")) bench.edit(edits::moveElement(ast, element, -1), "Move a shape");
     ImGui::SameLine();
     if (button(bench.report, "element.down", "Down")) bench.edit(edits::moveElement(ast, element, 1), "Move a shape");
     if (element.kind == Element::Kind::Shape) {
-        part(bench, "solid", textOf(element.solid), [&](const std::string& t) { return edits::setSolid(ast, element, t); });
+        part(bench, "solid", textOf(element.solid),
+             [&](const std::string& t) { return edits::setSolid(ast, element, t); });
         part(bench, "live", element.live.text, [&](const std::string& t) { return edits::setLive(ast, element, t); });
     } else if (element.over) {
-        part(bench, "over", textOf(element.over), [&](const std::string& t) { return edits::setExpression(ast, *element.over, t); });
+        part(bench, "over", textOf(element.over),
+             [&](const std::string& t) { return edits::setExpression(ast, *element.over, t); });
     }
     attributes(bench, element);
 }
@@ -243,7 +271,9 @@ void RulesPanel::attributes(Workbench& bench, const Element& element) {
             if (at && argumentsOf(*at) == joints[i]) joint = static_cast<int>(i);
         float left = 0;
         label("joint", left);
-        if (oneOf(bench.report, "joint", joints, joint)) bench.edit(edits::setAttribute(ast, element, operations::at, joints[size_t(joint)]), fmt::format("Join at {}", joints[size_t(joint)]));
+        if (oneOf(bench.report, "joint", joints, joint))
+            bench.edit(edits::setAttribute(ast, element, operations::at, joints[size_t(joint)]),
+                       fmt::format("Join at {}", joints[size_t(joint)]));
     }
     std::vector<std::string> more{"Add …"};
     for (const Operation* row : ast.operations->rows()) {
@@ -257,7 +287,8 @@ void RulesPanel::attributes(Workbench& bench, const Element& element) {
         }
         const std::string name(operation.name);
         part(bench, name.c_str(), argumentsOf(*there), [&](const std::string& t) {
-            return t.empty() ? edits::removeAttribute(ast, element, operation) : edits::setAttribute(ast, element, operation, t);
+            return t.empty() ? edits::removeAttribute(ast, element, operation)
+                             : edits::setAttribute(ast, element, operation, t);
         });
         hint(std::string(operation.doc).c_str());
     }
@@ -270,7 +301,8 @@ void RulesPanel::attributes(Workbench& bench, const Element& element) {
     std::string_view example = operation.example;
     const size_t from = example.find(operation.name);
     example = from == std::string_view::npos ? std::string_view("1") : example.substr(from + operation.name.size());
-    bench.edit(edits::setAttribute(ast, element, operation, firstArgument(example)), fmt::format("Add {}", operation.name));
+    bench.edit(edits::setAttribute(ast, element, operation, firstArgument(example)),
+               fmt::format("Add {}", operation.name));
 }
 
 }  // namespace sgm::viewer

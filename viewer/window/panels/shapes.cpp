@@ -49,7 +49,8 @@ void ShapesPanel::show(Workbench& bench) {
         if (bench.selected() != seen_) {
             for (size_t i = 0; i < rows_.size(); ++i)
                 if (rows_[i].shape == bench.selected())
-                    ImGui::SetScrollY(std::max(0.0f, (ImGui::GetTextLineHeight() + 6) * static_cast<float>(i) - ImGui::GetWindowHeight() / 2));
+                    ImGui::SetScrollY(std::max(
+                        0.0f, (ImGui::GetTextLineHeight() + 6) * static_cast<float>(i) - ImGui::GetWindowHeight() / 2));
             seen_ = bench.selected();
         }
     }
@@ -68,8 +69,10 @@ void ShapesPanel::row(Workbench& bench, const ShapeRow& row) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     if (ImGui::Selectable("##row", bench.selected() == row.shape, ImGuiSelectableFlags_AllowItemOverlap, {0, height})) {
         const bool onArrow = row.hasChildren && ImGui::GetIO().MousePos.x < low.x + indent + 14;
-        if (!onArrow) bench.select(row.shape);
-        else if (!folded_.erase(shape.key)) folded_.insert(shape.key);
+        if (!onArrow)
+            bench.select(row.shape);
+        else if (!folded_.erase(shape.key))
+            folded_.insert(shape.key);
         stale_ |= onArrow;
         seen_ = bench.selected();
     }
@@ -100,7 +103,8 @@ void ShapesPanel::row(Workbench& bench, const ShapeRow& row) {
     say(label.name, color);
     if (label.live) say("  live", tint::good);
     const float ruleWidth = ImGui::CalcTextSize(label.rule.c_str()).x;
-    if (low.x + width - ruleWidth > x + 12) list.AddText({low.x + width - ruleWidth - 4, y}, tint::faint, label.rule.c_str());
+    if (low.x + width - ruleWidth > x + 12)
+        list.AddText({low.x + width - ruleWidth - 4, y}, tint::faint, label.rule.c_str());
     ImGui::PopID();
 }
 

@@ -11,7 +11,9 @@ using namespace widgets;
 
 void StepPanel::begin(Workbench& bench) {
     ImGui::PushTextWrapPos(0);
-    faint("Derive by hand: pick a live shape here or in the view, and one of the rules that match it. The way can be kept as a `derive` line.");
+    faint(
+        "Derive by hand: pick a live shape here or in the view, and one of the rules that match it. The way can be "
+        "kept as a `derive` line.");
     ImGui::PopTextWrapPos();
     ImGui::Dummy({0, 4});
     if (!bench.shown()) return;
@@ -29,11 +31,14 @@ void StepPanel::begin(Workbench& bench) {
 void StepPanel::show(Workbench& bench) {
     if (!bench.stepper) return begin(bench);
     Stepper& stepper = *bench.stepper;
-    if (button(bench.report, "step.undo", "Back", "Take the last step back", stepper.canUndo())) bench.stepped(stepper.undo(), "A step back");
+    if (button(bench.report, "step.undo", "Back", "Take the last step back", stepper.canUndo()))
+        bench.stepped(stepper.undo(), "A step back");
     ImGui::SameLine();
-    if (button(bench.report, "step.redo", "Forward", "Do it again", stepper.canRedo())) bench.stepped(stepper.redo(), "A step forward");
+    if (button(bench.report, "step.redo", "Forward", "Do it again", stepper.canRedo()))
+        bench.stepped(stepper.redo(), "A step forward");
     ImGui::SameLine();
-    if (button(bench.report, "step.rest", "The rest", "Go on automatically until no rule matches")) bench.stepped(stepper.applyRest(), "The rest by itself");
+    if (button(bench.report, "step.rest", "The rest", "Go on automatically until no rule matches"))
+        bench.stepped(stepper.applyRest(), "The rest by itself");
     ImGui::SameLine();
     if (button(bench.report, "step.end", "End", "Back to the automatic derivation")) {
         bench.endSteps();
@@ -67,7 +72,8 @@ void StepPanel::shapes(Workbench& bench) {
             }
             ImGui::Indent();
             for (const StepRule& r : row.rules) {
-                if (button(bench.report, fmt::format("apply.{}.{}", row.path, r.name), r.name.c_str(), std::string(r.span.text()).c_str())) {
+                if (button(bench.report, fmt::format("apply.{}.{}", row.path, r.name), r.name.c_str(),
+                           std::string(r.span.text()).c_str())) {
                     chosen = {row.shape, r.rule};
                     rule = r.name;
                 }
@@ -91,9 +97,11 @@ void StepPanel::save(Workbench& bench) {
     if (way) ImGui::PopFont();
     hint(whole.c_str());
     const float width = ImGui::CalcTextSize("Save way").x + 2 * ImGui::GetStyle().FramePadding.x;
-    field(bench.report, "step.name", way_, "Name of the way", ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
+    field(bench.report, "step.name", way_, "Name of the way",
+          ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
     ImGui::SameLine();
-    if (button(bench.report, "step.save", "Save way", "Write it into the text as a `derive` line", way.ok())) bench.edit(bench.stepper->save(*bench.document.ast(), way_), "Save way " + way_);
+    if (button(bench.report, "step.save", "Save way", "Write it into the text as a `derive` line", way.ok()))
+        bench.edit(bench.stepper->save(*bench.document.ast(), way_), "Save way " + way_);
 }
 
 }  // namespace sgm::viewer

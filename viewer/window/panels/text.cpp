@@ -36,9 +36,13 @@ void TextPanel::show(Workbench& bench) {
     const std::optional<std::string> typed = editor_.show(bench.report, bench.document.text(), colors_, notesOf(bench));
     bench.typing = editor_.active();
     const auto [begin, end] = editor_.selection();
-    if (bench.report.active()) bench.report.state()["textSelection"] = bench.document.text().substr(std::min<size_t>(begin, bench.document.text().size()), end - begin);
-    if (typed) bench.document.type(*typed);
-    else if (editor_.clicked()) bench.selectText(editor_.caret());
+    if (bench.report.active())
+        bench.report.state()["textSelection"] =
+            bench.document.text().substr(std::min<size_t>(begin, bench.document.text().size()), end - begin);
+    if (typed)
+        bench.document.type(*typed);
+    else if (editor_.clicked())
+        bench.selectText(editor_.caret());
 }
 
 }  // namespace sgm::viewer
