@@ -56,7 +56,7 @@ Result<volume::Agent> parseAgent(const std::string& text) {
 Result<Survey> surveyFor(const SurveyRequest& request, const exporter::ExportInput& input) {
     const auto agent = request.agent.empty() ? volume::Agent{} : parseAgent(request.agent);
     if (!agent.ok()) return agent.error();
-    auto cave = volume::surveyCave(*input.volume, *agent, request.inward, input.progress);
+    auto cave = volume::surveyCave(*input.volume, *agent, request.flipNormals, input.progress);
     if (!cave.ok()) return cave.error();
     Survey made{std::move(*cave), {}};
     if (request.floor.empty()) return made;

@@ -18,7 +18,7 @@ Result<volume::Agent> parseAgent(const std::string& text);
 struct SurveyRequest {
     std::string agent;  ///< as `parseAgent` reads it, "" for the usual one
     std::string floor;  ///< the file for the walkable floor, "" for none
-    bool inward = false;
+    bool flipNormals = false;
 };
 /// A cave, and its walkable floor where that is wanted.
 struct Survey {

@@ -9,12 +9,12 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/numbers.h"
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "cli/trials.h"
 #include "cli/watch.h"
 #include "grammar/operations/operations.h"
+#include "grammar/pipeline/files.h"
 #include "grammar/syntax/parser.h"
-#include "viewer/document/files.h"
 
 namespace sgm::cli {
 namespace {
@@ -53,10 +53,10 @@ int tryGrammar(const std::string& file, const std::shared_ptr<const rules::Gramm
 }
 
 int checkOne(const std::string& file, const CheckRequest& request, nlohmann::json& found) {
-    const auto source = viewer::readSource(file);
+    const auto source = pipeline::readSource(file);
     if (!source.ok()) return fail(source.error());
     syntax::Diagnostics diagnostics;
-    const auto grammar = rules::load(*source, operations::table(), viewer::fileLoader(), diagnostics);
+    const auto grammar = rules::load(*source, operations::table(), pipeline::fileLoader(), diagnostics);
     int code = grammar ? tryGrammar(file, grammar, request, diagnostics) : 0;
     if (grammar && code != 130) code = std::max(code, runGrammarChecks(grammar, request, diagnostics));
     if (request.json) {

@@ -8,15 +8,12 @@ class App;
 
 namespace sgm::cli {
 
-void addBuild(CLI::App& app, int& exitCode);
-void addRender(CLI::App& app, int& exitCode);
-void addView(CLI::App& app, int& exitCode);
-void addCheck(CLI::App& app, int& exitCode);
-void addStep(CLI::App& app, int& exitCode);
-void addTree(CLI::App& app, int& exitCode);
-void addMutate(CLI::App& app, int& exitCode);
-void addParams(CLI::App& app, int& exitCode);
-void addFmt(CLI::App& app, int& exitCode);
-void addReference(CLI::App& app, int& exitCode);
+// clang-format off
+/// Every subcommand, in the order of `sgm --help`: addBuild(app, exitCode) and so on, each defined in a file of its own.
+#define SGM_COMMANDS(X) X(Build) X(Render) X(View) X(Check) X(Step) X(Tree) X(Mutate) X(Params) X(Fmt) X(Reference)
+// clang-format on
+#define SGM_DECLARE(Name) void add##Name(CLI::App& app, int& exitCode);
+SGM_COMMANDS(SGM_DECLARE)
+#undef SGM_DECLARE
 
 }  // namespace sgm::cli

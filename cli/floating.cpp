@@ -12,7 +12,7 @@ namespace sgm::cli {
 namespace {
 
 /// By shape: the piece that its surface belongs to, `none` or several.
-std::vector<uint32_t> piecesByShape(const Model& model, const std::vector<mesh::Piece>& pieces) {
+std::vector<uint32_t> piecesByShape(const Model& model, const std::vector<mesh::ConnectedComponent>& pieces) {
     std::vector<uint32_t> pieceOf(model.derivation.tree.shapes.size(), derive::none);
     for (uint32_t i = 0; i < pieces.size(); ++i)
         for (const OriginId origin : pieces[i].origins) {
@@ -24,7 +24,7 @@ std::vector<uint32_t> piecesByShape(const Model& model, const std::vector<mesh::
 
 /// A piece of shapes that other pieces share is named after the one that has most of its surface.
 derive::ShapeId beginOf(const Model& model, std::span<const uint32_t> pieceOf, uint32_t index,
-                        const mesh::Piece& piece) {
+                        const mesh::ConnectedComponent& piece) {
     const derive::ShapeId begin = derive::beginOf(model.derivation.tree, pieceOf, index);
     if (begin != derive::none) return begin;
     const derive::ShapeId owner = model.lowered->shapeOf[piece.origins.front()];
@@ -34,7 +34,7 @@ derive::ShapeId beginOf(const Model& model, std::span<const uint32_t> pieceOf, u
 }  // namespace
 
 Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m) {
-    auto pieces = mesh::pieces(mesh, cell_m);
+    auto pieces = mesh::connectedComponents(mesh, cell_m);
     const auto pieceOf = piecesByShape(model, pieces);
     Support support;
     support.pieces = pieces.size();
@@ -43,7 +43,7 @@ Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m) {
     return support;
 }
 
-void sayFloating(const Model& model, const Support& support, float cell_m) {
+void printFloating(const Model& model, const Support& support, float cell_m) {
     constexpr size_t most = 5;
     for (size_t i = 0; i < std::min(support.floating.size(), most); ++i) {
         const Floating& f = support.floating[i];

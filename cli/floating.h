@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "cli/pipeline.h"
-#include "modeler/mesh/pieces.h"
+#include "cli/requests.h"
+#include "modeler/mesh/connected_components.h"
 
 namespace sgm::cli {
 
@@ -26,7 +26,7 @@ struct FloatCause {
 };
 
 struct Floating {
-    mesh::Piece piece;
+    mesh::ConnectedComponent piece;
     derive::ShapeId shape = 0;  ///< where the piece begins in the shape tree
     FloatCause cause;
 };
@@ -37,7 +37,7 @@ struct Support {
 Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m);
 
 /// A warning on stderr for each floating piece of a mesh of such cells, the first few of many.
-void sayFloating(const Model& model, const Support& support, float cell_m);
+void printFloating(const Model& model, const Support& support, float cell_m);
 
 /// Drops debris and floating components as `keep` says, and prints what was dropped unless `quiet`.
 void keepOnly(mesh::Keep keep, MeshedModel& meshed, int threads, bool quiet);

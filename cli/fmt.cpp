@@ -6,18 +6,18 @@
 
 #include "cli/commands.h"
 #include "cli/messages.h"
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "grammar/operations/operations.h"
+#include "grammar/pipeline/files.h"
 #include "grammar/syntax/parser.h"
 #include "grammar/syntax/printer.h"
-#include "viewer/document/files.h"
 
 namespace sgm::cli {
 namespace {
 
 /// 0 when the file is (now) in canonical layout.
 int formatOne(const std::string& file, bool checkOnly) {
-    const auto source = viewer::readSource(file);
+    const auto source = pipeline::readSource(file);
     if (!source.ok()) return fail(source.error());
     syntax::Diagnostics diagnostics;
     syntax::parse(*source, operations::table(), diagnostics);
@@ -29,7 +29,7 @@ int formatOne(const std::string& file, bool checkOnly) {
         fmt::print("{} is not formatted; run `sgm fmt {}`\n", file, file);
         return 1;
     }
-    const Status written = viewer::writeText(file, text);
+    const Status written = pipeline::writeText(file, text);
     if (!written.ok()) return fail(written.error());
     fmt::print("formatted {}\n", file);
     return 0;

@@ -52,7 +52,7 @@ public:
 
     OriginId originOf(uint32_t triangle) const { return mesh::FlatMesh::originOf(mesh_.keys[triangle]); }
 
-    std::optional<Closest> find(const mesh::Piece& piece, double cell_m) const {
+    std::optional<Closest> find(const mesh::ConnectedComponent& piece, double cell_m) const {
         const Surface* own = surfaceOf(piece);
         if (!own) return {};
         std::set<uint32_t> inside{own->id};  // its cavities aren't others
@@ -88,7 +88,7 @@ private:
     }
 
     /// The surface that fills the piece's box.
-    const Surface* surfaceOf(const mesh::Piece& piece) const {
+    const Surface* surfaceOf(const mesh::ConnectedComponent& piece) const {
         const Surface* best = nullptr;
         double least = std::numeric_limits<double>::infinity();
         for (const Surface& s : surfaces_) {
@@ -135,7 +135,7 @@ public:
     }
 
     /// The thinnest of the missing parts that hold the piece; null where none does.
-    const lower::ThinPart* find(const mesh::Piece& piece) const {
+    const lower::ThinPart* find(const mesh::ConnectedComponent& piece) const {
         if (missing_.empty() || missing_.size() * shapes_.size() > mostPairs) return nullptr;
         std::set<derive::ShapeId> own;
         for (const OriginId origin : piece.origins) own.insert(model_.lowered->shapeOf[origin]);
@@ -188,7 +188,7 @@ public:
         // What matters near here is a small part of a large field.
         eval::Workspace workspace;
         eval::Tape local;
-        eval::Range range{};
+        eval::FloatInterval range{};
         const Box3f box = Box3d{low_, low_ + Vec3d{4, 4, 4} * cell_m}.as<float>();
         eval::evaluateRanges(tape, {&box, 1}, &range, workspace);
         eval::shorten(tape, 0, workspace, local);
@@ -259,7 +259,7 @@ std::string partText(const Model& model, OriginId origin) {
 
 void findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const std::vector<lower::ThinPart>& missing,
                 Support& support) {
-    if (support.floating.empty() || mesh.isBare()) return;
+    if (support.floating.empty() || mesh.hasPositionsOnly()) return;
     const ThinLinks links(model, missing);
     std::optional<GapFinder> gaps;
     for (size_t i = 0; i < std::min(support.floating.size(), mostPieces); ++i) {

@@ -2,7 +2,7 @@
 // Enters: a model with clad shapes. Leaves: a picture. Assumes options as for any picture.
 #pragma once
 
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "viewer/offscreen.h"
 
 namespace sgm::cli {

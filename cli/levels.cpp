@@ -2,24 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "modeler/mesh/edit.h"
-
 namespace sgm::cli {
-
-Result<std::vector<mesh::LevelOfDetail>> makeLevels(const LevelRequest& request, const Model& model,
-                                                    const mesh::Mesh& finest, Progress* progress) {
-    const int threads = request.meshing.threads;
-    const auto meshAt = [&](float cell_m) -> Result<mesh::Mesh> {
-        Stages stages;
-        const mesh::Grid grid = mesh::gridFor(model.lowered->field.bounds, cell_m);
-        auto meshed = makeMesh(model, grid, request.meshing, stages, progress);
-        if (!meshed.ok()) return meshed.error();
-        mesh::keepOnly(meshed->mesh, request.keep, cell_m, threads);
-        if (request.inward) mesh::turnInsideOut(meshed->mesh);
-        return std::move(meshed->mesh);
-    };
-    return mesh::makeLevels(finest, {request.count - 1, threads, request.cell_m, meshAt}, progress);
-}
 
 std::string levelTable(const std::vector<mesh::LevelOfDetail>& levels, size_t finest) {
     std::string table;

@@ -66,16 +66,9 @@ int main(int argc, char** argv) {
            "Memory that the command may take, as 4GB or 500MB (default: three quarters of what is there; 0: no limit)")
         ->transform(CLI::AsSizeValue(false));
     int exitCode = 0;
-    addBuild(app, exitCode);
-    addRender(app, exitCode);
-    addView(app, exitCode);
-    addCheck(app, exitCode);
-    addStep(app, exitCode);
-    addTree(app, exitCode);
-    addMutate(app, exitCode);
-    addParams(app, exitCode);
-    addFmt(app, exitCode);
-    addReference(app, exitCode);
+#define SGM_ADD(Name) add##Name(app, exitCode);
+    SGM_COMMANDS(SGM_ADD)
+#undef SGM_ADD
     // Subcommands run in their callbacks, when all options are known.
     app.parse_complete_callback([&] {
         if (!app.got_subcommand("view")) limitMemory(memory_bytes);  // drivers map far more than they use

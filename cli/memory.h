@@ -1,6 +1,6 @@
 // How much memory a command may take.
 // Enters: what the machine and its control group allow. Leaves: a limit that makes allocations fail in time, so that
-// the program ends with a message and not by the system's hand. Assumes Linux.
+// the program ends with a message and not by the kernel's out-of-memory killer. Assumes Linux.
 #pragma once
 
 #include <cstdint>

@@ -19,8 +19,8 @@ struct Line {
 
 }  // namespace
 
-Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const viewer::MeshedModel& meshed,
-                                                      int threads, Progress* progress) {
+Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const MeshedModel& meshed, int threads,
+                                                      Progress* progress) {
     return lower::findMissingParts(model.derivation, *model.lowered, model.tape, meshed.mesh, meshed.grid.cell_m,
                                    threads, progress);
 }

@@ -11,10 +11,10 @@
 #include "cli/variations.h"
 #include "cli/watch.h"
 #include "grammar/operations/operations.h"
+#include "grammar/pipeline/files.h"
 #include "grammar/rules/params.h"
 #include "grammar/syntax/parser.h"
 #include "modeler/core/random.h"
-#include "viewer/document/files.h"
 #include "viewer/offscreen.h"
 
 namespace sgm::cli {
@@ -37,8 +37,8 @@ struct Variation {
     Model model;
 };
 
-viewer::ModelChoice with(const MutateRequest& request, const std::vector<NamedValue>& values) {
-    viewer::ModelChoice choice = request.model;
+pipeline::ModelChoice with(const MutateRequest& request, const std::vector<NamedValue>& values) {
+    pipeline::ModelChoice choice = request.model;
     for (const NamedValue& v : values) choice.settings.push_back(v.name + "=" + v.value);
     return choice;
 }
@@ -52,8 +52,8 @@ Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const ru
                     const std::vector<NamedValue>& values, Progress* progress) {
     const auto options = optionsFor(*grammar, with(request, values));
     if (!options.ok()) return options.error();
-    Stages stages;
-    auto model = makeModel(grammar, *options, stages, progress);
+    Context context{progress, request.threads};
+    auto model = makeModel(grammar, *options, context);
     if (!model.ok()) {
         if (model.error().kind == Error::Kind::Cancelled) return model.error();
         return Tried{{}, "empty"};
@@ -61,7 +61,7 @@ Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const ru
     GridRequest grid;
     grid.resolution = request.resolution;
     grid.threads = request.threads;
-    const auto meshed = makeMesh(*model, grid, stages, progress);
+    const auto meshed = makeMesh(*model, grid, context);
     if (!meshed.ok()) return meshed.error();
     if (const auto why = degenerate(meshed->mesh, meshed->grid.cell_m)) return Tried{{}, *why};
     return Tried{std::move(*model), {}};
@@ -156,7 +156,7 @@ Status saveChoice(const MutateRequest& request, const rules::Grammar& grammar, c
     if (request.pick >= static_cast<int>(found.size()))
         return Error{Error::Kind::Usage,
                      fmt::format("--pick {}: the sheet has 0 … {}", request.pick, found.size() - 1)};
-    const auto source = viewer::readSource(request.model.file);
+    const auto source = pipeline::readSource(request.model.file);
     if (!source.ok()) return source.error();
     syntax::Diagnostics diagnostics;
     const syntax::Ast ast = syntax::parse(*source, operations::table(), diagnostics);
@@ -174,7 +174,7 @@ Status saveChoice(const MutateRequest& request, const rules::Grammar& grammar, c
     const std::string start = grammar.symbols[grammar.starts[options->start].symbol].name;
     const auto edit = viewer::edits::saveStyle(ast, request.save, start, values);
     if (!edit.ok()) return edit.error();
-    return viewer::writeText(request.model.file, viewer::applied((*source)->text(), *edit));
+    return pipeline::writeText(request.model.file, viewer::applied((*source)->text(), *edit));
 }
 
 Status checkRequest(const MutateRequest& request, const rules::Grammar& grammar) {
@@ -197,9 +197,9 @@ Status mutated(const MutateRequest& request) {
         return Error{Error::Kind::Usage,
                      fmt::format("--size {}: write WIDTHxHEIGHT of one picture in pixels, as 320x240", request.size)};
     if (const Status s = checkTargets(request.model.targets); !s.ok()) return s;
-    Stages stages;
     Watch watch(request.quiet);
-    const auto loaded = loadGrammar(request.model, stages, watch.progress());
+    Context context{watch.progress()};
+    const auto loaded = loadGrammar(request.model, context);
     if (!loaded.ok()) return loaded.error();
     const std::shared_ptr<const rules::Grammar>& grammar = *loaded;
     if (const Status s = checkRequest(request, *grammar); !s.ok()) return s;

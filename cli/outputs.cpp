@@ -207,10 +207,10 @@ bool solidsWillDo(const OutputRequest& request) {
                        [](const std::string& file) { return formatOf(file)->wantsSolids; });
 }
 
-bool bareWillDo(const OutputRequest& request) {
+bool needsPositionsOnly(const OutputRequest& request) {
     return std::all_of(request.files.begin(), request.files.end(), [&](const std::string& file) {
         const Exporter& row = *formatOf(file);
-        return exporter::takesBare(row, optionsFor(request, row));
+        return exporter::takesPositionsOnly(row, optionsFor(request, row));
     });
 }
 
@@ -257,7 +257,9 @@ Status writeOutputs(const OutputRequest& request, const Model& model, exporter::
     const double tolerance_m = request.proxyTolerance_m > 0
                                    ? request.proxyTolerance_m
                                    : static_cast<double>(std::max({side.x, side.y, side.z})) / 20;
-    const auto around = mesh::proxy(model.lowered->graph, model.lowered->field, tolerance_m, threads, input.progress);
+    const auto own = lower::lower(model.derivation, input.progress);  // the proxy adds nodes to its graph
+    if (!own.ok()) return own.error();
+    const auto around = mesh::proxy((*own)->graph, (*own)->field, tolerance_m, threads, input.progress);
     if (!around.ok()) return around.error();
     input.mesh = &*around;
     input.colliders = {};

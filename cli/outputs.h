@@ -2,7 +2,7 @@
 // Enters: what the user asked for, a model and its mesh. Leaves: files. Assumes `checkOutputs` came before the work.
 #pragma once
 
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "modeler/export/exporter.h"
 
 namespace sgm::cli {
@@ -36,7 +36,7 @@ bool wantsVolume(const OutputRequest& request);
 bool solidsWillDo(const OutputRequest& request);
 
 /// True when no file says anything of the mesh's normals and origins. (The proxy is a mesh of its own.)
-bool bareWillDo(const OutputRequest& request);
+bool needsPositionsOnly(const OutputRequest& request);
 
 /// Error::Usage unless there is one file, of a format that takes a mesh chunk by chunk.
 Status checkStreamed(const OutputRequest& request);

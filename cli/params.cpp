@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "grammar/rules/params.h"
 
 namespace sgm::cli {
@@ -17,10 +17,10 @@ std::string rangeText(const rules::Param& p) {
 }
 
 int params(const std::string& file, bool json) {
-    Stages stages;
+    Context context;
     ModelRequest request;
     request.file = file;
-    const auto loaded = loadGrammar(request, stages);
+    const auto loaded = loadGrammar(request, context);
     if (!loaded.ok()) return fail(loaded.error());
     const rules::Grammar* const grammar = loaded->get();
     if (json) {

@@ -8,12 +8,12 @@
 
 #include "cli/animation.h"
 #include "cli/commands.h"
-#include "cli/edits.h"
 #include "cli/floating.h"
 #include "cli/ids.h"
 #include "cli/numbers.h"
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "cli/watch.h"
+#include "grammar/pipeline/mesh_edits.h"
 #include "modeler/core/conventions.h"
 #include "viewer/fog_scene.h"
 #include "viewer/offscreen.h"
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 struct RenderRequest {
     ModelRequest model;
     GridRequest grid{.resolution = 256};
-    EditRequest edits;
+    MeshEdits edits;
     std::string output, size = "960x720", view = "field", camera, rays = "best";
     std::vector<std::string> layers;
     double extinction = 0;
@@ -126,11 +126,11 @@ viewer::TracedBy tracedBy(const std::string& name) {
 
 /// The mesh that `sgm build` writes.
 Result<mesh::Mesh> meshAsBuilt(const RenderRequest& request, const Model& model, Progress* progress) {
-    Stages stages;
-    auto meshed = makeMesh(model, request.grid, stages, progress);
+    Context context{progress, request.grid.threads};
+    auto meshed = makeMesh(model, request.grid, context);
     if (!meshed.ok()) return meshed.error();
-    keepOnly(keepOf(request.edits), *meshed, request.grid.threads, request.quiet);
-    return edited(std::move(meshed->mesh), request.edits, request.grid, meshed->grid.cell_m, stages, progress);
+    keepOnly(request.edits.keep, *meshed, request.grid.threads, request.quiet);
+    return edited(std::move(meshed->mesh), request.edits, request.grid.surface, meshed->grid.cell_m, context);
 }
 
 /// What every picture of the model shares is done here.
@@ -227,9 +227,9 @@ viewer::Camera cameraAfter(const RenderRequest& request, viewer::Camera camera, 
 Status drawAll(const RenderRequest& request) {
     auto options = parseSize(request.size);
     if (!options.ok()) return options.error();
-    Stages stages;
     Watch watch(request.quiet);
-    const auto model = makeModel(request.model, stages, watch.progress());
+    Context context{watch.progress()};
+    const auto model = makeModel(request.model, context);
     if (!model.ok()) return model.error();
     if (!request.quiet) printWarnings(*model);
     const Box3f bounds = viewer::tighten(model->tape, model->lowered->field.bounds);
@@ -244,7 +244,7 @@ Status drawAll(const RenderRequest& request) {
     const Provenance& provenance = model->lowered->provenance;
     if (request.turntable == 0) {
         const Status drawn = drawOne(request, *paint, *options, provenance, request.output, watch.progress());
-        if (drawn.ok() && request.stats) printStatistics(paint->cost(), *model, bounds, *options, stages);
+        if (drawn.ok() && request.stats) printStatistics(paint->cost(), *model, bounds, *options, context.stages);
         return drawn;
     }
     for (int i = 0; i < request.turntable; ++i) {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cli/floating.h"
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "grammar/lower/thin_parts.h"
 #include "modeler/mesh/validate.h"
 #include "modeler/volume/cave.h"

@@ -8,12 +8,12 @@
 #include <iostream>
 
 #include "cli/commands.h"
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "cli/watch.h"
 #include "grammar/derive/print.h"
 #include "grammar/derive/session.h"
 #include "grammar/derive/way.h"
-#include "viewer/document/files.h"
+#include "grammar/pipeline/files.h"
 #include "viewer/document/stepper.h"
 
 namespace sgm::cli {
@@ -41,7 +41,7 @@ public:
     int run();
 
 private:
-    Status obey(const std::string& line);
+    Status execute(const std::string& line);
     Status applyAll(std::string_view steps);
     Status applyOne(std::string_view step);
     Status applyNumber(size_t number);
@@ -144,22 +144,22 @@ Result<std::string> Dialogue::wayLine(const std::string& name) const {
 
 /// Writes the way into the file, unless the file has changed since, or the line wouldn't lead to this very tree.
 Status Dialogue::save(const std::string& name) {
-    const auto now = viewer::readSource(request_.file);
+    const auto now = pipeline::readSource(request_.file);
     if (!now.ok()) return now.error();
     if ((*now)->text() != grammar_->sources[0]->text())
         return refusal(fmt::format("'{}' was changed by another program: nothing was saved", request_.file));
     const auto options = optionsFor(*grammar_, request_);
     if (!options.ok()) return options.error();
-    const auto saved = viewer::withWay(session_, *grammar_, *options, name, viewer::fileLoader());
+    const auto saved = viewer::withWay(session_, *grammar_, *options, name, pipeline::fileLoader());
     if (!saved.ok()) return saved.error();
-    if (const Status s = viewer::writeText(request_.file, saved->text); !s.ok()) return s;
+    if (const Status s = pipeline::writeText(request_.file, saved->text); !s.ok()) return s;
     grammar_ = saved->grammar;
     fmt::print("saved; run it with: sgm tree {} --derive {}{}\n", request_.file, name,
                request_.seed == 1 ? "" : fmt::format(" --seed {}", request_.seed));
     return Done{};
 }
 
-Status Dialogue::obey(const std::string& line) {
+Status Dialogue::execute(const std::string& line) {
     const std::string_view text = trimmed(line);
     const size_t end = std::min(text.find_first_of(" \t"), text.size());
     const std::string_view word = text.substr(0, end), rest = trimmed(text.substr(end));
@@ -167,7 +167,7 @@ Status Dialogue::obey(const std::string& line) {
     if (const auto [stop, bad] = std::from_chars(text.data(), text.data() + text.size(), number);
         bad == std::errc() && stop == text.data() + text.size())
         return applyNumber(number);
-    if (word == "apply") return obey(std::string(rest));
+    if (word == "apply") return execute(std::string(rest));
     if (word == "save") return rest.empty() ? Status(refusal("write 'save NAME'")) : save(std::string(rest));
     if (word == "way") {
         const auto way = wayLine(rest.empty() ? "way" : std::string(rest));
@@ -208,7 +208,7 @@ int Dialogue::run() {
         const std::string_view word = trimmed(line);
         if (word == "quit" || word == "exit") return 0;
         if (word.starts_with("//") || (word.empty() && !person)) continue;
-        const Status done = obey(line);
+        const Status done = execute(line);
         std::fflush(stdout);
         if (!done.ok())
             if (const int code = fail(done.error()); !person) return code;
@@ -218,8 +218,8 @@ int Dialogue::run() {
 }
 
 int step(const ModelRequest& request) {
-    Stages stages;
-    const auto loaded = loadGrammar(request, stages);
+    Context context;
+    const auto loaded = loadGrammar(request, context);
     if (!loaded.ok()) return fail(loaded.error());
     const std::shared_ptr<const rules::Grammar>& grammar = *loaded;
     const auto options = optionsFor(*grammar, request);

@@ -6,7 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/messages.h"
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "cli/watch.h"
 #include "grammar/derive/print.h"
 
@@ -19,9 +19,9 @@ struct TreeRequest {
 };
 
 int tree(const TreeRequest& request) {
-    Stages stages;
     Watch watch(false);
-    const auto grammar = loadGrammar(request.model, stages, watch.progress());
+    Context context{watch.progress()};
+    const auto grammar = loadGrammar(request.model, context);
     if (!grammar.ok()) return fail(grammar.error());
     const auto options = optionsFor(**grammar, request.model);
     if (!options.ok()) return fail(options.error());

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "grammar/rules/params.h"
 #include "modeler/core/printable.h"
 #include "modeler/core/stopwatch.h"
@@ -126,18 +126,18 @@ private:
         derive::Options options = setting.options;
         options.budget.seconds = seconds;
         options.budget.shapes = options_.shapes;
-        Stages stages;
         auto derivation = derive::derive(grammar_, options, progress_);
         if (!derivation.ok()) return derivation.error();
         syntax::Diagnostics found;
         if (thorough)
             found = derive::warnings(*derivation);
         else
-            for (const derive::Remark& r : derivation->remarks) found.warning(r.span, r.message, r.mend);
+            for (const derive::Warning& r : derivation->warnings) found.warning(r.span, r.message, r.hint);
         for (const syntax::Diagnostic& d : found.all())
             if (warned_.insert({d.span.source, d.span.begin, d.span.end}).second)
-                diagnostics_.warning(d.span, prefixed(setting.words, d.message), d.mend);
-        const auto model = makeModel(std::move(*derivation), stages, progress_);
+                diagnostics_.warning(d.span, prefixed(setting.words, d.message), d.hint);
+        Context context{progress_};
+        const auto model = makeModel(std::move(*derivation), context);
         if (!model.ok()) return model.error();
         return hasSurface(*model);
     }

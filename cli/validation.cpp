@@ -6,8 +6,8 @@
 
 namespace sgm::cli {
 
-Status validated(const mesh::Mesh& mesh, Stages& stages) {
-    const auto judgement = timed(stages, "validate", [&] { return mesh::judge(mesh); });
+Status validated(const mesh::Mesh& mesh, Context& context) {
+    const auto judgement = context.timed("validate", [&] { return mesh::validate(mesh); });
     if (!judgement.ok()) return judgement.error();
     const std::string verdict =
         fmt::format("CGAL: {}, {}, {}, {:.6g} m³", judgement->closed ? "closed" : "not closed",
@@ -19,8 +19,8 @@ Status validated(const mesh::Mesh& mesh, Stages& stages) {
     return Done{};
 }
 
-void warnOfFaults(const mesh::Mesh& mesh, Stages& stages) {
-    const auto judgement = timed(stages, "validate", [&] { return mesh::judge(mesh); });
+void warnOfFaults(const mesh::Mesh& mesh, Context& context) {
+    const auto judgement = context.timed("validate", [&] { return mesh::validate(mesh); });
     if (!judgement.ok() || (judgement->closed && !judgement->selfIntersects)) return;
     printMessage(
         "warning: the mesh {} since it was smoothed: smooth less, or take smaller cells (--validate makes this an "

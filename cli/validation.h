@@ -2,15 +2,15 @@
 // Enters: a finished mesh. Leaves: lines on stdout or stderr. Assumes seconds per million triangles are welcome.
 #pragma once
 
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "modeler/mesh/validate.h"
 
 namespace sgm::cli {
 
 /// Prints whether the mesh is closed, oriented and free of self-intersections; Error::Input when it isn't.
-Status validated(const mesh::Mesh& mesh, Stages& stages);
+Status validated(const mesh::Mesh& mesh, Context& context);
 
 /// Warns of a mesh that crosses itself or isn't closed, as smoothing may leave one.
-void warnOfFaults(const mesh::Mesh& mesh, Stages& stages);
+void warnOfFaults(const mesh::Mesh& mesh, Context& context);
 
 }  // namespace sgm::cli

@@ -10,9 +10,9 @@
 
 namespace sgm::cli {
 
-std::vector<viewer::edits::NamedValue> variation(const rules::Grammar& grammar, const viewer::ModelChoice& choice,
+std::vector<viewer::edits::NamedValue> variation(const rules::Grammar& grammar, const pipeline::ModelChoice& choice,
                                                  const std::set<std::string>& locked, double spread, uint64_t seed) {
-    const auto options = viewer::optionsFor(grammar, choice);
+    const auto options = pipeline::optionsFor(grammar, choice);
     if (!options.ok()) return {};
     viewer::Choice panel;
     panel.start = choice.start;
@@ -79,24 +79,24 @@ double shareOnFewPlanes(const mesh::Mesh& mesh, float cell_m) {
     for (const Vec3f& p : at)
         plain.push_back(std::any_of(planes.begin(), planes.end(),
                                     [&](const Plane& q) { return q.holds(p.as<double>(), 0.1 * cell_m); }));
-    double all = 0, bare = 0;
+    double all = 0, plainArea = 0;
     for (const mesh::Chunk& c : mesh.chunks)
         for (const mesh::Triangle& local : c.triangles) {
             const mesh::Triangle t = c.inMesh(local);
             const double size = length(cross(at[t.y] - at[t.x], at[t.z] - at[t.x]));
             all += size;
-            if (plain[t.x] && plain[t.y] && plain[t.z]) bare += size;
+            if (plain[t.x] && plain[t.y] && plain[t.z]) plainArea += size;
         }
-    return all > 0 ? bare / all : 1;
+    return all > 0 ? plainArea / all : 1;
 }
 
 }  // namespace
 
 std::optional<std::string> degenerate(const mesh::Mesh& mesh, float cell_m) {
-    const std::vector<mesh::Piece> pieces = mesh::pieces(mesh, cell_m);
+    const std::vector<mesh::ConnectedComponent> pieces = mesh::connectedComponents(mesh, cell_m);
     if (pieces.empty()) return "empty";
     double all = 0, greatest = 0, floating = 0;
-    for (const mesh::Piece& p : pieces) {
+    for (const mesh::ConnectedComponent& p : pieces) {
         all += p.volume_m3;
         greatest = std::max(greatest, p.volume_m3);
         if (p.floats) floating += p.volume_m3;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/pipeline.h"
-#include "modeler/mesh/pieces.h"
+#include "cli/requests.h"
+#include "modeler/mesh/connected_components.h"
 #include "viewer/document/edits.h"
 
 namespace sgm::cli {
@@ -16,7 +16,7 @@ namespace sgm::cli {
 /// Values for every parameter that may vary: drawn by `seed` alone, `spread` (0 … 1) of the way from the present ones
 /// to any in their ranges; words and switches change with that chance. Rounded as a slider would, so that what is
 /// written into a text gives the very same model.
-std::vector<viewer::edits::NamedValue> variation(const rules::Grammar& grammar, const viewer::ModelChoice& choice,
+std::vector<viewer::edits::NamedValue> variation(const rules::Grammar& grammar, const pipeline::ModelChoice& choice,
                                                  const std::set<std::string>& locked, double spread, uint64_t seed);
 
 /// Why a model isn't worth a look: nothing solid; mostly debris; parts in the air; or a few bare planes. Empty for a

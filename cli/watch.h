@@ -1,4 +1,4 @@
-// What a person sees of long work: a progress line, and Ctrl-C.
+// What the user sees of long work: a progress line, and Ctrl-C.
 // Enters: a Progress. Leaves: a line on the terminal. Assumes one Watch at a time.
 #pragma once
 

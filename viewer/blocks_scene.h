@@ -1,5 +1,5 @@
 // A mesh made on the GPU from one moment to the next: blocks of 32³ cells polygonised by compute shaders (SG-M III-G),
-// for a look at what a hand is changing. Enters: a tape and a grid. Leaves: triangles in GPU memory, without
+// for a preview of what is being dragged. Enters: a tape and a grid. Leaves: triangles in GPU memory, without
 // refinement, owners and shared vertices. Assumes a current GL 4.3 context for all but `prepareBlocks`.
 #pragma once
 

@@ -24,7 +24,7 @@ struct Pending {
 struct Children {
     std::array<CellState, 64> states;
     std::array<Vec3f, 64> lows;
-    std::array<eval::Range, 64> ranges;
+    std::array<eval::FloatInterval, 64> ranges;
     std::vector<eval::Tape> tapes;  ///< of the near ones, in order
 };
 
@@ -32,7 +32,7 @@ struct Children {
 Children childrenOf(const Pending& cell, float edge, float margin, eval::Workspace& workspace) {
     Children children;
     std::array<Box3f, 64> boxes;
-    std::array<eval::Range, 64>& ranges = children.ranges;
+    std::array<eval::FloatInterval, 64>& ranges = children.ranges;
     for (int i = 0; i < 64; ++i) {
         const Vec3f step{static_cast<float>(i & 3), static_cast<float>(i >> 2 & 3), static_cast<float>(i >> 4)};
         const Vec3f low = cell.low + step * edge;
@@ -98,7 +98,7 @@ Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float
                 if (state == CellState::Near) {
                     eval::Tape& shortened = children[i].tapes[taken++];
                     index = static_cast<uint32_t>(tree.tapes.size());
-                    const eval::Range range = children[i].ranges[c];
+                    const eval::FloatInterval range = children[i].ranges[c];
                     const bool deeper = level + 1 < usual ? shortened.size() > shortTape
                                                           : level + 1 < levels && shortened.size() > longTape &&
                                                                 range.lo <= 0 && range.hi >= 0;

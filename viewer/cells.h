@@ -30,8 +30,8 @@ struct CellTree {
     float edge = 1;                         ///< of the root cube, metres
     float margin = 0;                       ///< metres
     std::vector<uint32_t> nodes;
-    std::vector<eval::Tape> tapes;    ///< of near leaves; each is exact a 32nd of its cell's edge beyond the cell
-    std::vector<eval::Range> ranges;  ///< of the field in the same leaves
+    std::vector<eval::Tape> tapes;  ///< of near leaves; each is exact a 32nd of its cell's edge beyond the cell
+    std::vector<eval::FloatInterval> ranges;  ///< of the field in the same leaves
 
     static constexpr CellState stateOf(uint32_t word) { return CellState(word >> 30); }
     static constexpr uint32_t indexOf(uint32_t word) { return word & 0x3fffffffu; }

@@ -26,8 +26,8 @@ Status addJobs(const std::vector<Job>& jobs, FieldScene& scene, PixelSums& sums,
             const size_t pixel = sums.index(chunk[i]) / 4;
             layers->position[pixel] = hit.position;
             layers->depth[pixel] = static_cast<float>(dot(hit.position.as<double>() - view.eye, view.forward));
-            layers->normal[pixel] = rays->lits[i].normal;
-            layers->ao[pixel] = rays->lits[i].openness;
+            layers->normal[pixel] = rays->shadings[i].normal;
+            layers->ao[pixel] = rays->shadings[i].openness;
             layers->origin[pixel] = static_cast<float>(rays->origins[i]);
         }
     }

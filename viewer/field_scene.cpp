@@ -45,42 +45,43 @@ void FieldScene::look(const PictureOptions& options, double fine, bool share) {
 
 Status FieldScene::ask(Tracer::What what, const std::vector<uint32_t>& which, Rays& rays, Progress* progress) {
     std::vector<Hit> hits;
-    std::vector<Lit> lits;
+    std::vector<Shading> shadings;
     for (const uint32_t i : which) {
         hits.push_back(rays.hits[i]);
-        lits.push_back(rays.lits[i]);
+        shadings.push_back(rays.shadings[i]);
     }
-    if (Status s = tracer_->light(what, hits, lits, progress); !s) return s;
-    for (size_t k = 0; k < which.size(); ++k) rays.lits[which[k]] = lits[k];
+    if (Status s = tracer_->light(what, hits, shadings, progress); !s) return s;
+    for (size_t k = 0; k < which.size(); ++k) rays.shadings[which[k]] = shadings[k];
     return Done{};
 }
 
 /// Key pixels ask the field, others only for what those around them don't tell.
 Status FieldScene::light(std::span<const Job> jobs, Rays& rays, Progress* progress) {
-    const auto put = [&](uint32_t i) { seen_.put(jobs[i], rays.hits[i], rays.lits[i], rays.origins[i]); };
-    const auto take = [&](uint32_t i, const std::optional<Lit>& lit) {
+    const auto put = [&](uint32_t i) { seen_.put(jobs[i], rays.hits[i], rays.shadings[i], rays.origins[i]); };
+    const auto take = [&](uint32_t i, const std::optional<Shading>& lit) {
         if (!lit) return false;
-        rays.lits[i] = *lit;
+        rays.shadings[i] = *lit;
         put(i);
         return true;
     };
     for (const bool key : {true, false}) {
         std::vector<uint32_t> unknown, dark;
         for (uint32_t i = 0; i < jobs.size(); ++i) {
-            if ((!share_ || SeenPixels::isKey(jobs[i])) != key || rays.hits[i].kind() == HitKind::Sky) continue;
+            if ((!share_ || PixelCache::isKey(jobs[i])) != key || rays.hits[i].kind() == HitKind::Sky) continue;
             if (key || !take(i, seen_.surface(jobs[i], rays.hits[i], rays.origins[i]))) unknown.push_back(i);
         }
-        std::vector<uint32_t> bare;
-        std::ranges::copy_if(unknown, std::back_inserter(bare),
-                             [&](uint32_t i) { return rays.lits[i].normal == Vec3f{}; });
+        std::vector<uint32_t> withoutNormal;
+        std::ranges::copy_if(unknown, std::back_inserter(withoutNormal),
+                             [&](uint32_t i) { return rays.shadings[i].normal == Vec3f{}; });
         // A pixel's first sample stands for all of it, until its others add what they meet.
         const auto isFirst = [&](uint32_t i) { return jobs[i].sample == 0; };
-        const std::vector<uint32_t> others(std::ranges::stable_partition(bare, isFirst).begin(), bare.end());
-        bare.resize(bare.size() - others.size());
-        if (Status s = ask(Tracer::What::WideNormals, bare, rays, progress); !s) return s;
+        const std::vector<uint32_t> others(std::ranges::stable_partition(withoutNormal, isFirst).begin(),
+                                           withoutNormal.end());
+        withoutNormal.resize(withoutNormal.size() - others.size());
+        if (Status s = ask(Tracer::What::WideNormals, withoutNormal, rays, progress); !s) return s;
         if (Status s = ask(Tracer::What::Normals, others, rays, progress); !s) return s;
         for (const uint32_t i : unknown)
-            if (key || !take(i, seen_.light(jobs[i], rays.hits[i], rays.lits[i].normal, rays.origins[i])))
+            if (key || !take(i, seen_.light(jobs[i], rays.hits[i], rays.shadings[i].normal, rays.origins[i])))
                 dark.push_back(i);
         if (Status s = ask(Tracer::What::Light, dark, rays, progress); !s) return s;
         for (const uint32_t i : dark) put(i);
@@ -89,22 +90,24 @@ Status FieldScene::light(std::span<const Job> jobs, Rays& rays, Progress* progre
 }
 
 Result<Rays> FieldScene::trace(std::span<const Job> jobs, Progress* progress) {
-    Rays rays{
-        std::vector<Hit>(jobs.size()), std::vector<Lit>(jobs.size(), Lit{}), {}, std::vector<OriginId>(jobs.size(), 0)};
+    Rays rays{std::vector<Hit>(jobs.size()),
+              std::vector<Shading>(jobs.size(), Shading{}),
+              {},
+              std::vector<OriginId>(jobs.size(), 0)};
     for (const bool leading : {true, false}) {
         std::vector<uint32_t> which;
         std::vector<Ray> some;
         for (uint32_t i = 0; i < jobs.size(); ++i) {
-            if (SeenPixels::leads(jobs[i]) != leading) continue;
+            if (PixelCache::leads(jobs[i]) != leading) continue;
             which.push_back(i);
             some.push_back(seen_.ray(jobs[i]));
         }
         if (some.empty()) continue;
-        const Result<Met> met = tracer_->trace(some, progress);
+        const Result<Hits> met = tracer_->trace(some, progress);
         if (!met) return met.error();
         for (size_t k = 0; k < which.size(); ++k) {
             rays.hits[which[k]] = met->hits[k];
-            rays.lits[which[k]].normal = met->normals[k];
+            rays.shadings[which[k]].normal = met->normals[k];
             seen_.put(jobs[which[k]], met->free[k]);
         }
     }
@@ -127,7 +130,7 @@ Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
     if (Status s = light(jobs, rays, progress); !s) return s.error();
     std::vector<uint32_t> materialOfHit;
     for (const OriginId origin : rays.origins) materialOfHit.push_back(field_->materialOf[origin]);
-    const Buffer hitBuffer = Buffer::of<Hit>(rays.hits), litBuffer = Buffer::of<Lit>(rays.lits),
+    const Buffer hitBuffer = Buffer::of<Hit>(rays.hits), litBuffer = Buffer::of<Shading>(rays.shadings),
                  materialBuffer = Buffer::of<uint32_t>(materialOfHit),
                  colors = Buffer::ofBytes(nullptr, jobs.size() * sizeof(rays.colors[0]));
     hitBuffer.bindStorage(2);

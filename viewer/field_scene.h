@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "viewer/gpu_tracer.h"
-#include "viewer/seen_pixels.h"
+#include "viewer/pixel_cache.h"
 #include "viewer/tracer.h"
 
 namespace sgm::viewer {
@@ -26,7 +26,7 @@ Result<std::shared_ptr<const FieldPrograms>> programsFor(const PreparedField& fi
 /// What a batch of rays met, an entry a job.
 struct Rays {
     std::vector<Hit> hits;
-    std::vector<Lit> lits;
+    std::vector<Shading> shadings;
     std::vector<std::array<float, 4>> colors;  ///< display light 0 … 1, linear, and 1
     std::vector<OriginId> origins;             ///< of objects, else 0
 };
@@ -57,7 +57,7 @@ private:
     std::shared_ptr<const PreparedField> field_;
     std::shared_ptr<const FieldPrograms> programs_;
     std::unique_ptr<Tracer> tracer_;
-    SeenPixels seen_;
+    PixelCache seen_;
     bool share_ = true;
     Buffer materials_;
     int threads_;

@@ -55,24 +55,24 @@ public:
         }
     }
 
-    Result<Met> trace(std::span<const Ray> rays, Progress* progress) override {
+    Result<Hits> trace(std::span<const Ray> rays, Progress* progress) override {
         const Buffer rayBuffer = Buffer::of(rays), hits = Buffer::ofBytes(nullptr, rays.size() * sizeof(Hit)),
                      free = Buffer::ofBytes(nullptr, rays.size() * sizeof(float));
         rayBuffer.bindStorage(1);
         hits.bindStorage(2);
         free.bindStorage(3);
         if (Status s = run(programs_->trace, rays.size(), tracePiece_, progress); !s) return s.error();
-        return Met{hits.read<Hit>(rays.size()), std::vector<Vec3f>(rays.size(), Vec3f{}),
-                   free.read<float>(rays.size())};
+        return Hits{hits.read<Hit>(rays.size()), std::vector<Vec3f>(rays.size(), Vec3f{}),
+                    free.read<float>(rays.size())};
     }
 
-    Status light(What what, std::span<const Hit> hits, std::span<Lit> lits, Progress* progress) override {
-        const Buffer hitBuffer = Buffer::of(hits), litBuffer = Buffer::of<Lit>(lits);
+    Status light(What what, std::span<const Hit> hits, std::span<Shading> shadings, Progress* progress) override {
+        const Buffer hitBuffer = Buffer::of(hits), litBuffer = Buffer::of<Shading>(shadings);
         hitBuffer.bindStorage(2);
         litBuffer.bindStorage(3);
         programs_->surface.set("what", static_cast<int>(what));
         if (Status s = run(programs_->surface, hits.size(), lightPiece_[what == What::Light], progress); !s) return s;
-        litBuffer.read(lits.data(), lits.size_bytes());
+        litBuffer.read(shadings.data(), shadings.size_bytes());
         return Done{};
     }
 

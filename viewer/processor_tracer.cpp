@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "modeler/core/parallel.h"
-#include "viewer/answers.h"
+#include "viewer/batched_evaluator.h"
 #include "viewer/scene.h"
 
 namespace sgm::viewer {
@@ -25,25 +25,27 @@ public:
         side_ = field_->sideOf(view_.eye.as<float>());
     }
 
-    Result<Met> trace(std::span<const Ray> rays, Progress* progress) override {
-        Met met{std::vector<Hit>(rays.size()), std::vector<Vec3f>(rays.size(), Vec3f{}),
-                std::vector<float>(rays.size())};
+    Result<Hits> trace(std::span<const Ray> rays, Progress* progress) override {
+        Hits met{std::vector<Hit>(rays.size()), std::vector<Vec3f>(rays.size(), Vec3f{}),
+                 std::vector<float>(rays.size())};
         const Status done =
-            inPieces(rays.size(), progress, [&](size_t low, size_t high, Answers& answers, TraceCost& cost) {
-                tracePiece(rays.subspan(low, high - low), met, low, answers, cost);
+            inPieces(rays.size(), progress, [&](size_t low, size_t high, BatchedEvaluator& evaluator, TraceCost& cost) {
+                tracePiece(rays.subspan(low, high - low), met, low, evaluator, cost);
             });
         if (!done) return done.error();
         return met;
     }
 
-    Status light(What what, std::span<const Hit> hits, std::span<Lit> lits, Progress* progress) override {
-        return inPieces(hits.size(), progress, [&](size_t low, size_t high, Answers& answers, TraceCost& cost) {
-            const auto hitsHere = hits.subspan(low, high - low);
-            const auto litsHere = lits.subspan(low, high - low);
-            if (what != What::Light) return setNormals(what == What::WideNormals, hitsHere, litsHere, answers, cost);
-            setOpenness(hitsHere, litsHere, answers, cost);
-            setSunAndDay(hitsHere, litsHere, answers, cost);
-        });
+    Status light(What what, std::span<const Hit> hits, std::span<Shading> shadings, Progress* progress) override {
+        return inPieces(hits.size(), progress,
+                        [&](size_t low, size_t high, BatchedEvaluator& evaluator, TraceCost& cost) {
+                            const auto hitsHere = hits.subspan(low, high - low);
+                            const auto litsHere = shadings.subspan(low, high - low);
+                            if (what != What::Light)
+                                return setNormals(what == What::WideNormals, hitsHere, litsHere, evaluator, cost);
+                            setOpenness(hitsHere, litsHere, evaluator, cost);
+                            setSunAndDay(hitsHere, litsHere, evaluator, cost);
+                        });
     }
 
 private:
@@ -77,20 +79,21 @@ private:
     }
 
     /// Sets what of `met` begins at `low`.
-    void tracePiece(std::span<const Ray> rays, Met& met, size_t low, Answers& answers, TraceCost& cost) const {
+    void tracePiece(std::span<const Ray> rays, Hits& met, size_t low, BatchedEvaluator& evaluator,
+                    TraceCost& cost) const {
         const CellSpace cells = space();
         const Vec3f eye = view_.eye.as<float>();
         std::vector<Vec3f> directions;
         for (const Ray& ray : rays) directions.push_back(rayThrough(view_, options_, ray.job.place()));
-        std::vector<float> found = guessed(rays, directions, std::span(met.normals).subspan(low), answers, cost);
-        std::vector<SurfaceWalk> walks;
+        std::vector<float> found = guessed(rays, directions, std::span(met.normals).subspan(low), evaluator, cost);
+        std::vector<SphereTracer> walks;
         std::vector<size_t> of;
         for (size_t i = 0; i < rays.size(); ++i) {
             if (found[i] >= 0) continue;
             of.push_back(i);
             walks.emplace_back(cells, eye, directions[i], pixelAngle(), rays[i]);
         }
-        cost.hits += answers.follow(cells, std::span(walks), cost);
+        cost.hits += evaluator.follow(cells, std::span(walks), cost);
         for (size_t k = 0; k < of.size(); ++k) {
             found[of[k]] = walks[k].found();
             met.free[low + of[k]] = walks[k].freeBeside();
@@ -110,7 +113,7 @@ private:
 
     /// Distance along every ray where its guess is right, −1 where it isn't or there is none; and the normals there.
     std::vector<float> guessed(std::span<const Ray> rays, std::span<const Vec3f> directions, std::span<Vec3f> normals,
-                               Answers& answers, TraceCost& cost) const {
+                               BatchedEvaluator& evaluator, TraceCost& cost) const {
         const CellSpace cells = space();
         std::vector<float> found(rays.size(), -1);
         std::vector<Question> questions;
@@ -123,7 +126,7 @@ private:
             of.push_back(i);
             questions.push_back({place, cell.tape});
         }
-        const std::vector<Answers::Slope>& slopes = answers.slopesOf(questions, cost);
+        const std::vector<BatchedEvaluator::Slope>& slopes = evaluator.slopesOf(questions, cost);
         cost.hits += questions.size();
         for (size_t k = 0; k < of.size(); ++k) {
             const float guess = rays[of[k]].guess;
@@ -134,20 +137,20 @@ private:
         return found;
     }
 
-    static Vec3f normalOf(const Answers::Slope& slope, const CellSpace& cells) {
+    static Vec3f normalOf(const BatchedEvaluator::Slope& slope, const CellSpace& cells) {
         return cells.side * normalized(slope.gradient + Vec3f{0, 1e-20f, 0});
     }
 
     /// The field's derivatives at every hit of an object, a little before it: behind an edge begin other faces. Wide
     /// ones are means of four, some sixth of a pixel about it.
-    void setNormals(bool wide, std::span<const Hit> hits, std::span<Lit> lits, Answers& answers,
+    void setNormals(bool wide, std::span<const Hit> hits, std::span<Shading> shadings, BatchedEvaluator& evaluator,
                     TraceCost& cost) const {
         const CellSpace cells = space();
         const Vec3f eye = view_.eye.as<float>();
         std::vector<Question> questions;
         std::vector<size_t> of;
         for (size_t i = 0; i < hits.size(); ++i) {
-            lits[i].normal = {0, 1, 0};
+            shadings[i].normal = {0, 1, 0};
             if (hits[i].kind() != HitKind::Object) continue;
             const Vec3f place = hits[i].position + (eye - hits[i].position) * (0.05f * pixelAngle());
             const Cell cell = cells.cellAt(place);
@@ -164,18 +167,19 @@ private:
             for (const Vec3f off : {aside + 0.4f * up, -aside - 0.4f * up, up - 0.4f * aside, 0.4f * aside - up})
                 questions.push_back({place + off, cell.tape});
         }
-        const std::vector<Answers::Slope>& slopes = answers.slopesOf(questions, cost);
+        const std::vector<BatchedEvaluator::Slope>& slopes = evaluator.slopesOf(questions, cost);
         cost.light += questions.size();
         const size_t each = wide ? 4 : 1;
         for (size_t j = 0; j < of.size(); ++j) {
-            Answers::Slope mean{0, {0, 0, 0}};
+            BatchedEvaluator::Slope mean{0, {0, 0, 0}};
             for (size_t k = 0; k < each; ++k) mean.gradient = mean.gradient + normalized(slopes[j * each + k].gradient);
-            lits[of[j]].normal = normalOf(mean, cells);
+            shadings[of[j]].normal = normalOf(mean, cells);
         }
     }
 
     /// Share of the sky that each hit sees, from the field at growing distances along the normal.
-    void setOpenness(std::span<const Hit> hits, std::span<Lit> lits, Answers& answers, TraceCost& cost) const {
+    void setOpenness(std::span<const Hit> hits, std::span<Shading> shadings, BatchedEvaluator& evaluator,
+                     TraceCost& cost) const {
         const CellSpace cells = space();
         const Box3f& box = field_->box;
         std::vector<Question> questions;
@@ -185,11 +189,11 @@ private:
         };
         std::vector<Weighed> of;
         for (size_t i = 0; i < hits.size(); ++i) {
-            lits[i].openness = 1;  // less what is hidden, a quarter a distance
+            shadings[i].openness = 1;  // less what is hidden, a quarter a distance
             float reach = 0.07f * cells.size;
             for (int k = 0; k < 4; ++k, reach *= 0.4f) {
                 const float enough = std::min(reach, cells.margin);
-                const Vec3f place = hits[i].position + lits[i].normal * reach;
+                const Vec3f place = hits[i].position + shadings[i].normal * reach;
                 if (!box.contains(place)) continue;
                 const Cell cell = cells.cellAt(place);
                 if (cell.least >= enough) continue;
@@ -197,21 +201,22 @@ private:
                     of.push_back({i, enough});
                     questions.push_back({place, cell.tape});
                 } else if (cell.state == CellState::Inside) {
-                    lits[i].openness -= 0.25f;
+                    shadings[i].openness -= 0.25f;
                 }
             }
         }
-        const std::vector<float>& values = answers.of(questions, cost);
+        const std::vector<float>& values = evaluator.of(questions, cost);
         cost.light += questions.size();
         for (size_t j = 0; j < of.size(); ++j)
-            lits[of[j].hit].openness -= 0.25f * (1 - std::clamp(cells.side * values[j] / of[j].enough, 0.0f, 1.0f));
+            shadings[of[j].hit].openness -= 0.25f * (1 - std::clamp(cells.side * values[j] / of[j].enough, 0.0f, 1.0f));
         // A little stays even where things touch: light creeps in.
-        for (Lit& lit : lits) lit.openness = 0.08f + 0.92f * lit.openness;
+        for (Shading& lit : shadings) lit.openness = 0.08f + 0.92f * lit.openness;
     }
 
     /// Share of the sun's disc that each hit sees; in a hollow with a lamp that of the day, by wide discs of the upper
     /// sky.
-    void setSunAndDay(std::span<const Hit> hits, std::span<Lit> lits, Answers& answers, TraceCost& cost) const {
+    void setSunAndDay(std::span<const Hit> hits, std::span<Shading> shadings, BatchedEvaluator& evaluator,
+                      TraceCost& cost) const {
         const CellSpace cells = space();
         const Vec3f eye = view_.eye.as<float>(), sun = sunDirection();
         std::vector<DiscWalk> walks;
@@ -221,7 +226,7 @@ private:
         };
         std::vector<Ray> rays;
         for (size_t i = 0; i < hits.size(); ++i) {
-            Lit& lit = lits[i];
+            Shading& lit = shadings[i];
             lit.sunlight = 0;
             lit.daylight = lamp_m_ > 0 && hits[i].kind() == HitKind::Object ? 0.0f : 1.0f;
             const float pixel = pixelAngle() * length(eye - hits[i].position);
@@ -239,14 +244,14 @@ private:
                 rays.push_back({&lit.daylight, 0.4f * cosine});
             }
         }
-        cost.light += answers.follow(cells, std::span(walks), cost);
+        cost.light += evaluator.follow(cells, std::span(walks), cost);
         for (size_t j = 0; j < rays.size(); ++j)
             *rays[j].into = std::min(*rays[j].into + rays[j].weight * walks[j].seen(), 1.0f);
     }
 
     std::shared_ptr<const PreparedField> field_;
     int threads_;
-    std::vector<Answers> answers_;  // a worker
+    std::vector<BatchedEvaluator> answers_;  // a worker
     View view_{};
     PictureOptions options_;
     float lamp_m_ = 0, side_ = 1;

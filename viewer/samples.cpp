@@ -44,7 +44,7 @@ Samples sample(const eval::Tape& tape, const Box3f& bounds) {
                 for (int i = lo.x; i < hi.x; ++i) members.back().push_back(grid.index(i, j, k));
     }
     eval::Workspace workspace;
-    std::vector<eval::Range> ranges(boxes.size());
+    std::vector<eval::FloatInterval> ranges(boxes.size());
     evaluateRanges(tape, {boxes.data(), boxes.size()}, ranges.data(), workspace);
     std::vector<eval::Tape> tapes;
     for (size_t part = 0; part < boxes.size(); ++part) tapes.push_back(shorten(tape, part, workspace));

@@ -37,14 +37,14 @@ struct Ray {
 };
 
 /// What rays met, an entry a ray.
-struct Met {
+struct Hits {
     std::vector<Hit> hits;
     std::vector<Vec3f> normals;  ///< unit, of those that became known on the way; else 0
     std::vector<float> free;     ///< metres along each up to which the cone beside it is known to hold no surface
 };
 
 /// How much light comes to a hit, as shaders read and write it; shares 0 … 1. All 0 for the sky.
-struct Lit {
+struct Shading {
     Vec3f normal;    ///< unit
     float openness;  ///< of open sky
     float sunlight;  ///< of the sun's disc
@@ -66,11 +66,11 @@ public:
     /// picture's pixels ask for.
     virtual void look(const PictureOptions& options, double fine) = 0;
     /// Error::Cancelled when `progress` says so, Error::Internal when the driver fails.
-    virtual Result<Met> trace(std::span<const Ray> rays, Progress* progress) = 0;
+    virtual Result<Hits> trace(std::span<const Ray> rays, Progress* progress) = 0;
     /// Sets the normals alone, where hits are or as means over some of their pixels, or, by those, all the rest; of
     /// hits that aren't the sky's.
     enum class What : int { Normals, WideNormals, Light };
-    virtual Status light(What what, std::span<const Hit> hits, std::span<Lit> lits, Progress* progress) = 0;
+    virtual Status light(What what, std::span<const Hit> hits, std::span<Shading> shadings, Progress* progress) = 0;
     /// All so far.
     const TraceCost& cost() const { return cost_; }
 

@@ -33,21 +33,21 @@ void TreeBuilder::fail(Error::Kind kind, const std::string& what, syntax::Source
     text += rule_ == none ? std::string(" in the start") : fmt::format(" in rule '{}'", grammar.rules[rule_].name);
     if (shape_ < tree().shapes.size()) text += fmt::format(" at {}", tree().path(shape_));
     text += fmt::format(", seed {}", derivation_.seed);
-    for (const Remark& r : derivation_.remarks)  // what was remarked in the text that fails is the cause as a rule
+    for (const Warning& r : derivation_.warnings)  // what was remarked in the text that fails is the cause as a rule
         if (r.span.source == span.source && r.span.begin >= span.begin && r.span.end <= span.end)
             text += "; " + r.message;
     failure_ = Error{kind, std::move(text)};
 }
 
-void TreeBuilder::remark(syntax::SourceSpan span, std::string message, std::string mend) {
+void TreeBuilder::warn(syntax::SourceSpan span, std::string message, std::string hint) {
     constexpr size_t most = 300;
-    auto& remarks = derivation_.remarks;
-    if (runsAgain() || remarks.size() >= most) return;
-    const auto isHere = [&](const Remark& r) {
+    auto& warnings = derivation_.warnings;
+    if (isReplaying() || warnings.size() >= most) return;
+    const auto isHere = [&](const Warning& r) {
         return r.span.source == span.source && r.span.begin == span.begin && r.span.end == span.end;
     };
-    if (std::none_of(remarks.begin(), remarks.end(), isHere))
-        remarks.push_back({span, std::move(message), std::move(mend)});
+    if (std::none_of(warnings.begin(), warnings.end(), isHere))
+        warnings.push_back({span, std::move(message), std::move(hint)});
 }
 
 syntax::SourceSpan TreeBuilder::here() const {
@@ -75,7 +75,7 @@ bool TreeBuilder::work() {
 }
 
 ShapeId TreeBuilder::add(Shape shape) {
-    if (runsAgain()) return addAgain(shape);
+    if (isReplaying()) return replayShape(shape);
     ShapeTree& t = tree();
     const auto id = static_cast<ShapeId>(t.shapes.size());
     if (!work()) return none;
@@ -121,7 +121,7 @@ ShapeId TreeBuilder::add(Shape shape) {
 }
 
 Extras& TreeBuilder::extras(ShapeId id) {
-    if (runsAgain()) deviate();
+    if (isReplaying()) diverge();
     if (recording_) recording_->annotated(id);
     Shape& s = tree().shapes[id];
     if (s.extras == none) {
@@ -134,7 +134,7 @@ Extras& TreeBuilder::extras(ShapeId id) {
 uint32_t TreeBuilder::beginStep(Step step) {
     auto& steps = derivation_.steps;
     step.firstMade = nextShape();
-    if (!runsAgain()) {
+    if (!isReplaying()) {
         steps.push_back(step);
         return static_cast<uint32_t>(steps.size() - 1);
     }
@@ -143,15 +143,15 @@ uint32_t TreeBuilder::beginStep(Step step) {
         return std::tie(s.rule, s.shape, s.generation, s.chainIndex, s.closing, s.firstMade);
     };
     if (index != none && told(steps[index]) == told(step)) return index;
-    deviate();
+    diverge();
     return 0;
 }
 
 void TreeBuilder::endStep(uint32_t index, bool morphic) {
     Step& step = derivation_.steps[index];
     const uint32_t made = nextShape() - step.firstMade;
-    if (runsAgain()) {
-        if (made != step.madeCount || morphic != step.morphic) deviate();
+    if (isReplaying()) {
+        if (made != step.madeCount || morphic != step.morphic) diverge();
         return;
     }
     step.madeCount = made;
@@ -160,7 +160,7 @@ void TreeBuilder::endStep(uint32_t index, bool morphic) {
 }
 
 ShapeId TreeBuilder::nextShape() const {
-    return runsAgain() ? recording_->shapesMade() : static_cast<ShapeId>(derivation_.tree.shapes.size());
+    return isReplaying() ? recording_->shapesMade() : static_cast<ShapeId>(derivation_.tree.shapes.size());
 }
 
 uint32_t& TreeBuilder::firstBondAt(ShapeId id, uint32_t joint) {
@@ -178,8 +178,8 @@ void TreeBuilder::linkBond(uint32_t index, int end) {
 }
 
 void TreeBuilder::bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
-    if (runsAgain())
-        bondAgain(a, jointA, b, jointB);
+    if (isReplaying())
+        replayBond(a, jointA, b, jointB);
     else
         join(a, jointA, b, jointB);
 }
@@ -198,9 +198,9 @@ void TreeBuilder::join(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
     }
 }
 
-void TreeBuilder::meetNeighbours(ShapeId id) {
+void TreeBuilder::bondCoincidentFaces(ShapeId id) {
     if (!ownsBody(id)) return;
-    if (runsAgain()) return meetAgain(id);
+    if (isReplaying()) return replayContacts(id);
     meeting_.clear();
     for (uint32_t j = 0; j < tree().jointCount(id); ++j)
         if (const Joint joint = tree().joint(id, j); isDirected(joint))
@@ -210,7 +210,7 @@ void TreeBuilder::meetNeighbours(ShapeId id) {
         if (partner && recording_) recording_->met({id, j}, *partner);
         if (!partner || tree().closed(id, j) || tree().closed(partner->shape, partner->joint)) continue;
         if (tree().shapes[partner->shape].body == tree().shapes[id].body) continue;
-        if (recording_) recording_->bondedByMeeting(tree().bonds.size());
+        if (recording_) recording_->bondedByContact(tree().bonds.size());
         join(partner->shape, partner->joint, id, j);
     }
 }
@@ -230,7 +230,7 @@ void TreeBuilder::release(ShapeId id) {
 }
 
 void TreeBuilder::clearContent(ShapeId id) {
-    if (runsAgain()) return;
+    if (isReplaying()) return;
     ShapeTree& t = tree();
     if (recording_ && t.shapes[id].solid != none) recording_->cleared(id);
     t.shapes[id].solid = none;

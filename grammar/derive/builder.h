@@ -22,7 +22,7 @@ public:
     void bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
     /// Bonds every face of `id` that coincides with another's, so that no rule grows there again. Call after the bond
     /// that placed it.
-    void meetNeighbours(ShapeId id);
+    void bondCoincidentFaces(ShapeId id);
     /// Takes the solid and the children away: a rule replaces them.
     void clearContent(ShapeId id);
     Extras& extras(ShapeId id);
@@ -50,7 +50,7 @@ public:
     /// Ends the derivation with a sentence located at `span` and the present rule, path and seed.
     void fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span);
     /// Adds a remark to the derivation, once a place; a second run of a recording adds none.
-    void remark(syntax::SourceSpan span, std::string message, std::string mend);
+    void warn(syntax::SourceSpan span, std::string message, std::string hint);
     /// From now on notes all that another run with other numbers has to know; null for nobody.
     void record(Recording* recording) { recording_ = recording; }
     Recording* recording() const { return recording_; }
@@ -65,7 +65,7 @@ public:
     /// Runs a piece again with numbers that changed: what it makes goes where it is already. False when it takes
     /// another course; then the derivation is of no use any more.
     template <class Run>
-    bool again(size_t piece, Run&& run) {
+    bool replay(size_t piece, Run&& run) {
         Piece& p = recording_->enter(piece);
         work_ -= p.work;
         const uint64_t before = work_;
@@ -74,11 +74,11 @@ public:
         return same && !failed();
     }
     /// After the last piece: whether those that stayed where they are meet whom they met, and bonds' shifts.
-    bool settleMeetings();
+    bool revalidateContacts();
 
-    bool runsAgain() const { return recording_ && recording_->again(); }
+    bool isReplaying() const { return recording_ && recording_->isReplaying(); }
     /// A second run takes another course.
-    void deviate();
+    void diverge();
 
     /// What is being run, for messages and the log.
     void at(uint32_t rule, ShapeId shape, uint32_t step) { rule_ = rule, shape_ = shape, step_ = step; }
@@ -90,9 +90,9 @@ public:
     std::vector<ShapeId> takeLive() { return std::exchange(live_, {}); }
 
 private:
-    ShapeId addAgain(const Shape& made);
-    void bondAgain(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
-    void meetAgain(ShapeId id);
+    ShapeId replayShape(const Shape& made);
+    void replayBond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
+    void replayContacts(ShapeId id);
     void join(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
     bool ownsBody(ShapeId id) const { return derivation_.tree.bodies[derivation_.tree.shapes[id].body].owner == id; }
 
@@ -111,12 +111,12 @@ private:
     Progress* progress_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     JointIndex joints_;
-    struct Meeting {
+    struct Contact {
         uint32_t joint;
         Joint at;
         JointIndex::Spot spot;
     };
-    std::vector<Meeting> meeting_;  ///< scratch of meetNeighbours
+    std::vector<Contact> meeting_;  ///< scratch of bondCoincidentFaces
     std::vector<uint64_t> counts_;
     std::vector<ShapeId> live_;
     std::optional<Error> failure_;

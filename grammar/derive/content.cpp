@@ -258,12 +258,12 @@ Shape Interpreter::shapeOf(const Element& e, EvaluatedAttributes& attributes, co
 bool Interpreter::fill(const Element& e, ShapeId id, const Frame& frame) {
     const Shape& s = builder_.tree().shapes[id];
     if (e.content.group() || e.content.parts()) {
-        Links links;
-        links.root = links.last = id;
+        RunState state;
+        state.root = state.last = id;
         Frame inner = frame;
         inner.matched = inner.node = id;
         inner.key = s.key;
-        inner.links = &links;
+        inner.state = &state;
         inner.wholeContent = false;
         inner.place.scope = s.scope;
         inner.place.valuesAt = s.valuesAt;

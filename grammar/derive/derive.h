@@ -35,9 +35,9 @@ struct Closed {
 };
 
 /// Something that was derived and is hardly meant, as a division by zero; told once a place.
-struct Remark {
+struct Warning {
     syntax::SourceSpan span;
-    std::string message, mend;
+    std::string message, hint;
 };
 
 struct Derivation {
@@ -45,7 +45,7 @@ struct Derivation {
     ShapeTree tree;
     std::vector<Step> steps;
     std::vector<Closed> closed;       ///< one an element, in the order they first met a closed joint
-    std::vector<Remark> remarks;      ///< in the order they were met, the first few hundred
+    std::vector<Warning> warnings;    ///< in the order they were met, the first few hundred
     std::vector<Material> materials;  ///< the grammar's, then those given by attributes
     std::vector<rules::Value> params;
     uint32_t start = 0;  ///< index into Grammar::starts

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "grammar/derive/builder.h"
-#include "grammar/rules/doubts.h"
+#include "grammar/rules/arithmetic_warnings.h"
 #include "grammar/rules/evaluate.h"
 #include "modeler/core/random.h"
 
@@ -81,8 +81,8 @@ Value called(const Expr& expr, const Place& place) {
     args.reserve(expr.args.size());
     for (const Expr& arg : expr.args) args.push_back(evaluate(arg, place));
     if (place.builder)
-        if (auto doubt = rules::findDoubt(expr, args))
-            place.builder->remark(doubt->span, std::move(doubt->message), std::move(doubt->mend));
+        if (auto suspect = rules::findArithmeticWarning(expr, args))
+            place.builder->warn(suspect->span, std::move(suspect->message), std::move(suspect->hint));
     return rules::applyFunction(fn, args);
 }
 

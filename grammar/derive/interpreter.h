@@ -46,7 +46,7 @@ private:
         uint32_t solidTurn = 0;    ///< in which run it was made (Recording::turn)
     };
     /// The shapes of a chain that `on` speaks of.
-    struct Links {
+    struct RunState {
         ShapeId root = none, last = none, newest = none;
         std::array<std::vector<ShapeId>, faceCount> toward, placed;
         bool ownSymbol = false;  ///< `newest` was found in this step and has the rule's own symbol
@@ -56,7 +56,7 @@ private:
         ShapeId matched = none, node = none;
         uint64_t key = 0;
         Place place;
-        Links* links = nullptr;
+        RunState* state = nullptr;
         bool wholeContent = false;  ///< in `finally`: a newcomer without a joint fills the box of everything grown
     };
     /// What the operators of a sibling chain join: the node that holds them and the shape whose joints they name.
@@ -109,7 +109,7 @@ private:
     bool canGrow(const rules::Body& body, ShapeId host, const Place& place);
     bool isBeside(ShapeId shape, rules::SymbolId symbol) const;
     void runChain(uint32_t rule, ShapeId root, uint32_t generation);
-    void runFinally(uint32_t rule, ShapeId root, Links& links, uint32_t generation);
+    void runFinally(uint32_t rule, ShapeId root, RunState& state, uint32_t generation);
     bool runLogged(const rules::Body& body, const Frame& frame, Step step);
 
     TreeBuilder& builder_;

@@ -54,8 +54,8 @@ bool PartsContext::run(const rules::Body& body, const Scope& part, uint64_t key)
     return interpreter_.builder_.work() && interpreter_.runBody(body, inner, 0);
 }
 
-void PartsContext::remark(syntax::SourceSpan span, std::string message, std::string fix) const {
-    interpreter_.builder_.remark(span, std::move(message), std::move(fix));
+void PartsContext::warn(syntax::SourceSpan span, std::string message, std::string fix) const {
+    interpreter_.builder_.warn(span, std::move(message), std::move(fix));
 }
 
 bool PartsContext::fail(const std::string& what, syntax::SourceSpan span) {

@@ -29,7 +29,7 @@ public:
     /// Runs `body` in a part of the scope; `key` tells the part from its neighbours. False after a failure.
     bool run(const rules::Body& body, const Scope& part, uint64_t key);
     /// Adds a warning to the derivation, once a place.
-    void remark(syntax::SourceSpan span, std::string message, std::string fix) const;
+    void warn(syntax::SourceSpan span, std::string message, std::string fix) const;
     /// Ends the derivation with an error located at `span`; returns false.
     bool fail(const std::string& what, syntax::SourceSpan span);
 

@@ -97,8 +97,8 @@ bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint
     }
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
-    if (shape.parent != frame.node) builder_.meetNeighbours(shape.parent);
-    builder_.meetNeighbours(id);
+    if (shape.parent != frame.node) builder_.bondCoincidentFaces(shape.parent);
+    builder_.bondCoincidentFaces(id);
     if (!fill(e, id, frame)) return false;
     target = {shape.parent == frame.node ? id : shape.parent, id};
     remember(e, frame, id, centreJoint);
@@ -107,10 +107,10 @@ bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint
 
 ShapeId Interpreter::hostOf(const Element& e, const Frame& frame, const Target& target, const Place& place) const {
     if (!e.on) return target.host;
-    if (e.on->kind == HostChoice::Kind::Last) return frame.links->last;
+    if (e.on->kind == HostChoice::Kind::Last) return frame.state->last;
     const auto direction = static_cast<size_t>(evaluate(e.on->of, place).num());
-    if (direction >= faceCount || frame.links->toward[direction].empty()) return frame.links->root;
-    const auto& candidates = frame.links->toward[direction];
+    if (direction >= faceCount || frame.state->toward[direction].empty()) return frame.state->root;
+    const auto& candidates = frame.state->toward[direction];
     return candidates[pick(combine(place.key, hashText("on")), candidates.size())];
 }
 
@@ -139,7 +139,7 @@ std::vector<uint32_t> Interpreter::openJoints(const JointChoice& at, ShapeId hos
     const std::vector<uint32_t> asked = recording ? joints : std::vector<uint32_t>();
     const auto taken = [&](uint32_t j) { return at.free ? tree.joint(host, j).bond != none : tree.closed(host, j); };
     joints.erase(std::remove_if(joints.begin(), joints.end(), taken), joints.end());
-    if (recording && !recording->answer(asked, joints)) builder_.deviate();
+    if (recording && !recording->answer(asked, joints)) builder_.diverge();
     return joints;
 }
 
@@ -169,7 +169,7 @@ bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& targe
     if (builder_.recording()) builder_.recording()->readsWorld();
     const auto symbol = static_cast<rules::SymbolId>(e.on->of.value.num());
     std::vector<ShapeId> hosts;  // those that stand now: what grows on them may carry the name too
-    for (ShapeId s = frame.links->root; s != none; s = tree.next(s, frame.links->root))
+    for (ShapeId s = frame.state->root; s != none; s = tree.next(s, frame.state->root))
         if (tree.shapes[s].symbol == symbol) hosts.push_back(s);
     for (const ShapeId host : hosts)
         if (!placeOn(host, e, frame, target, combine(key, tree.shapes[host].key))) return false;
@@ -188,9 +188,9 @@ void Interpreter::remarkLostTurn(const Element& e, const Mating& mating, const M
         lost = angleBetween(axes, mate(mating, place.scope.axes, place.scope.size).axes) <
                angleBetween(asked, place.scope.axes) - slack;
     if (lost)
-        builder_.remark(turn->span, "the joints face each other all the same: only the turn about them is left",
-                        "turn what a group holds, as in '+ (cube turn (30deg, 0deg, 0deg)) size (1, 3, 1) at +y', or "
-                        "place it by 'move'");
+        builder_.warn(turn->span, "the joints face each other all the same: only the turn about them is left",
+                      "turn what a group holds, as in '+ (cube turn (30deg, 0deg, 0deg)) size (1, 3, 1) at +y', or "
+                      "place it by 'move'");
 }
 
 bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Target& target, uint64_t key) {
@@ -207,7 +207,7 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
         const auto open = openJoints(*e.at, host, place);
         if (builder_.failed()) return false;
         if (open.empty()) {  // nothing grows where a bond has closed the joint
-            if (builder_.runsAgain()) return true;
+            if (builder_.isReplaying()) return true;
             auto& closed = builder_.derivation().closed;
             if (facts.closed == none) {
                 facts.closed = static_cast<uint32_t>(closed.size());
@@ -238,20 +238,20 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
     builder_.bond(host, oursIndex, id, theirs);
-    builder_.meetNeighbours(id);
+    builder_.bondCoincidentFaces(id);
     remember(e, frame, id, oursIndex);
     return fill(e, id, frame);
 }
 
 /// Keeps the chain's books: what `last`, `any(d)` and the next step speak of.
 void Interpreter::remember(const Element& e, const Frame& frame, ShapeId id, uint32_t ours) {
-    Links& links = *frame.links;
-    links.last = id;
-    if (ours < faceCount) links.placed[ours].push_back(id);
+    RunState& state = *frame.state;
+    state.last = id;
+    if (ours < faceCount) state.placed[ours].push_back(id);
     if (e.live == rules::none) return;
-    const bool own = e.live == builder_.tree().shapes[links.root].symbol;
-    if (own || !links.ownSymbol) links.newest = id;
-    links.ownSymbol = links.ownSymbol || own;
+    const bool own = e.live == builder_.tree().shapes[state.root].symbol;
+    if (own || !state.ownSymbol) state.newest = id;
+    state.ownSymbol = state.ownSymbol || own;
 }
 
 }  // namespace sgm::derive

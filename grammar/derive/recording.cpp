@@ -21,7 +21,7 @@ void Recording::finish(const Piece::Place& end) {
 }
 
 bool Recording::answer(const std::vector<uint32_t>& asked, std::vector<uint32_t>& open) {
-    if (!again_) {
+    if (!replaying_) {
         for (const auto* list : {&asked, static_cast<const std::vector<uint32_t>*>(&open)}) {
             answers_.push_back(static_cast<uint32_t>(list->size()));
             answers_.insert(answers_.end(), list->begin(), list->end());
@@ -41,16 +41,16 @@ bool Recording::answer(const std::vector<uint32_t>& asked, std::vector<uint32_t>
 }
 
 std::optional<JointIndex::Entry> Recording::partnerOf(JointIndex::Entry at) const {
-    const auto before = [](const Meeting& m, JointIndex::Entry e) {
+    const auto before = [](const Contact& m, JointIndex::Entry e) {
         return std::pair(m.at.shape, m.at.joint) < std::pair(e.shape, e.joint);
     };
-    const auto found = std::lower_bound(meetings_.begin(), meetings_.end(), at, before);
-    if (found == meetings_.end() || !(found->at == at)) return std::nullopt;
+    const auto found = std::lower_bound(contacts_.begin(), contacts_.end(), at, before);
+    if (found == contacts_.end() || !(found->at == at)) return std::nullopt;
     return found->partner;
 }
 
-void Recording::beginAgain(size_t shapes) {
-    again_ = true;
+void Recording::beginReplay(size_t shapes) {
+    replaying_ = true;
     ++turn_;
     changes_.resize(shapes, 0);
     for (const ShapeId id : marked_) changes_[id] = 0;
@@ -82,7 +82,7 @@ bool Recording::complete() {
 }
 
 void Recording::change(const ShapeTree& tree, ShapeId id, uint8_t what) {
-    constexpr uint8_t own = Looks | Moved | Turned | Values;
+    constexpr uint8_t own = LookChanged | Moved | Turned | Values;
     if (changes_[id] == 0) marked_.push_back(id);
     if ((changes_[id] & own) == 0) changed_.push_back(id);
     changes_[id] |= what;

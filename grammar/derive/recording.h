@@ -32,7 +32,7 @@ struct Piece {
 class Recording {
 public:
     /// A face that met another when it was put, open or not: `at` met `partner`.
-    struct Meeting {
+    struct Contact {
         JointIndex::Entry at, partner;
     };
 
@@ -44,37 +44,39 @@ public:
     /// Nothing more is made: `end` is where the lists end.
     void finish(const Piece::Place& end);
     /// False where something was read that a second run can't tell: the derivation must then start over.
-    bool fit() const { return fit_; }
-    void unfit() { fit_ = false; }
+    bool isReplayable() const { return replayable_; }
+    void unfit() { replayable_ = false; }
 
     void readsParam(uint32_t index) { now().params |= uint64_t{1} << index % 64; }
     void readsParams(uint64_t set) { now().params |= set; }
     void readsValues() { now().inherits = true; }
     void readsWorld() { now().readsWorld = true; }
     /// Locals are known to applications alone: a choice would find those of whatever ran before.
-    void readsLocal() { fit_ = fit_ && (now().kind == Piece::Kind::Start || now().kind == Piece::Kind::Application); }
+    void readsLocal() {
+        replayable_ = replayable_ && (now().kind == Piece::Kind::Start || now().kind == Piece::Kind::Application);
+    }
 
     /// The joints that are open of those asked for. Notes `open` the first time; again, `open` becomes what it was
     /// then. False where others were asked for then.
     bool answer(const std::vector<uint32_t>& asked, std::vector<uint32_t>& open);
-    void met(JointIndex::Entry at, JointIndex::Entry partner) { meetings_.push_back({at, partner}); }
-    void bondedByMeeting(size_t bond) { set(byMeeting_, bond); }
+    void met(JointIndex::Entry at, JointIndex::Entry partner) { contacts_.push_back({at, partner}); }
+    void bondedByContact(size_t bond) { set(byMeeting_, bond); }
     /// A material that wasn't there: when pieces run again, the list would have another order.
-    void freshMaterial() { fit_ = fit_ && !again_; }
+    void freshMaterial() { replayable_ = replayable_ && !replaying_; }
     void sharedSolid(size_t solid) { set(shared_, solid); }
     void annotated(ShapeId id) { set(annotated_, id); }
     void cleared(ShapeId id) { set(cleared_, id); }
     bool isAnnotated(ShapeId id) const { return has(annotated_, id); }
     bool isCleared(ShapeId id) const { return has(cleared_, id); }
-    std::span<const Meeting> meetings() const { return meetings_; }
+    std::span<const Contact> contacts() const { return contacts_; }
     /// Whom the joint met, if anyone.
     std::optional<JointIndex::Entry> partnerOf(JointIndex::Entry at) const;
 
     /// True while pieces run again.
-    bool again() const { return again_; }
+    bool isReplaying() const { return replaying_; }
     /// Begins a second run; what changed in the last one is forgotten.
-    void beginAgain(size_t shapes);
-    void endAgain() { again_ = false; }
+    void beginReplay(size_t shapes);
+    void endAgain() { replaying_ = false; }
     /// Which second run this is, from 1.
     uint32_t turn() const { return turn_; }
     Piece& enter(size_t piece);
@@ -90,7 +92,7 @@ public:
     uint32_t shapesMade() const { return static_cast<uint32_t>(at_.shape); }
 
     /// What a second run finds changed of a shape.
-    enum Change : uint8_t { Looks = 1, Moved = 2, Turned = 4, Values = 8, Below = 16 };
+    enum Change : uint8_t { LookChanged = 1, Moved = 2, Turned = 4, Values = 8, Below = 16 };
     void change(const ShapeTree& tree, ShapeId id, uint8_t what);
     bool has(ShapeId id, Change what) const { return (changes_[id] & what) != 0; }
     std::span<const ShapeId> changed() const { return changed_; }
@@ -107,9 +109,9 @@ private:
     size_t running_ = 0;
     /// Answers: how many were asked for, who, how many were open, who.
     std::vector<uint32_t> answers_;
-    std::vector<Meeting> meetings_;  ///< in the order of `at`
+    std::vector<Contact> contacts_;  ///< in the order of `at`
     std::vector<bool> byMeeting_, shared_, annotated_, cleared_;
-    bool fit_ = true, again_ = false;
+    bool replayable_ = true, replaying_ = false;
     uint32_t turn_ = 0;
     std::vector<uint8_t> changes_;  ///< by shape
     std::vector<ShapeId> changed_, marked_;

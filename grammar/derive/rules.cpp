@@ -58,9 +58,9 @@ void Interpreter::start(const rules::Start& start, uint64_t seed) {
     const ShapeId id = builder_.add(root);
     if (id == none) return;
     locals_.assign(start.locals, {});
-    Links links;
-    links.root = links.last = links.newest = id;
-    Frame frame{id, id, combine(root.key, hashText("start")), placeOf(id), &links, false};
+    RunState state;
+    state.root = state.last = state.newest = id;
+    Frame frame{id, id, combine(root.key, hashText("start")), placeOf(id), &state, false};
     runBody(start.body, frame, 0);
 }
 
@@ -126,10 +126,10 @@ void Interpreter::apply(uint32_t index, ShapeId id, uint32_t generation) {
     if (rule.repeat) return runChain(index, id, generation);
     chainRule_ = none;
     if (!rule.body.grows) builder_.clearContent(id);
-    Links links;
-    links.root = links.last = links.newest = id;
+    RunState state;
+    state.root = state.last = state.newest = id;
     const uint64_t key = combine(combine(builder_.tree().shapes[id].key, facts_[index].hash), 0);
-    runLogged(rule.body, {id, id, key, placeOf(id), &links, false},
+    runLogged(rule.body, {id, id, key, placeOf(id), &state, false},
               {index, id, generation, 0, rule.morphic, false, 0, 0});
 }
 
@@ -139,14 +139,14 @@ void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
     builder_.at(index, root, none);
     const double steps = wholeNumber(*rule.repeat, placeOf(root));
     if (steps < 0)
-        builder_.remark(rule.repeat->span, fmt::format("'repeat' is {:g} here, so the rule adds nothing", steps),
-                        "write 'max(0, …)' where that is meant");
+        builder_.warn(rule.repeat->span, fmt::format("'repeat' is {:g} here, so the rule adds nothing", steps),
+                      "write 'max(0, …)' where that is meant");
     const uint64_t key = combine(builder_.tree().shapes[root].key, facts_[index].hash);
-    Links links;
-    links.root = links.last = links.newest = root;
+    RunState state;
+    state.root = state.last = state.newest = root;
     for (double i = 1; i <= steps; ++i) {
-        const ShapeId host = links.newest;
-        Frame frame{host, rule.body.grows ? root : host, combine(key, static_cast<uint64_t>(i)), placeOf(host), &links,
+        const ShapeId host = state.newest;
+        Frame frame{host, rule.body.grows ? root : host, combine(key, static_cast<uint64_t>(i)), placeOf(host), &state,
                     false};
         frame.place.ramp = steps > 1 ? (i - 1) / (steps - 1) : 0;
         if (rule.stepLocal != none) {
@@ -155,23 +155,23 @@ void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
         }
         if (!canGrow(rule.body, host, frame.place)) break;
         if (!rule.body.grows) builder_.clearContent(host), builder_.tree().shapes[host].live = false;
-        links.ownSymbol = false;
+        state.ownSymbol = false;
         if (!runLogged(rule.body, frame,
                        {index, host, generation, static_cast<uint32_t>(i), rule.morphic, false, 0, 0}))
             return;
         for (size_t d = 0; d < faceCount; ++d)
-            if (!links.placed[d].empty()) links.toward[d] = std::exchange(links.placed[d], {});
+            if (!state.placed[d].empty()) state.toward[d] = std::exchange(state.placed[d], {});
     }
-    if (rule.finally_) runFinally(index, root, links, generation);
+    if (rule.finally_) runFinally(index, root, state, generation);
 }
 
-void Interpreter::runFinally(uint32_t index, ShapeId root, Links& links, uint32_t generation) {
+void Interpreter::runFinally(uint32_t index, ShapeId root, RunState& state, uint32_t generation) {
     const Rule& rule = grammar_.rules[index];
     if (!rule.finally_->grows && rule.finally_->siblings.size() && !rule.finally_->siblings[0].empty() &&
         !rule.finally_->siblings[0][0].content.empty())
         builder_.clearContent(root);
     const uint64_t key = combine(combine(builder_.tree().shapes[root].key, facts_[index].hash), hashText("finally"));
-    Frame frame{root, root, key, placeOf(root), &links, true};
+    Frame frame{root, root, key, placeOf(root), &state, true};
     frame.place.ramp = 1;
     runLogged(*rule.finally_, frame, {index, root, generation, 0, rule.finallyMorphic, true, 0, 0});
 }

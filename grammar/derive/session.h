@@ -1,7 +1,7 @@
 // A derivation by hand: live shapes, the rules that match them, apply, undo, redo; what `sgm step` and a panel drive.
 // Enters: a Grammar, parameter values, a seed. Leaves: the tree so far, the way that led to it (SG-M figure 1:
 // R0 => R2 => R4) and, at any time, a finished Derivation. Assumes one thread. Undo runs the shorter way again: a way
-// has as many steps as a person takes, and equal steps give equal trees.
+// has as many steps as the user takes, and equal steps give equal trees.
 #pragma once
 
 #include <memory>
@@ -53,7 +53,7 @@ private:
     std::shared_ptr<const rules::Grammar> grammar_;
     Options options_;
     std::shared_ptr<State> state_;
-    std::vector<Applications> done_, undone_;  ///< one entry a step of the person
+    std::vector<Applications> done_, undone_;  ///< one entry for each step of the user
 };
 
 }  // namespace sgm::derive

@@ -109,13 +109,13 @@ struct Shape {
     bool live = false;                           ///< rules may still rewrite it
     bool dead = false;                           ///< replaced; swept away before `derive` returns
     double amount = 0.5;                         ///< for op Morph: a (`by`)
-    double blend_m = 0;                          ///< melts into what stands with this radius
+    double blend_m = 0;                          ///< blends into what stands with this radius
     Scope scope;
     syntax::SourceSpan span;  ///< the text that made it
 };
 
 /// The joints of one place in space, shared by a shape and the content that fills its scope exactly: A, rewritten to a
-/// B of the same scope, hands its bonds on to B.
+/// B of the same scope, passes its bonds on to B.
 struct Body {
     ShapeId owner = none;       ///< the first shape that stood here
     uint32_t bond[7];           ///< by joint: the first bond that met it, or none

@@ -1,6 +1,7 @@
 // Nothing floats: which solids hang together, and who made those that don't.
 // Enters: a derivation. Leaves: groups of solids by their boxes, and names for messages. What the boxes can't tell, the
-// pieces of a mesh can (modeler/mesh/pieces.h): `sgm build` measures those and names them by the same functions.
+// pieces of a mesh can (modeler/mesh/connected_components.h): `sgm build` measures those and names them by the same
+// functions.
 #pragma once
 
 #include <span>

@@ -117,7 +117,7 @@ syntax::Diagnostics uncut(const Derivation& derivation) {
 
 syntax::Diagnostics warnings(const Derivation& derivation) {
     std::vector<syntax::Diagnostic> list;
-    for (const Remark& r : derivation.remarks) list.push_back({syntax::Severity::Warning, r.span, r.message, r.mend});
+    for (const Warning& r : derivation.warnings) list.push_back({syntax::Severity::Warning, r.span, r.message, r.hint});
     for (const syntax::Diagnostics& found : {ungrown(derivation), uncut(derivation)})
         list.insert(list.end(), found.all().begin(), found.all().end());
     const auto& sources = derivation.grammar->sources;
@@ -128,7 +128,7 @@ syntax::Diagnostics warnings(const Derivation& derivation) {
     };
     std::stable_sort(list.begin(), list.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
     syntax::Diagnostics sorted;
-    for (syntax::Diagnostic& d : list) sorted.warning(d.span, std::move(d.message), std::move(d.mend));
+    for (syntax::Diagnostic& d : list) sorted.warning(d.span, std::move(d.message), std::move(d.hint));
     return sorted;
 }
 

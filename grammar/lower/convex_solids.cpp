@@ -129,7 +129,7 @@ void ConvexContent::add(ConvexPolyhedron piece, derive::ShapeId shape) {
     shapes.push_back(shape);
 }
 
-/// Moves the pieces of the shorter list, for a chain hands its whole rest up link by link.
+/// Moves the pieces of the shorter list, for a chain passes its whole rest up link by link.
 void ConvexContent::unite(ConvexContent&& other) {
     unknown |= other.unknown;
     const bool shorter = pieces.size() < other.pieces.size();

@@ -12,7 +12,7 @@ namespace sgm::lower {
 
 /// By shape: a number that two shapes share where moving one puts all of its content onto the other's: equal solids,
 /// sizes, orientations, materials and joins, to a micrometre and a millionth. 0 for shapes that are like no other:
-/// noise depends on the place, and what melts into its surroundings on these. A hash; O(shapes).
+/// noise depends on the place, and what blends into its surroundings on these. A hash; O(shapes).
 std::vector<uint64_t> likenesses(const derive::Derivation& derivation, const Model& model);
 
 }  // namespace sgm::lower

@@ -25,7 +25,7 @@ std::vector<bool> Lowering::plainSums() const {
 }
 
 /// True when the shape's terms belong to its parent's sum.
-bool Lowering::pours(ShapeId id) const {
+bool Lowering::flattensIntoParent(ShapeId id) const {
     return tree_.shapes[id].parent != none && isSum(tree_.shapes[id]) && plain_[id];
 }
 
@@ -54,7 +54,7 @@ Owned Lowering::take(Content& content) {
     if (content.cuts.terms.empty()) return stands;
     const double blend_m = content.cuts.blend_m;
     if (blend_m <= 0) return {field::difference(stands, takeParts(content.cuts)), 0};
-    const field::Num radius =
+    const field::NodeRef radius =
         model_.graph.slot({content.cuts.blendKey, hashText("blend")}, static_cast<float>(blend_m));
     const field::Field cut = field::difference(stands, content.cuts.terms, radius, blend_m);
     content.cuts = {};
@@ -62,7 +62,7 @@ Owned Lowering::take(Content& content) {
 }
 
 /// One part in place of the terms and the cuts.
-void Lowering::settle(Content& content) {
+void Lowering::flush(Content& content) {
     if (!content.terms.empty()) content.terms = {take(content)};
 }
 
@@ -86,14 +86,14 @@ Owned Lowering::takeParts(Parts& content) {
 void Lowering::join(Content& content, ShapeId id, Owned part) {
     const Shape& s = tree_.shapes[id];
     if (isSum(s)) {
-        if (content.blend_m > 0 || !content.cuts.terms.empty()) settle(content);
+        if (content.blend_m > 0 || !content.cuts.terms.empty()) flush(content);
         content.terms.push_back(part);
         content.from.push_back(id);
         return;
     }
     if (s.op == Operator::Sum || s.op == Operator::None) {
         if (content.blend_m != s.blend_m || !content.cuts.terms.empty()) {
-            settle(content);
+            flush(content);
             content.blend_m = s.blend_m;
             content.blendKey = s.key;
         }
@@ -104,7 +104,7 @@ void Lowering::join(Content& content, ShapeId id, Owned part) {
     if (empty && s.op != Operator::Morph) return;  // nothing to cut from, nothing to share
     if (s.op == Operator::Difference) {
         const bool alone = !part.field.bounds.finite() && s.blend_m <= 0;  // a half-space has no place in a hierarchy
-        if (alone || content.cuts.blend_m != s.blend_m) settle(content);
+        if (alone || content.cuts.blend_m != s.blend_m) flush(content);
         if (alone) {
             content.terms = {{field::difference(content.terms[0], part), 0}};
             return;
@@ -119,7 +119,7 @@ void Lowering::join(Content& content, ShapeId id, Owned part) {
     else if (empty)
         content.terms = {part};
     else {
-        const field::Num t = model_.graph.slot({s.key, hashText("by")}, static_cast<float>(s.amount));
+        const field::NodeRef t = model_.graph.slot({s.key, hashText("by")}, static_cast<float>(s.amount));
         content.terms = {{field::morph(stands.field, part.field, t, s.amount, ownerOf(id)), ownerOf(id)}};
     }
 }
@@ -132,7 +132,7 @@ bool Lowering::cladsTooMuch() const {
 }
 
 /// Cladding is a part of its own, named after its terminal.
-Owned Lowering::dressed(Owned part, ShapeId id) {
+Owned Lowering::applyCladding(Owned part, ShapeId id) {
     const auto* x = tree_.extrasOf(id);
     if (!x || x->clad.empty() || part.field.bounds.empty()) return part;
     const derive::Cladding& clad = x->clad[0];
@@ -187,24 +187,24 @@ Owned Lowering::solidOf(ShapeId id) {
 
 void Lowering::enter(ShapeId id) {
     if (!again_) materials_.enter(id);
-    if (!pours(id)) open_.push_back({{}, id, {}, {}});
+    if (!flattensIntoParent(id)) open_.push_back({{}, id, {}, {}});
     if (tree_.shapes[id].solid == none) return;
     const Owned part = solidOf(id);
     Content& content = open_.back();
-    if (content.blend_m > 0 || !content.cuts.terms.empty()) settle(content);
+    if (content.blend_m > 0 || !content.cuts.terms.empty()) flush(content);
     content.terms.push_back(part);
     content.from.push_back(id);
 }
 
 void Lowering::leave(ShapeId id) {
-    if (pours(id)) return;
-    Owned part = displaced(dressed(whole(open_.back(), id), id), id);
+    if (flattensIntoParent(id)) return;
+    Owned part = displaced(applyCladding(whole(open_.back(), id), id), id);
     open_.pop_back();
     if (keeps_) known_[id] = part;
     if (id == 0)
         model_.field = field::sum(model_.graph, std::span(&part, 1));  // one part alone keeps its owner
     else if (!open_.empty())
-        hand(id, part);
+        attachToParent(id, part);
 }
 
 /// All that the node holds; a large plain sum is kept.
@@ -218,7 +218,7 @@ Owned Lowering::whole(Content& content, ShapeId id) {
 }
 
 /// Gives a finished child to the node that is open.
-void Lowering::hand(ShapeId id, const Owned& part) {
+void Lowering::attachToParent(ShapeId id, const Owned& part) {
     if (!part.field.bounds.empty())
         join(open_.back(), id, part);
     else if (tree_.shapes[id].op == Operator::Intersection)
@@ -229,9 +229,9 @@ void Lowering::hand(ShapeId id, const Owned& part) {
 Status Lowering::walk(ShapeId top, Progress* progress) {
     uint32_t visited = 0;
     for (ShapeId s = top;;) {
-        const bool known = again_ && s != top && !pours(s);
+        const bool known = again_ && s != top && !flattensIntoParent(s);
         if (known)
-            hand(s, known_[s]);
+            attachToParent(s, known_[s]);
         else
             enter(s);
         if (progress) progress->tick();

@@ -29,7 +29,7 @@ struct Parts {
 /// A plain sum of many parts, kept.
 struct KeptSum {
     std::vector<Owned> terms;
-    field::Num value;
+    field::NodeRef value;
 };
 
 /// What a node holds so far. Cuts in a row are gathered, for a − b − c = a − (b + c) and one sum of many parts is
@@ -44,42 +44,42 @@ struct Content : Parts {
 /// terms into its parent's, so that thousands of parts meet in one n-ary sum.
 class Lowering {
 public:
-    /// With `keeps`, `again` may follow.
+    /// With `keeps`, `replay` may follow.
     Lowering(const derive::Derivation& d, Model& model, bool keeps)
         : d_(d), tree_(d.tree), model_(model), materials_(d), owners_(d.tree.shapes.size()), keeps_(keeps) {}
 
     Status run(Progress* progress);
     /// After `run`, when the derivation changed in place: the parts that hold one of these shapes, again. False where
     /// the field has another structure now; then the model is of no use any more.
-    bool again(std::span<const ShapeId> changed);
+    bool replay(std::span<const ShapeId> changed);
 
 private:
     void findTurns();
     Status walk(ShapeId top, Progress* progress);
-    void hand(ShapeId id, const Owned& part);
+    void attachToParent(ShapeId id, const Owned& part);
     Owned whole(Content& content, ShapeId id);
     Owned solidOf(ShapeId id);
     void nameTheWhole();
     void poseTheWhole();
     void mergeMaterials();
 
-    // relowering.cpp
+    // incremental_lowering.cpp
     using Dirty = std::set<ShapeId, std::greater<>>;
     ShapeId partOf(ShapeId id) const;
     bool changeTerm(ShapeId part, ShapeId from, const Owned& to);
     bool mark(ShapeId changed, Dirty& dirty);
-    bool againPart(ShapeId part, Dirty& dirty);
+    bool replayPart(ShapeId part, Dirty& dirty);
     void enter(ShapeId id);
     void leave(ShapeId id);
     void join(Content& content, ShapeId id, Owned part);
     Owned take(Content& content);
     Owned takeParts(Parts& parts);
-    void settle(Content& content);
+    void flush(Content& content);
     OriginId ownerOf(ShapeId id);
-    Owned dressed(Owned part, ShapeId id);
+    Owned applyCladding(Owned part, ShapeId id);
     bool cladsTooMuch() const;
     Owned displaced(Owned part, ShapeId id);
-    bool pours(ShapeId id) const;
+    bool flattensIntoParent(ShapeId id) const;
     bool isSum(const Shape& s) const { return (s.op == Operator::Sum || s.op == Operator::None) && s.blend_m <= 0; }
     std::vector<bool> plainSums() const;
 

@@ -144,7 +144,7 @@ private:
 
     /// Leaves in `to` what matters in the box; whether the surface may be there.
     bool shortenTo(const eval::Tape& from, const Box3f& box, eval::Tape& to) {
-        eval::Range range{};
+        eval::FloatInterval range{};
         eval::evaluateRanges(from, {&box, 1}, &range, workspace_);
         if (range.lo > 0 || range.hi < 0) return false;
         eval::shorten(from, 0, workspace_, to);
@@ -231,7 +231,7 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
         thin.push_back({part, &shape.scope, 0});
         isThin[part] = true;
     }
-    if (thin.empty() || mesh.isBare()) return std::vector<ThinPart>{};
+    if (thin.empty() || mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
     const Presence presence(mesh, isThin, cell_m);
     orderByPlace(thin);
     std::vector<Prober> probers;

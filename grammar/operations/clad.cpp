@@ -57,7 +57,7 @@ void checkClad(OperationChecker& checker, const syntax::Attribute& written) {
     checker.beginDraws("clad");
     const size_t before = checker.problemCount();
     const Solid given = checker.solid(e);
-    const bool good = checker.problemCount() == before && !checker.isExcused(e.text);
+    const bool good = checker.problemCount() == before && !checker.areErrorsSuppressed(e.text);
     const bool fractal = given.primitive && given.primitive->name == "kifs";
     if (good && e.kind == syntax::Expr::Kind::Name) out.symbol = checker.findSymbol(e.text).value_or(rules::none);
     if (good && !fractal && given.primitive != &ornamentRow()) {

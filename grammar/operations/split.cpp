@@ -146,7 +146,7 @@ bool runSplit(PartsContext& context, const Parts& split) {
         const double wanted_m = length.fixed_m + length.floating * layout->perFloat_m, left_m = whole_m - from_m;
         if (left_m > leastPart_m &&
             wanted_m > left_m + 1e-6 * std::max(1.0, whole_m))  // the first one speaks for those behind it
-            context.remark(
+            context.warn(
                 part.span,
                 fmt::format("this part is cut off: {:.4g}m are left for its {:.4g}m", std::max(0.0, left_m), wanted_m),
                 "write '~' before a size, so that it gives way, or make the sizes fit");

@@ -31,13 +31,13 @@ Expr Checker::joint(Place& place, const Written& e) {
         if (jointNames_.contains(e.text)) return word;
         std::vector<std::string> known(jointNames_.begin(), jointNames_.end());
         for (const auto& l : place.locals) known.push_back(l.name);
-        std::string mend = nearest(e.text, known);
-        if (mend.empty() && (e.text == "x" || e.text == "y" || e.text == "z"))
-            mend = fmt::format("write '+{0}' or '-{0}'", e.text);
+        std::string hint = nearest(e.text, known);
+        if (hint.empty() && (e.text == "x" || e.text == "y" || e.text == "z"))
+            hint = fmt::format("write '+{0}' or '-{0}'", e.text);
         for (const auto& [side, axis] : sides)
-            if (e.text == side) mend = fmt::format("joints are +x -x +y -y +z -z and centre; here '{}'", axis);
-        if (mend.empty()) mend = "joints are +x -x +y -y +z -z, centre, and those that a terminal declares";
-        unknown(e.span, e.text, fmt::format("unknown joint '{}'", e.text), std::move(mend));
+            if (e.text == side) hint = fmt::format("joints are +x -x +y -y +z -z and centre; here '{}'", axis);
+        if (hint.empty()) hint = "joints are +x -x +y -y +z -z, centre, and those that a terminal declares";
+        unknown(e.span, e.text, fmt::format("unknown joint '{}'", e.text), std::move(hint));
         return word;
     }
     if (e.kind != Written::Kind::Choose) return expression(place, e, Want::Axis, "a joint");

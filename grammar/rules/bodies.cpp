@@ -52,9 +52,9 @@ void Checker::live(const syntax::Name& name, Element& out) {
     if (ruled_.contains(out.live)) return;
     std::vector<std::string> ruled;
     for (const SymbolId id : ruled_) ruled.push_back(grammar_.symbols[id].name);
-    if (std::string mend = nearest(name.text, ruled); !mend.empty())
+    if (std::string hint = nearest(name.text, ruled); !hint.empty())
         diagnostics_.warning(name.span, fmt::format("no rule matches '{}', so nothing will grow here", name.text),
-                             std::move(mend));
+                             std::move(hint));
 }
 
 void Checker::content(Place& place, const Written& e, Element& out) {
@@ -134,7 +134,7 @@ void Checker::shape(Place& place, const syntax::Element& written, Element& out) 
 }
 
 /// The values of a loop: `axes`, `sides`, a tuple, or a range of whole numbers.
-Expr Checker::over(Place& place, const Written& e, Type& type) {
+Expr Checker::loopDomain(Place& place, const Written& e, Type& type) {
     Expr result;
     result.span = e.span;
     result.kind = Expr::Kind::Tuple;
@@ -159,7 +159,7 @@ Expr Checker::over(Place& place, const Written& e, Type& type) {
         for (const Written& part : e.args) {
             Typed value = expression(place, part);
             axes = axes && value.type.known && value.type.like.kind == Value::Kind::Axis;
-            if (!axes) asks(value, Want::Count, "a loop", &part);
+            if (!axes) expectType(value, Want::Count, "a loop", &part);
             result.args.push_back(std::move(value.expr));
         }
         if (!axes) type = Type::number(Unit::None, true);
@@ -178,7 +178,7 @@ void Checker::loop(Place& place, const syntax::Element& written, Element& out) {
     place.enter("loop");
     if (written.kind == syntax::Element::Kind::For) {
         Place::Local local{written.variable.text, place.frame++, Type::unknown()};
-        if (written.over) out.over = over(place, *written.over, local.type);
+        if (written.over) out.over = loopDomain(place, *written.over, local.type);
         out.local = local.index;
         const bool again =
             std::any_of(place.locals.begin(), place.locals.end(), [&](const auto& l) { return l.name == local.name; });
@@ -213,7 +213,7 @@ void Checker::choose(Place& place, const syntax::Element& written, Element& out)
     }
     std::vector<const Expr*> weights;
     for (const Choice& c : out.choices) weights.push_back(&c.weight);
-    possible(weights, written.span);
+    checkWeights(weights, written.span);
     const auto grow = [](const Choice& c) { return grows(*c.body); };
     if (std::any_of(out.choices.begin(), out.choices.end(), grow))
         for (const Choice& c : out.choices)

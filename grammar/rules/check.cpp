@@ -9,8 +9,8 @@
 
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
-#include "grammar/rules/judge.h"
 #include "grammar/rules/params.h"
+#include "grammar/rules/static_analysis.h"
 #include "grammar/rules/uses.h"
 #include "grammar/syntax/parser.h"
 
@@ -38,8 +38,8 @@ syntax::Diagnostics withoutEchoes(const syntax::Diagnostics& found, const syntax
     syntax::Diagnostics kept;
     for (const syntax::Diagnostic& d : found.all()) {
         if (echoes(d)) continue;
-        d.severity == syntax::Severity::Error ? kept.error(d.span, d.message, d.mend)
-                                              : kept.warning(d.span, d.message, d.mend);
+        d.severity == syntax::Severity::Error ? kept.error(d.span, d.message, d.hint)
+                                              : kept.warning(d.span, d.message, d.hint);
     }
     return kept;
 }
@@ -57,8 +57,8 @@ void sortInto(syntax::Diagnostics& out, const syntax::Diagnostics& found,
     std::stable_sort(list.begin(), list.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
     for (syntax::Diagnostic& d : list) {
         const bool error = d.severity == syntax::Severity::Error;
-        (error ? out.error(d.span, std::move(d.message), std::move(d.mend))
-               : out.warning(d.span, std::move(d.message), std::move(d.mend)));
+        (error ? out.error(d.span, std::move(d.message), std::move(d.hint))
+               : out.warning(d.span, std::move(d.message), std::move(d.hint)));
     }
 }
 
@@ -66,17 +66,17 @@ void sortInto(syntax::Diagnostics& out, const syntax::Diagnostics& found,
 void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax::Diagnostics& unread,
           syntax::Diagnostics& diagnostics) {
     Checker checker(grammar, diagnostics, load);
-    checker.excuse(unread, files.missing);
+    checker.suppressErrors(unread, files.missing);
     const auto each = [&](void (Checker::*step)(const syntax::Ast&)) {
         for (const syntax::Ast& part : files.asts) (checker.*step)(part);
     };
     each(&Checker::declare);
-    each(&Checker::refuse);
+    each(&Checker::rejectUnsupported);
     each(&Checker::parameters);
     each(&Checker::lsystems);
     each(&Checker::terminals);
     each(&Checker::productions);
-    each(&Checker::sayings);
+    each(&Checker::checkDeclarations);
     if (diagnostics.hasErrors() || unread.hasErrors()) return;
     if (grammar.starts.empty()) {
         diagnostics.error({grammar.sources[0].get(), 0, 0}, "there is nothing to begin with",

@@ -66,7 +66,7 @@ public:
 
     /// Names that stand in a line that couldn't be read may be declared there, and any name in a file that is missing:
     /// nothing is said of them.
-    void excuse(const syntax::Diagnostics& unread, bool missingFile);
+    void suppressErrors(const syntax::Diagnostics& unread, bool missingFile);
     /// Takes the names an Ast declares and refuses doubles.
     void declare(const syntax::Ast& ast);
     /// Checks what stands behind the names.
@@ -74,8 +74,8 @@ public:
     void lsystems(const syntax::Ast& ast);
     void terminals(const syntax::Ast& ast);
     void productions(const syntax::Ast& ast);
-    void sayings(const syntax::Ast& ast);  ///< derives, styles, checks
-    void refuse(const syntax::Ast& ast);   ///< what isn't built yet
+    void checkDeclarations(const syntax::Ast& ast);  ///< derives, styles, checks
+    void rejectUnsupported(const syntax::Ast& ast);  ///< what isn't built yet
     /// A plain value: no parameters, no shape, no chance. Where `word` holds, a name stands for itself.
     std::optional<Value> plain(const syntax::Expr& e, bool word);
     /// Parameters of `ast` that nothing asks for.
@@ -106,11 +106,11 @@ private:
     Typed member(Place& place, const syntax::Expr& e);
     Typed index(Place& place, const syntax::Expr& e);
     Typed tuple(Place& place, const syntax::Expr& e);
-    Typed failed(SourceSpan span, std::string message, std::string mend = {});
-    Typed unknown(SourceSpan span, const std::string& word, std::string message, std::string mend = {});
+    Typed failed(SourceSpan span, std::string message, std::string hint = {});
+    Typed unknown(SourceSpan span, const std::string& word, std::string message, std::string hint = {});
     Typed applied(Expr::Kind kind, Fn fn, SourceSpan span, std::vector<Typed> args);
-    bool alike(const Typed& a, const Typed& b, std::string_view verb);
-    bool asks(const Typed& value, Want want, std::string_view what, const syntax::Expr* written);
+    bool sameType(const Typed& a, const Typed& b, std::string_view verb);
+    bool expectType(const Typed& value, Want want, std::string_view what, const syntax::Expr* written);
 
     // operators.cpp
     Typed call(Place& place, const syntax::Expr& e);
@@ -123,7 +123,7 @@ private:
     Typed choice(Place& place, const syntax::Expr& e);
     Expr chance(Place& place, const syntax::Expr& e);
     Expr weight(Place& place, const syntax::Expr& e);
-    void possible(const std::vector<const Expr*>& weights, SourceSpan span);
+    void checkWeights(const std::vector<const Expr*>& weights, SourceSpan span);
 
     // solids.cpp
     Solid solid(Place& place, const syntax::Expr& e);
@@ -152,7 +152,7 @@ private:
     void content(Place& place, const syntax::Expr& e, Element& out);
     void loop(Place& place, const syntax::Element& written, Element& out);
     void choose(Place& place, const syntax::Element& written, Element& out);
-    Expr over(Place& place, const syntax::Expr& e, Type& type);
+    Expr loopDomain(Place& place, const syntax::Expr& e, Type& type);
     void live(const syntax::Name& name, Element& out);
     const syntax::Attribute* contentOperation(const syntax::Element& written);
     void rule(const syntax::RuleDecl& decl);

@@ -251,7 +251,7 @@ void Checker::derive(const syntax::DeriveDecl& decl) {
     grammar_.derives.push_back(std::move(out));
 }
 
-void Checker::sayings(const syntax::Ast& ast) {
+void Checker::checkDeclarations(const syntax::Ast& ast) {
     for (const auto& decl : ast.derives) derive(decl);
     for (const auto& decl : ast.styles) {
         const bool plain = decl.start.empty();
@@ -271,7 +271,7 @@ void Checker::sayings(const syntax::Ast& ast) {
     }
 }
 
-void Checker::refuse(const syntax::Ast& ast) {
+void Checker::rejectUnsupported(const syntax::Ast& ast) {
     for (const auto& decl : ast.maps) diagnostics_.error(decl.span, "maps are not supported yet");
     for (const auto& decl : ast.overrides) diagnostics_.error(decl.span, "overrides are not supported yet");
 }

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "grammar/rules/arithmetic_warnings.h"
 #include "grammar/rules/checker.h"
 #include "grammar/rules/color.h"
-#include "grammar/rules/doubts.h"
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/functions.h"
 #include "grammar/rules/make.h"
@@ -60,16 +60,16 @@ int axisNumber(std::string_view word) {
     return axis == axisWords.end() ? -1 : static_cast<int>(axis - axisWords.begin());
 }
 
-Typed Checker::failed(SourceSpan span, std::string message, std::string mend) {
-    diagnostics_.error(span, std::move(message), std::move(mend));
+Typed Checker::failed(SourceSpan span, std::string message, std::string hint) {
+    diagnostics_.error(span, std::move(message), std::move(hint));
     Typed result;
     result.expr.span = span;
     result.type = Type::unknown();
     return result;
 }
 
-Typed Checker::unknown(SourceSpan span, const std::string& word, std::string message, std::string mend) {
-    if (!anythingExcused_ && !excused_.contains(word)) return failed(span, std::move(message), std::move(mend));
+Typed Checker::unknown(SourceSpan span, const std::string& word, std::string message, std::string hint) {
+    if (!anythingExcused_ && !excused_.contains(word)) return failed(span, std::move(message), std::move(hint));
     return {makeConstant(span, {}), Type::unknown()};
 }
 
@@ -88,35 +88,35 @@ Typed Checker::applied(Expr::Kind kind, Fn fn, SourceSpan span, std::vector<Type
     if (!result.type.known) return {std::move(result.expr), Type::unknown()};
     result.type = Type::of(applyFunction(fn, samples));
     if (auto value = fold(result.expr, {})) {
-        if (auto doubt = findDoubtWithin(result.expr, {}))
-            diagnostics_.warning(doubt->span, std::move(doubt->message), std::move(doubt->mend));
+        if (auto suspect = findDoubtWithin(result.expr, {}))
+            diagnostics_.warning(suspect->span, std::move(suspect->message), std::move(suspect->hint));
         return makeTyped(span, std::move(*value));
     }
     return result;
 }
 
-bool Checker::asks(const Typed& value, Want want, std::string_view what, const Written* written) {
+bool Checker::expectType(const Typed& value, Want want, std::string_view what, const Written* written) {
     if (fits(value.type, want)) return true;
     const bool angle = want == Want::Angle || want == Want::Angles;
     if (angle && isZero(value.expr)) return true;
-    std::string mend;
+    std::string hint;
     if (written && written->kind == Written::Kind::Number) {
         const std::string digits = fmt::format("{:.12g}", written->number);
-        if (angle) mend = fmt::format("write '{}deg'", digits);
+        if (angle) hint = fmt::format("write '{}deg'", digits);
         if (want == Want::Length && value.type.like.units[0] == Unit::Share)
-            mend = fmt::format("write a length such as '{}m'", digits);
+            hint = fmt::format("write a length such as '{}m'", digits);
     }
     if (want == Want::Color && written && written->kind == Written::Kind::Text && written->text.starts_with('#'))
-        mend = "leave the quotes out";
+        hint = "leave the quotes out";
     if (want == Want::Count && value.type.like.kind == Value::Kind::Number && value.type.like.units[0] == Unit::None)
-        mend = "write 'round(…)' around it";
-    const std::string got = want == Want::Count && !mend.empty() ? "may have a fraction" : "is " + describe(value.type);
+        hint = "write 'round(…)' around it";
+    const std::string got = want == Want::Count && !hint.empty() ? "may have a fraction" : "is " + describe(value.type);
     diagnostics_.error(value.expr.span, fmt::format("{} takes {}, but this {}", what, describe(want), got),
-                       std::move(mend));
+                       std::move(hint));
     return false;
 }
 
-bool Checker::alike(const Typed& a, const Typed& b, std::string_view verb) {
+bool Checker::sameType(const Typed& a, const Typed& b, std::string_view verb) {
     if (!a.type.known || !b.type.known) return true;
     const auto say = [&](const Typed& at, std::string message) {
         diagnostics_.error(at.expr.span, std::move(message));
@@ -149,14 +149,14 @@ Typed Checker::unknownName(const Place& place, const Written& e) {
     for (const auto& local : place.locals) known.push_back(local.name);
     known.insert(known.end(), withNames_.begin(), withNames_.end());
     if (place.where == Where::Expect) known.assign(figureWords.begin(), figureWords.end());
-    std::string mend = nearest(e.text, known);
-    if (e.text == "i") mend = "'i' counts the steps inside a rule with 'repeat'";
-    if (place.where == Where::Expect && mend.empty())
-        mend = fmt::format("a check may ask for {} and count(Name)", fmt::join(figureWords, ", "));
-    if (std::find(colorWords.begin(), colorWords.end(), e.text) != colorWords.end() && mend.empty())
-        mend = "a colour is written #rrggbb, as #c8b090";
+    std::string hint = nearest(e.text, known);
+    if (e.text == "i") hint = "'i' counts the steps inside a rule with 'repeat'";
+    if (place.where == Where::Expect && hint.empty())
+        hint = fmt::format("a check may ask for {} and count(Name)", fmt::join(figureWords, ", "));
+    if (std::find(colorWords.begin(), colorWords.end(), e.text) != colorWords.end() && hint.empty())
+        hint = "a colour is written #rrggbb, as #c8b090";
     if (symbols_.contains(e.text)) return failed(e.span, fmt::format("'{}' is a shape, not a value", e.text));
-    return unknown(e.span, e.text, fmt::format("unknown name '{}'", e.text), std::move(mend));
+    return unknown(e.span, e.text, fmt::format("unknown name '{}'", e.text), std::move(hint));
 }
 
 Typed Checker::name(Place& place, const Written& e) {
@@ -254,7 +254,7 @@ Typed Checker::index(Place& place, const Written& e) {
         return failed(
             e.span,
             fmt::format("a direction chooses among 6 values, +x -x +y -y +z -z, but this is a vector of {}", count));
-    if (!axis && !asks(at, Want::Count, "[ ]", nullptr)) return {std::move(vector.expr), Type::unknown()};
+    if (!axis && !expectType(at, Want::Count, "[ ]", nullptr)) return {std::move(vector.expr), Type::unknown()};
     if (const auto value = fold(at.expr, {}); value && (value->num() < 0 || value->num() >= count))
         return failed(e.args[1].span, fmt::format("there is no value number {:.12g}: the vector's are 0 … {}",
                                                   value->num(), count - 1));
@@ -340,14 +340,15 @@ Expr Checker::expression(Place& place, const Written& e, Want want, std::string_
     Typed result = expression(place, e);
     const bool byComponent =
         e.kind == Written::Kind::Tuple && e.args.size() == 3 && takesThree(want) && !fits(result.type, want);
-    bool good = byComponent || asks(result, want, what, &e);
+    bool good = byComponent || expectType(result, want, what, &e);
     for (size_t i = 0; byComponent && i < 3; ++i) {
         const SourceSpan span = e.args[i].span;
         const Value index = makeWhole(static_cast<double>(i));
         Expr part = result.expr.kind == Expr::Kind::Tuple ? result.expr.args[i]
                                                           : makeConstant(span, component(result.expr.value, index));
         part.span = span;
-        good = asks({std::move(part), Type::of(component(result.type.like, index))}, want, what, &e.args[i]) && good;
+        good =
+            expectType({std::move(part), Type::of(component(result.type.like, index))}, want, what, &e.args[i]) && good;
     }
     if (!good) return makeUnreadable(e.span);
     adapt(result.expr, want);

@@ -121,7 +121,7 @@ void Checker::collect(const syntax::Body& body) {
         }
 }
 
-void Checker::excuse(const syntax::Diagnostics& unread, bool missingFile) {
+void Checker::suppressErrors(const syntax::Diagnostics& unread, bool missingFile) {
     anythingExcused_ = missingFile;
     const auto inWord = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
     for (const syntax::Diagnostic& d : unread.all()) {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "grammar/rules/arithmetic_warnings.h"
 #include "grammar/rules/checker.h"
-#include "grammar/rules/doubts.h"
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/make.h"
 
@@ -77,8 +77,8 @@ void OperationChecker::checkArguments(const syntax::Attribute& written) {
                 said = true;
                 const std::string outside =
                     fmt::format("'{}' is {}, but must be {}", operation.name, toText(v), range.text);
-                if (auto doubt = findDoubtWithin(e, checker_.defaults_))
-                    error(doubt->span, doubt->message + ", so " + outside, "keep what is divided by from 0");
+                if (auto suspect = findDoubtWithin(e, checker_.defaults_))
+                    error(suspect->span, suspect->message + ", so " + outside, "keep what is divided by from 0");
                 else
                     error(e.span, outside);
             }
@@ -167,7 +167,7 @@ void OperationChecker::unknownName(SourceSpan span, const std::string& name, std
     checker_.unknown(span, name, std::move(message), std::move(fix));
 }
 
-bool OperationChecker::isExcused(const std::string& name) const { return checker_.excused_.contains(name); }
+bool OperationChecker::areErrorsSuppressed(const std::string& name) const { return checker_.excused_.contains(name); }
 size_t OperationChecker::problemCount() const { return checker_.diagnostics_.all().size(); }
 
 }  // namespace sgm::rules

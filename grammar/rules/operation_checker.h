@@ -76,7 +76,7 @@ public:
     /// An error about a name, silent where the name stands in a text that could not be read.
     void unknownName(SourceSpan span, const std::string& name, std::string message, std::string fix = {});
     /// True when nothing should be said of a name, since its declaration could not be read.
-    bool isExcused(const std::string& name) const;
+    bool areErrorsSuppressed(const std::string& name) const;
     size_t problemCount() const;
 
 private:

@@ -83,15 +83,15 @@ Typed Checker::call(Place& place, const Written& e) {
     for (const Written& arg : e.args) args.push_back(expression(place, arg));
     bool good = true;
     const auto each = [&](Want want, size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) good = asks(args[i], want, what, &e.args[i]) && good;
+        for (size_t i = begin; i < end; ++i) good = expectType(args[i], want, what, &e.args[i]) && good;
     };
     const auto pair = [&](size_t a, size_t b) {
         const bool sameKind = args[a].type.like.kind == args[b].type.like.kind && !args[a].type.numeric();
-        good = good && (sameKind || alike(args[a], args[b], "choose between"));
+        good = good && (sameKind || sameType(args[a], args[b], "choose between"));
     };
     switch (row->signature) {
         case Signature::Alike:
-            for (size_t i = 0; i < args.size(); ++i) good = good && alike(args[0], args[i], "compare");
+            for (size_t i = 0; i < args.size(); ++i) good = good && sameType(args[0], args[i], "compare");
             break;
         case Signature::Plain:
             each(Want::Number, 0, args.size());
@@ -118,7 +118,7 @@ Typed Checker::unary(Place& place, const Written& e) {
     Typed arg = expression(place, e.args[0]);
     std::vector<Typed> args;
     if (e.text == "not") {
-        if (!asks(arg, Want::Truth, "'not'", nullptr)) return {{}, Type::unknown()};
+        if (!expectType(arg, Want::Truth, "'not'", nullptr)) return {{}, Type::unknown()};
         args.push_back(std::move(arg));
         return applied(Expr::Kind::Unary, Fn::Not, e.span, std::move(args));
     }
@@ -154,13 +154,13 @@ Typed Checker::binary(Place& place, const Written& e) {
     bool good = true;
     if (row.fn == Fn::And || row.fn == Fn::Or) {
         for (size_t i = 0; i < 2; ++i)
-            good = asks(args[i], Want::Truth, fmt::format("'{}'", row.text), nullptr) && good;
+            good = expectType(args[i], Want::Truth, fmt::format("'{}'", row.text), nullptr) && good;
     } else if (row.fn == Fn::Mul && ka == Value::Kind::Rotation && kb == ka) {
         good = true;
     } else if (row.fn == Fn::Mul || row.fn == Fn::Div) {
         Typed plainB = b;  // any unit may multiply any other number; what comes of it is judged where it is used
         plainB.type.like.units.fill(Unit::None);
-        good = alike(a, plainB, row.verb);
+        good = sameType(a, plainB, row.verb);
         const Unit ua = a.type.like.units[0], ub = b.type.like.units[0];
         if (good && a.type.known && b.type.known && row.fn == Fn::Mul && ua == ub &&
             (ua == Unit::Metre || ua == Unit::Angle || ua == Unit::PerMetre))
@@ -168,7 +168,7 @@ Typed Checker::binary(Place& place, const Written& e) {
                                               describe(b.type)))
                        .type.known;
     } else if (!(equality && ka == kb && !a.type.numeric())) {
-        good = alike(a, b, row.verb);
+        good = sameType(a, b, row.verb);
     }
     if (!good) return {{}, Type::unknown()};
     return applied(Expr::Kind::Binary, row.fn, e.span, std::move(args));
@@ -193,7 +193,7 @@ Expr Checker::weight(Place& place, const Written& e) {
 }
 
 /// Refuses weights that are 0 whatever the parameters are.
-void Checker::possible(const std::vector<const Expr*>& weights, SourceSpan span) {
+void Checker::checkWeights(const std::vector<const Expr*>& weights, SourceSpan span) {
     const auto never = [](const Expr* e) {
         const auto value = fold(*e, {});
         return value && value->num() == 0;
@@ -215,13 +215,13 @@ Typed Checker::choice(Place& place, const Written& e) {
         result.type.known = result.type.known && values.back().type.known;
     }
     for (size_t i = 0; i < result.expr.args.size(); i += 2) weights.push_back(&result.expr.args[i]);
-    possible(weights, e.span);
+    checkWeights(weights, e.span);
     if (!result.type.known || values.empty()) return {std::move(result.expr), Type::unknown()};
     result.type = values[0].type;
     for (const Typed& value : values) {
         const Value& like = value.type.like;
         if (like.kind == result.type.like.kind && !value.type.numeric()) continue;
-        if (!alike(values[0], value, "choose between")) return {{}, Type::unknown()};
+        if (!sameType(values[0], value, "choose between")) return {{}, Type::unknown()};
         const Value sample[] = {result.type.like, like};
         result.type = Type::of(applyFunction(Fn::Add, sample));
     }
@@ -233,7 +233,7 @@ Typed Checker::range(Place& place, const Written& e) {
     Expr drawn = chance(place, e);
     std::vector<Typed> ends;
     for (const Written& end : e.args) ends.push_back(expression(place, end));
-    if (!alike(ends[0], ends[1], "draw between")) return {{}, Type::unknown()};
+    if (!sameType(ends[0], ends[1], "draw between")) return {{}, Type::unknown()};
     const auto lo = fold(ends[0].expr, {}), hi = fold(ends[1].expr, {});
     if (lo && hi && lo->kind == Value::Kind::Number && hi->kind == Value::Kind::Number && lo->num() > hi->num())
         return failed(e.span, "the range runs backwards",
@@ -250,7 +250,7 @@ Typed Checker::ramp(Place& place, const Written& e) {
     std::vector<Typed> ends;
     for (const Written& end : e.args) ends.push_back(expression(place, end));
     const bool colors = ends[0].type.like.kind == Value::Kind::Color && ends[1].type.like.kind == Value::Kind::Color;
-    if (!colors && !alike(ends[0], ends[1], "go between")) return {{}, Type::unknown()};
+    if (!colors && !sameType(ends[0], ends[1], "go between")) return {{}, Type::unknown()};
     Typed result;
     result.type.known = ends[0].type.known && ends[1].type.known;
     result.type.like = interpolate(ends[0].type.like, ends[1].type.like, 0);

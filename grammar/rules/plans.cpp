@@ -9,7 +9,7 @@ namespace sgm::rules {
 namespace {
 
 using Kind = PlanParameterKind;
-using Numbers = std::span<const double>;
+using Arguments = std::span<const double>;
 
 constexpr PlanParameter width{"width", Kind::Length, 0, "along x"};
 constexpr PlanParameter depth{"depth", Kind::Length, 0, "along z"};
@@ -41,21 +41,21 @@ double radiusOf(double r) { return r == 0 ? 1 : r; }
 
 constexpr PlanRow table[] = {
     {"rect", "A rectangle.", "footprint rect(12, 8)", rectParameters,
-     [](Numbers n) { return plan::rectangle(n[0], n[1]); }},
+     [](Arguments n) { return plan::rectangle(n[0], n[1]); }},
     {"ell", "An L: the rectangle less its quarter at +x +z.", "footprint ell(16, 12, 5, 6)", ellParameters,
-     [](Numbers n) { return plan::ell(n[0], n[1], n[2], n[3]); }},
+     [](Arguments n) { return plan::ell(n[0], n[1], n[2], n[3]); }},
     {"tee", "A T: a bar along the -z side and a stem from its middle.", "footprint tee(16, 12, 5, 6)", teeParameters,
-     [](Numbers n) { return plan::tee(n[0], n[1], n[2], n[3]); }},
+     [](Arguments n) { return plan::tee(n[0], n[1], n[2], n[3]); }},
     {"yard", "A U that is open towards +z.", "footprint yard(20, 16, 5)", yardParameters,
-     [](Numbers n) { return plan::yard(n[0], n[1], n[2]); }},
+     [](Arguments n) { return plan::yard(n[0], n[1], n[2]); }},
     {"ring", "A rectangle with a court.", "footprint ring(30, 24, 7)", yardParameters,
-     [](Numbers n) { return plan::ring(n[0], n[1], n[2]); }},
+     [](Arguments n) { return plan::ring(n[0], n[1], n[2]); }},
     {"ngon", "A regular polygon, one side towards -z.", "footprint ngon(8)", ngonParameters,
-     [](Numbers n) { return plan::ngon(whole(n[0]), radiusOf(n[1])); }, 1},
+     [](Arguments n) { return plan::ngon(whole(n[0]), radiusOf(n[1])); }, 1},
     {"round", "A circle's area as a polygon.", "footprint round(24, 5m)", roundParameters,
-     [](Numbers n) { return plan::round(whole(n[0]), radiusOf(n[1])); }, 1},
+     [](Arguments n) { return plan::round(whole(n[0]), radiusOf(n[1])); }, 1},
     {"arc", "A piece of a ring; its edges are tagged outer, inner and end.", "footprint arc(33m, 44m, 15deg, 130deg)",
-     arcParameters, [](Numbers n) { return plan::arc(n[0], n[1], n[2], n[3], whole(n[4])); }},
+     arcParameters, [](Arguments n) { return plan::arc(n[0], n[1], n[2], n[3], whole(n[4])); }},
 };
 
 }  // namespace

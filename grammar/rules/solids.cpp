@@ -87,8 +87,8 @@ constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
     {"subtract", "cut with '-'"},         {"intersection", "keep with '&' what both share"}};
 
 std::string Checker::unknownSolid(std::string_view word) const {
-    for (const auto& [theirs, mend] : elsewhere)
-        if (theirs == word) return std::string(mend);
+    for (const auto& [theirs, hint] : elsewhere)
+        if (theirs == word) return std::string(hint);
     const std::string file = load_.declares ? load_.declares(std::string(word)) : std::string();
     if (!file.empty()) return fmt::format("it is declared in {0}: write 'use \"{0}\"'", file);
     std::vector<std::string> known = symbolNames(true);

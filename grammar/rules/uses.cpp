@@ -60,9 +60,9 @@ private:
     }
 
     /// A file that isn't there for the checker.
-    void refuse(const syntax::UseDecl& use, std::string message, std::string mend = {}) {
+    void refuse(const syntax::UseDecl& use, std::string message, std::string hint = {}) {
         files_.missing = true;
-        diagnostics_.error(use.file.span, std::move(message), std::move(mend));
+        diagnostics_.error(use.file.span, std::move(message), std::move(hint));
     }
 
     const Loader& load_;

@@ -38,7 +38,7 @@ bool acceptBar(Cursor& cursor) {
     return true;
 }
 
-/// { case {| case} }; `sample` is a label that fits here, for mends.
+/// { case {| case} }; `sample` is a label that fits here, for hints.
 std::vector<Case> readBlock(Cursor& cursor, std::string_view where, std::string_view sample) {
     const Token open = cursor.peek();
     std::vector<Case> cases;
@@ -108,9 +108,9 @@ Case readCase(Cursor& cursor, std::string_view sample) {
         } else if (cursor.done() || cursor.at("|") || cursor.at("}")) {
             cursor.expect(":", "and a body after " + quoted(label.text()));
         } else {
-            const std::string mend = "write " + quoted(plain(label.text()) + ": " + plain(cursor.peekText()));
+            const std::string hint = "write " + quoted(plain(label.text()) + ": " + plain(cursor.peekText()));
             cursor.complain(cursor.span(cursor.peek()),
-                            "expected ':' after " + quoted(label.text()) + ", found " + cursor.found(), mend);
+                            "expected ':' after " + quoted(label.text()) + ", found " + cursor.found(), hint);
             part.body = std::make_shared<Body>(readBody(cursor));
         }
     }

@@ -56,9 +56,9 @@ bool Cursor::accept(std::string_view wanted, Token::Role role) {
     return true;
 }
 
-bool Cursor::expect(std::string_view wanted, std::string_view where, std::string mend) {
+bool Cursor::expect(std::string_view wanted, std::string_view where, std::string hint) {
     if (accept(wanted)) return true;
-    fail("expected " + quoted(wanted) + " " + std::string(where) + ", found " + found(), std::move(mend));
+    fail("expected " + quoted(wanted) + " " + std::string(where) + ", found " + found(), std::move(hint));
     return false;
 }
 
@@ -78,25 +78,25 @@ bool Cursor::close(const Token& open) {
 
 std::string Cursor::found() const { return done() ? "the end of the declaration" : quoted(peekText()); }
 
-void Cursor::fail(std::string message, std::string mend) {
-    if (auto hint = failed_ ? std::nullopt : findHint(*this, message))
-        failAt(hint->span, std::move(hint->message), std::move(hint->mend));
+void Cursor::fail(std::string message, std::string hint) {
+    if (auto found = failed_ ? std::nullopt : findHint(*this, message))
+        failAt(found->span, std::move(found->message), std::move(found->hint));
     else
-        failAt(span(peek()), std::move(message), std::move(mend));
+        failAt(span(peek()), std::move(message), std::move(hint));
 }
 
-void Cursor::failAt(SourceSpan span, std::string message, std::string mend) {
-    complain(span, std::move(message), std::move(mend));
+void Cursor::failAt(SourceSpan span, std::string message, std::string hint) {
+    complain(span, std::move(message), std::move(hint));
     failed_ = true;
     at_ = tokens_.size();
 }
 
-void Cursor::complain(SourceSpan span, std::string message, std::string mend) {
-    if (!failed_) diagnostics_.error(span, std::move(message), std::move(mend));
+void Cursor::complain(SourceSpan span, std::string message, std::string hint) {
+    if (!failed_) diagnostics_.error(span, std::move(message), std::move(hint));
 }
 
-void Cursor::warn(SourceSpan span, std::string message, std::string mend) {
-    if (!failed_) diagnostics_.warning(span, std::move(message), std::move(mend));
+void Cursor::warn(SourceSpan span, std::string message, std::string hint) {
+    if (!failed_) diagnostics_.warning(span, std::move(message), std::move(hint));
 }
 
 Cursor::Nest::Nest(Cursor& cursor) : cursor_(cursor) {

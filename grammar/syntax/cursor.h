@@ -38,7 +38,7 @@ public:
     /// Takes the next token if it is `wanted`.
     bool accept(std::string_view wanted, Token::Role role = Token::Role::Plain);
     /// Takes `wanted`, or fails with "expected 'wanted' <where>, found …".
-    bool expect(std::string_view wanted, std::string_view where, std::string mend = {});
+    bool expect(std::string_view wanted, std::string_view where, std::string hint = {});
     /// Takes what closes the bracket `open`, or fails with "expected ')' to close '(' of line 3, found …".
     bool close(const Token& open);
 
@@ -48,12 +48,12 @@ public:
     std::string found() const;
 
     /// Reports the token at the cursor and gives up the slice.
-    void fail(std::string message, std::string mend = {});
-    void failAt(SourceSpan span, std::string message, std::string mend = {});
+    void fail(std::string message, std::string hint = {});
+    void failAt(SourceSpan span, std::string message, std::string hint = {});
     /// Reports and goes on: the meaning is clear all the same.
-    void complain(SourceSpan span, std::string message, std::string mend = {});
+    void complain(SourceSpan span, std::string message, std::string hint = {});
     /// Warns and goes on.
-    void warn(SourceSpan span, std::string message, std::string mend = {});
+    void warn(SourceSpan span, std::string message, std::string hint = {});
 
     /// Holds one level of nesting; gives up the slice when there are too many: the stack must not end first.
     class Nest {

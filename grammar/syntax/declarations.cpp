@@ -9,7 +9,7 @@ namespace sgm::syntax {
 
 namespace {
 
-/// What mends a missing '=' before the token at the cursor.
+/// The hint for a missing '=' before the token at the cursor.
 std::string equalsMend(const Cursor& cursor, const Name& name) {
     return cursor.done() ? std::string() : "write " + quoted(name.text + " = " + std::string(cursor.peekText()));
 }

@@ -52,7 +52,7 @@ bool atAxis(const Cursor& cursor) {
     return (cursor.at("+") || cursor.at("-")) && isAxisLetter(cursor.peekText(1)) && cursor.peek(1).glued;
 }
 
-/// A number with six digits at most, for a mend.
+/// A number with six digits at most, for a hint.
 std::string plain(double number) {
     char text[32];
     return {text, std::to_chars(text, text + sizeof text, number, std::chars_format::general, 6).ptr};
@@ -256,12 +256,12 @@ private:
     void checkUnit(Expr& number) {
         constexpr std::string_view units[] = {"", "m", "km", "cm", "mm", "deg", "%", "/m"};
         if (std::find(std::begin(units), std::end(units), number.unit) != std::end(units)) return;
-        std::string mend = "a number is plain or has m, km, cm, mm, deg, % or /m";
-        if (number.unit == "ft") mend = "write " + quoted(plain(number.number * .3048) + "m");
-        if (number.unit == "in") mend = "write " + quoted(plain(number.number * .0254) + "m");
+        std::string hint = "a number is plain or has m, km, cm, mm, deg, % or /m";
+        if (number.unit == "ft") hint = "write " + quoted(plain(number.number * .3048) + "m");
+        if (number.unit == "in") hint = "write " + quoted(plain(number.number * .0254) + "m");
         if (number.unit == "rad")
-            mend = "angles are in degrees: write " + quoted(plain(number.number * 180 / std::numbers::pi) + "deg");
-        cursor_.complain(number.span, "there is no unit " + quoted(number.unit), mend);
+            hint = "angles are in degrees: write " + quoted(plain(number.number * 180 / std::numbers::pi) + "deg");
+        cursor_.complain(number.span, "there is no unit " + quoted(number.unit), hint);
         number.unit.clear();
     }
 

@@ -6,9 +6,9 @@ namespace sgm::syntax {
 
 namespace {
 
-/// What a person most likely meant by bytes that are no token.
+/// What the user most likely meant by bytes that are no token.
 struct Lookalike {
-    std::string_view bytes, mend;
+    std::string_view bytes, hint;
 };
 constexpr Lookalike lookalikes[] = {
     {"\u2212", "write '-'"},
@@ -38,7 +38,7 @@ constexpr ForeignDeclaration foreignDeclarations[] = {
 };
 
 struct ForeignWord {
-    std::string_view word, mend;
+    std::string_view word, hint;
 };
 constexpr ForeignWord foreignAttributes[] = {
     {"translate", "write 'move'"},
@@ -92,10 +92,10 @@ Hint unknownCharacter(const Cursor& cursor) {
     const std::string_view bytes = cursor.peekText();
     Hint hint{cursor.span(cursor.peek()), "unexpected character " + quoted(bytes), {}};
     for (const Lookalike& row : lookalikes)
-        if (bytes.substr(0, row.bytes.size()) == row.bytes) hint.mend = std::string(row.mend);
+        if (bytes.substr(0, row.bytes.size()) == row.bytes) hint.hint = std::string(row.hint);
     const bool beyondAscii = static_cast<unsigned char>(bytes.front()) >= 0x80;
-    if (hint.mend.empty() && beyondAscii)
-        hint.mend = "names are made of a-z, A-Z, 0-9 and _; text in quotes may hold anything";
+    if (hint.hint.empty() && beyondAscii)
+        hint.hint = "names are made of a-z, A-Z, 0-9 and _; text in quotes may hold anything";
     return hint;
 }
 
@@ -134,7 +134,7 @@ const ForeignDeclaration* findForeignDeclaration(std::string_view word) {
 std::string foreignAttributeHint(std::string_view word) {
     const auto row = std::find_if(std::begin(foreignAttributes), std::end(foreignAttributes),
                                   [&](const ForeignWord& w) { return w.word == word; });
-    return row == std::end(foreignAttributes) ? std::string() : std::string(row->mend);
+    return row == std::end(foreignAttributes) ? std::string() : std::string(row->hint);
 }
 
 }  // namespace sgm::syntax

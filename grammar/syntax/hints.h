@@ -13,7 +13,7 @@ namespace sgm::syntax {
 /// A better report than "unexpected …".
 struct Hint {
     SourceSpan span;
-    std::string message, mend;
+    std::string message, hint;
 };
 
 /// Recognizes habits of other languages at the cursor: ';', '#' comments, '2,5', 'if', 'else', names beyond ASCII.
@@ -22,7 +22,7 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message);
 
 /// The declaration that a word of another language stands for ("import": "use"), with the fix; null for other words.
 struct ForeignDeclaration {
-    std::string_view word, means, mend;
+    std::string_view word, means, hint;
 };
 const ForeignDeclaration* findForeignDeclaration(std::string_view word);
 

@@ -35,7 +35,7 @@ const Declaration* declarationAt(Cursor& cursor) {
     if (const Declaration* declaration = findDeclaration(cursor.peekText())) return declaration;
     const ForeignDeclaration* foreign = cursor.peek().columnOne ? findForeignDeclaration(cursor.peekText()) : nullptr;
     if (!foreign) return nullptr;
-    cursor.complain(cursor.span(cursor.peek()), cursor.found() + " begins no declaration", std::string(foreign->mend));
+    cursor.complain(cursor.span(cursor.peek()), cursor.found() + " begins no declaration", std::string(foreign->hint));
     return findDeclaration(foreign->means);
 }
 
@@ -63,11 +63,11 @@ void readDeclarations(Cursor& cursor, Ast& ast) {
 bool readVersion(Cursor& cursor, Ast& ast) {
     if (!cursor.at("grammar")) {
         const std::string message = "a grammar file begins with its version";
-        const std::string mend = "write 'grammar 1' in the first line";
+        const std::string hint = "write 'grammar 1' in the first line";
         if (findDeclaration(cursor.peekText()))
-            cursor.complain(cursor.span(cursor.peek()), message, mend);
+            cursor.complain(cursor.span(cursor.peek()), message, hint);
         else
-            cursor.fail(message, mend);
+            cursor.fail(message, hint);
         return true;
     }
     cursor.take();

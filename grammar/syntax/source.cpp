@@ -102,13 +102,13 @@ SourceSpan join(SourceSpan a, SourceSpan b) {
     return {a.source, std::min(a.begin, b.begin), std::max(a.end, b.end)};
 }
 
-void Diagnostics::error(SourceSpan span, std::string message, std::string mend) {
-    list_.push_back({Severity::Error, span, std::move(message), std::move(mend)});
+void Diagnostics::error(SourceSpan span, std::string message, std::string hint) {
+    list_.push_back({Severity::Error, span, std::move(message), std::move(hint)});
     ++errors_;
 }
 
-void Diagnostics::warning(SourceSpan span, std::string message, std::string mend) {
-    list_.push_back({Severity::Warning, span, std::move(message), std::move(mend)});
+void Diagnostics::warning(SourceSpan span, std::string message, std::string hint) {
+    list_.push_back({Severity::Warning, span, std::move(message), std::move(hint)});
 }
 
 std::string render(const Diagnostic& diagnostic) {
@@ -127,7 +127,7 @@ std::string render(const Diagnostic& diagnostic) {
     } else {
         out += std::string(severity) + ": " + messageOf(diagnostic);
     }
-    if (!diagnostic.mend.empty()) out += "\n  " + printable(diagnostic.mend, true);
+    if (!diagnostic.hint.empty()) out += "\n  " + printable(diagnostic.hint, true);
     return out + '\n';
 }
 
@@ -150,7 +150,7 @@ std::string toJson(const Diagnostics& diagnostics) {
                         {"endColumn", end.column},
                         {"severity", d.severity == Severity::Error ? "error" : "warning"},
                         {"message", d.message},
-                        {"mend", d.mend}});
+                        {"hint", d.hint}});
     }
     // A file may hold bytes that are no UTF-8, and messages quote it.
     return list.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

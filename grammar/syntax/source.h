@@ -43,18 +43,18 @@ SourceSpan join(SourceSpan a, SourceSpan b);
 
 enum class Severity { Error, Warning };
 
-/// One problem: where, a sentence in plain words, and the mend where one can be given ("did you mean 'Wing'?").
+/// One problem: where, a sentence in plain words, and the hint where one can be given ("did you mean 'Wing'?").
 struct Diagnostic {
     Severity severity = Severity::Error;
     SourceSpan span;
     std::string message;
-    std::string mend;
+    std::string hint;
 };
 
 class Diagnostics {
 public:
-    void error(SourceSpan span, std::string message, std::string mend = {});
-    void warning(SourceSpan span, std::string message, std::string mend = {});
+    void error(SourceSpan span, std::string message, std::string hint = {});
+    void warning(SourceSpan span, std::string message, std::string hint = {});
     bool hasErrors() const { return errors_ > 0; }
     const std::vector<Diagnostic>& all() const { return list_; }
     /// Keeps a source alive as long as the problems that point into it.
@@ -66,9 +66,9 @@ private:
     size_t errors_ = 0;
 };
 
-/// "file:line:column: error: message", the line, a caret under the span, and the mend.
+/// "file:line:column: error: message", the line, a caret under the span, and the hint.
 std::string render(const Diagnostic& diagnostic);
-/// [{file, line, column, endLine, endColumn, severity, message, mend}], sorted by place.
+/// [{file, line, column, endLine, endColumn, severity, message, hint}], sorted by place.
 std::string toJson(const Diagnostics& diagnostics);
 /// The candidate nearest to `word` by edit distance (at most a third of its length), or "".
 std::string didYouMean(std::string_view word, const std::vector<std::string>& candidates);

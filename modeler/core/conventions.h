@@ -1,4 +1,4 @@
-// The conventions every room keeps. Nothing enters or leaves here; other headers refer to this page.
+// The conventions every module keeps. Nothing enters or leaves here; other headers refer to this page.
 //
 // Sign       f < 0 inside, f = 0 on the surface (counted as outside by the mesher), f > 0 outside.
 // Booleans   sum = min, intersection = max, difference = max(a, -b)  (SG-M eq. 13, with the sign of definition 4).

@@ -17,7 +17,7 @@ struct Loop {
     const Progress* const progress;
     void* const context;
     void (*const body)(void*, size_t, int);
-    int places;  ///< for threads that may still join it; guarded, as the next two are, by the crew's mutex
+    int slots;  ///< for threads that may still join it; guarded, as the next two are, by the pool's mutex
     int joined = 0, busy = 0;
     std::condition_variable left;
     std::atomic<size_t> next{0};
@@ -44,40 +44,40 @@ struct Loop {
 
 /// Threads that wait for loops. A caller never waits for one that hasn't joined: where all are slow to come, it does
 /// the work itself.
-class Crew {
+class ThreadPool {
 public:
-    /// Runs a loop on the calling thread and on up to loop.places others.
+    /// Runs a loop on the calling thread and on up to loop.slots others.
     void run(Loop& loop) {
-        const int others = loop.places;
+        const int others = loop.slots;
         {
             const std::lock_guard lock(mutex_);
             open_.push_back(&loop);  // first, for it may throw
-            hire(others);
+            spawn(others);
             free_ -= others;
         }
         for (int i = 0; i < others; ++i) called_.notify_one();
         loop.work(0);
         std::unique_lock lock(mutex_);
-        free_ += loop.places;
-        loop.places = 0;
+        free_ += loop.slots;
+        loop.slots = 0;
         std::erase(open_, &loop);
         loop.left.wait(lock, [&] { return loop.busy == 0; });
     }
 
 private:
     /// Sees to it that so many threads are free, unless the system gives no more: then those there are do the work.
-    void hire(int wanted) {
+    void spawn(int wanted) {
         try {
-            for (; free_ < wanted; ++free_) std::thread([this] { serve(); }).detach();
+            for (; free_ < wanted; ++free_) std::thread([this] { workerMain(); }).detach();
         } catch (const std::exception&) {
         }
     }
-    [[noreturn]] void serve() {
+    [[noreturn]] void workerMain() {
         std::unique_lock lock(mutex_);
         for (;;) {
             called_.wait(lock, [&] { return !open_.empty(); });
             Loop& loop = *open_.front();
-            if (--loop.places == 0) open_.erase(open_.begin());
+            if (--loop.slots == 0) open_.erase(open_.begin());
             const int worker = ++loop.joined;
             ++loop.busy;
             lock.unlock();
@@ -90,14 +90,14 @@ private:
 
     std::mutex mutex_;
     std::condition_variable called_;
-    std::vector<Loop*> open_;  ///< those with places
-    int free_ = 0;             ///< threads beyond those that the open loops have places for
+    std::vector<Loop*> open_;  ///< those with slots
+    int free_ = 0;             ///< threads beyond those that the open loops have slots for
 };
 
 /// Never destroyed: its threads wait until the very end.
-Crew& crew() {
-    static Crew& crew = *new Crew;
-    return crew;
+ThreadPool& threadPool() {
+    static ThreadPool& pool = *new ThreadPool;
+    return pool;
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ void parallelFor(size_t count, int threads, const Progress* progress, void* cont
     const int others = static_cast<int>(std::min(static_cast<size_t>(threads), std::max<size_t>(count, 1))) - 1;
     Loop loop{count, progress, context, body, others, 0, 0, {}, {}, {}, {}};
     if (others > 0)
-        crew().run(loop);
+        threadPool().run(loop);
     else
         loop.work(0);
     loop.rethrow();

@@ -42,7 +42,7 @@ inline void tick(Progress* p, uint64_t n = 1) {
     if (p) p->tick(n);
 }
 
-/// What a door answers when it stopped because it was asked to.
+/// The error of a function that stopped because it was cancelled.
 inline Error cancelledError() { return {Error::Kind::Cancelled, "cancelled"}; }
 
 }  // namespace sgm

@@ -1,4 +1,4 @@
-// A value or an error, for every door that can fail. C++20 here has no std::expected.
+// A value or an error: the result of every function that can fail. C++20 here has no std::expected.
 // Enters: a T or an Error. Leaves: one of them. Assumes the caller asks `ok()` before it takes the value.
 #pragma once
 
@@ -9,9 +9,16 @@
 
 namespace sgm {
 
-/// Why a door gave nothing. `kind` decides the exit code: input 1, usage 2, budget 3, cancelled 130.
+/// Why a function gave no result. `kind` decides the exit code: input, reported 1, usage 2, budget 3, cancelled 130.
 struct Error {
-    enum class Kind { Input, Usage, Budget, Cancelled, Internal };
+    enum class Kind {
+        Input,
+        Usage,
+        Budget,
+        Cancelled,
+        Internal,
+        Reported,  ///< input, whose diagnostics were printed already: nothing is left to say
+    };
     Kind kind = Kind::Input;
     std::string message;  ///< a sentence in plain words, located where a place is known
 };

@@ -14,7 +14,7 @@ void ChangedParts::mark(const Tape& tape, const NumbersChanged& changed) {
     values_.assign(tape.size() + 3, 0);
     for (const uint32_t place : changed.places) numbers_[place] = 1;
     for (size_t i = 0; i < tape.size(); ++i) {
-        const Source* const operands = links_.operands(i);
+        const Source* const operands = chains_.operands(i);
         uint8_t any = 0;
         for (uint32_t k = 0; k < tape.code()[i].count; ++k)
             any |= isConstant(operands[k]) ? numbers_[indexOf(operands[k])] : values_[operands[k]];
@@ -30,7 +30,7 @@ void ChangedParts::descend(const Tape& tape) {
         values_[s] = 0;  // once
         stack_.push_back(s);
     };
-    visit(links_.result());
+    visit(chains_.result());
     while (!stack_.empty()) {
         const uint32_t value = stack_.back();
         stack_.pop_back();
@@ -38,7 +38,7 @@ void ChangedParts::descend(const Tape& tape) {
             found_.push_back(value);
             continue;
         }
-        for (uint32_t k = 0; k < 2; ++k) visit(links_.operands(value - 3)[k]);
+        for (uint32_t k = 0; k < 2; ++k) visit(chains_.operands(value - 3)[k]);
     }
 }
 
@@ -48,12 +48,12 @@ void ChangedParts::extract(const Tape& tape, uint32_t value, Tape& into) {
     for (uint32_t axis = 0; axis < 3; ++axis) builder_.bindInput(axis, axis);
     builder_.result({value});
     for (uint32_t v = builder_.nextLive(value + 1); v != TapeBuilder::none; v = builder_.nextLive(v))
-        builder_.define(v, tape.code()[v - 3], links_.operands(v - 3), nullptr);
+        builder_.define(v, tape.code()[v - 3], chains_.operands(v - 3), nullptr);
     builder_.finish(tape.sharedConstants(), tape.grids(), TapeBuilder::scaleOf(tape), into);
 }
 
 bool ChangedParts::find(const Tape& tape, const NumbersChanged& changed) {
-    if (!links_.follows(tape)) links_.follow(tape);
+    if (!chains_.follows(tape)) chains_.build(tape);
     mark(tape, changed);
     descend(tape);
     if (parts_.size() < found_.size()) parts_.resize(found_.size());
@@ -68,13 +68,14 @@ bool ChangedParts::find(const Tape& tape, const NumbersChanged& changed) {
     return true;
 }
 
-ChangedParts::Reach ChangedParts::reach(std::span<const Box3f> boxes, Care care, Workspace& workspace) const {
+ChangedParts::Reach ChangedParts::reach(std::span<const Box3f> boxes, RelevantRange relevant,
+                                        Workspace& workspace) const {
     Reach reach{boxes.size() == 64 ? ~uint64_t{0} : (uint64_t{1} << boxes.size()) - 1, true};
-    std::array<Range, 64> ranges;
+    std::array<FloatInterval, 64> ranges;
     const auto ask = [&](const Tape& tape) {
         evaluateRanges(tape, {boxes.data(), boxes.size()}, ranges.data(), workspace);
         for (size_t i = 0; i < boxes.size(); ++i) {
-            if (!(ranges[i].lo > care.most)) reach.unreached &= ~(uint64_t{1} << i);
+            if (!(ranges[i].lo > relevant.most)) reach.unreached &= ~(uint64_t{1} << i);
             reach.bounded = reach.bounded && std::isfinite(ranges[i].lo) && std::isfinite(ranges[i].hi);
         }
     };
@@ -85,13 +86,13 @@ ChangedParts::Reach ChangedParts::reach(std::span<const Box3f> boxes, Care care,
     return reach;
 }
 
-Tape ChangedParts::around(const Tape& tape, const Box3f& box, Care care, Workspace& workspace) const {
+Tape ChangedParts::around(const Tape& tape, const Box3f& box, RelevantRange relevant, Workspace& workspace) const {
     std::vector<uint32_t> free;
     for (const uint32_t value : found_) free.push_back(value - 3);
     std::sort(free.begin(), free.end());
-    Range whole;
+    FloatInterval whole;
     evaluateRanges(tape, {&box, 1}, &whole, workspace, free);
-    return shorten(tape, 0, workspace, care);
+    return shorten(tape, 0, workspace, relevant);
 }
 
 }  // namespace sgm::eval

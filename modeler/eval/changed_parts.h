@@ -6,9 +6,9 @@
 
 #include <vector>
 
-#include "modeler/eval/links.h"
-#include "modeler/eval/recompiler.h"
+#include "modeler/eval/incremental_compiler.h"
 #include "modeler/eval/tape_builder.h"
+#include "modeler/eval/use_def_chains.h"
 
 namespace sgm::eval {
 
@@ -27,9 +27,9 @@ public:
         uint64_t unreached;
         bool bounded;  ///< in all others the parts' values are numbers, of which ranges tell something
     };
-    Reach reach(std::span<const Box3f> boxes, Care care, Workspace& workspace) const;
+    Reach reach(std::span<const Box3f> boxes, RelevantRange relevant, Workspace& workspace) const;
     /// `tape`, the one of the last `find`, shortened to a box whatever numbers the parts come to have there.
-    Tape around(const Tape& tape, const Box3f& box, Care care, Workspace& workspace) const;
+    Tape around(const Tape& tape, const Box3f& box, RelevantRange relevant, Workspace& workspace) const;
 
 private:
     struct Part {
@@ -39,10 +39,10 @@ private:
     void descend(const Tape& tape);
     void extract(const Tape& tape, uint32_t value, Tape& into);
 
-    Links links_;
+    UseDefChains chains_;
     TapeBuilder builder_;
     std::vector<uint8_t> numbers_,
-        values_;  ///< by place in the table, and by value as in Links: does it hang on a change?
+        values_;  ///< by place in the table, and by value as in UseDefChains: does it hang on a change?
     std::vector<uint32_t> found_, stack_;  ///< changed values below the topmost minima
     std::vector<Part> parts_;              ///< the first found_.size() of them
 };

@@ -34,18 +34,18 @@ float foldedValue(const Graph& graph, const Node& n, std::span<const float> args
 Tape Compiler::run(const field::Field& field) {
     reach();
     for (NodeId id = 0; id <= root_; ++id)
-        if (fates_[id].kind != Fate::Unreached) decide(id);
+        if (nodeClasses_[id].kind != NodeClass::Unreached) decide(id);
     order();
     namePieces();
     return write(scaleOf(field));
 }
 
 void Compiler::reach() {
-    fates_[root_].kind = Fate::Instruction;
+    nodeClasses_[root_].kind = NodeClass::Instruction;
     for (NodeId id = root_ + 1; id-- > 0;)
-        if (fates_[id].kind != Fate::Unreached)
+        if (nodeClasses_[id].kind != NodeClass::Unreached)
             for (const field::Operand& o : graph_.operands(id)) {
-                fates_[o.node].kind = Fate::Instruction;
+                nodeClasses_[o.node].kind = NodeClass::Instruction;
                 owned_ = owned_ || o.origin != 0;
             }
 }
@@ -62,34 +62,35 @@ float Compiler::number(NodeId id) {
 std::optional<NodeId> Compiler::passesOn(NodeId id) const {
     const auto operands = graph_.operands(id);
     if (operands.size() != 2) return {};
-    const Fate &a = fateOf(operands[0].node), &b = fateOf(operands[1].node);
-    if ((a.kind == Fate::Constant) == (b.kind == Fate::Constant)) return {};
-    const bool second = b.kind == Fate::Constant;
+    const NodeClass &a = fateOf(operands[0].node), &b = fateOf(operands[1].node);
+    if ((a.kind == NodeClass::Constant) == (b.kind == NodeClass::Constant)) return {};
+    const bool second = b.kind == NodeClass::Constant;
     const field::OpCode op = graph_.node(id).op;
     if (!(second || field::traits(op).commutative) || !field::keepsFirst(op, second ? b.value : a.value)) return {};
     return standIn(operands[second ? 0 : 1].node);
 }
 
 void Compiler::decide(NodeId id) {
-    Fate& fate = fates_[id];
+    NodeClass& nodeClass = nodeClasses_[id];
     const auto operands = graph_.operands(id);
     if (isInput(id)) return;
-    const auto isNumber = [&](const field::Operand& o) { return fateOf(o.node).kind == Fate::Constant; };
+    const auto isNumber = [&](const field::Operand& o) { return fateOf(o.node).kind == NodeClass::Constant; };
     if (std::all_of(operands.begin(), operands.end(), isNumber))
-        fate = {Fate::Constant, 0, number(id), 0};
+        nodeClass = {NodeClass::Constant, 0, number(id), 0};
     else if (const auto same = passesOn(id))
-        fate = {Fate::Same, *same, 0, 0};
+        nodeClass = {NodeClass::Same, *same, 0, 0};
     else
-        fate.need = need(heavyFirst(id));
+        nodeClass.need = need(byRegisterNeed(id));
 }
 
 /// Operands that are instructions, those that need most registers first: the order that keeps fewest of them busy.
-std::span<const NodeId> Compiler::heavyFirst(NodeId id) {
+std::span<const NodeId> Compiler::byRegisterNeed(NodeId id) {
     sorted_.clear();
     for (const field::Operand& o : graph_.operands(id))
-        if (fateOf(o.node).kind == Fate::Instruction && !isInput(standIn(o.node))) sorted_.push_back(standIn(o.node));
+        if (fateOf(o.node).kind == NodeClass::Instruction && !isInput(standIn(o.node)))
+            sorted_.push_back(standIn(o.node));
     const auto heavier = [&](NodeId a, NodeId b) {
-        return fates_[a].need != fates_[b].need ? fates_[a].need > fates_[b].need : a < b;
+        return nodeClasses_[a].need != nodeClasses_[b].need ? nodeClasses_[a].need > nodeClasses_[b].need : a < b;
     };
     std::sort(sorted_.begin(), sorted_.end(), heavier);
     return sorted_;
@@ -97,14 +98,15 @@ std::span<const NodeId> Compiler::heavyFirst(NodeId id) {
 
 uint32_t Compiler::need(std::span<const NodeId> heavy) const {
     uint32_t most = 1;
-    for (size_t i = 0; i < heavy.size(); ++i) most = std::max(most, fates_[heavy[i]].need + static_cast<uint32_t>(i));
+    for (size_t i = 0; i < heavy.size(); ++i)
+        most = std::max(most, nodeClasses_[heavy[i]].need + static_cast<uint32_t>(i));
     return most;
 }
 
 /// Post-order over what is left, on a stack of our own.
 void Compiler::order() {
-    if (fateOf(root_).kind != Fate::Instruction || isInput(standIn(root_))) return;
-    std::vector<bool> done(fates_.size());
+    if (fateOf(root_).kind != NodeClass::Instruction || isInput(standIn(root_))) return;
+    std::vector<bool> done(nodeClasses_.size());
     std::vector<std::pair<NodeId, bool>> stack{{standIn(root_), false}};
     while (!stack.empty()) {
         const auto [id, ready] = stack.back();
@@ -116,23 +118,23 @@ void Compiler::order() {
             continue;
         }
         stack.push_back({id, true});
-        const auto heavy = heavyFirst(id);
+        const auto heavy = byRegisterNeed(id);
         for (size_t i = heavy.size(); i-- > 0;)
             if (!done[heavy[i]]) stack.push_back({heavy[i], false});
     }
 }
 
 TapeBuilder::Use Compiler::useOf(const field::Operand& o) {
-    const Fate& f = fateOf(o.node);
-    return {f.kind == Fate::Constant ? constants_.source(o.node, f.value) : standIn(o.node), o.origin};
+    const NodeClass& f = fateOf(o.node);
+    return {f.kind == NodeClass::Constant ? constants_.source(o.node, f.value) : standIn(o.node), o.origin};
 }
 
 /// Names each value from which an op chooses by all that it consists of, slots by their keys: so names outlast a change
 /// of numbers and of other parts. What a blend joins has the name of the blend.
 void Compiler::namePieces() {
-    std::vector<uint64_t> hashes(fates_.size());
+    std::vector<uint64_t> hashes(nodeClasses_.size());
     for (NodeId id = 0; id <= root_; ++id) {
-        if (fates_[id].kind == Fate::Unreached) continue;
+        if (nodeClasses_[id].kind == NodeClass::Unreached) continue;
         const Node& n = graph_.node(id);
         uint64_t hash = combine(static_cast<uint64_t>(n.op) + 1, n.data);
         if (n.op == codeOf<ops::Slot>) {
@@ -144,10 +146,10 @@ void Compiler::namePieces() {
         for (const field::Operand& o : graph_.operands(id)) hash = combine(hash, hashes[o.node]);
         hashes[id] = hash;
     }
-    pieces_.assign(fates_.size(), 0);
+    pieces_.assign(nodeClasses_.size(), 0);
     const auto nameOf = [&](NodeId id) { return static_cast<uint32_t>(hashes[id]) | 1u; };
     for (NodeId id = root_ + 1; id-- > 0;) {  // a blend before what it joins
-        if (fates_[id].kind == Fate::Unreached) continue;
+        if (nodeClasses_[id].kind == NodeClass::Unreached) continue;
         const field::OpTraits& row = field::traits(graph_.node(id).op);
         const bool blends = graph_.node(id).op == codeOf<ops::Blend>;
         if (blends && pieces_[id] == 0) pieces_[id] = nameOf(id);
@@ -175,9 +177,9 @@ TapeBuilder::Scale Compiler::scaleOf(const field::Field& field) const {
 
 Tape Compiler::write(TapeBuilder::Scale scale) {
     TapeBuilder builder;
-    builder.begin(fates_.size());
+    builder.begin(nodeClasses_.size());
     for (NodeId id = 0; id <= root_; ++id)
-        if (fates_[id].kind != Fate::Unreached && isInput(id)) builder.bindInput(id, graph_.node(id).data);
+        if (nodeClasses_[id].kind != NodeClass::Unreached && isInput(id)) builder.bindInput(id, graph_.node(id).data);
     builder.result(useOf({root_, 0}));
     std::vector<TapeBuilder::Use> uses;
     for (size_t i = ordered_.size(); i-- > 0;) {

@@ -1,7 +1,7 @@
 // What `compile` knows of a graph's nodes on the way, kept for when their numbers change.
 // Enters: a graph, a node, numbers. Leaves: a tape. Assumes the graph outlives it, with the same nodes. Nothing
-// recurses: node ids are in topological order (operands first), so passes are loops over ids. The doors are tape.h, for
-// a tape once, and recompiler.h, for one that follows its numbers.
+// recurses: node ids are in topological order (operands first), so passes are loops over ids. The entry points are
+// tape.h, for a tape once, and recompiler.h, for one that follows its numbers.
 #pragma once
 
 #include <bit>
@@ -16,14 +16,14 @@ namespace sgm::eval {
 using field::NodeId;
 
 /// What a node turned out to be: a number, another node, or an instruction.
-struct Fate {
+struct NodeClass {
     enum Kind : uint8_t { Unreached, Constant, Same, Instruction } kind = Unreached;
     NodeId same = 0;    ///< Same
     float value = 0;    ///< Constant
     uint32_t need = 0;  ///< registers to compute it (Sethi & Ullman 1970), for Instruction
 };
 
-/// Numbers of a tape, each once: told by their bits, or by the node they come from, so that one may change alone.
+/// UniformParams of a tape, each once: told by their bits, or by the node they come from, so that one may change alone.
 class Constants {
 public:
     explicit Constants(bool byNode) : byNode_(byNode) {}
@@ -49,16 +49,16 @@ private:
 class Compiler {
 public:
     Compiler(const field::Graph& graph, NodeId root, std::span<const float> constants, bool byNode)
-        : graph_(graph), root_(root), slots_(constants), fates_(size_t{root} + 1), constants_(byNode) {}
+        : graph_(graph), root_(root), slots_(constants), nodeClasses_(size_t{root} + 1), constants_(byNode) {}
 
     Tape run(const field::Field& field);
 
     // For when numbers change.
     NodeId root() const { return root_; }
-    const Fate& fate(NodeId id) const { return fates_[id]; }
+    const NodeClass& nodeClass(NodeId id) const { return nodeClasses_[id]; }
     /// The node's number, from those of its operands; only for a node that is one.
     float number(NodeId id);
-    void setNumber(NodeId id, float value) { fates_[id].value = value; }
+    void setNumber(NodeId id, float value) { nodeClasses_[id].value = value; }
     void bind(std::span<const float> constants) { slots_ = constants; }
     /// The operand whose value is the node's own, since the other one is a number that changes nothing, as 1 in a
     /// product.
@@ -71,7 +71,7 @@ public:
 private:
     void reach();
     void decide(NodeId id);
-    std::span<const NodeId> heavyFirst(NodeId id);
+    std::span<const NodeId> byRegisterNeed(NodeId id);
     uint32_t need(std::span<const NodeId> heavy) const;
     void order();
     void namePieces();
@@ -79,14 +79,14 @@ private:
     TapeBuilder::Use useOf(const field::Operand& o);
 
     /// The node that stands for `id`.
-    NodeId standIn(NodeId id) const { return fates_[id].kind == Fate::Same ? fates_[id].same : id; }
-    const Fate& fateOf(NodeId id) const { return fates_[standIn(id)]; }
+    NodeId standIn(NodeId id) const { return nodeClasses_[id].kind == NodeClass::Same ? nodeClasses_[id].same : id; }
+    const NodeClass& fateOf(NodeId id) const { return nodeClasses_[standIn(id)]; }
     bool isInput(NodeId id) const { return graph_.node(id).op == field::codeOf<field::ops::Input>; }
 
     const field::Graph& graph_;
     const NodeId root_;
     std::span<const float> slots_;
-    std::vector<Fate> fates_;
+    std::vector<NodeClass> nodeClasses_;
     std::vector<float> args_;
     std::vector<NodeId> sorted_, ordered_;
     std::vector<uint32_t> pieces_;  ///< by node, see Instruction::piece

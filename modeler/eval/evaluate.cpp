@@ -22,12 +22,12 @@ Kernels kernelsFor(Isa isa) {
     return portable::kernels();
 }
 
-void count(const Tape& tape, size_t n, Asked asked, Tally* tally) {
+void count(const Tape& tape, size_t n, EvaluationKind asked, Tally* tally) {
     if (!tally) return;
     for (const Instruction& in : tape.code()) (*tally)[{in.op, in.count, in.data, asked}] += n;
 }
 
-/// Copies the two rows that `needsRange` speaks of, see Links::boundRows.
+/// Copies the two rows that `needsRange` speaks of, see UseDefChains::boundRows.
 void keepRange(const Tape& tape, const Instruction& in, const StepContext& c) {
     for (uint32_t row = 0; row < 2; ++row) {
         float* const to = c.bounds + row * maxBoxes;
@@ -79,7 +79,7 @@ void Workspace::Impl::setUpGradients(StepContext& c, const Tape& tape, size_t n)
 
 void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
-    count(tape, points.n, Asked::Value, w.tally);
+    count(tape, points.n, EvaluationKind::Value, w.tally);
     const bool atOnce = points.padded && endsInResult(tape);
     runBlocks(tape, points, w.kernels.values, 1, w, atOnce ? ResultRows{out, 0} : ResultRows{}, nothingBefore,
               [&](const StepContext& c, size_t first, size_t n) {
@@ -90,7 +90,7 @@ void evaluate(const Tape& tape, Points points, float* out, Workspace& workspace)
 void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, float* dy, float* dz,
                       Workspace& workspace, bool exact) {
     Workspace::Impl& w = workspace.impl();
-    count(tape, points.n, Asked::Gradient, w.tally);
+    count(tape, points.n, EvaluationKind::Gradient, w.tally);
     float* const out[] = {value, dx, dy, dz};
     const auto apart = static_cast<size_t>(dx - value);
     const bool atOnce = points.padded && endsInResult(tape) && dx > value && dy == dx + apart && dz == dy + apart &&
@@ -105,7 +105,7 @@ void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, 
 
 void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
-    count(tape, points.n, Asked::Value, w.tally);
+    count(tape, points.n, EvaluationKind::Value, w.tally);
     OwnerPass pass(tape, w);
     runBlocks(
         tape, points, w.kernels.values, 1, w, {}, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
@@ -114,7 +114,7 @@ void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& w
 
 void evaluateLabels(const Tape& tape, Points points, uint32_t* labels, OriginId* origins, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
-    count(tape, points.n, Asked::Value, w.tally);
+    count(tape, points.n, EvaluationKind::Value, w.tally);
     LabelPass pass(tape, w, 1);
     runBlocks(
         tape, points, w.kernels.values, 1, w, {}, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
@@ -123,7 +123,7 @@ void evaluateLabels(const Tape& tape, Points points, uint32_t* labels, OriginId*
 
 void evaluatePieces(const Tape& tape, Points points, const PieceSamples& out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
-    count(tape, points.n, Asked::Gradient, w.tally);
+    count(tape, points.n, EvaluationKind::Gradient, w.tally);
     float* const rows[] = {out.value, out.dx, out.dy, out.dz};
     LabelPass pass(tape, w, 4);
     runBlocks(
@@ -136,11 +136,11 @@ void evaluatePieces(const Tape& tape, Points points, const PieceSamples& out, Wo
         });
 }
 
-void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& workspace,
+void evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out, Workspace& workspace,
                     std::span<const uint32_t> free) {
     assert(regions.n >= 1 && regions.n <= maxBoxes);
     Workspace::Impl& w = workspace.impl();
-    count(tape, regions.n, Asked::Range, w.tally);
+    count(tape, regions.n, EvaluationKind::Range, w.tally);
     StepContext c;
     w.setUp(c, tape, 2, maxBoxes);
     c.count = roundedUp(regions.n);
@@ -153,14 +153,14 @@ void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& wo
         std::fill(lo + regions.n, lo + c.count, lo[regions.n - 1]);
         std::fill(hi + regions.n, hi + c.count, hi[regions.n - 1]);
     }
-    w.links.follow(tape);
-    w.parts.follow(tape, w.links);
+    w.chains.build(tape);
+    w.parts.build(tape, w.chains);
     w.regions = regions.n;
-    float* const bounds = w.bounds.get(w.links.boundRows() * maxBoxes);
+    float* const bounds = w.bounds.get(w.chains.boundRows() * maxBoxes);
     constexpr float infinity = std::numeric_limits<float>::infinity();
     for (size_t i = 0; i < tape.size(); ++i) {
         const Instruction& in = tape.code()[i];
-        c.bounds = bounds + size_t{w.links.bounds(i)} * maxBoxes;
+        c.bounds = bounds + size_t{w.chains.bounds(i)} * maxBoxes;
         if (needsRange(in)) keepRange(tape, in, c);
         w.kernels.ranges[static_cast<size_t>(in.op)](in, c);
         if (free.empty() || free.front() != i) continue;
@@ -171,9 +171,10 @@ void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& wo
     for (size_t i = 0; i < regions.n; ++i) {
         const bool constant = isConstant(tape.result());
         const float number = constant ? tape.constants()[indexOf(tape.result())] : 0.0f;
-        const Range r = constant ? Range{number, number}
-                                 : Range{rowOf(c, tape.result(), 2, 0)[i], rowOf(c, tape.result(), 2, 1)[i]};
-        out[i] = r.lo <= r.hi ? r : Range{-infinity, infinity};
+        const FloatInterval r = constant
+                                    ? FloatInterval{number, number}
+                                    : FloatInterval{rowOf(c, tape.result(), 2, 0)[i], rowOf(c, tape.result(), 2, 1)[i]};
+        out[i] = r.lo <= r.hi ? r : FloatInterval{-infinity, infinity};
     }
 }
 

@@ -18,7 +18,7 @@ enum class Isa { Portable, Avx2, Avx512 };
 Isa bestIsa();
 
 /// [lo, hi] with lo ≤ hi; encloses every value the kernels can return inside the region.
-struct Range {
+struct FloatInterval {
     float lo = 0, hi = 0;
 };
 
@@ -68,11 +68,11 @@ void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& w
 /// tie goes to the first operand. What a blend joins is one piece with it, also where a field lies alone; a number to
 /// which a value is clamped has label 0, and a square forgets what its operand chose. `labels` and `origins` get n
 /// entries; origins are those of the operands taken. A shortened tape gives the same names inside its region wherever
-/// `care` tells its value apart. Costs about two evaluations.
+/// `relevant` tells its value apart. Costs about two evaluations.
 void evaluateLabels(const Tape& tape, Points points, uint32_t* labels, OriginId* origins, Workspace& workspace);
 
 /// Value, derivatives and labels of each point. Unlike those of evaluateGradient the derivatives of a shortened tape
-/// have the same bits as the whole one's, wherever `care` tells its value apart.
+/// have the same bits as the whole one's, wherever `relevant` tells its value apart.
 struct PieceSamples {
     float *value, *dx, *dy, *dz;
     uint32_t* labels;
@@ -83,22 +83,22 @@ void evaluatePieces(const Tape& tape, Points points, const PieceSamples& out, Wo
 
 /// Which branches of a tape can't matter in which of up to 64 regions; filled by evaluateRanges, read by shorten.
 /// Valid until the workspace's next evaluateRanges.
-struct Regions {
+struct BoxBatch {
     const Box3f* boxes;
     size_t n;  ///< 1 … 64
 };
 
 /// out[i] encloses f over boxes[i]; remembers the choices for `shorten`. The instructions `free`, by number, ascending,
 /// count as any number whatever they read.
-void evaluateRanges(const Tape& tape, Regions regions, Range* out, Workspace& workspace,
+void evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out, Workspace& workspace,
                     std::span<const uint32_t> free = {});
 
 /// The tape with everything dropped that can't matter in region `index` of the last evaluateRanges on this workspace
 /// (which must have been of this very tape). Inside the region it returns the same bits as `tape` wherever those lie in
-/// what `care` tells apart, with the same owners and derivatives up to rounding; elsewhere some number on the same
+/// what `relevant` tells apart, with the same owners and derivatives up to rounding; elsewhere some number on the same
 /// side.
-Tape shorten(const Tape& tape, size_t index, Workspace& workspace, Care care = {});
+Tape shorten(const Tape& tape, size_t index, Workspace& workspace, RelevantRange relevant = {});
 /// The same in the memory of another tape than `tape`: nothing is allocated in steady state.
-void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, Care care = {});
+void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, RelevantRange relevant = {});
 
 }  // namespace sgm::eval

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "modeler/eval/kernel_planes.h"
 #include "modeler/eval/source_arch.h"
 #include "modeler/eval/values_dual.h"
 #include "modeler/eval/values_interval.h"
@@ -13,74 +14,6 @@
 
 namespace sgm::eval {
 namespace {
-
-using Arch = SourceArch;
-using Float = Lanes<Arch>;
-static_assert(vectorFloats % Float::size == 0);
-
-/// Where an operand is: its first plane, and the others, a stride apart.
-struct Place {
-    const float* first;
-    const float* rest;
-    Place from(size_t i) const { return {first + i, rest + i}; }
-};
-
-/// How a value type lies in the register file.
-template <class V>
-struct Planes;
-template <>
-struct Planes<Float> {
-    static constexpr size_t count = 1, floats = Float::size;
-    static Float load(Place at, size_t) { return Float::load(at.first); }
-    static void store(Float v, float* p, size_t) { v.store(p); }
-};
-template <>
-struct Planes<Pair<Float>> {
-    static constexpr size_t count = 1, floats = 2 * Float::size;
-    static Pair<Float> row(const float* p) { return {Float::load(p), Float::load(p + Float::size)}; }
-    static Pair<Float> load(Place at, size_t) { return row(at.first); }
-    static void store(Pair<Float> v, float* p, size_t) {
-        v.a.store(p);
-        v.b.store(p + Float::size);
-    }
-};
-template <>
-struct Planes<Dual<Float>> {
-    static constexpr size_t count = 4, floats = Float::size;
-    static Dual<Float> load(Place at, size_t stride) {
-        return {Float::load(at.first), Float::load(at.rest), Float::load(at.rest + stride),
-                Float::load(at.rest + 2 * stride)};
-    }
-    static void store(Dual<Float> v, float* p, size_t stride) {
-        v.value.store(p);
-        v.dx.store(p + stride);
-        v.dy.store(p + 2 * stride);
-        v.dz.store(p + 3 * stride);
-    }
-};
-template <>
-struct Planes<Dual<Pair<Float>>> {
-    static constexpr size_t count = 4, floats = 2 * Float::size;
-    using Row = Planes<Pair<Float>>;
-    static Dual<Pair<Float>> load(Place at, size_t stride) {
-        return {Row::row(at.first), Row::row(at.rest), Row::row(at.rest + stride), Row::row(at.rest + 2 * stride)};
-    }
-    static void store(Dual<Pair<Float>> v, float* p, size_t stride) {
-        Row::store(v.value, p, 0);
-        Row::store(v.dx, p + stride, 0);
-        Row::store(v.dy, p + 2 * stride, 0);
-        Row::store(v.dz, p + 3 * stride, 0);
-    }
-};
-template <>
-struct Planes<Interval<Float>> {
-    static constexpr size_t count = 2;
-    static Interval<Float> load(Place at, size_t) { return {Float::load(at.first), Float::load(at.rest)}; }
-    static void store(Interval<Float> v, float* p, size_t stride) {
-        v.lo.store(p);
-        v.hi.store(p + stride);
-    }
-};
 
 /// The row's body for a value type, its override where it has one.
 template <class Row, class V>
@@ -99,15 +32,15 @@ struct Body<Row, Dual<F>> {
 template <class Row, class F>
 struct Body<Row, Interval<F>> {
     /// Unknown where an operand is.
-    static Interval<F> call(auto... args) { return bare(args...).where((known(args) & ...)); }
+    static Interval<F> call(auto... args) { return unmasked(args...).where((known(args) & ...)); }
     static Interval<F> call(std::span<const Interval<F>> args, auto data) {
         auto mask = known(args[0]);
         for (const Interval<F>& a : args) mask = mask & known(a);
-        return bare(args, data).where(mask);
+        return unmasked(args, data).where(mask);
     }
 
 private:
-    static Interval<F> bare(auto... args) {
+    static Interval<F> unmasked(auto... args) {
         if constexpr (requires { Row::interval(args...); })
             return Row::interval(args...);
         else
@@ -179,8 +112,8 @@ void keepBounds(std::span<const Interval<Float>> args, uint32_t data, size_t i, 
         mask = mask & known(args[k]);
         (Row::owner == field::ops::Owner::Least ? args[k].lo : args[k].hi).store(c.bounds + k * maxBoxes + i);
     }
-    const Float reach = select(mask, Row::reach(args, data), Float(std::numeric_limits<float>::quiet_NaN()));
-    reach.store(c.bounds + args.size() * maxBoxes + i);
+    const Float pruneBound = select(mask, Row::pruneBound(args, data), Float(std::numeric_limits<float>::quiet_NaN()));
+    pruneBound.store(c.bounds + args.size() * maxBoxes + i);
 }
 
 /// Any operands, gathered vector by vector.
@@ -205,9 +138,9 @@ template <class Row, auto path, class V>
 size_t stepByNumbers(size_t i, const Place* places, const auto& numbers, float* out, const StepContext& c) {
     const size_t stride = outStride(c);
     for (; i + Planes<V>::floats <= c.count; i += Planes<V>::floats) {
-        V at[Row::moving];
-        for (size_t k = 0; k < Row::moving; ++k) at[k] = Planes<V>::load(places[k].from(i), c.stride);
-        Planes<V>::store(Row::template byNumbers<path>(at, numbers), out + i, stride);
+        V at[Row::varyingOperands];
+        for (size_t k = 0; k < Row::varyingOperands; ++k) at[k] = Planes<V>::load(places[k].from(i), c.stride);
+        Planes<V>::store(Row::template evalUniform<path>(at, numbers), out + i, stride);
     }
     return i;
 }
@@ -218,9 +151,9 @@ void stepBySlopes(const Instruction& in, float* out, const StepContext& c) {
     const Source* const sources = c.sources + in.a;
     const size_t stride = outStride(c);
     Float args[Row::operandCount];
-    for (size_t k = Row::moving; k < Row::operandCount; ++k) args[k] = Float(c.constants[indexOf(sources[k])]);
+    for (size_t k = Row::varyingOperands; k < Row::operandCount; ++k) args[k] = Float(c.constants[indexOf(sources[k])]);
     for (size_t i = 0; i < c.count; i += Float::size) {
-        for (size_t k = 0; k < Row::moving; ++k) args[k] = Float::load(c.coordinates[k] + i);
+        for (size_t k = 0; k < Row::varyingOperands; ++k) args[k] = Float::load(c.coordinates[k] + i);
         const auto [value, by] = Row::template slopes<Float>([&](size_t k) { return args[k]; });
         Planes<Dual<Float>>::store({value, by.x, by.y, by.z}, out + i, stride);
     }
@@ -230,7 +163,7 @@ void stepBySlopes(const Instruction& in, float* out, const StepContext& c) {
 /// False where the operands are otherwise.
 template <class Row, class V>
 bool stepOverNumbers(const Instruction& in, const StepContext& c) {
-    constexpr size_t count = Row::operandCount, moving = Row::moving;
+    constexpr size_t count = Row::operandCount, moving = Row::varyingOperands;
     const Source* const sources = c.sources + in.a;
     for (size_t k = 0; k < count; ++k)
         if (isConstant(sources[k]) != (k >= moving)) return false;
@@ -238,10 +171,11 @@ bool stepOverNumbers(const Instruction& in, const StepContext& c) {
     for (size_t k = 0; k < moving; ++k) places[k] = placeOf<V>(c, sources[k]);
     float* const out = outOf<V>(c, in.out);
     const size_t stride = outStride(c);
-    if constexpr (!std::is_same_v<V, Interval<Float>> && requires { sizeof(typename Row::template Numbers<float>); }) {
+    if constexpr (!std::is_same_v<V, Interval<Float>> &&
+                  requires { sizeof(typename Row::template UniformParams<float>); }) {
         float args[count];
         for (size_t k = moving; k < count; ++k) args[k] = c.constants[indexOf(sources[k])];
-        const typename Row::template Numbers<float> numbers(std::span<const float>(args, count), in.data);
+        const typename Row::template UniformParams<float> numbers(std::span<const float>(args, count), in.data);
         Row::visitPath(
             numbers.form, [&]<auto path>() {
                 using Two = std::conditional_t<std::is_same_v<V, Float>, Pair<Float>, Dual<Pair<Float>>>;

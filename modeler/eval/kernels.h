@@ -41,7 +41,7 @@ using Step = void (*)(const Instruction&, const StepContext&);
 
 /// Over n points (a multiple of vectorFloats, all rows aligned): where `values` beats `best`, both rows take this
 /// operand's place. Owners are kept as the bits of floats; where `owners` is null, `one` is everybody's.
-using MoveOwners = void (*)(const float* values, const float* owners, float one, size_t n, float* best, float* taken);
+using ArgMinUpdate = void (*)(const float* values, const float* owners, float one, size_t n, float* best, float* taken);
 
 /// The same of two operands at once, of n points (likewise): the second one's owner where it beats the first. `taken`
 /// may be one of `owners`.
@@ -61,7 +61,7 @@ struct Kernels {
     const Step* values;
     const Step* gradients;  ///< Dual: rows value, dx, dy, dz
     const Step* ranges;     ///< Interval: rows lo, hi; ops that choose also write `bounds`
-    MoveOwners toLesser, toGreater;
+    ArgMinUpdate argMinUpdate, toGreater;
     OwnersOfTwo ofLesser, ofGreater;
     LoadRow load;
     StoreRow store;

@@ -11,6 +11,6 @@ namespace sgm::eval {
 /// Bit i is set where `shorten` to region i may leave out an instruction, given by its number. Exact where one min or
 /// max at the end of the tape decides on it; where others choose too, all bits are set. Of the `n` regions of the last
 /// evaluateRanges on this workspace (which must have been of this very tape).
-uint64_t mayLeaveOut(const Tape& tape, size_t instruction, size_t n, Workspace& workspace, Care care = {});
+uint64_t mayLeaveOut(const Tape& tape, size_t instruction, size_t n, Workspace& workspace, RelevantRange relevant = {});
 
 }  // namespace sgm::eval

@@ -42,7 +42,7 @@ const float* OwnerPass::valuesOf(const OwnedOperand& o, size_t n) {
 }
 
 /// The operand from `first` on that no later one beats; ties go to the first.
-void OwnerPass::takeBest(uint32_t first, size_t n, MoveOwners move) {
+void OwnerPass::takeBest(uint32_t first, size_t n, ArgMinUpdate move) {
     const OwnedOperand& start = operands_[first];
     std::copy_n(valuesOf(start, n), n, best_.data());
     if (start.owners.row)
@@ -80,9 +80,9 @@ bool OwnerPass::takeOfTwo(const field::OpTraits& row, size_t n, float* taken) co
 void OwnerPass::take(const field::OpTraits& row, size_t n) {
     switch (row.owner) {
         case Owner::Least:
-            return takeBest(row.firstChoice, n, kernels_.toLesser);
+            return takeBest(row.firstPrunable, n, kernels_.argMinUpdate);
         case Owner::Greatest:
-            return takeBest(row.firstChoice, n, kernels_.toGreater);
+            return takeBest(row.firstPrunable, n, kernels_.toGreater);
         case Owner::Nearer: {
             const float* const t = valuesOf(operands_[2], n);
             for (size_t i = 0; i < n; ++i)
@@ -108,8 +108,8 @@ void OwnerPass::operator()(const Instruction& in, const StepContext& c) {
         return;
     }
     gather(in, sources, c);
-    if (alike(row.firstChoice, row.owner == Owner::Nearer ? 2 : in.count)) {
-        owners_[in.out] = operands_[row.firstChoice].owners;
+    if (alike(row.firstPrunable, row.owner == Owner::Nearer ? 2 : in.count)) {
+        owners_[in.out] = operands_[row.firstPrunable].owners;
         return;
     }
     if (const float* const only = row.owner == Owner::First ? onlyRow() : nullptr) {

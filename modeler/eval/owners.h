@@ -29,7 +29,7 @@ private:
     const float* onlyRow() const;
     bool takeOfTwo(const field::OpTraits& row, size_t n, float* taken) const;
     void take(const field::OpTraits& row, size_t n);
-    void takeBest(uint32_t first, size_t n, MoveOwners move);
+    void takeBest(uint32_t first, size_t n, ArgMinUpdate move);
 
     const Tape& tape_;
     const Kernels& kernels_;

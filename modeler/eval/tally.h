@@ -11,14 +11,14 @@
 namespace sgm::eval {
 
 /// What of an operation is asked for: numbers at points, with derivatives, or enclosures over boxes.
-enum class Asked : uint8_t { Value, Gradient, Range };
+enum class EvaluationKind : uint8_t { Value, Gradient, Range };
 
 /// An operation as far as its cost depends on it.
 struct Operation {
     field::OpCode op;
     uint32_t count;  ///< operands
     uint32_t data;   ///< structural integer (the passes of a KIFS)
-    Asked asked = Asked::Value;
+    EvaluationKind asked = EvaluationKind::Value;
     friend auto operator<=>(const Operation&, const Operation&) = default;
 };
 

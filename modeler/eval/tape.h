@@ -25,7 +25,7 @@ constexpr uint32_t indexOf(Source s) { return s & ~constantBit; }
 /// One step: out = op(a, b), or over `count` sources from `a` in Tape::sources() for variadic ops.
 struct Instruction {
     field::OpCode op;
-    uint32_t count;        ///< operands; a melt of a whole cloud has more than 2¹⁶
+    uint32_t count;        ///< operands; a smooth union of a whole cloud has more than 2¹⁶
     uint32_t out;          ///< register
     Source a = 0;          ///< first operand; for a variadic op its first place in Tape::sources()
     Source b = 0;          ///< second operand
@@ -36,10 +36,10 @@ struct Instruction {
 
 /// What the consumers of a value tell apart: any two numbers above `most` are the same to them, and any two below
 /// `least`.
-struct Care {
+struct RelevantRange {
     float least = -std::numeric_limits<float>::infinity();
     float most = std::numeric_limits<float>::infinity();
-    friend bool operator==(const Care&, const Care&) = default;
+    friend bool operator==(const RelevantRange&, const RelevantRange&) = default;
 };
 
 /// The grids of a graph, by number, and their words as kernels read them.

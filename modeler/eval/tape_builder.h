@@ -25,7 +25,7 @@ public:
     struct Use {
         Source source;
         OriginId origin = 0;
-        Care care{};
+        RelevantRange relevant{};
     };
 
     /// See Tape::lipschitz, Tape::tieMargin and Tape::chosenInputs.
@@ -43,7 +43,7 @@ public:
     /// The greatest key below `below` that something already written needs, inputs apart; `none` when there is none.
     uint32_t nextLive(uint32_t below) const;
     /// What of a live value matters to what is written.
-    Care care(uint32_t key) const { return values_[key].care; }
+    RelevantRange relevant(uint32_t key) const { return values_[key].relevant; }
     /// Writes the instruction that defines the live value `key`: op, data and piece of `like` over these operands.
     /// `listed`: it keeps the owners of its operands.
     void define(uint32_t key, const Instruction& like, const Use* operands, size_t count, bool listed);
@@ -67,7 +67,7 @@ private:
     struct Value {
         uint32_t reg = none;
         uint32_t owner = none;
-        Care care{};
+        RelevantRange relevant{};
     };
     Source demand(const Use& use, uint32_t ownerEntry);
     bool live(uint32_t key) const { return values_[key].reg != none; }
@@ -120,11 +120,11 @@ inline Source TapeBuilder::demand(const Use& use, uint32_t ownerEntry) {
     Value& v = values_[use.source];
     if (v.reg == none) {
         const uint32_t reg = takeRegister();
-        enter(use.source, {reg, ownerEntry, use.care});
+        enter(use.source, {reg, ownerEntry, use.relevant});
         return reg;
     }
     v.owner = none;
-    v.care = {std::min(v.care.least, use.care.least), std::max(v.care.most, use.care.most)};
+    v.relevant = {std::min(v.relevant.least, use.relevant.least), std::max(v.relevant.most, use.relevant.most)};
     return v.reg;
 }
 
@@ -149,7 +149,7 @@ inline void TapeBuilder::alias(uint32_t key, Use same) {
     if (!told && canTell) origins_[owner] = same.origin;
     if (!isConstant(same.source) && !live(same.source) && (told || canTell)) {
         Value v = leave(key);
-        v.care = same.care;
+        v.relevant = same.relevant;
         enter(same.source, v);
     } else {
         define(key, {.op = field::codeOf<field::ops::Copy>, .count = 1, .out = 0}, &same, 1, !told && !canTell);

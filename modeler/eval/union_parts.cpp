@@ -6,27 +6,27 @@
 
 namespace sgm::eval {
 
-void UnionParts::follow(const Tape& tape, const Links& links) {
+void UnionParts::build(const Tape& tape, const UseDefChains& chains) {
     parts_.clear();
-    told_ = listed_ = false;
+    classified_ = listed_ = false;
     const auto isMin = [&](Source s) {
         return !isConstant(s) && s >= 3 && tape.code()[s - 3].op == field::codeOf<field::ops::Min>;
     };
-    if (!isMin(links.result())) return;
-    reach_ = links.bounds(links.result() - 3) + 2;
+    if (!isMin(chains.result())) return;
+    pruneBound_ = chains.bounds(chains.result() - 3) + 2;
     minima_.assign(tape.size() + 3, 0);
     stack_.clear();
-    for (Part at{links.result(), 0, 0, 0};; at = stack_.back(), stack_.pop_back()) {
-        while (isMin(at.value) && links.readers(at.value) <= 1) {  // the first operand's parts before the second one's
+    for (Part at{chains.result(), 0, 0, 0};; at = stack_.back(), stack_.pop_back()) {
+        while (isMin(at.value) && chains.readers(at.value) <= 1) {  // the first operand's parts before the second one's
             minima_[at.value] = 1;
             const size_t i = at.value - 3;
-            const Source* const operands = links.operands(i);
+            const Source* const operands = chains.operands(i);
             const uint32_t owners = tape.code()[i].origins;
             listed_ = listed_ || owners != 0;
             const auto origin = [&](uint32_t k) {
                 return at.origin != 0 || owners == 0 ? at.origin : tape.origins()[owners - 1 + k];
             };
-            const uint32_t bound = links.bounds(i);
+            const uint32_t bound = chains.bounds(i);
             stack_.push_back({operands[1], origin(1), bound + 1, at.value});
             at = {operands[0], origin(0), bound, at.minimum};
         }
@@ -36,14 +36,14 @@ void UnionParts::follow(const Tape& tape, const Links& links) {
     if (operands_.size() < tape.size() + 3) operands_.resize(tape.size() + 3);
 }
 
-void UnionParts::tell(const float* bounds, size_t n, Care care, float tieMargin, NotAbove notAbove) {
+void UnionParts::classify(const float* bounds, size_t n, RelevantRange relevant, float tieMargin, NotAbove notAbove) {
     alignas(vectorFloats * sizeof(float)) std::array<float, maxBoxes> most{};
     std::array<uint32_t, maxBoxes> count{};
     uint64_t asked = 0;
     for (size_t r = 0; r < n; ++r) {
-        const float reach = bounds[reach_ * maxBoxes + r];
-        most[r] = std::min(care.most, reach + tieMargin);
-        asked |= uint64_t{!std::isnan(reach)} << r;
+        const float pruneBound = bounds[pruneBound_ * maxBoxes + r];
+        most[r] = std::min(relevant.most, pruneBound + tieMargin);
+        asked |= uint64_t{!std::isnan(pruneBound)} << r;
     }
     regions_.clear();
     for (const Part& part : parts_) {
@@ -59,8 +59,8 @@ void UnionParts::tell(const float* bounds, size_t n, Care care, float tieMargin,
     for (size_t p = 0; p < parts_.size(); ++p)
         for (uint64_t rest = regions_[p]; rest != 0; rest &= rest - 1)
             left_[next[static_cast<size_t>(std::countr_zero(rest))]++] = static_cast<uint32_t>(p);
-    told_ = true;
-    care_ = care;
+    classified_ = true;
+    relevant_ = relevant;
 }
 
 bool UnionParts::enter(size_t region) {

@@ -9,17 +9,17 @@
 #include <vector>
 
 #include "modeler/eval/kernels.h"
-#include "modeler/eval/links.h"
+#include "modeler/eval/use_def_chains.h"
 
 namespace sgm::eval {
 
 class UnionParts {
 public:
-    /// Values as in Links.
+    /// Values as in UseDefChains.
     struct Part {
         Source value;
         OriginId origin;  ///< the first word on its owner on the way from the result, whose own isn't heard; 0 for none
-        uint32_t bound;   ///< its row of lower ends, see Links::bounds
+        uint32_t bound;   ///< its row of lower ends, see UseDefChains::bounds
         uint32_t minimum;  ///< the lowest of the tree that has it and the part before
     };
     /// What a minimum of the tree has left in a region. Where it is another minimum, its parts speak of their owners.
@@ -28,23 +28,23 @@ public:
         OriginId origin[2];
     };
 
-    /// Lists the parts of a tape that `links` follows: none where its value isn't a minimum.
-    void follow(const Tape& tape, const Links& links);
+    /// Lists the parts of a tape that `chains` follows: none where its value isn't a minimum.
+    void build(const Tape& tape, const UseDefChains& chains);
     bool empty() const { return parts_.empty(); }
     /// Whether a value is a minimum of the tree.
     bool isMinimum(uint32_t value) const { return minima_[value] != 0; }
     /// Whether one of them lists the owners of its operands.
     bool listed() const { return listed_; }
     /// The row of the reach of all.
-    uint32_t reach() const { return reach_; }
+    uint32_t pruneBound() const { return pruneBound_; }
 
     /// Tells for each of the first n regions which parts aren't above all that counts there, by `bounds`, rows of
     /// maxBoxes floats, and what is told apart of the result.
     /// A part that may tie with the least, see Tape::tieMargin, isn't above it.
-    void tell(const float* bounds, size_t n, Care care, float tieMargin, NotAbove notAbove);
-    /// True once `tell` was called for this care and the last tape.
-    bool told(Care care) const { return told_ && care == care_; }
-    /// Goes to a region, by what `tell` said. False where nothing is left, for then any part will do, and where an
+    void classify(const float* bounds, size_t n, RelevantRange relevant, float tieMargin, NotAbove notAbove);
+    /// True once `classify` was called for this care and the last tape.
+    bool isClassified(RelevantRange relevant) const { return classified_ && relevant == relevant_; }
+    /// Goes to a region, by what `classify` said. False where nothing is left, for then any part will do, and where an
     /// operand is unknown: a NaN takes sides by its place in the tree.
     bool enter(size_t region);
     /// In the region: the value of all, a part or a minimum, and the owner of a single part.
@@ -56,9 +56,9 @@ public:
 private:
     std::vector<Part> parts_, stack_;
     std::vector<uint8_t> minima_;  // by value
-    uint32_t reach_ = 0;
-    bool listed_ = false, told_ = false;
-    Care care_;
+    uint32_t pruneBound_ = 0;
+    bool listed_ = false, classified_ = false;
+    RelevantRange relevant_;
     std::vector<uint64_t> regions_;  // of each part
     std::vector<uint32_t> left_;     // parts by region, ascending
     std::array<uint32_t, maxBoxes + 1> starts_;

@@ -1,6 +1,6 @@
 // Two values side by side: a long chain of operations keeps the processor busy when two run at once.
-// Enters: two of a V. Leaves: the vocabulary of modeler/field/values.h but for integers. Assumes nothing; each has the
-// bits it would have alone.
+// Enters: two of a V. Leaves: the value interface of modeler/field/values.h but for integers. Assumes nothing; each has
+// the bits it would have alone.
 #pragma once
 
 #include "modeler/field/values.h"

@@ -1,5 +1,5 @@
 // The SIMD value: one float a lane.
-// Enters: aligned memory or broadcast floats. Leaves: the vocabulary of modeler/field/values.h over xsimd batches.
+// Enters: aligned memory or broadcast floats. Leaves: the value interface of modeler/field/values.h over xsimd batches.
 // Assumes the translation unit is compiled for A (see kernels.cpp); every A gives the same bits as plain float.
 #pragma once
 

@@ -10,9 +10,9 @@
 
 #include "modeler/eval/evaluate.h"
 #include "modeler/eval/kernels.h"
-#include "modeler/eval/links.h"
 #include "modeler/eval/tape_builder.h"
 #include "modeler/eval/union_parts.h"
+#include "modeler/eval/use_def_chains.h"
 
 namespace sgm::eval {
 
@@ -67,10 +67,10 @@ struct alignas(128) Workspace::Impl {
     Tally* tally = nullptr;  ///< where operations are counted, if at all
     AlignedFloats registers, arguments;
     AlignedFloats points;  ///< copies of coordinates that aren't padded
-    Links links;           ///< of the last evaluateRanges
+    UseDefChains chains;   ///< of the last evaluateRanges
     UnionParts parts;      ///< of the same tape
     size_t regions = 0;    ///< that it asked about
-    AlignedFloats bounds;  ///< rows of maxBoxes floats, see Links::bounds
+    AlignedFloats bounds;  ///< rows of maxBoxes floats, see UseDefChains::bounds
     AlignedFloats owners;  ///< registers of owners, as bits
     std::vector<Owners> registerOwners;
     std::vector<OwnedOperand> ownedOperands;

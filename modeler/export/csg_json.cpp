@@ -65,7 +65,7 @@ void list(OutFile& out, const char* name, const Rows& rows, Progress* progress, 
 
 }  // namespace
 
-Status writeCsgJson(const ExportInput& input, const Path& temporary, const Path& target) {
+static Status writeCsgJson(const ExportInput& input, const Path& temporary, const Path& target) {
     const field::SolidTree& tree = *input.solids;
     const Provenance& provenance = *input.provenance;
     if (input.progress)
@@ -85,5 +85,17 @@ Status writeCsgJson(const ExportInput& input, const Path& temporary, const Path&
     out.text("\n}\n");
     return out.finish();
 }
+
+constinit const Exporter csgJsonFormat{
+    .extension = ".csg.json",
+    .doc =
+        "The solid tree as JSON: booleans of primitives with their parts and materials, of models that are exactly "
+        "that",
+    .options = {},
+    .takesPositionsOnly = saysPositionsOnly,
+    .write = writeCsgJson,
+    .stream = nullptr,
+    .wantsSolids = true,
+};
 
 }  // namespace sgm::exporter

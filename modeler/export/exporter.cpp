@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <new>
 
 #include "modeler/core/atomic_file.h"
@@ -11,81 +12,13 @@
 namespace sgm::exporter {
 namespace {
 
-constexpr ExportOption uv{
-    "uv", "scope", "scope|box|none",
-    "texture coordinates in metres: in the plane of each face, turned with the scope of its shape, "
-    "or projected along the nearest axis"};
-constexpr ExportOption lightMap{"lightmap", "none", "none|256|512|1024|2048|4096",
-                                "a second set of texture coordinates, without overlaps, for a light map of so many "
-                                "texels a side for each object"};
-constexpr ExportOption up{"up", "y", "y|z", "the axis that points up in the file"};
-constexpr ExportOption unit{"unit", "m", "m|cm|mm", "the length of one unit in the file"};
-constexpr std::string_view instancesDoc = "whether objects that are equal and touch nothing show one surface";
-constexpr ExportOption gltfOptions[] = {
-    uv,
-    lightMap,
-    {"instances", "yes", "yes|no", instancesDoc},
-    {"engine", "godot", "godot|unreal|unity", "whose names colliders bear, so that it imports them as such"},
-    {"pack", "none", "none|meshopt|draco",
-     "compression, for readers that have it: 16-bit positions on one grid, 8-bit normals"},
-    {"levels", "scene", "scene|msft",
-     "where coarser levels of detail are: in the scene beside the finest, or outside, for readers of MSFT_lod alone"}};
-constexpr ExportOption texturedOptions[] = {up, unit, uv};
-constexpr ExportOption usdOptions[] = {up, unit, uv, lightMap, {"instances", "no", "yes|no", instancesDoc}};
-constexpr ExportOption plainOptions[] = {up, unit};
-constexpr ExportOption scadOptions[] = {
-    up, unit, {"sides", "128", "16|32|64|128|256|512|1024|2048|4096", "sides of round solids, inscribed"}};
-constexpr ExportOption plyOptions[] = {
-    up,
-    unit,
-    {"attributes", "all", "all|none",
-     "what vertices and faces carry beside the shape; none: 19 bytes a triangle, not 34"}};
-constexpr ExportOption volumeOptions[] = {
-    {"grids", "levelset", "levelset|fog|levelset,fog", "which grids the file holds; the fog's is called density"},
-    {"grid", "level_set", "", "name of the level set's grid"},
-    {"distance", "exact", "exact|raw",
-     "level set: distances to the isosurface, or the field's own values, which are steeper or flatter in places"},
-    {"half", "no", "no|yes", "16-bit floats: about a third smaller, three digits"},
-    {"density", "1", "", "fog: density deep inside", 1e-6, 1e6},
-    {"edge", "0", "", "fog: metres of depth over which it thickens to that; 0: three voxels", 0, 1e5},
-    {"wisps", "0", "", "fog: how far noise eats into the edge", 0, 0.95},
-    {"billow", "0", "", "fog: how much noise thins the inside, which is then stored voxel by voxel", 0, 1},
-    {"lump", "0", "", "fog: metres of the largest lumps of noise; 0: an eighth of the least extent", 0, 1e5},
-};
-
-bool always(const ExportOptions&) { return true; }
-
-bool withoutAttributes(const ExportOptions& options) {
-    const auto asked = options.find("attributes");
-    return asked != options.end() && asked->second == "none";
+/// Every format, in the order of docs/reference.md.
+const auto& table() {
+#define SGM_LIST(name) name##Format,
+    static const std::array rows{SGM_FORMATS(SGM_LIST)};
+#undef SGM_LIST
+    return rows;
 }
-
-constexpr Exporter table[] = {
-    {".glb", "glTF 2.0, binary: normals, texture coordinates, a primitive a material", false, gltfOptions, nullptr,
-     writeGlb, nullptr, false, true, true},
-    {".gltf", "glTF 2.0 as JSON, with its buffer inside", false, gltfOptions, nullptr, writeGltf, nullptr, false, true,
-     true},
-    {".obj", "Wavefront OBJ, with a .mtl beside it", false, texturedOptions, nullptr, writeObj, nullptr, false, true,
-     true},
-    {".ply", "PLY, binary: normals, texture coordinates s t, colours, an origin a face", false, plyOptions,
-     withoutAttributes, writePly, streamPly},
-    {".stl", "STL, binary: positions only", false, plainOptions, always, writeStl, streamStl},
-    {".off", "OFF: positions and triangles as text", false, plainOptions, always, writeOff, streamOff},
-    {".usda", "OpenUSD as text: normals, display colours, a subset and preview surface a material", false, usdOptions,
-     nullptr, writeUsda, nullptr, false, true, true},
-    {".vdb", "OpenVDB: a narrow-band level set, fog for renderers, or both; voxels in metres", true, volumeOptions,
-     always, writeVdb, nullptr},
-    {".csg.json",
-     "The solid tree as JSON: booleans of primitives with their parts and materials, of models that are exactly that",
-     false,
-     {},
-     always,
-     writeCsgJson,
-     nullptr,
-     true},
-    {".scad", "The solid tree as an OpenSCAD program: a module a boolean, of the same models", false, scadOptions,
-     always, writeScad, nullptr, true},
-};
 
 /// The name in lower case, by ASCII.
 std::string lowered(std::string text) {
@@ -135,7 +68,7 @@ Status checkInput(const ExportInput& input, const Exporter& row, const Path& pat
     if (!row.wantsVolume && !row.wantsSolids && (!input.mesh || input.mesh->triangleCount() == 0))
         return writeError(path, "the mesh has no triangles");
     if (Status status = checkOptions(row, input.options); !status.ok()) return status;
-    if (input.mesh && !takesBare(row, input.options) && input.mesh->isBare()) return bareError(path);
+    if (input.mesh && !takesPositionsOnly(row, input.options) && input.mesh->hasPositionsOnly()) return bareError(path);
     return Done{};
 }
 
@@ -143,7 +76,7 @@ Status checkInput(const ExportInput& input, const Exporter& row, const Path& pat
 Result<const Exporter*> rowFor(const Path& path) {
     if (const Exporter* const row = exporterFor(path)) return row;
     return Error{Error::Kind::Usage, fmt::format("no format for '{}'; the extensions are {}", path.string(),
-                                                 joined(table, " ", [](const Exporter& e) { return e.extension; }))};
+                                                 joined(table(), " ", [](const Exporter& e) { return e.extension; }))};
 }
 
 /// Replaces the file by what fill(input, temporary) writes; the input has a provenance then.
@@ -177,33 +110,35 @@ Status checkOptions(const Exporter& row, const ExportOptions& options) {
     return Done{};
 }
 
-std::span<const Exporter> exporters() { return table; }
+std::span<const Exporter> exporters() { return table(); }
 
 bool holdsColliders(const Exporter& row) {
     return std::any_of(row.options.begin(), row.options.end(),
                        [](const ExportOption& o) { return o.name == "engine"; });
 }
 
-bool takesBare(const Exporter& row, const ExportOptions& options) { return row.takesBare && row.takesBare(options); }
+bool takesPositionsOnly(const Exporter& row, const ExportOptions& options) {
+    return row.takesPositionsOnly && row.takesPositionsOnly(options);
+}
 
 const Exporter* findExporter(std::string_view extension) {
     const std::string lower = lowered(std::string(extension));
     const auto row =
-        std::find_if(std::begin(table), std::end(table), [&](const Exporter& e) { return e.extension == lower; });
-    return row == std::end(table) ? nullptr : row;
+        std::find_if(table().begin(), table().end(), [&](const Exporter& e) { return e.extension == lower; });
+    return row == table().end() ? nullptr : row;
 }
 
 const Exporter* exporterFor(const Path& path) {
     const std::string name = lowered(path.filename().string());
-    const auto row = std::find_if(std::begin(table), std::end(table), [&](const Exporter& e) {
+    const auto row = std::find_if(table().begin(), table().end(), [&](const Exporter& e) {
         return name.size() > e.extension.size() && name.ends_with(e.extension);
     });
-    return row == std::end(table) ? nullptr : row;
+    return row == table().end() ? nullptr : row;
 }
 
 std::vector<Path> filesOf(const Path& path) {
     const Exporter* const row = exporterFor(path);
-    return row && row->write == writeObj ? std::vector{path, materialFile(path)} : std::vector{path};
+    return row && row->beside ? std::vector{path, row->beside(path)} : std::vector{path};
 }
 
 Status write(const ExportInput& input, const Path& path) {
@@ -224,11 +159,11 @@ Status writeStreamed(const ExportInput& input, const ChunkSource& chunks, const 
     if (Status status = checkOptions(**row, input.options); !status.ok()) return status;
     return replaced(input, path, [&](const ExportInput& complete, const Path& temporary) -> Status {
         uint64_t triangles = 0;
-        const bool whole = !takesBare(**row, input.options);
+        const bool whole = !takesPositionsOnly(**row, input.options);
         const ChunkSource counted = [&](const mesh::ChunkVisitor& visit) {
             return chunks([&](const mesh::Mesh& window, const mesh::Chunk& chunk) -> Status {
                 triangles += chunk.triangles.size();
-                if (whole && chunk.isBare()) return bareError(path);
+                if (whole && chunk.hasPositionsOnly()) return bareError(path);
                 return visit(window, chunk);
             });
         };
@@ -240,14 +175,14 @@ Status writeStreamed(const ExportInput& input, const ChunkSource& chunks, const 
 
 std::string leveledExtensions() {
     std::vector<std::string_view> extensions;
-    for (const Exporter& e : table)
+    for (const Exporter& e : table())
         if (e.holdsLevels) extensions.push_back(e.extension);
     return joined(extensions, " ", [](std::string_view e) { return e; });
 }
 
 std::string streamedExtensions() {
     std::vector<std::string_view> extensions;
-    for (const Exporter& e : table)
+    for (const Exporter& e : table())
         if (e.stream) extensions.push_back(e.extension);
     return joined(extensions, " ", [](std::string_view e) { return e; });
 }

@@ -56,17 +56,19 @@ using ChunkSource = std::function<Status(const mesh::ChunkVisitor& visit)>;
 struct Exporter {
     std::string_view extension;  ///< ".glb"
     std::string_view doc;
-    bool wantsVolume;
+    bool wantsVolume = false;
     std::span<const ExportOption> options;
-    /// Whether a file with these options says nothing of normals and origins, so that the mesh may be bare; null where
-    /// every file does.
-    bool (*takesBare)(const ExportOptions& options);
+    /// Whether a file with these options says nothing of normals and origins, so that the mesh may hold positions only;
+    /// null where every file does.
+    bool (*takesPositionsOnly)(const ExportOptions& options) = nullptr;
     /// Writes to `temporary`; `write` renames it into place.
     Status (*write)(const ExportInput& input, const std::filesystem::path& temporary,
-                    const std::filesystem::path& target);
+                    const std::filesystem::path& target) = nullptr;
     /// The same bytes from chunks, of which it holds none; null where the format wants the whole mesh.
     Status (*stream)(const ExportInput& input, const ChunkSource& chunks, const std::filesystem::path& temporary,
-                     const std::filesystem::path& target);
+                     const std::filesystem::path& target) = nullptr;
+    /// A second file that `write` makes beside the target; null where there is none.
+    std::filesystem::path (*beside)(const std::filesystem::path& target) = nullptr;
     bool wantsSolids = false;   ///< holds the model's solid tree, and neither a mesh nor a volume
     bool holdsObjects = false;  ///< divides a mesh by ExportInput::objects
     bool holdsLevels = false;   ///< writes ExportInput::levels beside the mesh
@@ -87,7 +89,7 @@ bool holdsColliders(const Exporter& row);
 /// Extensions of the formats that hold levels of detail: ".glb …".
 std::string leveledExtensions();
 /// Whether a bare mesh has all that the format writes with these options.
-bool takesBare(const Exporter& row, const ExportOptions& options);
+bool takesPositionsOnly(const Exporter& row, const ExportOptions& options);
 /// What `write` makes of `path`: the file, and those that lie beside it.
 std::vector<std::filesystem::path> filesOf(const std::filesystem::path& path);
 /// Writes `path` by its extension: all or nothing, Error::Cancelled when `input.progress` says so.

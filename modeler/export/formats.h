@@ -1,4 +1,4 @@
-// The writers behind the exporter table, one .cpp each, and the few things they share.
+// The rows of the exporter table, one .cpp each, and the few things they share.
 // Enters: what `write` has checked: a mesh with triangles (or a level set), a provenance, known options with known
 // values. Leaves: the temporary file filled. `target` is for messages and for files that lie beside.
 #pragma once
@@ -13,19 +13,30 @@ namespace sgm::exporter {
 
 using Path = std::filesystem::path;
 
-Status writeGlb(const ExportInput& input, const Path& temporary, const Path& target);
-Status writeGltf(const ExportInput& input, const Path& temporary, const Path& target);
-Status writeObj(const ExportInput& input, const Path& temporary, const Path& target);
-Status writePly(const ExportInput& input, const Path& temporary, const Path& target);
-Status writeStl(const ExportInput& input, const Path& temporary, const Path& target);
-Status writeOff(const ExportInput& input, const Path& temporary, const Path& target);
-Status writeUsda(const ExportInput& input, const Path& temporary, const Path& target);
-Status writeVdb(const ExportInput& input, const Path& temporary, const Path& target);
-Status writeCsgJson(const ExportInput& input, const Path& temporary, const Path& target);
-Status writeScad(const ExportInput& input, const Path& temporary, const Path& target);
-Status streamPly(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target);
-Status streamStl(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target);
-Status streamOff(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target);
+// clang-format off
+/// Every format, in the order of the reference page; each is defined in a file of its own.
+#define SGM_FORMATS(X) X(glb) X(gltf) X(obj) X(ply) X(stl) X(off) X(usda) X(vdb) X(csgJson) X(scad)
+// clang-format on
+#define SGM_DECLARE(name) extern const Exporter name##Format;
+SGM_FORMATS(SGM_DECLARE)
+#undef SGM_DECLARE
+
+/// Options that several formats have.
+inline constexpr ExportOption uvOption{
+    "uv", "scope", "scope|box|none",
+    "texture coordinates in metres: in the plane of each face, turned with the scope of its shape, "
+    "or projected along the nearest axis"};
+inline constexpr ExportOption lightMapOption{
+    "lightmap", "none", "none|256|512|1024|2048|4096",
+    "a second set of texture coordinates, without overlaps, for a light map of so many texels a side for each object"};
+inline constexpr ExportOption upOption{"up", "y", "y|z", "the axis that points up in the file"};
+inline constexpr ExportOption unitOption{"unit", "m", "m|cm|mm", "the length of one unit in the file"};
+/// `instances`, "yes" or "no" where nothing is said.
+constexpr ExportOption instancesOption(std::string_view fallback) {
+    return {"instances", fallback, "yes|no", "whether objects that are equal and touch nothing show one surface"};
+}
+/// Exporter::takesPositionsOnly of formats that never say anything of normals and origins.
+inline bool saysPositionsOnly(const ExportOptions&) { return true; }
 
 /// The value of a checked option, or `fallback` where it isn't given.
 std::string_view option(const ExportInput& input, std::string_view name, std::string_view fallback);

@@ -205,7 +205,7 @@ bool fits(const tinygltf::Model& model, bool binary) { return !binary || model.b
 
 /// Fills the temporary file by `fill(stream)`.
 template <class Fill>
-Status writeStream(const ExportInput& input, const Path& temporary, const Path& target, Fill fill) {
+static Status writeStream(const ExportInput& input, const Path& temporary, const Path& target, Fill fill) {
     errno = 0;
     PolledFile file(temporary, input.progress);
     std::ostream out(&file);
@@ -224,7 +224,7 @@ Result<tinygltf::Model> modelOfMesh(const ExportInput& input) {
     return std::move(builder.model);
 }
 
-Status writeScene(const ExportInput& input, const Path& temporary, const Path& target, bool binary) {
+static Status writeScene(const ExportInput& input, const Path& temporary, const Path& target, bool binary) {
     ExportInput own = input;  // without what is shown twice
     std::optional<SharedObjects> shared;
     if (input.objects)
@@ -256,12 +256,44 @@ Status writeScene(const ExportInput& input, const Path& temporary, const Path& t
 
 }  // namespace
 
-Status writeGlb(const ExportInput& input, const Path& temporary, const Path& target) {
+static Status writeGlb(const ExportInput& input, const Path& temporary, const Path& target) {
     return writeScene(input, temporary, target, true);
 }
 
-Status writeGltf(const ExportInput& input, const Path& temporary, const Path& target) {
+static Status writeGltf(const ExportInput& input, const Path& temporary, const Path& target) {
     return writeScene(input, temporary, target, false);
 }
+
+static constexpr ExportOption options[] = {
+    uvOption,
+    lightMapOption,
+    instancesOption("yes"),
+    {"engine", "godot", "godot|unreal|unity", "whose names colliders bear, so that it imports them as such"},
+    {"pack", "none", "none|meshopt|draco",
+     "compression, for readers that have it: 16-bit positions on one grid, 8-bit normals"},
+    {"levels", "scene", "scene|msft",
+     "where coarser levels of detail are: in the scene beside the finest, or outside, for readers of MSFT_lod alone"}};
+
+constinit const Exporter glbFormat{
+    .extension = ".glb",
+    .doc = "glTF 2.0, binary: normals, texture coordinates, a primitive a material",
+    .options = options,
+    .takesPositionsOnly = nullptr,
+    .write = writeGlb,
+    .stream = nullptr,
+    .holdsObjects = true,
+    .holdsLevels = true,
+};
+
+constinit const Exporter gltfFormat{
+    .extension = ".gltf",
+    .doc = "glTF 2.0 as JSON, with its buffer inside",
+    .options = options,
+    .takesPositionsOnly = nullptr,
+    .write = writeGltf,
+    .stream = nullptr,
+    .holdsObjects = true,
+    .holdsLevels = true,
+};
 
 }  // namespace sgm::exporter

@@ -19,11 +19,11 @@ constexpr int gridBits = 16, normalBits = 8;
 constexpr int speed = 3;
 
 template <size_t n>
-using Numbers = std::array<float, n>;
+using Floats = std::array<float, n>;
 
 struct HashOfBits {
     template <size_t n>
-    size_t operator()(const Numbers<n>& numbers) const {
+    size_t operator()(const Floats<n>& numbers) const {
         uint64_t hash = 0;
         // −0 and 0 are equal, so + 0 makes them one.
         for (const float v : numbers) hash = (hash ^ std::bit_cast<uint32_t>(v + 0.0f)) * 0x9e3779b97f4a7c15u;
@@ -48,8 +48,8 @@ public:
     /// Adds an attribute of floats with the value `value(key)` for each distinct key of the points; its number.
     template <size_t n, class Key, class Value>
     int add(draco::GeometryAttribute::Type type, size_t points, Key key, Value value) {
-        std::unordered_map<Numbers<n>, uint32_t, HashOfBits> known;
-        std::vector<Numbers<n>> values;
+        std::unordered_map<Floats<n>, uint32_t, HashOfBits> known;
+        std::vector<Floats<n>> values;
         std::vector<uint32_t> valueOf;
         for (size_t i = 0; i < points; ++i) {
             const auto [at, fresh] = known.try_emplace(key(i), static_cast<uint32_t>(values.size()));
@@ -106,7 +106,7 @@ private:
     }
 };
 
-Numbers<3> asArray(Vec3f v) { return {v.x, v.y, v.z}; }
+Floats<3> asArray(Vec3f v) { return {v.x, v.y, v.z}; }
 
 /// What one primitive becomes.
 struct Encoded {
@@ -128,7 +128,7 @@ public:
         addPositions();
         const int normal = mesh_.add<3>(
             draco::GeometryAttribute::NORMAL, data_.normals.size(), [&](size_t i) { return asArray(data_.normals[i]); },
-            [](const Numbers<3>& n) { return n; });
+            [](const Floats<3>& n) { return n; });
         encoder_.SetAttributeQuantization(normal, normalBits);
         nameAttribute("NORMAL", normal);
         for (const auto& [name, uv] : data_.textureCoordinates) addTextureCoordinates(name, uv);
@@ -150,26 +150,26 @@ private:
         const int id = mesh_.add<3>(
             draco::GeometryAttribute::POSITION, data_.positions.size(),
             [&](size_t i) { return asArray(data_.positions[i]); },
-            [&](const Numbers<3>& p) {
+            [&](const Floats<3>& p) {
                 const Vec3<int64_t> steps = stepsFrom(grid_, {0, 0, 0}, {p[0], p[1], p[2]});
                 const Vec3d rounded = steps.as<double>() * grid_.step;
                 out_.bounds = hull(out_.bounds, rounded);
                 return asArray(rounded.as<float>());
             });
-        const Numbers<3> corner = asArray((origin_.as<double>() * grid_.step).as<float>());
+        const Floats<3> corner = asArray((origin_.as<double>() * grid_.step).as<float>());
         encoder_.SetAttributeExplicitQuantization(id, gridBits, 3, corner.data(), rangeOf(grid_));
         nameAttribute("POSITION", id);
     }
 
-    void addTextureCoordinates(const std::string& name, const std::vector<Numbers<2>>& uv) {
-        Numbers<2> lo = uv[0], hi = uv[0];
-        for (const Numbers<2>& at : uv)
+    void addTextureCoordinates(const std::string& name, const std::vector<Floats<2>>& uv) {
+        Floats<2> lo = uv[0], hi = uv[0];
+        for (const Floats<2>& at : uv)
             for (size_t i = 0; i < 2; ++i) lo[i] = std::min(lo[i], at[i]), hi[i] = std::max(hi[i], at[i]);
         const QuantizationGrid grid = gridOver(static_cast<double>(std::max(hi[0] - lo[0], hi[1] - lo[1])));
         for (float& v : lo) v = static_cast<float>(static_cast<double>(grid.below(static_cast<double>(v))) * grid.step);
         const int id = mesh_.add<2>(
             draco::GeometryAttribute::TEX_COORD, uv.size(), [&](size_t i) { return uv[i]; },
-            [](const Numbers<2>& at) { return at; });
+            [](const Floats<2>& at) { return at; });
         encoder_.SetAttributeExplicitQuantization(id, gridBits, 2, lo.data(), rangeOf(grid));
         nameAttribute(name, id);
     }

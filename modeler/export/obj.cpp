@@ -124,8 +124,8 @@ private:
     size_t normalCount_ = 0;           ///< lines of normals
 };
 
-Status writeMaterials(const ExportInput& input, const std::set<uint32_t>& used, const std::vector<std::string>& names,
-                      const Path& target) {
+static Status writeMaterials(const ExportInput& input, const std::set<uint32_t>& used,
+                             const std::vector<std::string>& names, const Path& target) {
     return replaceFile(target, [&](const Path& temporary) {
         OutFile out(temporary, target, input.progress);
         out.text("# sgm\n");
@@ -184,7 +184,7 @@ Path materialFile(const Path& target) {
     return target.parent_path() / (word + number + ".mtl");
 }
 
-Status writeObj(const ExportInput& input, const Path& temporary, const Path& target) {
+static Status writeObj(const ExportInput& input, const Path& temporary, const Path& target) {
     const ObjMesh finest(inputOfLevel(input, 0));
     const std::vector<std::string> names = distinctNames(input.provenance->materials, wordOf);
     const Path materials = materialFile(target);
@@ -210,5 +210,19 @@ Status writeObj(const ExportInput& input, const Path& temporary, const Path& tar
     // Both files are complete before either is replaced; the .mtl goes first, as the .obj names it.
     return writeMaterials(input, used, names, materials);
 }
+
+static constexpr ExportOption options[] = {upOption, unitOption, uvOption};
+
+constinit const Exporter objFormat{
+    .extension = ".obj",
+    .doc = "Wavefront OBJ, with a .mtl beside it",
+    .options = options,
+    .takesPositionsOnly = nullptr,
+    .write = writeObj,
+    .stream = nullptr,
+    .beside = materialFile,
+    .holdsObjects = true,
+    .holdsLevels = true,
+};
 
 }  // namespace sgm::exporter

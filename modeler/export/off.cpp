@@ -36,12 +36,24 @@ private:
 
 }  // namespace
 
-Status writeOff(const ExportInput& input, const Path& temporary, const Path& target) {
+static Status writeOff(const ExportInput& input, const Path& temporary, const Path& target) {
     return writeLists(Off(input), input, temporary, target);
 }
 
-Status streamOff(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target) {
+static Status streamOff(const ExportInput& input, const ChunkSource& chunks, const Path& temporary,
+                        const Path& target) {
     return streamLists(Off(input), input, chunks, temporary, target);
 }
+
+static constexpr ExportOption options[] = {upOption, unitOption};
+
+constinit const Exporter offFormat{
+    .extension = ".off",
+    .doc = "OFF: positions and triangles as text",
+    .options = options,
+    .takesPositionsOnly = saysPositionsOnly,
+    .write = writeOff,
+    .stream = streamOff,
+};
 
 }  // namespace sgm::exporter

@@ -94,7 +94,7 @@ private:
         for (size_t i = 0; i < chunk.triangles.size(); ++i)
             for (int corner = 0; corner < 3; ++corner) {
                 const uint32_t vertex = chunk.triangles[i][corner];
-                if (vertex & mesh::borrowedBit || materials[vertex] != unset) continue;
+                if (vertex & mesh::ghostBit || materials[vertex] != unset) continue;
                 materials[vertex] = materialIndex(*input_.provenance, chunk.origins[i]);
             }
         for (uint32_t& material : materials)
@@ -110,12 +110,33 @@ private:
 
 }  // namespace
 
-Status writePly(const ExportInput& input, const Path& temporary, const Path& target) {
+static Status writePly(const ExportInput& input, const Path& temporary, const Path& target) {
     return writeLists(Ply(input), input, temporary, target);
 }
 
-Status streamPly(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target) {
+static Status streamPly(const ExportInput& input, const ChunkSource& chunks, const Path& temporary,
+                        const Path& target) {
     return streamLists(Ply(input), input, chunks, temporary, target);
 }
+
+static constexpr ExportOption options[] = {
+    upOption,
+    unitOption,
+    {"attributes", "all", "all|none",
+     "what vertices and faces carry beside the shape; none: 19 bytes a triangle, not 34"}};
+
+static bool withoutAttributes(const ExportOptions& options) {
+    const auto asked = options.find("attributes");
+    return asked != options.end() && asked->second == "none";
+}
+
+constinit const Exporter plyFormat{
+    .extension = ".ply",
+    .doc = "PLY, binary: normals, texture coordinates s t, colours, an origin a face",
+    .options = options,
+    .takesPositionsOnly = withoutAttributes,
+    .write = writePly,
+    .stream = streamPly,
+};
 
 }  // namespace sgm::exporter

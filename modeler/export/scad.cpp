@@ -67,7 +67,7 @@ std::string leafText(const field::PlacedSolid& s, const field::SolidTree& tree, 
 
 }  // namespace
 
-Status writeScad(const ExportInput& input, const Path& temporary, const Path& target) {
+static Status writeScad(const ExportInput& input, const Path& temporary, const Path& target) {
     using Op = field::SolidNode::Op;
     const field::SolidTree& tree = *input.solids;
     if (input.progress) input.progress->begin("write", tree.nodes.size());
@@ -90,5 +90,18 @@ Status writeScad(const ExportInput& input, const Path& temporary, const Path& ta
                          tree.nodes.size() - 1));
     return out.finish();
 }
+
+static constexpr ExportOption options[] = {
+    upOption, unitOption, {"sides", "128", "16|32|64|128|256|512|1024|2048|4096", "sides of round solids, inscribed"}};
+
+constinit const Exporter scadFormat{
+    .extension = ".scad",
+    .doc = "The solid tree as an OpenSCAD program: a module a boolean, of the same models",
+    .options = options,
+    .takesPositionsOnly = saysPositionsOnly,
+    .write = writeScad,
+    .stream = nullptr,
+    .wantsSolids = true,
+};
 
 }  // namespace sgm::exporter

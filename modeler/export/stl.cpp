@@ -10,7 +10,8 @@ namespace sgm::exporter {
 
 /// Triangles with two equal corners are left out: the format matches corners by position, and without such a triangle
 /// its two neighbours still meet in one edge.
-Status streamStl(const ExportInput& input, const ChunkSource& chunks, const Path& temporary, const Path& target) {
+static Status streamStl(const ExportInput& input, const ChunkSource& chunks, const Path& temporary,
+                        const Path& target) {
     const Placement place = placementOf(input);
     OutFile out(temporary, target, input.progress);
     char header[80] = {};  // must not begin with "solid"
@@ -38,7 +39,7 @@ Status streamStl(const ExportInput& input, const ChunkSource& chunks, const Path
     return out.finish();
 }
 
-Status writeStl(const ExportInput& input, const Path& temporary, const Path& target) {
+static Status writeStl(const ExportInput& input, const Path& temporary, const Path& target) {
     if (input.progress) input.progress->begin("write", input.mesh->chunks.size());
     const ChunkSource whole = [&](const mesh::ChunkVisitor& visit) -> Status {
         for (const mesh::Chunk& chunk : input.mesh->chunks) {
@@ -49,5 +50,16 @@ Status writeStl(const ExportInput& input, const Path& temporary, const Path& tar
     };
     return streamStl(input, whole, temporary, target);
 }
+
+static constexpr ExportOption options[] = {upOption, unitOption};
+
+constinit const Exporter stlFormat{
+    .extension = ".stl",
+    .doc = "STL, binary: positions only",
+    .options = options,
+    .takesPositionsOnly = saysPositionsOnly,
+    .write = writeStl,
+    .stream = streamStl,
+};
 
 }  // namespace sgm::exporter

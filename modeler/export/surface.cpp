@@ -80,7 +80,7 @@ void sortTriangles(const mesh::Mesh& mesh, const Groups& groups, bool byMaterial
         }
 }
 
-/// Numbers the vertices of patches, one for each mesh vertex, chart, material and normal in a patch, in the order of
+/// Floats the vertices of patches, one for each mesh vertex, chart, material and normal in a patch, in the order of
 /// their first corners.
 class VertexCutter {
 public:

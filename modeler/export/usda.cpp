@@ -218,7 +218,7 @@ std::string levelVariants(const ExportInput& input) {
 
 }  // namespace
 
-Status writeUsda(const ExportInput& input, const Path& temporary, const Path& target) {
+static Status writeUsda(const ExportInput& input, const Path& temporary, const Path& target) {
     auto level = makeLevel(input, 0);
     if (!level.ok()) return level.error();
     const std::vector<std::string> names = distinctNames(input.provenance->materials, identifierOf);
@@ -249,5 +249,18 @@ Status writeUsda(const ExportInput& input, const Path& temporary, const Path& ta
     out.text("}\n");
     return out.finish();
 }
+
+static constexpr ExportOption options[] = {upOption, unitOption, uvOption, lightMapOption, instancesOption("no")};
+
+constinit const Exporter usdaFormat{
+    .extension = ".usda",
+    .doc = "OpenUSD as text: normals, display colours, a subset and preview surface a material",
+    .options = options,
+    .takesPositionsOnly = nullptr,
+    .write = writeUsda,
+    .stream = nullptr,
+    .holdsObjects = true,
+    .holdsLevels = true,
+};
 
 }  // namespace sgm::exporter

@@ -1,6 +1,6 @@
-// OpenVDB (.vdb): the level set, the fog made from it, or both, by the room that owns them. Renderers look for a float
-// grid called "density" of the class fog volume; programs that offset, smooth or advect take the level set's values for
-// distances.
+// OpenVDB (.vdb): the level set, the fog made from it, or both, by the module that owns them. Renderers look for a
+// float grid called "density" of the class fog volume; programs that offset, smooth or advect take the level set's
+// values for distances.
 #include <optional>
 
 #include "modeler/export/formats.h"
@@ -25,7 +25,7 @@ volume::FogOptions fogOptions(const ExportInput& input) {
 
 }  // namespace
 
-Status writeVdb(const ExportInput& input, const Path& temporary, const Path& target) {
+static Status writeVdb(const ExportInput& input, const Path& temporary, const Path& target) {
     const std::string_view grids = option(input, "grids", "levelset");
     std::vector<volume::NamedVolume> volumes;
     std::optional<volume::Volume> exact;
@@ -47,5 +47,28 @@ Status writeVdb(const ExportInput& input, const Path& temporary, const Path& tar
     return volume::fillVdb(volumes, temporary, target, {option(input, "half", "no") == "yes", input.extras},
                            input.progress);
 }
+
+static constexpr ExportOption options[] = {
+    {"grids", "levelset", "levelset|fog|levelset,fog", "which grids the file holds; the fog's is called density"},
+    {"grid", "level_set", "", "name of the level set's grid"},
+    {"distance", "exact", "exact|raw",
+     "level set: distances to the isosurface, or the field's own values, which are steeper or flatter in places"},
+    {"half", "no", "no|yes", "16-bit floats: about a third smaller, three digits"},
+    {"density", "1", "", "fog: density deep inside", 1e-6, 1e6},
+    {"edge", "0", "", "fog: metres of depth over which it thickens to that; 0: three voxels", 0, 1e5},
+    {"wisps", "0", "", "fog: how far noise eats into the edge", 0, 0.95},
+    {"billow", "0", "", "fog: how much noise thins the inside, which is then stored voxel by voxel", 0, 1},
+    {"lump", "0", "", "fog: metres of the largest lumps of noise; 0: an eighth of the least extent", 0, 1e5},
+};
+
+constinit const Exporter vdbFormat{
+    .extension = ".vdb",
+    .doc = "OpenVDB: a narrow-band level set, fog for renderers, or both; voxels in metres",
+    .wantsVolume = true,
+    .options = options,
+    .takesPositionsOnly = saysPositionsOnly,
+    .write = writeVdb,
+    .stream = nullptr,
+};
 
 }  // namespace sgm::exporter

@@ -1,8 +1,9 @@
-// The order-free n-ary melt as an op: Σ max(0, c − fᵢ)² = k², f = c − k.
-// Enters: operand 0 is the radius k ≥ 0, the others are the fields. Leaves: their melt; exactly their minimum, in every
-// bit, where no two are within k of each other. Assumes nothing about the order or number of the fields. Solved
-// relative to the least field m: with dᵢ = fᵢ − m and c' = c − m, Newton's iteration from c' = k falls monotonically on
-// the convex Σ max(0, c' − dᵢ)² − k². A field with dᵢ ≥ k adds only zeros, so dropping it can't change a bit.
+// The order-free n-ary smooth union as an op: Σ max(0, c − fᵢ)² = k², f = c − k.
+// Enters: operand 0 is the radius k ≥ 0, the others are the fields. Leaves: their smooth union; exactly their minimum,
+// in every bit, where no two are within k of each other. Assumes nothing about the order or number of the fields.
+// Solved relative to the least field m: with dᵢ = fᵢ − m and c' = c − m, Newton's iteration from c' = k falls
+// monotonically on the convex Σ max(0, c' − dᵢ)² − k². A field with dᵢ ≥ k adds only zeros, so dropping it can't change
+// a bit.
 #pragma once
 
 #include <span>
@@ -16,7 +17,7 @@ struct Blend {
     static constexpr std::string_view name = "blend";
     static constexpr int arity = variadic;
     static constexpr Owner owner = Owner::Least;
-    static constexpr uint32_t firstChoice = 1;
+    static constexpr uint32_t firstPrunable = 1;
     /// Far more than Newton needs: about ½ log₂ n + 5.
     static constexpr int maxSteps = 40;
 
@@ -41,7 +42,7 @@ struct Blend {
     static V apply(std::span<const V> args, uint32_t) {
         const auto field = [&](size_t i) { return args[i]; };
         const Solution<V> s = solve(args.size(), args[0], field);
-        return melt(s, args[0]);
+        return smoothMin(s, args[0]);
     }
 
     /// f falls with k and rises with every field. Sums of n squares are off by n ulps, which moves c' by n/2 ulps of k
@@ -53,8 +54,8 @@ struct Blend {
         const Solution<V> low = solve(args.size(), kHi, [&](size_t i) { return args[i].lo; });
         const Solution<V> high = solve(args.size(), kLo, [&](size_t i) { return args[i].hi; });
         const float ulps = 2e-7f * static_cast<float>(args.size() + 8);
-        return I{melt(low, kHi) - (abs(low.least) * 4e-7f + kHi * ulps),
-                 min(melt(high, kLo) + (abs(high.least) * 4e-7f + kLo * ulps), high.least)};
+        return I{smoothMin(low, kHi) - (abs(low.least) * 4e-7f + kHi * ulps),
+                 min(smoothMin(high, kLo) + (abs(high.least) * 4e-7f + kLo * ulps), high.least)};
     }
 
     /// Implicit differentiation: ∂f/∂fᵢ = tᵢ / Σt with tᵢ = max(0, c' − dᵢ), and ∂f/∂k = k / Σt − 1.
@@ -81,14 +82,14 @@ struct Blend {
         }
         const auto soft = total > (exact ? s.c : V(0.0f));
         const V weight = V(1.0f) / select(soft, total, V(1.0f)), slope = k.value * weight - V(1.0f);
-        return D{melt(s, k.value), select(soft, dx * weight + k.dx * slope, least.dx),
+        return D{smoothMin(s, k.value), select(soft, dx * weight + k.dx * slope, least.dx),
                  select(soft, dy * weight + k.dy * slope, least.dy),
                  select(soft, dz * weight + k.dz * slope, least.dz)};
     }
 
     /// Field i is out when fᵢ − m ≥ k for certain, however that is rounded.
     template <class I>
-    static auto reach(std::span<const I> args, uint32_t) {
+    static auto pruneBound(std::span<const I> args, uint32_t) {
         using V = typename I::Value;
         V least = args[1].hi;
         for (size_t i = 2; i < args.size(); ++i) least = min(args[i].hi, least);
@@ -101,9 +102,9 @@ private:
         V least, c;  ///< m and c'
     };
 
-    /// In this form −0 stays −0 when nothing melts.
+    /// In this form −0 stays −0 when nothing blends.
     template <class V>
-    static V melt(const Solution<V>& s, const V& k) {
+    static V smoothMin(const Solution<V>& s, const V& k) {
         return s.least - (k - s.c);
     }
 

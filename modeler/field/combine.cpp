@@ -51,13 +51,13 @@ Box3f commonBox(const Box3f& a, const Box3f& b) {
 }
 
 /// max of two operands that keep their owners.
-Num ownedMax(Num a, OriginId ownerOfA, Num b, OriginId ownerOfB) {
+NodeRef ownedMax(NodeRef a, OriginId ownerOfA, NodeRef b, OriginId ownerOfB) {
     const Operand operands[] = {{a.id(), ownerOfA}, {b.id(), ownerOfB}};
     return a.graph().apply(codeOf<ops::Max>, operands);
 }
 
 /// The operand alone, but with its owner: min(f, f) keeps the bits and gives the owner a place.
-Num owned(const Owned& part) {
+NodeRef owned(const Owned& part) {
     if (part.origin == 0) return part.field.value;
     const Operand twice[] = {{part.field.value.id(), part.origin}, {part.field.value.id(), part.origin}};
     return part.field.value.graph().apply(codeOf<ops::Min>, twice);
@@ -83,10 +83,10 @@ Field sum(Graph& graph, std::span<const Owned> parts) {
     if (parts.empty()) return nothing(graph);
     if (parts.size() == 1)
         return {owned(parts[0]), parts[0].field.bounds, parts[0].field.lipschitz, parts[0].field.growth};
-    return summed(Num(&graph, minTree(parts).node), parts);
+    return summed(NodeRef(&graph, minTree(parts).node), parts);
 }
 
-Field summed(Num value, std::span<const Owned> parts) {
+Field summed(NodeRef value, std::span<const Owned> parts) {
     Box3f bounds;
     for (const Owned& part : parts) bounds = hull(bounds, part.field.bounds);
     return {value, bounds, maxLipschitz(parts), minGrowth(parts)};
@@ -97,7 +97,7 @@ Field difference(Owned a, Owned b) {
             std::max(a.field.lipschitz, b.field.lipschitz), a.field.growth};
 }
 
-Field difference(Owned a, std::span<const Owned> cuts, Num radius, double radiusValue) {
+Field difference(Owned a, std::span<const Owned> cuts, NodeRef radius, double radiusValue) {
     std::vector<Owned> operands{{{-a.field.value, a.field.bounds, a.field.lipschitz, a.field.growth}, a.origin}};
     operands.insert(operands.end(), cuts.begin(), cuts.end());
     return {-blend(radius.graph(), operands, radius, radiusValue).value, a.field.bounds,
@@ -111,21 +111,21 @@ Field intersection(Owned a, Owned b) {
 }
 
 // Where f < 0 one of the two is negative, and outside both boxes both grow, so f does by the smaller growth at least.
-Field morph(Field a, Field b, Num t, double tValue, OriginId origin) {
+Field morph(Field a, Field b, NodeRef t, double tValue, OriginId origin) {
     const Operand operands[] = {{a.value.id(), origin}, {b.value.id(), origin}, {t.id(), 0}};
-    const Num value = t.graph().apply(codeOf<ops::Morph>, operands);
+    const NodeRef value = t.graph().apply(codeOf<ops::Morph>, operands);
     if (tValue <= 0) return {value, a.bounds, a.lipschitz, a.growth};
     if (tValue >= 1) return {value, b.bounds, b.lipschitz, b.growth};
     const auto s = static_cast<float>(tValue);
     return {value, hull(a.bounds, b.bounds), (1 - s) * a.lipschitz + s * b.lipschitz, std::min(a.growth, b.growth)};
 }
 
-// The melt lowers the minimum by k − c' ≤ k(1 − 1/√n), with equality where all n are equal.
-Field blend(Graph& graph, std::span<const Owned> parts, Num radius, double radiusValue) {
+// The smooth union lowers the minimum by k − c' ≤ k(1 − 1/√n), with equality where all n are equal.
+Field blend(Graph& graph, std::span<const Owned> parts, NodeRef radius, double radiusValue) {
     if (parts.size() < 2) return sum(graph, parts);
     std::vector<Operand> operands{{radius.id(), 0}};
     for (const Owned& part : parts) spliceBlend(graph, part, operands);
-    const Num value = graph.apply(codeOf<ops::Blend>, operands);
+    const NodeRef value = graph.apply(codeOf<ops::Blend>, operands);
 
     const double deepest = radiusValue * (1 - 1 / std::sqrt(static_cast<double>(operands.size() - 1)));
     Box3f bounds;
@@ -133,13 +133,13 @@ Field blend(Graph& graph, std::span<const Owned> parts, Num radius, double radiu
     return {value, bounds, maxLipschitz(parts), minGrowth(parts)};
 }
 
-Field displace(Field f, Point p, Noise noise, Num amplitude, double amplitudeValue, Num frequency,
+Field displace(Field f, Point p, Noise noise, NodeRef amplitude, double amplitudeValue, NodeRef frequency,
                double frequencyValue, int octaves, uint32_t seed) {
     const int count = std::clamp(octaves, 1, ops::Noise::maxOctaves);
     const float steepness = ops::Noise::lipschitz(count);
-    const Num height = p.x.graph().apply(codeOf<ops::Noise>, {p.x * frequency, p.y * frequency, p.z * frequency},
-                                         ops::Noise::pack(noise == Noise::Fbm, count, seed));
-    const Num divisor = 1.0f + amplitude * frequency * steepness;
+    const NodeRef height = p.x.graph().apply(codeOf<ops::Noise>, {p.x * frequency, p.y * frequency, p.z * frequency},
+                                             ops::Noise::pack(noise == Noise::Fbm, count, seed));
+    const NodeRef divisor = 1.0f + amplitude * frequency * steepness;
     const auto slope = static_cast<float>(amplitudeValue * frequencyValue) * steepness;
     return {(f.value - amplitude * height) / divisor, levelBox(f.bounds, amplitudeValue, f.growth),
             (f.lipschitz + slope) / (1 + slope), f.growth / (1 + slope) * (1 - 1e-6f)};

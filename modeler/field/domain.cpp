@@ -10,14 +10,14 @@ namespace {
 
 using solids::boxDistance;
 
-Num named(Graph& graph, uint64_t path, const char* attribute, double value) {
+NodeRef named(Graph& graph, uint64_t path, const char* attribute, double value) {
     return graph.slot(SlotKey{path, hashText(attribute)}, static_cast<float>(value));
 }
 
-Num& component(Point& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+NodeRef& component(Point& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
 /// Exact distance to a box whose numbers are slots.
-Num distanceTo(const Box3f& box, Point p) {
+NodeRef distanceTo(const Box3f& box, Point p) {
     Graph& g = p.x.graph();
     const Vec3f centre = box.centre(), half = box.size() * 0.5f;
     const auto slots = [&g](Vec3f v) { return Point{g.slot(v.x), g.slot(v.y), g.slot(v.z)}; };
@@ -66,7 +66,7 @@ Box3f toWorld(const Box3f& local, const Frame& frame) {
     return Box3d{low, high}.inflated(size * 1e-6).as<float>();
 }
 
-Num substitute(Num value, Point p) {
+NodeRef substitute(NodeRef value, Point p) {
     Graph& g = value.graph();
     std::vector<bool> used(value.id() + 1, false);
     used[value.id()] = true;
@@ -100,21 +100,22 @@ Box3f mirrored(const Box3f& bounds, bool x, bool y, bool z) {
     return box;
 }
 
-Point repeat(Point p, int axis, Num period) {
-    Num& c = component(p, axis);
-    const Num half = period * 0.5f;
+Point repeat(Point p, int axis, NodeRef period) {
+    NodeRef& c = component(p, axis);
+    const NodeRef half = period * 0.5f;
     c = mod(c + half, period) - half;
     return p;
 }
 
-Field repeated(Point p, int axis, Num period, double periodValue, int count, const std::function<Field(Point)>& solid) {
+Field repeated(Point p, int axis, NodeRef period, double periodValue, int count,
+               const std::function<Field(Point)>& solid) {
     Graph& g = p.x.graph();
-    const Num last = g.slot(static_cast<float>(count - 1));
+    const NodeRef last = g.slot(static_cast<float>(count - 1));
     // Copy j stands at (j − last/2) · period; the two nearest are ⌊u⌋ and ⌊u⌋ + 1.
-    const Num u = floor(component(p, axis) / period + last * 0.5f);
-    const auto copy = [&](Num index) {
+    const NodeRef u = floor(component(p, axis) / period + last * 0.5f);
+    const auto copy = [&](NodeRef index) {
         Point q = p;
-        Num& c = component(q, axis);
+        NodeRef& c = component(q, axis);
         c = c - (min(max(index, 0.0f), last) - last * 0.5f) * period;
         Field f = solid(q);
         f.value = max(f.value, abs(c) - period * 0.5f);
@@ -133,8 +134,8 @@ Field repeated(Point p, int axis, Num period, double periodValue, int count, con
     const float growth = first.growth * (cut ? 0.70710f : 1.0f);
     // Any third copy is at least half a period away, and no nearer than the bounds.
     const bool known = bounds.finite();
-    const Num away = known ? max(period * 0.5f, distanceTo(bounds, p)) : period * 0.5f;
-    const Num cap = away * g.slot(growth);
+    const NodeRef away = known ? max(period * 0.5f, distanceTo(bounds, p)) : period * 0.5f;
+    const NodeRef cap = away * g.slot(growth);
     return {min(min(first.value, second.value), cap), bounds, std::max(first.lipschitz, 1.0f), known ? growth : 0};
 }
 

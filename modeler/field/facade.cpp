@@ -94,12 +94,12 @@ double deepest(std::span<const Argument> a, double stretch) {
 }
 
 struct Pattern {
-    Num value;
-    Num inner;  ///< the inner shell, and the core that a round facade leaves alone
+    NodeRef value;
+    NodeRef inner;  ///< the inner shell, and the core that a round facade leaves alone
 };
 
 /// The op over in.p between two shells; `most` bounds it, metres.
-Pattern pattern(const PrimitiveInput& in, Num outer, Num inner, double most) {
+Pattern pattern(const PrimitiveInput& in, NodeRef outer, NodeRef inner, double most) {
     Graph& graph = outer.graph();
     const auto a = in.arguments;
     Tiling t = tilingOf(a, in.halfValue);
@@ -107,7 +107,7 @@ Pattern pattern(const PrimitiveInput& in, Num outer, Num inner, double most) {
     const auto slot = [&](double v) { return graph.slot(static_cast<float>(v)); };
     Point q{in.p.x - slot(t.origin.x), in.p.y - slot(t.origin.y), in.p.z - slot(t.origin.z)};
     if (t.round > 0) {  // eqs. 5, 6; inside the core bays would grow ever narrower
-        const Num radius = sqrt(square(in.p.x) + square(in.p.z));
+        const NodeRef radius = sqrt(square(in.p.x) + square(in.p.z));
         q.x = slot(t.along) * (atan2(in.p.x, in.p.z) + slot(t.swing));
         q.z = slot(t.across) * (radius - slot(t.round));
         const double nearest = std::max(t.core - deepest(a, number(a, Rise) / t.storey), t.core / 4);
@@ -122,8 +122,8 @@ Pattern pattern(const PrimitiveInput& in, Num outer, Num inner, double most) {
     for (const FacadeBay& b : bays)
         extent = std::max(extent, std::abs(number(a, Zoom, b.id)) + std::abs(number(a, Pan, b.id)) + 2);
     std::vector<Operand> operands;
-    const auto add = [&](Num n) { operands.push_back({n.id(), 0}); };
-    for (const Num n : {q.x, q.y, q.z, outer, inner}) add(n);
+    const auto add = [&](NodeRef n) { operands.push_back({n.id(), 0}); };
+    for (const NodeRef n : {q.x, q.y, q.z, outer, inner}) add(n);
     for (const auto& [parameter, count] : {std::pair{Center, 3}, {Scale, 1}, {Fold, 9}, {Turn, 9}})
         for (int i = 0; i < count; ++i) add(a[size_t(parameter)].node[i]);
     for (const double v : {t.period[0], t.period[1], t.shrink[0], t.shrink[1]}) add(slot(v));
@@ -187,19 +187,19 @@ Field clad(const PrimitiveInput& in, const Clad& c, Vec3d up) {
     // Erosion by `wall`, then stretched about the middle, down by `wall` and up by wall − top: nowhere by more than
     // `wall`, so that the inner shell stays inside the outer one whatever the solid is.
     const auto slot = [&](double v) { return graph.slot(static_cast<float>(v)); };
-    const Num shift = min(in.p.y + slot(wall), max(in.p.y - slot(wall - top), 0.0f)) - in.p.y;
+    const NodeRef shift = min(in.p.y + slot(wall), max(in.p.y - slot(wall - top), 0.0f)) - in.p.y;
     Point moved = graph.position();
     if (up == Vec3d{0, 1, 0})
         moved.y = moved.y + shift;
     else
         moved = moved + Point{shift * slot(up.x), shift * slot(up.y), shift * slot(up.z)};
-    const Num outer = c.solid.value, shell = substitute(outer, moved) + slot(wall);
+    const NodeRef outer = c.solid.value, shell = substitute(outer, moved) + slot(wall);
     const Pattern p = pattern(in, outer, shell, wall);
-    const auto chosen = [&](OpCode op, Num a, OriginId ofA, Num b, OriginId ofB) {
+    const auto chosen = [&](OpCode op, NodeRef a, OriginId ofA, NodeRef b, OriginId ofB) {
         const Operand both[] = {{a.id(), ofA}, {b.id(), ofB}};
         return graph.apply(op, both);
     };
-    const Num inside = chosen(codeOf<ops::Min>, p.inner, c.origin, p.value, c.ornament);
+    const NodeRef inside = chosen(codeOf<ops::Min>, p.inner, c.origin, p.value, c.ornament);
     Field result = c.solid;
     result.value = chosen(codeOf<ops::Max>, outer, c.ornament, inside, 0);
     result.lipschitz = std::max(c.solid.lipschitz, 1.0f);
@@ -210,7 +210,7 @@ namespace solids {
 
 // Standing alone: the pattern cut by its scope, no inner shell.
 Field ornament(const PrimitiveInput& in) {
-    const Num box = boxDistance(in.p, in.half);
+    const NodeRef box = boxDistance(in.p, in.half);
     const Tiling t = tilingOf(in.arguments, in.halfValue);
     const Pattern p = pattern(in, box, box + 1e6f, std::max(t.storey, t.period[0]));
     return {max(box, in.arguments[size_t(FacadeParameter::Round)].value[0] > 0 ? min(p.inner, p.value) : p.value),

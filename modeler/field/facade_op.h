@@ -21,7 +21,7 @@ namespace sgm::field::ops {
 struct Facade {
     static constexpr std::string_view name = "facade";
     static constexpr int arity = variadic;
-    static constexpr size_t moving = 5;
+    static constexpr size_t varyingOperands = 5;
     /// Three folds cut half a period into no more pieces.
     static constexpr size_t mostBays = 14;
 
@@ -136,7 +136,7 @@ return best;)";
 
     /// What a point is asked about, made from the parameters: once for all points, where those are numbers.
     template <class V>
-    struct Numbers {
+    struct UniformParams {
         Kifs::Form form;
         Kifs::Folds<V> folds;
         struct Axis {
@@ -152,7 +152,7 @@ return best;)";
         uint32_t bays = 1;
 
         /// Of `args` the parameters are read, at their places.
-        [[gnu::always_inline]] Numbers(std::span<const V> args, uint32_t data)
+        [[gnu::always_inline]] UniformParams(std::span<const V> args, uint32_t data)
             : form(Kifs::unpack(data)),
               folds(args.subspan(fractal - size_t{Kifs::centreOfScale}), data),
               storey(args[Facade::storey]),
@@ -180,15 +180,15 @@ return best;)";
 
     template <class V>
     static V apply(std::span<const V> args, uint32_t data) {
-        const Numbers<V> numbers(args, data);
+        const UniformParams<V> numbers(args, data);
         V value;
-        visitPath(numbers.form, [&]<Path path>() { value = byNumbers<path>(args.data(), numbers); });
+        visitPath(numbers.form, [&]<Path path>() { value = evalUniform<path>(args.data(), numbers); });
         return value;
     }
 
     /// The value at (x, y, z) between the shells; numbers as in Kifs.
     template <Path path, class V, class W>
-    [[gnu::always_inline]] static V byNumbers(const V* at, const Numbers<W>& n) {
+    [[gnu::always_inline]] static V evalUniform(const V* at, const UniformParams<W>& n) {
         const V limit = V(n.most);
         const auto decided = (at[outer] >= limit) | (at[inner] <= V(-n.deepest));
         const auto open = !decided;
@@ -227,7 +227,7 @@ return best;)";
         constexpr float infinity = std::numeric_limits<float>::infinity();
         V middle[operandCount], spread = 0.0f;
         for (size_t i = 0; i < operandCount; ++i) middle[i] = i < outer ? centre(args[i]) : args[i].lo;
-        for (size_t i = moving; i < operandCount; ++i) spread = max(args[i].hi - args[i].lo, spread);
+        for (size_t i = varyingOperands; i < operandCount; ++i) spread = max(args[i].hi - args[i].lo, spread);
         if (any(!(spread <= V(0.0f)))) return I{V(-infinity), V(infinity)};
         const V limit = middle[most], deep = middle[deepest];
         const auto decided = (args[outer].lo >= limit) | (args[inner].hi <= -deep);
@@ -260,15 +260,15 @@ private:
         V off;     ///< signed distance to the own bay, metres
         Seen<N> own;
 
-        Seen<N> bay(uint32_t i, const Numbers<W>& n) const {
+        Seen<N> bay(uint32_t i, const UniformParams<W>& n) const {
             return {n.bay[i].zoom, n.bay[i].pan, n.bay[i].shrink[axis]};
         }
         /// Signed distance to a bay, metres.
-        V to(uint32_t i, const Numbers<W>& n) const { return between(n.bay[i].from, n.bay[i + 1].from, n); }
-        V between(const N& from, const N& end, const Numbers<W>& n) const {
+        V to(uint32_t i, const UniformParams<W>& n) const { return between(n.bay[i].from, n.bay[i + 1].from, n); }
+        V between(const N& from, const N& end, const UniformParams<W>& n) const {
             return max(from - raw, raw - end) * N(n.axis[axis].reach);
         }
-        auto within(uint32_t i, const Numbers<W>& n) const {
+        auto within(uint32_t i, const UniformParams<W>& n) const {
             return (raw >= V(n.bay[i].from)) & (raw < V(n.bay[i + 1].from));
         }
     };
@@ -281,7 +281,7 @@ private:
     };
 
     template <class V, class W>
-    [[gnu::always_inline]] static Along<V, W> along(const V& at, const Numbers<W>& n, uint32_t axis) {
+    [[gnu::always_inline]] static Along<V, W> along(const V& at, const UniformParams<W>& n, uint32_t axis) {
         Along<V, W> a;  // to be written once: clearing it first took an eighth of a facade's time
         a.axis = axis;
         using N = NumberOf<V, W>;
@@ -306,7 +306,7 @@ private:
     }
 
     template <class V, class W>
-    [[gnu::always_inline]] static Up<V> levels(const V& y, const Numbers<W>& n) {
+    [[gnu::always_inline]] static Up<V> levels(const V& y, const UniformParams<W>& n) {
         using N = NumberOf<V, W>;
         const V up = y * N(n.perStorey), last = V(n.lastStorey);
         const V level = min(max(floor(up), V(0.0f)), last), v = up - level;
@@ -316,7 +316,7 @@ private:
 
     /// Distance to one cell's fractal, its map continued beyond the cell; divided by the map's greatest stretch.
     template <Path path, class V, class W, class N = NumberOf<V, W>>
-    [[gnu::always_inline]] static V cell(const Numbers<W>& n, const Along<V, W>& x, const Seen<N>& inX,
+    [[gnu::always_inline]] static V cell(const UniformParams<W>& n, const Along<V, W>& x, const Seen<N>& inX,
                                          const Along<V, W>& z, const Seen<N>& inZ, const V& v) {
         const V at[] = {x.u * inX.zoom + inX.pan, v * N(n.rise), z.u * inZ.zoom + inZ.pan};
         return Kifs::folded<path>(at, n.folds) * min(min(inX.shrink, inZ.shrink), N(n.perRise));

@@ -10,7 +10,7 @@ namespace sgm::field {
 
 /// A scalar field over space, in metres, with three promises that tests hold it to:
 struct Field {
-    Num value;
+    NodeRef value;
     /// Every point with f < 0 lies in this box. Not finite for a half-space; empty for the empty shape.
     Box3f bounds;
     /// |f(p) − f(q)| ≤ lipschitz · |p − q| everywhere; 1 for a true distance. Infinite where the field jumps (a KIFS

@@ -9,8 +9,8 @@ namespace sgm::field {
 namespace {
 
 /// What lies between two heights.
-Num between(const PlanField& plan, Quantity bottom, Quantity top) {
-    const Num y = plan.position().y;
+NodeRef between(const PlanField& plan, Quantity bottom, Quantity top) {
+    const NodeRef y = plan.position().y;
     return max(bottom.node - y, y - top.node);
 }
 
@@ -21,8 +21,8 @@ Field prism(const PlanField& plan, Quantity bottom, Quantity top, uint64_t path)
 }
 
 Field taperedPrism(const PlanField& plan, Quantity bottom, Quantity top, Quantity angle, uint64_t path) {
-    const Num up = plan.position().y - bottom.node;
-    const Num sides = plan.outside() * cos(angle.node) + up * sin(angle.node);
+    const NodeRef up = plan.position().y - bottom.node;
+    const NodeRef sides = plan.outside() * cos(angle.node) + up * sin(angle.node);
     const double out = -std::tan(angle.value) * (top.value - bottom.value);
     return plan.boxed(max(sides, between(plan, bottom, top)), path, bottom.value, top.value, std::max(out, 0.0));
 }
@@ -31,11 +31,11 @@ Field taperedPrism(const PlanField& plan, Quantity bottom, Quantity top, Quantit
 // open.
 Field shell(const PlanField& plan, Quantity bottom, Quantity top, Quantity wall, Quantity floor, Quantity ceiling,
             uint64_t path) {
-    const Num y = plan.position().y;
-    Num rooms = plan.outside() + wall.node;
+    const NodeRef y = plan.position().y;
+    NodeRef rooms = plan.outside() + wall.node;
     if (floor.value > 0) rooms = max(rooms, bottom.node + floor.node - y);
     if (ceiling.value > 0) rooms = max(rooms, y - (top.node - ceiling.node));
-    const Num block = max(plan.outside(), between(plan, bottom, top));
+    const NodeRef block = max(plan.outside(), between(plan, bottom, top));
     return plan.boxed(max(block, -rooms), path, bottom.value, top.value);
 }
 
@@ -44,7 +44,7 @@ Result<Field> moulding(const PlanField& plan, std::span<const plan::Vec2> profil
     const plan::Footprint section = plan::footprintOf(plan::polygonOf({profile.begin(), profile.end()}));
     const auto formula = plan::monotoneFormula(section);
     if (!formula) return Error{formula.error().kind, "profile of a moulding: " + formula.error().message};
-    const Num up = plan.position().y - foot.node;
+    const NodeRef up = plan.position().y - foot.node;
     const PlanField swept(section, *formula, {plan.outside(), up, up}, path);
     const plan::Box2 box = bounds(section);
     return plan.boxed(swept.outside(), path, foot.value + box.lo.z, foot.value + box.hi.z, std::max(box.hi.x, 0.0));

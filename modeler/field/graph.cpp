@@ -44,20 +44,20 @@ std::optional<float> folded(OpCode op, float a, float b, size_t count) {
     });
 }
 
-Num binary(OpCode op, Num a, Num b) { return a.graph().apply(op, {a, b}); }
-Num unary(OpCode op, Num a) { return a.graph().apply(op, {a}); }
+NodeRef binary(OpCode op, NodeRef a, NodeRef b) { return a.graph().apply(op, {a, b}); }
+NodeRef unary(OpCode op, NodeRef a) { return a.graph().apply(op, {a}); }
 
 }  // namespace
 
 Graph::Graph() = default;
 
-Num Graph::x() { return {this, insert(codeOf<ops::Input>, {}, 0)}; }
-Num Graph::y() { return {this, insert(codeOf<ops::Input>, {}, 1)}; }
-Num Graph::z() { return {this, insert(codeOf<ops::Input>, {}, 2)}; }
+NodeRef Graph::x() { return {this, insert(codeOf<ops::Input>, {}, 0)}; }
+NodeRef Graph::y() { return {this, insert(codeOf<ops::Input>, {}, 1)}; }
+NodeRef Graph::z() { return {this, insert(codeOf<ops::Input>, {}, 2)}; }
 
-Num Graph::literal(float value) { return {this, insert(codeOf<ops::Literal>, {}, std::bit_cast<uint32_t>(value))}; }
+NodeRef Graph::literal(float value) { return {this, insert(codeOf<ops::Literal>, {}, std::bit_cast<uint32_t>(value))}; }
 
-Num Graph::slot(SlotKey key, float value) {
+NodeRef Graph::slot(SlotKey key, float value) {
     const uint64_t h = hashOf(key);
     const SlotId known = slotIndex_.find(h, [&](SlotId id) { return slotKeys_[id] == key; });
     if (known == HashIndex::none) {
@@ -68,7 +68,7 @@ Num Graph::slot(SlotKey key, float value) {
     return {this, slotNodes_[known]};
 }
 
-Num Graph::slot(float value) { return addSlot({}, value); }
+NodeRef Graph::slot(float value) { return addSlot({}, value); }
 
 uint32_t Graph::grid(const SampledGridPtr& samples) {
     const auto at = static_cast<uint32_t>(std::find(grids_.begin(), grids_.end(), samples) - grids_.begin());
@@ -76,14 +76,14 @@ uint32_t Graph::grid(const SampledGridPtr& samples) {
     return at;
 }
 
-Num Graph::addSlot(SlotKey key, float value) {
+NodeRef Graph::addSlot(SlotKey key, float value) {
     constants_.push_back(value);
     slotKeys_.push_back(key);
     slotNodes_.push_back(append(codeOf<ops::Slot>, {}, static_cast<SlotId>(constants_.size() - 1)));
     return {this, slotNodes_.back()};
 }
 
-Num Graph::apply(OpCode op, std::span<const Operand> operands, uint32_t data) {
+NodeRef Graph::apply(OpCode op, std::span<const Operand> operands, uint32_t data) {
     const OpTraits& row = traits(op);
     assert(row.arity == ops::variadic || operands.size() == static_cast<size_t>(row.arity));
     assert(row.arity != ops::leaf);
@@ -104,13 +104,13 @@ Num Graph::apply(OpCode op, std::span<const Operand> operands, uint32_t data) {
     return {this, insert(op, operands, data)};
 }
 
-Num Graph::apply(OpCode op, std::initializer_list<Num> operands, uint32_t data) {
+NodeRef Graph::apply(OpCode op, std::initializer_list<NodeRef> operands, uint32_t data) {
     constexpr size_t few = 4;  // all but the longest lists, so that arithmetic allocates nothing here
     std::array<Operand, few> small;
     std::vector<Operand> large(operands.size() > few ? operands.size() : 0);
     const std::span<Operand> list =
         large.empty() ? std::span<Operand>(small.data(), operands.size()) : std::span<Operand>(large);
-    std::transform(operands.begin(), operands.end(), list.begin(), [](const Num& n) { return Operand{n.id(), 0}; });
+    std::transform(operands.begin(), operands.end(), list.begin(), [](const NodeRef& n) { return Operand{n.id(), 0}; });
     return apply(op, list, data);
 }
 
@@ -134,33 +134,33 @@ NodeId Graph::append(OpCode op, std::span<const Operand> operands, uint32_t data
     return static_cast<NodeId>(nodes_.size() - 1);
 }
 
-Num operator+(Num a, Num b) { return binary(codeOf<ops::Add>, a, b); }
-Num operator-(Num a, Num b) { return binary(codeOf<ops::Sub>, a, b); }
-Num operator*(Num a, Num b) { return a.id() == b.id() ? square(a) : binary(codeOf<ops::Mul>, a, b); }
-Num operator/(Num a, Num b) { return binary(codeOf<ops::Div>, a, b); }
-Num operator-(Num a) { return unary(codeOf<ops::Neg>, a); }
-Num operator+(Num a, float b) { return a + a.graph().literal(b); }
-Num operator+(float a, Num b) { return b.graph().literal(a) + b; }
-Num operator-(Num a, float b) { return a - a.graph().literal(b); }
-Num operator-(float a, Num b) { return b.graph().literal(a) - b; }
-Num operator*(Num a, float b) { return a * a.graph().literal(b); }
-Num operator*(float a, Num b) { return b.graph().literal(a) * b; }
-Num operator/(Num a, float b) { return a / a.graph().literal(b); }
-Num operator/(float a, Num b) { return b.graph().literal(a) / b; }
-Num min(Num a, Num b) { return binary(codeOf<ops::Min>, a, b); }
-Num max(Num a, Num b) { return binary(codeOf<ops::Max>, a, b); }
-Num min(Num a, float b) { return min(a, a.graph().literal(b)); }
-Num max(Num a, float b) { return max(a, a.graph().literal(b)); }
-Num abs(Num a) { return unary(codeOf<ops::Abs>, a); }
-Num sqrt(Num a) { return unary(codeOf<ops::Sqrt>, a); }
-Num square(Num a) { return unary(codeOf<ops::Square>, a); }
-Num floor(Num a) { return unary(codeOf<ops::Floor>, a); }
-Num mod(Num a, Num b) { return binary(codeOf<ops::Mod>, a, b); }
-Num sin(Num a) { return unary(codeOf<ops::Sin>, a); }
-Num cos(Num a) { return unary(codeOf<ops::Cos>, a); }
-Num exp(Num a) { return unary(codeOf<ops::Exp>, a); }
-Num atan2(Num y, Num x) { return binary(codeOf<ops::Atan2>, y, x); }
-Num dot(Point a, Point b) { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
-Num length(Point a) { return sqrt(dot(a, a)); }
+NodeRef operator+(NodeRef a, NodeRef b) { return binary(codeOf<ops::Add>, a, b); }
+NodeRef operator-(NodeRef a, NodeRef b) { return binary(codeOf<ops::Sub>, a, b); }
+NodeRef operator*(NodeRef a, NodeRef b) { return a.id() == b.id() ? square(a) : binary(codeOf<ops::Mul>, a, b); }
+NodeRef operator/(NodeRef a, NodeRef b) { return binary(codeOf<ops::Div>, a, b); }
+NodeRef operator-(NodeRef a) { return unary(codeOf<ops::Neg>, a); }
+NodeRef operator+(NodeRef a, float b) { return a + a.graph().literal(b); }
+NodeRef operator+(float a, NodeRef b) { return b.graph().literal(a) + b; }
+NodeRef operator-(NodeRef a, float b) { return a - a.graph().literal(b); }
+NodeRef operator-(float a, NodeRef b) { return b.graph().literal(a) - b; }
+NodeRef operator*(NodeRef a, float b) { return a * a.graph().literal(b); }
+NodeRef operator*(float a, NodeRef b) { return b.graph().literal(a) * b; }
+NodeRef operator/(NodeRef a, float b) { return a / a.graph().literal(b); }
+NodeRef operator/(float a, NodeRef b) { return b.graph().literal(a) / b; }
+NodeRef min(NodeRef a, NodeRef b) { return binary(codeOf<ops::Min>, a, b); }
+NodeRef max(NodeRef a, NodeRef b) { return binary(codeOf<ops::Max>, a, b); }
+NodeRef min(NodeRef a, float b) { return min(a, a.graph().literal(b)); }
+NodeRef max(NodeRef a, float b) { return max(a, a.graph().literal(b)); }
+NodeRef abs(NodeRef a) { return unary(codeOf<ops::Abs>, a); }
+NodeRef sqrt(NodeRef a) { return unary(codeOf<ops::Sqrt>, a); }
+NodeRef square(NodeRef a) { return unary(codeOf<ops::Square>, a); }
+NodeRef floor(NodeRef a) { return unary(codeOf<ops::Floor>, a); }
+NodeRef mod(NodeRef a, NodeRef b) { return binary(codeOf<ops::Mod>, a, b); }
+NodeRef sin(NodeRef a) { return unary(codeOf<ops::Sin>, a); }
+NodeRef cos(NodeRef a) { return unary(codeOf<ops::Cos>, a); }
+NodeRef exp(NodeRef a) { return unary(codeOf<ops::Exp>, a); }
+NodeRef atan2(NodeRef y, NodeRef x) { return binary(codeOf<ops::Atan2>, y, x); }
+NodeRef dot(Point a, Point b) { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
+NodeRef length(Point a) { return sqrt(dot(a, a)); }
 
 }  // namespace sgm::field

@@ -1,5 +1,5 @@
 // The hash-consed expression graph that every field is a node of.
-// Enters: arithmetic on `Num` handles. Leaves: node ids, equal for equal structure. Assumes one thread builds it.
+// Enters: arithmetic on `NodeRef` handles. Leaves: node ids, equal for equal structure. Assumes one thread builds it.
 // Every number a user can change is a slot, so that structure (and with it a shader) survives a change of numbers;
 // hash-consing never merges two slots. After building, a Graph is only read.
 #pragma once
@@ -50,10 +50,10 @@ struct Operand {
 class Graph;
 
 /// A handle to a node of a graph; arithmetic on it adds nodes. A plain value, valid while its graph lives.
-class Num {
+class NodeRef {
 public:
-    Num() = default;
-    Num(Graph* graph, NodeId id) : graph_(graph), id_(id) {}
+    NodeRef() = default;
+    NodeRef(Graph* graph, NodeId id) : graph_(graph), id_(id) {}
     Graph& graph() const { return *graph_; }
     NodeId id() const { return id_; }
 
@@ -64,7 +64,7 @@ private:
 
 /// Three coordinates (or any three numbers) of one graph.
 struct Point {
-    Num x, y, z;
+    NodeRef x, y, z;
 };
 
 class Graph {
@@ -73,20 +73,20 @@ public:
     Graph(Graph&&) = default;
     Graph& operator=(Graph&&) = default;
 
-    Num x();
-    Num y();
-    Num z();
+    NodeRef x();
+    NodeRef y();
+    NodeRef z();
     Point position() { return {x(), y(), z()}; }
     /// A number that is part of the structure (a formula's 0.5): equal literals are one node.
-    Num literal(float value);
+    NodeRef literal(float value);
     /// A number that may change without changing structure. A key seen before keeps its slot and takes the new value.
-    Num slot(SlotKey key, float value);
+    NodeRef slot(SlotKey key, float value);
     /// A slot nobody else names; for numbers without a path.
-    Num slot(float value);
+    NodeRef slot(float value);
     /// A node of the op table. Commutative operands are ordered, equal structure is shared.
     /// Operand origins are part of the structure and may only be set on min, max, blend and morph.
-    Num apply(OpCode op, std::span<const Operand> operands, uint32_t data = 0);
-    Num apply(OpCode op, std::initializer_list<Num> operands, uint32_t data = 0);
+    NodeRef apply(OpCode op, std::span<const Operand> operands, uint32_t data = 0);
+    NodeRef apply(OpCode op, std::initializer_list<NodeRef> operands, uint32_t data = 0);
 
     /// The number of a grid in this graph: the `data` of ops that read one. The same grid keeps its number.
     uint32_t grid(const SampledGridPtr& samples);
@@ -106,7 +106,7 @@ public:
 private:
     NodeId insert(OpCode op, std::span<const Operand> operands, uint32_t data);
     NodeId append(OpCode op, std::span<const Operand> operands, uint32_t data);
-    Num addSlot(SlotKey key, float value);
+    NodeRef addSlot(SlotKey key, float value);
 
     std::vector<Node> nodes_;
     std::vector<Operand> operands_;
@@ -117,38 +117,38 @@ private:
     HashIndex nodeIndex_, slotIndex_;
 };
 
-Num operator+(Num a, Num b);
-Num operator-(Num a, Num b);
-Num operator*(Num a, Num b);
-Num operator/(Num a, Num b);
-Num operator-(Num a);
-Num operator+(Num a, float b);
-Num operator+(float a, Num b);
-Num operator-(Num a, float b);
-Num operator-(float a, Num b);
-Num operator*(Num a, float b);
-Num operator*(float a, Num b);
-Num operator/(Num a, float b);
-Num operator/(float a, Num b);
-Num min(Num a, Num b);
-Num max(Num a, Num b);
-Num min(Num a, float b);
-Num max(Num a, float b);
-Num abs(Num a);
-Num sqrt(Num a);
-Num square(Num a);
-Num floor(Num a);
+NodeRef operator+(NodeRef a, NodeRef b);
+NodeRef operator-(NodeRef a, NodeRef b);
+NodeRef operator*(NodeRef a, NodeRef b);
+NodeRef operator/(NodeRef a, NodeRef b);
+NodeRef operator-(NodeRef a);
+NodeRef operator+(NodeRef a, float b);
+NodeRef operator+(float a, NodeRef b);
+NodeRef operator-(NodeRef a, float b);
+NodeRef operator-(float a, NodeRef b);
+NodeRef operator*(NodeRef a, float b);
+NodeRef operator*(float a, NodeRef b);
+NodeRef operator/(NodeRef a, float b);
+NodeRef operator/(float a, NodeRef b);
+NodeRef min(NodeRef a, NodeRef b);
+NodeRef max(NodeRef a, NodeRef b);
+NodeRef min(NodeRef a, float b);
+NodeRef max(NodeRef a, float b);
+NodeRef abs(NodeRef a);
+NodeRef sqrt(NodeRef a);
+NodeRef square(NodeRef a);
+NodeRef floor(NodeRef a);
 /// Floor-modulo a − b·floor(a/b), in [0, b) for b > 0.
-Num mod(Num a, Num b);
-Num sin(Num a);
-Num cos(Num a);
-Num exp(Num a);
+NodeRef mod(NodeRef a, NodeRef b);
+NodeRef sin(NodeRef a);
+NodeRef cos(NodeRef a);
+NodeRef exp(NodeRef a);
 /// Angle of (x, y) in (−π, π].
-Num atan2(Num y, Num x);
+NodeRef atan2(NodeRef y, NodeRef x);
 
 inline Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Num dot(Point a, Point b);
-Num length(Point a);
+NodeRef dot(Point a, Point b);
+NodeRef length(Point a);
 
 }  // namespace sgm::field

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "modeler/field/kifs_glsl.h"
 #include "modeler/field/values.h"
 
 namespace sgm::field::ops {
@@ -19,7 +20,7 @@ namespace sgm::field::ops {
 struct Kifs {
     static constexpr std::string_view name = "kifs";
     static constexpr int arity = variadic;
-    static constexpr size_t moving = 3;
+    static constexpr size_t varyingOperands = 3;
 
     /// Places of the operands; vectors take three, rotations nine (by columns). Coordinates are multiplied by the
     /// stretch before the passes.
@@ -52,38 +53,14 @@ struct Kifs {
         return {d & 255u, (d & 256u) != 0, (d & 512u) != 0, (d & 1024u) != 0, (d & 2048u) != 0, (d & 4096u) != 0};
     }
 
-    static constexpr std::string_view glsl =
-        "vec3 p = vec3(arg(first), arg(first + 1u), arg(first + 2u)) *\n"
-        "    vec3(arg(first + 26u), arg(first + 27u), arg(first + 28u));\n"
-        "vec3 c = vec3(arg(first + 3u), arg(first + 4u), arg(first + 5u));\n"
-        "float s = arg(first + 6u), scales = 1.0;\n"
-        "mat3 r2 = mat3(1.0), r1 = mat3(1.0);\n"
-        "for (uint i = 0u; i < 9u; ++i) {\n"
-        "    if ((data & 2048u) != 0u) r2[i / 3u][i % 3u] = arg(first + 7u + i);\n"
-        "    if ((data & 4096u) != 0u) r1[i / 3u][i % 3u] = arg(first + 16u + i);\n"
-        "}\n"
-        "float limit = arg(first + 25u), h = c.z * (s - 1.0) * 0.5;\n"
-        "for (uint pass = 0u; pass < (data & 255u); ++pass) {\n"
-        "    p = abs(r1 * p);\n"
-        "    p.xy = vec2(max(p.x, p.y), min(p.x, p.y));\n"
-        "    p.xz = vec2(max(p.x, p.z), min(p.x, p.z));\n"
-        "    p.yz = vec2(max(p.y, p.z), min(p.y, p.z));\n"
-        "    p = r2 * p * s;\n"
-        "    p.xy -= c.xy * (s - 1.0);\n"
-        "    p.z = (data & 512u) == 0u ? h - abs(p.z - h) : p.z > h ? p.z - (h + h) : p.z;\n"
-        "    scales *= s;\n"
-        "    if ((data & 1024u) != 0u && dot(p, p) > limit) break;\n"
-        "}\n"
-        "vec3 q = abs(p);\n"
-        "float d = (data & 256u) != 0u ? max(max(q.x, q.y), q.z) - max(max(c.x, c.y), c.z) : length(p) - 2.0;\n"
-        "return d / scales;";
+    static constexpr std::string_view glsl = kifsGlsl;
 
     /// Forms told apart where code is made, so that nothing is asked on the way through the passes.
-    enum class Path { Plain, Folds, Turns, Both, Leaps };
+    enum class Path { Plain, Folds, Turns, Both, Jumps };
     /// visit.operator()<path>() for the path of a form.
     static constexpr void visitPath(const Form& form, auto&& visit) {
         if (form.jump || form.bails)
-            visit.template operator()<Path::Leaps>();
+            visit.template operator()<Path::Jumps>();
         else if (form.folds)
             form.turns ? visit.template operator()<Path::Both>() : visit.template operator()<Path::Folds>();
         else
@@ -92,11 +69,11 @@ struct Kifs {
 
     template <Path path>
     static constexpr bool folds(const Form& f) {
-        return path == Path::Leaps ? f.folds : path == Path::Folds || path == Path::Both;
+        return path == Path::Jumps ? f.folds : path == Path::Folds || path == Path::Both;
     }
     template <Path path>
     static constexpr bool turns(const Form& f) {
-        return path == Path::Leaps ? f.turns : path == Path::Turns || path == Path::Both;
+        return path == Path::Jumps ? f.turns : path == Path::Turns || path == Path::Both;
     }
 
     /// What the passes take from the parameters: to be made once for all points, where those are numbers.
@@ -124,25 +101,25 @@ struct Kifs {
 
     /// The same with the stretch.
     template <class V>
-    struct Numbers : Folds<V> {
+    struct UniformParams : Folds<V> {
         V stretch[3];
-        [[gnu::always_inline]] Numbers(std::span<const V> args, uint32_t data) : Folds<V>(args, data) {
+        [[gnu::always_inline]] UniformParams(std::span<const V> args, uint32_t data) : Folds<V>(args, data) {
             for (size_t i = 0; i < 3; ++i) stretch[i] = args[Kifs::stretch + i];
         }
     };
 
     template <class V>
     static V apply(std::span<const V> args, uint32_t data) {
-        const Numbers<V> numbers(args, data);
+        const UniformParams<V> numbers(args, data);
         V value;
-        visitPath(numbers.form, [&]<Path path>() { value = byNumbers<path>(args.data(), numbers); });
+        visitPath(numbers.form, [&]<Path path>() { value = evalUniform<path>(args.data(), numbers); });
         return value;
     }
 
     /// The value at a point, by numbers that are V themselves or plain floats; with derivatives where V has them and
     /// the numbers have none.
     template <Path path, class V, class W>
-    [[gnu::always_inline]] static V byNumbers(const V* at, const Numbers<W>& numbers) {
+    [[gnu::always_inline]] static V evalUniform(const V* at, const UniformParams<W>& numbers) {
         const auto stretched = [&](size_t i) {
             if constexpr (std::is_same_v<NumberOf<V, W>, V>) {
                 return at[i] * V(numbers.stretch[i]);
@@ -228,7 +205,7 @@ private:
         template <Path path, class W>
         [[gnu::always_inline]] void back(V& gx, V& gy, V& gz, const Folds<W>& n) const {
             const V zero = 0.0f;
-            if (path != Path::Leaps || !n.form.jump) gz = select(offset < zero, gz, -gz);
+            if (path != Path::Jumps || !n.form.jump) gz = select(offset < zero, gz, -gz);
             if (folds<path>(n.form)) rotateBack(gx, gy, gz, n.fold);
             const V ax = abs(x), ay = abs(y), az = abs(z), least = min(ax, ay), most = max(ax, ay);
             const auto xy = ax > ay, top = most > az, rest = least > min(most, az);
@@ -259,13 +236,13 @@ private:
         const State<V> g = normal(at, numbers.form);
         V gx = g.x, gy = g.y, gz = g.z;
         if (folds<path>(numbers.form)) {  // their rotations scale
-            const V share = path == Path::Leaps && numbers.form.bails ? V(1.0f) / at.scales : V(numbers.unscale);
+            const V share = path == Path::Jumps && numbers.form.bails ? V(1.0f) / at.scales : V(numbers.unscale);
             gx = gx * share, gy = gy * share, gz = gz * share;
         }
         for (uint32_t i = passes; i-- > 0;) {
             const V afterX = gx, afterY = gy, afterZ = gz;
             kept[i].template back<path>(gx, gy, gz, numbers);
-            if (path != Path::Leaps || !numbers.form.bails) continue;
+            if (path != Path::Jumps || !numbers.form.bails) continue;
             gx = select(kept[i].moves, gx, afterX);
             gy = select(kept[i].moves, gy, afterY);
             gz = select(kept[i].moves, gz, afterZ);
@@ -283,7 +260,7 @@ private:
     /// Takes `at` through the passes; keep(i) is told which way pass i went. Returns how many were begun.
     template <Path path, class V, class W, class Keep>
     [[gnu::always_inline]] static uint32_t walk(State<V>& at, const Folds<W>& n, const Keep& keep) {
-        if constexpr (path == Path::Leaps) return walkWithLeaps(at, n, keep);
+        if constexpr (path == Path::Jumps) return walkWithLeaps(at, n, keep);
         V x = at.x, y = at.y, z = at.z;  // by themselves: a compiler keeps those in registers
         for (uint32_t i = 0; i < n.form.passes; ++i) {
             auto&& kept = keep(i);
@@ -300,7 +277,7 @@ private:
         for (uint32_t i = 0; i < n.form.passes; ++i) {
             auto&& kept = keep(i);
             State<V> next = at;
-            foldAndScale<Path::Leaps>(next.x, next.y, next.z, n, kept);
+            foldAndScale<Path::Jumps>(next.x, next.y, next.z, n, kept);
             const V h = n.lastFold;
             if (n.form.jump) {
                 next.z = select(next.z > h, next.z - (h + h), next.z);
@@ -391,7 +368,7 @@ private:
         State<I> at{p[0], p[1], p[2], I(1.0f)};
         V lo = std::numeric_limits<float>::infinity(), hi = -std::numeric_limits<float>::infinity();
         for (uint32_t i = 0; i < form.passes; ++i) {
-            foldAndScale<Path::Leaps>(at.x, at.y, at.z, n, Unkept{});
+            foldAndScale<Path::Jumps>(at.x, at.y, at.z, n, Unkept{});
             const I& h = n.lastFold;
             if (form.jump) {
                 const auto may = at.z.hi > h.lo, must = at.z.lo > h.hi;

@@ -15,7 +15,7 @@ namespace sgm::field::ops {
 struct Noise {
     static constexpr std::string_view name = "noise";
     static constexpr int arity = variadic;
-    static constexpr size_t operandCount = 3, moving = 3;
+    static constexpr size_t operandCount = 3, varyingOperands = 3;
     static constexpr int maxOctaves = 8;
 
     /// The `data` of a node: octaves 1 … 8, kind, and a seed of which 28 bits are kept.

@@ -1,5 +1,5 @@
 // The op table: every elementary function a field can be made of, said once.
-// Enters: values of any vocabulary (modeler/field/values.h). Leaves: OpCode, its name and traits, and dispatch over the
+// Enters: values of any type (modeler/field/values.h). Leaves: OpCode, its name and traits, and dispatch over the
 // rows. Assumes nothing but + − × ÷ √ min max and integers in the bodies: that keeps bits equal on all machines.
 //
 // To add an op: write a row (a struct, below or in a header of its own) and name it in `OpTable`. Nothing else changes:
@@ -7,38 +7,32 @@
 //   name, arity                          operands: 1, 2, or `variadic`
 //   V apply(a) | apply(a, b) | apply(span<const V> args, uint32_t data)      the op itself, over any V
 // and, where the default won't do or could be better:
-//   operandCount, moving                 of a variadic row: it always has so many operands, and those from `moving` on
-//   are
-//                                        mostly numbers: kernels are fast then
+//   operandCount, varyingOperands        of a variadic row: it always has so many operands, and those from
+//                                        `varyingOperands` on are mostly numbers: kernels are fast then
 //   commutative = true                   operands may be ordered
-//   I interval(…same operands as I…)     an enclosure of apply's floats, rounding included; operands' bounds are never
-//                                        NaN. The default is apply over intervals: rounding is monotone, so it encloses
+//   I interval(…same operands as I…)     an enclosure of apply's floats, rounding included; operands' bounds are
+//                                        never NaN. The default is apply over intervals: rounding is monotone, so it
+//                                        encloses
 //   D gradient(…same operands as D…)     value (same bits as apply) and derivatives; the default is apply over Dual
 //   Slopes<V> slopes<V>(at)              for a row of a position and numbers, at(i) its operands: the value and its
-//   derivatives by
-//                                        the position, all that is needed where that is x, y, z themselves
-//   Numbers<V>(args, data)               for a row most of whose operands are numbers: what it makes of those, once for
-//   all
-//                                        points. V byNumbers<path>(const V* moving, numbers) gives apply's bits from
-//                                        numbers that are V, or floats: then with derivatives where V has them; paths
-//                                        are told apart by visitPath(numbers.form, …)
+//                                        derivatives by the position, all that is needed where that is x, y, z
+//   UniformParams<V>(args, data)         for a row most of whose operands are numbers: what it makes of those, once
+//                                        for all points. V evalUniform<path>(const V* varying, numbers) gives apply's
+//                                        bits from numbers that are V, or floats: then with derivatives where V has
+//                                        them; paths are told apart by visitPath(numbers.form, …)
 //   owner                                which operand owns the surface (Owner)
-//   V reach(span<const I>, uint32_t)     for Owner::Least (Greatest): an operand that lies above (below) it can't
-//   matter:
-//                                        the bits stay the same without it or with any other number beyond it. With one
-//                                        operand left the op is that operand, bit for bit. Operands before
-//                                        `firstChoice` are never dropped
+//   V pruneBound(span<const I>, data)    for Owner::Least (Greatest): an operand that lies above (below) it can't
+//                                        matter: the bits stay the same without it or with any other number beyond
+//                                        it. With one operand left the op is that operand, bit for bit. Operands
+//                                        before `firstPrunable` are never dropped
 //   readsGrid = true                     `data` is the number of a SampledGrid in the graph, and every function above
-//   that
-//                                        takes `uint32_t data` takes the grid's words, `const float* grid`, in its
-//                                        place
-//   selects = true                       the result is one of the operands, so that what the consumer of the result
-//                                        doesn't care for needn't be told apart in the operands either
+//                                        that takes `uint32_t data` takes the grid's words, `const float* grid`
+//   selects = true                       the result is one of the operands, so that values which the consumer of the
+//                                        result doesn't tell apart needn't be told apart in the operands either
 //   hasSides = true                      the surface has an edge where its two operands are equal, as at their maximum
-//   glsl                                 body of `float op_NAME(uint first, uint count, uint data)`, in which operand i
-//   is
-//                                        `arg(first + i)`; needed by variadic rows: a loop can't become one expression.
-//                                        word(data, i) is the i-th word of the grid
+//   glsl                                 body of `float op_NAME(uint first, uint count, uint data)`, in which operand
+//                                        i is `arg(first + i)`; needed by variadic rows: a loop can't become one
+//                                        expression. word(data, i) is the i-th word of the grid
 #pragma once
 
 #include <array>
@@ -56,6 +50,7 @@
 #include "modeler/field/ops_math.h"
 #include "modeler/field/sampled_op.h"
 #include "modeler/field/solid_ops.h"
+#include "modeler/field/transcendental_ops.h"
 #include "modeler/field/values.h"
 
 namespace sgm::field::ops {
@@ -191,7 +186,7 @@ struct Min {
     }
     static constexpr bool selects = true;
     template <class I>
-    static auto reach(std::span<const I> args, uint32_t) {
+    static auto pruneBound(std::span<const I> args, uint32_t) {
         return min(args[0].hi, args[1].hi);
     }
 };
@@ -206,7 +201,7 @@ struct Max {
     }
     static constexpr bool selects = true;
     template <class I>
-    static auto reach(std::span<const I> args, uint32_t) {
+    static auto pruneBound(std::span<const I> args, uint32_t) {
         return max(args[0].lo, args[1].lo);
     }
 };
@@ -232,101 +227,13 @@ struct Rim {
 struct Morph {
     static constexpr std::string_view name = "morph";
     static constexpr int arity = variadic;
-    static constexpr size_t operandCount = 3, moving = 3;
+    static constexpr size_t operandCount = 3, varyingOperands = 3;
     static constexpr Owner owner = Owner::Nearer;
     static constexpr std::string_view glsl =
         "float t = arg(first + 2u); return arg(first) * (1.0 - t) + arg(first + 1u) * t;";
     template <class V>
     static V apply(std::span<const V> args, uint32_t) {
         return args[0] * (1.0f - args[2]) + args[1] * args[2];
-    }
-};
-
-/// The interval of a sine or cosine from its value in the middle. Of large angles it is known that they have one; an
-/// infinite one has none, and of those far out rounding leaves nothing.
-template <class I>
-I ofTurn(I angle, typename I::Value middle) {
-    using V = typename I::Value;
-    const V precise = 1e4f, far = 1e6f;
-    const V reach = select((angle.lo >= -precise) & (angle.hi <= precise), radius(angle) + 4 * mathError, V(3.0f));
-    return around<I>(middle, reach, -1 - mathError, 1 + mathError).where((angle.lo >= -far) & (angle.hi <= far));
-}
-struct Sin {
-    static constexpr std::string_view name = "sin";
-    static constexpr int arity = 1;
-    template <class V>
-    static V apply(V a) {
-        return sine(a, 0.0f);
-    }
-    template <class I>
-    static I interval(I a) {
-        return ofTurn(a, apply(centre(a)));
-    }
-    template <class D>
-    static D gradient(D a) {
-        return chain(a, apply(a.value), sine(a.value, 1.0f));
-    }
-};
-struct Cos {
-    static constexpr std::string_view name = "cos";
-    static constexpr int arity = 1;
-    template <class V>
-    static V apply(V a) {
-        return sine(a, 1.0f);
-    }
-    template <class I>
-    static I interval(I a) {
-        return ofTurn(a, apply(centre(a)));
-    }
-    template <class D>
-    static D gradient(D a) {
-        return chain(a, apply(a.value), -sine(a.value, 0.0f));
-    }
-};
-struct Exp {
-    static constexpr std::string_view name = "exp";
-    static constexpr int arity = 1;
-    template <class V>
-    static V apply(V a) {
-        return exponential(a);
-    }
-    template <class I>
-    static I interval(I a) {
-        return I{exponential(a.lo) * (1 - 4 * mathError), exponential(a.hi) * (1 + 4 * mathError)};
-    }
-    template <class D>
-    static D gradient(D a) {
-        const auto e = apply(a.value);
-        using V = typename D::Value;
-        return chain(a, e, select((a.value > V(leastExponent)) & (a.value < V(mostExponent)), e, V(0.0f)));
-    }
-};
-/// Angle of (x, y) from the operands (y, x).
-struct Atan2 {
-    static constexpr std::string_view name = "atan2";
-    static constexpr int arity = 2;
-    template <class V>
-    static V apply(V y, V x) {
-        return angleOf(y, x);
-    }
-    template <class D>
-    static D gradient(D y, D x) {
-        using V = typename D::Value;
-        const V square = x.value * x.value + y.value * y.value;
-        const V share = select(square > V(0.0f), V(1.0f) / square, V(0.0f));
-        const V a = x.value * share, b = y.value * share;
-        return D{apply(y.value, x.value), y.dx * a - x.dx * b, y.dy * a - x.dy * b, y.dz * a - x.dz * b};
-    }
-    /// Harmonic, so its extremes over a box are on the edges, and monotone along each: at the corners. Not across the
-    /// cut.
-    template <class I>
-    static I interval(I y, I x) {
-        using V = typename I::Value;
-        const V a = angleOf(y.lo, x.lo), b = angleOf(y.lo, x.hi), c = angleOf(y.hi, x.lo), d = angleOf(y.hi, x.hi);
-        const auto cut = (x.lo <= 0.0f) & (y.lo <= 0.0f) & (y.hi >= 0.0f);
-        const V whole = 3.1415930f;
-        return I{select(cut, -whole, min(min(a, b), min(c, d)) - 4 * mathError),
-                 select(cut, whole, max(max(a, b), max(c, d)) + 4 * mathError)};
     }
 };
 
@@ -383,7 +290,7 @@ struct OpTraits {
     bool selects;
     bool readsGrid;
     bool hasSides;
-    uint32_t firstChoice;  ///< operands before it are never dropped
+    uint32_t firstPrunable;  ///< operands before it are never dropped
     ops::Owner owner;
     std::string_view glsl;  ///< empty where the body is made from apply
 };
@@ -395,7 +302,7 @@ constexpr OpTraits traitsOf() {
     if constexpr (requires { Row::selects; }) t.selects = Row::selects;
     if constexpr (requires { Row::readsGrid; }) t.readsGrid = Row::readsGrid;
     if constexpr (requires { Row::hasSides; }) t.hasSides = Row::hasSides;
-    if constexpr (requires { Row::firstChoice; }) t.firstChoice = Row::firstChoice;
+    if constexpr (requires { Row::firstPrunable; }) t.firstPrunable = Row::firstPrunable;
     if constexpr (requires { Row::owner; }) t.owner = Row::owner;
     if constexpr (requires { Row::glsl; }) t.glsl = Row::glsl;
     t.chooses = t.owner == ops::Owner::Least || t.owner == ops::Owner::Greatest;

@@ -57,7 +57,7 @@ std::vector<uint32_t> leadersOf(const std::vector<plan::PlacedEdge>& edges) {
 
 }  // namespace
 
-Num pathSlot(Graph& graph, uint64_t path, std::string_view attribute, uint64_t index, double value) {
+NodeRef pathSlot(Graph& graph, uint64_t path, std::string_view attribute, uint64_t index, double value) {
     const auto number = static_cast<float>(value);
     return path == 0 ? graph.slot(number) : graph.slot({path, combine(hashText(attribute), index)}, number);
 }
@@ -76,8 +76,8 @@ PlanField::PlanField(const plan::Footprint& footprint, const plan::Formula& form
     outside_ = outsideByBends();
 }
 
-Num PlanField::distance(uint32_t edge) const {
-    std::optional<Num>& known = distances_[edge];
+NodeRef PlanField::distance(uint32_t edge) const {
+    std::optional<NodeRef>& known = distances_[edge];
     if (known) return *known;
     const auto number = [&](std::string_view of, double v) { return pathSlot(graph(), path_, of, edge, v); };
     const plan::Vec2 n = edges_[edge].normal();
@@ -98,8 +98,8 @@ Num PlanField::distance(uint32_t edge) const {
 }
 
 /// The position's coordinate along an edge's normal.
-Num PlanField::alongNormal(uint32_t edge) const {
-    std::optional<Num>& known = alongs_[edge];
+NodeRef PlanField::alongNormal(uint32_t edge) const {
+    std::optional<NodeRef>& known = alongs_[edge];
     if (known) return *known;
     const plan::Vec2 n = edges_[edge].normal();
     known = p_.x * pathSlot(graph(), path_, "edge x", edge, n.x) + p_.z * pathSlot(graph(), path_, "edge z", edge, n.z);
@@ -107,7 +107,7 @@ Num PlanField::alongNormal(uint32_t edge) const {
 }
 
 /// Φ with the edges of bends relative to their bend's plane, and each bend relative to the one around it.
-Num PlanField::outsideByBends() const {
+NodeRef PlanField::outsideByBends() const {
     const Bends bends = bendsOf(*formula_, edges_);
     if (bends.planes.empty()) return fold([this](uint32_t edge) { return distance(edge); });
     const auto relative = [&](std::string_view of, uint64_t index, PlanPlane plane, uint32_t bend) {
@@ -118,13 +118,13 @@ Num PlanField::outsideByBends() const {
         return p_.x * number(0, plane.normal.x - base.normal.x) + p_.z * number(1, plane.normal.z - base.normal.z) -
                number(2, plane.offset - base.offset);
     };
-    std::vector<Num> nodes;
+    std::vector<NodeRef> nodes;
     nodes.reserve(formula_->nodes.size());
     for (size_t i = 0; i < formula_->nodes.size(); ++i) {
         const FormulaNode& node = formula_->nodes[i];
-        Num value;
+        NodeRef value;
         if (node.kind != FormulaNode::Kind::Edge) {
-            const Num a = nodes[node.first], b = nodes[node.second];
+            const NodeRef a = nodes[node.first], b = nodes[node.second];
             value = node.kind == FormulaNode::Kind::Max ? max(a, b) : min(a, b);
         } else if (bends.ofNode[i] == Bends::none) {
             value = distance(node.first);
@@ -139,8 +139,8 @@ Num PlanField::outsideByBends() const {
     return nodes.back();
 }
 
-Num PlanField::fold(const std::function<Num(uint32_t edge)>& leaf) const {
-    std::vector<Num> nodes;
+NodeRef PlanField::fold(const std::function<NodeRef(uint32_t edge)>& leaf) const {
+    std::vector<NodeRef> nodes;
     nodes.reserve(formula_->nodes.size());
     for (const FormulaNode& node : formula_->nodes)
         nodes.push_back(node.kind == FormulaNode::Kind::Edge  ? leaf(node.first)
@@ -167,7 +167,7 @@ plan::Box2 PlanField::boundsOf(double out) const {
     return box;
 }
 
-Field PlanField::boxed(Num value, uint64_t path, double bottom, double top, double out) const {
+Field PlanField::boxed(NodeRef value, uint64_t path, double bottom, double top, double out) const {
     const plan::Box2 box = boundsOf(out);
     const plan::Vec2 middle = box.centre(), size = box.size();
     // A little apart from the solid's own faces, so that rounding decides nothing where they would coincide.

@@ -15,14 +15,14 @@ namespace sgm::field {
 
 /// A number of a solid: the node that carries it, and its present value for bounds.
 struct Quantity {
-    Num node;
+    NodeRef node;
     double value = 0;
 };
 /// A number that never changes, as a literal.
 Quantity fixed(Graph& graph, double value);
 
 /// The slot keyed by (path, attribute and index), or a fresh one for path 0.
-Num pathSlot(Graph& graph, uint64_t path, std::string_view attribute, uint64_t index, double value);
+NodeRef pathSlot(Graph& graph, uint64_t path, std::string_view attribute, uint64_t index, double value);
 
 /// The distances to the lines of a footprint's edges, and Φ, their formula.
 class PlanField {
@@ -38,21 +38,21 @@ public:
     const plan::Formula& formula() const { return *formula_; }
     const std::vector<plan::PlacedEdge>& edges() const { return edges_; }
     /// Signed distance to the line of edge i, > 0 outside, metres.
-    Num distance(uint32_t edge) const;
+    NodeRef distance(uint32_t edge) const;
     /// Φ = −D: < 0 inside, metres; 1-Lipschitz, mitred beyond corners.
-    Num outside() const { return outside_; }
+    NodeRef outside() const { return outside_; }
     /// The formula over other leaves, one an edge. Φ is fold(distance).
-    Num fold(const std::function<Num(uint32_t edge)>& leaf) const;
+    NodeRef fold(const std::function<NodeRef(uint32_t edge)>& leaf) const;
     /// The rectangle around the outline moved outward by `out` metres: with the tips of mitred corners, up to 4 times
     /// as far out.
     plan::Box2 boundsOf(double out = 0) const;
     /// `value` cut by the box between two heights and around the outline moved by `out`, a little larger than asked
     /// for: its bounds hold, lipschitz is 1 and growth 1. The box's slots are of `path`, the solid's own.
-    Field boxed(Num value, uint64_t path, double bottom, double top, double out = 0) const;
+    Field boxed(NodeRef value, uint64_t path, double bottom, double top, double out = 0) const;
 
 private:
-    Num outsideByBends() const;
-    Num alongNormal(uint32_t edge) const;
+    NodeRef outsideByBends() const;
+    NodeRef alongNormal(uint32_t edge) const;
 
     const plan::Footprint* footprint_;  ///< the caller's; must outlive this
     const plan::Formula* formula_;
@@ -60,8 +60,9 @@ private:
     std::vector<plan::PlacedEdge> edges_;
     uint64_t path_;
     std::vector<uint32_t> leaders_;  ///< by edge: the first that is parallel to it; itself where none is
-    mutable std::vector<std::optional<Num>> distances_, alongs_;  ///< made when asked for; along each leader's normal
-    Num outside_;
+    mutable std::vector<std::optional<NodeRef>> distances_,
+        alongs_;  ///< made when asked for; along each leader's normal
+    NodeRef outside_;
 };
 
 }  // namespace sgm::field

@@ -23,23 +23,4 @@ enum class GableEnds : uint8_t { Auto, X, Z, All };
 /// Their numbers, ascending, as in edgesOf(); edges at reflex corners can't be gables.
 std::vector<uint32_t> gablesOf(const plan::Footprint& footprint, const plan::Formula& formula, GableEnds ends);
 
-namespace solids {
-
-// (pitch, overhang, fascia, cover), then their own; see the table in primitives.cpp
-Field block(const PrimitiveInput& in);
-Field hipRoof(const PrimitiveInput& in);
-Field gableRoof(const PrimitiveInput& in);      ///< …, ends
-Field halfHipRoof(const PrimitiveInput& in);    ///< …, ends, share
-Field mansardRoof(const PrimitiveInput& in);    ///< lower, height, upper, overhang, fascia, cover
-Field gambrelRoof(const PrimitiveInput& in);    ///< the same, ends
-Field saltboxRoof(const PrimitiveInput& in);    ///< front, back, overhang, fascia, cover, ends
-Field shedRoof(const PrimitiveInput& in);       ///< …, to
-Field butterflyRoof(const PrimitiveInput& in);  ///< …, valley
-Field flatRoof(const PrimitiveInput& in);       ///< slab, parapet, thickness
-Field pyramidRoof(const PrimitiveInput& in);    ///< overhang, fascia
-Field domeRoof(const PrimitiveInput& in);       ///< overhang
-Field bellRoof(const PrimitiveInput& in);       ///< overhang, fascia
-
-}  // namespace solids
-
 }  // namespace sgm::field

@@ -9,6 +9,36 @@
 
 namespace sgm::field {
 
+/// The field of each row, defined in solid*.cpp and facade.cpp; `in.arguments` are read in the row's order.
+namespace solids {
+Field ellipsoid(const PrimitiveInput& in);  ///< also the sphere: a true distance when the half-sizes are equal
+Field torus(const PrimitiveInput& in);      ///< (tube)
+Field cylinder(const PrimitiveInput& in);
+Field cone(const PrimitiveInput& in);
+Field capsule(const PrimitiveInput& in);
+Field pyramid(const PrimitiveInput& in);
+Field prism(const PrimitiveInput& in);
+Field wedge(const PrimitiveInput& in);
+Field roof(const PrimitiveInput& in);  ///< (round)
+Field halfspace(const PrimitiveInput& in);
+Field kifs(const PrimitiveInput& in);      ///< (center, scale, fold, turn, passes, terminal, form, bailout)
+Field ornament(const PrimitiveInput& in);  ///< (FacadeParameter, modeler/field/facade.h)
+Field mesh(const PrimitiveInput& in);      ///< (file)
+Field block(const PrimitiveInput& in);
+Field hipRoof(const PrimitiveInput& in);
+Field gableRoof(const PrimitiveInput& in);      ///< …, ends
+Field halfHipRoof(const PrimitiveInput& in);    ///< …, ends, share
+Field mansardRoof(const PrimitiveInput& in);    ///< lower, height, upper, overhang, fascia, cover
+Field gambrelRoof(const PrimitiveInput& in);    ///< the same, ends
+Field saltboxRoof(const PrimitiveInput& in);    ///< front, back, overhang, fascia, cover, ends
+Field shedRoof(const PrimitiveInput& in);       ///< …, to
+Field butterflyRoof(const PrimitiveInput& in);  ///< …, valley
+Field flatRoof(const PrimitiveInput& in);       ///< slab, parapet, thickness
+Field pyramidRoof(const PrimitiveInput& in);    ///< overhang, fascia
+Field domeRoof(const PrimitiveInput& in);       ///< overhang
+Field bellRoof(const PrimitiveInput& in);       ///< overhang, fascia
+}  // namespace solids
+
 namespace {
 
 using Kind = ParameterKind;

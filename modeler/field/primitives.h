@@ -31,7 +31,7 @@ struct PrimitiveParameter {
 /// A Share/Length/Angle/Count/Choice uses [0]; a Vector three; PerId four; a Rotation nine (matrix by columns, world
 /// from local); a File what was read from it.
 struct Argument {
-    Num node[9];
+    NodeRef node[9];
     double value[9]{};
     SampledGridPtr grid;
 };

@@ -8,19 +8,19 @@ namespace sgm::field::roof_parts {
 
 /// The lower end of a roof.
 struct Foot {
-    Num up;    ///< height above the eaves
-    Num drop;  ///< how far below the eaves the roof ends
+    NodeRef up;    ///< height above the eaves
+    NodeRef drop;  ///< how far below the eaves the roof ends
     double dropValue = 0;
     bool hasFascia = false;
 };
 
-Num tangent(Num angle);
+NodeRef tangent(NodeRef angle);
 /// The signed distance to the plane that rises inward of `outside` = −inset from `up` = rise.
-Num slopePlane(Num outside, Num up, const Pitch& pitch);
+NodeRef slopePlane(NodeRef outside, NodeRef up, const Pitch& pitch);
 /// Slopes of at least the least of the pitches go down to the overhang.
 Foot footOf(const PlanField& plan, const RoofFoot& foot, std::span<const Quantity> pitches);
 /// `sides` above the roof's lower end, with bounds up to `height` metres above the eaves.
-Field onFoot(const PlanField& plan, const RoofFoot& foot, const Foot& at, Num sides, double height);
+Field onFoot(const PlanField& plan, const RoofFoot& foot, const Foot& at, NodeRef sides, double height);
 /// The greatest depth of the footprint, metres: at most a thousandth too much.
 double depthOf(const PlanField& plan);
 

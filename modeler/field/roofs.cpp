@@ -11,9 +11,9 @@ namespace sgm::field {
 
 namespace roof_parts {
 
-Num tangent(Num angle) { return sin(angle) / cos(angle); }
+NodeRef tangent(NodeRef angle) { return sin(angle) / cos(angle); }
 
-Num slopePlane(Num outside, Num up, const Pitch& pitch) {
+NodeRef slopePlane(NodeRef outside, NodeRef up, const Pitch& pitch) {
     return (up - pitch.rise.node) * cos(pitch.angle.node) + (outside + pitch.inset.node) * sin(pitch.angle.node);
 }
 
@@ -23,7 +23,7 @@ Foot footOf(const PlanField& plan, const RoofFoot& foot, std::span<const Quantit
         result.drop = plan.graph().literal(0);
         return result;
     }
-    Num least = tangent(pitches[0].node);
+    NodeRef least = tangent(pitches[0].node);
     double leastValue = std::tan(pitches[0].value);
     NodeId last = pitches[0].node.id();
     for (const Quantity& p : pitches.subspan(1)) {
@@ -35,7 +35,7 @@ Foot footOf(const PlanField& plan, const RoofFoot& foot, std::span<const Quantit
     return result;
 }
 
-Field onFoot(const PlanField& plan, const RoofFoot& foot, const Foot& at, Num sides, double height) {
+Field onFoot(const PlanField& plan, const RoofFoot& foot, const Foot& at, NodeRef sides, double height) {
     const double bottom = foot.eaves.value - at.dropValue, top = foot.eaves.value + std::max(height, 0.0);
     return plan.boxed(max(sides, -at.drop - at.up), foot.path, bottom, top, foot.overhang.value);
 }
@@ -78,8 +78,8 @@ double peakOf(const PlanField& plan, std::span<const RoofSide* const> sides) {
 Field uniformRoof(const PlanField& plan, const RoofFoot& foot, const RoofSide& side) {
     std::vector<Quantity> angles{side.pitches.front().angle};
     const Foot at = footOf(plan, foot, angles);
-    const Num up = at.hasFascia ? at.up - foot.fascia.node : at.up;
-    Num sides = slopePlane(plan.outside(), up, side.pitches[0]);
+    const NodeRef up = at.hasFascia ? at.up - foot.fascia.node : at.up;
+    NodeRef sides = slopePlane(plan.outside(), up, side.pitches[0]);
     for (size_t i = 1; i < side.pitches.size(); ++i)
         sides = max(sides, slopePlane(plan.outside(), up, side.pitches[i]));
     if (at.hasFascia) sides = max(sides, plan.outside() - foot.overhang.node);
@@ -126,12 +126,12 @@ Field roof(const PlanField& plan, const RoofFoot& foot, std::span<const RoofSide
     for (const RoofSide* side : chosen)
         if (!side->pitches.empty()) angles.push_back(side->pitches.front().angle);
     const Foot at = footOf(plan, foot, angles);
-    const Num up = at.hasFascia ? at.up - foot.fascia.node : at.up;
-    const Num sidesValue = plan.fold([&](uint32_t edge) {
-        const Num d = plan.distance(edge);
+    const NodeRef up = at.hasFascia ? at.up - foot.fascia.node : at.up;
+    const NodeRef sidesValue = plan.fold([&](uint32_t edge) {
+        const NodeRef d = plan.distance(edge);
         const RoofSide& side = *chosen[edge];
         const bool hasWall = side.pitches.empty() || at.hasFascia || side.pitches.front().rise.value > 0;
-        Num value = hasWall ? d - foot.overhang.node : slopePlane(d, up, side.pitches[0]);
+        NodeRef value = hasWall ? d - foot.overhang.node : slopePlane(d, up, side.pitches[0]);
         for (size_t k = hasWall ? 0 : 1; k < side.pitches.size(); ++k)
             value = max(value, slopePlane(d, up, side.pitches[k]));
         return value;
@@ -155,7 +155,7 @@ Field halfHipRoof(const PlanField& plan, const RoofFoot& foot, Quantity pitch, s
     for (const uint32_t e : ends) {
         if (e >= sides.size()) continue;
         const double half = plan.edges()[e].length() / 2;
-        const Num rise = share.node * tangent(pitch.node) * pathSlot(g, foot.path, "half width", e, half);
+        const NodeRef rise = share.node * tangent(pitch.node) * pathSlot(g, foot.path, "half width", e, half);
         sides[e].pitches[0].rise = {rise, share.value * std::tan(pitch.value) * half};
     }
     return roof(plan, foot, sides);

@@ -14,7 +14,7 @@ namespace {
 using namespace roof_parts;
 
 /// A product that keeps the piece of surface its factors lie on, which a square forgets.
-Num squareWithLabel(Num a) { return a.graph().apply(codeOf<ops::Mul>, {a, a}); }
+NodeRef squareWithLabel(NodeRef a) { return a.graph().apply(codeOf<ops::Mul>, {a, a}); }
 
 /// A unit direction of the plan; +z for none.
 plan::Vec2 unit(plan::Vec2 v) {
@@ -23,7 +23,7 @@ plan::Vec2 unit(plan::Vec2 v) {
 }
 
 /// Metres along `way` from the line through `from` square to it.
-Num along(const PlanField& plan, uint64_t path, plan::Vec2 way, double from) {
+NodeRef along(const PlanField& plan, uint64_t path, plan::Vec2 way, double from) {
     const auto number = [&](uint64_t i, double v) { return pathSlot(plan.graph(), path, "direction", i, v); };
     return plan.position().x * number(0, way.x) + plan.position().z * number(1, way.z) - number(2, from);
 }
@@ -37,7 +37,7 @@ std::pair<double, double> extentAlong(const PlanField& plan, plan::Vec2 way) {
 }
 
 /// Depth below the outline as a share of `run`, from 1 at the outline to 0 there and beyond.
-Num shareLeft(const PlanField& plan, Quantity run) { return max(plan.outside() + run.node, 0.0f) / run.node; }
+NodeRef shareLeft(const PlanField& plan, Quantity run) { return max(plan.outside() + run.node, 0.0f) / run.node; }
 
 /// `run`, or the depth of the footprint where it is 0.
 Quantity wholeRun(const PlanField& plan, const RoofFoot& foot, Quantity run) {
@@ -47,10 +47,10 @@ Quantity wholeRun(const PlanField& plan, const RoofFoot& foot, Quantity run) {
 }
 
 /// Height above the fascia.
-Num aboveFascia(const RoofFoot& foot, const Foot& at) { return at.hasFascia ? at.up - foot.fascia.node : at.up; }
+NodeRef aboveFascia(const RoofFoot& foot, const Foot& at) { return at.hasFascia ? at.up - foot.fascia.node : at.up; }
 
 /// The walls of a curved roof, moved out to the overhang, which begins at the eaves' height.
-Num walls(const PlanField& plan, const RoofFoot& foot) { return plan.outside() - foot.overhang.node; }
+NodeRef walls(const PlanField& plan, const RoofFoot& foot) { return plan.outside() - foot.overhang.node; }
 
 }  // namespace
 
@@ -59,8 +59,8 @@ Field shedRoof(const PlanField& plan, const RoofFoot& foot, Quantity pitch, plan
     const auto [lo, hi] = extentAlong(plan, way);
     const Quantity pitches[] = {pitch};
     const Foot at = footOf(plan, foot, pitches);
-    const Num raised = aboveFascia(foot, at);
-    const Num plane = raised * cos(pitch.node) - along(plan, foot.path, way, lo) * sin(pitch.node);
+    const NodeRef raised = aboveFascia(foot, at);
+    const NodeRef plane = raised * cos(pitch.node) - along(plan, foot.path, way, lo) * sin(pitch.node);
     const double height = std::tan(pitch.value) * (hi - lo + foot.overhang.value * 4) + foot.fascia.value;
     return onFoot(plan, foot, at, max(walls(plan, foot), plane), height);
 }
@@ -68,9 +68,10 @@ Field shedRoof(const PlanField& plan, const RoofFoot& foot, Quantity pitch, plan
 Field butterflyRoof(const PlanField& plan, const RoofFoot& foot, Quantity pitch, plan::Vec2 valley) {
     const plan::Vec2 v = unit(valley), across{-v.z, v.x};
     const auto [lo, hi] = extentAlong(plan, across);
-    const Num off = along(plan, foot.path, across, (lo + hi) / 2);
-    const Num up = plan.position().y - foot.eaves.node - foot.fascia.node;
-    const Num planes = min(up * cos(pitch.node) - off * sin(pitch.node), up * cos(pitch.node) + off * sin(pitch.node));
+    const NodeRef off = along(plan, foot.path, across, (lo + hi) / 2);
+    const NodeRef up = plan.position().y - foot.eaves.node - foot.fascia.node;
+    const NodeRef planes =
+        min(up * cos(pitch.node) - off * sin(pitch.node), up * cos(pitch.node) + off * sin(pitch.node));
     const Foot at = footOf(plan, foot, {});
     const double height = std::tan(pitch.value) * ((hi - lo) / 2 + foot.overhang.value * 4) + foot.fascia.value;
     return onFoot(plan, foot, at, max(walls(plan, foot), planes), height);
@@ -82,7 +83,7 @@ Field pyramidRoof(const PlanField& plan, const RoofFoot& foot, Quantity height) 
     const bool seen =
         std::all_of(distances.begin(), distances.end(), [&](const plan::Linear& d) { return d.at(apex) < -1e-6; });
     const auto pitchFor = [&](uint64_t edge, double depth) {
-        const Num run = pathSlot(plan.graph(), foot.path, "depth of the apex", edge, depth);
+        const NodeRef run = pathSlot(plan.graph(), foot.path, "depth of the apex", edge, depth);
         return Quantity{atan2(height.node, run), std::atan2(height.value, depth)};
     };
     const auto plane = [&](Quantity angle) {
@@ -97,10 +98,10 @@ Field pyramidRoof(const PlanField& plan, const RoofFoot& foot, Quantity height) 
 Field flatRoof(const PlanField& plan, const RoofFoot& foot, Quantity slab, Quantity parapetHeight,
                Quantity parapetThickness) {
     const Foot at = footOf(plan, foot, {});
-    const Num inside = walls(plan, foot) + parapetThickness.node;  // < 0 behind the parapet
-    const Num basin = min(at.up - slab.node, -inside);
-    const Num top = at.up - slab.node - parapetHeight.node;
-    const Num whole =
+    const NodeRef inside = walls(plan, foot) + parapetThickness.node;  // < 0 behind the parapet
+    const NodeRef basin = min(at.up - slab.node, -inside);
+    const NodeRef top = at.up - slab.node - parapetHeight.node;
+    const NodeRef whole =
         parapetHeight.value > 0 ? max(max(walls(plan, foot), top), basin) : max(walls(plan, foot), at.up - slab.node);
     return onFoot(plan, foot, at, whole, slab.value + std::max(parapetHeight.value, 0.0));
 }
@@ -110,8 +111,8 @@ Field flatRoof(const PlanField& plan, const RoofFoot& foot, Quantity slab, Quant
 Field domeRoof(const PlanField& plan, const RoofFoot& foot, Quantity height, Quantity run) {
     const Quantity r = wholeRun(plan, foot, run);
     const Foot at = footOf(plan, foot, {});
-    const Num u = shareLeft(plan, r), v = max(aboveFascia(foot, at), 0.0f) / height.node;
-    const Num round = (sqrt(squareWithLabel(u) + square(v)) - 1.0f) * min(r.node, height.node);
+    const NodeRef u = shareLeft(plan, r), v = max(aboveFascia(foot, at), 0.0f) / height.node;
+    const NodeRef round = (sqrt(squareWithLabel(u) + square(v)) - 1.0f) * min(r.node, height.node);
     return onFoot(plan, foot, at, max(walls(plan, foot), round), height.value + foot.fascia.value);
 }
 
@@ -120,11 +121,11 @@ Field domeRoof(const PlanField& plan, const RoofFoot& foot, Quantity height, Qua
 Field bellRoof(const PlanField& plan, const RoofFoot& foot, Quantity height, Quantity run) {
     const Quantity r = wholeRun(plan, foot, run);
     const Foot at = footOf(plan, foot, {});
-    const Num left = shareLeft(plan, r), v = aboveFascia(foot, at) / height.node;
-    const Num in = 1.0f - left, half = plan.graph().literal(0.5f);
-    const Num upper = sqrt(squareWithLabel(left) + square(max(v - half, 0.0f))) - half;
-    const Num hollow = half - sqrt(squareWithLabel(max(in, 0.0f)) + square(max(half - v, 0.0f)));
-    const Num bell = min(upper, max(v - half, hollow)) * min(r.node, height.node);
+    const NodeRef left = shareLeft(plan, r), v = aboveFascia(foot, at) / height.node;
+    const NodeRef in = 1.0f - left, half = plan.graph().literal(0.5f);
+    const NodeRef upper = sqrt(squareWithLabel(left) + square(max(v - half, 0.0f))) - half;
+    const NodeRef hollow = half - sqrt(squareWithLabel(max(in, 0.0f)) + square(max(half - v, 0.0f)));
+    const NodeRef bell = min(upper, max(v - half, hollow)) * min(r.node, height.node);
     return onFoot(plan, foot, at, max(walls(plan, foot), bell), height.value + foot.fascia.value);
 }
 
@@ -149,7 +150,7 @@ Result<Field> profileRoof(const PlanField& plan, const RoofFoot& foot, std::span
     const auto formula = plan::monotoneFormula(section);
     if (!formula) return Error{formula.error().kind, "profile of a roof: " + formula.error().message};
     const Foot at = footOf(plan, foot, {});
-    const Num up = aboveFascia(foot, at);
+    const NodeRef up = aboveFascia(foot, at);
     const PlanField swept(section, *formula, {plan.outside() - foot.overhang.node, up, up}, foot.path);
     return onFoot(plan, foot, at, max(walls(plan, foot), swept.outside()), top + foot.fascia.value);
 }

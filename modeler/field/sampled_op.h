@@ -17,7 +17,7 @@ namespace sgm::field::ops {
 struct Sampled {
     static constexpr std::string_view name = "sampled";
     static constexpr int arity = variadic;
-    static constexpr size_t operandCount = 3, moving = 3;
+    static constexpr size_t operandCount = 3, varyingOperands = 3;
     static constexpr bool readsGrid = true;
 
     static constexpr std::string_view glsl =

@@ -22,7 +22,7 @@ ops::Kifs::Form formOf(std::span<const Argument> arguments) {
 }
 
 /// The bailout is a squared radius; below 4 the terminal ball itself would be cut off.
-Num safeBailout(Num squaredRadius) { return max(squaredRadius, 4.0f); }
+NodeRef safeBailout(NodeRef squaredRadius) { return max(squaredRadius, 4.0f); }
 
 }  // namespace
 
@@ -40,13 +40,13 @@ Field kifs(const PrimitiveInput& in) {
     Graph& graph = in.p.x.graph();
     const auto& [cx, cy, cz] =
         Point{in.arguments[Center].node[0], in.arguments[Center].node[1], in.arguments[Center].node[2]};
-    const Num reach = max(max(cx, cy), cz);
+    const NodeRef reach = max(max(cx, cy), cz);
     const ops::Kifs::Form form = formOf(in.arguments);
 
     std::vector<Operand> operands;
     operands.reserve(ops::Kifs::operandCount);
-    const auto add = [&](std::initializer_list<Num> list) {
-        for (const Num& n : list) operands.push_back({n.id(), 0});
+    const auto add = [&](std::initializer_list<NodeRef> list) {
+        for (const NodeRef& n : list) operands.push_back({n.id(), 0});
     };
     add({in.p.x, in.p.y, in.p.z});
     add({cx, cy, cz, in.arguments[Scale].node[0]});
@@ -55,8 +55,8 @@ Field kifs(const PrimitiveInput& in) {
     add({safeBailout(in.arguments[Bailout].node[0])});
     add({reach / in.half.x, reach / in.half.y, reach / in.half.z});
 
-    const Num value = graph.apply(codeOf<ops::Kifs>, operands, ops::Kifs::pack(form));
-    const Num scaled = value * (min(min(in.half.x, in.half.y), in.half.z) / reach);
+    const NodeRef value = graph.apply(codeOf<ops::Kifs>, operands, ops::Kifs::pack(form));
+    const NodeRef scaled = value * (min(min(in.half.x, in.half.y), in.half.z) / reach);
     const float lipschitz = form.continuous() ? 1 : std::numeric_limits<float>::infinity();
     return {max(scaled, boxDistance(in.p, in.half)), scopeBox(in), lipschitz, growth(1)};
 }

@@ -9,10 +9,10 @@ Field mesh(const PrimitiveInput& in) {
     const SampledGridPtr& grid = in.arguments[0].grid;
     const Vec3f half = grid->bounds().size() * 0.5f, middle = grid->bounds().centre();
     const Point scale{in.half.x / half.x, in.half.y / half.y, in.half.z / half.z};
-    const Num place[] = {in.p.x / scale.x + middle.x, in.p.y / scale.y + middle.y, in.p.z / scale.z + middle.z};
+    const NodeRef place[] = {in.p.x / scale.x + middle.x, in.p.y / scale.y + middle.y, in.p.z / scale.z + middle.z};
     const Operand operands[] = {{place[0].id(), 0}, {place[1].id(), 0}, {place[2].id(), 0}};
-    const Num distance = graph.apply(codeOf<ops::Sampled>, operands, graph.grid(grid));
-    const Num scaled = distance * min(min(scale.x, scale.y), scale.z);
+    const NodeRef distance = graph.apply(codeOf<ops::Sampled>, operands, graph.grid(grid));
+    const NodeRef scaled = distance * min(min(scale.x, scale.y), scale.z);
     return {max(scaled, boxDistance(in.p, in.half)), scopeBox(in), grid->lipschitz(), growth(1)};
 }
 

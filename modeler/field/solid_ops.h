@@ -75,7 +75,7 @@ D chained(std::span<const D> args) {
 struct Ball {
     static constexpr std::string_view name = "ball";
     static constexpr int arity = variadic;
-    static constexpr size_t moving = 3;
+    static constexpr size_t varyingOperands = 3;
     enum Operand : size_t { position, centreAt = 3, scale = 6, radius = 9, operandCount };
 
     static constexpr std::string_view glsl =
@@ -121,7 +121,7 @@ private:
 struct Box {
     static constexpr std::string_view name = "box";
     static constexpr int arity = variadic;
-    static constexpr size_t moving = 3;
+    static constexpr size_t varyingOperands = 3;
     enum Operand : size_t { position, centreAt = 3, half = 6, operandCount = 9 };
 
     static constexpr std::string_view glsl =

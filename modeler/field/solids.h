@@ -1,4 +1,4 @@
-// The field of each solid in the primitive table.
+// What the fields of the primitive table share.
 // Enters: PrimitiveInput (primitives.h). Leaves: a Field filling the scope [−half, half]; the input's arguments are
 // read in the row's order. Assumes half-sizes > 0. SG-M III-E with the errata in docs/papers.md; a formula on
 // coordinates scaled by the half-sizes is multiplied by the least scale, so that it stays 1-Lipschitz (f(p/s)·min s).
@@ -9,32 +9,11 @@
 
 namespace sgm::field::solids {
 
-// solids_round.cpp
-Field ellipsoid(const PrimitiveInput& in);  ///< also the sphere: a true distance when the half-sizes are equal
-Field torus(const PrimitiveInput& in);      ///< (tube)
-Field cylinder(const PrimitiveInput& in);
-Field cone(const PrimitiveInput& in);
-Field capsule(const PrimitiveInput& in);
-
-// solids_flat.cpp
-Field cube(const PrimitiveInput& in);
-Field pyramid(const PrimitiveInput& in);
-Field prism(const PrimitiveInput& in);
-Field wedge(const PrimitiveInput& in);
-Field roof(const PrimitiveInput& in);  ///< (round)
-Field halfspace(const PrimitiveInput& in);
-
-// solid_kifs.cpp
-Field kifs(const PrimitiveInput& in);  ///< (center, scale, fold, turn, passes, terminal, form, bailout)
 /// Of a row that begins with the parameters of `kifs` up to `terminal`: the continuous form.
 ops::Kifs::Form kifsForm(std::span<const Argument> arguments);
 
-// facade.cpp
-Field ornament(const PrimitiveInput& in);  ///< (FacadeParameter, modeler/field/facade.h)
-
-// solid_mesh.cpp
-Field mesh(const PrimitiveInput& in);  ///< (file)
-
+/// The scope's box as a solid: the row `cube`, and `block` where there is no footprint.
+Field cube(const PrimitiveInput& in);
 /// The scope's box about the origin; a solid whose field is a maximum with the cube's or the ellipsoid's has f ≥ 0
 /// outside it in every bit, because −, ÷ and √ round monotonically.
 Box3f scopeBox(const PrimitiveInput& in);
@@ -46,6 +25,6 @@ struct Placed {
 };
 Placed placed(const Point& p);
 /// The exact distance to the scope's box.
-Num boxDistance(const Point& p, const Point& half);
+NodeRef boxDistance(const Point& p, const Point& half);
 
 }  // namespace sgm::field::solids

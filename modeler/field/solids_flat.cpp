@@ -10,16 +10,16 @@ namespace {
 
 /// Signed distance to the plane through (half, −halfY) and (0, halfY), the slanted face over an axis: `across` ≥ 0 is
 /// the distance from that axis, `y` the height.
-Num slope(Num across, Num y, Num half, Num halfY) {
-    const Num rise = 2.0f * halfY;
+NodeRef slope(NodeRef across, NodeRef y, NodeRef half, NodeRef halfY) {
+    const NodeRef rise = 2.0f * halfY;
     return ((across - half) * rise + (y + halfY) * half) / sqrt(square(rise) + square(half));
 }
 
-Num pyramidSides(const PrimitiveInput& in) {
+NodeRef pyramidSides(const PrimitiveInput& in) {
     return max(slope(abs(in.p.x), in.p.y, in.half.x, in.half.y), slope(abs(in.p.z), in.p.y, in.half.z, in.half.y));
 }
 
-Field insideScope(const PrimitiveInput& in, Num planes) {
+Field insideScope(const PrimitiveInput& in, NodeRef planes) {
     return {max(planes, boxDistance(in.p, in.half)), scopeBox(in), 1, growth(1)};
 }
 
@@ -35,7 +35,7 @@ float growth(double g) { return static_cast<float>(g * (1 - 2e-6)); }
 Placed placed(const Point& p) {
     Graph& graph = p.x.graph();
     Placed result{p, {graph.literal(0), graph.literal(0), graph.literal(0)}};
-    const auto takeApart = [&graph](Num& n, Num& centre) {
+    const auto takeApart = [&graph](NodeRef& n, NodeRef& centre) {
         const Node& node = graph.node(n.id());
         if (node.op != codeOf<ops::Sub>) return;
         const auto operands = graph.operands(n.id());
@@ -50,7 +50,7 @@ Placed placed(const Point& p) {
     return result;
 }
 
-Num boxDistance(const Point& p, const Point& half) {
+NodeRef boxDistance(const Point& p, const Point& half) {
     const auto [q, c] = placed(p);
     return p.x.graph().apply(codeOf<ops::Box>, {q.x, q.y, q.z, c.x, c.y, c.z, half.x, half.y, half.z});
 }
@@ -62,7 +62,7 @@ Field pyramid(const PrimitiveInput& in) { return insideScope(in, pyramidSides(in
 Field prism(const PrimitiveInput& in) { return insideScope(in, slope(abs(in.p.x), in.p.y, in.half.x, in.half.y)); }
 
 Field wedge(const PrimitiveInput& in) {
-    const Num plane = (in.p.x * in.half.y + in.p.y * in.half.x) / sqrt(square(in.half.x) + square(in.half.y));
+    const NodeRef plane = (in.p.x * in.half.y + in.p.y * in.half.x) / sqrt(square(in.half.x) + square(in.half.y));
     return insideScope(in, plane);
 }
 
@@ -70,9 +70,9 @@ Field wedge(const PrimitiveInput& in) {
 // Morphing a closed pyramid instead would curl its base up. The foot is a face of the scope, so the cut is part of the
 // box.
 Field roof(const PrimitiveInput& in) {
-    const Num foot = in.p.y + in.half.y, height = 2.0f * in.half.y;
-    const Num dome = (length(Point{in.p.x / in.half.x, foot / height, in.p.z / in.half.z}) - 1.0f) *
-                     min(min(in.half.x, in.half.z), height);
+    const NodeRef foot = in.p.y + in.half.y, height = 2.0f * in.half.y;
+    const NodeRef dome = (length(Point{in.p.x / in.half.x, foot / height, in.p.z / in.half.z}) - 1.0f) *
+                         min(min(in.half.x, in.half.z), height);
     Graph& graph = in.p.x.graph();
     return insideScope(in, graph.apply(codeOf<ops::Morph>, {pyramidSides(in), dome, in.arguments[0].node[0]}));
 }

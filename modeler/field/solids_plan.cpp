@@ -111,7 +111,7 @@ double heightOver(const Primitive& row, const plan::Footprint& footprint, const 
     for (Argument& a : own)
         for (int i = 0; i < 9; ++i) a.node[i] = graph.literal(static_cast<float>(a.value[i]));
     const PlanField plan(footprint, formula, graph.position(), 0);
-    const Num half = graph.literal(0.5f);
+    const NodeRef half = graph.literal(0.5f);
     const Field f = row.build({graph.position(), {half, half, half}, {.5, .5, .5}, own, &plan, 0});
     return f.bounds.empty() ? 0 : std::max(0.0, static_cast<double>(f.bounds.hi.y) + .5);
 }

@@ -1,4 +1,4 @@
-// The value vocabulary: what the body of an op may say, and its plain float form.
+// The value interface: what the body of an op may say, and its plain float form.
 // Enters: nothing. Leaves: `float` as a value type. The others are in modeler/eval/values_*.h: Lanes (SIMD), Dual
 // (derivatives), Interval (enclosures), GlslText (shader text). All give the same bits where they compute a value.
 //

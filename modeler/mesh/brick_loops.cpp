@@ -255,7 +255,7 @@ void join(const SurfaceCell* cells, size_t n, const uint32_t* __restrict number,
     joinByPlaces(cells, n, number, cases, to);
 }
 
-constexpr uint32_t borrowed = 0x80000000u;
+constexpr uint32_t ghostMark = 0x80000000u;
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 
@@ -268,7 +268,7 @@ inline __m512i everyThird(const __m512i numbers[3], int first) {
 }
 
 void owners(const uint32_t* triangles, size_t n, const uint32_t* origins, uint32_t own, uint32_t* to) {
-    const __m512i number = _mm512_set1_epi32(static_cast<int>(~borrowed)),
+    const __m512i number = _mm512_set1_epi32(static_cast<int>(~ghostMark)),
                   behind = _mm512_set1_epi32(static_cast<int>(own));
     const auto firstOf = [](size_t count) { return static_cast<__mmask16>(count < 16 ? (1u << count) - 1 : 0xffffu); };
     for (size_t t = 0; t < n; t += 16) {
@@ -295,8 +295,8 @@ void owners(const uint32_t* triangles, size_t n, const uint32_t* origins, uint32
 #else
 
 void owners(const uint32_t* triangles, size_t n, const uint32_t* origins, uint32_t own, uint32_t* to) {
-    // Without a branch: which corners are borrowed follows no pattern.
-    const auto of = [=](uint32_t corner) { return origins[(corner & ~borrowed) + ((0u - (corner >> 31)) & own)]; };
+    // Without a branch: which corners are ghostMark follows no pattern.
+    const auto of = [=](uint32_t corner) { return origins[(corner & ~ghostMark) + ((0u - (corner >> 31)) & own)]; };
     for (size_t t = 0; t < n; ++t, triangles += 3) {
         const uint32_t a = of(triangles[0]), b = of(triangles[1]), c = of(triangles[2]);
         const uint32_t ab = a < b ? a : b, least = ab < c ? ab : c, ofTwo = b == c ? b : least;

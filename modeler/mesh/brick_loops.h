@@ -58,7 +58,7 @@ struct BrickLoops {
     /// Writes the cells' triangles, three numbers each, and nothing beside them.
     void (*join)(const SurfaceCell* cells, size_t n, const uint32_t* number, size_t rowStride, size_t layerStride,
                  const PlacedCase* cases, uint32_t* triangles);
-    /// Owners of n triangles: that of most corners, the lowest where all three differ. Corners that are borrowed (bit
+    /// Owners of n triangles: that of most corners, the lowest where all three differ. Corners that are ghosts (bit
     /// 31) are listed in `origins` from `own` on.
     void (*owners)(const uint32_t* triangles, size_t n, const uint32_t* origins, uint32_t own, uint32_t* to);
 };

@@ -118,7 +118,7 @@ private:
     std::vector<Probe> probes_;
     std::vector<uint32_t> cellEnds_;
     uint32_t firstVertex_ = 0;
-    Vec3f low_, high_;                          ///< of the cell at hand
+    Vec3f low_, high_;                          ///< of the cell in work
     std::vector<std::array<Vec3f, 3>> places_;  ///< of its triangles
     std::vector<Vec3d> normals_;                ///< of its polygons
 };

@@ -28,7 +28,7 @@ void CellPieces::emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, c
     for (uint32_t k = 0; k < 3; ++k) {
         const LoopNode& node = *corners[k];
         const bool isEdgeVertex = node.sides[0]->label == piece.label && node.sides[1]->label == piece.label &&
-                                  !node.isBreak && (node.vertex < firstVertex_ || (node.vertex & borrowedBit) != 0);
+                                  !node.isBreak && (node.vertex < firstVertex_ || (node.vertex & ghostBit) != 0);
         if (isEdgeVertex) continue;
         const PiecePoint& side = sideOf(node, piece.label);
         const Vec3f n = side.label == piece.label ? normalized(side.gradient) : normal;
@@ -40,7 +40,7 @@ void CellPieces::emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, c
     out.origins.push_back(piece.origin);
 }
 
-/// Whether a diagonal lies in a face of the cell at hand: it might be the neighbour's too.
+/// Whether a diagonal lies in a face of the cell in work: it might be the neighbour's too.
 bool CellPieces::liesInFace(Vec3f a, Vec3f b) const {
     for (int axis = 0; axis < 3; ++axis)
         if (a[axis] == b[axis] && (a[axis] == low_[axis] || a[axis] == high_[axis])) return true;

@@ -86,7 +86,7 @@ BlockMesher::BlockMesher(const Grid& grid, const PolygonizeOptions& options)
       refineSteps_(static_cast<size_t>(options.surface == Surface::Crisp && options.refineSteps > 0
                                            ? std::max(options.refineSteps, leastCrispSteps)
                                            : options.refineSteps)),
-      bare_(options.bare && options.surface == Surface::Cubes),
+      bare_(options.positionsOnly && options.surface == Surface::Cubes),
       crisp_(options.surface == Surface::Crisp ? std::make_unique<CrispBlock>() : nullptr) {
     if (crisp_) samples_.keepTapes();
 }
@@ -95,8 +95,8 @@ void BlockMesher::clear() {
     positions_.clear(), normals_.clear(), origins_.clear(), labels_.clear();
     bricks_.clear();
     owned_.bricks = owned_.alike = 0;
-    for (auto& list : borrowed_) list.clear();
-    for (auto& list : lent_) list.clear();
+    for (auto& list : ghosts_) list.clear();
+    for (auto& list : shared_) list.clear();
     vertices_ = 0, cellCount_ = 0, triangles_ = 0, flat_ = false;
     waiting_ = 0;
 }
@@ -168,7 +168,7 @@ void BlockMesher::addOwnEdges(const BrickSigns& signs) {
 
 /// Lists cut edges on low sides of the block: lower blocks own them. Their places are looked for only where that tells
 /// their origin.
-void BlockMesher::borrow(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner) {
+void BlockMesher::addGhosts(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner) {
     const int sides = lowSidesOf(brick);
     borrowedPlaces_.clear();
     for (int axis = 0; axis < 3; ++axis) {
@@ -177,10 +177,10 @@ void BlockMesher::borrow(const BrickSigns& signs, Vec3i brick, std::optional<Ori
             const Vec3i inBrick{i, rowJ(row), rowK(row)}, at = brick * brickCells + inBrick;
             const int edge = edgePlace(cornerNumber(at.x, at.y, at.z), axis), kind = sidesAt(0, at, axis) - 1;
             if (!owner) {
-                borrowedPlaces_.emplace_back(kind, borrowed_[kind].size());
+                borrowedPlaces_.emplace_back(kind, ghosts_[kind].size());
                 edges_.list[edges_.size++] = codeAt(inBrick, axis);
             }
-            borrowed_[kind].push_back({static_cast<uint32_t>(edge), owner.value_or(0), {}});
+            ghosts_[kind].push_back({static_cast<uint32_t>(edge), owner.value_or(0), {}});
         });
     }
     uint32_t* const codes = edges_.list.data();
@@ -205,7 +205,7 @@ void BlockMesher::placeEdges(Vec3i brick) {
 }
 
 /// Lists own vertices on high sides of the block for every block that meets this one there.
-void BlockMesher::lend(const BrickSigns& signs, Vec3i brick) {
+void BlockMesher::addShared(const BrickSigns& signs, Vec3i brick) {
     const int sides = highSidesOf(brick);
     for (int axis = 0; axis < 3; ++axis) {
         if ((sides & ~(1 << axis)) == 0) continue;
@@ -213,7 +213,7 @@ void BlockMesher::lend(const BrickSigns& signs, Vec3i brick) {
             const Vec3i at = brick * brickCells + Vec3i{i, rowJ(row), rowK(row)};
             const uint32_t vertex = number_[edgePlace(cornerNumber(at.x, at.y, at.z), axis)];
             const int on = sidesAt(blockCells, at, axis);
-            for (int kind = on; kind > 0; kind = (kind - 1) & on) lent_[kind - 1].push_back(vertex);
+            for (int kind = on; kind > 0; kind = (kind - 1) & on) shared_[kind - 1].push_back(vertex);
         });
     }
 }
@@ -221,8 +221,8 @@ void BlockMesher::lend(const BrickSigns& signs, Vec3i brick) {
 /// Finds where the vertices on all edges lie, of which the first `own` are the next ones of the block.
 void BlockMesher::findPlaces(const eval::Tape& tape, size_t own) {
     // Blocks around an edge have to agree on crisp vertices, so which search is taken can't hang on a block's tape.
-    const bool dear = !crisp_ && samples_.isDear() && isDear(tape);
-    const VertexSearch search{refineSteps_, dear, !bare_, crisp_ != nullptr, fieldTime_};
+    const bool expensive = !crisp_ && samples_.isExpensive() && isExpensive(tape);
+    const VertexSearch search{refineSteps_, expensive, !bare_, crisp_ != nullptr, fieldTime_};
     counts_.refinementEvaluations += findVertices(tape, search, workspace_, openEdges_, edges_);
     flat_ = flat_ || (edges_.size > 0 && edges_.flat > 0);
     const size_t first = positions_.size();
@@ -242,7 +242,7 @@ void BlockMesher::findWaiting(const eval::Tape& tape) {
     waiting_ = 0;
 }
 
-/// Asks whose surface each vertex lies on, the latest own ones and those that are borrowed. Returns the owner of all of
+/// Asks whose surface each vertex lies on, the latest own ones and ghosts. Returns the owner of all of
 /// them, where that is one.
 std::optional<OriginId> BlockMesher::findOrigins(const eval::Tape& tape) {
     const size_t n = edges_.size;
@@ -256,7 +256,7 @@ std::optional<OriginId> BlockMesher::findOrigins(const eval::Tape& tape) {
     std::copy_n(found_.data(), ownEdges_, origins_.data() + origins_.size() - ownEdges_);
     for (size_t e = ownEdges_; e < n; ++e) {
         const auto [kind, place] = borrowedPlaces_[e - ownEdges_];
-        borrowed_[static_cast<size_t>(kind)][place].origin = found_[e];
+        ghosts_[static_cast<size_t>(kind)][place].origin = found_[e];
     }
     OriginId others = 0;
     for (size_t e = 1; e < n; ++e) others |= found_[e] ^ found_[0];
@@ -284,9 +284,9 @@ void BlockMesher::addBrick(int number, const eval::Tape& tape, const eval::Tape&
     const bool mayWait = owner && leavesNothingOut(tape, whole);
     if (!mayWait && waiting_ > 0) findWaiting(whole);
     addOwnEdges(signs);
-    if (lowSidesOf(brick) != 0) borrow(signs, brick, owner);
+    if (lowSidesOf(brick) != 0) addGhosts(signs, brick, owner);
     placeEdges(brick);
-    if (highSidesOf(brick) != 0) lend(signs, brick);
+    if (highSidesOf(brick) != 0) addShared(signs, brick);
     if (mayWait) {
         waiting_ += ownEdges_;
         if (waiting_ >= enoughEdges) findWaiting(whole);
@@ -306,21 +306,21 @@ void BlockMesher::addBrick(int number, const eval::Tape& tape, const eval::Tape&
     owned_.owner[static_cast<size_t>(number)] = edgesOwner.value_or(0);
 }
 
-/// Puts the lists of the seams one after the other, and numbers borrowed edges by their place there.
+/// Puts the lists of the seams one after the other, and numbers ghost edges by their place there.
 void BlockMesher::listSeams(Chunk& chunk) {
-    uint32_t borrowed = 0;
+    uint32_t ghosts = 0;
     for (int kind = 0; kind < seamKinds; ++kind) {
-        chunk.borrowed.begin[kind] = borrowed;
-        for (const Borrowed& b : borrowed_[kind]) {
-            number_[b.edge] = borrowedBit | borrowed++;
+        chunk.ghosts.begin[kind] = ghosts;
+        for (const GhostVertex& b : ghosts_[kind]) {
+            number_[b.edge] = ghostBit | ghosts++;
             if (!bare_) origins_.push_back(b.origin);
         }
-        chunk.lent.begin[kind] = static_cast<uint32_t>(chunk.lent.vertices.size());
-        chunk.lent.vertices.insert(chunk.lent.vertices.end(), lent_[kind].begin(), lent_[kind].end());
+        chunk.shared.begin[kind] = static_cast<uint32_t>(chunk.shared.vertices.size());
+        chunk.shared.vertices.insert(chunk.shared.vertices.end(), shared_[kind].begin(), shared_[kind].end());
     }
-    chunk.borrowed.vertices.resize(borrowed);
-    chunk.borrowed.begin.back() = borrowed;
-    chunk.lent.begin.back() = static_cast<uint32_t>(chunk.lent.vertices.size());
+    chunk.ghosts.vertices.resize(ghosts);
+    chunk.ghosts.begin.back() = ghosts;
+    chunk.shared.begin.back() = static_cast<uint32_t>(chunk.shared.vertices.size());
 }
 
 /// Joins vertices. A triangle takes the origin of most of its vertices, the lowest where all three differ.

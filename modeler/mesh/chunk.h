@@ -28,7 +28,7 @@ class alignas(128) BlockMesher {
 public:
     BlockMesher(const Grid& grid, const PolygonizeOptions& options);
 
-    /// The block's chunk; false when it was cancelled on the way. What it borrows is not named yet: see `link`.
+    /// The block's chunk; false when it was cancelled on the way. Its ghosts are not numbered yet: see `link`.
     bool mesh(const Block& block, const Progress* progress, Chunk& chunk);
 
     /// Counts operations too, as eval::Workspace::tallyInto.
@@ -45,7 +45,7 @@ private:
         std::optional<OriginId> owner;  ///< of all its triangles, where that is one
     };
     /// A cut edge of another block.
-    struct Borrowed {
+    struct GhostVertex {
         uint32_t edge;  ///< in number_
         OriginId origin;
         PiecePoint point{};  ///< of a crisp surface
@@ -63,9 +63,9 @@ private:
     void addBrick(int number, const eval::Tape& tape, const eval::Tape& whole);
     size_t addCells(const BrickSigns& signs, Vec3i brick);
     void addOwnEdges(const BrickSigns& signs);
-    void borrow(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner);
+    void addGhosts(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner);
     void placeEdges(Vec3i brick);
-    void lend(const BrickSigns& signs, Vec3i brick);
+    void addShared(const BrickSigns& signs, Vec3i brick);
     void findPlaces(const eval::Tape& tape, size_t own);
     void findWaiting(const eval::Tape& tape);
     std::optional<OriginId> findOrigins(const eval::Tape& tape);
@@ -92,13 +92,13 @@ private:
     /// Of the vertex on an edge, see edgePlace; the last ones are read and never used.
     PageVector<uint32_t> number_ = PageVector<uint32_t>(3 * cornersPerBlock + rowPadding);
     PageVector<Vec3f> positions_, normals_;
-    PageVector<OriginId> origins_, found_;  ///< at last the origins of what is borrowed come after those of the own
+    PageVector<OriginId> origins_, found_;  ///< at last the origins of ghosts come after those of the own
     PageVector<SurfaceCell> cells_ =
         PageVector<SurfaceCell>(blockCells * blockCells * blockCells + rowPadding);  ///< the first cellCount_ count
     std::vector<Brick> bricks_;
     Owned owned_;
-    std::array<std::vector<Borrowed>, seamKinds> borrowed_;
-    std::array<std::vector<uint32_t>, seamKinds> lent_;
+    std::array<std::vector<GhostVertex>, seamKinds> ghosts_;
+    std::array<std::vector<uint32_t>, seamKinds> shared_;
     uint32_t vertices_ = 0;
     size_t cellCount_ = 0, triangles_ = 0;
     bool flat_ = false;  ///< some vertex has no normal
@@ -116,11 +116,11 @@ struct Numbering {
 /// The chunk that owns a vertex counted in the whole mesh; `chunks`, numbered and in order, hold it.
 const Chunk& ownerOf(std::span<const Chunk> chunks, uint32_t vertex);
 
-/// Names what a chunk borrows; `chunks`, numbered and in order, hold those that lend to it.
-void nameBorrowed(std::span<const Chunk> chunks, Chunk& chunk);
+/// Numbers the ghosts of a chunk; `chunks`, numbered and in order, hold their owners.
+void numberGhosts(std::span<const Chunk> chunks, Chunk& chunk);
 
 /// Gives vertices of `of` without derivative the mean of their triangles' normals, weighted by area. `chunks`, named
-/// and in order, hold `of`, all that borrow from it and all that lend to it.
+/// and in order, hold `of`, all that have ghosts of its vertices and all whose vertices it has ghosts of.
 void setFacetedNormals(std::span<const Chunk> chunks, std::span<Chunk> of);
 
 /// All of that for a whole mesh. To be called again after any chunk was exchanged. Error::Budget for 2³² vertices or

@@ -1,4 +1,4 @@
-// A dear field's values at a block's corners: every second one first, then those that the surface may be near to.
+// An expensive field's values at a block's corners: every second one first, then those that the surface may be near to.
 // Enters: a block, the bricks to look at. Leaves: the field's values at both ends of every edge that the surface cuts,
 // and elsewhere numbers of the right sign. Assumes that the field's Lipschitz constant is one: from a sample that is
 // far from 0 it follows that the surface cuts no edge around (sphere tracing's argument, Hart 1996, for a grid).

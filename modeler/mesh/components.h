@@ -47,7 +47,7 @@ struct SurfaceLabels {
 };
 
 /// Labels vertices as pixels are (Rosenfeld and Pfaltz, "Sequential Operations in Digital Picture Processing", 1966): a
-/// triangle hands on the label that it finds, and labels that meet are one. There are far fewer labels than vertices.
+/// triangle passes on the label that it finds, and labels that meet are one. There are far fewer labels than vertices.
 class Labeller {
 public:
     /// Forgets all; for so many vertices.

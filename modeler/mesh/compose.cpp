@@ -45,7 +45,7 @@ class Composer {
 public:
     Composer(const Mesh& input, const FlatMesh& flat, const SurfaceRegions& regions, std::span<const Plane> planes)
         : input_(input), flat_(flat), regions_(regions), planes_(planes) {
-        bare_ = input.isBare();
+        bare_ = input.hasPositionsOnly();
         labelled_ =
             std::any_of(input.chunks.begin(), input.chunks.end(), [](const Chunk& c) { return !c.labels.empty(); });
         if (!bare_) corners_ = cornerSums(input, flat, regions, planes);

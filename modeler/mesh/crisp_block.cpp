@@ -176,7 +176,7 @@ const PiecePoint& CrispBlock::pointAt(uint32_t place) {
     return points_[pointOf_[place] - 1];
 }
 
-/// Numbers breaks: own ones after the block's other vertices, those on its low sides as borrowed ones after the others.
+/// Numbers breaks: own ones after the block's other vertices, those on its low sides as ghosts after the others.
 /// On sides they come in order of place.
 void CrispBlock::numberBreaks() {
     breakVertex_.assign(creases_.breaks().size(), 0);
@@ -195,23 +195,23 @@ void CrispBlock::numberBreaks() {
         if (at[segment.axis] == blockCells) high[axis].emplace_back(key, s);
         for (uint32_t b = 0; b < segment.breaks; ++b) breakVertex_[segment.firstBreak + b] = own++;
     }
-    auto borrowed = static_cast<uint32_t>(surface_->positions.size()) - surface_->own;
+    auto ghosts = static_cast<uint32_t>(surface_->positions.size()) - surface_->own;
     for (size_t axis = 0; axis < 3; ++axis) {
         std::sort(low[axis].begin(), low[axis].end());
         std::sort(high[axis].begin(), high[axis].end());
-        const uint32_t before = borrowed;
+        const uint32_t before = ghosts;
         for (const auto& [key, s] : low[axis])
             for (uint32_t b = 0; b < segments_[s].breaks; ++b)
-                breakVertex_[segments_[s].firstBreak + b] = borrowedBit | borrowed++;
-        borrowedCount_[axis] = borrowed - before;
-        lent_[axis].clear();
+                breakVertex_[segments_[s].firstBreak + b] = ghostBit | ghosts++;
+        ghostCount_[axis] = ghosts - before;
+        shared_[axis].clear();
         for (const auto& [key, s] : high[axis])
             for (uint32_t b = 0; b < segments_[s].breaks; ++b)
-                lent_[axis].push_back(breakVertex_[segments_[s].firstBreak + b]);
+                shared_[axis].push_back(breakVertex_[segments_[s].firstBreak + b]);
     }
     out_.positions.resize(own - surface_->own), out_.normals.resize(own - surface_->own);
     for (size_t b = 0; b < breakVertex_.size(); ++b) {
-        if (breakVertex_[b] & borrowedBit) continue;
+        if (breakVertex_[b] & ghostBit) continue;
         const Break& at = creases_.breaks()[b];
         const Vec3f n = normalized(normalized(at.sides[0].gradient) + normalized(at.sides[1].gradient));
         out_.positions[breakVertex_[b] - surface_->own] = at.at;
@@ -302,8 +302,8 @@ uint64_t CrispBlock::run(const BlockSurface& surface, eval::Workspace& workspace
     surface_ = &surface;
     first_ = surface.block->index * blockCells;
     out_.clear(), split_.clear();
-    for (auto& list : lent_) list.clear();
-    borrowedCount_ = {};
+    for (auto& list : shared_) list.clear();
+    ghostCount_ = {};
     findMixedCells();
     if (mixed_.empty()) return 0;
     uint64_t evaluations = joinFaces(workspace);

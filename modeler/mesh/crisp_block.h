@@ -15,7 +15,7 @@
 
 namespace sgm::mesh {
 
-/// What marching cubes found in a block. Vertices are own ones by number, then borrowed ones.
+/// What marching cubes found in a block. Vertices are own ones by number, then ghosts.
 struct BlockSurface {
     const Block* block;
     BlockTapes tapes;
@@ -29,7 +29,7 @@ struct BlockSurface {
     std::span<const Triangle> triangles;  ///< cell by cell
 
     /// A corner's place in the lists.
-    uint32_t placeOf(uint32_t corner) const { return corner & borrowedBit ? own + (corner & ~borrowedBit) : corner; }
+    uint32_t placeOf(uint32_t corner) const { return corner & ghostBit ? own + (corner & ~ghostBit) : corner; }
 };
 
 /// One worker's, reused from block to block.
@@ -41,10 +41,10 @@ public:
     bool hasCreases() const { return !mixed_.empty(); }
     /// The block's triangles with their labels, origins and corner normals; new own vertices.
     const PieceTriangles& triangles() const { return out_; }
-    /// Vertices inside faces on the block's sides, by axis: as own vertices on high sides, and how many are borrowed
+    /// Vertices inside faces on the block's sides, by axis: as own vertices on high sides, and how many are ghosts
     /// on low sides. Both blocks at a side list them in the same order.
-    const std::vector<uint32_t>& lent(int axis) const { return lent_[static_cast<size_t>(axis)]; }
-    uint32_t borrowed(int axis) const { return borrowedCount_[static_cast<size_t>(axis)]; }
+    const std::vector<uint32_t>& shared(int axis) const { return shared_[static_cast<size_t>(axis)]; }
+    uint32_t ghosts(int axis) const { return ghostCount_[static_cast<size_t>(axis)]; }
 
 private:
     struct MixedCell {
@@ -86,8 +86,8 @@ private:
     std::vector<LoopNode> nodes_;
     PieceTriangles split_, out_;
     std::vector<uint32_t> cellEnds_;
-    std::array<std::vector<uint32_t>, 3> lent_;
-    std::array<uint32_t, 3> borrowedCount_{};
+    std::array<std::vector<uint32_t>, 3> shared_;
+    std::array<uint32_t, 3> ghostCount_{};
 };
 
 }  // namespace sgm::mesh

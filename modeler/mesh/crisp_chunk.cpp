@@ -9,14 +9,14 @@ namespace sgm::mesh {
 void BlockMesher::addCrispBrick(Vec3i brick, const BrickSigns& signs, const eval::Tape& tape) {
     addOwnEdges(signs);
     borrowedPlaces_.clear();
-    if (lowSidesOf(brick) != 0) borrow(signs, brick, {});
+    if (lowSidesOf(brick) != 0) addGhosts(signs, brick, {});
     placeEdges(brick);
-    if (highSidesOf(brick) != 0) lend(signs, brick);
+    if (highSidesOf(brick) != 0) addShared(signs, brick);
     findPlaces(tape, ownEdges_);
     findLabels(tape);
 }
 
-/// Asks for the piece of surface that each vertex lies on, the latest own ones and those that are borrowed.
+/// Asks for the piece of surface that each vertex lies on, the latest own ones and ghosts.
 void BlockMesher::findLabels(const eval::Tape& tape) {
     const size_t n = edges_.size;
     labels_.resize(vertices_);
@@ -32,15 +32,15 @@ void BlockMesher::findLabels(const eval::Tape& tape) {
     std::copy_n(foundLabels_.data(), ownEdges_, labels_.data() + labels_.size() - ownEdges_);
     for (size_t i = ownEdges_; i < n; ++i) {
         const auto [kind, place] = borrowedPlaces_[i - ownEdges_];
-        Borrowed& borrowed = borrowed_[static_cast<size_t>(kind)][place];
-        borrowed.origin = found_[i];
-        borrowed.point = {{e.x[i], e.y[i], e.z[i]}, {e.dx[i], e.dy[i], e.dz[i]}, foundLabels_[i], found_[i]};
+        GhostVertex& ghosts = ghosts_[static_cast<size_t>(kind)][place];
+        ghosts.origin = found_[i];
+        ghosts.point = {{e.x[i], e.y[i], e.z[i]}, {e.dx[i], e.dy[i], e.dz[i]}, foundLabels_[i], found_[i]};
     }
 }
 
 void BlockMesher::splitAtCreases(const Block& block, Chunk& chunk) {
-    for (const auto& list : borrowed_)
-        for (const Borrowed& b : list) {
+    for (const auto& list : ghosts_)
+        for (const GhostVertex& b : list) {
             positions_.push_back(b.point.at);
             normals_.push_back(b.point.gradient);
             labels_.push_back(b.point.label);
@@ -80,11 +80,11 @@ void BlockMesher::splitAtCreases(const Block& block, Chunk& chunk) {
 void BlockMesher::listFaceSeams(Chunk& chunk) const {
     for (int axis = 0; axis < 3; ++axis) {
         const auto end = static_cast<size_t>(edgeSeamKinds + axis + 1);
-        chunk.borrowed.vertices.resize(chunk.borrowed.vertices.size() + crisp_->borrowed(axis));
-        chunk.borrowed.begin[end] = static_cast<uint32_t>(chunk.borrowed.vertices.size());
-        const auto& lent = crisp_->lent(axis);
-        chunk.lent.vertices.insert(chunk.lent.vertices.end(), lent.begin(), lent.end());
-        chunk.lent.begin[end] = static_cast<uint32_t>(chunk.lent.vertices.size());
+        chunk.ghosts.vertices.resize(chunk.ghosts.vertices.size() + crisp_->ghosts(axis));
+        chunk.ghosts.begin[end] = static_cast<uint32_t>(chunk.ghosts.vertices.size());
+        const auto& shared = crisp_->shared(axis);
+        chunk.shared.vertices.insert(chunk.shared.vertices.end(), shared.begin(), shared.end());
+        chunk.shared.begin[end] = static_cast<uint32_t>(chunk.shared.vertices.size());
     }
 }
 

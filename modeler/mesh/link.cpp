@@ -9,7 +9,7 @@
 namespace sgm::mesh {
 namespace {
 
-/// Borrowed vertices that are sooner named than a thread comes.
+/// GhostVertex vertices that are sooner named than a thread comes.
 constexpr size_t worthAThread = 75000;
 
 /// The chunk of block `index`, among chunks in order of (z, y, x); null where there is none.
@@ -26,15 +26,15 @@ const Chunk& ownerOf(std::span<const Chunk> chunks, uint32_t vertex) {
     return *std::prev(std::upper_bound(chunks.begin(), chunks.end(), vertex, after));
 }
 
-void nameBorrowed(std::span<const Chunk> chunks, Chunk& chunk) {
+void numberGhosts(std::span<const Chunk> chunks, Chunk& chunk) {
     for (int kind = 0; kind < seamKinds; ++kind) {
-        const uint32_t begin = chunk.borrowed.begin[kind], end = chunk.borrowed.begin[kind + 1];
+        const uint32_t begin = chunk.ghosts.begin[kind], end = chunk.ghosts.begin[kind + 1];
         if (begin == end) continue;
         const int sides = sidesOfSeam(kind);
-        const Chunk* const lender = findChunk(chunks, chunk.block - Vec3i{sides & 1, sides >> 1 & 1, sides >> 2});
-        assert(lender && lender->lent.begin[kind + 1] - lender->lent.begin[kind] == end - begin);
-        const uint32_t* const lent = lender->lent.vertices.data() + lender->lent.begin[kind];
-        for (uint32_t i = begin; i < end; ++i) chunk.borrowed.vertices[i] = lender->firstVertex + lent[i - begin];
+        const Chunk* const owner = findChunk(chunks, chunk.block - Vec3i{sides & 1, sides >> 1 & 1, sides >> 2});
+        assert(owner && owner->shared.begin[kind + 1] - owner->shared.begin[kind] == end - begin);
+        const uint32_t* const shared = owner->shared.vertices.data() + owner->shared.begin[kind];
+        for (uint32_t i = begin; i < end; ++i) chunk.ghosts.vertices[i] = owner->firstVertex + shared[i - begin];
     }
 }
 
@@ -81,10 +81,10 @@ Status Numbering::add(std::span<Chunk> chunks) {
 Status link(std::vector<Chunk>& chunks, int threads) {
     Numbering numbering;
     if (Status status = numbering.add(chunks); !status) return status;
-    size_t borrowed = 0;
-    for (const Chunk& c : chunks) borrowed += c.borrowed.vertices.size();
-    parallelFor(chunks.size(), borrowed >= worthAThread ? threads : 1, nullptr,
-                [&](size_t i, int) { nameBorrowed(chunks, chunks[i]); });
+    size_t ghosts = 0;
+    for (const Chunk& c : chunks) ghosts += c.ghosts.vertices.size();
+    parallelFor(chunks.size(), ghosts >= worthAThread ? threads : 1, nullptr,
+                [&](size_t i, int) { numberGhosts(chunks, chunks[i]); });
     setFacetedNormals(chunks, chunks);
     return Done{};
 }

@@ -1,8 +1,8 @@
 // The mesh every writer takes: indexed triangles in chunks, one chunk a block of 32³ cells.
 // Enters: chunks from polygonize. Leaves: vertices, normals, triangles, origins. Assumes chunks in ascending block
 // order. A chunk numbers its own vertices from 0, so that it stays as it is whatever becomes of the others; vertices on
-// a border between blocks belong to the lowest of them, and the others borrow them. A bare mesh is its shape alone:
-// its chunks have no normals, no origins and no faceted vertices.
+// a border between blocks belong to the lowest of them, and the others have ghosts of them. A mesh of positions only is
+// its shape alone: its chunks have no normals, no origins and no faceted vertices.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace sgm::mesh {
 /// Corner indices, counter-clockwise seen from outside.
 using Triangle = Vec3<uint32_t>;
 
-/// Marks a corner that counts in Chunk::borrowed instead of Chunk::positions.
-inline constexpr uint32_t borrowedBit = 0x80000000u;
+/// Marks a corner that counts in Chunk::ghosts instead of Chunk::positions.
+inline constexpr uint32_t ghostBit = 0x80000000u;
 
 /// The ways in which blocks share vertices: first those on grid edges, by the axes along which the lender is one block
 /// lower, then those inside cell faces, which lie on one side of a block.
@@ -61,17 +61,17 @@ struct Chunk {
     PageVector<Label> labels;        ///< one per triangle; none where creases were not looked for
     /// Ascending by corner: replace the vertex's normal in `normals` for that corner alone.
     std::vector<CornerNormal> cornerNormals;
-    SeamList borrowed;                     ///< indices in the whole mesh of vertices that lower blocks own
-    SeamList lent;                         ///< own vertices that higher blocks borrow
+    SeamList ghosts;                       ///< indices in the whole mesh of vertices that lower blocks own
+    SeamList shared;                       ///< own vertices of which higher blocks have ghosts
     std::vector<ConfinedVertex> confined;  ///< ascending by vertex; see `releaseConfined`
     std::vector<uint32_t> faceted;         ///< own vertices without derivative: their normals come from the triangles
 
     /// A corner's or a triangle's vertices, counted in the whole mesh.
     uint32_t inMesh(uint32_t corner) const {
-        return corner & borrowedBit ? borrowed.vertices[corner & ~borrowedBit] : firstVertex + corner;
+        return corner & ghostBit ? ghosts.vertices[corner & ~ghostBit] : firstVertex + corner;
     }
     /// Whether normals or origins are missing.
-    bool isBare() const { return normals.size() != positions.size() || origins.size() != triangles.size(); }
+    bool hasPositionsOnly() const { return normals.size() != positions.size() || origins.size() != triangles.size(); }
     Triangle inMesh(Triangle t) const { return {inMesh(t.x), inMesh(t.y), inMesh(t.z)}; }
 };
 
@@ -89,8 +89,8 @@ struct Mesh {
         return n;
     }
     /// Whether some chunk's normals or origins are missing.
-    bool isBare() const {
-        return std::any_of(chunks.begin(), chunks.end(), [](const Chunk& c) { return c.isBare(); });
+    bool hasPositionsOnly() const {
+        return std::any_of(chunks.begin(), chunks.end(), [](const Chunk& c) { return c.hasPositionsOnly(); });
     }
     Box3f bounds() const {
         Box3f box;

@@ -17,7 +17,8 @@ HalfEdgeMesh toOpenMesh(const Mesh& mesh) {
     result.reserve(vertices, vertices + triangles, triangles);
     for (const Chunk& c : mesh.chunks)
         for (size_t i = 0; i < c.positions.size(); ++i)
-            result.set_normal(result.add_vertex(fromVec(c.positions[i])), fromVec(c.isBare() ? Vec3f{} : c.normals[i]));
+            result.set_normal(result.add_vertex(fromVec(c.positions[i])),
+                              fromVec(c.hasPositionsOnly() ? Vec3f{} : c.normals[i]));
     OpenMesh::FPropHandleT<OriginId> origin;
     result.add_property(origin, originProperty);
     const auto vertex = [](uint32_t v) { return OpenMesh::VertexHandle(static_cast<int>(v)); };
@@ -25,7 +26,7 @@ HalfEdgeMesh toOpenMesh(const Mesh& mesh) {
         for (size_t i = 0; i < c.triangles.size(); ++i) {
             const Triangle t = c.inMesh(c.triangles[i]);
             const OpenMesh::FaceHandle face = result.add_face(vertex(t.x), vertex(t.y), vertex(t.z));
-            if (face.is_valid()) result.property(origin, face) = c.isBare() ? OriginId{0} : c.origins[i];
+            if (face.is_valid()) result.property(origin, face) = c.hasPositionsOnly() ? OriginId{0} : c.origins[i];
         }
     result.update_face_normals();
     return result;

@@ -187,8 +187,8 @@ private:
     const size_t before_;  ///< regions that there were
     std::vector<uint32_t> begin_;
     PageVector<uint32_t> list_;
-    Vec3d origin_;  ///< near the region at hand, so that products of positions don't cancel
-    Plane plane_;   ///< of the region at hand, from origin_
+    Vec3d origin_;  ///< near the region in work, so that products of positions don't cancel
+    Plane plane_;   ///< of the region in work, from origin_
     std::vector<double> values_;
     std::vector<uint32_t> bumps_, added_, found_;
     std::vector<Edge> edges_;

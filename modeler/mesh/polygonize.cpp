@@ -33,7 +33,7 @@ uint64_t bytesOf(const Chunk& c) {
     return sizeof(Chunk) + (c.positions.size() + c.normals.size()) * sizeof(Vec3f) +
            c.triangles.size() * sizeof(Triangle) + (c.origins.size() + c.labels.size()) * sizeof(OriginId) +
            c.cornerNormals.size() * sizeof(CornerNormal) + c.confined.size() * sizeof(ConfinedVertex) +
-           (c.borrowed.vertices.size() + c.lent.vertices.size()) * sizeof(uint32_t);
+           (c.ghosts.vertices.size() + c.shared.vertices.size()) * sizeof(uint32_t);
 }
 
 /// The blocks' chunks, empty ones too; ticks for every block.
@@ -70,12 +70,12 @@ Result<std::vector<Chunk>> chunksOf(std::span<const Block> blocks, const Grid& g
     return chunks;
 }
 
-/// Up to three layers of chunks: one that was handed on and lends, one to be completed, one that borrows from it.
+/// Up to three layers of chunks: one that was passed on and owns, one to be completed, one with ghosts of it.
 class Layers {
 public:
     explicit Layers(const ChunkVisitor& visit) : visit_(visit) {}
 
-    /// Takes the layer at `z`, ascending, and hands on the one below it.
+    /// Takes the layer at `z`, ascending, and passes on the one below it.
     Status add(int z, std::vector<Chunk> layer) {
         if (z != z_ + 1)
             if (Status status = finish(); !status) return status;
@@ -83,7 +83,7 @@ public:
         if (Status status = numbering_.add(layer); !status) return status;
         const size_t before = window_.chunks.size();
         std::move(layer.begin(), layer.end(), std::back_inserter(window_.chunks));
-        for (size_t c = before; c < window_.chunks.size(); ++c) nameBorrowed(window_.chunks, window_.chunks[c]);
+        for (size_t c = before; c < window_.chunks.size(); ++c) numberGhosts(window_.chunks, window_.chunks[c]);
         if (Status status = handOn(before); !status) return status;
         window_.chunks.erase(window_.chunks.begin(), window_.chunks.begin() + static_cast<ptrdiff_t>(handedOn_));
         handedOn_ = before - handedOn_;

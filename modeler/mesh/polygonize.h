@@ -24,7 +24,7 @@ struct PolygonizeOptions {
     Surface surface = Surface::Cubes;
     int threads = 0;      ///< 0 = all
     int refineSteps = 3;  ///< evaluations a vertex may take after linear interpolation; 0 = the paper's interpolation
-    bool bare = false;    ///< of Cubes: the shape alone, which is the same: chunks without normals and origins
+    bool positionsOnly = false;  ///< of Cubes: the shape alone, which is the same: chunks without normals and origins
     uint64_t memoryBudget_bytes = 8ull << 30;  ///< Error::Budget beyond
     eval::Tally* tally = nullptr;              ///< adds up the operations that samples, vertices and origins took
     bool timeField = false;                    ///< reads the clock around every evaluation, which takes time itself

@@ -68,7 +68,7 @@ std::vector<Chunk> Rebuild::takeKept(const Regions& now, const std::vector<Block
 /// Adds to `same` the regions that no changed part reaches, and to `reached` the boxes of all other blocks. False where
 /// ranges tell nothing of some part there.
 bool Rebuild::leaveUnreached(const eval::Tape& tape, const Grid& grid, Regions& same, Box3f& reached) {
-    const eval::Care care = careOf(tape, grid);
+    const eval::RelevantRange care = relevantRangeFor(tape, grid);
     bool bounded = true;
     scratch_.resize(std::max<size_t>(scratch_.size(), 1));
     std::vector<Vec3i> regions{{0, 0, 0}}, next;
@@ -94,7 +94,7 @@ bool Rebuild::leaveUnreached(const eval::Tape& tape, const Grid& grid, Regions& 
 }
 
 /// The tape in a box that holds `reached`, where no numbers count but those that changed: kept from change to change
-/// while a parameter is dragged. Not for a field that is dear in places: what is cared for would hang on the box.
+/// while a parameter is dragged. Not for a field that is expensive in places: what is cared for would hang on the box.
 const eval::Tape& Rebuild::tapeAround(const Box3f& reached, const eval::Tape& tape, const Grid& grid,
                                       const eval::NumbersChanged& changed) {
     const auto& known = near_.places;
@@ -103,7 +103,7 @@ const eval::Tape& Rebuild::tapeAround(const Box3f& reached, const eval::Tape& ta
         eval::TapeBuilder::rebind(near_.tape, tape.sharedConstants(), eval::TapeBuilder::scaleOf(tape));
     } else {
         const Box3f box = reached.inflated(static_cast<float>(blockCells) * grid.cell_m);
-        near_ = {box, changed.places, parts_.around(tape, box, careOf(tape, grid), scratch_.front())};
+        near_ = {box, changed.places, parts_.around(tape, box, relevantRangeFor(tape, grid), scratch_.front())};
     }
     return near_.tape;
 }
@@ -119,7 +119,7 @@ Result<const Mesh*> Rebuild::run(const eval::Tape& tape, const Grid& grid, Progr
     if (changed && parts_.find(tape, *changed)) {
         Box3f reached;
         const bool bounded = leaveUnreached(tape, grid, same, reached);
-        if (bounded && !reached.empty() && !isDear(tape)) from = &tapeAround(reached, tape, grid, *changed);
+        if (bounded && !reached.empty() && !isExpensive(tape)) from = &tapeAround(reached, tape, grid, *changed);
         filter.skips = [&](std::span<const Vec3i> indices, int blocks) {
             const std::lock_guard lock(guard);
             uint64_t some = 0;
@@ -170,9 +170,9 @@ const Mesh* Rebuild::keepAll() {
 
 Result<const Mesh*> Rebuild::update(const eval::Tape& tape, const Grid& grid, Progress* progress, Counts& counts,
                                     const eval::NumbersChanged* changed) {
-    const eval::Care care = careOf(tape, grid);
+    const eval::RelevantRange care = relevantRangeFor(tape, grid);
     const bool sameTies = options_.surface != Surface::Crisp || tape.tieMargin() == tieMargin_;
-    if (!sameGrid(grid, grid_) || !(care == care_) || !sameTies) forget();
+    if (!sameGrid(grid, grid_) || !(care == relevant_) || !sameTies) forget();
     if (!changed || !numbers_ || changed->before != numbers_) changed = nullptr;
     const eval::Fingerprint print = changed ? eval::Fingerprint{} : eval::fingerprint(tape);
     if (changed ? changed->places.empty() : print == tape_) return keepAll();
@@ -184,7 +184,7 @@ Result<const Mesh*> Rebuild::update(const eval::Tape& tape, const Grid& grid, Pr
     tape_ = print;
     numbers_ = tape.sharedConstants();
     grid_ = grid;
-    care_ = care;
+    relevant_ = care;
     tieMargin_ = tape.tieMargin();
     return result;
 }

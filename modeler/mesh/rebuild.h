@@ -62,7 +62,7 @@ private:
 
     PolygonizeOptions options_;
     Grid grid_;
-    eval::Care care_;
+    eval::RelevantRange relevant_;
     float tieMargin_ = 0;
     eval::Fingerprint tape_;                             ///< of the last tape, where it was asked for
     std::shared_ptr<const std::vector<float>> numbers_;  ///< the last tape's constants

@@ -8,7 +8,7 @@
 
 namespace sgm::mesh {
 
-bool isDear(const eval::Tape& tape) {
+bool isExpensive(const eval::Tape& tape) {
     using field::ops::Kifs;
     constexpr uint32_t manyParts = 8;
     return std::any_of(tape.code().begin(), tape.code().end(), [](const eval::Instruction& in) {
@@ -33,10 +33,10 @@ constexpr float farCells = 1.25f;
 
 }  // namespace
 
-eval::Care careOf(const eval::Tape& tape, const Grid& grid) {
+eval::RelevantRange relevantRangeFor(const eval::Tape& tape, const Grid& grid) {
     const float reach = reachOfCell(tape, grid);
     if (!std::isfinite(reach)) return {};
-    const float most = (isDear(tape) ? farMiddle : farCells) * reach;
+    const float most = (isExpensive(tape) ? farMiddle : farCells) * reach;
     return {-most, most};
 }
 

@@ -74,28 +74,28 @@ struct Children {
 /// False when all samples of the cells count alike. Samples on the grid's border count as outside whatever the field
 /// says (so the mesh closes even where bounds were wrong), hence a region that is inside all over ends where it touches
 /// the border.
-inline bool mayHoldSurface(eval::Range range, bool touchesBorder) {
+inline bool mayHoldSurface(eval::FloatInterval range, bool touchesBorder) {
     return range.lo < 0 && (touchesBorder || !(range.hi < 0));
 }
-inline bool mayHoldSurface(eval::Range range, const CellRange& cells, const Grid& grid) {
+inline bool mayHoldSurface(eval::FloatInterval range, const CellRange& cells, const Grid& grid) {
     return mayHoldSurface(range, minComponent(cells.lo) == 0 || minComponent(grid.cells - cells.hi) == 0);
 }
 
 /// Whether an evaluation costs as much as dozens of others, and no shortening spares it: the tape folds a fractal.
-bool isDear(const eval::Tape& tape);
+bool isExpensive(const eval::Tape& tape);
 
-/// Distances, in cells, within which a sample of a dear field tells the signs: those of a corner's neighbours, so that
-/// the surface cuts no edge there, of corners 1, √2 or √3 away. A little more is for rounding.
+/// Distances, in cells, within which a sample of an expensive field tells the signs: those of a corner's neighbours, so
+/// that the surface cuts no edge there, of corners 1, √2 or √3 away. A little more is for rounding.
 inline constexpr float farEdge = 2.0625f, farFace = 2.48f, farMiddle = 2.8f;
 
 /// What the mesher tells apart of the field's values. On an edge that the surface cuts they stay within Lipschitz
 /// constant · cell of 0, and vertices lie on those edges; of all other values only the sign counts. The constant is
 /// rounded up to a power of two, so that small changes of it change nothing, and a quarter more is for rounding.
-/// Samples of a dear field are also asked how far the surface is.
-eval::Care careOf(const eval::Tape& tape, const Grid& grid);
+/// Samples of an expensive field are also asked how far the surface is.
+eval::RelevantRange relevantRangeFor(const eval::Tape& tape, const Grid& grid);
 
 /// Values of a block's tape up to this one, by amount, have the bits of the whole field's, whatever the block: a little
-/// less than `careOf` tells apart of a field that isn't dear.
+/// less than `relevantRangeFor` tells apart of a field that isn't expensive.
 float surfaceReach(const eval::Tape& tape, const Grid& grid);
 
 /// Error::Input for a box without end and for cells that float32 can't resolve or that aren't positive, Error::Budget

@@ -16,7 +16,7 @@ constexpr size_t notLong = 16;
 
 /// Whether all bricks may take the block's tape, where `regions` of the last evaluateRanges are: it folds one fractal,
 /// and shortening would spare that to none.
-bool foldsEverywhere(const eval::Tape& tape, uint64_t regions, eval::Workspace& workspace, eval::Care care) {
+bool foldsEverywhere(const eval::Tape& tape, uint64_t regions, eval::Workspace& workspace, eval::RelevantRange care) {
     if (tape.size() > notLong) return false;
     size_t fractals = 0, last = 0;
     for (size_t i = 0; i < tape.size(); ++i) {
@@ -45,7 +45,7 @@ bool isQuick(const eval::Tape& tape) {
     constexpr size_t quick = 10;
     constexpr uint32_t manyOperands = 16;
     const auto slow = [](const eval::Instruction& in) {
-        if (in.op == field::codeOf<ops::Kifs>) return false;  // it isn't dear
+        if (in.op == field::codeOf<ops::Kifs>) return false;  // it isn't expensive
         return in.count > manyOperands || field::traits(in.op).readsGrid || in.op == field::codeOf<ops::Facade> ||
                in.op == field::codeOf<ops::Noise>;
     };
@@ -57,7 +57,7 @@ bool isQuick(const eval::Tape& tape) {
 void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts) {
     block_ = &block;
     inVain_ = 0, whole_ = 0;
-    care_ = careOf(block.tape, grid);
+    relevant_ = relevantRangeFor(block.tape, grid);
     const Vec3i first = block.index * blockCells;
     last_ = grid.cells - first;
     for (int i = 0; i < blockCorners; ++i) {
@@ -91,10 +91,10 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
         regions |= 1ull << region;
         active_ |= 1ull << brick;
     }
-    folds_ = mesh::isDear(block.tape);
-    dear_ = folds_ && std::isfinite(care_.most);
-    oneTape_ = dear_ && foldsEverywhere(block.tape, regions, workspace, care_);
-    if (!dear_) {
+    useCoarseSampling_ = mesh::isExpensive(block.tape);
+    expensive_ = useCoarseSampling_ && std::isfinite(relevant_.most);
+    oneTape_ = expensive_ && foldsEverywhere(block.tape, regions, workspace, relevant_);
+    if (!expensive_) {
         wholeBricks_.enter(coordinates_);
         return;
     }
@@ -201,12 +201,12 @@ const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Co
     const bool whole = length <= shortEnough || (length <= notLong && inVain_ >= vainEnough);
     eval::Tape& shortened = tapes_[tapes_.size() == 1 ? 0 : static_cast<size_t>(brick)];
     if (!whole) {
-        eval::shorten(block_->tape, region_[brick], workspace, shortened, care_);
+        eval::shorten(block_->tape, region_[brick], workspace, shortened, relevant_);
         inVain_ = shortened.size() < length ? 0 : inVain_ + 1;
     }
     whole_ |= static_cast<uint64_t>(whole) << brick;
     const eval::Tape& tape = whole ? block_->tape : shortened;
-    if (dear_) {
+    if (expensive_) {
         coarse_.sample(1ull << brick, active_, tape, coordinates_, last_, values_.data(), workspace, counts);
         sealBorder(brick);
         return tape;

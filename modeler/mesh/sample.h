@@ -47,8 +47,8 @@ public:
     void enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts);
     /// Bricks that may hold surface, by number.
     uint64_t active() const { return active_; }
-    /// Whether the block's tape is dear.
-    bool isDear() const { return folds_; }
+    /// Whether the block's tape is expensive.
+    bool isExpensive() const { return useCoarseSampling_; }
     /// Whether `sample` answers the block's own tape for every brick.
     bool oneTape() const { return oneTape_; }
     /// Shortens the tape to an active brick and evaluates its corners, or those that no lower brick has where the tape
@@ -65,7 +65,8 @@ public:
 
     /// The samples of an active brick, once it was sampled. Corners on the grid's border or beyond are never inside.
     BrickValues values(int brick) const {
-        if (dear_) return {values_.data() + brickCorner(brickAt(brick)), blockCorners, blockCorners * blockCorners};
+        if (expensive_)
+            return {values_.data() + brickCorner(brickAt(brick)), blockCorners, blockCorners * blockCorners};
         return {values_.data() + size_t{brickRoom} * static_cast<size_t>(brick), brickCorners,
                 brickCorners * brickCorners};
     }
@@ -83,15 +84,16 @@ private:
     static constexpr int maxBatch = brickCorners * brickCorners * brickCorners + rowPadding;
 
     const Block* block_ = nullptr;
-    eval::Care care_;
+    eval::RelevantRange relevant_;
     uint64_t active_ = 0;
-    bool folds_ = false;  ///< the block's tape is dear
-    bool dear_ = false;   ///< `coarse_` takes care of the bricks, and values_ is by the block's corners, not by brick
+    bool useCoarseSampling_ = false;  ///< the block's tape is expensive
+    bool expensive_ =
+        false;  ///< `coarse_` takes care of the bricks, and values_ is by the block's corners, not by brick
     bool oneTape_ = false;
     CoarseSamples coarse_;
     std::array<uint8_t, bricksPerBlock> region_{};  ///< of a brick, in the last evaluateRanges
     std::array<Box3f, bricksPerBlock> boxes_;       ///< by region
-    std::array<eval::Range, bricksPerBlock> ranges_;
+    std::array<eval::FloatInterval, bricksPerBlock> ranges_;
     std::vector<eval::Tape> tapes_ = std::vector<eval::Tape>(1);  ///< the latest one, or by brick
     uint64_t whole_ = 0;                                          ///< bricks whose tape is the block's
     int inVain_ = 0;  ///< latest bricks of the block that needed its whole tape

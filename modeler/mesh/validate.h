@@ -1,5 +1,5 @@
 // Judgements on a mesh. Enters: a Mesh. Leaves: figures. Bad meshes get bad figures; `measure` assumes that triangles
-// name vertices that are there, `judge` looks.
+// name vertices that are there, `validate` looks.
 #pragma once
 
 #include "modeler/core/result.h"
@@ -21,12 +21,12 @@ MeshFigures measure(const Mesh& mesh);
 MeshFigures measureWelded(const Mesh& mesh);
 
 /// CGAL's word on the mesh. Slow (seconds per million triangles); for tests and `--report` on request.
-struct Judgement {
+struct MeshValidation {
     bool closed = false;
     bool selfIntersects = false;
     bool outward = false;
     double volume_m3 = 0;
 };
-Result<Judgement> judge(const Mesh& mesh);
+Result<MeshValidation> validate(const Mesh& mesh);
 
 }  // namespace sgm::mesh

@@ -103,7 +103,7 @@ uint64_t findVertices(const eval::Tape& tape, const VertexSearch& search, eval::
     loops.interpolate(edges.arrays, edges.size);
     const TimedField field(tape, workspace, search);
     const uint64_t evaluations =
-        search.dear ? findByValues(field, search, edges) : findByNewton(field, search, scratch, edges);
+        search.expensive ? findByValues(field, search, edges) : findByNewton(field, search, scratch, edges);
     edges.flat = search.normals ? loops.normalize(edges.arrays, edges.size) : 0;
     return evaluations;
 }

@@ -4,9 +4,9 @@
 // evaluates value and derivatives together and takes Newton's step, or halves the bracket where that would leave it.
 // Newton's step and the secant through the bracket's other end enclose the root where the field is convex or concave
 // between them, so a vertex is done once the two agree; or once a parabola through three of its four samples and the
-// slope agrees with the fourth, which it would not over a crease: then it goes to the parabola's root. A dear field has
-// creases everywhere, and its derivatives cost three times its value: there the secant alone goes on, and Newton's step
-// comes last.
+// slope agrees with the fourth, which it would not over a crease: then it goes to the parabola's root. An expensive
+// field has creases everywhere, and its derivatives cost three times its value: there the secant alone goes on, and
+// Newton's step comes last.
 #pragma once
 
 #include <vector>
@@ -40,9 +40,9 @@ private:
 /// How vertices are looked for.
 struct VertexSearch {
     size_t refineSteps = 3;
-    bool dear = false;                ///< the tape is, see isDear
-    bool normals = true;              ///< where nobody wants them dx, dy, dz hold anything
-    bool exact = false;               ///< blocks around an edge find the same bits, see evaluateGradient; never dear
+    bool expensive = false;  ///< the tape is, see isExpensive
+    bool normals = true;     ///< where nobody wants them dx, dy, dz hold anything
+    bool exact = false;      ///< blocks around an edge find the same bits, see evaluateGradient; never expensive
     SumOfTimes* fieldTime = nullptr;  ///< adds up what evaluations take, if it is there
 };
 

@@ -21,8 +21,8 @@ private:
     size_t features_ = 0, points_ = 0;
 };
 
-/// The footprint of polygons as they were written: senses mended, points on one another left out, crossings resolved.
-/// The error is what is wrong with it.
+/// The footprint of polygons as they were written: senses corrected, points on one another left out, crossings
+/// resolved. The error is what is wrong with it.
 Result<Footprint> soundFootprint(const Footprint& drawn, const Limits& limits);
 
 /// Error::Input: "feature 3: …", "line 12: …".

@@ -1,4 +1,4 @@
-// Judges footprints and mends what can be mended without changing their form.
+// Judges footprints and repairs what can be repaired without changing their form.
 // Enters: any numbers. Leaves: the first fault with its place, or nothing. Assumes nothing.
 // Whether edges cross is decided exactly on a lattice of 2⁻²⁰ m, to which every point is rounded first.
 #pragma once
@@ -47,7 +47,7 @@ struct Fault {
 /// O(n log n + p), p the pairs of edges whose x-ranges meet; n² at worst, .2 s for 10⁴ edges that all do.
 std::optional<Fault> firstFault(const Footprint& footprint, const Limits& limits = {});
 
-/// "edge 3 of the outline crosses edge 7 near (4.2, 1): …", one sentence with the mend; edges are counted from 1, and
+/// "edge 3 of the outline crosses edge 7 near (4.2, 1): …", one sentence with the hint; edges are counted from 1, and
 /// polygons and courts named where there are more than one.
 std::string sentenceOf(const Fault& fault, const Footprint& footprint);
 

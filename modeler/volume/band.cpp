@@ -40,7 +40,7 @@ public:
     std::vector<BandLeaf> sample(std::span<const Vec3i> blocks) {
         std::vector<Box3f> boxes;
         for (const Vec3i& b : blocks) boxes.push_back(voxelBox(b * mesh::blockCells, mesh::blockCells));
-        eval::Range ranges[batchBlocks];
+        eval::FloatInterval ranges[batchBlocks];
         eval::evaluateRanges(whole_, {boxes.data(), boxes.size()}, ranges, workspace_);
         std::vector<std::pair<Vec3i, eval::Tape>> kept;
         for (size_t i = 0; i < blocks.size() && !cancelled(progress_); ++i)
@@ -56,7 +56,7 @@ private:
         return {grid_.corner(corner.x - 1, corner.y - 1, corner.z - 1),
                 grid_.corner(corner.x + size, corner.y + size, corner.z + size)};
     }
-    bool meetsBand(eval::Range r) const { return !(r.lo >= band_m_) && !(r.hi <= -band_m_); }
+    bool meetsBand(eval::FloatInterval r) const { return !(r.lo >= band_m_) && !(r.hi <= -band_m_); }
 
     void sampleBlock(Vec3i corner, const eval::Tape& tape, std::vector<BandLeaf>& leaves) {
         Vec3i corners[leavesInBlock];
@@ -68,7 +68,7 @@ private:
                     corners[n] = corner + Vec3i{x, y, z} * leafVoxels;
                     boxes[n] = voxelBox(corners[n], leafVoxels);
                 }
-        eval::Range ranges[leavesInBlock];
+        eval::FloatInterval ranges[leavesInBlock];
         eval::evaluateRanges(tape, {boxes, n}, ranges, workspace_);
         for (size_t i = 0; i < n && !cancelled(progress_); ++i)
             if (meetsBand(ranges[i])) leaves.push_back(sampleLeaf(corners[i], eval::shorten(tape, i, workspace_)));

@@ -56,12 +56,12 @@ Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Pr
 
 mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave) {
     const float upright = static_cast<float>(std::cos(cave.agent.slope_rad)) - 0.05f;
-    const bool bare = mesh.isBare();
-    std::vector<const Vec3f*> position(mesh.vertexCount()), normal(bare ? 0 : mesh.vertexCount());
+    const bool positionsOnly = mesh.hasPositionsOnly();
+    std::vector<const Vec3f*> position(mesh.vertexCount()), normal(positionsOnly ? 0 : mesh.vertexCount());
     for (const mesh::Chunk& c : mesh.chunks)
         for (size_t i = 0; i < c.positions.size(); ++i) {
             position[c.firstVertex + i] = &c.positions[i];
-            if (!bare) normal[c.firstVertex + i] = &c.normals[i];
+            if (!positionsOnly) normal[c.firstVertex + i] = &c.normals[i];
         }
     mesh::Chunk kept;
     std::vector<uint32_t> numberOf(mesh.vertexCount(), nowhere);
@@ -78,7 +78,7 @@ mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave) {
                 if (number == nowhere) {
                     number = static_cast<uint32_t>(kept.positions.size());
                     kept.positions.push_back(*position[tri[corner]]);
-                    if (!bare) kept.normals.push_back(*normal[tri[corner]]);
+                    if (!positionsOnly) kept.normals.push_back(*normal[tri[corner]]);
                 }
                 own[corner] = number;
             }
@@ -87,7 +87,7 @@ mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave) {
                 kept.cornerNormals.push_back(
                     {static_cast<uint32_t>(3 * kept.triangles.size()) + hard->corner % 3, hard->normal});
             kept.triangles.push_back(own);
-            if (!bare) kept.origins.push_back(c.origins[t]);
+            if (!positionsOnly) kept.origins.push_back(c.origins[t]);
             if (!c.labels.empty()) kept.labels.push_back(c.labels[t]);
         }
     }

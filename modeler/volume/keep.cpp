@@ -120,13 +120,13 @@ BoolTree::Ptr only(const Parts& parts, const std::vector<bool>& wanted) {
 /// The solids that stay.
 BoolTree::Ptr solidsOf(const BoolTree& inside, mesh::Keep keep, double voxel_m, float slack_m) {
     const Parts parts(inside);
-    std::vector<mesh::Piece> solids(parts.count());
+    std::vector<mesh::ConnectedComponent> solids(parts.count());
     parts.forRuns([&](const auto& leaf, uint32_t c, int, int voxels, uint32_t part) {
         const auto y = static_cast<float>(voxel_m * (leaf.origin().y() + static_cast<int>(c % 8)));
         solids[part].bounds = hull(solids[part].bounds, Vec3f{0, y, 0});
         solids[part].volume_m3 += voxels * voxel_m * voxel_m * voxel_m;
     });
-    return only(parts, mesh::staying(std::move(solids), keep, slack_m));
+    return only(parts, mesh::selectKept(std::move(solids), keep, slack_m));
 }
 
 /// Adds the air that no way leads to.

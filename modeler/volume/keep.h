@@ -3,7 +3,7 @@
 // Assumes signs of a solid's own: voxels hang together by their six neighbours, as the mesher joins corners.
 #pragma once
 
-#include "modeler/mesh/pieces.h"
+#include "modeler/mesh/connected_components.h"
 #include "modeler/volume/volume.h"
 
 namespace sgm::volume {

@@ -1,4 +1,4 @@
-// The functions of doors.h for a program that loads OpenVDB when it first calls one of them.
+// The functions of plugin_functions.h for a program that loads OpenVDB when it first calls one of them.
 #include <dlfcn.h>
 
 #include <mutex>
@@ -6,8 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "modeler/core/installation.h"
 #include "modeler/core/parallel.h"
-#include "modeler/volume/doors.h"
+#include "modeler/volume/plugin_functions.h"
 
 namespace sgm::volume {
 namespace {
@@ -41,67 +42,72 @@ Error unloadable(const std::string& why) {
 }
 
 /// The table. Error::Internal where the module or OpenVDB isn't to be found, Error::Budget where there are no threads.
-Result<const Doors*> load() {
+Result<const PluginFunctions*> load() {
     const Error noThreads{Error::Kind::Budget,
                           "volumes: the system gives no more threads: allow more processes (ulimit -u, or the "
                           "container's limit) or memory"};
     if (!canStart(threadCount(0))) return noThreads;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-    for (const auto& path : {program / moduleName, program.parent_path() / "lib/sgm" / moduleName}) {
+    std::vector<std::filesystem::path> places;
+    for (const std::filesystem::path& folder : binaryFolders())
+        for (const char* beside : {"", "sgm", "../sgm", "../lib/sgm"}) places.push_back(folder / beside / moduleName);
+    for (const auto& path : places) {
         if (!std::filesystem::exists(path)) continue;
         void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-        const void* const doors = module ? dlsym(module, "sgm_volume_doors") : nullptr;
-        if (!doors) return unloadable(dlerror());
-        const auto* const table = static_cast<const Doors*>(doors);
+        const void* const symbol = module ? dlsym(module, "sgm_volume_functions") : nullptr;
+        if (!symbol) return unloadable(dlerror());
+        const auto* const table = static_cast<const PluginFunctions*>(symbol);
         if (!canStart(threadCount(0))) return noThreads;  // the module took memory
         table->startThreads(threadCount(0));
         return table;
     }
-    return Error{Error::Kind::Internal, std::string("volumes: ") + moduleName + " is neither beside " +
-                                            program.string() + "/sgm nor in lib/sgm"};
+    return Error{Error::Kind::Internal, std::string("volumes: ") + moduleName +
+                                            " is not installed: it was built without OpenVDB, or lies " +
+                                            "neither beside the program nor in lib/sgm"};
 }
 
 /// Loaded once and for good.
-const Result<const Doors*>& doors() {
-    static const Result<const Doors*> loaded = load();
+const Result<const PluginFunctions*>& functions() {
+    static const Result<const PluginFunctions*> loaded = load();
     return loaded;
 }
 
-/// What `door` leads to.
-template <auto door, class Outcome, class... Arguments>
+/// The function that `function` names.
+template <auto function, class Outcome, class... Arguments>
 Outcome through(Arguments&&... arguments) {
-    if (!doors().ok()) return doors().error();
-    return ((*doors())->*door)(std::forward<Arguments>(arguments)...);
+    if (!functions().ok()) return functions().error();
+    return ((*functions())->*function)(std::forward<Arguments>(arguments)...);
 }
 
 }  // namespace
 
 Result<Air> airOf(const Volume& level, bool hollow, Progress* progress) {
-    return through<&Doors::airOf, Result<Air>>(level, hollow, progress);
+    return through<&PluginFunctions::airOf, Result<Air>>(level, hollow, progress);
 }
 
-Result<Dense> dense(const Volume& volume, int border) { return through<&Doors::dense, Result<Dense>>(volume, border); }
+Result<Dense> dense(const Volume& volume, int border) {
+    return through<&PluginFunctions::dense, Result<Dense>>(volume, border);
+}
 
 Status fillVdb(const std::vector<NamedVolume>& volumes, const std::filesystem::path& file,
                const std::filesystem::path& target, const VdbOptions& options, const Progress* progress) {
-    return through<&Doors::fillVdb, Status>(volumes, file, target, options, progress);
+    return through<&PluginFunctions::fillVdb, Status>(volumes, file, target, options, progress);
 }
 
 Result<Volume> fog(const Volume& levelSet, const FogOptions& options, const Progress* progress) {
-    return through<&Doors::fog, Result<Volume>>(levelSet, options, progress);
+    return through<&PluginFunctions::fog, Result<Volume>>(levelSet, options, progress);
 }
 
 Status keepOnly(Volume& level, mesh::Keep keep, float slack_m, Progress* progress) {
-    return through<&Doors::keepOnly, Status>(level, keep, slack_m, progress);
+    return through<&PluginFunctions::keepOnly, Status>(level, keep, slack_m, progress);
 }
 
 Result<Volume> renormalize(const Volume& level, int threads, Progress* progress) {
-    return through<&Doors::renormalize, Result<Volume>>(level, threads, progress);
+    return through<&PluginFunctions::renormalize, Result<Volume>>(level, threads, progress);
 }
 
 Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& whole, const mesh::Grid& grid,
                       int halfWidth, int threads, Progress* progress) {
-    return through<&Doors::sample, Result<Volume>>(blocks, whole, grid, halfWidth, threads, progress);
+    return through<&PluginFunctions::sample, Result<Volume>>(blocks, whole, grid, halfWidth, threads, progress);
 }
 
 }  // namespace sgm::volume

@@ -1,4 +1,4 @@
-// What a Volume holds. Includes OpenVDB: for this room's .cpp files only.
+// What a Volume holds. Includes OpenVDB: for this module's .cpp files only.
 #pragma once
 
 #include <openvdb/openvdb.h>

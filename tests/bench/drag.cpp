@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "grammar/incremental/pipeline.h"
+#include "grammar/pipeline/incremental.h"
 
 namespace sgm::bench {
 namespace {
@@ -13,7 +13,7 @@ bool equal(const mesh::Mesh& a, const mesh::Mesh& b) {
                       [](const auto& c, const auto& d) {
                           return c.block == d.block && c.firstVertex == d.firstVertex && c.positions == d.positions &&
                                  c.normals == d.normals && c.triangles == d.triangles && c.origins == d.origins &&
-                                 c.borrowed.vertices == d.borrowed.vertices;
+                                 c.ghosts.vertices == d.ghosts.vertices;
                       });
 }
 
@@ -22,7 +22,7 @@ void keepBest(BuildSeconds& best, const BuildSeconds& now) {
 }
 
 /// From the grammar to the mesh with what was kept.
-Result<const mesh::Mesh*> follow(incremental::Pipeline& pipeline, const GrammarScene& scene, mesh::Grid& grid,
+Result<const mesh::Mesh*> follow(pipeline::IncrementalPipeline& pipeline, const GrammarScene& scene, mesh::Grid& grid,
                                  int resolution, Running running, BuildSeconds& seconds) {
     const Stopwatch deriving(running);
     if (const Status done = pipeline.derive(scene.grammar, scene.options, nullptr); !done) return done.error();
@@ -68,7 +68,7 @@ Result<DragResult> measureDrag(const GrammarScene& start, const std::string& par
     GrammarScene scene = start;
     rules::Value& value = scene.options.params[static_cast<size_t>(param - params.begin())];
     DragResult result{scene.name, parameter, resolution, {}, {}, 0, 0};
-    incremental::Pipeline pipeline({.threads = running.threads});
+    pipeline::IncrementalPipeline pipeline({.threads = running.threads});
     mesh::Grid grid;
     for (int step = 0; step <= steps; ++step) {
         value.n[0] = param->lo->n[0] + (param->hi->n[0] - param->lo->n[0]) * (step + 0.5) / (steps + 1);

@@ -84,7 +84,7 @@ Shells shellsOf(const lower::Model& model) {
         const auto operands = graph.operands(id);
         const auto tapeOf = [&](size_t operand) {
             field::Field shell = model.field;
-            shell.value = field::Num(const_cast<field::Graph*>(&graph), operands[operand].node);
+            shell.value = field::NodeRef(const_cast<field::Graph*>(&graph), operands[operand].node);
             return eval::compile(graph, shell, graph.constants());
         };
         const auto number = [&](size_t operand) { return graph.constants()[graph.node(operands[operand].node).data]; };
@@ -122,7 +122,8 @@ void count(const Shells& shells, const mesh::Grid& grid, Vec3i block, eval::Work
 uint64_t foldedPoints(const eval::Tally& tally) {
     uint64_t points = 0;
     for (const auto& [operation, n] : tally)
-        if (operation.op == field::codeOf<field::ops::Facade> && operation.asked == eval::Asked::Value) points += n;
+        if (operation.op == field::codeOf<field::ops::Facade> && operation.asked == eval::EvaluationKind::Value)
+            points += n;
     return points;
 }
 

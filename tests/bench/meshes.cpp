@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "grammar/lower/solid_tree.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/export/exporter.h"
@@ -53,7 +53,7 @@ struct Prepared {
 Status writeTree(const Prepared& p, const fs::path& path) {
     const auto tree = lower::solidTree(p.model.derivation, *p.model.lowered, nullptr);
     if (!tree.ok()) return tree.error();
-    exporter::ExportInput input = viewer::exportInput(p.model, p.request.file);
+    exporter::ExportInput input = pipeline::exportInput(p.model, p.request.file);
     input.solids = &*tree;
     return exporter::write(input, path);
 }
@@ -86,8 +86,8 @@ Result<Prepared> prepare(const MeshScene& scene, const MeshesOptions& options, b
     p.name = scene.name;
     p.request.file = scene.file;
     if (!scene.setting.empty()) p.request.settings.emplace_back(scene.setting);
-    cli::Stages stages;
-    auto model = cli::makeModel(p.request, stages, nullptr);
+    cli::Context context;
+    auto model = cli::makeModel(p.request, context);
     if (!model.ok()) return model.error();
     p.model = std::move(*model);
     if (!judged) return p;
@@ -112,7 +112,7 @@ Result<Prepared> prepare(const MeshScene& scene, const MeshesOptions& options, b
 }
 
 uint64_t glbBytes(const Prepared& p, const mesh::Mesh& mesh) {
-    exporter::ExportInput input = viewer::exportInput(p.model, p.request.file);
+    exporter::ExportInput input = pipeline::exportInput(p.model, p.request.file);
     input.mesh = &mesh;
     const fs::path file = fs::path(folder) / "measured.glb";
     std::error_code error;
@@ -131,9 +131,9 @@ Result<MeshRow> measureRow(const Prepared& p, int resolution, const MeshesOption
         for (int i = 0; i < std::max(1, options.repeats); ++i) {
             const cli::GridRequest grid{
                 .resolution = resolution, .surface = surface, .threads = options.running.threads};
-            cli::Stages stages;
+            cli::Context context{nullptr, grid.threads};
             const Stopwatch watch(options.running);
-            auto meshed = cli::makeMesh(p.model, grid, stages, nullptr);
+            auto meshed = cli::makeMesh(p.model, grid, context);
             least(surface == mesh::Surface::Cubes ? row.cubesSeconds : row.crispSeconds, watch.seconds(), i);
             if (!meshed.ok()) return meshed.error();
             if (surface == mesh::Surface::Crisp) {  // as `sgm build` does

@@ -75,8 +75,8 @@ V call(auto... args) {
 /// others once for all.
 template <class Row, class V>
 inline void renew(V* args) {
-    if constexpr (requires { Row::moving; }) {
-        for (size_t k = 0; k < Row::moving; ++k) opaque(args[k]);
+    if constexpr (requires { Row::varyingOperands; }) {
+        for (size_t k = 0; k < Row::varyingOperands; ++k) opaque(args[k]);
     } else {
         opaque(args[0]);
     }
@@ -100,10 +100,10 @@ double leastOf(Body&& body) {
 template <class Row, bool gradient>
 double measuredByNumbers(const eval::Operation& operation) {
     using Two = eval::Pair<Float>;
-    Two args[Row::moving];
+    Two args[Row::varyingOperands];
     float plain[mostOperands];
     for (uint32_t i = 0; i < operation.count; ++i) plain[i] = number<float>(0.25f + 0.01f * static_cast<float>(i));
-    for (size_t i = 0; i < Row::moving; ++i) args[i] = Two(plain[i]);
+    for (size_t i = 0; i < Row::varyingOperands; ++i) args[i] = Two(plain[i]);
     const typename Row::template Numbers<float> numbers(std::span<const float>(plain, operation.count), operation.data);
     double seconds = 0;
     Row::visitPath(
@@ -112,12 +112,13 @@ double measuredByNumbers(const eval::Operation& operation) {
                 for (int c = 0; c < chains; ++c) {
                     renew<Row>(args);
                     if constexpr (gradient) {
-                        eval::Dual<Two> at[Row::moving];
-                        for (size_t k = 0; k < Row::moving; ++k) at[k] = {args[k], Two(0.5f), Two(0.25f), Two(0.125f)};
-                        auto out = Row::template byNumbers<path>(at, numbers);
+                        eval::Dual<Two> at[Row::varyingOperands];
+                        for (size_t k = 0; k < Row::varyingOperands; ++k)
+                            at[k] = {args[k], Two(0.5f), Two(0.25f), Two(0.125f)};
+                        auto out = Row::template evalUniform<path>(at, numbers);
                         opaque(out);
                     } else {
-                        Two out = Row::template byNumbers<path>(args, numbers);
+                        Two out = Row::template evalUniform<path>(args, numbers);
                         opaque(out);
                     }
                 }
@@ -168,11 +169,11 @@ namespace SGM_ISA {
 double secondsPerPoint(const eval::Operation& operation) {
     const double vector = field::visitOp(operation.op, [&]<class Row>() {
         switch (operation.asked) {
-            case eval::Asked::Gradient:
+            case eval::EvaluationKind::Gradient:
                 return measured<Row, Dual>(operation);
-            case eval::Asked::Range:
+            case eval::EvaluationKind::Range:
                 return measured<Row, Interval>(operation);
-            case eval::Asked::Value:
+            case eval::EvaluationKind::Value:
                 break;
         }
         return measured<Row, Float>(operation);

@@ -35,7 +35,7 @@ TEST_F(Cli, WithoutCaveThereIsNoSurvey) {
 TEST_F(Cli, AHollowFacesInward) {
     const std::string file = grammar(threeRooms);
     ASSERT_EQ(sgm("build " + file + " --start Void --cell .2 -q -o " + path("out.obj")).code, 0);
-    ASSERT_EQ(sgm("build " + file + " --start Void --cell .2 -q --inward --cave --agent .5,1.8 --report " +
+    ASSERT_EQ(sgm("build " + file + " --start Void --cell .2 -q --flip-normals --cave --agent .5,1.8 --report " +
                   path("r.json") + " -o " + path("in.obj"))
                   .code,
               0);

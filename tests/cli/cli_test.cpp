@@ -344,7 +344,7 @@ TEST_F(Cli, CollidersGoIntoFilesThatHoldThem) {
     EXPECT_EQ(sgm(start + "--collider hulls -o " + path("b.glb")).code, 2);
     EXPECT_EQ(sgm(start + "--format-option engine=unreal -o " + path("b.glb")).code, 2) << "of no colliders";
     EXPECT_EQ(sgm(start + "--collider mesh --format-option engine=unreal -o " + path("b.glb")).code, 2);
-    EXPECT_EQ(sgm(start + "--collider boxes --inward -o " + path("b.glb")).code, 2);
+    EXPECT_EQ(sgm(start + "--collider boxes --flip-normals -o " + path("b.glb")).code, 2);
     EXPECT_FALSE(fs::exists(path("b.glb")));
 }
 
@@ -364,7 +364,7 @@ TEST_F(Cli, LevelsOfDetailGoIntoFilesThatHoldThem) {
     EXPECT_EQ(sgm(start + "--stream --lod 2 -o " + path("b.stl")).code, 2);
     // Turned inside out, coarser levels are as well; the same bytes at any number of threads.
     for (const char* threads : {"1", "4"})
-        ASSERT_EQ(sgm(start + "-q --start Void --inward --lod 6 --threads " + threads + " -o " +
+        ASSERT_EQ(sgm(start + "-q --start Void --flip-normals --lod 6 --threads " + threads + " -o " +
                       path(std::string("in") + threads + ".glb"))
                       .code,
                   0);

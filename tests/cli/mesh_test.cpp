@@ -68,7 +68,7 @@ TEST_F(Meshes, StreamedFilesHaveTheSameBytes) {
 TEST_F(Meshes, OfTheShapeAloneHaveTheSameBytesWhateverElseIsAsked) {
     // Quiet, such a build keeps no normals and no origins; with a report or another file it does.
     const std::string file = grammar("start A -> torus size (3, 1, 3) + sphere size .8 move (0, 3, 0)\n");
-    for (const char* keep : {"", " --keep largest --inward"}) {
+    for (const char* keep : {"", " --keep largest --flip-normals"}) {
         const std::string common = file + " --resolution 60 --format-option attributes=none" + keep;
         ASSERT_EQ(
             sgm("build -q " + common + " -o " + path("q.ply") + " -o " + path("q.stl") + " -o " + path("q.off")).code,

@@ -35,10 +35,10 @@ TEST_F(Render, LayersGoIntoAnExr) {
 }
 
 TEST_F(Render, RefusesWhatItCannotWrite) {
-    const auto refused = [&](const std::string& arguments, const std::string& mend) {
+    const auto refused = [&](const std::string& arguments, const std::string& hint) {
         const Outcome run = sgm("render " + file_ + " --size 8x8 " + arguments);
         EXPECT_EQ(run.code, 2) << arguments << '\n' << run.out;
-        EXPECT_NE(run.out.find(mend), std::string::npos) << run.out;
+        EXPECT_NE(run.out.find(hint), std::string::npos) << run.out;
     };
     refused("-o " + path("a.png") + " --aov depth", "a.exr");
     refused("-o " + path("a.jpg"), ".png");

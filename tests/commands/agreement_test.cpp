@@ -4,12 +4,12 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "cli/pipeline.h"
+#include "cli/requests.h"
 #include "cli/trials.h"
 #include "grammar/operations/operations.h"
+#include "grammar/pipeline/files.h"
 #include "grammar/syntax/lexer.h"
 #include "modeler/core/random.h"
-#include "viewer/document/files.h"
 
 namespace sgm::cli {
 namespace {
@@ -51,17 +51,17 @@ std::string mutant(const syntax::Source& source, uint64_t key) {
 
 /// What `sgm build` says of the first start at few cells: nothing where it passes.
 std::string builtOf(std::shared_ptr<const rules::Grammar> grammar, bool& hasMesh) {
-    viewer::ModelChoice choice;
+    pipeline::ModelChoice choice;
     choice.shapeBudget = mostShapes;
     const auto options = optionsFor(*grammar, choice);
     if (!options.ok()) return options.error().message;
-    Stages stages;
-    const auto model = makeModel(std::move(grammar), *options, stages, nullptr);
+    Context context{nullptr, 2};
+    const auto model = makeModel(std::move(grammar), *options, context);
     if (!model.ok()) return model.error().message;
     GridRequest grid;
     grid.resolution = 32;
     grid.threads = 2;
-    const auto mesh = makeMesh(*model, grid, stages, nullptr, true);
+    const auto mesh = makeMesh(*model, grid, context, true);
     hasMesh = mesh.ok() && mesh->mesh.triangleCount() > 0;
     return {};
 }
@@ -71,14 +71,14 @@ TEST(Agreement, CheckPassesWhereBuildDoes) {
     const uint64_t each = wanted ? std::strtoull(wanted, nullptr, 10) : 2;
     size_t read = 0, refused = 0, empty = 0;
     for (const fs::path& file : grammars()) {
-        const auto original = viewer::readSource(file);
+        const auto original = pipeline::readSource(file);
         ASSERT_TRUE(original.ok());
         for (uint64_t k = 0; k < each; ++k) {
             const std::string text =
                 k == 0 ? std::string((*original)->text()) : mutant(**original, combine(mix(k), pick(k, 1000)));
             const auto source = std::make_shared<const syntax::Source>(file.string(), text);
             syntax::Diagnostics diagnostics;
-            const auto grammar = rules::load(source, operations::table(), viewer::fileLoader(), diagnostics);
+            const auto grammar = rules::load(source, operations::table(), pipeline::fileLoader(), diagnostics);
             if (!grammar) continue;
             ++read;
             const auto trials = tryModels(grammar, {1, 60, mostShapes, 0}, nullptr, diagnostics);

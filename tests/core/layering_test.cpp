@@ -1,4 +1,4 @@
-// The house rules about includes: no upward include, no cycle, heavy headers only in .cpp files.
+// The layering rules for includes: no upward include, no cycle, heavy headers only in .cpp files.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -33,8 +33,8 @@ std::vector<Include> includesUnder(const std::vector<std::string>& folders) {
     return found;
 }
 
-/// "modeler/eval/tape.h" → "modeler/eval"; viewer and cli are one room each.
-std::string roomOf(const std::string& path) {
+/// "modeler/eval/tape.h" → "modeler/eval"; viewer and cli are one module each.
+std::string moduleOf(const std::string& path) {
     const size_t first = path.find('/');
     const std::string top = path.substr(0, first);
     if (top != "modeler" && top != "grammar") return top;
@@ -43,20 +43,20 @@ std::string roomOf(const std::string& path) {
 
 const std::vector<std::string> folders{"modeler", "grammar", "viewer", "cli"};
 
-/// Bottom to top: a room may see those before it.
+/// Bottom to top: a module may see those before it.
 const std::vector<std::string> order{
-    "modeler/core",       "modeler/plan",   "modeler/field",       "modeler/eval",  "modeler/mesh",
-    "modeler/volume",     "modeler/export", "grammar/syntax",      "grammar/rules", "grammar/derive",
-    "grammar/operations", "grammar/lower",  "grammar/incremental", "viewer",        "cli"};
+    "modeler/core",       "modeler/plan",   "modeler/field",    "modeler/eval",  "modeler/mesh",
+    "modeler/volume",     "modeler/export", "grammar/syntax",   "grammar/rules", "grammar/derive",
+    "grammar/operations", "grammar/lower",  "grammar/pipeline", "viewer",        "cli"};
 
 TEST(Layering, NoUpwardInclude) {
     std::map<std::string, size_t> level;
     for (size_t i = 0; i < order.size(); ++i) level[order[i]] = i;
     size_t seen = 0;
     for (const Include& include : includesUnder(folders)) {
-        const std::string from = roomOf(include.from), to = roomOf(include.to);
+        const std::string from = moduleOf(include.from), to = moduleOf(include.to);
         if (!level.count(to)) continue;
-        ASSERT_TRUE(level.count(from)) << include.from << " is in no room of the house";
+        ASSERT_TRUE(level.count(from)) << include.from << " is in no module";
         EXPECT_LE(level[to], level[from]) << include.from << " includes " << include.to;
         ++seen;
     }

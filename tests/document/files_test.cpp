@@ -1,5 +1,5 @@
 // Which files a grammar reaches, and which it doesn't.
-#include "viewer/document/files.h"
+#include "grammar/pipeline/files.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -30,7 +30,7 @@ protected:
     bool mesh(const std::string& name) { return why_.clear(), loader_.mesh(name, main(), why_) != nullptr; }
 
     Scratch scratch_;
-    rules::Loader loader_ = fileLoader();
+    rules::Loader loader_ = pipeline::fileLoader();
     std::string why_;
 };
 
@@ -80,7 +80,7 @@ TEST_F(Reach, RegularFilesAlone) {
     EXPECT_FALSE(mesh("pipe.obj"));
     EXPECT_NE(why_.find("it is a pipe"), std::string::npos) << why_;
     EXPECT_FALSE(use("parts"));
-    const auto device = readSource("/dev/zero");
+    const auto device = pipeline::readSource("/dev/zero");
     ASSERT_FALSE(device.ok());
     EXPECT_NE(device.error().message.find("it is a device"), std::string::npos) << device.error().message;
 }

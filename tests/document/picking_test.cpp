@@ -19,7 +19,7 @@ protected:
     uint32_t at(std::string_view word) const { return static_cast<uint32_t>(document.text().find(word)); }
 
     Document document{pair};
-    std::shared_ptr<const Shown> model = shown(document);
+    std::shared_ptr<const BuiltModel> model = shown(document);
 };
 
 TEST_F(Picking, OriginsLeadToShapesAndText) {

@@ -1,11 +1,11 @@
 // The session: what is computed again, and what stays when a text is broken.
 #include "viewer/document/session.h"
 
+#include "grammar/pipeline/meshing.h"
 #include "modeler/mesh/validate.h"
 #include "tests/document/shown.h"
 #include "tests/mesh/mesh_bytes.h"
 #include "tests/scratch.h"
-#include "viewer/document/meshing.h"
 
 namespace sgm::viewer {
 namespace {
@@ -197,7 +197,7 @@ TEST_F(Sessions, MeshWhenAskedAndKeepWhatStays) {
 
 class HeldSliders : public Sessions {
 protected:
-    /// A slider in a hand goes from one text to another.
+    /// A dragged slider goes from one text to another.
     void drag(std::string_view from, std::string_view to) {
         const TextEdit edit = difference(document.text(), replaced(document.text(), from, to));
         ASSERT_TRUE(document.apply(edit, "Drag").ok());
@@ -209,7 +209,7 @@ protected:
         fresh.choose(document.choice(), "");
         const auto opened = shown(fresh);
         EXPECT_TRUE(looksLike(*session.model(), *opened));
-        const Model &ours = session.model()->model, &theirs = opened->model;
+        const pipeline::Model &ours = session.model()->model, &theirs = opened->model;
         EXPECT_EQ(ours.lowered->shapeOf, theirs.lowered->shapeOf);
         const auto &shapes = ours.derivation.tree.shapes, &others = theirs.derivation.tree.shapes;
         EXPECT_TRUE(std::equal(shapes.begin(), shapes.end(), others.begin(), others.end(),
@@ -219,11 +219,10 @@ protected:
                                }));
         EXPECT_EQ(bytesOf(ours), bytesOf(theirs));
     }
-    static std::vector<unsigned char> bytesOf(const Model& model) {
+    static std::vector<unsigned char> bytesOf(const pipeline::Model& model) {
         const Box3f& bounds = model.lowered->field.bounds;
-        Stages stages;
-        const auto made =
-            makeMesh(model, mesh::gridFor(bounds, mesh::cellFor(bounds, 24)), {.threads = 1}, stages, nullptr);
+        pipeline::Context context{nullptr, 1};
+        const auto made = pipeline::makeMesh(model, mesh::gridFor(bounds, mesh::cellFor(bounds, 24)), {}, context);
         EXPECT_TRUE(made.ok());
         return mesh::bytesOf(made->mesh);
     }
@@ -339,7 +338,7 @@ TEST(UsedFiles, AreReadAgainWhenTheyChange) {
     show(session, document);
     EXPECT_EQ(session.model()->model.derivation.steps.size(), 5u);
     EXPECT_FALSE(session.usedFilesChanged());
-    // Broken and mended again, the text of the document never changing.
+    // Broken and repaired again, the text of the document never changing.
     scratch.write("part.sgm", "grammar 1\nrule B repeat -> cube\n");
     std::filesystem::last_write_time(scratch / "part.sgm",
                                      std::filesystem::file_time_type::clock::now() + std::chrono::seconds(4));

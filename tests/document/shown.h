@@ -24,7 +24,7 @@ inline void show(Session& session, const Document& document) {
 }
 
 /// A model of the text, without problems.
-inline std::shared_ptr<const Shown> shown(const Document& document) {
+inline std::shared_ptr<const BuiltModel> shown(const Document& document) {
     Session session;
     show(session, document);
     for (const Problem& p : session.problems())

@@ -1,4 +1,4 @@
-// Every op of the table in every vocabulary: one family of tests, no list of ops.
+// Every op of the table on every value type: one family of tests, no list of ops.
 #include <limits>
 
 #include "samples.h"
@@ -18,10 +18,10 @@ struct OneOp {
         one.tight = example.tight;
         one.graph.grid(field::test::sampledTorus());
         std::vector<field::Operand> nodes;
-        const Num axes[] = {one.graph.x(), one.graph.y(), one.graph.z()};
+        const NodeRef axes[] = {one.graph.x(), one.graph.y(), one.graph.z()};
         for (size_t i = 0; i < example.operands.size(); ++i) {
             const auto& o = example.operands[i];
-            const Num moving = axes[i % 3] * (o.hi - o.lo) + o.lo;
+            const NodeRef moving = axes[i % 3] * (o.hi - o.lo) + o.lo;
             nodes.push_back({(o.varies ? moving : one.graph.slot(draws.real(o.lo, o.hi))).id(), 0});
         }
         one.root = one.graph.apply(codeOf<Row>, nodes, example.data).id();
@@ -88,8 +88,8 @@ TYPED_TEST(OpConformance, OddNumbersGiveTheSameBitsToo) {
                          -1e-42f, 1e30f, -1e30f, infinity, -infinity, std::nanf("")};
     if constexpr (TypeParam::arity == 1 || TypeParam::arity == 2) {
         Graph graph;
-        const Num root = TypeParam::arity == 1 ? graph.apply(codeOf<TypeParam>, {graph.x()})
-                                               : graph.apply(codeOf<TypeParam>, {graph.x(), graph.y()});
+        const NodeRef root = TypeParam::arity == 1 ? graph.apply(codeOf<TypeParam>, {graph.x()})
+                                                   : graph.apply(codeOf<TypeParam>, {graph.x(), graph.y()});
         const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
         Cloud cloud;
         for (const float x : odd)
@@ -114,7 +114,7 @@ TYPED_TEST(OpConformance, IntervalEnclosesEveryFloat) {
                 Box3f b = boxIn(0.5f, this->draws);
                 boxes.push_back({b.lo + Vec3f{0.5f, 0.5f, 0.5f}, b.hi + Vec3f{0.5f, 0.5f, 0.5f}});
             }
-            std::vector<Range> ranges(boxes.size());
+            std::vector<FloatInterval> ranges(boxes.size());
             evaluateRanges(one.tape, {boxes.data(), boxes.size()}, ranges.data(), w);
             for (size_t b = 0; b < boxes.size(); ++b) {
                 const Cloud cloud = pointsIn(boxes[b], 200, this->draws);
@@ -138,9 +138,9 @@ TYPED_TEST(OpConformance, IntervalOfAPointIsTight) {
             const Vec3f p{cloud.x[i], cloud.y[i], cloud.z[i]};
             boxes.push_back({p, p});
         }
-        std::vector<Range> ranges(boxes.size());
+        std::vector<FloatInterval> ranges(boxes.size());
         evaluateRanges(one.tape, {boxes.data(), boxes.size()}, ranges.data(), w);
-        for (const Range& r : ranges) EXPECT_LE(r.hi - r.lo, 1e-4f * (1 + std::abs(r.lo)));
+        for (const FloatInterval& r : ranges) EXPECT_LE(r.hi - r.lo, 1e-4f * (1 + std::abs(r.lo)));
     });
 }
 

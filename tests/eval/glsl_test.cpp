@@ -15,7 +15,7 @@
 namespace sgm::viewer::test {
 namespace {
 
-using field::Num;
+using field::NodeRef;
 
 constexpr double sceneSize = 6;  // metres
 
@@ -45,11 +45,11 @@ void expectAgreement(const eval::Tape& tape, const std::string& what) {
 }
 
 /// A node of the op over operands that vary through space; invalid when no sample is known for a variadic row.
-std::vector<Num> sampleNodes(field::Graph& g, field::OpCode op) {
+std::vector<NodeRef> sampleNodes(field::Graph& g, field::OpCode op) {
     const auto& row = field::traits(op);
-    const Num a = g.x() * 1.3f + 0.2f, b = g.y() * 0.9f - g.z() * 0.4f;
+    const NodeRef a = g.x() * 1.3f + 0.2f, b = g.y() * 0.9f - g.z() * 0.4f;
     // A divisor stays away from 0.
-    const Num positive = field::abs(b) + 0.5f;
+    const NodeRef positive = field::abs(b) + 0.5f;
     if (row.arity == 1) return {g.apply(op, {a})};
     if (row.arity == 2) return {g.apply(op, {a, row.name == "div" || row.name == "mod" ? positive : b})};
     if (row.name == "morph") return {g.apply(op, {a, b, field::abs(g.z()) * 0.3f})};
@@ -63,7 +63,7 @@ std::vector<Num> sampleNodes(field::Graph& g, field::OpCode op) {
     if (row.readsGrid)
         return {g.apply(op, {a, b, g.z()}, g.grid(field::test::sampledTorus(5))),
                 g.apply(op, {b, a, g.z() * 0.3f}, g.grid(field::test::sampledTorus(9)))};
-    std::vector<Num> nodes;
+    std::vector<NodeRef> nodes;
     if (row.name == "noise")
         for (const bool fbm : {false, true})
             nodes.push_back(g.apply(op, {a * 2.0f, b * 2.0f, g.z() * 2.0f}, field::ops::Noise::pack(fbm, 4, 77)));
@@ -87,7 +87,7 @@ std::vector<Num> sampleNodes(field::Graph& g, field::OpCode op) {
     if (row.name == "facade") {
         using Op = field::ops::Facade;
         std::vector<field::Operand> operands;
-        for (const Num n : {a, b, g.z(), g.x() * 0.2f, g.z() * 0.2f + 0.2f}) operands.push_back({n.id(), 0});
+        for (const NodeRef n : {a, b, g.z(), g.x() * 0.2f, g.z() * 0.2f + 0.2f}) operands.push_back({n.id(), 0});
         const Mat3 turn = Mat3::rotation({0, 1, 0.3}, 0.2);
         std::vector<float> numbers{0.93f, 0.93f, 0.33f, 3};
         for (int rotation = 0; rotation < 2; ++rotation)
@@ -96,7 +96,7 @@ std::vector<Num> sampleNodes(field::Graph& g, field::OpCode op) {
         for (const float v : {1.3f,  1.1f,  1.0f, 0.8f, 0.25f, 0.125f, 0.4f, 0.9f, 3.0f,  0.9f, 0.4f, 0.05f,
                               1e-4f, 1e-5f, 0.0f, 1.0f, 0.0f,  0.5f,   1.4f, 0.1f, 0.75f, 1.8f, 0.2f, Op::noBay})
             numbers.push_back(v);
-        numbers.resize(Op::operandCount - Op::moving, 0);
+        numbers.resize(Op::operandCount - Op::varyingOperands, 0);
         for (const float v : numbers) operands.push_back({g.literal(v).id(), 0});
         field::ops::Kifs::Form form;
         form.passes = 3;
@@ -113,9 +113,9 @@ TEST_F(Glsl, AgreesForEveryOp) {
         if (field::traits(op).arity == field::ops::leaf) continue;
         const std::string name(field::traits(op).name);
         field::Graph graph;
-        const std::vector<Num> nodes = sampleNodes(graph, op);
+        const std::vector<NodeRef> nodes = sampleNodes(graph, op);
         ASSERT_FALSE(nodes.empty()) << "no sample for op " << name;
-        for (const Num node : nodes) {
+        for (const NodeRef node : nodes) {
             const field::Field field{node, Box3f::everything(), 1, 0};
             expectAgreement(eval::compile(graph, field, graph.constants()), name);
         }

@@ -31,12 +31,12 @@ std::vector<uint32_t> labelsOf(const Tape& tape, const Cloud& cloud) {
     return labels;
 }
 
-Tape compiled(const Graph& graph, Num root) {
+Tape compiled(const Graph& graph, NodeRef root) {
     return compile(graph, {root, {{-2, -2, -2}, {2, 2, 2}}, 1, 1}, graph.constants());
 }
 
 /// Labels, origins and the bits of derivatives must be equal inside every smaller region.
-void descend(const Graph& graph, Num root, const Tape& full, const Tape& tape, const Box3f& box, int depth,
+void descend(const Graph& graph, NodeRef root, const Tape& full, const Tape& tape, const Box3f& box, int depth,
              Draws& draws, size_t& dropped, size_t& compared) {
     Box3f boxes[8];
     for (Box3f& b : boxes)
@@ -45,7 +45,7 @@ void descend(const Graph& graph, Num root, const Tape& full, const Tape& tape, c
             b.lo[axis] = std::min(p, (p + q) / 2);
             b.hi[axis] = std::max(p, (p + q) / 2);
         }
-    Range ranges[8];
+    FloatInterval ranges[8];
     for (size_t at = 0; at < 2; ++at) {
         Workspace w;
         evaluateRanges(tape, {boxes, 8}, ranges, w);
@@ -76,7 +76,7 @@ TEST(Labels, AShortenedTapeHasTheSameLabelsAndTheSameBitsOfDerivatives) {
     size_t dropped = 0, compared = 0;
     for (int repeat = 0; repeat < 1500; ++repeat) {
         Graph graph;
-        const Num root = randomExpression(graph, 5 + draws.below(80), draws);
+        const NodeRef root = randomExpression(graph, 5 + draws.below(80), draws);
         const Tape tape = compiled(graph, root);
         descend(graph, root, tape, tape, {{-2, -2, -2}, {2, 2, 2}}, 2, draws, dropped, compared);
         if (::testing::Test::HasFatalFailure()) FAIL() << repeat;
@@ -85,9 +85,9 @@ TEST(Labels, AShortenedTapeHasTheSameLabelsAndTheSameBitsOfDerivatives) {
     EXPECT_GT(compared, 100000u);
 }
 
-Num boxAt(Graph& graph, float x, float half) {
+NodeRef boxAt(Graph& graph, float x, float half) {
     const field::Point p = graph.position();
-    const Num h = graph.slot(half);
+    const NodeRef h = graph.slot(half);
     return field::solids::boxDistance({p.x - graph.slot(x), p.y, p.z}, {h, h, h});
 }
 
@@ -120,7 +120,7 @@ TEST(Labels, CoplanarFacesBelongToTheFirstWhereTheyOverlap) {
 TEST(Labels, ACylinderHasThreePieces) {
     Graph graph;
     const field::Point p = graph.position();
-    const Num side = sqrt(square(p.x) + square(p.z)) - 1.0f, cap = abs(p.y) - 1.0f;
+    const NodeRef side = sqrt(square(p.x) + square(p.z)) - 1.0f, cap = abs(p.y) - 1.0f;
     Cloud cloud;
     for (const float grown : {0.999f, 1.0f, 1.001f}) {
         cloud.add(grown, 0.5f, 0), cloud.add(0, -0.5f, grown);
@@ -138,8 +138,8 @@ TEST(Labels, ABlendIsOnePiece) {
     const field::Point p = graph.position();
     Cloud cloud;
     const auto ball = [&](float x) { return length(field::Point{p.x - graph.slot(x), p.y, p.z}) - 0.7f; };
-    const Num parts[] = {graph.slot(0.2f), ball(-0.5f), ball(0.5f)};
-    const Num blend = graph.apply(codeOf<ops::Blend>, {parts[0], parts[1], parts[2]});
+    const NodeRef parts[] = {graph.slot(0.2f), ball(-0.5f), ball(0.5f)};
+    const NodeRef blend = graph.apply(codeOf<ops::Blend>, {parts[0], parts[1], parts[2]});
     for (const float x : {-1.2f, -0.3f, 0.0f, 0.3f, 1.2f}) cloud.add(x, 0.5f, 0);
     const std::vector<uint32_t> joined = labelsOf(compiled(graph, blend), cloud);
     for (const uint32_t label : joined) EXPECT_EQ(label, joined[0]);

@@ -18,7 +18,7 @@ namespace ops = field::ops;
 using field::codeOf;
 using field::Field;
 using field::Graph;
-using field::Num;
+using field::NodeRef;
 
 /// Equal bits; any NaN equals any other.
 inline bool sameBits(float a, float b) {
@@ -81,7 +81,7 @@ inline std::vector<float> values(const Tape& tape, const Cloud& cloud, Isa isa =
 }
 
 /// The values of all nodes up to one at one point, node after node, in plain floats.
-inline std::vector<float> walkAll(const Graph& graph, Num root, float x, float y, float z) {
+inline std::vector<float> walkAll(const Graph& graph, NodeRef root, float x, float y, float z) {
     std::vector<float> value(root.id() + 1);
     std::vector<float> args;
     for (field::NodeId id = 0; id <= root.id(); ++id) {
@@ -109,12 +109,12 @@ inline std::vector<float> walkAll(const Graph& graph, Num root, float x, float y
 }
 
 /// The node's value at one point.
-inline float walk(const Graph& graph, Num root, float x, float y, float z) {
+inline float walk(const Graph& graph, NodeRef root, float x, float y, float z) {
     return walkAll(graph, root, x, y, z).back();
 }
 
 /// Whether all nodes up to one are finite at one point.
-inline bool isFinite(const Graph& graph, Num root, float x, float y, float z) {
+inline bool isFinite(const Graph& graph, NodeRef root, float x, float y, float z) {
     const std::vector<float> all = walkAll(graph, root, x, y, z);
     return std::all_of(all.begin(), all.end(), [](float v) { return std::isfinite(v); });
 }
@@ -197,9 +197,9 @@ std::vector<Example> examplesOf() {
 }
 
 /// A random expression of up to `size` ops, rich in min and max, with owners on their operands.
-inline Num randomExpression(Graph& graph, size_t size, Draws& draws) {
+inline NodeRef randomExpression(Graph& graph, size_t size, Draws& draws) {
     graph.grid(field::test::sampledTorus());
-    std::vector<Num> pool{graph.x(), graph.y(), graph.z()};
+    std::vector<NodeRef> pool{graph.x(), graph.y(), graph.z()};
     for (int i = 0; i < 4; ++i) pool.push_back(graph.slot(draws.real(-2, 2)));
     for (int i = 0; i < 3; ++i) pool.push_back(graph.literal(draws.real(-2, 2)));
     const auto any = [&] {

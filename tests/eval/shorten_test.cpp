@@ -24,7 +24,7 @@ void descend(const Tape& full, const Tape& tape, const Box3f& box, int depth, Dr
             boxes[i].lo[axis] = std::max(box.lo[axis], std::min(a, (a + b) / 2));
             boxes[i].hi[axis] = std::min(box.hi[axis], std::max(a, (a + b) / 2));
         }
-    Range ranges[64];
+    FloatInterval ranges[64];
     evaluateRanges(tape, {boxes, n}, ranges, w);
     for (int pick = 0; pick < 3; ++pick) {
         const size_t at = draws.below(n);
@@ -61,7 +61,7 @@ TEST(Shorten, KeepsValuesDerivativesAndOwnersInsideTheRegion) {
     size_t dropped = 0;
     for (int repeat = 0; repeat < 1000; ++repeat) {
         Graph graph;
-        const Num root = randomExpression(graph, 5 + draws.below(80), draws);
+        const NodeRef root = randomExpression(graph, 5 + draws.below(80), draws);
         const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
         descend(tape, tape, {{-2, -2, -2}, {2, 2, 2}}, 2, draws, dropped);
         if (::testing::Test::HasFatalFailure()) return;
@@ -70,7 +70,7 @@ TEST(Shorten, KeepsValuesDerivativesAndOwnersInsideTheRegion) {
 }
 
 /// Spheres on a line, united in a balanced tree.
-Num spheres(Graph& graph, int first, int count) {
+NodeRef spheres(Graph& graph, int first, int count) {
     if (count > 1) return min(spheres(graph, first, count / 2), spheres(graph, first + count / 2, count - count / 2));
     const field::Point p = graph.position();
     return length(field::Point{p.x - graph.slot(float(first)), p.y, p.z}) - graph.slot(0.4f);
@@ -78,14 +78,14 @@ Num spheres(Graph& graph, int first, int count) {
 
 TEST(Shorten, AUnionNearOneOfItsSpheresIsThatSphere) {
     Graph graph;
-    const Num root = spheres(graph, 0, 256);
+    const NodeRef root = spheres(graph, 0, 256);
     const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
     Workspace w;
     const Box3f box{{99.9f, -0.1f, -0.1f}, {100.1f, 0.1f, 0.1f}};
-    Range range;
+    FloatInterval range;
     evaluateRanges(tape, {&box, 1}, &range, w);
     const Tape one = shorten(tape, 0, w);
-    const Num hundredth = spheres(graph, 100, 1);
+    const NodeRef hundredth = spheres(graph, 100, 1);
     const Tape alone = compile(graph, {hundredth, {}, 1, 1}, graph.constants());
     EXPECT_EQ(one.size(), alone.size());
     EXPECT_LE(one.registerCount(), alone.registerCount() + 1);
@@ -98,12 +98,12 @@ TEST(Shorten, APartIsDroppedForANearerOneElsewhereInTheTree) {
         return length(field::Point{p.x - graph.slot(x), p.y, p.z}) - graph.slot(0.4f);
     };
     // The balls at 1.2 and 1.25 don't beat each other, nor does that at 0.6 beat them; the one at 0 does.
-    const Num others = min(min(ball(1.2f), ball(1.25f)), ball(0.6f));
-    const Num root = max(-min(ball(0), others), graph.y() - 9.0f);
+    const NodeRef others = min(min(ball(1.2f), ball(1.25f)), ball(0.6f));
+    const NodeRef root = max(-min(ball(0), others), graph.y() - 9.0f);
     const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
     Workspace w;
     const Box3f box{{-0.3f, -0.3f, -0.3f}, {0.3f, 0.3f, 0.3f}};
-    Range range;
+    FloatInterval range;
     evaluateRanges(tape, {&box, 1}, &range, w);
     const Tape one = shorten(tape, 0, w);
     size_t balls = 0;
@@ -112,10 +112,10 @@ TEST(Shorten, APartIsDroppedForANearerOneElsewhereInTheTree) {
 }
 
 /// Shortened to a box, a tape keeps its bits within what is told apart, and its side beyond.
-void expectSides(const Tape& tape, const Box3f& box, Care care) {
+void expectSides(const Tape& tape, const Box3f& box, RelevantRange care) {
     Workspace w;
     Draws draws{5};
-    Range range;
+    FloatInterval range;
     evaluateRanges(tape, {&box, 1}, &range, w);
     const Tape exact = shorten(tape, 0, w), near = shorten(tape, 0, w, care);
     const auto operands = [](const Tape& t) {
@@ -138,7 +138,7 @@ void expectSides(const Tape& tape, const Box3f& box, Care care) {
 
 TEST(Shorten, ValuesBeyondWhatIsToldApartKeepTheirSide) {
     Graph graph;
-    const Num holes = max(graph.y() - 0.1f, -spheres(graph, 0, 64));
+    const NodeRef holes = max(graph.y() - 0.1f, -spheres(graph, 0, 64));
     expectSides(compile(graph, {holes, {}, 1, 1}, graph.constants()), {{20, -3, -3}, {26, 3, 3}}, {-0.1f, 0.3f});
 }
 
@@ -151,9 +151,9 @@ TEST(Shorten, WhatItMayLeaveOutIsKnownBefore) {
     size_t kept = 0, dropped = 0, unsure = 0;
     for (int form = 0; form < 4; ++form) {
         field::Graph g;
-        const field::Num tube = field::sqrt(g.x() * g.x() + g.y() * g.y()) - 1, slab = field::abs(g.z()) - 1;
-        const field::Num both = form % 2 == 0 ? field::max(tube, slab) : field::min(slab, tube);
-        const field::Num f = form < 2 ? both : field::min(both, g.x() + 3);
+        const field::NodeRef tube = field::sqrt(g.x() * g.x() + g.y() * g.y()) - 1, slab = field::abs(g.z()) - 1;
+        const field::NodeRef both = form % 2 == 0 ? field::max(tube, slab) : field::min(slab, tube);
+        const field::NodeRef f = form < 2 ? both : field::min(both, g.x() + 3);
         const Tape tape = compile(g, {f, {{-3, -3, -3}, {3, 3, 3}}, 1, 1}, g.constants());
         size_t root = 0;
         while (tape.code()[root].op != field::codeOf<field::ops::Sqrt>) ++root;
@@ -164,9 +164,9 @@ TEST(Shorten, WhatItMayLeaveOutIsKnownBefore) {
             box = {lo, lo + Vec3f{.5f, .5f, .5f}};
         }
         Workspace w;
-        Range ranges[64];
+        FloatInterval ranges[64];
         evaluateRanges(tape, {boxes, 64}, ranges, w);
-        const Care care{-0.4f, 0.4f};
+        const RelevantRange care{-0.4f, 0.4f};
         const uint64_t out = mayLeaveOut(tape, root, 64, w, care);
         for (size_t i = 0; i < 64; ++i) {
             const bool left = roots(shorten(tape, i, w, care)) == 0, may = (out >> i & 1) != 0;
@@ -185,21 +185,21 @@ TEST(Shorten, WhatItMayLeaveOutIsKnownBefore) {
 
 TEST(Shorten, WhatIsToldApartGoesThroughSumsAndScales) {
     Graph graph;
-    const Num row = spheres(graph, 0, 64), wave = graph.slot(0.05f) * sin(graph.x() * graph.slot(3.0f));
+    const NodeRef row = spheres(graph, 0, 64), wave = graph.slot(0.05f) * sin(graph.x() * graph.slot(3.0f));
     const Box3f box{{20, -3, -3}, {26, 3, 3}};
-    for (const Num root : {row - graph.slot(0.1f), row + graph.slot(0.2f), row * graph.slot(3.0f), row - wave,
-                           (row - wave) / graph.slot(1.5f), graph.slot(0.7f) * (graph.slot(-0.1f) + row)})
+    for (const NodeRef root : {row - graph.slot(0.1f), row + graph.slot(0.2f), row * graph.slot(3.0f), row - wave,
+                               (row - wave) / graph.slot(1.5f), graph.slot(0.7f) * (graph.slot(-0.1f) + row)})
         expectSides(compile(graph, {root, {}, 1, 1}, graph.constants()), box, {-0.1f, 0.3f});
 }
 
 TEST(Shorten, WhatIsToldApartGoesThroughMorphs) {
     Graph graph;
-    const Num row = spheres(graph, 0, 64), others = spheres(graph, -3, 64);
-    const Num slanted = min(others, graph.y() + graph.x() * graph.slot(0.1f));
+    const NodeRef row = spheres(graph, 0, 64), others = spheres(graph, -3, 64);
+    const NodeRef slanted = min(others, graph.y() + graph.x() * graph.slot(0.1f));
     for (const float t : {0.01f, 0.5f, 0.9f})
-        for (const Num to : {others, slanted}) {
+        for (const NodeRef to : {others, slanted}) {
             const field::Operand operands[] = {{row.id(), 0}, {to.id(), 0}, {graph.slot(t).id(), 0}};
-            const Num root = graph.apply(codeOf<ops::Morph>, operands);
+            const NodeRef root = graph.apply(codeOf<ops::Morph>, operands);
             expectSides(compile(graph, {root, {}, 1, 1}, graph.constants()), {{20, -3, -3}, {26, 3, 3}}, {-0.1f, 0.1f});
         }
 }
@@ -208,22 +208,22 @@ TEST(Shorten, PartsOfABlendThatAreFarFromWhatIsToldApartAreDropped) {
     Graph graph;
     std::vector<field::Operand> operands{{graph.slot(0.2f).id(), 0}};
     for (int i = 0; i < 64; ++i) operands.push_back({spheres(graph, i, 1).id(), 0});
-    const Num melt = graph.apply(codeOf<ops::Blend>, operands);
-    expectSides(compile(graph, {melt, {}, 1, 1}, graph.constants()), {{20, 1, 1}, {26, 4, 4}}, {-0.1f, 0.1f});
-    expectSides(compile(graph, {melt, {}, 1, 1}, graph.constants()), {{20, -3, -3}, {26, 3, 3}}, {-0.1f, 0.1f});
+    const NodeRef smoothMin = graph.apply(codeOf<ops::Blend>, operands);
+    expectSides(compile(graph, {smoothMin, {}, 1, 1}, graph.constants()), {{20, 1, 1}, {26, 4, 4}}, {-0.1f, 0.1f});
+    expectSides(compile(graph, {smoothMin, {}, 1, 1}, graph.constants()), {{20, -3, -3}, {26, 3, 3}}, {-0.1f, 0.1f});
 }
 
 TEST(Shorten, NothingIsCopiedWhenOperandsHaveOwners) {
     Graph graph;
-    const Num s = spheres(graph, 0, 1), t = spheres(graph, 10, 1), u = spheres(graph, 20, 1);
+    const NodeRef s = spheres(graph, 0, 1), t = spheres(graph, 10, 1), u = spheres(graph, 20, 1);
     const field::Operand inner[] = {{s.id(), 1}, {t.id(), 2}};
-    const Num pair = graph.apply(codeOf<ops::Min>, inner);
+    const NodeRef pair = graph.apply(codeOf<ops::Min>, inner);
     const field::Operand outer[] = {{pair.id(), 0}, {u.id(), 3}};
-    const Num all = graph.apply(codeOf<ops::Min>, outer);
+    const NodeRef all = graph.apply(codeOf<ops::Min>, outer);
     const Tape tape = compile(graph, {all, {}, 1, 1}, graph.constants());
     Workspace w;
     const Box3f box{{-0.1f, 0, 0}, {0.1f, 0, 0}};
-    Range range;
+    FloatInterval range;
     evaluateRanges(tape, {&box, 1}, &range, w);
     const Tape one = shorten(tape, 0, w);
     for (const Instruction& in : one.code()) EXPECT_NE(in.op, codeOf<ops::Copy>);

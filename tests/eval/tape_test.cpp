@@ -4,13 +4,13 @@
 namespace sgm::eval::testing {
 namespace {
 
-Tape compiled(const Graph& graph, Num root) { return compile(graph, {root, {}, 1, 1}, graph.constants()); }
+Tape compiled(const Graph& graph, NodeRef root) { return compile(graph, {root, {}, 1, 1}, graph.constants()); }
 
 TEST(Tape, IsTheGraphBitForBit) {
     Draws draws{1};
     for (int repeat = 0; repeat < 1000; ++repeat) {
         Graph graph;
-        const Num root = randomExpression(graph, 5 + draws.below(80), draws);
+        const NodeRef root = randomExpression(graph, 5 + draws.below(80), draws);
         const Tape tape = compiled(graph, root);
         const Cloud cloud = pointsIn({{-2, -2, -2}, {2, 2, 2}}, 33, draws);
         const std::vector<float> got = values(tape, cloud);
@@ -20,7 +20,7 @@ TEST(Tape, IsTheGraphBitForBit) {
 }
 
 TEST(Tape, HoldsBlendsOfMoreOperandsThanSixteenBits) {
-    // Spheres in a row, far more than the melt reaches, so that a small blend around a point is the whole truth there.
+    // Spheres in a row, far more than the blend reaches, so that a small blend around a point is the whole truth there.
     constexpr int count = 70'000;
     Graph graph;
     const auto rowOf = [&graph](int first, int last) {
@@ -43,7 +43,7 @@ TEST(Tape, HoldsBlendsOfMoreOperandsThanSixteenBits) {
     EXPECT_EQ(owners[0], 69'002u);
     EXPECT_EQ(owners[1], 70'000u);
     const Box3f box{{69'000.5f, 0, 0}, {69'001, 1, 1}};
-    Range range;
+    FloatInterval range;
     evaluateRanges(all, {&box, 1}, &range, w);
     const Tape shorter = shorten(all, 0, w);
     EXPECT_LT(shorter.size(), 20u);
@@ -61,17 +61,19 @@ TEST(Tape, ItsOperationsAreCounted) {
     evaluate(tape, {at.data(), at.data(), at.data(), 100}, f.data(), w);
     evaluateGradient(tape, {at.data(), at.data(), at.data(), 7}, f.data(), dx.data(), dy.data(), dz.data(), w);
     using field::codeOf;
-    const Tally expected{
-        {{codeOf<ops::Mul>, 2, 0, Asked::Value}, 200},  {{codeOf<ops::Add>, 2, 0, Asked::Value}, 100},
-        {{codeOf<ops::Min>, 2, 0, Asked::Value}, 100},  {{codeOf<ops::Mul>, 2, 0, Asked::Gradient}, 14},
-        {{codeOf<ops::Add>, 2, 0, Asked::Gradient}, 7}, {{codeOf<ops::Min>, 2, 0, Asked::Gradient}, 7}};
+    const Tally expected{{{codeOf<ops::Mul>, 2, 0, EvaluationKind::Value}, 200},
+                         {{codeOf<ops::Add>, 2, 0, EvaluationKind::Value}, 100},
+                         {{codeOf<ops::Min>, 2, 0, EvaluationKind::Value}, 100},
+                         {{codeOf<ops::Mul>, 2, 0, EvaluationKind::Gradient}, 14},
+                         {{codeOf<ops::Add>, 2, 0, EvaluationKind::Gradient}, 7},
+                         {{codeOf<ops::Min>, 2, 0, EvaluationKind::Gradient}, 7}};
     EXPECT_EQ(tally, expected);
 
     tally.clear();
     const Box3f boxes[3]{};
-    Range ranges[3];
+    FloatInterval ranges[3];
     evaluateRanges(tape, {boxes, 3}, ranges, w);
-    EXPECT_EQ((tally[{codeOf<ops::Mul>, 2, 0, Asked::Range}]), 6u);
+    EXPECT_EQ((tally[{codeOf<ops::Mul>, 2, 0, EvaluationKind::Range}]), 6u);
     tally = expected;
 
     w.tallyInto(nullptr);
@@ -81,7 +83,7 @@ TEST(Tape, ItsOperationsAreCounted) {
 
 TEST(Tape, FoldsWhatIsConstant) {
     Graph graph;
-    const Num a = graph.slot(2), b = graph.slot(3);
+    const NodeRef a = graph.slot(2), b = graph.slot(3);
     const Tape folded = compiled(graph, sqrt(a * b + 3.0f));
     EXPECT_EQ(folded.size(), 0u);
     ASSERT_TRUE(isConstant(folded.result()));
@@ -93,7 +95,7 @@ TEST(Tape, FoldsWhatIsConstant) {
 
 TEST(Tape, BindsTheConstantsItIsGiven) {
     Graph graph;
-    const Num root = graph.x() * graph.slot(2);
+    const NodeRef root = graph.x() * graph.slot(2);
     const float other[] = {5};
     const Tape tape = compile(graph, {root, {}, 1, 1}, other);
     Cloud cloud;
@@ -115,7 +117,7 @@ TEST(Tape, ConstantAndCoordinateFieldsNeedNoCode) {
     evaluateGradient(four, cloud.points(), &v, &dx, &dy, &dz, w);
     EXPECT_EQ((Vec3f{dx, dy, dz}), (Vec3f{}));
     const Box3f box{{0, 1, 2}, {3, 4, 5}};
-    Range range;
+    FloatInterval range;
     evaluateRanges(y, {&box, 1}, &range, w);
     EXPECT_EQ(range.lo, 1.0f);
     EXPECT_EQ(range.hi, 4.0f);
@@ -126,13 +128,13 @@ TEST(Tape, ConstantAndCoordinateFieldsNeedNoCode) {
 
 TEST(Tape, BalancedUnionsNeedFewRegisters) {
     Graph graph;
-    std::vector<Num> parts;
+    std::vector<NodeRef> parts;
     for (int i = 0; i < 1024; ++i) {
         const field::Point p = graph.position();
         parts.push_back(length(field::Point{p.x - graph.slot(float(i)), p.y, p.z}) - 0.5f);
     }
     while (parts.size() > 1) {
-        std::vector<Num> pairs;
+        std::vector<NodeRef> pairs;
         for (size_t i = 0; i < parts.size(); i += 2) pairs.push_back(min(parts[i], parts[i + 1]));
         parts = pairs;
     }
@@ -141,7 +143,7 @@ TEST(Tape, BalancedUnionsNeedFewRegisters) {
 
 TEST(Tape, DeepChainsAndManyNodesDoNotOverflow) {
     Graph graph;
-    Num chain = graph.x();
+    NodeRef chain = graph.x();
     for (int i = 0; i < 100000; ++i)
         chain = i % 2 ? sqrt(chain + graph.slot(1)) : min(chain, graph.y() + graph.slot(float(i)));
     const Tape tape = compiled(graph, chain);
@@ -151,7 +153,7 @@ TEST(Tape, DeepChainsAndManyNodesDoNotOverflow) {
     EXPECT_EQ(values(tape, cloud)[0], walk(graph, chain, 0.5f, 1, 0));
     Workspace w;
     const Box3f box{{0, 0, 0}, {1, 1, 1}};
-    Range range;
+    FloatInterval range;
     evaluateRanges(tape, {&box, 1}, &range, w);
     EXPECT_LT(shorten(tape, 0, w).size(), tape.size());
 }
@@ -213,7 +215,7 @@ TEST(Tape, SolidsAtTheCoordinatesHaveTheDerivativesOfMovedOnes) {
     const auto slopes = [&](field::OpCode op, std::vector<float> numbers, bool moved) {
         Graph graph;
         std::vector<field::Operand> operands;
-        for (const Num at : {graph.x(), graph.y(), graph.z()})
+        for (const NodeRef at : {graph.x(), graph.y(), graph.z()})
             operands.push_back({(moved ? at * graph.slot(2) * graph.slot(.5f) + graph.slot(.5f) : at).id(), 0});
         for (size_t i = 0; i < numbers.size(); ++i)
             operands.push_back({graph.slot(numbers[i] + (moved && i < 3 ? .5f : 0)).id(), 0});

@@ -24,7 +24,7 @@ field::Operand ball(Graph& graph, float x, OriginId owner) {
     return {(length(field::Point{p.x - graph.slot(x), p.y, p.z}) - graph.slot(0.4f)).id(), owner};
 }
 
-Num smaller(Graph& graph, field::Operand a, field::Operand b) {
+NodeRef smaller(Graph& graph, field::Operand a, field::Operand b) {
     const field::Operand both[] = {a, b};
     return graph.apply(codeOf<ops::Min>, both);
 }
@@ -48,10 +48,10 @@ TEST(UnionParts, ThatAreAllLeftTakeFewRegisters) {
         if (parts.size() % 2 == 1) pairs.push_back(parts.back());
         parts = pairs;
     }
-    const Tape tape = compile(graph, {Num(&graph, parts[0].node), {}, 1, 1}, graph.constants());
+    const Tape tape = compile(graph, {NodeRef(&graph, parts[0].node), {}, 1, 1}, graph.constants());
     Workspace w;
     const Box3f box{{-1, -600, -1}, {1000, 600, 1}};  // so wide that no ball is above another all over
-    Range range;
+    FloatInterval range;
     evaluateRanges(tape, {&box, 1}, &range, w);
     const Tape same = shorten(tape, 0, w);
     EXPECT_EQ(same.size(), tape.size());
@@ -64,14 +64,15 @@ TEST(UnionParts, ThatAreAllLeftTakeFewRegisters) {
 
 TEST(UnionParts, OwnersAreHeardFromTheResultDown) {
     Graph graph;
-    const Num inner = smaller(graph, ball(graph, 0, 1), ball(graph, 1, 2));
-    const Num outer = smaller(graph, {inner.id(), 0}, ball(graph, 2, 3));
-    const Num named = smaller(graph, {outer.id(), 7}, ball(graph, 3, 4));  // 7 speaks for balls 0 to 2
-    const Num root = smaller(graph, {named.id(), 0}, ball(graph, 3, 5));   // where 4 and 5 are equal, the first is it
+    const NodeRef inner = smaller(graph, ball(graph, 0, 1), ball(graph, 1, 2));
+    const NodeRef outer = smaller(graph, {inner.id(), 0}, ball(graph, 2, 3));
+    const NodeRef named = smaller(graph, {outer.id(), 7}, ball(graph, 3, 4));  // 7 speaks for balls 0 to 2
+    const NodeRef root =
+        smaller(graph, {named.id(), 0}, ball(graph, 3, 5));  // where 4 and 5 are equal, the first is it
     const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
     Workspace w;
     const Box3f boxes[] = {{{-1, -9, -1}, {9, 9, 1}}, {{0.9f, 0, 0}, {1.1f, 0, 0}}, {{2.9f, 0, 0}, {3.1f, 0, 0}}};
-    Range ranges[3];
+    FloatInterval ranges[3];
     for (size_t region = 0; region < 3; ++region) {
         evaluateRanges(tape, {boxes, 3}, ranges, w);
         const Tape some = shorten(tape, region, w);
@@ -87,12 +88,12 @@ TEST(UnionParts, OwnersAreHeardFromTheResultDown) {
 /// A minimum that is read outside of the union too stays one value: no instruction is written for it twice.
 TEST(UnionParts, AMinimumWithAnotherReaderIsAPart) {
     Graph graph;
-    const Num shared = smaller(graph, ball(graph, 0, 0), ball(graph, 1, 0));
-    const Num root = smaller(graph, {shared.id(), 0}, {(shared * graph.slot(0.5f) + graph.slot(0.1f)).id(), 0});
+    const NodeRef shared = smaller(graph, ball(graph, 0, 0), ball(graph, 1, 0));
+    const NodeRef root = smaller(graph, {shared.id(), 0}, {(shared * graph.slot(0.5f) + graph.slot(0.1f)).id(), 0});
     const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
     Workspace w;
     const Box3f box{{-1, -1, -1}, {2, 1, 1}};
-    Range range;
+    FloatInterval range;
     evaluateRanges(tape, {&box, 1}, &range, w);
     EXPECT_EQ(shorten(tape, 0, w).size(), tape.size());
 }

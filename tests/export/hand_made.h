@@ -65,9 +65,9 @@ inline mesh::Mesh icosphere(Vec3f centre, float radius, int levels, size_t chunk
                     chunk.positions.push_back(centre + n * radius);
                     chunk.normals.push_back(n);
                 }
-                if (v < chunk.firstVertex) chunk.borrowed.vertices.push_back(v);
+                if (v < chunk.firstVertex) chunk.ghosts.vertices.push_back(v);
                 faces[f][k] = v < chunk.firstVertex
-                                  ? mesh::borrowedBit | static_cast<uint32_t>(chunk.borrowed.vertices.size() - 1)
+                                  ? mesh::ghostBit | static_cast<uint32_t>(chunk.ghosts.vertices.size() - 1)
                                   : v - chunk.firstVertex;
             }
             chunk.triangles.push_back(faces[f]);

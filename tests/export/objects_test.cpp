@@ -147,10 +147,10 @@ TEST_F(House, OnePieceHasItsColoursAlone) {
 TEST_F(House, ObjNamesObjectsAndKeepsPositionsShared) {
     // The door's box begins with the wall's eight vertices: one solid of two objects.
     mesh::Chunk& door = mesh.chunks[3];
-    door.borrowed.vertices = {0, 1, 2, 3, 4, 5, 6, 7};
+    door.ghosts.vertices = {0, 1, 2, 3, 4, 5, 6, 7};
     door.positions.clear(), door.normals.clear();
     for (mesh::Triangle& t : door.triangles)
-        for (int k = 0; k < 3; ++k) t[k] |= mesh::borrowedBit;
+        for (int k = 0; k < 3; ++k) t[k] |= mesh::ghostBit;
     const std::string text = contentOf(written("house.obj"));
     size_t at = 0;
     for (const char* line :

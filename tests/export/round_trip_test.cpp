@@ -178,32 +178,34 @@ TEST(RoundTrip, PlyOfTheShapeAlone) {
     const std::string bytes = contentOf(f.write("b.ply"));
     const size_t shape = f.mesh.vertexCount() * 12 + f.mesh.triangleCount() * 13;
     EXPECT_EQ(bytes.size(), bytes.find("end_header\n") + 11 + shape);
-    const ReadBack bare = readBack(f.folder / "b.ply");
-    EXPECT_EQ(bare.positions, all.positions);
-    EXPECT_EQ(bare.triangles, all.triangles);
+    const ReadBack positionsOnly = readBack(f.folder / "b.ply");
+    EXPECT_EQ(positionsOnly.positions, all.positions);
+    EXPECT_EQ(positionsOnly.triangles, all.triangles);
 }
 
 TEST_P(EveryMeshFormat, OfABareMeshHasTheSameBytesOrIsRefused) {
-    Fixture full, bare;
-    for (mesh::Chunk& c : bare.mesh.chunks) c.normals.clear(), c.origins.clear();
+    Fixture full, positionsOnly;
+    for (mesh::Chunk& c : positionsOnly.mesh.chunks) c.normals.clear(), c.origins.clear();
     const std::string file = "sphere" + GetParam();
     for (const ExportOptions& options : {ExportOptions{}, ExportOptions{{"attributes", "none"}}}) {
         const Exporter& row = *findExporter(GetParam());
         if (!checkOptions(row, options).ok()) continue;
-        full.input.options = bare.input.options = options;
-        if (takesBare(row, options)) {
-            EXPECT_EQ(contentOf(bare.write(file)), contentOf(full.write(file)));
+        full.input.options = positionsOnly.input.options = options;
+        if (takesPositionsOnly(row, options)) {
+            EXPECT_EQ(contentOf(positionsOnly.write(file)), contentOf(full.write(file)));
             continue;
         }
-        const Status status = write(bare.input, bare.folder / file);
+        const Status status = write(positionsOnly.input, positionsOnly.folder / file);
         ASSERT_FALSE(status.ok());
         EXPECT_NE(status.error().message.find("no normals"), std::string::npos);
-        EXPECT_EQ(bare.folder.fileCount(), 0u);
+        EXPECT_EQ(positionsOnly.folder.fileCount(), 0u);
         if (!row.stream) continue;
-        const ChunkSource all = [&](const mesh::ChunkVisitor& visit) { return visit(bare.mesh, bare.mesh.chunks[0]); };
-        ExportInput input = bare.input;
+        const ChunkSource all = [&](const mesh::ChunkVisitor& visit) {
+            return visit(positionsOnly.mesh, positionsOnly.mesh.chunks[0]);
+        };
+        ExportInput input = positionsOnly.input;
         input.mesh = nullptr;
-        EXPECT_EQ(writeStreamed(input, all, bare.folder / file).error().message, status.error().message);
+        EXPECT_EQ(writeStreamed(input, all, positionsOnly.folder / file).error().message, status.error().message);
     }
 }
 

@@ -83,11 +83,10 @@ TEST_F(Street, WhatTouchesOrDiffersKeepsItsOwnSurface) {
     mesh = meshOfChunks(chunks);
     mesh::Chunk& ground = mesh.chunks[9];
     const uint32_t wall = mesh.chunks[6].firstVertex;
-    ground.borrowed.vertices.clear();
-    for (uint32_t v = 0; v < 8; ++v) ground.borrowed.vertices.push_back(wall + v);
+    ground.ghosts.vertices.clear();
+    for (uint32_t v = 0; v < 8; ++v) ground.ghosts.vertices.push_back(wall + v);
     ground.positions.clear(), ground.normals.clear();
-    for (mesh::Triangle& t : ground.triangles)
-        t = {t.x | mesh::borrowedBit, t.y | mesh::borrowedBit, t.z | mesh::borrowedBit};
+    for (mesh::Triangle& t : ground.triangles) t = {t.x | mesh::ghostBit, t.y | mesh::ghostBit, t.z | mesh::ghostBit};
     std::fill(ground.origins.begin(), ground.origins.end(), 0u);
     const SharedObjects shared = shareObjects(mesh, tree);
     EXPECT_EQ(shared.of, (std::vector<uint32_t>{0, 1, 2, 2, 4, 2, 2, 7, 2, 2})) << "their flags are free";

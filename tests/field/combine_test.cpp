@@ -180,7 +180,7 @@ TEST(Combine, SumIsABalancedTreeInTheOrderOfItsParts) {
     Draws draw(3);
     const auto boxAt = [](float at) { return Box3f{{at, 0, 0}, {at + 1, 1, 1}}; };
     for (int i = 0; i < n; ++i) {
-        const Num x = graph.slot(static_cast<float>(i));
+        const NodeRef x = graph.slot(static_cast<float>(i));
         parts.push_back({Field{x, boxAt(static_cast<float>(draw.uniform(0, 1000)))}, 0});
         moved.push_back({Field{x, boxAt(static_cast<float>(draw.uniform(0, 1000)))}, 0});
     }
@@ -292,7 +292,7 @@ TEST(Blend, GroupingCannotChangeTheShape) {
     Graph graph;
     Draws draw(7);
     const std::vector<Owned> parts = someSolids(graph, draw, 6);
-    const Num k = graph.slot(0.4f);
+    const NodeRef k = graph.slot(0.4f);
     const Field flat = blend(graph, parts, k, 0.4);
     Field chain = parts[0].field;
     OriginId owner = parts[0].origin;

@@ -218,12 +218,12 @@ TEST(Facade, CladdingStaysBetweenItsShells) {
         const Vec3d half{5, 6, 4};
         const double wall = o.value(P::Wall);
         const Field outer = build(o.graph, solid, half, o.graph.position());
-        Probe whole(o.graph, outer), dressed(o.graph, o.clad(solid, half));
+        Probe whole(o.graph, outer), clad(o.graph, o.clad(solid, half));
         Draws draw(8);
         size_t carved = 0;
         for (int i = 0; i < 20000; ++i) {
             const Vec3f p = draw.in(Box3d{-half, half}.inflated(0.5)).as<float>();
-            const float f = whole(p), g = dressed(p);
+            const float f = whole(p), g = clad(p);
             ASSERT_GE(g, f - 1e-5f);
             if (f < -2 * wall) {
                 ASSERT_LT(g, 1e-5f);

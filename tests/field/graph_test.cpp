@@ -12,7 +12,7 @@ namespace {
 
 TEST(Graph, EqualStructureIsOneNode) {
     Graph g;
-    const Num a = sqrt(g.x() + g.y()), b = sqrt(g.y() + g.x());
+    const NodeRef a = sqrt(g.x() + g.y()), b = sqrt(g.y() + g.x());
     EXPECT_EQ(a.id(), b.id());
     EXPECT_EQ(min(g.x(), g.z()).id(), min(g.z(), g.x()).id());
     EXPECT_NE((g.x() - g.y()).id(), (g.y() - g.x()).id());
@@ -21,7 +21,7 @@ TEST(Graph, EqualStructureIsOneNode) {
 
 TEST(Graph, SlotsAreNeverMergedAndKeysKeepThem) {
     Graph g;
-    const Num a = g.slot({1, 2}, 5), b = g.slot({1, 3}, 5), c = g.slot(5), d = g.slot(5);
+    const NodeRef a = g.slot({1, 2}, 5), b = g.slot({1, 3}, 5), c = g.slot(5), d = g.slot(5);
     EXPECT_NE(a.id(), b.id());
     EXPECT_NE(c.id(), d.id());
     EXPECT_EQ(g.slot({1, 2}, 7).id(), a.id());
@@ -32,7 +32,7 @@ TEST(Graph, SlotsAreNeverMergedAndKeysKeepThem) {
 
 TEST(Graph, StructureSurvivesANewNumber) {
     Graph g;
-    const Num before = g.x() * g.slot({1, 2}, 5);
+    const NodeRef before = g.x() * g.slot({1, 2}, 5);
     const size_t nodes = g.nodeCount();
     EXPECT_EQ((g.x() * g.slot({1, 2}, 6)).id(), before.id());
     EXPECT_EQ(g.nodeCount(), nodes);
@@ -42,7 +42,7 @@ TEST(Graph, OwnersArePartOfTheStructure) {
     Graph g;
     const Operand ab[] = {{g.x().id(), 1}, {g.y().id(), 2}}, ba[] = {{g.y().id(), 2}, {g.x().id(), 1}};
     const Operand other[] = {{g.x().id(), 2}, {g.y().id(), 1}};
-    const Num m = g.apply(codeOf<ops::Min>, ab);
+    const NodeRef m = g.apply(codeOf<ops::Min>, ab);
     EXPECT_EQ(m.id(), g.apply(codeOf<ops::Min>, ba).id());
     EXPECT_NE(m.id(), g.apply(codeOf<ops::Min>, other).id());
     EXPECT_EQ(g.operands(m.id())[0].origin, 1u);
@@ -50,7 +50,7 @@ TEST(Graph, OwnersArePartOfTheStructure) {
 
 TEST(Graph, FoldsLiteralsAndWhatChangesNothing) {
     Graph g;
-    const Num five = g.literal(2) + g.literal(3);
+    const NodeRef five = g.literal(2) + g.literal(3);
     EXPECT_EQ(five.id(), g.literal(5).id());
     EXPECT_EQ((g.x() * 1.0f).id(), g.x().id());
     EXPECT_EQ((1.0f * g.x()).id(), g.x().id());
@@ -87,7 +87,7 @@ TEST(Graph, CodesNameTheirRows) {
     EXPECT_EQ(traits(codeOf<ops::Min>).name, "min");
     EXPECT_TRUE(traits(codeOf<ops::Min>).commutative);
     EXPECT_TRUE(traits(codeOf<ops::Blend>).chooses);
-    EXPECT_EQ(traits(codeOf<ops::Blend>).firstChoice, 1u);
+    EXPECT_EQ(traits(codeOf<ops::Blend>).firstPrunable, 1u);
     EXPECT_FALSE(traits(codeOf<ops::Morph>).chooses);
     const int arity = visitOp(codeOf<ops::Atan2>, []<class Row>() { return Row::arity; });
     EXPECT_EQ(arity, 2);

@@ -69,7 +69,7 @@ TEST(Sampled, AGraphNumbersEachGridOnce) {
     EXPECT_EQ(graph.grid(a), 0u);
     EXPECT_NE(a->hash(), b->hash());
     EXPECT_EQ(a->hash(), sampledTorus(4)->hash());
-    const Num one = bare(graph, a).value, same = bare(graph, a).value, other = bare(graph, b).value;
+    const NodeRef one = bare(graph, a).value, same = bare(graph, a).value, other = bare(graph, b).value;
     EXPECT_EQ(one.id(), same.id());
     EXPECT_NE(one.id(), other.id());
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "modeler/mesh/pieces.h"
+#include "modeler/mesh/connected_components.h"
 #include "modeler/mesh/polygonize.h"
 #include "modeler/mesh/subdivide.h"
 #include "modeler/mesh/validate.h"
@@ -145,7 +145,7 @@ TEST(House, TheRoofIsClosedFromPyramidToSphere) {
         const mesh::Mesh mesh = meshed(d, 0.12f);
         const mesh::MeshFigures f = mesh::measure(mesh);
         EXPECT_EQ(f.boundaryEdges + f.nonmanifoldEdges, 0u);
-        EXPECT_EQ(mesh::pieces(mesh, 0.12f).size(), 1u);
+        EXPECT_EQ(mesh::connectedComponents(mesh, 0.12f).size(), 1u);
         EXPECT_NEAR(f.bounds.hi.y, 4, 0.1);
         // No gap at the foot: whatever stands over the ellipse inside the foot stands on it.
         for (double angle = 0; angle < 6.28; angle += 0.2)
@@ -171,7 +171,7 @@ TEST(House, NothingFloatsWhateverTheStyle) {
         SCOPED_TRACE(settings);
         const Lowered d(house(settings));
         EXPECT_EQ(d.derivation.floating(), 0u);
-        EXPECT_EQ(mesh::pieces(meshed(d, 0.25f), 0.25f).size(), 1u);
+        EXPECT_EQ(mesh::connectedComponents(meshed(d, 0.25f), 0.25f).size(), 1u);
     }
 }
 

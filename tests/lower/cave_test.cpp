@@ -2,7 +2,7 @@
 #include "modeler/volume/cave.h"
 
 #include "grammar/lower/lower.h"
-#include "modeler/mesh/pieces.h"
+#include "modeler/mesh/connected_components.h"
 #include "modeler/mesh/polygonize.h"
 #include "tests/derive/grammars.h"
 
@@ -30,7 +30,7 @@ Surveyed survey(const std::string& settings, uint64_t seed = 1, float cell_m = 0
     mesh::Counts counts;
     const auto blocks = mesh::subdivide(tape, grid, 2, nullptr, counts);
     const auto mesh = mesh::polygonize(*blocks, grid, {.threads = 2}, nullptr, counts);
-    for (const mesh::Piece& piece : mesh::pieces(*mesh, cell_m)) {
+    for (const mesh::ConnectedComponent& piece : mesh::connectedComponents(*mesh, cell_m)) {
         result.floating += piece.floats;
         result.volume_m3 += piece.volume_m3;
         result.largest_m3 = std::max(result.largest_m3, piece.volume_m3);

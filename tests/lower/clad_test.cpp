@@ -27,11 +27,11 @@ void eachPlace(const Lowered& model, int count, Visit visit) {
 /// Volumes of a solid and of what is left of it clad: carved, but not hollow, and nowhere beyond it.
 void expectClad(const std::string& solid, const std::string& clad) {
     SCOPED_TRACE(solid);
-    const Lowered bare(text(solid)), dressed(text(solid + " " + clad));
-    ASSERT_TRUE(bare.model && dressed.model);
+    const Lowered bare(text(solid)), cladOne(text(solid + " " + clad));
+    ASSERT_TRUE(bare.model && cladOne.model);
     int full = 0, left = 0, beyond = 0;
     eachPlace(bare, 4000, [&](Vec3f p) {
-        const bool in = bare.inside(p), stays = dressed.inside(p);
+        const bool in = bare.inside(p), stays = cladOne.inside(p);
         full += in;
         left += stays;
         beyond += stays && bare.value(p) > 1e-4f;

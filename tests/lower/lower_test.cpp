@@ -36,7 +36,7 @@ TEST(Order, IntersectionAndMorphTakeTheWhole) {
 }
 
 TEST(Order, ConsecutiveBlendsAreOneMelt) {
-    // Equal balls around a point: the melt doesn't depend on their order.
+    // Equal balls around a point: the blend doesn't depend on their order.
     const char* parts[] = {" + sphere size 2 move (1, 0, 0) blend .5", " + sphere size 2 move (0, 1, 0) blend .5"};
     const std::string head = "grammar 1\nstart S -> sphere size 2";
     const Lowered ab(head + parts[0] + parts[1] + "\n"), ba(head + parts[1] + parts[0] + "\n"),
@@ -54,7 +54,7 @@ TEST(Order, AMeltedCutIsTheSharpOneFarFromItsEdge) {
     for (float x = -3; x < 3; x += 0.17f)
         for (float y = -1; y < 3; y += 0.13f) {
             const float m = melted.value({x, y, 0.1f}), s = sharp.value({x, y, 0.1f});
-            EXPECT_GE(m, s - 1e-6f);  // a melt takes the edge off
+            EXPECT_GE(m, s - 1e-6f);  // a blend takes the edge off
             moved += m > s + 1e-3f;
         }
     EXPECT_GT(moved, 5);

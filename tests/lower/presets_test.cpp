@@ -10,7 +10,7 @@
 #include "modeler/core/parallel.h"
 #include "modeler/core/random.h"
 #include "modeler/field/facade.h"
-#include "modeler/mesh/pieces.h"
+#include "modeler/mesh/connected_components.h"
 #include "modeler/mesh/polygonize.h"
 #include "modeler/mesh/subdivide.h"
 #include "modeler/mesh/validate.h"

@@ -30,7 +30,7 @@ TEST(Chunk, DependsOnItsBlockAlone) {
         EXPECT_EQ(chunk.normals, same->normals);
         EXPECT_EQ(chunk.triangles, same->triangles);
         EXPECT_EQ(chunk.origins, same->origins);
-        EXPECT_EQ(chunk.lent.vertices, same->lent.vertices);
+        EXPECT_EQ(chunk.shared.vertices, same->shared.vertices);
         ++at;
     }
     EXPECT_EQ(at, whole.chunks.size());
@@ -70,21 +70,21 @@ TEST(Chunk, VerticesThatWaitForTheNextBricksAreTheSame) {
 }
 
 TEST(Chunk, BorrowedVerticesLieOnTheSharedSide) {
-    const Meshed m = meshOf(cloudScene(40, 0.2f, 4), 90);
+    const BuiltMesh m = meshOf(cloudScene(40, 0.2f, 4), 90);
     std::vector<Vec3f> positions;
     for (const Chunk& c : m.mesh.value().chunks)
         positions.insert(positions.end(), c.positions.begin(), c.positions.end());
-    size_t borrowed = 0;
+    size_t ghosts = 0;
     for (const Chunk& c : m.mesh->chunks)
         for (int kind = 0; kind < seamKinds; ++kind)
-            for (uint32_t i = c.borrowed.begin[kind]; i < c.borrowed.begin[kind + 1]; ++i, ++borrowed) {
-                ASSERT_LT(c.borrowed.vertices[i], c.firstVertex) << "lower blocks own what is shared";
-                const Vec3f p = positions[c.borrowed.vertices[i]];
+            for (uint32_t i = c.ghosts.begin[kind]; i < c.ghosts.begin[kind + 1]; ++i, ++ghosts) {
+                ASSERT_LT(c.ghosts.vertices[i], c.firstVertex) << "lower blocks own what is shared";
+                const Vec3f p = positions[c.ghosts.vertices[i]];
                 const Vec3f side = m.grid.corner(32 * c.block.x, 32 * c.block.y, 32 * c.block.z);
                 for (int axis = 0; axis < 3; ++axis)
                     ASSERT_TRUE(p[axis] == side[axis] || ((kind + 1) >> axis & 1) == 0);
             }
-    EXPECT_GT(borrowed, 1000u);
+    EXPECT_GT(ghosts, 1000u);
 }
 
 TEST(Chunk, VerticesAtCreasesFindTheSurface) {
@@ -92,7 +92,7 @@ TEST(Chunk, VerticesAtCreasesFindTheSurface) {
     Scene s;
     const field::Owned parts[] = {{ball(s.graph, {-0.5f, 0, 0}, 1), 1}, {ball(s.graph, {0.53f, 0.1f, 0}, 1), 2}};
     s.field = field::sum(s.graph, parts);
-    const Meshed m = meshOf(s, 60);
+    const BuiltMesh m = meshOf(s, 60);
     double worst = 0, sum = 0;
     for (const Chunk& c : m.mesh.value().chunks)
         for (size_t i = 0; i < c.positions.size(); ++i) {

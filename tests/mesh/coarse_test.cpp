@@ -45,9 +45,9 @@ size_t vertices(const Mesh& mesh) {
 
 TEST(Coarse, NoCutEdgeOfAFractalIsMissed) {
     const Scene s = fractal();
-    ASSERT_TRUE(isDear(s.tape()));
+    ASSERT_TRUE(isExpensive(s.tape()));
     for (const int resolution : {40, 75, 130}) {
-        const Meshed m = meshOf(s, resolution);
+        const BuiltMesh m = meshOf(s, resolution);
         ASSERT_TRUE(m.mesh.ok());
         EXPECT_EQ(vertices(*m.mesh), cutEdges(s.tape(), m.grid));
     }
@@ -56,13 +56,13 @@ TEST(Coarse, NoCutEdgeOfAFractalIsMissed) {
 TEST(Coarse, AGridThatCutsThroughTheFractalStillCloses) {
     const Scene s = fractal();
     const Grid grid{{-0.913f, -0.71f, -1.03f}, 0.0171f, {101, 90, 77}};
-    const Meshed m = meshOf(s.tape(), grid);
+    const BuiltMesh m = meshOf(s.tape(), grid);
     ASSERT_TRUE(m.mesh.ok());
     EXPECT_EQ(vertices(*m.mesh), cutEdges(s.tape(), grid));
 }
 
 TEST(Coarse, MostCornersOfAThinFractalAreNotAsked) {
-    const Meshed m = meshOf(fractal(), 256);
+    const BuiltMesh m = meshOf(fractal(), 256);
     ASSERT_TRUE(m.mesh.ok());
     EXPECT_LT(double(m.counts.pointEvaluations), 6.0 * double(m.counts.surfaceCells));
 }

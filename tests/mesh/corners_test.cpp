@@ -7,8 +7,8 @@
 #include <set>
 
 #include "modeler/core/conventions.h"
+#include "modeler/mesh/connected_components.h"
 #include "modeler/mesh/edit.h"
-#include "modeler/mesh/pieces.h"
 #include "tests/hard_box.h"
 #include "tests/mesh/scenes.h"
 

@@ -34,18 +34,18 @@ field::Field block(field::Graph& g, Vec3f centre, Vec3f half, double degrees = 0
     const field::Point h{g.slot(half.x), g.slot(half.y), g.slot(half.z)};
     const float reach = length(half);
     const Vec3f r{reach, reach, reach};
-    const field::Num value =
+    const field::NodeRef value =
         field::solids::boxDistance(degrees == 0 ? shifted(g, centre) : turned(g, centre, degrees), h);
     return {value, degrees == 0 ? Box3f{centre - half, centre + half} : Box3f{centre - r, centre + r}, 1, 0.5f};
 }
 
 Mesh crispMesh(const Scene& scene, int resolution) {
-    const Meshed m = meshOf(scene, resolution, 2, crisp);
+    const BuiltMesh m = meshOf(scene, resolution, 2, crisp);
     EXPECT_TRUE(m.mesh.ok());
     const MeshFigures f = measure(*m.mesh);
     EXPECT_EQ(f.boundaryEdges, 0u) << resolution;
     EXPECT_EQ(f.nonmanifoldEdges, 0u) << resolution;
-    const auto word = judge(*m.mesh);
+    const auto word = validate(*m.mesh);
     EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects) << resolution;
     return *m.mesh;
 }
@@ -113,7 +113,7 @@ TEST(Crisp, ABoxLessABoxIsExactAlongTheAxesAndCloseWhereTurned) {
 Mesh merged(const Mesh& mesh, float cell) {
     auto simple = simplify(mesh, {usualTolerance(cell), 2}, nullptr);
     EXPECT_TRUE(simple.ok());
-    const auto word = judge(*simple);
+    const auto word = validate(*simple);
     EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects);
     return *simple;
 }
@@ -155,7 +155,7 @@ TEST(Crisp, VerticesKeptInTheirCellsAreReleased) {
         for (uint32_t v = 0; v < flat.parts[i].vertices; ++v)
             released.chunks[i].positions[v] = flat.positions[flat.parts[i].firstVertex + v];
     EXPECT_LT(mostOff(s, released), 0.02 * before);
-    const auto word = judge(released);
+    const auto word = validate(released);
     EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects);
 }
 
@@ -201,7 +201,7 @@ TEST(Crisp, BordersOfMaterialsAreStraight) {
 TEST(Crisp, ACylinderHasRoundRims) {
     Scene s;
     const field::Point p = turned(s.graph, {}, 17);
-    const field::Num side = sqrt(square(p.x) + square(p.z)) - 1.0f, cap = abs(p.y) - 1.0f;
+    const field::NodeRef side = sqrt(square(p.x) + square(p.z)) - 1.0f, cap = abs(p.y) - 1.0f;
     s.field = {
         s.graph.apply(field::codeOf<field::ops::Rim>, {side, cap}), {{-1.5f, -1.5f, -1.5f}, {1.5f, 1.5f, 1.5f}}, 1, 1};
     for (const int resolution : {24, 64}) crispMesh(s, resolution);
@@ -223,12 +223,12 @@ TEST(Crisp, RandomBoxesAreClosedAndDontCross) {
         if (key % 3 == 0)
             s.field = field::difference({s.field, 0},
                                         {block(s.graph, {real(-1, 1), 0, 0}, {.5f, .4f, .3f}, real(0, 90)), 99});
-        const Meshed m = meshOf(s, 32, 2, crisp);
+        const BuiltMesh m = meshOf(s, 32, 2, crisp);
         ASSERT_TRUE(m.mesh.ok());
         const MeshFigures f = measure(*m.mesh);
         EXPECT_EQ(f.boundaryEdges, 0u) << key;
         EXPECT_EQ(f.nonmanifoldEdges, 0u) << key;
-        const auto word = judge(*m.mesh);
+        const auto word = validate(*m.mesh);
         EXPECT_TRUE(word.ok() && word->closed && word->outward) << key;
         EXPECT_FALSE(word->selfIntersects) << key;
     }

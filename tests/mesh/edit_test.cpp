@@ -92,7 +92,7 @@ TEST(Edit, SimplifyingReachesItsRatioAndStaysClosed) {
     EXPECT_GT(origins.count(3), 50u);
     EXPECT_GT(origins.count(7), 50u);
     EXPECT_EQ(origins.count(3) + origins.count(7), origins.size());
-    const auto judged = judge(*simple);
+    const auto judged = validate(*simple);
     ASSERT_TRUE(judged.ok());
     EXPECT_FALSE(judged->selfIntersects);
     EXPECT_EQ(simplifyToShare(mesh, 1, 1, nullptr)->triangleCount(), mesh.triangleCount());

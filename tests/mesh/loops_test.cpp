@@ -96,17 +96,17 @@ TEST(Loops, CutEdgesHaveOneEndInside) {
 }
 
 TEST(Loops, TrianglesBelongToMostOfTheirCorners) {
-    constexpr uint32_t own = 20, borrowed = 0x80000000u;
+    constexpr uint32_t own = 20, ghosts = 0x80000000u;
     std::array<uint32_t, own + 12> origins;
     for (size_t i = 0; i < origins.size(); ++i) origins[i] = static_cast<uint32_t>(combine(21, i) % 4);
     for (size_t n = 0; n < 40; ++n) {
         std::vector<uint32_t> triangles(3 * n);
         for (size_t i = 0; i < triangles.size(); ++i) {
             const auto any = static_cast<uint32_t>(combine(n, i) % origins.size());
-            triangles[i] = any < own ? any : borrowed | (any - own);
+            triangles[i] = any < own ? any : ghosts | (any - own);
         }
         const auto of = [&](size_t i) {
-            return origins[triangles[i] & borrowed ? own + (triangles[i] & ~borrowed) : triangles[i]];
+            return origins[triangles[i] & ghosts ? own + (triangles[i] & ~ghosts) : triangles[i]];
         };
         for (const Loops& l : loopsHere()) {
             std::vector<uint32_t> owners(n + 1, 77);

@@ -15,7 +15,7 @@ inline std::vector<unsigned char> bytesOf(const Mesh& mesh) {
     };
     for (const Chunk& c : mesh.chunks) {
         add(std::vector<Vec3i>{c.block, {static_cast<int>(c.firstVertex), 0, 0}});
-        add(c.positions), add(c.normals), add(c.triangles), add(c.origins), add(c.labels), add(c.borrowed.vertices);
+        add(c.positions), add(c.normals), add(c.triangles), add(c.origins), add(c.labels), add(c.ghosts.vertices);
         for (const CornerNormal& n : c.cornerNormals) add(std::vector<CornerNormal>{n});
         for (const ConfinedVertex& v : c.confined) add(std::vector<ConfinedVertex>{v});
     }

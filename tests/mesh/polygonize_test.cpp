@@ -31,7 +31,7 @@ void expectClosed(const Mesh& mesh, const char* what, uint64_t which = 0) {
 void expectSecondOrder(const Scene& scene, double volume, double area, int coarse, double leastRatio) {
     double volumeError[2], areaError[2];
     for (int i = 0; i < 2; ++i) {
-        const Meshed m = meshOf(scene, coarse << i);
+        const BuiltMesh m = meshOf(scene, coarse << i);
         ASSERT_TRUE(m.mesh.ok());
         expectClosed(*m.mesh, "closed form");
         const MeshFigures f = measure(*m.mesh);
@@ -63,9 +63,9 @@ TEST(Polygonize, WhatIsFarFromTheSurfaceIsDroppedAndNothingShows) {
         const field::Owned holes[] = {{hole, 100}, {slab, 101}};
         s.field = field::difference({s.field, 0}, {field::sum(s.graph, holes), 0});
         if (key % 2 == 1) s.field.value = s.field.value * 3.0f, s.field.lipschitz = 3;
-        const Meshed known = meshOf(s, 40);
+        const BuiltMesh known = meshOf(s, 40);
         s.field.lipschitz = std::numeric_limits<float>::infinity();
-        const Meshed unknown = meshOf(s, 40);
+        const BuiltMesh unknown = meshOf(s, 40);
         ASSERT_TRUE(known.mesh.ok() && unknown.mesh.ok());
         EXPECT_EQ(bytesOf(*known.mesh), bytesOf(*unknown.mesh)) << key;
         size_t length[2] = {};
@@ -88,7 +88,7 @@ TEST(Polygonize, BoxIsExactUpToItsBevelledEdges) {
     s.field = box(s.graph, {0, 0, 0}, {1, 0.7f, 0.4f});
     double error[2];
     for (int i = 0; i < 2; ++i) {
-        const Meshed m = meshOf(s, 50 << i);
+        const BuiltMesh m = meshOf(s, 50 << i);
         expectClosed(*m.mesh, "box");
         error[i] = 8 * 0.7 * 0.4 - measure(*m.mesh).volume_m3;
     }
@@ -99,7 +99,7 @@ TEST(Polygonize, BoxIsExactUpToItsBevelledEdges) {
 
 TEST(Polygonize, VerticesLieOnTheSurfaceAndInsideTheirEdges) {
     const Scene s = ballScene();
-    const Meshed m = meshOf(s, 70);
+    const BuiltMesh m = meshOf(s, 70);
     for (const Chunk& c : m.mesh.value().chunks)
         for (size_t i = 0; i < c.positions.size(); ++i) {
             const Vec3f p = c.positions[i];
@@ -120,13 +120,13 @@ TEST(Polygonize, VerticesLieOnTheSurfaceAndInsideTheirEdges) {
 TEST(Polygonize, RefinementBeatsTheLineBetweenSamples) {
     // A cubed distance is far from straight along an edge.
     Scene s;
-    const field::Num d = field::length(s.graph.position()) - 1.0f;
+    const field::NodeRef d = field::length(s.graph.position()) - 1.0f;
     s.field = {d * square(d + 0.5f) * 3.0f, {{-1, -1, -1}, {1, 1, 1}}, 40, 0};
     double worst[2] = {0, 0};
     for (int i = 0; i < 2; ++i) {
         PolygonizeOptions options;
         options.refineSteps = i ? 3 : 0;
-        const Meshed m = meshOf(s, 24, 1, options);
+        const BuiltMesh m = meshOf(s, 24, 1, options);
         EXPECT_EQ(m.counts.refinementEvaluations > 0, i == 1);
         for (const Chunk& c : m.mesh.value().chunks)
             for (const Vec3f& p : c.positions)
@@ -141,10 +141,10 @@ TEST(Polygonize, WithoutRefinementAVertexLiesWhereThePaperPutsIt) {
     Scene s;
     const auto vertexOn = [&](float inside, float outside, float from) {
         // Along x the field is `inside` at `from` and `outside` a cell further, with a bend between that must not show.
-        const field::Num t = s.graph.x() - from;
-        const field::Num f = t * (outside - inside) + inside + t * (t - 1.0f);
+        const field::NodeRef t = s.graph.x() - from;
+        const field::NodeRef f = t * (outside - inside) + inside + t * (t - 1.0f);
         s.field = {max(max(f, abs(s.graph.y()) - 1.5f), max(abs(s.graph.z()) - 1.5f, -1.0f - t)), {}, 8, 0};
-        const Meshed m = meshOf(s.tape(), {{-4, -4, -4}, 1, {8, 8, 8}}, 1, {.refineSteps = 0});
+        const BuiltMesh m = meshOf(s.tape(), {{-4, -4, -4}, 1, {8, 8, 8}}, 1, {.refineSteps = 0});
         float x = std::numeric_limits<float>::quiet_NaN();
         for (const Chunk& c : m.mesh.value().chunks)
             for (const Vec3f& p : c.positions)
@@ -159,7 +159,7 @@ TEST(Polygonize, WithoutRefinementAVertexLiesWhereThePaperPutsIt) {
 TEST(Polygonize, NormalsOfAFieldWithoutDerivativeComeFromTheFaces) {
     Scene s;
     s.field = {floor(field::length(s.graph.position())) - 0.5f, {{-1, -1, -1}, {1, 1, 1}}, 100, 0};
-    const Meshed m = meshOf(s, 64);
+    const BuiltMesh m = meshOf(s, 64);
     ASSERT_GT(m.mesh.value().triangleCount(), 1000u);
     for (const Chunk& c : m.mesh->chunks)
         for (size_t i = 0; i < c.normals.size(); ++i) {
@@ -197,24 +197,24 @@ TEST(Polygonize, LayerByLayerTheChunksAreTheSame) {
 TEST(Polygonize, ABareMeshIsTheShapeOfAFullOne) {
     Scene steps;  // without derivative
     steps.field = {floor(field::length(steps.graph.position())) - 0.5f, {{-1, -1, -1}, {1, 1, 1}}, 100, 0};
-    const Scene one = ballScene();  // one tape and one owner
-    const Scene dear = fractal();   // refined by values
+    const Scene one = ballScene();      // one tape and one owner
+    const Scene expensive = fractal();  // refined by values
     const Scene cloud = cloudScene(60, 0.12f, 5);
-    for (const Scene* s : std::initializer_list<const Scene*>{&steps, &one, &dear, &cloud})
+    for (const Scene* s : std::initializer_list<const Scene*>{&steps, &one, &expensive, &cloud})
         for (const int refineSteps : {0, 1, 3}) {
             Mesh full = *meshOf(*s, 90, 2, {.refineSteps = refineSteps}).mesh;
-            const Mesh bare = *meshOf(*s, 90, 2, {.refineSteps = refineSteps, .bare = true}).mesh;
-            EXPECT_TRUE(bare.isBare());
-            EXPECT_FALSE(full.isBare());
-            EXPECT_GT(bare.triangleCount(), 1000u);
+            const Mesh positionsOnly = *meshOf(*s, 90, 2, {.refineSteps = refineSteps, .positionsOnly = true}).mesh;
+            EXPECT_TRUE(positionsOnly.hasPositionsOnly());
+            EXPECT_FALSE(full.hasPositionsOnly());
+            EXPECT_GT(positionsOnly.triangleCount(), 1000u);
             for (Chunk& c : full.chunks) c.normals.clear(), c.origins.clear();
-            EXPECT_EQ(bytesOf(bare), bytesOf(full)) << refineSteps;
-            for (const Chunk& c : bare.chunks) EXPECT_TRUE(c.faceted.empty());
+            EXPECT_EQ(bytesOf(positionsOnly), bytesOf(full)) << refineSteps;
+            for (const Chunk& c : positionsOnly.chunks) EXPECT_TRUE(c.faceted.empty());
         }
 }
 
 TEST(Polygonize, CountsStayBelowTwentySamplesASurfaceCell) {
-    const Meshed m = meshOf(cloudScene(60, 0.12f, 5), 200);
+    const BuiltMesh m = meshOf(cloudScene(60, 0.12f, 5), 200);
     ASSERT_TRUE(m.mesh.ok());
     EXPECT_LT(double(m.counts.pointEvaluations), 20.0 * double(m.counts.surfaceCells));
     EXPECT_GT(m.counts.intervalEvaluations, 64u);
@@ -229,7 +229,7 @@ TEST(Polygonize, SameBytesAtAnyThreadCount) {
 }
 
 TEST(Polygonize, BlocksMeetWithoutCracks) {
-    const Meshed m = meshOf(cloudScene(40, 0.2f, 11), 150);
+    const BuiltMesh m = meshOf(cloudScene(40, 0.2f, 11), 150);
     ASSERT_TRUE(m.mesh.ok());
     EXPECT_GT(m.mesh->chunks.size(), 30u);
     expectClosed(*m.mesh, "cloud");
@@ -241,7 +241,7 @@ TEST(Polygonize, BlocksMeetWithoutCracks) {
 /// Sums of waves far finer than the cells: in effect a random sign at each corner.
 Scene noiseScene(uint64_t key, double finest) {
     Scene s;
-    field::Num f = s.graph.literal(static_cast<float>(uniform(combine(key, 99), -0.5, 0.5)));
+    field::NodeRef f = s.graph.literal(static_cast<float>(uniform(combine(key, 99), -0.5, 0.5)));
     for (uint64_t wave = 0; wave < 3; ++wave) {
         const auto draw = [&](uint64_t i) {
             return static_cast<float>(uniform(combine(combine(key, wave), i), -finest, finest));
@@ -289,7 +289,7 @@ Scene solidScene(uint64_t key) {
 TEST(Polygonize, TenThousandRandomFieldsAreClosedAndManifold) {
     uint64_t meshes = 0;
     for (uint64_t i = 0; i < 10000; ++i) {
-        Meshed m;
+        BuiltMesh m;
         if (i % 2 == 0) {
             const Scene s = noiseScene(i, i % 4 == 0 ? 300 : 20);
             // The field doesn't keep to its box here: the grid's border has to close it.
@@ -306,7 +306,7 @@ TEST(Polygonize, TenThousandRandomFieldsAreClosedAndManifold) {
 
 TEST(Polygonize, RandomSignsAcrossBlocksAreClosed) {
     for (uint64_t i = 0; i < 4; ++i) {
-        const Meshed m = meshOf(noiseScene(i, 400).tape(), {{-1, -1, -1}, 0.05f, {40, 37, 41}}, 2);
+        const BuiltMesh m = meshOf(noiseScene(i, 400).tape(), {{-1, -1, -1}, 0.05f, {40, 37, 41}}, 2);
         ASSERT_TRUE(m.mesh.ok());
         EXPECT_GT(m.mesh->triangleCount(), 20000u);
         expectClosed(*m.mesh, "noise", i);
@@ -316,7 +316,7 @@ TEST(Polygonize, RandomSignsAcrossBlocksAreClosed) {
 TEST(Polygonize, FlatFacesOnSamplesLeaveNoDegenerateTriangles) {
     Scene s;
     s.field = box(s.graph, {0, 0, 0}, {1, 1, 1});
-    const Meshed m = meshOf(s.tape(), {{-2, -2, -2}, 0.25f, {16, 16, 16}}, 1);
+    const BuiltMesh m = meshOf(s.tape(), {{-2, -2, -2}, 0.25f, {16, 16, 16}}, 1);
     ASSERT_TRUE(m.mesh.ok());
     expectClosed(*m.mesh, "box on samples");
     // Only bevels are missing: of one cell at 12 edges, each 2 m long.
@@ -324,28 +324,12 @@ TEST(Polygonize, FlatFacesOnSamplesLeaveNoDegenerateTriangles) {
     EXPECT_GT(measure(*m.mesh).volume_m3, 8 - 12 * 2 * 0.25 * 0.25 / 2);
 }
 
-TEST(Polygonize, BoundsNeverPassThroughSamples) {
-    for (const int resolution : {7, 32, 64, 100, 333})
-        for (const float size : {0.1f, 1.0f, 3.0f, 77.7f}) {
-            const Box3f bounds{{-size, 0, -0.31f * size}, {size, size, 0.5f * size}};
-            const Grid g = gridFor(bounds, cellFor(bounds, resolution));
-            EXPECT_EQ(g.cells.x, resolution + 3);
-            for (int axis = 0; axis < 3; ++axis)
-                for (const float side : {bounds.lo[axis], bounds.hi[axis]}) {
-                    const double at = (double(side) - g.origin[axis]) / g.cell_m;
-                    EXPECT_GT(std::abs(at - std::round(at)), 0.2);
-                    EXPECT_GT(at, 1);
-                    EXPECT_LT(at, g.cells[axis] - 1);
-                }
-        }
-}
-
 TEST(Polygonize, EveryTriangleKnowsItsOwner) {
     // Two balls side by side: each triangle away from the seam belongs to the nearer one.
     Scene s;
     const field::Owned parts[] = {{ball(s.graph, {-0.6f, 0, 0}, 1), 7}, {ball(s.graph, {0.6f, 0, 0}, 1), 3}};
     s.field = field::sum(s.graph, parts);
-    const Meshed m = meshOf(s, 80);
+    const BuiltMesh m = meshOf(s, 80);
     std::set<OriginId> seen;
     std::vector<Vec3f> at;
     for (const Chunk& c : m.mesh.value().chunks) at.insert(at.end(), c.positions.begin(), c.positions.end());
@@ -366,30 +350,6 @@ TEST(Polygonize, EmptyFieldsGiveEmptyMeshes) {
     s.field = field::nothing(s.graph);
     EXPECT_EQ(meshOf(s, 64).mesh.value().triangleCount(), 0u);
     EXPECT_EQ(meshOf(s.tape(), {{0, 0, 0}, 1, {64, 64, 64}}).mesh.value().triangleCount(), 0u);
-}
-
-TEST(Polygonize, BudgetsAndImpossibleGridsAreErrors) {
-    PolygonizeOptions options;
-    options.memoryBudget_bytes = 1 << 20;
-    const Meshed m = meshOf(ballScene(), 128, 2, options);
-    ASSERT_FALSE(m.mesh.ok());
-    EXPECT_EQ(m.mesh.error().kind, Error::Kind::Budget);
-    const eval::Tape tape = ballScene().tape();
-    EXPECT_EQ(meshOf(tape, {{1e6f, 0, 0}, 0.01f, {8, 8, 8}}).mesh.error().kind, Error::Kind::Input);
-    EXPECT_EQ(meshOf(tape, {{0, 0, 0}, 0, {8, 8, 8}}).mesh.error().kind, Error::Kind::Input);
-    EXPECT_EQ(meshOf(tape, gridFor({{-1, -1, -1}, {1, 1, 1}}, 1e-6f)).mesh.error().kind, Error::Kind::Budget);
-    // Boxes without end or sense, and what cellFor makes of them.
-    constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-    for (const Box3f& box : {Box3f{{-inf, -inf, -inf}, {inf, 0, inf}}, Box3f{{inf, 0, 0}, {inf, 1, 1}},
-                             Box3f{{nan, 0, 0}, {1, 1, 1}}, Box3f{{0, 0, 0}, {1, nan, 1}}})
-        for (const float cell : {0.1f, cellFor(box, 64), inf, nan, -1.0f})
-            EXPECT_EQ(meshOf(tape, gridFor(box, cell)).mesh.error().kind, Error::Kind::Input);
-}
-
-TEST(Polygonize, FlatBoxesHaveAGrid) {
-    const Grid g = gridFor({{1, 2, 3}, {1, 2, 3}}, cellFor({{1, 2, 3}, {1, 2, 3}}, 64));
-    EXPECT_EQ(g.cells, (Vec3i{3, 3, 3}));
-    EXPECT_EQ(meshOf(ballScene().tape(), g).mesh.value().triangleCount(), 0u);
 }
 
 TEST(Polygonize, StopsWithinFiftyMilliseconds) {

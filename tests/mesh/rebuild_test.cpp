@@ -32,7 +32,7 @@ void expectSame(Rebuild& rebuild, const Scene& scene, const Grid& on) {
     Counts counts;
     const auto mesh = rebuild.update(scene.tape(), on, nullptr, counts);
     ASSERT_TRUE(mesh.ok());
-    const Meshed whole = meshOf(scene.tape(), on);
+    const BuiltMesh whole = meshOf(scene.tape(), on);
     ASSERT_TRUE(whole.mesh.ok());
     EXPECT_EQ(bytesOf(**mesh), bytesOf(*whole.mesh));
 }

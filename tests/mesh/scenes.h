@@ -29,25 +29,25 @@ inline field::Field ball(field::Graph& g, Vec3f centre, float radius) {
 
 inline field::Field box(field::Graph& g, Vec3f centre, Vec3f half) {
     const field::Point p = shifted(g, centre);
-    const field::Num qx = abs(p.x) - half.x, qy = abs(p.y) - half.y, qz = abs(p.z) - half.z;
+    const field::NodeRef qx = abs(p.x) - half.x, qy = abs(p.y) - half.y, qz = abs(p.z) - half.z;
     return {max(qx, max(qy, qz)), {centre - half, centre + half}, 1, 0.5f};
 }
 
 inline field::Field torus(field::Graph& g, float ring, float tube) {
-    const field::Num around = sqrt(square(g.x()) + square(g.z())) - ring;
+    const field::NodeRef around = sqrt(square(g.x()) + square(g.z())) - ring;
     const float reach = ring + tube;
     return {sqrt(square(around) + square(g.y())) - tube, {{-reach, -tube, -reach}, {reach, tube, reach}}, 1, 1};
 }
 
 /// Everything between a tape and its mesh.
-struct Meshed {
+struct BuiltMesh {
     Result<Mesh> mesh = Mesh{};
     Grid grid;
     Counts counts;
 };
 
-inline Meshed meshOf(const eval::Tape& tape, const Grid& grid, int threads = 2, PolygonizeOptions options = {}) {
-    Meshed result;
+inline BuiltMesh meshOf(const eval::Tape& tape, const Grid& grid, int threads = 2, PolygonizeOptions options = {}) {
+    BuiltMesh result;
     result.grid = grid;
     options.threads = threads;
     auto blocks = subdivide(tape, grid, threads, nullptr, result.counts);
@@ -56,7 +56,7 @@ inline Meshed meshOf(const eval::Tape& tape, const Grid& grid, int threads = 2, 
     return result;
 }
 
-inline Meshed meshOf(const Scene& scene, int resolution, int threads = 2, PolygonizeOptions options = {}) {
+inline BuiltMesh meshOf(const Scene& scene, int resolution, int threads = 2, PolygonizeOptions options = {}) {
     return meshOf(scene.tape(), gridFor(scene.field.bounds, cellFor(scene.field.bounds, resolution)), threads, options);
 }
 
@@ -81,7 +81,7 @@ inline Scene cloudScene(int count, float radius, uint64_t key) {
     return s;
 }
 
-/// The benchmark's fractal of six folds: its values are dear, and the surface is near to everything.
+/// The benchmark's fractal of six folds: its values are expensive, and the surface is near to everything.
 inline Scene fractal() {
     using field::ops::Kifs;
     Scene s;
@@ -90,7 +90,7 @@ inline Scene fractal() {
                              1,    0,    0,    0,    1,      0, 0,     0, 1, 4, 1,    1, 1};
     std::vector<field::Operand> operands{{s.graph.x().id(), 0}, {s.graph.y().id(), 0}, {s.graph.z().id(), 0}};
     for (const float n : numbers) operands.push_back({s.graph.slot(n).id(), 0});
-    const field::Num value =
+    const field::NodeRef value =
         s.graph.apply(field::codeOf<Kifs>, operands, Kifs::pack({.passes = 6, .folds = true, .turns = false}));
     s.field = {max(value, box(s.graph, {}, {1, 1, 1}).value), {{-1, -1, -1}, {1, 1, 1}}, 1, 1};
     return s;

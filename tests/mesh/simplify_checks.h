@@ -23,7 +23,7 @@ inline void expectSound(const Mesh& before, const Mesh& after, double volume = 1
     EXPECT_EQ(is.euler, was.euler);
     EXPECT_EQ(is.components, was.components);
     EXPECT_NEAR(is.volume_m3 / was.volume_m3, 1, volume);
-    const auto judged = judge(after);
+    const auto judged = validate(after);
     ASSERT_TRUE(judged.ok());
     EXPECT_TRUE(judged->closed);
     EXPECT_FALSE(judged->selfIntersects);

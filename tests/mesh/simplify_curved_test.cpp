@@ -113,7 +113,7 @@ TEST(SimplifyCurved, MeshesWithoutLabelsAreDecimatedPartByPart) {
     expectSound(cloud, simple, 0.05);
     expectWithin(joined(cloud), simple, 0.004);
     EXPECT_LT(3 * simple.triangleCount(), cloud.triangleCount());
-    EXPECT_FALSE(simple.isBare());
+    EXPECT_FALSE(simple.hasPositionsOnly());
     EXPECT_TRUE(simple.chunks[0].labels.empty());
 }
 

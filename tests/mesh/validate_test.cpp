@@ -90,8 +90,8 @@ TEST(Judge, AcceptsACloudWithHolesAndSeams) {
     // Cut, blended and unresolved: every ambiguous case turns up.
     Scene s = cloudScene(60, 0.12f, 21);
     s.field = field::difference({s.field, 0}, {ball(s.graph, {0.5f, 0.5f, 0.5f}, 0.35f), 99});
-    const Meshed m = meshOf(s, 60);
-    const auto judged = judge(*m.mesh);
+    const BuiltMesh m = meshOf(s, 60);
+    const auto judged = validate(*m.mesh);
     ASSERT_TRUE(judged.ok());
     EXPECT_TRUE(judged->closed);
     EXPECT_TRUE(judged->outward);
@@ -102,23 +102,23 @@ TEST(Judge, AcceptsACloudWithHolesAndSeams) {
 TEST(Judge, NoiseNeverCrossesItself) {
     Scene s;
     const field::Point p = s.graph.position();
-    const field::Num f =
+    const field::NodeRef f =
         sin(p.x * 71.0f + p.y * 13.0f) + sin(p.y * 83.0f + p.z * 29.0f) + sin(p.z * 97.0f + p.x * 31.0f);
-    const Meshed m = meshOf(eval::compile(s.graph, {f, {{-1, -1, -1}, {1, 1, 1}}, 300, 0}, s.graph.constants()),
-                            {{-1, -1, -1}, 0.1f, {20, 20, 20}});
+    const BuiltMesh m = meshOf(eval::compile(s.graph, {f, {{-1, -1, -1}, {1, 1, 1}}, 300, 0}, s.graph.constants()),
+                               {{-1, -1, -1}, 0.1f, {20, 20, 20}});
     ASSERT_GT(m.mesh->triangleCount(), 5000u);
-    const auto judged = judge(*m.mesh);
+    const auto judged = validate(*m.mesh);
     ASSERT_TRUE(judged.ok());
     EXPECT_TRUE(judged->closed);
     EXPECT_FALSE(judged->selfIntersects);
 }
 
 TEST(Judge, SeesCrossingTetrahedra) {
-    const auto apart = judge(tetrahedra({{0, 0, 0}, {2, 0, 0}}));
+    const auto apart = validate(tetrahedra({{0, 0, 0}, {2, 0, 0}}));
     ASSERT_TRUE(apart.ok());
     EXPECT_FALSE(apart->selfIntersects);
     EXPECT_TRUE(apart->outward);
-    const auto crossing = judge(tetrahedra({{0, 0, 0}, {0.2f, 0.2f, 0.2f}}));
+    const auto crossing = validate(tetrahedra({{0, 0, 0}, {0.2f, 0.2f, 0.2f}}));
     ASSERT_TRUE(crossing.ok());
     EXPECT_TRUE(crossing->selfIntersects);
     EXPECT_TRUE(crossing->closed);
@@ -127,21 +127,21 @@ TEST(Judge, SeesCrossingTetrahedra) {
 TEST(Judge, SeesInsideOutAndOpenMeshes) {
     Mesh inverted = tetrahedra({{0, 0, 0}});
     for (Triangle& t : inverted.chunks[0].triangles) std::swap(t.y, t.z);
-    EXPECT_TRUE(judge(inverted)->closed);
-    EXPECT_FALSE(judge(inverted)->outward);
-    EXPECT_LT(judge(inverted)->volume_m3, 0);
+    EXPECT_TRUE(validate(inverted)->closed);
+    EXPECT_FALSE(validate(inverted)->outward);
+    EXPECT_LT(validate(inverted)->volume_m3, 0);
     Mesh open = tetrahedra({{0, 0, 0}});
     open.chunks[0].triangles.pop_back();
-    EXPECT_FALSE(judge(open)->closed);
+    EXPECT_FALSE(validate(open)->closed);
 }
 
 TEST(Judge, RefusesMeshesThatAreNone) {
     Mesh dangling = tetrahedra({{0, 0, 0}});
     dangling.chunks[0].triangles[0].x = 17;
-    EXPECT_EQ(judge(dangling).error().kind, Error::Kind::Input);
+    EXPECT_EQ(validate(dangling).error().kind, Error::Kind::Input);
     Mesh nan = tetrahedra({{0, 0, 0}});
     nan.chunks[0].positions[0].x = NAN;
-    EXPECT_FALSE(judge(nan).ok());
+    EXPECT_FALSE(validate(nan).ok());
 }
 
 }  // namespace

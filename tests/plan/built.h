@@ -40,7 +40,7 @@ inline std::unique_ptr<Built> built(Footprint f) { return std::make_unique<Built
 
 /// The crisp mesh, simplified; closed, or the test fails. `judged`: also by CGAL.
 inline mesh::Mesh crispMesh(const mesh::Scene& scene, int resolution, bool judged = true) {
-    const mesh::Meshed m = mesh::meshOf(scene, resolution, 2, {.surface = mesh::Surface::Crisp});
+    const mesh::BuiltMesh m = mesh::meshOf(scene, resolution, 2, {.surface = mesh::Surface::Crisp});
     EXPECT_TRUE(m.mesh.ok());
     if (!m.mesh.ok()) return {};
     auto simple =
@@ -51,7 +51,7 @@ inline mesh::Mesh crispMesh(const mesh::Scene& scene, int resolution, bool judge
     EXPECT_EQ(f.boundaryEdges, 0u);
     EXPECT_EQ(f.nonmanifoldEdges, 0u);
     if (judged) {
-        const auto word = mesh::judge(*simple);
+        const auto word = mesh::validate(*simple);
         EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects);
     }
     return *simple;

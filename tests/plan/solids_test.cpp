@@ -242,7 +242,7 @@ TEST(Solids, NoRoofOverRandomPlansFails) {
             b->field() = make(*b);
             ASSERT_TRUE(b->field().bounds.finite());
             field::test::expectPromises(b->scene.graph, b->field(), b->field().bounds.as<double>(), key, name);
-            const mesh::Meshed m = mesh::meshOf(b->scene, 64, 2, {.surface = mesh::Surface::Crisp});
+            const mesh::BuiltMesh m = mesh::meshOf(b->scene, 64, 2, {.surface = mesh::Surface::Crisp});
             ASSERT_TRUE(m.mesh.ok());
             const mesh::MeshFigures figures = mesh::measure(*m.mesh);
             EXPECT_EQ(figures.boundaryEdges + figures.nonmanifoldEdges, 0u);
@@ -272,7 +272,7 @@ TEST(Solids, PlatesAndTheirCoreAreOneSolid) {
             add(plates.core);
             s.field = field::sum(s.graph, parts);
             for (const int at : {64, 100}) {
-                const mesh::Meshed m = mesh::meshOf(s, at, 2, {.surface = mesh::Surface::Crisp});
+                const mesh::BuiltMesh m = mesh::meshOf(s, at, 2, {.surface = mesh::Surface::Crisp});
                 ASSERT_TRUE(m.mesh.ok());
                 const mesh::MeshFigures figures = mesh::measure(*m.mesh);
                 EXPECT_EQ(figures.components, 1u) << at;

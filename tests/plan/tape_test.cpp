@@ -79,7 +79,7 @@ TEST(Tape, BricksOfRoundWallsKeepFewEdges) {
     const float half = 8 * 20 / 512.0f / 2;
     const Vec3f at{10 * std::cos(.7f), 0, 10 * std::sin(.7f)};
     const Box3f brick{at - Vec3f{half, half, half}, at + Vec3f{half, half, half}};
-    eval::Range range;
+    eval::FloatInterval range;
     eval::evaluateRanges(tape, {&brick, 1}, &range, w);
     EXPECT_LT(eval::shorten(tape, 0, w).code().size(), 300u);
 }
@@ -140,7 +140,7 @@ TEST(Tape, BrokenPlansAreErrorsOrClosedMeshes) {
         }
         const auto b = built(*sound);
         b->field() = field::hipRoof(b->plan, b->foot(), b->number(radians(40)));
-        const mesh::Meshed m =
+        const mesh::BuiltMesh m =
             mesh::meshOf(b->scene, 40, 1, {.surface = i % 2 ? mesh::Surface::Crisp : mesh::Surface::Cubes});
         if (!m.mesh.ok()) continue;
         const mesh::MeshFigures figures = mesh::measure(*m.mesh);

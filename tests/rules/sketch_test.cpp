@@ -236,7 +236,7 @@ TEST(Choices, GrowWhenTheirAlternativesDo) {
     EXPECT_EQ(c.grammar->rules[0].body.siblings[0][0].choices.at(0).weight.value.num(), 2);
 }
 
-TEST(Looks, OfParametersStayOpen) {
+TEST(Attributes, OfParametersStayOpen) {
     const Checked c = checkedBody("param paint = #804020\nterminal wall color paint rough .3\nstart A -> wall\n");
     ASSERT_TRUE(c.grammar) << c.messages();
     const Symbol& wall = c.grammar->symbols.at(0);

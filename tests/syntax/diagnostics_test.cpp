@@ -1,4 +1,4 @@
-// The parser on bad input: exactly what a person sees, problem by problem.
+// The parser on bad input: exactly what the user sees, problem by problem.
 #include <gtest/gtest.h>
 
 #include "grammar/operations/operations.h"

@@ -1,4 +1,4 @@
-// Reading files and rendering problems, for the tests of the syntax room.
+// Reading files and rendering problems, for the tests of the syntax module.
 #pragma once
 
 #include <fstream>
@@ -18,7 +18,7 @@ inline SourcePtr readSource(const std::string& path) {
     return makeSource({std::istreambuf_iterator<char>(file), {}}, path);
 }
 
-/// Every problem as a person sees it.
+/// Every problem as the user sees it.
 inline std::string renderAll(const Diagnostics& diagnostics) {
     std::string out;
     for (const Diagnostic& d : diagnostics.all()) out += render(d);

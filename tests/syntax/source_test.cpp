@@ -55,7 +55,7 @@ TEST(Source, CaretsStayInTheirLine) {
 TEST(Source, JsonIsSortedByPlaceAndAlwaysUtf8) {
     const Source source("a.sgm", "one\ntwo \xff");
     Diagnostics diagnostics;
-    diagnostics.warning({&source, 4, 7}, "later \xff", "mend");
+    diagnostics.warning({&source, 4, 7}, "later \xff", "hint");
     diagnostics.error({&source, 0, 3}, "first");
     EXPECT_TRUE(diagnostics.hasErrors());
     const nlohmann::json list = nlohmann::json::parse(toJson(diagnostics));
@@ -66,7 +66,7 @@ TEST(Source, JsonIsSortedByPlaceAndAlwaysUtf8) {
     EXPECT_EQ(list[1]["file"], "a.sgm");
     EXPECT_EQ(list[1]["line"], 2);
     EXPECT_EQ(list[1]["column"], 1);
-    EXPECT_EQ(list[1]["mend"], "mend");
+    EXPECT_EQ(list[1]["hint"], "hint");
     EXPECT_EQ(toJson(Diagnostics()), "[]");
 }
 

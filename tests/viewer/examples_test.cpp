@@ -6,13 +6,13 @@
 #include <cmath>
 #include <filesystem>
 
+#include "grammar/pipeline/files.h"
+#include "grammar/pipeline/model.h"
 #include "grammar/rules/check.h"
 #include "modeler/core/random.h"
 #include "modeler/eval/evaluate.h"
 #include "tests/viewer/gpu_fixture.h"
 #include "viewer/document/document.h"
-#include "viewer/document/files.h"
-#include "viewer/document/model.h"
 #include "viewer/offscreen.h"
 
 namespace sgm::viewer::test {
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 struct Example {
     std::string name;
-    Model model;
+    pipeline::Model model;
 };
 
 /// All starts of all examples.
@@ -36,15 +36,16 @@ std::vector<Example> everyExample() {
         const Result<Document> document = Document::open(file);
         EXPECT_TRUE(document.ok()) << file;
         syntax::Diagnostics diagnostics = document->syntaxProblems();
-        const auto grammar = rules::check(*document->ast(), fileLoader(), diagnostics);
+        const auto grammar = rules::check(*document->ast(), pipeline::fileLoader(), diagnostics);
         EXPECT_TRUE(grammar) << file;
         for (const rules::Start& start : grammar->starts) {
             const std::string& symbol = grammar->symbols[start.symbol].name;
-            ModelChoice choice;
+            pipeline::ModelChoice choice;
             choice.start = symbol;
-            const auto options = optionsFor(*grammar, choice);
-            Stages stages;
-            auto model = options.ok() ? makeModel(grammar, *options, stages, nullptr) : Result<Model>(options.error());
+            const auto options = pipeline::optionsFor(*grammar, choice);
+            pipeline::Context context;
+            auto model = options.ok() ? pipeline::makeModel(grammar, *options, context)
+                                      : Result<pipeline::Model>(options.error());
             EXPECT_TRUE(model.ok()) << file << " " << symbol;
             if (model.ok()) examples.push_back({fmt::format("{} {}", file.string(), symbol), std::move(*model)});
         }

@@ -70,7 +70,7 @@ TEST_F(Parts, CellsKnowTheFieldExactly) {
                 case CellState::Near: {
                     const eval::Tape& local = tree->tapes[CellTree::indexOf(word)];
                     EXPECT_EQ(valueOf(local, p), value);
-                    const eval::Range range = tree->ranges[CellTree::indexOf(word)];
+                    const eval::FloatInterval range = tree->ranges[CellTree::indexOf(word)];
                     EXPECT_TRUE(range.lo <= value && value <= range.hi);
                     ++near;
                     shorter += local.size() * 4 < tape.size() ? 1 : 0;

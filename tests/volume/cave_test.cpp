@@ -15,8 +15,8 @@ using field::Field;
 using field::Graph;
 
 Field box(Graph& g, Vec3f centre, Vec3f half) {
-    const field::Num qx = abs(g.x() - centre.x) - half.x, qy = abs(g.y() - centre.y) - half.y,
-                     qz = abs(g.z() - centre.z) - half.z;
+    const field::NodeRef qx = abs(g.x() - centre.x) - half.x, qy = abs(g.y() - centre.y) - half.y,
+                         qz = abs(g.z() - centre.z) - half.z;
     return {max(qx, max(qy, qz)), {centre - half, centre + half}, 1, 0.5f};
 }
 
@@ -150,7 +150,8 @@ TEST(CaveReport, SlopesAreSortedByTheirAngle) {
     Dig dig({{{0, 0, 0}, {4, 3, 2}}}, 0.12f);
     Graph& g = dig.graph;
     const double a = radians(20.0);
-    const field::Num under = (g.y() + 1.0f) * static_cast<float>(std::cos(a)) - g.x() * static_cast<float>(std::sin(a));
+    const field::NodeRef under =
+        (g.y() + 1.0f) * static_cast<float>(std::cos(a)) - g.x() * static_cast<float>(std::sin(a));
     const Field ramp{max(under, max(abs(g.x()) - 4.0f, max(abs(g.z()) - 2.0f, abs(g.y()) - 3.0f))),
                      {{-4, -3, -2}, {4, 3, 2}},
                      1,

@@ -10,10 +10,10 @@
 namespace sgm::volume {
 namespace {
 
-/// A ball that stands, with a hollow in it; a smaller one that hangs above, a crumb, and a third on the ground.
+/// A ball that stands, with a hollow in it; a smaller one that hangs above, debris, and a third on the ground.
 struct Four {
     KnownSolid solid;
-    field::Num stands, hollow, hangs, crumb, third;
+    field::NodeRef stands, hollow, hangs, crumb, third;
     Four() {
         field::Graph& g = *solid.graph;
         stands = ball(g, {0, 0, 0}, 1), hollow = ball(g, {0.1f, 0, 0}, 0.4f), hangs = ball(g, {0, 1.8f, 0.1f}, 0.5f);
@@ -79,7 +79,7 @@ TEST(Keep, WaysAcrossLeavesAreFound) {
     KnownSolid solid;
     field::Graph& g = *solid.graph;
     const auto rod = [&](Vec3f from, Vec3f to) {
-        const auto across = [&](field::Num v, float a, float b) {
+        const auto across = [&](field::NodeRef v, float a, float b) {
             return abs(v - (a + b) / 2) - (std::abs(b - a) / 2 + 0.07f);
         };
         return max(max(across(g.x(), from.x, to.x), across(g.y(), from.y, to.y)), across(g.z(), from.z, to.z));

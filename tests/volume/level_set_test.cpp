@@ -172,7 +172,7 @@ TEST(Sample, RefusesAGridThatIsNone) {
 TEST(Sample, StopsWithinABatchOfBlocks) {
     // One batch, on one thread, of a field that takes far longer than the wait for the answer.
     field::Graph graph;
-    field::Num f = length(graph.position()) - 1.0f;
+    field::NodeRef f = length(graph.position()) - 1.0f;
     for (int i = 1; i < 4000; ++i) f = f + sin(graph.x() * static_cast<float>(i)) * 1e-9f;
     const eval::Tape tape = eval::compile(graph, {f, {}, 1, 1}, graph.constants());
     const mesh::Grid grid = sphereGrid(1, 0.05f);

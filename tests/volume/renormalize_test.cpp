@@ -139,7 +139,7 @@ TEST(Renormalize, ADistanceStaysAsItIs) {
 TEST(Renormalize, CreasesKeepTheirPlaces) {
     KnownSolid box;
     field::Graph& g = *box.graph;
-    const field::Num x = abs(g.x() - 0.013f), y = abs(g.y() + 0.021f), z = abs(g.z() - 0.008f);
+    const field::NodeRef x = abs(g.x() - 0.013f), y = abs(g.y() + 0.021f), z = abs(g.z() - 0.008f);
     box.field.value = max(max(x - 0.5f, y - 0.4f), z - 0.3f);
     box.field.bounds = {{-0.6f, -0.5f, -0.4f}, {0.6f, 0.5f, 0.4f}};
     const Volume raw = *levelSetOf(box, 0.02f), exact = renormalized(raw);

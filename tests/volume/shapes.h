@@ -16,7 +16,7 @@ struct KnownSolid {
     eval::Tape tape() const { return eval::compile(*graph, field, graph->constants()); }
 };
 
-inline field::Num ball(field::Graph& g, Vec3f c, float radius) {
+inline field::NodeRef ball(field::Graph& g, Vec3f c, float radius) {
     return length(field::Point{g.x() - c.x, g.y() - c.y, g.z() - c.z}) - radius;
 }
 
@@ -45,8 +45,8 @@ inline KnownSolid twoBalls(float r, float d) {
 inline KnownSolid torus(float ring, float tube) {
     KnownSolid s;
     field::Graph& g = *s.graph;
-    const field::Num x = g.x() - somewhere.x, y = g.y() - somewhere.y, z = g.z() - somewhere.z;
-    const field::Num across = sqrt(x * x + z * z) - ring;
+    const field::NodeRef x = g.x() - somewhere.x, y = g.y() - somewhere.y, z = g.z() - somewhere.z;
+    const field::NodeRef across = sqrt(x * x + z * z) - ring;
     s.field.value = sqrt(across * across + y * y) - tube;
     const Vec3f half{ring + tube, tube, ring + tube};
     s.field.bounds = {somewhere - half, somewhere + half};

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "grammar/operations/operations.h"
+#include "grammar/pipeline/files.h"
 #include "grammar/syntax/parser.h"
 #include "modeler/core/stopwatch.h"
-#include "viewer/document/files.h"
 
 namespace sgm::viewer {
 namespace fs = std::filesystem;
@@ -14,7 +14,7 @@ Document::Document(std::string text) : saved_(text) { setText(std::move(text)); 
 
 Result<Document> Document::open(const fs::path& path) {
     const auto stamp = stampOf(path);
-    const auto source = readSource(path);
+    const auto source = pipeline::readSource(path);
     if (!source.ok()) return source.error();
     Document document{std::string((*source)->text())};
     document.path_ = path;
@@ -140,7 +140,7 @@ void Document::redo() {
 }
 
 Status Document::write(const fs::path& path) {
-    if (const Status written = writeText(path, text_); !written.ok()) return written;
+    if (const Status written = pipeline::writeText(path, text_); !written.ok()) return written;
     saved_ = text_;
     stamp_ = stampOf(path);
     return Done{};
@@ -149,7 +149,7 @@ Status Document::write(const fs::path& path) {
 Status Document::save(bool overwrite) {
     if (path_.empty()) return Error{Error::Kind::Input, "the grammar has no file yet: save it under a name"};
     if (!overwrite && saved_ && stampOf(path_) != stamp_) {
-        const auto now = readSource(path_);
+        const auto now = pipeline::readSource(path_);
         if (now.ok() && (*now)->text() != *saved_)
             return Error{Error::Kind::Input,
                          fmt::format("'{}' was changed by another program: nothing was saved", path_.string())};
@@ -168,7 +168,7 @@ Document::Outside Document::poll() {
     if (path_.empty()) return Outside::Same;
     const auto stamp = stampOf(path_);
     if (stamp && stamp == stamp_) return Outside::Same;
-    const auto now = readSource(path_);
+    const auto now = pipeline::readSource(path_);
     if (!now.ok()) {
         if (!saved_) return Outside::Same;  // said once
         saved_.reset();
@@ -186,7 +186,7 @@ Document::Outside Document::poll() {
 
 Status Document::takeOutside() {
     const auto stamp = stampOf(path_);
-    const auto now = readSource(path_);
+    const auto now = pipeline::readSource(path_);
     if (!now.ok()) return now.error();
     endDrag();
     saved_ = (*now)->text();
@@ -196,7 +196,7 @@ Status Document::takeOutside() {
 
 Status Document::keepMine() {
     const auto stamp = stampOf(path_);
-    const auto now = readSource(path_);
+    const auto now = pipeline::readSource(path_);
     if (!now.ok()) return now.error();
     saved_ = (*now)->text();
     stamp_ = stamp;

@@ -2,57 +2,53 @@
 
 #include <fmt/format.h>
 
-#include "grammar/lower/solid_tree.h"
+#include "grammar/pipeline/products.h"
 #include "modeler/core/atomic_file.h"
 #include "modeler/core/guarded.h"
-#include "modeler/mesh/simplify.h"
-#include "modeler/volume/keep.h"
-#include "viewer/document/meshing.h"
 
 namespace sgm::viewer {
 namespace fs = std::filesystem;
 namespace {
 
-Status writeSolids(const Shown& shown, const ExportRequest& request, Progress& progress) {
-    const auto tree = lower::solidTree(shown.model.derivation, *shown.model.lowered, &progress);
+Status writeSolids(const BuiltModel& shown, const ExportRequest& request, pipeline::Context& context) {
+    const auto tree = pipeline::makeSolidTree(shown.model, context);
     if (!tree.ok()) return tree.error();
-    exporter::ExportInput input = exportInput(shown.model, shown.grammar->sources[0]->name());
+    exporter::ExportInput input = pipeline::exportInput(shown.model, shown.grammar->sources[0]->name());
     input.solids = &*tree;
     input.options = request.options;
-    input.progress = &progress;
+    input.progress = context.progress;
     return exporter::write(input, request.file);
 }
 
-Status write(const Shown& shown, const ExportRequest& request, const exporter::Exporter& format, Progress& progress) {
-    if (format.wantsSolids) return writeSolids(shown, request, progress);
-    const auto division = divide(shown.model, format.holdsObjects ? request.objects : "");
+Status write(const BuiltModel& shown, const ExportRequest& request, const exporter::Exporter& format,
+             Progress& progress) {
+    pipeline::Context context{&progress, request.threads};
+    if (format.wantsSolids) return writeSolids(shown, request, context);
+    auto division = pipeline::divide(shown.model, format.holdsObjects ? request.objects : "");
     if (!division.ok()) return division.error();
     const Box3f& bounds = shown.model.lowered->field.bounds;
     const float cell_m =
         request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
-    Stages stages;
-    const mesh::PolygonizeOptions options{.surface = mesh::Surface::Crisp,
-                                          .threads = request.threads,
-                                          .bare = exporter::takesBare(format, request.options)};
-    auto meshed = makeMesh(shown.model, mesh::gridFor(bounds, cell_m), options, stages, &progress);
+    mesh::PolygonizeOptions meshing{.surface = mesh::Surface::Crisp};
+    meshing.positionsOnly = exporter::takesPositionsOnly(format, request.options);
+    auto meshed = pipeline::makeMesh(shown.model, mesh::gridFor(bounds, cell_m), meshing, context);
     if (!meshed.ok()) return meshed.error();
-    mesh::keepOnly(meshed->mesh, request.keep, cell_m, request.threads);
-    if (meshed->mesh.triangleCount() == 0) return noSurface(shown.model, cell_m);
-    auto simple = mesh::simplify(meshed->mesh, {mesh::usualTolerance(cell_m), request.threads}, &progress);
-    if (!simple.ok()) return simple.error();
-    meshed->mesh = std::move(*simple);
-    exporter::ExportInput input = exportInput(shown.model, shown.grammar->sources[0]->name());
-    input.mesh = &meshed->mesh;
-    division->applyTo(input);
+    const pipeline::MeshEdits edits{.keep = request.keep};
+    mesh::keepOnly(meshed->mesh, edits.keep, cell_m, request.threads);
+    if (meshed->mesh.triangleCount() == 0) return pipeline::noSurface(shown.model, cell_m);
+    auto mesh = pipeline::edited(std::move(meshed->mesh), edits, meshing.surface, cell_m, context);
+    if (!mesh.ok()) return mesh.error();
+    pipeline::ProductRequest wanted;
+    wanted.division = std::move(*division);
+    wanted.levelSet = format.wantsVolume;
+    wanted.edits = edits;
+    wanted.meshing = meshing;
+    const auto products = pipeline::makeProducts(shown.model, *meshed, std::move(*mesh), std::move(wanted), context);
+    if (!products.ok()) return products.error();
+    exporter::ExportInput input = pipeline::exportInput(shown.model, shown.grammar->sources[0]->name());
+    products->applyTo(input);
     input.options = request.options;
     input.progress = &progress;
-    std::optional<volume::Volume> level;
-    if (format.wantsVolume) {
-        auto sampled = levelSet(shown.model, *meshed, request.threads, &progress);
-        if (!sampled.ok()) return sampled.error();
-        if (const Status s = volume::keepOnly(*sampled, request.keep, cell_m, &progress); !s.ok()) return s;
-        input.volume = &level.emplace(std::move(*sampled));
-    }
     return exporter::write(input, request.file);
 }
 
@@ -83,7 +79,7 @@ ExportJob::~ExportJob() {
     if (thread_.joinable()) thread_.join();
 }
 
-Status ExportJob::start(std::shared_ptr<const Shown> shown, ExportRequest request, std::function<void()> wake) {
+Status ExportJob::start(std::shared_ptr<const BuiltModel> shown, ExportRequest request, std::function<void()> notify) {
     if (thread_.joinable()) return Error{Error::Kind::Input, "another export is under way"};
     if (!shown) return Error{Error::Kind::Input, "there is no model to export yet"};
     const exporter::Exporter* format = exporter::exporterFor(request.file);
@@ -106,11 +102,11 @@ Status ExportJob::start(std::shared_ptr<const Shown> shown, ExportRequest reques
     progress_ = std::make_shared<Progress>();
     done_ = false;
     file_ = request.file;
-    thread_ = std::thread([this, shown = std::move(shown), request = std::move(request), format, wake = std::move(wake),
-                           progress = progress_] {
+    thread_ = std::thread([this, shown = std::move(shown), request = std::move(request), format,
+                           notify = std::move(notify), progress = progress_] {
         outcome_ = guarded([&] { return write(*shown, request, *format, *progress); });
         done_ = true;
-        if (wake) wake();
+        if (notify) notify();
     });
     return Done{};
 }

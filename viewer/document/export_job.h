@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "modeler/export/exporter.h"
-#include "modeler/mesh/pieces.h"
+#include "modeler/mesh/connected_components.h"
 #include "viewer/document/session.h"
 
 namespace sgm::viewer {
@@ -47,8 +47,9 @@ public:
     ExportJob& operator=(const ExportJob&) = delete;
 
     /// Begins. Error::Usage at once for an ending or an option that no format takes, Error::Input for a missing folder,
-    /// for a file that is an input, and while another export runs. `wake` is called from the thread at its end.
-    Status start(std::shared_ptr<const Shown> shown, ExportRequest request, std::function<void()> wake = nullptr);
+    /// for a file that is an input, and while another export runs. `notify` is called from the thread at its end.
+    Status start(std::shared_ptr<const BuiltModel> shown, ExportRequest request,
+                 std::function<void()> notify = nullptr);
     void cancel() { progress_->cancel(); }
     /// From `start` until the outcome is taken.
     bool running() const { return thread_.joinable(); }

@@ -171,7 +171,7 @@ Edit tried(const Ast& ast, TextEdit edit) {
     if (errorsOf(after) <= errorsOf(before)) return edit;
     const auto first = std::find_if(after.all().begin(), after.all().end(),
                                     [](const auto& d) { return d.severity == syntax::Severity::Error; });
-    return refused(first->mend.empty() ? first->message : fmt::format("{} ({})", first->message, first->mend));
+    return refused(first->hint.empty() ? first->message : fmt::format("{} ({})", first->message, first->hint));
 }
 
 Result<std::string> asArgument(std::string_view text) {

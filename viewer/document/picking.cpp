@@ -29,7 +29,7 @@ Picked about(const Derivation& derivation, ShapeId shape) {
     return picked;
 }
 
-std::optional<Picked> pick(const Shown& shown, OriginId origin) {
+std::optional<Picked> pick(const BuiltModel& shown, OriginId origin) {
     const auto& shapeOf = shown.model.lowered->shapeOf;
     // Surface that no operand owns is the root's.
     const ShapeId shape = origin == 0 ? 0 : origin < shapeOf.size() ? shapeOf[origin] : none;
@@ -62,7 +62,7 @@ std::vector<ShapeId> shapesAt(const Derivation& derivation, uint32_t offset) {
     return found;
 }
 
-std::vector<OriginId> originsOf(const Shown& shown, ShapeId shape) {
+std::vector<OriginId> originsOf(const BuiltModel& shown, ShapeId shape) {
     const ShapeTree& tree = shown.model.derivation.tree;
     const auto& shapeOf = shown.model.lowered->shapeOf;
     std::vector<bool> below(tree.shapes.size(), false);
@@ -74,11 +74,11 @@ std::vector<OriginId> originsOf(const Shown& shown, ShapeId shape) {
     return origins;
 }
 
-bool isCurrent(const Document& document, const Shown& shown) {
+bool isCurrent(const Document& document, const BuiltModel& shown) {
     return shown.grammar->sources[0]->text() == document.text();
 }
 
-const syntax::Element* elementOf(const Document& document, const Shown& shown, ShapeId shape) {
+const syntax::Element* elementOf(const Document& document, const BuiltModel& shown, ShapeId shape) {
     const syntax::SourceSpan span = shown.model.derivation.tree.shapes[shape].span;
     if (!isCurrent(document, shown) || span.source != shown.grammar->sources[0].get()) return nullptr;
     const syntax::Element* found = nullptr;
@@ -106,7 +106,7 @@ bool samePlace(const ShapeTree& tree, ShapeId a, ShapeId b) {
 
 }  // namespace
 
-edits::Edit attach(const Document& document, const Shown& shown, ShapeId moved, ShapeId host, uint32_t joint) {
+edits::Edit attach(const Document& document, const BuiltModel& shown, ShapeId moved, ShapeId host, uint32_t joint) {
     const Derivation& derivation = shown.model.derivation;
     const ShapeTree& tree = derivation.tree;
     if (!isCurrent(document, shown)) return edits::refused("the text has changed since this model was made");

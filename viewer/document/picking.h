@@ -19,7 +19,7 @@ struct Picked {
 };
 Picked about(const derive::Derivation& derivation, derive::ShapeId shape);
 /// The shape that owns surface of this origin; nothing for an origin that no shape has.
-std::optional<Picked> pick(const Shown& shown, OriginId origin);
+std::optional<Picked> pick(const BuiltModel& shown, OriginId origin);
 
 /// The shape that a selection means in this tree, or none.
 derive::ShapeId selected(const derive::ShapeTree& tree, const std::string& path);
@@ -28,18 +28,18 @@ derive::ShapeId selected(const derive::ShapeTree& tree, const std::string& path)
 /// made any; in a rule's head all that the rule made.
 std::vector<derive::ShapeId> shapesAt(const derive::Derivation& derivation, uint32_t offset);
 /// The origins under which the shape, or anything below it, owns surface: what to light up in the view.
-std::vector<OriginId> originsOf(const Shown& shown, derive::ShapeId shape);
+std::vector<OriginId> originsOf(const BuiltModel& shown, derive::ShapeId shape);
 
 /// True when the model was made from the document's present text, so that its spans are spans of that text.
-bool isCurrent(const Document& document, const Shown& shown);
+bool isCurrent(const Document& document, const BuiltModel& shown);
 /// The element that made the shape, in the document's own syntax tree; null when it stands in a used file, or the model
 /// isn't current.
-const syntax::Element* elementOf(const Document& document, const Shown& shown, derive::ShapeId shape);
+const syntax::Element* elementOf(const Document& document, const BuiltModel& shown, derive::ShapeId shape);
 
 /// Joins `moved` at a joint of `host`: what dropping a shape on a joint asks for. Error::Input, in words, where the
 /// grammar can't say so: the element is joined to another shape than `host`, it is the content of its shape, it stands
 /// in a used file.
-edits::Edit attach(const Document& document, const Shown& shown, derive::ShapeId moved, derive::ShapeId host,
+edits::Edit attach(const Document& document, const BuiltModel& shown, derive::ShapeId moved, derive::ShapeId host,
                    uint32_t joint);
 
 }  // namespace sgm::viewer

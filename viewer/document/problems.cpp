@@ -21,7 +21,7 @@ uint32_t takeNumber(std::string_view& text) {
 std::vector<Problem> problemsOf(const syntax::Diagnostics& diagnostics) {
     std::vector<Problem> rows;
     for (const syntax::Diagnostic& d : diagnostics.all()) {
-        Problem row{d.severity, {}, 0, 0, 0, 0, d.message, d.mend};
+        Problem row{d.severity, {}, 0, 0, 0, 0, d.message, d.hint};
         if (d.span.source) {
             const auto begin = d.span.source->place(d.span.begin), end = d.span.source->place(d.span.end);
             row.file = d.span.source->name();

@@ -16,7 +16,7 @@ struct Problem {
     std::string file;                     ///< as the source is named; "" where no place is known
     uint32_t line = 0, column = 0;        ///< from 1; 0 where no place is known
     uint32_t endLine = 0, endColumn = 0;  ///< behind the last byte
-    std::string message, mend;            ///< mend: what to write instead, "" where nobody knows
+    std::string message, hint;            ///< hint: what to write instead, "" where nobody knows
     friend bool operator==(const Problem&, const Problem&) = default;
 };
 

@@ -11,9 +11,9 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "grammar/pipeline/files.h"
 #include "modeler/core/atomic_file.h"
 #include "modeler/core/regular_file.h"
-#include "viewer/document/files.h"
 
 namespace sgm::viewer {
 namespace fs = std::filesystem;
@@ -171,7 +171,7 @@ Status Recovery::write(const Work& work) {
             if (lock_ < 0 && errno != EEXIST) return writeError(lockOf(file_), errno);
         }
     }
-    return writeText(file_, fmt::format("{}{}\n{}{}", magic, work.document.size(), work.document, work.text));
+    return pipeline::writeText(file_, fmt::format("{}{}\n{}{}", magic, work.document.size(), work.document, work.text));
 }
 
 }  // namespace sgm::viewer

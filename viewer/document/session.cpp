@@ -19,14 +19,14 @@ bool sameOptions(const derive::Options& a, const derive::Options& b) {
            a.budget.shapes == b.budget.shapes && a.budget.seconds == b.budget.seconds;
 }
 
-bool sameValues(const Shown& a, const Shown& b) {
+bool sameValues(const BuiltModel& a, const BuiltModel& b) {
     return a.fingerprint == b.fingerprint && a.model.tape.lipschitz() == b.model.tape.lipschitz();
 }
 
 /// What every model has, however it was made.
-std::shared_ptr<const Shown> finished(Shown shown) {
+std::shared_ptr<const BuiltModel> finished(BuiltModel shown) {
     shown.fingerprint = eval::fingerprint(shown.model.tape);
-    return std::make_shared<const Shown>(std::move(shown));
+    return std::make_shared<const BuiltModel>(std::move(shown));
 }
 
 fs::file_time_type timeOf(const fs::path& path) {
@@ -36,7 +36,7 @@ fs::file_time_type timeOf(const fs::path& path) {
 }
 
 /// The choice in the words of `optionsFor`; what the grammar doesn't know any more is left out, with a warning.
-ModelChoice wordsOf(const Choice& choice, const rules::Grammar& grammar, std::vector<Problem>& problems) {
+pipeline::ModelChoice wordsOf(const Choice& choice, const rules::Grammar& grammar, std::vector<Problem>& problems) {
     const auto known = [&](const auto& list, const std::string& name, const char* what, auto nameOf) {
         if (name.empty() || std::any_of(list.begin(), list.end(), [&](const auto& row) { return nameOf(row) == name; }))
             return name;
@@ -44,7 +44,7 @@ ModelChoice wordsOf(const Choice& choice, const rules::Grammar& grammar, std::ve
             {syntax::Severity::Warning, {}, 0, 0, 0, 0, fmt::format("there is no {} '{}' any more", what, name), {}});
         return std::string();
     };
-    ModelChoice words;
+    pipeline::ModelChoice words;
     words.seed = choice.seed;
     words.start = known(grammar.starts, choice.start, "start",
                         [&](const rules::Start& s) { return grammar.symbols[s.symbol].name; });
@@ -55,7 +55,7 @@ ModelChoice wordsOf(const Choice& choice, const rules::Grammar& grammar, std::ve
 
 }  // namespace
 
-bool looksLike(const Shown& a, const Shown& b) {
+bool looksLike(const BuiltModel& a, const BuiltModel& b) {
     const Provenance &p = a.model.lowered->provenance, &q = b.model.lowered->provenance;
     return sameValues(a, b) && p.materials == q.materials &&
            std::equal(p.parts.begin(), p.parts.end(), q.parts.begin(), q.parts.end(),
@@ -73,8 +73,8 @@ ShowRequest requestOf(const Document& document) {
     return request;
 }
 
-Session::Session(std::function<void()> wake, rules::Loader loader)
-    : wake_(std::move(wake)), loader_(std::move(loader)), worker_([this] { work(); }) {}
+Session::Session(std::function<void()> notify, rules::Loader loader)
+    : notify_(std::move(notify)), loader_(std::move(loader)), worker_([this] { work(); }) {}
 
 Session::~Session() {
     {
@@ -106,13 +106,13 @@ bool Session::poll() {
     if (pending_ && running_ && since_.seconds() > patience_s) running_->cancel();
     if (!fresh_) return false;
     fresh_ = false;
-    News news = std::exchange(news_, News{});
-    if (news.model) retired_.push_back(std::exchange(model_, std::move(news.model)));
-    if (news.mesh) retired_.push_back(std::exchange(mesh_, std::move(news.mesh)));
+    Update update = std::exchange(update_, Update{});
+    if (update.model) deferred_.push_back(std::exchange(model_, std::move(update.model)));
+    if (update.mesh) deferred_.push_back(std::exchange(mesh_, std::move(update.mesh)));
     wanted_.notify_one();
-    if (news.problems) problems_ = std::move(*news.problems);
-    if (news.used) used_ = std::move(*news.used);
-    attempted_ = std::max(attempted_, news.attempted);
+    if (update.problems) problems_ = std::move(*update.problems);
+    if (update.used) used_ = std::move(*update.used);
+    attempted_ = std::max(attempted_, update.attempted);
     return true;
 }
 
@@ -144,22 +144,22 @@ std::vector<std::filesystem::path> Session::usedFiles() const {
 void Session::work() {
     for (;;) {
         std::optional<ShowRequest> request;
-        std::vector<std::shared_ptr<const void>> retired;
+        std::vector<std::shared_ptr<const void>> deferred;
         std::shared_ptr<Progress> progress;
         {
             std::unique_lock lock(mutex_);
             running_.reset();
             meshing_ = false;
-            wanted_.wait(lock, [this] { return pending_ || quit_ || !retired_.empty(); });
+            wanted_.wait(lock, [this] { return pending_ || quit_ || !deferred_.empty(); });
             if (quit_) return;
-            retired.swap(retired_);
+            deferred.swap(deferred_);
             request = std::exchange(pending_, std::nullopt);
             if (request) {
                 running_ = progress = std::make_shared<Progress>();
                 since_ = Stopwatch();
             }
         }
-        retired.clear();
+        deferred.clear();
         if (!request) continue;
         const Status done = guarded([&]() -> Status { return attempt(*request, *progress), Done{}; });
         if (!done.ok()) giveUp(*request, done.error());
@@ -168,17 +168,17 @@ void Session::work() {
 
 /// What an exception left half made is let go; the last good model stays.
 void Session::giveUp(const ShowRequest& request, const Error& error) {
-    following_.reset();
+    liveEdit_.reset();
     rebuild_ = mesh::Rebuild(mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp});
     ast_.reset();
     grammar_.reset();
     shown_.reset();
     handShown_.reset();
     meshed_.reset();
-    News news;
-    news.attempted = request.revision;
-    news.problems = std::vector<Problem>{problemOf(error)};
-    publish(std::move(news));
+    Update update;
+    update.attempted = request.revision;
+    update.problems = std::vector<Problem>{problemOf(error)};
+    publish(std::move(update));
 }
 
 bool Session::superseded() {
@@ -186,33 +186,32 @@ bool Session::superseded() {
     return pending_ || quit_;
 }
 
-void Session::publish(News news) {
+void Session::publish(Update update) {
     {
         const std::lock_guard lock(mutex_);
-        if (news.model) news_.model = std::move(news.model);
-        if (news.mesh) news_.mesh = std::move(news.mesh);
-        if (news.problems) news_.problems = std::move(news.problems);
-        if (news.used) news_.used = std::move(news.used);
-        news_.attempted = std::max(news_.attempted, news.attempted);
+        if (update.model) update_.model = std::move(update.model);
+        if (update.mesh) update_.mesh = std::move(update.mesh);
+        if (update.problems) update_.problems = std::move(update.problems);
+        if (update.used) update_.used = std::move(update.used);
+        update_.attempted = std::max(update_.attempted, update.attempted);
         fresh_ = true;
     }
-    if (wake_) wake_();
+    if (notify_) notify_();
 }
 
 void Session::attempt(const ShowRequest& request, Progress& progress) {
-    Stages stages;
+    pipeline::Context context{&progress};
     std::vector<Problem> problems;
-    News news;
-    news.attempted = request.revision;
+    Update update;
+    update.attempted = request.revision;
     const bool follow = follows(request);
-    bool good = follow || checked(request, stages, problems);
-    news.used = usedByCheck_;
+    bool good = follow || checked(request, context, problems);
+    update.used = usedByCheck_;
     if (good) {
-        auto shown =
-            follow ? followed(request, problems, progress) : made(request, std::move(stages), problems, progress);
+        auto shown = follow ? followed(request, problems, progress) : made(request, context, problems);
         good = shown.ok();
         if (good) {
-            if (*shown != shown_) news.model = *shown;
+            if (*shown != shown_) update.model = *shown;
             shown_ = *shown;
             // While a slider is dragged the last ones stay: to look for them takes as long as a frame.
             if (!follow) derivedProblems_ = problemsOf(derive::warnings(shown_->model.derivation));
@@ -226,8 +225,8 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
                 {syntax::Severity::Warning, {}, 0, 0, 0, 0, "cancelled: what is shown was made before", {}});
         }
     }
-    news.problems = std::move(problems);
-    publish(std::move(news));
+    update.problems = std::move(problems);
+    publish(std::move(update));
     if (good && request.meshResolution > 0) meshIt(request, progress);
 }
 
@@ -240,30 +239,38 @@ bool Session::asChecked() const {
 /// Whether the request can be shown by the grammar of the moment the slider was taken; else that grammar is let go.
 bool Session::follows(const ShowRequest& request) {
     const bool may = request.dragging && grammar_ && !request.byHand && asChecked();
-    if (may && following_ && withValueOf(*following_->grammar(), request.ast->source->text())) return true;
-    following_.reset();
-    if (!may || !withValueOf(*grammar_, request.ast->source->text())) return false;
-    following_.emplace(grammar_);
+    if (!may) {
+        liveEdit_.reset();
+        return false;
+    }
+    const std::string_view text = request.ast->source->text();
+    if (liveEdit_)
+        if ((valueChange_ = pipeline::valueChange(*liveEdit_->grammar(), text))) return true;
+    liveEdit_.reset();
+    if (!(valueChange_ = pipeline::valueChange(*grammar_, text))) return false;
+    liveEdit_.emplace(grammar_);
     return true;
 }
 
 /// The model of a request that `follows`.
-Result<std::shared_ptr<const Shown>> Session::followed(const ShowRequest& request, std::vector<Problem>& problems,
-                                                       Progress& progress) {
+Result<std::shared_ptr<const BuiltModel>> Session::followed(const ShowRequest& request, std::vector<Problem>& problems,
+                                                            Progress& progress) {
     problems = checkProblems_;
-    const std::optional<rules::Grammar> changed = withValueOf(*following_->grammar(), request.ast->source->text());
-    auto options = optionsFor(*changed, wordsOf(request.choice, *changed, problems));
+    const rules::Grammar& grammar = *liveEdit_->grammar();
+    auto options = pipeline::optionsFor(grammar, wordsOf(request.choice, grammar, problems), *valueChange_);
     if (!options.ok()) return options.error();
     options->budget = request.budget;
-    Shown shown;
+    BuiltModel shown;
     shown.revision = request.revision;
-    shown.grammar = following_->grammar();
+    shown.grammar = liveEdit_->grammar();
     shown.options = std::move(*options);
     shown.held = true;
-    auto model = following_->to(shown.options, shown.stages, &progress);
+    pipeline::Context context{&progress};
+    auto model = liveEdit_->to(shown.options, context);
     if (!model.ok()) return model.error();
     shown.model = std::move(*model);
-    shown.shapesMade = following_->shapesMade();
+    shown.stages = std::move(context.stages);
+    shown.shapesMade = liveEdit_->shapesMade();
     // What the slider stood at when it was taken is shown already.
     if (shown_ && shown_->grammar == shown.grammar && !handShown_ && sameOptions(shown_->options, shown.options))
         return shown_;
@@ -272,7 +279,7 @@ Result<std::shared_ptr<const Shown>> Session::followed(const ShowRequest& reques
 }
 
 /// Parsed text to a grammar, unless neither the text nor a file it uses has changed. Adds what is wrong to `problems`.
-bool Session::checked(const ShowRequest& request, Stages& stages, std::vector<Problem>& problems) {
+bool Session::checked(const ShowRequest& request, pipeline::Context& context, std::vector<Problem>& problems) {
     if (request.ast != ast_ || !asChecked()) {
         std::vector<syntax::SourcePtr> sources;  // diagnostics point into them
         usedByCheck_.clear();
@@ -298,8 +305,8 @@ bool Session::checked(const ShowRequest& request, Stages& stages, std::vector<Pr
         noting.declares = loader_.declares;
         syntax::Diagnostics diagnostics = request.syntaxProblems;
         ast_ = request.ast;
-        stages.emplace_back("parse", request.parseSeconds);
-        grammar_ = timed(stages, "check", [&] { return rules::check(*request.ast, noting, diagnostics); });
+        context.stages.emplace_back("parse", request.parseSeconds);
+        grammar_ = context.timed("check", [&] { return rules::check(*request.ast, noting, diagnostics); });
         checkProblems_ = problemsOf(diagnostics);
     }
     problems = checkProblems_;
@@ -307,26 +314,26 @@ bool Session::checked(const ShowRequest& request, Stages& stages, std::vector<Pr
 }
 
 /// The model of the request: the last one where nothing it is made from has changed.
-Result<std::shared_ptr<const Shown>> Session::made(const ShowRequest& request, Stages stages,
-                                                   std::vector<Problem>& problems, Progress& progress) {
-    auto options = optionsFor(*grammar_, wordsOf(request.choice, *grammar_, problems));
+Result<std::shared_ptr<const BuiltModel>> Session::made(const ShowRequest& request, pipeline::Context& context,
+                                                        std::vector<Problem>& problems) {
+    auto options = pipeline::optionsFor(*grammar_, wordsOf(request.choice, *grammar_, problems));
     if (!options.ok()) return options.error();
     options->budget = request.budget;
     if (shown_ && !shown_->held && shown_->grammar == grammar_ && handShown_ == request.byHand &&
         sameOptions(shown_->options, *options))
         return shown_;
-    auto model = request.byHand ? makeModel(derive::Derivation(*request.byHand), stages, &progress)
-                                : makeModel(grammar_, *options, stages, &progress);
+    auto model = request.byHand ? pipeline::makeModel(derive::Derivation(*request.byHand), context)
+                                : pipeline::makeModel(grammar_, *options, context);
     if (!model.ok()) return model.error();
     handShown_ = request.byHand;
-    Shown shown;
+    BuiltModel shown;
     shown.revision = request.revision;
     shown.grammar = grammar_;
     shown.options = std::move(*options);
     shown.model = std::move(*model);
     shown.byHand = request.byHand != nullptr;
     shown.shapesMade = shown.model.derivation.tree.shapes.size();
-    shown.stages = std::move(stages);
+    shown.stages = std::move(context.stages);
     return finished(std::move(shown));
 }
 
@@ -341,16 +348,16 @@ void Session::meshIt(const ShowRequest& request, Progress& progress) {
     const float wished_m = mesh::cellFor(bounds, request.meshResolution), before_m = meshed_ ? meshed_->grid.cell_m : 0;
     const bool keep =
         meshResolution_ == request.meshResolution && before_m < wished_m * keptCells && before_m * keptCells > wished_m;
-    auto meshed = std::make_shared<Meshed>();
+    auto meshed = std::make_shared<BuiltMesh>();
     meshed->of = shown_;
     meshed->grid = mesh::gridToKeep(meshed_ ? meshed_->grid : mesh::Grid{}, bounds, keep ? before_m : wished_m);
     const auto mesh = rebuild_.update(shown_->model.tape, meshed->grid, &progress, meshed->counts);
     if (!mesh.ok()) {
         if (mesh.error().kind == Error::Kind::Cancelled) return;
-        News news;
-        news.problems = checkProblems_;
-        news.problems->push_back(problemOf(mesh.error()));
-        publish(std::move(news));
+        Update update;
+        update.problems = checkProblems_;
+        update.problems->push_back(problemOf(mesh.error()));
+        publish(std::move(update));
         return;
     }
     meshed->mesh = std::make_shared<const mesh::Mesh>(**mesh);
@@ -361,9 +368,9 @@ void Session::meshIt(const ShowRequest& request, Progress& progress) {
                       {"polygonize", meshed->counts.polygonizeSeconds}};
     meshed_ = meshed;
     meshResolution_ = request.meshResolution;
-    News news;
-    news.mesh = std::move(meshed);
-    publish(std::move(news));
+    Update update;
+    update.mesh = std::move(meshed);
+    publish(std::move(update));
 }
 
 }  // namespace sgm::viewer

@@ -11,40 +11,40 @@
 #include <optional>
 #include <thread>
 
+#include "grammar/pipeline/files.h"
+#include "grammar/pipeline/live_edit.h"
+#include "grammar/pipeline/model.h"
 #include "grammar/rules/check.h"
 #include "modeler/eval/fingerprint.h"
 #include "modeler/mesh/rebuild.h"
 #include "viewer/document/document.h"
-#include "viewer/document/files.h"
-#include "viewer/document/following.h"
-#include "viewer/document/model.h"
 #include "viewer/document/problems.h"
 
 namespace sgm::viewer {
 
 /// A good model. Immutable; shapes point into sources that `grammar` holds.
-struct Shown {
+struct BuiltModel {
     uint64_t revision = 0;  ///< of the document it was made from
     std::shared_ptr<const rules::Grammar> grammar;
     derive::Options options;
-    Model model;
-    bool byHand = false;    ///< its derivation came from the Step panel
-    bool held = false;      ///< follows a slider in a hand: `grammar`, and with it every span, is of the text before
-    size_t shapesMade = 0;  ///< derived anew; the others were kept from the model before
+    pipeline::Model model;
+    bool byHand = false;  ///< its derivation came from the Step panel
+    bool held = false;  ///< follows a slider that is dragged: `grammar`, and with it every span, is of the text before
+    size_t shapesMade = 0;          ///< derived anew; the others were kept from the model before
     eval::Fingerprint fingerprint;  ///< of the tape: the same for two models, the same surface, bit for bit
-    Stages stages;                  ///< seconds of what ran: parse, check, derive, lower, compile
+    pipeline::Stages stages;        ///< seconds of what ran: parse, check, derive, lower, compile
 };
 /// Both are the same to the eye: surface and materials.
-bool looksLike(const Shown& a, const Shown& b);
+bool looksLike(const BuiltModel& a, const BuiltModel& b);
 
 /// Its mesh, which comes later.
-struct Meshed {
-    std::shared_ptr<const Shown> of;
+struct BuiltMesh {
+    std::shared_ptr<const BuiltModel> of;
     mesh::Grid grid;
     std::shared_ptr<const mesh::Mesh> mesh;
     mesh::Counts counts;
     size_t blocksMade = 0, blocksKept = 0;
-    Stages stages;  ///< subdivide, sample, polygonize
+    pipeline::Stages stages;  ///< subdivide, sample, polygonize
 };
 
 /// What to show.
@@ -54,7 +54,7 @@ struct ShowRequest {
     double parseSeconds = 0;                 ///< for the report of times
     Choice choice;
     uint64_t revision = 0;
-    /// A hand holds a slider: only what its value reaches is derived again. The text that it leaves is shown without
+    /// A slider is dragged: only what its value reaches is derived again. The text that it leaves is shown without
     /// this.
     bool dragging = false;
     /// Set by the Step panel: shown instead of deriving.
@@ -68,8 +68,8 @@ ShowRequest requestOf(const Document& document);
 
 class Session {
 public:
-    /// `wake` is called from the worker when `poll` would find something new (glfwPostEmptyEvent).
-    explicit Session(std::function<void()> wake = nullptr, rules::Loader loader = fileLoader());
+    /// `notify` is called from the worker when `poll` would find something new (glfwPostEmptyEvent).
+    explicit Session(std::function<void()> notify = nullptr, rules::Loader loader = pipeline::fileLoader());
     ~Session();
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
@@ -83,9 +83,9 @@ public:
     bool poll();
 
     /// The last good model, or null. Changes in `poll` alone, as all below.
-    const std::shared_ptr<const Shown>& model() const { return model_; }
+    const std::shared_ptr<const BuiltModel>& model() const { return model_; }
     /// The mesh of a model (see `of`: perhaps of an earlier one), or null.
-    const std::shared_ptr<const Meshed>& mesh() const { return mesh_; }
+    const std::shared_ptr<const BuiltMesh>& mesh() const { return mesh_; }
     /// Of the last request that was tried: the parser's, the checker's and what went wrong later.
     const std::vector<Problem>& problems() const { return problems_; }
     /// The revision that `problems` speaks of.
@@ -108,9 +108,9 @@ private:
         std::filesystem::file_time_type time;
     };
     /// What an attempt gives, taken over by `poll`. Null: as before.
-    struct News {
-        std::shared_ptr<const Shown> model;
-        std::shared_ptr<const Meshed> mesh;
+    struct Update {
+        std::shared_ptr<const BuiltModel> model;
+        std::shared_ptr<const BuiltMesh> mesh;
         std::optional<std::vector<Problem>> problems;
         std::optional<std::vector<UsedFile>> used;
         uint64_t attempted = 0;
@@ -121,21 +121,21 @@ private:
     void giveUp(const ShowRequest& request, const Error& error);
     bool asChecked() const;
     bool follows(const ShowRequest& request);
-    bool checked(const ShowRequest& request, Stages& stages, std::vector<Problem>& problems);
-    Result<std::shared_ptr<const Shown>> followed(const ShowRequest& request, std::vector<Problem>& problems,
-                                                  Progress& progress);
-    Result<std::shared_ptr<const Shown>> made(const ShowRequest& request, Stages stages, std::vector<Problem>& problems,
-                                              Progress& progress);
+    bool checked(const ShowRequest& request, pipeline::Context& context, std::vector<Problem>& problems);
+    Result<std::shared_ptr<const BuiltModel>> followed(const ShowRequest& request, std::vector<Problem>& problems,
+                                                       Progress& progress);
+    Result<std::shared_ptr<const BuiltModel>> made(const ShowRequest& request, pipeline::Context& context,
+                                                   std::vector<Problem>& problems);
     void meshIt(const ShowRequest& request, Progress& progress);
-    void publish(News news);
+    void publish(Update update);
     bool superseded();
 
-    std::function<void()> wake_;
+    std::function<void()> notify_;
     rules::Loader loader_;
 
     // The window's.
-    std::shared_ptr<const Shown> model_;
-    std::shared_ptr<const Meshed> mesh_;
+    std::shared_ptr<const BuiltModel> model_;
+    std::shared_ptr<const BuiltMesh> mesh_;
     std::vector<Problem> problems_;
     std::vector<UsedFile> used_;
     uint64_t attempted_ = 0;
@@ -147,9 +147,10 @@ private:
     std::shared_ptr<Progress> running_;  ///< of the request that runs, or null
     bool meshing_ = false, quit_ = false;
     Stopwatch since_;  ///< the running request began
-    News news_;
+    Update update_;
     bool fresh_ = false;
-    std::vector<std::shared_ptr<const void>> retired_;  ///< what the window let go: large trees are freed by the worker
+    std::vector<std::shared_ptr<const void>>
+        deferred_;  ///< what the window let go: large trees are freed by the worker
 
     // The worker's: the last products, to begin from the first stage that changed.
     std::shared_ptr<const syntax::Ast> ast_;
@@ -157,10 +158,11 @@ private:
     std::vector<Problem> checkProblems_;
     std::vector<Problem> derivedProblems_;  ///< warnings of the derivation that was last made anew
     std::vector<UsedFile> usedByCheck_;
-    std::optional<Following> following_;  ///< while a slider is held
-    std::shared_ptr<const Shown> shown_;
+    std::optional<pipeline::LiveEdit> liveEdit_;        ///< while a slider is held
+    std::optional<pipeline::ValueChange> valueChange_;  ///< of the request that it follows
+    std::shared_ptr<const BuiltModel> shown_;
     std::shared_ptr<const derive::Derivation> handShown_;
-    std::shared_ptr<const Meshed> meshed_;
+    std::shared_ptr<const BuiltMesh> meshed_;
     int meshResolution_ = 0;
     mesh::Rebuild rebuild_{mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp}};
 

@@ -1,5 +1,5 @@
 // The Step panel: a derivation by hand, walked forward and back, saved as a `derive` line.
-// Enters: a grammar and options, then a person's choices. Leaves: rows, and the derivation so far to be shown. Assumes
+// Enters: a grammar and options, then the user's choices. Leaves: rows, and the derivation so far to be shown. Assumes
 // one thread. What decides is derive::Session, as for `sgm step`.
 #pragma once
 
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "grammar/derive/session.h"
+#include "grammar/pipeline/files.h"
 #include "viewer/document/edits.h"
-#include "viewer/document/files.h"
 
 namespace sgm::viewer {
 
@@ -55,7 +55,8 @@ public:
     Result<std::string> way(const std::string& name) const;
     /// The edit that writes that line into the text: in place of the way of that name, else behind the last one.
     /// Refused unless running the line gives this very tree. `ast` must be what the grammar was checked from.
-    edits::Edit save(const syntax::Ast& ast, const std::string& name, const rules::Loader& loader = fileLoader()) const;
+    edits::Edit save(const syntax::Ast& ast, const std::string& name,
+                     const rules::Loader& loader = pipeline::fileLoader()) const;
 
     /// The same way in another text of the grammar, as far as its rules still match. The number of steps kept.
     Result<size_t> follow(std::shared_ptr<const rules::Grammar> grammar, derive::Options options);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int settlingFrames = 3;     // after an event, until ImGui's hover and layout have settled
 constexpr double shownEvery = 0.06;   // seconds between pictures of a view that refines itself
-constexpr double refinedEvery = 0.1;  // seconds between pieces of the picture while frames are owed to a hand
+constexpr double refinedEvery = 0.1;  // seconds between pieces of the picture while frames are owed to the user
 constexpr double listenFor = 0.5;     // seconds between looks at the file while nothing happens
 
 /// Columns and rows of the window.
@@ -44,7 +44,7 @@ private:
     TextPanel text_;
     StepPanel step_;
     ExportPanel export_;
-    std::optional<float> left_, right_;  // pixels that a hand has chosen; else they follow the window
+    std::optional<float> left_, right_;  // pixels that the user has chosen; else they follow the window
 };
 
 bool Workspace::begin(const char* name, ImVec2 low, ImVec2 size, bool above) {
@@ -220,7 +220,7 @@ int runApp(const AppOptions& options) {
     Report report(options.report);
     Result<std::unique_ptr<SharedContext>> shared = window.share();
     if (!shared) return fail(shared.error());
-    Workbench bench(report, std::move(*shared), &Window::wake);
+    Workbench bench(report, std::move(*shared), &Window::notify);
     if (!options.file.empty())
         if (const Status s = bench.open(options.file); !s) return fail(s.error());
     if (!options.benchmark) bench.offerAbandoned();
@@ -234,18 +234,18 @@ int runApp(const AppOptions& options) {
         const bool working = bench.busy() || bench.exporting.running() || options.benchmark;
         window.listen(wanted > 0 || refining ? 0 : working ? shownEvery : listenFor);
         const Stopwatch whole;
-        Turn turn;
+        FrameTimeline turn;
         if (window.closing() && bench.mayClose()) return 0;
-        const bool stirred = window.stirred(), news = bench.poll();
+        const bool hadInput = window.hadInput(), news = bench.poll();
         turn.was("taking over what workers made");
-        if (stirred || news) wanted = settlingFrames;
+        if (hadInput || news) wanted = settlingFrames;
         for (const std::filesystem::path& path : window.dropped()) bench.drop(path);
         if (sinceLook.seconds() > listenFor) {
             if (bench.lookAtFiles()) wanted = settlingFrames;
             sinceLook = {};
         }
         turn.was("files");
-        // What a hand did is answered first; a hand that never rests still gets its picture, piece by piece.
+        // Input is answered first; a user who never rests still gets the picture, piece by piece.
         bool ended = false;
         if (wanted == 0 || sinceRefined.seconds() > refinedEvery) {
             const Result<bool> drew = refine(bench);
@@ -259,13 +259,13 @@ int runApp(const AppOptions& options) {
         if (!taken) bench.say(taken.error().message, true);
         if (!taken || *taken) wanted = settlingFrames;
         turn.was("pictures");
-        // Where frames are dear, most of the time still goes to the picture.
+        // Where frames are expensive, most of the time still goes to the picture.
         if (wanted > 0 || ended ||
             ((refining || working) && sinceShown.seconds() >= std::max(shownEvery, 3 * frameSeconds))) {
             if (wanted > 0) --wanted;
             sinceShown = {};
             window.setTitle(titleOf(bench.document));
-            const Spent before = bench.field.times().drawn;
+            const ElapsedTimes before = bench.field.times().drawn;
             window.beginFrame();
             workspace.show();
             turn.was("panels", bench.field.times().drawn - before);
@@ -275,7 +275,7 @@ int runApp(const AppOptions& options) {
             bench.refresh();
             turn.was("asking workers");
             describe(bench, report.state());
-            const Window::Given& given = window.given();
+            const Window::InputCounters& given = window.given();
             report.state()["still"] = wanted == 0 && !window.pending();
             report.state()["input"] = {{"x", given.x},
                                        {"y", given.y},

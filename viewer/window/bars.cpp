@@ -135,8 +135,8 @@ void Bars::status(Workbench& bench) {
     };
     if (bench.busy()) {
         const bool deriving = bench.session.busy();
-        if (progress(deriving ? bench.session.stage() : bench.preparer.stage(),
-                     deriving ? bench.session.fraction() : bench.preparer.fraction(), "progress.cancel",
+        if (progress(deriving ? bench.session.stage() : bench.uploader.stage(),
+                     deriving ? bench.session.fraction() : bench.uploader.fraction(), "progress.cancel",
                      "Keep the model as it is; Esc while a slider is held"))
             bench.cancel();
     }
@@ -170,7 +170,7 @@ void Bars::keys(Workbench& bench) {
     if (pressed(GLFW_KEY_ESCAPE)) {
         help_ = false;
         bench.turntable.reset();
-        // A hand that holds a slider can't click Cancel.
+        // A user who drags a slider can't click Cancel.
         if (bench.document.dragging() && bench.busy()) bench.cancel();
     }
     if (io.KeyCtrl) {
@@ -197,9 +197,9 @@ void Bars::dialogs(Workbench& bench) {
 }
 
 void Bars::cheatSheet(Workbench& bench) {
-    const bool blender = bench.look.hands == Hands::Blender;
+    const bool blender = bench.look.hands == NavigationPreset::Blender;
     const std::pair<const char*, const char*> rows[] = {
-        {blender ? "MMB drag" : "LMB drag", "Turn"},
+        {blender ? "MMB drag" : "LMB drag", "FrameTimeline"},
         {blender ? "Shift MMB" : "MMB drag", "Move"},
         {blender ? "Ctrl MMB" : "RMB drag", "Nearer, farther"},
         {"Wheel", "Nearer, farther"},
@@ -238,7 +238,7 @@ void Bars::cheatSheet(Workbench& bench) {
         }
         int hands = static_cast<int>(bench.look.hands);
         constexpr std::array presets{"Usual hands", "Blender's"};
-        if (oneOf(bench.report, "hands", presets, hands)) bench.look.hands = static_cast<Hands>(hands);
+        if (oneOf(bench.report, "hands", presets, hands)) bench.look.hands = static_cast<NavigationPreset>(hands);
         bench.report.mark(
             "help", ImGui::GetWindowPos(),
             {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});

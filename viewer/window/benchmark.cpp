@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t mostDrags = 20, mostStructures = 6;
 
-/// The parameter that a hand would drag first.
+/// The parameter that a user would drag first.
 const ParamRow* firstSlider(const std::vector<ParamRow>& rows) {
     for (const ParamRow& row : rows)
         if ((row.kind == ParamRow::Kind::Real || row.kind == ParamRow::Kind::Integer) && !row.lo.empty()) return &row;
@@ -59,8 +59,8 @@ bool Benchmark::begin(Workbench& bench) {
     return bench.document.revision() != before;
 }
 
-bool Benchmark::go(Workbench& bench, const Turn& turn) {
-    const Spent spent = turn.spent();
+bool Benchmark::go(Workbench& bench, const FrameTimeline& turn) {
+    const ElapsedTimes spent = turn.spent();
     if (spent.wall > gap_.wall) longest_ = turn.parts();
     gap_ = {std::max(gap_.wall, spent.wall), std::max(gap_.processor, spent.processor)};
     if (!bench.shown()) return bench.session.problems().empty() || bench.busy();
@@ -79,8 +79,31 @@ bool Benchmark::go(Workbench& bench, const Turn& turn) {
     }
     if (waiting_ && (bench.busy() || !bench.field.visible() || bench.shown()->revision != bench.document.revision()))
         return since_.seconds() < 60;
-    (phase_ == Phase::Drag ? drags_ : structures_).push_back({since_.seconds(), bench.compiles - compiles_});
+    (phase_ == Phase::Drag ? drags_ : structures_)
+        .push_back({since_.seconds(), bench.compiles - compiles_, bench.shown()->stages});
     return begin(bench);
+}
+
+/// The stages of a drag's models, as the pipeline reports them, beside those of the first model.
+void Benchmark::printDragStages() const {
+    if (drags_.size() < 2) return;
+    double whole = 0, dragged = 0;
+    for (const char* stage : {"derive", "lower", "compile"}) {
+        std::vector<double> times;
+        const auto secondsOf = [&](const pipeline::Stages& stages) {
+            double seconds = 0;
+            for (const auto& [name, s] : stages) seconds += name == stage ? s : 0;
+            return seconds;
+        };
+        // The first drag makes what the next ones keep.
+        for (size_t i = 1; i < drags_.size(); ++i) times.push_back(secondsOf(drags_[i].stages));
+        std::sort(times.begin(), times.end());
+        const double first = secondsOf(first_), median = times[times.size() / 2];
+        fmt::print("  {:<8} of the slider    {:8.2f} ms, of the whole model {:8.2f} ms\n", stage, median * 1000,
+                   first * 1000);
+        whole += first, dragged += median;
+    }
+    fmt::print("  a slider's model takes 1/{:.0f} of the whole one's\n", whole / std::max(dragged, 1e-9));
 }
 
 void Benchmark::print(const Workbench& bench, const std::string& driver) const {
@@ -99,10 +122,10 @@ void Benchmark::print(const Workbench& bench, const std::string& driver) const {
         fmt::print("  {:<22} median {:.1f} ms, longest {:.1f} ms, {} times, {} compiles\n", name,
                    times[times.size() / 2] * 1000, times.back() * 1000, times.size(), compiles);
     }
+    printDragStages();
     fmt::print(
-        "  longest gap between looks at the hands, drawing excluded: {:.1f} ms; by the processor's clock, without what "
-        "other "
-        "programs took: {:.1f} ms\n",
+        "  longest gap between polls of the input, drawing excluded: {:.1f} ms; by the processor's clock, without what "
+        "other programs took: {:.1f} ms\n",
         gap_.wall * 1000, gap_.processor * 1000);
     for (const auto& [name, spent] : longest_)
         if (spent.wall >= 5e-5)

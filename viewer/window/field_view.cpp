@@ -131,7 +131,7 @@ Status FieldView::drawBatch() {
 }
 
 Status FieldView::step() {
-    const SpentWatch watch;
+    const ElapsedWatch watch;
     const Status done = drawMore();
     times_.drawn += watch.spent();
     return done;

@@ -10,7 +10,7 @@
 
 #include "viewer/field_scene.h"
 #include "viewer/fog_scene.h"
-#include "viewer/window/spent.h"
+#include "viewer/window/elapsed.h"
 
 namespace sgm::viewer {
 
@@ -24,7 +24,7 @@ struct Pick {
 /// What drawing took, seconds.
 struct FieldTimes {
     double coarse = 0, full = 0;  ///< of the last picture; full without the coarse one
-    Spent drawn;                  ///< all so far
+    ElapsedTimes drawn;           ///< all so far
 };
 
 class FieldView {

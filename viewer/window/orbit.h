@@ -1,4 +1,4 @@
-// The hand on the camera: turning about a point, moving it, coming nearer.
+// Camera control: turning about a point, moving it, coming nearer.
 // Enters: movements of the pointer as shares of the view's height. Leaves: a Camera. Assumes Y up.
 #pragma once
 

@@ -38,7 +38,7 @@ private:
     std::vector<ParamRow> rows_;
     std::vector<ParamRow> ahead_;   ///< what was set since the shown model
     uint64_t aheadRevision_ = 0;    ///< of the document, when the last of them was
-    std::optional<ParamRow> held_;  ///< what a hand holds; the model follows it
+    std::optional<ParamRow> held_;  ///< what is dragged; the model follows it
     std::string styleName_;
     float labelShare_ = 0.46f;  ///< of a row's width
 };
@@ -53,7 +53,7 @@ private:
 
     ShapeFilter filter_, listedFilter_;
     Folded folded_;
-    std::shared_ptr<const Shown> listed_;  ///< what `rows_` are of
+    std::shared_ptr<const BuiltModel> listed_;  ///< what `rows_` are of
     bool stale_ = true;
     std::vector<ShapeRow> rows_;
     derive::ShapeId seen_ = derive::none;  ///< the selection that was last scrolled to

@@ -18,18 +18,18 @@ constexpr float clickSlack = 4;  // pixels a click may wander
 
 ImTextureID textureOf(uint32_t id) { return reinterpret_cast<ImTextureID>(static_cast<intptr_t>(id)); }
 
-enum class Grip { None, Turn, Move, Approach };
+enum class Grip { None, FrameTimeline, Move, Approach };
 
 /// What the pressed buttons do to the camera.
-Grip gripOf(Hands hands) {
+Grip gripOf(NavigationPreset hands) {
     const ImGuiIO& io = ImGui::GetIO();
     const auto down = [](int button) { return ImGui::IsMouseDragging(button, clickSlack); };
-    if (hands == Hands::Blender) {
+    if (hands == NavigationPreset::Blender) {
         if (!down(ImGuiMouseButton_Middle)) return Grip::None;
-        return io.KeyShift ? Grip::Move : io.KeyCtrl ? Grip::Approach : Grip::Turn;
+        return io.KeyShift ? Grip::Move : io.KeyCtrl ? Grip::Approach : Grip::FrameTimeline;
     }
-    // With Alt the same buttons mean the same, as hands trained on Maya expect.
-    if (down(ImGuiMouseButton_Left)) return io.KeyShift ? Grip::Move : Grip::Turn;
+    // With Alt the same buttons mean the same, as users of Maya expect.
+    if (down(ImGuiMouseButton_Left)) return io.KeyShift ? Grip::Move : Grip::FrameTimeline;
     if (down(ImGuiMouseButton_Middle)) return Grip::Move;
     return down(ImGuiMouseButton_Right) ? Grip::Approach : Grip::None;
 }
@@ -38,7 +38,7 @@ void moveCamera(Workbench& bench, float height) {
     const ImGuiIO& io = ImGui::GetIO();
     const double x = io.MouseDelta.x / height, y = io.MouseDelta.y / height;
     switch (gripOf(bench.look.hands)) {
-        case Grip::Turn:
+        case Grip::FrameTimeline:
             bench.orbit.turn(x, y);
             break;
         case Grip::Move:
@@ -113,7 +113,7 @@ void showMesh(Workbench& bench, ImVec2 low, ImVec2 size) {
     list.AddText(ImVec2(low.x + (size.x - half.x) / 2, low.y + (size.y - half.y) / 2), tint::faint, text);
 }
 
-/// One picture with its hands and overlays; `name` is what the report calls it.
+/// One picture with its input and overlays; `name` is what the report calls it.
 void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMesh) {
     ImGui::SetCursorScreenPos(low);
     ImGui::InvisibleButton(

@@ -1,4 +1,4 @@
-// The view itself: pictures of field and mesh, the hands on the camera, picking, joints and bonds.
+// The view itself: pictures of field and mesh, camera control, picking, joints and bonds.
 // Enters: the workbench. Leaves: the view in the present ImGui window. Assumes a frame of ImGui.
 #pragma once
 

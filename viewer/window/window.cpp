@@ -103,14 +103,14 @@ Result<std::unique_ptr<SharedContext>> Window::share() const {
 }
 
 void Window::listen(double seconds) { seconds > 0 ? glfwWaitEventsTimeout(seconds) : glfwPollEvents(); }
-bool Window::stirred() { return std::exchange(stirred_, false); }
+bool Window::hadInput() { return std::exchange(stirred_, false); }
 std::vector<std::filesystem::path> Window::dropped() { return std::exchange(dropped_, {}); }
 bool Window::closing() {
     const bool asked = glfwWindowShouldClose(window_);
     glfwSetWindowShouldClose(window_, GLFW_FALSE);
     return asked;
 }
-void Window::wake() { glfwPostEmptyEvent(); }
+void Window::notify() { glfwPostEmptyEvent(); }
 void Window::setTitle(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
 void Window::receive(Event event) {

@@ -42,24 +42,24 @@ public:
     /// Handles what has happened, and waits for it at most `seconds` (0: not at all).
     void listen(double seconds);
     /// Something was pressed, moved, resized or uncovered since the last call.
-    bool stirred();
+    bool hadInput();
     /// Files dropped on the window since the last call.
     std::vector<std::filesystem::path> dropped();
-    /// The person asked to close it, since the last call.
+    /// The user asked to close it, since the last call.
     bool closing();
     /// Input waits for the next frame.
     bool pending() const { return !input_.empty(); }
     /// What frames have been given so far.
-    struct Given {
+    struct InputCounters {
         double x = 0, y = 0;    ///< the pointer, pixels of the window
         unsigned buttons = 0;   ///< that are down, a bit each
         unsigned keys = 0;      ///< that are down
         uint64_t releases = 0;  ///< of keys
         double wheel = 0;       ///< clicks, up is positive
     };
-    const Given& given() const { return given_; }
+    const InputCounters& given() const { return given_; }
     /// Ends a `listen` from any thread.
-    static void wake();
+    static void notify();
 
     /// Dies before the window. Error::Internal where the driver refuses a second context.
     Result<std::unique_ptr<SharedContext>> share() const;
@@ -87,7 +87,7 @@ private:
 
     GLFWwindow* window_ = nullptr;
     std::deque<Event> input_;  ///< not yet given
-    Given given_;
+    InputCounters given_;
     bool stirred_ = true;
     std::vector<std::filesystem::path> dropped_;
 };

@@ -10,18 +10,8 @@ namespace sgm::viewer {
 
 constexpr int fogVoxels = 96, previewCells = 64;  // along the longest side
 
-namespace {
-
-/// The same file by whatever name; one that is gone, by its name.
-bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
-    std::error_code failed;
-    return std::filesystem::equivalent(a, b, failed) || (failed && a.lexically_normal() == b.lexically_normal());
-}
-
-}  // namespace
-
-Workbench::Workbench(Report& report, std::unique_ptr<SharedContext> shared, std::function<void()> wake)
-    : report(report), session(wake), preparer(std::move(shared), wake), wake_(std::move(wake)) {}
+Workbench::Workbench(Report& report, std::unique_ptr<SharedContext> shared, std::function<void()> notify)
+    : report(report), session(notify), uploader(std::move(shared), notify), notify_(std::move(notify)) {}
 
 Status Workbench::open(const std::filesystem::path& path) {
     Result<Document> opened = Document::open(path);
@@ -65,11 +55,11 @@ void Workbench::refresh() {
     followSteps();
     field.showFog(look.pane == Pane::Fog);
     if (look.pane == Pane::Fog && session.model() && askedFog_ != session.model()) {
-        preparer.retire(std::exchange(askedFog_, session.model()));
-        preparer.prepareFog(askedFog_, fogVoxels);
+        uploader.deferDelete(std::exchange(askedFog_, session.model()));
+        uploader.prepareFog(askedFog_, fogVoxels);
         settled_ = false;
     }
-    // While a hand drags, the GPU's own mesh does.
+    // While the user drags, the GPU's own mesh does.
     const int resolution = wantsMesh() && !document.dragging() ? look.meshResolution : 0;
     const bool dragging = document.dragging() && !stepper;  // steps belong to a text and its spans
     if (asked_ == document.revision() && askedResolution_ == resolution && askedDragging_ == dragging &&
@@ -97,17 +87,17 @@ bool Workbench::poll() {
         hover.reset();
         // What a slider let go of looks the same, but was made ready in haste.
         if (!framed_ || !prepared_ || prepared_->held || !looksLike(*prepared_, *session.model())) {
-            preparer.retire(std::exchange(prepared_, session.model()));
-            preparer.prepare(prepared_, !framed_);
+            uploader.deferDelete(std::exchange(prepared_, session.model()));
+            uploader.prepare(prepared_, !framed_);
         }
-        if (wantsMesh() && document.dragging()) preparer.preview(session.model(), previewCells);
+        if (wantsMesh() && document.dragging()) uploader.preview(session.model(), previewCells);
     }
-    if (session.mesh() != meshed && session.mesh()) preparer.prepare(session.mesh());
-    Preparer::News ready = preparer.poll();
+    if (session.mesh() != meshed && session.mesh()) uploader.prepare(session.mesh());
+    SceneUploader::Update ready = uploader.poll();
     if (ready.field.scene) {
         fieldTimes = ready.field.times;
         compiles += fieldTimes.compile > 0;
-        preparer.retire(field.setField(std::move(ready.field.scene)));
+        uploader.deferDelete(field.setField(std::move(ready.field.scene)));
         if (!framed_ && ready.field.camera) {
             orbit = Orbit::from(*ready.field.camera);
             framed_ = true;
@@ -142,15 +132,16 @@ bool Workbench::drawn() const {
 
 void Workbench::cancel() {
     session.cancel();
-    preparer.cancel();
-    preparer.retire(std::exchange(prepared_, nullptr));
+    uploader.cancel();
+    uploader.deferDelete(std::exchange(prepared_, nullptr));
     say("Cancelled: what is shown was made before");
 }
 
 void Workbench::exportTo(ExportRequest request) {
     request.inputs = session.usedFiles();
     if (!document.path().empty()) request.inputs.push_back(document.path());
-    if (const Status s = exporting.start(session.model(), std::move(request), wake_); !s) say(s.error().message, true);
+    if (const Status s = exporting.start(session.model(), std::move(request), notify_); !s)
+        say(s.error().message, true);
 }
 
 void Workbench::select(derive::ShapeId shape, bool quiet) {
@@ -282,7 +273,7 @@ MeshStyle Workbench::meshStyle() const {
 
 void Workbench::stepInside() {
     if (!shown()) return;
-    preparer.lookInside(session.model());
+    uploader.lookInside(session.model());
     settled_ = false;
 }
 
@@ -309,88 +300,6 @@ Result<bool> Workbench::takePictures() {
     const int next = ++turntable->next;
     orbit.yaw = turntable->yaw + 2 * pi * next / turntable->count;
     if (next == turntable->count) turntable.reset();
-    return true;
-}
-
-void Workbench::offerAbandoned() {
-    const std::vector<Abandoned> left = abandonedWork();
-    if (left.empty()) return;
-    std::error_code ignored;
-    const std::filesystem::path here = std::filesystem::absolute(document.path(), ignored);
-    const auto about =
-        document.path().empty()
-            ? left.begin()
-            : std::find_if(left.begin(), left.end(), [&](const Abandoned& a) { return sameFile(a.document, here); });
-    const auto nameOf = [](const Abandoned& a) {
-        return a.document.empty() ? "a grammar without a name" : a.document.filename().string();
-    };
-    if (about == left.end())
-        return say(fmt::format("Unsaved work on {} is kept; {} to go on with it", nameOf(left.front()),
-                               left.front().document.empty() ? "start without a file" : "open it"));
-    const Abandoned work = *about;
-    const std::string name = nameOf(work);
-    question = Question{fmt::format("The window was closed by force; unsaved work on {} was kept.", name),
-                        {{"Go on with it",
-                          [this, work] {
-                              document = Document::recovered(work.document, work.text);
-                              selected_ = derive::none;
-                              framed_ = false;
-                              asked_ = ~uint64_t(0);
-                              recovery_.keep(document);
-                              discard(work);
-                          }},
-                         {"Throw it away", [work] { discard(work); }},
-                         {"Later", {}}}};
-}
-
-void Workbench::drop(const std::filesystem::path& path) {
-    const auto go = [this, path] {
-        if (const Status s = open(path); !s) return say(s.error().message, true);
-        offerAbandoned();
-    };
-    if (!document.dirty()) return go();
-    question = Question{
-        fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
-        {{"Save and open",
-          [this, go] {
-              save();
-              if (!document.dirty()) go();
-          }},
-         {"Open without saving", go},
-         {"Stay", {}}}};
-}
-
-bool Workbench::mayClose() {
-    if (!document.dirty()) return true;
-    question = Question{
-        fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
-        {{"Save and close",
-          [this] {
-              save();
-              leaving = !document.dirty();
-          }},
-         {"Close without saving", [this] { leaving = true; }},
-         {"Stay", {}}}};
-    return false;
-}
-
-bool Workbench::lookAtFiles() {
-    if (session.usedFilesChanged()) asked_ = ~uint64_t(0);
-    switch (document.poll()) {
-        case Document::Outside::Same:
-            return asked_ == ~uint64_t(0);
-        case Document::Outside::Reloaded:
-            say("The file was changed by another program, and is read again");
-            break;
-        case Document::Outside::Gone:
-            say("The file can't be read any more; save to write it again", true);
-            break;
-        case Document::Outside::Conflict:
-            if (question) return false;
-            question = Question{"Another program has changed the file, and so have you.",
-                                {{"Take the file", [this] { (void)document.takeOutside(); }},
-                                 {"Keep mine", [this] { (void)document.keepMine(); }}}};
-    }
     return true;
 }
 

@@ -1,5 +1,6 @@
 // What the panels share: the document, what is computed of it, what is looked at and what is selected; and the verbs.
-// Enters: hands. Leaves: a document that changes by edits alone. Assumes one thread (the window's) and a GL context.
+// Enters: user input. Leaves: a document that changes by edits alone. Assumes one thread (the window's) and a GL
+// context.
 #pragma once
 
 #include <map>
@@ -16,13 +17,13 @@
 #include "viewer/window/field_view.h"
 #include "viewer/window/mesh_view.h"
 #include "viewer/window/orbit.h"
-#include "viewer/window/preparer.h"
 #include "viewer/window/report.h"
+#include "viewer/window/scene_uploader.h"
 
 namespace sgm::viewer {
 
 enum class Pane { Field, Fog, Mesh, Split };
-enum class Hands { Usual, Blender };
+enum class NavigationPreset { Usual, Blender };
 enum class JointsShown { None, Selected, All };
 
 /// How the model is looked at; not part of the document.
@@ -35,10 +36,10 @@ struct Look {
     int meshResolution = 128;  ///< cells along the longest side
     bool ground = true;
     JointsShown joints = JointsShown::Selected;
-    Hands hands = Hands::Usual;
+    NavigationPreset hands = NavigationPreset::Usual;
 };
 
-/// Something the person must decide before it goes on.
+/// Something the user must decide before it goes on.
 struct Question {
     std::string text;
     std::vector<std::pair<std::string, std::function<void()>>> answers;  ///< an empty function only closes it
@@ -60,7 +61,7 @@ struct Hover {
 class Workbench {
 public:
     /// `shared` is a context for the worker that uploads.
-    Workbench(Report& report, std::unique_ptr<SharedContext> shared, std::function<void()> wake);
+    Workbench(Report& report, std::unique_ptr<SharedContext> shared, std::function<void()> notify);
 
     // --- The document ---
     Status open(const std::filesystem::path& path);
@@ -92,7 +93,7 @@ public:
     /// A shape of the shown model, or none. The text that made it is revealed unless `quiet`.
     void select(derive::ShapeId shape, bool quiet = false);
     derive::ShapeId selected() const { return selected_; }
-    const Shown* shown() const { return session.model().get(); }
+    const BuiltModel* shown() const { return session.model().get(); }
     const derive::ShapeTree* tree() const { return shown() ? &shown()->model.derivation.tree : nullptr; }
     std::optional<Hover> hoverOf(const Pick& pick) const;
     /// Joins a shape at a joint of another: what dropping it there asks for.
@@ -123,7 +124,7 @@ public:
     bool wantsMesh() const { return look.pane == Pane::Mesh || look.pane == Pane::Split; }
     /// The field shown will make room for another: not worth a finer picture.
     bool outdated() const {
-        return preparer.makesField() || (session.busy() && session.attempted() != document.revision());
+        return uploader.makesField() || (session.busy() && session.attempted() != document.revision());
     }
     /// All that the window shows is whole.
     bool drawn() const;
@@ -135,7 +136,7 @@ public:
     Report& report;
     Document document;
     Session session;
-    Preparer preparer;
+    SceneUploader uploader;
     ExportJob exporting;
     FieldView field;
     MeshView mesh;
@@ -146,25 +147,25 @@ public:
     bool noticeIsProblem = false;
     std::optional<std::pair<uint32_t, uint32_t>> reveal;  ///< bytes of the text to show, taken by the Text panel
     std::optional<uint32_t> revealRule;                   ///< a byte of the rule to show, taken by the Rules panel
-    std::optional<Stepper> stepper;                       ///< while a person derives by hand
+    std::optional<Stepper> stepper;                       ///< while the user derives by hand
     std::string hotkeys;                                  ///< of the grammar's parameters: they go before the view's
     bool typing = false;                                  ///< the text takes keys
     std::optional<Question> question;
     std::optional<Turntable> turntable;
     bool pictureWanted = false;
     bool leaving = false;    ///< the window may close
-    bool previewed = false;  ///< the mesh shown is the GPU's, of a model that a hand is changing
-    ReadyTimes fieldTimes;   ///< that the last field took
+    bool previewed = false;  ///< the mesh shown is the GPU's, of a model that is being dragged
+    UploadTimes fieldTimes;  ///< that the last field took
     int compiles = 0;        ///< of shaders for fields, so far
 
 private:
     void resolveSelection();
 
-    bool working() const { return session.busy() || preparer.busy(); }
+    bool working() const { return session.busy() || uploader.busy(); }
     /// Leads the steps over to a new text.
     void followSteps();
 
-    std::function<void()> wake_;
+    std::function<void()> notify_;
     Recovery recovery_;
     std::shared_ptr<const derive::Derivation> byHand_;  ///< shown instead of deriving
     uint64_t steppedAt_ = 0;                            ///< the revision that the steps belong to
@@ -172,7 +173,7 @@ private:
     uint64_t asked_ = ~uint64_t(0);  ///< the revision the session was last asked for
     int askedResolution_ = 0;
     bool askedDragging_ = false;
-    std::shared_ptr<const Shown> askedFog_, prepared_;  ///< the last that the preparer was given
+    std::shared_ptr<const BuiltModel> askedFog_, prepared_;  ///< the last that the preparer was given
     const derive::Derivation* askedByHand_ = nullptr;
     bool settled_ = false;  ///< all that was computed has been taken over
     bool framed_ = false;   ///< the camera has been set for this file

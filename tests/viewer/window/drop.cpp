@@ -1,5 +1,5 @@
 // A file manager that drops a file: the source's side of the XDND protocol, version 5 (freedesktop.org).
-#include "tests/viewer/window/hands.h"
+#include "tests/viewer/window/simulated_user.h"
 
 #include <chrono>
 #include <thread>
@@ -93,7 +93,7 @@ private:
 
 }  // namespace
 
-void Hands::dropFile(const std::filesystem::path& file) {
+void NavigationPreset::dropFile(const std::filesystem::path& file) {
     Display* display = XOpenDisplay(display_.c_str());
     ASSERT_NE(display, nullptr);
     EXPECT_TRUE(Source(display, "file://" + file.string() + "\r\n").drop(640, 400)) << "the window takes no drop";

@@ -1,4 +1,4 @@
-// The camera in the hand: what stays where, and what comes into sight.
+// Camera control: what stays where, and what comes into sight.
 #include "viewer/window/orbit.h"
 
 #include <gtest/gtest.h>

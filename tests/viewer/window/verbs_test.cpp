@@ -1,6 +1,6 @@
 // The verbs that window_test.cpp leaves: every one by a real click or key. docs/viewer.md lists which test drives
 // which.
-#include "tests/viewer/window/hands.h"
+#include "tests/viewer/window/simulated_user.h"
 
 #include <fstream>
 
@@ -8,7 +8,7 @@ namespace sgm::viewer::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Verbs = Hands;
+using Verbs = NavigationPreset;
 
 constexpr const char* hall = R"(grammar 1
 param wide = 2m in 1m..4m "Width" group Size key w
@@ -278,7 +278,7 @@ TEST_F(Verbs, WorkIsCancelled) {
     key("ctrl+z");
     until("the small model", [&](const auto& s) { return s["shapes"] == shapes && !s["busy"]; });
 
-    // With the slider in hand the key does it, unless the work is done before the key comes: then again.
+    // While the slider is dragged the key does it, unless the work is done before the key comes: then again.
     const auto ended = [](const auto& s) { return s["shapes"] > 30000; };
     const auto cancelled = [](const auto& s) { return std::string(s["notice"]).starts_with("Cancelled"); };
     bool stopped = false;

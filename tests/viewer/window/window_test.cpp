@@ -1,5 +1,5 @@
 // The window driven by hand: every verb by a real click or key, asserted on text, tree or file.
-#include "tests/viewer/window/hands.h"
+#include "tests/viewer/window/simulated_user.h"
 
 #include <fstream>
 #include <sstream>
@@ -7,7 +7,7 @@
 namespace sgm::viewer::test {
 namespace {
 
-using Window = Hands;
+using Window = NavigationPreset;
 
 /// Lines that differ, from 1; −1 where the texts have other numbers of lines.
 std::vector<int> changedLines(const std::string& a, const std::string& b) {

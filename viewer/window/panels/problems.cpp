@@ -18,7 +18,7 @@ void problemsPanel(Workbench& bench) {
         ImGui::PopStyleColor();
         ImGui::SameLine();
         const std::string place = p.line ? fmt::format("line {}: ", p.line) : std::string();
-        const std::string text = place + p.message + (p.mend.empty() ? "" : "  -  " + p.mend);
+        const std::string text = place + p.message + (p.hint.empty() ? "" : "  -  " + p.hint);
         if (ImGui::Selectable(text.c_str()) && p.line) bench.revealPlace(p);
         bench.report.mark(fmt::format("problem.{}", i));
         ImGui::PopID();

@@ -262,7 +262,7 @@ void RulesPanel::attributes(Workbench& bench, const Element& element) {
                 if (a.operation == &operation) return &a;
         return nullptr;
     };
-    // Joints have a row of buttons: retargeting one is what hands do most.
+    // Joints have a row of buttons: retargeting one is whin works do most.
     if (element.op != Operator::None) {
         const syntax::Attribute* at = find(operations::at);
         constexpr std::array joints{"+x", "-x", "+y", "-y", "+z", "-z", "centre"};

@@ -16,7 +16,7 @@ std::vector<LineNote> notesOf(const Workbench& bench) {
     for (const Problem& p : bench.session.problems()) {
         if (p.file != name || p.line == 0) continue;
         const uint32_t end = p.endLine == p.line ? p.endColumn - 1 : ~uint32_t(0) >> 1;
-        notes.push_back({p.line - 1, p.column - 1, end, p.message + (p.mend.empty() ? "" : "  (" + p.mend + ")"),
+        notes.push_back({p.line - 1, p.column - 1, end, p.message + (p.hint.empty() ? "" : "  (" + p.hint + ")"),
                          p.severity == syntax::Severity::Error ? tint::error : tint::warning});
     }
     return notes;

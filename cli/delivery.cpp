@@ -1,0 +1,169 @@
+#include "cli/delivery.h"
+
+#include <fmt/format.h>
+
+#include "cli/cave.h"
+#include "cli/floating.h"
+#include "cli/gaps.h"
+#include "cli/levels.h"
+#include "cli/messages.h"
+#include "cli/missing.h"
+#include "cli/report.h"
+#include "cli/validation.h"
+#include "grammar/pipeline/files.h"
+#include "modeler/mesh/edit.h"
+
+namespace sgm::cli {
+namespace {
+
+/// What is known of a build when it is done.
+struct Figures {
+    std::vector<lower::ThinPart> missing;
+    mesh::MeshFigures mesh;  ///< of the solid, before it is turned inside out
+    Support support;
+    std::optional<volume::Cave> cave;
+};
+
+bool wantsFigures(const BuildRequest& request) { return !request.quiet || !request.report.empty(); }
+
+/// The mesh as it is written, but for its sense.
+Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, MeshedModel& meshed, Context& context) {
+    keepOnly(request.edits.keep, meshed, request.grid.threads, request.quiet);
+    const float cell_m = meshed.grid.cell_m;
+    auto mesh = pipeline::edited(std::move(meshed.mesh), request.edits, request.grid.surface, cell_m, context);
+    if (!mesh.ok()) return mesh;
+    if (mesh->triangleCount() == 0 && !allFiles(request.out).empty()) {
+        Error error = pipeline::noSurface(model, cell_m);
+        error.message += " (--cell, --resolution)";
+        return error;
+    }
+    if (request.validate)
+        if (const Status s = validated(*mesh, context); !s.ok()) return s.error();
+    if (request.edits.smooth > 0 && !request.validate && !request.quiet) warnOfFaults(*mesh, context);
+    return mesh;
+}
+
+/// The files but for solid trees, the survey with them.
+Status writeFiles(const BuildRequest& request, const Model& model, const pipeline::Products& products, Figures& figures,
+                  Context& context) {
+    exporter::ExportInput input = pipeline::exportInput(model, request.model.file);
+    input.progress = context.progress;
+    products.applyTo(input);
+    mesh::Mesh floor;
+    if (surveys(request)) {
+        auto surveyed = context.timed("cave", [&] {
+            return surveyFor({request.agent, request.floor, request.flipNormals}, input);
+        });
+        if (!surveyed.ok()) return surveyed.error();
+        figures.cave = std::move(surveyed->cave);
+        floor = std::move(surveyed->floor);
+    }
+    return context.timed("write", [&] {
+        const Status s = writeOutputs(request.out, model, input, request.grid.threads);
+        return s.ok() && !request.floor.empty() ? writeFloor(request.floor, input, floor) : s;
+    });
+}
+
+void printSummary(const BuildRequest& request, const Model& model, const pipeline::Products& products,
+                  const mesh::Grid& grid, const Figures& figures, const Stages& stages) {
+    double total = 0;
+    for (const auto& stage : stages) total += stage.second;
+    const mesh::MeshFigures& f = figures.mesh;
+    fmt::print("{} shapes, {} bonds, {} rules; {} triangles in {} component{}, {:.4g} m³; {:.2f} s\n",
+               model.derivation.tree.shapes.size(), model.derivation.tree.bonds.size(),
+               model.derivation.classic + model.derivation.morphic, f.triangles, f.components,
+               f.components == 1 ? "" : "s", f.volume_m3, total);
+    for (const std::string& file : allFiles(request.out)) fmt::print("wrote {}\n", file);
+    if (!request.floor.empty()) fmt::print("wrote {}\n", request.floor);
+    const size_t colliders = products.colliders.all.size();
+    if (!request.out.collider.empty())
+        fmt::print("{} collider{} ({})\n", colliders, colliders == 1 ? "" : "s", request.out.collider);
+    for (const std::string& note : products.colliders.notes) printMessage("note: collider: {}\n", note);
+    printFloating(model, figures.support, grid.cell_m);
+    fmt::print("{}", levelTable(products.levels, products.mesh.triangleCount()));
+    printMissingParts(model, grid, figures.missing);
+    if (figures.cave && request.cave) fmt::print("{}", caveTable(*figures.cave));
+}
+
+}  // namespace
+
+bool needsPositionsOnly(const BuildRequest& request) {
+    return request.quiet && request.report.empty() && request.edits.smooth == 0 && request.edits.simplify == 1 &&
+           !request.edits.tolerance_m && !surveys(request) && needsPositionsOnly(request.out);
+}
+
+bool solidsWillDo(const BuildRequest& request) {
+    return solidsWillDo(request.out) && request.report.empty() && !request.validate && !surveys(request);
+}
+
+Status writeSolids(const BuildRequest& request, const Model& model, Context& context) {
+    exporter::ExportInput input = pipeline::exportInput(model, request.model.file);
+    input.progress = context.progress;
+    return context.timed("solids", [&] { return writeSolids(request.out, model, input); });
+}
+
+Status deliver(const BuildRequest& request, const Model& model, pipeline::Division division, MeshedModel meshed,
+               Context& context) {
+    Figures figures;
+    if (wantsFigures(request)) {
+        auto found = context.timed(
+            "thin parts", [&] { return findMissingParts(model, meshed, request.grid.threads, context.progress); });
+        if (!found.ok()) return found.error();
+        figures.missing = std::move(*found);
+    }
+    auto mesh = editMesh(request, model, meshed, context);
+    if (!mesh.ok()) return mesh.error();
+    if (wantsFigures(request)) {
+        figures.mesh = mesh::measure(*mesh);
+        figures.support = supportOf(model, *mesh, meshed.grid.cell_m);
+        context.timed("gaps", [&] {
+            return findCauses(model, *mesh, meshed.grid.cell_m, figures.missing, figures.support), Done{};
+        });
+    }
+    if (request.flipNormals) mesh::turnInsideOut(*mesh);
+    const auto products =
+        pipeline::makeProducts(model, meshed, std::move(*mesh),
+                               {std::move(division), request.out.collider, request.out.lod, wantsLevelSet(request),
+                                request.flipNormals, request.edits, meshingOf(request.grid)},
+                               context);
+    if (!products.ok()) return products.error();
+    if (const Status s = writeFiles(request, model, *products, figures, context); !s.ok()) return s;
+    if (!request.report.empty()) {
+        const std::string json = reportJson(model, meshed, figures.mesh, figures.support, figures.missing, figures.cave,
+                                            context.stages, request.grid.threads);
+        if (const Status s = pipeline::writeText(request.report, json); !s.ok()) return s;
+    }
+    if (!request.quiet) printSummary(request, model, *products, meshed.grid, figures, context.stages);
+    return Done{};
+}
+
+Status stream(const BuildRequest& request, const Model& model, Context& context) {
+    const Stopwatch watch;
+    const mesh::Grid grid = gridOver(model.lowered->field.bounds, request.grid);
+    mesh::Counts counts;
+    const auto blocks = mesh::subdivide(model.tape, grid, request.grid.threads, context.progress, counts);
+    if (!blocks.ok()) return blocks.error();
+    size_t triangles = 0;
+    exporter::ExportInput input = pipeline::exportInput(model, request.model.file);
+    input.progress = context.progress;
+    const Status written = streamOutput(request.out, input, [&](const mesh::ChunkVisitor& visit) {
+        return mesh::polygonizeInLayers(*blocks, grid, meshingOf(request.grid, needsPositionsOnly(request.out)),
+                                        context.progress, counts,
+                                        [&](const mesh::Mesh& window, const mesh::Chunk& chunk) {
+                                            triangles += chunk.triangles.size();
+                                            return visit(window, chunk);
+                                        });
+    });
+    if (!written.ok() || request.quiet) return written;
+    fmt::print("{} shapes, {} bonds, {} rules; {} triangles; {:.2f} s\nwrote {}\n", model.derivation.tree.shapes.size(),
+               model.derivation.tree.bonds.size(), model.derivation.classic + model.derivation.morphic, triangles,
+               watch.seconds(), request.out.files[0]);
+    return Done{};
+}
+
+void printFiles(const BuildRequest& request) {
+    if (request.quiet) return;
+    for (const std::string& file : allFiles(request.out)) fmt::print("wrote {}\n", file);
+}
+
+}  // namespace sgm::cli

@@ -1,0 +1,41 @@
+// What `sgm build` does with a model: mesh, edits, validation, figures, files.
+// Enters: a request, a model. Leaves: files, and lines on stdout. Assumes a request that was checked.
+#pragma once
+
+#include "cli/outputs.h"
+#include "cli/requests.h"
+#include "grammar/pipeline/products.h"
+
+namespace sgm::cli {
+
+/// All that a user asks of `sgm build`.
+struct BuildRequest {
+    ModelRequest model;
+    GridRequest grid;
+    OutputRequest out;
+    std::vector<std::string> animations;  ///< "NAME=FROM..TO:FRAMES"
+    std::string report, agent, floor;     ///< agent as `parseAgent` reads it, "" for the usual one
+    MeshEdits edits;
+    bool validate = false, cave = false, flipNormals = false, stream = false, quiet = false;
+};
+
+/// Whether the cave is surveyed.
+inline bool surveys(const BuildRequest& request) { return request.cave || !request.floor.empty(); }
+/// Whether the blocks are needed, from which a level set is sampled.
+inline bool wantsLevelSet(const BuildRequest& request) { return wantsVolume(request.out) || surveys(request); }
+/// Whether nobody asks for the mesh's normals and origins: neither the files nor edits, the floor and the figures.
+bool needsPositionsOnly(const BuildRequest& request);
+/// Whether files of the solid tree are all that is wanted.
+bool solidsWillDo(const BuildRequest& request);
+
+/// Writes the solid tree where that is wanted: before meshing, for a model that isn't exactly one is refused.
+Status writeSolids(const BuildRequest& request, const Model& model, Context& context);
+/// From a mesh to what was asked for.
+Status deliver(const BuildRequest& request, const Model& model, pipeline::Division division, MeshedModel meshed,
+               Context& context);
+/// Meshes and writes layer by layer.
+Status stream(const BuildRequest& request, const Model& model, Context& context);
+/// Prints which files were written, unless the request is quiet.
+void printFiles(const BuildRequest& request);
+
+}  // namespace sgm::cli

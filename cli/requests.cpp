@@ -1,0 +1,144 @@
+#include "cli/requests.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+
+#include "cli/messages.h"
+#include "cli/numbers.h"
+#include "grammar/operations/operations.h"
+#include "grammar/pipeline/files.h"
+#include "grammar/rules/check.h"
+#include "grammar/syntax/parser.h"
+#include "modeler/core/printable.h"
+
+namespace sgm::cli {
+namespace {
+
+/// Shapes are counted in 32 bits.
+constexpr uint64_t mostShapes = 4'000'000'000;
+
+}  // namespace
+
+void addModelOptions(CLI::App& command, ModelRequest& request) {
+    command.add_option("FILE", request.file, "Grammar file (.sgm)")->required();
+    command.add_option("--start", request.start, "Start symbol (default: the first `start`)");
+    command.add_option("--derive", request.derive, "Run this `derive` way instead of the automatic derivation");
+    command.add_option("--set", request.settings, "Set a parameter, NAME=VALUE; may be given again")
+        ->allow_extra_args(false);
+    command.add_option("--style", request.style, "Use a named set of parameter values");
+    command.add_option("--seed", request.seed, "Seed of all random choices")->capture_default_str();
+    command.add_option("--max-shapes", request.shapeBudget, "Budget of derived shapes")
+        ->check(CLI::Range(uint64_t{1}, mostShapes))
+        ->capture_default_str();
+    command.add_option("--max-seconds", request.secondsBudget, "Budget of time for the derivation")
+        ->check(between(1e-3, 1e9))
+        ->capture_default_str();
+}
+
+void addGridOptions(CLI::App& command, GridRequest& request) {
+    auto* resolution =
+        command.add_option("--resolution", request.resolution, "Cells along the longest side of the bounds");
+    resolution->check(CLI::Range(2, 8192))->capture_default_str();
+    command.add_option("--cell", request.cell_m, "Edge of a cell in metres")
+        ->check(between(1e-6, 1e6))
+        ->excludes(resolution);
+    const std::map<std::string, mesh::Surface> surfaces{{"crisp", mesh::Surface::Crisp},
+                                                        {"cubes", mesh::Surface::Cubes}};
+    command
+        .add_option("--surface", request.surface,
+                    "crisp: creases and borders of materials are exact; cubes: plain marching cubes")
+        ->transform(CLI::CheckedTransformer(surfaces, CLI::ignore_case))
+        ->option_text("{crisp,cubes} [crisp]");
+    command.add_option("--threads", request.threads, "Threads (0: all)")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+}
+
+void addEditOptions(CLI::App& command, MeshEdits& edits) {
+    const std::map<std::string, mesh::Keep> kept{
+        {"all", mesh::Keep::All}, {"grounded", mesh::Keep::Grounded}, {"largest", mesh::Keep::Largest}};
+    command
+        .add_option("--keep", edits.keep,
+                    "Which separate solids stay: all, those that stand and aren't debris, or the largest one; the "
+                    "latter two fill closed cavities")
+        ->transform(CLI::CheckedTransformer(kept))
+        ->option_text("{all,grounded,largest} [all]");
+    command.add_option("--smooth", edits.smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
+    auto* share = command.add_option("--simplify", edits.simplify, "Simplify to at most this share of the triangles");
+    share->check(between(0.001, 1));
+    command
+        .add_option("--tolerance", edits.tolerance_m,
+                    "How far simplification may move the surface: 5mm, 2cm, .01m; 0 keeps all [a crisp mesh: .01 cell]")
+        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"mm", .001}, {"cm", .01}, {"m", 1}}))
+        ->check(between(0, 1e6))
+        ->excludes(share);
+}
+
+Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& request, Context& context,
+                                                          std::vector<std::filesystem::path>* read) {
+    Result<syntax::SourcePtr> source = pipeline::readSource(request.file);
+    if (!source.ok()) return source.error();
+    std::vector<std::filesystem::path> inputs{request.file};
+    syntax::Diagnostics diagnostics;
+    const syntax::Ast ast =
+        context.timed("parse", [&] { return syntax::parse(*source, operations::table(), diagnostics); });
+    auto grammar = context.timed(
+        "check", [&] { return rules::check(ast, pipeline::fileLoader(context.progress, &inputs), diagnostics); });
+    if (cancelled(context.progress)) return cancelledError();
+    printDiagnostics(diagnostics);
+    if (diagnostics.hasErrors()) return Error{Error::Kind::Reported, "the grammar has errors"};
+    if (const Status s = checkAgainstInputs(request.targets, inputs); !s.ok()) return s.error();
+    if (read) read->insert(read->end(), inputs.begin(), inputs.end());
+    return grammar;
+}
+
+Result<Model> makeModel(const ModelRequest& request, Context& context) {
+    const auto grammar = loadGrammar(request, context);
+    if (!grammar.ok()) return grammar.error();
+    const auto options = optionsFor(**grammar, request);
+    if (!options.ok()) return options.error();
+    return makeModel(*grammar, *options, context);
+}
+
+void printWarnings(const Model& model) { printDiagnostics(derive::warnings(model.derivation)); }
+
+mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request) {
+    return mesh::gridFor(
+        bounds, request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution));
+}
+
+mesh::PolygonizeOptions meshingOf(const GridRequest& request, bool positionsOnly) {
+    mesh::PolygonizeOptions options;
+    options.surface = request.surface;
+    options.threads = request.threads;
+    options.positionsOnly = positionsOnly;
+    return options;
+}
+
+Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Context& context, bool positionsOnly) {
+    return makeMesh(model, gridOver(model.lowered->field.bounds, request), meshingOf(request, positionsOnly), context);
+}
+
+int fail(const Error& error) {
+    constexpr size_t longest = 4000;
+    if (error.kind != Error::Kind::Reported)
+        printMessage("sgm: {}\n", shortened(printable(error.message, true), longest));
+    switch (error.kind) {
+        case Error::Kind::Usage:
+            return 2;
+        case Error::Kind::Budget:
+            return 3;
+        case Error::Kind::Cancelled:
+            return 130;
+        case Error::Kind::Input:
+        case Error::Kind::Reported:
+        case Error::Kind::Internal:
+            return 1;
+    }
+    return 1;
+}
+
+}  // namespace sgm::cli

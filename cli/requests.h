@@ -1,0 +1,74 @@
+// What users ask for of a model, a grid and edits of the mesh: the options that commands share, and the stages of
+// grammar/pipeline called as they say.
+// Enters: a command line. Leaves: each stage's product. Assumes stages are called in order.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/targets.h"
+#include "grammar/pipeline/mesh_edits.h"
+#include "grammar/pipeline/meshing.h"
+
+namespace CLI {
+class App;
+}
+
+namespace sgm::cli {
+
+using pipeline::Context;
+using pipeline::makeMesh;
+using pipeline::makeModel;
+using pipeline::MeshEdits;
+using pipeline::MeshedModel;
+using pipeline::Model;
+using pipeline::optionsFor;
+using pipeline::Stages;
+
+/// Which model of which file: the options that every command about a model takes.
+struct ModelRequest : pipeline::ModelChoice {
+    std::string file;
+    std::vector<Target> targets;  ///< what will be written, which may replace no file that is read
+};
+/// Adds FILE, --start, --derive, --set, --style, --seed and the budgets.
+void addModelOptions(CLI::App& command, ModelRequest& request);
+
+/// How fine and how: --resolution or --cell, --surface and --threads.
+struct GridRequest {
+    int resolution = 128;
+    double cell_m = 0;  ///< > 0 wins over resolution
+    mesh::Surface surface = mesh::Surface::Crisp;
+    int threads = 0;
+};
+void addGridOptions(CLI::App& command, GridRequest& request);
+
+/// Adds --keep, --smooth, --simplify and --tolerance.
+void addEditOptions(CLI::App& command, MeshEdits& edits);
+
+/// Parse and check, stages "parse" and "check". Prints diagnostics to stderr; Error::Reported when there were errors.
+/// Error::Usage where a target of the request is a file that was read; all of these are added to `read` unless it is
+/// null.
+Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& request, Context& context,
+                                                          std::vector<std::filesystem::path>* read = nullptr);
+
+/// A model from the file on.
+Result<Model> makeModel(const ModelRequest& request, Context& context);
+
+/// Prints derive::warnings, what every command about a model tells.
+void printWarnings(const Model& model);
+
+/// How the mesher is to work; `positionsOnly` as in PolygonizeOptions.
+mesh::PolygonizeOptions meshingOf(const GridRequest& request, bool positionsOnly = false);
+/// The grid that is asked for over these bounds.
+mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request);
+/// The mesh of the model over its own bounds, `positionsOnly` or with normals and origins.
+Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Context& context,
+                             bool positionsOnly = false);
+
+/// Prints "sgm: …" to stderr unless the error was reported already, and gives the exit code: 1 input, 2 usage, 3
+/// budget, 130 cancelled.
+int fail(const Error& error);
+
+}  // namespace sgm::cli

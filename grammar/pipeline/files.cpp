@@ -1,0 +1,244 @@
+#include "grammar/pipeline/files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <map>
+#include <optional>
+
+#include "grammar/syntax/lexer.h"
+#include "modeler/core/atomic_file.h"
+#include "modeler/core/installation.h"
+#include "modeler/core/regular_file.h"
+#include "modeler/mesh/distances.h"
+
+namespace sgm::pipeline {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The standard library stands beside the installed program or library, or in the tree it was built from.
+fs::path standardLibrary() {
+    std::error_code ignored;
+    for (const fs::path& folder : binaryFolders())
+        for (const char* beside : {"../share/sgm/std", "../../share/sgm/std"})
+            if (fs::is_directory(folder / beside, ignored)) return fs::weakly_canonical(folder / beside, ignored);
+    return SGM_STANDARD_LIBRARY;
+}
+
+/// More text than anybody writes; a larger file is something else.
+constexpr uint64_t mostGrammar_bytes = 16u << 20;
+constexpr const char* outside = "a grammar may only use files in its own folder or in std/";
+
+/// Whether a normal path begins with `name`.
+bool beginsWith(const fs::path& path, const char* name) { return !path.empty() && *path.begin() == name; }
+
+bool hasControlCharacter(const std::string& name) {
+    return std::any_of(name.begin(), name.end(),
+                       [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+}
+
+/// Where a name that stands in `from` lies, or nothing with `why` set. Every spelling of a file gives the same path,
+/// and so does a link within the folder; one that leads out of it is refused like "../".
+std::optional<fs::path> pathOf(const std::string& name, const syntax::Source& from, std::string& why) {
+    const fs::path wanted = fs::path(name).lexically_normal();
+    if (hasControlCharacter(name))
+        why = "a file's name holds no control characters";
+    else if (wanted.is_absolute() || beginsWith(wanted, ".."))
+        why = outside;
+    else {
+        const bool standard = beginsWith(wanted, "std") && wanted != "std";
+        const fs::path folder = standard ? standardLibrary() : fs::path(from.name()).parent_path();
+        std::error_code failed;
+        const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, failed);
+        const fs::path real =
+            failed ? fs::path()
+                   : fs::weakly_canonical(root / (standard ? wanted.lexically_relative("std") : wanted), failed);
+        const fs::path within = real.lexically_relative(root);
+        if (failed)
+            why = failed.message();
+        else if (within.empty() || beginsWith(within, ".."))
+            why = outside;
+        else
+            return folder / within;
+    }
+    return {};
+}
+
+/// Why a file that isn't there can't be read, in the words of the grammar: no path of this machine, and the nearest
+/// name.
+std::string missingFile(const std::string& name, const fs::path& path) {
+    std::vector<std::string> names;
+    std::error_code failed;
+    for (const auto& entry : fs::directory_iterator(path.parent_path(), failed))
+        if (entry.path().extension() == path.extension()) names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    const std::string near = syntax::didYouMean(path.filename().string(), names);
+    const std::string folder = name.substr(0, name.find_last_of('/') + 1);
+    return near.empty() ? "there is no such file"
+                        : fmt::format("there is no such file; did you mean \"{}{}\"?", folder, near);
+}
+
+/// Whether a text begins as a grammar does. What doesn't is never quoted in a message: it may be anything.
+bool beginsAsGrammar(const syntax::Source& source) {
+    constexpr size_t enough = 1 << 16;  // of comments before the first word
+    const syntax::Source head("", std::string(source.text().substr(0, enough)));
+    const std::vector<syntax::Token> tokens = syntax::lexSignificant(head);
+    return !tokens.empty() && head.text().substr(tokens[0].begin, tokens[0].end - tokens[0].begin) == "grammar";
+}
+
+/// The names that the files of the standard library declare, with their files; read when first asked for.
+class LibraryNames {
+public:
+    std::string operator()(const std::string& name) {
+        if (!read_) read();
+        const auto file = files_.find(name);
+        return file == files_.end() ? std::string() : file->second;
+    }
+
+private:
+    void read() {
+        read_ = true;
+        std::vector<fs::path> paths;
+        std::error_code failed;
+        for (const auto& entry : fs::directory_iterator(standardLibrary(), failed))
+            if (entry.path().extension() == ".sgm") paths.push_back(entry.path());
+        std::sort(paths.begin(), paths.end());
+        for (const fs::path& path : paths)
+            if (const auto source = readSource(path); source.ok()) note(**source, "std/" + path.filename().string());
+    }
+
+    /// `terminal a, b = …` and `rule Name: Symbol …`: the words before what follows names.
+    void note(const syntax::Source& source, const std::string& file) {
+        const std::vector<syntax::Token> tokens = syntax::lexSignificant(source);
+        const auto text = [&](size_t i) {
+            return i < tokens.size() ? syntax::textOf(source, tokens[i]) : std::string_view();
+        };
+        for (size_t i = 0; i < tokens.size(); ++i) {
+            if (!tokens[i].columnOne || (text(i) != "terminal" && text(i) != "rule")) continue;
+            size_t at = i + 1;
+            if (text(i) == "rule" && text(at + 1) == ":") at += 2;
+            files_.try_emplace(std::string(text(at)), file);
+            for (; text(i) == "terminal" && text(at + 1) == ","; at += 2)
+                files_.try_emplace(std::string(text(at + 2)), file);
+        }
+    }
+
+    bool read_ = false;
+    std::map<std::string, std::string> files_;
+};
+
+/// Meshes read so far. A text is checked again at every edit, and distances take a good part of a second.
+class Meshes {
+public:
+    explicit Meshes(const Progress* progress) : progress_(progress) {}
+
+    Result<field::SampledGridPtr> operator()(const fs::path& path) {
+        std::error_code failed;
+        const auto time = fs::last_write_time(path, failed);
+        Read& read = known_[path.string()];
+        if (!failed && read.grid && read.time == time) return read.grid;
+        auto grid = mesh::readDistances(path, progress_);
+        read = {time, grid.ok() ? *grid : nullptr};
+        return grid;
+    }
+
+private:
+    struct Read {
+        fs::file_time_type time;
+        field::SampledGridPtr grid;
+    };
+    const Progress* progress_;
+    std::map<std::string, Read> known_;
+};
+
+/// Outlines read so far.
+class OutlineFiles {
+public:
+    explicit OutlineFiles(const Progress* progress) : progress_(progress) {}
+
+    Result<std::shared_ptr<const plan::Features>> operator()(const fs::path& path) {
+        std::error_code failed;
+        const auto time = fs::last_write_time(path, failed);
+        Read& read = known_[path.string()];
+        if (!failed && read.features && read.time == time) return read.features;
+        auto features = plan::readOutlines(path, {}, progress_);
+        if (!features.ok()) return features.error();
+        read = {time, std::make_shared<const plan::Features>(std::move(*features))};
+        return read.features;
+    }
+
+private:
+    struct Read {
+        fs::file_time_type time;
+        std::shared_ptr<const plan::Features> features;
+    };
+    const Progress* progress_;
+    std::map<std::string, Read> known_;
+};
+
+}  // namespace
+
+Result<syntax::SourcePtr> readSource(const fs::path& path) {
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored))
+        return Error{Error::Kind::Input, fmt::format("'{}' is a folder, not a grammar file", path.string())};
+    Result<std::string> text = readRegularFile(path, mostGrammar_bytes);
+    if (!text.ok())
+        return Error{Error::Kind::Input, fmt::format("can't read '{}': {}", path.string(), text.error().message)};
+    return std::make_shared<const syntax::Source>(path.string(), std::move(*text));
+}
+
+rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) {
+    const auto note = [read](const fs::path& path) {
+        if (read) read->push_back(path);
+    };
+    rules::Loader loader(
+        [note](const std::string& name, const syntax::Source& from, std::string& why) -> syntax::SourcePtr {
+            const auto path = pathOf(name, from, why);
+            if (!path) return nullptr;
+            note(*path);
+            std::error_code failed;
+            if (!fs::exists(*path, failed) && !failed) return why = missingFile(name, *path), nullptr;
+            Result<syntax::SourcePtr> source = readSource(*path);
+            if (source.ok() && beginsAsGrammar(**source)) return *source;
+            why = source.ok() ? "it is no grammar: one begins with 'grammar 1'" : source.error().message;
+            return nullptr;
+        });
+    loader.mesh = [note, meshes = Meshes(progress)](const std::string& name, const syntax::Source& from,
+                                                    std::string& why) mutable -> field::SampledGridPtr {
+        const auto path = pathOf(name, from, why);
+        if (!path) return nullptr;
+        note(*path);
+        const auto grid = meshes(*path);
+        if (grid.ok()) return *grid;
+        why = grid.error().message;
+        return nullptr;
+    };
+    loader.outlines = [note, files = OutlineFiles(progress)](
+                          const std::string& name, const syntax::Source& from,
+                          std::string& why) mutable -> std::shared_ptr<const plan::Features> {
+        const auto path = pathOf(name, from, why);
+        if (!path) return nullptr;
+        note(*path);
+        const auto features = files(*path);
+        if (features.ok()) return *features;
+        why = features.error().message;
+        return nullptr;
+    };
+    loader.declares = [names = LibraryNames()](const std::string& name) mutable { return names(name); };
+    return loader;
+}
+
+Status writeText(const fs::path& path, const std::string& text) {
+    return replaceFile(path, [&](const fs::path& temporary) -> Status {
+        std::ofstream file(temporary, std::ios::binary);
+        file << text;
+        file.close();
+        return file ? Status(Done{}) : Status(writeError(path, errno ? errno : EIO));
+    });
+}
+
+}  // namespace sgm::pipeline

@@ -1,0 +1,28 @@
+// Reading grammar files, and finding what `use` names.
+// Enters: paths. Leaves: sources. Assumes that only cli/ and viewer/ read the disk.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "grammar/rules/check.h"
+#include "modeler/core/progress.h"
+#include "modeler/core/result.h"
+
+namespace sgm::pipeline {
+
+/// The file's text as a source named as the user wrote it; Error::Input when it can't be read, is no regular file or
+/// larger than 16 MiB.
+Result<syntax::SourcePtr> readSource(const std::filesystem::path& path);
+
+/// Finds "std/…" in the standard library shipped with the program and other names beside the file that uses them;
+/// refuses names that lead outside these two folders, also through links, files that aren't regular, and used files
+/// that don't begin as a grammar does, without a word of what they hold. A loader reads a mesh again only when its file
+/// has changed; reading one ends early when `progress` says so. The paths of all files that are asked for are added to
+/// `read`, unless it is null; both outlive the loader.
+rules::Loader fileLoader(const Progress* progress = nullptr, std::vector<std::filesystem::path>* read = nullptr);
+
+/// Writes text beside `path` and renames it into place.
+Status writeText(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace sgm::pipeline

@@ -1,0 +1,68 @@
+#include "grammar/pipeline/incremental.h"
+
+#include <utility>
+
+namespace sgm::pipeline {
+
+Status IncrementalPipeline::derive(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options,
+                                   Progress* progress) {
+    const Status done = derivation_.to(std::move(grammar), options, progress);
+    lowered_ = lowered_ && done.ok() && !derivation_.whole();
+    return done;
+}
+
+Status IncrementalPipeline::lower(Progress* progress) {
+    const bool follows = std::exchange(lowered_, false);
+    const Status done = follows ? lowering_.follow(derivation(), derivation_.changed(), progress)
+                                : lowering_.startOver(derivation(), progress);
+    lowered_ = done.ok();
+    return done;
+}
+
+void IncrementalPipeline::compile() {
+    if (lowering_.whole())
+        compiler_.startOver(model().graph, model().field);
+    else
+        compiler_.follow(model().graph, model().field);
+}
+
+Status IncrementalPipeline::to(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options,
+                               Context& context) {
+    const Status derived = context.timed("derive", [&] { return derive(grammar, options, context.progress); });
+    if (!derived.ok()) return derived;
+    const Status lowered = context.timed("lower", [&] { return lower(context.progress); });
+    if (!lowered.ok()) return lowered;
+    context.timed("compile", [&] { return compile(), Done{}; });
+    return Done{};
+}
+
+Model IncrementalPipeline::viewModel() const {
+    return Model{derivation(), std::shared_ptr<const lower::Model>(std::shared_ptr<void>(), &model()), tape()};
+}
+
+Model IncrementalPipeline::copyModel() const {
+    auto lowered = std::make_unique<lower::Model>();
+    lowered->field = model().field;
+    lowered->field.value = {};
+    lowered->provenance = model().provenance;
+    lowered->shapeOf = model().shapeOf;
+    return Model{derivation(), std::move(lowered), tape()};
+}
+
+Result<MeshedModel> IncrementalPipeline::meshed(const mesh::Grid& grid, Context& context) {
+    MeshedModel made;
+    made.grid = grid;
+    const auto whole = mesh(grid, context.progress, made.counts);
+    if (!whole.ok()) return whole.error();
+    made.mesh = **whole;
+    context.stages.emplace_back("subdivide", made.counts.subdivideSeconds);
+    context.stages.emplace_back("sample", made.counts.sampleSeconds);
+    context.stages.emplace_back("polygonize", made.counts.polygonizeSeconds);
+    return made;
+}
+
+Result<const mesh::Mesh*> IncrementalPipeline::mesh(const mesh::Grid& grid, Progress* progress, mesh::Counts& counts) {
+    return rebuild_.update(tape(), grid, progress, counts, compiler_.whole() ? nullptr : &compiler_.changed());
+}
+
+}  // namespace sgm::pipeline

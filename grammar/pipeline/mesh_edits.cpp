@@ -1,0 +1,32 @@
+#include "grammar/pipeline/mesh_edits.h"
+
+#include "modeler/mesh/edit.h"
+#include "modeler/mesh/simplify.h"
+
+namespace sgm::pipeline {
+
+double toleranceOf(const MeshEdits& edits, mesh::Surface surface, float cell_m) {
+    if (edits.tolerance_m) return *edits.tolerance_m;
+    return surface == mesh::Surface::Crisp && edits.smooth == 0 ? mesh::usualTolerance(cell_m) : 0;
+}
+
+Result<mesh::Mesh> edited(mesh::Mesh mesh, const MeshEdits& edits, mesh::Surface surface, float cell_m,
+                          Context& context) {
+    if (edits.smooth > 0) {
+        auto result = context.timed("smooth", [&] { return mesh::smooth(mesh, edits.smooth, context.progress); });
+        if (!result.ok()) return result;
+        mesh = std::move(*result);
+    }
+    const double tolerance_m = toleranceOf(edits, surface, cell_m);
+    if ((edits.simplify < 1 || tolerance_m > 0) && mesh.triangleCount() > 0) {
+        auto result = context.timed("simplify", [&] {
+            return edits.simplify < 1 ? mesh::simplifyToShare(mesh, edits.simplify, context.threads, context.progress)
+                                      : mesh::simplify(mesh, {tolerance_m, context.threads}, context.progress);
+        });
+        if (!result.ok()) return result;
+        mesh = std::move(*result);
+    }
+    return mesh;
+}
+
+}  // namespace sgm::pipeline

@@ -1,0 +1,31 @@
+// What is done to a mesh after it was made, so that a picture of a mesh is the mesh that is written.
+// Enters: a mesh as it comes from makeMesh. Leaves: the edited one.
+#pragma once
+
+#include <optional>
+
+#include "grammar/pipeline/context.h"
+#include "modeler/core/result.h"
+#include "modeler/mesh/connected_components.h"
+#include "modeler/mesh/polygonize.h"
+
+namespace sgm::pipeline {
+
+struct MeshEdits {
+    mesh::Keep keep = mesh::Keep::All;       ///< which connected components stay
+    int smooth = 0;                          ///< passes of Laplacian smoothing
+    double simplify = 1;                     ///< share of the triangles that stay
+    std::optional<double> tolerance_m = {};  ///< none: see toleranceOf
+
+    bool isAsked() const { return smooth > 0 || simplify < 1 || tolerance_m || keep != mesh::Keep::All; }
+};
+
+/// How far simplification may move the surface, metres: of a crisp mesh a hundredth of a cell, unless the edits say
+/// otherwise or smooth it; 0 keeps all triangles.
+double toleranceOf(const MeshEdits& edits, mesh::Surface surface, float cell_m);
+
+/// Smooths and simplifies, stages "smooth" and "simplify"; components were dropped before (mesh::keepOnly).
+Result<mesh::Mesh> edited(mesh::Mesh mesh, const MeshEdits& edits, mesh::Surface surface, float cell_m,
+                          Context& context);
+
+}  // namespace sgm::pipeline

@@ -1,0 +1,48 @@
+#include "grammar/pipeline/meshing.h"
+
+#include <fmt/format.h>
+
+namespace sgm::pipeline {
+
+Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::PolygonizeOptions options,
+                             Context& context) {
+    options.threads = context.threads;
+    MeshedModel made;
+    made.grid = grid;
+    auto blocks = context.timed("subdivide", [&] {
+        return mesh::subdivide(model.tape, made.grid, options.threads, context.progress, made.counts);
+    });
+    if (!blocks.ok()) return blocks.error();
+    made.blocks = std::move(*blocks);
+    const Stopwatch watch;
+    auto mesh = mesh::polygonize(made.blocks, made.grid, options, context.progress, made.counts);
+    const double seconds = watch.seconds();
+    if (!mesh.ok()) return mesh.error();
+    made.mesh = std::move(*mesh);
+    // polygonize samples and makes triangles; its wall time is shared out by the time its workers counted for each.
+    const double counted = made.counts.sampleSeconds + made.counts.polygonizeSeconds;
+    const double share = counted > 0 ? made.counts.sampleSeconds / counted : 0;
+    context.stages.emplace_back("sample", seconds * share);
+    context.stages.emplace_back("polygonize", seconds * (1 - share));
+    return made;
+}
+
+mesh::Grid gridOf(const Model& model, int cells) {
+    const Box3f& bounds = model.lowered->field.bounds;
+    return mesh::gridFor(bounds, mesh::cellFor(bounds, cells));
+}
+
+Error noSurface(const Model& model, float cell_m) {
+    return {Error::Kind::Input,
+            fmt::format("{}there is no surface at cells of {:.3g} m: all is cut away, or thinner than a cell",
+                        syntax::placeText(model.derivation.tree.shapes[0].span), cell_m)};
+}
+
+Result<volume::Volume> levelSet(const Model& model, const MeshedModel& meshed, Context& context) {
+    return context.timed("level set", [&] {
+        return volume::sample(meshed.blocks, model.tape, meshed.grid, volume::usualHalfWidth, context.threads,
+                              context.progress);
+    });
+}
+
+}  // namespace sgm::pipeline

@@ -1,0 +1,32 @@
+// From a model to its mesh and level set.
+// Enters: a model, a grid. Leaves: a mesh with the blocks it came from. Assumes a bounded model.
+#pragma once
+
+#include <vector>
+
+#include "grammar/pipeline/model.h"
+#include "modeler/mesh/polygonize.h"
+#include "modeler/volume/volume.h"
+
+namespace sgm::pipeline {
+
+/// A mesh with the grid and blocks it came from.
+struct MeshedModel {
+    mesh::Grid grid;
+    std::vector<mesh::Block> blocks;
+    mesh::Mesh mesh;
+    mesh::Counts counts;
+};
+/// Stages "subdivide", "sample" and "polygonize", on `context.threads` threads whatever `options` say of them.
+Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::PolygonizeOptions options,
+                             Context& context);
+/// The grid over the model's bounds with so many cells along their longest side.
+mesh::Grid gridOf(const Model& model, int cells);
+
+/// Error::Input, located at the start's rule, for a model that has no surface at cells of `cell_m` metres.
+Error noSurface(const Model& model, float cell_m);
+
+/// The level set of the model, of the usual narrow band, from the blocks of its mesh. Stage "level set".
+Result<volume::Volume> levelSet(const Model& model, const MeshedModel& meshed, Context& context);
+
+}  // namespace sgm::pipeline

@@ -1,0 +1,52 @@
+// From a checked grammar to a field that can be drawn or meshed, stage by stage with times: what the window and the
+// commands share.
+// Enters: a Grammar and what is chosen of it. Leaves: a Model. Assumes nothing; long stages report and can be
+// cancelled.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "grammar/derive/derive.h"
+#include "grammar/lower/lower.h"
+#include "grammar/pipeline/context.h"
+#include "modeler/eval/tape.h"
+
+namespace sgm::pipeline {
+
+/// Which model of a grammar, by names.
+struct ModelChoice {
+    std::string start, derive, style;   ///< "" for the first, the automatic one, none
+    std::vector<std::string> settings;  ///< "NAME=VALUE"
+    uint64_t seed = 1;
+    uint64_t shapeBudget = derive::Budget{}.shapes;
+    double secondsBudget = derive::Budget{}.seconds;
+};
+
+/// A value that is another than the grammar's own: what an edit of the text changes while a slider is dragged.
+struct ValueChange {
+    uint32_t param = rules::none;             ///< index in Grammar::params; none where nothing changes
+    const rules::Setting* setting = nullptr;  ///< the style's setting that has it; null for the parameter's default
+    rules::Value value = {};
+};
+
+/// Resolves the names against the grammar; Error::Usage for unknown ones, Error::Input for bad values. With `change`
+/// the values are those of the grammar that has this value.
+Result<derive::Options> optionsFor(const rules::Grammar& grammar, const ModelChoice& choice,
+                                   const ValueChange& change = {});
+
+/// A field ready to draw or mesh.
+struct Model {
+    derive::Derivation derivation;
+    std::shared_ptr<const lower::Model> lowered;
+    eval::Tape tape;
+};
+/// Stages "derive", "lower", "compile". Errors as of those stages.
+Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options,
+                        Context& context);
+/// The last two stages, for a derivation that was made otherwise.
+Result<Model> makeModel(derive::Derivation derivation, Context& context);
+
+}  // namespace sgm::pipeline

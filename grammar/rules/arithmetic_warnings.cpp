@@ -1,0 +1,73 @@
+#include "grammar/rules/arithmetic_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "grammar/rules/evaluate.h"
+
+namespace sgm::rules {
+namespace {
+
+bool hasZero(const Value& v) {
+    return v.kind != Value::Kind::Rotation &&
+           std::any_of(v.n.begin(), v.n.begin() + v.count, [](double n) { return n == 0; });
+}
+
+ArithmeticWarning divisionByZero(const Expr& call) {
+    const Expr& divisor = call.args[1];
+    const bool literal = divisor.kind == Expr::Kind::Constant;
+    return {call.span, literal ? "divided by 0" : fmt::format("divided by 0: '{}' is 0", divisor.span.text()),
+            literal ? "the result counts as 0"
+                    : fmt::format("the result counts as 0: keep '{0}' from 0, or write 'max({0}, …)'",
+                                  divisor.span.text())};
+}
+
+std::optional<ArithmeticWarning> rgbDoubt(const Expr& call, std::span<const Value> args) {
+    constexpr double slack = 1e-9;
+    for (size_t i = 0; i < args.size(); ++i) {
+        const double share = args[i].num();
+        if (share >= -slack && share <= 1 + slack) continue;
+        const bool bytes = share > 1 && share <= 255;
+        return ArithmeticWarning{
+            call.args[i].span, fmt::format("'rgb' takes shares 0 … 1, but this is {:.6g}", share),
+            bytes ? fmt::format("write '{} / 255', or the colour as #rrggbb", call.args[i].span.text())
+                  : "it counts as the nearest of both ends"};
+    }
+    return {};
+}
+
+}  // namespace
+
+std::optional<ArithmeticWarning> findArithmeticWarning(const Expr& call, std::span<const Value> args) {
+    switch (static_cast<Fn>(call.index)) {
+        case Fn::Div:
+        case Fn::Rem:
+            if (args.size() == 2 && hasZero(args[1])) return divisionByZero(call);
+            return {};
+        case Fn::Sqrt:
+            if (args.empty() || !(args[0].num() < 0)) return {};
+            return ArithmeticWarning{call.span, fmt::format("square root of a negative number: {:.6g}", args[0].num()),
+                                     "the root counts as 0: write 'sqrt(max(0, …))' where that is meant"};
+        case Fn::Rgb:
+            return rgbDoubt(call, args);
+        default:
+            return {};
+    }
+}
+
+std::optional<ArithmeticWarning> findDoubtWithin(const Expr& e, std::span<const Value> params) {
+    const bool calls = e.kind == Expr::Kind::Unary || e.kind == Expr::Kind::Binary || e.kind == Expr::Kind::Call;
+    if (calls && static_cast<Fn>(e.index) == Fn::If) {
+        const auto holds = fold(e.args[0], params);
+        return holds ? findDoubtWithin(e.args[holds->truth() ? 1 : 2], params) : std::nullopt;
+    }
+    std::vector<Value> values;
+    for (const Expr& arg : e.args) {
+        if (auto suspect = findDoubtWithin(arg, params)) return suspect;
+        if (auto value = fold(arg, params)) values.push_back(std::move(*value));
+    }
+    return calls && values.size() == e.args.size() ? findArithmeticWarning(e, values) : std::nullopt;
+}
+
+}  // namespace sgm::rules

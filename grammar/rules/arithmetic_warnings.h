@@ -1,0 +1,27 @@
+// Values that a function takes and hardly anybody means: what the checker and a derivation warn of.
+// Enters: a call and the values of its arguments. Leaves: a message with its fix.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "grammar/rules/grammar.h"
+
+namespace sgm::rules {
+
+/// What is doubtful about a call, and where.
+struct ArithmeticWarning {
+    SourceSpan span;
+    std::string message, hint;
+};
+
+/// A division by 0, the square root of a negative number, a share of a colour beyond 0 … 1. `args` are the values of
+/// the arguments of `call`, a Unary, Binary or Call.
+std::optional<ArithmeticWarning> findArithmeticWarning(const Expr& call, std::span<const Value> args);
+
+/// The first doubtful call within `e` where the parameters have these values; what they don't decide is left out, and
+/// so is the branch of an `if` that isn't taken.
+std::optional<ArithmeticWarning> findDoubtWithin(const Expr& e, std::span<const Value> params);
+
+}  // namespace sgm::rules

@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "viewer/window/workbench.h"
+
+namespace sgm::viewer {
+namespace {
+
+/// The same file by whatever name; one that is gone, by its name.
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code failed;
+    return std::filesystem::equivalent(a, b, failed) || (failed && a.lexically_normal() == b.lexically_normal());
+}
+
+}  // namespace
+
+void Workbench::offerAbandoned() {
+    const std::vector<Abandoned> left = abandonedWork();
+    if (left.empty()) return;
+    std::error_code ignored;
+    const std::filesystem::path here = std::filesystem::absolute(document.path(), ignored);
+    const auto about =
+        document.path().empty()
+            ? left.begin()
+            : std::find_if(left.begin(), left.end(), [&](const Abandoned& a) { return sameFile(a.document, here); });
+    const auto nameOf = [](const Abandoned& a) {
+        return a.document.empty() ? "a grammar without a name" : a.document.filename().string();
+    };
+    if (about == left.end())
+        return say(fmt::format("Unsaved work on {} is kept; {} to go on with it", nameOf(left.front()),
+                               left.front().document.empty() ? "start without a file" : "open it"));
+    const Abandoned work = *about;
+    const std::string name = nameOf(work);
+    question = Question{fmt::format("The window was closed by force; unsaved work on {} was kept.", name),
+                        {{"Go on with it",
+                          [this, work] {
+                              document = Document::recovered(work.document, work.text);
+                              selected_ = derive::none;
+                              framed_ = false;
+                              asked_ = ~uint64_t(0);
+                              recovery_.keep(document);
+                              discard(work);
+                          }},
+                         {"Throw it away", [work] { discard(work); }},
+                         {"Later", {}}}};
+}
+
+void Workbench::drop(const std::filesystem::path& path) {
+    const auto go = [this, path] {
+        if (const Status s = open(path); !s) return say(s.error().message, true);
+        offerAbandoned();
+    };
+    if (!document.dirty()) return go();
+    question = Question{
+        fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
+        {{"Save and open",
+          [this, go] {
+              save();
+              if (!document.dirty()) go();
+          }},
+         {"Open without saving", go},
+         {"Stay", {}}}};
+}
+
+bool Workbench::mayClose() {
+    if (!document.dirty()) return true;
+    question = Question{
+        fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
+        {{"Save and close",
+          [this] {
+              save();
+              leaving = !document.dirty();
+          }},
+         {"Close without saving", [this] { leaving = true; }},
+         {"Stay", {}}}};
+    return false;
+}
+
+bool Workbench::lookAtFiles() {
+    if (session.usedFilesChanged()) asked_ = ~uint64_t(0);
+    switch (document.poll()) {
+        case Document::Outside::Same:
+            return asked_ == ~uint64_t(0);
+        case Document::Outside::Reloaded:
+            say("The file was changed by another program, and is read again");
+            break;
+        case Document::Outside::Gone:
+            say("The file can't be read any more; save to write it again", true);
+            break;
+        case Document::Outside::Conflict:
+            if (question) return false;
+            question = Question{"Another program has changed the file, and so have you.",
+                                {{"Take the file", [this] { (void)document.takeOutside(); }},
+                                 {"Keep mine", [this] { (void)document.keepMine(); }}}};
+    }
+    return true;
+}
+
+}  // namespace sgm::viewer
