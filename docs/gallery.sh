@@ -3,12 +3,13 @@
 #   ./run.sh gallery            all of it
 #   ./run.sh gallery NAME…      the pictures of these objects of docs/gallery.txt
 #   ./run.sh gallery times      the times alone: on a calm machine
-#   ./run.sh gallery window     the picture of the window (apt-get install xvfb xdotool imagemagick)
+#   ./run.sh gallery window     the pictures of the window (apt-get install xvfb xdotool imagemagick)
+#   ./run.sh gallery sheet      the tutorial's sheet of variations
 #   ./run.sh gallery blender    two models in Blender (apt-get install blender), for docs/programs.md
 cd "$(dirname "$0")/.."
 set -eu
 sgm=build/release/cli/sgm
-mkdir -p docs/pictures docs/pictures/footprints
+mkdir -p docs/pictures/footprints docs/pictures/tutorial
 export drawn
 drawn=$(mktemp -d)
 trap 'rm -rf "$drawn"' EXIT
@@ -44,6 +45,21 @@ small() {
   keep "$drawn/a.png" "$1" 800
 }
 
+# grammar_after STEP: tower.sgm in the drawing folder, the grammar after that step of docs/tutorial.md
+grammar_after() { awk -v step="$1" -f docs/tutorial.awk docs/tutorial.md >"$drawn/tower.sgm"; }
+
+# step NAME OPTIONS: NAME.jpg, the model after the step of the tutorial that the options begin with
+step() {
+  grammar_after "${2%% *}"
+  small "$1" "$drawn/tower.sgm --size 480x600 ${2#* }"
+}
+
+# The sheet of variations that the tutorial's tower has.
+sheet() {
+  "$sgm" mutate examples/tutorial.sgm --rows 2 --cols 4 --spread .6 --size 200x280 -q -o "$drawn/a.png"
+  keep "$drawn/a.png" tutorial/9-sheet 800
+}
+
 # The last section of the page is what bench prints.
 times() {
   local page=docs/gallery.md fresh
@@ -65,26 +81,34 @@ blender() {
   keep "$drawn/a.png" blender 800
 }
 
-# The window with a shape selected, on a display of its own.
-window() {
+# shoot NAME FILE SIZE WORDS: NAME.jpg, the window about FILE on a display of its own after xdotool did what WORDS say.
+shoot() {
   local report
   report=$(mktemp)
-  LIBGL_ALWAYS_SOFTWARE=1 XDG_STATE_HOME=$report.state xvfb-run -a -s "-screen 0 1280x800x24" bash -c '
+  LIBGL_ALWAYS_SOFTWARE=1 XDG_STATE_HOME=$report.state xvfb-run -a -s "-screen 0 $3x24" bash -c '
     set -eu
     settled() { until grep -q "\"drawn\": true" "$1" && grep -q "\"busy\": false" "$1"; do sleep 0.3; done; }
-    build/release/cli/sgm-viewer examples/tower.sgm --report "$1" &
+    build/release/cli/sgm-viewer "$2" --report "$1" &
     settled "$1"
-    xdotool mousemove 590 340 click 1 mousemove 1000 770
+    # shellcheck disable=SC2086  # words
+    xdotool $3
     sleep 1
     settled "$1"
     sleep 1
     import -window root "$drawn/a.png"
-    kill %1' _ "$report"
+    kill %1' _ "$report" "$2" "$4"
   rm -rf "$report" "$report.state"
-  keep "$drawn/a.png" window 800
+  keep "$drawn/a.png" "$1" 800
 }
 
-case $* in times | window | blender) "$*"; exit ;; esac
+# The window with a shape selected, and with the sliders of the tutorial's fifth step.
+window() {
+  shoot window examples/tower.sgm 1280x800 "mousemove 590 340 click 1 mousemove 1000 770"
+  grammar_after 5
+  shoot tutorial/5-sliders "$drawn/tower.sgm" 1280x800 "mousemove 968 56 click 1 mousemove 640 790"
+}
+
+case $* in times | window | sheet | blender) "$*"; exit ;; esac
 known=0
 while IFS='|' read -r family name options inside; do
   name=${name// /}
@@ -92,7 +116,7 @@ while IFS='|' read -r family name options inside; do
   case $family in "#"*) continue ;; cloud*) render=fog ;; esac
   case " $* " in "  " | *" $name "*) ;; *) continue ;; esac
   known=$((known + 1))
-  case $family in kifs* | plan*) small "$name" "$options" ;; *) draw "$name" "$options" "${inside:-}" "$render" ;; esac
+  case $family in kifs* | plan*) small "$name" "$options" ;; step*) step "$name" "${options# }" ;; *) draw "$name" "$options" "${inside:-}" "$render" ;; esac
 done <docs/gallery.txt
 [ $# -eq 0 ] && times
 [ $# -eq 0 ] || [ $known -eq $# ] || { echo "gallery: not all of '$*' are in docs/gallery.txt" >&2; exit 2; }

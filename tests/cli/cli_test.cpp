@@ -237,6 +237,24 @@ TEST_F(Cli, GrammarsInTheDocsCheckFine) {
     EXPECT_GE(seen, 3u);
 }
 
+TEST_F(Cli, EveryStepOfTheTutorialChecksFineAndTheLastIsTheExample) {
+    const std::string page = read("docs/tutorial.md"), file = path("tower.sgm");
+    int steps = 0;
+    while (page.find("\n## Step " + std::to_string(steps + 1) + ":") != std::string::npos) {
+        const std::string step = std::to_string(++steps);
+        ASSERT_EQ(std::system(("awk -v step=" + step + " -f docs/tutorial.awk docs/tutorial.md >" + file).c_str()), 0);
+        const Outcome run = sgm("check " + file);
+        EXPECT_EQ(run.code, 0) << "step " << step << ": " << run.out;
+        EXPECT_EQ(run.out, file + ": fine\n") << "step " << step;
+    }
+    EXPECT_GE(steps, 9);
+    sgm("fmt " + file);
+    // The example says in comments what it is.
+    std::string example = read("examples/tutorial.sgm");
+    for (size_t at; (at = example.find("//")) != std::string::npos;) example.erase(at, example.find('\n', at) + 1 - at);
+    EXPECT_EQ(read(file), example);
+}
+
 TEST_F(Cli, CheckJsonIsMachineReadable) {
     const Outcome run = sgm("check --json " + grammar("start A -> spere\n"));
     EXPECT_EQ(run.code, 1);
