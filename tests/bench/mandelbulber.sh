@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fractals meshed at 256 cells by Mandelbulber2 (apt-get install mandelbulber2) and by sgm: CPU-seconds of the whole program,
-# triangles, bytes a triangle. Prints the table of docs/performance.md.
+# triangles, bytes a triangle. Prints the table of docs/lab/fractals.md.
 cd "$(dirname "$0")/../.."
 set -eu
 command -v mandelbulber2 >/dev/null || { echo "mandelbulber.sh: apt-get install mandelbulber2" >&2; exit 2; }

@@ -1,5 +1,5 @@
 // Figures for people and for programs.
-// Enters: measurements and limits. Leaves: lines of a table, or JSON. docs/performance.md says what each means.
+// Enters: measurements and limits. Leaves: lines of a table, or JSON. docs/lab/bench.md says what each means.
 #pragma once
 
 #include <string>
