@@ -1,0 +1,83 @@
+// Roads grown over maps by a self-sensitive L-system, as paper A says (Scott & Bujnowicz, "Algorithmic Architecture",
+// 2010, 3 and appendix A; after Parish & Müller, "Procedural modeling of cities", 2001), with a queue in place of its
+// recursion.
+// Enters: parameters, and maps as functions of a place. Leaves: a planar graph, connected. Assumes the maps answer the
+// same at the same place. Each decision is a function of the place alone: what changes far away changes nothing here,
+// as long as it joins no earlier.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "modeler/core/progress.h"
+#include "modeler/core/result.h"
+#include "modeler/town/road_graph.h"
+
+namespace sgm::town {
+
+enum class Pattern : uint8_t {
+    Grown,   ///< highways seek the densest ground, streets go straight on
+    Raster,  ///< all along the axes of `axis`
+    Radial,  ///< towards `centre` and around it
+};
+enum class Turns : uint8_t { Left, Right, Both };
+enum class Ends : uint8_t {
+    Prune,  ///< dead ends go, until there are none
+    Join,   ///< they are prolonged to the next road in reach; what reaches none goes
+    Keep,
+};
+
+/// What grows roads. The paper prints no number: the defaults are ours.
+struct RoadParameters {
+    Vec2 lo{-1000, -1000}, hi{1000, 1000};  ///< where roads may be
+    double highway_m = 20, street_m = 10;   ///< widths
+    double step_m = 80, block_m = 80;       ///< lengths of a piece of highway and of street
+    double turn = .1222, look_m = 800;      ///< radians that a highway bends at most a piece; how far it looks
+    double probes = 5;                      ///< rays it looks along
+    double junction = 8;                    ///< pieces between places where highways branch
+    double delay = 60;                      ///< ticks before streets leave highways
+    double snap_m = 30;                     ///< a road that ends nearer than this to another joins it
+    double angle = .61;                     ///< least angle between roads, radians
+    double bridge_m = 300;                  ///< longest bridge
+    double streetBridges = .25;             ///< share of streets that may cross water
+    double slope = .12;                     ///< steepest rise along a road
+    double axis = 0;                        ///< radians, of the raster and of the first highways
+    Turns turns = Turns::Left;
+    Pattern pattern = Pattern::Grown;
+    Ends ends = Ends::Prune;
+    std::optional<Vec2> from,
+        centre;              ///< where growth begins: else the densest place; the middle of Radial: else `from`
+    double limit = 100'000;  ///< most pieces
+    uint64_t random = 1;
+    double width_m(RoadClass kind) const { return kind == RoadClass::Highway ? highway_m : street_m; }
+};
+
+/// The maps. Functions that are empty answer 1, true, false, false and 0.
+struct Land {
+    std::function<double(Vec2)> pull;  ///< what highways seek
+    std::function<bool(Vec2)> spread;  ///< whether streets grow on from here
+    std::function<bool(Vec2)> water, park;
+    std::function<double(Vec2)> height;  ///< metres
+};
+
+/// A numeric parameter: a row of the table that the language, its reference and its checks read.
+struct RoadParameter {
+    enum class Unit : uint8_t { Length, Angle, Share, Count };
+    std::string_view name;
+    double RoadParameters::*field;
+    Unit unit;
+    double lo, hi;
+    std::string_view range, doc;
+};
+std::span<const RoadParameter> roadParameters();
+
+/// The grown graph, its dead ends treated. Error::Budget beyond `limit` pieces, Error::Input where no road can begin,
+/// Error::Cancelled.
+Result<RoadGraph> growRoads(const RoadParameters& parameters, const Land& land, Progress* progress = nullptr);
+
+/// Removes dead ends until there are none.
+void pruneEnds(RoadGraph& graph);
+
+}  // namespace sgm::town
