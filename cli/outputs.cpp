@@ -172,8 +172,8 @@ std::vector<std::string> allFiles(const OutputRequest& request) {
 Status checkMeshFile(const char* option, const std::string& file) {
     if (const Status s = checkFile(file); !s.ok()) return s;
     const Exporter& row = *formatOf(file);
-    if (!row.wantsVolume && !row.wantsSolids) return Done{};
-    const char* held = row.wantsVolume ? "volumes" : "solid trees";
+    if (row.wantsMesh()) return Done{};
+    const char* held = row.wantsVolume ? "volumes" : row.wantsPlan ? "plans" : "solid trees";
     return Error{Error::Kind::Usage,
                  fmt::format("{} {}: this is a mesh; '{}' holds {}", option, file, row.extension, held)};
 }
@@ -203,8 +203,9 @@ bool wantsVolume(const OutputRequest& request) {
 
 bool solidsWillDo(const OutputRequest& request) {
     return !request.files.empty() && request.proxy.empty() &&
-           std::all_of(request.files.begin(), request.files.end(),
-                       [](const std::string& file) { return formatOf(file)->wantsSolids; });
+           std::all_of(request.files.begin(), request.files.end(), [](const std::string& file) {
+               return formatOf(file)->wantsSolids || formatOf(file)->wantsPlan;
+           });
 }
 
 bool needsPositionsOnly(const OutputRequest& request) {
@@ -232,8 +233,9 @@ Status writeSolids(const OutputRequest& request, const Model& model, exporter::E
     field::SolidTree tree;
     for (const std::string& file : request.files) {
         const Exporter& row = *formatOf(file);
-        if (!row.wantsSolids) continue;
-        if (tree.nodes.empty()) {
+        if (!row.wantsSolids && !row.wantsPlan) continue;
+        input.plan = &model.derivation.plan;
+        if (row.wantsSolids && tree.nodes.empty()) {
             auto collected = lower::solidTree(model.derivation, *model.lowered, input.progress);
             if (!collected.ok()) return collected.error();
             tree = std::move(*collected);
@@ -248,7 +250,7 @@ Status writeSolids(const OutputRequest& request, const Model& model, exporter::E
 Status writeOutputs(const OutputRequest& request, const Model& model, exporter::ExportInput input, int threads) {
     for (const std::string& file : request.files) {
         const Exporter& row = *formatOf(file);
-        if (row.wantsSolids) continue;
+        if (row.wantsSolids || row.wantsPlan) continue;
         input.options = optionsFor(request, row);
         if (const Status written = exporter::write(input, file); !written.ok()) return written;
     }

@@ -7,6 +7,8 @@
 #include "cli/commands.h"
 #include "grammar/operations/operations.h"
 #include "grammar/rules/functions.h"
+#include "grammar/rules/roads.h"
+#include "grammar/rules/type.h"
 #include "grammar/syntax/operations.h"
 #include "modeler/export/exporter.h"
 #include "modeler/field/primitives.h"
@@ -43,6 +45,35 @@ std::string plansPage() {
             page += fmt::format("- `{}`: {}{}\n", p.name, p.doc, p.required ? "" : " (may be left out)");
         page += fmt::format("\n    {}\n", row.example);
     }
+    return page;
+}
+
+std::string rowOf(std::string_view name, const std::string& value, std::string_view doc) {
+    return fmt::format("| `{}` | {} | {} |\n", name, value, doc);
+}
+
+/// The default of a road's number, in its unit.
+std::string fallbackOf(const town::RoadParameter& row) {
+    using Unit = town::RoadParameter::Unit;
+    const double v = town::RoadParameters{}.*row.field;
+    if (row.unit == Unit::Angle) return fmt::format("{:.3g}deg", v * 180 / 3.14159265358979323846);
+    if (row.unit == Unit::Share) return fmt::format("{:.3g}%", v * 100);
+    return fmt::format("{:.6g}{}", v, row.unit == Unit::Length ? "m" : "");
+}
+
+/// The settings of `roads`.
+std::string roadsPage() {
+    std::string page =
+        "\n## Roads\n\nWhat `roads NAME { setting = value … }` may set; `network NAME` grows them.\n\n| setting | "
+        "value | "
+        "|\n|---|---|---|\n";
+    for (const rules::RoadField& row : rules::roadFields())
+        page += rowOf(row.name, fmt::format("{}, asked everywhere", describe(row.want)), row.doc);
+    for (const rules::RoadField& row : rules::roadPoints()) page += rowOf(row.name, "a place (x, z)", row.doc);
+    for (const rules::RoadWord& row : rules::roadWords())
+        page += rowOf(row.name, fmt::format("`{}`", fmt::join(row.words, "`, `")), row.doc);
+    for (const town::RoadParameter& row : town::roadParameters())
+        page += rowOf(row.name, fmt::format("{}, in {}", fallbackOf(row), row.range), row.doc);
     return page;
 }
 
@@ -115,8 +146,8 @@ void addReference(CLI::App& app, int& exitCode) {
     CLI::App* command =
         app.add_subcommand("reference", "Print the reference page: operations, primitives, functions, formats");
     command->callback([&exitCode] {
-        fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}{}{}",
-                   operationsPage(), plansPage(), primitivesPage(), functionsPage(), exportersPage());
+        fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}{}{}{}",
+                   operationsPage(), plansPage(), roadsPage(), primitivesPage(), functionsPage(), exportersPage());
         exitCode = 0;
     });
 }

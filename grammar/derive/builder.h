@@ -84,6 +84,7 @@ public:
     void at(uint32_t rule, ShapeId shape, uint32_t step) { rule_ = rule, shape_ = shape, step_ = step; }
 
     Derivation& derivation() { return derivation_; }
+    Progress* progress() const { return progress_; }
     ShapeTree& tree() { return derivation_.tree; }
     std::span<const uint64_t> counts() const { return counts_; }
     /// Live shapes added since the last call.

@@ -15,6 +15,14 @@ namespace {
 using rules::Expr;
 using rules::Figure;
 
+/// Areas of those layers in the plan.
+double countOf(const Derivation& d, std::initializer_list<std::string_view> layers) {
+    const auto& all = d.plan.features;
+    return static_cast<double>(std::count_if(all.begin(), all.end(), [&](const town::PlanFeature& f) {
+        return std::find(layers.begin(), layers.end(), f.layer) != layers.end();
+    }));
+}
+
 double figureOf(const Derivation& d, Figure figure) {
     switch (figure) {
         case Figure::Bonds:
@@ -31,6 +39,12 @@ double figureOf(const Derivation& d, Figure figure) {
             return static_cast<double>(d.morphic);
         case Figure::Floating:
             return static_cast<double>(d.floating());
+        case Figure::Roads:
+            return countOf(d, {"highway", "street", "bridge"});
+        case Figure::Blocks:
+            return countOf(d, {"block"});
+        case Figure::Lots:
+            return countOf(d, {"lot", "corner"});
     }
     return 0;
 }

@@ -13,6 +13,7 @@
 #include "grammar/rules/grammar.h"
 #include "modeler/core/progress.h"
 #include "modeler/core/result.h"
+#include "modeler/town/town_plan.h"
 
 namespace sgm::derive {
 
@@ -47,6 +48,7 @@ struct Derivation {
     std::vector<Closed> closed;       ///< one an element, in the order they first met a closed joint
     std::vector<Warning> warnings;    ///< in the order they were met, the first few hundred
     std::vector<Material> materials;  ///< the grammar's, then those given by attributes
+    town::TownPlan plan;              ///< what `network` and `lots` laid out
     std::vector<rules::Value> params;
     uint32_t start = 0;  ///< index into Grammar::starts
     uint64_t seed = 0;

@@ -3,9 +3,11 @@
 #include <cmath>
 
 #include "grammar/derive/builder.h"
+#include "grammar/derive/scope_footprint.h"
 #include "grammar/rules/arithmetic_warnings.h"
 #include "grammar/rules/evaluate.h"
 #include "modeler/core/random.h"
+#include "modeler/town/noise.h"
 
 namespace sgm::derive {
 namespace {
@@ -69,8 +71,33 @@ const Expr& chosen(const Expr& expr, const Place& place) {
     return expr.args[2 * (at == none ? 0 : at) + 1];
 }
 
+plan::Vec2 planPlaceOf(const Place& place) { return {place.scope.centre.x, place.scope.centre.z}; }
+
+/// Functions of the place in the plan.
+Value ofPlace(Fn fn, const Expr& expr, const Place& place) {
+    const plan::Vec2 p = planPlaceOf(place);
+    if (fn == Fn::Bump) {
+        const Value centre = evaluate(expr.args[0], place);
+        return Value::number(town::bump(p, {centre.n[0], centre.n[1]}, number(expr.args[1], place)));
+    }
+    const double size_m = std::max(1e-3, number(expr.args[0], place)),
+                 octaves = std::clamp(number(expr.args[1], place), 1.0, 12.0);
+    const double seed = expr.args.size() > 2 ? std::clamp(number(expr.args[2], place), -1e15, 1e15) : 0;
+    return Value::number(
+        town::fbmNoise(p, size_m, static_cast<int>(octaves), static_cast<uint64_t>(static_cast<int64_t>(seed))));
+}
+
+/// The value of a map where the shape stands. A formula's depth is bounded by the number of maps: each asks those above
+/// it.
+Value ofMap(const Expr& expr, const Place& place) {
+    if (!place.builder) return {};
+    const rules::Map& map = place.builder->derivation().grammar->maps[expr.index];
+    return map.formula ? evaluate(*map.formula, place) : rules::valueAt(map.picture, planPlaceOf(place));
+}
+
 Value called(const Expr& expr, const Place& place) {
     const Fn fn = static_cast<Fn>(expr.index);
+    if (fn == Fn::Bump || fn == Fn::Fbm) return ofPlace(fn, expr, place);
     if (fn == Fn::Count) {
         if (Recording* r = noting(place)) r->readsWorld();
         const auto symbol = static_cast<size_t>(expr.args[0].value.num());
@@ -128,7 +155,12 @@ Value evaluate(const Expr& expr, const Place& place) {
     if (const Value* v = stored(expr, place)) return *v;
     switch (expr.kind) {
         case Kind::Scope:
-            return Value::number(place.scope.size[static_cast<int>(expr.index)], Unit::Metre);
+            if (expr.index < 3) return Value::number(place.scope.size[static_cast<int>(expr.index)], Unit::Metre);
+            return Value::number(place.tree ? area(footprintOf(place.scope, place.tree->footprints)) : 0);
+        case Kind::Here:
+            return Value::number(place.scope.centre[static_cast<int>(expr.index)], Unit::Metre);
+        case Kind::Map:
+            return ofMap(expr, place);
         case Kind::Element:
             return rules::component(evaluate(expr.args[0], place), evaluate(expr.args[1], place));
         case Kind::Tuple: {
@@ -156,7 +188,10 @@ double number(const Expr& expr, const Place& place) {
     if (const Value* v = stored(expr, place)) return v->num();
     switch (expr.kind) {
         case Kind::Scope:
-            return place.scope.size[static_cast<int>(expr.index)];
+            if (expr.index < 3) return place.scope.size[static_cast<int>(expr.index)];
+            break;
+        case Kind::Here:
+            return place.scope.centre[static_cast<int>(expr.index)];
         case Kind::Element:
             if (const Value* v = stored(expr.args[0], place)) {
                 Value index;

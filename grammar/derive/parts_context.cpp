@@ -54,6 +54,33 @@ bool PartsContext::run(const rules::Body& body, const Scope& part, uint64_t key)
     return interpreter_.builder_.work() && interpreter_.runBody(body, inner, 0);
 }
 
+const rules::Grammar& PartsContext::grammar() const { return *interpreter_.builder_.derivation().grammar; }
+
+void PartsContext::draw(std::string layer, const Scope& scope, const plan::Footprint& area, uint64_t key,
+                        double street_m) {
+    plan::Footprint placed = area;
+    const auto place = [&](plan::Ring& ring) {
+        for (plan::Vec2& p : ring.points) {
+            const Vec3d at = scope.centre + scope.axes * Vec3d{p.x, 0, p.z};
+            p = {at.x, at.z};
+        }
+    };
+    for (plan::Polygon& polygon : placed.polygons) {
+        place(polygon.outer);
+        for (plan::Ring& court : polygon.courts) place(court);
+    }
+    interpreter_.builder_.derivation().plan.features.push_back({std::move(layer), std::move(placed), key, street_m});
+}
+
+void PartsContext::startsOver() const {
+    if (Recording* recording = interpreter_.builder_.recording()) recording->unfit();
+}
+
+bool PartsContext::fail(const Error& why, syntax::SourceSpan span) {
+    interpreter_.builder_.fail(why.kind, why.message, span);
+    return false;
+}
+
 void PartsContext::warn(syntax::SourceSpan span, std::string message, std::string fix) const {
     interpreter_.builder_.warn(span, std::move(message), std::move(fix));
 }

@@ -28,10 +28,21 @@ public:
     std::optional<Scope> over(Scope scope, const plan::Footprint& footprint, syntax::SourceSpan span);
     /// Runs `body` in a part of the scope; `key` tells the part from its neighbours. False after a failure.
     bool run(const rules::Body& body, const Scope& part, uint64_t key);
+    const rules::Grammar& grammar() const;
+    /// The stream of the shape whose scope is cut.
+    uint64_t key() const { return frame_.key; }
+    /// Where expressions of the block stand, for those that are asked at many places of the plan.
+    Place place() const { return frame_.place; }
+    Progress* progress() const { return interpreter_.builder_.progress(); }
+    /// Takes note of what lies on the ground: `area` in metres about the centre of `scope`.
+    void draw(std::string layer, const Scope& scope, const plan::Footprint& area, uint64_t key, double street_m = 0);
+    /// What is cut here can't be brought to other numbers in place: the derivation starts over where one changes.
+    void startsOver() const;
     /// Adds a warning to the derivation, once a place.
     void warn(syntax::SourceSpan span, std::string message, std::string fix) const;
     /// Ends the derivation with an error located at `span`; returns false.
     bool fail(const std::string& what, syntax::SourceSpan span);
+    bool fail(const Error& why, syntax::SourceSpan span);
 
 private:
     Interpreter& interpreter_;

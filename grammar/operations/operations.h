@@ -1,6 +1,7 @@
 // The rule operations of the language: one file a family (scope, placement, look, whole, clad, footprint, split,
-// faces), one row an operation. Enters: nothing. Leaves: the table that the parser, checker and derivation read, and
-// the reference page prints. Assumes a new operation is defined in a file of its own and named in the list below.
+// faces, network, lots), one row an operation. Enters: nothing. Leaves: the table that the parser, checker and
+// derivation read, and the reference page prints. Assumes a new operation is defined in a file of its own and named in
+// the list below.
 #pragma once
 
 #include "grammar/syntax/operations.h"
@@ -10,7 +11,7 @@
 #define SGM_OPERATIONS(X) \
     X(size) X(move) X(turn) X(at) X(to) X(overlap) X(shift) X(on) X(by) X(blend) \
     X(displace) X(color) X(rough) X(metal) X(tag) X(with) X(footprint) X(extrude) X(offset) X(setback) \
-    X(court) X(rectify) X(inner) X(split) X(faces) X(clad) X(thickness) X(tile) X(mirror)
+    X(court) X(rectify) X(inner) X(split) X(faces) X(network) X(lots) X(clad) X(thickness) X(tile) X(mirror)
 // clang-format on
 
 namespace sgm::operations {

@@ -179,6 +179,30 @@ private:
     std::map<std::string, Read> known_;
 };
 
+/// Pictures of maps read so far.
+class Pictures {
+public:
+    explicit Pictures(const Progress* progress) : progress_(progress) {}
+
+    Result<town::RasterPtr> operator()(const fs::path& path) {
+        std::error_code failed;
+        const auto time = fs::last_write_time(path, failed);
+        Read& read = known_[path.string()];
+        if (!failed && read.raster && read.time == time) return read.raster;
+        auto raster = town::readRaster(path, {}, progress_);
+        if (raster.ok()) read = {time, *raster};
+        return raster;
+    }
+
+private:
+    struct Read {
+        fs::file_time_type time;
+        town::RasterPtr raster;
+    };
+    const Progress* progress_;
+    std::map<std::string, Read> known_;
+};
+
 }  // namespace
 
 Result<syntax::SourcePtr> readSource(const fs::path& path) {
@@ -226,6 +250,16 @@ rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) 
         const auto features = files(*path);
         if (features.ok()) return *features;
         why = features.error().message;
+        return nullptr;
+    };
+    loader.picture = [note, pictures = Pictures(progress)](const std::string& name, const syntax::Source& from,
+                                                           std::string& why) mutable -> town::RasterPtr {
+        const auto path = pathOf(name, from, why);
+        if (!path) return nullptr;
+        note(*path);
+        const auto raster = pictures(*path);
+        if (raster.ok()) return *raster;
+        why = raster.error().message;
         return nullptr;
     };
     loader.declares = [names = LibraryNames()](const std::string& name) mutable { return names(name); };

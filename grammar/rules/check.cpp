@@ -74,6 +74,8 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     each(&Checker::rejectUnsupported);
     each(&Checker::parameters);
     each(&Checker::lsystems);
+    each(&Checker::maps);
+    each(&Checker::roads);
     each(&Checker::terminals);
     each(&Checker::productions);
     each(&Checker::checkDeclarations);

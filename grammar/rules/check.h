@@ -20,6 +20,9 @@ struct Loader {
     using Outlines = std::function<std::shared_ptr<const plan::Features>(const std::string& name,
                                                                          const syntax::Source& from, std::string& why)>;
 
+    using Picture =
+        std::function<town::RasterPtr(const std::string& name, const syntax::Source& from, std::string& why)>;
+
     Loader() = default;
     /// One that reads grammars alone.
     template <class Fn>
@@ -34,6 +37,8 @@ struct Loader {
     Mesh mesh;
     /// The outlines of the file behind `footprint file("name")` of `from`.
     Outlines outlines;
+    /// The picture behind `map … = "name"` of `from`.
+    Picture picture;
 };
 
 /// Null when `diagnostics` has errors. Reports everything wrong in one run, in the order of the text, used files first:

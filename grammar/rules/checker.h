@@ -47,6 +47,7 @@ struct Place {
         Type type;
     };
     std::vector<Local> locals;                 ///< in sight, innermost last
+    bool ofMap = false;                        ///< a map's formula: it stands at a place, but belongs to no shape
     uint32_t frame = 0;                        ///< locals so far, in sight or not
     std::map<std::string, uint32_t> ordinals;  ///< of each label in the body
     bool morphs = false;                       ///< an operator or a solid of the body morphs
@@ -58,6 +59,8 @@ struct Place {
         ranges = 0;
     }
 };
+
+struct RoadWord;
 
 class Checker {
 public:
@@ -72,6 +75,8 @@ public:
     /// Checks what stands behind the names.
     void parameters(const syntax::Ast& ast);
     void lsystems(const syntax::Ast& ast);
+    void maps(const syntax::Ast& ast);
+    void roads(const syntax::Ast& ast);
     void terminals(const syntax::Ast& ast);
     void productions(const syntax::Ast& ast);
     void checkDeclarations(const syntax::Ast& ast);  ///< derives, styles, checks
@@ -162,6 +167,21 @@ private:
     void declareLsystem(const syntax::LsystemDecl& decl);
     void lsystem(const syntax::LsystemDecl& decl);
 
+    // maps.cpp
+    void declareMap(const syntax::MapDecl& decl);
+    void mapPicture(const syntax::MapDecl& decl, Map& map);
+    void mapClasses(const syntax::MapDecl& decl, MapPicture& picture);
+    void mapRange(const syntax::MapDecl& decl, MapPicture& picture);
+    double costOf(const Expr& e) const;
+    Typed mapValue(Place& place, const syntax::Expr& e, uint32_t index);
+
+    // roads.cpp
+    void declareRoads(const syntax::RoadsDecl& decl);
+    void roadSetting(Place& place, const syntax::Setting& written, Roads& out);
+    void roadNumber(Place& place, const syntax::Setting& written, const town::RoadParameter& row, Roads& out);
+    Expr roadWord(Place& place, const syntax::Expr& e, const RoadWord& row);
+    Expr roadPoint(Place& place, const syntax::Expr& e, std::string_view name);
+
     // declarations.cpp
     void parameter(const syntax::ParamDecl& decl);
     void usedDefaults(const syntax::Ast& ast);
@@ -189,15 +209,17 @@ private:
     Loader load_;
     std::map<std::pair<const syntax::Source*, std::string>, size_t> outlineFiles_;  ///< places in Grammar::outlines
     std::map<std::pair<const syntax::Source*, std::string>, size_t> files_;  ///< read so far: places in Grammar::meshes
-    std::set<std::string> unbuilt_;                                          ///< maps: named once, refused once
-    std::set<SymbolId> ruled_;                                               ///< have a rule
-    std::set<SymbolId> placed_;  ///< stand in a start, a body or behind a colon
+    std::map<std::string, uint32_t> maps_;
+    std::vector<bool> mapIsKnown_;  ///< by map: checked, so that those below may ask it
+    std::vector<double> mapCost_;   ///< by map: expressions that one answer takes
+    std::set<SymbolId> ruled_;      ///< have a rule
+    std::set<SymbolId> placed_;     ///< stand in a start, a body or behind a colon
     std::map<std::string, const syntax::TerminalDecl*> terminalDecls_;
     std::map<std::string, Solid> terminalSolids_;
     std::map<SymbolId, uint32_t> unnamedRules_;  ///< how many so far
     std::vector<std::string> terminalsInWork_;   ///< whose solids are being read: finds a = b, b = a
     std::map<std::string, SourceSpan> seenParams_, seenTerminals_, seenRules_, seenStarts_, seenStyles_, seenDerives_,
-        seenLsystems_;
+        seenLsystems_, seenMaps_, seenRoads_;
 };
 
 }  // namespace sgm::rules

@@ -272,7 +272,6 @@ void Checker::checkDeclarations(const syntax::Ast& ast) {
 }
 
 void Checker::rejectUnsupported(const syntax::Ast& ast) {
-    for (const auto& decl : ast.maps) diagnostics_.error(decl.span, "maps are not supported yet");
     for (const auto& decl : ast.overrides) diagnostics_.error(decl.span, "overrides are not supported yet");
 }
 

@@ -192,6 +192,9 @@ Value applyFunction(Fn fn, std::span<const Value> a) {
             return rotationOf(Mat3::rotation({0, 0, 1}, x));
         case Fn::Rgb:
             return rgb(a);
+        case Fn::Bump:
+        case Fn::Fbm:
+            return Value::number(0);
         case Fn::Count:
             return whole(Value::number(0));
     }
@@ -250,7 +253,8 @@ std::optional<Value> fold(const Expr& expr, std::span<const Value> params) {
         case Expr::Kind::Unary:
         case Expr::Kind::Binary:
         case Expr::Kind::Call:
-            if (static_cast<Fn>(expr.index) == Fn::Count) return std::nullopt;
+            if (const Fn fn = static_cast<Fn>(expr.index); fn == Fn::Count || fn == Fn::Bump || fn == Fn::Fbm)
+                return std::nullopt;
             return applyFunction(static_cast<Fn>(expr.index), args);
         default:
             return std::nullopt;

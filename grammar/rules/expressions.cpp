@@ -22,8 +22,8 @@ using Written = syntax::Expr;
 using Where = Place::Where;
 
 constexpr std::array<std::string_view, 7> axisWords{"+x", "-x", "+y", "-y", "+z", "-z", "centre"};
-constexpr std::array<std::string_view, 7> figureWords{"bonds",   "overlaps", "shapes",  "terminals",
-                                                      "classic", "morphic",  "floating"};
+constexpr std::array<std::string_view, 10> figureWords{"bonds",   "overlaps", "shapes", "terminals", "classic",
+                                                       "morphic", "floating", "roads",  "blocks",    "lots"};
 constexpr std::array<std::string_view, 12> colorWords{"red",   "green", "blue", "yellow", "orange", "brown",
                                                       "black", "white", "grey", "gray",   "purple", "pink"};
 
@@ -147,6 +147,7 @@ Typed Checker::unknownName(const Place& place, const Written& e) {
     std::vector<std::string> known;
     for (const auto& [param, index] : params_) known.push_back(param);
     for (const auto& local : place.locals) known.push_back(local.name);
+    for (const auto& [map, index] : maps_) known.push_back(map);
     known.insert(known.end(), withNames_.begin(), withNames_.end());
     if (place.where == Where::Expect) known.assign(figureWords.begin(), figureWords.end());
     std::string hint = nearest(e.text, known);
@@ -182,6 +183,7 @@ Typed Checker::name(Place& place, const Written& e) {
             return result;
         }
     }
+    if (const auto map = maps_.find(e.text); map != maps_.end()) return mapValue(place, e, map->second);
     if (const auto param = params_.find(e.text); param != params_.end()) {
         if (place.where == Where::Constant)
             return failed(e.span, fmt::format("'{}' is a parameter, but a plain value must stand here", e.text));
@@ -194,13 +196,9 @@ Typed Checker::name(Place& place, const Written& e) {
         if (brokenParams_.contains(param->second)) return {makeUnreadable(e.span), Type::unknown()};
         return result;
     }
-    if (withNames_.contains(e.text) && place.where >= Where::Guard && place.where != Where::Expect) {
+    if (withNames_.contains(e.text) && !place.ofMap && place.where >= Where::Guard && place.where != Where::Expect) {
         result.expr.kind = Expr::Kind::Inherited;
         result.expr.value = makeWord(e.text);
-        result.type = Type::unknown();
-        return result;
-    }
-    if (unbuilt_.contains(e.text)) {
         result.type = Type::unknown();
         return result;
     }
@@ -210,15 +208,21 @@ Typed Checker::name(Place& place, const Written& e) {
 
 Typed Checker::member(Place& place, const Written& e) {
     const int axis = e.text == "x" ? 0 : e.text == "y" ? 1 : e.text == "z" ? 2 : -1;
-    if (axis < 0) return failed(e.span, fmt::format("there is no '.{}'", e.text), "write .x, .y or .z");
+    const bool named = e.args[0].kind == Written::Kind::Name;
+    const bool ofScope = named && e.args[0].text == "scope", isArea = ofScope && e.text == "area";
+    if (axis < 0 && !isArea)
+        return failed(e.span, fmt::format("there is no '.{}'", e.text),
+                      ofScope ? "write .x, .y, .z or .area" : "write .x, .y or .z");
     Typed result;
     result.expr.span = e.span;
-    if (e.args[0].kind == Written::Kind::Name && e.args[0].text == "scope") {
-        if (place.where < Where::Guard || place.where == Where::Expect)
-            return failed(e.span, "there is no shape here whose scope could be asked");
-        result.expr.kind = Expr::Kind::Scope;
-        result.expr.index = static_cast<uint32_t>(axis);
-        result.type = Type::number(Unit::Metre);
+    if (ofScope || (named && e.args[0].text == "here")) {
+        if (place.where < Where::Guard || place.where == Where::Expect || (ofScope && place.ofMap))
+            return failed(e.span,
+                          fmt::format("there is no shape here whose {} could be asked", ofScope ? "scope" : "place"),
+                          place.ofMap ? "a map asks 'here.x' and 'here.z', and maps above it" : "");
+        result.expr.kind = ofScope ? Expr::Kind::Scope : Expr::Kind::Here;
+        result.expr.index = isArea ? 3u : static_cast<uint32_t>(axis);
+        result.type = Type::number(isArea ? Unit::None : Unit::Metre);
         return result;
     }
     Typed vector = expression(place, e.args[0]);

@@ -7,7 +7,7 @@ namespace sgm::rules {
 namespace {
 
 constexpr uint8_t many = 16;
-constexpr std::array<Function, 20> table = {{
+constexpr std::array<Function, 22> table = {{
     {"min", Fn::Min, 1, many, Signature::Alike, "the least of its arguments, or of one vector's components"},
     {"max", Fn::Max, 1, many, Signature::Alike, "the greatest of its arguments, or of one vector's components"},
     {"abs", Fn::Abs, 1, 1, Signature::Alike, "without its sign"},
@@ -28,6 +28,10 @@ constexpr std::array<Function, 20> table = {{
     {"rotY", Fn::RotY, 1, 1, Signature::Angle, "rotation about y"},
     {"rotZ", Fn::RotZ, 1, 1, Signature::Angle, "rotation about z"},
     {"rgb", Fn::Rgb, 3, 3, Signature::Plain, "rgb(r, g, b): a colour from shares 0 … 1, as in #rrggbb"},
+    {"bump", Fn::Bump, 2, 2, Signature::Place,
+     "bump((x, z), radius): 1 at that place of the plan, falling to 0 at the radius"},
+    {"fbm", Fn::Fbm, 2, 3, Signature::Place,
+     "fbm(size, octaves, seed): smooth noise over the plan, -1 … 1; the seed is 0 unless said"},
     {"count", Fn::Count, 1, 1, Signature::Symbol, "count(Name): how many shapes of that name there are"},
 }};
 

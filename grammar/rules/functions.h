@@ -17,6 +17,7 @@ enum class Signature : uint8_t {
     Lerp,    ///< two alike numbers, vectors or colours, and a plain number
     If,      ///< a condition and two alike values
     Symbol,  ///< the name of a shape
+    Place,   ///< a place or a length, and numbers; its value depends on where it is asked
 };
 
 struct Function {

@@ -10,12 +10,14 @@
 #include <variant>
 #include <vector>
 
+#include "grammar/rules/maps.h"
 #include "grammar/rules/plans.h"
 #include "grammar/rules/value.h"
 #include "grammar/syntax/ast.h"
 #include "modeler/core/provenance.h"
 #include "modeler/field/primitives.h"
 #include "modeler/plan/read.h"
+#include "modeler/town/grow.h"
 
 namespace sgm::rules {
 
@@ -34,7 +36,9 @@ struct Expr {
         Param,      ///< index into Grammar::params
         Local,      ///< index into the frame of locals: `for` variables, `i` of a repeat
         Inherited,  ///< value.text: a value set by `with`, looked up the tree
-        Scope,      ///< index 0 … 2: scope.x, .y, .z in metres
+        Scope,      ///< index 0 … 2: scope.x, .y, .z in metres; 3: scope.area, of its plan, in square metres
+        Here,       ///< index 0 … 2: where the shape stands, metres in the object's frame
+        Map,        ///< index into Grammar::maps: its value there
         Element,    ///< args[0][args[1]] of a vector (an axis indexes 0 … 5)
         Tuple,      ///< args
         Unary,
@@ -90,10 +94,12 @@ enum class Fn : uint32_t {
     RotY,
     RotZ,  ///< a Rotation from an angle
     Rgb,
+    Bump,   ///< of the place: bump((x, z), radius)
+    Fbm,    ///< of the place: fbm(size, octaves [, seed])
     Count,  ///< number of live or derived shapes of a symbol: count(Name); args[0] is a Word whose n[0] is the SymbolId
 };
 /// What `check … expect` may ask of a derivation.
-enum class Figure : uint32_t { Bonds, Overlaps, Shapes, Terminals, Classic, Morphic, Floating };
+enum class Figure : uint32_t { Bonds, Overlaps, Shapes, Terminals, Classic, Morphic, Floating, Roads, Blocks, Lots };
 
 /// A solid: what fills a scope.
 struct Solid {
@@ -144,6 +150,25 @@ struct Lsystem {
     Expr passes, angle, step, shrink;  ///< a whole number; radians; metres; metres that each pass takes from the step
 };
 
+/// A value that depends on the place in the plan: a picture laid over it, or a formula.
+struct Map {
+    std::string name;
+    SourceSpan span;
+    MapPicture picture;           ///< without a raster where there is a formula
+    std::optional<Expr> formula;  ///< asks maps with a lower index alone
+    Value like;                   ///< kind and unit of its values
+};
+
+/// Roads that `network` grows (grammar/rules/roads.h has the rows).
+struct Roads {
+    std::string name;
+    SourceSpan span;
+    std::optional<Expr> pull, spread, water, park, height;  ///< asked everywhere
+    std::optional<Expr> from, centre;                       ///< places
+    std::optional<Expr> pattern, turns, ends;               ///< words
+    std::vector<std::pair<const town::RoadParameter*, Expr>> numbers;
+};
+
 struct Body;
 
 /// The block of a content operation (`split x { … }`): parts of the scope, a body in every one.
@@ -161,6 +186,7 @@ struct Parts {
     const Operation* operation = nullptr;
     int axis = 0;             ///< 0 x, 1 y, 2 z
     std::vector<Expr> args;   ///< of the operation itself
+    uint32_t index = none;    ///< network: of Grammar::roads
     std::vector<Part> parts;  ///< in the order of the text
 };
 
@@ -344,6 +370,8 @@ struct Grammar {
     std::vector<Start> starts;
     std::vector<Derive> derives;
     std::vector<Lsystem> lsystems;
+    std::vector<Map> maps;
+    std::vector<Roads> roads;
     std::vector<Style> styles;
     std::vector<Check> checks;
     std::vector<std::shared_ptr<const plan::Features>> outlines;  ///< of files that footprints name, each once

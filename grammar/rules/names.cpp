@@ -11,9 +11,9 @@
 namespace sgm::rules {
 namespace {
 
-constexpr std::array<std::string_view, 18> taken{"axes",  "sides", "last",  "any", "free",   "centre",
-                                                 "each",  "nil",   "scope", "i",   "true",   "false",
-                                                 "morph", "x",     "y",     "z",   "billow", "fbm"};
+constexpr std::array<std::string_view, 19> taken{"axes", "sides", "last",  "any",    "free", "centre", "each",
+                                                 "here", "nil",   "scope", "i",      "true", "false",  "morph",
+                                                 "x",    "y",     "z",     "billow", "fbm"};
 
 /// Operations of one short word that join or look up: a parameter of that name reads as one of them.
 bool isJoining(std::string_view name) {
@@ -140,7 +140,8 @@ void Checker::suppressErrors(const syntax::Diagnostics& unread, bool missingFile
 void Checker::declare(const syntax::Ast& ast) {
     for (const auto& decl : ast.params) declareParameter(decl);
     for (const auto& decl : ast.terminals) declareTerminals(decl);
-    for (const auto& decl : ast.maps) unbuilt_.insert(decl.name.text);
+    for (const auto& decl : ast.maps) declareMap(decl);
+    for (const auto& decl : ast.roads) declareRoads(decl);
     for (const auto& decl : ast.lsystems) declareLsystem(decl);
     for (const auto& decl : ast.starts) {
         twice(seenStarts_, decl.symbol, "start");

@@ -145,6 +145,12 @@ std::optional<uint32_t> OperationChecker::findLsystem(std::string_view name) con
     return found == all.end() ? std::nullopt : std::optional(static_cast<uint32_t>(found - all.begin()));
 }
 
+std::optional<uint32_t> OperationChecker::findRoads(std::string_view name) const {
+    const auto& all = checker_.grammar_.roads;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Roads& r) { return r.name == name; });
+    return found == all.end() ? std::nullopt : std::optional(static_cast<uint32_t>(found - all.begin()));
+}
+
 std::optional<SymbolId> OperationChecker::findSymbol(std::string_view name) const {
     const auto symbol = checker_.symbols_.find(std::string(name));
     return symbol == checker_.symbols_.end() ? std::nullopt : std::optional(symbol->second);

@@ -64,6 +64,8 @@ public:
     std::optional<uint32_t> readOutlines(const syntax::Expr& name);
     /// The index of an lsystem of the grammar.
     std::optional<uint32_t> findLsystem(std::string_view name) const;
+    /// The index of `roads` of the grammar.
+    std::optional<uint32_t> findRoads(std::string_view name) const;
     std::optional<SymbolId> findSymbol(std::string_view name) const;
     bool isParameter(std::string_view name) const;
     /// True when some terminal or primitive declares a joint of that name.

@@ -90,6 +90,24 @@ Typed Checker::call(Place& place, const Written& e) {
         good = good && (sameKind || sameType(args[a], args[b], "choose between"));
     };
     switch (row->signature) {
+        case Signature::Place: {
+            if (place.where < Where::Guard || place.where == Where::Expect)
+                return failed(e.span, fmt::format("'{}' depends on the place, and there is none here", row->name));
+            const Value& like = args[0].type.like;
+            const bool isBump = row->fn == Fn::Bump;
+            if (isBump && args[0].type.known && !(like.kind == Value::Kind::Vector && like.count == 2))
+                return failed(e.args[0].span, "the middle of a bump is a place (x, z)",
+                              "write 'bump((-120m, 40m), 300m)'");
+            if (!isBump) each(Want::Length, 0, 1);
+            if (!isBump) each(Want::Number, 1, args.size());
+            if (isBump) each(Want::Length, 1, 2);
+            if (!good) return {{}, Type::unknown()};
+            Typed result;
+            result.expr = makeCall(Expr::Kind::Call, row->fn, e.span, {});
+            for (Typed& arg : args) result.expr.args.push_back(std::move(arg.expr));
+            result.type = Type::number();
+            return result;
+        }
         case Signature::Alike:
             for (size_t i = 0; i < args.size(); ++i) good = good && sameType(args[0], args[i], "compare");
             break;
@@ -141,6 +159,7 @@ Typed Checker::binary(Place& place, const Written& e) {
     const BinaryRow& row = binaryRow(e.text);
     const bool equality = row.fn == Fn::Equal || row.fn == Fn::NotEqual;
     const auto isWordParam = [&](const Written& side) {
+        if (side.kind == Written::Kind::Name && maps_.contains(side.text)) return true;
         const auto param = side.kind == Written::Kind::Name ? params_.find(side.text) : params_.end();
         return param != params_.end() && !grammar_.params[param->second].choices.empty();
     };
@@ -203,7 +222,8 @@ void Checker::checkWeights(const std::vector<const Expr*>& weights, SourceSpan s
 }
 
 Typed Checker::choice(Place& place, const Written& e) {
-    if (place.where < Where::Guard || place.where == Where::Expect) return failed(e.span, std::string(noChance));
+    if (place.where < Where::Guard || place.where == Where::Expect || place.ofMap)
+        return failed(e.span, std::string(noChance));
     Typed result;
     result.expr = chance(place, e);
     std::vector<Typed> values;
@@ -229,7 +249,8 @@ Typed Checker::choice(Place& place, const Written& e) {
 }
 
 Typed Checker::range(Place& place, const Written& e) {
-    if (place.where < Where::Guard || place.where == Where::Expect) return failed(e.span, std::string(noChance));
+    if (place.where < Where::Guard || place.where == Where::Expect || place.ofMap)
+        return failed(e.span, std::string(noChance));
     Expr drawn = chance(place, e);
     std::vector<Typed> ends;
     for (const Written& end : e.args) ends.push_back(expression(place, end));

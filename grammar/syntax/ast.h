@@ -111,8 +111,21 @@ struct ParamDecl {
 struct MapDecl {
     SourceSpan span;
     Name name;
-    Expr file;
-    std::optional<Expr> range;
+    Expr file;  ///< a text; nothing where there is a formula
+    std::optional<Expr> formula;
+    std::optional<Expr> range;  ///< after `as`: what black and white stand for
+    std::optional<Expr> over;   ///< metres along x and z
+    struct Class {
+        SourceSpan span;
+        std::optional<Expr> color;
+        Name word;
+    };                           ///< without a colour: `else`
+    std::vector<Class> classes;  ///< after `of`
+};
+struct RoadsDecl {
+    SourceSpan span;
+    Name name;
+    std::vector<Setting> settings;
 };
 struct TerminalDecl {
     SourceSpan span;
@@ -199,6 +212,7 @@ struct Ast {
     std::vector<RuleDecl> rules;
     std::vector<DeriveDecl> derives;
     std::vector<LsystemDecl> lsystems;
+    std::vector<RoadsDecl> roads;
     std::vector<StyleDecl> styles;
     std::vector<CheckDecl> checks;
     std::vector<OverrideDecl> overrides;

@@ -117,15 +117,51 @@ void readParam(Cursor& cursor, Ast& ast) {
     if (!param.name.empty()) ast.params.push_back(std::move(param));
 }
 
+/// #7fb2d9: river, #9cc77c: park, else: dry
+void readMapClasses(Cursor& cursor, MapDecl& map) {
+    do {
+        MapDecl::Class& c = map.classes.emplace_back();
+        const uint32_t begin = cursor.peek().begin;
+        if (cursor.at("else")) {
+            cursor.take();
+        } else if (cursor.at(Token::Kind::Color)) {
+            c.color = readArgument(cursor);
+        } else {
+            cursor.fail("expected a colour or 'else', found " + cursor.found(), "write '#7fb2d9: river, else: dry'");
+            return;
+        }
+        if (!cursor.accept(":", Token::Role::Suffix)) cursor.expect(":", "and a word after the colour");
+        c.word = readName(cursor, "a class of land");
+        c.span = cursor.since(begin);
+    } while (cursor.accept(","));
+}
+
 void readMap(Cursor& cursor, Ast& ast) {
     MapDecl map;
     const uint32_t begin = cursor.take().begin;
     map.name = readName(cursor, "a map");
     cursor.expect("=", "after the map's name", equalsMend(cursor, map.name));
-    map.file = readText(cursor, "a file's name");
-    if (cursor.accept("as")) map.range = readExpr(cursor);
+    if (cursor.at(Token::Kind::Text))
+        map.file = readArgument(cursor);
+    else
+        map.formula = readExpr(cursor);
+    for (bool more = true; more && !cursor.done();) {
+        more = false;
+        if (cursor.at("as") && !map.range) cursor.take(), map.range = readExpr(cursor), more = true;
+        if (cursor.at("of") && map.classes.empty()) cursor.take(), readMapClasses(cursor, map), more = true;
+        if (cursor.at("over") && !map.over) cursor.take(), map.over = readExpr(cursor), more = true;
+    }
     map.span = cursor.since(begin);
     if (!map.name.empty()) ast.maps.push_back(std::move(map));
+}
+
+void readRoads(Cursor& cursor, Ast& ast) {
+    RoadsDecl roads;
+    const uint32_t begin = cursor.take().begin;
+    roads.name = readName(cursor, "roads");
+    roads.settings = readSettings(cursor);
+    roads.span = cursor.since(begin);
+    if (!roads.name.empty()) ast.roads.push_back(std::move(roads));
 }
 
 TerminalDecl::JointDecl readJoint(Cursor& cursor) {
@@ -322,9 +358,9 @@ void readOverride(Cursor& cursor, Ast& ast) {
 }
 
 constexpr Declaration table[] = {
-    {"use", readUse},     {"param", readParam}, {"map", readMap},           {"terminal", readTerminal},
-    {"start", readStart}, {"rule", readRule},   {"derive", readDerive},     {"lsystem", readLsystem},
-    {"style", readStyle}, {"check", readCheck}, {"override", readOverride},
+    {"use", readUse},     {"param", readParam}, {"map", readMap},       {"terminal", readTerminal},
+    {"start", readStart}, {"rule", readRule},   {"derive", readDerive}, {"lsystem", readLsystem},
+    {"roads", readRoads}, {"style", readStyle}, {"check", readCheck},   {"override", readOverride},
 };
 
 }  // namespace

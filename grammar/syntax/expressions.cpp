@@ -12,10 +12,10 @@ namespace {
 
 using Kind = Expr::Kind;
 
-constexpr std::string_view reserved[] = {"grammar", "use",     "param",   "map",    "terminal", "start",  "rule",
-                                         "derive",  "lsystem", "style",   "check",  "override", "for",    "while",
-                                         "when",    "choose",  "finally", "repeat", "beside",   "weight", "and",
-                                         "or",      "not",     "in",      "expect"};
+constexpr std::string_view reserved[] = {"grammar", "use",     "param",  "map",     "terminal", "start",    "rule",
+                                         "derive",  "lsystem", "roads",  "style",   "check",    "override", "for",
+                                         "while",   "when",    "choose", "finally", "repeat",   "beside",   "weight",
+                                         "and",     "or",      "not",    "in",      "expect"};
 
 // An expression's tree is at most this many operators and the levels of nesting deep, whatever the file says: those who
 // walk it recurse.

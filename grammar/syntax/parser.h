@@ -3,11 +3,14 @@
 // recovery restarts at a keyword in column one, so one run shows all problems and a slip is reported once.
 //
 //   file        = "grammar" "1" { declaration } .                        a declaration's word stands in column one
-//   declaration = use | param | map | terminal | start | rule | derive | lsystem | style | check | override .
+//   declaration = use | param | map | terminal | start | rule | derive | lsystem | roads | style | check |
+//                 override .
 //
 //   use         = "use" TEXT [ settings ] .
 //   param       = "param" NAME "=" expr { "in" expr | "of" NAME {"," NAME} | TEXT | "group" NAME | "key" NAME } .
-//   map         = "map" NAME "=" TEXT [ "as" expr ] .
+//   map         = "map" NAME "=" ( TEXT | expr ) { "as" expr | "of" class {"," class} | "over" expr } .
+//   class       = ( COLOR | "else" ) ":" NAME .
+//   roads       = "roads" NAME settings .
 //   terminal    = "terminal" NAME {"," NAME} [ "=" solid ]
 //                 { attribute | "joint" NAME "at" argument "facing" argument } .
 //   start       = "start" NAME "->" body .

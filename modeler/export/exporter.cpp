@@ -65,7 +65,9 @@ Error bareError(const Path& path) { return writeError(path, "the mesh has no nor
 Status checkInput(const ExportInput& input, const Exporter& row, const Path& path) {
     if (row.wantsVolume && !input.volume) return writeError(path, "there is no volume");
     if (row.wantsSolids && !input.solids) return writeError(path, "there is no solid tree");
-    if (!row.wantsVolume && !row.wantsSolids && (!input.mesh || input.mesh->triangleCount() == 0))
+    if (row.wantsPlan && (!input.plan || input.plan->empty()))
+        return writeError(path, "the model has no plan: it is what 'network' and 'lots' lay out");
+    if (row.wantsMesh() && (!input.mesh || input.mesh->triangleCount() == 0))
         return writeError(path, "the mesh has no triangles");
     if (Status status = checkOptions(row, input.options); !status.ok()) return status;
     if (input.mesh && !takesPositionsOnly(row, input.options) && input.mesh->hasPositionsOnly()) return bareError(path);

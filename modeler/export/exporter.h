@@ -1,7 +1,7 @@
 // The exporter table: one row a format.
-// Enters: a mesh (or a level set, or a solid tree) with its provenance. Leaves: a file, written beside its target and
-// renamed into place, so that a good earlier file is never lost. Assumes metres, Y up; options say otherwise for
-// formats that can't.
+// Enters: a mesh (or a level set, a solid tree, a town's plan) with its provenance. Leaves: a file, written beside its
+// target and renamed into place, so that a good earlier file is never lost. Assumes metres, Y up; options say otherwise
+// for formats that can't.
 #pragma once
 
 #include <filesystem>
@@ -19,6 +19,7 @@
 #include "modeler/field/solid_tree.h"
 #include "modeler/mesh/levels.h"
 #include "modeler/mesh/polygonize.h"
+#include "modeler/town/town_plan.h"
 #include "modeler/volume/volume.h"
 
 namespace sgm::exporter {
@@ -34,11 +35,13 @@ struct ExportOption {
 /// Values by ExportOption::name.
 using ExportOptions = std::map<std::string, std::string, std::less<>>;
 
-/// What is written. `mesh` is set for mesh formats, `volume`, a level set, for volumes, `solids` for solid trees.
+/// What is written. `mesh` is set for mesh formats, `volume`, a level set, for volumes, `solids` for solid trees,
+/// `plan` for plans of towns.
 struct ExportInput {
     const mesh::Mesh* mesh = nullptr;
     const volume::Volume* volume = nullptr;
     const field::SolidTree* solids = nullptr;
+    const town::TownPlan* plan = nullptr;
     const Provenance* provenance = nullptr;
     std::span<const Collider> colliders;  ///< written by formats that hold colliders
     const ObjectTree* objects = nullptr;  ///< into which formats that hold objects divide the mesh; null: one object
@@ -72,6 +75,8 @@ struct Exporter {
     bool wantsSolids = false;   ///< holds the model's solid tree, and neither a mesh nor a volume
     bool holdsObjects = false;  ///< divides a mesh by ExportInput::objects
     bool holdsLevels = false;   ///< writes ExportInput::levels beside the mesh
+    bool wantsPlan = false;     ///< holds the plan of a town alone
+    bool wantsMesh() const { return !wantsVolume && !wantsSolids && !wantsPlan; }
 };
 
 /// The table, in the order of docs/reference.md.

@@ -46,6 +46,7 @@ Footprint stripOf(const RoadGraph& graph, const RoadParameters& parameters, uint
 void cut(Footprint& land, const std::function<bool(Vec2)>& holds, double cell_m, const char* tag) {
     if (!holds || land.empty()) return;
     const plan::Box2 box = bounds(land);
+    cell_m = std::max(cell_m, std::max(box.size().x, box.size().z) / 512);
     const Footprint off = outlineOf(holds, box.lo - Vec2{cell_m, cell_m}, box.hi + Vec2{cell_m, cell_m}, cell_m, tag);
     if (!off.empty()) land = plan::boolean(Boolean::Difference, land, off);
 }

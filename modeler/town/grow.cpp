@@ -100,13 +100,14 @@ Vec2 Growth::best(Vec2 from, Vec2 heading) const {
     if (probes < 2 || parameters_.turn <= 0) return heading;
     Vec2 found = heading;
     double most = -1;
+    const double step_m = std::max(parameters_.step_m, parameters_.look_m / 64);
     // From the middle outward, so that level ground is crossed straight on.
     for (int n = 0; n < probes; ++n) {
         const int k = n % 2 ? -(n + 1) / 2 : n / 2;
         const double share = probes > 2 ? k / std::floor(probes / 2.0) : k;
         const Vec2 way = turnedBy(heading, directionAt(parameters_.turn * share));
         double sum = 0;
-        for (double r = parameters_.step_m; r <= parameters_.look_m; r += parameters_.step_m) {
+        for (double r = step_m; r <= parameters_.look_m; r += step_m) {
             const Vec2 p = from + way * r;
             if (grower_.isInside(p)) sum += grower_.pullAt(p) / r;
         }

@@ -105,9 +105,11 @@ std::vector<Footprint> cutAcross(const Footprint& land, Vec2 n, double at) {
 
 class Cutter {
 public:
-    Cutter(const LotParameters& parameters, std::vector<Lot>& out) : parameters_(parameters), out_(out) {}
+    Cutter(const LotParameters& parameters, std::vector<Lot>& out, const Progress* progress)
+        : parameters_(parameters), out_(out), progress_(progress) {}
 
     void run(const Footprint& land, uint64_t key, int depth) {
+        if (cancelled(progress_)) return;
         if (depth < mostCuts && area(land) > 1.5 * parameters_.area_m2)
             if (const auto parts = divide(land, key)) {
                 for (size_t i = 0; i < parts->size(); ++i) run((*parts)[i], combine(key, i), depth + 1);
@@ -212,15 +214,17 @@ private:
 
     const LotParameters& parameters_;
     std::vector<Lot>& out_;
+    const Progress* progress_;
 };
 
 }  // namespace
 
 bool isStreet(const plan::Footprint& land, const plan::Edge& edge) { return land.tags[edge.tag].starts_with("street"); }
 
-std::vector<Lot> lotsOf(const plan::Footprint& block, const LotParameters& parameters, uint64_t key) {
+std::vector<Lot> lotsOf(const plan::Footprint& block, const LotParameters& parameters, uint64_t key,
+                        const Progress* progress) {
     std::vector<Lot> lots;
-    Cutter cutter(parameters, lots);
+    Cutter cutter(parameters, lots, progress);
     for (const plan::Polygon& polygon : block.polygons) cutter.run({{polygon}, block.tags}, key, 0);
     return lots;
 }

@@ -3,6 +3,7 @@
 // oriented boxes (Vanegas et al., "Procedural generation of parcels in urban modeling", 2012, algorithm 2).
 #pragma once
 
+#include "modeler/core/progress.h"
 #include "modeler/plan/polygon.h"
 
 namespace sgm::town {
@@ -27,8 +28,10 @@ struct Lot {
 
 /// The lots of a block. Cuts that would leave a part without a street, or with less than `front_m` of it, are turned,
 /// and left undone where both ways would. Where lots would be deeper than twice the root of their area, what lies
-/// behind is cut off: such land within a block has street_m = 0 and is whole, as is a block without a street.
-std::vector<Lot> lotsOf(const plan::Footprint& block, const LotParameters& parameters, uint64_t key);
+/// behind is cut off: such land within a block has street_m = 0 and is whole, as is a block without a street. Ends
+/// early, with some lots missing, where `progress` is cancelled.
+std::vector<Lot> lotsOf(const plan::Footprint& block, const LotParameters& parameters, uint64_t key,
+                        const Progress* progress = nullptr);
 
 /// Whether an edge lies along a street or highway.
 bool isStreet(const plan::Footprint& land, const plan::Edge& edge);

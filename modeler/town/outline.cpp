@@ -102,11 +102,20 @@ private:
 
 plan::Footprint outlineOf(const std::function<bool(Vec2)>& holds, Vec2 lo, Vec2 hi, double cell_m,
                           const std::string& tag) {
+    // Land in more pieces than anybody could draw is told by a coarser lattice.
+    constexpr size_t mostPoints = 20'000;
+    std::vector<std::vector<Vec2>> rings;
+    for (int tries = 0; tries < 12; ++tries, cell_m *= 2) {
+        Squares squares(holds, lo, hi, cell_m);
+        if (!squares.any()) return {};
+        rings = squares.rings();
+        size_t points = 0;
+        for (const auto& ring : rings) points += ring.size();
+        if (points <= mostPoints) break;
+    }
     plan::Footprint out;
     const plan::Edge edge{out.tag(tag), plan::EdgeSource::Side};
-    Squares squares(holds, lo, hi, cell_m);
-    if (!squares.any()) return {};
-    for (std::vector<Vec2>& ring : squares.rings())
+    for (std::vector<Vec2>& ring : rings)
         if (ring.size() >= 3) out.polygons.push_back({plan::ringOf(std::move(ring), edge), {}});
     // Courts are told from outlines by their sense; `resolved` sorts them by winding.
     auto resolved = plan::resolved(out);

@@ -10,7 +10,7 @@ namespace sgm::exporter {
 namespace {
 
 TEST(ExporterTable, EveryRowIsComplete) {
-    EXPECT_EQ(exporters().size(), 10u);
+    EXPECT_EQ(exporters().size(), 12u);
     for (const Exporter& row : exporters()) {
         EXPECT_EQ(row.extension[0], '.');
         EXPECT_FALSE(row.doc.empty());
@@ -79,7 +79,7 @@ TEST_F(Write, StopsWhenCancelled) {
     progress.cancel();
     input.progress = &progress;
     for (const Exporter& row : exporters()) {
-        if (row.wantsVolume || row.wantsSolids) continue;
+        if (!row.wantsMesh()) continue;
         const Status status = write(input, folder / std::string("a").append(row.extension));
         ASSERT_FALSE(status.ok()) << row.extension;
         EXPECT_EQ(status.error().kind, Error::Kind::Cancelled);
@@ -91,7 +91,7 @@ TEST_F(Write, TicksToTheEnd) {
     Progress progress;
     input.progress = &progress;
     for (const Exporter& row : exporters())
-        if (!row.wantsVolume && !row.wantsSolids) {
+        if (row.wantsMesh()) {
             EXPECT_EQ(errorOf(folder / std::string("a").append(row.extension)), "");
             EXPECT_DOUBLE_EQ(progress.fraction(), 1) << row.extension;
         }

@@ -124,7 +124,21 @@ void Dump::simpleDeclarations(const Ast& ast) {
         open("\nmap", d.span);
         name(d.name);
         expr(d.file);
+        if (d.formula) expr(*d.formula);
         expr(d.range);
+        expr(d.over);
+        for (const MapDecl::Class& c : d.classes) {
+            open("class", c.span);
+            expr(c.color);
+            name(c.word);
+            close();
+        }
+        close();
+    }
+    for (const RoadsDecl& d : ast.roads) {
+        open("\nroads", d.span);
+        name(d.name);
+        settings(d.settings);
         close();
     }
 }

@@ -20,10 +20,19 @@ Status writeSolids(const BuiltModel& shown, const ExportRequest& request, pipeli
     return exporter::write(input, request.file);
 }
 
+Status writePlan(const BuiltModel& shown, const ExportRequest& request, pipeline::Context& context) {
+    exporter::ExportInput input = pipeline::exportInput(shown.model, shown.grammar->sources[0]->name());
+    input.plan = &shown.model.derivation.plan;
+    input.options = request.options;
+    input.progress = context.progress;
+    return exporter::write(input, request.file);
+}
+
 Status write(const BuiltModel& shown, const ExportRequest& request, const exporter::Exporter& format,
              Progress& progress) {
     pipeline::Context context{&progress, request.threads};
     if (format.wantsSolids) return writeSolids(shown, request, context);
+    if (format.wantsPlan) return writePlan(shown, request, context);
     auto division = pipeline::divide(shown.model, format.holdsObjects ? request.objects : "");
     if (!division.ok()) return division.error();
     const Box3f& bounds = shown.model.lowered->field.bounds;

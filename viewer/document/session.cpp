@@ -302,6 +302,11 @@ bool Session::checked(const ShowRequest& request, pipeline::Context& context, st
             usedByCheck_.push_back({path, timeOf(path)});
             return loader_.outlines ? loader_.outlines(name, from, why) : nullptr;
         };
+        noting.picture = [&](const std::string& name, const syntax::Source& from, std::string& why) -> town::RasterPtr {
+            const std::string path = (std::filesystem::path(from.name()).parent_path() / name).string();
+            usedByCheck_.push_back({path, timeOf(path)});
+            return loader_.picture ? loader_.picture(name, from, why) : nullptr;
+        };
         noting.declares = loader_.declares;
         syntax::Diagnostics diagnostics = request.syntaxProblems;
         ast_ = request.ast;

@@ -1,0 +1,142 @@
+#include "grammar/rules/roads.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "grammar/rules/checker.h"
+#include "grammar/rules/evaluate.h"
+#include "grammar/rules/make.h"
+#include "modeler/core/conventions.h"
+
+namespace sgm::rules {
+namespace {
+
+using Written = syntax::Expr;
+
+constexpr RoadField fields[] = {
+    {"pull", &Roads::pull, Want::Number,
+     "what highways seek: the density of people; where it is greatest growth begins"},
+    {"spread", &Roads::spread, Want::Truth, "where streets grow on"},
+    {"water", &Roads::water, Want::Truth, "where roads need bridges, and nothing is built"},
+    {"park", &Roads::park, Want::Truth, "where neither roads nor lots may be"},
+    {"height", &Roads::height, Want::Length, "of the ground, which `slope` limits along a road"},
+};
+constexpr RoadField points[] = {
+    {"from", &Roads::from, Want::Anything, "where growth begins, (x, z); else where `pull` is greatest"},
+    {"centre", &Roads::centre, Want::Anything, "the middle of the radial pattern; else where growth begins"},
+};
+constexpr std::string_view patterns[] = {"grown", "raster", "radial"}, turns[] = {"left", "right", "both"},
+                           ends[] = {"prune", "join", "keep"};
+constexpr RoadWord words[] = {
+    {"pattern", &Roads::pattern, patterns,
+     "highways seek what pulls them, or all roads follow a raster, or rings and rays"},
+    {"turns", &Roads::turns, turns, "to which side streets branch, seen from above"},
+    {"ends", &Roads::ends, ends, "dead ends are taken away, prolonged to the next road or taken away, or kept"},
+};
+
+Want wantOf(town::RoadParameter::Unit unit) {
+    using Unit = town::RoadParameter::Unit;
+    return unit == Unit::Length  ? Want::Length
+           : unit == Unit::Angle ? Want::Angle
+           : unit == Unit::Count ? Want::Count
+                                 : Want::Number;
+}
+
+}  // namespace
+
+std::span<const RoadField> roadFields() { return fields; }
+std::span<const RoadField> roadPoints() { return points; }
+std::span<const RoadWord> roadWords() { return words; }
+
+void Checker::declareRoads(const syntax::RoadsDecl& decl) {
+    if (twice(seenRoads_, decl.name, "roads")) return;
+    Roads out;
+    out.name = decl.name.text;
+    out.span = decl.span;
+    grammar_.roads.push_back(std::move(out));
+}
+
+Expr Checker::roadWord(Place& place, const Written& e, const RoadWord& row) {
+    const std::vector<std::string> known(row.words.begin(), row.words.end());
+    if (e.kind == Written::Kind::Name && std::find(known.begin(), known.end(), e.text) != known.end() &&
+        !params_.contains(e.text))
+        return makeConstant(e.span, makeWord(e.text));
+    if (e.kind == Written::Kind::Name && !params_.contains(e.text)) {
+        unknown(e.span, e.text, fmt::format("'{}' is one of {}, not '{}'", row.name, fmt::join(known, ", "), e.text),
+                nearest(e.text, known));
+        return makeUnreadable(e.span);
+    }
+    Typed value = expression(place, e);
+    const auto* offered = value.type.words;
+    const bool good = offered && std::all_of(offered->begin(), offered->end(), [&](const std::string& w) {
+                          return std::find(known.begin(), known.end(), w) != known.end();
+                      });
+    if (!good && value.type.known)
+        diagnostics_.error(
+            e.span, fmt::format("'{}' is one of {}, not {}", row.name, fmt::join(known, ", "), describe(value.type)));
+    return std::move(value.expr);
+}
+
+Expr Checker::roadPoint(Place& place, const Written& e, std::string_view name) {
+    Typed point = expression(place, e);
+    const Value& like = point.type.like;
+    const auto length = [](Unit u) { return u == Unit::None || u == Unit::Metre; };
+    if (point.type.known &&
+        !(like.kind == Value::Kind::Vector && like.count == 2 && length(like.units[0]) && length(like.units[1])))
+        diagnostics_.error(e.span, fmt::format("'{}' is a place (x, z), not {}", name, describe(point.type)),
+                           "write '(-120m, 40m)'");
+    return std::move(point.expr);
+}
+
+void Checker::roadNumber(Place& place, const syntax::Setting& written, const town::RoadParameter& row, Roads& out) {
+    Expr value = expression(place, written.value, wantOf(row.unit), fmt::format("'{}'", row.name));
+    if (const auto number = fold(value, defaults_); number && !(number->num() >= row.lo && number->num() <= row.hi))
+        diagnostics_.error(written.value.span,
+                           fmt::format("'{}' is {}, but must be {}", row.name, toText(*number), row.range));
+    out.numbers.emplace_back(&row, std::move(value));
+}
+
+void Checker::roadSetting(Place& place, const syntax::Setting& written, Roads& out) {
+    const std::string& name = written.name.text;
+    place.enter("roads." + name);
+    for (const RoadField& row : fields)
+        if (row.name == name) {
+            out.*row.field = expression(place, written.value, row.want, fmt::format("'{}'", name));
+            return;
+        }
+    for (const RoadField& row : points)
+        if (row.name == name) {
+            out.*row.field = roadPoint(place, written.value, name);
+            return;
+        }
+    for (const RoadWord& row : words)
+        if (row.name == name) {
+            out.*row.field = roadWord(place, written.value, row);
+            return;
+        }
+    for (const town::RoadParameter& row : town::roadParameters())
+        if (row.name == name) return roadNumber(place, written, row, out);
+    std::vector<std::string> known;
+    for (const RoadField& row : fields) known.emplace_back(row.name);
+    for (const RoadField& row : points) known.emplace_back(row.name);
+    for (const RoadWord& row : words) known.emplace_back(row.name);
+    for (const town::RoadParameter& row : town::roadParameters()) known.emplace_back(row.name);
+    const std::string near = nearest(name, known);
+    diagnostics_.error(written.name.span, fmt::format("roads have no '{}'", name),
+                       near.empty() ? fmt::format("what they have: {}", fmt::join(known, ", ")) : near);
+}
+
+void Checker::roads(const syntax::Ast& ast) {
+    for (const auto& decl : ast.roads) {
+        const auto found = std::find_if(grammar_.roads.begin(), grammar_.roads.end(),
+                                        [&](const Roads& r) { return r.name == decl.name.text; });
+        if (found == grammar_.roads.end() || found->span.begin != decl.span.begin) continue;
+        std::map<std::string, SourceSpan> seen;
+        Place place(Place::Where::Guard);
+        for (const syntax::Setting& written : decl.settings)
+            if (!written.name.empty() && !twice(seen, written.name, "setting")) roadSetting(place, written, *found);
+    }
+}
+
+}  // namespace sgm::rules
