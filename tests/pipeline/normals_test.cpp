@@ -1,0 +1,48 @@
+// The normals that files get, from grammars whose faces coincide.
+#include <gtest/gtest.h>
+
+#include "grammar/pipeline/load.h"
+#include "grammar/pipeline/meshing.h"
+#include "modeler/mesh/chunk.h"
+
+namespace sgm::pipeline {
+namespace {
+
+TEST(Normals, NoCornerLooksIntoTheSolidWherePartsStandOnOneAnother) {
+    // Piers stand on a slab beside a clad solid: their feet lie in the plane of its top.
+    syntax::Diagnostics problems;
+    const auto grammar = load("piers.sgm",
+                              "grammar 1\n"
+                              "terminal gothic = ornament(center: (.93, .93, .33), fold: rotZ(30deg), passes: 4, "
+                              "mirror: (.35, .27, .2), zoom: 3.2, pan: .25)\n"
+                              "start A -> cube size (13, .7, 13) : F\n"
+                              "rule F -> + Tier size (10, 5.4, 10) at +y\n"
+                              "rule Tier -> Core for a in (-1, 1) { for b in (-1, 1) { + cube size (.9m, 100%, .9m) "
+                              "move (a * (scope.x / 2 - .3m), 0, b * (scope.z / 2 - .3m)) } }\n"
+                              "rule Core -> cube size (96%, 100%, 96%) clad gothic tile (4m, 5m) thickness (.6m, 0m)\n",
+                              problems);
+    ASSERT_TRUE(grammar);
+    Context context{nullptr, 2};
+    const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
+    ASSERT_TRUE(model.ok());
+    const auto meshed = makeMesh(*model, gridOf(*model, 160), {}, context);
+    ASSERT_TRUE(meshed.ok());
+    size_t corners = 0, inward = 0;
+    for (const mesh::Chunk& chunk : meshed->mesh.chunks)
+        for (const mesh::CornerNormal& corner : chunk.cornerNormals) {
+            const mesh::Triangle t = chunk.inMesh(chunk.triangles[corner.corner / 3]);
+            Vec3f at[3];
+            for (int k = 0; k < 3; ++k) {
+                const mesh::Chunk& owner = mesh::ownerOf(meshed->mesh.chunks, t[k]);
+                at[k] = owner.positions[t[k] - owner.firstVertex];
+            }
+            const Vec3f face = normalized(cross(at[1] - at[0], at[2] - at[0]));
+            inward += dot(face, corner.normal) < -0.9f;
+            ++corners;
+        }
+    EXPECT_GT(corners, 1000u);
+    EXPECT_EQ(inward, 0u);
+}
+
+}  // namespace
+}  // namespace sgm::pipeline
