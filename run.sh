@@ -5,6 +5,7 @@
 #   ./run.sh bench [ARGUMENTS…]   measures field → mesh beside a dense sweep, OpenVDB and the machine (docs/performance.md)
 #   ./run.sh view FILE            opens the window about a grammar
 #   ./run.sh gallery [NAME…]      draws the pictures of docs/ and README, and measures the times on the gallery's page
+#   ./run.sh package [FOLDER]     writes what other programs install, as the Blender add-on's zip, into out/
 #   ./run.sh fuzz [SECONDS] [TARGET…]  runs the fuzz targets mesh and syntax (clang++; 600 seconds each)
 cd "$(dirname "$0")"
 . cmake/setup.sh
@@ -14,6 +15,7 @@ case "${1:-}" in
     case " $* " in *" --meshes "*) install_judge ;; esac
     exec build/release/tests/bench/bench "$@" ;;
   fuzz) shift && exec tests/fuzz/run.sh "$@" ;;
+  package) shift && exec integrations/package.sh "$@" ;;
   view) build sgm sgm-viewer ;;
   gallery) build sgm sgm-viewer bench && shift && exec docs/gallery.sh "$@" ;;
 esac

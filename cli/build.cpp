@@ -51,7 +51,7 @@ Status checkRequest(const BuildRequest& request) {
 }
 
 Status buildOne(const BuildRequest& request) {
-    Watch watch(request.quiet);
+    Watch watch(displayOf(request));
     Context context{watch.progress(), request.grid.threads};
     const auto model = makeModel(request.model, context);
     if (!model.ok()) return model.error();
@@ -106,6 +106,8 @@ void addBuild(CLI::App& app, int& exitCode) {
                       "Mesh and write layer by layer, for a mesh larger than memory: one " +
                           exporter::streamedExtensions() + " file, and nothing that needs the whole mesh");
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
+    command->add_flag("--progress", request->progress,
+                      "Print lines `progress: STAGE PERCENT` on the standard error, for other programs");
     command->footer(
         "Examples:\n  sgm build examples/grotto.sgm -o grotto.glb -o grotto.vdb --resolution 256\n"
         "  sgm build examples/cumulus.sgm -o cumulus.vdb --format-option grids=fog --format-option wisps=.6 --proxy "

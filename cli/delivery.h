@@ -4,6 +4,7 @@
 
 #include "cli/outputs.h"
 #include "cli/requests.h"
+#include "cli/watch.h"
 #include "grammar/pipeline/products.h"
 
 namespace sgm::cli {
@@ -16,8 +17,14 @@ struct BuildRequest {
     std::vector<std::string> animations;  ///< "NAME=FROM..TO:FRAMES"
     std::string report, agent, floor;     ///< agent as `parseAgent` reads it, "" for the usual one
     MeshEdits edits;
-    bool validate = false, cave = false, flipNormals = false, stream = false, quiet = false;
+    bool validate = false, cave = false, flipNormals = false, stream = false, quiet = false, progress = false;
 };
+
+/// How a build shows its progress.
+inline ProgressDisplay displayOf(const BuildRequest& request) {
+    if (request.progress) return ProgressDisplay::Lines;
+    return request.quiet ? ProgressDisplay::None : ProgressDisplay::Terminal;
+}
 
 /// Whether the cave is surveyed.
 inline bool surveys(const BuildRequest& request) { return request.cave || !request.floor.empty(); }

@@ -97,7 +97,7 @@ Status buildFrames(const BuildRequest& request) {
         return Error{Error::Kind::Usage, "--animate needs files to write: -o roof_%04d.glb"};
     for (int frame : {0, 1})
         if (const auto one = requestOf(request, frame); !one.ok()) return one.error();
-    Watch watch(request.quiet);
+    Watch watch(displayOf(request));
     Context loading{watch.progress(), request.grid.threads};
     const auto scene = loadScene(request, loading);
     if (!scene.ok()) return scene.error();

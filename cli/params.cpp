@@ -16,15 +16,15 @@ std::string rangeText(const rules::Param& p) {
     return p.lo && p.hi ? fmt::format("in {}..{}", rules::toText(*p.lo), rules::toText(*p.hi)) : "";
 }
 
-int params(const std::string& file, bool json) {
+int params(const std::string& file, bool json, bool panel) {
     Context context;
     ModelRequest request;
     request.file = file;
     const auto loaded = loadGrammar(request, context);
     if (!loaded.ok()) return fail(loaded.error());
     const rules::Grammar* const grammar = loaded->get();
-    if (json) {
-        fmt::print("{}\n", rules::paramsJson(*grammar));
+    if (json || panel) {
+        fmt::print("{}\n", panel ? rules::panelJson(*grammar) : rules::paramsJson(*grammar));
         return 0;
     }
     const auto values = rules::valuesOf(*grammar, 0);
@@ -44,10 +44,13 @@ int params(const std::string& file, bool json) {
 void addParams(CLI::App& app, int& exitCode) {
     CLI::App* command = app.add_subcommand("params", "List a grammar's parameters and styles");
     auto file = std::make_shared<std::string>();
-    auto json = std::make_shared<bool>(false);
+    auto json = std::make_shared<bool>(false), panel = std::make_shared<bool>(false);
     command->add_option("FILE", *file, "Grammar file (.sgm)")->required();
     command->add_flag("--json", *json, "As JSON: name, kind, default, range, choices, label, group, key");
-    command->callback([file, json, &exitCode] { exitCode = params(*file, *json); });
+    command->add_flag(
+        "--panel", *panel,
+        "As JSON for a panel in another program: parameters, starts, styles with their values, derive ways");
+    command->callback([file, json, panel, &exitCode] { exitCode = params(*file, *json, *panel); });
 }
 
 }  // namespace sgm::cli

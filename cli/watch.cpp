@@ -36,17 +36,28 @@ void show(const Progress& progress, const std::atomic<bool>& stop) {
     if (shown) printMessage("\r\033[K");
 }
 
+void showLines(const Progress& progress, const std::atomic<bool>& stop) {
+    using namespace std::chrono_literals;
+    for (std::string before; !stop; std::this_thread::sleep_for(50ms)) {
+        const std::string stage = progress.stage();
+        std::string line = stage.empty() ? "" : fmt::format("progress: {} {:.0f}\n", stage, 100 * progress.fraction());
+        if (line != before) writeMessage(line);
+        before = std::move(line);
+    }
+}
+
 }  // namespace
 
-Watch::Watch(bool quiet) {
+Watch::Watch(ProgressDisplay display) {
     interrupted = &progress_;
     for (size_t i = 0; i < std::size(signals); ++i) {
         before_[i] = std::signal(signals[i], onInterrupt);
         if (signals[i] == SIGHUP && before_[i] == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
     }
-    if (quiet || !isatty(STDERR_FILENO)) return;
+    const bool lines = display == ProgressDisplay::Lines;
+    if (!lines && (display == ProgressDisplay::None || !isatty(STDERR_FILENO))) return;
     try {
-        line_ = std::thread([this] { show(progress_, stop_); });
+        line_ = std::thread([this, lines] { (lines ? showLines : show)(progress_, stop_); });
     } catch (const std::exception&) {  // the system gives no more threads: there is no line then
     }
 }

@@ -9,11 +9,16 @@
 
 namespace sgm::cli {
 
-/// While it lives, Ctrl-C (and SIGTERM, and a terminal that is closed) cancels `progress()`, and a line on stderr shows
-/// the stage once a second has passed (on a terminal only, and not when quiet).
+/// How a Watch shows progress: as a line on a terminal, kept up to date once a second has passed; as lines on stderr
+/// for other programs, `progress: STAGE PERCENT`; or not at all.
+enum class ProgressDisplay { Terminal, Lines, None };
+
+/// While it lives, Ctrl-C (and SIGTERM, and a terminal that is closed) cancels `progress()`, and stderr shows how far
+/// it is.
 class Watch {
 public:
-    explicit Watch(bool quiet);
+    explicit Watch(ProgressDisplay display);
+    explicit Watch(bool quiet) : Watch(quiet ? ProgressDisplay::None : ProgressDisplay::Terminal) {}
     ~Watch();
     Watch(const Watch&) = delete;
     Watch& operator=(const Watch&) = delete;

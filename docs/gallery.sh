@@ -5,6 +5,7 @@
 #   ./run.sh gallery times      the times alone: on a calm machine
 #   ./run.sh gallery window     the pictures of the window (apt-get install xvfb xdotool imagemagick)
 #   ./run.sh gallery sheet      the tutorial's sheet of variations
+#   ./run.sh gallery addon      three towers and a cloud by the Blender add-on (apt-get install blender), for docs/blender.md
 #   ./run.sh gallery blender    two models in Blender (apt-get install blender), for docs/programs.md
 cd "$(dirname "$0")/.."
 set -eu
@@ -81,6 +82,12 @@ blender() {
   keep "$drawn/a.png" blender 800
 }
 
+addon() {
+  integrations/package.sh "$drawn" blender >/dev/null
+  command blender -b --factory-startup --python docs/blender_addon.py -- "$drawn/sgm_blender.zip" "$sgm" "$drawn" >/dev/null
+  keep "$drawn/a.png" blender-addon 800
+}
+
 # shoot NAME FILE SIZE WORDS: NAME.jpg, the window about FILE on a display of its own after xdotool did what WORDS say.
 shoot() {
   local report
@@ -108,7 +115,7 @@ window() {
   shoot tutorial/5-sliders "$drawn/tower.sgm" 1280x800 "mousemove 968 56 click 1 mousemove 640 790"
 }
 
-case $* in times | window | sheet | blender) "$*"; exit ;; esac
+case $* in times | window | sheet | blender | addon) "$*"; exit ;; esac
 known=0
 while IFS='|' read -r family name options inside; do
   name=${name// /}

@@ -183,7 +183,11 @@ std::string_view unitName(Unit unit) {
     }
 }
 
-std::string paramsJson(const Grammar& grammar) {
+namespace {
+
+constexpr auto replaceInvalid = nlohmann::ordered_json::error_handler_t::replace;
+
+nlohmann::ordered_json parametersOf(const Grammar& grammar) {
     auto list = nlohmann::ordered_json::array();
     const std::vector<Value> values = valuesOf(grammar, 0);
     for (const Param& p : grammar.params) {
@@ -203,7 +207,44 @@ std::string paramsJson(const Grammar& grammar) {
         }
         list.push_back(std::move(entry));
     }
-    return list.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    return list;
+}
+
+nlohmann::ordered_json settingsOf(const Grammar& grammar, const Style& style) {
+    auto values = nlohmann::ordered_json::object();
+    for (const Setting& s : style.settings) values[grammar.params[s.param].name] = jsonOf(s.value);
+    return values;
+}
+
+const std::string& nameOf(const Grammar& grammar, uint32_t start) {
+    return grammar.symbols[grammar.starts[start].symbol].name;
+}
+
+}  // namespace
+
+std::string paramsJson(const Grammar& grammar) { return parametersOf(grammar).dump(2, ' ', false, replaceInvalid); }
+
+std::string panelJson(const Grammar& grammar) {
+    nlohmann::ordered_json panel{{"parameters", parametersOf(grammar)}};
+    auto starts = nlohmann::ordered_json::array(), styles = starts, ways = starts;
+    for (uint32_t i = 0; i < grammar.starts.size(); ++i) {
+        nlohmann::ordered_json start{{"name", nameOf(grammar, i)}};
+        const Style* usual = findStyle(grammar, "default", i);
+        start["values"] = usual ? settingsOf(grammar, *usual) : nlohmann::ordered_json::object();
+        starts.push_back(std::move(start));
+    }
+    for (const Style& s : grammar.styles) {
+        if (s.name == "default") continue;
+        nlohmann::ordered_json style{{"name", s.name}};
+        if (s.start != none) style["start"] = nameOf(grammar, s.start);
+        style["values"] = settingsOf(grammar, s);
+        styles.push_back(std::move(style));
+    }
+    for (const Derive& way : grammar.derives) ways.push_back(way.name);
+    panel["starts"] = std::move(starts);
+    panel["styles"] = std::move(styles);
+    panel["ways"] = std::move(ways);
+    return panel.dump(2, ' ', false, replaceInvalid);
 }
 
 }  // namespace sgm::rules

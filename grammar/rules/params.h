@@ -38,4 +38,10 @@ std::string_view unitName(Unit unit);
 /// "#rrggbb".
 std::string paramsJson(const Grammar& grammar);
 
+/// What a panel in another program shows of a grammar, as JSON: {parameters (as `paramsJson` lists them), starts,
+/// styles, ways}. A start is {name, values}, where values are those of its `style default`; a style is {name, start
+/// (where it is for one), values}, `style default` left out; a way is a name. Values are by the parameter's name,
+/// written as in parameters.
+std::string panelJson(const Grammar& grammar);
+
 }  // namespace sgm::rules

@@ -267,8 +267,26 @@ TEST_F(Cli, CheckJsonIsMachineReadable) {
 TEST_F(Cli, ParamsAndTreePrintJson) {
     const Json params = Json::parse(sgm("params --json examples/tower.sgm").out);
     EXPECT_FALSE(params.empty());
+    const Json panel = Json::parse(sgm("params --panel examples/tower.sgm").out);
+    EXPECT_EQ(panel["parameters"], params);
+    EXPECT_EQ(panel["starts"], Json::parse(R"([{"name": "House", "values": {}}])"));
     const Json tree = Json::parse(sgm("tree --json examples/figure1.sgm --derive left").out);
     EXPECT_FALSE(tree.empty());
+}
+
+TEST_F(Cli, ProgressIsPrintedAsLines) {
+    const Outcome run = sgm("build examples/tower.sgm --resolution 128 -q --progress -o " + path("tower.glb"));
+    ASSERT_EQ(run.code, 0) << run.out;
+    std::istringstream lines(run.out);
+    size_t count = 0;
+    for (std::string line; std::getline(lines, line); ++count) {
+        char stage[64];
+        int percent = -1;
+        ASSERT_EQ(std::sscanf(line.c_str(), "progress: %63[a-z -] %d", stage, &percent), 2) << line;
+        EXPECT_TRUE(percent >= 0 && percent <= 100) << line;
+    }
+    EXPECT_GT(count, 0u);
+    EXPECT_EQ(sgm("build examples/tower.sgm --resolution 128 -q -o " + path("tower.glb")).out, "");
 }
 
 TEST_F(Cli, ReferencePageIsUpToDate) {

@@ -101,5 +101,22 @@ TEST_F(Params, MakeATableForOtherPrograms) {
     EXPECT_FALSE(table[1].contains("label"));
 }
 
+TEST(Panel, HasStartsStylesAndWays) {
+    const Checked c = checkedBody(
+        "param n = 2 in 1..9\nparam tint = #ff0000\nstart A -> cube size n color tint : Live\nstart B -> sphere size "
+        "n\n"
+        "rule R: Live -> + cube size 1 at +y\nderive left: R\nstyle default for B { n = 5 }\nstyle default { n = 3 }\n"
+        "style Tall for A { n = 7 tint = #00ff00 }\nstyle Any { n = 1 }\n");
+    ASSERT_TRUE(c.grammar) << c.messages();
+    const auto panel = nlohmann::json::parse(panelJson(*c.grammar));
+    EXPECT_EQ(panel["parameters"], nlohmann::json::parse(paramsJson(*c.grammar)));
+    EXPECT_EQ(panel["starts"],
+              nlohmann::json::parse(R"([{"name": "A", "values": {"n": 3}}, {"name": "B", "values": {"n": 5}}])"));
+    EXPECT_EQ(panel["styles"],
+              nlohmann::json::parse(R"([{"name": "Tall", "start": "A", "values": {"n": 7, "tint": "#00ff00"}},
+                                                         {"name": "Any", "values": {"n": 1}}])"));
+    EXPECT_EQ(panel["ways"], nlohmann::json::parse(R"(["left"])"));
+}
+
 }  // namespace
 }  // namespace sgm::rules
