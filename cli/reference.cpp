@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "grammar/language/textmate.h"
 #include "grammar/operations/operations.h"
 #include "grammar/rules/functions.h"
 #include "grammar/rules/roads.h"
@@ -145,7 +146,13 @@ std::string exportersPage() {
 void addReference(CLI::App& app, int& exitCode) {
     CLI::App* command =
         app.add_subcommand("reference", "Print the reference page: operations, primitives, functions, formats");
-    command->callback([&exitCode] {
+    auto textMate = std::make_shared<bool>(false);
+    command->add_flag("--textmate", *textMate, "Print a TextMate grammar instead, for editors that highlight by one");
+    command->callback([textMate, &exitCode] {
+        if (*textMate) {
+            fmt::print("{}", language::textMateGrammar());
+            return;
+        }
         fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}{}{}{}",
                    operationsPage(), plansPage(), roadsPage(), primitivesPage(), functionsPage(), exportersPage());
         exitCode = 0;

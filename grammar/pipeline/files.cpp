@@ -101,13 +101,7 @@ public:
 private:
     void read() {
         read_ = true;
-        std::vector<fs::path> paths;
-        std::error_code failed;
-        for (const auto& entry : fs::directory_iterator(standardLibrary(), failed))
-            if (entry.path().extension() == ".sgm") paths.push_back(entry.path());
-        std::sort(paths.begin(), paths.end());
-        for (const fs::path& path : paths)
-            if (const auto source = readSource(path); source.ok()) note(**source, "std/" + path.filename().string());
+        for (const auto& [name, source] : standardFiles()) note(*source, name);
     }
 
     /// `terminal a, b = …` and `rule Name: Symbol …`: the words before what follows names.
@@ -213,6 +207,19 @@ Result<syntax::SourcePtr> readSource(const fs::path& path) {
     if (!text.ok())
         return Error{Error::Kind::Input, fmt::format("can't read '{}': {}", path.string(), text.error().message)};
     return std::make_shared<const syntax::Source>(path.string(), std::move(*text));
+}
+
+std::vector<std::pair<std::string, syntax::SourcePtr>> standardFiles() {
+    std::vector<fs::path> paths;
+    std::error_code failed;
+    for (const auto& entry : fs::directory_iterator(standardLibrary(), failed))
+        if (entry.path().extension() == ".sgm") paths.push_back(entry.path());
+    std::sort(paths.begin(), paths.end());
+    std::vector<std::pair<std::string, syntax::SourcePtr>> files;
+    for (const fs::path& path : paths)
+        if (auto source = readSource(path); source.ok())
+            files.emplace_back("std/" + path.filename().string(), std::move(*source));
+    return files;
 }
 
 rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) {

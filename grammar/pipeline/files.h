@@ -22,6 +22,10 @@ Result<syntax::SourcePtr> readSource(const std::filesystem::path& path);
 /// `read`, unless it is null; both outlive the loader.
 rules::Loader fileLoader(const Progress* progress = nullptr, std::vector<std::filesystem::path>* read = nullptr);
 
+/// The files of the standard library as `use` names them, "std/walls.sgm", with their texts, in the order of their
+/// names.
+std::vector<std::pair<std::string, syntax::SourcePtr>> standardFiles();
+
 /// Writes text beside `path` and renames it into place.
 Status writeText(const std::filesystem::path& path, const std::string& text);
 

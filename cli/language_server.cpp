@@ -1,0 +1,230 @@
+// sgm lsp: the language server on the standard streams.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <condition_variable>
+#include <cstdio>
+#include <deque>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include "cli/commands.h"
+#include "cli/trials.h"
+#include "grammar/derive/derive.h"
+#include "grammar/language/server.h"
+#include "grammar/pipeline/files.h"
+
+namespace sgm::cli {
+namespace {
+
+using Json = nlohmann::json;
+constexpr size_t mostMessage_bytes = 64u << 20;
+constexpr std::chrono::milliseconds settled{300};  ///< models of a text that is still being typed aren't tried
+
+/// A member of what may be anything; null where there is none.
+const Json& memberOf(const Json& json, const char* name) {
+    static const Json null;
+    const auto found = json.is_object() ? json.find(name) : json.end();
+    return json.is_object() && found != json.end() ? *found : null;
+}
+
+bool isCalled(const Json& message, const char* method) { return memberOf(message, "method") == method; }
+
+/// The next message's text; nothing at the stream's end, or where what comes is no message.
+std::optional<std::string> readMessage(std::FILE* stream) {
+    size_t length = 0;
+    bool known = false;
+    std::string line;
+    for (int c; (c = std::fgetc(stream)) != EOF;) {
+        if (c != '\n') {
+            if (line.size() < 4096) line += static_cast<char>(c);
+            continue;
+        }
+        if (line == "\r" || line.empty()) {
+            if (!known || length > mostMessage_bytes) return std::nullopt;
+            std::string text(length, '\0');
+            if (std::fread(text.data(), 1, length, stream) != length) return std::nullopt;
+            return text;
+        }
+        constexpr std::string_view header = "Content-Length:";
+        if (line.starts_with(header)) {
+            const size_t digits = std::min(line.find_first_of("0123456789"), line.size());
+            known = std::from_chars(line.data() + digits, line.data() + line.size(), length).ec == std::errc();
+        }
+        line.clear();
+    }
+    return std::nullopt;
+}
+
+void writeMessage(const Json& message) {
+    const std::string text = message.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::fprintf(stdout, "Content-Length: %zu\r\n\r\n", text.size());
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    std::fflush(stdout);
+}
+
+/// Messages between the thread that reads them and the one that answers.
+class Queue {
+public:
+    void push(Json message) {
+        const std::lock_guard lock(mutex_);
+        if (isCalled(message, "$/cancelRequest")) {
+            cancelled_.insert(textOf(memberOf(memberOf(message, "params"), "id")));
+        } else {
+            messages_.push_back(std::move(message));
+            if (progress_) progress_->cancel();  // what is done idly waits
+        }
+        changed_.notify_one();
+    }
+
+    void close() {
+        const std::lock_guard lock(mutex_);
+        closed_ = true;
+        if (progress_) progress_->cancel();
+        changed_.notify_one();
+    }
+
+    struct Taken {
+        Json message;
+        bool cancelled = false;   ///< the client wants no answer any more
+        bool superseded = false;  ///< a later change of the same text waits already
+    };
+
+    /// The next message, waiting for it so long; nothing when none came. `closed` says that none will.
+    std::optional<Taken> take(std::optional<std::chrono::milliseconds> patience, bool& closed) {
+        std::unique_lock lock(mutex_);
+        const auto ready = [this] { return closed_ || !messages_.empty(); };
+        if (patience)
+            changed_.wait_for(lock, *patience, ready);
+        else
+            changed_.wait(lock, ready);
+        closed = closed_ && messages_.empty();
+        if (messages_.empty()) return std::nullopt;
+        Taken taken{std::move(messages_.front())};
+        messages_.pop_front();
+        const Json& id = memberOf(taken.message, "id");
+        taken.cancelled = !id.is_null() && cancelled_.erase(textOf(id)) > 0;
+        taken.superseded = isSuperseded(taken.message);
+        return taken;
+    }
+
+    /// While it lives, a message cancels `progress`.
+    class Work {
+    public:
+        Work(Queue& queue, Progress& progress) : queue_(queue) {
+            const std::lock_guard lock(queue_.mutex_);
+            queue_.progress_ = &progress;
+            if (queue_.closed_ || !queue_.messages_.empty()) progress.cancel();
+        }
+        ~Work() {
+            const std::lock_guard lock(queue_.mutex_);
+            queue_.progress_ = nullptr;
+        }
+        Work(const Work&) = delete;
+        Work& operator=(const Work&) = delete;
+
+    private:
+        Queue& queue_;
+    };
+
+private:
+    static std::string textOf(const Json& id) { return id.dump(-1, ' ', false, Json::error_handler_t::replace); }
+    /// The URI of the text that a message changes, or null.
+    static const Json& changedText(const Json& message) {
+        return memberOf(
+            memberOf(memberOf(message, isCalled(message, "textDocument/didChange") ? "params" : ""), "textDocument"),
+            "uri");
+    }
+    /// Requests in between ask for the text as it is then.
+    bool isSuperseded(const Json& message) const {
+        const Json& uri = changedText(message);
+        return !uri.is_null() && !messages_.empty() && changedText(messages_.front()) == uri;
+    }
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<Json> messages_;
+    std::set<std::string> cancelled_;
+    Progress* progress_ = nullptr;
+    bool closed_ = false;
+};
+
+void readAll(Queue& queue) {
+    while (const auto text = readMessage(stdin)) {
+        Json message = Json::parse(*text, nullptr, false);
+        if (message.is_discarded()) {
+            queue.push({{"sgm", "unreadable"}});
+            continue;
+        }
+        const bool last = isCalled(message, "exit");
+        queue.push(std::move(message));
+        if (last) break;
+    }
+    queue.close();
+}
+
+/// What `sgm check` would say of the models, and of the grammar's own tests.
+void tryGrammar(std::shared_ptr<const rules::Grammar> grammar, Progress* progress, syntax::Diagnostics& found) {
+    TrialOptions options;
+    options.mainSeconds = 10;
+    options.otherSeconds = 2;
+    if (!tryModels(grammar, options, progress, found).ok() || cancelled(progress)) return;
+    const auto verdicts = derive::runChecks(std::move(grammar), options.seed, progress, options.mainSeconds);
+    if (!verdicts.ok()) return;
+    for (const derive::Verdict& v : *verdicts)
+        if (!v.passed) found.error(v.span, v.message);
+}
+
+void answer(language::Server& server, const Queue::Taken& taken) {
+    const Json& message = taken.message;
+    if (message.is_object() && message.contains("sgm")) {
+        writeMessage({{"jsonrpc", "2.0"},
+                      {"id", nullptr},
+                      {"error", {{"code", -32700}, {"message", "the message isn't JSON"}}}});
+    } else if (taken.cancelled) {
+        writeMessage(
+            {{"jsonrpc", "2.0"}, {"id", message["id"]}, {"error", {{"code", -32800}, {"message", "cancelled"}}}});
+    } else {
+        for (const Json& out : server.handle(message, taken.superseded)) writeMessage(out);
+    }
+}
+
+int serve() {
+    language::Environment environment;
+    environment.load = pipeline::fileLoader();
+    for (auto& [name, source] : pipeline::standardFiles()) environment.library.push_back({name, std::move(source)});
+    environment.tryModels = tryGrammar;
+    environment.version = SGM_VERSION;
+    language::Server server(std::move(environment));
+    Queue queue;
+    std::thread reader([&queue] { readAll(queue); });
+    bool closed = false;
+    while (!closed && server.exitCode() < 0) {
+        const bool idle = server.hasIdleWork();
+        const auto taken = queue.take(idle ? std::optional(settled) : std::nullopt, closed);
+        if (taken) {
+            answer(server, *taken);
+        } else if (idle && !closed) {
+            Progress progress;
+            const Queue::Work work(queue, progress);
+            for (const Json& out : server.workIdly(&progress)) writeMessage(out);
+        }
+    }
+    reader.join();
+    return std::max(server.exitCode(), 0);
+}
+
+}  // namespace
+
+void addLsp(CLI::App& app, int& exitCode) {
+    CLI::App* command =
+        app.add_subcommand("lsp", "Serve editors: the Language Server Protocol on the standard streams");
+    command->callback([&exitCode] { exitCode = serve(); });
+}
+
+}  // namespace sgm::cli
