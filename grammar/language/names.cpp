@@ -61,7 +61,11 @@ public:
     void file(const syntax::Ast& ast) {
         for (const auto& d : ast.uses) settings(d.settings);
         for (const auto& d : ast.params) parameter(d);
-        for (const auto& d : ast.maps) define(NameKind::Map, d.name, d.span);
+        for (const auto& d : ast.maps) map(d);
+        for (const auto& d : ast.roads) {
+            define(NameKind::Map, d.name, d.span);
+            for (const auto& s : d.settings) expr(s.value);
+        }
         for (const auto& d : ast.terminals) terminal(d);
         for (const auto& d : ast.lsystems) lsystem(d);
         for (const auto& d : ast.starts) {
@@ -103,6 +107,12 @@ private:
         define(NameKind::Parameter, d.name, d.span);
         expr(d.value);
         if (d.range) expr(*d.range);
+    }
+
+    void map(const syntax::MapDecl& d) {
+        define(NameKind::Map, d.name, d.span);
+        for (const auto* e : {&d.formula, &d.range, &d.over})
+            if (*e) expr(**e);
     }
 
     void terminal(const syntax::TerminalDecl& d) {
@@ -262,6 +272,7 @@ void Known::add(const syntax::Ast& ast) {
         for (const Name& choice : d.choices) choices[d.name.text].push_back(choice.text);
     }
     for (const auto& d : ast.maps) maps.insert(d.name.text);
+    for (const auto& d : ast.roads) maps.insert(d.name.text);
     for (const auto& d : ast.terminals) {
         for (const Name& name : d.names) symbols.insert(name.text);
         for (const auto& joint : d.joints) joints.insert(joint.name.text);

@@ -26,6 +26,7 @@ constexpr Keyword declarationTable[] = {
      "asked for."},
     {"rule", "What a symbol becomes or grows: `rule Storey repeat floors - 1 -> + stone at +y : Storey`."},
     {"derive", "An explicit order of rules: `derive left: R0 => R1 => R3`."},
+    {"roads", "How roads grow over maps: `roads Name { … }`."},
     {"lsystem", "Letters that draw a plan, rewritten some times over."},
     {"style",
      "A named set of parameter values: `style Tall for House { floors = 12 }`. One called `default` is used without "
