@@ -15,7 +15,8 @@ int main() {
     pipeline::Context context;
     const auto model = pipeline::makeModel(grammar, *pipeline::optionsFor(*grammar, {}), context);
     if (!model.ok()) return 1;
-    const auto meshed = pipeline::makeMesh(*model, pipeline::gridOf(*model, 96), {}, context);
+    const auto meshed =
+        pipeline::makeMesh(*model, pipeline::gridOf(*model, 96), {.surface = mesh::Surface::Crisp}, context);
     if (!meshed.ok()) return 1;
     std::printf("%zu triangles\n", meshed->mesh.triangleCount());
     for (const auto& [stage, seconds] : context.stages) std::printf("%-10s %.4f s\n", stage.c_str(), seconds);

@@ -20,7 +20,8 @@ constexpr float lineWidth = 1.6f;            // of hard edges, pixels
 constexpr int sunMapEdge = 2048, skyMapEdge = 256;
 constexpr size_t leastSkyMaps = 12, mostSkyMaps = 40;  // the latter as in visibility.glsl
 
-/// As many as the driver draws in a second or two; software draws some 3 million triangles a second (docs/lab/pictures.md).
+/// As many as the driver draws in a second or two; software draws some 3 million triangles a second
+/// (docs/lab/pictures.md).
 size_t skyMapsFor(size_t triangles) {
     const size_t drawn = size_t(softwareGl() ? 6 : 24) << 20;
     return std::clamp(drawn / std::max<size_t>(triangles, 1), leastSkyMaps, mostSkyMaps);

@@ -141,10 +141,16 @@ void readMap(Cursor& cursor, Ast& ast) {
     const uint32_t begin = cursor.take().begin;
     map.name = readName(cursor, "a map");
     cursor.expect("=", "after the map's name", equalsMend(cursor, map.name));
-    if (cursor.at(Token::Kind::Text))
+    if (cursor.at(Token::Kind::Text)) {
         map.file = readArgument(cursor);
-    else
+    } else {
+        const std::string file(cursor.peekText());
         map.formula = readExpr(cursor);
+        const syntax::Expr& formula = *map.formula;
+        if (formula.kind == Expr::Kind::Member && formula.text == "png")
+            cursor.failAt(formula.span, "expected a file's name in quotes, found " + quoted(file),
+                          "write '\"" + file + ".png\"'");
+    }
     for (bool more = true; more && !cursor.done();) {
         more = false;
         if (cursor.at("as") && !map.range) cursor.take(), map.range = readExpr(cursor), more = true;

@@ -320,6 +320,7 @@ private:
         e.kind = Kind::Choose;
         const uint32_t begin = cursor_.take().begin;
         const Token open = cursor_.peek();
+        e.span = cursor_.since(begin);
         if (!cursor_.expect("{", "after 'choose'", "as in 'choose { 3: +x | 1: -z }'")) return e;
         do {
             e.args.push_back(binary(rampBinds));

@@ -25,7 +25,6 @@ void CellPieces::emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, c
                       PieceTriangles& out) {
     const auto triangle = static_cast<uint32_t>(out.triangles.size());
     const LoopNode* const corners[] = {&a, &b, &c};
-    const Vec3f face = normalized(cross(b.at - a.at, c.at - a.at));
     for (uint32_t k = 0; k < 3; ++k) {
         const LoopNode& node = *corners[k];
         const bool isEdgeVertex = node.sides[0]->label == piece.label && node.sides[1]->label == piece.label &&
@@ -33,8 +32,8 @@ void CellPieces::emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, c
         if (isEdgeVertex) continue;
         const PiecePoint& side = sideOf(node, piece.label);
         Vec3f n = side.label == piece.label ? normalized(side.gradient) : normal;
-        // Where faces of two parts coincide, as a pier's foot and the slab it stands on, the gradient may be the other's.
-        if (dot(n, face) < -0.5f) n = face;
+        // Where faces of two parts coincide, as a pier's foot and a slab, the gradient may be the other's.
+        if (dot(n, normal) < -0.5f) n = normal;
         out.cornerNormals.push_back({3 * triangle + k, n == Vec3f{} ? normal : n});
     }
     out.triangles.push_back({a.vertex, b.vertex, c.vertex});

@@ -100,7 +100,7 @@ TEST_F(Shell, ExamplesAreListedAndCopiedWithWhatTheyUse) {
     const Outcome again = sgm("examples knot --to " + path("copy"));
     EXPECT_EQ(again.code, 1);
     EXPECT_NE(again.out.find("is there already"), std::string::npos);
-    EXPECT_NE(sgm("examples towr").out.find("did you mean 'tower'?"), std::string::npos);
+    EXPECT_NE(sgm("examples towerr").out.find("did you mean 'tower'?"), std::string::npos);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include "grammar/language/completion.h"
 #include "grammar/language/edits.h"
 #include "grammar/operations/operations.h"
-#include "grammar/syntax/declarations.h"
 #include "grammar/pipeline/files.h"
+#include "grammar/syntax/declarations.h"
 
 namespace sgm::language {
 namespace {

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "grammar/language/text.h"
+#include "grammar/pipeline/files.h"
 #include "modeler/core/random.h"
 #include "tests/scratch.h"
-#include "grammar/pipeline/files.h"
 
 namespace sgm::language {
 namespace {

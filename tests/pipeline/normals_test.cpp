@@ -25,7 +25,7 @@ TEST(Normals, NoCornerLooksIntoTheSolidWherePartsStandOnOneAnother) {
     Context context{nullptr, 2};
     const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
     ASSERT_TRUE(model.ok());
-    const auto meshed = makeMesh(*model, gridOf(*model, 160), {}, context);
+    const auto meshed = makeMesh(*model, gridOf(*model, 160), {.surface = mesh::Surface::Crisp}, context);
     ASSERT_TRUE(meshed.ok());
     size_t corners = 0, inward = 0;
     for (const mesh::Chunk& chunk : meshed->mesh.chunks)
@@ -36,11 +36,12 @@ TEST(Normals, NoCornerLooksIntoTheSolidWherePartsStandOnOneAnother) {
                 const mesh::Chunk& owner = mesh::ownerOf(meshed->mesh.chunks, t[k]);
                 at[k] = owner.positions[t[k] - owner.firstVertex];
             }
-            const Vec3f face = normalized(cross(at[1] - at[0], at[2] - at[0]));
+            const Vec3f across = cross(at[1] - at[0], at[2] - at[0]), face = normalized(across);
+            if (face.y < .99f || length(across) < 1e-5f) continue;  // the slab's top, less slivers
             inward += dot(face, corner.normal) < -0.9f;
             ++corners;
         }
-    EXPECT_GT(corners, 1000u);
+    EXPECT_GT(corners, 100u);
     EXPECT_EQ(inward, 0u);
 }
 

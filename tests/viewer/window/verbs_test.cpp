@@ -232,8 +232,13 @@ TEST_F(Verbs, EveryFormatIsExported) {
         click(format);
         const std::string extension = format.substr(14, format.find(' ') - 14);
         click("export.export");
-        until("a file of " + extension,
-              [&](const auto& s) { return std::string(s["notice"]).ends_with("test" + extension); });
+        // A plan is of a town, which this isn't.
+        const bool isPlan = extension == ".svg" || extension == ".geojson";
+        until("a file of " + extension, [&](const auto& s) {
+            const std::string notice = s["notice"];
+            return isPlan ? notice.find("no plan") != std::string::npos : notice.ends_with("test" + extension);
+        });
+        if (isPlan) continue;
         EXPECT_GT(fs::file_size(folder / ("test" + extension)), 100u) << extension;
     }
 }
