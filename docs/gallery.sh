@@ -5,12 +5,13 @@
 #   ./run.sh gallery times      the times alone: on a calm machine
 #   ./run.sh gallery window     the pictures of the window (apt-get install xvfb xdotool imagemagick)
 #   ./run.sh gallery sheet      the tutorial's sheet of variations
+#   ./run.sh gallery town       the plan and patterns of the town, for docs/town.md (apt-get install librsvg2-bin)
 #   ./run.sh gallery addon      three towers and a cloud by the Blender add-on (apt-get install blender), for docs/blender.md
 #   ./run.sh gallery blender    two models in Blender (apt-get install blender), for docs/programs.md
 cd "$(dirname "$0")/.."
 set -eu
 sgm=build/release/cli/sgm
-mkdir -p docs/pictures/footprints docs/pictures/tutorial
+mkdir -p docs/pictures/footprints docs/pictures/tutorial docs/pictures/town
 export drawn
 drawn=$(mktemp -d)
 trap 'rm -rf "$drawn"' EXIT
@@ -88,6 +89,20 @@ addon() {
   keep "$drawn/a.png" blender-addon 800
 }
 
+# The town's plan, and its roads by other patterns.
+town() {
+  local pattern
+  "$sgm" build examples/city/town.sgm -q -o "$drawn/a.svg"
+  /usr/bin/convert -density 100 "$drawn/a.svg" "$drawn/a.png"
+  keep "$drawn/a.png" town/plan 700
+  for pattern in grown raster radial; do
+    "$sgm" build examples/city/town.sgm -q --set side=1200m --set pattern=$pattern -o "$drawn/a.svg"
+    /usr/bin/convert -background white -density 60 "$drawn/a.svg" -resize 540x540 -gravity center -extent 540x540 "$drawn/$pattern.png"
+  done
+  montage "$drawn/grown.png" "$drawn/raster.png" "$drawn/radial.png" -tile 3x1 -geometry +0+0 "$drawn/a.png"
+  keep "$drawn/a.png" town/patterns 800
+}
+
 # shoot NAME FILE SIZE WORDS: NAME.jpg, the window about FILE on a display of its own after xdotool did what WORDS say.
 shoot() {
   local report
@@ -115,7 +130,7 @@ window() {
   shoot tutorial/5-sliders "$drawn/tower.sgm" 1280x800 "mousemove 968 56 click 1 mousemove 640 790"
 }
 
-case $* in times | window | sheet | blender | addon) "$*"; exit ;; esac
+case $* in times | window | sheet | town | blender | addon) "$*"; exit ;; esac
 known=0
 while IFS='|' read -r family name options inside; do
   name=${name// /}
