@@ -2,6 +2,7 @@
 // Enters: a Source. Leaves: an Ast of everything that could be read, and diagnostics for the rest. Never throws;
 // recovery restarts at a keyword in column one, so one run shows all problems and a slip is reported once.
 //
+// clang-format off
 //   file        = "grammar" "1" { declaration } .                        a declaration's word stands in column one
 //   declaration = use | param | map | terminal | start | rule | derive | lsystem | roads | style | check |
 //                 override .
@@ -17,16 +18,19 @@
 //   rule        = "rule" [ NAME ":" ] NAME { "beside" NAME | "when" expr | "weight" expr | "repeat" expr }
 //                 "->" body [ "finally" body ] .
 //   derive      = "derive" NAME ":" step { "=>" step } .
-//   step        = NAME [ "#" DIGITS ] [ "at" path ] .                    glued; Cell#2 is the second unnamed rule for
-//   Cell path        = NAME { "/" NAME | "[" NUMBER "]" } . lsystem     = "lsystem" NAME { NAME argument } "axiom" TEXT
-//   { NAME "->" TEXT [ ":" argument ] } . style       = "style" NAME [ "for" NAME ] settings . check       = "check"
-//   NAME [ settings ] "expect" expr . override    = "override" path settings . settings    = "{" { NAME "=" expr } "}"
-//   .
+//   step        = NAME [ "#" DIGITS ] [ "at" path ] .                    glued; Cell#2 is the second unnamed rule for Cell
+//   path        = NAME { "/" NAME | "[" NUMBER "]" } .
+//   lsystem     = "lsystem" NAME { NAME argument } "axiom" TEXT { NAME "->" TEXT [ ":" argument ] } .
+//   style       = "style" NAME [ "for" NAME ] settings .
+//   check       = "check" NAME [ settings ] "expect" expr .
+//   override    = "override" path settings .
+//   settings    = "{" { NAME "=" expr } "}" .
 //
 //   body        = chain { "," chain } .                                  siblings
-//   chain       = element { element } .                                  every one but the first has an operator or is
-//   control element     = [ operator ] shape | control . operator    = "+" | "-" | "&" | "morph" . "morph" glued to "("
-//   is a solid shape       = { attribute } [ solid | "(" body ")" ] { attribute } [ ":" NAME ] .       not empty
+//   chain       = element { element } .                                  every one but the first has an operator or is control
+//   element     = [ operator ] shape | control .
+//   operator    = "+" | "-" | "&" | "morph" .                            "morph" glued to "(" is a solid
+//   shape       = { attribute } [ solid | "(" body ")" ] { attribute } [ ":" NAME ] .       not empty
 //   control     = "for" NAME "in" expr [ "when" expr ] "{" body "}" | ( "while" | "when" ) expr "{" body "}"
 //               | "choose" block .
 //   solid       = NAME | call .
@@ -51,10 +55,11 @@
 //               | "choose" "{" expr ":" expr { "|" expr ":" expr } "}" .
 //   call        = NAME "(" [ [ NAME ":" ] expr { "," [ NAME ":" ] expr } ] ")" .            "(" glued to NAME
 //
-//   NUMBER      = ( DIGITS [ "." DIGITS ] | "." DIGITS ) [ "e" [ "+" | "-" ] DIGITS ] [ "m" | "deg" | "%" | "/m" ] .
-//   glued AXIS        = ( "+" | "-" ) ( "x" | "y" | "z" ) .                    glued, where a value is expected COLOR
-//   = "#" and six hex digits.     TEXT = '"' … '"' on one line; \" and \\ are its escapes. NAME        = letters,
-//   digits and "_", beginning with no digit; no word of the language.    // begins a comment.
+//   NUMBER      = ( DIGITS [ "." DIGITS ] | "." DIGITS ) [ "e" [ "+" | "-" ] DIGITS ] [ "m" | "deg" | "%" | "/m" ] .  glued
+//   AXIS        = ( "+" | "-" ) ( "x" | "y" | "z" ) .                    glued, where a value is expected
+//   COLOR       = "#" and six hex digits.     TEXT = '"' … '"' on one line; \" and \\ are its escapes.
+//   NAME        = letters, digits and "_", beginning with no digit; no word of the language.    // begins a comment.
+// clang-format on
 #pragma once
 
 #include <span>
