@@ -9,7 +9,7 @@ bool works(const char* command) { return std::system((std::string(command) + " >
 class BlenderAddon : public Cli {};
 
 TEST_F(BlenderAddon, DoesWhatItsTestsAsk) {
-    if (!works("command -v blender") || !works("python3 -c 'import numpy'"))
+    if (!works("command -v blender") || !works("/usr/bin/python3 -c 'import numpy'"))
         GTEST_SKIP() << "blender or python3-numpy isn't installed";
     ASSERT_TRUE(works(("integrations/package.sh " + path("packages") + " blender").c_str()));
     const std::string log = path("log.txt");

@@ -31,7 +31,9 @@ bool installed(const std::string& program) {
 
 /// Debian's Blender runs the system's Python, and its glTF importer and our script want numpy, which the package only
 /// recommends.
-bool blenderWorks() { return installed("blender") && std::system("python3 -c 'import numpy' 2> /dev/null") == 0; }
+bool blenderWorks() {
+    return installed("blender") && std::system("/usr/bin/python3 -c 'import numpy' 2> /dev/null") == 0;
+}
 
 class Importers : public Cli {
 protected:

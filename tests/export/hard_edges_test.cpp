@@ -104,7 +104,7 @@ TEST_F(HardEdges, UsdKeepsEightPointsAndANormalACorner) {
 }
 
 TEST_F(HardEdges, BlenderSeesSharpEdgesOnAClosedMesh) {
-    if (std::system("command -v blender > /dev/null && python3 -c 'import numpy' 2> /dev/null") != 0)
+    if (std::system("command -v blender > /dev/null && /usr/bin/python3 -c 'import numpy' 2> /dev/null") != 0)
         GTEST_SKIP() << "blender or python3-numpy isn't installed";
     const std::string said = (folder / "said").string();
     ASSERT_EQ(std::system(("blender -b --factory-startup --python tests/cli/importers/blender.py -- " +
