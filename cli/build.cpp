@@ -57,8 +57,8 @@ Status buildOne(const BuildRequest& request) {
     if (!model.ok()) return model.error();
     if (!request.quiet) printWarnings(*model);
     if (request.stream) return stream(request, *model, context);
-    if (const Status s = writeSolids(request, *model, context); !s.ok()) return s;
-    if (solidsWillDo(request)) return printFiles(request), Done{};
+    if (const Status s = writeMeshless(request, *model, context); !s.ok()) return s;
+    if (needsNoMesh(request)) return printFiles(request), Done{};
     auto division = pipeline::divide(*model, request.out.objects);
     if (!division.ok()) return division.error();
     auto meshed = makeMesh(*model, request.grid, context, needsPositionsOnly(request));

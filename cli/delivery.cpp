@@ -92,14 +92,14 @@ bool needsPositionsOnly(const BuildRequest& request) {
            !request.edits.tolerance_m && !surveys(request) && needsPositionsOnly(request.out);
 }
 
-bool solidsWillDo(const BuildRequest& request) {
-    return solidsWillDo(request.out) && request.report.empty() && !request.validate && !surveys(request);
+bool needsNoMesh(const BuildRequest& request) {
+    return needsNoMesh(request.out) && request.report.empty() && !request.validate && !surveys(request);
 }
 
-Status writeSolids(const BuildRequest& request, const Model& model, Context& context) {
+Status writeMeshless(const BuildRequest& request, const Model& model, Context& context) {
     exporter::ExportInput input = pipeline::exportInput(model, request.model.file);
     input.progress = context.progress;
-    return context.timed("solids", [&] { return writeSolids(request.out, model, input); });
+    return context.timed("solids", [&] { return writeMeshless(request.out, model, input); });
 }
 
 Status deliver(const BuildRequest& request, const Model& model, pipeline::Division division, MeshedModel meshed,

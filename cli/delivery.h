@@ -9,7 +9,7 @@
 
 namespace sgm::cli {
 
-/// All that a user asks of `sgm build`.
+/// The options of `sgm build`.
 struct BuildRequest {
     ModelRequest model;
     GridRequest grid;
@@ -30,13 +30,13 @@ inline ProgressDisplay displayOf(const BuildRequest& request) {
 inline bool surveys(const BuildRequest& request) { return request.cave || !request.floor.empty(); }
 /// Whether the blocks are needed, from which a level set is sampled.
 inline bool wantsLevelSet(const BuildRequest& request) { return wantsVolume(request.out) || surveys(request); }
-/// Whether nobody asks for the mesh's normals and origins: neither the files nor edits, the floor and the figures.
+/// Whether the mesh's normals and origins are unused: by the files, edits, the floor and the figures.
 bool needsPositionsOnly(const BuildRequest& request);
 /// Whether files of the solid tree are all that is wanted.
-bool solidsWillDo(const BuildRequest& request);
+bool needsNoMesh(const BuildRequest& request);
 
 /// Writes the solid tree where that is wanted: before meshing, for a model that isn't exactly one is refused.
-Status writeSolids(const BuildRequest& request, const Model& model, Context& context);
+Status writeMeshless(const BuildRequest& request, const Model& model, Context& context);
 /// From a mesh to what was asked for.
 Status deliver(const BuildRequest& request, const Model& model, pipeline::Division division, MeshedModel meshed,
                Context& context);

@@ -67,8 +67,8 @@ Result<Scene> loadScene(const BuildRequest& request, Context& context) {
 Status writeFrame(const BuildRequest& framed, pipeline::IncrementalPipeline& incremental, const mesh::Grid& grid,
                   Context& context) {
     const Model model = incremental.viewModel();
-    if (const Status s = writeSolids(framed, model, context); !s.ok()) return s;
-    if (solidsWillDo(framed)) return printFiles(framed), Done{};
+    if (const Status s = writeMeshless(framed, model, context); !s.ok()) return s;
+    if (needsNoMesh(framed)) return printFiles(framed), Done{};
     auto division = pipeline::divide(model, framed.out.objects);
     if (!division.ok()) return division.error();
     auto meshed = wantsLevelSet(framed)

@@ -201,7 +201,7 @@ bool wantsVolume(const OutputRequest& request) {
                        [](const std::string& file) { return formatOf(file)->wantsVolume; });
 }
 
-bool solidsWillDo(const OutputRequest& request) {
+bool needsNoMesh(const OutputRequest& request) {
     return !request.files.empty() && request.proxy.empty() &&
            std::all_of(request.files.begin(), request.files.end(), [](const std::string& file) {
                return formatOf(file)->wantsSolids || formatOf(file)->wantsPlan;
@@ -229,7 +229,7 @@ Status streamOutput(const OutputRequest& request, exporter::ExportInput input, c
     return exporter::writeStreamed(input, chunks, request.files[0]);
 }
 
-Status writeSolids(const OutputRequest& request, const Model& model, exporter::ExportInput input) {
+Status writeMeshless(const OutputRequest& request, const Model& model, exporter::ExportInput input) {
     field::SolidTree tree;
     for (const std::string& file : request.files) {
         const Exporter& row = *formatOf(file);

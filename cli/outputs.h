@@ -33,7 +33,7 @@ Status checkMeshFile(const char* option, const std::string& file);
 bool wantsVolume(const OutputRequest& request);
 
 /// True when every file holds the solid tree or the plan of a town, so that no mesh is wanted.
-bool solidsWillDo(const OutputRequest& request);
+bool needsNoMesh(const OutputRequest& request);
 
 /// True when no file says anything of the mesh's normals and origins. (The proxy is a mesh of its own.)
 bool needsPositionsOnly(const OutputRequest& request);
@@ -45,7 +45,7 @@ Status streamOutput(const OutputRequest& request, exporter::ExportInput input, c
 
 /// Writes the files that hold the model's solid tree or its plan, if any. Error::Input, located, where the model isn't
 /// exactly one, or where it has no plan.
-Status writeSolids(const OutputRequest& request, const Model& model, exporter::ExportInput input);
+Status writeMeshless(const OutputRequest& request, const Model& model, exporter::ExportInput input);
 
 /// Writes every other file. `input` has the mesh, the level set where one of the files wants it, and what is known of
 /// the model.

@@ -115,8 +115,7 @@ constinit const Operation lots{
     .doc =
         "Cuts a block into lots of about so many square metres, each with a piece of street: x runs along it, z to it. "
         "corner is a lot at two streets (lot, where it isn't said), inner what lies behind all lots. Edges keep the "
-        "block's "
-        "tags; those between lots are called cut.",
+        "block's tags; those between lots are called cut.",
     .example = "size (60, 4, 40) lots box(300, front: 8m) { lot: setback 2m wall | inner: lawn }",
     .arguments = lotsArguments,
     .phase = Operation::Phase::Content,

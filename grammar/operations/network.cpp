@@ -237,9 +237,8 @@ constinit const Operation network{
     .name = "network",
     .doc =
         "Splits the ground by roads that grow over maps: ground is the whole scope; highway, street and bridge are "
-        "stretches "
-        "of road with z along them, crossing lies between them; water and park are where the roads' maps say so; block "
-        "is "
+        "stretches of "
+        "road with z along them, crossing lies between them; water and park are where the roads' maps say so; block is "
         "what roads enclose, its edges tagged street, highway, bridge, water or park.",
     .example = "size (400, 4, 400) network Net { street: asphalt | crossing: asphalt | block: lawn }",
     .arguments = networkArguments,

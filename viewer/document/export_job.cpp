@@ -10,21 +10,20 @@ namespace sgm::viewer {
 namespace fs = std::filesystem;
 namespace {
 
-Status writeSolids(const BuiltModel& shown, const ExportRequest& request, pipeline::Context& context) {
-    const auto tree = pipeline::makeSolidTree(shown.model, context);
-    if (!tree.ok()) return tree.error();
-    exporter::ExportInput input = pipeline::exportInput(shown.model, shown.grammar->sources[0]->name());
-    input.solids = &*tree;
-    input.options = request.options;
-    input.progress = context.progress;
-    return exporter::write(input, request.file);
-}
-
-Status writePlan(const BuiltModel& shown, const ExportRequest& request, pipeline::Context& context) {
+/// What every format is told of the model.
+exporter::ExportInput inputOf(const BuiltModel& shown, const ExportRequest& request, Progress& progress) {
     exporter::ExportInput input = pipeline::exportInput(shown.model, shown.grammar->sources[0]->name());
     input.plan = &shown.model.derivation.plan;
     input.options = request.options;
-    input.progress = context.progress;
+    input.progress = &progress;
+    return input;
+}
+
+Status writeSolids(const BuiltModel& shown, const ExportRequest& request, pipeline::Context& context) {
+    const auto tree = pipeline::makeSolidTree(shown.model, context);
+    if (!tree.ok()) return tree.error();
+    exporter::ExportInput input = inputOf(shown, request, *context.progress);
+    input.solids = &*tree;
     return exporter::write(input, request.file);
 }
 
@@ -32,7 +31,7 @@ Status write(const BuiltModel& shown, const ExportRequest& request, const export
              Progress& progress) {
     pipeline::Context context{&progress, request.threads};
     if (format.wantsSolids) return writeSolids(shown, request, context);
-    if (format.wantsPlan) return writePlan(shown, request, context);
+    if (format.wantsPlan) return exporter::write(inputOf(shown, request, progress), request.file);
     auto division = pipeline::divide(shown.model, format.holdsObjects ? request.objects : "");
     if (!division.ok()) return division.error();
     const Box3f& bounds = shown.model.lowered->field.bounds;
@@ -54,10 +53,8 @@ Status write(const BuiltModel& shown, const ExportRequest& request, const export
     wanted.meshing = meshing;
     const auto products = pipeline::makeProducts(shown.model, *meshed, std::move(*mesh), std::move(wanted), context);
     if (!products.ok()) return products.error();
-    exporter::ExportInput input = pipeline::exportInput(shown.model, shown.grammar->sources[0]->name());
+    exporter::ExportInput input = inputOf(shown, request, progress);
     products->applyTo(input);
-    input.options = request.options;
-    input.progress = &progress;
     return exporter::write(input, request.file);
 }
 

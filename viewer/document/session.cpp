@@ -291,22 +291,17 @@ bool Session::checked(const ShowRequest& request, pipeline::Context& context, st
             }
             return source;
         });
-        noting.mesh = [&](const std::string& name, const syntax::Source& from, std::string& why) {
-            const std::string path = (std::filesystem::path(from.name()).parent_path() / name).string();
-            usedByCheck_.push_back({path, timeOf(path)});
-            return loader_.mesh ? loader_.mesh(name, from, why) : nullptr;
+        // `load` for a file beside the grammar, whose path and time are noted.
+        const auto beside = [&](const auto& load) {
+            return [&](const std::string& name, const syntax::Source& from, std::string& why) {
+                const std::string path = (fs::path(from.name()).parent_path() / name).string();
+                usedByCheck_.push_back({path, timeOf(path)});
+                return load ? load(name, from, why) : nullptr;
+            };
         };
-        noting.outlines = [&](const std::string& name, const syntax::Source& from,
-                              std::string& why) -> std::shared_ptr<const plan::Features> {
-            const std::string path = (std::filesystem::path(from.name()).parent_path() / name).string();
-            usedByCheck_.push_back({path, timeOf(path)});
-            return loader_.outlines ? loader_.outlines(name, from, why) : nullptr;
-        };
-        noting.picture = [&](const std::string& name, const syntax::Source& from, std::string& why) -> town::RasterPtr {
-            const std::string path = (std::filesystem::path(from.name()).parent_path() / name).string();
-            usedByCheck_.push_back({path, timeOf(path)});
-            return loader_.picture ? loader_.picture(name, from, why) : nullptr;
-        };
+        noting.mesh = beside(loader_.mesh);
+        noting.outlines = beside(loader_.outlines);
+        noting.picture = beside(loader_.picture);
         noting.declares = loader_.declares;
         syntax::Diagnostics diagnostics = request.syntaxProblems;
         ast_ = request.ast;
