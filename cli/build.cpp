@@ -44,6 +44,9 @@ Status checkRequest(const BuildRequest& request) {
             Error::Kind::Usage,
             fmt::format("--collider {} fills the terminals, and --flip-normals is for hollows: take --collider mesh",
                         request.out.collider)};
+    if (request.grid.objectCell_m > 0 && !keepsObjectsApart(request))
+        return Error{Error::Kind::Usage,
+                     "--object-cell: what is asked for is made of one field, with one cell for all; leave it out"};
     if (request.agent.empty()) return Done{};
     if (!surveys(request)) return Error{Error::Kind::Usage, "--agent walks through a cave: add --cave or --floor FILE"};
     if (const auto agent = parseAgent(request.agent); !agent.ok()) return agent.error();
@@ -53,7 +56,8 @@ Status checkRequest(const BuildRequest& request) {
 Status buildOne(const BuildRequest& request) {
     Watch watch(displayOf(request));
     Context context{watch.progress(), request.grid.threads};
-    const auto model = makeModel(request.model, context);
+    const bool apart = keepsObjectsApart(request);
+    const auto model = makeModel(request.model, context, apart ? pipeline::Objects::Apart : pipeline::Objects::Grafted);
     if (!model.ok()) return model.error();
     if (!request.quiet) printWarnings(*model);
     if (request.stream) return stream(request, *model, context);
@@ -61,9 +65,12 @@ Status buildOne(const BuildRequest& request) {
     if (needsNoMesh(request)) return printFiles(request), Done{};
     auto division = pipeline::divide(*model, request.out.objects);
     if (!division.ok()) return division.error();
-    auto meshed = makeMesh(*model, request.grid, context, needsPositionsOnly(request));
+    auto meshed =
+        makeMesh(*model, request.grid, context, needsPositionsOnly(request) && model->derivation.objects.empty());
     if (!meshed.ok()) return meshed.error();
-    return deliver(request, *model, std::move(*division), std::move(*meshed), context);
+    const auto scene = makeScene(*model, request.model, request.grid, request.edits, request.quiet, context);
+    if (!scene.ok()) return scene.error();
+    return deliver(request, *model, std::move(*division), std::move(*meshed), *scene, context);
 }
 
 int build(BuildRequest request) {
@@ -83,6 +90,7 @@ void addBuild(CLI::App& app, int& exitCode) {
     auto request = std::make_shared<BuildRequest>();
     addModelOptions(*command, request->model);
     addGridOptions(*command, request->grid);
+    addObjectOptions(*command, request->grid);
     addOutputOptions(*command, request->out);
     command
         ->add_option("--animate", request->animations,

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/cave.h"
 #include "cli/floating.h"
 #include "cli/gaps.h"
@@ -10,6 +12,7 @@
 #include "cli/missing.h"
 #include "cli/report.h"
 #include "cli/validation.h"
+#include "grammar/lower/objects.h"
 #include "grammar/pipeline/files.h"
 #include "modeler/mesh/edit.h"
 
@@ -27,28 +30,33 @@ struct Figures {
 bool wantsFigures(const BuildRequest& request) { return !request.quiet || !request.report.empty(); }
 
 /// The mesh as it is written, but for its sense.
-Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, MeshedModel& meshed, Context& context) {
+Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, MeshedModel& meshed,
+                            const mesh::Scene& scene, Context& context) {
     keepOnly(request.edits.keep, meshed, request.grid.threads, request.quiet);
     const float cell_m = meshed.grid.cell_m;
     auto mesh = pipeline::edited(std::move(meshed.mesh), request.edits, request.grid.surface, cell_m, context);
     if (!mesh.ok()) return mesh;
-    if (mesh->triangleCount() == 0 && !allFiles(request.out).empty()) {
+    if (mesh->triangleCount() == 0 && scene.empty() && !allFiles(request.out).empty()) {
         Error error = pipeline::noSurface(model, cell_m);
         error.message += " (--cell, --resolution)";
         return error;
     }
-    if (request.validate)
+    if (request.validate && mesh->triangleCount() > 0)
         if (const Status s = validated(*mesh, context); !s.ok()) return s.error();
+    if (request.validate)
+        for (const mesh::SceneObject& object : scene.objects)
+            if (const Status s = validated(object.mesh, context); !s.ok()) return s.error();
     if (request.edits.smooth > 0 && !request.validate && !request.quiet) warnOfFaults(*mesh, context);
     return mesh;
 }
 
 /// The files but for solid trees, the survey with them.
-Status writeFiles(const BuildRequest& request, const Model& model, const pipeline::Products& products, Figures& figures,
-                  Context& context) {
+Status writeFiles(const BuildRequest& request, const Model& model, const pipeline::Products& products,
+                  const mesh::Scene& scene, Figures& figures, Context& context) {
     exporter::ExportInput input = pipeline::exportInput(model, request.model.file);
     input.progress = context.progress;
     products.applyTo(input);
+    if (!scene.empty()) input.scene = &scene, input.provenance = &scene.ground;
     mesh::Mesh floor;
     if (surveys(request)) {
         auto surveyed = context.timed("cave", [&] {
@@ -65,7 +73,7 @@ Status writeFiles(const BuildRequest& request, const Model& model, const pipelin
 }
 
 void printSummary(const BuildRequest& request, const Model& model, const pipeline::Products& products,
-                  const mesh::Grid& grid, const Figures& figures, const Stages& stages) {
+                  const mesh::Scene& scene, const mesh::Grid& grid, const Figures& figures, const Stages& stages) {
     double total = 0;
     for (const auto& stage : stages) total += stage.second;
     const mesh::MeshFigures& f = figures.mesh;
@@ -73,6 +81,13 @@ void printSummary(const BuildRequest& request, const Model& model, const pipelin
                model.derivation.tree.shapes.size(), model.derivation.tree.bonds.size(),
                model.derivation.classic + model.derivation.morphic, f.triangles, f.components,
                f.components == 1 ? "" : "s", f.volume_m3, total);
+    if (!scene.empty()) {
+        uint64_t own = 0;
+        for (const mesh::SceneObject& object : scene.objects) own += object.mesh.triangleCount();
+        fmt::print("{} object{} at {} place{}; {} triangles, {} at all places\n", scene.objects.size(),
+                   scene.objects.size() == 1 ? "" : "s", scene.instances.size(), scene.instances.size() == 1 ? "" : "s",
+                   own, scene.triangleCount());
+    }
     for (const std::string& file : allFiles(request.out)) fmt::print("wrote {}\n", file);
     if (!request.floor.empty()) fmt::print("wrote {}\n", request.floor);
     const size_t colliders = products.colliders.all.size();
@@ -102,8 +117,19 @@ Status writeMeshless(const BuildRequest& request, const Model& model, Context& c
     return context.timed("solids", [&] { return writeMeshless(request.out, model, input); });
 }
 
+bool keepsObjectsApart(const BuildRequest& request) {
+    const auto choice = lower::parseObjects(request.out.objects.empty() ? "material" : request.out.objects);
+    return !request.stream && !surveys(request) && request.animations.empty() && !request.flipNormals &&
+           request.out.lod == 1 && request.out.collider.empty() && request.out.proxy.empty() && choice.ok() &&
+           !choice->divides() &&
+           std::all_of(request.out.files.begin(), request.out.files.end(), [](const std::string& file) {
+               const exporter::Exporter& row = *exporter::exporterFor(file);
+               return row.wantsMesh() || row.wantsPlan;
+           });
+}
+
 Status deliver(const BuildRequest& request, const Model& model, pipeline::Division division, MeshedModel meshed,
-               Context& context) {
+               const mesh::Scene& scene, Context& context) {
     Figures figures;
     if (wantsFigures(request)) {
         auto found = context.timed(
@@ -111,7 +137,7 @@ Status deliver(const BuildRequest& request, const Model& model, pipeline::Divisi
         if (!found.ok()) return found.error();
         figures.missing = std::move(*found);
     }
-    auto mesh = editMesh(request, model, meshed, context);
+    auto mesh = editMesh(request, model, meshed, scene, context);
     if (!mesh.ok()) return mesh.error();
     if (wantsFigures(request)) {
         figures.mesh = mesh::measure(*mesh);
@@ -127,13 +153,13 @@ Status deliver(const BuildRequest& request, const Model& model, pipeline::Divisi
                                 request.flipNormals, request.edits, meshingOf(request.grid)},
                                context);
     if (!products.ok()) return products.error();
-    if (const Status s = writeFiles(request, model, *products, figures, context); !s.ok()) return s;
+    if (const Status s = writeFiles(request, model, *products, scene, figures, context); !s.ok()) return s;
     if (!request.report.empty()) {
         const std::string json = reportJson(model, meshed, figures.mesh, figures.support, figures.missing, figures.cave,
                                             context.stages, request.grid.threads);
         if (const Status s = pipeline::writeText(request.report, json); !s.ok()) return s;
     }
-    if (!request.quiet) printSummary(request, model, *products, meshed.grid, figures, context.stages);
+    if (!request.quiet) printSummary(request, model, *products, scene, meshed.grid, figures, context.stages);
     return Done{};
 }
 

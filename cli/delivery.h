@@ -37,9 +37,12 @@ bool needsNoMesh(const BuildRequest& request);
 
 /// Writes the solid tree where that is wanted: before meshing, for a model that isn't exactly one is refused.
 Status writeMeshless(const BuildRequest& request, const Model& model, Context& context);
-/// From a mesh to what was asked for.
+/// Whether all that is asked for holds objects that `place` puts apart from the model, each meshed once; what wants one
+/// field or one mesh has them grafted.
+bool keepsObjectsApart(const BuildRequest& request);
+/// From a mesh, and the scene of objects beside it, to what was asked for.
 Status deliver(const BuildRequest& request, const Model& model, pipeline::Division division, MeshedModel meshed,
-               Context& context);
+               const mesh::Scene& scene, Context& context);
 /// Meshes and writes layer by layer.
 Status stream(const BuildRequest& request, const Model& model, Context& context);
 /// Prints which files were written, unless the request is quiet.

@@ -53,7 +53,7 @@ Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const ru
     const auto options = optionsFor(*grammar, with(request, values));
     if (!options.ok()) return options.error();
     Context context{progress, request.threads};
-    auto model = makeModel(grammar, *options, context);
+    auto model = makeModel(grammar, *options, context, pipeline::Objects::Sketched);
     if (!model.ok()) {
         if (model.error().kind == Error::Kind::Cancelled) return model.error();
         return Tried{{}, "empty"};

@@ -28,7 +28,8 @@ std::string operationsPage() {
     std::string page = "## Rule operations\n\nWhat a rule body may do to a shape.\n";
     for (const syntax::Operation* row : operations::table().rows()) {
         const syntax::Operation& o = *row;
-        page += fmt::format("\n### `{}{}{}`\n\n{}\n", o.name, argumentList(o), o.hasBlock() ? " { … }" : "", o.doc);
+        page += fmt::format("\n### `{}{}{}`\n\n{}\n", o.name, argumentList(o),
+                            o.hasBlock() || o.takesSettings ? " { … }" : "", o.doc);
         for (const syntax::OperationArgument& a : o.arguments) page += fmt::format("- `{}`: {}\n", a.name, a.doc);
         if (!o.example.empty()) page += fmt::format("\n    {}\n", o.example);
     }

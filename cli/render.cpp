@@ -5,11 +5,13 @@
 #include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/animation.h"
 #include "cli/commands.h"
 #include "cli/floating.h"
 #include "cli/ids.h"
+#include "cli/messages.h"
 #include "cli/numbers.h"
 #include "cli/requests.h"
 #include "cli/watch.h"
@@ -52,13 +54,20 @@ Result<viewer::PictureOptions> parseSize(const std::string& text) {
     return options;
 }
 
+/// A mesh with what its triangles are, as it is drawn: with the objects that `place` puts at all their places.
+using DrawnMesh = std::optional<mesh::FlatScene>;
+
 /// "ex,ey,ez,ax,ay,az": where the eye is and what it looks at, metres; "inside"; or nothing for the default frame.
 Result<viewer::Camera> parseCamera(const RenderRequest& request, const Model& model, const Box3f& bounds,
                                    double aspect) {
     const std::string& text = request.camera;
+    const bool hasObjects = !model.derivation.objects.empty();  // which the tape is without
+    if (text.empty() && hasObjects) return viewer::frame(bounds, aspect);
     if (text.empty())
         return request.turntable > 0 ? viewer::frameTurning(model.tape, bounds, aspect)
                                      : viewer::frame(model.tape, bounds, aspect);
+    if (text == "inside" && hasObjects)
+        return Error{Error::Kind::Usage, "--camera inside: with objects that 'place' puts, say where the eye is"};
     if (text == "inside") return viewer::inside(model.tape, bounds);
     viewer::Camera c;
     int used = 0;
@@ -88,6 +97,8 @@ Status checkRequest(const RenderRequest& request) {
         return wrong("--wires are the edges of a mesh's triangles: add --view mesh, labels or creases");
     if (request.edits.isAsked() && !drawsMesh(request))
         return wrong("--keep, --smooth, --simplify and --tolerance change a mesh: add --view mesh, labels or creases");
+    if (request.grid.objectCell_m > 0 && !drawsMesh(request))
+        return wrong("--object-cell is of meshes: add --view mesh, labels or creases");
     if (request.extinction > 0 && request.view != "fog") return wrong("--extinction is of fog: add --view fog");
     if (request.stats && (request.view != "field" || request.turntable > 0))
         return wrong("--stats counts evaluations of the field for one picture: leave out --view and --turntable");
@@ -124,17 +135,24 @@ viewer::TracedBy tracedBy(const std::string& name) {
                                  : viewer::TracedBy::Best;
 }
 
-/// The mesh that `sgm build` writes.
-Result<mesh::Mesh> meshAsBuilt(const RenderRequest& request, const Model& model, Progress* progress) {
+/// The mesh that `sgm build` writes, objects at all their places.
+Result<DrawnMesh> meshAsBuilt(const RenderRequest& request, const Model& model, Progress* progress) {
     Context context{progress, request.grid.threads};
     auto meshed = makeMesh(model, request.grid, context);
     if (!meshed.ok()) return meshed.error();
     keepOnly(request.edits.keep, *meshed, request.grid.threads, request.quiet);
-    return edited(std::move(meshed->mesh), request.edits, request.grid.surface, meshed->grid.cell_m, context);
+    auto mesh = edited(std::move(meshed->mesh), request.edits, request.grid.surface, meshed->grid.cell_m, context);
+    if (!mesh.ok()) return mesh.error();
+    const auto scene = makeScene(model, request.model, request.grid, request.edits, request.quiet, context);
+    if (!scene.ok()) return scene.error();
+    auto flat = mesh::flatten(*scene, *mesh);
+    if (!flat.ok()) return flat.error();
+    return DrawnMesh(std::move(*flat));
 }
 
 /// What every picture of the model shares is done here.
-Result<Painter> painterOf(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
+Result<Painter> painterOf(const RenderRequest& request, const Model& model, const DrawnMesh& mesh, const Box3f& bounds,
+                          Progress* progress) {
     const Provenance& provenance = model.lowered->provenance;
     if (request.view == "field") {
         const auto painter = viewer::FieldPainter::create(model.tape, bounds, provenance, request.grid.threads,
@@ -151,9 +169,7 @@ Result<Painter> painterOf(const RenderRequest& request, const Model& model, cons
                            return drawIds(model, bounds, options, progress);
                        },
                        {}};
-    const auto mesh = meshAsBuilt(request, model, progress);
-    if (!mesh.ok()) return mesh.error();
-    const auto painter = viewer::MeshPainter::create(*mesh, provenance, progress);
+    const auto painter = viewer::MeshPainter::create(mesh->mesh, mesh->provenance, progress);
     if (!painter.ok()) return painter.error();
     viewer::MeshStyle style;
     style.wireframe = request.wires;
@@ -229,17 +245,27 @@ Status drawAll(const RenderRequest& request) {
     if (!options.ok()) return options.error();
     Watch watch(request.quiet);
     Context context{watch.progress()};
-    const auto model = makeModel(request.model, context);
+    const auto model =
+        makeModel(request.model, context, drawsMesh(request) ? pipeline::Objects::Apart : pipeline::Objects::Sketched);
     if (!model.ok()) return model.error();
     if (!request.quiet) printWarnings(*model);
-    const Box3f bounds = viewer::tighten(model->tape, model->lowered->field.bounds);
+    if (const std::string note = pipeline::sketchNote(model->derivation); !note.empty() && !request.quiet)
+        printMessage("note: {}; add --view mesh\n", note);
+    DrawnMesh mesh;
+    if (drawsMesh(request)) {
+        auto built = meshAsBuilt(request, *model, watch.progress());
+        if (!built.ok()) return built.error();
+        mesh = std::move(*built);
+    }
+    const Box3f bounds = model->derivation.objects.empty() ? viewer::tighten(model->tape, model->lowered->field.bounds)
+                                                           : mesh->mesh.bounds();
     const auto camera = parseCamera(request, *model, bounds, static_cast<double>(options->width) / options->height);
     if (!camera.ok()) return camera.error();
     options->camera = *camera;
     options->samples = request.samples;
     options->threads = request.grid.threads;
     options->ground = !request.noGround && request.camera != "inside";
-    const auto paint = painterOf(request, *model, bounds, watch.progress());
+    const auto paint = painterOf(request, *model, mesh, bounds, watch.progress());
     if (!paint.ok()) return paint.error();
     const Provenance& provenance = model->lowered->provenance;
     if (request.turntable == 0) {
@@ -279,6 +305,7 @@ void addRender(CLI::App& app, int& exitCode) {
     auto request = std::make_shared<RenderRequest>();
     addModelOptions(*command, request->model);
     addGridOptions(*command, request->grid);
+    addObjectOptions(*command, request->grid);
     addEditOptions(*command, request->edits);
     command->add_option("-o,--output", request->output, "Picture to write (.png, or .exr for floats)")->required();
     command->add_option("--size", request->size, "Pixels, WxH")->capture_default_str();

@@ -57,6 +57,15 @@ void addGridOptions(CLI::App& command, GridRequest& request) {
         ->capture_default_str();
 }
 
+void addObjectOptions(CLI::App& command, GridRequest& request) {
+    command
+        .add_option(
+            "--object-cell", request.objectCell_m,
+            "Edge of a cell of objects that 'place' puts, metres [as --cell says; else --resolution cells along "
+            "each object's longest side]")
+        ->check(between(1e-6, 1e6));
+}
+
 void addEditOptions(CLI::App& command, MeshEdits& edits) {
     const std::map<std::string, mesh::Keep> kept{
         {"all", mesh::Keep::All}, {"grounded", mesh::Keep::Grounded}, {"largest", mesh::Keep::Largest}};
@@ -95,12 +104,29 @@ Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& re
     return grammar;
 }
 
-Result<Model> makeModel(const ModelRequest& request, Context& context) {
+Result<Model> makeModel(const ModelRequest& request, Context& context, pipeline::Objects objects) {
     const auto grammar = loadGrammar(request, context);
     if (!grammar.ok()) return grammar.error();
     const auto options = optionsFor(**grammar, request);
     if (!options.ok()) return options.error();
-    return makeModel(*grammar, *options, context);
+    return makeModel(*grammar, *options, context, objects);
+}
+
+Result<mesh::Scene> makeScene(const Model& model, const ModelRequest& request, const GridRequest& grid,
+                              const MeshEdits& edits, bool quiet, Context& context) {
+    if (model.derivation.objects.empty() && grid.objectCell_m > 0)
+        return Error{Error::Kind::Usage, "--object-cell is of objects that 'place' puts, and this model has none"};
+    pipeline::SceneRequest wanted;
+    wanted.resolution = grid.resolution;
+    wanted.cell_m = grid.objectCell_m > 0 ? grid.objectCell_m : grid.cell_m;
+    wanted.meshing = meshingOf(grid);
+    wanted.edits = edits;
+    wanted.budget.shapes = request.shapeBudget;
+    wanted.budget.seconds = request.secondsBudget;
+    auto made = pipeline::makeScene(model, wanted, context);
+    if (!made.ok()) return made.error();
+    if (!quiet) printDiagnostics(made->warnings);
+    return std::move(made->scene);
 }
 
 void printWarnings(const Model& model) { printDiagnostics(derive::warnings(model.derivation)); }

@@ -11,6 +11,7 @@
 #include "cli/targets.h"
 #include "grammar/pipeline/mesh_edits.h"
 #include "grammar/pipeline/meshing.h"
+#include "grammar/pipeline/scene.h"
 
 namespace CLI {
 class App;
@@ -38,11 +39,14 @@ void addModelOptions(CLI::App& command, ModelRequest& request);
 /// How fine and how: --resolution or --cell, --surface and --threads.
 struct GridRequest {
     int resolution = 128;
-    double cell_m = 0;  ///< > 0 wins over resolution
+    double cell_m = 0;        ///< > 0 wins over resolution
+    double objectCell_m = 0;  ///< of objects that `place` puts; 0: as the others say
     mesh::Surface surface = mesh::Surface::Crisp;
     int threads = 0;
 };
 void addGridOptions(CLI::App& command, GridRequest& request);
+/// Adds --object-cell.
+void addObjectOptions(CLI::App& command, GridRequest& request);
 
 /// Adds --keep, --smooth, --simplify and --tolerance.
 void addEditOptions(CLI::App& command, MeshEdits& edits);
@@ -54,7 +58,12 @@ Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& re
                                                           std::vector<std::filesystem::path>* read = nullptr);
 
 /// A model from the file on.
-Result<Model> makeModel(const ModelRequest& request, Context& context);
+Result<Model> makeModel(const ModelRequest& request, Context& context,
+                        pipeline::Objects objects = pipeline::Objects::Grafted);
+
+/// The objects of a model that was made without them. Error::Usage where `objectCell_m` is said and there are none.
+Result<mesh::Scene> makeScene(const Model& model, const ModelRequest& request, const GridRequest& grid,
+                              const MeshEdits& edits, bool quiet, Context& context);
 
 /// Prints derive::warnings, what every command about a model tells.
 void printWarnings(const Model& model);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cli/requests.h"
+#include "grammar/pipeline/scene.h"
 #include "grammar/rules/params.h"
 #include "modeler/core/printable.h"
 #include "modeler/core/stopwatch.h"
@@ -137,9 +138,11 @@ private:
             if (warned_.insert({d.span.source, d.span.begin, d.span.end}).second)
                 diagnostics_.warning(d.span, prefixed(setting.words, d.message), d.hint);
         Context context{progress_};
-        const auto model = makeModel(std::move(*derivation), context);
+        const bool placesObjects = !derivation->objects.empty();
+        if (const Status s = pipeline::tryObjects(*derivation, options.budget, context); !s.ok()) return s;
+        const auto model = makeModel(std::move(*derivation), context, pipeline::Objects::Apart);
         if (!model.ok()) return model.error();
-        return hasSurface(*model);
+        return placesObjects ? Status(Done{}) : hasSurface(*model);
     }
 
     /// Fails when intervals prove that there is no surface; what is thinner than a cell isn't lost by them.

@@ -126,6 +126,7 @@ bool Interpreter::runChoose(const Element& e, Frame& frame, Target& target, uint
     frame.place.key = key;
     std::vector<double> weights;
     for (const rules::Choice& c : e.choices) weights.push_back(number(c.weight, frame.place));
+    if (weights.size() > 1) builder_.noteChance();
     const uint32_t at = drawByWeight(weights, combine(key, hashText("weight")));
     if (at != none) return runInner(*e.choices[at].body, frame, target, loop, followed);
     builder_.fail(Error::Kind::Input, std::string(allZero), e.span);

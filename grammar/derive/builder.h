@@ -51,6 +51,8 @@ public:
     void fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span);
     /// Adds a remark to the derivation, once a place; a second run of a recording adds none.
     void warn(syntax::SourceSpan span, std::string message, std::string hint);
+    /// Another seed could have gone another way here.
+    void noteChance() { derivation_.usedChance = true; }
     /// From now on notes all that another run with other numbers has to know; null for nobody.
     void record(Recording* recording) { recording_ = recording; }
     Recording* recording() const { return recording_; }

@@ -45,6 +45,10 @@ double figureOf(const Derivation& d, Figure figure) {
             return countOf(d, {"block"});
         case Figure::Lots:
             return countOf(d, {"lot", "corner"});
+        case Figure::Places:
+            return static_cast<double>(placementsOf(d).size());
+        case Figure::Objects:
+            return static_cast<double>(d.objects.size());
     }
     return 0;
 }

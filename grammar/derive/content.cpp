@@ -247,6 +247,7 @@ Shape Interpreter::shapeOf(const Element& e, EvaluatedAttributes& attributes, co
     s.blend_m = attributes.blend_m;
     s.span = e.span;
     if (!attributes.extras.empty()) {
+        if (!attributes.extras.displace.empty()) builder_.noteChance();  // noise hangs on the shape's key
         s.extras = builder_.put(std::move(attributes.extras));
     }
     if (e.live != rules::none) s.chainRule = chainRule_;

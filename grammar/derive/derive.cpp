@@ -19,10 +19,20 @@ Result<Derivation> emptyDerivation(std::shared_ptr<const Grammar> grammar, const
     if (d.materials.empty()) d.materials.emplace_back();
     d.start = options.start;
     d.seed = options.seed;
+    d.isPlaced = options.isPlaced;
     d.params = options.params.empty() ? rules::valuesOf(*grammar, options.start) : options.params;
     for (size_t i = d.params.size(); i < grammar->params.size(); ++i) d.params.push_back(grammar->params[i].value);
     d.grammar = std::move(grammar);
     return d;
+}
+
+std::vector<Placement> placementsOf(const Derivation& derivation) {
+    std::vector<Placement> placements;
+    if (derivation.objects.empty()) return placements;
+    for (ShapeId s = 0; s != none; s = derivation.tree.next(s))
+        if (const Extras* extras = derivation.tree.extrasOf(s); extras && extras->object != none)
+            placements.push_back({s, extras->object});
+    return placements;
 }
 
 Result<Derivation> derive(std::shared_ptr<const Grammar> grammar, const Options& options, Progress* progress) {
@@ -40,7 +50,7 @@ Result<Derivation> derive(std::shared_ptr<const Grammar> grammar, const Options&
 
     TreeBuilder builder(*d, options.budget, progress);
     Rewriter rewriter(builder, d->params);
-    rewriter.start(grammar->starts[options.start], options.seed);
+    rewriter.start(grammar->starts[options.start], options);
     if (way)
         rewriter.along(*way);
     else

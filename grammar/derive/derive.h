@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "grammar/derive/placed_objects.h"
 #include "grammar/derive/shape_tree.h"
 #include "grammar/rules/grammar.h"
 #include "modeler/core/progress.h"
@@ -49,10 +50,15 @@ struct Derivation {
     std::vector<Warning> warnings;    ///< in the order they were met, the first few hundred
     std::vector<Material> materials;  ///< the grammar's, then those given by attributes
     town::TownPlan plan;              ///< what `network` and `lots` laid out
+    PlacedObjects objects;            ///< what `place` puts; Extras::object says where
+    /// What became of objects that were grafted: places that hold copies of their shapes, or boxes in their stead.
+    uint64_t copies = 0, masses = 0;
     std::vector<rules::Value> params;
     uint32_t start = 0;  ///< index into Grammar::starts
     uint64_t seed = 0;
     uint64_t classic = 0, morphic = 0;  ///< rule applications of R_C and R_M
+    bool isPlaced = false;              ///< it is an object of another model, and stands on no ground of its own
+    bool usedChance = false;            ///< another seed could have made another tree
 
     /// Pairs of shapes with a solid whose boxes overlap by more than 0.1 mm without being bonded or related (one above
     /// the other in the tree); counting ends at a million. O(n log n) plus the pairs that share an interval of an axis.
@@ -66,6 +72,14 @@ struct Derivation {
     /// Memory of the arrays, bytes.
     uint64_t memory() const;
 };
+
+/// A shape that holds an object of its own.
+struct Placement {
+    ShapeId shape = none;
+    uint32_t object = none;  ///< index into Derivation::objects
+};
+/// Where objects stand, in tree order.
+std::vector<Placement> placementsOf(const Derivation& derivation);
 
 /// A warning for every element that a closed joint kept from growing wherever it came.
 syntax::Diagnostics ungrown(const Derivation& derivation);
@@ -91,6 +105,8 @@ struct Options {
     std::vector<rules::Value> params;  ///< by index; empty: the start's defaults (rules::valuesOf)
     uint64_t seed = 1;
     Budget budget;
+    bool isPlaced = false;   ///< derives an object that `place` puts: maps can't be asked
+    std::optional<Lot> lot;  ///< the scope of the start; none: 1 m a side
 };
 
 /// Runs the start's body, then rules until nothing live is matched, or the steps of the `derive` way. What is left live

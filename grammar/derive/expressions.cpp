@@ -1,5 +1,7 @@
 #include "grammar/derive/expressions.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "grammar/derive/builder.h"
@@ -19,6 +21,7 @@ using rules::Value;
 using Kind = Expr::Kind;
 
 uint64_t drawKey(const Expr& range, const Place& place, uint64_t component) {
+    if (place.builder) place.builder->noteChance();
     return combine(combine(place.key, range.draw), component);
 }
 
@@ -92,6 +95,15 @@ Value ofPlace(Fn fn, const Expr& expr, const Place& place) {
 Value ofMap(const Expr& expr, const Place& place) {
     if (!place.builder) return {};
     const rules::Map& map = place.builder->derivation().grammar->maps[expr.index];
+    if (place.builder->derivation().isPlaced) {
+        place.builder->fail(
+            Error::Kind::Input,
+            fmt::format("the map '{}' is of the ground, and an object that 'place' puts stands on none: "
+                        "hand its value down as a parameter, 'place … {{ share = {} }}'",
+                        map.name, map.name),
+            expr.span);
+        return {};
+    }
     return map.formula ? evaluate(*map.formula, place) : rules::valueAt(map.picture, planPlaceOf(place));
 }
 

@@ -36,6 +36,13 @@ Result<uint32_t> Footprints::put(const plan::Footprint& footprint, Vec3d half) {
     return static_cast<uint32_t>(shapes_.size() - 1);
 }
 
+size_t Footprints::append(const Footprints& other) {
+    const size_t first = shapes_.size();
+    shapes_.insert(shapes_.end(), other.shapes_.begin(), other.shapes_.end());
+    for (const auto& [hash, index] : other.byHash_) byHash_.emplace(hash, static_cast<uint32_t>(first + index));
+    return first;
+}
+
 plan::Footprint Footprints::inMetres(uint32_t index, Vec3d half) const {
     return plan::placed(shapes_[index]->footprint, {half.x, half.z}, {0, 0});
 }

@@ -26,6 +26,8 @@ public:
     /// The index of a footprint given in metres about the centre of a scope of that half-size: an old one where one is
     /// alike. Error::Input with the fault's sentence where its edges cross.
     Result<uint32_t> put(const plan::Footprint& footprint, Vec3d half);
+    /// Appends all of another table; the index of its first one here.
+    size_t append(const Footprints& other);
     const PlanShape& operator[](uint32_t index) const { return *shapes_[index]; }
     /// The footprint in metres about the centre of a scope of that half-size.
     plan::Footprint inMetres(uint32_t index, Vec3d half) const;

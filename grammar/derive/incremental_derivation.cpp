@@ -64,7 +64,7 @@ Status IncrementalDerivation::startOver(std::shared_ptr<const rules::Grammar> gr
     if (progress) progress->begin("derive", 0);
     auto state = std::make_unique<State>(std::move(*empty), options, progress);
     TreeBuilder& builder = state->builder;
-    state->rewriter.start(state->derivation.grammar->starts[options.start], options.seed);
+    state->rewriter.start(state->derivation.grammar->starts[options.start], options);
     state->rewriter.automatic();
     if (builder.failed()) return builder.takeFailure();
     state->recording.finish(builder.end());

@@ -18,8 +18,8 @@ class Interpreter {
 public:
     Interpreter(TreeBuilder& builder, std::span<const rules::Value> params);
 
-    /// The root and the start's body.
-    void start(const rules::Start& start, uint64_t seed);
+    /// The root and the start's body; the root's scope is the lot's, where there is one.
+    void start(const rules::Start& start, uint64_t seed, const Lot* lot);
     /// Applies the rule to a live shape, a `repeat` with its whole chain, and logs it.
     void apply(uint32_t rule, ShapeId shape, uint32_t generation);
     /// Guard apart: symbol, `beside`, chain, and a joint left for what the body grows.

@@ -138,6 +138,9 @@ Result<std::string> rewritten(const rules::Lsystem& lsystem, const Place& place)
     std::vector<Letter> letters, next;
     size_t read = 0;
     const uint64_t seed = combine(place.key, hashText(lsystem.name));
+    const auto isDrawn = [](const auto& production) { return production.weight != 1; };
+    if (place.builder && std::any_of(lsystem.productions.begin(), lsystem.productions.end(), isDrawn))
+        place.builder->noteChance();
     for (size_t i = 0; i < lsystem.axiom.size(); ++i) letters.push_back({lsystem.axiom[i], combine(seed, i)});
     for (double pass = 0; pass < passes; ++pass) {
         next.clear();

@@ -1,5 +1,7 @@
 #include "grammar/derive/parts_context.h"
 
+#include <cmath>
+
 #include "grammar/derive/scope_footprint.h"
 #include "modeler/core/random.h"
 #include "modeler/plan/cut.h"
@@ -11,6 +13,21 @@ rules::Value PartsContext::evaluate(const rules::Expr& expr, uint64_t key) const
     Place place = frame_.place;
     place.key = combine(frame_.key, key);
     return derive::evaluate(expr, place);
+}
+
+rules::Value PartsContext::evaluate(const rules::Expr& expr, uint64_t key, bool whole) const {
+    if (!whole) return evaluate(expr, key);
+    Place place = frame_.place;
+    place.key = combine(frame_.key, key);
+    const bool drawn = expr.kind == rules::Expr::Kind::Range || expr.kind == rules::Expr::Kind::Choose;
+    rules::Value value = drawn ? rules::Value::number(wholeNumber(expr, place)) : derive::evaluate(expr, place);
+    value.integer = value.kind == rules::Value::Kind::Number && value.num() == std::floor(value.num());
+    return value;
+}
+
+void PartsContext::place(PlacedObject object) {
+    TreeBuilder& builder = interpreter_.builder_;
+    builder.extras(frame_.node).object = builder.derivation().objects.put(std::move(object));
 }
 
 plan::Footprint PartsContext::footprint() const {

@@ -30,7 +30,17 @@ public:
     bool run(const rules::Body& body, const Scope& part, uint64_t key);
     const rules::Grammar& grammar() const;
     /// The stream of the shape whose scope is cut.
-    uint64_t key() const { return frame_.key; }
+    uint64_t key() const {
+        interpreter_.builder_.noteChance();
+        return frame_.key;
+    }
+    /// The value as a whole number where `whole`, a range drawing one of its whole numbers.
+    rules::Value evaluate(const rules::Expr& expr, uint64_t key, bool whole) const;
+    /// Puts an object of its own into the scope.
+    void place(PlacedObject object);
+    const Derivation& derivation() const { return interpreter_.builder_.derivation(); }
+    /// The shape whose content the operation is.
+    ShapeId shape() const { return frame_.node; }
     /// Where expressions of the block stand, for those that are asked at many places of the plan.
     Place place() const { return frame_.place; }
     Progress* progress() const { return interpreter_.builder_.progress(); }

@@ -111,6 +111,7 @@ ShapeId Interpreter::hostOf(const Element& e, const Frame& frame, const Target& 
     const auto direction = static_cast<size_t>(evaluate(e.on->of, place).num());
     if (direction >= faceCount || frame.state->toward[direction].empty()) return frame.state->root;
     const auto& candidates = frame.state->toward[direction];
+    if (candidates.size() > 1) builder_.noteChance();
     return candidates[pick(combine(place.key, hashText("on")), candidates.size())];
 }
 
@@ -216,6 +217,7 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
             ++closed[facts.closed].count;
             return true;
         }
+        if (open.size() > 1) builder_.noteChance();
         oursIndex = open[open.size() == 1 ? 0 : pick(combine(key, hashText("at")), open.size())];
     }
     EvaluatedAttributes attributes;

@@ -104,6 +104,10 @@ void printShape(const Derivation& d, ShapeId id, uint32_t bond, std::back_insert
     if (s.occurrence > 1) fmt::format_to(out, "[{}]", s.occurrence);
     if (const SolidValue* solid = d.tree.solidOf(id); solid && solidName(*solid) != d.tree.labels[s.label])
         fmt::format_to(out, " = {}", solidName(*solid));
+    if (const Extras* x = d.tree.extrasOf(id); x && x->object != none) {
+        const auto& start = d.grammar->starts[d.objects[x->object].start];
+        fmt::format_to(out, " = {} (object {})", d.grammar->symbols[start.symbol].name, x->object + 1);
+    }
     if (s.live) fmt::format_to(out, " (live)");
     const auto settled = [](double v) { return std::abs(v) < 1e-12 ? 0.0 : v; };  // what turns leave of 0
     const Vec3d &z = s.scope.size, c{settled(s.scope.centre.x), settled(s.scope.centre.y), settled(s.scope.centre.z)};
@@ -136,6 +140,7 @@ json shapeJson(const Derivation& d, ShapeId id) {
     if (s.blend_m > 0) j["blend_m"] = s.blend_m;
     if (const Extras* x = d.tree.extrasOf(id)) {
         if (!x->tags.empty()) j["tags"] = x->tags;
+        if (x->object != none) j["object"] = x->object;
         for (const auto& [name, value] : x->values) j["values"][name] = rules::toText(value);
     }
     return j;

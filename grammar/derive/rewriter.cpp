@@ -29,6 +29,7 @@ uint32_t Rewriter::choose(ShapeId shape) {
 
 /// One of `rules` by weight; fails when all weigh 0.
 uint32_t Rewriter::draw(ShapeId shape, const std::vector<uint32_t>& rules) {
+    builder_.noteChance();
     const Place place = interpreter_.placeOf(shape);
     std::vector<double> weights;
     for (const uint32_t r : rules) {
@@ -94,9 +95,9 @@ void Rewriter::automatic() {
     }
 }
 
-void Rewriter::start(const rules::Start& start, uint64_t seed) {
+void Rewriter::start(const rules::Start& start, const Options& options) {
     builder_.beginPiece({.kind = Piece::Kind::Start});
-    interpreter_.start(start, seed);
+    interpreter_.start(start, options.seed, options.lot ? &*options.lot : nullptr);
 }
 
 bool Rewriter::stillMatches(Application a) {
@@ -110,7 +111,7 @@ bool Rewriter::repeat(const Piece& piece) {
     const Derivation& d = builder_.derivation();
     switch (piece.kind) {
         case Piece::Kind::Start:
-            interpreter_.start(grammar_.starts[d.start], d.seed);
+            interpreter_.start(grammar_.starts[d.start], d.seed, nullptr);
             return true;
         case Piece::Kind::Choice:
             return builder_.work() && choose(piece.shape) == piece.rule;

@@ -22,7 +22,7 @@ public:
         : builder_(builder), grammar_(*builder.derivation().grammar), interpreter_(builder, params) {}
 
     /// Runs the start's body.
-    void start(const rules::Start& start, uint64_t seed);
+    void start(const rules::Start& start, const Options& options);
     /// Rewrites every live shape until none is matched.
     void automatic();
     /// Applies the steps of a way; fails at the first that doesn't fit.

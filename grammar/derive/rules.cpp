@@ -46,7 +46,7 @@ Place Interpreter::placeOf(ShapeId id) const {
     return {&builder_.tree(), params_, builder_.counts(), locals_, s.scope, s.valuesAt, s.key, 0, &builder_};
 }
 
-void Interpreter::start(const rules::Start& start, uint64_t seed) {
+void Interpreter::start(const rules::Start& start, uint64_t seed, const Lot* lot) {
     Shape root;
     root.symbol = start.symbol;
     root.key = combine(mix(seed), hashText(grammar_.symbols[start.symbol].name));
@@ -55,6 +55,12 @@ void Interpreter::start(const rules::Start& start, uint64_t seed) {
     root.label = label->second;
     root.span = start.span;
     builder_.at(none, none, none);
+    if (lot) root.scope.size = lot->size_m;
+    if (lot && !lot->footprint.empty()) {
+        const auto footprint = builder_.tree().footprints.put(lot->footprint, root.scope.half());
+        if (!footprint.ok()) return builder_.fail(Error::Kind::Input, footprint.error().message, start.span);
+        root.scope.footprint = *footprint;
+    }
     const ShapeId id = builder_.add(root);
     if (id == none) return;
     locals_.assign(start.locals, {});

@@ -23,7 +23,7 @@ Result<std::shared_ptr<Session::State>> Session::begun(std::shared_ptr<const rul
     auto empty = emptyDerivation(grammar, options);
     if (!empty.ok()) return empty.error();
     auto state = std::make_shared<State>(std::move(*empty), options, progress);
-    state->rewriter.start(grammar->starts[options.start], options.seed);
+    state->rewriter.start(grammar->starts[options.start], options);
     if (state->builder.failed()) return state->builder.takeFailure();
     return state;
 }

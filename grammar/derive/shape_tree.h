@@ -9,6 +9,7 @@
 
 #include "grammar/derive/footprints.h"
 #include "grammar/rules/grammar.h"
+#include "modeler/core/provenance.h"
 #include "modeler/core/vec.h"
 
 namespace sgm::derive {
@@ -67,6 +68,8 @@ struct Displacement {
     bool fbm = false;
     double amplitude_m = 0, frequency = 1;
     int octaves = 2;
+    uint64_t key = 0;  ///< of the shape whose pattern it has; 0: of its own
+    Pose frame;        ///< in which the pattern lies: object from local
     friend bool operator==(const Displacement&, const Displacement&) = default;
 };
 
@@ -84,7 +87,8 @@ struct Extras {
     std::vector<Displacement> displace;  ///< acts on the node's whole content
     std::vector<std::pair<std::string, rules::Value>> values;  ///< `with`
     std::vector<std::string> tags;
-    bool empty() const { return clad.empty() && displace.empty() && values.empty() && tags.empty(); }
+    uint32_t object = none;  ///< index into Derivation::objects: what `place` puts here
+    bool empty() const { return clad.empty() && displace.empty() && values.empty() && tags.empty() && object == none; }
 };
 
 /// A node of the shape tree. Its field is its own solid combined with its children in order.

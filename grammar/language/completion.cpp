@@ -141,6 +141,8 @@ private:
                 return Want::Body;
             case ArgumentType::Name:
                 return Want::Tag;
+            case ArgumentType::Start:
+                return Want::Start;
             default:
                 return Want::Expression;
         }
@@ -160,6 +162,10 @@ private:
         const bool vector = open != none && text(open) == "(" && open > begin_ &&
                             (operations::table().find(text(open - 1)) || isOperator(text(open - 1)));
         if (vector || (open != none && text(open) == "[")) return Want::Expression;
+        // { name = value … } behind an operation's argument.
+        const syntax::Operation* row =
+            open != none && text(open) == "{" && open > begin_ + 1 ? operations::table().find(text(open - 2)) : nullptr;
+        if (row && row->takesSettings) return last == "=" || isOperator(last) ? Want::Expression : Want::Settings;
         if (last == ":") {
             const bool label = open != none && text(open) == "{";
             return label ? Want::Body : Want::Live;

@@ -209,12 +209,15 @@ private:
             const auto* row = a.operation && i < a.operation->arguments.size() ? &a.operation->arguments[i] : nullptr;
             if (i == 0 && a.operation && a.operation->namesValue)
                 add(NameKind::Value, a.args[0].text, wordIn(a.args[0].span, a.args[0].text), a.span);
+            else if (row && row->type == ArgumentType::Start)
+                add(NameKind::Symbol, a.args[i].text, wordIn(a.args[i].span, a.args[i].text));
             else if (row && row->type == ArgumentType::Name)
                 add(NameKind::Tag, a.args[i].text, wordIn(a.args[i].span, a.args[i].text));
             else
                 expr(a.args[i], row ? row->type : ArgumentType::Number);
         }
         cases(a.cases);
+        settings(a.settings);
     }
 
     void cases(const std::vector<syntax::Case>& all) {

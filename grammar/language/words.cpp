@@ -86,7 +86,7 @@ constexpr Keyword valueTable[] = {
 std::string operationDoc(const syntax::Operation& o) {
     std::string text = fmt::format("`{}", o.name);
     for (const auto& a : o.arguments) text += a.optional ? fmt::format(" [{}]", a.name) : fmt::format(" {}", a.name);
-    text += fmt::format("{}`, operation\n\n{}\n", o.hasBlock() ? " { … }" : "", o.doc);
+    text += fmt::format("{}`, operation\n\n{}\n", o.hasBlock() || o.takesSettings ? " { … }" : "", o.doc);
     for (const auto& a : o.arguments) text += fmt::format("\n- `{}`: {}", a.name, a.doc);
     if (!o.example.empty()) text += fmt::format("\n\n```sgm\n{}\n```", o.example);
     return text;

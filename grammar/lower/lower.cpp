@@ -10,6 +10,7 @@
 #include "grammar/lower/lowering.h"
 #include "grammar/lower/solids.h"
 #include "modeler/core/random.h"
+#include "modeler/field/domain.h"
 
 namespace sgm::lower {
 
@@ -166,12 +167,16 @@ Owned Lowering::displaced(Owned part, ShapeId id) {
     const bool isBounded = part.field.bounds.finite();
     for (size_t i = 0; i < x->displace.size(); ++i) {
         const derive::Displacement& n = x->displace[i];
-        const uint64_t key = combine(s.key, i);
+        const uint64_t key = combine(s.key, i), pattern = n.key == 0 ? key : combine(n.key, i);
+        const field::Point position =
+            n.key == 0 ? model_.graph.position()
+                       : field::toLocal(model_.graph.position(), {n.frame.origin, n.frame.axes},
+                                        combine(key, hashText("displace.frame")), tree_.shapes[turnedAt_[id]].key);
         part.field = field::displace(
-            part.field, model_.graph.position(), n.fbm ? field::Noise::Fbm : field::Noise::Billow,
+            part.field, position, n.fbm ? field::Noise::Fbm : field::Noise::Billow,
             model_.graph.slot({key, hashText("displace.amplitude")}, static_cast<float>(n.amplitude_m)), n.amplitude_m,
             model_.graph.slot({key, hashText("displace.frequency")}, static_cast<float>(n.frequency)), n.frequency,
-            n.octaves, static_cast<uint32_t>(key >> 32));
+            n.octaves, static_cast<uint32_t>(pattern >> 32));
     }
     if (isBounded && !part.field.bounds.finite() && boundless_ == none) boundless_ = id;
     return part;
@@ -282,6 +287,7 @@ Status Lowering::run(Progress* progress) {
     nameTheWhole();
     mergeMaterials();
     const bool nothing = model_.field.bounds.empty();
+    if (nothing && !d_.objects.empty()) return Done{};  // objects of their own are all there is
     if (!nothing && model_.field.bounds.finite()) return Done{};
     const std::string path = tree_.path(0);
     const std::string what = nothing ? fmt::format("nothing solid is left of '{}'", path)

@@ -17,7 +17,8 @@ struct Model {
     std::vector<derive::ShapeId> shapeOf;  ///< by OriginId; none for 0
 };
 
-/// Fails when nothing solid is left or the solid is unbounded.
+/// Fails when the solid is unbounded, or when nothing solid is left of a derivation that holds no objects of their own:
+/// they aren't part of the field (derive::graft makes them so).
 Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress);
 
 }  // namespace sgm::lower

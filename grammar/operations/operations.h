@@ -11,7 +11,7 @@
 #define SGM_OPERATIONS(X) \
     X(size) X(move) X(turn) X(at) X(to) X(overlap) X(shift) X(on) X(by) X(blend) \
     X(displace) X(color) X(rough) X(metal) X(tag) X(with) X(footprint) X(extrude) X(offset) X(setback) \
-    X(court) X(rectify) X(inner) X(split) X(faces) X(network) X(lots) X(clad) X(thickness) X(tile) X(mirror)
+    X(court) X(rectify) X(inner) X(split) X(faces) X(network) X(lots) X(place) X(variety) X(clad) X(thickness) X(tile) X(mirror)
 // clang-format on
 
 namespace sgm::operations {

@@ -39,9 +39,10 @@ constexpr OperationArgument overlapArguments[] = {
 constexpr OperationArgument shiftArguments[] = {
     {"shift", ArgumentType::Vector,
      "moves the mating point (S_J) along x, y, z of the matched scope: shares of the newcomer's half-size, or metres"}};
-constexpr OperationArgument onArguments[] = {{"host", ArgumentType::Shape,
-                                              "last: the newest shape of the chain; any(d): one placed toward d in the "
-                                              "step before; each(Name): all of that name"}};
+constexpr OperationArgument onArguments[] = {
+    {"host", ArgumentType::Shape,
+     "last: the newest shape of the chain; any(d): one placed toward d in the "
+     "step before; each(Name): all of that name; lot: behind 'place', the scope with its plan"}};
 constexpr OperationArgument byArguments[] = {
     {"amount", ArgumentType::Number, "a of the morph (eq. 14): 0 keeps what stands, 1 gives the newcomer"}};
 constexpr OperationArgument blendArguments[] = {
@@ -108,6 +109,10 @@ void checkOn(OperationChecker& checker, const syntax::Attribute& written) {
     const Written& e = written.args[0];
     HostChoice host;
     host.span = written.span;
+    if (isCalled(e, "lot")) {  // placeOf reads it from the attribute
+        checker.find(on)->args.push_back(rules::makeConstant(e.span, rules::makeWord("lot")));
+        return;
+    }
     if (isCalled(e, "last")) {
         if (!checker.isInChain() && !checker.isInFinally())
             checker.error(e.span, "'last' is the newest shape of a chain, and there is none here",
@@ -124,7 +129,8 @@ void checkOn(OperationChecker& checker, const syntax::Attribute& written) {
     } else if (isCalled(e, "each")) {
         readEach(checker, e, host);
     } else if (e.kind != Written::Kind::Error) {
-        checker.error(e.span, fmt::format("'on' takes 'last', 'any(d)' or 'each(Name)', not '{}'", e.span.text()));
+        checker.error(e.span,
+                      fmt::format("'on' takes 'last', 'any(d)', 'each(Name)' or 'lot', not '{}'", e.span.text()));
     }
     checker.element().on = std::move(host);
 }
@@ -138,6 +144,13 @@ void needOperator(OperationChecker& checker, const Element& element, const Attri
 }
 
 void agreeOn(OperationChecker& checker, const Element& element, const Attribute& attribute) {
+    if (!attribute.args.empty()) {
+        const rules::Parts* parts = element.content.parts();
+        if (!parts || parts->operation != &place)
+            checker.error(attribute.span, "'on lot' says where 'place' puts an object, and there is none here",
+                          "write 'place House on lot'");
+        return;
+    }
     // Outside a chain its argument was refused already.
     if (checker.isInChain() || checker.isInFinally()) needOperator(checker, element, attribute);
 }

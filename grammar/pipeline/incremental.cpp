@@ -2,13 +2,23 @@
 
 #include <utility>
 
+#include "grammar/pipeline/scene.h"
+
 namespace sgm::pipeline {
 
 Status IncrementalPipeline::derive(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options,
                                    Progress* progress) {
+    const bool hadObjects = grafted_.has_value();
+    grafted_.reset();
     const Status done = derivation_.to(std::move(grammar), options, progress);
-    lowered_ = lowered_ && done.ok() && !derivation_.whole();
-    return done;
+    lowered_ = lowered_ && done.ok() && !derivation_.whole() && !hadObjects;
+    if (!done.ok() || derivation().objects.empty()) return done;
+    lowered_ = false;
+    Context context{progress};
+    derive::Derivation whole = derivation();
+    const Status grafted = graftObjects(whole, Objects::Sketched, options.budget, context);
+    if (grafted.ok()) grafted_ = std::move(whole);
+    return grafted;
 }
 
 Status IncrementalPipeline::lower(Progress* progress) {

@@ -31,20 +31,21 @@ public:
     Model viewModel() const;
     /// The model of the last `to`, which stays. Its graph is empty, its tape says all that is drawn or meshed.
     Model copyModel() const;
-    const derive::Derivation& derivation() const { return derivation_.derivation(); }
+    const derive::Derivation& derivation() const { return grafted_ ? *grafted_ : derivation_.derivation(); }
     const lower::Model& model() const { return lowering_.model(); }
     const eval::Tape& tape() const { return compiler_.tape(); }
     /// Blocks that the last mesh made anew and kept.
     const mesh::Rebuild& rebuild() const { return rebuild_; }
     /// Shapes that the last derivation made anew.
     size_t shapesMade() const {
-        return derivation_.whole() ? derivation().tree.shapes.size() : derivation_.changed().size();
+        return derivation_.whole() || grafted_ ? derivation().tree.shapes.size() : derivation_.changed().size();
     }
     /// True when no stage up to the tape started over.
-    bool followed() const { return !derivation_.whole() && !lowering_.whole() && !compiler_.whole(); }
+    bool followed() const { return !grafted_ && !derivation_.whole() && !lowering_.whole() && !compiler_.whole(); }
 
 private:
     derive::IncrementalDerivation derivation_;
+    std::optional<derive::Derivation> grafted_;  ///< with the objects that it places, where there are any
     lower::IncrementalLowering lowering_;
     eval::IncrementalCompiler compiler_;
     mesh::Rebuild rebuild_;

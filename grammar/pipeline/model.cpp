@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "grammar/pipeline/scene.h"
 #include "grammar/rules/check.h"
 #include "grammar/rules/params.h"
 
@@ -85,14 +86,25 @@ Result<derive::Options> optionsFor(const rules::Grammar& grammar, const ModelCho
     return options;
 }
 
-Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options,
-                        Context& context) {
+Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Context& context,
+                        Objects objects) {
     auto derivation = context.timed("derive", [&] { return derive::derive(grammar, options, context.progress); });
     if (!derivation.ok()) return derivation.error();
-    return makeModel(std::move(*derivation), context);
+    return makeModel(std::move(*derivation), context, objects, options.budget);
 }
 
-Result<Model> makeModel(derive::Derivation derivation, Context& context) {
+std::string sketchNote(const derive::Derivation& derivation) {
+    if (derivation.masses == 0) return {};
+    return fmt::format(
+        "the objects at {} places are drawn as boxes: as one field they would spend the budget of shapes "
+        "(--max-shapes); meshes hold each of them once",
+        derivation.masses);
+}
+
+Result<Model> makeModel(derive::Derivation derivation, Context& context, Objects objects,
+                        const derive::Budget& budget) {
+    if (objects != Objects::Apart)
+        if (const Status s = graftObjects(derivation, objects, budget, context); !s.ok()) return s.error();
     auto lowered = context.timed("lower", [&] { return lower::lower(derivation, context.progress); });
     if (!lowered.ok()) return lowered.error();
     const lower::Model& model = **lowered;

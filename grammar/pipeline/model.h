@@ -37,16 +37,26 @@ struct ValueChange {
 Result<derive::Options> optionsFor(const rules::Grammar& grammar, const ModelChoice& choice,
                                    const ValueChange& change = {});
 
+/// What becomes of the objects that `place` puts.
+enum class Objects {
+    Grafted,   ///< they are part of the field, a copy at every place
+    Sketched,  ///< the same, or a box at every place where the copies would spend the budget of shapes
+    Apart      ///< the field is without them: makeScene makes each once
+};
+
 /// A field ready to draw or mesh.
 struct Model {
     derive::Derivation derivation;
     std::shared_ptr<const lower::Model> lowered;
     eval::Tape tape;
 };
-/// Stages "derive", "lower", "compile". Errors as of those stages.
-Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options,
-                        Context& context);
-/// The last two stages, for a derivation that was made otherwise.
-Result<Model> makeModel(derive::Derivation derivation, Context& context);
+/// Stages "derive", "objects" where there are some to graft, "lower", "compile". Errors as of those stages.
+Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Context& context,
+                        Objects objects = Objects::Grafted);
+/// What is to be said of a model whose objects are sketched; "" where none are.
+std::string sketchNote(const derive::Derivation& derivation);
+/// The same from a derivation on, within a budget for what is grafted.
+Result<Model> makeModel(derive::Derivation derivation, Context& context, Objects objects = Objects::Grafted,
+                        const derive::Budget& budget = {});
 
 }  // namespace sgm::pipeline

@@ -78,6 +78,9 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     each(&Checker::roads);
     each(&Checker::terminals);
     each(&Checker::productions);
+    // The file's own starts come before those of files that it uses.
+    std::stable_partition(grammar.starts.begin(), grammar.starts.end(),
+                          [&](const Start& start) { return start.span.source == grammar.sources[0].get(); });
     each(&Checker::checkDeclarations);
     if (diagnostics.hasErrors() || unread.hasErrors()) return;
     if (grammar.starts.empty()) {

@@ -22,8 +22,9 @@ using Written = syntax::Expr;
 using Where = Place::Where;
 
 constexpr std::array<std::string_view, 7> axisWords{"+x", "-x", "+y", "-y", "+z", "-z", "centre"};
-constexpr std::array<std::string_view, 10> figureWords{"bonds",   "overlaps", "shapes", "terminals", "classic",
-                                                       "morphic", "floating", "roads",  "blocks",    "lots"};
+constexpr std::array<std::string_view, 12> figureWords{"bonds",   "overlaps", "shapes",   "terminals",
+                                                       "classic", "morphic",  "floating", "roads",
+                                                       "blocks",  "lots",     "places",   "objects"};
 constexpr std::array<std::string_view, 12> colorWords{"red",   "green", "blue", "yellow", "orange", "brown",
                                                       "black", "white", "grey", "gray",   "purple", "pink"};
 

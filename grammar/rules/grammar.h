@@ -99,7 +99,10 @@ enum class Fn : uint32_t {
     Count,  ///< number of live or derived shapes of a symbol: count(Name); args[0] is a Word whose n[0] is the SymbolId
 };
 /// What `check … expect` may ask of a derivation.
-enum class Figure : uint32_t { Bonds, Overlaps, Shapes, Terminals, Classic, Morphic, Floating, Roads, Blocks, Lots };
+// clang-format off
+enum class Figure : uint32_t { Bonds, Overlaps, Shapes, Terminals, Classic, Morphic, Floating, Roads, Blocks, Lots,
+                               Places, Objects };  ///< Places: where `place` puts objects; Objects: different ones
+// clang-format on
 
 /// A solid: what fills a scope.
 struct Solid {
@@ -171,6 +174,15 @@ struct Roads {
 
 struct Body;
 
+/// `place START { settings }`: what decides an object of its own.
+struct Placing {
+    SymbolId start = none;                            ///< the symbol of one of Grammar::starts
+    std::vector<std::pair<uint32_t, Expr>> settings;  ///< parameters by index in Grammar::params
+    std::vector<SourceSpan> spans;                    ///< of the settings' values
+    std::optional<Expr> variety;                      ///< how many different objects chance may make; none: any
+    bool onLot = false;                               ///< it grows in the scope where it is placed, over its plan
+};
+
 /// The block of a content operation (`split x { … }`): parts of the scope, a body in every one.
 struct Parts {
     struct Part {
@@ -188,6 +200,7 @@ struct Parts {
     std::vector<Expr> args;   ///< of the operation itself
     uint32_t index = none;    ///< network: of Grammar::roads
     std::vector<Part> parts;  ///< in the order of the text
+    Placing placing;          ///< place
 };
 
 /// What joins the tree when an element runs: nothing, a solid, a symbol, a group or the parts of a content operation.

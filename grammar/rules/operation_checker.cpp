@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "grammar/rules/arithmetic_warnings.h"
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/make.h"
+#include "grammar/rules/params.h"
 
 namespace sgm::rules {
 namespace {
@@ -36,7 +38,8 @@ Want wantOf(ArgumentType type) {
 }
 
 bool isWord(ArgumentType type) {
-    return type == ArgumentType::Name || type == ArgumentType::Axis || type == ArgumentType::Solid;
+    return type == ArgumentType::Name || type == ArgumentType::Start || type == ArgumentType::Axis ||
+           type == ArgumentType::Solid;
 }
 
 /// Every constant part of an expression: both ends of a range or ramp, each component, each value to choose from.
@@ -137,6 +140,46 @@ std::optional<uint32_t> OperationChecker::readOutlines(const syntax::Expr& name)
         if (!all.back()) error(name.span, fmt::format("can't use \"{}\": {}", name.text, why));
     }
     return all[known->second] ? std::optional(static_cast<uint32_t>(known->second)) : std::nullopt;
+}
+
+std::optional<SymbolId> OperationChecker::findStart(const syntax::Expr& name) {
+    std::vector<std::string> known;
+    for (const auto& [start, span] : checker_.seenStarts_) known.push_back(start);
+    const auto symbol = findSymbol(name.text);
+    if (symbol && checker_.seenStarts_.contains(name.text)) return symbol;
+    unknownName(
+        name.span, name.text,
+        symbol ? fmt::format("'{}' is no start, and an object of its own begins with one", name.text)
+               : fmt::format("there is no start '{}'", name.text),
+        symbol ? fmt::format("write 'start {} -> …', or leave 'place' out", name.text) : nearest(name.text, known));
+    return std::nullopt;
+}
+
+std::optional<std::pair<uint32_t, Expr>> OperationChecker::setting(const syntax::Setting& written) {
+    const auto param = checker_.params_.find(written.name.text);
+    if (written.name.empty()) return std::nullopt;
+    if (param == checker_.params_.end()) {
+        std::vector<std::string> known;
+        for (const Param& p : checker_.grammar_.params) known.push_back(p.name);
+        unknownName(written.name.span, written.name.text, fmt::format("there is no parameter '{}'", written.name.text),
+                    nearest(written.name.text, known));
+        return std::nullopt;
+    }
+    const uint32_t index = param->second;
+    const Param& target = checker_.grammar_.params[index];
+    const syntax::Expr& e = written.value;
+    const bool isChoice = e.kind == syntax::Expr::Kind::Name && !isParameter(e.text) && !target.choices.empty();
+    beginDraws("place." + target.name);
+    Typed value = isChoice ? makeTyped(e.span, makeWord(e.text)) : checker_.expression(place_, e);
+    if (checker_.brokenParams_.contains(index) || !value.type.known) return std::pair(index, std::move(value.expr));
+    const auto constant = fold(value.expr, {});
+    Value sample = constant ? *constant : value.type.like;
+    if (sample.kind == Value::Kind::Number && target.value.integer)
+        sample.integer = !constant || sample.num() == std::floor(sample.num());
+    // What isn't constant derivation looks at.
+    const auto fitted = constant ? conform(target, sample) : conformKind(target, sample);
+    if (!fitted.ok()) error(e.span, fitted.error().message, nearest(sample.text, target.choices));
+    return std::pair(index, std::move(value.expr));
 }
 
 std::optional<uint32_t> OperationChecker::findLsystem(std::string_view name) const {

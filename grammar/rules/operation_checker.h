@@ -62,6 +62,10 @@ public:
 
     /// The place in Grammar::outlines of the file that `name` (a text) stands for, read here; nothing after an error.
     std::optional<uint32_t> readOutlines(const syntax::Expr& name);
+    /// The symbol of the start of that name, wherever in the text it stands; nothing after an error.
+    std::optional<SymbolId> findStart(const syntax::Expr& name);
+    /// A parameter by index and a value for it, which may depend on the shape; nothing after an error.
+    std::optional<std::pair<uint32_t, Expr>> setting(const syntax::Setting& written);
     /// The index of an lsystem of the grammar.
     std::optional<uint32_t> findLsystem(std::string_view name) const;
     /// The index of `roads` of the grammar.

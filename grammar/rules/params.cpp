@@ -92,15 +92,8 @@ std::string setRange(Param& param, const Value& lo, const Value& hi) {
     return {};
 }
 
-Result<Value> conform(const Param& param, Value value) {
+Result<Value> conformKind(const Param& param, Value value) {
     const auto refuse = [&](std::string message) { return Error{Error::Kind::Input, std::move(message)}; };
-    if (!param.choices.empty()) {
-        if (value.kind == Value::Kind::Word &&
-            std::find(param.choices.begin(), param.choices.end(), value.text) != param.choices.end())
-            return value;
-        return refuse(fmt::format("'{}' is one of {}, not '{}'", param.name, fmt::join(param.choices, ", "),
-                                  value.kind == Value::Kind::Word ? value.text : toText(value)));
-    }
     const Type type = Type::of(value), wanted = Type::of(param.value);
     const bool spread = value.kind == Value::Kind::Number && param.value.kind == Value::Kind::Vector;
     if (value.kind != param.value.kind && !spread)
@@ -119,8 +112,22 @@ Result<Value> conform(const Param& param, Value value) {
         if (fitted.units[std::min(i, fitted.units.size() - 1)] !=
             param.value.units[std::min(i, fitted.units.size() - 1)])
             return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
-    if (param.lo && param.hi)
-        if (std::string problem = outOfRange(param, fitted); !problem.empty()) return refuse(std::move(problem));
+    return fitted;
+}
+
+Result<Value> conform(const Param& param, Value value) {
+    if (!param.choices.empty()) {
+        if (value.kind == Value::Kind::Word &&
+            std::find(param.choices.begin(), param.choices.end(), value.text) != param.choices.end())
+            return value;
+        return Error{Error::Kind::Input,
+                     fmt::format("'{}' is one of {}, not '{}'", param.name, fmt::join(param.choices, ", "),
+                                 value.kind == Value::Kind::Word ? value.text : toText(value))};
+    }
+    auto fitted = conformKind(param, std::move(value));
+    if (fitted.ok() && numeric(*fitted) && param.lo && param.hi)
+        if (std::string problem = outOfRange(param, *fitted); !problem.empty())
+            return Error{Error::Kind::Input, std::move(problem)};
     return fitted;
 }
 

@@ -18,6 +18,8 @@ std::string setRange(Param& param, const Value& lo, const Value& hi);
 /// `value` as `param` takes it: a bare number gets the unit, one number counts for every component. Error::Input for a
 /// wrong kind or unit, a value out of range, a fraction where whole numbers are asked for, or none of the choices.
 Result<Value> conform(const Param& param, Value value);
+/// The same, whatever range and choices say.
+Result<Value> conformKind(const Param& param, Value value);
 
 /// The style called `name` for the start with this index, else one of that name for any start, or null.
 const Style* findStyle(const Grammar& grammar, const std::string& name, uint32_t start);

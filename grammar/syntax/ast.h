@@ -62,13 +62,21 @@ struct Case {
     std::shared_ptr<Body> body;
 };
 
+/// `name = value` between braces.
+struct Setting {
+    SourceSpan span;
+    Name name;
+    Expr value;
+};
+
 /// `size 2 ~> 1.2`, `at free(+x)`, `split y { … }`: one use of an operation.
 struct Attribute {
     SourceSpan span;
     Name name;
     const Operation* operation = nullptr;
-    std::vector<Expr> args;   ///< one per row argument that was given; of `with a = 2m`: the Name a, then 2m
-    std::vector<Case> cases;  ///< for operations with a block
+    std::vector<Expr> args;         ///< one per row argument that was given; of `with a = 2m`: the Name a, then 2m
+    std::vector<Case> cases;        ///< for operations with a block
+    std::vector<Setting> settings;  ///< for operations with settings
 };
 
 /// One step of a body: an operator, a solid or symbol, and the attributes that bind to it; or control around more.
@@ -94,11 +102,6 @@ struct Body {
     std::vector<std::vector<Element>> siblings;
 };
 
-struct Setting {
-    SourceSpan span;
-    Name name;
-    Expr value;
-};
 struct ParamDecl {
     SourceSpan span;
     Name name;

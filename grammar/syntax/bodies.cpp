@@ -137,7 +137,7 @@ bool beginsOperation(const Cursor& cursor) {
 
 Expr readTyped(Cursor& cursor, ArgumentType type) {
     if (type == ArgumentType::Solid) return readSolid(cursor);
-    if (type == ArgumentType::Name || type == ArgumentType::Axis) {
+    if (type == ArgumentType::Name || type == ArgumentType::Axis || type == ArgumentType::Start) {
         Expr e;
         const Name name = readName(cursor, describe(type));
         e.kind = name.empty() ? Expr::Kind::Error : Expr::Kind::Name;
@@ -151,7 +151,7 @@ Expr readTyped(Cursor& cursor, ArgumentType type) {
 bool fits(const Cursor& cursor, ArgumentType type) {
     const bool word = cursor.at(Token::Kind::Word);
     if (type == ArgumentType::Axis) return cursor.at("x") || cursor.at("y") || cursor.at("z");
-    if (type == ArgumentType::Name || type == ArgumentType::Solid)
+    if (type == ArgumentType::Name || type == ArgumentType::Solid || type == ArgumentType::Start)
         return word && !isReserved(cursor.peekText()) && !beginsOperation(cursor);
     return startsArgument(cursor) && !beginsOperation(cursor);
 }
@@ -292,6 +292,27 @@ bool atAttribute(const Cursor& cursor) {
     return cursor.at(Token::Kind::Word) && cursor.operations().find(cursor.peekText());
 }
 
+std::string missingEqualsHint(const Cursor& cursor, const Name& name) {
+    return cursor.done() ? std::string() : "write " + quoted(name.text + " = " + std::string(cursor.peekText()));
+}
+
+std::vector<Setting> readSettings(Cursor& cursor) {
+    std::vector<Setting> settings;
+    const Token open = cursor.peek();
+    if (!cursor.expect("{", "before the settings")) return settings;
+    while (!cursor.done() && !cursor.at("}")) {
+        Setting setting;
+        setting.name = readName(cursor, "a parameter");
+        cursor.expect("=", "after the parameter's name", missingEqualsHint(cursor, setting.name));
+        setting.value = readExpr(cursor);
+        setting.span = join(setting.name.span, setting.value.span);
+        settings.push_back(std::move(setting));
+        if (cursor.at(",")) cursor.complain(cursor.span(cursor.take()), "settings stand side by side", "leave ',' out");
+    }
+    cursor.close(open);
+    return settings;
+}
+
 Attribute readAttribute(Cursor& cursor) {
     const Token word = cursor.take();
     const Operation& row = *cursor.operations().find(cursor.text(word));
@@ -300,6 +321,7 @@ Attribute readAttribute(Cursor& cursor) {
     attribute.operation = &row;
     readArguments(cursor, row, attribute);
     if (row.hasBlock()) attribute.cases = readBlock(cursor, "after '" + plain(row.name) + "'", row.blockLabel);
+    if (row.takesSettings && cursor.at("{")) attribute.settings = readSettings(cursor);
     attribute.span = cursor.since(word.begin);
     return attribute;
 }

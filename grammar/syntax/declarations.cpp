@@ -9,35 +9,12 @@ namespace sgm::syntax {
 
 namespace {
 
-/// The hint for a missing '=' before the token at the cursor.
-std::string equalsMend(const Cursor& cursor, const Name& name) {
-    return cursor.done() ? std::string() : "write " + quoted(name.text + " = " + std::string(cursor.peekText()));
-}
-
 /// Takes a text in quotes, or fails.
 Expr readText(Cursor& cursor, std::string_view what) {
     if (!cursor.at(Token::Kind::Text))
         cursor.fail("expected " + std::string(what) + " in quotes, found " + cursor.found(),
                     cursor.at(Token::Kind::Word) ? "write '\"" + std::string(cursor.peekText()) + "\"'" : "");
     return readArgument(cursor);
-}
-
-/// { name = value … }
-std::vector<Setting> readSettings(Cursor& cursor) {
-    std::vector<Setting> settings;
-    const Token open = cursor.peek();
-    if (!cursor.expect("{", "before the settings")) return settings;
-    while (!cursor.done() && !cursor.at("}")) {
-        Setting setting;
-        setting.name = readName(cursor, "a parameter");
-        cursor.expect("=", "after the parameter's name", equalsMend(cursor, setting.name));
-        setting.value = readExpr(cursor);
-        setting.span = join(setting.name.span, setting.value.span);
-        settings.push_back(std::move(setting));
-        if (cursor.at(",")) cursor.complain(cursor.span(cursor.take()), "settings stand side by side", "leave ',' out");
-    }
-    cursor.close(open);
-    return settings;
 }
 
 /// Takes '->', also where another arrow was written.
@@ -107,7 +84,7 @@ void readParam(Cursor& cursor, Ast& ast) {
                     defaultFirst(cursor, param.name));
         return;
     }
-    cursor.expect("=", "and a default after the parameter's name", equalsMend(cursor, param.name));
+    cursor.expect("=", "and a default after the parameter's name", missingEqualsHint(cursor, param.name));
     param.value = readExpr(cursor);
     while (atParamPart(cursor)) {
         cursor.mark(Token::Role::Part);
@@ -140,7 +117,7 @@ void readMap(Cursor& cursor, Ast& ast) {
     MapDecl map;
     const uint32_t begin = cursor.take().begin;
     map.name = readName(cursor, "a map");
-    cursor.expect("=", "after the map's name", equalsMend(cursor, map.name));
+    cursor.expect("=", "after the map's name", missingEqualsHint(cursor, map.name));
     if (cursor.at(Token::Kind::Text)) {
         map.file = readArgument(cursor);
     } else {

@@ -31,6 +31,8 @@ std::string_view describe(ArgumentType type) {
             return "an axis, x, y or z";
         case ArgumentType::Name:
             return "a word";
+        case ArgumentType::Start:
+            return "the name of a start";
         case ArgumentType::Plan:
             return "a plan such as 'ell(16, 12, 5, 6)'";
     }

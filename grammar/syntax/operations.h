@@ -44,6 +44,7 @@ enum class ArgumentType : uint8_t {
     Solid,     ///< a terminal or solid expression
     Axis,      ///< x, y or z
     Name,      ///< a bare word (a tag)
+    Start,     ///< the name of a start
     Plan,      ///< a plan by name, ell(16, 12, 5, 6), or a number
 };
 
@@ -92,6 +93,7 @@ struct Operation {
     bool repeatable = false;        ///< may be said several times of one shape
     bool beforeShape = false;       ///< may stand before a shape without an operator
     bool namesValue = false;        ///< its first argument is a name, followed by '=': rules below may read it
+    bool takesSettings = false;     ///< { name = value … } may follow its arguments
     bool turnsShape = false;        ///< may leave the newcomer's joints in other directions
     /// Checks the arguments and adds an attribute; null: every argument as its type asks, numbers within `range`.
     Check check = nullptr;

@@ -67,7 +67,8 @@ Status checkInput(const ExportInput& input, const Exporter& row, const Path& pat
     if (row.wantsSolids && !input.solids) return writeError(path, "there is no solid tree");
     if (row.wantsPlan && (!input.plan || input.plan->empty()))
         return writeError(path, "the model has no plan: it is what 'network' and 'lots' lay out");
-    if (row.wantsMesh() && (!input.mesh || input.mesh->triangleCount() == 0))
+    const bool isEmpty = !input.mesh || input.mesh->triangleCount() == 0;
+    if (row.wantsMesh() && isEmpty && !(input.mesh && input.scene && !input.scene->empty()))
         return writeError(path, "the mesh has no triangles");
     if (Status status = checkOptions(row, input.options); !status.ok()) return status;
     if (input.mesh && !takesPositionsOnly(row, input.options) && input.mesh->hasPositionsOnly()) return bareError(path);
@@ -147,6 +148,15 @@ Status write(const ExportInput& input, const Path& path) {
     const auto row = rowFor(path);
     if (!row.ok()) return row.error();
     if (Status status = checkInput(input, **row, path); !status.ok()) return status;
+    if (input.scene && (*row)->wantsMesh() && !(*row)->holdsScenes) {
+        const auto flat = mesh::flatten(*input.scene, *input.mesh);
+        if (!flat.ok()) return flat.error();
+        ExportInput one = input;
+        one.scene = nullptr;
+        one.mesh = &flat->mesh;
+        one.provenance = &flat->provenance;
+        return write(one, path);
+    }
     return replaced(input, path, [&](const ExportInput& complete, const Path& temporary) {
         return (*row)->write(complete, temporary, path);
     });

@@ -19,6 +19,7 @@
 #include "modeler/field/solid_tree.h"
 #include "modeler/mesh/levels.h"
 #include "modeler/mesh/polygonize.h"
+#include "modeler/mesh/scene.h"
 #include "modeler/town/town_plan.h"
 #include "modeler/volume/volume.h"
 
@@ -50,6 +51,9 @@ struct ExportInput {
     std::string name = "model";                   ///< of the object in the file
     std::map<std::string, std::string> extras;    ///< grammar, seed, parameters: kept where the format can hold them
     ExportOptions options;                        ///< those of the format, checked by `write`
+    /// Objects of their own that stand beside the mesh, whose provenance is then the scene's ground; formats that hold
+    /// no instances get one mesh of everything. Null: none.
+    const mesh::Scene* scene = nullptr;
     Progress* progress = nullptr;
 };
 
@@ -74,6 +78,7 @@ struct Exporter {
     std::filesystem::path (*beside)(const std::filesystem::path& target) = nullptr;
     bool wantsSolids = false;   ///< holds the model's solid tree, and neither a mesh nor a volume
     bool holdsObjects = false;  ///< divides a mesh by ExportInput::objects
+    bool holdsScenes = false;   ///< writes ExportInput::scene, each object once
     bool holdsLevels = false;   ///< writes ExportInput::levels beside the mesh
     bool wantsPlan = false;     ///< holds the plan of a town alone
     bool wantsMesh() const { return !wantsVolume && !wantsSolids && !wantsPlan; }

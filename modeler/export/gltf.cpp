@@ -15,6 +15,7 @@
 #include "modeler/export/formats.h"
 #include "modeler/export/gltf_colliders.h"
 #include "modeler/export/gltf_draco.h"
+#include "modeler/export/gltf_instances.h"
 #include "modeler/export/gltf_levels.h"
 #include "modeler/export/gltf_meshopt.h"
 #include "modeler/export/gltf_nodes.h"
@@ -236,7 +237,8 @@ static Status writeScene(const ExportInput& input, const Path& temporary, const 
     MeshBuilder builder(own, std::move(*texture));
     if (!builder.build()) return cancelledError();
     addScene(builder.model, input, shared ? &*shared : nullptr, builder.meshOfNode);
-    addOriginTable(builder.model, *input.provenance, *input.mesh);
+    builder.model.asset.extras = originTable(*input.provenance, *input.mesh);
+    if (Status status = addInstances(builder.model, input, modelOfMesh); !status.ok()) return status;
     if (Status status = addLevels(builder.model, input, modelOfMesh); !status.ok()) return status;
     if (Status status = addColliders(builder.model, input); !status.ok()) return status;
     const std::string_view pack = option(input, "pack", "none");
@@ -268,6 +270,8 @@ static constexpr ExportOption options[] = {
     uvOption,
     lightMapOption,
     instancesOption("yes"),
+    {"places", "nodes", "nodes|gpu",
+     "how objects that `place` puts stand in the scene: a node a place, or EXT_mesh_gpu_instancing, a node an object"},
     {"engine", "godot", "godot|unreal|unity", "whose names colliders bear, so that it imports them as such"},
     {"pack", "none", "none|meshopt|draco",
      "compression, for readers that have it: 16-bit positions on one grid, 8-bit normals"},
@@ -282,6 +286,7 @@ constinit const Exporter glbFormat{
     .write = writeGlb,
     .stream = nullptr,
     .holdsObjects = true,
+    .holdsScenes = true,
     .holdsLevels = true,
 };
 
@@ -293,6 +298,7 @@ constinit const Exporter gltfFormat{
     .write = writeGltf,
     .stream = nullptr,
     .holdsObjects = true,
+    .holdsScenes = true,
     .holdsLevels = true,
 };
 

@@ -3,14 +3,9 @@
 
 #include <tiny_gltf.h>
 
-#include <functional>
-
-#include "modeler/export/exporter.h"
+#include "modeler/export/gltf_append.h"
 
 namespace sgm::exporter {
-
-/// Makes a model of an input's mesh alone: its buffer, materials and one mesh.
-using ModelOfMesh = std::function<Result<tinygltf::Model>(const ExportInput& input)>;
 
 /// Adds the input's coarser levels. What hung on node 0 moves to a node of its own below it, named as level 0 of the
 /// model, which names the other levels' nodes by MSFT_lod, with the shares of a picture's height down to which each

@@ -92,7 +92,7 @@ void addScene(tinygltf::Model& model, const ExportInput& input, const SharedObje
     model.defaultScene = 0;
 }
 
-void addOriginTable(tinygltf::Model& model, const Provenance& provenance, const mesh::Mesh& mesh) {
+Value originTable(const Provenance& provenance, const mesh::Mesh& mesh) {
     // Lists beside each other: half the text of an object an origin.
     Value::Array ids, paths, rules, files, lines;
     for (const OriginId origin : originsOf(mesh, provenance)) {
@@ -110,7 +110,7 @@ void addOriginTable(tinygltf::Model& model, const Provenance& provenance, const 
     table["file"] = Value(files);
     table["line"] = Value(lines);
     extras["origins"] = Value(table);
-    model.asset.extras = Value(extras);
+    return Value(extras);
 }
 
 Value originRuns(const PatchedMesh& patched, const Patch& patch) {

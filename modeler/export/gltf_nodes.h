@@ -20,8 +20,8 @@ namespace sgm::exporter {
 void addScene(tinygltf::Model& model, const ExportInput& input, const SharedObjects* shared,
               const std::vector<int>& meshOfNode);
 
-/// Adds `origins` to the asset's extras: lists id, path, rule, file and line with an element an origin of the mesh.
-void addOriginTable(tinygltf::Model& model, const Provenance& provenance, const mesh::Mesh& mesh);
+/// {`origins`: lists id, path, rule, file and line with an element an origin of the mesh}.
+tinygltf::Value originTable(const Provenance& provenance, const mesh::Mesh& mesh);
 
 /// Extras of a primitive, {"origins": [origin, count, origin, count …]}: whose the patch's triangles are, in their
 /// order.

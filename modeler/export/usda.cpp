@@ -113,7 +113,7 @@ private:
     const SharedObjects* shared_;  ///< set where there are objects
     const std::string path_;       ///< of the prim that the objects lie in
     std::vector<uint32_t> local_;
-    std::set<std::string> taken_{"Materials", "Surface"};
+    std::set<std::string> taken_{"Materials", "Places", "Surface"};
 };
 
 /// The parts behind the faces' origins, as lists beside each other.
@@ -216,6 +216,75 @@ std::string levelVariants(const ExportInput& input) {
     return text + "    }\n";
 }
 
+/// The objects of the scene and their places, as a PointInstancer whose prototypes lie below it.
+class Places {
+public:
+    Places(OutFile& out, const ExportInput& input, const std::vector<std::string>& names, const std::string& root)
+        : out_(out), input_(input), names_(names), root_(root) {}
+
+    /// Adds the materials that it uses to `used`.
+    Status write(std::set<uint32_t>& used) {
+        out_.text("def PointInstancer \"Places\"\n{\n");
+        list("int[] protoIndices", [](const mesh::Instance& i) { return fmt::format("{}", i.object); });
+        const Placement place = placementOf(input_);
+        list("point3f[] positions",
+             [&](const mesh::Instance& i) { return usdTuple(place.position(i.part.pose.origin.as<float>())); });
+        list("quath[] orientations", [&](const mesh::Instance& i) {
+            auto q = mesh::quaternionOf(i.part.pose.axes);
+            if (place.zUp) q = {q[0], -q[2], q[1], q[3]};
+            return fmt::format("({:.4g}, {:.4g}, {:.4g}, {:.4g})", q[3], q[0], q[1], q[2]);
+        });
+        std::string prototypes;
+        for (const mesh::SceneObject& object : input_.scene->objects)
+            prototypes +=
+                fmt::format("{}</{}/Places/{}>", prototypes.empty() ? "" : ", ", root_, identifierOf(object.name));
+        out_.text(fmt::format("    rel prototypes = [{}]\n", prototypes));
+        for (const mesh::SceneObject& object : input_.scene->objects)
+            if (const Status s = prototype(object, used); !s.ok()) return s;
+        out_.text("}\n");
+        return Done{};
+    }
+
+private:
+    template <class Element>
+    void list(std::string_view declaration, Element element) {
+        out_.text(fmt::format("    {} = [", declaration));
+        bool first = true;
+        for (const mesh::Instance& instance : input_.scene->instances) {
+            out_.text((first ? "" : ", ") + element(instance));
+            first = false;
+        }
+        out_.text("]\n");
+    }
+
+    Status prototype(const mesh::SceneObject& object, std::set<uint32_t>& used) {
+        ExportInput own = input_;
+        own.mesh = &object.mesh;
+        own.provenance = &object.provenance;
+        own.objects = nullptr;
+        own.levels = {};
+        own.scene = nullptr;
+        auto level = makeLevel(own, 0);
+        if (!level.ok()) return level.error();
+        for (const Patch& p : level->patched.patches) used.insert(p.material);
+        std::string said;
+        for (const auto& [name, value] : object.values)
+            said += fmt::format("        string {} = {}\n", quoted(name), quoted(value));
+        const std::string id = identifierOf(object.name);
+        out_.text(fmt::format("def Xform \"{}\" (\n    customData = {{\n{}    }}\n)\n{{\n", id, said));
+        ObjectPrims(out_, {level->input, level->texture, level->patched, names_, root_}, nullptr,
+                    "/" + root_ + "/Places/" + id)
+            .write();
+        out_.text("}\n");
+        return Done{};
+    }
+
+    OutFile& out_;
+    const ExportInput& input_;
+    const std::vector<std::string>& names_;
+    const std::string& root_;
+};
+
 }  // namespace
 
 static Status writeUsda(const ExportInput& input, const Path& temporary, const Path& target) {
@@ -245,6 +314,8 @@ static Status writeUsda(const ExportInput& input, const Path& temporary, const P
         if (!level.ok()) return level.error();
     }
     if (!input.levels.empty()) out.text(levelVariants(input));
+    if (input.scene)
+        if (const Status s = Places(out, input, names, root).write(used); !s.ok()) return s;
     if (input.byMaterial) writeMaterials(out, input, used, names, root);
     out.text("}\n");
     return out.finish();
@@ -260,6 +331,7 @@ constinit const Exporter usdaFormat{
     .write = writeUsda,
     .stream = nullptr,
     .holdsObjects = true,
+    .holdsScenes = true,
     .holdsLevels = true,
 };
 

@@ -22,6 +22,16 @@ TEST(Uses, MergeDeclarationsBeforeTheirUser) {
     EXPECT_EQ(c.grammar->symbols.at(0).name, "wall") << "b.sgm is read once";
 }
 
+TEST(Uses, BeginWithTheFilesOwnStart) {
+    const Checked c = checked("grammar 1\nuse \"a.sgm\"\nstart Town -> cube\nstart Other -> cube\n",
+                              {{"a.sgm", "grammar 1\nstart House -> cube\n"}});
+    ASSERT_TRUE(c.grammar) << c.messages();
+    const auto nameOf = [&](size_t i) { return c.grammar->symbols[c.grammar->starts[i].symbol].name; };
+    EXPECT_EQ(nameOf(0), "Town");
+    EXPECT_EQ(nameOf(1), "Other");
+    EXPECT_EQ(nameOf(2), "House");
+}
+
 TEST(Uses, RefuseCircles) {
     const Checked c = checked("grammar 1\nuse \"a.sgm\"\nstart S -> cube\n",
                               {{"a.sgm", "grammar 1\nuse \"b.sgm\"\n"}, {"b.sgm", "grammar 1\nuse \"a.sgm\"\n"}});

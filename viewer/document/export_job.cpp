@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "grammar/pipeline/products.h"
+#include "grammar/pipeline/scene.h"
 #include "modeler/core/atomic_file.h"
 #include "modeler/core/guarded.h"
 
@@ -27,23 +28,43 @@ Status writeSolids(const BuiltModel& shown, const ExportRequest& request, pipeli
     return exporter::write(input, request.file);
 }
 
+/// The model that a file holds: objects that are shown as copies or boxes in the field are meshed each by itself.
+Result<pipeline::Model> modelOf(const BuiltModel& shown, bool apart, pipeline::Context& context) {
+    if (apart) return pipeline::makeModel(shown.grammar, shown.options, context, pipeline::Objects::Apart);
+    return pipeline::Model(shown.model);
+}
+
 Status write(const BuiltModel& shown, const ExportRequest& request, const exporter::Exporter& format,
              Progress& progress) {
     pipeline::Context context{&progress, request.threads};
+    const derive::Derivation& derivation = shown.model.derivation;
+    const bool apart = format.wantsMesh() && derivation.copies + derivation.masses > 0 && !shown.byHand;
+    if (!apart && !format.wantsPlan && derivation.masses > 0)
+        return Error{
+            Error::Kind::Budget,
+            fmt::format("'{}' holds one field, and the model's objects are shown as boxes in it; export a mesh, or "
+                        "build with a greater --max-shapes",
+                        request.file.string())};
     if (format.wantsSolids) return writeSolids(shown, request, context);
     if (format.wantsPlan) return exporter::write(inputOf(shown, request, progress), request.file);
-    auto division = pipeline::divide(shown.model, format.holdsObjects ? request.objects : "");
+    const auto model = modelOf(shown, apart, context);
+    if (!model.ok()) return model.error();
+    auto division = pipeline::divide(*model, format.holdsObjects ? request.objects : "");
     if (!division.ok()) return division.error();
-    const Box3f& bounds = shown.model.lowered->field.bounds;
+    const Box3f& bounds = model->lowered->field.bounds;
     const float cell_m =
         request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
     mesh::PolygonizeOptions meshing{.surface = mesh::Surface::Crisp};
-    meshing.positionsOnly = exporter::takesPositionsOnly(format, request.options);
-    auto meshed = pipeline::makeMesh(shown.model, mesh::gridFor(bounds, cell_m), meshing, context);
+    meshing.positionsOnly = !apart && exporter::takesPositionsOnly(format, request.options);
+    auto meshed = pipeline::makeMesh(*model, mesh::gridFor(bounds, cell_m), meshing, context);
     if (!meshed.ok()) return meshed.error();
     const pipeline::MeshEdits edits{.keep = request.keep};
     mesh::keepOnly(meshed->mesh, edits.keep, cell_m, request.threads);
-    if (meshed->mesh.triangleCount() == 0) return pipeline::noSurface(shown.model, cell_m);
+    const auto made = pipeline::makeScene(
+        *model, {.resolution = request.resolution, .cell_m = request.cell_m, .meshing = meshing, .edits = edits},
+        context);
+    if (!made.ok()) return made.error();
+    if (meshed->mesh.triangleCount() == 0 && made->scene.empty()) return pipeline::noSurface(*model, cell_m);
     auto mesh = pipeline::edited(std::move(meshed->mesh), edits, meshing.surface, cell_m, context);
     if (!mesh.ok()) return mesh.error();
     pipeline::ProductRequest wanted;
@@ -51,10 +72,11 @@ Status write(const BuiltModel& shown, const ExportRequest& request, const export
     wanted.levelSet = format.wantsVolume;
     wanted.edits = edits;
     wanted.meshing = meshing;
-    const auto products = pipeline::makeProducts(shown.model, *meshed, std::move(*mesh), std::move(wanted), context);
+    const auto products = pipeline::makeProducts(*model, *meshed, std::move(*mesh), std::move(wanted), context);
     if (!products.ok()) return products.error();
     exporter::ExportInput input = inputOf(shown, request, progress);
     products->applyTo(input);
+    if (!made->scene.empty()) input.scene = &made->scene, input.provenance = &made->scene.ground;
     return exporter::write(input, request.file);
 }
 

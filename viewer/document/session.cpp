@@ -322,8 +322,9 @@ Result<std::shared_ptr<const BuiltModel>> Session::made(const ShowRequest& reque
     if (shown_ && !shown_->held && shown_->grammar == grammar_ && handShown_ == request.byHand &&
         sameOptions(shown_->options, *options))
         return shown_;
-    auto model = request.byHand ? pipeline::makeModel(derive::Derivation(*request.byHand), context)
-                                : pipeline::makeModel(grammar_, *options, context);
+    constexpr auto objects = pipeline::Objects::Sketched;
+    auto model = request.byHand ? pipeline::makeModel(derive::Derivation(*request.byHand), context, objects)
+                                : pipeline::makeModel(grammar_, *options, context, objects);
     if (!model.ok()) return model.error();
     handShown_ = request.byHand;
     BuiltModel shown;

@@ -1,0 +1,191 @@
+#include "grammar/derive/graft.h"
+
+#include <algorithm>
+
+#include "modeler/core/random.h"
+
+namespace sgm::derive {
+namespace {
+
+uint32_t shifted(uint32_t index, size_t by) { return index == none ? none : index + static_cast<uint32_t>(by); }
+
+/// Index in `list` of `value`, which is appended where it isn't there from `first` on.
+template <class T>
+uint32_t indexIn(std::vector<T>& list, size_t first, const T& value) {
+    const auto found = std::find(list.begin() + static_cast<std::ptrdiff_t>(first), list.end(), value);
+    if (found != list.end()) return static_cast<uint32_t>(found - list.begin());
+    list.push_back(value);
+    return static_cast<uint32_t>(list.size() - 1);
+}
+
+class Graft {
+public:
+    Graft(Derivation& into, ShapeId at, const Derivation& object, const Pose& pose)
+        : into_(into), tree_(into.tree), at_(at), object_(object), pose_(pose) {}
+
+    void run() {
+        const ShapeTree& from = object_.tree;
+        for (const std::string& label : from.labels) labels_.push_back(indexIn(tree_.labels, 0, label));
+        const size_t own = object_.grammar->materials.size();
+        for (size_t i = 0; i < object_.materials.size(); ++i)
+            materials_.push_back(i < own ? static_cast<uint32_t>(i)
+                                         : indexIn(into_.materials, own, object_.materials[i]));
+        first_ = {tree_.shapes.size(),     tree_.bonds.size(),  tree_.bodies.size(),
+                  tree_.solids.size(),     tree_.extras.size(), tree_.namedJoints.size(),
+                  tree_.namedBonds.size(), into_.steps.size(),  tree_.footprints.append(from.footprints)};
+        tree_.solids.insert(tree_.solids.end(), from.solids.begin(), from.solids.end());
+        tree_.namedJoints.insert(tree_.namedJoints.end(), from.namedJoints.begin(), from.namedJoints.end());
+        for (const uint32_t bond : from.namedBonds) tree_.namedBonds.push_back(shifted(bond, first_.bond));
+        copyExtras();
+        copyBonds();
+        copySteps();
+        for (ShapeId s = 0; s < from.shapes.size(); ++s) tree_.shapes.push_back(copyOf(s));
+        attach(static_cast<ShapeId>(first_.shape));
+        copyWarnings();
+        into_.classic += object_.classic;
+        into_.morphic += object_.morphic;
+    }
+
+private:
+    struct First {
+        size_t shape = 0, bond = 0, body = 0, solid = 0, extras = 0, joints = 0, namedBond = 0, step = 0, footprint = 0;
+    };
+
+    uint32_t materialOf(uint32_t material) const { return material == none ? none : materials_[material]; }
+
+    Shape copyOf(ShapeId id) const {
+        Shape s = object_.tree.shapes[id];
+        s.key = combine(tree_.shapes[at_].key, s.key);
+        for (ShapeId* link : {&s.parent, &s.firstChild, &s.lastChild, &s.nextSibling, &s.valuesAt})
+            *link = shifted(*link, first_.shape);
+        s.label = labels_[s.label];
+        s.depth += tree_.shapes[at_].depth + 1;
+        s.solid = shifted(s.solid, first_.solid);
+        s.material = materialOf(s.material);
+        s.extras = shifted(s.extras, first_.extras);
+        s.body = shifted(s.body, first_.body);
+        s.jointSet = s.jointSet == 0 ? 0 : shifted(s.jointSet, first_.joints);
+        s.firstNamedBond = shifted(s.firstNamedBond, first_.namedBond);
+        s.madeBy = shifted(s.madeBy, first_.step);
+        s.scope.centre = pose_.origin + pose_.axes * s.scope.centre;
+        s.scope.axes = pose_.axes * s.scope.axes;
+        s.scope.footprint = shifted(s.scope.footprint, first_.footprint);
+        return s;
+    }
+
+    void copyExtras() {
+        for (ShapeId s = 0; s < object_.tree.shapes.size(); ++s) keyOfExtras(s);
+        for (size_t i = 0; i < object_.tree.extras.size(); ++i) {
+            Extras extras = object_.tree.extras[i];
+            extras.object = none;
+            for (Cladding& clad : extras.clad) clad.material = materialOf(clad.material);
+            tree_.extras.push_back(std::move(extras));
+        }
+        for (const auto& [extras, shape] : displaced_)
+            for (Displacement& noise : tree_.extras[first_.extras + extras].displace) {
+                if (noise.key == 0) noise.key = object_.tree.shapes[shape].key;
+                noise.frame = {pose_.origin + pose_.axes * noise.frame.origin, pose_.axes * noise.frame.axes};
+            }
+    }
+
+    void keyOfExtras(ShapeId id) {
+        const Shape& s = object_.tree.shapes[id];
+        if (s.extras != none && !object_.tree.extras[s.extras].displace.empty()) displaced_.emplace_back(s.extras, id);
+    }
+
+    void copyBonds() {
+        for (Bond bond : object_.tree.bonds) {
+            bond.shift = pose_.axes * bond.shift;
+            for (int end = 0; end < 2; ++end) {
+                bond.shape[end] = shifted(bond.shape[end], first_.shape);
+                bond.next[end] = shifted(bond.next[end], first_.bond);
+            }
+            tree_.bonds.push_back(bond);
+        }
+        for (Body body : object_.tree.bodies) {
+            body.owner = shifted(body.owner, first_.shape);
+            body.firstBond = shifted(body.firstBond, first_.bond);
+            for (uint32_t& bond : body.bond) bond = shifted(bond, first_.bond);
+            tree_.bodies.push_back(body);
+        }
+    }
+
+    void copySteps() {
+        for (Step step : object_.steps) {
+            step.shape = shifted(step.shape, first_.shape);
+            step.firstMade = shifted(step.firstMade, first_.shape);
+            into_.steps.push_back(step);
+        }
+    }
+
+    void copyWarnings() {
+        const auto isAt = [](const auto& other, const syntax::SourceSpan& span) {
+            return other.span.source == span.source && other.span.begin == span.begin && other.span.end == span.end;
+        };
+        for (const Closed& closed : object_.closed) {
+            const auto known = std::find_if(into_.closed.begin(), into_.closed.end(),
+                                            [&](const Closed& c) { return isAt(c, closed.span); });
+            if (known == into_.closed.end())
+                into_.closed.push_back(closed);
+            else
+                known->count += closed.count;
+        }
+        for (const Warning& warning : object_.warnings)
+            if (std::none_of(into_.warnings.begin(), into_.warnings.end(),
+                             [&](const Warning& w) { return isAt(w, warning.span); }))
+                into_.warnings.push_back(warning);
+    }
+
+    /// The copy's root becomes the last child of the shape that holds the object.
+    void attach(ShapeId root) {
+        Shape& holder = tree_.shapes[at_];
+        tree_.shapes[root].parent = at_;
+        tree_.shapes[root].occurrence = 1;
+        (holder.lastChild == none ? holder.firstChild : tree_.shapes[holder.lastChild].nextSibling) = root;
+        holder.lastChild = root;
+    }
+
+    Derivation& into_;
+    ShapeTree& tree_;
+    const ShapeId at_;
+    const Derivation& object_;
+    const Pose& pose_;
+    First first_;
+    std::vector<uint32_t> labels_, materials_;
+    std::vector<std::pair<uint32_t, ShapeId>> displaced_;  ///< extras with noise, and whose they are
+};
+
+}  // namespace
+
+void graft(Derivation& into, ShapeId at, const Derivation& object, const Pose& pose) {
+    Graft(into, at, object, pose).run();
+}
+
+void graftMass(Derivation& into, ShapeId at, const Derivation& object, const Pose& pose) {
+    const auto& shapes = object.tree.shapes;
+    const auto first = std::find_if(shapes.begin(), shapes.end(), [](const Shape& s) { return s.solid != none; });
+    if (first == shapes.end()) return;
+    Derivation mass;
+    mass.grammar = object.grammar;
+    mass.materials = object.materials;
+    mass.tree.labels = {"mass"};
+    mass.tree.namedJoints.emplace_back();
+    mass.tree.bodies.emplace_back();
+    SolidValue cube;
+    cube.kind = rules::Solid::Kind::Primitive;
+    cube.primitive = field::findPrimitive("cube");
+    mass.tree.solids.push_back(std::move(cube));
+    Shape box;
+    box.key = shapes[0].key;
+    box.solid = 0;
+    box.body = 0;
+    box.scope = object.tree.contentBox(0);
+    box.span = shapes[0].span;
+    for (auto s = static_cast<ShapeId>(first - shapes.begin()); s != none && box.material == none; s = shapes[s].parent)
+        box.material = shapes[s].material;
+    mass.tree.bodies[0].owner = 0;
+    mass.tree.shapes.push_back(std::move(box));
+    graft(into, at, mass, pose);
+}
+
+}  // namespace sgm::derive

@@ -1,0 +1,143 @@
+#include "grammar/pipeline/placed_models.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+namespace sgm::pipeline {
+
+using derive::Derivation;
+
+namespace {
+
+constexpr uint32_t deepest = 8;  ///< objects within objects
+
+/// The lowest point of what was derived, in its own frame.
+double footOf(const Derivation& derivation) {
+    const derive::ShapeTree& tree = derivation.tree;
+    const derive::Scope box = derivation.terminals() > 0 ? tree.contentBox(0) : tree.shapes[0].scope;
+    double foot = box.centre.y;
+    for (int corner = 0; corner < 8; ++corner)
+        foot = std::min(foot, box.point({corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0}).y);
+    return foot;
+}
+
+}  // namespace
+
+Status PlacedModels::derive() {
+    std::vector<uint32_t> open = take(model_, 1, ground_);
+    if (context_.progress) context_.progress->begin("objects", 0);
+    while (!open.empty()) {
+        if (objects_[open.front()].depth > deepest)
+            return Error{
+                Error::Kind::Input,
+                fmt::format("{}objects hold objects more than {} deep: '{}' may hold itself",
+                            syntax::placeText(model_.grammar->starts[objects_[open.front()].inputs.start].span),
+                            deepest, nameOf(objects_[open.front()]))};
+        if (const Status s = deriveLevel(open); !s.ok()) return s;
+        std::vector<uint32_t> next;
+        for (const uint32_t index : open) {
+            if (objects_[index].same != index) continue;
+            std::vector<uint32_t> holds;
+            const auto fresh = take(*objects_[index].derivation, objects_[index].depth + 1, holds);
+            objects_[index].holds = std::move(holds);
+            next.insert(next.end(), fresh.begin(), fresh.end());
+        }
+        open = std::move(next);
+    }
+    return Done{};
+}
+
+const std::string& PlacedModels::nameOf(const PlacedModel& object) const {
+    return model_.grammar->symbols[model_.grammar->starts[object.inputs.start].symbol].name;
+}
+
+/// The objects that a derivation holds; those that weren't known are returned.
+std::vector<uint32_t> PlacedModels::take(const Derivation& from, uint32_t depth, std::vector<uint32_t>& holds) {
+    std::vector<uint32_t> fresh;
+    for (size_t i = 0; i < from.objects.size(); ++i) {
+        const uint32_t known = inputs_.put(from.objects[i]);
+        holds.push_back(known);
+        if (known < objects_.size()) continue;
+        PlacedModel& object = objects_.emplace_back();
+        object.inputs = from.objects[i];
+        object.depth = depth;
+        object.same = known;
+        fresh.push_back(known);
+    }
+    return fresh;
+}
+
+/// Derives objects of one depth: of those that chance alone tells apart one first, and the others only where it
+/// used chance.
+Status PlacedModels::deriveLevel(const std::vector<uint32_t>& open) {
+    std::vector<uint32_t> first, rest;
+    for (const uint32_t i : open)
+        (firstAlike_.try_emplace(objects_[i].inputs.hash(false), i).second ? first : rest).push_back(i);
+    if (const Status s = deriveThese(first); !s.ok()) return s;
+    std::vector<uint32_t> differing;
+    for (const uint32_t i : rest) {
+        const uint32_t alike = firstAlike_.at(objects_[i].inputs.hash(false));
+        if (objects_[alike].usedChance)
+            differing.push_back(i);
+        else
+            objects_[i].same = alike;
+    }
+    return deriveThese(differing);
+}
+
+Status PlacedModels::deriveThese(const std::vector<uint32_t>& these) {
+    std::vector<Status> done(these.size(), Done{});
+    inParallel(these.size(), [&](size_t i, Context& own) {
+        PlacedModel& object = objects_[these[i]];
+        derive::Options options;
+        options.start = object.inputs.start;
+        options.params = object.inputs.params;
+        options.seed = object.inputs.seed;
+        options.budget = budget_;
+        options.isPlaced = true;
+        options.lot = object.inputs.lot;
+        auto derived = derive::derive(model_.grammar, options, own.progress);
+        if (derived.ok())
+            object.derivation = std::move(*derived);
+        else
+            done[i] = derived.error();
+    });
+    if (cancelled(context_.progress)) return cancelledError();
+    for (size_t i = 0; i < these.size(); ++i) {
+        if (!done[i].ok()) return done[i];
+        PlacedModel& object = objects_[these[i]];
+        object.usedChance = object.derivation->usedChance;
+        object.foot_m = footOf(*object.derivation);
+        const syntax::Diagnostics found = derive::warnings(*object.derivation);
+        warnings_.insert(warnings_.end(), found.all().begin(), found.all().end());
+    }
+    return Done{};
+}
+
+Pose PlacedModels::poseOf(const PlacedModel& object, const derive::Scope& scope) {
+    if (object.inputs.lot) return {scope.centre, scope.axes};
+    return {scope.point({0, -1, 0}) - scope.axes.y * object.foot_m, scope.axes};
+}
+
+uint64_t PlacedModels::shapesOf(uint32_t index) {
+    if (const auto known = shapes_.find(index); known != shapes_.end()) return known->second;
+    const PlacedModel& object = objects_[index];
+    uint64_t count = object.derivation->tree.shapes.size();
+    if (!object.holds.empty())
+        for (const derive::Placement& inner : derive::placementsOf(*object.derivation))
+            count += shapesOf(of(object.holds, inner.object));
+    return shapes_[index] = count;
+}
+
+syntax::Diagnostics PlacedModels::warnings() const {
+    syntax::Diagnostics all;
+    std::set<std::tuple<const void*, uint32_t, std::string>> said;
+    for (const syntax::Diagnostic& d : warnings_)
+        if (said.emplace(d.span.source, d.span.begin, d.message).second) all.warning(d.span, d.message, d.hint);
+    return all;
+}
+
+}  // namespace sgm::pipeline

@@ -1,0 +1,103 @@
+// The objects that `place` puts into a model, derived: those that objects place among them, each once.
+// Enters: a derivation. Leaves: derivations of its objects, and how they stand. Assumes that nothing but its inputs
+// decides an object, so that objects may be derived in any order and at the same time.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <thread>
+#include <unordered_map>
+#include <vector>
+
+#include "grammar/derive/derive.h"
+#include "grammar/pipeline/context.h"
+#include "modeler/core/parallel.h"
+
+namespace sgm::pipeline {
+
+/// Progress objects of their own, for work that runs side by side, all cancelled when the one above is.
+class RelayedProgress {
+public:
+    RelayedProgress(const Progress* above, int count) : own_(static_cast<size_t>(count)) {
+        if (!above) return;
+        thread_ = std::jthread([this, above](const std::stop_token& stop) {
+            while (!stop.stop_requested()) {
+                if (above->cancelled())
+                    for (Progress& progress : own_) progress.cancel();
+                std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            }
+        });
+    }
+    Progress* operator[](int worker) { return &own_[static_cast<size_t>(worker)]; }
+
+private:
+    std::deque<Progress> own_;
+    std::jthread thread_;
+};
+
+/// An object with what was made of it.
+struct PlacedModel {
+    derive::PlacedObject inputs;
+    uint32_t depth = 1;  ///< of the objects around it, the model counting as 0
+    uint32_t same = 0;   ///< the object that stands for it: another one where chance alone would tell them apart
+    std::optional<derive::Derivation> derivation;
+    std::vector<uint32_t> holds;  ///< by index in its Derivation::objects: the object here
+    bool usedChance = false;      ///< its derivation drew
+    double foot_m = 0;            ///< its lowest point, in its own frame
+};
+
+/// All objects of a model, in the order in which they were found. The model has to outlive it.
+class PlacedModels {
+public:
+    PlacedModels(const derive::Derivation& model, const derive::Budget& budget, Context& context)
+        : model_(model), budget_(budget), context_(context) {}
+
+    /// Derives them on the context's threads; the budget is of each. Error::Input, located, for one that can't be
+    /// derived or holds itself.
+    Status derive();
+    size_t size() const { return objects_.size(); }
+    const PlacedModel& operator[](uint32_t index) const { return objects_[index]; }
+    /// The object that the model (or an object of it) holds under that index, or another one that is like it.
+    uint32_t of(const std::vector<uint32_t>& holds, uint32_t index) const { return objects_[holds[index]].same; }
+    /// By index in the model's own objects: the object here.
+    const std::vector<uint32_t>& ofModel() const { return ground_; }
+    const std::string& nameOf(const PlacedModel& object) const;
+    /// From the object's frame to that of what holds it: its foot on the middle of the scope's foot, or, on a lot, its
+    /// scope on that scope.
+    static Pose poseOf(const PlacedModel& object, const derive::Scope& scope);
+    /// Shapes of the object with those of all that it holds.
+    uint64_t shapesOf(uint32_t index);
+    /// What derive::warnings says of them, each once.
+    syntax::Diagnostics warnings() const;
+    /// The object's derivation, taken out of it.
+    derive::Derivation release(uint32_t index) { return std::move(*objects_[index].derivation); }
+    /// Calls work(index, context) for every index below `count`, several at a time.
+    template <class Work>
+    void inParallel(size_t count, Work&& work) const {
+        const int all = threadCount(context_.threads);
+        const int outer = static_cast<int>(std::min<size_t>(count, static_cast<size_t>(all)));
+        if (outer == 0) return;
+        RelayedProgress relayed(context_.progress, outer);
+        parallelFor(count, outer, context_.progress, [&](size_t i, int worker) {
+            Context own{relayed[worker], std::max(1, all / outer), {}};
+            work(i, own);
+        });
+    }
+
+private:
+    std::vector<uint32_t> take(const derive::Derivation& from, uint32_t depth, std::vector<uint32_t>& holds);
+    Status deriveLevel(const std::vector<uint32_t>& open);
+    Status deriveThese(const std::vector<uint32_t>& these);
+
+    const derive::Derivation& model_;
+    const derive::Budget& budget_;
+    Context& context_;
+    derive::PlacedObjects inputs_;
+    std::deque<PlacedModel> objects_;
+    std::vector<uint32_t> ground_;
+    std::unordered_map<uint64_t, uint32_t> firstAlike_;
+    std::unordered_map<uint32_t, uint64_t> shapes_;  ///< of an object with those that it holds
+    std::vector<syntax::Diagnostic> warnings_;
+};
+
+}  // namespace sgm::pipeline

@@ -1,0 +1,43 @@
+// The objects that `place` puts into a model: each derived, lowered and meshed once, and where it stands.
+// Enters: a derived model. Leaves: a mesh::Scene, for files and pictures. Assumes that nothing but its inputs decides
+// an object, so that objects may be made in any order and at the same time.
+#pragma once
+
+#include "grammar/pipeline/mesh_edits.h"
+#include "grammar/pipeline/model.h"
+#include "grammar/syntax/source.h"
+#include "modeler/mesh/polygonize.h"
+#include "modeler/mesh/scene.h"
+
+namespace sgm::pipeline {
+
+/// How finely objects are meshed, and what they may cost.
+struct SceneRequest {
+    int resolution = 128;  ///< cells along the longest side of each object
+    double cell_m = 0;     ///< of every object, metres; > 0 wins over the resolution
+    mesh::PolygonizeOptions meshing = {};
+    MeshEdits edits = {};
+    derive::Budget budget = {};  ///< of the derivation of each object; its shapes limit the places of the model as well
+};
+
+/// A scene, and what is to be said of its objects.
+struct MadeScene {
+    mesh::Scene scene;
+    syntax::Diagnostics warnings;  ///< those of derive::warnings, each once
+};
+
+/// Derives, lowers and meshes every object of `model`, those that objects place among them, on `context.threads`
+/// threads; stage "objects". Objects that differ by chance alone are one where chance decides nothing. Error::Input,
+/// located, for an object that can't be built or holds itself; Error::Budget for too many places.
+Result<MadeScene> makeScene(const Model& model, const SceneRequest& request, Context& context);
+
+/// Derives the objects of `derivation` and puts a copy of their shapes at every place, so that they are part of its
+/// field; stage "objects". Then it holds no objects any more. Nothing for a derivation without objects. Error::Input as
+/// of makeScene. Where the model would have more than `budget.shapes` shapes, Objects::Grafted is an Error::Budget, and
+/// Objects::Sketched puts a box in the stead of each object.
+Status graftObjects(derive::Derivation& derivation, Objects objects, const derive::Budget& budget, Context& context);
+
+/// Derives and lowers the objects alone: the errors that `makeScene` would have before it meshes.
+Status tryObjects(const derive::Derivation& derivation, const derive::Budget& budget, Context& context);
+
+}  // namespace sgm::pipeline
