@@ -65,11 +65,10 @@ Status buildOne(const BuildRequest& request) {
     if (needsNoMesh(request)) return printFiles(request), Done{};
     auto division = pipeline::divide(*model, request.out.objects);
     if (!division.ok()) return division.error();
-    auto meshed =
-        makeMesh(*model, request.grid, context, needsPositionsOnly(request) && model->derivation.objects.empty());
-    if (!meshed.ok()) return meshed.error();
     const auto scene = makeScene(*model, request.model, request.grid, request.edits, request.quiet, context);
     if (!scene.ok()) return scene.error();
+    auto meshed = makeMesh(*model, request.grid, context, needsPositionsOnly(request) && scene->empty());
+    if (!meshed.ok()) return meshed.error();
     return deliver(request, *model, std::move(*division), std::move(*meshed), *scene, context);
 }
 

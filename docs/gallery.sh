@@ -5,7 +5,7 @@
 #   ./run.sh gallery times      the times alone: on a calm machine
 #   ./run.sh gallery window     the pictures of the window (apt-get install xvfb xdotool imagemagick)
 #   ./run.sh gallery sheet      the tutorial's sheet of variations
-#   ./run.sh gallery town       the plan and patterns of the town, for docs/town.md (apt-get install librsvg2-bin)
+#   ./run.sh gallery town       the plan, patterns and pictures of the town, for docs/town.md (apt-get install librsvg2-bin)
 #   ./run.sh gallery addon      three towers and a cloud by the Blender add-on (apt-get install blender), for docs/blender.md
 #   ./run.sh gallery blender    two models in Blender (apt-get install blender), for docs/programs.md
 cd "$(dirname "$0")/.."
@@ -101,6 +101,10 @@ town() {
   done
   montage "$drawn/grown.png" "$drawn/raster.png" "$drawn/radial.png" -tile 3x1 -geometry +0+0 "$drawn/a.png"
   keep "$drawn/a.png" town/patterns 800
+  "$sgm" render examples/city/town.sgm --view mesh --cell 4 --object-cell .8 --size 1600x900 --camera "1150,620,1500,-150,-60,-150" -q -o "$drawn/a.png"
+  keep "$drawn/a.png" town/town 1000
+  "$sgm" render examples/city/town.sgm --set side=1000 --view mesh --cell 1 --object-cell .25 --size 1400x900 --camera "330,180,330,-30,20,-30" -q -o "$drawn/a.png"
+  keep "$drawn/a.png" town/centre 800
 }
 
 # shoot NAME FILE SIZE WORDS: NAME.jpg, the window about FILE on a display of its own after xdotool did what WORDS say.

@@ -69,8 +69,12 @@ public:
     uint64_t shapesOf(uint32_t index);
     /// What derive::warnings says of them, each once.
     syntax::Diagnostics warnings() const;
-    /// The object's derivation, taken out of it.
-    derive::Derivation release(uint32_t index) { return std::move(*objects_[index].derivation); }
+    /// The object's derivation, taken out of it: it has none any more. May be called for different objects at once.
+    derive::Derivation release(uint32_t index) {
+        derive::Derivation released = std::move(*objects_[index].derivation);
+        objects_[index].derivation.reset();
+        return released;
+    }
     /// Calls work(index, context) for every index below `count`, several at a time.
     template <class Work>
     void inParallel(size_t count, Work&& work) const {

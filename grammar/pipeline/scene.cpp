@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <utility>
 
 #include "grammar/pipeline/meshing.h"
 #include "grammar/pipeline/placed_models.h"
@@ -29,7 +30,7 @@ public:
         for (uint32_t i = 0; i < objects_.size(); ++i)
             if (objects_[i].same == i) todo.push_back(i);
         if (context_.progress) context_.progress->begin("objects", todo.size());
-        std::vector<mesh::SceneObject> made(todo.size());
+        std::vector<Made> made(scene ? todo.size() : 0);
         std::vector<Status> done(todo.size(), Done{});
         objects_.inParallel(todo.size(), [&](size_t i, Context& own) {
             done[i] = make(todo[i], scene ? &made[i] : nullptr, own);
@@ -38,14 +39,16 @@ public:
         if (cancelled(context_.progress)) return cancelledError();
         for (const Status& s : done)
             if (!s.ok()) return s;
-        if (!scene) return Done{};
         std::map<std::string, uint32_t> numbers;
-        for (size_t i = 0; i < todo.size(); ++i) {
-            if (made[i].mesh.chunks.empty()) continue;
-            const uint32_t number = ++numbers[made[i].name];
-            if (number > 1) made[i].name += fmt::format("_{}", number);
+        for (size_t i = 0; i < made.size(); ++i) {
+            if (made[i].mesh.triangles.empty()) continue;
             meshed_[todo[i]] = static_cast<uint32_t>(scene->objects.size());
-            scene->objects.push_back(std::move(made[i]));
+            mesh::SceneObject& object = scene->objects.emplace_back();
+            object.name = objects_.nameOf(objects_[todo[i]]);
+            if (const uint32_t number = ++numbers[object.name]; number > 1) object.name += fmt::format("_{}", number);
+            object.mesh = mesh::unpack(std::exchange(made[i].mesh, {}));
+            object.provenance = std::move(made[i].provenance);
+            object.values = valuesOf(objects_[todo[i]]);
         }
         return Done{};
     }
@@ -54,10 +57,17 @@ public:
     Status placeAll(mesh::Scene& scene) { return placeIn(model_, objects_.ofModel(), {}, {}, scene); }
 
 private:
-    Status make(uint32_t index, mesh::SceneObject* out, Context& own) const {
+    struct Made {
+        mesh::PackedMesh mesh;
+        Provenance provenance;
+    };
+
+    /// Lowers an object, and meshes it where `out` isn't null; then its derivation goes, unless it holds objects.
+    Status make(uint32_t index, Made* out, Context& own) {
         const PlacedModel& object = objects_[index];
-        if (object.derivation->terminals() == 0 && !object.derivation->objects.empty()) return Done{};
-        auto model = makeModel(*object.derivation, own, Objects::Apart);
+        if (object.derivation->terminals() == 0 && !object.holds.empty()) return Done{};
+        auto model = makeModel(object.holds.empty() ? objects_.release(index) : Derivation(*object.derivation), own,
+                               Objects::Apart);
         if (!model.ok()) return model.error();
         if (!out) return Done{};
         const Box3f& bounds = model->lowered->field.bounds;
@@ -69,10 +79,8 @@ private:
         auto mesh = edited(std::move(meshed->mesh), request_.edits, request_.meshing.surface, cell_m, own);
         if (!mesh.ok()) return mesh.error();
         if (mesh->triangleCount() == 0) return noSurface(*model, cell_m);
-        out->name = objects_.nameOf(object);
-        out->mesh = std::move(*mesh);
+        out->mesh = mesh::pack(*mesh);
         out->provenance = model->lowered->provenance;
-        out->values = valuesOf(object);
         return Done{};
     }
 

@@ -46,6 +46,42 @@ uint32_t indexOf(std::vector<Material>& all, std::map<std::string, std::vector<u
 
 }  // namespace
 
+PackedMesh pack(const Mesh& mesh) {
+    PackedMesh packed;
+    packed.positions.reserve(mesh.vertexCount());
+    packed.triangles.reserve(mesh.triangleCount());
+    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    for (const Chunk& chunk : mesh.chunks) {
+        const auto corners = static_cast<uint32_t>(3 * packed.triangles.size());
+        append(packed.positions, chunk.positions);
+        append(packed.normals, chunk.normals);
+        for (const Triangle& t : chunk.triangles) packed.triangles.push_back(chunk.inMesh(t));
+        append(packed.origins, chunk.origins);
+        append(packed.labels, chunk.labels);
+        for (CornerNormal normal : chunk.cornerNormals) {
+            normal.corner += corners;
+            packed.cornerNormals.push_back(normal);
+        }
+        for (const uint32_t vertex : chunk.faceted) packed.faceted.push_back(chunk.firstVertex + vertex);
+    }
+    return packed;
+}
+
+Mesh unpack(const PackedMesh& packed) {
+    Chunk chunk;
+    const auto copy = [](auto& to, const auto& from) { to.assign(from.begin(), from.end()); };
+    copy(chunk.positions, packed.positions);
+    copy(chunk.normals, packed.normals);
+    copy(chunk.triangles, packed.triangles);
+    copy(chunk.origins, packed.origins);
+    copy(chunk.labels, packed.labels);
+    chunk.cornerNormals = packed.cornerNormals;
+    chunk.faceted = packed.faceted;
+    Mesh mesh;
+    if (!chunk.triangles.empty()) mesh.chunks.push_back(std::move(chunk));
+    return mesh;
+}
+
 uint64_t Scene::triangleCount() const {
     std::vector<uint64_t> own;
     for (const SceneObject& object : objects) own.push_back(object.mesh.triangleCount());

@@ -14,6 +14,20 @@
 
 namespace sgm::mesh {
 
+/// A mesh in memory of its own size, for one that stays while others come and go: pieces of a Mesh lie in large regions
+/// between what was needed to make it, and hold all of a region as long as they live.
+struct PackedMesh {
+    std::vector<Vec3f> positions, normals;
+    std::vector<Triangle> triangles;  ///< corners count in `positions`
+    std::vector<OriginId> origins;
+    std::vector<Label> labels;
+    std::vector<CornerNormal> cornerNormals;  ///< corners count in `triangles`
+    std::vector<uint32_t> faceted;
+};
+PackedMesh pack(const Mesh& mesh);
+/// The mesh as a single chunk.
+Mesh unpack(const PackedMesh& packed);
+
 /// An object that stands at one or more places.
 struct SceneObject {
     std::string name;                           ///< distinct in its scene
