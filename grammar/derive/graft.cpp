@@ -161,31 +161,37 @@ void graft(Derivation& into, ShapeId at, const Derivation& object, const Pose& p
     Graft(into, at, object, pose).run();
 }
 
-void graftMass(Derivation& into, ShapeId at, const Derivation& object, const Pose& pose) {
+std::optional<Mass> massOf(const Derivation& object) {
     const auto& shapes = object.tree.shapes;
     const auto first = std::find_if(shapes.begin(), shapes.end(), [](const Shape& s) { return s.solid != none; });
-    if (first == shapes.end()) return;
-    Derivation mass;
-    mass.grammar = object.grammar;
-    mass.materials = object.materials;
-    mass.tree.labels = {"mass"};
-    mass.tree.namedJoints.emplace_back();
-    mass.tree.bodies.emplace_back();
+    if (first == shapes.end()) return std::nullopt;
+    Mass mass{object.tree.contentBox(0), none};
+    for (auto s = static_cast<ShapeId>(first - shapes.begin()); s != none && mass.material == none;
+         s = shapes[s].parent)
+        mass.material = shapes[s].material;
+    return mass;
+}
+
+void graftMass(Derivation& into, ShapeId at, const Derivation& object, const Pose& pose) {
+    const auto mass = massOf(object);
+    if (!mass) return;
+    Derivation held;
+    held.grammar = object.grammar;
+    held.materials = object.materials;
+    held.tree.labels = {"mass"};
+    held.tree.namedJoints.emplace_back();
     SolidValue cube;
     cube.kind = rules::Solid::Kind::Primitive;
     cube.primitive = field::findPrimitive("cube");
-    mass.tree.solids.push_back(std::move(cube));
-    Shape box;
-    box.key = shapes[0].key;
-    box.solid = 0;
-    box.body = 0;
-    box.scope = object.tree.contentBox(0);
-    box.span = shapes[0].span;
-    for (auto s = static_cast<ShapeId>(first - shapes.begin()); s != none && box.material == none; s = shapes[s].parent)
-        box.material = shapes[s].material;
-    mass.tree.bodies[0].owner = 0;
-    mass.tree.shapes.push_back(std::move(box));
-    graft(into, at, mass, pose);
+    held.tree.solids.push_back(std::move(cube));
+    held.tree.bodies.emplace_back().owner = 0;
+    Shape& box = held.tree.shapes.emplace_back();
+    box.key = object.tree.shapes[0].key;
+    box.solid = box.body = 0;
+    box.material = mass->material;
+    box.scope = mass->box;
+    box.span = object.tree.shapes[0].span;
+    graft(into, at, held, pose);
 }
 
 }  // namespace sgm::derive

@@ -3,6 +3,8 @@
 // Assumes neither is being derived any more.
 #pragma once
 
+#include <optional>
+
 #include "grammar/derive/derive.h"
 #include "modeler/core/provenance.h"
 
@@ -13,8 +15,15 @@ namespace sgm::derive {
 /// object).
 void graft(Derivation& into, ShapeId at, const Derivation& object, const Pose& pose);
 
-/// Puts a box in the object's stead, around every solid of its own, with the material of the first one. Nothing where
-/// it has no solids.
+/// The box around every solid of an object, and the material of the first one (index into its materials; none: the
+/// default).
+struct Mass {
+    Scope box;
+    uint32_t material = none;
+};
+/// Nothing where the object has no solids of its own.
+std::optional<Mass> massOf(const Derivation& object);
+/// Puts the object's mass in its stead; nothing where it has none.
 void graftMass(Derivation& into, ShapeId at, const Derivation& object, const Pose& pose);
 
 }  // namespace sgm::derive

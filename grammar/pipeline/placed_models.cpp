@@ -6,6 +6,8 @@
 #include <set>
 #include <tuple>
 
+#include "grammar/rules/params.h"
+
 namespace sgm::pipeline {
 
 using derive::Derivation;
@@ -22,6 +24,20 @@ double footOf(const Derivation& derivation) {
     for (int corner = 0; corner < 8; ++corner)
         foot = std::min(foot, box.point({corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0}).y);
     return foot;
+}
+
+/// The shape that holds an object, but for its pose.
+Part partOf(const Derivation& derivation, derive::ShapeId id) {
+    const derive::Shape& shape = derivation.tree.shapes[id];
+    Part part;
+    part.path = derivation.tree.path(id);
+    part.symbol = derivation.tree.labels[shape.label];
+    if (shape.madeBy != derive::none) part.rule = derivation.grammar->rules[derivation.steps[shape.madeBy].rule].name;
+    if (shape.span.source) {
+        part.file = shape.span.source->name();
+        part.line = shape.span.source->place(shape.span.begin).line;
+    }
+    return part;
 }
 
 }  // namespace
@@ -138,6 +154,44 @@ syntax::Diagnostics PlacedModels::warnings() const {
     for (const syntax::Diagnostic& d : warnings_)
         if (said.emplace(d.span.source, d.span.begin, d.message).second) all.warning(d.span, d.message, d.hint);
     return all;
+}
+
+std::map<std::string, std::string> PlacedModels::valuesOf(const PlacedModel& object) const {
+    std::map<std::string, std::string> values{{"start", nameOf(object)}};
+    if (object.usedChance) values["seed"] = fmt::format("{}", object.inputs.seed);
+    const auto usual = rules::valuesOf(*model_.grammar, object.inputs.start);
+    for (size_t i = 0; i < usual.size(); ++i)
+        if (object.inputs.params[i] != usual[i])
+            values["param " + model_.grammar->params[i].name] = rules::toText(object.inputs.params[i]);
+    return values;
+}
+
+Result<std::vector<PlacedModels::Place>> PlacedModels::places(uint64_t most) const {
+    std::vector<Place> places;
+    if (const Status s = addPlaces(model_, ground_, {}, {}, most, places); !s.ok()) return s.error();
+    return places;
+}
+
+Status PlacedModels::addPlaces(const Derivation& derivation, const std::vector<uint32_t>& holds, const Pose& frame,
+                               const std::string& path, uint64_t most, std::vector<Place>& places) const {
+    for (const derive::Placement& placement : derive::placementsOf(derivation)) {
+        const uint32_t index = of(holds, placement.object);
+        const PlacedModel& object = objects_[index];
+        Part part = partOf(derivation, placement.shape);
+        if (!path.empty()) part.path = path + "/" + part.path;
+        const Pose local = poseOf(object, derivation.tree.shapes[placement.shape].scope);
+        part.pose = {frame.origin + frame.axes * local.origin, frame.axes * local.axes};
+        places.push_back({index, part});
+        if (places.size() > most)
+            return Error{Error::Kind::Budget,
+                         fmt::format("{}there are more than {} places of objects (--max-shapes)",
+                                     syntax::placeText(derivation.tree.shapes[placement.shape].span), most)};
+        if (cancelled(context_.progress)) return cancelledError();
+        if (object.holds.empty()) continue;
+        const Status inner = addPlaces(*object.derivation, object.holds, part.pose, part.path, most, places);
+        if (!inner.ok()) return inner;
+    }
+    return Done{};
 }
 
 }  // namespace sgm::pipeline

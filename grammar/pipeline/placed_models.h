@@ -4,6 +4,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <optional>
 #include <thread>
 #include <unordered_map>
@@ -65,6 +66,16 @@ public:
     /// From the object's frame to that of what holds it: its foot on the middle of the scope's foot, or, on a lot, its
     /// scope on that scope.
     static Pose poseOf(const PlacedModel& object, const derive::Scope& scope);
+    /// What decides the object, for readers: `start`, `seed` where chance decides something, `param NAME` for those
+    /// that differ from the start's own.
+    std::map<std::string, std::string> valuesOf(const PlacedModel& object) const;
+    /// One place: which object, and the shape that holds it, whose pose takes the object's frame to the model's.
+    struct Place {
+        uint32_t object = 0;
+        Part part;
+    };
+    /// All places in tree order, those in objects after the one that holds them. Error::Budget for more than `most`.
+    Result<std::vector<Place>> places(uint64_t most) const;
     /// Shapes of the object with those of all that it holds.
     uint64_t shapesOf(uint32_t index);
     /// What derive::warnings says of them, each once.
@@ -92,6 +103,8 @@ private:
     std::vector<uint32_t> take(const derive::Derivation& from, uint32_t depth, std::vector<uint32_t>& holds);
     Status deriveLevel(const std::vector<uint32_t>& open);
     Status deriveThese(const std::vector<uint32_t>& these);
+    Status addPlaces(const derive::Derivation& derivation, const std::vector<uint32_t>& holds, const Pose& frame,
+                     const std::string& path, uint64_t most, std::vector<Place>& places) const;
 
     const derive::Derivation& model_;
     const derive::Budget& budget_;

@@ -7,7 +7,6 @@
 
 #include "grammar/pipeline/meshing.h"
 #include "grammar/pipeline/placed_models.h"
-#include "grammar/rules/params.h"
 #include "modeler/mesh/connected_components.h"
 
 namespace sgm::pipeline {
@@ -18,7 +17,7 @@ using derive::Derivation;
 class SceneBuilder {
 public:
     SceneBuilder(const Derivation& model, const SceneRequest& request, Context& context)
-        : model_(model), request_(request), context_(context), objects_(model, request.budget, context) {}
+        : request_(request), context_(context), objects_(model, request.budget, context) {}
 
     Status deriveAll() { return objects_.derive(); }
     syntax::Diagnostics warnings() const { return objects_.warnings(); }
@@ -48,13 +47,20 @@ public:
             if (const uint32_t number = ++numbers[object.name]; number > 1) object.name += fmt::format("_{}", number);
             object.mesh = mesh::unpack(std::exchange(made[i].mesh, {}));
             object.provenance = std::move(made[i].provenance);
-            object.values = valuesOf(objects_[todo[i]]);
+            object.values = objects_.valuesOf(objects_[todo[i]]);
         }
         return Done{};
     }
 
     /// Every place of every object, in tree order.
-    Status placeAll(mesh::Scene& scene) { return placeIn(model_, objects_.ofModel(), {}, {}, scene); }
+    Status placeAll(mesh::Scene& scene) {
+        auto places = objects_.places(request_.budget.shapes);
+        if (!places.ok()) return places.error();
+        for (PlacedModels::Place& place : *places)
+            if (meshed_[place.object] != derive::none)
+                scene.instances.push_back({meshed_[place.object], std::move(place.part)});
+        return Done{};
+    }
 
 private:
     struct Made {
@@ -66,77 +72,17 @@ private:
     Status make(uint32_t index, Made* out, Context& own) {
         const PlacedModel& object = objects_[index];
         if (object.derivation->terminals() == 0 && !object.holds.empty()) return Done{};
-        auto model = makeModel(object.holds.empty() ? objects_.release(index) : Derivation(*object.derivation), own,
-                               Objects::Apart);
-        if (!model.ok()) return model.error();
-        if (!out) return Done{};
-        const Box3f& bounds = model->lowered->field.bounds;
-        const float cell_m =
-            request_.cell_m > 0 ? static_cast<float>(request_.cell_m) : mesh::cellFor(bounds, request_.resolution);
-        auto meshed = makeMesh(*model, mesh::gridFor(bounds, cell_m), request_.meshing, own);
-        if (!meshed.ok()) return meshed.error();
-        mesh::keepOnly(meshed->mesh, request_.edits.keep, cell_m, own.threads);
-        auto mesh = edited(std::move(meshed->mesh), request_.edits, request_.meshing.surface, cell_m, own);
-        if (!mesh.ok()) return mesh.error();
-        if (mesh->triangleCount() == 0) return noSurface(*model, cell_m);
-        out->mesh = mesh::pack(*mesh);
-        out->provenance = model->lowered->provenance;
+        Derivation derivation = object.holds.empty() ? objects_.release(index) : Derivation(*object.derivation);
+        if (!out) {
+            const auto model = makeModel(std::move(derivation), own, Objects::Apart);
+            return model.ok() ? Status(Done{}) : Status(model.error());
+        }
+        auto made = meshObject(std::move(derivation), request_, own);
+        if (!made.ok()) return made.error();
+        *out = {mesh::pack(made->mesh), std::move(made->provenance)};
         return Done{};
     }
 
-    std::map<std::string, std::string> valuesOf(const PlacedModel& object) const {
-        std::map<std::string, std::string> values{{"start", objects_.nameOf(object)}};
-        if (object.usedChance) values["seed"] = fmt::format("{}", object.inputs.seed);
-        const auto usual = rules::valuesOf(*model_.grammar, object.inputs.start);
-        for (size_t i = 0; i < usual.size(); ++i)
-            if (object.inputs.params[i] != usual[i])
-                values["param " + model_.grammar->params[i].name] = rules::toText(object.inputs.params[i]);
-        return values;
-    }
-
-    Status placeIn(const Derivation& derivation, const std::vector<uint32_t>& holds, const Pose& frame,
-                   const std::string& path, mesh::Scene& scene) {
-        for (const derive::Placement& placement : derive::placementsOf(derivation)) {
-            const uint32_t index = objects_.of(holds, placement.object);
-            const PlacedModel& object = objects_[index];
-            mesh::Instance instance;
-            instance.part = partOf(derivation, placement.shape);
-            if (!path.empty()) instance.part.path = path + "/" + instance.part.path;
-            const Pose local = PlacedModels::poseOf(object, derivation.tree.shapes[placement.shape].scope);
-            instance.part.pose = {frame.origin + frame.axes * local.origin, frame.axes * local.axes};
-            if (meshed_[index] != derive::none) {
-                instance.object = meshed_[index];
-                scene.instances.push_back(instance);
-            }
-            if (scene.instances.size() > request_.budget.shapes)
-                return Error{Error::Kind::Budget,
-                             fmt::format("{}there are more than {} places of objects (--max-shapes)",
-                                         syntax::placeText(derivation.tree.shapes[placement.shape].span),
-                                         request_.budget.shapes)};
-            if (cancelled(context_.progress)) return cancelledError();
-            if (object.holds.empty()) continue;
-            const Status inner =
-                placeIn(*object.derivation, object.holds, instance.part.pose, instance.part.path, scene);
-            if (!inner.ok()) return inner;
-        }
-        return Done{};
-    }
-
-    static Part partOf(const Derivation& derivation, derive::ShapeId id) {
-        const derive::Shape& shape = derivation.tree.shapes[id];
-        Part part;
-        part.path = derivation.tree.path(id);
-        part.symbol = derivation.tree.labels[shape.label];
-        if (shape.madeBy != derive::none)
-            part.rule = derivation.grammar->rules[derivation.steps[shape.madeBy].rule].name;
-        if (shape.span.source) {
-            part.file = shape.span.source->name();
-            part.line = shape.span.source->place(shape.span.begin).line;
-        }
-        return part;
-    }
-
-    const Derivation& model_;
     const SceneRequest& request_;
     Context& context_;
     PlacedModels objects_;
@@ -144,6 +90,21 @@ private:
 };
 
 }  // namespace
+
+Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest& request, Context& context) {
+    auto model = makeModel(std::move(derivation), context, Objects::Apart);
+    if (!model.ok()) return model.error();
+    const Box3f& bounds = model->lowered->field.bounds;
+    const float cell_m =
+        request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
+    auto meshed = makeMesh(*model, mesh::gridFor(bounds, cell_m), request.meshing, context);
+    if (!meshed.ok()) return meshed.error();
+    mesh::keepOnly(meshed->mesh, request.edits.keep, cell_m, context.threads);
+    auto mesh = edited(std::move(meshed->mesh), request.edits, request.meshing.surface, cell_m, context);
+    if (!mesh.ok()) return mesh.error();
+    if (mesh->triangleCount() == 0) return noSurface(*model, cell_m);
+    return ObjectMesh{std::move(*mesh), model->lowered->provenance};
+}
 
 Result<MadeScene> makeScene(const Model& model, const SceneRequest& request, Context& context) {
     MadeScene made;

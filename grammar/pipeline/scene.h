@@ -26,6 +26,14 @@ struct MadeScene {
     syntax::Diagnostics warnings;  ///< those of derive::warnings, each once
 };
 
+/// A mesh and whose its triangles are.
+struct ObjectMesh {
+    mesh::Mesh mesh;
+    Provenance provenance;
+};
+/// Lowers, compiles, meshes and edits what one object derived to. Error::Input for one without surface at these cells.
+Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest& request, Context& context);
+
 /// Derives, lowers and meshes every object of `model`, those that objects place among them, on `context.threads`
 /// threads; stage "objects". Objects that differ by chance alone are one where chance decides nothing. Error::Input,
 /// located, for an object that can't be built or holds itself; Error::Budget for too many places.

@@ -44,7 +44,7 @@ std::vector<Example> everyExample() {
             choice.start = symbol;
             const auto options = pipeline::optionsFor(*grammar, choice);
             pipeline::Context context;
-            auto model = options.ok() ? pipeline::makeModel(grammar, *options, context)
+            auto model = options.ok() ? pipeline::makeModel(grammar, *options, context, pipeline::Objects::Sketched)
                                       : Result<pipeline::Model>(options.error());
             EXPECT_TRUE(model.ok()) << file << " " << symbol;
             if (model.ok()) examples.push_back({fmt::format("{} {}", file.string(), symbol), std::move(*model)});

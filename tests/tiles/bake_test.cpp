@@ -1,0 +1,178 @@
+// Baked folders: the same bytes however the work is shared, ground that welds, instances that add up.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "grammar/pipeline/bake.h"
+#include "grammar/pipeline/load.h"
+#include "modeler/tiles/glb.h"
+#include "tests/scratch.h"
+
+namespace sgm::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const std::string text = R"(grammar 1
+terminal lawn color #86a35f
+terminal road color #5b5e62
+terminal stone color #c8b090
+param high = 6m in 3m..30m
+start Town -> size (150, 4, 150) (Ground, split x { { ~25m: Row }* })
+rule Ground -> lawn - sphere size (60, 20, 60) move (20, 8, -10) + road size (150, 1.2, 9) move (0, 2m, 0) turn (0deg, 20deg, 0deg)
+rule Row -> split z { { ~25m: Plot }* }
+rule Plot -> move (0, 6m, 0) size (9, 8, 9) turn (0deg..90deg) place House { high = choose { 1: 6m | 1: 12m } } variety 2
+start House -> stone size (8, high, 6) - cube size (1, 2, 9) at -y to centre
+)";
+
+class Baked {
+public:
+    Baked() {
+        syntax::Diagnostics problems;
+        const auto grammar = load("town.sgm", text, problems);
+        EXPECT_TRUE(grammar) << (problems.all().empty() ? "" : problems.all()[0].message);
+        model_ = std::make_unique<Model>(*makeModel(grammar, *optionsFor(*grammar, {}), context_, Objects::Apart));
+    }
+    /// Bakes a task into a folder, at 64 m a cell.
+    void run(const fs::path& folder, tiles::Share share, int threads = 1) {
+        BakeRequest request{.folder = folder, .side_m = 64, .cell_m = 1, .objectCell_m = .5, .levels = 3, .budget = {}};
+        Context context{nullptr, threads};
+        auto bake = Bake::begin(*model_, request, context);
+        ASSERT_TRUE(bake.ok()) << bake.error().message;
+        plan = bake->plan();
+        const Status done = bake->run(share, context);
+        ASSERT_TRUE(done.ok()) << done.error().message;
+        missing = bake->missing(7);
+    }
+    void merge(const fs::path& folder) {
+        const Status merged = tiles::merge(folder, tiles::EarthPlace{52.5, 13.4}, true);
+        ASSERT_TRUE(merged.ok()) << merged.error().message;
+    }
+
+    tiles::BakePlan plan;
+    std::vector<int> missing;
+
+private:
+    Context context_{nullptr, 2};
+    std::unique_ptr<Model> model_;
+};
+
+std::map<std::string, std::string> filesOf(const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) files[fs::relative(entry.path(), folder)] = contentOf(entry.path());
+    return files;
+}
+
+TEST(Bake, HasTheSameBytesHoweverTheWorkIsShared) {
+    Baked baked;
+    const Scratch one, seven;
+    baked.run(one.path(), {1, 1}, 2);
+    EXPECT_TRUE(baked.missing.empty());
+    for (const int task : {4, 1, 7, 2}) baked.run(seven.path(), {task, 7});
+    EXPECT_EQ(baked.missing, (std::vector<int>{3, 5, 6}));
+    // A cell whose note is gone, as after a kill, is made again.
+    fs::remove(tiles::noteFile(seven.path(), baked.plan.cells[0]));
+    for (const int task : {1, 3, 5, 6}) baked.run(seven.path(), {task, 7});
+    EXPECT_TRUE(baked.missing.empty());
+    baked.merge(one.path());
+    baked.merge(seven.path());
+    const auto a = filesOf(one.path()), b = filesOf(seven.path());
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_GT(a.size(), 20u);
+    for (const auto& [name, bytes] : a) EXPECT_TRUE(b.contains(name) && b.at(name) == bytes) << name;
+}
+
+/// Border positions of a cell's ground at its high x side, in the model's frame, as bits.
+std::set<std::array<uint32_t, 3>> borderOf(const fs::path& folder, const tiles::Cell& cell, double side_m, double x_m) {
+    std::set<std::array<uint32_t, 3>> found;
+    const auto glb = tiles::readGlb(tiles::contentFile(folder, cell));
+    if (!glb.ok()) return found;
+    const Vec3d centre = cell.centre(side_m);
+    for (const auto& node : glb->json["nodes"]) {
+        if (node.value("name", "") != "ground") continue;
+        for (const auto& primitive : glb->json["meshes"][node["mesh"].get<size_t>()]["primitives"]) {
+            const auto& accessor = glb->json["accessors"][primitive["attributes"]["POSITION"].get<size_t>()];
+            const auto& view = glb->json["bufferViews"][accessor["bufferView"].get<size_t>()];
+            for (size_t i = 0; i < accessor["count"].get<size_t>(); ++i) {
+                float p[3];
+                std::memcpy(p, glb->bytes.data() + view["byteOffset"].get<size_t>() + 12 * i, sizeof p);
+                const float at[3] = {static_cast<float>(p[0] + centre.x), p[1], static_cast<float>(p[2] + centre.z)};
+                if (at[0] != x_m) continue;
+                std::array<uint32_t, 3> bits;
+                std::memcpy(bits.data(), at, sizeof at);
+                found.insert(bits);
+            }
+        }
+    }
+    return found;
+}
+
+TEST(Bake, NeighbouringCellsOfTheGroundWeldWithoutTolerance) {
+    Baked baked;
+    const Scratch folder;
+    baked.run(folder.path(), {1, 1}, 2);
+    size_t borders = 0;
+    for (const tiles::Cell& cell : baked.plan.cells) {
+        const tiles::Cell right{cell.level, cell.x + 1, cell.z};
+        const double x = cell.centre(64).x + cell.side_m(64) / 2;
+        const auto left = borderOf(folder.path(), cell, 64, x), theirs = borderOf(folder.path(), right, 64, x);
+        if (left.empty() && theirs.empty()) continue;
+        EXPECT_EQ(left, theirs) << cell.name();
+        ++borders;
+    }
+    EXPECT_GT(borders, 6u);
+}
+
+TEST(Bake, ShowsEveryPlaceOnceALevel) {
+    Baked baked;
+    const Scratch folder;
+    baked.run(folder.path(), {1, 1}, 2);
+    baked.merge(folder.path());
+    const json manifest = json::parse(folder.read("manifest.json")), tileset = json::parse(folder.read("tileset.json"));
+    EXPECT_EQ(manifest["instances"], 36);
+    EXPECT_EQ(manifest["places"], 36);
+    std::map<int, size_t> byLevel;
+    for (const auto& [name, cell] : manifest["cells"].items())
+        byLevel[tiles::cellNamed(name)->level] += cell["instances"].get<size_t>();
+    for (int level = 0; level < 3; ++level) EXPECT_EQ(byLevel[level], 36u) << level;
+    // Every cell with content hangs in the tree once.
+    std::set<std::string> hung;
+    const std::function<void(const json&)> walk = [&](const json& tile) {
+        if (tile.contains("content")) {
+            EXPECT_TRUE(hung.insert(tile["content"]["uri"]).second);
+        }
+        if (tile.contains("children"))
+            for (const json& child : tile["children"]) {
+                EXPECT_LE(child["geometricError"], tile["geometricError"]);
+                walk(child);
+            }
+    };
+    walk(tileset["root"]);
+    EXPECT_EQ(hung.size(), manifest["cells"].size());
+}
+
+TEST(Bake, RefusesAFolderOfAnotherModelAndADamagedCell) {
+    Baked baked;
+    const Scratch folder;
+    baked.run(folder.path(), {1, 1});
+    const auto content = tiles::contentFile(folder.path(), baked.plan.cells[0]);
+    std::ofstream(content, std::ios::app) << "x";
+    const Status damaged = tiles::merge(folder.path(), {}, true);
+    ASSERT_FALSE(damaged.ok());
+    EXPECT_NE(damaged.error().message.find("isn't as it was baked"), std::string::npos);
+    tiles::BakePlan other = baked.plan;
+    other.model = "another";
+    const Status refused = tiles::keepPlan(other, folder.path());
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().message.find("another model"), std::string::npos);
+    fs::remove(tiles::noteFile(folder.path(), baked.plan.cells[1]));
+    EXPECT_FALSE(tiles::merge(folder.path(), {}, false).ok());
+}
+
+}  // namespace
+}  // namespace sgm::pipeline
