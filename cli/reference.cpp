@@ -19,8 +19,10 @@ namespace {
 
 std::string argumentList(const syntax::Operation& operation) {
     std::string text;
-    for (const syntax::OperationArgument& a : operation.arguments)
-        text += a.optional ? fmt::format(" [{}]", a.name) : fmt::format(" {}", a.name);
+    for (const syntax::OperationArgument& a : operation.arguments) {
+        const std::string argument = a.word.empty() ? std::string(a.name) : fmt::format("{} {}", a.word, a.name);
+        text += a.optional ? fmt::format(" [{}]", argument) : " " + argument;
+    }
     return text;
 }
 

@@ -18,6 +18,12 @@ struct EvaluatedAttributes {
     std::optional<Vec3f> color;            ///< linear RGB
     const rules::Expr* colorBy = nullptr;  ///< what gave the colour
     std::optional<float> rough, metal;
+    std::optional<uint32_t> material;  ///< what `of` names, index into Grammar::materials or none
+    struct Span {
+        Vec3d from_m, to_m;  ///< about the centre of the scope it is measured against, in its axes
+        syntax::SourceSpan at;
+    };
+    std::optional<Span> span;  ///< between which points the newcomer's y runs
     Extras extras;
     bool ownsFootprint = false;                  ///< the element set the scope's footprint itself
     bool vanishes = false;                       ///< nothing is left of the footprint: no shape is made

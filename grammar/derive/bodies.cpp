@@ -35,6 +35,16 @@ std::vector<Value> valuesOver(const rules::Expr& over, const Place& place) {
     return values;
 }
 
+/// The value of a `let`: a range of whole numbers gives one of them.
+Value drawnOnce(const rules::Expr& expr, const Place& place) {
+    const bool whole = expr.kind == rules::Expr::Kind::Range && evaluate(expr.args[0], place).integer &&
+                       evaluate(expr.args[1], place).integer;
+    if (!whole) return evaluate(expr, place);
+    Value value = Value::number(wholeNumber(expr, place));
+    value.integer = true;
+    return value;
+}
+
 }  // namespace
 
 bool Interpreter::runBody(const rules::Body& body, const Frame& frame, uint64_t loop) {
@@ -74,6 +84,12 @@ bool Interpreter::runElement(const Element& e, Frame& frame, Target& target, uin
         case Element::Kind::When:
             frame.place.key = combine(combine(frame.key, hashText("when")), loop);
             return !e.guard || !holds(*e.guard, frame.place) || runInner(*e.body, frame, target, loop, followed);
+        case Element::Kind::Let: {
+            Place place = frame.place;
+            place.key = combine(combine(frame.key, hashText(e.label)), loop);
+            locals_[e.local] = drawnOnce(*e.over, place);
+            return !builder_.failed();
+        }
         case Element::Kind::Shape:
             break;
     }
@@ -106,6 +122,7 @@ bool Interpreter::runFor(const Element& e, Frame& frame, Target& target, uint64_
     for (double v = lo; v <= hi; ++v) {
         Value value = Value::number(v);
         value.integer = true;
+        count(e.local, v, combine(frame.key, loop));
         if (!turn(std::move(value))) return false;
     }
     return true;
@@ -127,7 +144,10 @@ bool Interpreter::runChoose(const Element& e, Frame& frame, Target& target, uint
     std::vector<double> weights;
     for (const rules::Choice& c : e.choices) weights.push_back(number(c.weight, frame.place));
     if (weights.size() > 1) builder_.noteChance();
-    const uint32_t at = drawByWeight(weights, combine(key, hashText("weight")));
+    const uint64_t draw = combine(hashText("choose"), e.ordinal);
+    const uint32_t at = e.series == rules::Series::None
+                            ? drawByWeight(weights, combine(key, hashText("weight")))
+                            : drawInSeries(weights, e.series, e.local, draw, frame.place, e.span);
     if (at != none) return runInner(*e.choices[at].body, frame, target, loop, followed);
     builder_.fail(Error::Kind::Input, std::string(allZero), e.span);
     return false;

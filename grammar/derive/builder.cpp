@@ -74,7 +74,29 @@ bool TreeBuilder::work() {
     return !failure_;
 }
 
-ShapeId TreeBuilder::add(Shape shape) {
+/// Joins a new shape to its parent's children: as the last one, or before another. The parent knows it under `id`
+/// already.
+void TreeBuilder::linkChild(ShapeId parentId, ShapeId id, ShapeId before) {
+    ShapeTree& t = tree();
+    Shape& parent = t.shapes[parentId];
+    if (before == none) {
+        if (parent.firstChild == none)
+            parent.firstChild = id;
+        else
+            t.shapes[parent.lastChild].nextSibling = id;
+        parent.lastChild = id;
+        return;
+    }
+    ShapeId& last = lastBefore_.try_emplace(before, none).first->second;
+    if (last == none || t.shapes[last].dead || t.shapes[last].nextSibling != before) {
+        last = parent.firstChild == before ? none : parent.firstChild;
+        while (last != none && t.shapes[last].nextSibling != before) last = t.shapes[last].nextSibling;
+    }
+    (last == none ? parent.firstChild : t.shapes[last].nextSibling) = id;
+    last = id;
+}
+
+ShapeId TreeBuilder::add(Shape shape, ShapeId before) {
     if (isReplaying()) return replayShape(shape);
     ShapeTree& t = tree();
     const auto id = static_cast<ShapeId>(t.shapes.size());
@@ -92,18 +114,15 @@ ShapeId TreeBuilder::add(Shape shape) {
                  shape.span);
             return none;
         }
-        if (shape.extras == none || t.extras[shape.extras].values.empty())
-            shape.valuesAt = parent.valuesAt;
-        else
+        if (shape.extras != none && !t.extras[shape.extras].values.empty())
             shape.valuesAt = id;
+        else if (before == none)
+            shape.valuesAt = parent.valuesAt;
         // The root's box is only where the start begins: nothing stands there to be met.
         if (shape.parent != 0 && shape.op == rules::Operator::None && shape.scope == parent.scope)
             shape.body = parent.body;
-        if (parent.firstChild == none)
-            parent.firstChild = id;
-        else
-            t.shapes[parent.lastChild].nextSibling = id;
-        parent.lastChild = id;
+        linkChild(shape.parent, id, before);
+        shape.nextSibling = before;
     }
     if (shape.body == none) {
         shape.body = static_cast<uint32_t>(t.bodies.size());
@@ -234,15 +253,34 @@ void TreeBuilder::clearContent(ShapeId id) {
     ShapeTree& t = tree();
     if (recording_ && t.shapes[id].solid != none) recording_->cleared(id);
     t.shapes[id].solid = none;
-    for (ShapeId s = t.next(id, id); s != none; s = t.next(s, id)) {
-        Shape& dead = t.shapes[s];
-        dead.dead = true;
-        dead.live = false;
-        ++deadCount_;
-        if (dead.symbol != rules::none) --counts_[dead.symbol];
-        release(s);
-    }
+    if (t.shapes[id].firstChild == none) return;
+    for (ShapeId s = t.next(id, id); s != none; s = t.next(s, id)) kill(s);
     t.shapes[id].firstChild = t.shapes[id].lastChild = none;
+    killBound();
+}
+
+void TreeBuilder::kill(ShapeId id) {
+    Shape& dead = tree().shapes[id];
+    dead.dead = true;
+    dead.live = false;
+    ++deadCount_;
+    if (dead.symbol != rules::none) --counts_[dead.symbol];
+    release(id);
+}
+
+/// Takes away what stands elsewhere and comes from shapes that are gone.
+void TreeBuilder::killBound() {
+    ShapeTree& t = tree();
+    for (const auto& [cutter, origin] : bound_) {
+        if (t.shapes[cutter].dead || !t.shapes[origin].dead) continue;
+        Shape& parent = t.shapes[t.shapes[cutter].parent];
+        ShapeId previous = none;
+        for (ShapeId c = parent.firstChild; c != cutter && c != none; c = t.shapes[c].nextSibling) previous = c;
+        const ShapeId next = t.shapes[cutter].nextSibling;
+        (previous == none ? parent.firstChild : t.shapes[previous].nextSibling) = next;
+        if (parent.lastChild == cutter) parent.lastChild = previous;
+        for (ShapeId s = cutter; s != none; s = t.next(s, cutter)) kill(s);
+    }
 }
 
 std::vector<uint32_t> TreeBuilder::sweepShapes() {

@@ -4,9 +4,11 @@
 
 #include <chrono>
 #include <optional>
+#include <unordered_map>
 
 #include "grammar/derive/derive.h"
 #include "grammar/derive/recording.h"
+#include "grammar/derive/series.h"
 
 namespace sgm::derive {
 
@@ -16,7 +18,10 @@ public:
 
     /// Adds `shape` as the last child of shape.parent and indexes its joints; none (and a failure) when a budget is
     /// spent. Content (op None) of its parent's very scope shares the parent's joints.
-    ShapeId add(Shape shape);
+    /// With `before`, a child of the same parent, it joins before that one instead.
+    ShapeId add(Shape shape, ShapeId before = none);
+    /// `cutter` stands elsewhere in the tree than `origin`, whose text made it: it goes with it.
+    void bindTo(ShapeId cutter, ShapeId origin) { bound_.emplace_back(cutter, origin); }
     /// Joins two joints; the shift is what lies between their points. A directed bond closes both, any other leaves
     /// them open. Where a centre came to our face, the newcomer's face that looks back counts as bonded too.
     void bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
@@ -89,6 +94,8 @@ public:
     Progress* progress() const { return progress_; }
     ShapeTree& tree() { return derivation_.tree; }
     std::span<const uint64_t> counts() const { return counts_; }
+    /// What repetitions have drawn so far.
+    SeriesDraws& series() { return series_; }
     /// Live shapes added since the last call.
     std::vector<ShapeId> takeLive() { return std::exchange(live_, {}); }
 
@@ -105,6 +112,9 @@ private:
     void linkBond(uint32_t bond, int end);
     uint32_t& firstBondAt(ShapeId id, uint32_t joint);
     void release(ShapeId id);
+    void linkChild(ShapeId parent, ShapeId id, ShapeId before);
+    void kill(ShapeId id);
+    void killBound();
     std::vector<uint32_t> sweepShapes();
     void sweepBonds(std::vector<Bond> old, const std::vector<uint32_t>& newId, const std::vector<uint32_t>& ownerOf);
     void numberOccurrences();
@@ -122,6 +132,9 @@ private:
     std::vector<Contact> meeting_;  ///< scratch of bondCoincidentFaces
     std::vector<uint64_t> counts_;
     std::vector<ShapeId> live_;
+    std::vector<std::pair<ShapeId, ShapeId>> bound_;   ///< cutters and where they come from
+    std::unordered_map<ShapeId, ShapeId> lastBefore_;  ///< by shape: what was put before it last
+    SeriesDraws series_;
     std::optional<Error> failure_;
     uint64_t work_ = 0;
     uint64_t pieceBegan_ = 0;  ///< work when the piece began

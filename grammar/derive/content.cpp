@@ -60,6 +60,20 @@ uint64_t paramsOf(const Solid& solid) {
     return set;
 }
 
+/// Lets the newcomer's y run from one point to the other, turned as little as possible.
+void spanBetween(AttributeContext& context) {
+    EvaluatedAttributes& out = context.out;
+    const Vec3d along_m = out.span->to_m - out.span->from_m;
+    const double length_m = length(along_m);
+    if (!(length_m > 1e-9)) return context.fail("both ends of 'from … to …' are at one point", out.span->at);
+    Mating upright;
+    upright.ours.direction = context.place.scope.axes * along_m * (-1 / length_m);
+    upright.theirs.facing = {0, 1, 0};
+    out.scope.axes = mate(upright, out.scope.axes, out.scope.size).axes;
+    out.scope.size.y = length_m;
+    out.moved_m += context.place.scope.axes * ((out.span->from_m + out.span->to_m) * 0.5);
+}
+
 }  // namespace
 
 Interpreter::ElementCache& Interpreter::factsOf(const Element& e) {
@@ -135,6 +149,7 @@ bool Interpreter::evaluateAttributes(const Element& e, const Place& place, Evalu
             if (a.operation->apply && (a.operation->phase == Phase::Scope) == scope) a.operation->apply(context, a);
     };
     apply(e.attributes, true);
+    if (out.span) spanBetween(context);
     if (out.vanishes) return true;
     standAsHigh(e, place, out);
     if (const rules::SymbolId symbol = e.content.symbol(); symbol != rules::none) {
@@ -212,7 +227,8 @@ std::string Interpreter::nameOfLook(const EvaluatedAttributes& attributes, uint3
 uint32_t Interpreter::materialOf(const EvaluatedAttributes& attributes, const Element& e, const Place& place) {
     const rules::SymbolId symbol = e.content.symbol();
     const bool terminal = symbol != rules::none && grammar_.symbols[symbol].terminal;
-    const uint32_t base = terminal            ? grammar_.symbols[symbol].material
+    const uint32_t base = attributes.material ? *attributes.material
+                          : terminal          ? grammar_.symbols[symbol].material
                           : e.content.solid() ? e.content.solid()->material
                                               : rules::none;
     if (!attributes.color && !attributes.rough && !attributes.metal) return base;
@@ -267,6 +283,7 @@ bool Interpreter::fill(const Element& e, ShapeId id, const Frame& frame) {
         inner.state = &state;
         inner.wholeContent = false;
         inner.place.scope = s.scope;
+        inner.place.host = id;
         inner.place.valuesAt = s.valuesAt;
         if (const rules::Body* group = e.content.group()) return runBody(*group, inner, 0);
         PartsContext parts(*this, inner);

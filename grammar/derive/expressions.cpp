@@ -8,6 +8,7 @@
 #include "grammar/derive/scope_footprint.h"
 #include "grammar/rules/arithmetic_warnings.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/lookup.h"
 #include "modeler/core/random.h"
 #include "modeler/town/noise.h"
 
@@ -69,9 +70,20 @@ Value drawn(const Expr& expr, const Place& place) {
 const Expr& chosen(const Expr& expr, const Place& place) {
     std::vector<double> weights;
     for (size_t i = 0; i < expr.args.size(); i += 2) weights.push_back(number(expr.args[i], place));
-    const uint32_t at = drawByWeight(weights, drawKey(expr, place, 0));
+    const auto series = static_cast<rules::Series>(expr.index);
+    const uint32_t at =
+        series == rules::Series::None
+            ? drawByWeight(weights, drawKey(expr, place, 0))
+            : drawInSeries(weights, series, static_cast<uint32_t>(expr.value.num()), expr.draw, place, expr.span);
     if (at == none && place.builder) place.builder->fail(Error::Kind::Input, std::string(allZero), expr.span);
     return expr.args[2 * (at == none ? 0 : at) + 1];
+}
+
+/// scope.x, or what a share along an axis is of.
+double extentOf(const Expr& expr, const Place& place) {
+    if (expr.index < 3) return place.scope.size[static_cast<int>(expr.index)];
+    const int axis = static_cast<int>(expr.index) - 4;
+    return place.extents_m ? (*place.extents_m)[axis] : place.scope.size[axis];
 }
 
 plan::Vec2 planPlaceOf(const Place& place) { return {place.scope.centre.x, place.scope.centre.z}; }
@@ -120,8 +132,13 @@ Value called(const Expr& expr, const Place& place) {
     args.reserve(expr.args.size());
     for (const Expr& arg : expr.args) args.push_back(evaluate(arg, place));
     if (place.builder)
-        if (auto suspect = rules::findArithmeticWarning(expr, args))
-            place.builder->warn(suspect->span, std::move(suspect->message), std::move(suspect->hint));
+        if (auto suspect = rules::findArithmeticWarning(expr, args)) {
+            const bool divides = fn == Fn::Div || fn == Fn::Rem;
+            if (divides && rules::versionOf(*place.builder->derivation().grammar, suspect->span) >= 2)
+                place.builder->fail(Error::Kind::Input, suspect->message, suspect->span);
+            else
+                place.builder->warn(suspect->span, std::move(suspect->message), std::move(suspect->hint));
+        }
     return rules::applyFunction(fn, args);
 }
 
@@ -167,7 +184,7 @@ Value evaluate(const Expr& expr, const Place& place) {
     if (const Value* v = stored(expr, place)) return *v;
     switch (expr.kind) {
         case Kind::Scope:
-            if (expr.index < 3) return Value::number(place.scope.size[static_cast<int>(expr.index)], Unit::Metre);
+            if (expr.index != 3) return Value::number(extentOf(expr, place), Unit::Metre);
             return Value::number(place.tree ? area(footprintOf(place.scope, place.tree->footprints)) : 0);
         case Kind::Here:
             return Value::number(place.scope.centre[static_cast<int>(expr.index)], Unit::Metre);
@@ -200,7 +217,7 @@ double number(const Expr& expr, const Place& place) {
     if (const Value* v = stored(expr, place)) return v->num();
     switch (expr.kind) {
         case Kind::Scope:
-            if (expr.index < 3) return place.scope.size[static_cast<int>(expr.index)];
+            if (expr.index != 3) return extentOf(expr, place);
             break;
         case Kind::Here:
             return place.scope.centre[static_cast<int>(expr.index)];

@@ -16,13 +16,16 @@ class TreeBuilder;
 struct Place {
     const ShapeTree* tree = nullptr;
     std::span<const rules::Value> params;
-    std::span<const uint64_t> counts;      ///< derived shapes by symbol, for count(Name)
-    std::span<const rules::Value> locals;  ///< `for` variables and the i of `repeat`
-    Scope scope;                           ///< the matched scope
-    ShapeId valuesAt = none;               ///< nearest shape with `with` values
-    uint64_t key = 0;                      ///< the stream that draws
-    double ramp = 0;                       ///< position in the chain, 0 first … 1 last
-    TreeBuilder* builder = nullptr;        ///< told of values that nothing above the shape sets; may be null
+    std::span<const uint64_t> counts;               ///< derived shapes by symbol, for count(Name)
+    std::span<const rules::Value> locals;           ///< `for` variables and the i of `repeat`
+    Scope scope;                                    ///< the matched scope
+    ShapeId valuesAt = none;                        ///< nearest shape with `with` values
+    uint64_t key = 0;                               ///< the stream that draws
+    double ramp = 0;                                ///< position in the chain, 0 first … 1 last
+    TreeBuilder* builder = nullptr;                 ///< told of values that nothing above the shape sets; may be null
+    const std::vector<uint64_t>* series = nullptr;  ///< by local that counts: the stream of its repetition
+    const Vec3d* extents_m = nullptr;               ///< what shares of a mixed size are of; null: the scope's size
+    ShapeId host = none;                            ///< the shape whose joints are named; none: the scope's faces alone
 };
 
 /// Any expression but a Figure.
@@ -35,6 +38,11 @@ double wholeNumber(const rules::Expr& expr, const Place& place);
 
 /// What a choice says that has nothing to choose from.
 inline constexpr std::string_view allZero = "all weights are 0, so nothing can be drawn";
+/// Draws by weight at the turn that the local `counter` counts, with regard to the turns before it: another than in the
+/// last one (Distinct), or each once before any comes again (Shuffled). An index, or `none` when all weights are 0.
+/// O(1) for turns in order; a function of the stream, the weights and the turn alone.
+uint32_t drawInSeries(std::span<const double> weights, rules::Series series, uint32_t counter, uint64_t draw,
+                      const Place& place, syntax::SourceSpan span);
 /// Draws among weights (those below 0 count as 0) by the stream `key`: an index, or `none` when all are 0.
 uint32_t drawByWeight(std::span<const double> weights, uint64_t key);
 

@@ -80,6 +80,14 @@ private:
     void annotate(const rules::Element& e, Frame& frame, uint64_t key);
     /// Grows the element on `host`; it becomes a child of `target`'s node.
     bool placeOn(ShapeId host, const rules::Element& e, Frame& frame, const Target& target, uint64_t key);
+    /// Where an element cuts: a shape, and the child of it before which the cutter joins (none: as the last one).
+    struct CutPlace {
+        ShapeId shape = none, before = none;
+    };
+    std::vector<CutPlace> cutPlaces(const rules::Element& e, ShapeId node);
+    bool cutAbove(const rules::Element& e, const Target& target, const Frame& frame, Shape shape, uint32_t ours,
+                  uint32_t theirs, ShapeId host);
+    void count(uint32_t local, double turn, uint64_t stream);
     ShapeId hostOf(const rules::Element& e, const Frame& frame, const Target& target, const Place& place) const;
     std::vector<uint32_t> openJoints(const rules::JointChoice& at, ShapeId host, const Place& place);
     uint32_t jointNamed(const rules::Expr& expr, ShapeId host, const Place& place);
@@ -120,8 +128,9 @@ private:
     std::map<std::string, uint32_t, std::less<>> labels_;
     std::map<std::array<float, 5>, uint32_t> mixedMaterials_;  ///< by colour, roughness, metalness: those of attributes
     std::vector<rules::Value> locals_;
-    uint32_t block_ = none;      ///< index of blockSolid
-    uint32_t chainRule_ = none;  ///< the rule whose chain is being run
+    std::vector<uint64_t> series_;  ///< by local that counts: the stream of its repetition
+    uint32_t block_ = none;         ///< index of blockSolid
+    uint32_t chainRule_ = none;     ///< the rule whose chain is being run
 };
 
 }  // namespace sgm::derive

@@ -68,6 +68,7 @@ bool PartsContext::run(const rules::Body& body, const Scope& part, uint64_t key)
     Interpreter::Frame inner = frame_;
     inner.key = inner.place.key = combine(frame_.key, key);
     inner.place.scope = part;
+    inner.place.host = none;
     return interpreter_.builder_.work() && interpreter_.runBody(body, inner, 0);
 }
 

@@ -17,8 +17,8 @@ public:
     const Scope& scope() const { return frame_.place.scope; }
     /// The value of an expression of the block; `key` tells its draws from those of its neighbours.
     rules::Value evaluate(const rules::Expr& expr, uint64_t key) const;
-    /// What a local of the block (the `i` of a repetition) stands for from now on.
-    void setLocal(uint32_t local, rules::Value value) { interpreter_.locals_[local] = std::move(value); }
+    /// What a local of the block (the `i` of a repetition) counts from now on.
+    void count(uint32_t local, double turn) { interpreter_.count(local, turn, frame_.key); }
     /// The part of the scope between two places along an axis, metres from its low end; the footprint is clipped, but
     /// keeps what stands out of the scope at its ends. Nothing where no footprint is left.
     std::optional<Scope> cut(int axis, double low_m, double high_m);

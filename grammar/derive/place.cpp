@@ -194,14 +194,69 @@ void Interpreter::remarkLostTurn(const Element& e, const Mating& mating, const M
                       "place it by 'move'");
 }
 
+/// The nearest shape above that `through` names, and those that its content begins with on the way down to the part
+/// that cuts: wherever something stands before the part. What the part itself adds stays whole.
+std::vector<Interpreter::CutPlace> Interpreter::cutPlaces(const Element& e, ShapeId node) {
+    const ShapeTree& tree = builder_.tree();
+    std::vector<CutPlace> way{{node, none}};
+    while (way.back().shape != none && tree.shapes[way.back().shape].symbol != e.through)
+        way.push_back({tree.shapes[way.back().shape].parent, way.back().shape});
+    if (way.back().shape == none) {
+        builder_.fail(Error::Kind::Input,
+                      "no '" + grammar_.symbols[e.through].name + "' stands above this shape, so it can't cut one",
+                      e.span);
+        return {};
+    }
+    const auto holds = [&](const CutPlace& place) {
+        if (tree.shapes[place.shape].solid != none) return true;
+        for (ShapeId c = tree.shapes[place.shape].firstChild; c != place.before; c = tree.shapes[c].nextSibling)
+            if (tree.shapes[c].op != rules::Operator::Difference) return true;
+        return false;
+    };
+    const CutPlace named = way.back();
+    if (way.size() == 1) return {named};
+    std::vector<CutPlace> found;
+    for (; way.size() > 1; way.pop_back()) {
+        if (holds(way.back())) found.push_back(way.back());
+        if (tree.shapes[way.back().before].op != rules::Operator::None) break;
+    }
+    if (found.empty()) found.push_back(named);  // it cuts nothing, and `uncut` tells so
+    return found;
+}
+
+/// Puts a cutter where `through` says; it is placed and bonded as any newcomer.
+bool Interpreter::cutAbove(const Element& e, const Target& target, const Frame& frame, Shape shape, uint32_t ours,
+                           uint32_t theirs, ShapeId host) {
+    const std::vector<CutPlace> places = cutPlaces(e, target.node);
+    const uint64_t key = shape.key;
+    for (size_t i = 0; i < places.size(); ++i) {
+        shape.parent = places[i].shape;
+        shape.key = i == 0 ? key : combine(key, i);
+        const ShapeId id = builder_.add(shape, places[i].before);
+        if (id == none) return false;
+        if (places[i].before != none && !builder_.isReplaying()) builder_.bindTo(id, target.node);
+        if (i == 0) {
+            builder_.bond(host, ours, id, theirs);
+            builder_.bondCoincidentFaces(id);
+            remember(e, frame, id, ours);
+        }
+        if (!fill(e, id, frame)) return false;
+    }
+    return !places.empty();
+}
+
 bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Target& target, uint64_t key) {
     ElementCache& facts = factsOf(e);
     Place place = frame.place;
     place.key = key;
     const bool whole = frame.wholeContent && !e.at && !e.on;
     if (whole && builder_.recording()) builder_.recording()->readsWorld();
-    place.scope = whole ? builder_.tree().contentBox(host) : builder_.tree().shapes[host].scope;
+    const bool stated = e.inMatchedFrame && !e.on && !whole;
+    place.scope = whole    ? builder_.tree().contentBox(host)
+                  : stated ? frame.place.scope
+                           : builder_.tree().shapes[host].scope;
     place.valuesAt = builder_.tree().shapes[host].valuesAt;
+    place.host = host;
 
     uint32_t oursIndex = centreJoint;
     if (e.at) {
@@ -225,7 +280,7 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
     if (attributes.vanishes) return true;
     Mating mating;
     mating.ours = builder_.tree().joint(host, oursIndex);
-    if (whole) mating.ours.point = place.scope.centre;
+    if (whole || (stated && !e.at)) mating.ours.point = place.scope.centre;
     mating.moved_m = attributes.moved_m;
     mating.overlap = attributes.overlap;
     const uint32_t theirs = theirJoint(e, facts, mating.ours, attributes.scope.axes, place);
@@ -237,6 +292,10 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
     shape.scope = mate(mating, attributes.scope.axes, attributes.scope.size);
     shape.scope.footprint = attributes.scope.footprint;
     remarkLostTurn(e, mating, attributes.scope.axes, place, shape.scope.axes);
+    if (e.through != rules::none) {
+        shape.valuesAt = place.valuesAt;
+        return cutAbove(e, target, frame, shape, oursIndex, theirs, host);
+    }
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
     builder_.bond(host, oursIndex, id, theirs);

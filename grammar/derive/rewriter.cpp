@@ -17,7 +17,9 @@ uint32_t Rewriter::choose(ShapeId shape) {
     for (const uint32_t r : candidates) {
         const Rule& rule = grammar_.rules[r];
         builder_.at(r, shape, none);
-        if (!rule.when) {
+        if (!rule.when && rule.besideWins) {
+            if (interpreter_.matches(r, shape)) return r;
+        } else if (!rule.when) {
             if (interpreter_.matches(r, shape)) plain.push_back(r);
         } else if (holds(*rule.when, interpreter_.placeOf(shape)) && interpreter_.matches(r, shape)) {
             return r;

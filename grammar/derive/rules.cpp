@@ -43,7 +43,8 @@ Interpreter::Interpreter(TreeBuilder& builder, std::span<const rules::Value> par
 
 Place Interpreter::placeOf(ShapeId id) const {
     const Shape& s = builder_.tree().shapes[id];
-    return {&builder_.tree(), params_, builder_.counts(), locals_, s.scope, s.valuesAt, s.key, 0, &builder_};
+    return {&builder_.tree(), params_,  builder_.counts(), locals_, s.scope, s.valuesAt, s.key, 0,
+            &builder_,        &series_, nullptr,           id};
 }
 
 void Interpreter::start(const rules::Start& start, uint64_t seed, const Lot* lot) {
@@ -90,12 +91,21 @@ bool Interpreter::isBeside(ShapeId shape, rules::SymbolId symbol) const {
     return false;
 }
 
+/// Counts a turn of a repetition, whose draws come from `stream`.
+void Interpreter::count(uint32_t local, double turn, uint64_t stream) {
+    if (series_.size() <= local) series_.resize(local + 1);
+    series_[local] = combine(stream, local);
+    locals_[local] = rules::Value::number(turn);
+    locals_[local].integer = true;
+}
+
 /// False when every joint is closed on which the body's own elements (not those in loops) would grow.
 bool Interpreter::canGrow(const rules::Body& body, ShapeId host, const Place& place) {
     if (!body.grows) return true;
     bool asked = false;
     for (const Elements& sibling : body.siblings)
         for (const Element& e : sibling) {
+            if (e.kind == Element::Kind::Let) return true;  // a joint may hang on its value
             if (e.kind != Element::Kind::Shape || e.op == rules::Operator::None) continue;
             if (!e.at || e.on) return true;
             if (!openJoints(*e.at, host, place).empty()) return true;
@@ -155,10 +165,7 @@ void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
         Frame frame{host, rule.body.grows ? root : host, combine(key, static_cast<uint64_t>(i)), placeOf(host), &state,
                     false};
         frame.place.ramp = steps > 1 ? (i - 1) / (steps - 1) : 0;
-        if (rule.stepLocal != none) {
-            locals_[rule.stepLocal] = rules::Value::number(i);
-            locals_[rule.stepLocal].integer = true;
-        }
+        if (rule.stepLocal != none) count(rule.stepLocal, i, key);
         if (!canGrow(rule.body, host, frame.place)) break;
         if (!rule.body.grows) builder_.clearContent(host), builder_.tree().shapes[host].live = false;
         state.ownSymbol = false;

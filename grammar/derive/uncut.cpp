@@ -109,8 +109,8 @@ syntax::Diagnostics uncut(const Derivation& derivation) {
         else
             warnings.warning(derivation.tree.shapes[cutter.shape].span,
                              fmt::format("this cuts nothing: '{}' holds no solid before it", host),
-                             "'-' cuts what stands in the same body; to cut a wall by parts of a split, write '- Front "
-                             "…' and fill its parts with what is cut out");
+                             "'-' cuts what stands in the same body; to cut a wall from a part of its front, write "
+                             "'through Wall' after the cutter");
     }
     return warnings;
 }

@@ -37,6 +37,7 @@ enum class Want {
     Shape,
     File,
     Tag,
+    Material,
     Nothing
 };
 
@@ -77,6 +78,7 @@ public:
                    : isOperator(last) || last == "when" || last == "weight" || last == "repeat" ? Want::Expression
                                                                                                 : Want::Clause;
         if (word == "start" && !seen("->")) return Want::Nothing;
+        if (word == "material") return before_.size() > begin_ + 1 ? attribute(last, Want::Attribute) : Want::Nothing;
         if (word == "terminal")
             return seen("=") || before_.size() > begin_ + 1
                        ? attribute(last, last == "=" ? Want::Body : Want::Attribute)
@@ -143,6 +145,12 @@ private:
                 return Want::Tag;
             case ArgumentType::Start:
                 return Want::Start;
+            case ArgumentType::Symbol:
+                return Want::Shape;
+            case ArgumentType::Material:
+                return Want::Material;
+            case ArgumentType::Point:
+                return Want::Joint;
             default:
                 return Want::Expression;
         }
@@ -175,7 +183,7 @@ private:
             return Want::Body;
         if (last == "when" || last == "while" || last == "in" || last == "=" || isOperator(last))
             return Want::Expression;
-        if (last == "for" || last == "with") return Want::Nothing;
+        if (last == "for" || last == "with" || last == "let") return Want::Nothing;
         return attribute(last, Want::Attribute);
     }
 
@@ -230,11 +238,18 @@ public:
         std::erase_if(
             items_, [](const Item& item) { return item.kind == ItemKind::Shape && !rules::isNonTerminal(item.label); });
     }
+    /// Terminals, which lend their look, as materials do.
+    void materials() {
+        symbols();
+        std::erase_if(
+            items_, [](const Item& item) { return item.kind == ItemKind::Shape && rules::isNonTerminal(item.label); });
+    }
     void parameters() { named(NameKind::Parameter, ItemKind::Parameter, "parameter"); }
     void values() {
         parameters();
         named(NameKind::Value, ItemKind::Value, "value");
         named(NameKind::Local, ItemKind::Value, "value");
+        named(NameKind::Constant, ItemKind::Value, "value of the file");
         named(NameKind::Map, ItemKind::Value, "map");
         for (const auto& [param, words] : analysis_.known.choices)
             for (const std::string& word : words) items_.push_back({ItemKind::Choice, word, "choice of " + param, ""});
@@ -302,7 +317,7 @@ void fill(Items& items, Want want) {
             items.solids();
             items.symbols();
             items.operations();
-            items.some({"for", "while", "when", "choose", "nil", "morph"});
+            items.some({"for", "while", "when", "choose", "let", "nil", "morph"});
             return items.unused();
         case Want::Attribute:
             items.operations();
@@ -332,6 +347,10 @@ void fill(Items& items, Want want) {
             return items.symbols();
         case Want::File:
             return items.files();
+        case Want::Material:
+            items.materials();
+            items.values();
+            return items.some({"choose"});
         case Want::Tag:
             return items.tags();
         case Want::Nothing:

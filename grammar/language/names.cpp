@@ -61,6 +61,10 @@ public:
     void file(const syntax::Ast& ast) {
         for (const auto& d : ast.uses) settings(d.settings);
         for (const auto& d : ast.params) parameter(d);
+        for (const auto& d : ast.lets) {
+            define(NameKind::Constant, d.name, d.span);
+            expr(d.value);
+        }
         for (const auto& d : ast.maps) map(d);
         for (const auto& d : ast.roads) {
             define(NameKind::Map, d.name, d.span);
@@ -183,8 +187,16 @@ private:
     }
 
     void body(const Body& b) {
+        const size_t outside = locals_.size();
         for (const auto& chain : b.siblings)
-            for (const Element& e : chain) element(e);
+            for (const Element& e : chain) {
+                element(e);
+                if (e.kind != Element::Kind::Let || e.variable.empty()) continue;
+                locals_.push_back({e.variable.text, e.span.begin});
+                const SourceSpan sight{e.span.source, e.span.begin, std::max(e.span.end, b.span.end)};
+                add(NameKind::Local, e.variable.text, e.variable.span, sight, e.span.begin);
+            }
+        locals_.resize(outside);
     }
 
     void element(const Element& e) {
@@ -209,7 +221,7 @@ private:
             const auto* row = a.operation && i < a.operation->arguments.size() ? &a.operation->arguments[i] : nullptr;
             if (i == 0 && a.operation && a.operation->namesValue)
                 add(NameKind::Value, a.args[0].text, wordIn(a.args[0].span, a.args[0].text), a.span);
-            else if (row && row->type == ArgumentType::Start)
+            else if (row && (row->type == ArgumentType::Start || row->type == ArgumentType::Symbol))
                 add(NameKind::Symbol, a.args[i].text, wordIn(a.args[i].span, a.args[i].text));
             else if (row && row->type == ArgumentType::Name)
                 add(NameKind::Tag, a.args[i].text, wordIn(a.args[i].span, a.args[i].text));
@@ -246,7 +258,11 @@ private:
             return add(NameKind::Symbol, e.text, span);
         if (wanted == ArgumentType::Plan && known_.lsystems.contains(e.text))
             return add(NameKind::Lsystem, e.text, span);
-        if (wanted == ArgumentType::Joint && known_.joints.contains(e.text)) return add(NameKind::Joint, e.text, span);
+        const bool joint = wanted == ArgumentType::Joint || wanted == ArgumentType::Point;
+        if (joint && known_.joints.contains(e.text)) return add(NameKind::Joint, e.text, span);
+        if (wanted == ArgumentType::Material && known_.symbols.contains(e.text))
+            return add(NameKind::Symbol, e.text, span);
+        if (known_.constants.contains(e.text)) return add(NameKind::Constant, e.text, span);
         if (known_.parameters.contains(e.text)) return add(NameKind::Parameter, e.text, span);
         if (known_.values.contains(e.text)) return add(NameKind::Value, e.text, span);
         if (known_.joints.contains(e.text)) return add(NameKind::Joint, e.text, span);
@@ -274,6 +290,7 @@ void Known::add(const syntax::Ast& ast) {
         parameters.insert(d.name.text);
         for (const Name& choice : d.choices) choices[d.name.text].push_back(choice.text);
     }
+    for (const auto& d : ast.lets) constants.insert(d.name.text);
     for (const auto& d : ast.maps) maps.insert(d.name.text);
     for (const auto& d : ast.roads) maps.insert(d.name.text);
     for (const auto& d : ast.terminals) {

@@ -15,7 +15,7 @@ enum class NameKind : uint8_t {
     Symbol,     ///< a shape: `rule Cell`, `start House`, `terminal stone`
     Parameter,  ///< `param`
     Value,      ///< what `with` sets
-    Local,      ///< what `for` runs through
+    Local,      ///< what `for` runs through, and a body's own `let`
     Rule,       ///< the name before a rule's symbol
     Joint,      ///< declared by a terminal
     Style,
@@ -23,6 +23,7 @@ enum class NameKind : uint8_t {
     Lsystem,
     Map,
     Tag,
+    Constant,  ///< a file's `let`
 };
 
 /// One name at one place.
@@ -43,7 +44,8 @@ inline bool same(const Occurrence& a, const Occurrence& b) {
 
 /// The names that a grammar and the files it uses declare, by kind.
 struct Known {
-    std::set<std::string, std::less<>> symbols, parameters, values, rules, joints, styles, ways, lsystems, maps;
+    std::set<std::string, std::less<>> symbols, parameters, values, rules, joints, styles, ways, lsystems, maps,
+        constants;
     std::map<std::string, std::vector<std::string>, std::less<>> choices;  ///< of parameters
 
     void add(const syntax::Ast& ast);

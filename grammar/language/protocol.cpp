@@ -29,7 +29,7 @@ constexpr const char* tokenTypes[] = {"keyword",  "function", "type",     "class
                                       "function", "property", "function", "number", "string", "comment"};
 
 /// The numbers of symbols in an outline, by NameKind.
-constexpr int symbolKinds[] = {5, 13, 13, 13, 12, 8, 19, 24, 12, 17, 20};
+constexpr int symbolKinds[] = {5, 13, 13, 13, 12, 8, 19, 24, 12, 17, 20, 14};
 
 }  // namespace
 

@@ -19,7 +19,10 @@ constexpr Keyword declarationTable[] = {
      "Everything in another file, once: `use \"std/walls.sgm\"`. `{ n = 3 }` behind it gives its parameters other "
      "defaults."},
     {"param", "A number the user may change: `param floors = 5 in 2..20 \"Storeys\" group House key f`."},
+    {"let", "A value by name, of numbers and parameters: `let sill = 90cm`."},
     {"map", "A picture that is read as numbers: `map people = \"population.png\" as 0..1`."},
+    {"material",
+     "A look by name, without a solid: `material stone color #c2b59b rough .9`; `cylinder of stone` wears it."},
     {"terminal", "Names for finished shapes: `terminal wall color #c8b090 rough .8`."},
     {"start",
      "Where a derivation begins: `start House -> stone size (10, 3, 8) : Storey`. The first one runs unless another is "
@@ -36,7 +39,7 @@ constexpr Keyword declarationTable[] = {
 };
 
 constexpr Keyword clauseTable[] = {
-    {"grammar", "The version of the language, in the first line: `grammar 1`."},
+    {"grammar", "The version of the language, in the first line: `grammar 2`."},
     {"in", "The range of a parameter, `in 2..20`; what a `for` runs through, `for d in axes { … }`."},
     {"of", "The choices of a parameter: `param roof = flat of flat, steep`."},
     {"group", "The group of a parameter in panels."},
@@ -51,6 +54,9 @@ constexpr Keyword clauseTable[] = {
     {"for", "Runs a body for each value: `for d in sides when … { … }`, `for k in 1..n { … }`."},
     {"while", "Runs a body while a condition holds."},
     {"choose", "Draws a body or a value by weight: `choose { 8: cube | 2: sphere }`."},
+    {"distinct", "`choose distinct { … }`: in a repetition, another than in the turn before."},
+    {"shuffled", "`choose shuffled { … }`: in a repetition, each once before any comes again."},
+    {"let", "A value that a body names once, drawn once where chance decides: `let w = 1m..1.4m`."},
     {"expect",
      "What a check asks for: `bonds`, `overlaps`, `shapes`, `terminals`, `classic`, `morphic`, `floating`, "
      "`count(Name)`."},
@@ -85,7 +91,10 @@ constexpr Keyword valueTable[] = {
 
 std::string operationDoc(const syntax::Operation& o) {
     std::string text = fmt::format("`{}", o.name);
-    for (const auto& a : o.arguments) text += a.optional ? fmt::format(" [{}]", a.name) : fmt::format(" {}", a.name);
+    for (const auto& a : o.arguments) {
+        const std::string argument = a.word.empty() ? std::string(a.name) : fmt::format("{} {}", a.word, a.name);
+        text += a.optional ? fmt::format(" [{}]", argument) : " " + argument;
+    }
     text += fmt::format("{}`, operation\n\n{}\n", o.hasBlock() || o.takesSettings ? " { … }" : "", o.doc);
     for (const auto& a : o.arguments) text += fmt::format("\n- `{}`: {}", a.name, a.doc);
     if (!o.example.empty()) text += fmt::format("\n\n```sgm\n{}\n```", o.example);
@@ -221,7 +230,7 @@ const Occurrence* definitionOf(const Analysis& analysis, const Occurrence& occur
 std::string describe(const Analysis& analysis, const Occurrence& occurrence) {
     constexpr std::string_view kinds[] = {
         "shape", "parameter", "value set by `with`", "value of a `for`", "rule", "joint", "style", "way", "lsystem",
-        "map",   "tag"};
+        "map",   "tag",       "value of the file"};
     std::string text = fmt::format("`{}`, {}", occurrence.name, kinds[static_cast<size_t>(occurrence.kind)]);
     const Occurrence* shown = occurrence.defines ? &occurrence : definitionOf(analysis, occurrence);
     if (shown && occurrence.kind != NameKind::Value && occurrence.kind != NameKind::Local) {

@@ -179,10 +179,13 @@ constinit const Operation tile{
 
 constinit const Operation mirror{
     .name = "mirror",
-    .doc = "Mirrors a cladding inside its tile.",
+    .doc =
+        "Mirrors a cladding inside its tile. Behind an axis, `mirror x { body }`, it runs a body in the scope and in "
+        "its mirror image about the scope's middle; what is drawn by chance differs.",
     .example = "cube clad ornate mirror (.25, .125, .4)",
     .arguments = mirrorArguments,
     .phase = Phase::Detail,
+    .withBlock = &mirrored,
     .check = checkMirror,
 };
 

@@ -1,8 +1,12 @@
-// color, rough, metal: the material of a shape, or of a terminal.
+// color, rough, metal, of: the material of a shape, or of a terminal.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "grammar/derive/attribute_context.h"
 #include "grammar/operations/operations.h"
+#include "grammar/rules/lookup.h"
+#include "grammar/rules/operation_checker.h"
 
 namespace sgm::operations {
 namespace {
@@ -19,6 +23,9 @@ constexpr OperationArgument colorArguments[] = {
     {"color", ArgumentType::Color, "#rrggbb, or a parameter that holds one"}};
 constexpr OperationArgument roughArguments[] = {{"roughness", ArgumentType::Number, "0 is a mirror, 1 is chalk"}};
 constexpr OperationArgument metalArguments[] = {{"metalness", ArgumentType::Number, "0 is a dielectric, 1 is a metal"}};
+constexpr OperationArgument ofArguments[] = {
+    {"material", ArgumentType::Material,
+     "a `material` or terminal by name, or a value that holds one: 'of choose { 2: brick | 1: plaster }'"}};
 constexpr OperationRange share{0, 1, "0 … 1"};
 
 Vec3f colorOf(const Value& value) { return Vec3d{value.n[0], value.n[1], value.n[2]}.as<float>(); }
@@ -36,6 +43,37 @@ void applyRough(AttributeContext& context, const Attribute& attribute) {
 }
 void applyMetal(AttributeContext& context, const Attribute& attribute) {
     context.out.metal = shareOf(context, attribute);
+}
+
+void checkOf(rules::OperationChecker& checker, const syntax::Attribute& written) {
+    if (written.args.empty()) return;
+    Attribute out;
+    out.operation = written.operation;
+    out.span = written.span;
+    checker.beginDraws("of");
+    out.args.push_back(checker.material(written.args[0]));
+    checker.add(std::move(out));
+}
+
+/// The look of a material, in place of what was said before.
+void applyOf(AttributeContext& context, const Attribute& attribute) {
+    const rules::Grammar& grammar = context.grammar();
+    const Value value = context.evaluate(attribute.args[0]);
+    const bool word = value.kind == Value::Kind::Word;
+    const auto hint = static_cast<rules::SymbolId>(word ? value.num() : 0);  // where a material's own name was written
+    const bool known = word && hint < grammar.symbols.size() && grammar.symbols[hint].name == value.text;
+    const rules::SymbolId symbol = known ? hint : word ? rules::findMaterial(grammar, value.text) : rules::none;
+    if (symbol == rules::none)
+        return context.fail(
+            fmt::format("'{}' is {}, and no material", attribute.args[0].span.text(), rules::toText(value)),
+            attribute.span);
+    context.out.material = grammar.symbols[symbol].material;
+    context.out.color.reset();
+    context.out.colorBy = nullptr;
+    context.out.rough.reset();
+    context.out.metal.reset();
+    for (const Attribute& look : grammar.symbols[symbol].look) look.operation->apply(context, look);
+    context.out.colorBy = nullptr;  // the material names the look
 }
 
 void setColor(const Value& value, Material& material) { material.color = colorOf(value); }
@@ -74,6 +112,16 @@ constinit const Operation metal{
     .range = share,
     .apply = applyMetal,
     .decorate = setMetal,
+};
+
+constinit const Operation of{
+    .name = "of",
+    .doc = "Makes the shape of a material: what looks so is declared by 'material', or is a terminal.",
+    .example = "cylinder of stone",
+    .arguments = ofArguments,
+    .phase = Operation::Phase::Look,
+    .check = checkOf,
+    .apply = applyOf,
 };
 
 }  // namespace sgm::operations

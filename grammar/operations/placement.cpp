@@ -1,4 +1,4 @@
-// at, to, overlap, shift, on, by, blend: how a newcomer joins what stands (SG-M III-F, eq. 14 and 16).
+// at, to, overlap, shift, on, by, blend, through: how a newcomer joins what stands (SG-M III-F, eq. 14 and 16).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,6 +45,8 @@ constexpr OperationArgument onArguments[] = {
      "step before; each(Name): all of that name; lot: behind 'place', the scope with its plan"}};
 constexpr OperationArgument byArguments[] = {
     {"amount", ArgumentType::Number, "a of the morph (eq. 14): 0 keeps what stands, 1 gives the newcomer"}};
+constexpr OperationArgument throughArguments[] = {
+    {"shape", ArgumentType::Symbol, "the nearest shape of that name above the matched one"}};
 constexpr OperationArgument blendArguments[] = {
     {"radius", ArgumentType::Length, "metres within which both surfaces melt; 0 is a sharp edge"}};
 
@@ -201,6 +203,29 @@ void agreeBlend(OperationChecker& checker, const Element& element, const Attribu
         checker.error(attribute.span, "a morph has no edge that could be blended", "leave 'blend' out");
 }
 
+void checkThrough(OperationChecker& checker, const syntax::Attribute& written) {
+    note(checker, written);
+    if (written.args.empty() || written.args[0].kind != Written::Kind::Name) return;
+    const Written& e = written.args[0];
+    if (const auto symbol = checker.findSymbol(e.text))
+        checker.element().through = *symbol;
+    else
+        checker.unknownName(e.span, e.text, fmt::format("no shape is called '{}'", e.text),
+                            checker.nearest(e.text, checker.symbolNames()));
+}
+
+void agreeThrough(OperationChecker& checker, const Element& element, const Attribute& attribute) {
+    if (element.op != Operator::Difference)
+        checker.error(attribute.span, "'through' says what a difference cuts, but this shape isn't joined by '-'",
+                      "write '-' before the shape");
+    if (element.on && element.on->kind == HostChoice::Kind::Each)
+        checker.error(attribute.span, "what is cut 'on each(…)' shape cuts those shapes", "leave one of both out");
+    for (const Attribute& a : element.attributes)
+        if (a.operation->namesValue)
+            checker.error(a.span, fmt::format("'{}' hands nothing to a shape that cuts elsewhere", a.operation->name),
+                          "say it of the shape that the cutter stands in");
+}
+
 void applyOverlap(AttributeContext& context, const Attribute& attribute) {
     context.out.overlap = context.number(attribute.args[0]);
 }
@@ -295,6 +320,18 @@ constinit const Operation blend{
     .range = {0, most_m, "no less than 0"},
     .agree = agreeBlend,
     .apply = applyBlend,
+};
+
+constinit const Operation through{
+    .name = "through",
+    .doc =
+        "Lets a difference cut a shape further up, as a window in a part of a front cuts the wall behind it: the "
+        "nearest of that name, and what it held before the part that cuts.",
+    .example = "- cube size (1m, 1.5m, 200%) through Mass",
+    .arguments = throughArguments,
+    .phase = Phase::Placement,
+    .check = checkThrough,
+    .agree = agreeThrough,
 };
 
 }  // namespace sgm::operations

@@ -26,10 +26,7 @@ std::vector<Part> checkWordParts(rules::OperationChecker& checker, const syntax:
         part.span = c.span;
         part.label = c.label->text;
         checker.beginDraws("part");
-        part.body = c.body ? checker.body(*c.body) : std::make_shared<const rules::Body>();
-        if (part.body->grows)
-            checker.error(part.body->span, "a part begins with a shape: nothing stands in it yet that could grow",
-                          "leave the operator out");
+        part.body = c.body ? checker.partBody(*c.body) : std::make_shared<const rules::Body>();
         const auto twice =
             std::count_if(parts.begin(), parts.end(), [&](const Part& p) { return p.label == part.label; });
         if (twice > 1)

@@ -26,30 +26,27 @@ constexpr double leastPart_m = 1e-6;  // parts no longer than this vanish
 constexpr OperationArgument splitArguments[] = {{"axis", syntax::ArgumentType::Axis, "x, y or z of the scope"}};
 
 /// One part, its body checked against the part's own scope.
-Part checkPart(OperationChecker& checker, const syntax::Case& written) {
+Part checkPart(OperationChecker& checker, const syntax::Case& written, int axis) {
     Part out;
     out.span = written.span;
     checker.beginDraws("part");
     if (written.label) {
         out.floating = written.label->kind == Written::Kind::Floating;
         const Written& size = out.floating && !written.label->args.empty() ? written.label->args[0] : *written.label;
-        out.size = checker.expression(size, out.floating ? Want::Length : Want::Extent,
-                                      out.floating ? "what follows '~'" : "the size of a part");
+        out.size = out.floating ? checker.expression(size, Want::Length, "what follows '~'")
+                                : checker.measure(size, Want::Extent, "the size of a part", axis);
         if (const auto value = checker.atDefaults(out.size); value && value->num() < 0)
             checker.error(size.span, "the size of a part is no less than 0");
     } else if (!written.tag.empty()) {
         checker.error(written.tag.span, "a part of a split has a size, not a tag",
                       "write '4m: …', '30%: …' or '~1: …'");
     }
-    out.body = written.body ? checker.body(*written.body) : std::make_shared<const rules::Body>();
-    if (out.body->grows)
-        checker.error(out.body->span, "a part begins with a shape: nothing stands in it yet that could grow",
-                      "leave the operator out");
+    out.body = written.body ? checker.partBody(*written.body) : std::make_shared<const rules::Body>();
     return out;
 }
 
 /// `{ … }*`: `i` is the number of the repetition, from 1.
-Part checkRepeated(OperationChecker& checker, const syntax::Case& written) {
+Part checkRepeated(OperationChecker& checker, const syntax::Case& written, int axis) {
     Part out;
     out.span = written.span;
     checker.withLocal("i", out.local, [&] {
@@ -57,7 +54,7 @@ Part checkRepeated(OperationChecker& checker, const syntax::Case& written) {
             if (c.repeated)
                 checker.error(c.span, "what repeats can't hold another '{ … }*'", "split the part again instead");
             else
-                out.repeated.push_back(checkPart(checker, c));
+                out.repeated.push_back(checkPart(checker, c, axis));
         }
     });
     return out;
@@ -70,7 +67,7 @@ std::shared_ptr<Parts> checkSplit(OperationChecker& checker, const syntax::Attri
     const std::string axis = written.args.empty() ? "x" : written.args[0].text;
     out->axis = axis == "x" ? 0 : axis == "y" ? 1 : 2;
     for (const syntax::Case& c : written.cases)
-        out->parts.push_back(c.repeated ? checkRepeated(checker, c) : checkPart(checker, c));
+        out->parts.push_back(c.repeated ? checkRepeated(checker, c, out->axis) : checkPart(checker, c, out->axis));
     return out;
 }
 
@@ -114,7 +111,7 @@ std::optional<Layout> layOut(PartsContext& context, const Parts& split, double w
     for (size_t p = 0; p < split.parts.size(); ++p) {
         const Part& part = split.parts[p];
         const std::vector<Part>& parts = part.repeated;
-        if (part.local != rules::none) context.setLocal(part.local, rules::Value::number(1));
+        if (part.local != rules::none) context.count(part.local, 1);
         Length once;
         for (size_t k = 0; k < std::max<size_t>(1, parts.size()); ++k) {
             layout.lengths[p].push_back(lengthOf(context, parts.empty() ? part : parts[k], whole_m, combine(p, k)));
@@ -164,9 +161,7 @@ bool runSplit(PartsContext& context, const Parts& split) {
         }
         for (double i = 1; i <= layout->repetitions; ++i)
             for (size_t k = 0; k < part.repeated.size(); ++k) {
-                rules::Value number = rules::Value::number(i);
-                number.integer = true;
-                context.setLocal(part.local, std::move(number));
+                context.count(part.local, i);
                 const uint64_t key = combine(combine(p, k), static_cast<uint64_t>(i));
                 if (!run(part.repeated[k], layout->lengths[p][k], key)) return false;
             }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "grammar/rules/checker.h"
+#include "grammar/rules/lookup.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/operation_checker.h"
 #include "grammar/rules/words.h"
@@ -49,6 +50,40 @@ Expr Checker::joint(Place& place, const Written& e) {
     return chosen;
 }
 
+Expr Checker::material(Place& place, const Written& e) {
+    const auto isOther = [&](const std::string& word) {
+        const auto local = [&](const auto& l) { return l.name == word; };
+        return std::any_of(place.locals.begin(), place.locals.end(), local) || params_.contains(word) ||
+               lets_.contains(word) || withNames_.contains(word);
+    };
+    const auto symbol = symbols_.find(e.text);
+    const bool known = symbol != symbols_.end() && grammar_.symbols[symbol->second].terminal;
+    if (e.kind == Written::Kind::Name && !known && !isOther(e.text)) {
+        std::vector<std::string> names;
+        for (const Symbol& s : grammar_.symbols)
+            if (s.terminal) names.push_back(s.name);
+        std::string hint = nearest(e.text, names);
+        if (const std::string file = load_.declares ? load_.declares(e.text) : std::string(); !file.empty())
+            hint = fmt::format("it is declared in {0}: write 'use \"{0}\"'", file);
+        if (hint.empty()) hint = fmt::format("write 'material {} color #c2b59b' above", e.text);
+        return unknown(e.span, e.text, fmt::format("there is no material '{}'", e.text), std::move(hint)).expr;
+    }
+    place.material = true;
+    Typed value = expression(place, e);
+    place.material = false;
+    if (value.type.known && value.type.like.kind != Value::Kind::Word)
+        return failed(e.span, fmt::format("'of' takes a material, but this is {}", describe(value.type)),
+                      value.type.like.kind == Value::Kind::Color ? fmt::format("write 'color {}'", e.span.text())
+                                                                 : std::string())
+            .expr;
+    if (value.type.words)
+        for (const std::string& word : *value.type.words)
+            if (findMaterial(grammar_, word) == none)
+                return failed(e.span, fmt::format("'{}' may be '{}', and there is no such material", e.text, word))
+                    .expr;
+    return std::move(value.expr);
+}
+
 /// Operations that speak of another one come last: it may stand behind them.
 std::vector<Attribute> Checker::attributes(Place& place, Element& element,
                                            const std::vector<syntax::Attribute>& written) {
@@ -56,8 +91,11 @@ std::vector<Attribute> Checker::attributes(Place& place, Element& element,
     OperationChecker checker(*this, place, element, result);
     std::vector<const Operation*> seen;
     for (const syntax::Attribute& a : written) {
-        if (!a.operation->repeatable && std::find(seen.begin(), seen.end(), a.operation) != seen.end())
-            diagnostics_.error(a.span, fmt::format("'{}' is given twice", a.name.text), "say it once");
+        const bool again = a.operation->repeatable || (a.operation->stacks && versionOf(grammar_, a.span) >= 2);
+        if (!again && std::find(seen.begin(), seen.end(), a.operation) != seen.end())
+            diagnostics_.error(
+                a.span, fmt::format("'{}' is given twice", a.name.text),
+                a.operation->stacks ? "say it once; 'grammar 2' takes several, one after the other" : "say it once");
         seen.push_back(a.operation);
     }
     using Phase = Operation::Phase;

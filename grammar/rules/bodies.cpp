@@ -6,6 +6,7 @@
 
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/lookup.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/operation_checker.h"
 #include "grammar/rules/words.h"
@@ -23,8 +24,12 @@ bool isNil(const Body& body) {
 
 /// A body grows on the matched content when its first shape has an operator; `nil` beside growing choices adds nothing.
 bool grows(const Body& body) {
-    if (body.siblings.empty() || body.siblings[0].empty()) return false;
-    const Element& first = body.siblings[0][0];
+    if (body.siblings.empty()) return false;
+    const auto& chain = body.siblings[0];
+    const auto begin =
+        std::find_if(chain.begin(), chain.end(), [](const Element& e) { return e.kind != Element::Kind::Let; });
+    if (begin == chain.end()) return false;
+    const Element& first = *begin;
     switch (first.kind) {
         case Element::Kind::Shape:
             return first.op != Operator::None;
@@ -35,6 +40,8 @@ bool grows(const Body& body) {
         case Element::Kind::Choose:
             return std::any_of(first.choices.begin(), first.choices.end(),
                                [](const Choice& c) { return grows(*c.body); });
+        case Element::Kind::Let:
+            break;
     }
     return false;
 }
@@ -60,7 +67,7 @@ void Checker::live(const syntax::Name& name, Element& out) {
 void Checker::content(Place& place, const Written& e, Element& out) {
     const auto symbol = symbols_.find(e.text);
     const bool named = e.kind == Written::Kind::Name && symbol != symbols_.end();
-    if (named) {
+    if (named && !grammar_.symbols[symbol->second].isMaterial) {
         out.content = Content::ofSymbol(symbol->second);
         out.label = e.text;
         if (!grammar_.symbols[symbol->second].terminal && !ruled_.contains(symbol->second))
@@ -179,6 +186,7 @@ void Checker::loop(Place& place, const syntax::Element& written, Element& out) {
     if (written.kind == syntax::Element::Kind::For) {
         Place::Local local{written.variable.text, place.frame++, Type::unknown()};
         if (written.over) out.over = loopDomain(place, *written.over, local.type);
+        local.counts = out.over && out.over->kind == Expr::Kind::Range;
         out.local = local.index;
         const bool again =
             std::any_of(place.locals.begin(), place.locals.end(), [&](const auto& l) { return l.name == local.name; });
@@ -201,7 +209,33 @@ void Checker::loop(Place& place, const syntax::Element& written, Element& out) {
     place.locals.resize(outside, Place::Local{{}, 0, Type::unknown()});
 }
 
+/// A value of the body: in sight from here to the end of the body.
+void Checker::let(Place& place, const syntax::Element& written, Element& out) {
+    const std::string& name = written.variable.text;
+    place.enter("let " + name);
+    place.material = true;
+    Typed value = written.over ? expression(place, *written.over) : Typed{{}, Type::unknown()};
+    place.material = false;
+    const auto isName = [&](const auto& l) { return l.name == name; };
+    const bool taken = isTaken(name) || axisNumber(name) >= 0;
+    if (taken || std::any_of(place.locals.begin(), place.locals.end(), isName) || params_.contains(name) ||
+        lets_.contains(name) || withNames_.contains(name))
+        diagnostics_.error(written.variable.span,
+                           fmt::format("'{}' {}", name,
+                                       taken ? "is a word of the language and can't name a value"
+                                             : "already means something else here"),
+                           "give the value another name");
+    out.over = std::move(value.expr);
+    out.local = place.frame++;
+    place.locals.push_back({name, out.local, value.type});
+}
+
 void Checker::choose(Place& place, const syntax::Element& written, Element& out) {
+    if (!written.variable.empty())
+        if (const auto* local = counter(place, written.variable.span, written.variable.text, written.cases.size())) {
+            out.series = written.variable.text == "distinct" ? Series::Distinct : Series::Shuffled;
+            out.local = local->index;
+        }
     for (const syntax::Case& c : written.cases) {
         Choice choice;
         choice.weight = makeConstant(c.span, Value::number(1));
@@ -227,6 +261,7 @@ Element Checker::element(Place& place, const syntax::Element& written) {
     Element out;
     out.span = written.span;
     out.op = written.op;
+    out.inMatchedFrame = versionOf(grammar_, written.span) >= 2;
     switch (written.kind) {
         case Kind::Shape:
         case Kind::Group:
@@ -245,6 +280,11 @@ Element Checker::element(Place& place, const syntax::Element& written) {
             out.kind = Element::Kind::Choose;
             choose(place, written, out);
             return out;
+        case Kind::Let:
+            out.kind = Element::Kind::Let;
+            out.label = "let " + written.variable.text;
+            let(place, written, out);
+            return out;
     }
     loop(place, written, out);
     return out;
@@ -253,10 +293,14 @@ Element Checker::element(Place& place, const syntax::Element& written) {
 Body Checker::body(Place& place, const syntax::Body& written) {
     Body result;
     result.span = written.span;
+    const size_t outside = place.locals.size();
     for (const auto& chain : written.siblings) {
         std::vector<Element>& elements = result.siblings.emplace_back();
         for (const syntax::Element& e : chain) elements.push_back(element(place, e));
+        if (!elements.empty() && elements.back().kind == Element::Kind::Let)
+            diagnostics_.error(elements.back().span, "no shape stands behind this value", "write the shape behind it");
     }
+    place.locals.resize(outside, Place::Local{{}, 0, Type::unknown()});
     result.grows = grows(result);
     return result;
 }
@@ -272,6 +316,7 @@ void Checker::rule(const syntax::RuleDecl& decl) {
     out.span = decl.span;
     out.symbolSpan = decl.symbol.span;
     out.symbol = nonTerminal(decl.symbol);
+    out.besideWins = versionOf(grammar_, decl.span) >= 2 && !decl.beside.empty();
     out.name = decl.name.text;
     if (out.name.empty()) out.name = fmt::format("{}#{}", decl.symbol.text, ++unnamedRules_[out.symbol]);
     Place guard(Place::Where::Guard);
@@ -296,7 +341,7 @@ void Checker::rule(const syntax::RuleDecl& decl) {
     Place place(out.repeat ? Place::Where::Chain : Place::Where::Body);
     if (out.repeat) {
         out.stepLocal = place.frame++;
-        place.locals.push_back({"i", out.stepLocal, Type::number(Unit::None, true)});
+        place.locals.push_back({"i", out.stepLocal, Type::number(Unit::None, true), true});
     }
     out.body = body(place, decl.body);
     out.morphic = std::exchange(place.morphs, false);

@@ -73,6 +73,8 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     each(&Checker::declare);
     each(&Checker::rejectUnsupported);
     each(&Checker::parameters);
+    each(&Checker::lets);
+    each(&Checker::materials);
     each(&Checker::lsystems);
     each(&Checker::maps);
     each(&Checker::roads);
@@ -102,7 +104,11 @@ std::shared_ptr<const Grammar> check(const syntax::Ast& ast, const Loader& load,
     auto grammar = std::make_shared<Grammar>();
     grammar->materials.emplace_back();
     grammar->sources.push_back(ast.source);
-    for (size_t i = 0; i + 1 < files.asts.size(); ++i) grammar->sources.push_back(files.asts[i].source);
+    grammar->versions.push_back(ast.version);
+    for (size_t i = 0; i + 1 < files.asts.size(); ++i) {
+        grammar->sources.push_back(files.asts[i].source);
+        grammar->versions.push_back(files.asts[i].version);
+    }
 
     syntax::Diagnostics found;
     fill(*grammar, files, load, diagnostics, found);

@@ -45,6 +45,7 @@ struct Place {
         std::string name;
         uint32_t index;
         Type type;
+        bool counts = false;  ///< a whole number that goes up by one from one turn to the next
     };
     std::vector<Local> locals;                 ///< in sight, innermost last
     bool ofMap = false;                        ///< a map's formula: it stands at a place, but belongs to no shape
@@ -54,6 +55,9 @@ struct Place {
 
     std::string attribute;  ///< what a range belongs to: names its draw
     uint32_t ranges = 0;    ///< ranges in it so far
+    int axis = -1;          ///< 0 … 2: shares that meet lengths are of the scope along this axis; -1: they can't meet
+    bool material = false;  ///< a material is asked for: terminals may lend theirs
+    bool mixes = false;     ///< a share met a length since this was reset
     void enter(std::string name) {
         attribute = std::move(name);
         ranges = 0;
@@ -75,6 +79,8 @@ public:
     /// Checks what stands behind the names.
     void parameters(const syntax::Ast& ast);
     void lsystems(const syntax::Ast& ast);
+    void lets(const syntax::Ast& ast);
+    void materials(const syntax::Ast& ast);
     void maps(const syntax::Ast& ast);
     void roads(const syntax::Ast& ast);
     void terminals(const syntax::Ast& ast);
@@ -90,6 +96,7 @@ private:
     friend class OperationChecker;
 
     // names.cpp
+    void declareLet(const syntax::LetDecl& decl);
     void declareParameter(const syntax::ParamDecl& decl);
     void declareTerminals(const syntax::TerminalDecl& decl);
     void declareRule(const syntax::RuleDecl& decl);
@@ -108,6 +115,10 @@ private:
     Typed number(const syntax::Expr& e);
     Typed name(Place& place, const syntax::Expr& e);
     Typed unknownName(const Place& place, const syntax::Expr& e);
+    struct Constant;
+    Typed constant(Place& place, const syntax::Expr& e, Constant& constant);
+    bool mix(Place& place, Typed& a, Typed& b) const;
+    Expr measured(Place& place, const syntax::Expr& e, Want want, std::string_view what);
     Typed member(Place& place, const syntax::Expr& e);
     Typed index(Place& place, const syntax::Expr& e);
     Typed tuple(Place& place, const syntax::Expr& e);
@@ -127,6 +138,7 @@ private:
     Typed ramp(Place& place, const syntax::Expr& e);
     Typed choice(Place& place, const syntax::Expr& e);
     Expr chance(Place& place, const syntax::Expr& e);
+    const Place::Local* counter(const Place& place, SourceSpan span, std::string_view word, size_t alternatives);
     Expr weight(Place& place, const syntax::Expr& e);
     void checkWeights(const std::vector<const Expr*>& weights, SourceSpan span);
 
@@ -147,6 +159,7 @@ private:
     std::string unknownSolid(std::string_view word) const;
 
     // attributes.cpp
+    Expr material(Place& place, const syntax::Expr& e);
     std::vector<Attribute> attributes(Place& place, Element& element, const std::vector<syntax::Attribute>& written);
     Expr joint(Place& place, const syntax::Expr& e);
 
@@ -157,6 +170,7 @@ private:
     void content(Place& place, const syntax::Expr& e, Element& out);
     void loop(Place& place, const syntax::Element& written, Element& out);
     void choose(Place& place, const syntax::Element& written, Element& out);
+    void let(Place& place, const syntax::Element& written, Element& out);
     Expr loopDomain(Place& place, const syntax::Expr& e, Type& type);
     void live(const syntax::Name& name, Element& out);
     const syntax::Attribute* contentOperation(const syntax::Element& written);
@@ -209,6 +223,13 @@ private:
     Loader load_;
     std::map<std::pair<const syntax::Source*, std::string>, size_t> outlineFiles_;  ///< places in Grammar::outlines
     std::map<std::pair<const syntax::Source*, std::string>, size_t> files_;  ///< read so far: places in Grammar::meshes
+    /// A file's constant: its text and, once it was read, its value.
+    struct Constant {
+        const syntax::LetDecl* decl = nullptr;
+        std::optional<Typed> value;
+        bool used = false, inWork = false;
+    };
+    std::map<std::string, Constant> lets_;
     std::map<std::string, uint32_t> maps_;
     std::vector<bool> mapIsKnown_;  ///< by map: checked, so that those below may ask it
     std::vector<double> mapCost_;   ///< by map: expressions that one answer takes
@@ -219,7 +240,7 @@ private:
     std::map<SymbolId, uint32_t> unnamedRules_;  ///< how many so far
     std::vector<std::string> terminalsInWork_;   ///< whose solids are being read: finds a = b, b = a
     std::map<std::string, SourceSpan> seenParams_, seenTerminals_, seenRules_, seenStarts_, seenStyles_, seenDerives_,
-        seenLsystems_, seenMaps_, seenRoads_;
+        seenLsystems_, seenMaps_, seenRoads_, seenLets_;
 };
 
 }  // namespace sgm::rules

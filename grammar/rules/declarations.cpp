@@ -5,6 +5,7 @@
 
 #include "grammar/rules/checker.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/lookup.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/params.h"
 #include "grammar/rules/words.h"
@@ -145,6 +146,19 @@ void Checker::look(const syntax::TerminalDecl& decl, Material& material, std::ve
         if (a.args.empty()) continue;
         const auto value = fold(a.args[0], defaults_);
         if (!value) continue;
+        if (value->kind == Value::Kind::Word) {  // of: the look of a material declared above
+            const SymbolId base = findMaterial(grammar_, value->text);
+            if (base == rules::none || grammar_.symbols[base].material == rules::none || !fold(a.args[0], {})) {
+                diagnostics_.error(a.span, fmt::format("'{}' is no material declared above", value->text),
+                                   "name a material whose line stands before this one");
+                continue;
+            }
+            const std::string name = material.name;
+            material = grammar_.materials[grammar_.symbols[base].material];
+            material.name = name;
+            open = grammar_.symbols[base].look;
+            continue;
+        }
         if (a.operation->decorate) a.operation->decorate(*value, material);
         if (!fold(a.args[0], {})) open.push_back(a);
     }
@@ -175,7 +189,39 @@ void Checker::terminal(const syntax::TerminalDecl& decl) {
 }
 
 void Checker::terminals(const syntax::Ast& ast) {
-    for (const auto& decl : ast.terminals) terminal(decl);
+    for (const auto& decl : ast.terminals)
+        if (!decl.isMaterial) terminal(decl);
+}
+
+void Checker::materials(const syntax::Ast& ast) {
+    for (const auto& decl : ast.terminals) {
+        if (!decl.isMaterial) continue;
+        if (decl.attributes.empty())
+            diagnostics_.error(decl.span, "a material says how it looks",
+                               "write 'material stone color #c2b59b rough .9'");
+        terminal(decl);
+    }
+}
+
+/// Constants of a file: each asks parameters and those above it.
+void Checker::lets(const syntax::Ast& ast) {
+    constexpr size_t most = 1000;
+    const auto sizeOf = [](const Expr& e, const auto& self) -> size_t {
+        size_t count = 1;
+        for (const Expr& arg : e.args) count += self(arg, self);
+        return count;
+    };
+    for (const auto& decl : ast.lets) {
+        const auto known = lets_.find(decl.name.text);
+        if (known == lets_.end() || known->second.decl != &decl) continue;
+        Place place(Place::Where::Look);
+        place.material = true;
+        Typed typed = expression(place, decl.value);
+        if (sizeOf(typed.expr, sizeOf) > most)
+            typed = failed(decl.value.span, fmt::format("a value is made of at most {} numbers and operators", most),
+                           "use fewer of the values above it");
+        known->second.value = std::move(typed);
+    }
 }
 
 uint32_t Checker::startCalled(const syntax::Name& name) {
@@ -280,6 +326,9 @@ void Checker::unused(const syntax::Ast& ast) {
         if (const auto param = params_.find(decl.name.text);
             param != params_.end() && !usedParams_.contains(param->second))
             diagnostics_.warning(decl.name.span, fmt::format("nothing uses the parameter '{}'", decl.name.text));
+    for (const auto& decl : ast.lets)
+        if (const auto let = lets_.find(decl.name.text); let != lets_.end() && !let->second.used)
+            diagnostics_.warning(decl.name.span, fmt::format("nothing uses the value '{}'", decl.name.text));
 }
 
 }  // namespace sgm::rules

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "grammar/rules/arithmetic_warnings.h"
 #include "grammar/rules/checker.h"
@@ -126,8 +127,13 @@ bool Checker::sameType(const Typed& a, const Typed& b, std::string_view verb) {
     if (!a.type.numeric()) return say(a, fmt::format("can't {} {}", verb, describe(a.type)));
     if (!b.type.numeric()) return say(b, fmt::format("can't {} {}", verb, describe(b.type)));
     if (compatible(a.type, b.type)) return true;
+    const Unit ua = a.type.like.units[0], ub = b.type.like.units[0];
+    const bool measures = (ua == Unit::Share && ub == Unit::Metre) || (ua == Unit::Metre && ub == Unit::Share);
     diagnostics_.error(syntax::join(a.expr.span, b.expr.span),
-                       fmt::format("can't {} {} and {}", verb, describe(a.type), describe(b.type)));
+                       fmt::format("can't {} {} and {}", verb, describe(a.type), describe(b.type)),
+                       measures ? "they meet in 'size', 'move' and the sizes of a 'split'; elsewhere write 'scope.x', "
+                                  "'scope.y' or 'scope.z' for 100%"
+                                : "");
     return false;
 }
 
@@ -148,6 +154,7 @@ Typed Checker::unknownName(const Place& place, const Written& e) {
     std::vector<std::string> known;
     for (const auto& [param, index] : params_) known.push_back(param);
     for (const auto& local : place.locals) known.push_back(local.name);
+    for (const auto& [let, constant] : lets_) known.push_back(let);
     for (const auto& [map, index] : maps_) known.push_back(map);
     known.insert(known.end(), withNames_.begin(), withNames_.end());
     if (place.where == Where::Expect) known.assign(figureWords.begin(), figureWords.end());
@@ -184,6 +191,7 @@ Typed Checker::name(Place& place, const Written& e) {
             return result;
         }
     }
+    if (const auto let = lets_.find(e.text); let != lets_.end()) return constant(place, e, let->second);
     if (const auto map = maps_.find(e.text); map != maps_.end()) return mapValue(place, e, map->second);
     if (const auto param = params_.find(e.text); param != params_.end()) {
         if (place.where == Where::Constant)
@@ -202,6 +210,14 @@ Typed Checker::name(Place& place, const Written& e) {
         result.expr.value = makeWord(e.text);
         result.type = Type::unknown();
         return result;
+    }
+    if (const auto symbol = symbols_.find(e.text); symbol != symbols_.end()) {
+        const Symbol& s = grammar_.symbols[symbol->second];
+        if (s.isMaterial || (place.material && s.terminal)) {
+            Value word = makeWord(e.text);
+            word.n[0] = symbol->second;
+            return makeTyped(e.span, std::move(word));
+        }
     }
     if (e.text == "pi") return makeTyped(e.span, Value::number(std::numbers::pi));
     return unknownName(place, e);
@@ -272,7 +288,10 @@ Typed Checker::tuple(Place& place, const Written& e) {
     result.expr.span = e.span;
     std::vector<Value> samples;
     bool known = true;
-    for (const Written& arg : e.args) {
+    const int axis = place.axis;
+    for (size_t i = 0; i < e.args.size(); ++i) {
+        const Written& arg = e.args[i];
+        if (axis >= 0) place.axis = e.args.size() == 3 ? static_cast<int>(i) : -1;
         Typed part = expression(place, arg);
         if (part.type.known && part.type.like.kind != Value::Kind::Number)
             part = failed(arg.span, fmt::format("a vector is made of numbers, but this is {}", describe(part.type)));
@@ -280,6 +299,7 @@ Typed Checker::tuple(Place& place, const Written& e) {
         samples.push_back(part.type.like);
         result.expr.args.push_back(std::move(part.expr));
     }
+    place.axis = axis;
     if (e.args.size() > 6)
         return failed(e.span, fmt::format("a vector has at most 6 numbers, but this has {}", e.args.size()));
     if (!known) return {std::move(result.expr), Type::unknown()};
@@ -342,7 +362,9 @@ Typed Checker::expression(Place& place, const Written& e) {
 }
 
 Expr Checker::expression(Place& place, const Written& e, Want want, std::string_view what) {
+    const bool outer = std::exchange(place.material, place.material || want == Want::Anything);
     Typed result = expression(place, e);
+    place.material = outer;
     const bool byComponent =
         e.kind == Written::Kind::Tuple && e.args.size() == 3 && takesThree(want) && !fits(result.type, want);
     bool good = byComponent || expectType(result, want, what, &e);

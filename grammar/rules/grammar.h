@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
+#include "grammar/rules/expr.h"
 #include "grammar/rules/maps.h"
 #include "grammar/rules/plans.h"
-#include "grammar/rules/value.h"
 #include "grammar/syntax/ast.h"
 #include "modeler/core/provenance.h"
 #include "modeler/field/primitives.h"
@@ -24,85 +24,6 @@ namespace sgm::rules {
 using syntax::Operation;
 using syntax::Operator;
 using syntax::SourceSpan;
-
-/// Index of a symbol (terminal or non-terminal) in Grammar::symbols.
-using SymbolId = uint32_t;
-inline constexpr uint32_t none = 0xffffffffu;
-
-/// A checked expression, evaluated by grammar/derive against a shape, parameters and locals.
-struct Expr {
-    enum class Kind : uint8_t {
-        Constant,   ///< value
-        Param,      ///< index into Grammar::params
-        Local,      ///< index into the frame of locals: `for` variables, `i` of a repeat
-        Inherited,  ///< value.text: a value set by `with`, looked up the tree
-        Scope,      ///< index 0 … 2: scope.x, .y, .z in metres; 3: scope.area, of its plan, in square metres
-        Here,       ///< index 0 … 2: where the shape stands, metres in the object's frame
-        Map,        ///< index into Grammar::maps: its value there
-        Element,    ///< args[0][args[1]] of a vector (an axis indexes 0 … 5)
-        Tuple,      ///< args
-        Unary,
-        Binary,  ///< index is a Fn
-        Call,    ///< index is a Fn over args
-        Range,   ///< args[0] … args[1]: drawn from the shape's stream under `draw`
-        Ramp,    ///< args[0] ~> args[1]: linear over the chain
-        Choose,  ///< args[1], args[3], … drawn under `draw` by the weights args[0], args[2], …
-        Figure,  ///< index is a Figure: in `check … expect`
-    };
-    Kind kind = Kind::Constant;
-    SourceSpan span;
-    Value value;
-    uint32_t index = 0;
-    uint64_t draw =
-        0;  ///< Range, Choose: hash of the attribute's name (and ordinal where one attribute has several ranges)
-    std::vector<Expr> args;
-};
-
-/// Built-in functions and operators of expressions.
-enum class Fn : uint32_t {
-    Neg,
-    Not,
-    Add,
-    Sub,
-    Mul,
-    Div,
-    Rem,
-    Less,
-    LessEq,
-    Greater,
-    GreaterEq,
-    Equal,
-    NotEqual,
-    And,
-    Or,
-    Min,
-    Max,
-    Abs,
-    Floor,
-    Ceil,
-    Round,
-    Sqrt,
-    Sin,
-    Cos,
-    Tan,
-    Atan2,  ///< an angle
-    Pow,
-    Clamp,
-    Lerp,
-    If,
-    RotX,
-    RotY,
-    RotZ,  ///< a Rotation from an angle
-    Rgb,
-    Bump,   ///< of the place: bump((x, z), radius)
-    Fbm,    ///< of the place: fbm(size, octaves [, seed])
-    Count,  ///< number of live or derived shapes of a symbol: count(Name); args[0] is a Word whose n[0] is the SymbolId
-};
-/// What `check … expect` may ask of a derivation.
-// clang-format off
-enum class Figure : uint32_t { Bonds, Overlaps, Shapes, Terminals, Classic, Morphic, Floating, Roads, Blocks, Lots,
-                               Places, Objects };  ///< Places: where `place` puts objects; Objects: different ones
-// clang-format on
 
 /// A solid: what fills a scope.
 struct Solid {
@@ -268,7 +189,7 @@ struct Choice {
 };
 
 struct Element {
-    enum class Kind : uint8_t { Shape, For, While, When, Choose };
+    enum class Kind : uint8_t { Shape, For, While, When, Choose, Let };
     Kind kind = Kind::Shape;
     SourceSpan span;
     Operator op = Operator::None;
@@ -278,11 +199,14 @@ struct Element {
     std::optional<JointChoice> at, to;
     std::optional<HostChoice> on;  ///< none: the matched shape
     SymbolId live = none;          ///< `: Name`
+    bool inMatchedFrame = false;   ///< `%`, `scope`, `move` and the place are of the matched scope (grammar 2)
+    SymbolId through = none;       ///< Difference: the shape above the matched one that it cuts
     uint32_t ordinal = 0;          ///< ordinal of this symbol in the rule's body: part of the child's key
     std::string label;             ///< key text: symbol or primitive name
     /// For: `local` runs over `over` (a Tuple whose args are the values, or a Range of whole numbers) where `guard`
-    /// holds.
+    /// holds. Let: `local` becomes the value of `over`. Choose in a series: `local` counts its draws.
     uint32_t local = 0;
+    Series series = Series::None;
     std::optional<Expr> over, guard;
     std::shared_ptr<Body> body;
     std::vector<Choice> choices;
@@ -299,6 +223,7 @@ struct Rule {
     std::string name;  ///< "R0", or "Cell#2" for the second unnamed rule of Cell
     SymbolId symbol = none;
     SymbolId beside = none;
+    bool besideWins = false;  ///< `beside` that holds wins over rules without a guard (grammar 2)
     SourceSpan span;
     SourceSpan symbolSpan;  ///< the symbol it matches: what messages about the rule point at
     std::optional<Expr> when, repeat;
@@ -320,6 +245,7 @@ struct Joint {
 struct Symbol {
     std::string name;
     bool terminal = false;
+    bool isMaterial = false;  ///< a look alone, declared by `material`
     SourceSpan span;
     std::optional<Solid> solid;  ///< terminal with a solid; without one it is a cube
     uint32_t material =
@@ -376,6 +302,7 @@ struct Check {
 
 struct Grammar {
     std::vector<syntax::SourcePtr> sources;  ///< sources[0] is the file itself, the rest came by `use`
+    std::vector<int> versions;               ///< by source: the version of the language it is written in
     std::vector<Symbol> symbols;
     std::vector<Param> params;
     std::vector<Material> materials;  ///< materials[0] is the default

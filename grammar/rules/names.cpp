@@ -49,6 +49,17 @@ SymbolId Checker::nonTerminal(const syntax::Name& name) {
     return entry->second;
 }
 
+void Checker::declareLet(const syntax::LetDecl& decl) {
+    if (decl.name.empty() || twice(seenLets_, decl.name, "value")) return;
+    if (isTaken(decl.name.text) || axisNumber(decl.name.text) >= 0)
+        diagnostics_.error(decl.name.span,
+                           fmt::format("'{}' is a word of the language and can't name a value", decl.name.text));
+    if (params_.contains(decl.name.text))
+        diagnostics_.error(decl.name.span, fmt::format("there is already a parameter '{}'", decl.name.text),
+                           "give one of them another name");
+    lets_[decl.name.text].decl = &decl;
+}
+
 void Checker::declareParameter(const syntax::ParamDecl& decl) {
     if (decl.name.empty() || twice(seenParams_, decl.name, "parameter")) return;
     if (isTaken(decl.name.text))
@@ -68,20 +79,23 @@ void Checker::declareParameter(const syntax::ParamDecl& decl) {
 
 void Checker::declareTerminals(const syntax::TerminalDecl& decl) {
     for (const syntax::Name& name : decl.names) {
-        if (name.empty() || twice(seenTerminals_, name, "terminal")) continue;
+        const std::string_view kind = decl.isMaterial ? "material" : "terminal";
+        if (name.empty() || twice(seenTerminals_, name, kind)) continue;
         if (isNonTerminal(name.text))
             diagnostics_.error(
                 name.span,
-                fmt::format("a terminal's name begins with a small letter: '{}' would be a shape that rules rewrite",
+                fmt::format("a {}'s name begins with a small letter: '{}' would be a shape that rules rewrite", kind,
                             name.text));
         else if (isTaken(name.text) || field::findPrimitive(name.text))
-            diagnostics_.error(name.span, fmt::format("'{}' is {} and can't name a terminal", name.text,
-                                                      isTaken(name.text) ? "a word of the language" : "a primitive"));
+            diagnostics_.error(name.span,
+                               fmt::format("'{}' is {} and can't name a {}", name.text,
+                                           isTaken(name.text) ? "a word of the language" : "a primitive", kind));
         symbols_.emplace(name.text, static_cast<SymbolId>(grammar_.symbols.size()));
         terminalDecls_.emplace(name.text, &decl);
         Symbol symbol;
         symbol.name = name.text;
         symbol.terminal = true;
+        symbol.isMaterial = decl.isMaterial;
         symbol.span = name.span;
         grammar_.symbols.push_back(std::move(symbol));
     }
@@ -139,6 +153,7 @@ void Checker::suppressErrors(const syntax::Diagnostics& unread, bool missingFile
 
 void Checker::declare(const syntax::Ast& ast) {
     for (const auto& decl : ast.params) declareParameter(decl);
+    for (const auto& decl : ast.lets) declareLet(decl);
     for (const auto& decl : ast.terminals) declareTerminals(decl);
     for (const auto& decl : ast.maps) declareMap(decl);
     for (const auto& decl : ast.roads) declareRoads(decl);

@@ -39,8 +39,11 @@ Want wantOf(ArgumentType type) {
 
 bool isWord(ArgumentType type) {
     return type == ArgumentType::Name || type == ArgumentType::Start || type == ArgumentType::Axis ||
-           type == ArgumentType::Solid;
+           type == ArgumentType::Solid || type == ArgumentType::Symbol;
 }
+
+/// Its shares are of the scope, axis by axis.
+bool isMeasure(ArgumentType type) { return type == ArgumentType::Size || type == ArgumentType::Vector; }
 
 /// Every constant part of an expression: both ends of a range or ramp, each component, each value to choose from.
 template <class Visit>
@@ -67,8 +70,13 @@ void OperationChecker::checkArguments(const syntax::Attribute& written) {
     for (size_t i = 0; i < written.args.size() && i < operation.arguments.size(); ++i) {
         const syntax::Expr& arg = written.args[i];
         const ArgumentType type = operation.arguments[i].type;
-        out.args.push_back(isWord(type) ? makeConstant(arg.span, makeWord(arg.text))
-                                        : expression(arg, wantOf(type), fmt::format("'{}'", operation.name)));
+        const std::string what = fmt::format("'{}'", operation.name);
+        if (isWord(type))
+            out.args.push_back(makeConstant(arg.span, makeWord(arg.text)));
+        else if (operation.phase == Operation::Phase::Scope && isMeasure(type))
+            out.args.push_back(checker_.measured(place_, arg, wantOf(type), what));
+        else
+            out.args.push_back(expression(arg, wantOf(type), what));
     }
     const syntax::OperationRange& range = operation.range;
     for (const Expr& arg : out.args) {
@@ -102,6 +110,43 @@ Expr OperationChecker::expression(const syntax::Expr& e, Want want, std::string_
     return checker_.expression(place_, e, want, what);
 }
 
+Expr OperationChecker::measure(const syntax::Expr& e, Want want, std::string_view what, int axis) {
+    place_.axis = axis;
+    Expr result = checker_.expression(place_, e, want, what);
+    place_.axis = -1;
+    return result;
+}
+
+Expr OperationChecker::point(const syntax::Expr& e, std::string_view what) {
+    return checker_.measured(place_, e, Want::Triple, what);
+}
+
+std::shared_ptr<const Body> OperationChecker::partBody(const syntax::Body& written) {
+    auto made = std::make_shared<Body>(checker_.body(place_, written));
+    if (!made->grows) return made;
+    const auto cutsAbove = [](const Body& body) {
+        for (const Element& e : body.siblings[0])
+            if (e.kind != Element::Kind::Let) return e.through != none;
+        return false;
+    };
+    if (!cutsAbove(*made)) {
+        error(made->span, "a part begins with a shape: nothing stands in it yet that could grow",
+              "leave the operator out, or cut a shape further up by '- … through Name'");
+        return made;
+    }
+    Element group;
+    group.span = made->span;
+    group.label = "group";
+    group.ordinal = place_.ordinals[group.label]++;
+    group.content = Content(std::shared_ptr<const Body>(made));
+    auto whole = std::make_shared<Body>();
+    whole->span = made->span;
+    whole->siblings.push_back({std::move(group)});
+    return whole;
+}
+
+Expr OperationChecker::material(const syntax::Expr& e) { return checker_.material(place_, e); }
+
 Typed OperationChecker::value(const syntax::Expr& e) { return checker_.expression(place_, e); }
 Solid OperationChecker::solid(const syntax::Expr& e) { return checker_.solid(place_, e); }
 Expr OperationChecker::joint(const syntax::Expr& e) { return checker_.joint(place_, e); }
@@ -113,7 +158,7 @@ std::shared_ptr<const Body> OperationChecker::body(const syntax::Body& written) 
 size_t OperationChecker::pushLocal(const std::string& name, uint32_t& local) {
     const size_t outside = place_.locals.size();
     local = place_.frame++;
-    place_.locals.push_back({name, local, Type::number(Unit::None, true)});
+    place_.locals.push_back({name, local, Type::number(Unit::None, true), true});
     return outside;
 }
 

@@ -41,6 +41,15 @@ public:
     void beginDraws(std::string name);
     /// A checked expression that fits `want`; `what` names it in a message.
     Expr expression(const syntax::Expr& e, Want want, std::string_view what);
+    /// The same of a measure along an axis of the scope (0 … 2), in which shares and lengths may meet: 100% - 1m.
+    Expr measure(const syntax::Expr& e, Want want, std::string_view what, int axis);
+    /// A point of the scope: three measures, each along its axis.
+    Expr point(const syntax::Expr& e, std::string_view what);
+    /// The body of a part of the scope. One that begins by cutting a shape further up stands in a group that holds
+    /// nothing else; any other operator is refused.
+    std::shared_ptr<const Body> partBody(const syntax::Body& written);
+    /// A `material` by name, or a value that holds one.
+    Expr material(const syntax::Expr& e);
     Typed value(const syntax::Expr& e);
     Solid solid(const syntax::Expr& e);
     /// A joint by name, or a value that is a direction.

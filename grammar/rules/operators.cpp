@@ -109,6 +109,8 @@ Typed Checker::call(Place& place, const Written& e) {
             return result;
         }
         case Signature::Alike:
+            for (size_t i = 1; i < args.size(); ++i)
+                if (mix(place, args[0], args[i])) i = 0;
             for (size_t i = 0; i < args.size(); ++i) good = good && sameType(args[0], args[i], "compare");
             break;
         case Signature::Plain:
@@ -187,6 +189,7 @@ Typed Checker::binary(Place& place, const Written& e) {
                                               describe(b.type)))
                        .type.known;
     } else if (!(equality && ka == kb && !a.type.numeric())) {
+        if (row.fn != Fn::Rem) mix(place, args[0], args[1]);
         good = sameType(a, b, row.verb);
     }
     if (!good) return {{}, Type::unknown()};
@@ -202,6 +205,20 @@ Expr Checker::chance(Place& place, const Written& e) {
     const uint32_t ordinal = place.ranges++;
     drawn.draw = ordinal == 0 ? key : combine(key, ordinal);
     return drawn;
+}
+
+/// The number that counts the turns of the repetition around a `choose distinct` or `choose shuffled`; null, with a
+/// message, where there is none.
+const Place::Local* Checker::counter(const Place& place, SourceSpan span, std::string_view word, size_t alternatives) {
+    const auto found =
+        std::find_if(place.locals.rbegin(), place.locals.rend(), [](const Place::Local& l) { return l.counts; });
+    if (found == place.locals.rend())
+        diagnostics_.error(span, fmt::format("'choose {}' draws along a repetition, and there is none here", word),
+                           "say it in '{ … }*', 'row', 'around', 'for k in 1..n' or a rule with 'repeat', and hand the "
+                           "value down by 'with'");
+    else if (alternatives < 2)
+        diagnostics_.error(span, fmt::format("'choose {}' needs two alternatives or more", word));
+    return found == place.locals.rend() ? nullptr : &*found;
 }
 
 Expr Checker::weight(Place& place, const Written& e) {
@@ -226,6 +243,11 @@ Typed Checker::choice(Place& place, const Written& e) {
         return failed(e.span, std::string(noChance));
     Typed result;
     result.expr = chance(place, e);
+    if (!e.text.empty())
+        if (const auto* local = counter(place, e.span, e.text, e.args.size() / 2)) {
+            result.expr.index = static_cast<uint32_t>(e.text == "distinct" ? Series::Distinct : Series::Shuffled);
+            result.expr.value = Value::number(local->index);
+        }
     std::vector<Typed> values;
     std::vector<const Expr*> weights;
     for (size_t i = 0; i + 1 < e.args.size(); i += 2) {
@@ -254,6 +276,7 @@ Typed Checker::range(Place& place, const Written& e) {
     Expr drawn = chance(place, e);
     std::vector<Typed> ends;
     for (const Written& end : e.args) ends.push_back(expression(place, end));
+    mix(place, ends[0], ends[1]);
     if (!sameType(ends[0], ends[1], "draw between")) return {{}, Type::unknown()};
     const auto lo = fold(ends[0].expr, {}), hi = fold(ends[1].expr, {});
     if (lo && hi && lo->kind == Value::Kind::Number && hi->kind == Value::Kind::Number && lo->num() > hi->num())
@@ -271,6 +294,7 @@ Typed Checker::ramp(Place& place, const Written& e) {
     std::vector<Typed> ends;
     for (const Written& end : e.args) ends.push_back(expression(place, end));
     const bool colors = ends[0].type.like.kind == Value::Kind::Color && ends[1].type.like.kind == Value::Kind::Color;
+    mix(place, ends[0], ends[1]);
     if (!colors && !sameType(ends[0], ends[1], "go between")) return {{}, Type::unknown()};
     Typed result;
     result.type.known = ends[0].type.known && ends[1].type.known;

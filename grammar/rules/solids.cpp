@@ -287,6 +287,11 @@ Solid Checker::namedSolid(Place& place, const Written& e) {
     if (e.text == "nil") return nil;
     if (const field::Primitive* row = field::findPrimitive(e.text)) return primitiveSolid(place, e, *row);
     const auto symbol = symbols_.find(e.text);
+    if (symbol != symbols_.end() && grammar_.symbols[symbol->second].isMaterial) {
+        diagnostics_.error(e.span, fmt::format("'{}' is a material, not a solid", e.text),
+                           fmt::format("write 'cube of {}' where the shape stands", e.text));
+        return nil;
+    }
     if (symbol != symbols_.end() && grammar_.symbols[symbol->second].terminal) {
         if (e.kind == Written::Kind::Call)
             diagnostics_.error(e.span, fmt::format("the terminal '{}' takes no parameters", e.text));

@@ -176,6 +176,7 @@ private:
             case Element::Kind::For:
                 return !alwaysHolds(e.guard) || !runsOnce(*e.over) || bodyMayEnd(*e.body, chain);
             case Element::Kind::While:
+            case Element::Kind::Let:
                 return true;
             case Element::Kind::When:
                 return !alwaysHolds(e.guard) || bodyMayEnd(*e.body, chain);
@@ -264,12 +265,13 @@ void findShadowed(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
                         : fmt::format("this rule never runs: the condition of the one of line {} always holds",
                                       lineOf(*always)),
                     "leave that 'when' out to draw by weight, or give it a condition that may fail");
-            } else if (plain && rule.beside != none && !rule.when) {
+            } else if (plain && rule.beside != none && !rule.when && !rule.besideWins) {
                 diagnostics.warning(
                     rule.symbolSpan,
                     fmt::format("this rule is drawn by weight against the one of line {}, also beside a '{}'",
                                 lineOf(*plain), grammar.symbols[rule.beside].name),
-                    "write 'when true' after it: a condition that holds wins");
+                    "write 'when true' after it: a condition that holds wins; in 'grammar 2' a 'beside' that holds "
+                    "does");
             }
         }
     }

@@ -36,7 +36,8 @@ struct Expr {
         Binary,    ///< text is + - * / % < <= > >= == != and or
         Range,     ///< args[0]..args[1]
         Ramp,      ///< args[0] ~> args[1]
-        Choose,    ///< choose { args[0]: args[1] | args[2]: args[3] … }: weights and values
+        Choose,    ///< choose { args[0]: args[1] | args[2]: args[3] … }: weights and values; text is "", "distinct"
+                   ///< or "shuffled"
         Error,     ///< stands where an expression could not be read; a diagnostic was given
     };
     Kind kind = Kind::Error;
@@ -81,7 +82,7 @@ struct Attribute {
 
 /// One step of a body: an operator, a solid or symbol, and the attributes that bind to it; or control around more.
 struct Element {
-    enum class Kind { Shape, Group, For, While, When, Choose };
+    enum class Kind { Shape, Group, For, While, When, Choose, Let };
     Kind kind = Kind::Shape;
     SourceSpan span;
     Operator op = Operator::None;
@@ -90,8 +91,8 @@ struct Element {
     std::vector<Attribute> after;
     Name live;                   ///< `: Name`
     std::shared_ptr<Body> body;  ///< Group: ( … ); For, While, When: { … }
-    Name variable;               ///< For: the word after `for`
-    std::optional<Expr> over;    ///< For: what follows `in`; While and When: the condition
+    Name variable;               ///< For and Let: the word behind it; Choose: `distinct`, `shuffled` or empty
+    std::optional<Expr> over;    ///< For: what follows `in`; While and When: the condition; Let: the value
     std::optional<Expr> guard;   ///< For: what follows `when`
     std::vector<Case> cases;     ///< Choose: weight: body
 };
@@ -130,8 +131,15 @@ struct RoadsDecl {
     Name name;
     std::vector<Setting> settings;
 };
+struct LetDecl {
+    SourceSpan span;
+    Name name;
+    Expr value;
+};
+/// A `terminal`, or a `material`, which is a look without a solid.
 struct TerminalDecl {
     SourceSpan span;
+    bool isMaterial = false;
     std::vector<Name> names;  ///< several may share a line
     std::vector<Attribute> attributes;
     std::optional<Expr> solid;  ///< after `=`
@@ -209,6 +217,7 @@ struct Ast {
     int version = 1;
     std::vector<UseDecl> uses;
     std::vector<ParamDecl> params;
+    std::vector<LetDecl> lets;
     std::vector<MapDecl> maps;
     std::vector<TerminalDecl> terminals;
     std::vector<StartDecl> starts;

@@ -12,8 +12,14 @@ namespace {
 
 std::string plain(std::string_view text) { return std::string(text); }
 
+/// `let NAME = …`; elsewhere the word may name something.
+bool atLet(const Cursor& cursor) {
+    return cursor.at("let") && cursor.at(Token::Kind::Word, 1) && !cursor.peek().columnOne &&
+           !cursor.operations().find(cursor.peekText(1)) && !isReserved(cursor.peekText(1));
+}
+
 bool atControl(const Cursor& cursor) {
-    return cursor.at("for") || cursor.at("while") || cursor.at("when") || cursor.at("choose");
+    return cursor.at("for") || cursor.at("while") || cursor.at("when") || cursor.at("choose") || atLet(cursor);
 }
 
 /// `morph (…)` is the operator before a group; `morph(a, b, t)` is a solid.
@@ -59,6 +65,18 @@ std::shared_ptr<Body> readBracedBody(Cursor& cursor, std::string_view where) {
     return body;
 }
 
+/// Whether ':' comes before the part ends: then a label may be a calculation, 100% - 1m.
+bool isLabelled(const Cursor& cursor) {
+    int depth = 0;
+    for (size_t i = 0; !cursor.at(Token::Kind::End, i); ++i) {
+        const std::string_view text = cursor.peekText(i);
+        depth += (text == "(" || text == "[") - (text == ")" || text == "]");
+        if (depth == 0 && text == ":") return true;
+        if (depth < 0 || text == "|" || text == "{" || text == "}") return false;
+    }
+    return false;
+}
+
 /// The label before ':' — a size, a weight, a word, or `tag K`.
 void readLabel(Cursor& cursor, Case& part) {
     if (cursor.at("tag") && cursor.at(Token::Kind::Word, 1) && cursor.at(":", 2)) {
@@ -67,7 +85,7 @@ void readLabel(Cursor& cursor, Case& part) {
     } else if (cursor.at(Token::Kind::Word) && cursor.at(":", 1) && !isReserved(cursor.peekText())) {
         part.label = readSolid(cursor);
     } else if (startsArgument(cursor)) {
-        part.label = readArgument(cursor);
+        part.label = isLabelled(cursor) ? readExpr(cursor) : readArgument(cursor);
     } else {
         cursor.fail("expected a part 'label: body', found " + cursor.found());
     }
@@ -137,7 +155,8 @@ bool beginsOperation(const Cursor& cursor) {
 
 Expr readTyped(Cursor& cursor, ArgumentType type) {
     if (type == ArgumentType::Solid) return readSolid(cursor);
-    if (type == ArgumentType::Name || type == ArgumentType::Axis || type == ArgumentType::Start) {
+    const bool word = type == ArgumentType::Name || type == ArgumentType::Start || type == ArgumentType::Symbol;
+    if (word || type == ArgumentType::Axis) {
         Expr e;
         const Name name = readName(cursor, describe(type));
         e.kind = name.empty() ? Expr::Kind::Error : Expr::Kind::Name;
@@ -151,13 +170,25 @@ Expr readTyped(Cursor& cursor, ArgumentType type) {
 bool fits(const Cursor& cursor, ArgumentType type) {
     const bool word = cursor.at(Token::Kind::Word);
     if (type == ArgumentType::Axis) return cursor.at("x") || cursor.at("y") || cursor.at("z");
-    if (type == ArgumentType::Name || type == ArgumentType::Solid || type == ArgumentType::Start)
+    if (type == ArgumentType::Name || type == ArgumentType::Solid || type == ArgumentType::Start ||
+        type == ArgumentType::Symbol)
         return word && !isReserved(cursor.peekText()) && !beginsOperation(cursor);
     return startsArgument(cursor) && !beginsOperation(cursor);
 }
 
+void refuseCalculation(Cursor& cursor, std::string_view word) {
+    if (cursor.at("*") || cursor.at("/") || cursor.at("%"))
+        cursor.fail(cursor.found() + " can't follow the argument of '" + plain(word) + "'",
+                    "put a calculation in parentheses");
+}
+
 void readArguments(Cursor& cursor, const Operation& row, Attribute& attribute) {
     for (const OperationArgument& argument : row.arguments) {
+        if (!argument.word.empty()) {
+            if (argument.optional && !cursor.at(argument.word)) return;
+            if (!cursor.expect(argument.word, "in '" + plain(row.name) + "'", "as in '" + plain(row.example) + "'"))
+                return;
+        }
         if (!fits(cursor, argument.type)) {
             if (argument.optional) continue;
             cursor.fail(
@@ -168,9 +199,7 @@ void readArguments(Cursor& cursor, const Operation& row, Attribute& attribute) {
         attribute.args.push_back(readTyped(cursor, argument.type));
         if (row.namesValue && attribute.args.size() == 1) cursor.expect("=", "after the value's name");
     }
-    if (cursor.at("*") || cursor.at("/") || cursor.at("%"))
-        cursor.fail(cursor.found() + " can't follow the argument of '" + plain(row.name) + "'",
-                    "put a calculation in parentheses");
+    refuseCalculation(cursor, row.name);
 }
 
 std::vector<Attribute> readAttributes(Cursor& cursor) {
@@ -221,8 +250,18 @@ void readControl(Cursor& cursor, Element& element) {
                         "put the operator before each shape in its block, or group it with ( )");
     }
     const std::string_view word = cursor.text(cursor.take());
+    if (word == "let") {
+        element.kind = Element::Kind::Let;
+        element.variable = readName(cursor, "a value");
+        cursor.expect("=", "after the value's name");
+        element.over = readArgument(cursor);
+        refuseCalculation(cursor, "let");
+        return;
+    }
     if (word == "choose") {
         element.kind = Element::Kind::Choose;
+        if (cursor.at(Token::Kind::Word) && isSeries(cursor.peekText()))
+            element.variable = readName(cursor, "a way to choose");
         element.cases = readBlock(cursor, "after 'choose'", "1");
         return;
     }
@@ -240,6 +279,12 @@ void readControl(Cursor& cursor, Element& element) {
     element.body = readBracedBody(cursor, "before the body of '" + plain(word) + "'");
 }
 
+/// A shape begins the body behind its values.
+bool followsLet(const Cursor& cursor, const Element& before) {
+    if (before.kind != Element::Kind::Let) return false;
+    return cursor.at("(") || (cursor.at(Token::Kind::Word) && !isReserved(cursor.peekText()));
+}
+
 Element readElement(Cursor& cursor) {
     const Cursor::Nest nest(cursor);
     const uint32_t begin = cursor.peek().begin;
@@ -253,11 +298,11 @@ Element readElement(Cursor& cursor) {
     return element;
 }
 
-/// element {element}, where every one but the first has an operator or is control.
+/// element {element}, where every one but the first and what stands behind a `let` has an operator or is control.
 std::vector<Element> readChain(Cursor& cursor) {
     std::vector<Element> chain;
     do chain.push_back(readElement(cursor));
-    while (atOperator(cursor) || atControl(cursor));
+    while (!cursor.failed() && (atOperator(cursor) || atControl(cursor) || followsLet(cursor, chain.back())));
     return chain;
 }
 
@@ -292,43 +337,34 @@ bool atAttribute(const Cursor& cursor) {
     return cursor.at(Token::Kind::Word) && cursor.operations().find(cursor.peekText());
 }
 
-std::string missingEqualsHint(const Cursor& cursor, const Name& name) {
-    return cursor.done() ? std::string() : "write " + quoted(name.text + " = " + std::string(cursor.peekText()));
-}
-
-std::vector<Setting> readSettings(Cursor& cursor) {
-    std::vector<Setting> settings;
-    const Token open = cursor.peek();
-    if (!cursor.expect("{", "before the settings")) return settings;
-    while (!cursor.done() && !cursor.at("}")) {
-        Setting setting;
-        setting.name = readName(cursor, "a parameter");
-        cursor.expect("=", "after the parameter's name", missingEqualsHint(cursor, setting.name));
-        setting.value = readExpr(cursor);
-        setting.span = join(setting.name.span, setting.value.span);
-        settings.push_back(std::move(setting));
-        if (cursor.at(",")) cursor.complain(cursor.span(cursor.take()), "settings stand side by side", "leave ',' out");
-    }
-    cursor.close(open);
-    return settings;
-}
-
 Attribute readAttribute(Cursor& cursor) {
     const Token word = cursor.take();
-    const Operation& row = *cursor.operations().find(cursor.text(word));
+    const Operation* found = cursor.operations().find(cursor.text(word));
+    const bool axis = cursor.at("x") || cursor.at("y") || cursor.at("z");
+    if (found->withBlock && axis && cursor.at("{", 1)) found = found->withBlock;
+    const Operation& row = *found;
     Attribute attribute;
     attribute.name = {plain(row.name), cursor.span(word)};
     attribute.operation = &row;
     readArguments(cursor, row, attribute);
-    if (row.hasBlock()) attribute.cases = readBlock(cursor, "after '" + plain(row.name) + "'", row.blockLabel);
+    const std::string where = "after '" + plain(row.name) + "'";
+    if (row.bodyBlock) {
+        Case whole;
+        const uint32_t begin = cursor.peek().begin;
+        whole.body = readBracedBody(cursor, where);
+        whole.span = cursor.since(begin);
+        attribute.cases.push_back(std::move(whole));
+    } else if (row.hasBlock()) {
+        attribute.cases = readBlock(cursor, where, row.blockLabel);
+    }
     if (row.takesSettings && cursor.at("{")) attribute.settings = readSettings(cursor);
     attribute.span = cursor.since(word.begin);
     return attribute;
 }
 
 std::string nearestWord(const OperationTable& operations, std::string_view word) {
-    std::vector<std::string> words = {"for", "while", "when", "choose", "finally", "morph", "in",
-                                      "of",  "group", "key",  "joint",  "expect",  "axiom"};
+    std::vector<std::string> words = {"for", "while", "when",  "choose", "finally", "morph",  "in",
+                                      "let", "of",    "group", "key",    "joint",   "expect", "axiom"};
     for (const Operation* row : operations.rows()) words.emplace_back(row->name);
     const std::string near = didYouMean(word, words);
     return near.empty() ? near : "did you mean " + quoted(near) + "?";

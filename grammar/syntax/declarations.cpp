@@ -165,11 +165,14 @@ Name readSymbol(Cursor& cursor, std::string_view what) {
     return name;
 }
 
-void readTerminal(Cursor& cursor, Ast& ast) {
+void readLook(Cursor& cursor, Ast& ast, bool isMaterial) {
     TerminalDecl terminal;
+    terminal.isMaterial = isMaterial;
     const uint32_t begin = cursor.take().begin;
-    do terminal.names.push_back(readSymbol(cursor, "a terminal"));
+    do terminal.names.push_back(readSymbol(cursor, isMaterial ? "a material" : "a terminal"));
     while (cursor.accept(","));
+    if (isMaterial && (cursor.at("=") || cursor.at("joint")))
+        cursor.fail("a material is a look alone: it has no solid and no joints", "write 'terminal' for a shape");
     if (cursor.accept("=")) terminal.solid = readSolid(cursor);
     while (atAttribute(cursor) || cursor.at("joint")) {
         if (cursor.at("joint"))
@@ -179,6 +182,19 @@ void readTerminal(Cursor& cursor, Ast& ast) {
     }
     terminal.span = cursor.since(begin);
     if (!terminal.names[0].empty()) ast.terminals.push_back(std::move(terminal));
+}
+
+void readTerminal(Cursor& cursor, Ast& ast) { readLook(cursor, ast, false); }
+void readMaterial(Cursor& cursor, Ast& ast) { readLook(cursor, ast, true); }
+
+void readLet(Cursor& cursor, Ast& ast) {
+    LetDecl let;
+    const uint32_t begin = cursor.take().begin;
+    let.name = readName(cursor, "a value");
+    cursor.expect("=", "after the value's name", missingEqualsHint(cursor, let.name));
+    let.value = readExpr(cursor);
+    let.span = cursor.since(begin);
+    if (!let.name.empty()) ast.lets.push_back(std::move(let));
 }
 
 void readStart(Cursor& cursor, Ast& ast) {
@@ -341,9 +357,10 @@ void readOverride(Cursor& cursor, Ast& ast) {
 }
 
 constexpr Declaration table[] = {
-    {"use", readUse},     {"param", readParam}, {"map", readMap},       {"terminal", readTerminal},
-    {"start", readStart}, {"rule", readRule},   {"derive", readDerive}, {"lsystem", readLsystem},
-    {"roads", readRoads}, {"style", readStyle}, {"check", readCheck},   {"override", readOverride},
+    {"use", readUse},           {"param", readParam},       {"let", readLet},     {"map", readMap},
+    {"material", readMaterial}, {"terminal", readTerminal}, {"start", readStart}, {"rule", readRule},
+    {"derive", readDerive},     {"lsystem", readLsystem},   {"roads", readRoads}, {"style", readStyle},
+    {"check", readCheck},       {"override", readOverride},
 };
 
 }  // namespace

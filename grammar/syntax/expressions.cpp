@@ -319,6 +319,7 @@ private:
         Expr e;
         e.kind = Kind::Choose;
         const uint32_t begin = cursor_.take().begin;
+        if (cursor_.at(Token::Kind::Word) && isSeries(cursor_.peekText())) e.text = cursor_.text(cursor_.take());
         const Token open = cursor_.peek();
         e.span = cursor_.since(begin);
         if (!cursor_.expect("{", "after 'choose'", "as in 'choose { 3: +x | 1: -z }'")) return e;
@@ -386,6 +387,8 @@ Name readName(Cursor& cursor, std::string_view what) {
     const Token token = cursor.take();
     return {std::string(cursor.text(token)), cursor.span(token)};
 }
+
+bool isSeries(std::string_view word) { return word == "distinct" || word == "shuffled"; }
 
 bool isReserved(std::string_view word) {
     return std::find(std::begin(reserved), std::end(reserved), word) != std::end(reserved);

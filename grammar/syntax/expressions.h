@@ -18,6 +18,8 @@ Expr readSolid(Cursor& cursor);
 bool startsArgument(const Cursor& cursor);
 /// A word that names something; `what` ("a rule", "a parameter") is for the message. Words of the language are refused.
 Name readName(Cursor& cursor, std::string_view what);
+/// `distinct` or `shuffled`: how a `choose` draws along a repetition.
+bool isSeries(std::string_view word);
 /// A word of the language, which can name nothing.
 bool isReserved(std::string_view word);
 

@@ -30,9 +30,8 @@ constexpr ForeignDeclaration foreignDeclarations[] = {
     {"import", "use", "write 'use'"},
     {"include", "use", "write 'use'"},
     {"require", "use", "write 'use'"},
-    {"let", "param", "there are no constants: write 'param'"},
-    {"const", "param", "there are no constants: write 'param'"},
-    {"var", "param", "there are no variables: write 'param'"},
+    {"const", "let", "write 'let'"},
+    {"var", "let", "there are no variables: write 'let'"},
     {"parameter", "param", "write 'param'"},
     {"attr", "param", "write 'param'"},
 };
@@ -54,7 +53,7 @@ constexpr ForeignWord foreignAttributes[] = {
     {"depth", "write 'size (x, y, z)': z is the depth"},
     {"free", "write 'at free(…)'"},
     {"last", "write 'on last'"},
-    {"material", "name a terminal, as 'stone' of std/walls.sgm, or write 'color #c8b090'"},
+    {"material", "write 'of' and a material, as 'of stone', or 'color #c8b090'"},
     {"roughness", "write 'rough'"},
     {"metalness", "write 'metal'"},
 };

@@ -35,6 +35,12 @@ std::string_view describe(ArgumentType type) {
             return "the name of a start";
         case ArgumentType::Plan:
             return "a plan such as 'ell(16, 12, 5, 6)'";
+        case ArgumentType::Symbol:
+            return "the name of a shape";
+        case ArgumentType::Material:
+            return "a material";
+        case ArgumentType::Point:
+            return "a point (x, y, z) or a joint";
     }
     return "a value";
 }

@@ -46,6 +46,9 @@ enum class ArgumentType : uint8_t {
     Name,      ///< a bare word (a tag)
     Start,     ///< the name of a start
     Plan,      ///< a plan by name, ell(16, 12, 5, 6), or a number
+    Symbol,    ///< the name of a shape that rules rewrite
+    Material,  ///< a `material` by name, or a value that holds one
+    Point,     ///< a point (x, y, z), or a joint
 };
 
 /// "a length", "a joint": an argument's type in words.
@@ -56,6 +59,7 @@ struct OperationArgument {
     ArgumentType type;
     std::string_view doc;
     bool optional = false;
+    std::string_view word{};  ///< a word that stands before it: the `to` of 'from P to Q'
 };
 
 /// Numbers that an operation takes, per component; both ends included.
@@ -89,12 +93,15 @@ struct Operation {
     std::span<const OperationArgument> arguments{};
     Phase phase = Phase::Scope;
     OperationRange range{};
-    std::string_view blockLabel{};  ///< a label that fits its { label: body | … }; empty: it has no block
-    bool repeatable = false;        ///< may be said several times of one shape
-    bool beforeShape = false;       ///< may stand before a shape without an operator
-    bool namesValue = false;        ///< its first argument is a name, followed by '=': rules below may read it
-    bool takesSettings = false;     ///< { name = value … } may follow its arguments
-    bool turnsShape = false;        ///< may leave the newcomer's joints in other directions
+    std::string_view blockLabel{};         ///< a label that fits its { label: body | … }; empty: it has none
+    bool bodyBlock = false;                ///< its block is a body without labels: { body }
+    const Operation* withBlock = nullptr;  ///< the operation of that name whose block begins behind one axis
+    bool repeatable = false;               ///< may be said several times of one shape
+    bool stacks = false;                   ///< may be said several times from `grammar 2` on, one after the other
+    bool beforeShape = false;              ///< may stand before a shape without an operator
+    bool namesValue = false;               ///< its first argument is a name, followed by '=': rules below may read it
+    bool takesSettings = false;            ///< { name = value … } may follow its arguments
+    bool turnsShape = false;               ///< may leave the newcomer's joints in other directions
     /// Checks the arguments and adds an attribute; null: every argument as its type asks, numbers within `range`.
     Check check = nullptr;
     /// Refuses what contradicts the element's operator or its other attributes; null: nothing does.
@@ -108,7 +115,7 @@ struct Operation {
     CheckParts checkParts = nullptr;
     Run run = nullptr;
 
-    bool hasBlock() const { return !blockLabel.empty(); }
+    bool hasBlock() const { return !blockLabel.empty() || bodyBlock; }
 };
 
 /// The operations of a language, by name.

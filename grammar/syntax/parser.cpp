@@ -77,10 +77,10 @@ bool readVersion(Cursor& cursor, Ast& ast) {
         return true;
     }
     ast.version = static_cast<int>(std::min(readArgument(cursor).number, 1e6));
-    if (cursor.text(version) == "1") return true;
+    if (cursor.text(version) == "1" || cursor.text(version) == "2") return true;
     cursor.failAt(cursor.span(version),
-                  "this program reads grammar version 1, not " + std::string(cursor.text(version)),
-                  "write 'grammar 1', or use a newer program");
+                  "this program reads grammar versions 1 and 2, not " + std::string(cursor.text(version)),
+                  "write 'grammar 2', or use a newer program");
     return false;
 }
 

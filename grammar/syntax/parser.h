@@ -3,8 +3,8 @@
 // recovery restarts at a keyword in column one, so one run shows all problems and a slip is reported once.
 //
 // clang-format off
-//   file        = "grammar" "1" { declaration } .                        a declaration's word stands in column one
-//   declaration = use | param | map | terminal | start | rule | derive | lsystem | roads | style | check |
+//   file        = "grammar" ( "1" | "2" ) { declaration } .              a declaration's word stands in column one
+//   declaration = use | param | let | map | material | terminal | start | rule | derive | lsystem | roads | style | check |
 //                 override .
 //
 //   use         = "use" TEXT [ settings ] .
@@ -12,6 +12,8 @@
 //   map         = "map" NAME "=" ( TEXT | expr ) { "as" expr | "of" class {"," class} | "over" expr } .
 //   class       = ( COLOR | "else" ) ":" NAME .
 //   roads       = "roads" NAME settings .
+//   let         = "let" NAME "=" expr .
+//   material    = "material" NAME {"," NAME} { attribute } .
 //   terminal    = "terminal" NAME {"," NAME} [ "=" solid ]
 //                 { attribute | "joint" NAME "at" argument "facing" argument } .
 //   start       = "start" NAME "->" body .
@@ -27,17 +29,19 @@
 //   settings    = "{" { NAME "=" expr } "}" .
 //
 //   body        = chain { "," chain } .                                  siblings
-//   chain       = element { element } .                                  every one but the first has an operator or is control
+//   chain       = element { element } .                                  every one but the first has an operator, is control
+//                                                                        or stands behind "let"
 //   element     = [ operator ] shape | control .
 //   operator    = "+" | "-" | "&" | "morph" .                            "morph" glued to "(" is a solid
 //   shape       = { attribute } [ solid | "(" body ")" ] { attribute } [ ":" NAME ] .       not empty
 //   control     = "for" NAME "in" expr [ "when" expr ] "{" body "}" | ( "while" | "when" ) expr "{" body "}"
-//               | "choose" block .
+//               | "choose" [ "distinct" | "shuffled" ] block | "let" NAME "=" argument .
 //   solid       = NAME | call .
-//   attribute   = OPERATION { argument } [ block ] .                     as its row of the operation table says;
+//   attribute   = OPERATION { [ WORD ] argument } [ block | "{" body "}" ] .
+//                                                                        as its row of the operation table says;
 //                                                                        "with" NAME "=" argument
 //   block       = "{" case { "|" case } "}" .
-//   case        = ( argument | "tag" NAME ) ":" body | block "*" .
+//   case        = ( expr | "tag" NAME ) ":" body | block "*" .
 //
 //   argument    = limit [ "~>" limit ] .                                 binds tighter than any operator of a body
 //   limit       = simple [ ".." simple ] .
@@ -52,10 +56,10 @@
 //   unary       = "-" unary | postfix .
 //   postfix     = primary { "[" expr "]" | "." NAME } .
 //   primary     = NUMBER | TEXT | COLOR | AXIS | NAME | call | "~" simple | "(" expr { "," expr } ")"
-//               | "choose" "{" expr ":" expr { "|" expr ":" expr } "}" .
+//               | "choose" [ "distinct" | "shuffled" ] "{" expr ":" expr { "|" expr ":" expr } "}" .
 //   call        = NAME "(" [ [ NAME ":" ] expr { "," [ NAME ":" ] expr } ] ")" .            "(" glued to NAME
 //
-//   NUMBER      = ( DIGITS [ "." DIGITS ] | "." DIGITS ) [ "e" [ "+" | "-" ] DIGITS ] [ "m" | "deg" | "%" | "/m" ] .  glued
+//   NUMBER      = ( DIGITS [ "." DIGITS ] | "." DIGITS ) [ "e" [ "+" | "-" ] DIGITS ] [ "m" | "km" | "cm" | "mm" | "deg" | "%" | "/m" ] .  glued
 //   AXIS        = ( "+" | "-" ) ( "x" | "y" | "z" ) .                    glued, where a value is expected
 //   COLOR       = "#" and six hex digits.     TEXT = '"' … '"' on one line; \" and \\ are its escapes.
 //   NAME        = letters, digits and "_", beginning with no digit; no word of the language.    // begins a comment.

@@ -196,6 +196,19 @@ TEST_F(Cli, FormatterIsIdempotentAndShippedGrammarsAreFormatted) {
     EXPECT_EQ(sgm("fmt --check " + file).code, 0);
 }
 
+TEST_F(Cli, FormatterUpgradesAndReports) {
+    const std::string file =
+        grammar("start A -> size 4 B\nrule B -> cube size 1m move (1m, 0, 0) + sphere size 50%\n");
+    const Outcome run = sgm("fmt --upgrade " + file);
+    EXPECT_EQ(run.code, 0);
+    EXPECT_NE(run.out.find("shapes behind this one were measured by it"), std::string::npos) << run.out;
+    EXPECT_NE(read(file).find("grammar 2\n"), std::string::npos);
+    EXPECT_NE(read(file).find("rule B -> move (1m, 0, 0) size 1m (cube + sphere size 50%)"), std::string::npos)
+        << read(file);
+    EXPECT_EQ(sgm("check " + file).code, 0);
+    EXPECT_EQ(sgm("fmt --upgrade " + file).out, "");
+}
+
 TEST_F(Cli, ExamplesCheckFine) {
     for (const auto& entry : fs::directory_iterator("examples")) {
         if (entry.path().extension() != ".sgm") continue;

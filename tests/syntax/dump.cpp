@@ -120,6 +120,12 @@ void Dump::simpleDeclarations(const Ast& ast) {
         name(d.key);
         close();
     }
+    for (const LetDecl& d : ast.lets) {
+        open("\nlet", d.span);
+        name(d.name);
+        expr(d.value);
+        close();
+    }
     for (const MapDecl& d : ast.maps) {
         open("\nmap", d.span);
         name(d.name);
@@ -145,7 +151,7 @@ void Dump::simpleDeclarations(const Ast& ast) {
 
 void Dump::shapeDeclarations(const Ast& ast) {
     for (const TerminalDecl& d : ast.terminals) {
-        open("\nterminal", d.span);
+        open(d.isMaterial ? "\nmaterial" : "\nterminal", d.span);
         for (const Name& n : d.names) name(n);
         for (const Attribute& a : d.attributes) attribute(a);
         expr(d.solid);

@@ -44,7 +44,9 @@ std::string headOf(const Element& e) {
         case Element::Kind::When:
             return "when " + oneLine(e.over);
         case Element::Kind::Choose:
-            return "choose";
+            return e.variable.empty() ? "choose" : "choose " + e.variable.text;
+        case Element::Kind::Let:
+            return "let " + e.variable.text + " = " + oneLine(e.over);
         case Element::Kind::Group:
         case Element::Kind::Shape:
             break;
@@ -129,6 +131,10 @@ private:
     }
     void cases(const std::vector<Case>& list, uint32_t depth) {
         for (const Case& c : list) {
+            if (!c.repeated && c.tag.empty() && !c.label) {  // a block without labels
+                if (c.body) body(*c.body, depth);
+                continue;
+            }
             const std::string label = c.repeated      ? "{ }*"
                                       : c.tag.empty() ? oneLine(c.label) + ":"
                                                       : "tag " + c.tag.text + ":";

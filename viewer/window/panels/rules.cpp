@@ -301,7 +301,8 @@ void RulesPanel::attributes(Workbench& bench, const Element& element) {
     std::string_view example = operation.example;
     const size_t from = example.find(operation.name);
     example = from == std::string_view::npos ? std::string_view("1") : example.substr(from + operation.name.size());
-    bench.edit(edits::setAttribute(ast, element, operation, firstArgument(example)),
+    const std::string arguments = operation.arguments.size() > 1 ? std::string(example) : firstArgument(example);
+    bench.edit(edits::setAttribute(ast, element, operation, arguments),
                fmt::format("Add {}", operation.name));
 }
 
