@@ -5,7 +5,8 @@
 #   ./run.sh bench [ARGUMENTS…]   measures field → mesh beside a dense sweep, OpenVDB and the machine (docs/performance.md)
 #   ./run.sh view FILE            opens the window about a grammar
 #   ./run.sh gallery [NAME…]      draws the pictures of docs/ and README, and measures the times on the gallery's page
-#   ./run.sh package [FOLDER]     writes what other programs install, as the Blender add-on's zip, into out/
+#   ./run.sh package [FOLDER] [WHAT]   writes what other programs install, as the Blender add-on's zip, into out/
+#   ./run.sh site [FOLDER]        makes a site of docs/ with search in out/site (it wants mkdocs)
 #   ./run.sh fuzz [SECONDS] [TARGET…]  runs the fuzz targets mesh and syntax (clang++; 600 seconds each)
 cd "$(dirname "$0")"
 . cmake/setup.sh
@@ -16,6 +17,7 @@ case "${1:-}" in
     exec build/release/tests/bench/bench "$@" ;;
   fuzz) shift && exec tests/fuzz/run.sh "$@" ;;
   package) shift && exec integrations/package.sh "$@" ;;
+  site) shift && exec integrations/site/build.py "$@" ;;
   view) build sgm sgm-viewer ;;
   gallery) build sgm sgm-viewer bench && shift && exec docs/gallery.sh "$@" ;;
 esac
