@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Writes what other programs install into a folder: the Blender add-on as a zip and, where npm is there to fetch what it
-# needs, the VS Code extension.
-#   integrations/package.sh [FOLDER] [blender|vscode]      (out, both)
+# Writes what is installed elsewhere into a folder, each where what makes it is there: the Blender add-on and Godot's importer as
+# zips, the VS Code extension (npm), the Python module as a wheel (pybind11-dev, patchelf), the Debian package (dpkg-dev) and a
+# tarball of programs that runs wherever it is unpacked (patchelf).
+#   integrations/package.sh [FOLDER] [blender|godot|vscode|python|deb|tarball]      (out, all)
 set -eu
 cd "$(dirname "$0")/.."
 folder=$(realpath -m "${1:-out}")
@@ -38,10 +39,73 @@ extension() {
   archive sgm-language.vsix "$stage" --files-from="$stage.files"
   rm "$stage.files"
 }
+
+importer() {
+  # shellcheck disable=SC2046
+  archive sgm_godot.zip integrations/godot $(cd integrations/godot && find addons -type f | LC_ALL=C sort)
+}
+
+# built TARGET…: brings the release build up to date.
+built() {
+  # shellcheck source=cmake/setup.sh
+  (. cmake/setup.sh && build "$@")
+}
+
+wheel() {
+  built sgm_python sgm_shared sgm_volumes
+  integrations/python/wheel.sh build/release "$folder"
+}
+
+programs="sgm sgm-viewer sgm_shared sgm_volumes desktop"
+
+deb() {
+  # shellcheck disable=SC2086
+  built $programs
+  local stage
+  stage=$(mktemp -d)
+  trap 'rm -rf "$stage"' RETURN
+  (cd build/release && cpack -G DEB -B "$stage" >"$stage.log" 2>&1) || { cat "$stage.log" >&2; return 1; }
+  rm "$stage.log"
+  mv "$stage"/*.deb "$folder"
+  ls "$folder"/sgm_*.deb
+}
+
+tarball() {
+  # shellcheck disable=SC2086
+  built $programs
+  local stage name
+  stage=$(mktemp -d)
+  trap 'rm -rf "$stage"' RETURN
+  name=sgm-$(sed -n 's/^CMAKE_PROJECT_VERSION:[A-Z]*=//p' build/release/CMakeCache.txt)-linux-$(uname -m)
+  DESTDIR='' cmake --install build/release --strip --prefix "$stage/$name" >/dev/null
+  integrations/bundle.sh "$stage/$name/lib" "$stage/$name"/bin/* "$stage/$name"/lib/libsgm.so "$stage/$name"/lib/sgm/*.so
+  cp README.md LICENSE "$stage/$name"
+  tar -C "$stage" --sort=name --owner=0 --group=0 --numeric-owner --mtime=2000-01-01 -cJf "$folder/$name.tar.xz" "$name"
+  echo "$folder/$name.tar.xz"
+}
+
+# may COMMAND PACKAGE KIND: whether what makes a kind is there; says so where it isn't.
+may() {
+  command -v "$1" >/dev/null && return 0
+  echo "$2 isn't installed: no $3 is packed" >&2
+  return 1
+}
+
 case ${2:-} in
   blender) addon ;;
+  godot) importer ;;
   vscode) extension ;;
-  *)
+  python) wheel ;;
+  deb) deb ;;
+  tarball) tarball ;;
+  '')
     addon
-    if command -v npm >/dev/null; then extension; else echo "npm isn't installed: no VS Code extension is packed" >&2; fi ;;
+    importer
+    if may npm npm "VS Code extension"; then extension; fi
+    if may pybind11-config pybind11-dev "Python wheel" && may patchelf patchelf "Python wheel"; then wheel; fi
+    if may dpkg-shlibdeps dpkg-dev "Debian package"; then deb; fi
+    if may patchelf patchelf tarball; then tarball; fi ;;
+  *)
+    echo "there is no package '$2'; there are blender godot vscode python deb tarball" >&2
+    exit 2 ;;
 esac

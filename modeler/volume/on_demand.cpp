@@ -41,6 +41,14 @@ Error unloadable(const std::string& why) {
             "volumes: " + why + (memory ? ": out of memory" : "")};
 }
 
+/// Lets the module find the functions of the library that holds this one, where a program loaded that for itself alone,
+/// as Python loads its modules.
+void shareSymbols() {
+    Dl_info info{};
+    if (dladdr(reinterpret_cast<const void*>(&shareSymbols), &info) != 0 && info.dli_fname)
+        dlopen(info.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL);
+}
+
 /// The table. Error::Internal where the module or OpenVDB isn't to be found, Error::Budget where there are no threads.
 Result<const PluginFunctions*> load() {
     const Error noThreads{Error::Kind::Budget,
@@ -52,6 +60,7 @@ Result<const PluginFunctions*> load() {
         for (const char* beside : {"", "sgm", "../sgm", "../lib/sgm"}) places.push_back(folder / beside / moduleName);
     for (const auto& path : places) {
         if (!std::filesystem::exists(path)) continue;
+        shareSymbols();
         void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
         const void* const symbol = module ? dlsym(module, "sgm_volume_functions") : nullptr;
         if (!symbol) return unloadable(dlerror());

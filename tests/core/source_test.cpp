@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t mostLines = 400;
-const std::vector<std::string> folders{"modeler", "grammar", "viewer", "cli", "tests", "examples"};
+const std::vector<std::string> folders{"modeler", "grammar", "viewer", "cli", "tests", "examples", "integrations"};
 
 /// The C++ sources of the repository, the working directory.
 std::vector<fs::path> sources() {
