@@ -15,7 +15,7 @@ using Path = std::filesystem::path;
 
 // clang-format off
 /// Every format, in the order of the reference page; each is defined in a file of its own.
-#define SGM_FORMATS(X) X(glb) X(gltf) X(obj) X(ply) X(stl) X(off) X(usda) X(vdb) X(csgJson) X(scad) X(svg) X(geojson)
+#define SGM_FORMATS(X) X(glb) X(gltf) X(obj) X(ply) X(stl) X(off) X(usda) X(vdb) X(csgJson) X(scad) X(svg) X(geojson) X(html)
 // clang-format on
 #define SGM_DECLARE(name) extern const Exporter name##Format;
 SGM_FORMATS(SGM_DECLARE)

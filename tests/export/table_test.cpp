@@ -10,7 +10,7 @@ namespace sgm::exporter {
 namespace {
 
 TEST(ExporterTable, EveryRowIsComplete) {
-    EXPECT_EQ(exporters().size(), 12u);
+    EXPECT_EQ(exporters().size(), 13u);
     for (const Exporter& row : exporters()) {
         EXPECT_EQ(row.extension[0], '.');
         EXPECT_FALSE(row.doc.empty());
