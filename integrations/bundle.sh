@@ -6,7 +6,7 @@ set -eu
 folder=$(realpath "$1")
 shift
 command -v patchelf >/dev/null || { echo "patchelf isn't installed (apt-get install patchelf)" >&2; exit 1; }
-theirs='^(ld-linux.*|linux-vdso|libc|libm|libdl|libpthread|librt|libresolv|libutil|libstdc\+\+|libgcc_s|libGL|libGLX|libGLdispatch|libOpenGL|libEGL|libX[A-Za-z0-9]*|libxcb.*|libX11-xcb)\.so'
+theirs='^(ld-linux.*|linux-vdso|libc|libm|libdl|libpthread|librt|libresolv|libutil|libstdc\+\+|libgcc_s|libGL|libGLX|libGLdispatch|libOpenGL|libEGL|libX[A-Za-z0-9]*|libxcb.*|libX11-xcb|libbsd|libmd)\.so'
 
 # Names and places of what a file needs, itself and through others.
 needed() { LD_LIBRARY_PATH=$folder ldd "$1" | sed -n 's/^\s*\(\S*\) => \(\/\S*\) .*/\1 \2/p'; }

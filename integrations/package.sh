@@ -80,8 +80,8 @@ tarball() {
   DESTDIR='' cmake --install build/release --strip --prefix "$stage/$name" >/dev/null
   integrations/bundle.sh "$stage/$name/lib" "$stage/$name"/bin/* "$stage/$name"/lib/libsgm.so "$stage/$name"/lib/sgm/*.so
   cp README.md LICENSE "$stage/$name"
-  tar -C "$stage" --sort=name --owner=0 --group=0 --numeric-owner --mtime=2000-01-01 -cJf "$folder/$name.tar.xz" "$name"
-  echo "$folder/$name.tar.xz"
+  tar -C "$stage" --sort=name --owner=0 --group=0 --numeric-owner --mtime=2000-01-01 -czf "$folder/$name.tar.gz" "$name"
+  echo "$folder/$name.tar.gz"
 }
 
 # may COMMAND PACKAGE KIND: whether what makes a kind is there; says so where it isn't.
