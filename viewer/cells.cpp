@@ -4,6 +4,7 @@
 
 #include "modeler/core/parallel.h"
 #include "modeler/eval/evaluate.h"
+#include "modeler/field/ops.h"
 
 namespace sgm::viewer {
 namespace {
@@ -50,6 +51,31 @@ Children childrenOf(const Pending& cell, float edge, float margin, eval::Workspa
 }
 
 }  // namespace
+
+/// A greatest of parts may be small between them; so may a least of parts, seen from the other side of a sign.
+uint8_t doubtsOf(const eval::Tape& tape) {
+    using field::ops::Owner;
+    std::vector<bool> owned(tape.registerCount(), false);
+    bool greatest = false, least = false, turned = false;
+    for (const eval::Instruction& in : tape.code()) {
+        const field::OpTraits& row = field::traits(in.op);
+        const eval::Source direct[] = {in.a, in.b};
+        const eval::Source* const sources = row.arity == field::ops::variadic ? tape.sources().data() + in.a : direct;
+        uint32_t count = 0;
+        bool last = false;
+        for (uint32_t k = row.firstPrunable; k < in.count; ++k) {
+            last = (in.origins && tape.origins()[in.origins - 1 + k] != 0) ||
+                   (!eval::isConstant(sources[k]) && owned[sources[k]]);
+            count += last;
+        }
+        greatest |= row.owner == Owner::Greatest && count > 1;
+        least |= row.owner == Owner::Least && count > 1;
+        turned |= last && (in.op == field::codeOf<field::ops::Neg> || in.op == field::codeOf<field::ops::Sub>);
+        owned[in.out] = count > 0;
+    }
+    return static_cast<uint8_t>((greatest || (least && turned) ? DoubtOutside : 0) |
+                                (greatest || least ? DoubtInside : 0));
+}
 
 uint32_t CellTree::find(Vec3f p) const {
     Vec3f q = (p - low) / edge * 4.0f;
@@ -108,6 +134,7 @@ Result<CellTree> cutIntoCells(const eval::Tape& tape, const Box3f& bounds, float
                     else {
                         tree.tapes.push_back(std::move(shortened));
                         tree.ranges.push_back(range);
+                        tree.doubts.push_back(doubtsOf(tree.tapes.back()));
                     }
                 }
                 tree.nodes.push_back(uint32_t(state) << 30 | index);

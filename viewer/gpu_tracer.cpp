@@ -24,7 +24,7 @@ public:
         for (size_t i = 0; i < tree.tapes.size(); ++i)
             leaves.insert(leaves.end(),
                           {eval::appendTape(tree.tapes[i], words), std::bit_cast<uint32_t>(tree.ranges[i].lo),
-                           std::bit_cast<uint32_t>(tree.ranges[i].hi), 0});
+                           std::bit_cast<uint32_t>(tree.ranges[i].hi), tree.doubts[i]});
         if (words.empty()) words.resize(4);
         if (leaves.empty()) leaves.resize(4);
         words_ = TexelBuffer::of(words, 4);

@@ -186,6 +186,7 @@ private:
         struct Weighed {
             size_t hit;
             float enough;
+            bool doubtful;
         };
         std::vector<Weighed> of;
         for (size_t i = 0; i < hits.size(); ++i) {
@@ -198,17 +199,28 @@ private:
                 const Cell cell = cells.cellAt(place);
                 if (cell.least >= enough) continue;
                 if (cell.state == CellState::Near) {
-                    of.push_back({i, enough});
+                    of.push_back({i, enough, cell.doubtful});
                     questions.push_back({place, cell.tape});
                 } else if (cell.state == CellState::Inside) {
                     shadings[i].openness -= 0.25f;
                 }
             }
         }
-        const std::vector<float>& values = evaluator.of(questions, cost);
+        std::vector<float> free = evaluator.of(questions, cost);
         cost.light += questions.size();
+        std::vector<ClearanceWalk> walks;
+        std::vector<size_t> walked;
+        for (size_t j = 0; j < of.size(); ++j) {
+            free[j] *= cells.side;
+            if (!of[j].doubtful || free[j] < 0 || free[j] > 0.95f * of[j].enough) continue;
+            walked.push_back(j);
+            const float pixel = pixelAngle() * length(view_.eye.as<float>() - questions[j].place);
+            walks.emplace_back(cells, questions[j].place, free[j], of[j].enough, pixel);
+        }
+        cost.light += evaluator.follow(cells, std::span(walks), cost);
+        for (size_t k = 0; k < walks.size(); ++k) free[walked[k]] = walks[k].clearance();
         for (size_t j = 0; j < of.size(); ++j)
-            shadings[of[j].hit].openness -= 0.25f * (1 - std::clamp(cells.side * values[j] / of[j].enough, 0.0f, 1.0f));
+            shadings[of[j].hit].openness -= 0.25f * (1 - std::clamp(free[j] / of[j].enough, 0.0f, 1.0f));
         // A little stays even where things touch: light creeps in.
         for (Shading& lit : shadings) lit.openness = 0.08f + 0.92f * lit.openness;
     }

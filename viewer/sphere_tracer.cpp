@@ -41,6 +41,7 @@ Cell CellSpace::cellAt(Vec3f p) const {
     if (cell.state == CellState::Near) {
         cell.tape = CellTree::indexOf(word);
         cell.least = side > 0 ? tree.ranges[cell.tape].lo : -tree.ranges[cell.tape].hi;
+        cell.doubtful = tree.doubts[cell.tape] & (side > 0 ? DoubtOutside : DoubtInside);
     }
     return cell;
 }
@@ -69,11 +70,27 @@ SphereTracer::SphereTracer(const CellSpace& space, Vec3f origin, Vec3f direction
     end_ = far;
 }
 
+void SphereTracer::settleDoubt() {
+    doubted_ = false;
+    if (probe_.found()) {
+        found_ = candidate_;
+        ended_ = true;
+        return;
+    }
+    t_ += std::max(2 * gap(t_), 2 * tolerance_);
+    free_ = stride_ = 0;
+    slope_ = -1;
+}
+
 void SphereTracer::setFree(float from, float to) {
     if (from <= freeBeside_ + gap(from)) freeBeside_ = std::max(freeBeside_, to);
 }
 
 bool SphereTracer::ask(const CellSpace& space, Question& question) {
+    if (doubted_) {
+        if (probe_.ask(space, question)) return true;
+        settleDoubt();
+    }
     for (; !ended_ && steps_ < 512 && t_ + stride_ <= end_; ++steps_) {
         const Vec3f place = origin_ + (t_ + stride_) * direction_;
         if (!cell_.holds(place)) cell_ = space.cellAt(place);
@@ -103,6 +120,7 @@ bool SphereTracer::ask(const CellSpace& space, Question& question) {
 }
 
 void SphereTracer::answer(const CellSpace& space, float value) {
+    if (doubted_) return probe_.answer(space, value);
     const float next = value * space.inverseLipschitz;
     if (stride_ > free_ + std::abs(next) + gap(t_) && stride_ > 0) {  // back to the safe step
         stride_ = free_;
@@ -112,7 +130,11 @@ void SphereTracer::answer(const CellSpace& space, float value) {
     if (stride_ > 0) slope_ += 0.4f * ((next - free_) / stride_ - slope_);
     t_ += stride_;
     if (value < std::max(tolerance_, angle_ * t_)) {  // one more safe step, or back out by the secant
-        found_ = std::max(t_ + (next < 0 && stride_ > 0 ? stride_ * next / (free_ - next) : next), 0.0f);
+        candidate_ = std::max(t_ + (next < 0 && stride_ > 0 ? stride_ * next / (free_ - next) : next), 0.0f);
+        const float into = std::max(tolerance_, 0.05f * pixelAngle_ * t_);
+        doubted_ = cell_.doubtful && value > -0.25f * into;
+        if (doubted_) return probe_.begin(origin_ + t_ * direction_, value, into, direction_);
+        found_ = candidate_;
         ended_ = true;
         return;
     }
@@ -127,33 +149,76 @@ void SphereTracer::answer(const CellSpace& space, float value) {
 }
 
 DiscWalk::DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float radius, float pixel)
-    : place_(place), direction_(direction), inverse_(inverseOf(direction)), radius_(radius), pixel_(pixel) {
+    : place_(place),
+      direction_(direction),
+      inverse_(inverseOf(direction)),
+      radius_(radius),
+      pixel_(pixel),
+      into_(std::max(4e-6f * space.size, 0.05f * pixel)) {
     const auto [near, far] = space.span(place, inverse_);
-    t_ = std::max(near, 3e-4f * space.size);
+    start_ = t_ = std::max(near, 3e-4f * space.size);
     end_ = far;
 }
 
-bool DiscWalk::ask(const CellSpace& space, Question& question) {
-    for (; steps_ < 128 && t_ + stride_ <= end_ && clearance_ > -0.9f; ++steps_) {
-        const Vec3f place = place_ + (t_ + stride_) * direction_;
-        if (!cell_.holds(place)) cell_ = space.cellAt(place);
-        // Nothing of the cell comes into the disc.
-        if (cell_.least >= space.margin || cell_.least >= radius_ * (t_ + stride_ + 2 * cell_.edge)) {
-            t_ += stride_ + cell_.exit(place, inverse_);
-            free_ = stride_ = 0;
-            continue;
-        }
-        if (cell_.state == CellState::Near) {
-            question = {place, cell_.tape};
-            ++steps_;
-            return true;
-        }
-        answer(space, -space.margin);
+bool DiscWalk::settleDoubt() {
+    probing_ = false;
+    if (careful_) {
+        if (probe_.found()) clearance_ = std::min(clearance_, probedClearance_);
+        return true;
     }
+    doubtful_ = false;
+    if (probe_.found()) return true;
+    careful_ = true;
+    t_ = start_;
+    clearance_ = 1;
+    within_ = free_ = stride_ = 0;
+    steps_ = 0;
     return false;
 }
 
+void DiscWalk::doubt(Vec3f place, float value, float clearance) {
+    if (careful_) {
+        probe_.begin(place, value, into_);
+        probedClearance_ = clearance;
+        probing_ = true;
+        return;
+    }
+    clearance_ = clearance;
+    doubtful_ = true;
+    leastPlace_ = place;
+    leastValue_ = value;
+}
+
+bool DiscWalk::ask(const CellSpace& space, Question& question) {
+    for (;;) {
+        if (probing_) {
+            if (probe_.ask(space, question)) return true;
+            settleDoubt();
+        }
+        for (; steps_ < 128 && t_ + stride_ <= end_ && clearance_ > -0.9f; ++steps_) {
+            const Vec3f place = place_ + (t_ + stride_) * direction_;
+            if (!cell_.holds(place)) cell_ = space.cellAt(place);
+            // Nothing of the cell comes into the disc.
+            if (cell_.least >= space.margin || cell_.least >= radius_ * (t_ + stride_ + 2 * cell_.edge)) {
+                t_ += stride_ + cell_.exit(place, inverse_);
+                free_ = stride_ = 0;
+                continue;
+            }
+            if (cell_.state == CellState::Near) {
+                question = {place, cell_.tape};
+                ++steps_;
+                return true;
+            }
+            answer(space, -space.margin);
+        }
+        if (!doubtful_) return false;
+        probe_.begin(leastPlace_, leastValue_, into_);
+        probing_ = true;
+    }
+}
+
 void DiscWalk::answer(const CellSpace& space, float value) {
+    if (probing_) return probe_.answer(space, value);
     const float next = std::abs(value) * space.inverseLipschitz;
     const float disc = std::min(radius_ * (t_ + stride_), space.margin),
                 least = std::max(0.5f * disc, std::max(1e-3f * space.size, disc < pixel_ ? 1.4f * pixel_ : 0));
@@ -161,11 +226,21 @@ void DiscWalk::answer(const CellSpace& space, float value) {
         stride_ = std::max(free_, least);
         return;
     }
-    clearance_ = std::min(clearance_, value / disc);
+    if (value / disc < clearance_) {
+        if (cell_.doubtful && value > -0.25f * into_) {
+            doubt(place_ + (t_ + stride_) * direction_, value, value / disc);
+        } else {
+            clearance_ = value / disc;
+            doubtful_ = false;
+        }
+    }
     // Inside, fields may fall little however deep the place is. Where nobody sees the penumbra, a way through the solid
     // counts as half as much depth.
     within_ = value < 0 ? within_ + stride_ : 0;
-    if (value < 0 && disc < pixel_) clearance_ = std::min(clearance_, -0.5f * within_ / disc);
+    if (value < 0 && disc < pixel_ && -0.5f * within_ / disc < clearance_) {
+        clearance_ = -0.5f * within_ / disc;
+        doubtful_ = false;
+    }
     t_ += stride_;
     free_ = next;
     stride_ = std::max(free_ > 2 * disc ? 1.5f * free_ : 0.9f * free_, least);

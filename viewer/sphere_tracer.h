@@ -23,6 +23,7 @@ struct Cell {
     Vec3f low;                             ///< metres
     float edge = 0;                        ///< metres
     float least = 0;                       ///< of the field in the cell
+    bool doubtful = false;                 ///< the field may be small where no surface is near (Doubt)
     bool holds(Vec3f p) const {
         return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x < low.x + edge && p.y < low.y + edge &&
                p.z < low.z + edge;
@@ -54,6 +55,49 @@ struct CellSpace {
 /// 1/d by components, without infinities.
 Vec3f inverseOf(Vec3f direction);
 
+/// Whether solid lies behind a small value of the field. Inside a union of cutters, and where cutters touch, the field
+/// is small with no solid near: a bound that is true and tells nothing. So the surface is looked for where the value
+/// and its slope put it, by Newton's steps, and solid a little behind it.
+class SolidProbe {
+public:
+    /// `value`: of the field at `place`, times the space's side. `into`: how deep the solid must reach, metres.
+    /// `direction`: of a ray that would meet it, tried first; 0 for none.
+    void begin(Vec3f place, float value, float into, Vec3f direction = {});
+    /// False once it is known.
+    bool ask(const CellSpace& space, Question& question);
+    void answer(const CellSpace& space, float value);
+    bool isRunning() const { return running_; }
+    bool found() const { return found_; }
+    /// Unit direction in which the field grew at the place, once it isn't found.
+    Vec3f away() const { return away_; }
+
+private:
+    static constexpr int alongRay = -1, atFoot = 3, rounds = 3;
+    void findFoot();
+
+    Vec3f place_, foot_, slope_, away_;
+    float value_ = 0, into_ = 0;
+    int step_ = 0, round_ = 0;
+    bool running_ = false, found_ = false;
+    Cell cell_;
+};
+
+/// How far a place is from solid, as far as that matters, where the field's own value is in doubt.
+class ClearanceWalk {
+public:
+    /// `value`: of the field at `place`, times the space's side; `enough`: more doesn't matter. Metres.
+    ClearanceWalk(const CellSpace& space, Vec3f place, float value, float enough, float pixel);
+    bool ask(const CellSpace& space, Question& question);
+    void answer(const CellSpace& space, float value);
+    float clearance() const { return value_; }
+
+private:
+    Vec3f place_;
+    float value_, enough_;
+    bool aside_ = false, ended_ = false;
+    SolidProbe probe_;
+};
+
 /// The first surface along a ray.
 class SphereTracer {
 public:
@@ -73,12 +117,16 @@ private:
     float gap(float t) const { return 0.3f * pixelAngle_ * t; }
     /// The cone beside the ray holds no surface between two places of it.
     void setFree(float from, float to);
+    /// Takes what the probe behind a small value found: the surface, or nothing, and the walk goes on behind it.
+    void settleDoubt();
 
     Vec3f origin_, direction_, inverse_;
     float t_, end_, free_ = 0, slope_ = -1, stride_ = 0, tolerance_, angle_, pixelAngle_, found_ = -1;
     float beside_, freeBeside_;
     int steps_ = 0;
-    bool ended_ = false;
+    bool ended_ = false, doubted_ = false;
+    float candidate_ = -1;
+    SolidProbe probe_;
     Cell cell_;
 };
 
@@ -93,9 +141,18 @@ public:
     float seen() const;
 
 private:
+    /// Takes what the probe behind a small value found; false where the way must be walked again, every value probed.
+    bool settleDoubt();
+    /// A disc this small a share of which is free, by a value that may say nothing.
+    void doubt(Vec3f place, float value, float clearance);
+
     Vec3f place_, direction_, inverse_;
-    float t_, end_, radius_, pixel_, clearance_ = 1, within_ = 0, free_ = 0, stride_ = 0;
+    float start_, t_, end_, radius_, pixel_, into_, clearance_ = 1, within_ = 0, free_ = 0, stride_ = 0;
     int steps_ = 0;
+    bool careful_ = false, doubtful_ = false, probing_ = false;
+    Vec3f leastPlace_;
+    float leastValue_ = 0, probedClearance_ = 1;
+    SolidProbe probe_;
     Cell cell_;
 };
 

@@ -1,6 +1,6 @@
 // Space cut into a tree of cells, 4 × 4 × 4 a node, each leaf with a tape shortened for it (viewer/cells.h).
 uniform usamplerBuffer tree;   // 64 words a node: state in the two top bits, leaf or node below
-uniform usamplerBuffer leaves; // tape start, least and most of the field
+uniform usamplerBuffer leaves; // tape start, least and most of the field, bits of viewer::Doubt
 uniform vec3 rootLow;          // metres
 uniform float rootEdge;
 uniform vec3 boundsLow, boundsHigh;
@@ -26,6 +26,7 @@ struct Cell {
     vec3 low;     // metres
     float edge;   // metres
     float least;  // of the field in the cell: what lies farther than a ray asks for needs no evaluation
+    bool doubtful;  // the field may be small where no surface is near
 };
 
 Cell cellAt(vec3 p) {
@@ -43,12 +44,14 @@ Cell cellAt(vec3 p) {
     if (side < 0.0 && state != cellNear) state = cellInside - state;
     uint tape = 0u;
     float least = state == cellOutside ? margin : -margin;
+    bool doubtful = false;
     if (state == cellNear) {
         uvec4 leaf = texelFetch(leaves, int(word & 0x3fffffffu));
         tape = leaf.x;
         least = side > 0.0 ? uintBitsToFloat(leaf.y) : -uintBitsToFloat(leaf.z);
+        doubtful = (leaf.w & (side > 0.0 ? 1u : 2u)) != 0u;
     }
-    return Cell(state, tape, rootLow + low * rootEdge, edge * rootEdge, least);
+    return Cell(state, tape, rootLow + low * rootEdge, edge * rootEdge, least, doubtful);
 }
 
 /// Distance along the ray from p to where it leaves the cell.
@@ -68,12 +71,52 @@ vec3 inverseOf(vec3 direction) {
     return 1.0 / mix(direction, vec3(1e-9), lessThan(abs(direction), vec3(1e-9)));
 }
 
-/// Distance bound at p: exact near the surface, ±margin elsewhere. Where it is at least `enough`, that may be all it says.
-float distanceAt(vec3 p, float enough) {
+/// The field at p, ±margin far from its surface.
+float valueAt(vec3 p) {
+    Cell cell = cellAt(p);
+    if (cell.state != cellNear) return cell.state == cellInside ? -margin : margin;
+    return side * fieldBy(cell.tape, p);
+}
+
+/// Whether solid lies behind a small value of the field at p, `into` metres deep: as viewer::SolidProbe. `away` becomes
+/// the direction in which the field grows there. The field is asked in one place, for compilers copy the interpreter to
+/// each.
+bool solidBehind(vec3 p, float value, float into, vec3 direction, out vec3 away) {
+    away = vec3(0.0);
+    vec3 slope = vec3(0.0), q = p + direction * (max(value, 0.0) + into);
+    for (int i = direction == vec3(0.0) ? 0 : -1; i < 12; ++i) {
+        int step = i & 3;  // three differences, then the foot
+        if (step < 3) q = p + into * vec3(step == 0, step == 1, step == 2);
+        float here = valueAt(q);
+        if (step < 3) {
+            slope[step] = (here - value) / into;
+            if (step < 2) continue;
+            float steep = length(slope);
+            vec3 up = slope / max(steep, 1e-6);
+            if (i == 2) away = up;
+            q = p - up * ((value + into) / max(steep, 0.25));
+            continue;
+        }
+        if (here < -0.25 * into) return true;
+        if (i < 0) continue;
+        p = q;
+        value = here;
+    }
+    return false;
+}
+
+/// Distance to solid at p: exact near the surface, ±margin elsewhere. Where it is at least `enough`, that may be all it
+/// says.
+float distanceAt(vec3 p, float enough, float pixel) {
     if (any(lessThan(p, boundsLow)) || any(greaterThan(p, boundsHigh)))
         return margin;
     Cell cell = cellAt(p);
     if (cell.least >= enough) return cell.least;
     if (cell.state != cellNear) return cell.state == cellInside ? -margin : margin;
-    return side * fieldBy(cell.tape, p);
+    float value = side * fieldBy(cell.tape, p);
+    if (!cell.doubtful || value < 0.0 || value > 0.95 * enough) return value;
+    vec3 away;
+    if (solidBehind(p, value, max(4e-6 * sceneSize, 0.05 * pixel), vec3(0.0), away)) return value;
+    // What is near beside the place shows a little farther away from where no surface was found.
+    return max(value, min(valueAt(p + away * (enough - value)), enough));
 }

@@ -18,33 +18,64 @@ vec3 normalAt(vec3 p, float h) {
 }
 
 /// Share that p sees of a disc of light of half angle `radius` (radians) about `direction`: along the ray, the least
-/// clearance in units of the disc's radius there. Strides are relaxed as in trace.comp.glsl: away from
-/// the penumbra one and a half times the free radius, taken back when the two radii leave a gap.
+/// clearance in units of the disc's radius there. Strides are relaxed as in trace.comp.glsl: away from the penumbra one and
+/// a half times the free radius, taken back when the two radii leave a gap. Where the least clearance is in doubt and no
+/// solid behind it, the way is walked again and every small value looked behind.
 float discSeen(vec3 p, vec3 direction, float radius, float pixel) {
-    vec3 inverseDirection = inverseOf(direction);
+    vec3 inverseDirection = inverseOf(direction), away;
     vec2 span = boundsSpan(p, inverseDirection);
-    float t = max(span.x, 3e-4 * sceneSize), clearance = 1.0, free = 0.0, stride = 0.0, within = 0.0;
-    for (int step = 0; step < 128 && t + stride <= span.y && clearance > -0.9; ++step) {
-        vec3 q = p + (t + stride) * direction;
-        Cell cell = cellAt(q);
-        // Nothing of the cell comes into the disc.
-        if (cell.least >= margin || cell.least >= radius * (t + stride + 2.0 * cell.edge)) {
-            t += stride + cellExit(cell, q, inverseDirection);
-            free = stride = 0.0;
+    float start = max(span.x, 3e-4 * sceneSize), into = max(4e-6 * sceneSize, 0.05 * pixel);
+    float t = start, clearance = 1.0, free = 0.0, stride = 0.0, within = 0.0;
+    vec4 doubted = vec4(-1.0);  // where the least clearance was found, if in doubt, and the value there
+    bool careful = false;
+    for (int step = 0;; ++step) {
+        bool ended = step >= 128 || t + stride > span.y || clearance <= -0.9;
+        if (ended && doubted.w < 0.0) break;
+        vec3 q = ended ? doubted.xyz : p + (t + stride) * direction;
+        float value = doubted.w, next = 0.0, disc = 1.0, least = 0.0;
+        bool probing = ended;
+        if (!ended) {
+            Cell cell = cellAt(q);
+            // Nothing of the cell comes into the disc.
+            if (cell.least >= margin || cell.least >= radius * (t + stride + 2.0 * cell.edge)) {
+                t += stride + cellExit(cell, q, inverseDirection);
+                free = stride = 0.0;
+                continue;
+            }
+            value = cell.state == cellInside ? -margin : side * fieldBy(cell.tape, q);
+            next = abs(value) * inverseLipschitz;
+            disc = min(radius * (t + stride), margin);
+            least = max(0.5 * disc, max(1e-3 * sceneSize, disc < pixel ? 1.4 * pixel : 0.0));
+            if (stride > max(free + next, least)) {
+                stride = max(free, least);
+                continue;
+            }
+            bool doubtful = cell.doubtful && value > -0.25 * into;
+            probing = doubtful && careful && value / disc < clearance;
+            if (value / disc < clearance && !probing) {
+                clearance = value / disc;
+                doubted = doubtful ? vec4(q, max(value, 0.0)) : vec4(-1.0);
+            }
+        }
+        bool solid = probing && solidBehind(q, value, into, vec3(0.0), away);
+        if (ended) {
+            if (solid) break;
+            careful = true;
+            doubted = vec4(-1.0);
+            t = start;
+            clearance = 1.0;
+            free = stride = within = 0.0;
+            step = -1;
             continue;
         }
-        float value = cell.state == cellInside ? -margin : side * fieldBy(cell.tape, q);
-        float next = abs(value) * inverseLipschitz;
-        float disc = min(radius * (t + stride), margin), least = max(0.5 * disc, max(1e-3 * sceneSize, disc < pixel ? 1.4 * pixel : 0.0));
-        if (stride > max(free + next, least)) {
-            stride = max(free, least);
-            continue;
-        }
-        clearance = min(clearance, value / disc);
+        if (solid) clearance = value / disc;
         // Inside, fields may fall little however deep the place is. Where nobody sees the penumbra, a way through the
         // solid counts as half as much depth.
         within = value < 0.0 ? within + stride : 0.0;
-        if (value < 0.0 && disc < pixel) clearance = min(clearance, -0.5 * within / disc);
+        if (value < 0.0 && disc < pixel && -0.5 * within / disc < clearance) {
+            clearance = -0.5 * within / disc;
+            doubted.w = -1.0;
+        }
         t += stride;
         free = next;
         stride = max(free > 2.0 * disc ? 1.5 * free : 0.9 * free, least);
@@ -55,13 +86,13 @@ float discSeen(vec3 p, vec3 direction, float radius, float pixel) {
 }
 
 /// Share of the sky that p sees, from the field at growing distances along the normal.
-float opennessAt(vec3 p, vec3 normal) {
+float opennessAt(vec3 p, vec3 normal, float pixel) {
     float hidden = 0.0, weight = 0.0;
     float reach = 0.07 * sceneSize;
     for (int i = 0; i < 4; ++i) {
         float w = 1.0;
         float enough = min(reach, margin);
-        float free = clamp(distanceAt(p + normal * reach, enough) / enough, 0.0, 1.0);
+        float free = clamp(distanceAt(p + normal * reach, enough, pixel) / enough, 0.0, 1.0);
         hidden += w * (1.0 - free);
         weight += w;
         reach *= 0.4;
@@ -70,17 +101,19 @@ float opennessAt(vec3 p, vec3 normal) {
     return mix(0.08, 1.0, 1.0 - hidden / weight);
 }
 
-/// Share of the day that comes into a hollow to p: wide discs of the upper sky.
-float daylightAt(vec3 p, vec3 normal, float pixel) {
-    if (side < 0.0) return 0.0;
-    float seen = 0.0;
-    for (int i = 0; i < 5; ++i) {
-        float angle = 1.5707963 * float(i);
-        vec3 direction = i == 4 ? vec3(0.0, 1.0, 0.0) : vec3(0.7 * cos(angle), 0.714, 0.7 * sin(angle));
+/// Shares that p sees of the sun, and of the day that comes into a hollow, by wide discs of the upper sky.
+vec2 sunAndDayAt(vec3 p, vec3 normal, float pixel, bool sun, bool day) {
+    float sunlight = 0.0, seen = 0.0;
+    for (int i = sun ? 0 : 1; i < (day ? 6 : 1); ++i) {
+        float angle = 1.5707963 * float(i - 1);
+        vec3 direction = i == 0 ? sunDirection : i == 5 ? vec3(0.0, 1.0, 0.0) : vec3(0.7 * cos(angle), 0.714, 0.7 * sin(angle));
         float cosine = dot(normal, direction);
-        if (cosine > 0.0) seen += cosine * discSeen(p, direction, 0.3, pixel);
+        if (cosine <= 0.0) continue;
+        float open = discSeen(p, direction, i == 0 ? 0.035 : 0.3, pixel);
+        if (i == 0) sunlight = open;
+        else seen += cosine * open;
     }
-    return min(0.4 * seen, 1.0);
+    return vec2(sunlight, min(0.4 * seen, 1.0));
 }
 
 void main() {
@@ -95,11 +128,10 @@ void main() {
     } else {
         vec3 normal = lits[2u * i].xyz;
         vec3 start = hit.xyz + normal * max(1e-4 * sceneSize, 0.5 * pixel);
-        float sunlight = 0.0, daylight = 1.0;
-        if ((lampReach == 0.0 || side > 0.0) && dot(normal, sunDirection) > 0.0) sunlight = discSeen(start, sunDirection, 0.035, pixel);
-        if (lampReach > 0.0 && hit.w == hitObject) daylight = daylightAt(start, normal, pixel);
-        lits[2u * i] = vec4(normal, opennessAt(hit.xyz, normal));
-        lits[2u * i + 1u] = vec4(sunlight, daylight, 0.0, 0.0);
+        bool byDay = lampReach > 0.0 && hit.w == hitObject;
+        vec2 light = sunAndDayAt(start, normal, pixel, lampReach == 0.0 || side > 0.0, byDay && side > 0.0);
+        lits[2u * i] = vec4(normal, opennessAt(hit.xyz, normal, pixel));
+        lits[2u * i + 1u] = vec4(light.x, byDay ? light.y : 1.0, 0.0, 0.0);
     }
     atomicAdd(counts[1], evaluations);
     atomicAdd(counts[2], instructions);

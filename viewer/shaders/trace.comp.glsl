@@ -61,8 +61,16 @@ float trace(vec3 origin, vec3 direction, Ray ray, out float beside) {
         }
         if (stride > 0.0) slope = mix(slope, (next - free) / stride, 0.4);
         t += stride;
-        if (value < max(tolerance, near * t))  // one more safe step, or back out by the secant
-            return max(t + (next < 0.0 && stride > 0.0 ? stride * next / (free - next) : next), 0.0);
+        if (value < max(tolerance, near * t)) {  // one more safe step, or back out by the secant
+            float into = max(tolerance, 0.05 * pixelAngle * t);
+            vec3 away;
+            if (!cell.doubtful || value <= -0.25 * into || solidBehind(origin + t * direction, value, into, direction, away))
+                return max(t + (next < 0.0 && stride > 0.0 ? stride * next / (free - next) : next), 0.0);
+            t += max(2.0 * gapAt(t), 2.0 * tolerance);
+            free = stride = 0.0;
+            slope = -1.0;
+            continue;
+        }
         free = next;
         float aside = ray.beside * (t + free);
         if (free > aside) {
