@@ -7,8 +7,11 @@
 #include <openvdb/tools/Prune.h>
 #include <openvdb/tools/ValueTransformer.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "modeler/field/noise.h"
 #include "modeler/volume/volume_impl.h"
@@ -48,6 +51,43 @@ double usualLump_m(const FloatGrid& grid) {
     return std::max(1, std::min({size.x(), size.y(), size.z()})) * grid.voxelSize()[0] / 8;
 }
 
+/// Where a part is thinner than twice the edge its ramp ends below 1, and noise would eat all of it: there the ramp
+/// rises to 1 at the part's core. Every voxel of the edge takes the value where the way up from it ends, from neighbour
+/// to steepest neighbour while depth grows at least half as fast as the way: flanks lead to the core that is nearest,
+/// cores to no other.
+void raiseCores(FloatGrid& grid, double edge_m) {
+    struct Voxel {
+        openvdb::Coord at;
+        float ramp;
+    };
+    std::vector<Voxel> edge;
+    for (auto v = grid.cbeginValueOn(); v; ++v)
+        if (v.isVoxelValue() && *v > 0 && *v < 1) edge.push_back({v.getCoord(), *v});
+    std::sort(edge.begin(), edge.end(),
+              [](const Voxel& a, const Voxel& b) { return a.ramp != b.ramp ? a.ramp > b.ramp : a.at < b.at; });
+    const FloatGrid::Ptr cores = grid.deepCopy();
+    const auto enough = static_cast<float>(0.5 * grid.voxelSize()[0] / edge_m);
+    FloatGrid::ConstAccessor ramps = grid.getConstAccessor();
+    FloatGrid::Accessor core = cores->getAccessor();
+    for (const Voxel& v : edge) {
+        float steepest = enough;
+        openvdb::Coord to = v.at;
+        for (int i = 0; i < 27; ++i) {
+            const openvdb::Coord step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+            const double way = std::sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]);
+            if (way == 0) continue;
+            const float slope = (ramps.getValue(v.at + step) - v.ramp) / static_cast<float>(way);
+            if (slope > steepest || ramps.getValue(v.at + step) >= 1) {
+                steepest = ramps.getValue(v.at + step) >= 1 ? std::numeric_limits<float>::infinity() : slope;
+                to = v.at + step;
+            }
+        }
+        if (to != v.at) core.setValueOnly(v.at, core.getValue(to));
+    }
+    FloatGrid::Accessor raised = grid.getAccessor();
+    for (const Voxel& v : edge) raised.setValueOnly(v.at, v.ramp / std::min(1.0f, core.getValue(v.at)));
+}
+
 /// What noise leaves of the ramp at a place.
 class Vapour {
 public:
@@ -84,6 +124,8 @@ Result<Volume> fog(const Volume& levelSet, const FogOptions& options, const Prog
     const FloatGrid::Ptr grid = deepened(from, edge_m);
     if (cancelled(progress)) return cancelledError();
     openvdb::tools::sdfToFogVolume(*grid, static_cast<float>(edge_m));
+    raiseCores(*grid, edge_m);
+    if (cancelled(progress)) return cancelledError();
     if (options.billow > 0) {
         if (static_cast<double>(grid->activeVoxelCount()) > mostStored)
             return Error{Error::Kind::Budget,

@@ -15,7 +15,8 @@ struct FogOptions {
     double lump_m = 0;   ///< size of the largest lumps of both noises, metres; 0: an eighth of the least extent
 };
 
-/// With depth d below the surface, p = min(1, d/edge) and noises w, b in [0, 1]:
+/// With depth d below the surface, e = min(edge, d at the core of a part thinner than twice the edge), p = min(1, d/e)
+/// and noises w, b in [0, 1]:
 ///   density · max(0, p − wisps·w)/(1 − wisps·w) · (1 − billow·b).
 /// The ramp is OpenVDB's own (tools::sdfToFogVolume); beyond the level set's band depths come from fast sweeping
 /// (Zhao 2004). Error::Usage for numbers out of range or a volume that is no level set, Error::Budget where the inside

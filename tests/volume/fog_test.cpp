@@ -50,6 +50,34 @@ TEST(Fog, ThickensWithDepthAndEndsAtTheSurface) {
     }
 }
 
+/// A ball of radius 1 with a plate .24 m thick over it, as a cloud has its anvil.
+KnownSolid anvil() {
+    KnownSolid s = oneBall(1);
+    field::Graph& g = *s.graph;
+    const Vec3f half{1.8f, 0.12f, 1.2f}, middle = somewhere + Vec3f{0, 1, 0};
+    const field::NodeRef x = abs(g.x() - middle.x) - half.x, y = abs(g.y() - middle.y) - half.y,
+                         z = abs(g.z() - middle.z) - half.z;
+    s.field.value = min(s.field.value, max(x, max(y, z)));
+    s.field.bounds = hull(s.field.bounds, Box3f{middle - half, middle + half});
+    return s;
+}
+
+TEST(Fog, KeepsTheCoreOfWhatIsThinnerThanItsEdge) {
+    const Volume level = std::move(levelSetOf(anvil(), voxel_m)).value();
+    for (const double edge_m : {0.3, 0.8}) {
+        const Volume f = fogOf(level, {.edge_m = edge_m, .wisps = 0.6});
+        for (const Vec3f at : {Vec3f{1.4f, 1, 0}, Vec3f{-1.3f, 1, 0.6f}, Vec3f{1.5f, 1, -0.9f}})
+            EXPECT_GT(f.at(somewhere + at), 0.7f) << edge_m;  // half of the plate's thickness is .12 m
+        EXPECT_FLOAT_EQ(f.at(somewhere), 1);
+        // The ball's own edge is as deep as before, below the plate.
+        const Volume plain = fogOf(ballLevelSet(), {.edge_m = edge_m, .lump_m = 0.3});
+        const Volume both = fogOf(level, {.edge_m = edge_m, .lump_m = 0.3});
+        for (const float depth : {0.1f, 0.2f})
+            EXPECT_NEAR(both.at(somewhere + Vec3f{0, depth - 1, 0}), plain.at(somewhere + Vec3f{0, depth - 1, 0}), 0.06)
+                << edge_m;
+    }
+}
+
 TEST(Fog, WispsEatTheEdgeAndBillowsThinTheInside) {
     const Volume level = ballLevelSet();
     const Volume plain = fogOf(level, {.edge_m = 0.4});
