@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "modeler/eval/evaluate.h"
 
 namespace sgm::cli {
 namespace {
@@ -12,6 +15,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using volume::Cave;
 
+/// The tag that `walk none` gives a shape.
+constexpr std::string_view walkNone = "walk none";
 constexpr const char* faces[6] = {"+x", "-x", "+y", "-y", "+z", "-z"};
 
 Json place(Vec3f p) { return {p.x, p.y, p.z}; }
@@ -53,10 +58,37 @@ Result<volume::Agent> parseAgent(const std::string& text) {
     return agent;
 }
 
+volume::FloorFilter floorFilter(const pipeline::Model& model) {
+    const derive::ShapeTree& tree = model.derivation.tree;
+    std::vector<bool> refused(tree.shapes.size(), false);
+    bool any = false;
+    for (derive::ShapeId id = 0; id < tree.shapes.size(); ++id) {
+        const auto* extras = tree.extrasOf(id);
+        const derive::ShapeId parent = tree.shapes[id].parent;
+        refused[id] = (parent != derive::none && refused[parent]) ||
+                      (extras && std::ranges::find(extras->tags, walkNone) != extras->tags.end());
+        any = any || refused[id];
+    }
+    if (!any) return {};
+    return [&model, refused](std::span<const Vec3f> places) {
+        std::vector<float> x, y, z;
+        for (const Vec3f p : places) x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
+        std::vector<OriginId> origins(places.size());
+        eval::Workspace workspace;
+        eval::evaluateOrigin(model.tape, {x.data(), y.data(), z.data(), x.size()}, origins.data(), workspace);
+        std::vector<bool> kept;
+        for (const OriginId origin : origins) {
+            const derive::ShapeId shape = model.lowered->shapeOf[origin];
+            kept.push_back(shape == derive::none ? !refused[0] : !refused[shape]);
+        }
+        return kept;
+    };
+}
+
 Result<Survey> surveyFor(const SurveyRequest& request, const exporter::ExportInput& input) {
     const auto agent = request.agent.empty() ? volume::Agent{} : parseAgent(request.agent);
     if (!agent.ok()) return agent.error();
-    auto cave = volume::surveyCave(*input.volume, *agent, request.flipNormals, input.progress);
+    auto cave = volume::surveyCave(*input.volume, *agent, request.flipNormals, input.progress, request.isFloor);
     if (!cave.ok()) return cave.error();
     Survey made{std::move(*cave), {}};
     if (request.floor.empty()) return made;

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "grammar/pipeline/model.h"
 #include "modeler/core/result.h"
 #include "modeler/export/exporter.h"
 #include "modeler/volume/cave.h"
@@ -19,12 +20,15 @@ struct SurveyRequest {
     std::string agent;  ///< as `parseAgent` reads it, "" for the usual one
     std::string floor;  ///< the file for the walkable floor, "" for none
     bool flipNormals = false;
+    volume::FloorFilter isFloor = {};  ///< none: all that isn't too steep
 };
 /// A cave, and its walkable floor where that is wanted.
 struct Survey {
     volume::Cave cave;
     mesh::Mesh floor;
 };
+/// Refuses the surfaces of shapes that say `walk none`, by themselves or by what they stand in; empty where none does.
+volume::FloorFilter floorFilter(const pipeline::Model& model);
 /// Surveys the input's volume and mesh; Error::Input when a floor is wanted and there is none.
 Result<Survey> surveyFor(const SurveyRequest& request, const exporter::ExportInput& input);
 /// Writes the floor as a model of its own.

@@ -60,7 +60,7 @@ Status writeFiles(const BuildRequest& request, const Model& model, const pipelin
     mesh::Mesh floor;
     if (surveys(request)) {
         auto surveyed = context.timed("cave", [&] {
-            return surveyFor({request.agent, request.floor, request.flipNormals}, input);
+            return surveyFor({request.agent, request.floor, request.flipNormals, floorFilter(model)}, input);
         });
         if (!surveyed.ok()) return surveyed.error();
         figures.cave = std::move(surveyed->cave);

@@ -1,4 +1,4 @@
-// color, rough, metal, of: the material of a shape, or of a terminal.
+// color, rough, metal, walk, of: the material of a shape, or of a terminal.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include "grammar/derive/attribute_context.h"
 #include "grammar/operations/operations.h"
 #include "grammar/rules/lookup.h"
+#include "grammar/rules/make.h"
 #include "grammar/rules/operation_checker.h"
 
 namespace sgm::operations {
@@ -26,6 +27,7 @@ constexpr OperationArgument metalArguments[] = {{"metalness", ArgumentType::Numb
 constexpr OperationArgument ofArguments[] = {
     {"material", ArgumentType::Material,
      "a `material` or terminal by name, or a value that holds one: 'of choose { 2: brick | 1: plaster }'"}};
+constexpr OperationArgument walkArguments[] = {{"who", ArgumentType::Name, "none: nobody can stand on it"}};
 constexpr OperationRange share{0, 1, "0 … 1"};
 
 Vec3f colorOf(const Value& value) { return Vec3d{value.n[0], value.n[1], value.n[2]}.as<float>(); }
@@ -76,6 +78,23 @@ void applyOf(AttributeContext& context, const Attribute& attribute) {
     context.out.colorBy = nullptr;  // the material names the look
 }
 
+void checkWalk(rules::OperationChecker& checker, const syntax::Attribute& written) {
+    if (written.args.empty()) return;
+    if (written.args[0].text != "none")
+        return checker.error(written.args[0].span,
+                             "'walk' takes the word 'none': the surface is no floor, as water isn't",
+                             "write 'walk none'");
+    Attribute out;
+    out.operation = written.operation;
+    out.span = written.span;
+    out.args.push_back(rules::makeConstant(written.args[0].span, rules::makeWord("walk none")));
+    checker.add(std::move(out));
+}
+
+void applyWalk(AttributeContext& context, const Attribute& attribute) {
+    context.out.extras.tags.push_back(attribute.args[0].value.text);
+}
+
 void setColor(const Value& value, Material& material) { material.color = colorOf(value); }
 void setRough(const Value& value, Material& material) { material.roughness = static_cast<float>(value.num()); }
 void setMetal(const Value& value, Material& material) { material.metallic = static_cast<float>(value.num()); }
@@ -122,6 +141,14 @@ constinit const Operation of{
     .phase = Operation::Phase::Look,
     .check = checkOf,
     .apply = applyOf,
+constinit const Operation walk{
+    .name = "walk",
+    .doc = "Takes the surface out of the floor that `sgm build --cave` finds: water, glass.",
+    .example = "cube walk none",
+    .arguments = walkArguments,
+    .phase = Operation::Phase::Look,
+    .check = checkWalk,
+    .apply = applyWalk,
 };
 
 }  // namespace sgm::operations

@@ -160,7 +160,7 @@ void Checker::look(const syntax::TerminalDecl& decl, Material& material, std::ve
             continue;
         }
         if (a.operation->decorate) a.operation->decorate(*value, material);
-        if (!fold(a.args[0], {})) open.push_back(a);
+        if (!a.operation->decorate || !fold(a.args[0], {})) open.push_back(a);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 
@@ -21,6 +22,22 @@ bool standsAt(const Cave& cave, Vec3f p) {
     return std::any_of(first, last, [&](const FloorCell& f) { return std::abs(f.y_m - p.y) <= 2 * cave.voxel_m; });
 }
 
+/// Takes away the floor that the filter refuses.
+void dropFloor(Air& air, const FloorFilter& isFloor) {
+    std::vector<Vec3f> places;
+    std::vector<size_t> of;
+    for (uint32_t i = 0; i < air.size(); ++i) {
+        if (std::isnan(air.floor_m[i])) continue;
+        Vec3f place = air.place(i);
+        place.y = air.floor_m[i];
+        places.push_back(place);
+        of.push_back(i);
+    }
+    const std::vector<bool> kept = isFloor(places);
+    for (size_t k = 0; k < of.size(); ++k)
+        if (!kept[k]) air.floor_m[of[k]] = std::numeric_limits<float>::quiet_NaN();
+}
+
 }  // namespace
 
 float Cave::narrowest_m() const {
@@ -32,7 +49,8 @@ float Cave::narrowest_m() const {
     return least;
 }
 
-Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Progress* progress) {
+Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Progress* progress,
+                        const FloorFilter& isFloor) {
     if (!(agent.radius_m > 0) || !(agent.height_m >= 2 * agent.radius_m) || !(agent.height_m < 1e6))
         return Error{Error::Kind::Usage,
                      fmt::format("an agent of radius {} m and height {} m: the height is at least twice the radius",
@@ -43,6 +61,7 @@ Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Pr
                                  degrees(agent.slope_rad))};
     Result<Air> air = airOf(level, hollow, progress);
     if (!air.ok()) return air.error();
+    if (isFloor) dropFloor(*air, isFloor);
     Cave cave;
     cave.agent = agent;
     cave.origin = air->origin;

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "modeler/core/conventions.h"
@@ -87,8 +89,13 @@ struct Cave {
     float narrowest_m() const;
 };
 
-/// Surveys the air; `hollow` as in `airOf`. Error::Usage for an agent that can't be, Error::Cancelled.
-Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Progress* progress);
+/// By place on the rock's surface, metres: whether it can be floor.
+using FloorFilter = std::function<std::vector<bool>(std::span<const Vec3f> places)>;
+
+/// Surveys the air; `hollow` as in `airOf`. What `isFloor` refuses is no floor, of whatever slope. Error::Usage for an
+/// agent that can't be, Error::Cancelled.
+Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Progress* progress,
+                        const FloorFilter& isFloor = {});
 
 /// The triangles of `mesh` that are floor the agent can stand on: a sheet with borders, in one chunk; bare where
 /// `mesh` is.

@@ -27,6 +27,27 @@ TEST_F(Cli, TheCaveReportTellsRoomsAndPassages) {
     EXPECT_NE(read(path("f.obj")).find("\nf "), std::string::npos);
 }
 
+/// A hall with a pool over half of its floor.
+std::string hallWith(const std::string& look, const std::string& use) {
+    return "terminal water = cube color #2a5a6a " + look +
+           "\nstart Hall -> cube size (12, 6, 8) - cube size (10, 4, 6) + water size (5, .5, 6) move (2.5, -1.75, 0) " +
+           use + "\n";
+}
+
+TEST_F(Cli, WaterIsNoFloor) {
+    const auto floorOf = [&](const std::string& look, const std::string& use) {
+        const Json report = built(grammar(hallWith(look, use)) + " --cave --cell .2");
+        return report["cave"]["floor_m2"]["to_15_deg"].get<double>();
+    };
+    const double all = floorOf("", "");
+    EXPECT_NEAR(all, 60, 3);
+    EXPECT_NEAR(floorOf("walk none", ""), all / 2, 3);
+    EXPECT_NEAR(floorOf("", "walk none"), all / 2, 3);
+    const Outcome wrong = sgm("check " + grammar(hallWith("walk some", "")));
+    EXPECT_EQ(wrong.code, 1);
+    EXPECT_NE(wrong.out.find("'walk' takes the word 'none'"), std::string::npos) << wrong.out;
+}
+
 TEST_F(Cli, WithoutCaveThereIsNoSurvey) {
     ASSERT_EQ(sgm("build " + grammar(threeRooms) + " --cell .4 -q --report " + path("r.json")).code, 0);
     EXPECT_FALSE(Json::parse(read(path("r.json"))).contains("cave"));

@@ -28,7 +28,8 @@ struct Dig {
     Cave cave;
 
     Dig(std::vector<std::pair<Vec3f, Vec3f>> boxes, float cell_m, Agent agent = {}, bool hollow = false,
-        Vec3f half = {12, 4, 6}) {
+        Vec3f half = {12, 4, 6}, FloorFilter isFloor = {})
+        : isFloor_(std::move(isFloor)) {
         std::vector<field::Owned> parts;
         for (const auto& [centre, size] : boxes) parts.push_back({box(graph, centre, size), 0});
         const Field air = field::sum(graph, parts);
@@ -37,6 +38,8 @@ struct Dig {
     }
 
 private:
+    FloorFilter isFloor_;
+
     void survey(float cell_m, Agent agent, bool hollow) {
         const eval::Tape tape = eval::compile(graph, field, graph.constants());
         const mesh::Grid grid = mesh::gridFor(field.bounds, cell_m);
@@ -46,7 +49,7 @@ private:
         mesh = *mesh::polygonize(*blocks, grid, {.threads = 2}, nullptr, counts);
         const auto level = sample(*blocks, tape, grid, 3, 2, nullptr);
         ASSERT_TRUE(level.ok());
-        auto result = surveyCave(*level, agent, hollow, nullptr);
+        auto result = surveyCave(*level, agent, hollow, nullptr, isFloor_);
         ASSERT_TRUE(result.ok());
         cave = *result;
     }
@@ -207,6 +210,20 @@ TEST(CaveReport, AnAgentThatCantBeIsRefused) {
     const auto solid = surveyCave(*level, {}, false, nullptr);
     ASSERT_TRUE(solid.ok());
     EXPECT_TRUE(solid->spaces.empty() && solid->entrances.empty() && solid->walkable.empty());
+}
+
+TEST(CaveReport, WhatIsNoFloorIsntWalkedOn) {
+    const FloorFilter dry = [](std::span<const Vec3f> places) {
+        std::vector<bool> kept;
+        for (const Vec3f p : places) kept.push_back(p.x < 0);
+        return kept;
+    };
+    const std::vector<std::pair<Vec3f, Vec3f>> room{{{0, 0, 0}, {4, 1.5f, 3}}};
+    const Cave all = Dig(room, 0.2f).cave, half = Dig(room, 0.2f, {}, false, {12, 4, 6}, dry).cave;
+    EXPECT_NEAR(all.floor_m2[0], 48, 3);
+    EXPECT_NEAR(half.floor_m2[0], 24, 2);
+    EXPECT_NEAR(half.walkable_m2 / all.walkable_m2, 0.5, 0.08);
+    EXPECT_NEAR(half.air_m3, all.air_m3, 1e-6);
 }
 
 }  // namespace
