@@ -33,6 +33,21 @@ Status checkStream(const BuildRequest& request) {
     return checkStreamed(request.out);
 }
 
+/// What isn't made from the field isn't cut open with it.
+Status checkSection(const BuildRequest& request) {
+    if (request.model.section.empty()) return Done{};
+    const auto wrong = [](std::string why) -> Status {
+        return Error{Error::Kind::Usage, "--section " + std::move(why)};
+    };
+    if (!request.animations.empty()) return wrong("cuts one model open: leave out --animate");
+    if (request.out.collider == "boxes" || request.out.collider == "convex")
+        return wrong("doesn't cut terminals open: take --collider mesh");
+    for (const std::string& file : allFiles(request.out))
+        if (!exporter::exporterFor(file)->wantsMesh() && !exporter::exporterFor(file)->wantsVolume)
+            return wrong(fmt::format("cuts meshes and volumes open, and '{}' holds neither", file));
+    return Done{};
+}
+
 /// What can be refused before the work.
 Status checkRequest(const BuildRequest& request) {
     if (const Status s = checkOutputs(request.out); !s.ok()) return s;
@@ -47,6 +62,7 @@ Status checkRequest(const BuildRequest& request) {
     if (request.grid.objectCell_m > 0 && !keepsObjectsApart(request))
         return Error{Error::Kind::Usage,
                      "--object-cell: what is asked for is made of one field, with one cell for all; leave it out"};
+    if (const Status s = checkSection(request); !s.ok()) return s;
     if (request.agent.empty()) return Done{};
     if (!surveys(request)) return Error{Error::Kind::Usage, "--agent walks through a cave: add --cave or --floor FILE"};
     if (const auto agent = parseAgent(request.agent); !agent.ok()) return agent.error();
@@ -88,6 +104,7 @@ void addBuild(CLI::App& app, int& exitCode) {
     CLI::App* command = app.add_subcommand("build", "Grow a grammar and write meshes and volumes");
     auto request = std::make_shared<BuildRequest>();
     addModelOptions(*command, request->model);
+    addSectionOption(*command, request->model);
     addGridOptions(*command, request->grid);
     addObjectOptions(*command, request->grid);
     addOutputOptions(*command, request->out);

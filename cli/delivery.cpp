@@ -5,15 +5,15 @@
 #include <algorithm>
 
 #include "cli/cave.h"
-#include "cli/floating.h"
-#include "cli/gaps.h"
 #include "cli/levels.h"
 #include "cli/messages.h"
-#include "cli/missing.h"
 #include "cli/report.h"
 #include "cli/validation.h"
 #include "grammar/lower/objects.h"
 #include "grammar/pipeline/files.h"
+#include "grammar/pipeline/floating.h"
+#include "grammar/pipeline/gaps.h"
+#include "grammar/pipeline/missing.h"
 #include "modeler/mesh/edit.h"
 
 namespace sgm::cli {
@@ -94,9 +94,9 @@ void printSummary(const BuildRequest& request, const Model& model, const pipelin
     if (!request.out.collider.empty())
         fmt::print("{} collider{} ({})\n", colliders, colliders == 1 ? "" : "s", request.out.collider);
     for (const std::string& note : products.colliders.notes) printMessage("note: collider: {}\n", note);
-    printFloating(model, figures.support, grid.cell_m);
+    printMeshWarnings(pipeline::floatingWarnings(model, figures.support, grid.cell_m));
     fmt::print("{}", levelTable(products.levels, products.mesh.triangleCount()));
-    printMissingParts(model, grid, figures.missing);
+    printMeshWarnings(pipeline::missingWarnings(model, grid, figures.missing));
     if (figures.cave && request.cave) fmt::print("{}", caveTable(*figures.cave));
 }
 
@@ -132,8 +132,9 @@ Status deliver(const BuildRequest& request, const Model& model, pipeline::Divisi
                const mesh::Scene& scene, Context& context) {
     Figures figures;
     if (wantsFigures(request)) {
-        auto found = context.timed(
-            "thin parts", [&] { return findMissingParts(model, meshed, request.grid.threads, context.progress); });
+        auto found = context.timed("thin parts", [&] {
+            return pipeline::findMissingParts(model, meshed, request.grid.threads, context.progress);
+        });
         if (!found.ok()) return found.error();
         figures.missing = std::move(*found);
     }
@@ -141,9 +142,9 @@ Status deliver(const BuildRequest& request, const Model& model, pipeline::Divisi
     if (!mesh.ok()) return mesh.error();
     if (wantsFigures(request)) {
         figures.mesh = mesh::measure(*mesh);
-        figures.support = supportOf(model, *mesh, meshed.grid.cell_m);
+        figures.support = pipeline::supportOf(model, *mesh, meshed.grid.cell_m);
         context.timed("gaps", [&] {
-            return findCauses(model, *mesh, meshed.grid.cell_m, figures.missing, figures.support), Done{};
+            return pipeline::findCauses(model, *mesh, meshed.grid.cell_m, figures.missing, figures.support), Done{};
         });
     }
     if (request.flipNormals) mesh::turnInsideOut(*mesh);

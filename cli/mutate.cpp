@@ -12,6 +12,7 @@
 #include "cli/watch.h"
 #include "grammar/operations/operations.h"
 #include "grammar/pipeline/files.h"
+#include "grammar/pipeline/missing.h"
 #include "grammar/rules/params.h"
 #include "grammar/syntax/parser.h"
 #include "modeler/core/random.h"
@@ -47,6 +48,7 @@ pipeline::ModelChoice with(const MutateRequest& request, const std::vector<Named
 struct Tried {
     std::optional<Model> model;
     std::string why;
+    std::vector<pipeline::MeshWarning> warnings;  ///< of the model as it is
 };
 Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const rules::Grammar>& grammar,
                     const std::vector<NamedValue>& values, Progress* progress) {
@@ -56,15 +58,21 @@ Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const ru
     auto model = makeModel(grammar, *options, context, pipeline::Objects::Sketched);
     if (!model.ok()) {
         if (model.error().kind == Error::Kind::Cancelled) return model.error();
-        return Tried{{}, "empty"};
+        return Tried{{}, "empty", {}};
     }
     GridRequest grid;
     grid.resolution = request.resolution;
     grid.threads = request.threads;
     const auto meshed = makeMesh(*model, grid, context);
     if (!meshed.ok()) return meshed.error();
-    if (const auto why = degenerate(meshed->mesh, meshed->grid.cell_m)) return Tried{{}, *why};
-    return Tried{std::move(*model), {}};
+    std::vector<pipeline::MeshWarning> warnings;
+    if (values.empty() && !request.quiet) {
+        auto found = pipeline::meshWarnings(*model, meshed->mesh, meshed->grid, context);
+        if (!found.ok()) return found.error();
+        warnings = std::move(*found);
+    }
+    if (const auto why = degenerate(meshed->mesh, meshed->grid.cell_m)) return Tried{{}, *why, std::move(warnings)};
+    return Tried{std::move(*model), {}, std::move(warnings)};
 }
 
 /// "wide=3 tall=4"; "as it is" where nothing is changed.
@@ -94,6 +102,7 @@ Result<std::vector<Variation>> search(const MutateRequest& request,
         auto one = tried(request, grammar, values, progress);
         if (!one.ok()) return one.error();
         if (k == 0 && one->model && !request.quiet) printWarnings(*one->model);
+        printMeshWarnings(one->warnings);
         if (one->model)
             found.push_back({std::move(values), std::move(*one->model)});
         else

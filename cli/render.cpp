@@ -9,15 +9,16 @@
 
 #include "cli/animation.h"
 #include "cli/commands.h"
-#include "cli/floating.h"
+#include "cli/fog_picture.h"
 #include "cli/ids.h"
 #include "cli/messages.h"
 #include "cli/numbers.h"
+#include "cli/renamed.h"
 #include "cli/requests.h"
 #include "cli/watch.h"
 #include "grammar/pipeline/mesh_edits.h"
+#include "grammar/pipeline/missing.h"
 #include "modeler/core/conventions.h"
-#include "viewer/fog_scene.h"
 #include "viewer/offscreen.h"
 
 namespace sgm::cli {
@@ -31,6 +32,7 @@ struct RenderRequest {
     MeshEdits edits;
     std::string output, size = "960x720", view = "field", camera, rays = "best";
     std::vector<std::string> layers;
+    std::vector<std::string> fog;  ///< "NAME=VALUE", as .vdb files take them
     double extinction = 0;
     int samples = 8, turntable = 0;  ///< turntable: how many pictures around the model, 0 for one
     bool noGround = false, wires = false, stats = false, quiet = false;
@@ -100,6 +102,9 @@ Status checkRequest(const RenderRequest& request) {
     if (request.grid.objectCell_m > 0 && !drawsMesh(request))
         return wrong("--object-cell is of meshes: add --view mesh, labels or creases");
     if (request.extinction > 0 && request.view != "fog") return wrong("--extinction is of fog: add --view fog");
+    if (!request.fog.empty() && request.view != "fog")
+        return wrong("--format-option is of fog, as .vdb files have it: add --view fog");
+    if (const auto fog = fogOptions(request.fog); !fog.ok()) return fog.error();
     if (request.stats && (request.view != "field" || request.turntable > 0))
         return wrong("--stats counts evaluations of the field for one picture: leave out --view and --turntable");
     if (request.turntable == 0) return Done{};
@@ -116,12 +121,7 @@ struct Painter {
 };
 
 Result<Painter> fogPainter(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
-    const auto grid =
-        viewer::fogGrid(model.tape, gridOver(bounds, request.grid), bounds, request.grid.threads, progress);
-    if (!grid.ok()) return grid.error();
-    viewer::FogLook look = viewer::usualFog(*grid);
-    look.extinction_per_m = static_cast<float>(request.extinction);
-    const auto painter = viewer::FogPainter::create(grid->dense, bounds, look, request.grid.threads, progress);
+    const auto painter = fogPainter(model, bounds, request.grid, request.fog, request.extinction, progress);
     if (!painter.ok()) return painter.error();
     return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable {
                        return p.draw(options, progress);
@@ -135,11 +135,28 @@ viewer::TracedBy tracedBy(const std::string& name) {
                                  : viewer::TracedBy::Best;
 }
 
+/// Tells what floats and what is too thin for the cells.
+Status warnOfMesh(const Model& model, const MeshedModel& meshed, Context& context) {
+    const auto warnings = pipeline::meshWarnings(model, meshed.mesh, meshed.grid, context);
+    if (!warnings.ok()) return warnings.error();
+    printMeshWarnings(*warnings);
+    return Done{};
+}
+
+/// What `sgm build` would tell of the mesh at its usual cells, of a model whose field is drawn.
+Status warnAsBuild(const RenderRequest& request, const Model& model, Progress* progress) {
+    Context context{progress, request.grid.threads};
+    const auto meshed = makeMesh(model, GridRequest{.threads = request.grid.threads}, context);
+    return meshed.ok() ? warnOfMesh(model, *meshed, context) : Status(meshed.error());
+}
+
 /// The mesh that `sgm build` writes, objects at all their places.
 Result<DrawnMesh> meshAsBuilt(const RenderRequest& request, const Model& model, Progress* progress) {
     Context context{progress, request.grid.threads};
     auto meshed = makeMesh(model, request.grid, context);
     if (!meshed.ok()) return meshed.error();
+    if (!request.quiet)
+        if (const Status s = warnOfMesh(model, *meshed, context); !s.ok()) return s.error();
     keepOnly(request.edits.keep, *meshed, request.grid.threads, request.quiet);
     auto mesh = edited(std::move(meshed->mesh), request.edits, request.grid.surface, meshed->grid.cell_m, context);
     if (!mesh.ok()) return mesh.error();
@@ -249,6 +266,8 @@ Status drawAll(const RenderRequest& request) {
         makeModel(request.model, context, drawsMesh(request) ? pipeline::Objects::Apart : pipeline::Objects::Sketched);
     if (!model.ok()) return model.error();
     if (!request.quiet) printWarnings(*model);
+    if (!request.quiet && request.view == "field" && model->derivation.objects.empty())
+        if (const Status s = warnAsBuild(request, *model, watch.progress()); !s.ok()) return s;
     if (const std::string note = pipeline::sketchNote(model->derivation); !note.empty() && !request.quiet)
         printMessage("note: {}; add --view mesh\n", note);
     DrawnMesh mesh;
@@ -304,6 +323,7 @@ void addRender(CLI::App& app, int& exitCode) {
     CLI::App* command = app.add_subcommand("render", "Draw a picture; no display or GPU needed");
     auto request = std::make_shared<RenderRequest>();
     addModelOptions(*command, request->model);
+    addSectionOption(*command, request->model);
     addGridOptions(*command, request->grid);
     addObjectOptions(*command, request->grid);
     addEditOptions(*command, request->edits);
@@ -331,6 +351,12 @@ void addRender(CLI::App& app, int& exitCode) {
     command
         ->add_option("--extinction", request->extinction, "Of fog, per metre (default: 180 over the model's diagonal)")
         ->check(between(1e-6, 1e6));
+    command
+        ->add_option("--format-option", request->fog,
+                     "Of fog, NAME=VALUE as `sgm build` takes it for .vdb: density, edge, wisps, billow, lump; the "
+                     "picture then is of the fog that such a file holds")
+        ->allow_extra_args(false);
+    addRenamedOption(*command, "--export", "--format-option", request->fog);
     command->add_option("--samples", request->samples, "Samples a pixel, for smooth edges")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "cli/floating.h"
 #include "cli/requests.h"
 #include "grammar/lower/thin_parts.h"
+#include "grammar/pipeline/floating.h"
 #include "modeler/mesh/validate.h"
 #include "modeler/volume/cave.h"
 

@@ -10,6 +10,7 @@
 #include "cli/numbers.h"
 #include "grammar/operations/operations.h"
 #include "grammar/pipeline/files.h"
+#include "grammar/pipeline/section.h"
 #include "grammar/rules/check.h"
 #include "grammar/syntax/parser.h"
 #include "modeler/core/printable.h"
@@ -36,6 +37,12 @@ void addModelOptions(CLI::App& command, ModelRequest& request) {
     command.add_option("--max-seconds", request.secondsBudget, "Budget of time for the derivation")
         ->check(between(1e-3, 1e9))
         ->capture_default_str();
+}
+
+void addSectionOption(CLI::App& command, ModelRequest& request) {
+    command.add_option("--section", request.section,
+                       "Cut the model open, as x=1.5, y=2m or z=50% of it: what lies beyond is left out, and the cut "
+                       "shows each part in its own material; --section=-x=1.5 leaves out what lies before");
 }
 
 void addGridOptions(CLI::App& command, GridRequest& request) {
@@ -105,11 +112,17 @@ Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& re
 }
 
 Result<Model> makeModel(const ModelRequest& request, Context& context, pipeline::Objects objects) {
+    const auto section = request.section.empty() ? Result<pipeline::Section>(pipeline::Section{})
+                                                 : pipeline::parseSection(request.section);
+    if (!section.ok()) return section.error();
     const auto grammar = loadGrammar(request, context);
     if (!grammar.ok()) return grammar.error();
     const auto options = optionsFor(**grammar, request);
     if (!options.ok()) return options.error();
-    return makeModel(*grammar, *options, context, objects);
+    if (request.section.empty()) return makeModel(*grammar, *options, context, objects);
+    auto derivation = context.timed("derive", [&] { return derive::derive(*grammar, *options, context.progress); });
+    if (!derivation.ok()) return derivation.error();
+    return makeModel(std::move(*derivation), *section, context);
 }
 
 Result<mesh::Scene> makeScene(const Model& model, const ModelRequest& request, const GridRequest& grid,
@@ -130,6 +143,18 @@ Result<mesh::Scene> makeScene(const Model& model, const ModelRequest& request, c
 }
 
 void printWarnings(const Model& model) { printDiagnostics(derive::warnings(model.derivation)); }
+
+void printMeshWarnings(const std::vector<pipeline::MeshWarning>& warnings) {
+    for (const pipeline::MeshWarning& w : warnings) printMessage("warning: {}{}\n", w.place, w.text);
+}
+
+void keepOnly(mesh::Keep keep, MeshedModel& meshed, int threads, bool quiet) {
+    const mesh::Dropped dropped = mesh::keepOnly(meshed.mesh, keep, meshed.grid.cell_m, threads);
+    if (!quiet && dropped.pieces + dropped.cavities > 0)
+        fmt::print("left out {} piece{} of {:.4g} m³, filled {} cavit{} of {:.4g} m³\n", dropped.pieces,
+                   dropped.pieces == 1 ? "" : "s", dropped.volume_m3, dropped.cavities,
+                   dropped.cavities == 1 ? "y" : "ies", dropped.filled_m3);
+}
 
 mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request) {
     return mesh::gridFor(

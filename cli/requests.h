@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/targets.h"
+#include "grammar/pipeline/floating.h"
 #include "grammar/pipeline/mesh_edits.h"
 #include "grammar/pipeline/meshing.h"
 #include "grammar/pipeline/scene.h"
@@ -20,6 +21,8 @@ class App;
 namespace sgm::cli {
 
 using pipeline::Context;
+using pipeline::FloatCause;
+using pipeline::Floating;
 using pipeline::makeMesh;
 using pipeline::makeModel;
 using pipeline::MeshEdits;
@@ -27,14 +30,19 @@ using pipeline::MeshedModel;
 using pipeline::Model;
 using pipeline::optionsFor;
 using pipeline::Stages;
+using pipeline::Support;
 
 /// Which model of which file: the options that every command about a model takes.
 struct ModelRequest : pipeline::ModelChoice {
     std::string file;
+    std::string section;          ///< as pipeline::parseSection reads it; "" for the whole model
     std::vector<Target> targets;  ///< what will be written, which may replace no file that is read
 };
 /// Adds FILE, --start, --derive, --set, --style, --seed and the budgets.
 void addModelOptions(CLI::App& command, ModelRequest& request);
+
+/// Adds --section.
+void addSectionOption(CLI::App& command, ModelRequest& request);
 
 /// How fine and how: --resolution or --cell, --surface and --threads.
 struct GridRequest {
@@ -67,6 +75,12 @@ Result<mesh::Scene> makeScene(const Model& model, const ModelRequest& request, c
 
 /// Prints derive::warnings, what every command about a model tells.
 void printWarnings(const Model& model);
+
+/// Prints what pipeline::meshWarnings and its parts say, a line each.
+void printMeshWarnings(const std::vector<pipeline::MeshWarning>& warnings);
+
+/// Drops debris and floating components as `keep` says, and prints what was dropped unless `quiet`.
+void keepOnly(mesh::Keep keep, MeshedModel& meshed, int threads, bool quiet);
 
 /// How the mesher is to work; `positionsOnly` as in PolygonizeOptions.
 mesh::PolygonizeOptions meshingOf(const GridRequest& request, bool positionsOnly = false);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cli/requests.h"
+#include "grammar/pipeline/missing.h"
 #include "grammar/pipeline/scene.h"
 #include "grammar/rules/params.h"
 #include "modeler/core/printable.h"
@@ -18,7 +19,8 @@ namespace {
 /// One choice of start, values and way.
 struct Setting {
     derive::Options options;
-    std::string words;  ///< "with floors = 20"; empty for a start as it is
+    std::string words;    ///< "with floors = 20"; empty for a start as it is
+    bool isMain = false;  ///< what `sgm build` makes without options
 };
 
 /// Where an error says it is, if that is in one of the grammar's files.
@@ -42,7 +44,7 @@ public:
 
     Result<Trials> run() {
         Trials trials;
-        const Status main = attempt({optionsOf(0), {}}, options_.mainSeconds, true);
+        const Status main = attempt({optionsOf(0), {}, true}, options_.mainSeconds, true);
         if (!main.ok() && main.error().kind == Error::Kind::Cancelled) return main.error();
         if (!main.ok()) tell(main.error(), {}, true);
         trials.budgetSpent = !main.ok() && main.error().kind == Error::Kind::Budget;
@@ -82,24 +84,24 @@ private:
     std::vector<Setting> settings() const {
         std::vector<Setting> list;
         const auto starts = static_cast<uint32_t>(grammar_->starts.size());
-        for (uint32_t s = 1; s < starts; ++s) list.push_back({optionsOf(s), {}});
+        for (uint32_t s = 1; s < starts; ++s) list.push_back({optionsOf(s), {}, false});
         for (const rules::Style& style : grammar_->styles)
             for (uint32_t s = 0; s < starts; ++s) {
                 if (style.start != rules::none && style.start != s) continue;
-                Setting setting{optionsOf(s), fmt::format("with style '{}'", style.name)};
+                Setting setting{optionsOf(s), fmt::format("with style '{}'", style.name), false};
                 for (const rules::Setting& value : style.settings) setting.options.params[value.param] = value.value;
                 list.push_back(std::move(setting));
             }
         if (starts == 1)  // a way belongs to a start, and nothing says which
             for (const rules::Derive& way : grammar_->derives) {
-                list.push_back({optionsOf(0), fmt::format("with derive '{}'", way.name)});
+                list.push_back({optionsOf(0), fmt::format("with derive '{}'", way.name), false});
                 list.back().options.derive = way.name;
             }
         for (uint32_t s = 0; s < starts; ++s)
             for (uint32_t p = 0; p < grammar_->params.size(); ++p) {
                 if (grammar_->params[p].span.source != grammar_->sources[0].get()) continue;  // a library's own matter
                 for (rules::Value& value : endsOf(grammar_->params[p])) {
-                    Setting setting{optionsOf(s), {}};
+                    Setting setting{optionsOf(s), {}, false};
                     if (setting.options.params[p] == value) continue;
                     setting.words = fmt::format("with {} = {}", grammar_->params[p].name, rules::toText(value));
                     setting.options.params[p] = std::move(value);
@@ -142,7 +144,20 @@ private:
         if (const Status s = pipeline::tryObjects(*derivation, options.budget, context); !s.ok()) return s;
         const auto model = makeModel(std::move(*derivation), context, pipeline::Objects::Apart);
         if (!model.ok()) return model.error();
-        return placesObjects ? Status(Done{}) : hasSurface(*model);
+        if (placesObjects) return Done{};
+        if (const Status s = hasSurface(*model); !s.ok()) return s;
+        return setting.isMain && options_.otherSeconds > 0 ? lookAtMesh(*model) : Status(Done{});
+    }
+
+    /// What `sgm build` would tell of the mesh at its usual cells: what floats, what is too thin.
+    Status lookAtMesh(const Model& model) {
+        Context context{progress_};
+        const auto meshed = makeMesh(model, GridRequest{}, context);
+        if (!meshed.ok()) return meshed.error();
+        const auto found = pipeline::meshWarnings(model, meshed->mesh, meshed->grid, context);
+        if (!found.ok()) return found.error();
+        for (const pipeline::MeshWarning& w : *found) diagnostics_.warning(w.span, w.text);
+        return Done{};
     }
 
     /// Fails when intervals prove that there is no surface; what is thinner than a cell isn't lost by them.

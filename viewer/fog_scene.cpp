@@ -1,6 +1,5 @@
 #include "viewer/fog_scene.h"
 
-#include "modeler/volume/fog.h"
 #include "viewer/gpu_tracer.h"
 #include "viewer/scene.h"
 #include "viewer/shader_text.h"
@@ -9,7 +8,6 @@ namespace sgm::viewer {
 namespace {
 
 constexpr int billowEdge = 64;
-constexpr float wisps = 0.85f, meanEaten = 0.5f * wisps;
 
 /// The grid's outer faces: half a voxel beyond the outer voxels' centres.
 Box3f boxOf(const volume::Dense& grid) {
@@ -19,18 +17,25 @@ Box3f boxOf(const volume::Dense& grid) {
 
 }  // namespace
 
-Result<FogGrid> fogGrid(const eval::Tape& tape, const mesh::Grid& grid, const Box3f& bounds, int threads,
-                        Progress* progress) {
+Result<volume::Dense> fogGrid(const eval::Tape& tape, const mesh::Grid& grid, const volume::FogOptions& options,
+                              int threads, Progress* progress) {
     mesh::Counts counts;
     const auto blocks = mesh::subdivide(tape, grid, threads, progress, counts);
     if (!blocks.ok()) return blocks.error();
     const auto level = volume::sample(*blocks, tape, grid, volume::usualHalfWidth, threads, progress);
     if (!level.ok()) return level.error();
+    volume::FogOptions shares = options;
+    shares.density = 1;
+    const auto fog = volume::fog(*level, shares, progress);
+    if (!fog.ok()) return fog.error();
+    return volume::dense(*fog, 1);
+}
+
+Result<FogGrid> fogGrid(const eval::Tape& tape, const mesh::Grid& grid, const Box3f& bounds, int threads,
+                        Progress* progress) {
     const Vec3f size = bounds.size();
     const float edge_m = std::min({size.x, size.y, size.z}) / 15;
-    const auto fog = volume::fog(*level, {.edge_m = static_cast<double>(edge_m)}, progress);
-    if (!fog.ok()) return fog.error();
-    auto dense = volume::dense(*fog, 1);
+    auto dense = fogGrid(tape, grid, volume::FogOptions{.edge_m = static_cast<double>(edge_m)}, threads, progress);
     if (!dense.ok()) return dense.error();
     return FogGrid{std::move(*dense), edge_m};
 }
@@ -38,9 +43,10 @@ Result<FogGrid> fogGrid(const eval::Tape& tape, const mesh::Grid& grid, const Bo
 Result<PreparedFog> prepareFog(const volume::Dense& grid, const Box3f& bounds, const FogLook& look, int threads,
                                Progress* progress) {
     const float extinction = look.extinction_per_m > 0 ? look.extinction_per_m : 180 / length(bounds.size());
-    Result<FogTexels> texels = lightFog(grid, extinction, meanEaten, sunDirection(), threads, progress);
+    Result<FogTexels> texels = lightFog(grid, extinction, 0.5f * look.wisps, sunDirection(), threads, progress);
     if (!texels) return texels.error();
-    return PreparedFog{std::move(*texels), grid.count, boxOf(grid), bounds, grid.voxel_m, extinction, look.lump_m};
+    return PreparedFog{std::move(*texels), grid.count, boxOf(grid), bounds,
+                       grid.voxel_m,       extinction, look.lump_m, look.wisps};
 }
 
 Result<std::shared_ptr<const FogPrograms>> FogPrograms::create() {
@@ -62,7 +68,8 @@ FogScene::FogScene(const PreparedFog& fog, std::shared_ptr<const FogPrograms> pr
       bounds_(fog.bounds),
       voxel_m_(fog.voxel_m),
       extinction_per_m_(fog.extinction_per_m),
-      lump_m_(fog.lump_m) {}
+      lump_m_(fog.lump_m),
+      wisps_(fog.wisps) {}
 
 void FogScene::look(const PictureOptions& options) {
     const Program& p = programs_->program;
@@ -74,7 +81,7 @@ void FogScene::look(const PictureOptions& options) {
     p.set("fogCount", count_.as<float>());
     p.set("voxel", voxel_m_);
     p.set("extinction", extinction_per_m_);
-    p.set("wisps", wisps);
+    p.set("wisps", wisps_);
     p.set("lump", lump_m_);
     p.set("mostSunDepth", FogTexels::mostSunDepth);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "modeler/mesh/subdivide.h"
+#include "modeler/volume/fog.h"
 #include "viewer/fog_light.h"
 #include "viewer/gpu.h"
 #include "viewer/offscreen.h"
@@ -21,7 +22,7 @@ struct PreparedFog {
     FogTexels texels;
     Vec3i count;        ///< voxels
     Box3f box, bounds;  ///< the grid's outer faces; of the model, metres
-    float voxel_m = 1, extinction_per_m = 1, lump_m = 1;
+    float voxel_m = 1, extinction_per_m = 1, lump_m = 1, wisps = 0;
 };
 
 /// A ramp of fog in a field's place.
@@ -31,6 +32,9 @@ struct FogGrid {
 };
 Result<FogGrid> fogGrid(const eval::Tape& tape, const mesh::Grid& grid, const Box3f& bounds, int threads,
                         Progress* progress);
+/// The fog that files hold, by its options, in shares of its density.
+Result<volume::Dense> fogGrid(const eval::Tape& tape, const mesh::Grid& grid, const volume::FogOptions& options,
+                              int threads, Progress* progress);
 
 /// Lights the fog. Error::Cancelled when `progress` says so.
 Result<PreparedFog> prepareFog(const volume::Dense& grid, const Box3f& bounds, const FogLook& look, int threads,
@@ -58,7 +62,7 @@ private:
     VolumeTexture grid_, bricks_;
     Vec3i count_;
     Box3f box_, bounds_;
-    float voxel_m_, extinction_per_m_, lump_m_;
+    float voxel_m_, extinction_per_m_, lump_m_, wisps_;
     size_t piece_ = 2048;  ///< jobs a dispatch, by the time the last ones took
 };
 

@@ -123,6 +123,7 @@ private:
 struct FogLook {
     float extinction_per_m = 0;  ///< deep inside; 0: 180 over the model's diagonal, so that a cloud is white and whole
     float lump_m = 1;            ///< size of the tile of billows that shape the edge
+    float wisps = 0.85f;         ///< share of the edge that they eat; 0 draws the grid as it is
 };
 
 /// The same for fog: sunlight scattered once by Beer's law and Henyey and Greenstein's phase function, several times by

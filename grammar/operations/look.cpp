@@ -141,6 +141,8 @@ constinit const Operation of{
     .phase = Operation::Phase::Look,
     .check = checkOf,
     .apply = applyOf,
+};
+
 constinit const Operation walk{
     .name = "walk",
     .doc = "Takes the surface out of the floor that `sgm build --cave` finds: water, glass.",

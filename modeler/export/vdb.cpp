@@ -3,17 +3,17 @@
 // values for distances.
 #include <optional>
 
+#include "modeler/export/fog_options.h"
 #include "modeler/export/formats.h"
-#include "modeler/volume/fog.h"
 #include "modeler/volume/renormalize.h"
 
 namespace sgm::exporter {
-namespace {
-
-volume::FogOptions fogOptions(const ExportInput& input) {
+volume::FogOptions fogOptionsOf(const ExportOptions& options) {
     volume::FogOptions fog;
     const auto read = [&](std::string_view name, double& value) {
-        if (const auto given = numberOf(option(input, name, ""))) value = *given;
+        const auto given = options.find(name);
+        if (given == options.end()) return;
+        if (const auto number = numberOf(given->second)) value = *number;
     };
     read("density", fog.density);
     read("edge", fog.edge_m);
@@ -22,8 +22,6 @@ volume::FogOptions fogOptions(const ExportInput& input) {
     read("lump", fog.lump_m);
     return fog;
 }
-
-}  // namespace
 
 static Status writeVdb(const ExportInput& input, const Path& temporary, const Path& target) {
     const std::string_view grids = option(input, "grids", "levelset");
@@ -39,7 +37,7 @@ static Status writeVdb(const ExportInput& input, const Path& temporary, const Pa
     }
     std::optional<volume::Volume> density;
     if (grids.find("fog") != grids.npos) {
-        auto fog = volume::fog(*input.volume, fogOptions(input), input.progress);
+        auto fog = volume::fog(*input.volume, fogOptionsOf(input.options), input.progress);
         if (!fog.ok()) return fog.error();
         density = std::move(*fog);
         volumes.push_back({*density, "density"});

@@ -101,5 +101,29 @@ TEST_F(Cli, PartsThatMeetByLessThanACellAreToldFromAGap) {
     EXPECT_NE(built("(.3, 4.3, .05)", ".4").find("a gap of 0.3"), std::string::npos);
 }
 
+TEST_F(Cli, EveryCommandTellsGapsAndThinParts) {
+    const std::string gap = grammar(
+        "start A -> cube size (20, .5, 20) : Base\n"
+        "rule Base -> + cube size (.4, 3, .4) at +y move (.13, .4, .13)\n");
+    const std::string thin = scratch_
+                                 .write("thin.sgm",
+                                        "grammar 1\nstart A -> cube size (20, 3, 20) : Base\n"
+                                        "rule Base -> + cube size (.03, 3, .03) at +y move (.13, 0, .13)\n")
+                                 .string();
+    const std::string picture = " --size 32x32 -o " + path("a.png");
+    for (const std::string command : {"check ", "build ", "mutate ", "render "}) {
+        const std::string more = command == "render " ? picture : "";
+        const Outcome floats = sgm(command + gap + more), lost = sgm(command + thin + more);
+        if (floats.out.find("EGL") != std::string::npos) continue;  // nothing can be drawn here
+        EXPECT_NE(floats.out.find("a gap of 0.4 m lies between its 'A/Base/cube' (" + gap + ":3) and 'A/Base' (" + gap +
+                                  ":2)"),
+                  std::string::npos)
+            << command << floats.out;
+        EXPECT_NE(lost.out.find("a 'cube' of 0.03 m is thinner than the mesh's cells of"), std::string::npos)
+            << command << lost.out;
+        EXPECT_NE(lost.out.find(thin + ":3:"), std::string::npos) << command << lost.out;
+    }
+}
+
 }  // namespace
 }  // namespace sgm::cli

@@ -70,6 +70,44 @@ TEST_F(Render, FogIsOneOfTheViews) {
     EXPECT_EQ(sgm("render " + file_ + " --view fog --extinction 0 -o " + path("b.png")).code, 2);
 }
 
+TEST_F(Render, FogTakesTheOptionsOfFiles) {
+    const auto drawn = [&](const std::string& options) {
+        const Outcome run =
+            sgm("render " + file_ + " --view fog --resolution 24 --size 40x30 -q -o " + path("a.png") + options);
+        EXPECT_EQ(run.code, 0) << options << run.out;
+        return read(path("a.png"));
+    };
+    const std::string plain = drawn(" --format-option edge=.2");
+    EXPECT_NE(drawn(" --format-option edge=.2 --format-option wisps=.9"), plain);
+    EXPECT_NE(drawn(" --format-option edge=.2 --format-option density=.05"), plain);
+    EXPECT_NE(drawn(" --format-option edge=.9"), plain);
+    const std::string start = "render " + file_ + " -o " + path("b.png");
+    for (const char* wrong : {" --format-option wisps=.6", " --view fog --format-option wisps=7",
+                              " --view fog --format-option half=yes", " --view fog --format-option wisps"})
+        EXPECT_EQ(sgm(start + wrong).code, 2) << wrong;
+}
+
+TEST_F(Render, SectionsOpenEveryViewAndFile) {
+    const std::string hall =
+        grammar("start A -> cube size 4 color #c04030 - cube size 2 + sphere size 1 color #3040c0\n");
+    std::set<std::string> pictures;
+    for (const char* section : {"", " --section x=50%", " --section=-x=50%", " --section z=.5m"}) {
+        const Outcome run = sgm("render " + hall + " --size 64x64 -q -o " + path("a.png") + section);
+        EXPECT_EQ(run.code, 0) << run.out;
+        pictures.insert(read(path("a.png")));
+    }
+    EXPECT_EQ(pictures.size(), 4u) << "each differs";
+    const Json whole = built(hall + " --cell .1 -o " + path("a.stl")),
+               half = built(hall + " --cell .1 --section y=0 -o " + path("a.stl"));
+    EXPECT_NEAR(half["mesh"]["volume_m3"].get<double>(), whole["mesh"]["volume_m3"].get<double>() / 2, .05);
+    const std::string start = "build " + hall + " -o " + path("b.stl") + " --section ";
+    for (const char* wrong : {"x", "w=1", "x=", "x=1km", "x=nan", "x=-9"})
+        EXPECT_EQ(sgm(start + wrong).code, 2) << wrong;
+    EXPECT_EQ(sgm("build " + hall + " -o " + path("b.scad") + " --section x=0").code, 2)
+        << "trees of solids aren't cut";
+    EXPECT_FALSE(fs::exists(path("b.stl")));
+}
+
 TEST_F(Render, StatisticsStandBesidePlainSphereTracing) {
     const Outcome run = sgm("render " + file_ + " --size 40x30 --stats -o " + path("a.png"));
     EXPECT_EQ(run.code, 0) << run.out;

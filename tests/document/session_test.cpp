@@ -195,6 +195,46 @@ TEST_F(Sessions, MeshWhenAskedAndKeepWhatStays) {
     EXPECT_EQ(session.mesh()->grid.cell_m, first->grid.cell_m) << "the lattice stays where it can";
 }
 
+TEST_F(Sessions, ProblemsOfTheMeshFollowIt) {
+    Document floating;
+    floating.type(
+        "grammar 1\nstart A -> cube size (20, .5, 20) : Base\n"
+        "rule Base -> + cube size (1, 3, 1) at +y move (0, .4, 0)\n");
+    ShowRequest request = requestOf(floating);
+    request.meshResolution = 48;
+    session.show(request);
+    settle(session);
+    const auto told = [&] {
+        return std::ranges::count_if(session.problems(), [](const Problem& p) {
+            return p.line == 3 && p.message.find("a gap of 0.4 m lies between its") != std::string::npos;
+        });
+    };
+    EXPECT_EQ(told(), 1);
+    session.show(request);
+    settle(session);
+    EXPECT_EQ(told(), 1) << "nothing has changed";
+}
+
+TEST_F(Sessions, ASectionOpensTheMeshAndNotTheModel) {
+    ShowRequest request = requestOf(document);
+    request.meshResolution = 40;
+    session.show(request);
+    settle(session);
+    ASSERT_TRUE(session.mesh());
+    const Box3f whole = session.mesh()->mesh->bounds();
+    request.section = pipeline::Section{0, true, .5, true};
+    session.show(request);
+    settle(session);
+    const Box3f half = session.mesh()->mesh->bounds();
+    const Box3f& model = session.model()->model.lowered->field.bounds;
+    EXPECT_NEAR(half.hi.x, (model.lo.x + model.hi.x) / 2, 1e-3);
+    EXPECT_NEAR(half.lo.x, whole.lo.x, 1e-3);
+    request.section.reset();
+    session.show(request);
+    settle(session);
+    EXPECT_NEAR(session.mesh()->mesh->bounds().hi.x, whole.hi.x, 1e-3);
+}
+
 class HeldSliders : public Sessions {
 protected:
     /// A dragged slider goes from one text to another.

@@ -11,8 +11,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double patience_s = 1;  ///< a request that is overtaken may run on for so long
-constexpr float keptCells =
-    1.25f;  ///< the lattice of a mesh is kept while its cells are within this factor of what is wished
 
 bool sameOptions(const derive::Options& a, const derive::Options& b) {
     return a.start == b.start && a.derive == b.derive && a.params == b.params && a.seed == b.seed &&
@@ -225,7 +223,8 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
                 {syntax::Severity::Warning, {}, 0, 0, 0, 0, "cancelled: what is shown was made before", {}});
         }
     }
-    update.problems = std::move(problems);
+    update.problems = problems;
+    modelProblems_ = std::move(problems);
     publish(std::move(update));
     if (good && request.meshResolution > 0) meshIt(request, progress);
 }
@@ -336,42 +335,6 @@ Result<std::shared_ptr<const BuiltModel>> Session::made(const ShowRequest& reque
     shown.shapesMade = shown.model.derivation.tree.shapes.size();
     shown.stages = std::move(context.stages);
     return finished(std::move(shown));
-}
-
-void Session::meshIt(const ShowRequest& request, Progress& progress) {
-    {
-        const std::lock_guard lock(mutex_);
-        if (pending_ || quit_) return;
-        meshing_ = true;
-    }
-    if (meshed_ && meshed_->of == shown_ && meshResolution_ == request.meshResolution) return;
-    const Box3f& bounds = shown_->model.lowered->field.bounds;
-    const float wished_m = mesh::cellFor(bounds, request.meshResolution), before_m = meshed_ ? meshed_->grid.cell_m : 0;
-    const bool keep =
-        meshResolution_ == request.meshResolution && before_m < wished_m * keptCells && before_m * keptCells > wished_m;
-    auto meshed = std::make_shared<BuiltMesh>();
-    meshed->of = shown_;
-    meshed->grid = mesh::gridToKeep(meshed_ ? meshed_->grid : mesh::Grid{}, bounds, keep ? before_m : wished_m);
-    const auto mesh = rebuild_.update(shown_->model.tape, meshed->grid, &progress, meshed->counts);
-    if (!mesh.ok()) {
-        if (mesh.error().kind == Error::Kind::Cancelled) return;
-        Update update;
-        update.problems = checkProblems_;
-        update.problems->push_back(problemOf(mesh.error()));
-        publish(std::move(update));
-        return;
-    }
-    meshed->mesh = std::make_shared<const mesh::Mesh>(**mesh);
-    meshed->blocksMade = rebuild_.blocksMade();
-    meshed->blocksKept = rebuild_.blocksKept();
-    meshed->stages = {{"subdivide", meshed->counts.subdivideSeconds},
-                      {"sample", meshed->counts.sampleSeconds},
-                      {"polygonize", meshed->counts.polygonizeSeconds}};
-    meshed_ = meshed;
-    meshResolution_ = request.meshResolution;
-    Update update;
-    update.mesh = std::move(meshed);
-    publish(std::move(update));
 }
 
 }  // namespace sgm::viewer

@@ -14,6 +14,7 @@
 #include "grammar/pipeline/files.h"
 #include "grammar/pipeline/live_edit.h"
 #include "grammar/pipeline/model.h"
+#include "grammar/pipeline/section.h"
 #include "grammar/rules/check.h"
 #include "modeler/eval/fingerprint.h"
 #include "modeler/mesh/rebuild.h"
@@ -44,7 +45,8 @@ struct BuiltMesh {
     std::shared_ptr<const mesh::Mesh> mesh;
     mesh::Counts counts;
     size_t blocksMade = 0, blocksKept = 0;
-    pipeline::Stages stages;  ///< subdivide, sample, polygonize
+    pipeline::Stages stages;                        ///< subdivide, sample, polygonize
+    std::optional<pipeline::Section> section = {};  ///< it is cut open there
 };
 
 /// What to show.
@@ -61,6 +63,7 @@ struct ShowRequest {
     std::shared_ptr<const derive::Derivation> byHand;
     /// Cells along the longest side of the model's bounds; 0: no mesh is wanted.
     int meshResolution = 0;
+    std::optional<pipeline::Section> section = {};  ///< the mesh is cut open there
     derive::Budget budget;
 };
 /// The request that shows a document as it stands.
@@ -127,6 +130,8 @@ private:
     Result<std::shared_ptr<const BuiltModel>> made(const ShowRequest& request, pipeline::Context& context,
                                                    std::vector<Problem>& problems);
     void meshIt(const ShowRequest& request, Progress& progress);
+    void meshCutOpen(const ShowRequest& request, Progress& progress);
+    void tellOfMesh();
     void publish(Update update);
     bool superseded();
 
@@ -157,6 +162,8 @@ private:
     std::shared_ptr<const rules::Grammar> grammar_;
     std::vector<Problem> checkProblems_;
     std::vector<Problem> derivedProblems_;  ///< warnings of the derivation that was last made anew
+    std::vector<Problem> modelProblems_;    ///< what was last published of the model
+    std::vector<Problem> meshProblems_;     ///< warnings of the mesh that was last made at rest
     std::vector<UsedFile> usedByCheck_;
     std::optional<pipeline::LiveEdit> liveEdit_;        ///< while a slider is held
     std::optional<pipeline::ValueChange> valueChange_;  ///< of the request that it follows

@@ -62,17 +62,20 @@ void Workbench::refresh() {
     // While the user drags, the GPU's own mesh does.
     const int resolution = wantsMesh() && !document.dragging() ? look.meshResolution : 0;
     const bool dragging = document.dragging() && !stepper;  // steps belong to a text and its spans
+    const auto section = look.section && resolution > 0 ? std::optional(look.plane()) : std::nullopt;
     if (asked_ == document.revision() && askedResolution_ == resolution && askedDragging_ == dragging &&
-        askedByHand_ == byHand_.get())
+        askedByHand_ == byHand_.get() && askedSection_ == section)
         return;
     ShowRequest request = requestOf(document);
     request.dragging = dragging;
     request.meshResolution = resolution;
+    request.section = section;
     request.byHand = byHand_;
     asked_ = document.revision();
     askedResolution_ = resolution;
     askedDragging_ = dragging;
     askedByHand_ = byHand_.get();
+    askedSection_ = section;
     session.show(std::move(request));
     settled_ = false;
 }
@@ -261,12 +264,12 @@ void Workbench::frameSelection() {
 MeshStyle Workbench::meshStyle() const {
     MeshStyle style = look.mesh;
     if (look.section) {
-        const Box3d box = bounds();
-        Section section{{0, 0, 0}, 0};
-        section.normal[look.sectionAxis] = 1;
-        section.offset =
-            static_cast<float>(box.lo[look.sectionAxis] + box.size()[look.sectionAxis] * look.sectionShare);
-        style.section = section;
+        // A little beyond the plane, so that the cut of a mesh that ends there is seen; one that doesn't yet is cut
+        // here.
+        const Box3f box = session.model() ? session.model()->model.lowered->field.bounds : bounds().as<float>();
+        const pipeline::Section plane = look.plane();
+        style.section =
+            Section{plane.normal().as<float>(), static_cast<float>(plane.offset_m(box)) + 1e-4f * length(box.size())};
     }
     return style;
 }

@@ -33,6 +33,7 @@ struct Look {
     int sectionAxis = 0;        ///< 0 x, 1 y, 2 z
     float sectionShare = 0.5f;  ///< of the bounds, from low to high
     bool section = false;
+    pipeline::Section plane() const { return {sectionAxis, true, static_cast<double>(sectionShare), true}; }
     int meshResolution = 128;  ///< cells along the longest side
     bool ground = true;
     JointsShown joints = JointsShown::Selected;
@@ -175,6 +176,7 @@ private:
     bool askedDragging_ = false;
     std::shared_ptr<const BuiltModel> askedFog_, prepared_;  ///< the last that the preparer was given
     const derive::Derivation* askedByHand_ = nullptr;
+    std::optional<pipeline::Section> askedSection_;
     bool settled_ = false;  ///< all that was computed has been taken over
     bool framed_ = false;   ///< the camera has been set for this file
 };

@@ -1,15 +1,17 @@
 // Which solids of a mesh float, and which shape each of them began with.
-// Enters: a model and its mesh. Leaves: the floating pieces, named. Assumes the mesh carries its origins.
+// Enters: a model and its mesh. Leaves: the floating pieces, named, and sentences about them. Assumes the mesh carries
+// its origins.
 #pragma once
 
+#include <string>
 #include <vector>
 
-#include "cli/requests.h"
+#include "grammar/pipeline/meshing.h"
 #include "modeler/mesh/connected_components.h"
 
-namespace sgm::cli {
+namespace sgm::pipeline {
 
-/// Why a piece hangs alone, as findCauses tells (cli/gaps.h).
+/// Why a piece hangs alone, as findCauses tells (gaps.h).
 struct FloatCause {
     enum class Kind {
         Unknown,
@@ -36,10 +38,13 @@ struct Support {
 };
 Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m);
 
-/// A warning on stderr for each floating piece of a mesh of such cells, the first few of many.
-void printFloating(const Model& model, const Support& support, float cell_m);
+/// A sentence about a model's mesh, at the line of the grammar that made what it is about.
+struct MeshWarning {
+    syntax::SourceSpan span;  ///< of the shape; without a source where none is known
+    std::string place;        ///< "file:line: ", where the text doesn't say it
+    std::string text;         ///< names the shape and figures
+};
+/// A warning for each floating piece of a mesh of such cells, the first few of many.
+std::vector<MeshWarning> floatingWarnings(const Model& model, const Support& support, float cell_m);
 
-/// Drops debris and floating components as `keep` says, and prints what was dropped unless `quiet`.
-void keepOnly(mesh::Keep keep, MeshedModel& meshed, int threads, bool quiet);
-
-}  // namespace sgm::cli
+}  // namespace sgm::pipeline

@@ -11,7 +11,7 @@
 #include "modeler/mesh/components.h"
 #include "modeler/mesh/flat_mesh.h"
 
-namespace sgm::cli {
+namespace sgm::pipeline {
 
 /// The point of the triangle a b c that is nearest to p (Ericson, "Real-Time Collision Detection", 2005, 5.1.5).
 inline Vec3d closestPoint(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
@@ -132,4 +132,4 @@ private:
     std::vector<Node> nodes_;
 };
 
-}  // namespace sgm::cli
+}  // namespace sgm::pipeline

@@ -1,4 +1,4 @@
-#include "cli/gaps.h"
+#include "grammar/pipeline/gaps.h"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <optional>
 #include <set>
 
-#include "cli/triangle_tree.h"
 #include "grammar/derive/boxes.h"
+#include "grammar/pipeline/triangle_tree.h"
 #include "modeler/eval/evaluate.h"
 
-namespace sgm::cli {
+namespace sgm::pipeline {
 namespace {
 
 constexpr size_t mostPieces = 20;
@@ -307,4 +307,4 @@ std::string causeText(const Model& model, const FloatCause& cause, float cell_m)
     return {};
 }
 
-}  // namespace sgm::cli
+}  // namespace sgm::pipeline

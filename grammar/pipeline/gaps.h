@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "cli/floating.h"
 #include "grammar/lower/thin_parts.h"
+#include "grammar/pipeline/floating.h"
 
-namespace sgm::cli {
+namespace sgm::pipeline {
 
 /// Finds the causes of the first few floating pieces and puts them into `support`. A gap is measured between the
 /// nearest points of the mesh; `missing` are the parts that the mesh lacks at cells of `cell_m`. About .1 s for a
@@ -19,4 +19,4 @@ void findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const 
 /// where no cause was found.
 std::string causeText(const Model& model, const FloatCause& cause, float cell_m);
 
-}  // namespace sgm::cli
+}  // namespace sgm::pipeline

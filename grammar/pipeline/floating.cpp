@@ -1,14 +1,13 @@
-#include "cli/floating.h"
+#include "grammar/pipeline/floating.h"
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <algorithm>
 
-#include "cli/gaps.h"
-#include "cli/messages.h"
 #include "grammar/derive/support.h"
+#include "grammar/pipeline/gaps.h"
 
-namespace sgm::cli {
+namespace sgm::pipeline {
 namespace {
 
 /// By shape: the piece that its surface belongs to, `none` or several.
@@ -43,25 +42,22 @@ Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m) {
     return support;
 }
 
-void printFloating(const Model& model, const Support& support, float cell_m) {
+std::vector<MeshWarning> floatingWarnings(const Model& model, const Support& support, float cell_m) {
     constexpr size_t most = 5;
+    std::vector<MeshWarning> warnings;
     for (size_t i = 0; i < std::min(support.floating.size(), most); ++i) {
         const Floating& f = support.floating[i];
         const Vec3f at = f.piece.bounds.centre();
         const std::string cause = causeText(model, f.cause, cell_m);
-        printMessage("warning: {} floats: {:.3g} m³ about ({:.2f}, {:.2f}, {:.2f}){}{}\n",
-                     derive::madeBy(model.derivation, f.shape), f.piece.volume_m3, at.x, at.y, at.z,
-                     cause.empty() ? "" : "; ", cause);
+        warnings.push_back({model.derivation.tree.shapes[f.shape].span,
+                            {},
+                            fmt::format("{} floats: {:.3g} m³ about ({:.2f}, {:.2f}, {:.2f}){}{}",
+                                        derive::madeBy(model.derivation, f.shape), f.piece.volume_m3, at.x, at.y, at.z,
+                                        cause.empty() ? "" : "; ", cause)});
     }
-    if (support.floating.size() > most) printMessage("warning: {} more pieces float\n", support.floating.size() - most);
+    if (support.floating.size() > most)
+        warnings.push_back({{}, {}, fmt::format("{} more pieces float", support.floating.size() - most)});
+    return warnings;
 }
 
-void keepOnly(mesh::Keep keep, MeshedModel& meshed, int threads, bool quiet) {
-    const mesh::Dropped dropped = mesh::keepOnly(meshed.mesh, keep, meshed.grid.cell_m, threads);
-    if (!quiet && dropped.pieces + dropped.cavities > 0)
-        fmt::print("left out {} piece{} of {:.4g} m³, filled {} cavit{} of {:.4g} m³\n", dropped.pieces,
-                   dropped.pieces == 1 ? "" : "s", dropped.volume_m3, dropped.cavities,
-                   dropped.cavities == 1 ? "y" : "ies", dropped.filled_m3);
-}
-
-}  // namespace sgm::cli
+}  // namespace sgm::pipeline

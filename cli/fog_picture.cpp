@@ -1,0 +1,55 @@
+#include "cli/fog_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "modeler/export/fog_options.h"
+#include "viewer/fog_scene.h"
+
+namespace sgm::cli {
+
+Result<exporter::ExportOptions> fogOptions(const std::vector<std::string>& words) {
+    exporter::ExportOptions options;
+    for (const std::string& text : words) {
+        const size_t equals = text.find('=');
+        const std::string name = text.substr(0, equals);
+        constexpr std::string_view known[] = {"density", "edge", "wisps", "billow", "lump"};
+        if (equals == text.npos || std::ranges::find(known, name) == std::end(known))
+            return Error{
+                Error::Kind::Usage,
+                fmt::format("--format-option {}: pictures of fog take density, edge, wisps, billow and lump, as "
+                            "wisps=.6",
+                            text)};
+        options[name] = text.substr(equals + 1);
+    }
+    if (const Status s = exporter::checkOptions(*exporter::findExporter(".vdb"), options); !s.ok()) return s.error();
+    return options;
+}
+
+Result<viewer::FogPainter> fogPainter(const Model& model, const Box3f& bounds, const GridRequest& cells,
+                                      const std::vector<std::string>& words, double extinction_per_m,
+                                      Progress* progress) {
+    const mesh::Grid grid = gridOver(bounds, cells);
+    const auto of = [&]() -> Result<std::pair<volume::Dense, viewer::FogLook>> {
+        if (words.empty()) {
+            auto usual = viewer::fogGrid(model.tape, grid, bounds, cells.threads, progress);
+            if (!usual.ok()) return usual.error();
+            const viewer::FogLook look = viewer::usualFog(*usual);
+            return std::pair{std::move(usual->dense), look};
+        }
+        const volume::FogOptions options = exporter::fogOptionsOf(*fogOptions(words));
+        auto asked = viewer::fogGrid(model.tape, grid, options, cells.threads, progress);
+        if (!asked.ok()) return asked.error();
+        viewer::FogLook look{.extinction_per_m = static_cast<float>(180 * options.density) / length(bounds.size())};
+        look.wisps = 0;
+        return std::pair{std::move(*asked), look};
+    };
+    auto fog = of();
+    if (!fog.ok()) return fog.error();
+    auto& [dense, look] = *fog;
+    if (extinction_per_m > 0) look.extinction_per_m = static_cast<float>(extinction_per_m);
+    return viewer::FogPainter::create(dense, bounds, look, cells.threads, progress);
+}
+
+}  // namespace sgm::cli

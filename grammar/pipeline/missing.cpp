@@ -1,0 +1,78 @@
+#include "grammar/pipeline/missing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "grammar/pipeline/gaps.h"
+
+namespace sgm::pipeline {
+namespace {
+
+/// The parts of one line of a grammar.
+struct Line {
+    std::string symbol;
+    size_t parts = 0;
+    double thickness_m = 0, cell_m = 0;  ///< of the thinnest
+    double missing = 0;                  ///< the sum of their shares
+    syntax::SourceSpan span{};           ///< of the first one's shape
+};
+
+}  // namespace
+
+Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const MeshedModel& meshed, int threads,
+                                                      Progress* progress) {
+    return lower::findMissingParts(model.derivation, *model.lowered, model.tape, meshed.mesh, meshed.grid.cell_m,
+                                   threads, progress);
+}
+
+std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& grid,
+                                         const std::vector<lower::ThinPart>& missing) {
+    constexpr size_t most = 5;
+    std::map<std::pair<std::string, uint32_t>, Line> lines;
+    for (const lower::ThinPart& m : missing) {
+        const Part& part = model.lowered->provenance.parts[m.part];
+        Line& line = lines[{part.file, part.line}];
+        if (line.parts++ == 0) {
+            const derive::ShapeId shape = model.lowered->shapeOf[m.part];
+            line = {part.symbol, 1, m.thickness_m, m.cell_m, 0, {}};
+            if (shape != derive::none) line.span = model.derivation.tree.shapes[shape].span;
+        }
+        line.thickness_m = std::min(line.thickness_m, m.thickness_m), line.cell_m = std::min(line.cell_m, m.cell_m);
+        line.missing += m.missing;
+    }
+    const Vec3f extent = model.lowered->field.bounds.size();
+    std::vector<MeshWarning> warnings;
+    for (const auto& [place, line] : lines) {
+        if (warnings.size() == most) break;
+        const bool one = line.parts == 1;
+        warnings.push_back(
+            {line.span, fmt::format("{}:{}: ", place.first, place.second),
+             fmt::format("{} '{}' of {:.3g} m {} thinner than the mesh's cells of {:.3g} m and lack{} {:.0f} % "
+                         "of the surface: --resolution {} holds {}",
+                         one ? "a" : std::to_string(line.parts), line.symbol, line.thickness_m, one ? "is" : "are",
+                         grid.cell_m, one ? "s" : "", 100 * line.missing / static_cast<double>(line.parts),
+                         static_cast<int>(std::ceil(static_cast<double>(maxComponent(extent)) / line.cell_m)),
+                         one ? "it" : "them")});
+    }
+    if (lines.size() > most)
+        warnings.push_back(
+            {{}, {}, fmt::format("parts of {} more lines are too thin for these cells", lines.size() - most)});
+    return warnings;
+}
+
+Result<std::vector<MeshWarning>> meshWarnings(const Model& model, const mesh::Mesh& mesh, const mesh::Grid& grid,
+                                              Context& context) {
+    const auto missing = lower::findMissingParts(model.derivation, *model.lowered, model.tape, mesh, grid.cell_m,
+                                                 context.threads, context.progress);
+    if (!missing.ok()) return missing.error();
+    Support support = supportOf(model, mesh, grid.cell_m);
+    findCauses(model, mesh, grid.cell_m, *missing, support);
+    std::vector<MeshWarning> warnings = floatingWarnings(model, support, grid.cell_m);
+    for (MeshWarning& thin : missingWarnings(model, grid, *missing)) warnings.push_back(std::move(thin));
+    return warnings;
+}
+
+}  // namespace sgm::pipeline

@@ -1,0 +1,26 @@
+// Parts thinner than a cell, told of with the resolution that holds them.
+// Enters: a model and its mesh. Leaves: sentences.
+#pragma once
+
+#include <vector>
+
+#include "grammar/lower/thin_parts.h"
+#include "grammar/pipeline/floating.h"
+#include "grammar/pipeline/meshing.h"
+
+namespace sgm::pipeline {
+
+/// As lower::findMissingParts, for a mesh as it comes from makeMesh.
+Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const MeshedModel& meshed, int threads,
+                                                      Progress* progress);
+
+/// A warning for each line of the grammar with such parts, the first few of many.
+std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& grid,
+                                         const std::vector<lower::ThinPart>& missing);
+
+/// Looks at a mesh as it comes from makeMesh for what floats, why, and for what is too thin to be in it: what every
+/// command and the window tell alike. Error::Cancelled.
+Result<std::vector<MeshWarning>> meshWarnings(const Model& model, const mesh::Mesh& mesh, const mesh::Grid& grid,
+                                              Context& context);
+
+}  // namespace sgm::pipeline
