@@ -332,7 +332,13 @@ void ScreenTriangle::draw() const {
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void setDepthTest(bool on) { on ? glEnable(GL_DEPTH_TEST) : glDisable(GL_DEPTH_TEST); }
+void setDepthTest(bool on) {
+    on ? glEnable(GL_DEPTH_TEST) : glDisable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+}
+
+WithoutColor::WithoutColor() { glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE); }
+WithoutColor::~WithoutColor() { glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE); }
 
 WireDrawing::WireDrawing() {
     glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);

@@ -226,8 +226,17 @@ private:
     VertexArray array_;
 };
 
-/// Whether nearer fragments hide farther ones.
+/// Whether nearer fragments hide farther ones; of two as near the later one is seen.
 void setDepthTest(bool on);
+
+/// While it lives, draws leave depths and no colours.
+class WithoutColor {
+public:
+    WithoutColor();
+    ~WithoutColor();
+    WithoutColor(const WithoutColor&) = delete;
+    WithoutColor& operator=(const WithoutColor&) = delete;
+};
 
 /// While it lives, triangles are drawn as their edges, blended over what is there and a little nearer to the eye.
 class WireDrawing {

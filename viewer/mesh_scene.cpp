@@ -20,10 +20,10 @@ constexpr float lineWidth = 1.6f;            // of hard edges, pixels
 constexpr int sunMapEdge = 2048, skyMapEdge = 256;
 constexpr size_t leastSkyMaps = 12, mostSkyMaps = 40;  // the latter as in visibility.glsl
 
-/// As many as the driver draws in a second or two; software draws some 3 million triangles a second
+/// As many as the driver draws in a second or less; software draws some 3 million triangles a second
 /// (docs/lab/pictures.md).
 size_t skyMapsFor(size_t triangles) {
-    const size_t drawn = size_t(softwareGl() ? 6 : 24) << 20;
+    const size_t drawn = softwareGl() ? size_t{3} << 19 : size_t{24} << 20;
     return std::clamp(drawn / std::max<size_t>(triangles, 1), leastSkyMaps, mostSkyMaps);
 }
 
@@ -59,8 +59,8 @@ Vec3d skyDirection(size_t i, size_t count) {
 }
 
 /// Clip space of one tile of the picture: x0, y0 its lower left pixel from the bottom left.
-Matrix4 tileMatrix(const View& view, const PictureOptions& options, double near, double far, int x0, int y0, int width,
-                   int height) {
+Matrix4 tileMatrix(const View& view, const PictureOptions& options, double near, double far, double x0, double y0,
+                   int width, int height) {
     const double right2 = dot(view.right, view.right), up2 = dot(view.up, view.up);
     const Vec3d x = view.right / right2, y = view.up / up2, z = view.forward;
     // Picture coordinates −1 … 1 become the tile's by a scale and a shift, before the division by depth.
@@ -178,8 +178,9 @@ Result<std::shared_ptr<const MeshPrograms>> MeshPrograms::create() {
         std::string_view vertex, fragment;
     };
     for (const Wanted& wanted :
-         {Wanted{programs->depth, "mesh", "depth"}, Wanted{programs->blur, "screen", "blur_depth"},
-          Wanted{programs->color, "mesh", "mesh_color"}, Wanted{programs->backdrop, "screen", "backdrop"},
+         {Wanted{programs->depth, "mesh", "depth"}, Wanted{programs->mask, "screen", "mask"},
+          Wanted{programs->blur, "screen", "blur_depth"}, Wanted{programs->color, "mesh", "mesh_color"},
+          Wanted{programs->section, "mesh", "mesh_section"}, Wanted{programs->backdrop, "screen", "backdrop"},
           Wanted{programs->crease, "crease", "crease_color"}}) {
         Result<Program> made = Program::draw(shaderText(wanted.vertex), shaderText(wanted.fragment));
         if (!made) return made.error();
@@ -280,44 +281,69 @@ void MeshScene::setLight(const Program& program, bool sky) const {
     program.set("skyCount", sky ? static_cast<int>(skyCount_) : 0);
 }
 
+void MeshScene::drawMask(const Subsample& subsample, int columns) const {
+    if (!subsample.wanted) return;
+    const WithoutColor depthAlone;
+    const Program& mask = programs_->mask;
+    subsample.wanted->bind(0);
+    mask.set("wanted", 0);
+    mask.set("columns", columns);
+    mask.use();
+    ScreenTriangle().draw();
+}
+
 Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureOptions& options, const MeshStyle& style,
-                       Progress* progress) const {
+                       Progress* progress, const Subsample& subsample) const {
     const View view = viewOf(options.camera, options.width, options.height);
     const double size = length(bounds_.size().as<double>()), away = length(bounds_.centre().as<double>() - view.eye);
     const double near = std::max(away - size / 2, 1e-3 * size), far = near + 2 * size + away;
     // Inside a hollow no sky is seen: the lamp does it alone.
     const bool sky = mapsDrawn_ > skyCount_ && options.camera.lamp_m == 0;
-    const Program &color = programs_->color, &backdrop = programs_->backdrop;
+    const Program &color = style.section ? programs_->section : programs_->color, &backdrop = programs_->backdrop;
     for (const Program* program : {&color, &backdrop}) {
         setScene(*program, bounds_, options);
         setLight(*program, sky);
     }
+    target.bind();
+    setDepthTest(true);
+    drawMask(subsample, target.width);
     owners_.bind(0);
     sunMap_.bindTexture(1);
     skyMaps_.bindTexture(2);
     materials_.bindStorage(4);
-    target.bind();
-    setDepthTest(false);
-    backdrop.use();
-    backdrop.set("tileCorner", Vec3f{static_cast<float>(x0), static_cast<float>(y0), 0});
-    ScreenTriangle().draw();
-    setDepthTest(true);
-    color.set("clipFromWorld", tileMatrix(view, options, near, far, x0, y0, target.width, target.height));
+    const double left = x0 + subsample.right, low = y0 - subsample.down;
+    const Matrix4 clipFromWorld = tileMatrix(view, options, near, far, left, low, target.width, target.height);
+    if (!style.section) {  // depth first, for shading what is hidden costs as much as what is seen
+        const WithoutColor depthAlone;
+        programs_->depth.set("clipFromWorld", clipFromWorld);
+        if (Status s = drawTriangles(programs_->depth, progress); !s) return s;
+    }
+    color.set("clipFromWorld", clipFromWorld);
     color.set("meshLook", static_cast<int>(style.look));
-    color.set("sectionNormal", style.section ? style.section->normal : Vec3f{});
-    color.set("sectionOffset", style.section ? style.section->offset : 0.0f);
+    if (style.section) {
+        color.set("sectionNormal", style.section->normal);
+        color.set("sectionOffset", style.section->offset);
+    }
     color.set("wire", 0);
     if (Status s = drawTriangles(color, progress); !s) return s;
+    backdrop.use();  // where nothing was drawn
+    backdrop.set("tileCorner", Vec3f{static_cast<float>(left), static_cast<float>(low), 0});
+    ScreenTriangle().draw();
     if (style.wireframe) {
         color.set("wire", 1);
         const WireDrawing wires;
         if (Status s = drawTriangles(color, progress); !s) return s;
     }
     if (style.look != MeshLook::Creases) return Done{};
+    return drawCreases({clipFromWorld, view.eye.as<float>(), static_cast<float>(near)}, target, style, progress);
+}
+
+Status MeshScene::drawCreases(const Projection& from, const ColorTarget& target, const MeshStyle& style,
+                              Progress* progress) const {
     const Program& crease = programs_->crease;
-    crease.set("clipFromWorld", tileMatrix(view, options, near, far, x0, y0, target.width, target.height));
-    crease.set("eyeAt", view.eye.as<float>());
-    crease.set("nearest", static_cast<float>(near));
+    crease.set("clipFromWorld", from.clipFromWorld);
+    crease.set("eyeAt", from.eye);
+    crease.set("nearest", from.near);
     crease.set("targetSize", Vec3f{static_cast<float>(target.width), static_cast<float>(target.height), 1});
     crease.set("lineWidth", lineWidth);
     crease.set("sectionNormal", style.section ? style.section->normal : Vec3f{});

@@ -35,8 +35,14 @@ Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& prove
 
 /// The shaders that draw meshes.
 struct MeshPrograms {
-    Program depth, blur, color, backdrop, crease;
+    Program depth, mask, blur, color, section, backdrop, crease;  // section: the colour of what is cut open
     static Result<std::shared_ptr<const MeshPrograms>> create();
+};
+
+/// A sample of pixels beside their middles.
+struct Subsample {
+    double right = 0, down = 0;           ///< pixels from the middle
+    const TexelBuffer* wanted = nullptr;  ///< a word a pixel of the target, bottom row first, 0 where none is wanted
 };
 
 /// A prepared mesh in GPU memory. May be made in one context and drawn in another that shares with it.
@@ -54,7 +60,7 @@ public:
     Result<bool> lightMore(Progress* progress);
     /// The part of the picture whose lower left pixel, from the bottom left, is (x0, y0), as large as `target`.
     Status draw(const ColorTarget& target, int x0, int y0, const PictureOptions& options, const MeshStyle& style,
-                Progress* progress) const;
+                Progress* progress, const Subsample& subsample = {}) const;
     size_t triangleCount() const { return triangleCount_; }
     const Box3f& bounds() const { return bounds_; }
 
@@ -63,6 +69,16 @@ private:
     Status drawTriangles(const Program& program, Progress* progress) const;
     Status drawMap(const MapStack& map, Vec3d towardsLight, Progress* progress) const;
     void setLight(const Program& program, bool sky) const;
+    /// Nothing is drawn where a subsample isn't wanted.
+    void drawMask(const Subsample& subsample, int columns) const;
+    /// Where all triangles are drawn: a picture's projection and its nearest distance.
+    struct Projection {
+        Matrix4 clipFromWorld;
+        Vec3f eye;
+        float near;
+    };
+    Status drawCreases(const Projection& from, const ColorTarget& target, const MeshStyle& style,
+                       Progress* progress) const;
 
     std::shared_ptr<const MeshPrograms> programs_;
     Box3f bounds_;

@@ -16,9 +16,17 @@ const std::vector<Shader>& shaders() {
         {"crease", "vert", false, {"crease"}},
         {"crease_color", "frag", false, {"crease_color"}},
         {"depth", "frag", false, {"depth"}},
+        {"mask", "frag", false, {"mask"}},
         {"encode", "frag", false, {"encode"}},
         {"blur_depth", "frag", false, {"blur_depth"}},
-        {"mesh_color", "frag", false, {"view", "sky", "light", "ground", "tonemap", "visibility", "mesh_color"}},
+        {"mesh_color",
+         "frag",
+         false,
+         {"view", "sky", "light", "ground", "tonemap", "visibility", "whole", "mesh_color"}},
+        {"mesh_section",
+         "frag",
+         false,
+         {"view", "sky", "light", "ground", "tonemap", "visibility", "section", "mesh_color"}},
         {"backdrop", "frag", false, {"view", "sky", "light", "ground", "tonemap", "visibility", "backdrop"}},
     };
     return table;

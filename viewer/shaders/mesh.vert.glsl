@@ -4,6 +4,7 @@ layout(location = 2) in float curvature;  // mean, 1/m
 uniform mat4 clipFromWorld;
 out vec3 worldPosition, worldNormal;
 out float meanCurvature;
+invariant gl_Position;  // depths that were drawn before are met again
 
 void main() {
     worldPosition = position;

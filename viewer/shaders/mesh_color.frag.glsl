@@ -7,8 +7,6 @@ layout(std430, binding = 4) readonly buffer Materials { vec4 materials[]; };  //
 uniform usamplerBuffer ownerOfTriangle;  // material, rule, component, smooth piece
 uniform int firstTriangle;
 uniform int meshLook;  // as viewer::MeshLook
-uniform vec3 sectionNormal;  // zero without a section
-uniform float sectionOffset;
 uniform int wire;
 const int lookMaterials = 0, lookNormals = 1, lookCurvature = 2, lookOrigin = 3, lookComponents = 4, lookLabels = 5, lookCreases = 6;
 
@@ -37,7 +35,7 @@ vec3 materialLight(int triangle, vec3 normal, vec3 toEye) {
 }
 
 void main() {
-    if (dot(sectionNormal, worldPosition) > sectionOffset && sectionNormal != vec3(0.0)) discard;
+    if (isCutAway(worldPosition)) discard;
     if (wire != 0) {
         color = vec4(0.01, 0.015, 0.02, 0.45);
         return;
@@ -46,7 +44,7 @@ void main() {
     vec3 normal = normalize(worldNormal) * (gl_FrontFacing ? 1.0 : -1.0);
     int triangle = 4 * (firstTriangle + gl_PrimitiveID);
     vec3 display;
-    if (!gl_FrontFacing && sectionNormal != vec3(0.0)) display = vec3(0.55, 0.16, 0.09);
+    if (showsCut()) display = vec3(0.55, 0.16, 0.09);
     else if (meshLook == lookMaterials) display = materialLight(triangle, normal, toEye);
     else if (meshLook == lookNormals) display = 0.5 + 0.5 * normal;
     else if (meshLook == lookCurvature) display = told(curvatureColor(meanCurvature), normal, toEye);
