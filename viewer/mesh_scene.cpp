@@ -23,7 +23,7 @@ constexpr size_t leastSkyMaps = 12, mostSkyMaps = 40;  // the latter as in visib
 /// As many as the driver draws in a second or less; software draws some 3 million triangles a second
 /// (docs/lab/pictures.md).
 size_t skyMapsFor(size_t triangles) {
-    const size_t drawn = softwareGl() ? size_t{3} << 19 : size_t{24} << 20;
+    const size_t drawn = softwareGl() ? size_t{5} << 19 : size_t{24} << 20;
     return std::clamp(drawn / std::max<size_t>(triangles, 1), leastSkyMaps, mostSkyMaps);
 }
 
@@ -313,7 +313,7 @@ Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureO
     materials_.bindStorage(4);
     const double left = x0 + subsample.right, low = y0 - subsample.down;
     const Matrix4 clipFromWorld = tileMatrix(view, options, near, far, left, low, target.width, target.height);
-    if (!style.section) {  // depth first, for shading what is hidden costs as much as what is seen
+    if (!style.section && !subsample.wanted) {  // depth first, for shading what is hidden costs as much as what is seen
         const WithoutColor depthAlone;
         programs_->depth.set("clipFromWorld", clipFromWorld);
         if (Status s = drawTriangles(programs_->depth, progress); !s) return s;

@@ -93,6 +93,7 @@ private:
     uint32_t jointNamed(const rules::Expr& expr, ShapeId host, const Place& place);
     uint32_t theirJoint(const rules::Element& e, const ElementCache& facts, const Joint& ours, const Mat3& axes,
                         const Place& place);
+    uint32_t faceNamed(const rules::Value& value, syntax::SourceSpan span);
     rules::Joint jointShares(uint32_t joint, uint32_t jointSet) const;
     void remarkLostTurn(const rules::Element& e, const Mating& mating, const Mat3& asked, const Place& place,
                         const Mat3& axes);

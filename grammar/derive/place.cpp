@@ -115,9 +115,19 @@ ShapeId Interpreter::hostOf(const Element& e, const Frame& frame, const Target& 
     return candidates[pick(combine(place.key, hashText("on")), candidates.size())];
 }
 
+/// The joint of a face that a value names; what `with` sets may be anything.
+uint32_t Interpreter::faceNamed(const rules::Value& value, syntax::SourceSpan span) {
+    if (value.kind == rules::Value::Kind::Axis) return static_cast<uint32_t>(value.num());
+    builder_.fail(Error::Kind::Input,
+                  "'" + std::string(span.text()) + "' is " + rules::toText(value) +
+                      " here, and a joint is a direction, as +x, or a joint's name",
+                  span);
+    return none;
+}
+
 uint32_t Interpreter::jointNamed(const rules::Expr& expr, ShapeId host, const Place& place) {
     const rules::Value v = evaluate(expr, place);
-    if (v.kind != rules::Value::Kind::Word) return static_cast<uint32_t>(v.num());
+    if (v.kind != rules::Value::Kind::Word) return faceNamed(v, expr.span);
     const uint32_t joint = builder_.tree().findJoint(host, v.text);
     if (joint == none)
         builder_.fail(
@@ -153,7 +163,7 @@ uint32_t Interpreter::theirJoint(const Element& e, const ElementCache& facts, co
                                  const Place& place) {
     if (!e.to) return ours.direction == Vec3d{} ? centreJoint : opposedFace(axes, ours.direction);
     const rules::Value v = evaluate(e.to->joints[0], place);
-    if (v.kind != rules::Value::Kind::Word) return static_cast<uint32_t>(v.num());
+    if (v.kind != rules::Value::Kind::Word) return faceNamed(v, e.to->span);
     const auto& named = builder_.tree().namedJoints[facts.jointSet];
     for (uint32_t i = 0; i < named.size(); ++i)
         if (named[i].name == v.text) return firstNamedJoint + i;

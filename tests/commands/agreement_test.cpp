@@ -141,5 +141,25 @@ TEST(Agreement, CheckPassesWhereBuildDoes) {
     EXPECT_GT(tally.read, 0u);
 }
 
+/// A mutant of std/cave.sgm ended the program: a number stood where a direction is inherited.
+TEST(Agreement, ADirectionThatIsANumberIsAnError) {
+    for (const char* rule : {"+ cube at d", "+ cube at +x to d"}) {
+        syntax::Diagnostics diagnostics;
+        const auto grammar = readAs("direction.sgm",
+                                    "grammar 1\nstart A -> cube with d = +x : B\n"
+                                    "rule B -> + cube at d with d = 7 : C\nrule C -> " +
+                                        std::string(rule) + "\n",
+                                    diagnostics);
+        ASSERT_TRUE(grammar);
+        ASSERT_TRUE(tryModels(grammar, {1, 60, mostShapes, 0}, nullptr, diagnostics).ok());
+        bool told = false;
+        for (const syntax::Diagnostic& d : diagnostics.all())
+            told = told || d.message.find("'d' is 7 here, and a joint is a direction") != std::string::npos;
+        EXPECT_TRUE(told) << rule;
+        bool hasMesh = false;
+        EXPECT_NE(builtOf(grammar, hasMesh).find("'d' is 7 here"), std::string::npos) << rule;
+    }
+}
+
 }  // namespace
 }  // namespace sgm::cli
