@@ -23,11 +23,11 @@ using syntax::OperationArgument;
 
 constexpr OperationArgument aroundArguments[] = {
     {"count", ArgumentType::Number, "how many; 'i' counts them from 1"},
-    {"radius", ArgumentType::Length, "from the scope's centre to theirs", false, "radius"}};
+    {"distance", ArgumentType::Length, "from the scope's centre to theirs", false, "radius"}};
 constexpr OperationArgument rowArguments[] = {
     {"count", ArgumentType::Number, "how many parts; 'i' counts them from 1"},
     {"axis", ArgumentType::Axis, "x, y or z of the scope", false, "along"},
-    {"gap", ArgumentType::Length, "what stays free between two parts; 0 unless said", true, "gap"}};
+    {"width", ArgumentType::Length, "what stays free between two parts; 0 unless said", true, "gap"}};
 constexpr OperationArgument mirrorArguments[] = {{"axis", ArgumentType::Axis, "x, y or z of the scope"}};
 
 int axisOf(const syntax::Expr& e) { return e.text == "y" ? 1 : e.text == "z" ? 2 : 0; }

@@ -219,7 +219,7 @@ void agreeThrough(OperationChecker& checker, const Element& element, const Attri
         checker.error(attribute.span, "'through' says what a difference cuts, but this shape isn't joined by '-'",
                       "write '-' before the shape");
     if (element.on && element.on->kind == HostChoice::Kind::Each)
-        checker.error(attribute.span, "what is cut 'on each(…)' shape cuts those shapes", "leave one of both out");
+        checker.error(attribute.span, "'on each(…)' cuts the shapes that it stands on", "leave one of both out");
     for (const Attribute& a : element.attributes)
         if (a.operation->namesValue)
             checker.error(a.span, fmt::format("'{}' hands nothing to a shape that cuts elsewhere", a.operation->name),
