@@ -210,9 +210,6 @@ TEST_F(Sessions, ProblemsOfTheMeshFollowIt) {
         });
     };
     EXPECT_EQ(told(), 1);
-    session.show(request);
-    settle(session);
-    EXPECT_EQ(told(), 1) << "nothing has changed";
 }
 
 TEST_F(Sessions, ASectionOpensTheMeshAndNotTheModel) {
@@ -225,10 +222,9 @@ TEST_F(Sessions, ASectionOpensTheMeshAndNotTheModel) {
     request.section = pipeline::Section{0, true, .5, true};
     session.show(request);
     settle(session);
-    const Box3f half = session.mesh()->mesh->bounds();
     const Box3f& model = session.model()->model.lowered->field.bounds;
-    EXPECT_NEAR(half.hi.x, (model.lo.x + model.hi.x) / 2, 1e-3);
-    EXPECT_NEAR(half.lo.x, whole.lo.x, 1e-3);
+    EXPECT_NEAR(session.mesh()->mesh->bounds().hi.x, (model.lo.x + model.hi.x) / 2, 1e-3);
+    EXPECT_NEAR(session.mesh()->mesh->bounds().lo.x, whole.lo.x, 1e-3);
     request.section.reset();
     session.show(request);
     settle(session);
