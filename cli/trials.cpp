@@ -63,6 +63,7 @@ public:
             if (done.error().kind != Error::Kind::Budget || watch.seconds() < options_.otherSeconds)
                 tell(done.error(), setting.words, false);
         }
+        trials.thin = std::move(thin_);
         return trials;
     }
 
@@ -156,7 +157,11 @@ private:
         if (!meshed.ok()) return meshed.error();
         const auto found = pipeline::meshWarnings(model, meshed->mesh, meshed->grid, context);
         if (!found.ok()) return found.error();
-        for (const pipeline::MeshWarning& w : *found) diagnostics_.warning(w.span, w.text);
+        for (const pipeline::MeshWarning& w : *found)
+            if (w.thin)
+                thin_.push_back(w);
+            else
+                diagnostics_.warning(w.span, w.text);
         return Done{};
     }
 
@@ -195,6 +200,7 @@ private:
     TrialOptions options_;
     Progress* progress_;
     syntax::Diagnostics& diagnostics_;
+    std::vector<pipeline::MeshWarning> thin_;
     std::set<Key> said_;                                                      ///< errors
     std::set<std::tuple<const syntax::Source*, uint32_t, uint32_t>> warned_;  ///< places: one warning each
 };

@@ -73,8 +73,8 @@ uint8_t doubtsOf(const eval::Tape& tape) {
         turned |= last && (in.op == field::codeOf<field::ops::Neg> || in.op == field::codeOf<field::ops::Sub>);
         owned[in.out] = count > 0;
     }
-    return static_cast<uint8_t>((greatest || (least && turned) ? DoubtOutside : 0) |
-                                (greatest || least ? DoubtInside : 0));
+    return static_cast<uint8_t>((greatest || (least && turned) ? DoubtfulOutside : 0) |
+                                (greatest || least ? DoubtfulInside : 0));
 }
 
 uint32_t CellTree::find(Vec3f p) const {

@@ -25,9 +25,9 @@ enum class CellState : uint32_t {
 /// Where a field may be small, or 0, with no surface near: inside a union of cutters, which are parts of the space
 /// around the solid, where faces of two solids of an intersection touch, where a cutter is flush with its host; and
 /// from inside a solid, where its parts meet. Bits.
-enum Doubt : uint8_t {
-    DoubtOutside = 1,  ///< for rays around the solid
-    DoubtInside = 2,   ///< for rays within it
+enum SmallValues : uint8_t {
+    DoubtfulOutside = 1,  ///< for rays around the solid
+    DoubtfulInside = 2,   ///< for rays within it
 };
 /// What a tape's operators allow: a choice between parts, that is, between operands that belong to somebody. Linear in
 /// the tape.
@@ -43,7 +43,7 @@ struct CellTree {
     std::vector<uint32_t> nodes;
     std::vector<eval::Tape> tapes;  ///< of near leaves; each is exact a 32nd of its cell's edge beyond the cell
     std::vector<eval::FloatInterval> ranges;  ///< of the field in the same leaves
-    std::vector<uint8_t> doubts;              ///< of the same leaves, see Doubt
+    std::vector<uint8_t> doubts;              ///< of the same leaves, see SmallValues
 
     static constexpr CellState stateOf(uint32_t word) { return CellState(word >> 30); }
     static constexpr uint32_t indexOf(uint32_t word) { return word & 0x3fffffffu; }

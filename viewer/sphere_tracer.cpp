@@ -41,7 +41,7 @@ Cell CellSpace::cellAt(Vec3f p) const {
     if (cell.state == CellState::Near) {
         cell.tape = CellTree::indexOf(word);
         cell.least = side > 0 ? tree.ranges[cell.tape].lo : -tree.ranges[cell.tape].hi;
-        cell.doubtful = tree.doubts[cell.tape] & (side > 0 ? DoubtOutside : DoubtInside);
+        cell.doubtful = tree.doubts[cell.tape] & (side > 0 ? DoubtfulOutside : DoubtfulInside);
     }
     return cell;
 }

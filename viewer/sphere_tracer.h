@@ -23,7 +23,7 @@ struct Cell {
     Vec3f low;                             ///< metres
     float edge = 0;                        ///< metres
     float least = 0;                       ///< of the field in the cell
-    bool doubtful = false;                 ///< the field may be small where no surface is near (Doubt)
+    bool doubtful = false;                 ///< the field may be small where no surface is near (SmallValues)
     bool holds(Vec3f p) const {
         return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x < low.x + edge && p.y < low.y + edge &&
                p.z < low.z + edge;

@@ -163,7 +163,7 @@ uint32_t Interpreter::theirJoint(const Element& e, const ElementCache& facts, co
                                  const Place& place) {
     if (!e.to) return ours.direction == Vec3d{} ? centreJoint : opposedFace(axes, ours.direction);
     const rules::Value v = evaluate(e.to->joints[0], place);
-    if (v.kind != rules::Value::Kind::Word) return faceNamed(v, e.to->span);
+    if (v.kind != rules::Value::Kind::Word) return faceNamed(v, e.to->joints[0].span);
     const auto& named = builder_.tree().namedJoints[facts.jointSet];
     for (uint32_t i = 0; i < named.size(); ++i)
         if (named[i].name == v.text) return firstNamedJoint + i;

@@ -87,7 +87,8 @@ std::vector<Fix> fixesOf(const syntax::Source& source, const syntax::Diagnostic&
                          const std::function<size_t(const std::string&, std::string_view, uint32_t)>& check) {
     std::vector<Fix> fixes;
     const syntax::SourceSpan span = problem.span;
-    if (span.source != &source || problem.hint.empty()) return fixes;
+    // "as in '…'" is an example, and nothing that could stand there.
+    if (span.source != &source || problem.hint.empty() || problem.hint.starts_with("as in ")) return fixes;
     const std::string text(source.text());
     const size_t before = check(text, problem.message, span.begin);
     std::vector<Edit> candidates = extra;

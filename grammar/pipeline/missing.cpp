@@ -55,11 +55,12 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
                          one ? "a" : std::to_string(line.parts), line.symbol, line.thickness_m, one ? "is" : "are",
                          grid.cell_m, one ? "s" : "", 100 * line.missing / static_cast<double>(line.parts),
                          static_cast<int>(std::ceil(static_cast<double>(maxComponent(extent)) / line.cell_m)),
-                         one ? "it" : "them")});
+                         one ? "it" : "them"),
+             true});
     }
     if (lines.size() > most)
         warnings.push_back(
-            {{}, {}, fmt::format("parts of {} more lines are too thin for these cells", lines.size() - most)});
+            {{}, {}, fmt::format("parts of {} more lines are too thin for these cells", lines.size() - most), true});
     return warnings;
 }
 

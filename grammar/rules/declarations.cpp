@@ -146,7 +146,8 @@ void Checker::look(const syntax::TerminalDecl& decl, Material& material, std::ve
         if (a.args.empty()) continue;
         const auto value = fold(a.args[0], defaults_);
         if (!value) continue;
-        if (value->kind == Value::Kind::Word) {  // of: the look of a material declared above
+        const bool isMaterial = a.operation->arguments[0].type == syntax::ArgumentType::Material;
+        if (isMaterial && value->kind == Value::Kind::Word) {  // of: the look of a material declared above
             const SymbolId base = findMaterial(grammar_, value->text);
             if (base == rules::none || grammar_.symbols[base].material == rules::none || !fold(a.args[0], {})) {
                 diagnostics_.error(a.span, fmt::format("'{}' is no material declared above", value->text),

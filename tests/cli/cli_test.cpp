@@ -197,8 +197,7 @@ TEST_F(Cli, FormatterIsIdempotentAndShippedGrammarsAreFormatted) {
 }
 
 TEST_F(Cli, FormatterUpgradesAndReports) {
-    const std::string file =
-        grammar("start A -> size 4 B\nrule B -> cube size 1m move (1m, 0, 0) + sphere size 50%\n");
+    const std::string file = grammar("start A -> size 4 B\nrule B -> cube size 1m move (1m, 0, 0) + sphere size 50%\n");
     const Outcome run = sgm("fmt --upgrade " + file);
     EXPECT_EQ(run.code, 0);
     EXPECT_NE(run.out.find("shapes behind this one were measured by it"), std::string::npos) << run.out;
@@ -258,7 +257,8 @@ TEST_F(Cli, EveryStepOfTheTutorialChecksFineAndTheLastIsTheExample) {
         ASSERT_EQ(std::system(("awk -v step=" + step + " -f docs/tutorial.awk docs/tutorial.md >" + file).c_str()), 0);
         const Outcome run = sgm("check " + file);
         EXPECT_EQ(run.code, 0) << "step " << step << ": " << run.out;
-        EXPECT_EQ(run.out, file + ": fine\n") << "step " << step;
+        EXPECT_NE(run.out.find(file + ": fine\n"), std::string::npos) << "step " << step << ": " << run.out;
+        EXPECT_EQ(run.out.find("warning"), std::string::npos) << "step " << step << ": " << run.out;
     }
     EXPECT_GE(steps, 9);
     sgm("fmt " + file);

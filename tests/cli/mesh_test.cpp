@@ -140,7 +140,7 @@ TEST_F(Meshes, RefuseObjectsThatNobodyHolds) {
         {"--objects Wal -o " + path("a.glb"), "no shape is called 'Wal' (did you mean 'Wall'?); there are A, "},
         {"--objects Wall, -o " + path("a.glb"), "--objects: objects 'Wall,': write none, material, shape"},
         {"--objects Wall -o " + path("a.stl"),
-         "--objects Wall: objects go into .glb .gltf .obj .usda, and no such file is asked for"},
+         "--objects Wall: objects go into .glb .gltf .obj .usda .html, and no such file is asked for"},
         {"--format-option instances=no -o " + path("a.glb"), "instances=no is about objects: add --objects"},
         {"--objects Wall --collider boxes --format-option engine=unreal -o " + path("a.glb"),
          "Unreal takes colliders by the name of one mesh"}};

@@ -77,9 +77,9 @@ TEST_F(Cli, MutateJudgesAlikeAtAnyResolution) {
     const std::string clad = grammar(
         "use \"std/kifs.sgm\"\nparam width = 12m in 8m..16m\nstart House -> Box size (width, 8, 8) clad casement\n");
     for (const char* cells : {"24", "64", "160"})
-        EXPECT_EQ(sgm("mutate " + clad + " --rows 1 --cols 1 --resolution " + cells).out,
-                  "note: nothing was drawn: add -o sheet.png\n0: as it is\n")
-            << cells;
+        EXPECT_TRUE(sgm("mutate " + clad + " --rows 1 --cols 1 --resolution " + cells)
+                        .out.ends_with("note: nothing was drawn: add -o sheet.png\n0: as it is\n"))
+            << cells;  // behind what crumbles at such cells
 }
 
 TEST_F(Cli, MutateSaysWhatIsWrong) {

@@ -44,24 +44,10 @@ std::string moduleOf(const std::string& path) {
 const std::vector<std::string> folders{"modeler", "grammar", "viewer", "cli"};
 
 /// Bottom to top: a module may see those before it.
-const std::vector<std::string> order{"modeler/core",
-                                     "modeler/plan",
-                                     "modeler/town",
-                                     "modeler/field",
-                                     "modeler/eval",
-                                     "modeler/mesh",
-                                     "modeler/volume",
-                                     "modeler/export",
-                                     "modeler/tiles",
-                                     "grammar/syntax",
-                                     "grammar/rules",
-                                     "grammar/derive",
-                                     "grammar/operations",
-                                     "grammar/language",
-                                     "grammar/lower",
-                                     "grammar/pipeline",
-                                     "viewer",
-                                     "cli"};
+const std::vector<std::string> order{
+    "modeler/core",       "modeler/plan",     "modeler/town",  "modeler/field",    "modeler/eval",  "modeler/mesh",
+    "modeler/volume",     "modeler/export",   "modeler/tiles", "grammar/syntax",   "grammar/rules", "grammar/derive",
+    "grammar/operations", "grammar/language", "grammar/lower", "grammar/pipeline", "viewer",        "cli"};
 
 TEST(Layering, NoUpwardInclude) {
     std::map<std::string, size_t> level;

@@ -1,6 +1,6 @@
 // Space cut into a tree of cells, 4 × 4 × 4 a node, each leaf with a tape shortened for it (viewer/cells.h).
 uniform usamplerBuffer tree;   // 64 words a node: state in the two top bits, leaf or node below
-uniform usamplerBuffer leaves; // tape start, least and most of the field, bits of viewer::Doubt
+uniform usamplerBuffer leaves; // tape start, least and most of the field, bits of viewer::SmallValues
 uniform vec3 rootLow;          // metres
 uniform float rootEdge;
 uniform vec3 boundsLow, boundsHigh;

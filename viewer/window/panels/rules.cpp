@@ -302,8 +302,7 @@ void RulesPanel::attributes(Workbench& bench, const Element& element) {
     const size_t from = example.find(operation.name);
     example = from == std::string_view::npos ? std::string_view("1") : example.substr(from + operation.name.size());
     const std::string arguments = operation.arguments.size() > 1 ? std::string(example) : firstArgument(example);
-    bench.edit(edits::setAttribute(ast, element, operation, arguments),
-               fmt::format("Add {}", operation.name));
+    bench.edit(edits::setAttribute(ast, element, operation, arguments), fmt::format("Add {}", operation.name));
 }
 
 }  // namespace sgm::viewer
