@@ -40,9 +40,9 @@ int runGrammarChecks(std::shared_ptr<const rules::Grammar> grammar, const CheckR
 }
 
 /// One line: nothing is wrong with a grammar whose details need a fine mesh.
-void printThinParts(const std::vector<pipeline::MeshWarning>& thin) {
-    printMessage("note: {}{}{}\n", thin.front().place, thin.front().text,
-                 thin.size() == 1 ? "" : " (`sgm build` names more such parts)");
+void printOfCells(const std::vector<pipeline::MeshWarning>& warnings) {
+    printMessage("note: {}{}{}\n", warnings.front().place, warnings.front().text,
+                 warnings.size() == 1 ? "" : " (`sgm build` tells more of these cells)");
 }
 
 /// What `sgm build` would refuse, and what other settings would; the exit code.
@@ -55,7 +55,7 @@ int tryGrammar(const std::string& file, const std::shared_ptr<const rules::Gramm
     if (trials->tried < trials->all && !request.json)
         printMessage("note: {}: {} of {} settings were tried in {:g} s (--try-seconds)\n", file, trials->tried,
                      trials->all, request.otherSeconds);
-    if (!trials->thin.empty() && !request.json) printThinParts(trials->thin);
+    if (!trials->ofCells.empty() && !request.json) printOfCells(trials->ofCells);
     return trials->budgetSpent ? 3 : 0;
 }
 

@@ -23,7 +23,7 @@ struct Template {
 };
 
 constexpr Template templates[] = {
-    {"tower", R"(grammar 1
+    {"tower", R"(grammar 2
 // NAME: storeys that grow one on another.
 use "std/walls.sgm"
 
@@ -37,7 +37,7 @@ rule Storey repeat floors - 1
 
 check House { floors = 3 } expect bonds >= 3
 )"},
-    {"facade", R"(grammar 1
+    {"facade", R"(grammar 2
 // NAME: a wall, split into storeys and bays with windows.
 use "std/walls.sgm"
 
@@ -49,7 +49,7 @@ rule Row -> split x { { ~bay: Tile }* }
 rule Tile -> split x { ~1: brick | ~2: Window | ~1: brick }
 rule Window -> split y { ~1: brick | ~2: glass size (100%, 100%, 30%) | ~1: brick }
 )"},
-    {"cave", R"(grammar 1
+    {"cave", R"(grammar 2
 // NAME: hollows that merge, a cell at a time.
 param cells = 12 in 2..60 "Cells"
 

@@ -7,9 +7,9 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/requests.h"
-#include "grammar/language/upgrade.h"
 #include "grammar/operations/operations.h"
 #include "grammar/pipeline/files.h"
+#include "grammar/rules/upgrade.h"
 #include "grammar/syntax/parser.h"
 #include "grammar/syntax/printer.h"
 
@@ -26,7 +26,7 @@ int formatOne(const std::string& file, bool checkOnly, bool upgrade) {
     if (diagnostics.hasErrors()) return 1;
     std::string text = syntax::format(**source, operations::table());
     if (upgrade && ast.version == 1) {
-        const language::Upgrade made = language::upgraded(ast);
+        const rules::Upgrade made = rules::upgraded(ast);
         syntax::Diagnostics notes;
         for (const syntax::Diagnostic& note : made.notes) notes.warning(note.span, note.message, note.hint);
         printDiagnostics(notes);

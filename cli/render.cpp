@@ -317,6 +317,25 @@ int render(RenderRequest request) {
     return done.ok() ? 0 : fail(done.error());
 }
 
+/// How fog looks, and how finely and by whom the rays are walked.
+void addRayOptions(CLI::App& app, RenderRequest& request) {
+    app.add_option("--extinction", request.extinction, "Of fog, per metre (default: 180 over the model's diagonal)")
+        ->check(between(1e-6, 1e6));
+    app.add_option("--format-option", request.fog,
+                   "Of fog, NAME=VALUE as `sgm build` takes it for .vdb: density, edge, wisps, billow, lump; the "
+                   "picture then is of the fog that such a file holds")
+        ->allow_extra_args(false);
+    addRenamedOption(app, "--export", "--format-option", request.fog);
+    app.add_option("--samples", request.samples, "Samples a pixel, for smooth edges")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    app.add_option("--rays", request.rays,
+                   "Who walks the rays of a field: shaders, the processor, or what is best here, the processor where "
+                   "OpenGL has no GPU")
+        ->check(CLI::IsMember({"best", "shaders", "processor"}))
+        ->capture_default_str();
+}
+
 }  // namespace
 
 void addRender(CLI::App& app, int& exitCode) {
@@ -348,24 +367,7 @@ void addRender(CLI::App& app, int& exitCode) {
         ->add_option("--turntable", request->turntable,
                      "Draw this many pictures around the model; -o needs a number: turn_%04d.png")
         ->check(CLI::Range(1, 10'000));
-    command
-        ->add_option("--extinction", request->extinction, "Of fog, per metre (default: 180 over the model's diagonal)")
-        ->check(between(1e-6, 1e6));
-    command
-        ->add_option("--format-option", request->fog,
-                     "Of fog, NAME=VALUE as `sgm build` takes it for .vdb: density, edge, wisps, billow, lump; the "
-                     "picture then is of the fog that such a file holds")
-        ->allow_extra_args(false);
-    addRenamedOption(*command, "--export", "--format-option", request->fog);
-    command->add_option("--samples", request->samples, "Samples a pixel, for smooth edges")
-        ->check(CLI::Range(1, 64))
-        ->capture_default_str();
-    command
-        ->add_option("--rays", request->rays,
-                     "Who walks the rays of a field: shaders, the processor, or what is best here, the processor where "
-                     "OpenGL has no GPU")
-        ->check(CLI::IsMember({"best", "shaders", "processor"}))
-        ->capture_default_str();
+    addRayOptions(*command, *request);
     command->add_flag("--wires", request->wires, "Draw the edges of the mesh's triangles");
     command->add_flag("--no-ground", request->noGround, "Leave out the ground");
     command->add_flag("--stats", request->stats,

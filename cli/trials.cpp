@@ -63,7 +63,7 @@ public:
             if (done.error().kind != Error::Kind::Budget || watch.seconds() < options_.otherSeconds)
                 tell(done.error(), setting.words, false);
         }
-        trials.thin = std::move(thin_);
+        trials.ofCells = std::move(ofCells_);
         return trials;
     }
 
@@ -157,9 +157,11 @@ private:
         if (!meshed.ok()) return meshed.error();
         const auto found = pipeline::meshWarnings(model, meshed->mesh, meshed->grid, context);
         if (!found.ok()) return found.error();
+        // Where the cells lack parts, what seems to hang over a gap may stand on them.
+        const bool lacks = std::any_of(found->begin(), found->end(), [](const auto& w) { return w.ofCells; });
         for (const pipeline::MeshWarning& w : *found)
-            if (w.thin)
-                thin_.push_back(w);
+            if (lacks)
+                ofCells_.push_back(w);
             else
                 diagnostics_.warning(w.span, w.text);
         return Done{};
@@ -175,8 +177,10 @@ private:
         if (!blocks.ok()) return blocks.error();
         if (!blocks->empty()) return Done{};
         const derive::Shape& root = model.derivation.tree.shapes[0];
-        return Error{Error::Kind::Input, fmt::format("{}nothing solid is left of '{}': all is cut away",
-                                                     syntax::placeText(root.span), model.derivation.tree.path(0))};
+        return Error{Error::Kind::Input,
+                     fmt::format("{}nothing solid is left of '{}': all is cut away; move the cutters, or "
+                                 "make them smaller",
+                                 syntax::placeText(root.span), model.derivation.tree.path(0))};
     }
 
     static std::string prefixed(const std::string& words, const std::string& message) {
@@ -200,7 +204,7 @@ private:
     TrialOptions options_;
     Progress* progress_;
     syntax::Diagnostics& diagnostics_;
-    std::vector<pipeline::MeshWarning> thin_;
+    std::vector<pipeline::MeshWarning> ofCells_;
     std::set<Key> said_;                                                      ///< errors
     std::set<std::tuple<const syntax::Source*, uint32_t, uint32_t>> warned_;  ///< places: one warning each
 };

@@ -20,15 +20,16 @@ struct TrialOptions {
 
 /// How the trials went.
 struct Trials {
-    size_t tried = 0, all = 0;                ///< settings
-    bool budgetSpent = false;                 ///< the main model's error was one of a budget
-    std::vector<pipeline::MeshWarning> thin;  ///< of the main model's mesh at the usual cells
+    size_t tried = 0, all = 0;                   ///< settings
+    bool budgetSpent = false;                    ///< the main model's error was one of a budget
+    std::vector<pipeline::MeshWarning> ofCells;  ///< of the main model at the usual cells, which lack parts
 };
 
 /// Derives and lowers the first start as it is, whose problems are those of `sgm build`: errors are errors. Then every
 /// other start, every style and `derive` way, and every parameter of the main file at the ends of its range or at each
 /// choice, one at a time: what fails there is a warning that names the setting. What floats in the mesh of the first
-/// start at the usual cells is a warning too; parts that are too thin for these cells are returned. Error::Cancelled.
+/// start at the usual cells is a warning too, unless these cells lack parts: then all that is told of the mesh is
+/// returned. Error::Cancelled.
 Result<Trials> tryModels(std::shared_ptr<const rules::Grammar> grammar, const TrialOptions& options, Progress* progress,
                          syntax::Diagnostics& diagnostics);
 

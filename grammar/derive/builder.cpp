@@ -14,6 +14,8 @@ uint64_t bytes(const std::vector<T>& v) {
     return v.capacity() * sizeof(T);
 }
 
+constexpr const char* stopsGrowth = "let the rule end ('when', 'repeat'), ask for fewer, or allow more by --max-shapes";
+
 bool isDirected(const Joint& j) { return j.direction != Vec3d{}; }
 
 }  // namespace
@@ -26,7 +28,7 @@ uint64_t Derivation::memory() const {
 TreeBuilder::TreeBuilder(Derivation& derivation, const Budget& budget, Progress* progress)
     : derivation_(derivation), budget_(budget), progress_(progress), counts_(derivation.grammar->symbols.size()) {}
 
-void TreeBuilder::fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span) {
+void TreeBuilder::fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span, const char* fix) {
     if (failure_) return;
     const auto& grammar = *derivation_.grammar;
     std::string text = syntax::placeText(span) + what;
@@ -36,6 +38,7 @@ void TreeBuilder::fail(Error::Kind kind, const std::string& what, syntax::Source
     for (const Warning& r : derivation_.warnings)  // what was remarked in the text that fails is the cause as a rule
         if (r.span.source == span.source && r.span.begin >= span.begin && r.span.end <= span.end)
             text += "; " + r.message;
+    if (*fix) text += fmt::format("; {}", fix);
     failure_ = Error{kind, std::move(text)};
 }
 
@@ -61,7 +64,8 @@ void TreeBuilder::poll() {
     if (cancelled(progress_))
         failure_ = Error{Error::Kind::Cancelled, "cancelled while deriving"};
     else if (spent.count() > budget_.seconds)
-        fail(Error::Kind::Budget, fmt::format("the budget of {:g} seconds is spent", budget_.seconds), span);
+        fail(Error::Kind::Budget, fmt::format("the budget of {:g} seconds is spent", budget_.seconds), span,
+             "--max-seconds allows more");
     else if (derivation_.memory() + joints_.memory() > budget_.memory_bytes)
         fail(Error::Kind::Budget, fmt::format("the budget of {} MiB of memory is spent", budget_.memory_bytes >> 20),
              span);
@@ -70,7 +74,7 @@ void TreeBuilder::poll() {
 bool TreeBuilder::work() {
     if (++work_ % 1024 == 0) poll();
     if (work_ > 4 * budget_.shapes + 4096 && !failure_)
-        fail(Error::Kind::Budget, fmt::format("{} turns were made and there is no end", work_), here());
+        fail(Error::Kind::Budget, fmt::format("{} turns were made and there is no end", work_), here(), stopsGrowth);
     return !failure_;
 }
 
@@ -102,7 +106,8 @@ ShapeId TreeBuilder::add(Shape shape, ShapeId before) {
     const auto id = static_cast<ShapeId>(t.shapes.size());
     if (!work()) return none;
     if (id >= budget_.shapes) {
-        fail(Error::Kind::Budget, fmt::format("the budget of {} shapes is spent", budget_.shapes), shape.span);
+        fail(Error::Kind::Budget, fmt::format("the budget of {} shapes is spent", budget_.shapes), shape.span,
+             stopsGrowth);
         return none;
     }
     shape.madeBy = step_;
@@ -111,7 +116,7 @@ ShapeId TreeBuilder::add(Shape shape, ShapeId before) {
         shape.depth = parent.depth + 1;
         if (shape.depth > budget_.depth) {
             fail(Error::Kind::Budget, fmt::format("the budget of {} levels of depth is spent", budget_.depth),
-                 shape.span);
+                 shape.span, "a rule that makes itself again needs an end, such as 'when scope.x > .1m'");
             return none;
         }
         if (shape.extras != none && !t.extras[shape.extras].values.empty())

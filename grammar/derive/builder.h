@@ -52,8 +52,8 @@ public:
     Error takeFailure() { return *std::exchange(failure_, std::nullopt); }
     /// Begins a piece of work of its own: its time counts from now, and `progress` is told of it.
     void resume(Progress* progress) { progress_ = progress, begin_ = std::chrono::steady_clock::now(), work_ = 0; }
-    /// Ends the derivation with a sentence located at `span` and the present rule, path and seed.
-    void fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span);
+    /// Ends the derivation with a sentence located at `span` and the present rule, path and seed, and what to do.
+    void fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span, const char* fix = "");
     /// Adds a remark to the derivation, once a place; a second run of a recording adds none.
     void warn(syntax::SourceSpan span, std::string message, std::string hint);
     /// Another seed could have gone another way here.

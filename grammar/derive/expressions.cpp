@@ -51,7 +51,7 @@ const Value* stored(const Expr& expr, const Place& place) {
             if (place.builder)
                 place.builder->fail(Error::Kind::Input,
                                     "neither this shape nor any above it sets '" + expr.value.text + "' by 'with'",
-                                    expr.span);
+                                    expr.span, "set it where a shape above is made, or declare a 'param'");
             return &expr.value;
         default:
             return nullptr;
@@ -185,7 +185,7 @@ Value evaluate(const Expr& expr, const Place& place) {
     switch (expr.kind) {
         case Kind::Scope:
             if (expr.index != 3) return Value::number(extentOf(expr, place), Unit::Metre);
-            return Value::number(place.tree ? area(footprintOf(place.scope, place.tree->footprints)) : 0);
+            return Value::number(place.tree ? area(footprintOf(place.scope, place.tree->footprints)) : 0, Unit::SquareMetre);
         case Kind::Here:
             return Value::number(place.scope.centre[static_cast<int>(expr.index)], Unit::Metre);
         case Kind::Map:

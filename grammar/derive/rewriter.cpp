@@ -165,8 +165,10 @@ Result<ShapeId> Rewriter::meant(uint32_t index, const std::string& place) {
         if (usable({index, s})) found.push_back(s);
     if (found.size() == 1) return found[0];
     if (found.empty())
-        return refuse(fmt::format("rule '{}' matches nothing here: no live shape is a '{}' that it could rewrite",
-                                  rule.name, grammar_.symbols[rule.symbol].name));
+        return refuse(
+            fmt::format("rule '{1}' matches nothing here: no live shape is a '{0}' that it could rewrite; let a "
+                        "rule before it make a '{0}', or leave this step out",
+                        grammar_.symbols[rule.symbol].name, rule.name));
     return refuse(fmt::format("rule '{}' matches {} shapes here: write 'at {}' or another of them", rule.name,
                               found.size(), tree.path(found[0])));
 }

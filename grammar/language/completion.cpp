@@ -67,7 +67,7 @@ public:
         if (current_.kind == Token::Kind::Text) return word == "use" ? Want::File : Want::Nothing;
         const std::string_view last = text(before_.size() - 1);
         if (word == "use") return inBraces() ? Want::Settings : Want::Nothing;
-        if (word == "style" || word == "check" || word == "override") return settings(word, last);
+        if (word == "style" || word == "check") return settings(word, last);
         if (word == "derive") return last == "at" ? Want::Shape : Want::Rule;
         if (word == "param")
             return before_.size() == begin_ + 1                                      ? Want::Nothing

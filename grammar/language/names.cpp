@@ -88,7 +88,6 @@ public:
             settings(d.settings);
             if (d.expect) expr(*d.expect);
         }
-        for (const auto& d : ast.overrides) settings(d.settings);
     }
 
     std::vector<Occurrence> take() {

@@ -35,7 +35,6 @@ constexpr Keyword declarationTable[] = {
      "A named set of parameter values: `style Tall for House { floors = 12 }`. One called `default` is used without "
      "asking."},
     {"check", "The grammar's own test: `check House { floors = 3 } expect bonds >= 3`."},
-    {"override", "Values for one place of the tree."},
 };
 
 constexpr Keyword clauseTable[] = {

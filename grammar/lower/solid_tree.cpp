@@ -298,7 +298,8 @@ Result<SolidTree> Collector::run(Progress* progress) {
     Pending& whole = open_.back();
     if (!whole.operands.empty()) return compacted(close(whole));
     const std::string where = syntax::placeText(tree_.shapes[0].span);
-    return Error{Error::Kind::Input, fmt::format("{}nothing solid is left of '{}'", where, tree_.path(0))};
+    return Error{Error::Kind::Input, fmt::format("{}nothing solid is left of '{}': name a solid in it, such as 'cube'",
+                                                 where, tree_.path(0))};
 }
 
 /// The nodes that `root` is made of, and their solids, in their order; the first problem among them is the error.

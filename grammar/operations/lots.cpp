@@ -26,7 +26,7 @@ using syntax::OperationArgument;
 constexpr std::string_view partWords[] = {"lot", "corner", "inner"};
 constexpr double mostLots = 1e6;
 constexpr OperationArgument lotsArguments[] = {
-    {"area", syntax::ArgumentType::Plan, "square metres of a lot, or box(420, front: 8m, jitter: 15%)"}};
+    {"area", syntax::ArgumentType::Plan, "area of a lot, or box(420m2, front: 8m, jitter: 15%)"}};
 
 /// box(area, front: length, jitter: share)
 void checkBox(OperationChecker& checker, const syntax::Expr& e, Parts& out) {
@@ -34,7 +34,7 @@ void checkBox(OperationChecker& checker, const syntax::Expr& e, Parts& out) {
         const std::string& name = e.argNames[i];
         checker.beginDraws("lots." + (name.empty() ? "area" : name));
         if (name.empty() && i == 0)
-            out.args[0] = checker.expression(e.args[i], Want::Number, "the area of a lot");
+            out.args[0] = checker.expression(e.args[i], Want::Area, "the area of a lot");
         else if (name == "front")
             out.args[1] = checker.expression(e.args[i], Want::Length, "'front'");
         else if (name == "jitter")
@@ -43,7 +43,7 @@ void checkBox(OperationChecker& checker, const syntax::Expr& e, Parts& out) {
             checker.error(
                 e.args[i].span,
                 name.empty() ? "'box' takes one number, the area of a lot" : fmt::format("'box' has no '{}'", name),
-                name.empty() ? "write 'box(420, front: 8m)'" : checker.nearest(name, {"front", "jitter"}));
+                name.empty() ? "write 'box(420m2, front: 8m)'" : checker.nearest(name, {"front", "jitter"}));
     }
     if (e.args.empty() || !e.argNames[0].empty())
         checker.error(e.span, "'box' begins with the area of a lot", "write 'box(420, front: 8m)'");
@@ -63,7 +63,7 @@ std::shared_ptr<Parts> checkLots(OperationChecker& checker, const syntax::Attrib
         if (e.kind == syntax::Expr::Kind::Call && e.text == "box")
             checkBox(checker, e, *out);
         else
-            out->args[0] = checker.expression(e, Want::Number, "the area of a lot");
+            out->args[0] = checker.expression(e, Want::Area, "the area of a lot");
     }
     constexpr std::pair<double, double> ranges[] = {{4, 1e8}, {0, 1000}, {0, .45}};
     constexpr std::string_view texts[] = {"the area of a lot is 4 … 10⁸ square metres", "'front' is 0 … 1 km",

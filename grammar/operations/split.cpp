@@ -119,7 +119,7 @@ std::optional<Layout> layOut(PartsContext& context, const Parts& split, double w
         }
         (parts.empty() ? outside : groups) += once;
         if (!parts.empty() && once.fixed_m + once.floating <= leastPart_m) {
-            context.fail("what repeats has no extent, so it would never fill the scope", part.span);
+            context.fail("what repeats has no extent, so it would never fill the scope: give a part more than 0.000001m", part.span);
             return std::nullopt;
         }
     }

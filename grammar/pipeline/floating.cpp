@@ -54,7 +54,7 @@ std::vector<MeshWarning> floatingWarnings(const Model& model, const Support& sup
                             fmt::format("{} floats: {:.3g} m³ about ({:.2f}, {:.2f}, {:.2f}){}{}",
                                         derive::madeBy(model.derivation, f.shape), f.piece.volume_m3, at.x, at.y, at.z,
                                         cause.empty() ? "" : "; ", cause),
-                            false});
+                            f.cause.kind == FloatCause::Kind::Touch || f.cause.kind == FloatCause::Kind::Thin});
     }
     if (support.floating.size() > most)
         warnings.push_back({{}, {}, fmt::format("{} more pieces float", support.floating.size() - most), false});

@@ -43,7 +43,7 @@ struct MeshWarning {
     syntax::SourceSpan span;  ///< of the shape; without a source where none is known
     std::string place;        ///< "file:line: ", where the text doesn't say it
     std::string text;         ///< names the shape and figures
-    bool thin = false;        ///< a finer mesh has what it misses
+    bool ofCells = false;     ///< smaller cells show what is missing, or what holds the piece
 };
 /// A warning for each floating piece of a mesh of such cells, the first few of many.
 std::vector<MeshWarning> floatingWarnings(const Model& model, const Support& support, float cell_m);

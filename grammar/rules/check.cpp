@@ -11,6 +11,7 @@
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/params.h"
 #include "grammar/rules/static_analysis.h"
+#include "grammar/rules/upgrade.h"
 #include "grammar/rules/uses.h"
 #include "grammar/syntax/parser.h"
 
@@ -62,6 +63,23 @@ void sortInto(syntax::Diagnostics& out, const syntax::Diagnostics& found,
     }
 }
 
+/// One warning where `grammar 2` reads a text of version 1 in another way, at the first such place.
+void warnOfVersion(const syntax::Ast& ast, syntax::Diagnostics& diagnostics) {
+    const auto isTold = [&](const syntax::Diagnostic& note) {
+        return std::any_of(diagnostics.all().begin(), diagnostics.all().end(),
+                           [&](const syntax::Diagnostic& d) { return d.span.begin == note.span.begin; });
+    };
+    std::vector<syntax::Diagnostic> notes = upgraded(ast).notes;
+    std::erase_if(notes, isTold);
+    if (notes.empty()) return;
+    const size_t more = notes.size() - 1;
+    diagnostics.warning(
+        notes[0].span,
+        more ? fmt::format("'grammar 2' reads this in another way, and {} more place{}", more, more == 1 ? "" : "s")
+             : "'grammar 2' reads this in another way",
+        "'sgm fmt --upgrade' rewrites the file so that it means the same, and shows each such place");
+}
+
 /// Everything behind the names, and what follows from it all.
 void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax::Diagnostics& unread,
           syntax::Diagnostics& diagnostics) {
@@ -71,7 +89,6 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
         for (const syntax::Ast& part : files.asts) (checker.*step)(part);
     };
     each(&Checker::declare);
-    each(&Checker::rejectUnsupported);
     each(&Checker::parameters);
     each(&Checker::lets);
     each(&Checker::materials);
@@ -95,6 +112,7 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     findShadowed(grammar, diagnostics);
     findSharesOfNothing(grammar, diagnostics);
     findEndless(grammar, diagnostics);
+    warnOfVersion(files.asts.back(), diagnostics);
 }
 
 }  // namespace

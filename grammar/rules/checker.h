@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "grammar/rules/check.h"
+#include "grammar/rules/functions.h"
 #include "grammar/rules/grammar.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/type.h"
@@ -86,7 +87,6 @@ public:
     void terminals(const syntax::Ast& ast);
     void productions(const syntax::Ast& ast);
     void checkDeclarations(const syntax::Ast& ast);  ///< derives, styles, checks
-    void rejectUnsupported(const syntax::Ast& ast);  ///< what isn't built yet
     /// A plain value: no parameters, no shape, no chance. Where `word` holds, a name stands for itself.
     std::optional<Value> plain(const syntax::Expr& e, bool word);
     /// Parameters of `ast` that nothing asks for.
@@ -131,6 +131,7 @@ private:
     // operators.cpp
     Typed call(Place& place, const syntax::Expr& e);
     Typed countCall(Place& place, const syntax::Expr& e);
+    Typed placeCall(Place& place, const syntax::Expr& e, const Function& row);
     Typed unary(Place& place, const syntax::Expr& e);
     Typed binary(Place& place, const syntax::Expr& e);
     Typed comparedWord(Place& place, const syntax::Expr& e, const Type& other);

@@ -318,10 +318,6 @@ void Checker::checkDeclarations(const syntax::Ast& ast) {
     }
 }
 
-void Checker::rejectUnsupported(const syntax::Ast& ast) {
-    for (const auto& decl : ast.overrides) diagnostics_.error(decl.span, "overrides are not supported yet");
-}
-
 void Checker::unused(const syntax::Ast& ast) {
     for (const auto& decl : ast.params)
         if (const auto param = params_.find(decl.name.text);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "grammar/rules/color.h"
 
@@ -13,21 +14,36 @@ constexpr size_t maxComponents = 6;
 bool isVector(const Value& v) { return v.kind == Value::Kind::Vector; }
 size_t at(const Value& v, size_t i) { return v.count > 1 ? std::min<size_t>(i, v.count - 1u) : 0; }
 Unit unitAt(const Value& v, size_t i) { return v.units[std::min(at(v, i), v.units.size() - 1)]; }
+/// The power of the length in a unit: 2 for m², 0 for a plain number; nothing for angles, shares and `~`.
+std::optional<int> lengthPower(Unit unit) {
+    switch (unit) {
+        case Unit::None:
+            return 0;
+        case Unit::Metre:
+            return 1;
+        case Unit::SquareMetre:
+            return 2;
+        case Unit::CubicMetre:
+            return 3;
+        case Unit::PerMetre:
+            return -1;
+        default:
+            return std::nullopt;
+    }
+}
+std::optional<Unit> unitOfLengthPower(int power) {
+    constexpr Unit units[] = {Unit::PerMetre, Unit::None, Unit::Metre, Unit::SquareMetre, Unit::CubicMetre};
+    return power < -1 || power > 3 ? std::nullopt : std::optional(units[power + 1]);
+}
+
 /// The unit of a sum, a choice or an interpolation: the one that says more.
 Unit either(Unit a, Unit b) { return a == Unit::None ? b : a; }
 
-Unit unitOfProduct(Unit a, Unit b) {
-    if (a == Unit::None || b == Unit::None) return either(a, b);
-    if ((a == Unit::Metre && b == Unit::PerMetre) || (a == Unit::PerMetre && b == Unit::Metre)) return Unit::None;
-    if (a == Unit::Share) return b;
-    return a;
-}
 Unit unitOfQuotient(Unit a, Unit b) {
-    if (a == b) return Unit::None;
-    if (b == Unit::None || b == Unit::Share) return a;
-    if (a == Unit::None && b == Unit::Metre) return Unit::PerMetre;
-    if (a == Unit::None && b == Unit::PerMetre) return Unit::Metre;
-    return a;
+    if (b == Unit::Share) return a == b ? Unit::None : a;
+    const auto dividend = lengthPower(a), divisor = lengthPower(b);
+    if (!dividend || !divisor) return a == b ? Unit::None : a;
+    return unitOfLengthPower(*dividend - *divisor).value_or(a);
 }
 
 /// f on every component, numbers spread over vectors; `unit` from the units of both.
@@ -114,9 +130,8 @@ double smaller(double a, double b) { return b < a ? b : a; }
 double larger(double a, double b) { return a < b ? b : a; }
 double remainder(double a, double b) { return b == 0 ? 0 : a - std::floor(a / b) * b; }
 
-}  // namespace
-
-Value applyFunction(Fn fn, std::span<const Value> a) {
+/// What a sign between two values, or before one, makes of them.
+Value applyOperator(Fn fn, std::span<const Value> a) {
     const double x = a.empty() ? 0 : a[0].num(), y = a.size() < 2 ? 0 : a[1].num();
     switch (fn) {
         case Fn::Neg:
@@ -152,6 +167,30 @@ Value applyFunction(Fn fn, std::span<const Value> a) {
             return Value::boolean(a[0].truth() && a[1].truth());
         case Fn::Or:
             return Value::boolean(a[0].truth() || a[1].truth());
+        default:
+            return {};
+    }
+}
+
+}  // namespace
+
+Unit unitOfProduct(Unit a, Unit b) {
+    if (a == Unit::Share) return b == Unit::None ? a : b;
+    const auto first = lengthPower(a), second = lengthPower(b);
+    if (!first || !second) return either(a, b);
+    return unitOfLengthPower(*first + *second).value_or(a);
+}
+
+bool productHasUnit(Unit a, Unit b) {
+    const auto first = lengthPower(a), second = lengthPower(b);
+    if (first && second) return unitOfLengthPower(*first + *second).has_value();
+    return a != Unit::Angle || b != Unit::Angle;
+}
+
+Value applyFunction(Fn fn, std::span<const Value> a) {
+    if (fn <= Fn::Or) return applyOperator(fn, a);
+    const double x = a.empty() ? 0 : a[0].num(), y = a.size() < 2 ? 0 : a[1].num();
+    switch (fn) {
         case Fn::Min:
             return extreme(a, smaller);
         case Fn::Max:
@@ -165,7 +204,8 @@ Value applyFunction(Fn fn, std::span<const Value> a) {
         case Fn::Round:
             return whole(componentwise(a[0], [](double v) { return std::floor(v + 0.5); }));
         case Fn::Sqrt:
-            return Value::number(std::sqrt(larger(x, 0)));
+            return Value::number(std::sqrt(larger(x, 0)),
+                                 a[0].units[0] == Unit::SquareMetre ? Unit::Metre : Unit::None);
         case Fn::Sin:
             return Value::number(std::sin(x));
         case Fn::Cos:
@@ -192,13 +232,16 @@ Value applyFunction(Fn fn, std::span<const Value> a) {
             return rotationOf(Mat3::rotation({0, 0, 1}, x));
         case Fn::Rgb:
             return rgb(a);
+        case Fn::Metres:
+            return Value::number(a[0].units[0] == Unit::Share ? x * y : x, Unit::Metre);
         case Fn::Bump:
         case Fn::Fbm:
             return Value::number(0);
         case Fn::Count:
             return whole(Value::number(0));
+        default:
+            return {};
     }
-    return {};
 }
 
 Value component(const Value& vector, const Value& index) {

@@ -9,6 +9,12 @@
 
 namespace sgm::rules {
 
+/// The unit of a product of two numbers: of two lengths it is an area; a share takes the other's unit. Of units whose
+/// product has none (m² · m²) it is the first, which the checker refuses by `productHasUnit`.
+Unit unitOfProduct(Unit a, Unit b);
+/// Whether a product of such numbers is one that a grammar can measure: no m⁴, no square of an angle.
+bool productHasUnit(Unit a, Unit b);
+
 /// `fn` over `args`. Numbers act on every component of a vector; units follow (metre · plain = metre, metre / metre =
 /// plain, share · metre = metre). Division and remainder by zero give 0, so that no value is ever infinite; `%` is the
 /// floor remainder. A comparison of vectors is that of their first components, except == and !=. Fn::Count, Bump and

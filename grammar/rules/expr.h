@@ -92,6 +92,7 @@ enum class Fn : uint32_t {
     Bump,   ///< of the place: bump((x, z), radius)
     Fbm,    ///< of the place: fbm(size, octaves [, seed])
     Count,  ///< number of live or derived shapes of a symbol: count(Name); args[0] is a Word whose n[0] is the SymbolId
+    Metres,  ///< of a measure and the scope's extent: shares become metres, bare numbers are metres
 };
 /// What `check … expect` may ask of a derivation.
 // clang-format off

@@ -144,6 +144,8 @@ Typed Checker::number(const Written& e) {
     if (e.unit == "km") value = Value::number(e.number * 1000, Unit::Metre);
     if (e.unit == "cm") value = Value::number(e.number / 100, Unit::Metre);
     if (e.unit == "mm") value = Value::number(e.number / 1000, Unit::Metre);
+    if (e.unit == "m2" || e.unit == "m²") value.units[0] = Unit::SquareMetre;
+    if (e.unit == "m3" || e.unit == "m³") value.units[0] = Unit::CubicMetre;
     if (e.unit == "/m") value.units[0] = Unit::PerMetre;
     if (e.unit == "deg") value = Value::number(radians(e.number), Unit::Angle);
     if (e.unit == "%") value = Value::number(e.number / 100, Unit::Share);
@@ -239,7 +241,7 @@ Typed Checker::member(Place& place, const Written& e) {
                           place.ofMap ? "a map asks 'here.x' and 'here.z', and maps above it" : "");
         result.expr.kind = ofScope ? Expr::Kind::Scope : Expr::Kind::Here;
         result.expr.index = isArea ? 3u : static_cast<uint32_t>(axis);
-        result.type = Type::number(isArea ? Unit::None : Unit::Metre);
+        result.type = Type::number(isArea ? Unit::SquareMetre : Unit::Metre);
         return result;
     }
     Typed vector = expression(place, e.args[0]);

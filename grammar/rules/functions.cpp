@@ -15,7 +15,7 @@ constexpr std::array<Function, 22> table = {{
     {"ceil", Fn::Ceil, 1, 1, Signature::Alike, "the whole number above"},
     {"round", Fn::Round, 1, 1, Signature::Alike, "the nearest whole number"},
     {"clamp", Fn::Clamp, 3, 3, Signature::Alike, "clamp(x, lo, hi): x, no less than lo and no more than hi"},
-    {"sqrt", Fn::Sqrt, 1, 1, Signature::Plain, "square root; 0 of a negative number"},
+    {"sqrt", Fn::Sqrt, 1, 1, Signature::Root, "square root; of an area it is a length; 0 of a negative number"},
     {"sin", Fn::Sin, 1, 1, Signature::Angle, "sine of an angle"},
     {"cos", Fn::Cos, 1, 1, Signature::Angle, "cosine of an angle"},
     {"tan", Fn::Tan, 1, 1, Signature::Angle, "tangent of an angle"},

@@ -13,6 +13,7 @@ namespace sgm::rules {
 enum class Signature : uint8_t {
     Alike,   ///< numbers or vectors whose units can meet
     Plain,   ///< plain numbers
+    Root,    ///< a plain number, or an area
     Angle,   ///< one angle
     Lerp,    ///< two alike numbers, vectors or colours, and a plain number
     If,      ///< a condition and two alike values

@@ -25,23 +25,32 @@ Typed Checker::constant(Place& place, const Written& e, Constant& constant) {
                   "a 'let' may ask parameters and the values above it");
 }
 
-/// One of two numbers becomes metres where it is a share of the scope and the other a length: 100% - 1m.
+/// One of two numbers becomes metres where it is a share of the scope and the other a length: 100% - 1m. What another
+/// shape set by `with` is found to be one or the other where it is read.
 bool Checker::mix(Place& place, Typed& a, Typed& b) const {
     const auto isOf = [](const Typed& t, Unit unit) {
         return t.type.known && t.type.like.kind == Value::Kind::Number && t.type.like.units[0] == unit;
     };
+    const auto mayBeLength = [&](const Typed& t) { return !t.type.known || isOf(t, Unit::Metre); };
     if (place.axis < 0) return false;
-    Typed* share = isOf(a, Unit::Share) && isOf(b, Unit::Metre)   ? &a
-                   : isOf(b, Unit::Share) && isOf(a, Unit::Metre) ? &b
-                                                                  : nullptr;
+    Typed* share = isOf(a, Unit::Share) && mayBeLength(b) ? &a : isOf(b, Unit::Share) && mayBeLength(a) ? &b : nullptr;
     if (!share) return false;
+    Typed& other = share == &a ? b : a;
+    const auto extent = [&](SourceSpan span) {
+        Expr e;
+        e.kind = Expr::Kind::Scope;
+        e.span = span;
+        e.index = 4 + static_cast<uint32_t>(place.axis);
+        return e;
+    };
     const SourceSpan span = share->expr.span;
-    Expr extent;
-    extent.kind = Expr::Kind::Scope;
-    extent.span = span;
-    extent.index = 4 + static_cast<uint32_t>(place.axis);
-    share->expr = makeCall(Expr::Kind::Binary, Fn::Mul, span, {std::move(extent), std::move(share->expr)});
+    share->expr = makeCall(Expr::Kind::Binary, Fn::Mul, span, {extent(span), std::move(share->expr)});
     share->type = Type::number(Unit::Metre);
+    if (!other.type.known) {
+        const SourceSpan at = other.expr.span;
+        other.expr = makeCall(Expr::Kind::Call, Fn::Metres, at, {std::move(other.expr), extent(at)});
+        other.type = Type::number(Unit::Metre);
+    }
     place.mixes = true;
     return true;
 }

@@ -59,6 +59,28 @@ Typed Checker::countCall(Place& place, const Written& e) {
             Type::number(Unit::None, true)};
 }
 
+/// A function whose value hangs on where it is asked.
+Typed Checker::placeCall(Place& place, const Written& e, const Function& row) {
+    std::vector<Typed> args;
+    for (const Written& arg : e.args) args.push_back(expression(place, arg));
+    if (place.where < Where::Guard || place.where == Where::Expect)
+        return failed(e.span, fmt::format("'{}' depends on the place, and there is none here", row.name));
+    const Value& like = args[0].type.like;
+    const bool isBump = row.fn == Fn::Bump;
+    if (isBump && args[0].type.known && !(like.kind == Value::Kind::Vector && like.count == 2))
+        return failed(e.args[0].span, "the middle of a bump is a place (x, z)", "write 'bump((-120m, 40m), 300m)'");
+    const std::string what = fmt::format("'{}'", row.name);
+    bool good = true;
+    for (size_t i = isBump ? 1 : 0; i < args.size(); ++i)
+        good = expectType(args[i], isBump || i == 0 ? Want::Length : Want::Number, what, &e.args[i]) && good;
+    if (!good) return {{}, Type::unknown()};
+    Typed result;
+    result.expr = makeCall(Expr::Kind::Call, row.fn, e.span, {});
+    for (Typed& arg : args) result.expr.args.push_back(std::move(arg.expr));
+    result.type = Type::number();
+    return result;
+}
+
 Typed Checker::call(Place& place, const Written& e) {
     const Function* row = findFunction(e.text);
     if (e.text == "overlaps") return failed(e.span, "'overlaps(…)' is not supported yet");
@@ -77,6 +99,7 @@ Typed Checker::call(Place& place, const Written& e) {
             return failed(e.args[i].span, fmt::format("the arguments of '{}' have no names", row->name),
                           fmt::format("leave '{}:' out", e.argNames[i]));
     if (row->signature == Signature::Symbol) return countCall(place, e);
+    if (row->signature == Signature::Place) return placeCall(place, e, *row);
 
     const std::string what = fmt::format("'{}'", row->name);
     std::vector<Typed> args;
@@ -90,24 +113,6 @@ Typed Checker::call(Place& place, const Written& e) {
         good = good && (sameKind || sameType(args[a], args[b], "choose between"));
     };
     switch (row->signature) {
-        case Signature::Place: {
-            if (place.where < Where::Guard || place.where == Where::Expect)
-                return failed(e.span, fmt::format("'{}' depends on the place, and there is none here", row->name));
-            const Value& like = args[0].type.like;
-            const bool isBump = row->fn == Fn::Bump;
-            if (isBump && args[0].type.known && !(like.kind == Value::Kind::Vector && like.count == 2))
-                return failed(e.args[0].span, "the middle of a bump is a place (x, z)",
-                              "write 'bump((-120m, 40m), 300m)'");
-            if (!isBump) each(Want::Length, 0, 1);
-            if (!isBump) each(Want::Number, 1, args.size());
-            if (isBump) each(Want::Length, 1, 2);
-            if (!good) return {{}, Type::unknown()};
-            Typed result;
-            result.expr = makeCall(Expr::Kind::Call, row->fn, e.span, {});
-            for (Typed& arg : args) result.expr.args.push_back(std::move(arg.expr));
-            result.type = Type::number();
-            return result;
-        }
         case Signature::Alike:
             for (size_t i = 1; i < args.size(); ++i)
                 if (mix(place, args[0], args[i])) i = 0;
@@ -116,6 +121,11 @@ Typed Checker::call(Place& place, const Written& e) {
         case Signature::Plain:
             each(Want::Number, 0, args.size());
             break;
+        case Signature::Root: {
+            const bool isArea = args[0].type.known && args[0].type.like.units[0] == Unit::SquareMetre;
+            each(isArea ? Want::Area : Want::Number, 0, 1);
+            break;
+        }
         case Signature::Angle:
             each(Want::Angle, 0, args.size());
             break;
@@ -128,6 +138,7 @@ Typed Checker::call(Place& place, const Written& e) {
             pair(1, 2);
             break;
         case Signature::Symbol:
+        case Signature::Place:
             break;
     }
     if (!good) return {{}, Type::unknown()};
@@ -183,8 +194,7 @@ Typed Checker::binary(Place& place, const Written& e) {
         plainB.type.like.units.fill(Unit::None);
         good = sameType(a, plainB, row.verb);
         const Unit ua = a.type.like.units[0], ub = b.type.like.units[0];
-        if (good && a.type.known && b.type.known && row.fn == Fn::Mul && ua == ub &&
-            (ua == Unit::Metre || ua == Unit::Angle || ua == Unit::PerMetre))
+        if (good && a.type.known && b.type.known && row.fn == Fn::Mul && !productHasUnit(ua, ub))
             good = failed(e.span, fmt::format("{} times {} is nothing a grammar can measure", describe(a.type),
                                               describe(b.type)))
                        .type.known;

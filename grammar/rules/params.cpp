@@ -185,6 +185,10 @@ std::string_view unitName(Unit unit) {
             return "%";
         case Unit::PerMetre:
             return "/m";
+        case Unit::SquareMetre:
+            return "m2";
+        case Unit::CubicMetre:
+            return "m3";
         default:
             return "";
     }

@@ -34,6 +34,10 @@ std::string_view describe(Unit unit) {
             return "a frequency (1/m)";
         case Unit::Floating:
             return "a floating size (~)";
+        case Unit::SquareMetre:
+            return "an area";
+        case Unit::CubicMetre:
+            return "a volume";
     }
     return {};
 }
@@ -78,6 +82,8 @@ std::string_view describe(Want want) {
             return "a whole number";
         case Want::Length:
             return "a length in metres";
+        case Want::Area:
+            return "an area in square metres (420m2)";
         case Want::Frequency:
             return "a frequency (2.2/m)";
         case Want::Angle:
@@ -142,6 +148,8 @@ bool fits(const Type& type, Want want) {
             return one && v.integer && v.units[0] == Unit::None;
         case Want::Length:
             return one && everyUnit(v, length);
+        case Want::Area:
+            return one && (v.units[0] == Unit::None || v.units[0] == Unit::SquareMetre);
         case Want::Frequency:
             return one && (v.units[0] == Unit::None || v.units[0] == Unit::PerMetre);
         case Want::Angle:

@@ -29,6 +29,7 @@ enum class Want : uint8_t {
     Number,     ///< plain, or a share
     Count,      ///< a whole number
     Length,     ///< metres; bare numbers are metres
+    Area,       ///< square metres; bare numbers are square metres
     Frequency,  ///< 1/m, or bare
     Angle,
     Angles,  ///< one, or three

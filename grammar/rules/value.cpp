@@ -29,6 +29,10 @@ std::string numberText(double v, Unit unit) {
             return digits(v, "/m");
         case Unit::Floating:
             return fmt::format("~{:.12g}", v);
+        case Unit::SquareMetre:
+            return digits(v, "m2");
+        case Unit::CubicMetre:
+            return digits(v, "m3");
     }
     return {};
 }

@@ -11,7 +11,7 @@
 namespace sgm::rules {
 
 /// How a number was meant. Angles are held in radians, percentages as shares of 1.
-enum class Unit : uint8_t { None, Metre, Angle, Share, PerMetre, Floating };
+enum class Unit : uint8_t { None, Metre, Angle, Share, PerMetre, Floating, SquareMetre, CubicMetre };
 
 struct Value {
     enum class Kind : uint8_t { Number, Bool, Vector, Color, Word, Text, Rotation, Axis };

@@ -186,11 +186,6 @@ struct CheckDecl {
     std::vector<Setting> settings;
     std::optional<Expr> expect;
 };
-struct OverrideDecl {
-    SourceSpan span;
-    std::string path;
-    std::vector<Setting> settings;
-};
 struct UseDecl {
     SourceSpan span;
     Expr file;
@@ -227,7 +222,6 @@ struct Ast {
     std::vector<RoadsDecl> roads;
     std::vector<StyleDecl> styles;
     std::vector<CheckDecl> checks;
-    std::vector<OverrideDecl> overrides;
 };
 
 }  // namespace sgm::syntax

@@ -347,20 +347,11 @@ void readCheck(Cursor& cursor, Ast& ast) {
     if (!check.start.empty()) ast.checks.push_back(std::move(check));
 }
 
-void readOverride(Cursor& cursor, Ast& ast) {
-    OverrideDecl override_;
-    const uint32_t begin = cursor.take().begin;
-    override_.path = readPath(cursor).text;
-    override_.settings = readSettings(cursor);
-    override_.span = cursor.since(begin);
-    if (!override_.path.empty()) ast.overrides.push_back(std::move(override_));
-}
-
 constexpr Declaration table[] = {
     {"use", readUse},           {"param", readParam},       {"let", readLet},     {"map", readMap},
     {"material", readMaterial}, {"terminal", readTerminal}, {"start", readStart}, {"rule", readRule},
     {"derive", readDerive},     {"lsystem", readLsystem},   {"roads", readRoads}, {"style", readStyle},
-    {"check", readCheck},       {"override", readOverride},
+    {"check", readCheck},
 };
 
 }  // namespace

@@ -12,10 +12,10 @@ namespace {
 
 using Kind = Expr::Kind;
 
-constexpr std::string_view reserved[] = {"grammar", "use",     "param",  "map",     "terminal", "start",    "rule",
-                                         "derive",  "lsystem", "roads",  "style",   "check",    "override", "for",
-                                         "while",   "when",    "choose", "finally", "repeat",   "beside",   "weight",
-                                         "and",     "or",      "not",    "in",      "expect"};
+constexpr std::string_view reserved[] = {"grammar", "use",     "param",   "map",    "terminal", "start",  "rule",
+                                         "derive",  "lsystem", "roads",   "style",  "check",    "for",    "while",
+                                         "when",    "choose",  "finally", "repeat", "beside",   "weight", "and",
+                                         "or",      "not",     "in",      "expect"};
 
 // An expression's tree is at most this many operators and the levels of nesting deep, whatever the file says: those who
 // walk it recurse.
@@ -254,9 +254,9 @@ private:
     }
 
     void checkUnit(Expr& number) {
-        constexpr std::string_view units[] = {"", "m", "km", "cm", "mm", "deg", "%", "/m"};
+        constexpr std::string_view units[] = {"", "m", "km", "cm", "mm", "m2", "m²", "m3", "m³", "deg", "%", "/m"};
         if (std::find(std::begin(units), std::end(units), number.unit) != std::end(units)) return;
-        std::string hint = "a number is plain or has m, km, cm, mm, deg, % or /m";
+        std::string hint = "a number is plain or has m, km, cm, mm, m2, m3, deg, % or /m";
         if (number.unit == "ft") hint = "write " + quoted(plain(number.number * .3048) + "m");
         if (number.unit == "in") hint = "write " + quoted(plain(number.number * .0254) + "m");
         if (number.unit == "rad")

@@ -22,7 +22,7 @@ constexpr Lookalike lookalikes[] = {
     {"\u2265", "write '>='"},
     {"\u2264", "write '<='"},
     {"'", "text stands in \"…\""},
-    {"^", "there is no power: write a product, 'x * x'"},
+    {"^", "write a power as 'pow(x, y)'"},
     {"?", "write 'if(condition, a, b)'"},
 };
 

@@ -60,7 +60,13 @@ private:
         else if (peek() == '/' && peek(1) == 'm' && !isWordPart(peek(2)))
             at_ += 2;
         else
-            skipWhile(isWordPart);
+            unit();
+    }
+
+    /// Letters and digits, and a raised 2 or 3 behind them: m².
+    void unit() {
+        skipWhile(isWordPart);
+        if (peek() == '\xc2' && (peek(1) == '\xb2' || peek(1) == '\xb3')) at_ += 2;
     }
 
     void text() {

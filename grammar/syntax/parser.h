@@ -25,7 +25,6 @@
 //   lsystem     = "lsystem" NAME { NAME argument } "axiom" TEXT { NAME "->" TEXT [ ":" argument ] } .
 //   style       = "style" NAME [ "for" NAME ] settings .
 //   check       = "check" NAME [ settings ] "expect" expr .
-//   override    = "override" path settings .
 //   settings    = "{" { NAME "=" expr } "}" .
 //
 //   body        = chain { "," chain } .                                  siblings
@@ -59,7 +58,7 @@
 //               | "choose" [ "distinct" | "shuffled" ] "{" expr ":" expr { "|" expr ":" expr } "}" .
 //   call        = NAME "(" [ [ NAME ":" ] expr { "," [ NAME ":" ] expr } ] ")" .            "(" glued to NAME
 //
-//   NUMBER      = ( DIGITS [ "." DIGITS ] | "." DIGITS ) [ "e" [ "+" | "-" ] DIGITS ] [ "m" | "km" | "cm" | "mm" | "deg" | "%" | "/m" ] .  glued
+//   NUMBER      = ( DIGITS [ "." DIGITS ] | "." DIGITS ) [ "e" [ "+" | "-" ] DIGITS ] [ "m" | "km" | "cm" | "mm" | "m2" | "m²" | "m3" | "m³" | "deg" | "%" | "/m" ] .  glued
 //   AXIS        = ( "+" | "-" ) ( "x" | "y" | "z" ) .                    glued, where a value is expected
 //   COLOR       = "#" and six hex digits.     TEXT = '"' … '"' on one line; \" and \\ are its escapes.
 //   NAME        = letters, digits and "_", beginning with no digit; no word of the language.    // begins a comment.

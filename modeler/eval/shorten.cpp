@@ -135,6 +135,21 @@ std::optional<RelevantRange> enterUnion(Workspace::Impl& w, size_t region, Relev
                                    bounds[w.parts.pruneBound() * maxBoxes + region], relevant, tieMargin);
 }
 
+/// Of a selection of two, the operands that can matter here; where neither is told apart, any will do.
+void selectsLeft(const Tape& tape, const Instruction& in, const Source* operands, const OriginId* origins,
+                 const float* ends, uint32_t value, TapeBuilder& b) {
+    const field::OpTraits& row = field::traits(in.op);
+    const RelevantRange inner = relevantRangeOfOperands(row, ends[2 * maxBoxes], b.relevant(value), tape.tieMargin());
+    const bool first = !beyond(row, ends[0], inner), second = !beyond(row, ends[maxBoxes], inner);
+    const auto use = [&](uint32_t k) -> TapeBuilder::Use { return {operands[k], origins ? origins[k] : 0, inner}; };
+    if (first && second) {
+        const TapeBuilder::Use both[] = {use(0), use(1)};
+        b.define(value, in, both, 2, origins != nullptr);
+    } else {
+        b.alias(value, use(second ? 1 : 0));
+    }
+}
+
 }  // namespace
 
 void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, RelevantRange relevant) {
@@ -167,22 +182,9 @@ void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, R
             case Pruning::Leaf:
                 b.defineLeaf(value, in, operands, origins);
                 break;
-            case Pruning::Selects: {
-                const float* const ends = bounds + size_t{w.chains.bounds(i)} * maxBoxes;
-                const RelevantRange inner =
-                    relevantRangeOfOperands(row, ends[2 * maxBoxes], b.relevant(value), tape.tieMargin());
-                const bool first = !beyond(row, ends[0], inner), second = !beyond(row, ends[maxBoxes], inner);
-                const auto use = [&](uint32_t k) -> TapeBuilder::Use {
-                    return {operands[k], origins ? origins[k] : 0, inner};
-                };
-                if (first && second) {
-                    const TapeBuilder::Use both[] = {use(0), use(1)};
-                    b.define(value, in, both, 2, origins != nullptr);
-                } else {  // where neither is told apart, any will do
-                    b.alias(value, use(second ? 1 : 0));
-                }
+            case Pruning::Selects:
+                selectsLeft(tape, in, operands, origins, bounds + size_t{w.chains.bounds(i)} * maxBoxes, value, b);
                 break;
-            }
             case Pruning::Chooses:
                 operandsLeft(row, in, operands, origins, bounds + size_t{w.chains.bounds(i)} * maxBoxes,
                              relevantRangeOfResult(tape, in, operands, b.relevant(value)), tape.tieMargin(), w.uses);

@@ -203,7 +203,9 @@ TEST(Values, WhatNothingAboveSetsIsAnError) {
     ASSERT_FALSE(d.ok());
     EXPECT_EQ(d.error().kind, Error::Kind::Input);
     EXPECT_EQ(d.error().message,
-              "test.sgm:3:21: neither this shape nor any above it sets 'n' by 'with' in rule 'A#1' at S/A[2], seed 1");
+              "test.sgm:3:21: neither this shape nor any above it sets 'n' by 'with' in rule 'A#1' at S/A[2], seed 1; "
+              "set it where a "
+              "shape above is made, or declare a 'param'");
     // A guard asks too, and says which rule it belongs to.
     const auto guarded =
         tryDerive("grammar 1\nstart S -> A with n = 2, B\nrule A -> cube size n\nrule B when n > 1 -> cube\n");

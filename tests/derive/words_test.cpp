@@ -178,6 +178,16 @@ rule B -> let w = 1m..2m let k = 1..3 + cube size w + cube size w move (k, 0, 0)
     EXPECT_NEAR(k, std::round(k), 1e-9);
 }
 
+TEST(MixedSizes, WhatAShapeAboveSetsIsALengthOrAShare) {
+    const auto d = derived(R"(grammar 2
+start A -> size (10, 8, 6) B with w = 2m, size (10, 8, 6) B with w = 25%, size (10, 8, 6) B with w = 2
+rule B -> cube size (100% - w, w + 50%, 1m))");
+    const auto solids = solidsOf(d);
+    expectNear(d.tree.shapes[solids[0]].scope.size, {8, 6, 1});
+    expectNear(d.tree.shapes[solids[1]].scope.size, {7.5, 6, 1});
+    expectNear(d.tree.shapes[solids[2]].scope.size, {8, 6, 1});
+}
+
 TEST(MixedSizes, SharesMeetLengthsAlongTheirAxis) {
     const auto d = derived(R"(grammar 1
 let rim = .5m
@@ -328,6 +338,14 @@ TEST(Grammar2, SharesAndPlacesAreOfTheMatchedScope) {
     EXPECT_NEAR(old.tree.shapes[solidsOf(old)[1]].scope.size.x, .5, 1e-12);
     expectNear(now.tree.shapes[solidsOf(now)[1]].scope.centre, {0, 0, 0});
     EXPECT_NEAR(now.tree.shapes[solidsOf(now)[1]].scope.size.x, 2, 1e-12);
+}
+
+TEST(Units, AreasAndVolumesAreCounted) {
+    const auto d = derived(R"(grammar 2
+param plot = 24m² in 10m2..90m2
+start A -> size (plot / 6m, sqrt(9m²), 8m³ / 4m2) cube
+check A expect count(A) == 1)");
+    expectNear(d.tree.shapes[solidsOf(d)[0]].scope.size, {4, 3, 2});
 }
 
 TEST(Grammar2, TurnsAddUpAndSharesBehindATurnFollowIt) {

@@ -129,7 +129,7 @@ TEST(Shares, OfAStartsOwnScopeAreTold) {
               "warning: a share of what? A start's own scope is 1m\n");
     EXPECT_EQ(checkedBody("start A -> cube size 4 move (50%, 0, 0)\n").messages(),
               "warning: a share of what? A start's own scope is 1m\n");
-    EXPECT_EQ(checkedBody("start A -> cube size 100% + cube size 50% at +x\n").messages(), "");
+    EXPECT_EQ(checkedBody("start A -> cube + cube size 50% at +x\n").messages(), "");
     EXPECT_EQ(checkedBody("start A -> size 4 cube size 50%\n").messages(), "");
 }
 

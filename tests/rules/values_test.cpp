@@ -27,6 +27,8 @@ TEST(ValueText, IsWhatAGrammarWrites) {
     EXPECT_EQ(toText(Value::number(radians(12), Unit::Angle)), "12deg");
     EXPECT_EQ(toText(Value::number(.3, Unit::Share)), "30%");
     EXPECT_EQ(toText(Value::number(2.2, Unit::PerMetre)), "2.2/m");
+    EXPECT_EQ(toText(Value::number(420, Unit::SquareMetre)), "420m2");
+    EXPECT_EQ(toText(Value::number(.5, Unit::CubicMetre)), "0.5m3");
     EXPECT_EQ(toText(Value::number(-0.0)), "0");
     EXPECT_EQ(toText(vec(1, 2, 3)), "(1, 2, 3)");
     EXPECT_EQ(toText(Value::boolean(true)), "true");
@@ -50,6 +52,22 @@ TEST(Functions, CarryUnits) {
     EXPECT_EQ(apply(Fn::Div, {plain, other}).units[0], Unit::PerMetre);
     EXPECT_EQ(apply(Fn::Mul, {Value::number(.5, Unit::Share), metre}), Value::number(3, Unit::Metre));
     EXPECT_EQ(apply(Fn::Mul, {other, Value::number(2, Unit::PerMetre)}), Value::number(4));
+}
+
+TEST(Functions, MakeAreasAndVolumesOfLengths) {
+    const Value length = Value::number(3, Unit::Metre), area = apply(Fn::Mul, {length, length});
+    EXPECT_EQ(area, Value::number(9, Unit::SquareMetre));
+    EXPECT_EQ(apply(Fn::Mul, {area, length}), Value::number(27, Unit::CubicMetre));
+    EXPECT_EQ(apply(Fn::Div, {area, length}), length);
+    EXPECT_EQ(apply(Fn::Div, {apply(Fn::Mul, {length, area}), area}), length);
+    EXPECT_EQ(apply(Fn::Div, {area, area}), Value::number(1));
+    EXPECT_EQ(apply(Fn::Mul, {area, Value::number(2, Unit::PerMetre)}), Value::number(18, Unit::Metre));
+    EXPECT_EQ(apply(Fn::Mul, {Value::number(.5, Unit::Share), area}), Value::number(4.5, Unit::SquareMetre));
+    EXPECT_EQ(apply(Fn::Sqrt, {area}), length);
+    EXPECT_EQ(apply(Fn::Sqrt, {Value::number(9)}), Value::number(3));
+    EXPECT_FALSE(productHasUnit(Unit::SquareMetre, Unit::SquareMetre));
+    EXPECT_FALSE(productHasUnit(Unit::Angle, Unit::Angle));
+    EXPECT_TRUE(productHasUnit(Unit::CubicMetre, Unit::PerMetre));
 }
 
 TEST(Functions, SpreadNumbersOverVectors) {

@@ -219,12 +219,6 @@ void Dump::otherDeclarations(const Ast& ast) {
         expr(d.expect);
         close();
     }
-    for (const OverrideDecl& d : ast.overrides) {
-        open("\noverride", d.span);
-        word(d.path);
-        settings(d.settings);
-        close();
-    }
 }
 
 }  // namespace sgm::syntax

@@ -235,7 +235,7 @@ TEST(Parser, OtherDeclarations) {
     const Ast ast = parsed(
         "terminal gate = cube color #102030 joint door at (.5, 0, 0) facing -z\n"
         "lsystem P passes 2 angle -90deg axiom \"F\" F -> \"FF\" : 2 G -> \"\"\n"
-        "style S { a = 1 b = -2 }\ncheck H { a = 3 } expect bonds == 3\noverride A/B[2] { size = (1, 2, 3) }\n"
+        "style S { a = 1 b = -2 }\ncheck H { a = 3 } expect bonds == 3\n"
         "param kind = flat of flat, round \"Kind\"\nmap m = \"m.png\" as 0..1\nuse \"std/walls.sgm\"\n");
     EXPECT_EQ(ast.terminals[0].joints[0].name.text, "door");
     EXPECT_EQ(shortForm(ast.terminals[0].joints[0].facing), "-z");
@@ -243,7 +243,6 @@ TEST(Parser, OtherDeclarations) {
     EXPECT_EQ(ast.lsystems[0].productions.size(), 2u);
     EXPECT_EQ(ast.styles[0].settings[1].span.text(), "b = -2");
     EXPECT_EQ(shortForm(*ast.checks[0].expect), "(== bonds 3)");
-    EXPECT_EQ(ast.overrides[0].path, "A/B[2]");
     EXPECT_EQ(ast.params[0].choices[1].text, "round");
     EXPECT_EQ(shortForm(*ast.maps[0].range), "(.. 0 1)");
     EXPECT_EQ(ast.uses[0].file.text, "std/walls.sgm");

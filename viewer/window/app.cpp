@@ -211,6 +211,118 @@ int fail(const Error& error) {
     return 1;
 }
 
+/// The loop of the window: listens, takes over what workers made, refines the picture, draws panels when something
+/// changed.
+class Loop {
+public:
+    Loop(const AppOptions& options, Window& window, Workbench& bench, Report& report)
+        : options_(options), window_(window), bench_(bench), report_(report), workspace_(bench) {}
+
+    int run() {
+        for (;;)
+            if (const std::optional<int> exitCode = turn()) return *exitCode;
+    }
+
+private:
+    /// One round; the exit code where it was the last.
+    std::optional<int> turn();
+    void takeNews(FrameTimeline& timeline);
+    /// Whether the picture has just become as good as it gets.
+    Result<bool> refineWhenDue();
+    void draw(FrameTimeline& timeline, const Stopwatch& whole);
+    void writeReport();
+
+    const AppOptions& options_;
+    Window& window_;
+    Workbench& bench_;
+    Report& report_;
+    Workspace workspace_;
+    Benchmark benchmark_;
+    int wanted_ = settlingFrames;
+    bool refining_ = false;
+    double frameSeconds_ = 0;  ///< that the last frame took
+    Stopwatch sinceShown_, sinceLook_, sinceRefined_;
+};
+
+void Loop::takeNews(FrameTimeline& timeline) {
+    const bool hadInput = window_.hadInput(), news = bench_.poll();
+    timeline.was("taking over what workers made");
+    if (hadInput || news) wanted_ = settlingFrames;
+    for (const std::filesystem::path& path : window_.dropped()) bench_.drop(path);
+    if (sinceLook_.seconds() > listenFor) {
+        if (bench_.lookAtFiles()) wanted_ = settlingFrames;
+        sinceLook_ = {};
+    }
+    timeline.was("files");
+}
+
+Result<bool> Loop::refineWhenDue() {
+    // Input is answered first; a user who never rests still gets the picture, piece by piece.
+    if (wanted_ > 0 && sinceRefined_.seconds() <= refinedEvery) return false;
+    const Result<bool> drew = refine(bench_);
+    if (!drew) return drew.error();
+    const bool ended = refining_ && !*drew;
+    refining_ = *drew;
+    sinceRefined_ = {};
+    return ended;
+}
+
+void Loop::writeReport() {
+    describe(bench_, report_.state());
+    const Window::InputCounters& given = window_.given();
+    report_.state()["still"] = wanted_ == 0 && !window_.pending();
+    report_.state()["input"] = {{"x", given.x},
+                                {"y", given.y},
+                                {"buttons", given.buttons},
+                                {"keys", given.keys},
+                                {"releases", given.releases},
+                                {"wheel", given.wheel}};
+    report_.write();
+}
+
+void Loop::draw(FrameTimeline& timeline, const Stopwatch& whole) {
+    if (wanted_ > 0) --wanted_;
+    sinceShown_ = {};
+    window_.setTitle(titleOf(bench_.document));
+    const ElapsedTimes before = bench_.field.times().drawn;
+    window_.beginFrame();
+    workspace_.show();
+    timeline.was("panels", bench_.field.times().drawn - before);
+    window_.endFrame();
+    timeline.drew();
+    frameSeconds_ = whole.seconds();
+    bench_.refresh();
+    timeline.was("asking workers");
+    writeReport();
+    timeline.was("report");
+}
+
+std::optional<int> Loop::turn() {
+    const bool working = bench_.busy() || bench_.exporting.running() || options_.benchmark;
+    window_.listen(wanted_ > 0 || refining_ ? 0 : working ? shownEvery : listenFor);
+    const Stopwatch whole;
+    FrameTimeline timeline;
+    if (window_.closing() && bench_.mayClose()) return 0;
+    takeNews(timeline);
+    const Result<bool> ended = refineWhenDue();
+    if (!ended) return fail(ended.error());
+    timeline.drew();
+    const Result<bool> taken = bench_.takePictures();
+    if (!taken) bench_.say(taken.error().message, true);
+    if (!taken || *taken) wanted_ = settlingFrames;
+    timeline.was("pictures");
+    // Where frames are expensive, most of the time still goes to the picture.
+    if (wanted_ > 0 || *ended ||
+        ((refining_ || working) && sinceShown_.seconds() >= std::max(shownEvery, 3 * frameSeconds_)))
+        draw(timeline, whole);
+    if (bench_.leaving) return 0;
+    if (options_.benchmark && !benchmark_.go(bench_, timeline)) {
+        benchmark_.print(bench_, window_.driver());
+        return bench_.shown() ? 0 : 1;
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 int runApp(const AppOptions& options) {
@@ -224,74 +336,7 @@ int runApp(const AppOptions& options) {
     if (!options.file.empty())
         if (const Status s = bench.open(options.file); !s) return fail(s.error());
     if (!options.benchmark) bench.offerAbandoned();
-    Workspace workspace(bench);
-    Benchmark benchmark;
-    int wanted = settlingFrames;
-    bool refining = false;
-    double frameSeconds = 0;  // that the last frame took
-    Stopwatch sinceShown, sinceLook, sinceRefined;
-    for (;;) {
-        const bool working = bench.busy() || bench.exporting.running() || options.benchmark;
-        window.listen(wanted > 0 || refining ? 0 : working ? shownEvery : listenFor);
-        const Stopwatch whole;
-        FrameTimeline turn;
-        if (window.closing() && bench.mayClose()) return 0;
-        const bool hadInput = window.hadInput(), news = bench.poll();
-        turn.was("taking over what workers made");
-        if (hadInput || news) wanted = settlingFrames;
-        for (const std::filesystem::path& path : window.dropped()) bench.drop(path);
-        if (sinceLook.seconds() > listenFor) {
-            if (bench.lookAtFiles()) wanted = settlingFrames;
-            sinceLook = {};
-        }
-        turn.was("files");
-        // Input is answered first; a user who never rests still gets the picture, piece by piece.
-        bool ended = false;
-        if (wanted == 0 || sinceRefined.seconds() > refinedEvery) {
-            const Result<bool> drew = refine(bench);
-            if (!drew) return fail(drew.error());
-            ended = refining && !*drew;
-            refining = *drew;
-            sinceRefined = {};
-        }
-        turn.drew();
-        const Result<bool> taken = bench.takePictures();
-        if (!taken) bench.say(taken.error().message, true);
-        if (!taken || *taken) wanted = settlingFrames;
-        turn.was("pictures");
-        // Where frames are expensive, most of the time still goes to the picture.
-        if (wanted > 0 || ended ||
-            ((refining || working) && sinceShown.seconds() >= std::max(shownEvery, 3 * frameSeconds))) {
-            if (wanted > 0) --wanted;
-            sinceShown = {};
-            window.setTitle(titleOf(bench.document));
-            const ElapsedTimes before = bench.field.times().drawn;
-            window.beginFrame();
-            workspace.show();
-            turn.was("panels", bench.field.times().drawn - before);
-            window.endFrame();
-            turn.drew();
-            frameSeconds = whole.seconds();
-            bench.refresh();
-            turn.was("asking workers");
-            describe(bench, report.state());
-            const Window::InputCounters& given = window.given();
-            report.state()["still"] = wanted == 0 && !window.pending();
-            report.state()["input"] = {{"x", given.x},
-                                       {"y", given.y},
-                                       {"buttons", given.buttons},
-                                       {"keys", given.keys},
-                                       {"releases", given.releases},
-                                       {"wheel", given.wheel}};
-            report.write();
-            turn.was("report");
-        }
-        if (bench.leaving) return 0;
-        if (options.benchmark && !benchmark.go(bench, turn)) {
-            benchmark.print(bench, window.driver());
-            return bench.shown() ? 0 : 1;
-        }
-    }
+    return Loop(options, window, bench, report).run();
 }
 
 }  // namespace sgm::viewer

@@ -244,6 +244,14 @@ std::optional<std::string> CodeEditor::keys(const std::string& text) {
     return replaced(text, from, to, typed);
 }
 
+void CodeEditor::follow(const std::string& text) {
+    const uint32_t at = std::min(caret_, static_cast<uint32_t>(text.size()));
+    const uint32_t row = rowOf_[lineOf(std::min(anchor_, at))];
+    const float y = static_cast<float>(row) * height_;
+    if (y < ImGui::GetScrollY() + height_ || y > ImGui::GetScrollY() + ImGui::GetWindowHeight() - 3 * height_)
+        ImGui::SetScrollY(std::max(0.0f, y - ImGui::GetWindowHeight() * 0.35f));
+}
+
 std::optional<std::string> CodeEditor::show(Report& report, const std::string& text,
                                             const std::vector<std::vector<Coloured>>& colors,
                                             const std::vector<LineNote>& notes) {
@@ -293,13 +301,7 @@ std::optional<std::string> CodeEditor::show(Report& report, const std::string& t
             }
         }
         ImGui::Dummy({widest + 20, static_cast<float>(rows_.size()) * height_ + ImGui::GetWindowHeight() * 0.3f});
-        if (std::exchange(follow_, false)) {
-            const uint32_t at = std::min(caret_, static_cast<uint32_t>(text.size()));
-            const uint32_t row = rowOf_[lineOf(std::min(anchor_, at))];
-            const float y = static_cast<float>(row) * height_;
-            if (y < ImGui::GetScrollY() + height_ || y > ImGui::GetScrollY() + ImGui::GetWindowHeight() - 3 * height_)
-                ImGui::SetScrollY(std::max(0.0f, y - ImGui::GetWindowHeight() * 0.35f));
-        }
+        if (std::exchange(follow_, false)) follow(text);
     }
     ImGui::EndChild();
     ImGui::PopStyleColor();

@@ -53,6 +53,8 @@ private:
     void mouse(const std::string& text, ImVec2 origin);
     std::optional<std::string> keys(const std::string& text);
     void moveBy(const std::string& text);
+    /// Scrolls to the caret, or to where what is selected begins.
+    void follow(const std::string& text);
     std::string replaced(const std::string& text, uint32_t begin, uint32_t end, const std::string& by);
     float xOf(const std::string& text, uint32_t line, uint32_t offset) const;
     uint32_t offsetAt(const std::string& text, uint32_t line, float x) const;

@@ -29,6 +29,8 @@ private:
     void styles(Workbench& bench);
     void row(Workbench& bench, ParamRow row);
     bool control(Workbench& bench, ParamRow& row);
+    bool numbers(Workbench& bench, ParamRow& row);
+    bool color(Workbench& bench, ParamRow& row);
 
     /// Writes the row's value into the text.
     void set(Workbench& bench, const ParamRow& row);
@@ -66,6 +68,7 @@ public:
 
 private:
     void row(Workbench& bench, size_t index);
+    void newRule(Workbench& bench, size_t selected);
     void dragRule(const RuleRow& row, ImVec2 low);
     void inspector(Workbench& bench, const RuleRow& row);
     void ruleInspector(Workbench& bench, const RuleRow& row);
@@ -121,6 +124,9 @@ public:
     void show(Workbench& bench);
 
 private:
+    void take(size_t format);
+    void chooseFormat(Workbench& bench);
+    void chooseMesh(Workbench& bench);
     void option(Workbench& bench, ExportRow& row);
 
     size_t format_ = 0;  // row of the table

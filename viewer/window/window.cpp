@@ -170,6 +170,13 @@ void Window::giveInput() {
     };
     while (!input_.empty() && give(input_.front())) input_.pop_front();
     if (!input_.empty()) stirred_ = true;
+    giveHeld();
+}
+
+/// Modifiers, the pointer and its buttons as they are now.
+void Window::giveHeld() {
+    ImGuiIO& io = ImGui::GetIO();
+    const auto either = [&](int left, int right) { return io.KeysDown[left] || io.KeysDown[right]; };
     io.KeyCtrl = either(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
     io.KeyShift = either(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
     io.KeyAlt = either(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);

@@ -84,6 +84,7 @@ private:
     /// Gives ImGui the input of one frame in its order. What would hide an earlier event waits for the next frame, so
     /// that a slow frame loses no click and no command.
     void giveInput();
+    void giveHeld();
 
     GLFWwindow* window_ = nullptr;
     std::deque<Event> input_;  ///< not yet given

@@ -27,15 +27,16 @@ void ExportPanel::option(Workbench& bench, ExportRow& row) {
     hint(row.doc.c_str());
 }
 
-void ExportPanel::show(Workbench& bench) {
+void ExportPanel::take(size_t format) {
+    format_ = format;
+    options_ = exportRows(exporter::exporters()[format]);
+}
+
+void ExportPanel::chooseFormat(Workbench& bench) {
     const auto formats = exporter::exporters();
     std::vector<std::string> names;
     for (const exporter::Exporter& f : formats)
         names.push_back(fmt::format("{}  {}", f.extension, f.doc.substr(0, f.doc.find(':'))));
-    const auto take = [&](size_t format) {
-        format_ = format;
-        options_ = exportRows(formats[format]);
-    };
     const std::filesystem::path document = bench.document.path().empty() ? "untitled" : bench.document.path();
     heading("Format");
     int format = static_cast<int>(format_);
@@ -51,39 +52,46 @@ void ExportPanel::show(Workbench& bench) {
     ImGui::PushTextWrapPos(0);
     faint(std::string(formats[format_].doc));
     ImGui::PopTextWrapPos();
-    heading("Options");
+}
+
+void ExportPanel::chooseMesh(Workbench& bench) {
     const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted("cells");
-    ImGui::SameLine(left + width * 0.4f);
+    const auto name = [&](const char* text, const char* doc) {
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextUnformatted(text);
+        hint(doc);
+        ImGui::SameLine(left + width * 0.4f);
+    };
+    constexpr const char* cells = "Cells along the longest side of the model";
+    name("cells", cells);
     ImGui::SetNextItemWidth(-FLT_MIN);
     ImGui::SliderInt("##cells", &resolution_, 32, 1024, "%d",
                      ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     bench.report.mark("export.cells");
-    hint("Cells along the longest side of the model");
+    hint(cells);
     constexpr const char* solids =
         "Which separate solids are written: all, those that stand and aren't debris, or the largest one; the latter "
         "two fill closed cavities";
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted("keep");
-    hint(solids);
-    ImGui::SameLine(left + width * 0.4f);
+    name("keep", solids);
     const std::string kept[] = {"all", "grounded", "largest"};  // by mesh::Keep
     choice(bench.report, "export.keep", kept, keep_);
     hint(solids);
-    if (formats[format_].holdsObjects) {
-        constexpr const char* divided =
-            "Into which objects the surface is divided: none, material, shape, or the shapes of symbols: Storey,Window";
-        ImGui::AlignTextToFramePadding();
-        ImGui::TextUnformatted("objects");
-        hint(divided);
-        ImGui::SameLine(left + width * 0.4f);
-        field(bench.report, "export.objects", objects_);
-        hint(divided);
-    }
+    if (!exporter::exporters()[format_].holdsObjects) return;
+    constexpr const char* divided =
+        "Into which objects the surface is divided: none, material, shape, or the shapes of symbols: Storey,Window";
+    name("objects", divided);
+    field(bench.report, "export.objects", objects_);
+    hint(divided);
+}
+
+void ExportPanel::show(Workbench& bench) {
+    chooseFormat(bench);
+    heading("Options");
+    chooseMesh(bench);
     for (ExportRow& row : options_) option(bench, row);
     heading("File");
     // The ending says the format, whichever of the two is changed.
+    const auto formats = exporter::exporters();
     if (field(bench.report, "export.file", file_))
         if (const exporter::Exporter* named = exporter::exporterFor(file_); named && named != &formats[format_])
             take(static_cast<size_t>(named - formats.data()));

@@ -136,62 +136,69 @@ void ParametersPanel::choices(Workbench& bench) {
     }
 }
 
+bool ParametersPanel::numbers(Workbench& bench, ParamRow& row) {
+    const std::string name = "param." + row.name, format = formatOf(row);
+    const float room = ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight(), gap = 3;
+    const float each = (room + gap) / static_cast<float>(row.number.size()) - gap;
+    bool changed = false;
+    for (size_t i = 0; i < row.number.size(); ++i) {
+        if (i > 0) ImGui::SameLine(0, gap);
+        ImGui::SetNextItemWidth(each);
+        ImGui::PushID(static_cast<int>(i));
+        double value = row.number[i];
+        const bool moved = row.lo.empty()
+                               ? ImGui::DragScalar("##n", ImGuiDataType_Double, &value,
+                                                   std::max(0.01f, std::abs(static_cast<float>(value)) * 0.01f),
+                                                   nullptr, nullptr, format.c_str())
+                               : ImGui::SliderScalar("##n", ImGuiDataType_Double, &value, &row.lo[i], &row.hi[i],
+                                                     format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+        if (moved) row.number[i] = row.kind == ParamRow::Kind::Integer ? std::round(value) : value;
+        changed |= moved;
+        bench.report.mark(row.number.size() == 1 ? name : fmt::format("{}.{}", name, i));
+        if (ImGui::IsItemActivated()) bench.document.beginDrag();
+        if (ImGui::IsItemDeactivated()) {
+            bench.document.endDrag();
+            held_.reset();
+        }
+        ImGui::PopID();
+    }
+    return changed;
+}
+
+bool ParametersPanel::color(Workbench& bench, ParamRow& row) {
+    // ImGui's swatch speaks sRGB.
+    const auto curve = [](double v, bool back) {
+        return back ? (v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4))
+                    : (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+    };
+    float rgb[3];
+    for (size_t i = 0; i < 3; ++i) rgb[i] = static_cast<float>(curve(row.color[i], false));
+    const bool changed = ImGui::ColorEdit3("##color", rgb, ImGuiColorEditFlags_NoInputs);
+    bench.report.mark("param." + row.name);
+    for (size_t i = 0; changed && i < 3; ++i) row.color[i] = curve(rgb[i], true);
+    if (ImGui::IsItemActivated()) bench.document.beginDrag();
+    if (ImGui::IsItemDeactivated()) bench.document.endDrag();
+    return changed;
+}
+
 bool ParametersPanel::control(Workbench& bench, ParamRow& row) {
     const std::string name = "param." + row.name;
+    const float room = ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight();
     bool changed = false;
     switch (row.kind) {
         case ParamRow::Kind::Integer:
-        case ParamRow::Kind::Real: {
-            const std::string format = formatOf(row);
-            const float room = ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight(), gap = 3;
-            const float each = (room + gap) / static_cast<float>(row.number.size()) - gap;
-            for (size_t i = 0; i < row.number.size(); ++i) {
-                if (i > 0) ImGui::SameLine(0, gap);
-                ImGui::SetNextItemWidth(each);
-                ImGui::PushID(static_cast<int>(i));
-                double value = row.number[i];
-                const bool moved = row.lo.empty()
-                                       ? ImGui::DragScalar("##n", ImGuiDataType_Double, &value,
-                                                           std::max(0.01f, std::abs(static_cast<float>(value)) * 0.01f),
-                                                           nullptr, nullptr, format.c_str())
-                                       : ImGui::SliderScalar("##n", ImGuiDataType_Double, &value, &row.lo[i],
-                                                             &row.hi[i], format.c_str(), ImGuiSliderFlags_AlwaysClamp);
-                if (moved) row.number[i] = row.kind == ParamRow::Kind::Integer ? std::round(value) : value;
-                changed |= moved;
-                bench.report.mark(row.number.size() == 1 ? name : fmt::format("{}.{}", name, i));
-                if (ImGui::IsItemActivated()) bench.document.beginDrag();
-                if (ImGui::IsItemDeactivated()) {
-                    bench.document.endDrag();
-                    held_.reset();
-                }
-                ImGui::PopID();
-            }
-            break;
-        }
+        case ParamRow::Kind::Real:
+            return numbers(bench, row);
         case ParamRow::Kind::Choice: {
             int at = 0;
             for (size_t i = 0; i < row.choices.size(); ++i)
                 if (row.choices[i] == row.word) at = static_cast<int>(i);
-            changed =
-                choice(bench.report, name, row.choices, at, ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight());
+            changed = choice(bench.report, name, row.choices, at, room);
             if (changed) row.word = row.choices[size_t(at)];
             break;
         }
-        case ParamRow::Kind::Color: {
-            // ImGui's swatch speaks sRGB.
-            const auto curve = [](double v, bool back) {
-                return back ? (v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4))
-                            : (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
-            };
-            float rgb[3];
-            for (size_t i = 0; i < 3; ++i) rgb[i] = static_cast<float>(curve(row.color[i], false));
-            changed = ImGui::ColorEdit3("##color", rgb, ImGuiColorEditFlags_NoInputs);
-            bench.report.mark(name);
-            for (size_t i = 0; changed && i < 3; ++i) row.color[i] = curve(rgb[i], true);
-            if (ImGui::IsItemActivated()) bench.document.beginDrag();
-            if (ImGui::IsItemDeactivated()) bench.document.endDrag();
-            break;
-        }
+        case ParamRow::Kind::Color:
+            return color(bench, row);
         case ParamRow::Kind::Truth: {
             bool truth = row.number[0] != 0;
             changed = toggle(bench.report, name, "", truth);
@@ -199,8 +206,7 @@ bool ParametersPanel::control(Workbench& bench, ParamRow& row) {
             break;
         }
         case ParamRow::Kind::Text:
-            changed = field(bench.report, name, row.word, nullptr,
-                            ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight());
+            changed = field(bench.report, name, row.word, nullptr, room);
             break;
     }
     return changed;

@@ -61,6 +61,18 @@ void label(const char* text, float& left) {
     ImGui::SameLine(left);
 }
 
+/// Which files' rules work beside those of the text.
+void nameUses(const syntax::Ast& ast) {
+    if (ast.uses.empty()) return;
+    std::string used;
+    for (const syntax::UseDecl& use : ast.uses) used += (used.empty() ? "" : ", ") + std::string(use.file.span.text());
+    ImGui::Dummy({0, 4});
+    ImGui::PushTextWrapPos(0);
+    faint("and the rules of " + used);
+    ImGui::PopTextWrapPos();
+    hint("They are used and not part of this text; Shapes tells which of them made a shape");
+}
+
 }  // namespace
 
 void RulesPanel::show(Workbench& bench) {
@@ -86,16 +98,7 @@ void RulesPanel::show(Workbench& bench) {
         clipper.Begin(static_cast<int>(rows_.size()), ImGui::GetTextLineHeight() + 6);
         while (clipper.Step())
             for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) row(bench, size_t(i));
-        if (!listed_->uses.empty()) {
-            std::string used;
-            for (const syntax::UseDecl& use : listed_->uses)
-                used += (used.empty() ? "" : ", ") + std::string(use.file.span.text());
-            ImGui::Dummy({0, 4});
-            ImGui::PushTextWrapPos(0);
-            faint("and the rules of " + used);
-            ImGui::PopTextWrapPos();
-            hint("They are used and not part of this text; Shapes tells which of them made a shape");
-        }
+        nameUses(*listed_);
         if (std::exchange(scroll_, false))
             ImGui::SetScrollY(std::max(
                 0.0f, (ImGui::GetTextLineHeight() + 6) * static_cast<float>(selected) - ImGui::GetWindowHeight() / 3));
@@ -110,21 +113,25 @@ void RulesPanel::show(Workbench& bench) {
     ImGui::Separator();
     if (ImGui::BeginChild("inspector")) {
         if (selected < rows_.size()) inspector(bench, rows_[selected]);
-        const float width = ImGui::CalcTextSize("Add rule").x + 2 * ImGui::GetStyle().FramePadding.x;
-        field(bench.report, "rule.new", newRule_, "Name -> body",
-              ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
-        ImGui::SameLine();
-        const size_t arrow = newRule_.find("->");
-        if (button(bench.report, "rule.add", "Add rule", "A new rule, behind the selected one or the last of its shape",
-                   arrow != std::string::npos)) {
-            std::string symbol = newRule_.substr(0, arrow);
-            while (!symbol.empty() && symbol.back() == ' ') symbol.pop_back();
-            const syntax::RuleDecl* after = selected < rows_.size() ? rows_[selected].rule : nullptr;
-            const size_t body = std::min(newRule_.find_first_not_of(' ', arrow + 2), newRule_.size());
-            bench.edit(edits::addRule(*listed_, symbol, newRule_.substr(body), after), "Add rule for " + symbol);
-        }
+        newRule(bench, selected);
     }
     ImGui::EndChild();
+}
+
+void RulesPanel::newRule(Workbench& bench, size_t selected) {
+    const float width = ImGui::CalcTextSize("Add rule").x + 2 * ImGui::GetStyle().FramePadding.x;
+    field(bench.report, "rule.new", newRule_, "Name -> body",
+          ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
+    ImGui::SameLine();
+    const size_t arrow = newRule_.find("->");
+    if (button(bench.report, "rule.add", "Add rule", "A new rule, behind the selected one or the last of its shape",
+               arrow != std::string::npos)) {
+        std::string symbol = newRule_.substr(0, arrow);
+        while (!symbol.empty() && symbol.back() == ' ') symbol.pop_back();
+        const syntax::RuleDecl* after = selected < rows_.size() ? rows_[selected].rule : nullptr;
+        const size_t body = std::min(newRule_.find_first_not_of(' ', arrow + 2), newRule_.size());
+        bench.edit(edits::addRule(*listed_, symbol, newRule_.substr(body), after), "Add rule for " + symbol);
+    }
 }
 
 void RulesPanel::row(Workbench& bench, size_t index) {

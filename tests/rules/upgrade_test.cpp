@@ -1,5 +1,5 @@
 // `grammar 1` as `grammar 2`: what is rewritten means the same, and what means something else is told.
-#include "grammar/language/upgrade.h"
+#include "grammar/rules/upgrade.h"
 
 #include "grammar/syntax/parser.h"
 #include "tests/derive/grammars.h"
@@ -9,12 +9,12 @@ namespace {
 
 using namespace testing_;
 
-language::Upgrade upgradedText(const std::string& text) {
+rules::Upgrade upgradedText(const std::string& text) {
     syntax::Diagnostics diagnostics;
     const auto source = std::make_shared<const syntax::Source>("old.sgm", text);
     const syntax::Ast ast = syntax::parse(source, operations::table(), diagnostics);
     EXPECT_FALSE(diagnostics.hasErrors());
-    language::Upgrade made = language::upgraded(ast);
+    rules::Upgrade made = rules::upgraded(ast);
     for (auto& note : made.notes) note.span = {};  // the source goes
     return made;
 }
@@ -31,7 +31,7 @@ std::vector<derive::Scope> scopesOf(const std::string& text) {
 void expectSameModel(const std::string& body, size_t notes) {
     SCOPED_TRACE(body);
     const std::string old = "grammar 1\nstart A -> size (4, 5, 6) B\nrule B -> " + body + "\n";
-    const language::Upgrade made = upgradedText(old);
+    const rules::Upgrade made = upgradedText(old);
     SCOPED_TRACE(made.text);
     EXPECT_EQ(made.notes.size(), notes);
     EXPECT_TRUE(made.text.starts_with("grammar 2\n"));
@@ -55,10 +55,39 @@ TEST(Upgrade, KeepsWhatShapesMeasureBy) {
     expectSameModel("let w = 2m cube size w + sphere size 50%", 1);
 }
 
+TEST(Upgrade, GivesTheFirstShapesSizeWhereNoScopeIsAsked) {
+    expectSameModel("cube size (1m, 2m, 3m) - sphere move (1m, 0, 0) + cone size 1m at +y", 1);
+    EXPECT_EQ(upgradedText("grammar 1\nstart A -> cube size 3m - B move (1m, 0, 0)\nrule B -> cube\n").text,
+              "grammar 2\nstart A -> cube size 3m - B size 3m move (1m, 0, 0)\nrule B -> cube\n");
+}
+
 TEST(Upgrade, LeavesWhatMeansTheSame) {
     expectSameModel("cube + sphere size 50%", 0);
     expectSameModel("cube size 2m + cube size 1m at +x, cube size 1 turn 30deg", 0);
+    expectSameModel("cube size 2m + cube size (1m, 3m, 1m), cube size 1m - sphere size 2m at +y", 0);
     expectSameModel("split x { ~1: cube size 50% | ~1: C }\nrule C -> cube", 0);
+}
+
+TEST(Upgrade, LeavesBehindARoofWhatNoGroupCouldMeasure) {
+    const auto made = upgradedText("grammar 1\nstart A -> size 9m hipRoof(30deg) + cube size 50% at +y\n");
+    ASSERT_EQ(made.notes.size(), 1u);
+    EXPECT_NE(made.notes[0].message.find("measured by the matched scope now"), std::string::npos);
+    EXPECT_EQ(made.text, "grammar 2\nstart A -> size 9m hipRoof(30deg) + cube size 50% at +y\n");
+}
+
+TEST(Upgrade, IsWarnedOfOnceAFile) {
+    const auto warned = [](const std::string& text) {
+        syntax::Diagnostics diagnostics;
+        rules::load(std::make_shared<const syntax::Source>("old.sgm", text), operations::table(), nullptr, diagnostics);
+        std::vector<std::string> found;
+        for (const auto& d : diagnostics.all()) found.push_back(d.message);
+        return found;
+    };
+    const std::string rest = "start A -> cube size 1m move (2m, 0, 0) + sphere size 50%, cube size 2m + cube at +x\n";
+    EXPECT_EQ(warned("grammar 1\n" + rest),
+              std::vector<std::string>{"'grammar 2' reads this in another way, and 1 more place"});
+    EXPECT_EQ(warned("grammar 2\n" + rest).size(), 0u);
+    EXPECT_EQ(warned("grammar 1\nstart A -> cube size 2m + cube size 1m at +x\n").size(), 0u);
 }
 
 TEST(Upgrade, PutsASizeOfSharesBeforeItsTurn) {

@@ -1,12 +1,15 @@
-#include "grammar/language/upgrade.h"
+#include "grammar/rules/upgrade.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <tuple>
 
-namespace sgm::language {
+#include "modeler/field/primitives.h"
+
+namespace sgm::rules {
 namespace {
 
 using syntax::ArgumentType;
@@ -36,28 +39,55 @@ const Attribute* find(const Element& e, std::string_view name) {
     return found ? found : find(e.before, name);
 }
 
+/// How a chain's first shape stands in the scope that its rule matched.
+struct Head {
+    bool turned = false, moved = false;
+};
+
 /// Whether a newcomer stands or measures by the shape that its chain begins with.
-bool leansOn(const Element& e, bool headIsTurned) {
+bool leansOn(const Element& e, Head head) {
     if (e.op == syntax::Operator::None || find(e, "on")) return false;
     const Attribute* size = find(e, "size");
-    return !size || !find(e, "at") || headIsTurned || std::any_of(e.after.begin(), e.after.end(), isOfScope) ||
+    return !size || (head.moved && !find(e, "at")) || head.turned ||
+           std::any_of(e.after.begin(), e.after.end(), isOfScope) ||
            std::any_of(e.before.begin(), e.before.end(), isOfScope);
 }
 
-bool anyLeansOn(const Body& body, bool headIsTurned);
-
-bool elementLeansOn(const Element& e, bool headIsTurned) {
-    if (e.kind == Element::Kind::Shape || e.kind == Element::Kind::Group) return leansOn(e, headIsTurned);
-    if (e.body && anyLeansOn(*e.body, headIsTurned)) return true;
-    return std::any_of(e.cases.begin(), e.cases.end(),
-                       [&](const syntax::Case& c) { return c.body && anyLeansOn(*c.body, headIsTurned); });
+/// Whether the solid makes its scope as high as itself, as roofs do: no group has that scope.
+bool hasOwnHeight(const Element& e) {
+    const field::Primitive* row = e.solid ? field::findPrimitive(e.solid->text) : nullptr;
+    return row && row->plan == field::PlanUse::OwnHeight;
 }
 
-bool anyLeansOn(const Body& body, bool headIsTurned) {
+bool anyLeansOn(const Body& body, Head head);
+
+bool elementLeansOn(const Element& e, Head head) {
+    if (e.kind == Element::Kind::Shape || e.kind == Element::Kind::Group) return leansOn(e, head);
+    if (e.body && anyLeansOn(*e.body, head)) return true;
+    return std::any_of(e.cases.begin(), e.cases.end(),
+                       [&](const syntax::Case& c) { return c.body && anyLeansOn(*c.body, head); });
+}
+
+bool anyLeansOn(const Body& body, Head head) {
     for (const auto& chain : body.siblings)
         for (const Element& e : chain)
-            if (elementLeansOn(e, headIsTurned)) return true;
+            if (elementLeansOn(e, head)) return true;
     return false;
+}
+
+bool isDrawn(const Expr& e) {
+    return e.kind == Expr::Kind::Range || e.kind == Expr::Kind::Choose ||
+           std::any_of(e.args.begin(), e.args.end(), [](const Expr& arg) { return isDrawn(arg); });
+}
+/// The same wherever it stands: neither of the scope nor drawn by chance.
+bool isPlain(const Attribute& a) {
+    return !isOfScope(a) && std::none_of(a.args.begin(), a.args.end(), [](const Expr& arg) { return isDrawn(arg); });
+}
+/// A newcomer that leans on the first shape by its size alone, or not at all.
+bool takesSize(const Element& e) {
+    if (e.kind != Element::Kind::Shape) return !elementLeansOn(e, {});
+    return !leansOn(e, {}) ||
+           (!find(e, "size") && e.solid && std::none_of(e.after.begin(), e.after.end(), isOfScope) && e.before.empty());
 }
 
 class Rewriter {
@@ -158,14 +188,25 @@ private:
                 simple ? scope.push_back(&a) : void(others = true);
             }
         const bool prefixed = !head->before.empty();
+        others = others || hasOwnHeight(*head);
         if (scope.empty() && !others && !prefixed) return;
-        const bool turned = find(*head, "turn") != nullptr;
-        if (std::none_of(std::next(head), chain.end(), [&](const Element& e) { return elementLeansOn(e, turned); }))
+        const Head stand{find(*head, "turn") != nullptr, others || find(*head, "move") != nullptr};
+        if (std::none_of(std::next(head), chain.end(), [&](const Element& e) { return elementLeansOn(e, stand); }))
             return;
         if (others || (!head->solid && head->kind == Element::Kind::Shape))
             return note(head->span, "shapes behind this one are measured by the matched scope now, not by this one's",
                         "group them, with what makes the scope before the group");
+        if (scope.size() == 1 && !prefixed && find(*head, "size") == scope[0] && isPlain(*scope[0]) &&
+            std::all_of(std::next(head), chain.end(), takesSize))
+            return giveSize(*head, std::span(&*std::next(head), &*chain.begin() + chain.size()), *scope[0]);
         move(chain, *head, std::move(scope));
+    }
+
+    /// What was as large as the chain's first shape says that size itself.
+    void giveSize(const Element& head, std::span<const Element> others, const Attribute& size) {
+        for (const Element& e : others)
+            if (leansOn(e, {})) insert(e.solid->span.end, " " + std::string(size.span.text()));
+        note(head.span, "shapes behind this one were as large as it: they have its size of their own now", "");
     }
 
     void move(const std::vector<Element>& chain, const Element& head, std::vector<const Attribute*> scope) {
@@ -219,4 +260,4 @@ Upgrade upgraded(const syntax::Ast& ast) {
     return Rewriter(ast).run();
 }
 
-}  // namespace sgm::language
+}  // namespace sgm::rules

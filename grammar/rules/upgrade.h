@@ -8,7 +8,7 @@
 
 #include "grammar/syntax/ast.h"
 
-namespace sgm::language {
+namespace sgm::rules {
 
 struct Upgrade {
     std::string text;
@@ -19,4 +19,4 @@ struct Upgrade {
 /// size, a move or a turn that later shapes were measured by, and shares in a `size` behind a `turn`.
 Upgrade upgraded(const syntax::Ast& ast);
 
-}  // namespace sgm::language
+}  // namespace sgm::rules
