@@ -129,21 +129,38 @@ class Meshes {
 public:
     explicit Meshes(const Progress* progress) : progress_(progress) {}
 
-    Result<field::SampledGridPtr> operator()(const fs::path& path) {
-        std::error_code failed;
-        const auto time = fs::last_write_time(path, failed);
+    /// The distances to a mesh; `files` gets the other files that they were made from.
+    Result<field::SampledGridPtr> operator()(const fs::path& path, std::vector<fs::path>& files) {
         Read& read = known_[path.string()];
-        if (!failed && read.grid && read.time == time) return read.grid;
-        auto grid = mesh::readDistances(path, progress_);
-        read = {time, grid.ok() ? *grid : nullptr};
+        if (read.grid && read.times == timesOf(path, read.files)) {
+            files = read.files;
+            return read.grid;
+        }
+        read = {{}, timesOf(path, {}), nullptr};  // of before it is read: a change meanwhile is noticed
+        auto grid = mesh::readDistances(path, progress_, &read.files);
+        files = read.files;
+        if (!grid.ok()) return grid;
+        const Times others = timesOf(path, read.files);
+        read.times.insert(read.times.end(), others.begin() + 1, others.end());
+        read.grid = *grid;
         return grid;
     }
 
 private:
+    using Times = std::vector<fs::file_time_type>;
     struct Read {
-        fs::file_time_type time;
+        std::vector<fs::path> files;
+        Times times;
         field::SampledGridPtr grid;
     };
+
+    static Times timesOf(const fs::path& path, const std::vector<fs::path>& files) {
+        std::error_code failed;  // a file that is gone has no time that another one has
+        Times times{fs::last_write_time(path, failed)};
+        for (const fs::path& file : files) times.push_back(fs::last_write_time(file, failed));
+        return times;
+    }
+
     const Progress* progress_;
     std::map<std::string, Read> known_;
 };
@@ -243,7 +260,9 @@ rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) 
         const auto path = pathOf(name, from, why);
         if (!path) return nullptr;
         note(*path);
-        const auto grid = meshes(*path);
+        std::vector<fs::path> files;
+        const auto grid = meshes(*path, files);
+        std::for_each(files.begin(), files.end(), note);
         if (grid.ok()) return *grid;
         why = grid.error().message;
         return nullptr;

@@ -100,7 +100,7 @@ constexpr auto ornamentParameters = fractalAnd({
 });
 
 constexpr PrimitiveParameter meshParameters[] = {
-    {"file", Kind::File, 0, 0, 0, "a closed mesh (.obj, .ply, .stl, .off) in the grammar's own folder"},
+    {"file", Kind::File, 0, 0, 0, "a closed mesh (.obj, .ply, .stl, .off, .glb, .gltf) in the grammar's own folder"},
 };
 
 // Roofs over a footprint.

@@ -268,8 +268,9 @@ Result<field::SampledGridPtr> toDistances(TriangleSoup soup, int cells, const Pr
 
 Result<field::SampledGridPtr> toDistances(const Mesh& mesh, int cells) { return toDistances(soupOf(mesh), cells); }
 
-Result<field::SampledGridPtr> readDistances(const std::filesystem::path& path, const Progress* progress) {
-    auto soup = readMesh(path, progress);
+Result<field::SampledGridPtr> readDistances(const std::filesystem::path& path, const Progress* progress,
+                                            std::vector<std::filesystem::path>* named) {
+    auto soup = readMesh(path, progress, named);
     if (!soup.ok()) return soup.error();
     auto grid = toDistances(std::move(*soup), distanceCells, progress);
     if (!grid.ok() && grid.error().kind != Error::Kind::Cancelled)

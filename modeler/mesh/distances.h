@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "modeler/core/progress.h"
 #include "modeler/core/result.h"
@@ -25,7 +26,9 @@ Result<field::SampledGridPtr> toDistances(TriangleSoup soup, int cells = distanc
 /// The same of a mesh of ours.
 Result<field::SampledGridPtr> toDistances(const Mesh& mesh, int cells = distanceCells);
 
-/// The distances to the mesh in a file (read.h). Messages begin with the file's name.
-Result<field::SampledGridPtr> readDistances(const std::filesystem::path& path, const Progress* progress = nullptr);
+/// The distances to the mesh in a file (read.h). Messages begin with the file's name; `named` gets the paths of other
+/// files that were opened for it.
+Result<field::SampledGridPtr> readDistances(const std::filesystem::path& path, const Progress* progress = nullptr,
+                                            std::vector<std::filesystem::path>* named = nullptr);
 
 }  // namespace sgm::mesh

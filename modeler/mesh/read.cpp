@@ -18,9 +18,10 @@ constexpr size_t mostTriangles = 200'000'000;
 
 struct Format {
     std::string_view ending;
-    Status (*read)(std::string_view bytes, TriangleSoup& soup, const Progress* progress);
+    Status (*read)(std::string_view bytes, TriangleSoup& soup, const Progress* progress);  ///< null: glTF
 };
-constexpr Format formats[] = {{".obj", readObj}, {".ply", readPly}, {".stl", readStl}, {".off", readOff}};
+constexpr Format formats[] = {{".obj", readObj}, {".ply", readPly}, {".stl", readStl},
+                              {".off", readOff}, {".glb", nullptr}, {".gltf", nullptr}};
 
 std::string lowerCase(std::string text) {
     for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c);
@@ -30,6 +31,22 @@ std::string lowerCase(std::string text) {
 Error about(const std::filesystem::path& path, const Error& error) {
     if (error.kind == Error::Kind::Cancelled) return error;
     return {error.kind, fmt::format("'{}' {}", path.string(), error.message)};
+}
+
+/// Reads files in the folder of `path` and below, after links are resolved, and nothing else; `named` gets their paths.
+ReadBeside filesBeside(const std::filesystem::path& path, std::vector<std::filesystem::path>* named,
+                       const Progress* progress) {
+    return [=, folder = path.parent_path()](const std::string& name) -> Result<std::string> {
+        const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+        std::error_code failed;
+        const auto root = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, failed);
+        const auto within = std::filesystem::weakly_canonical(root / name, failed).lexically_relative(root);
+        if (failed || std::any_of(name.begin(), name.end(), control) || within.empty() || *within.begin() == ".." ||
+            std::filesystem::path(name).is_absolute())
+            return Error{Error::Kind::Input, "a mesh may only use files in its own folder"};
+        if (named) named->push_back(folder / within);
+        return readRegularFile(root / within, mostFile_bytes, progress);
+    };
 }
 
 }  // namespace
@@ -53,12 +70,14 @@ Error damaged(uint64_t line, std::string_view why) {
             line == 0 ? fmt::format("is damaged: {}", why) : fmt::format("is damaged, line {}: {}", line, why)};
 }
 
-Result<TriangleSoup> readMesh(const std::filesystem::path& path, const Progress* progress) {
+Result<TriangleSoup> readMesh(const std::filesystem::path& path, const Progress* progress,
+                              std::vector<std::filesystem::path>* named) {
     const std::string ending = lowerCase(path.extension().string());
     const auto* format =
         std::find_if(std::begin(formats), std::end(formats), [&](const Format& f) { return f.ending == ending; });
     if (format == std::end(formats))
-        return about(path, {Error::Kind::Input, "is no mesh that can be read: save it as .obj, .ply, .stl or .off"});
+        return about(path,
+                     {Error::Kind::Input, "is no mesh that can be read: save it as .obj, .ply, .stl, .off or .glb"});
     const Result<std::string> bytes = readRegularFile(path, mostFile_bytes, progress);
     if (!bytes.ok()) {
         Error error = bytes.error();
@@ -66,7 +85,9 @@ Result<TriangleSoup> readMesh(const std::filesystem::path& path, const Progress*
         return about(path, error);
     }
     TriangleSoup soup;
-    if (const Status read = format->read(*bytes, soup, progress); !read.ok()) return about(path, read.error());
+    const Status read = format->read ? format->read(*bytes, soup, progress)
+                                     : readGltf(*bytes, filesBeside(path, named, progress), soup, progress);
+    if (!read.ok()) return about(path, read.error());
     if (const Status sound = checkSoup(soup); !sound.ok()) return about(path, sound.error());
     return soup;
 }

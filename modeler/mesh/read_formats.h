@@ -4,6 +4,8 @@
 // without its content. Assumes less than 4 GiB.
 #pragma once
 
+#include <functional>
+#include <string>
 #include <string_view>
 
 #include "modeler/core/progress.h"
@@ -21,6 +23,12 @@ Status readPly(std::string_view bytes, TriangleSoup& soup, const Progress* progr
 Status readStl(std::string_view bytes, TriangleSoup& soup, const Progress* progress);
 /// Ascii OFF with any of its prefixes but 4 and n (Geomview manual, "OFF Files").
 Status readOff(std::string_view bytes, TriangleSoup& soup, const Progress* progress);
+
+/// Reads a file that lies beside the one that names it; the error is the cause alone.
+using ReadBeside = std::function<Result<std::string>(const std::string& name)>;
+/// glTF 2.0, .gltf and .glb: the triangles of the scene that is shown, where its nodes put them. Compressed and sparse
+/// data are refused. `beside` gives the buffers that the file names.
+Status readGltf(std::string_view bytes, const ReadBeside& beside, TriangleSoup& soup, const Progress* progress);
 
 /// What holds for every format: there are triangles, not too many, with finite corners that are in range. The error is
 /// without the file's name.
