@@ -8,6 +8,7 @@
 
 #include "cli/messages.h"
 #include "cli/numbers.h"
+#include "cli/watch.h"
 #include "grammar/operations/operations.h"
 #include "grammar/pipeline/files.h"
 #include "grammar/pipeline/section.h"
@@ -95,6 +96,7 @@ void addEditOptions(CLI::App& command, MeshEdits& edits) {
 
 Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& request, Context& context,
                                                           std::vector<std::filesystem::path>* read) {
+    const EndsAtOnce nothingIsWritten;
     Result<syntax::SourcePtr> source = pipeline::readSource(request.file);
     if (!source.ok()) return source.error();
     std::vector<std::filesystem::path> inputs{request.file};

@@ -12,13 +12,16 @@
 namespace sgm::cli {
 namespace {
 
-// A signal handler can reach nothing but a global; only Watch writes it.
+// A signal handler can reach nothing but globals; only Watch and EndsAtOnce write them.
 std::atomic<Progress*> interrupted{nullptr};
 static_assert(std::atomic<Progress*>::is_always_lock_free);
+
+std::atomic<bool> endsAtOnce{false};
 
 constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP};
 
 void onInterrupt(int) {
+    if (endsAtOnce) _exit(130);
     if (Progress* p = interrupted.load()) p->cancel();
 }
 
@@ -69,5 +72,8 @@ Watch::~Watch() {
     stop_ = true;
     if (line_.joinable()) line_.join();
 }
+
+EndsAtOnce::EndsAtOnce() { endsAtOnce = true; }
+EndsAtOnce::~EndsAtOnce() { endsAtOnce = false; }
 
 }  // namespace sgm::cli

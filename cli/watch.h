@@ -31,4 +31,14 @@ private:
     std::array<void (*)(int), 3> before_{};  ///< what signals did
 };
 
+/// While it lives, what ends a Watch ends the program at once with exit code 130: for stages that have written nothing
+/// and don't look at a Progress at every step, such as parsing.
+class EndsAtOnce {
+public:
+    EndsAtOnce();
+    ~EndsAtOnce();
+    EndsAtOnce(const EndsAtOnce&) = delete;
+    EndsAtOnce& operator=(const EndsAtOnce&) = delete;
+};
+
 }  // namespace sgm::cli

@@ -172,6 +172,10 @@ Result<std::string> rewritten(const rules::Lsystem& lsystem, const Place& place)
 Result<plan::Footprint> drawOutline(const rules::Lsystem& lsystem, const Place& place) {
     const auto letters = rewritten(lsystem, place);
     if (!letters.ok()) return letters.error();
+    const auto walls = std::count_if(letters->begin(), letters->end(), [](char c) { return c == 'F' || c == 'G'; });
+    if (walls > mostWalls)
+        return errorOf(Error::Kind::Budget, lsystem,
+                       fmt::format("draws {} walls, more than {}; give it fewer passes", walls, mostWalls));
     Turtle turtle(number(lsystem.angle, place), number(lsystem.step, place), number(lsystem.shrink, place));
     for (const char letter : *letters) turtle.read(letter);
     auto outline = plan::resolved(turtle.take());

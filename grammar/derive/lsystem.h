@@ -17,7 +17,9 @@ Result<std::string> rewritten(const rules::Lsystem& lsystem, const Place& place)
 /// The outline that the turtle walks, from (0, 0) along +x: F and G step and draw an edge, f and g step without drawing
 /// and begin another outline, + and - turn left and right by the angle, | turns round, [ and ] keep and recall where it
 /// stands; other letters become words of the tag of the edge before them. Outlines are closed from their end to their
-/// start, and resolved where they cross themselves. Error::Input where no outline has an area.
+/// start, and resolved where they cross themselves. Error::Input where no outline has an area, Error::Budget for more
+/// than `mostWalls`, whose crossings would take minutes.
+inline constexpr int64_t mostWalls = 20'000;
 Result<plan::Footprint> drawOutline(const rules::Lsystem& lsystem, const Place& place);
 
 }  // namespace sgm::derive

@@ -11,6 +11,7 @@
 #include "modeler/core/atomic_file.h"
 #include "modeler/core/conventions.h"
 #include "modeler/core/random.h"
+#include "modeler/core/regular_file.h"
 
 namespace sgm::tiles {
 namespace {
@@ -18,10 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+constexpr uint64_t mostFile_bytes = 4ull << 30;
+
 std::optional<std::string> textOf(const fs::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    if (!in) return std::nullopt;
-    return std::string{std::istreambuf_iterator<char>(in), {}};
+    auto read = readRegularFile(path, mostFile_bytes);
+    return read.ok() ? std::optional(std::move(*read)) : std::nullopt;
 }
 
 Status writeJson(const fs::path& path, const Json& json) {
@@ -46,6 +48,33 @@ Json asJson(const BakePlan& plan) {
             {"cells", std::move(cells)}};
 }
 
+/// What a text says that `sgm bake` wrote; throws where it has members of other types.
+BakePlan planOf(const Json& json) {
+    BakePlan plan;
+    plan.model = json.value("model", "");
+    plan.name = json.value("name", "");
+    plan.side_m = json.value("side_m", 256.0);
+    plan.cell_m = json.value("cell_m", 2.0);
+    plan.objectCell_m = json.value("object_cell_m", .3);
+    plan.errors_m = json.value("errors_m", std::vector<double>{});
+    plan.objects = json.value("objects", uint64_t{0});
+    plan.places = json.value("places", uint64_t{0});
+    for (const Json& name : json["cells"])
+        if (const auto cell = cellNamed(name.get<std::string>())) plan.cells.push_back(*cell);
+    return plan;
+}
+
+/// Whether all cells are of levels that the plan has, and few enough levels that the tree over them is small.
+bool isSound(const BakePlan& plan) {
+    constexpr size_t mostLevels = 8;
+    constexpr int farthest = 1 << 20;
+    return !plan.errors_m.empty() && plan.errors_m.size() <= mostLevels && plan.side_m > 0 && plan.side_m <= 1e5 &&
+           std::all_of(plan.cells.begin(), plan.cells.end(), [&](const Cell& cell) {
+               return cell.level < static_cast<int>(plan.errors_m.size()) && std::abs(cell.x) <= farthest &&
+                      std::abs(cell.z) <= farthest;
+           });
+}
+
 /// A cell's note, as it was left.
 struct Note {
     CellFigures figures;
@@ -61,13 +90,18 @@ Result<Note> readNote(const fs::path& folder, const Cell& cell) {
         return Error{
             Error::Kind::Input,
             fmt::format("'{}' isn't there yet: bake the cells that `sgm bake --missing` names", path.string())};
-    Note note;
-    note.figures.triangles = json.value("triangles", uint64_t{0});
-    note.figures.instances = json.value("instances", uint64_t{0});
-    note.figures.bounds = json.value("bounds", std::array<double, 6>{});
-    note.bytes = json.value("bytes", uint64_t{0});
-    note.digest = json.value("digest", "");
-    return note;
+    try {
+        Note note;
+        note.figures.triangles = json.value("triangles", uint64_t{0});
+        note.figures.instances = json.value("instances", uint64_t{0});
+        note.figures.bounds = json.value("bounds", std::array<double, 6>{});
+        note.bytes = json.value("bytes", uint64_t{0});
+        note.digest = json.value("digest", "");
+        return note;
+    } catch (const Json::exception&) {  // a member of another type
+        return Error{Error::Kind::Input,
+                     fmt::format("'{}' is damaged: remove it and bake the cell anew", path.string())};
+    }
 }
 
 /// A box as 3D Tiles has it: centre, then half axes; z up where the model's y is.
@@ -224,20 +258,13 @@ Result<BakePlan> readPlan(const fs::path& folder) {
     if (!json.is_object() || !json.contains("cells"))
         return Error{Error::Kind::Input, fmt::format("'{}' {}", planFile(folder).string(),
                                                      text ? "can't be read" : "isn't there: run `sgm bake` first")};
-    BakePlan plan;
-    plan.model = json.value("model", "");
-    plan.name = json.value("name", "");
-    plan.side_m = json.value("side_m", 256.0);
-    plan.cell_m = json.value("cell_m", 2.0);
-    plan.objectCell_m = json.value("object_cell_m", .3);
-    plan.errors_m = json.value("errors_m", std::vector<double>{});
-    plan.objects = json.value("objects", uint64_t{0});
-    plan.places = json.value("places", uint64_t{0});
-    for (const Json& name : json["cells"])
-        if (const auto cell = cellNamed(name.get<std::string>())) plan.cells.push_back(*cell);
-    if (plan.errors_m.empty() || plan.cells.size() != json["cells"].size())
-        return Error{Error::Kind::Input, fmt::format("'{}' can't be read", planFile(folder).string())};
-    return plan;
+    try {
+        BakePlan plan = planOf(json);
+        if (isSound(plan) && plan.cells.size() == json["cells"].size()) return plan;
+    } catch (const Json::exception&) {  // a member of another type
+    }
+    return Error{Error::Kind::Input,
+                 fmt::format("'{}' is damaged: bake into another folder", planFile(folder).string())};
 }
 
 Status noteCell(const fs::path& folder, const Cell& cell, const CellFigures& figures) {

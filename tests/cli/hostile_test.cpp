@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 
 #include <chrono>
+#include <csignal>
 
 #include "tests/cli/program.h"
 
@@ -174,6 +175,14 @@ TEST_F(Hostile, CladdingInCladdingHasABudget) {
     }
 }
 
+TEST_F(Hostile, LsystemsOfManyWallsHaveABudget) {
+    const Outcome run = quick("check " + grammar("lsystem P passes 12 angle 90deg step 1m\n  axiom \"[[[[[F\"\n"
+                                                 "  F -> \"[F[+F]F\"\nstart A -> footprint P extrude 3m\n"));
+    EXPECT_EQ(run.code, 3) << run.out;
+    EXPECT_NE(run.out.find("walls"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("test.sgm:5:"), std::string::npos) << run.out;
+}
+
 TEST_F(Hostile, NumbersWithoutEndAreToldWhereTheyAre) {
     const auto told = [&](const std::string& body, const std::string& words, int code = 1) {
         const Outcome run = quick("build -q " + grammar(body) + " --resolution 16 -o " + path("x.ply"));
@@ -191,6 +200,29 @@ TEST_F(Hostile, NumbersWithoutEndAreToldWhereTheyAre) {
     told("start A -> cube for i in 1..1000000000 { + cube at +x }\n", "there is no end", 3);
 }
 
+TEST_F(Hostile, BakedFoldersMayHoldAnything) {
+    fs::create_directories(path("city/cells/0"));
+    fs::create_directories(path("city/cells/19"));
+    std::string levels = "0";
+    for (int i = 0; i < 20; ++i) levels += ", 1";
+    for (const std::string& plan :
+         {std::string(R"({"cells": 3})"), std::string(R"({"cells": [null]})"), std::string(R"({"cells": {"a": {}}})"),
+          std::string(R"({"errors_m": "x", "cells": []})"), std::string(R"({"errors_m": [1], "cells": ["9/0_0"]})"),
+          R"({"errors_m": [)" + levels + R"(], "cells": ["19/0_0"]})",
+          std::string(R"({"errors_m": [1], "side_m": -1, "cells": ["0/0_0"]})"),
+          std::string(R"({"errors_m": [1], "cells": ["0/0_0"]})"), std::string(100'000, '[')}) {
+        scratch_.write("city/plan.json", plan);
+        scratch_.write("city/cells/0/0_0.json", R"({"bounds": [1, 2, "x"]})");
+        scratch_.write("city/cells/19/0_0.json", R"({"bounds": [0, 0, 0, 1, 1, 1], "triangles": 1})");
+        const Outcome run = quick("merge " + path("city"));
+        EXPECT_EQ(run.code, 1) << plan.substr(0, 200) << run.out;
+        EXPECT_EQ(run.out.find("internal"), std::string::npos) << run.out;
+    }
+    fs::remove(path("city/plan.json"));
+    ASSERT_EQ(mkfifo(path("city/plan.json").c_str(), 0600), 0);
+    EXPECT_EQ(quick("merge " + path("city")).code, 1);
+}
+
 TEST_F(Hostile, OptionsAreNumbersInTheirRange) {
     const std::string file = grammar("start A -> cube\n");
     for (const std::string option :
@@ -201,6 +233,21 @@ TEST_F(Hostile, OptionsAreNumbersInTheirRange) {
                                   (option.ends_with("--proxy") ? " " + path("y.ply") : ""));
         EXPECT_EQ(run.code, 2) << option << run.out;
     }
+}
+
+TEST_F(Hostile, ParsingAndCheckingEndAtOnce) {
+    std::string text;
+    for (int i = 0; i < 400'000; ++i) text += "rule A" + std::to_string(i) + " -> + cube size 1 at +x\n";
+    const std::string file = grammar("start A0 -> cube\n" + text);
+    for (const std::string& command : {"build -q " + file + " -o " + path("x.ply"), "check " + file})
+        for (const char* signal : {"INT", "TERM"}) {
+            const auto started = std::chrono::steady_clock::now();
+            const Outcome run = sgm(command, std::string("timeout --preserve-status -s ") + signal + " .4 ");
+            const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - started;
+            EXPECT_TRUE(run.code == 130 || run.code == 128 + SIGTERM) << command << run.code << run.out;
+            EXPECT_LT(spent.count(), isSanitized ? 10 : 1) << command;
+        }
+    EXPECT_FALSE(fs::exists(path("x.ply")));
 }
 
 TEST_F(Hostile, ASystemWithoutThreadsIsToldOf) {
