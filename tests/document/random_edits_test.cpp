@@ -8,6 +8,7 @@
 #include "grammar/operations/operations.h"
 #include "modeler/core/random.h"
 #include "tests/document/texts.h"
+#include "tests/fuzz_keys.h"
 #include "viewer/document/nodes.h"
 
 namespace sgm::viewer {
@@ -312,13 +313,13 @@ std::string fileText(const std::filesystem::path& path) {
 }
 
 TEST(RandomEdits, KeepTextAndTreeInAgreementAndUndoToTheBytes) {
-    constexpr size_t wanted = 1000;
+    const FuzzKeys keys = fuzzKeys(1000);
     std::vector<std::string> texts{tower};
     for (const char* path : {"examples/figure1.sgm", "examples/grotto.sgm", "examples/joints.sgm", "examples/tower.sgm",
                              "grammar/std/cave.sgm", "tests/syntax/sketch.sgm"})
         texts.push_back(fileText(path));
     size_t done = 0, refused = 0;
-    for (uint64_t round = 0; done < wanted; ++round) {
+    for (uint64_t round = keys.first; done < keys.count; ++round) {
         Twins twins(texts[round % texts.size()]);
         for (uint64_t k = 0; k < 40 && !HasFailure(); ++k) twins.step(combine(round, k)) ? ++done : ++refused;
         ASSERT_FALSE(HasFailure());

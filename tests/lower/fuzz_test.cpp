@@ -3,20 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "grammar/lower/lower.h"
+#include "tests/fuzz_keys.h"
 #include "tests/rules/read.h"
 #include "tests/syntax/mutate.h"
 
 namespace sgm::lower {
 namespace {
-
-/// SGM_FUZZ_MUTANTS asks for a longer run.
-uint64_t mutantCount() {
-    const char* asked = std::getenv("SGM_FUZZ_MUTANTS");
-    return asked ? std::strtoull(asked, nullptr, 10) : 4000;
-}
 
 /// Grows every start of the grammar; true when one became a field.
 bool grow(const std::shared_ptr<const rules::Grammar>& grammar, const std::string& what) {
@@ -44,11 +38,12 @@ bool grow(const std::shared_ptr<const rules::Grammar>& grammar, const std::strin
 }
 
 TEST(Fuzz, MutantsGrowOrSayWhyNot) {
-    uint64_t key = 0, checked = 0, solid = 0;
+    const FuzzKeys keys = fuzzKeys(4000);
+    uint64_t key = keys.first, checked = 0, solid = 0;
     for (const char* const seed :
          {"examples/joints.sgm", "examples/figure1.sgm", "examples/cumulus.sgm", "tests/rules/sketch.sgm"}) {
         const syntax::Mutator mutate(rules::readText(seed));
-        for (uint64_t i = 0; i < mutantCount() / 4; ++i) {
+        for (uint64_t i = 0; i < keys.count / 4; ++i) {
             const std::string text = mutate(++key);
             const rules::Checked c = rules::checked(text);
             if (!c.grammar) continue;
@@ -56,7 +51,7 @@ TEST(Fuzz, MutantsGrowOrSayWhyNot) {
             solid += grow(c.grammar, "mutant " + std::to_string(key) + " of " + seed + ":\n" + text);
         }
     }
-    EXPECT_GT(checked, mutantCount() / 200);
+    EXPECT_GT(checked, keys.count / 200);
     EXPECT_GT(solid, checked / 10);
 }
 

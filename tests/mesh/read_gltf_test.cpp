@@ -8,6 +8,7 @@
 
 #include "modeler/mesh/distances.h"
 #include "modeler/mesh/read.h"
+#include "tests/fuzz_keys.h"
 #include "tests/scratch.h"
 
 namespace sgm::mesh {
@@ -225,13 +226,12 @@ TEST_F(ReadGltf, AFileOfMillionsOfPlacesIsRefusedAtOnce) {
 TEST_F(ReadGltf, SurvivesWhateverTheBytesAre) {
     const std::string whole = glb(pyramid());
     for (size_t cut = 0; cut < whole.size(); ++cut) EXPECT_FALSE(read("m.glb", whole.substr(0, cut)).ok()) << cut;
-    const char* wanted = std::getenv("SGM_FUZZ_MUTANTS");
-    const int mutants = wanted ? std::atoi(wanted) : 2000;
-    std::mt19937 random(7);
+    const FuzzKeys keys = fuzzKeys(2000);
+    std::mt19937_64 random(7 + keys.first);
     size_t good = 0;
-    for (int i = 0; i < mutants; ++i) {
+    for (int i = 0; i < static_cast<int>(keys.count); ++i) {
         std::string mutant = whole;
-        for (uint32_t k = 1 + random() % 3; k > 0; --k)
+        for (uint64_t k = 1 + random() % 3; k > 0; --k)
             mutant[random() % mutant.size()] = static_cast<char>(random() % 2 ? '0' + random() % 10 : random());
         const auto mesh = read("m.glb", mutant);
         if (mesh.ok()) good += toDistances(*mesh, 8).ok();

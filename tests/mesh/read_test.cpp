@@ -9,6 +9,7 @@
 #include <random>
 
 #include "modeler/mesh/distances.h"
+#include "tests/fuzz_keys.h"
 #include "tests/scratch.h"
 
 namespace sgm::mesh {
@@ -187,16 +188,15 @@ TEST_F(ReadMesh, SurvivesWhateverTheBytesAre) {
                                                          {"o.ply", binaryPly(true)},
                                                          {"m.stl", binaryStl()},
                                                          {"m.off", "OFF\n5 5 0\n" + plyRows}};
-    const char* wanted = std::getenv("SGM_FUZZ_MUTANTS");
-    const int mutants = wanted ? std::atoi(wanted) : 300;
-    std::mt19937 random(7);
+    const FuzzKeys keys = fuzzKeys(300);
+    std::mt19937_64 random(7 + keys.first);
     const auto started = std::chrono::steady_clock::now();
     size_t good = 0;
     for (const auto& [name, bytes] : files) {
         for (size_t cut = 0; cut < bytes.size(); ++cut) (void)read(name, bytes.substr(0, cut));
-        for (int i = 0; i < mutants; ++i) {
+        for (int i = 0; i < static_cast<int>(keys.count); ++i) {
             std::string mutant = bytes;
-            for (uint32_t k = 1 + random() % 4; k > 0; --k) {
+            for (uint64_t k = 1 + random() % 4; k > 0; --k) {
                 const size_t at = random() % mutant.size();
                 switch (random() % 4) {
                     case 0:
@@ -219,7 +219,7 @@ TEST_F(ReadMesh, SurvivesWhateverTheBytesAre) {
     }
     EXPECT_GT(good, 0u) << "some change nothing that matters";
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-    EXPECT_LT(seconds, 20 + 0.02 * mutants);
+    EXPECT_LT(seconds, 20 + 0.02 * static_cast<double>(keys.count));
 }
 
 }  // namespace

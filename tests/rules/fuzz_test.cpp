@@ -1,20 +1,13 @@
 // Damaged grammars through parse and check: no crash, every span inside its file, each fast.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "tests/cpu_time.h"
+#include "tests/fuzz_keys.h"
 #include "tests/rules/read.h"
 #include "tests/syntax/mutate.h"
 
 namespace sgm::rules {
 namespace {
-
-/// SGM_FUZZ_MUTANTS asks for a longer run.
-uint64_t mutantCount() {
-    const char* asked = std::getenv("SGM_FUZZ_MUTANTS");
-    return asked ? std::strtoull(asked, nullptr, 10) : 5000;
-}
 
 void expectInside(const syntax::SourceSpan& span, const syntax::Source& source, const std::string& message) {
     ASSERT_EQ(span.source, &source) << message;
@@ -23,10 +16,11 @@ void expectInside(const syntax::SourceSpan& span, const syntax::Source& source, 
 }
 
 TEST(Fuzz, MutantsAreJudgedQuicklyAndInPlace) {
-    const char* const seeds[] = {"tests/rules/sketch.sgm", "tests/syntax/sketch.sgm", "examples/grotto.sgm",
-                                 "examples/tower.sgm"};
-    const uint64_t mutants = mutantCount();
-    uint64_t key = 0, sound = 0;
+    const char* const seeds[] = {"tests/rules/sketch.sgm", "tests/syntax/sketch.sgm",        "examples/figure1.sgm",
+                                 "examples/tower.sgm",     "examples/buildings/lsystem.sgm", "examples/city/town.sgm"};
+    const FuzzKeys keys = fuzzKeys(6000);
+    const uint64_t mutants = keys.count;
+    uint64_t key = keys.first, sound = 0;
     double slowest = 0;
     for (const char* const seed : seeds) {
         const syntax::Mutator mutate(readText(seed));

@@ -2,24 +2,18 @@
 // meaning when it is formatted.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <ctime>
 
 #include "grammar/operations/operations.h"
 #include "grammar/syntax/parser.h"
 #include "grammar/syntax/printer.h"
+#include "tests/fuzz_keys.h"
 #include "tests/syntax/dump.h"
 #include "tests/syntax/mutate.h"
 #include "tests/syntax/read.h"
 
 namespace sgm::syntax {
 namespace {
-
-/// SGM_FUZZ_MUTANTS asks for a longer run.
-uint64_t mutants(uint64_t usual) {
-    const char* asked = std::getenv("SGM_FUZZ_MUTANTS");
-    return asked ? std::strtoull(asked, nullptr, 10) : usual;
-}
 
 /// What is wrong with how `text` was parsed and formatted, in words; empty when nothing is. Counts texts without
 /// problems.
@@ -47,10 +41,14 @@ std::string judge(const std::string& text, size_t& parsed) {
 }
 
 TEST(Fuzz, MutantsNeitherCrashNorMisplaceSpansNorLoseMeaning) {
-    const Mutator mutate(std::string(readSource("tests/syntax/sketch.sgm")->text()));
+    const Mutator mutants[] = {Mutator(std::string(readSource("tests/syntax/sketch.sgm")->text())),
+                               Mutator(std::string(readSource("examples/city/town.sgm")->text())),
+                               Mutator(std::string(readSource("examples/buildings/lsystem.sgm")->text())),
+                               Mutator(std::string(readSource("grammar/std/kifs.sgm")->text()))};
+    const FuzzKeys keys = fuzzKeys(20000);
     size_t parsed = 0;
-    for (uint64_t key = 0; key < mutants(20000); ++key) {
-        const std::string wrong = judge(mutate(key), parsed);
+    for (uint64_t key = keys.first; key < keys.end(); ++key) {
+        const std::string wrong = judge(mutants[key % std::size(mutants)](key), parsed);
         ASSERT_EQ(wrong, "") << "mutant " << key;
     }
     EXPECT_GT(parsed, 100u);
