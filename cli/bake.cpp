@@ -2,25 +2,93 @@
 #include "grammar/pipeline/bake.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <ctime>
+#include <fstream>
+#include <map>
 
 #include "cli/commands.h"
 #include "cli/numbers.h"
 #include "cli/requests.h"
 #include "cli/watch.h"
 #include "modeler/core/stopwatch.h"
+#include "modeler/tiles/deliver.h"
 
 namespace sgm::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct BakeOptions {
     ModelRequest model;
     pipeline::BakeRequest bake;
-    std::string folder, tile = "1/1";
+    std::string folder, tile = "1/1", pack = "meshopt";
     int missing = 0, threads = 0;
     bool quiet = false;
+};
+
+/// What a task did and when: a line a cell in journal/I-N.jsonl of the folder, and words for those who wait. It is no
+/// part of the result, so that nothing depends on what can't be written there.
+class Journal {
+public:
+    Journal(const BakeOptions& options, size_t cells) : options_(options), cells_(cells) {
+        std::error_code ignored;
+        const fs::path folder = fs::path(options.folder) / "journal";
+        fs::create_directories(folder, ignored);
+        std::string name = options.tile;
+        std::replace(name.begin(), name.end(), '/', '-');
+        file_.open(folder / (name + ".jsonl"), std::ios::app);
+        std::array<char, 256> host{};
+        gethostname(host.data(), host.size() - 1);
+        write(fmt::format(R"("task":"{}","host":"{}","process":{},"cells":{})", options.tile, host.data(), getpid(),
+                          cells));
+    }
+
+    void note(const tiles::Cell& cell, const tiles::CellFigures& figures) {
+        ++made_, instances_ += figures.instances, triangles_ += figures.triangles;
+        write(fmt::format(R"("cell":"{}","seconds":{:.3f},"instances":{},"triangles":{})", cell.name(), time_.seconds(),
+                          figures.instances, figures.triangles));
+        // A terminal has a line that is kept up to date; a job's log gets one every half a minute.
+        if (options_.quiet || isatty(STDERR_FILENO) || time_.seconds() - told_ < 30) return;
+        told_ = time_.seconds();
+        const double left = told_ / static_cast<double>(made_) * static_cast<double>(cells_ - made_);
+        fmt::print("task {}: {} of {} cells, {:.0f} s, about {:.0f} s left\n", options_.tile, made_, cells_, told_,
+                   left);
+        std::fflush(stdout);
+    }
+
+    void close(const Status& done, const pipeline::BakeTimes& times) {
+        rusage used{};
+        getrusage(RUSAGE_SELF, &used);
+        const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+        const double cpu = seconds(used.ru_utime) + seconds(used.ru_stime);
+        write(fmt::format(R"("done":{},"made":{},"seconds":{:.3f},"processor_s":{:.3f},"memory_MB":{})", done.ok(),
+                          made_, time_.seconds(), cpu, used.ru_maxrss / 1024));
+        if (!done.ok() || options_.quiet) return;
+        fmt::print(
+            "task {}: {} of {} cells made, {} objects placed, {} triangles; {:.2f} s (objects {:.1f}, ground "
+            "{:.1f}, files {:.1f}), {:.1f} s of processor time, {} MB\n",
+            options_.tile, made_, cells_, instances_, triangles_, time_.seconds(), times.objects, times.ground,
+            times.cells, cpu, used.ru_maxrss / 1024);
+    }
+
+private:
+    void write(const std::string& facts) {
+        file_ << fmt::format("{{\"time\":{},{}}}\n", std::time(nullptr), facts) << std::flush;
+    }
+
+    const BakeOptions& options_;
+    const size_t cells_;
+    std::ofstream file_;
+    const Stopwatch time_;
+    double told_ = 0;
+    uint64_t made_ = 0, instances_ = 0, triangles_ = 0;
 };
 
 Status bakeTask(BakeOptions& options) {
@@ -32,29 +100,30 @@ Status bakeTask(BakeOptions& options) {
     const auto model = makeModel(options.model, context, pipeline::Objects::Apart);
     if (!model.ok()) return model.error();
     options.bake.folder = options.folder;
+    options.bake.packing = options.pack == "none" ? tiles::Packing::None : tiles::Packing::Meshopt;
     options.bake.budget.shapes = options.model.shapeBudget;
     options.bake.budget.seconds = options.model.secondsBudget;
     auto bake = pipeline::Bake::begin(*model, options.bake, context);
     if (!bake.ok()) return bake.error();
     if (options.missing > 0) {
+        if (const Status s = tiles::checkPlan(bake->plan(), options.folder); !s.ok()) return s;
         fmt::print("{}\n", tiles::arrayNotation(bake->missing(options.missing)));
         return Done{};
     }
-    const Stopwatch time;
-    uint64_t cells = 0, instances = 0, triangles = 0;
-    const Status done = bake->run(*share, context, [&](const tiles::Cell&, const tiles::CellFigures& figures) {
-        ++cells, instances += figures.instances, triangles += figures.triangles;
+    const auto [begin, end] = share->range(bake->plan().cells.size());
+    Journal journal(options, end - begin);
+    const Status done = bake->run(*share, context, [&](const tiles::Cell& cell, const tiles::CellFigures& figures) {
+        journal.note(cell, figures);
     });
-    if (!done.ok()) return done;
-    if (!options.quiet)
-        fmt::print("task {}: {} of {} cells made, {} objects placed, {} triangles; {:.2f} s\n", options.tile, cells,
-                   share->range(bake->plan().cells.size()).second - share->range(bake->plan().cells.size()).first,
-                   instances, triangles, time.seconds());
-    return Done{};
+    journal.close(done, bake->times());
+    return done;
 }
 
+const std::map<std::string, tiles::Delivery> deliveries{
+    {"blender", tiles::Delivery::Blender}, {"usd", tiles::Delivery::Usd}, {"heights", tiles::Delivery::Heights}};
+
 struct MergeOptions {
-    std::string folder, at;
+    std::string folder, at, format;
     bool verify = false, quiet = false;
 };
 
@@ -70,8 +139,14 @@ Status mergeCells(const MergeOptions& options) {
                          fmt::format("--at {}: write LATITUDE,LONGITUDE in degrees, as 52.52,13.405", options.at)};
     }
     const Status merged = tiles::merge(options.folder, at, options.verify);
-    if (merged.ok() && !options.quiet) fmt::print("wrote {0}/tileset.json\nwrote {0}/manifest.json\n", options.folder);
-    return merged;
+    if (!merged.ok()) return merged;
+    if (!options.quiet)
+        fmt::print("wrote {0}/tileset.json\nwrote {0}/manifest.json\nwrote {0}/index.html\n", options.folder);
+    if (options.format.empty()) return Done{};
+    Watch watch(options.quiet);
+    const Status made = tiles::deliver(options.folder, deliveries.at(options.format), watch.progress());
+    if (made.ok() && !options.quiet) fmt::print("wrote {}/{}/\n", options.folder, options.format);
+    return made;
 }
 
 }  // namespace
@@ -80,8 +155,7 @@ void addBake(CLI::App& app, int& exitCode) {
     CLI::App* command = app.add_subcommand("bake", "Make a city cell by cell, by any number of processes");
     auto options = std::make_shared<BakeOptions>();
     addModelOptions(*command, options->model);
-    command->add_option("-o,--output", options->folder, "Folder of cells and library; what is done already stays")
-        ->required();
+    command->add_option("-o,--output", options->folder, "Folder of cells and library; what is done stays")->required();
     command->add_option("--tile", options->tile, "Which share of the cells to make, I/N")->capture_default_str();
     command
         ->add_option("--missing", options->missing,
@@ -97,6 +171,12 @@ void addBake(CLI::App& app, int& exitCode) {
         ->capture_default_str();
     command->add_option("--object-cell", options->bake.objectCell_m, "The same of objects that `place` puts")
         ->check(between(1e-3, 1e4))
+        ->capture_default_str();
+    command
+        ->add_option(
+            "--pack", options->pack,
+            "How triangles are stored: meshopt (EXT_meshopt_compression over 16-bit positions) or none (floats)")
+        ->check(CLI::IsMember({"meshopt", "none"}))
         ->capture_default_str();
     command
         ->add_option("--levels", options->bake.levels,
@@ -119,6 +199,10 @@ void addMerge(CLI::App& app, int& exitCode) {
     auto options = std::make_shared<MergeOptions>();
     command->add_option("FOLDER", options->folder, "What `sgm bake` wrote")->required();
     command->add_option("--at", options->at, "Where the model's origin lies on Earth: LATITUDE,LONGITUDE in degrees");
+    command
+        ->add_option("--for", options->format,
+                     "Write the finest cells for other programs too: plain glTF for Blender, USD, height maps")
+        ->check(CLI::IsMember({"blender", "usd", "heights"}));
     command->add_flag("--verify", options->verify, "Read every cell and compare it with its digest");
     command->add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
     command->footer("Example:\n  sgm merge city --at 52.52,13.405");

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <functional>
 
-#include "grammar/pipeline/placed_models.h"
-#include "grammar/pipeline/scene.h"
+#include "grammar/pipeline/baked_ground.h"
+#include "grammar/pipeline/baked_objects.h"
 #include "modeler/tiles/tileset.h"
 
 namespace sgm::pipeline {
@@ -19,8 +19,17 @@ struct BakeRequest {
     double cell_m = 2;         ///< of the ground's grid at the finest level; the side is a multiple of 32 of them
     double objectCell_m = .3;  ///< of the objects' grids
     int levels = 3;            ///< of detail: objects, coarser objects (where there are three or more), masses
+    tiles::Packing packing = tiles::Packing::Meshopt;
     derive::Budget budget;
 };
+
+/// Seconds that a task spent, by the wall.
+struct BakeTimes {
+    double ground = 0, objects = 0, cells = 0;
+};
+
+/// Called with a cell that was made.
+using CellVisitor = std::function<void(const tiles::Cell&, const tiles::CellFigures&)>;
 
 /// A bake that is under way.
 class Bake {
@@ -32,29 +41,36 @@ public:
     const tiles::BakePlan& plan() const { return plan_; }
     /// Numbers of those of `of` tasks whose cells aren't all done.
     std::vector<int> missing(int of) const;
-    /// Makes the cells of a task that aren't done yet, and the objects of the library that they need; stage "bake".
-    /// `told` is called after each cell.
-    Status run(const tiles::Share& share, Context& context,
-               const std::function<void(const tiles::Cell&, const tiles::CellFigures&)>& told = nullptr);
+    /// Makes a task's share of the library, then its cells that aren't done yet with the objects that they need and
+    /// nobody has made; stages "objects" and "cells". `told` is called after each cell.
+    Status run(const tiles::Share& share, Context& context, const CellVisitor& told = nullptr);
+    /// Makes some of the plan's cells, by index, and what they need.
+    Status runCells(const std::vector<size_t>& cells, Context& context, const CellVisitor& told = nullptr);
+    const BakeTimes& times() const { return times_; }
 
 private:
-    Bake(const Model& model, const BakeRequest& request, Context& context)
-        : model_(model), request_(request), objects_(model.derivation, request.budget, context) {}
+    Bake(const Model& model, const BakeRequest& request, Context& context);
     Status layOut(Context& context);
-    Result<std::string> libraryFile(uint32_t object, int level, Context& context);
-    Status bakeObject(uint32_t object, int level, const std::filesystem::path& file, Context& context);
-    Result<std::vector<tiles::GroundPiece>> ground(const tiles::Cell& cell, Context& context) const;
-    Result<tiles::CellFigures> bakeCell(const tiles::Cell& cell, Context& context);
+    Status addGroundCells(std::vector<tiles::Cell>& cells) const;
+    Status makeFolders() const;
+    Status makeObjects(const tiles::Share& share, Context& context);
+    Status makeObject(uint32_t object, int level, Context& context);
+    Result<tiles::CellFigures> bakeCell(const tiles::Cell& cell, std::vector<tiles::SurfacePiece> ground,
+                                        Context& context);
     /// Which detail of the library a level of cells shows.
-    int detailOf(int level) const;
+    Detail detailOf(int level) const;
 
     const Model& model_;
     const BakeRequest& request_;
-    PlacedModels objects_;
+    std::unique_ptr<PlacedModels> objects_;
+    BakedGround ground_;
+    BakedObjects library_;
     std::vector<PlacedModels::Place> places_;
+    std::vector<uint32_t> used_;                             ///< objects that stand somewhere, in the library's order
     std::map<tiles::Cell, std::vector<uint32_t>> placesOf_;  ///< by cell of level 0: indices into places_
     tiles::BakePlan plan_;
-    tiles::Library library_;
+    tiles::Library opened_;
+    BakeTimes times_;
 };
 
 }  // namespace sgm::pipeline

@@ -1,105 +1,94 @@
 #include "modeler/tiles/cell_content.h"
 
-#include <meshoptimizer.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <unordered_map>
+
+#include "modeler/tiles/property_table.h"
 
 namespace sgm::tiles {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int floatType = 5126, uintType = 5125, arrayTarget = 34962, elementTarget = 34963;
+constexpr int floatType = 5126;
 
 /// One cell's file as it grows.
 class CellFile {
 public:
-    explicit CellFile(const CellContent& content) : content_(content) {
-        json()["asset"] = {{"version", "2.0"}, {"generator", "sgm"}};
-        json()["scene"] = 0;
-        json()["scenes"] = Json::array({{{"nodes", {0}}}});
-        json()["nodes"] = Json::array({{{"name", "cell"}, {"children", Json::array()}}});
-        for (const char* list : {"meshes", "materials", "accessors", "bufferViews"}) json()[list] = Json::array();
-        json()["buffers"] = Json::array({{{"byteLength", 0}}});
+    explicit CellFile(const CellContent& content) : content_(content), file_(content.packing) {
+        json()["scenes"].push_back({{"nodes", {0}}});
+        json()["nodes"].push_back({{"name", "cell"}, {"children", Json::array()}});
+        // Files that stand by themselves lie where the cell does; in a tileset the tile says where.
+        const Vec3d c = content.centre;
+        if (content.asNodes) json()["nodes"][0]["translation"] = {c.x, c.y, c.z};
     }
 
     void addGround() {
         if (content_.ground.empty()) return;
-        Json primitives = Json::array();
-        for (const GroundPiece& piece : content_.ground) {
-            const int position = addAccessor(piece.positions, "VEC3", floatType, arrayTarget);
-            Json& accessor = json()["accessors"][static_cast<size_t>(position)];
-            Vec3f lo = piece.positions[0], hi = lo;
-            for (const Vec3f& p : piece.positions) {
-                lo = min(lo, p), hi = max(hi, p);
-                take(p.as<double>());
-            }
-            accessor["min"] = {lo.x, lo.y, lo.z};
-            accessor["max"] = {hi.x, hi.y, hi.z};
-            primitives.push_back(
-                {{"attributes",
-                  {{"POSITION", position}, {"NORMAL", addAccessor(piece.normals, "VEC3", floatType, arrayTarget)}}},
-                 {"indices", addAccessor(piece.indices, "SCALAR", uintType, elementTarget)},
-                 {"material", materialOf(asJson(content_.materials[piece.material]))}});
-            figures_.triangles += piece.indices.size() / 3;
-        }
-        addNode({{"name", "ground"}, {"mesh", json()["meshes"].size()}});
-        json()["meshes"].push_back({{"name", "ground"}, {"primitives", primitives}});
+        for (const SurfacePiece& piece : content_.ground)
+            for (const Vec3f& p : piece.positions) take(p.as<double>());
+        figures_.triangles += trianglesOf(content_.ground);
+        Json node{{"name", "ground"}, {"mesh", json()["meshes"].size()}};
+        node.update(file_.placeOf(content_.groundGrid));
+        addNode(std::move(node));
+        json()["meshes"].push_back(
+            {{"name", "ground"},
+             {"primitives", file_.addPieces(content_.ground, content_.materials, content_.groundGrid)}});
     }
 
     Status addObject(const CellObject& object, Library& library) {
         const auto opened = library.open(object.path);
         if (!opened.ok()) return opened.error();
-        const Glb& held = **opened;
-        std::array<double, 6> box{};
-        uint64_t triangles = 0;
-        const int mesh = addLibraryMesh(object, held, box, triangles);
+        const Library::Entry& held = **opened;
+        const bool packed = content_.packing == Packing::Meshopt;
+        const double step = packed ? held.grid.step.x : 1;
         std::vector<std::array<float, 3>> translations;
         std::vector<std::array<float, 4>> rotations;
-        Json places = Json::array();
+        std::vector<float> features;
         for (const CellPlace& place : object.places) {
-            const Vec3f at = (place.pose.origin - content_.centre).as<float>();
-            const auto q = mesh::quaternionOf(place.pose.axes);
+            const Pose& pose = place.part->pose;
+            const Vec3d origin = pose.origin - content_.centre;
+            // The node scales the grid's numbers and all that is done to them, so that no instance has to.
+            const Vec3f at = ((packed ? origin + pose.axes * held.grid.origin : origin) / step).as<float>();
+            const auto q = mesh::quaternionOf(pose.axes);
             translations.push_back({at.x, at.y, at.z});
             rotations.push_back({static_cast<float>(q[0]), static_cast<float>(q[1]), static_cast<float>(q[2]),
                                  static_cast<float>(q[3])});
-            places.push_back({{"path", place.part.path}, {"rule", place.part.rule}, {"line", place.part.line}});
+            features.push_back(static_cast<float>(rows_.size()));
+            rows_.push_back(place.part);
             for (int corner = 0; corner < 8; ++corner)
-                take(place.pose.origin - content_.centre +
-                     place.pose.axes *
-                         Vec3d{box[corner & 1 ? 3 : 0], box[corner & 2 ? 4 : 1], box[corner & 4 ? 5 : 2]});
+                take(origin + pose.axes * Vec3d{corner & 1 ? held.box.hi.x : held.box.lo.x,
+                                                corner & 2 ? held.box.hi.y : held.box.lo.y,
+                                                corner & 4 ? held.box.hi.z : held.box.lo.z});
         }
         figures_.instances += object.places.size();
-        figures_.triangles += triangles * object.places.size();
-        Json extras = Json::object();
-        for (const auto& [name, value] : object.values) extras[name] = value;
-        extras["places"] = std::move(places);
-        const Json attributes{{"TRANSLATION", addAccessor(translations, "VEC3", floatType, 0)},
-                              {"ROTATION", addAccessor(rotations, "VEC4", floatType, 0)}};
-        addNode({{"name", held.json["meshes"][0].value("name", "object")},
-                 {"mesh", mesh},
-                 {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}},
-                 {"extras", std::move(extras)}});
+        figures_.triangles += held.triangles * object.places.size();
+        const size_t mesh = addLibraryMesh(object, held.file);
+        if (content_.asNodes) {
+            for (size_t i = 0; i < object.places.size(); ++i)
+                addNode(placeNode(object, *object.places[i].part, mesh, translations[i], rotations[i]));
+            return Done{};
+        }
+        addNode(nodeOf(object, held, mesh, step,
+                       {{"TRANSLATION", numbers(translations, "VEC3")},
+                        {"ROTATION", numbers(rotations, "VEC4")},
+                        {"_FEATURE_ID_0", numbers(features, "SCALAR")}}));
         return Done{};
     }
 
     CellFigures figures() const { return figures_; }
 
     Glb finish() {
-        if (figures_.instances > 0) {
-            json()["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
-            json()["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+        if (!rows_.empty() && !content_.asNodes) {
+            addTable();
+            file_.use("EXT_mesh_gpu_instancing", true);
+            file_.use("EXT_instance_features", false);
         }
-        for (const char* list : {"materials", "accessors", "bufferViews"})
-            if (json()[list].empty()) json().erase(list);
-        return std::move(glb_);
+        return file_.finish();
     }
 
 private:
-    Json& json() { return glb_.json; }
+    Json& json() { return file_.json(); }
 
     void take(Vec3d p) {
         auto& b = figures_.bounds;
@@ -116,143 +105,121 @@ private:
         json()["nodes"].push_back(std::move(node));
     }
 
+    /// An accessor over numbers that instances have.
     template <class T>
-    int addAccessor(const std::vector<T>& numbers, const char* type, int component, int target) {
-        Json view{{"buffer", 0}, {"byteOffset", glb_.bytes.size()}, {"byteLength", numbers.size() * sizeof(T)}};
-        if (target != 0) view["target"] = target;
-        const auto* from = reinterpret_cast<const uint8_t*>(numbers.data());
-        glb_.bytes.insert(glb_.bytes.end(), from, from + numbers.size() * sizeof(T));
-        json()["accessors"].push_back({{"bufferView", json()["bufferViews"].size()},
-                                       {"componentType", component},
-                                       {"count", numbers.size()},
-                                       {"type", type}});
-        json()["bufferViews"].push_back(std::move(view));
-        return static_cast<int>(json()["accessors"].size()) - 1;
+    size_t numbers(const std::vector<T>& list, const char* type) {
+        return file_.addAccessor(file_.addView(list.data(), list.size() * sizeof(T)), 0, floatType, list.size(), type);
     }
 
-    static Json asJson(const Material& m) {
-        const auto digits = [](float v) { return std::round(static_cast<double>(v) * 1e6) / 1e6; };
-        return {{"name", m.name},
-                {"pbrMetallicRoughness",
-                 {{"baseColorFactor", {digits(m.color.x), digits(m.color.y), digits(m.color.z), 1.0}},
-                  {"roughnessFactor", digits(m.roughness)},
-                  {"metallicFactor", digits(m.metallic)}}}};
+    Json nodeOf(const CellObject& object, const Library::Entry& held, size_t mesh, double step,
+                const Json& attributes) const {
+        Json node{{"name", held.file.json["meshes"][0].value("name", "object")}, {"mesh", mesh}};
+        if (step != 1) node["scale"] = {step, step, step};
+        node["extensions"] = {
+            {"EXT_mesh_gpu_instancing", {{"attributes", attributes}}},
+            {"EXT_instance_features",
+             {{"featureIds",
+               Json::array({{{"featureCount", object.places.size()}, {"attribute", 0}, {"propertyTable", 0}}})}}}};
+        node["extras"] = object.values;
+        return node;
     }
 
-    /// The number of a material, added where no other is equal.
-    size_t materialOf(Json material) {
-        const auto [at, fresh] = materials_.try_emplace(material.dump(), json()["materials"].size());
-        if (fresh) json()["materials"].push_back(std::move(material));
-        return at->second;
+    /// A place as a node of its own.
+    static Json placeNode(const CellObject& object, const Part& part, size_t mesh, const std::array<float, 3>& at,
+                          const std::array<float, 4>& turn) {
+        Json extras = object.values;
+        extras["path"] = part.path;
+        if (!part.rule.empty()) extras["rule"] = part.rule;
+        extras["file"] = part.file;
+        extras["line"] = part.line;
+        const size_t slash = part.path.rfind('/');
+        return {{"name", slash == std::string::npos ? part.path : part.path.substr(slash + 1)},
+                {"mesh", mesh},
+                {"translation", at},
+                {"rotation", turn},
+                {"extras", std::move(extras)}};
     }
 
-    /// The first mesh of a library file, whose bytes stay there.
-    int addLibraryMesh(const CellObject& object, const Glb& held, std::array<double, 6>& box, uint64_t& triangles) {
-        const size_t firstView = json()["bufferViews"].size(), firstAccessor = json()["accessors"].size();
-        const size_t buffer = json()["buffers"].size();
-        json()["buffers"].push_back({{"byteLength", held.fileBytes}, {"uri", object.file}});
-        for (Json view : held.json["bufferViews"]) {
-            view["buffer"] = buffer;
-            view["byteOffset"] = view.value("byteOffset", uint64_t{0}) + held.bytesAt;
-            json()["bufferViews"].push_back(std::move(view));
-        }
-        for (Json accessor : held.json["accessors"]) {
-            accessor["bufferView"] = accessor["bufferView"].get<size_t>() + firstView;
-            json()["accessors"].push_back(std::move(accessor));
-        }
+    /// The mesh of a library file, whose bytes stay there.
+    size_t addLibraryMesh(const CellObject& object, const Glb& held) {
+        const auto at = file_.addExternal(held, object.file);
         Json mesh = held.json["meshes"][0];
-        mesh.erase("extras");
-        bool first = true;
         for (Json& primitive : mesh["primitives"]) {
-            primitive.erase("extras");
-            const Json& position = held.json["accessors"][primitive["attributes"]["POSITION"].get<size_t>()];
-            for (size_t i = 0; i < 3; ++i) {
-                const double lo = position["min"][i], hi = position["max"][i];
-                box[i] = first ? lo : std::min(box[i], lo);
-                box[i + 3] = first ? hi : std::max(box[i + 3], hi);
-            }
-            first = false;
-            triangles += held.json["accessors"][primitive["indices"].get<size_t>()]["count"].get<uint64_t>() / 3;
-            for (auto& [name, index] : primitive["attributes"].items()) index = index.get<size_t>() + firstAccessor;
-            primitive["indices"] = primitive["indices"].get<size_t>() + firstAccessor;
-            primitive["material"] = materialOf(held.json["materials"][primitive["material"].get<size_t>()]);
+            for (auto& [name, index] : primitive["attributes"].items()) index = index.get<size_t>() + at.firstAccessor;
+            primitive["indices"] = primitive["indices"].get<size_t>() + at.firstAccessor;
+            primitive["material"] = file_.materialOf(held.json["materials"][primitive["material"].get<size_t>()]);
         }
         json()["meshes"].push_back(std::move(mesh));
-        return static_cast<int>(json()["meshes"].size()) - 1;
+        return json()["meshes"].size() - 1;
+    }
+
+    /// The places by feature: which shape, rule and line put what stands there.
+    void addTable() {
+        std::vector<std::string> paths, rules, files;
+        std::vector<uint32_t> lines;
+        for (const Part* part : rows_) {
+            paths.push_back(part->path);
+            rules.push_back(part->rule);
+            files.push_back(std::filesystem::path(part->file).filename().string());
+            lines.push_back(part->line);
+        }
+        PropertyTable table("place");
+        table.addColumn("path", std::move(paths));
+        table.addColumn("rule", std::move(rules));
+        table.addColumn("file", std::move(files));
+        table.addColumn("line", std::move(lines));
+        table.writeTo(file_);
     }
 
     const CellContent& content_;
-    Glb glb_;
+    SurfaceBuffer file_;
     CellFigures figures_;
     bool any_ = false;
-    std::map<std::string, size_t> materials_;  ///< by their text
+    std::vector<const Part*> rows_;  ///< of the table of places
 };
 
-/// Every triangle with a normal of its own where its neighbours lie in other planes.
-void facet(GroundPiece& piece, const std::vector<uint32_t>& indices, const std::vector<Vec3f>& positions) {
-    std::map<std::pair<uint32_t, std::array<int, 3>>, uint32_t> known;  // by vertex and rounded normal
-    for (size_t t = 0; t + 2 < indices.size(); t += 3) {
-        const Vec3f &a = positions[indices[t]], &b = positions[indices[t + 1]], &c = positions[indices[t + 2]];
-        const Vec3f across = cross(b - a, c - a);
-        // A triangle without area covers nothing, but holds a vertex of the border that a neighbour has, too.
-        const Vec3f normal = length(across) > 0 ? normalized(across) : Vec3f{0, 1, 0};
-        const auto round = [](float v) { return static_cast<int>(std::lround(v * 1000)); };
-        for (size_t k = 0; k < 3; ++k) {
-            const uint32_t vertex = indices[t + k];
-            const auto [at, fresh] = known.try_emplace({vertex, {round(normal.x), round(normal.y), round(normal.z)}},
-                                                       static_cast<uint32_t>(piece.positions.size()));
-            if (fresh) {
-                piece.positions.push_back(positions[vertex]);
-                piece.normals.push_back(normal);
-            }
-            piece.indices.push_back(at->second);
-        }
-    }
+Vec3d vectorOf(const Json& node, const char* key, Vec3d fallback) {
+    if (!node.contains(key)) return fallback;
+    return {node[key][0].get<double>(), node[key][1].get<double>(), node[key][2].get<double>()};
 }
 
 }  // namespace
 
-std::vector<GroundPiece> groundPieces(const mesh::PackedMesh& mesh, const std::vector<uint32_t>& triangles,
-                                      const Provenance& provenance, Vec3d centre, float error_m) {
-    std::map<uint32_t, std::vector<uint32_t>> byMaterial;  // vertices, three a triangle
-    for (const uint32_t t : triangles) {
-        const OriginId origin = mesh.origins[t];
-        const uint32_t part = origin < provenance.parts.size() ? origin : 0;
-        auto& list = byMaterial[provenance.parts[part].material];
-        for (int k = 0; k < 3; ++k) list.push_back(mesh.triangles[t][k]);
-    }
-    std::vector<GroundPiece> pieces;
-    for (const auto& [material, corners] : byMaterial) {
-        std::unordered_map<uint32_t, uint32_t> local;
-        std::vector<Vec3f> positions;
-        std::vector<uint32_t> indices;
-        for (const uint32_t vertex : corners) {
-            const auto [at, fresh] = local.try_emplace(vertex, static_cast<uint32_t>(positions.size()));
-            // Exact: positions and centre are multiples of a cell's share.
-            if (fresh) positions.push_back((mesh.positions[vertex].as<double>() - centre).as<float>());
-            indices.push_back(at->second);
-        }
-        std::vector<uint32_t> simple(indices.size());
-        const float scale = meshopt_simplifyScale(&positions[0].x, positions.size(), sizeof(Vec3f));
-        simple.resize(meshopt_simplify(simple.data(), indices.data(), indices.size(), &positions[0].x, positions.size(),
-                                       sizeof(Vec3f), 0, scale > 0 ? error_m / scale : 0, meshopt_SimplifyLockBorder,
-                                       nullptr));
-        GroundPiece piece;
-        piece.material = material;
-        facet(piece, simple, positions);
-        if (!piece.indices.empty()) pieces.push_back(std::move(piece));
-    }
-    return pieces;
+Status writeObject(const LibraryObject& object, Packing packing, const std::filesystem::path& path) {
+    SurfaceBuffer file(packing);
+    const QuantizationGrid grid = gridOver(boundsOf(object.pieces));
+    Json node{{"name", object.name}, {"mesh", 0}};
+    node.update(file.placeOf(grid));
+    node["extras"] = object.values;
+    file.json()["scenes"].push_back({{"nodes", {0}}});
+    file.json()["nodes"].push_back(std::move(node));
+    file.json()["meshes"].push_back(
+        {{"name", object.name},
+         {"primitives", file.addPieces(object.pieces, object.materials, grid, object.inColors)}});
+    return writeGlb(file.finish(), path);
 }
 
-Result<const Glb*> Library::open(const std::filesystem::path& path) {
+Result<const Library::Entry*> Library::open(const std::filesystem::path& path) {
     if (const auto known = known_.find(path); known != known_.end()) return &known->second;
     auto read = readGlb(path);
     if (!read.ok()) return read.error();
-    read->bytes = {};
-    if (!read->json.contains("meshes"))
+    const auto broken = [&] {
         return Error{Error::Kind::Input, "'" + path.string() + "' holds no mesh: remove it, so that it is made anew"};
-    return &known_.emplace(path, std::move(*read)).first->second;
+    };
+    Entry entry;
+    entry.file = std::move(*read);
+    entry.file.bytes = {};
+    const Json& json = entry.file.json;
+    if (!json.contains("meshes") || !json.contains("nodes") || !json.contains("accessors")) return broken();
+    entry.grid.origin = vectorOf(json["nodes"][0], "translation", {});
+    entry.grid.step = vectorOf(json["nodes"][0], "scale", {1, 1, 1});
+    for (const Json& primitive : json["meshes"][0]["primitives"]) {
+        const Json& position = json["accessors"][primitive["attributes"]["POSITION"].get<size_t>()];
+        entry.box.lo = entry.grid.origin + entry.grid.step * vectorOf(position, "min", {});
+        entry.box.hi = entry.grid.origin + entry.grid.step * vectorOf(position, "max", {});
+        entry.triangles += json["accessors"][primitive["indices"].get<size_t>()]["count"].get<uint64_t>() / 3;
+    }
+    return &known_.emplace(path, std::move(entry)).first->second;
 }
 
 Result<CellFigures> writeCell(const CellContent& content, Library& library, const std::filesystem::path& path) {

@@ -1,6 +1,7 @@
-// What a cell's file holds: its piece of the ground, and instances of objects whose bytes lie in the library.
-// Enters: a mesh, places, files of the library. Leaves: a .glb with EXT_mesh_gpu_instancing. Assumes a library written
-// by our own exporter, whose files stay as they are.
+// What the files of a baked city hold: an object of the library, or a cell with its piece of the ground and instances
+// of objects whose bytes lie in the library.
+// Enters: pieces of surface, places, files of the library. Leaves: .glb files, a cell's with EXT_mesh_gpu_instancing
+// and a table of its places. Assumes a library written here, whose files stay as they are.
 #pragma once
 
 #include <array>
@@ -9,25 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "modeler/core/provenance.h"
 #include "modeler/core/result.h"
-#include "modeler/mesh/scene.h"
 #include "modeler/tiles/cell.h"
-#include "modeler/tiles/glb.h"
+#include "modeler/tiles/surface_buffer.h"
 
 namespace sgm::tiles {
 
-/// Triangles of one material, without anything shared between triangles that don't lie in one plane.
-struct GroundPiece {
-    uint32_t material = 0;  ///< index into the provenance's materials
-    std::vector<Vec3f> positions, normals;
-    std::vector<uint32_t> indices;  ///< three a triangle
-};
-
 /// A place of an object in a cell.
 struct CellPlace {
-    Pose pose;  ///< from the object's frame to the model's
-    Part part;  ///< the shape that holds it
+    const Part* part;  ///< the shape that holds it; its pose takes the object's frame to the model's
 };
 /// The places of one object in a cell, and where the library holds it.
 struct CellObject {
@@ -40,7 +31,10 @@ struct CellObject {
 /// A cell's content in metres about `centre`.
 struct CellContent {
     Vec3d centre;
-    std::vector<GroundPiece> ground;
+    Packing packing = Packing::Meshopt;
+    bool asNodes = false;  ///< a node a place, which every reader takes, instead of instances; without the table
+    std::vector<SurfacePiece> ground;
+    QuantizationGrid groundGrid;      ///< the same places as those of the neighbours' grids on the common border
     std::vector<Material> materials;  ///< of the ground
     std::vector<CellObject> objects;
 };
@@ -53,19 +47,31 @@ struct CellFigures {
     bool empty() const { return triangles == 0; }
 };
 
-/// Simplifies the ground's triangles that belong to a cell, which `indices` name in `mesh`, within `error_m`; vertices
-/// on the cell's border, and those between materials, stay. Positions become those about `centre`.
-std::vector<GroundPiece> groundPieces(const mesh::PackedMesh& mesh, const std::vector<uint32_t>& triangles,
-                                      const Provenance& provenance, Vec3d centre, float error_m);
+/// An object for the library.
+struct LibraryObject {
+    std::string name;
+    std::map<std::string, std::string> values;
+    std::vector<SurfacePiece> pieces;
+    std::vector<Material> materials;
+    bool inColors = false;  ///< one primitive with a colour a vertex
+};
+/// Writes it, all or nothing.
+Status writeObject(const LibraryObject& object, Packing packing, const std::filesystem::path& path);
 
 /// What is known of the library's files, each read once; their bytes aren't kept.
 class Library {
 public:
+    struct Entry {
+        Glb file;  ///< without bytes
+        QuantizationGrid grid;
+        Box3d box;  ///< metres
+        uint64_t triangles = 0;
+    };
     /// Error::Input for a file that can't be read.
-    Result<const Glb*> open(const std::filesystem::path& path);
+    Result<const Entry*> open(const std::filesystem::path& path);
 
 private:
-    std::map<std::filesystem::path, Glb> known_;
+    std::map<std::filesystem::path, Entry> known_;
 };
 
 /// Writes the cell, all or nothing; no file for a cell without triangles. Error::Input where the library lacks an

@@ -70,4 +70,12 @@ Status writeGlb(Glb glb, const std::filesystem::path& path) {
     });
 }
 
+Status writeJson(const std::filesystem::path& path, const nlohmann::ordered_json& json) {
+    return replaceFile(path, [&](const std::filesystem::path& temporary) -> Status {
+        std::ofstream out(temporary, std::ios::binary);
+        out << json.dump(1) << '\n';
+        return out.flush() ? Status(Done{}) : Status(writeError(path, errno));
+    });
+}
+
 }  // namespace sgm::tiles

@@ -23,5 +23,7 @@ struct Glb {
 Result<Glb> readGlb(const std::filesystem::path& path);
 /// Writes the file, all or nothing; the length of buffer 0 becomes that of the bytes.
 Status writeGlb(Glb glb, const std::filesystem::path& path);
+/// Writes JSON as text, all or nothing.
+Status writeJson(const std::filesystem::path& path, const nlohmann::ordered_json& json);
 
 }  // namespace sgm::tiles

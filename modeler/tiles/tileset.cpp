@@ -12,6 +12,7 @@
 #include "modeler/core/conventions.h"
 #include "modeler/core/random.h"
 #include "modeler/core/regular_file.h"
+#include "modeler/tiles/page.h"
 
 namespace sgm::tiles {
 namespace {
@@ -24,14 +25,6 @@ constexpr uint64_t mostFile_bytes = 4ull << 30;
 std::optional<std::string> textOf(const fs::path& path) {
     auto read = readRegularFile(path, mostFile_bytes);
     return read.ok() ? std::optional(std::move(*read)) : std::nullopt;
-}
-
-Status writeJson(const fs::path& path, const Json& json) {
-    return replaceFile(path, [&](const fs::path& temporary) -> Status {
-        std::ofstream out(temporary, std::ios::binary);
-        out << json.dump(1) << '\n';
-        return out.flush() ? Status(Done{}) : Status(writeError(path, errno));
-    });
 }
 
 Json asJson(const BakePlan& plan) {
@@ -242,14 +235,18 @@ std::string digestOf(std::string_view bytes) {
     return fmt::format("{:016x}{:016x}", a, b);
 }
 
-Status keepPlan(const BakePlan& plan, const fs::path& folder) {
+Status checkPlan(const BakePlan& plan, const fs::path& folder) {
     const auto there = textOf(planFile(folder));
-    if (!there) return writeJson(planFile(folder), asJson(plan));
-    const Json json = Json::parse(*there, nullptr, false);
-    if (json == asJson(plan)) return Done{};
+    if (!there || Json::parse(*there, nullptr, false) == asJson(plan)) return Done{};
     return Error{Error::Kind::Input,
                  fmt::format("'{}' is of another model or other settings: bake into another folder, or remove this one",
                              planFile(folder).string())};
+}
+
+Status keepPlan(const BakePlan& plan, const fs::path& folder) {
+    std::error_code ignored;
+    if (!fs::exists(planFile(folder), ignored)) return writeJson(planFile(folder), asJson(plan));
+    return checkPlan(plan, folder);
 }
 
 Result<BakePlan> readPlan(const fs::path& folder) {
@@ -307,8 +304,9 @@ Status merge(const fs::path& folder, const std::optional<EarthPlace>& at, bool v
     Json library = Json::object();
     std::map<std::string, fs::path> files;
     std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(folder / "lib", ignored))
-        if (entry.path().extension() == ".glb") files.emplace(entry.path().filename().string(), entry.path());
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "lib", ignored))
+        if (entry.path().extension() == ".glb")
+            files.emplace(fs::relative(entry.path(), folder / "lib").string(), entry.path());
     for (const auto& [name, path] : files) {
         const std::string held = textOf(path).value_or("");
         library[name] = {{"bytes", held.size()}, {"digest", digestOf(held)}};
@@ -320,10 +318,14 @@ Status merge(const fs::path& folder, const std::optional<EarthPlace>& at, bool v
                        {"geometricError", 16 * plan->errors_m.back()},
                        {"root", std::move(root)}};
     if (const Status s = writeJson(folder / "tileset.json", tileset); !s.ok()) return s;
-    const Json manifest{{"model", plan->model},      {"objects", plan->objects},     {"places", plan->places},
-                        {"instances", instances},    {"triangles", triangles},       {"bytes", bytes},
-                        {"cells", std::move(cells)}, {"library", std::move(library)}};
-    return writeJson(folder / "manifest.json", manifest);
+    Json manifest{{"model", plan->model},   {"name", plan->name},     {"objects", plan->objects},
+                  {"places", plan->places}, {"instances", instances}, {"triangles", triangles},
+                  {"bytes", bytes}};
+    if (fs::exists(folder / "plan.geojson", ignored)) manifest["plan"] = "plan.geojson";
+    manifest["cells"] = std::move(cells);
+    manifest["library"] = std::move(library);
+    if (const Status s = writeJson(folder / "manifest.json", manifest); !s.ok()) return s;
+    return writePage(folder);
 }
 
 }  // namespace sgm::tiles

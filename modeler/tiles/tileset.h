@@ -30,6 +30,8 @@ std::filesystem::path noteFile(const std::filesystem::path& folder, const Cell& 
 
 /// Writes the plan where there is none. Error::Input where the folder holds another plan.
 Status keepPlan(const BakePlan& plan, const std::filesystem::path& folder);
+/// Error::Input where the folder holds another plan; none is fine.
+Status checkPlan(const BakePlan& plan, const std::filesystem::path& folder);
 /// Error::Input where there is none or it can't be read.
 Result<BakePlan> readPlan(const std::filesystem::path& folder);
 

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "modeler/core/parallel.h"
+#include "tests/bench/city.h"
 #include "tests/bench/gallery.h"
 #include "tests/bench/kifs.h"
 #include "tests/bench/meshes.h"
@@ -23,7 +24,8 @@ struct Request {
     MeasureOptions measure;
     std::string json, drag, gallery;
     bool bars = false, cpu = false, noPeers = false, noDense = false, kifs = false, pictures = false;
-    bool meshes = false, crossings = false;
+    bool meshes = false, crossings = false, city = false;
+    double buildings = 1e6;
     int sides = MeshesOptions{}.sides;
 };
 
@@ -53,6 +55,13 @@ void addOptions(CLI::App& app, Request& request) {
     app.add_flag("--kifs", request.kifs, "Measure the folding of fractals and what the shells of facades save instead");
     app.add_flag("--pictures", request.pictures,
                  "Measure pictures of fields at 640 x 640 instead, and judge what the window asks of itself");
+    auto* city =
+        app.add_flag("--city", request.city,
+                     "Measure what baking cities costs instead; what takes long is projected from a share of it");
+    app.add_option("--buildings", request.buildings, "Leave larger cities out of --city")
+        ->needs(city)
+        ->check(CLI::Range(1e4, 1e6))
+        ->capture_default_str();
     auto* meshes =
         app.add_flag("--meshes", request.meshes,
                      "Hold meshes of buildings against exact solid geometry instead (needs node and manifold-3d)");
@@ -149,6 +158,22 @@ Status runMeshes(const Request& request) {
     return request.json.empty() ? Status(Done{}) : writeFile(request.json, meshesJson(*rows, options));
 }
 
+/// The table of --city.
+Status runCity(double mostBuildings) {
+    fmt::print("{}\n", cityHeader());
+    std::vector<CityCosts> all;
+    for (const CityCase& what : cityCases(mostBuildings)) {
+        const auto costs = measureCity(what);
+        if (!costs.ok()) return costs.error();
+        fmt::print("{}\n", cityLine(*costs));
+        std::fflush(stdout);
+        all.push_back(*costs);
+    }
+    fmt::print("* projected from the cells that were baked\n");
+    for (const Bar& bar : judge(all)) fmt::print("{}\n", barLine(bar));
+    return Done{};
+}
+
 int fail(const Error& error) {
     fmt::print(stderr, "{}\n", error.message);
     return error.kind == Error::Kind::Usage ? 2 : 1;
@@ -165,6 +190,10 @@ int main(int argc, char** argv) {
     request.measure.running.threads = threadCount(request.measure.running.threads);
     if (request.meshes) {
         const Status done = runMeshes(request);
+        return done.ok() ? 0 : fail(done.error());
+    }
+    if (request.city) {
+        const Status done = runCity(request.buildings);
         return done.ok() ? 0 : fail(done.error());
     }
     const bool everything = request.bars && request.resolutions.empty() && request.scenes.empty();

@@ -4,9 +4,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
+#include <sstream>
+#include <thread>
 
 #include "tests/cli/program.h"
 
@@ -74,15 +79,122 @@ TEST_F(BakeProgram, SaysWhatIsWrong) {
     ASSERT_EQ(sgm("bake " + file + " -q -o " + path("a") + options() + "--tile 1/3").code, 0);
     refused("merge " + path("a"), 1, "isn't there yet");
     refused("bake " + file + " -q -o " + path("a") + options() + "--seed 2 --tile 1/3", 1, "of another model");
+    refused("bake " + file + " -o " + path("a") + options() + "--seed 2 --missing 3", 1, "of another model");
+    refused("serve " + path("a"), 1, "sgm merge");
+    refused("serve " + path("a") + " --port 70000", 2, "70000");
+    refused("merge --for blend " + path("a"), 2, "blend");
 }
 
-TEST_F(BakeProgram, RunsByGnuParallel) {
+/// Kills with -9: tasks that bake into a folder, and, where asked, what started them.
+class Killer {
+public:
+    Killer(std::string folder, int programs, int parents)
+        : folder_(std::move(folder)), programs_(programs), parents_(parents), thread_([this] { hunt(); }) {}
+    ~Killer() {
+        stop_ = true;
+        thread_.join();
+    }
+    int killed() const { return killed_; }
+
+private:
+    void hunt() {
+        namespace fs = std::filesystem;
+        std::set<pid_t> seen;
+        while (!stop_ && programs_ + parents_ > 0) {
+            std::error_code ignored;
+            for (const auto& entry : fs::directory_iterator("/proc", ignored)) {
+                const std::string name = entry.path().filename();
+                const pid_t pid = std::atoi(name.c_str());
+                if (pid <= 0 || seen.contains(pid)) continue;
+                const std::string command = contentOf(entry.path() / "cmdline");
+                const bool isTask = command.starts_with(SGM_PROGRAM) && command.find(folder_) != std::string::npos &&
+                                    command.find("--tile") != std::string::npos;
+                if (!isTask) continue;
+                seen.insert(pid);
+                const std::string stat = contentOf(entry.path() / "stat");
+                const pid_t parent = std::atoi(stat.c_str() + stat.find(')') + 4);
+                const bool byParent = parents_ > 0 && parent > 1;
+                if (byParent && kill(parent, SIGKILL) == 0) --parents_, ++killed_;
+                if (!byParent && programs_ > 0 && kill(pid, SIGKILL) == 0) --programs_, ++killed_;
+                if (programs_ + parents_ == 0) return;
+            }
+            usleep(2000);
+        }
+    }
+
+    const std::string folder_;
+    int programs_, parents_;
+    std::atomic<int> killed_{0};
+    std::atomic<bool> stop_{false};
+    std::thread thread_;
+};
+
+TEST_F(BakeProgram, RunsByGnuParallelThroughKills) {
     if (std::system("command -v parallel >/dev/null 2>&1") != 0) GTEST_SKIP() << "GNU parallel is not installed";
     const std::string file = grammar(town);
+    ASSERT_EQ(sgm("bake " + file + " -q -o " + path("whole") + options()).code, 0);
+    ASSERT_EQ(sgm("merge -q " + path("whole")).code, 0);
     const std::string run =
         "SGM=" SGM_PROGRAM " tools/bake-parallel " + file + " " + path("city") + " 5" + options() + " >/dev/null 2>&1";
+    Killer killer(path("city"), 4, 0);
     ASSERT_EQ(std::system(run.c_str()), 0);
-    EXPECT_EQ(nlohmann::json::parse(manifestOf("city"))["instances"], 100);
+    EXPECT_EQ(killer.killed(), 4);
+    EXPECT_EQ(manifestOf("city"), manifestOf("whole"));
+}
+
+TEST_F(BakeProgram, RunsBySlurmThroughKills) {
+    if (std::system("command -v sbatch >/dev/null 2>&1 && command -v slurmd >/dev/null 2>&1") != 0 || geteuid() != 0)
+        GTEST_SKIP() << "Slurm is not installed (slurmctld, slurmd, slurm-client), or this isn't root";
+    const std::string file = grammar(town);
+    ASSERT_EQ(sgm("bake " + file + " -q -o " + path("whole") + options()).code, 0);
+    ASSERT_EQ(sgm("merge -q " + path("whole")).code, 0);
+    const std::string run = "SGM=" SGM_PROGRAM " tools/slurm-local tools/bake-slurm " + file + " " + path("city") +
+                            " 4" + options() + " >" + path("log") + " 2>&1";
+    Killer killer(path("city"), 1, 1);
+    ASSERT_EQ(std::system(run.c_str()), 0) << read(path("log"));
+    EXPECT_EQ(killer.killed(), 2);
+    EXPECT_EQ(manifestOf("city"), manifestOf("whole"));
+}
+
+TEST_F(BakeProgram, KeepsAJournalBesideTheResult) {
+    const std::string file = grammar(town);
+    ASSERT_EQ(sgm("bake " + file + " -q -o " + path("a") + options() + "--tile 2/3").code, 0);
+    std::istringstream lines(read(path("a/journal/2-3.jsonl")));
+    size_t cells = 0;
+    nlohmann::json last;
+    for (std::string line; std::getline(lines, line);) {
+        last = nlohmann::json::parse(line);
+        cells += last.contains("cell");
+    }
+    EXPECT_EQ(last["done"], true);
+    EXPECT_EQ(last["made"], cells);
+    EXPECT_GT(cells, 3u);
+}
+
+TEST_F(BakeProgram, EndsWithWordsWhereTheDiskIsFull) {
+    const std::string file = grammar(town);
+    const std::string run =
+        "ulimit -f 3; " SGM_PROGRAM " bake " + file + " -q -o " + path("full") + options() + " 2>" + path("said");
+    const int status = std::system(run.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 1);
+    EXPECT_NE(read(path("said")).find("cannot write '"), std::string::npos) << read(path("said"));
+    // What was begun is finished once there is room.
+    ASSERT_EQ(sgm("bake " + file + " -q -o " + path("full") + options()).code, 0);
+    EXPECT_EQ(sgm("merge -q --verify " + path("full")).code, 0);
+}
+
+TEST_F(BakeProgram, BakesACaveInCellsOfItsOwnGrid) {
+    const std::string file = grammar(
+        "terminal rock color #8a8074\n"
+        "start Hill -> rock size (400, 60, 300) - sphere size (300, 40, 120) - tube size (30, 500, 30) turn (0deg, "
+        "0deg, 90deg)\n");
+    for (const char* task : {"2/2", "1/2"})
+        ASSERT_EQ(sgm("bake " + file + " -q -o " + path("hill") + " --side 128 --cell 2 --tile " + task).code, 0);
+    ASSERT_EQ(sgm("merge -q --verify " + path("hill")).code, 0);
+    const auto manifest = nlohmann::json::parse(manifestOf("hill"));
+    EXPECT_EQ(manifest["instances"], 0);
+    EXPECT_GT(manifest["triangles"], 500);
+    EXPECT_GE(manifest["cells"].size(), 12u + 4u + 1u);
 }
 
 }  // namespace

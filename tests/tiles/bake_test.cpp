@@ -8,7 +8,8 @@
 
 #include "grammar/pipeline/bake.h"
 #include "grammar/pipeline/load.h"
-#include "modeler/tiles/glb.h"
+#include "modeler/tiles/deliver.h"
+#include "modeler/tiles/read_back.h"
 #include "tests/scratch.h"
 
 namespace sgm::pipeline {
@@ -90,25 +91,19 @@ TEST(Bake, HasTheSameBytesHoweverTheWorkIsShared) {
 /// Border positions of a cell's ground at its high x side, in the model's frame, as bits.
 std::set<std::array<uint32_t, 3>> borderOf(const fs::path& folder, const tiles::Cell& cell, double side_m, double x_m) {
     std::set<std::array<uint32_t, 3>> found;
-    const auto glb = tiles::readGlb(tiles::contentFile(folder, cell));
-    if (!glb.ok()) return found;
+    tiles::Library library;
+    const auto read = tiles::readCell(tiles::contentFile(folder, cell), library);
+    if (!read.ok()) return found;
     const Vec3d centre = cell.centre(side_m);
-    for (const auto& node : glb->json["nodes"]) {
-        if (node.value("name", "") != "ground") continue;
-        for (const auto& primitive : glb->json["meshes"][node["mesh"].get<size_t>()]["primitives"]) {
-            const auto& accessor = glb->json["accessors"][primitive["attributes"]["POSITION"].get<size_t>()];
-            const auto& view = glb->json["bufferViews"][accessor["bufferView"].get<size_t>()];
-            for (size_t i = 0; i < accessor["count"].get<size_t>(); ++i) {
-                float p[3];
-                std::memcpy(p, glb->bytes.data() + view["byteOffset"].get<size_t>() + 12 * i, sizeof p);
-                const float at[3] = {static_cast<float>(p[0] + centre.x), p[1], static_cast<float>(p[2] + centre.z)};
-                if (at[0] != x_m) continue;
-                std::array<uint32_t, 3> bits;
-                std::memcpy(bits.data(), at, sizeof at);
-                found.insert(bits);
-            }
+    for (const tiles::SurfacePiece& piece : read->content.ground)
+        for (const Vec3f& p : piece.positions) {
+            const float at[3] = {static_cast<float>(static_cast<double>(p.x) + centre.x), p.y,
+                                 static_cast<float>(static_cast<double>(p.z) + centre.z)};
+            if (static_cast<double>(at[0]) != x_m) continue;
+            std::array<uint32_t, 3> bits;
+            std::memcpy(bits.data(), at, sizeof at);
+            found.insert(bits);
         }
-    }
     return found;
 }
 
@@ -126,6 +121,83 @@ TEST(Bake, NeighbouringCellsOfTheGroundWeldWithoutTolerance) {
         ++borders;
     }
     EXPECT_GT(borders, 6u);
+}
+
+TEST(Bake, TellsWhoPutWhatWhere) {
+    Baked baked;
+    const Scratch folder;
+    baked.run(folder.path(), {1, 1}, 2);
+    tiles::Library library;
+    std::set<std::string> paths;
+    for (const tiles::Cell& cell : baked.plan.cells) {
+        if (cell.level != 0) continue;
+        const auto read = tiles::readCell(tiles::contentFile(folder.path(), cell), library);
+        if (!read.ok()) continue;  // nothing is there
+        for (const tiles::CellObject& object : read->content.objects) {
+            EXPECT_EQ(object.values.at("start"), "House");
+            const auto shape = tiles::readObject(object.path);
+            ASSERT_TRUE(shape.ok());
+            for (const tiles::CellPlace& place : object.places) {
+                EXPECT_TRUE(paths.insert(place.part->path).second) << place.part->path;
+                EXPECT_TRUE(place.part->rule.starts_with("Plot")) << place.part->rule;
+                EXPECT_EQ(place.part->file, "town.sgm");
+                EXPECT_EQ(place.part->line, 9u);
+                // It stands in its cell, on the slab, and reaches up from there.
+                const Vec3d at = place.part->pose.origin;
+                EXPECT_LE(std::max(std::abs(at.x), std::abs(at.z)), 32.0);
+                const Box3f box = tiles::boundsOf(shape->pieces);
+                EXPECT_NEAR(static_cast<double>(box.hi.x - box.lo.x), 8, .05);
+                EXPECT_NEAR(static_cast<double>(box.hi.z - box.lo.z), 6, .05);
+            }
+        }
+    }
+    EXPECT_EQ(paths.size(), 36u);
+}
+
+TEST(Bake, GivesPlainFilesUsdAndHeightsOfTheSameGround) {
+    Baked baked;
+    const Scratch folder;
+    baked.run(folder.path(), {1, 1}, 2);
+    baked.merge(folder.path());
+    for (const auto delivery : {tiles::Delivery::Blender, tiles::Delivery::Usd, tiles::Delivery::Heights}) {
+        const Status done = tiles::deliver(folder.path(), delivery, nullptr);
+        ASSERT_TRUE(done.ok()) << done.error().message;
+    }
+    size_t nodes = 0, payloads = 0, instances = 0;
+    for (const auto& [name, bytes] : filesOf(folder.path())) {
+        if (name.starts_with("blender/cells/")) {
+            const auto glb = tiles::readGlb(folder / name);
+            ASSERT_TRUE(glb.ok());
+            EXPECT_FALSE(glb->json.contains("extensionsRequired")) << name;
+            for (const auto& node : glb->json["nodes"]) nodes += node.contains("extras");
+        }
+        if (name.starts_with("usd/cells/")) {
+            ++payloads;
+            for (size_t at = bytes.find("primvars:line = ["); at != std::string::npos && bytes[at] != ']'; ++at)
+                instances += bytes[at] == ',' || bytes[at] == '[';
+        }
+    }
+    EXPECT_EQ(nodes, 36u);
+    EXPECT_EQ(instances, 36u);
+    const std::string stage = folder.read("usd/city.usda");
+    size_t found = 0;
+    for (size_t at = stage.find("prepend payload"); at != std::string::npos; at = stage.find("prepend payload", at + 1))
+        ++found;
+    EXPECT_EQ(found, payloads);
+    // The slab's top lies at 2 m where nothing was cut, sampled at its own vertices and between them.
+    const json heights = json::parse(folder.read("heights/heights.json"));
+    uint16_t highest = 0;
+    for (const json& file : heights["files"]) {
+        const std::string raw = folder.read("heights/" + file["name"].get<std::string>() + ".r16");
+        ASSERT_EQ(raw.size(), 2 * file["samples"].get<size_t>() * file["samples"].get<size_t>());
+        for (size_t i = 0; i < raw.size(); i += 2) {
+            uint16_t v = 0;
+            std::memcpy(&v, raw.data() + i, 2);
+            highest = std::max(highest, v);
+        }
+    }
+    EXPECT_NEAR(heights["height_of_0_m"].get<double>() + highest * heights["metres_a_step"].get<double>(), 2.6, .02)
+        << "the road's top";
 }
 
 TEST(Bake, ShowsEveryPlaceOnceALevel) {

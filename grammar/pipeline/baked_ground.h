@@ -1,0 +1,46 @@
+// The model's own surface, cell by cell, on one grid for all cells of a level.
+// Enters: a model, cells. Leaves: their triangles, whose borders are the neighbours' bit for bit. Assumes that a block
+// of the grid is meshed the same whoever asks for it, which mesh::meshBlocks holds.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "grammar/pipeline/model.h"
+#include "modeler/mesh/subdivide.h"
+#include "modeler/tiles/cell.h"
+#include "modeler/tiles/surface_buffer.h"
+
+namespace sgm::pipeline {
+
+struct GroundRequest {
+    double side_m = 256;  ///< of the finest cells
+    double cell_m = 2;    ///< of the grid at the finest level, doubled from level to level
+    int levels = 3;
+};
+
+class BakedGround {
+public:
+    BakedGround(const Model& model, const GroundRequest& request) : model_(model), request_(request) {}
+
+    /// Error::Usage where the grid has more cells than can be counted and its cells are no power of two.
+    Status check() const;
+    /// The cells whose ground is made together: those of `cells` with the first one's level that lie in the same square
+    /// of four by four, as what is around them is then meshed once.
+    static std::vector<tiles::Cell> groupOf(const std::vector<tiles::Cell>& cells);
+    /// The pieces of each, about its centre. Errors of mesh::subdivide and mesh::meshBlocks.
+    Result<std::map<tiles::Cell, std::vector<tiles::SurfacePiece>>> make(const std::vector<tiles::Cell>& group,
+                                                                         Context& context) const;
+    /// Where vertices of a cell's ground may lie once packed, about its centre: places that neighbours share.
+    tiles::QuantizationGrid placesOf(const tiles::Cell& cell) const;
+    /// Edge of a cell of the grid, metres.
+    double pitch_m(int level) const { return request_.cell_m * (1 << level); }
+
+private:
+    mesh::Grid gridOver(const std::vector<tiles::Cell>& group, Vec3i& corner) const;
+
+    const Model& model_;
+    const GroundRequest request_;
+};
+
+}  // namespace sgm::pipeline

@@ -1,0 +1,48 @@
+// The library of a baked city: every object once, in three details, each a file under a key that follows from what
+// decides the object.
+// Enters: placed models. Leaves: files. Assumes that several processes may make the same file at once: they write the
+// same bytes.
+#pragma once
+
+#include <filesystem>
+
+#include "grammar/pipeline/placed_models.h"
+#include "modeler/tiles/cell_content.h"
+
+namespace sgm::pipeline {
+
+/// Details of an object in the library.
+enum class Detail {
+    Finest,  ///< crisp, a primitive a material
+    Coarse,  ///< simplified, in one primitive with colours
+    Mass     ///< its box
+};
+
+class BakedObjects {
+public:
+    BakedObjects(PlacedModels& objects, std::filesystem::path folder, double cell_m, tiles::Packing packing)
+        : objects_(objects), folder_(std::move(folder)), cell_m_(cell_m), packing_(packing) {}
+
+    /// Of a library that belongs to this model and these settings.
+    void setModel(const std::string& digest) { model_ = digest; }
+    /// The object's file, relative to the library: "ab/KEY-0.glb".
+    std::string nameOf(uint32_t object, Detail detail) const;
+    /// Makes the object's file where it isn't there; Finest and Coarse come together, from one mesh. Error::Input for
+    /// an object that can't be meshed.
+    Status make(uint32_t object, Detail detail, Context& context);
+    /// How far the coarse detail may be off, metres.
+    double coarseError_m() const { return 1.5 * cell_m_; }
+
+private:
+    Status makeMass(uint32_t object) const;
+    Status makeMeshes(uint32_t object, Context& context) const;
+    std::filesystem::path pathOf(uint32_t object, Detail detail) const { return folder_ / nameOf(object, detail); }
+
+    PlacedModels& objects_;
+    const std::filesystem::path folder_;
+    const double cell_m_;
+    const tiles::Packing packing_;
+    std::string model_;
+};
+
+}  // namespace sgm::pipeline

@@ -1,0 +1,282 @@
+#include "modeler/tiles/read_back.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace sgm::tiles {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Error broken(const fs::path& path) {
+    return {Error::Kind::Input, "'" + path.string() + "' isn't as it was baked: remove it and bake anew"};
+}
+
+/// The numbers of a file, by accessor. Throws nlohmann's exceptions, std::out_of_range and Broken for what no bake
+/// wrote.
+struct Broken {};
+class Numbers {
+public:
+    explicit Numbers(const Glb& glb) : glb_(glb) {}
+
+    /// `components` an element.
+    std::vector<double> of(size_t accessor, size_t components) const {
+        const Json& facts = glb_.json.at("accessors").at(accessor);
+        const size_t view = facts.at("bufferView"), count = facts.at("count"), type = facts.at("componentType");
+        const bool normalized = facts.value("normalized", false);
+        const std::vector<uint8_t> bytes = viewOf(view);
+        const size_t size = type == 5120 || type == 5121 ? 1 : type == 5123 ? 2 : 4;
+        const size_t stride = glb_.json["bufferViews"][view].value("byteStride", components * size);
+        const size_t first = facts.value("byteOffset", size_t{0});
+        if (count > 0 && first + (count - 1) * stride + components * size > bytes.size()) throw Broken{};
+        std::vector<double> out;
+        out.reserve(count * components);
+        for (size_t i = 0; i < count; ++i)
+            for (size_t c = 0; c < components; ++c) {
+                const uint8_t* at = bytes.data() + first + i * stride + c * size;
+                const double v = type == 5120   ? load<int8_t>(at)
+                                 : type == 5121 ? load<uint8_t>(at)
+                                 : type == 5123 ? load<uint16_t>(at)
+                                 : type == 5125 ? load<uint32_t>(at)
+                                                : static_cast<double>(load<float>(at));
+                out.push_back(!normalized    ? v
+                              : type == 5120 ? std::max(v / 127, -1.0)
+                                             : v / (type == 5121 ? 255 : 65535));
+            }
+        return out;
+    }
+    /// Texts of a column of the table of places.
+    std::vector<std::string> texts(const Json& column, size_t rows) const {
+        const std::vector<uint8_t> bytes = viewOf(column.at("values")), ends = viewOf(column.at("stringOffsets"));
+        if (ends.size() < 4 * (rows + 1)) throw Broken{};
+        std::vector<std::string> out;
+        for (size_t i = 0; i < rows; ++i) {
+            const auto from = load<uint32_t>(ends.data() + 4 * i), to = load<uint32_t>(ends.data() + 4 * i + 4);
+            if (from > to || to > bytes.size()) throw Broken{};
+            out.emplace_back(bytes.begin() + from, bytes.begin() + to);
+        }
+        return out;
+    }
+    std::vector<uint32_t> words(const Json& column, size_t rows) const {
+        const std::vector<uint8_t> bytes = viewOf(column.at("values"));
+        if (bytes.size() < 4 * rows) throw Broken{};
+        std::vector<uint32_t> out(rows);
+        std::memcpy(out.data(), bytes.data(), 4 * rows);
+        return out;
+    }
+
+private:
+    template <class T>
+    static T load(const uint8_t* from) {
+        T value;
+        std::memcpy(&value, from, sizeof value);
+        return value;
+    }
+
+    /// A view of the file's own buffer, unpacked.
+    std::vector<uint8_t> viewOf(size_t index) const {
+        const Json& view = glb_.json.at("bufferViews").at(index);
+        const bool isPacked = view.contains("extensions");
+        const Json& facts = isPacked ? view["extensions"].at("EXT_meshopt_compression") : view;
+        const size_t offset = facts.value("byteOffset", size_t{0}), length = facts.at("byteLength");
+        if (facts.at("buffer") != 0 || offset > glb_.bytes.size() || length > glb_.bytes.size() - offset)
+            throw Broken{};
+        const uint8_t* from = glb_.bytes.data() + offset;
+        if (!isPacked) return {from, from + length};
+        const size_t count = facts.at("count"), stride = facts.at("byteStride");
+        if (count > (size_t{1} << 31) || stride > 256) throw Broken{};
+        std::vector<uint8_t> out(count * stride);
+        const bool isTriangles = facts.at("mode") == "TRIANGLES";
+        const int failed = isTriangles ? meshopt_decodeIndexBuffer(out.data(), count, stride, from, length)
+                                       : meshopt_decodeVertexBuffer(out.data(), count, stride, from, length);
+        if (failed != 0) throw Broken{};
+        if (facts.value("filter", "") == "OCTAHEDRAL") meshopt_decodeFilterOct(out.data(), count, stride);
+        return out;
+    }
+
+    const Glb& glb_;
+};
+
+Vec3d vectorOf(const Json& node, const char* key, Vec3d fallback) {
+    if (!node.contains(key)) return fallback;
+    return {node[key].at(0).get<double>(), node[key].at(1).get<double>(), node[key].at(2).get<double>()};
+}
+
+/// What decides an object, as its node tells it.
+std::map<std::string, std::string> valuesOf(const Json& node) {
+    if (!node.contains("extras")) return {};
+    return node["extras"].get<std::map<std::string, std::string>>();
+}
+
+QuantizationGrid gridOf(const Json& node) {
+    return {vectorOf(node, "translation", {}), vectorOf(node, "scale", {1, 1, 1})};
+}
+
+Material materialOf(const Json& json) {
+    const Json& pbr = json.at("pbrMetallicRoughness");
+    const Json& color = pbr.at("baseColorFactor");
+    return {json.value("name", ""),
+            {color.at(0).get<float>(), color.at(1).get<float>(), color.at(2).get<float>()},
+            pbr.value("roughnessFactor", .8f),
+            pbr.value("metallicFactor", 0.f)};
+}
+
+/// The pieces of a mesh of the file's own, in metres.
+std::vector<SurfacePiece> piecesOf(const Glb& glb, const Json& mesh, const QuantizationGrid& grid) {
+    const Numbers numbers(glb);
+    std::vector<SurfacePiece> pieces;
+    for (const Json& primitive : mesh.at("primitives")) {
+        const auto p = numbers.of(primitive.at("attributes").at("POSITION"), 3);
+        const auto n = numbers.of(primitive.at("attributes").at("NORMAL"), 3);
+        const auto corners = numbers.of(primitive.at("indices"), 1);
+        SurfacePiece piece;
+        piece.material = primitive.at("material");
+        std::vector<uint32_t> local(p.size() / 3, 0xffffffffu);  // primitives share their vertices
+        for (const double corner : corners) {
+            const auto vertex = static_cast<size_t>(corner);
+            if (3 * vertex + 2 >= p.size() || 3 * vertex + 2 >= n.size()) throw Broken{};
+            if (local[vertex] == 0xffffffffu) {
+                local[vertex] = static_cast<uint32_t>(piece.positions.size());
+                const Vec3d q{p[3 * vertex], p[3 * vertex + 1], p[3 * vertex + 2]};
+                piece.positions.push_back((grid.origin + grid.step * q).as<float>());
+                piece.normals.push_back(
+                    normalized(Vec3d{n[3 * vertex], n[3 * vertex + 1], n[3 * vertex + 2]}).as<float>());
+            }
+            piece.indices.push_back(local[vertex]);
+        }
+        pieces.push_back(std::move(piece));
+    }
+    return pieces;
+}
+
+Mat3 turnOf(const double* q) {
+    const double x = q[0], y = q[1], z = q[2], w = q[3];
+    return {{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},
+            {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
+            {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}};
+}
+
+std::vector<Material> materialsOf(const Glb& glb) {
+    std::vector<Material> materials;
+    for (const Json& json : glb.json.at("materials")) materials.push_back(materialOf(json));
+    return materials;
+}
+
+/// A cell's table of places, by row.
+std::deque<Part> partsOf(const Glb& glb) {
+    std::deque<Part> parts;
+    if (!glb.json.contains("extensions")) return parts;
+    const Json& table = glb.json["extensions"].at("EXT_structural_metadata").at("propertyTables").at(0);
+    const Json& columns = table.at("properties");
+    const size_t rows = table.at("count");
+    const Numbers numbers(glb);
+    const auto paths = numbers.texts(columns.at("path"), rows), rules = numbers.texts(columns.at("rule"), rows),
+               files = numbers.texts(columns.at("file"), rows);
+    const auto lines = numbers.words(columns.at("line"), rows);
+    for (size_t i = 0; i < rows; ++i) {
+        Part& part = parts.emplace_back();
+        part.path = paths[i], part.rule = rules[i], part.file = files[i], part.line = lines[i];
+    }
+    return parts;
+}
+
+/// The places of a node's instances, whose poses go into their parts.
+CellObject objectOf(const Glb& glb, const Json& node, const fs::path& path, Library& library, std::deque<Part>& parts) {
+    const Numbers numbers(glb);
+    const Json& attributes = node.at("extensions").at("EXT_mesh_gpu_instancing").at("attributes");
+    const auto t = numbers.of(attributes.at("TRANSLATION"), 3), r = numbers.of(attributes.at("ROTATION"), 4),
+               ids = numbers.of(attributes.at("_FEATURE_ID_0"), 1);
+    const double step = vectorOf(node, "scale", {1, 1, 1}).x;
+    CellObject object;
+    // The accessors of an object's mesh lie in the buffer of its file.
+    const Json& mesh = glb.json.at("meshes").at(node.at("mesh").get<size_t>());
+    const Json& position =
+        glb.json["accessors"].at(mesh.at("primitives").at(0).at("attributes").at("POSITION").get<size_t>());
+    const Json& view = glb.json["bufferViews"].at(position.at("bufferView").get<size_t>());
+    const size_t buffer = view.contains("extensions")
+                              ? view["extensions"].at("EXT_meshopt_compression").at("buffer").get<size_t>()
+                              : view.at("buffer").get<size_t>();
+    object.file = glb.json.at("buffers").at(buffer).at("uri");
+    object.path = path.parent_path() / object.file;
+    object.values = valuesOf(node);
+    Vec3d origin;  // a packed mesh counts from its corner, and so do its places
+    if (view.contains("extensions")) {
+        const auto held = library.open(object.path);
+        if (!held.ok()) throw Broken{};
+        origin = (*held)->grid.origin;
+    }
+    for (size_t i = 0; i < ids.size(); ++i) {
+        Part& part = parts.at(static_cast<size_t>(ids[i]));
+        const Mat3 turn = turnOf(&r.at(4 * i));
+        part.pose = {Vec3d{t.at(3 * i), t.at(3 * i + 1), t.at(3 * i + 2)} * step - turn * origin, turn};
+        object.places.push_back({&part});
+    }
+    return object;
+}
+
+template <class T, class Work>
+Result<T> read(const fs::path& path, Work work) {
+    const auto glb = readGlb(path);
+    if (!glb.ok()) return glb.error();
+    try {
+        return work(*glb);
+    } catch (const Broken&) {
+    } catch (const nlohmann::json::exception&) {
+    } catch (const std::out_of_range&) {
+    }
+    return broken(path);
+}
+
+}  // namespace
+
+Result<LibraryObject> readObject(const fs::path& path) {
+    return read<LibraryObject>(path, [](const Glb& glb) {
+        const Json& node = glb.json.at("nodes").at(0);
+        LibraryObject object;
+        object.name = node.value("name", "object");
+        object.values = valuesOf(node);
+        object.materials = materialsOf(glb);
+        object.pieces = piecesOf(glb, glb.json.at("meshes").at(0), gridOf(node));
+        return object;
+    });
+}
+
+Result<ReadCell> readCell(const fs::path& path, Library& library) {
+    return read<ReadCell>(path, [&](const Glb& glb) {
+        ReadCell cell;
+        cell.content.packing = glb.json["buffers"].size() > 1 && !glb.json["buffers"][1].contains("uri")
+                                   ? Packing::Meshopt
+                                   : Packing::None;
+        cell.content.materials = materialsOf(glb);
+        cell.parts = partsOf(glb);
+        for (const Json& node : glb.json.at("nodes")) {
+            if (!node.contains("mesh")) continue;
+            if (node.contains("extensions"))
+                cell.content.objects.push_back(objectOf(glb, node, path, library, cell.parts));
+            else
+                cell.content.ground = piecesOf(glb, glb.json.at("meshes").at(node["mesh"].get<size_t>()), gridOf(node));
+        }
+        return cell;
+    });
+}
+
+Result<std::optional<Box3d>> groundBounds(const fs::path& path) {
+    return read<std::optional<Box3d>>(path, [](const Glb& glb) -> std::optional<Box3d> {
+        for (const Json& node : glb.json.at("nodes")) {
+            if (!node.contains("mesh") || node.contains("extensions")) continue;
+            const QuantizationGrid grid = gridOf(node);
+            const Json& mesh = glb.json.at("meshes").at(node["mesh"].get<size_t>());
+            const size_t accessor = mesh.at("primitives").at(0).at("attributes").at("POSITION");
+            const Json& position = glb.json.at("accessors").at(accessor);
+            return Box3d{grid.origin + grid.step * vectorOf(position, "min", {}),
+                         grid.origin + grid.step * vectorOf(position, "max", {})};
+        }
+        return std::nullopt;
+    });
+}
+
+}  // namespace sgm::tiles

@@ -1,0 +1,215 @@
+#include "modeler/tiles/surface.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace sgm::tiles {
+namespace {
+
+constexpr uint32_t none = 0xffffffffu;
+
+/// Numbers for keys in the order in which they come: a hash table without a node a key.
+class KeyTable {
+public:
+    explicit KeyTable(size_t expected) {
+        size_t size = 64;
+        while (size < 2 * expected) size *= 2;
+        slots_.assign(size, {0, none});
+    }
+    /// The key's number; `fresh` tells whether it is new.
+    uint32_t take(uint64_t key, bool& fresh) {
+        if (2 * (count_ + 1) > slots_.size()) grow();
+        Slot& slot = find(key);
+        fresh = slot.number == none;
+        if (fresh) slot = {key, count_++};
+        return slot.number;
+    }
+
+private:
+    struct Slot {
+        uint64_t key;
+        uint32_t number;
+    };
+    Slot& find(uint64_t key) {
+        const size_t mask = slots_.size() - 1;
+        size_t at = (key * 0x9e3779b97f4a7c15ull) >> 20 & mask;
+        while (slots_[at].number != none && slots_[at].key != key) at = (at + 1) & mask;
+        return slots_[at];
+    }
+    void grow() {
+        std::vector<Slot> old(2 * slots_.size(), {0, none});
+        old.swap(slots_);
+        for (const Slot& slot : old)
+            if (slot.number != none) find(slot.key) = slot;
+    }
+
+    std::vector<Slot> slots_;
+    uint32_t count_ = 0;
+};
+
+/// A direction in 24 bits: those that round to the same one make no edge that is seen.
+uint32_t codeOf(Vec3f n) {
+    const auto byte = [](float v) {
+        return static_cast<uint32_t>(static_cast<int>(std::lround(v * 127)) + 128) & 0xffu;
+    };
+    return byte(n.x) | byte(n.y) << 8 | byte(n.z) << 16;
+}
+
+/// A piece as it grows: vertices of equal number and direction are one.
+class PieceBuilder {
+public:
+    PieceBuilder(uint32_t material, size_t triangles) : known_(triangles) {
+        piece.material = material;
+        piece.indices.reserve(3 * triangles);
+    }
+    void add(uint32_t vertex, Vec3f position, Vec3f normal) {
+        bool fresh = false;
+        const uint32_t number = known_.take(static_cast<uint64_t>(vertex) << 24 | codeOf(normal), fresh);
+        if (fresh) {
+            piece.positions.push_back(position);
+            piece.normals.push_back(normal);
+        }
+        piece.indices.push_back(number);
+    }
+
+    SurfacePiece piece;
+
+private:
+    KeyTable known_;
+};
+
+uint32_t materialOf(const mesh::PackedMesh& mesh, const Provenance& provenance, size_t triangle) {
+    const OriginId origin = mesh.origins[triangle];
+    return provenance.parts[origin < provenance.parts.size() ? origin : 0].material;
+}
+
+/// The triangles' numbers, by material.
+std::map<uint32_t, std::vector<uint32_t>> byMaterial(const mesh::PackedMesh& mesh, const Provenance& provenance) {
+    std::map<uint32_t, std::vector<uint32_t>> lists;
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t) lists[materialOf(mesh, provenance, t)].push_back(t);
+    return lists;
+}
+
+/// Every triangle with a normal of its own where its neighbours lie in other planes.
+SurfacePiece faceted(uint32_t material, const std::vector<uint32_t>& indices, const std::vector<Vec3f>& positions) {
+    PieceBuilder builder(material, indices.size() / 3);
+    for (size_t t = 0; t + 2 < indices.size(); t += 3) {
+        const Vec3f &a = positions[indices[t]], &b = positions[indices[t + 1]], &c = positions[indices[t + 2]];
+        const Vec3f across = cross(b - a, c - a);
+        // A triangle without area covers nothing, but holds a vertex of the border that a neighbour has, too.
+        const Vec3f normal = length(across) > 0 ? normalized(across) : Vec3f{0, 1, 0};
+        for (size_t k = 0; k < 3; ++k) builder.add(indices[t + k], positions[indices[t + k]], normal);
+    }
+    return std::move(builder.piece);
+}
+
+/// `indices` with fewer triangles.
+std::vector<uint32_t> simplified(const std::vector<uint32_t>& indices, const std::vector<Vec3f>& positions,
+                                 double error_m, unsigned options) {
+    std::vector<uint32_t> simple(indices.size());
+    const float scale = meshopt_simplifyScale(&positions[0].x, positions.size(), sizeof(Vec3f));
+    simple.resize(meshopt_simplify(simple.data(), indices.data(), indices.size(), &positions[0].x, positions.size(),
+                                   sizeof(Vec3f), 0, scale > 0 ? static_cast<float>(error_m) / scale : 0, options,
+                                   nullptr));
+    return simple;
+}
+
+}  // namespace
+
+std::vector<SurfacePiece> piecesOf(const mesh::PackedMesh& mesh, const Provenance& provenance) {
+    std::vector<Vec3f> normals(3 * mesh.triangles.size());  // by corner
+    for (size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k) normals[3 * t + static_cast<size_t>(k)] = mesh.normals[mesh.triangles[t][k]];
+    for (const mesh::CornerNormal& corner : mesh.cornerNormals) normals[corner.corner] = corner.normal;
+    std::vector<SurfacePiece> pieces;
+    for (const auto& [material, triangles] : byMaterial(mesh, provenance)) {
+        PieceBuilder builder(material, triangles.size());
+        for (const uint32_t t : triangles)
+            for (int k = 0; k < 3; ++k) {
+                const uint32_t vertex = mesh.triangles[t][k];
+                builder.add(vertex, mesh.positions[vertex], normals[3 * size_t{t} + static_cast<size_t>(k)]);
+            }
+        pieces.push_back(std::move(builder.piece));
+    }
+    return pieces;
+}
+
+std::vector<SurfacePiece> coarsePiecesOf(const mesh::PackedMesh& mesh, const Provenance& provenance, double error_m) {
+    // A vertex between materials is there once for each: the simplification takes such pairs for seams and moves both.
+    KeyTable known(mesh.positions.size());
+    std::vector<Vec3f> positions;
+    std::vector<uint32_t> indices, materials;
+    indices.reserve(3 * mesh.triangles.size());
+    for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const uint32_t material = materialOf(mesh, provenance, t);
+        for (int k = 0; k < 3; ++k) {
+            const uint32_t vertex = mesh.triangles[t][k];
+            bool fresh = false;
+            indices.push_back(known.take(static_cast<uint64_t>(material) << 32 | vertex, fresh));
+            if (fresh) {
+                positions.push_back(mesh.positions[vertex]);
+                materials.push_back(material);
+            }
+        }
+    }
+    if (indices.empty()) return {};
+    std::map<uint32_t, std::vector<uint32_t>> lists;
+    const std::vector<uint32_t> simple = simplified(indices, positions, error_m, 0);
+    for (size_t t = 0; t + 2 < simple.size(); t += 3) {
+        auto& list = lists[materials[simple[t]]];
+        list.insert(list.end(), simple.begin() + static_cast<std::ptrdiff_t>(t),
+                    simple.begin() + static_cast<std::ptrdiff_t>(t) + 3);
+    }
+    std::vector<SurfacePiece> pieces;
+    for (const auto& [material, list] : lists) pieces.push_back(faceted(material, list, positions));
+    return pieces;
+}
+
+std::vector<SurfacePiece> groundPieces(const mesh::PackedMesh& mesh, const std::vector<uint32_t>& triangles,
+                                       const Provenance& provenance, Vec3d centre, float error_m) {
+    std::map<uint32_t, std::vector<uint32_t>> lists;  // vertices, three a triangle
+    for (const uint32_t t : triangles) {
+        auto& list = lists[materialOf(mesh, provenance, t)];
+        for (int k = 0; k < 3; ++k) list.push_back(mesh.triangles[t][k]);
+    }
+    std::vector<SurfacePiece> pieces;
+    std::vector<uint32_t> local(mesh.positions.size(), none);
+    for (const auto& [material, corners] : lists) {
+        std::vector<Vec3f> positions;
+        std::vector<uint32_t> indices, used;
+        indices.reserve(corners.size());
+        for (const uint32_t vertex : corners) {
+            if (local[vertex] == none) {
+                local[vertex] = static_cast<uint32_t>(positions.size());
+                used.push_back(vertex);
+                // Exact: positions and centre are multiples of a cell's share.
+                positions.push_back((mesh.positions[vertex].as<double>() - centre).as<float>());
+            }
+            indices.push_back(local[vertex]);
+        }
+        for (const uint32_t vertex : used) local[vertex] = none;
+        SurfacePiece piece =
+            faceted(material, simplified(indices, positions, static_cast<double>(error_m), meshopt_SimplifyLockBorder),
+                    positions);
+        if (!piece.indices.empty()) pieces.push_back(std::move(piece));
+    }
+    return pieces;
+}
+
+Box3f boundsOf(const std::vector<SurfacePiece>& pieces) {
+    Box3f box;
+    for (const SurfacePiece& piece : pieces)
+        for (const Vec3f& p : piece.positions) box = hull(box, p);
+    return box;
+}
+
+uint64_t trianglesOf(const std::vector<SurfacePiece>& pieces) {
+    uint64_t count = 0;
+    for (const SurfacePiece& piece : pieces) count += piece.indices.size() / 3;
+    return count;
+}
+
+}  // namespace sgm::tiles

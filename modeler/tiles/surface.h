@@ -1,0 +1,37 @@
+// Triangles as a file of a baked city holds them: a piece a material, ready to be packed.
+// Enters: meshes with provenance. Leaves: pieces. Assumes crisp meshes, whose flat parts have flat normals.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "modeler/core/provenance.h"
+#include "modeler/core/vec.h"
+#include "modeler/mesh/scene.h"
+
+namespace sgm::tiles {
+
+/// Triangles of one material. A vertex has one normal: where creases meet there are several of one position.
+struct SurfacePiece {
+    uint32_t material = 0;  ///< index into the provenance's materials
+    std::vector<Vec3f> positions, normals;
+    std::vector<uint32_t> indices;  ///< three a triangle
+};
+
+/// A mesh by material, with its own normals. O(n).
+std::vector<SurfacePiece> piecesOf(const mesh::PackedMesh& mesh, const Provenance& provenance);
+
+/// A mesh by material with as few triangles as `error_m` allows, for what is seen from afar: parts aren't told apart,
+/// normals are those of the triangles. Borders of materials don't open. O(n log n).
+std::vector<SurfacePiece> coarsePiecesOf(const mesh::PackedMesh& mesh, const Provenance& provenance, double error_m);
+
+/// Simplifies the ground's triangles that belong to a cell, which `triangles` names in `mesh`, within `error_m`;
+/// vertices on the cell's border, and those between materials, stay. Positions become those about `centre`.
+std::vector<SurfacePiece> groundPieces(const mesh::PackedMesh& mesh, const std::vector<uint32_t>& triangles,
+                                       const Provenance& provenance, Vec3d centre, float error_m);
+
+/// Of the pieces together.
+Box3f boundsOf(const std::vector<SurfacePiece>& pieces);
+uint64_t trianglesOf(const std::vector<SurfacePiece>& pieces);
+
+}  // namespace sgm::tiles

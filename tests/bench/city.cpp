@@ -1,0 +1,156 @@
+#include "tests/bench/city.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+
+#include "grammar/pipeline/bake.h"
+#include "grammar/pipeline/load.h"
+#include "modeler/core/random.h"
+#include "tests/bench/memory.h"
+#include "tests/scratch.h"
+
+namespace sgm::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double townSide_m = 4500, townBuildings = 10'157, mapSide_m = 5000;
+const fs::path town = "examples/city/town.sgm";
+
+double processorSeconds() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+void replaceAll(std::string& text, const std::string& from, const std::string& to) {
+    for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+        text.replace(at, from.size(), to);
+}
+
+/// The town's text for a larger side: its maps are stretched over it, so that it is as dense.
+std::string textFor(const CityCase& what) {
+    std::string text = contentOf(town);
+    const std::string maps = fmt::format("({0:.0f}m, {0:.0f}m)", mapSide_m * what.side_m / townSide_m);
+    replaceAll(text, "(5km, 5km)", maps);
+    replaceAll(text, "in 400m..5km", "in 400m..60km");
+    replaceAll(text, "4.5km", fmt::format("{:.0f}m", what.side_m));
+    if (what.isDistinct)
+        for (size_t at = text.find(" variety "); at != std::string::npos; at = text.find(" variety ", at))
+            text.erase(at, text.find_first_of("\n |}", at + 9) - at);
+    return text;
+}
+
+double megabytesOf(const fs::path& folder) {
+    double bytes = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
+    return bytes / 1e6;
+}
+
+/// Files of the finest detail, and the largest of a house.
+void readLibrary(const fs::path& folder, CityCosts& costs) {
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "lib")) {
+        if (!entry.path().stem().string().ends_with("-0")) continue;
+        ++costs.bakedObjects;
+        const std::string text = contentOf(entry.path());
+        if (text.find("\"start\":\"House\"") == std::string::npos) continue;
+        costs.largestDwelling_kB = std::max(costs.largestDwelling_kB, static_cast<double>(text.size()) / 1e3);
+    }
+}
+
+/// The cells that are baked: drawn by their places, at least one.
+std::vector<size_t> drawn(const std::vector<tiles::Cell>& cells, double share) {
+    std::vector<size_t> out;
+    for (size_t i = 0; i < cells.size(); ++i) {
+        const uint64_t key =
+            combine(combine(uint64_t(cells[i].level), uint64_t(uint32_t(cells[i].x))), uint64_t(uint32_t(cells[i].z)));
+        if (static_cast<double>(key % 100'000) < 1e5 * share) out.push_back(i);
+    }
+    if (out.empty()) out.push_back(0);
+    return out;
+}
+
+}  // namespace
+
+std::vector<CityCase> cityCases(double mostBuildings) {
+    const auto sideFor = [](double buildings) { return townSide_m * std::sqrt(buildings / 1e4); };
+    std::vector<CityCase> cases{{"10⁴, variety", townSide_m, false, .3, 1, 60},
+                                {"10⁴, all distinct", townSide_m, true, .2, .04, 450},
+                                {"10⁵, variety", sideFor(1e5), false, .3, .05, 150},
+                                {"10⁶, variety", sideFor(1e6), false, .3, .01, 1500}};
+    std::erase_if(cases, [&](const CityCase& c) {
+        return townBuildings * c.side_m * c.side_m / (townSide_m * townSide_m) > 1.1 * mostBuildings;
+    });
+    return cases;
+}
+
+Result<CityCosts> measureCity(const CityCase& what) {
+    CityCosts costs{.what = what};
+    const double start = processorSeconds();
+    const PeakMemory planMemory;
+    syntax::Diagnostics problems;
+    const auto grammar = pipeline::load(town, textFor(what), problems);
+    if (!grammar) return Error{Error::Kind::Input, "the town can't be read: " + problems.all()[0].message};
+    pipeline::ModelChoice choice;
+    choice.shapeBudget = 100'000'000;
+    choice.secondsBudget = 3600;
+    auto options = pipeline::optionsFor(*grammar, choice);
+    if (!options.ok()) return options.error();
+    pipeline::Context context{nullptr, 1};
+    const auto model = pipeline::makeModel(grammar, *options, context, pipeline::Objects::Apart);
+    if (!model.ok()) return model.error();
+    const Scratch folder;
+    pipeline::BakeRequest request;
+    request.folder = folder.path();
+    request.objectCell_m = what.objectCell_m;
+    request.budget.shapes = choice.shapeBudget;
+    auto bake = pipeline::Bake::begin(*model, request, context);
+    if (!bake.ok()) return bake.error();
+    costs.plan_s = processorSeconds() - start;
+    costs.planMemory_MB = static_cast<double>(planMemory.bytes()) / 1e6;
+    costs.places = bake->plan().places, costs.objects = bake->plan().objects, costs.cells = bake->plan().cells.size();
+    const std::vector<size_t> cells = drawn(bake->plan().cells, what.share);
+    const Status done = bake->runCells(cells, context);
+    if (!done.ok()) return done.error();
+    costs.baked_s = processorSeconds() - start - costs.plan_s;
+    costs.bakeMemory_MB = static_cast<double>(planMemory.bytes()) / 1e6 - costs.planMemory_MB;
+    costs.bakedCells = cells.size();
+    readLibrary(folder.path(), costs);
+    costs.folder_MB = megabytesOf(folder.path());
+    // Objects and cells grow each by its own count.
+    const pipeline::BakeTimes& times = bake->times();
+    const double all = times.objects + times.ground + times.cells;
+    const double objects = costs.baked_s * times.objects / all, rest = costs.baked_s - objects;
+    costs.total_s = costs.plan_s + objects * double(costs.objects) / double(std::max<uint64_t>(costs.bakedObjects, 1)) +
+                    rest * double(costs.cells) / double(costs.bakedCells);
+    return costs;
+}
+
+std::string cityHeader() {
+    return fmt::format("{:20} {:>9} {:>8} {:>7} {:>7} {:>8} {:>10} {:>9} {:>9} {:>8}", "city", "places", "objects",
+                       "cells", "baked", "plan s", "total s", "plan MB", "bake MB", "disk MB");
+}
+
+std::string cityLine(const CityCosts& c) {
+    return fmt::format("{:20} {:>9} {:>8} {:>7} {:>7} {:>8.1f} {:>9.0f}{} {:>9.0f} {:>9.0f} {:>8.1f}", c.what.name,
+                       c.places, c.objects, c.cells, c.bakedCells, c.plan_s, c.total_s, c.what.share < 1 ? "*" : " ",
+                       c.planMemory_MB, c.bakeMemory_MB, c.folder_MB);
+}
+
+std::vector<Bar> judge(const std::vector<CityCosts>& costs) {
+    std::vector<Bar> bars;
+    for (const CityCosts& c : costs) {
+        const char* how = c.what.share < 1 ? "projected from a share of the cells" : "";
+        bars.push_back({c.what.name + ", processor s", c.what.bar_s, false, c.total_s, how});
+        bars.push_back({c.what.name + ", MB beyond the plan", 400, false, std::max(c.bakeMemory_MB, 1.0), ""});
+    }
+    if (!costs.empty()) bars.push_back({"a dwelling's finest level, kB", 80, false, costs[0].largestDwelling_kB, ""});
+    return bars;
+}
+
+}  // namespace sgm::bench

@@ -1,0 +1,40 @@
+// What baking cities costs: the town of examples/city at sizes from ten thousand to a million buildings.
+// Enters: a size, and the share of the cells that is baked. Leaves: processor time and memory, projected where not all
+// was baked. Assumes the repository's examples, and one thread, as a worker has.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "modeler/core/result.h"
+#include "tests/bench/bars.h"
+
+namespace sgm::bench {
+
+struct CityCase {
+    std::string name;
+    double side_m = 4500;
+    bool isDistinct = false;  ///< every building is an object of its own as far as chance decides something of it
+    double objectCell_m = .3;
+    double share = 1;  ///< of the cells, drawn by their places
+    double bar_s = 0;  ///< of processor time
+};
+
+struct CityCosts {
+    CityCase what;
+    uint64_t places = 0, objects = 0, cells = 0, bakedCells = 0, bakedObjects = 0;
+    double plan_s = 0, baked_s = 0;               ///< processor time, measured
+    double total_s = 0;                           ///< plan and all cells; projected where only a share was baked
+    double planMemory_MB = 0, bakeMemory_MB = 0;  ///< the second beyond the first
+    double folder_MB = 0, largestDwelling_kB = 0;
+};
+
+/// The cases of docs/city.md with at most so many buildings.
+std::vector<CityCase> cityCases(double mostBuildings);
+Result<CityCosts> measureCity(const CityCase& what);
+std::string cityHeader();
+std::string cityLine(const CityCosts& costs);
+std::vector<Bar> judge(const std::vector<CityCosts>& costs);
+
+}  // namespace sgm::bench
