@@ -1,6 +1,7 @@
 #include "modeler/plan/edit.h"
 
 #include "modeler/plan/clipper_paths.h"
+#include "modeler/plan/crossings.h"
 #include "modeler/plan/edge_match.h"
 #include "modeler/plan/validate.h"
 
@@ -8,6 +9,8 @@ namespace sgm::plan {
 namespace {
 
 constexpr double farthest_m = 1e5;
+/// Clipper takes some 40 µs each.
+constexpr size_t mostCrossings = 20'000;
 
 /// The sources of two operands in the tags of `result`; those of the second become cuts where they cut.
 std::vector<SourceEdge> sourcesOfBoth(Footprint& result, Boolean how, const Footprint& a, const Footprint& b) {
@@ -52,6 +55,9 @@ Result<Footprint> resolved(const Footprint& footprint) {
             return Error{Error::Kind::Input, "point " + std::to_string(number) +
                                                  " of the outline is no number, or more than 100 km from the origin"};
     }
+    if (countCrossings(footprint, mostCrossings) > mostCrossings)
+        return Error{Error::Kind::Budget,
+                     "the outline crosses itself more than " + std::to_string(mostCrossings) + " times"};
     Footprint result = booleanOf(PathBoolean::Union, pathsOf(footprint), {});
     result.tags = footprint.tags;
     matchEdges(result, sourcesOf(footprint));

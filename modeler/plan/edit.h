@@ -18,7 +18,7 @@ enum class Boolean { Union, Difference, Intersection };
 /// a ∪ b, a − b or a ∩ b. Edges of `b` that cut `a` are EdgeSource::Cut in a difference. O((n + k) log n), k crossings.
 Footprint boolean(Boolean how, const Footprint& a, const Footprint& b);
 /// Outlines that may cross themselves, and courts, resolved by winding ≠ 0: what is left is sound. For outlines drawn
-/// by a turtle. Points beyond 10⁵ m or not finite are Error::Input.
+/// by a turtle. Points beyond 10⁵ m or not finite are Error::Input, more than 20,000 crossings Error::Budget.
 Result<Footprint> resolved(const Footprint& footprint);
 
 /// Outward by `distance_m`, inward where negative, with mitred corners (at most 4 times the distance long, bevelled

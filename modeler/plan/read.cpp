@@ -33,9 +33,11 @@ Result<Footprint> soundFootprint(const Footprint& drawn, const Limits& limits) {
     if (!fault) return Error{Error::Kind::Input, "the outline encloses no area"};
     const bool canBeResolved = fault->kind == FaultKind::Crossing || fault->kind == FaultKind::CourtOutside ||
                                fault->kind == FaultKind::Overlap;
-    if (canBeResolved)
-        if (Result<Footprint> mended = resolved(left); mended.ok() && !mended->empty() && !firstFault(*mended, limits))
+    if (canBeResolved) {
+        Result<Footprint> mended = resolved(left);
+        if (mended.ok() ? !mended->empty() && !firstFault(*mended, limits) : mended.error().kind == Error::Kind::Budget)
             return mended;
+    }
     return Error{Error::Kind::Input, sentenceOf(*fault, left)};
 }
 

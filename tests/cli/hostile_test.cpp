@@ -183,6 +183,18 @@ TEST_F(Hostile, LsystemsOfManyWallsHaveABudget) {
     EXPECT_NE(run.out.find("test.sgm:5:"), std::string::npos) << run.out;
 }
 
+TEST_F(Hostile, OutlinesThatCrossThemselvesMillionsOfTimesAreRefused) {
+    std::string ring;
+    for (uint32_t i = 0, x = 1; i < 3000; ++i) {
+        ring += std::string(i ? "," : "") + "[" + std::to_string((x = x * 1664525 + 1013904223) % 1000) + ",";
+        ring += std::to_string((x = x * 1664525 + 1013904223) / 4096 % 1000) + "]";
+    }
+    scratch_.write("star.geojson", R"({"type":"Polygon","coordinates":[[)" + ring + "]]}");
+    const Outcome run = quick("check " + grammar("start A -> footprint file(\"star.geojson\", 1) extrude 3m\n"));
+    EXPECT_EQ(run.code, 1) << run.out;
+    EXPECT_NE(run.out.find("crosses itself more than"), std::string::npos) << run.out;
+}
+
 TEST_F(Hostile, NumbersWithoutEndAreToldWhereTheyAre) {
     const auto told = [&](const std::string& body, const std::string& words, int code = 1) {
         const Outcome run = quick("build -q " + grammar(body) + " --resolution 16 -o " + path("x.ply"));
