@@ -1,25 +1,62 @@
 #!/usr/bin/env bash
-# Runs the fuzz targets over their corpora.  tests/fuzz/run.sh [SECONDS] [TARGET…]   (600 seconds each, all targets)
-# What is found on the way stays in build/fuzz/corpus, so that a later run goes on from there; an input that crashes, hangs
-# or takes more than 2 GB is written to build/fuzz and ends the run with an error.
+# Fuzzes.  tests/fuzz/run.sh [TIME] [TARGET…]   (10m each, all targets; TIME in seconds, or as 90s, 10m, 2h)
+#   mesh maps syntax                  libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, by clang++
+#   format check lower models edits incremental    inputs by number, through the tests of the Release build
+# Both go on where the last run ended: corpora stay in build/fuzz/corpus, and tests/fuzz/tally.txt holds how many inputs each
+# target has had. An input that crashes, hangs or takes more than 2 GB ends the run with an error.
 cd "$(dirname "$0")/../.."
 set -eu
-command -v clang++ >/dev/null || { echo "fuzzing needs clang++ with libFuzzer (apt-get install clang)" >&2; exit 1; }
-seconds="${1:-600}"
+time="${1:-10m}"
 [ $# -eq 0 ] || shift
-[ $# -gt 0 ] || set -- mesh syntax
-[ -f build/fuzz/build.ninja ] || cmake --preset fuzz >build/fuzz.log 2>&1
-for target in "$@"; do
-  case "$target" in
-    mesh) seeds="tests/fuzz/mesh" longest=4000 ;;
-    syntax) seeds="tests/bad tests/syntax grammar/std examples" longest=1500 ;;
-    *) echo "no fuzz target is called '$target'; there are mesh and syntax" >&2; exit 2 ;;
-  esac
+case "$time" in
+  *h) seconds=$((${time%h} * 3600)) ;;
+  *m) seconds=$((${time%m} * 60)) ;;
+  *) seconds="${time%s}" ;;
+esac
+[ $# -gt 0 ] || set -- mesh maps syntax format check lower models edits incremental
+tally=tests/fuzz/tally.txt
+
+had() { sed -n "s/^$1 //p" "$tally"; }
+count() {  # TARGET INPUTS
+  sed -i "s/^$1 .*/$1 $(($(had "$1") + $2))/" "$tally"
+  echo "$1: $2 inputs, nothing found; $(had "$1") in all"
+}
+
+coverage_guided() {  # TARGET LONGEST SEEDS…
+  command -v clang++ >/dev/null || { echo "fuzzing $1 needs clang++ with libFuzzer (apt-get install clang)" >&2; exit 1; }
+  target="$1" longest="$2"
+  shift 2
+  [ -f build/fuzz/build.ninja ] || cmake --preset fuzz >build/fuzz.log 2>&1
   ninja -C build/fuzz "fuzz_$target" >>build/fuzz.log
   mkdir -p "build/fuzz/corpus/$target"
-  # shellcheck disable=SC2086
   "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -timeout=5 -max_len="$longest" -rss_limit_mb=2048 -print_final_stats=1 \
-    -artifact_prefix=build/fuzz/ "build/fuzz/corpus/$target" $seeds 2>"build/fuzz/$target.log" ||
+    -artifact_prefix=build/fuzz/ "build/fuzz/corpus/$target" "$@" 2>"build/fuzz/$target.log" ||
     { tail -n 40 "build/fuzz/$target.log"; exit 1; }
-  echo "$target: $(sed -n 's/^stat::number_of_executed_units: *//p' "build/fuzz/$target.log") inputs in $seconds s, nothing found"
+  count "$target" "$(sed -n 's/^stat::number_of_executed_units: *//p' "build/fuzz/$target.log")"
+}
+
+by_number() {  # TARGET MODULE TEST INPUTS-A-ROUND
+  ninja -C build/release "test_$2" >build/fuzz.log
+  end=$(($(date +%s) + seconds)) done=0
+  while [ "$(date +%s)" -lt "$end" ]; do
+    SGM_FUZZ_FIRST=$(($(had "$1") + done)) SGM_FUZZ_MUTANTS="$4" "build/release/tests/$2/test_$2" --gtest_filter="$3" >build/fuzz.log 2>&1 ||
+      { grep -v '^\[' build/fuzz.log | head -n 60; exit 1; }
+    done=$((done + $4))
+  done
+  count "$1" "$done"
+}
+
+for target in "$@"; do
+  case "$target" in
+    mesh) coverage_guided mesh 4000 tests/fuzz/mesh ;;
+    maps) coverage_guided maps 2000 tests/fuzz/maps ;;
+    syntax) coverage_guided syntax 1500 tests/bad tests/syntax grammar/std examples ;;
+    format) by_number format syntax 'Fuzz.Mutants*' 20000 ;;
+    check) by_number check rules 'Fuzz.Mutants*' 6000 ;;
+    lower) by_number lower lower 'Fuzz.Mutants*' 4000 ;;
+    models) by_number models pipeline 'RandomModels.*' 200 ;;
+    edits) by_number edits document 'RandomEdits.KeepText*' 1000 ;;
+    incremental) by_number incremental pipeline 'Mixed.*' 100 ;;
+    *) echo "no fuzz target is called '$target'" >&2; exit 2 ;;
+  esac
 done
