@@ -185,7 +185,8 @@ Value evaluate(const Expr& expr, const Place& place) {
     switch (expr.kind) {
         case Kind::Scope:
             if (expr.index != 3) return Value::number(extentOf(expr, place), Unit::Metre);
-            return Value::number(place.tree ? area(footprintOf(place.scope, place.tree->footprints)) : 0, Unit::SquareMetre);
+            return Value::number(place.tree ? area(footprintOf(place.scope, place.tree->footprints)) : 0,
+                                 Unit::SquareMetre);
         case Kind::Here:
             return Value::number(place.scope.centre[static_cast<int>(expr.index)], Unit::Metre);
         case Kind::Map:
