@@ -147,6 +147,15 @@ Result<tiles::CellFigures> Bake::bakeCell(const Cell& cell, std::vector<tiles::S
                 places != placesOf_.end())
                 for (const uint32_t i : places->second) byObject[places_[i].object].push_back({&places_[i].part});
     for (auto& [object, places] : byObject) {
+        if (detailOf(cell.level) == Detail::Mass) {
+            auto box = library_.boxOf(object, *places.front().part);
+            if (!box.ok()) return box.error();
+            for (const tiles::CellPlace& place : places) {
+                box->part = place.part;
+                content.boxes.push_back(*box);
+            }
+            continue;
+        }
         if (const Status s = makeObject(object, cell.level, context); !s.ok()) return s.error();
         const std::string name = library_.nameOf(object, detailOf(cell.level));
         content.objects.push_back({"../../lib/" + name, request_.folder / "lib" / name,
@@ -176,7 +185,7 @@ Status Bake::makeObjects(const tiles::Share& share, Context& context) {
     for (size_t i = begin; i < end; ++i) {
         if (cancelled(context.progress)) return cancelledError();
         Context own{nullptr, context.threads};
-        for (int level = 0; level < std::min(request_.levels, 3); ++level)
+        for (int level = 0; level < std::min(request_.levels, 2); ++level)
             if (const Status s = makeObject(used_[i], level, own); !s.ok()) return s;
         tick(context.progress);
     }

@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The box around an object as twelve triangles; nothing where it has no solid.
-std::optional<tiles::LibraryObject> boxOf(const derive::Derivation& object) {
+std::optional<tiles::LibraryObject> solidBoxOf(const derive::Derivation& object) {
     const auto mass = derive::massOf(object);
     if (!mass) return std::nullopt;
     tiles::SurfacePiece box;
@@ -42,17 +42,23 @@ std::string BakedObjects::nameOf(uint32_t object, Detail detail) const {
 
 Status BakedObjects::make(uint32_t object, Detail detail, Context& context) {
     std::error_code ignored;
-    if (fs::exists(pathOf(object, detail), ignored)) return Done{};
+    if (detail == Detail::Mass || fs::exists(pathOf(object, detail), ignored)) return Done{};
     fs::create_directories(pathOf(object, detail).parent_path(), ignored);
-    return detail == Detail::Mass ? makeMass(object) : makeMeshes(object, context);
+    return makeMeshes(object, context);
 }
 
-Status BakedObjects::makeMass(uint32_t object) const {
-    auto mass = boxOf(*objects_[object].derivation);
+Result<tiles::CellBox> BakedObjects::boxOf(uint32_t object, const Part& place) const {
+    const PlacedModel& placed = objects_[object];
+    const auto mass = derive::massOf(*placed.derivation);
     if (!mass) return Error{Error::Kind::Internal, "the object has no solid"};
-    mass->name = objects_.nameOf(objects_[object]);
-    mass->values = objects_.valuesOf(objects_[object]);
-    return tiles::writeObject(*mass, packing_, pathOf(object, Detail::Mass));
+    const derive::Scope& box = mass->box;
+    const auto edge = [&](Vec3d axis) { return length(box.point(axis) - box.centre); };
+    return tiles::CellBox{&place,
+                          objects_.nameOf(placed),
+                          placed.derivation->materials[mass->material == derive::none ? 0 : mass->material],
+                          box.centre,
+                          {edge({1, 0, 0}), edge({0, 1, 0}), edge({0, 0, 1})},
+                          box.axes};
 }
 
 Status BakedObjects::makeMeshes(uint32_t object, Context& context) const {
@@ -71,7 +77,7 @@ Status BakedObjects::makeMeshes(uint32_t object, Context& context) const {
     made.pieces = tiles::coarsePiecesOf(mesh, meshed->provenance, coarseError_m());
     made.inColors = true;
     if (made.pieces.empty()) {  // all of it is thinner than the error
-        auto mass = boxOf(*placed.derivation);
+        auto mass = solidBoxOf(*placed.derivation);
         if (!mass) return Error{Error::Kind::Internal, "the object has no solid"};
         made.pieces = std::move(mass->pieces), made.materials = std::move(mass->materials);
     }

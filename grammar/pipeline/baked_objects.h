@@ -1,5 +1,5 @@
-// The library of a baked city: every object once, in three details, each a file under a key that follows from what
-// decides the object.
+// The library of a baked city: every object once, in two details, each a file under a key that follows from what
+// decides the object; and its box, for cells that are seen from afar.
 // Enters: placed models. Leaves: files. Assumes that several processes may make the same file at once: they write the
 // same bytes.
 #pragma once
@@ -15,7 +15,7 @@ namespace sgm::pipeline {
 enum class Detail {
     Finest,  ///< crisp, a primitive a material
     Coarse,  ///< simplified, in one primitive with colours
-    Mass     ///< its box
+    Mass     ///< its box, which is in no file
 };
 
 class BakedObjects {
@@ -30,11 +30,12 @@ public:
     /// Makes the object's file where it isn't there; Finest and Coarse come together, from one mesh. Error::Input for
     /// an object that can't be meshed.
     Status make(uint32_t object, Detail detail, Context& context);
+    /// The object's box for a place. Error::Internal for an object without a solid.
+    Result<tiles::CellBox> boxOf(uint32_t object, const Part& place) const;
     /// How far the coarse detail may be off, metres.
     double coarseError_m() const { return 1.5 * cell_m_; }
 
 private:
-    Status makeMass(uint32_t object) const;
     Status makeMeshes(uint32_t object, Context& context) const;
     std::filesystem::path pathOf(uint32_t object, Detail detail) const { return folder_ / nameOf(object, detail); }
 

@@ -76,6 +76,43 @@ public:
         return Done{};
     }
 
+    /// One cube for each kind and material, which every place stretches: far cells hold thousands of places.
+    void addBoxes() {
+        std::map<std::pair<std::string, std::string>, std::vector<const CellBox*>> groups;
+        for (const CellBox& box : content_.boxes) groups[{box.kind, asJson(box.material).dump()}].push_back(&box);
+        for (const auto& [key, boxes] : groups) {
+            std::vector<std::array<float, 3>> translations, scales;
+            std::vector<std::array<float, 4>> rotations;
+            std::vector<float> features;
+            for (const CellBox* box : boxes) {
+                const Pose& pose = box->part->pose;
+                const Mat3 axes = pose.axes * box->axes;
+                const Vec3d at = pose.origin - content_.centre + pose.axes * box->centre;
+                const auto q = mesh::quaternionOf(axes);
+                const Vec3f t = at.as<float>(), s = box->half.as<float>();
+                translations.push_back({t.x, t.y, t.z});
+                scales.push_back({s.x, s.y, s.z});
+                rotations.push_back({static_cast<float>(q[0]), static_cast<float>(q[1]), static_cast<float>(q[2]),
+                                     static_cast<float>(q[3])});
+                features.push_back(static_cast<float>(rows_.size()));
+                rows_.push_back(box->part);
+                for (int corner = 0; corner < 8; ++corner)
+                    take(at + axes * (box->half * Vec3d{corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0,
+                                                        corner & 4 ? 1.0 : -1.0}));
+            }
+            figures_.instances += boxes.size();
+            figures_.triangles += 12 * boxes.size();
+            const Json attributes{{"TRANSLATION", numbers(translations, "VEC3")},
+                                  {"ROTATION", numbers(rotations, "VEC4")},
+                                  {"SCALE", numbers(scales, "VEC3")},
+                                  {"_FEATURE_ID_0", numbers(features, "SCALAR")}};
+            addNode({{"name", key.first},
+                     {"mesh", cubeOf(boxes.front()->material)},
+                     {"extensions", instancing(attributes, boxes.size())},
+                     {"extras", {{"start", key.first}}}});
+        }
+    }
+
     CellFigures figures() const { return figures_; }
 
     Glb finish() {
@@ -111,15 +148,37 @@ private:
         return file_.addAccessor(file_.addView(list.data(), list.size() * sizeof(T)), 0, floatType, list.size(), type);
     }
 
+    static Json instancing(const Json& attributes, size_t count) {
+        return {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}},
+                {"EXT_instance_features",
+                 {{"featureIds", Json::array({{{"featureCount", count}, {"attribute", 0}, {"propertyTable", 0}}})}}}};
+    }
+
+    /// The mesh of a cube from -1 to 1 in that material.
+    size_t cubeOf(const Material& material) {
+        SurfacePiece cube;
+        for (int face = 0; face < 6; ++face) {
+            const double sign = face % 2 ? 1 : -1;
+            Vec3d out;
+            out[face / 2] = sign;
+            const Vec3d u{out.y, out.z, out.x}, v = cross(out, u);
+            const auto first = static_cast<uint32_t>(cube.positions.size());
+            for (const auto& [a, b] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
+                cube.positions.push_back((out + u * a + v * b).as<float>());
+                cube.normals.push_back(out.as<float>());
+            }
+            for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) cube.indices.push_back(first + corner);
+        }
+        json()["meshes"].push_back(
+            {{"name", "box"}, {"primitives", file_.addPieces({cube}, {material}, {}, false, Packing::None)}});
+        return json()["meshes"].size() - 1;
+    }
+
     Json nodeOf(const CellObject& object, const Library::Entry& held, size_t mesh, double step,
                 const Json& attributes) const {
         Json node{{"name", held.file.json["meshes"][0].value("name", "object")}, {"mesh", mesh}};
         if (step != 1) node["scale"] = {step, step, step};
-        node["extensions"] = {
-            {"EXT_mesh_gpu_instancing", {{"attributes", attributes}}},
-            {"EXT_instance_features",
-             {{"featureIds",
-               Json::array({{{"featureCount", object.places.size()}, {"attribute", 0}, {"propertyTable", 0}}})}}}};
+        node["extensions"] = instancing(attributes, object.places.size());
         node["extras"] = object.values;
         return node;
     }
@@ -227,6 +286,7 @@ Result<CellFigures> writeCell(const CellContent& content, Library& library, cons
     file.addGround();
     for (const CellObject& object : content.objects)
         if (const Status s = file.addObject(object, library); !s.ok()) return s.error();
+    file.addBoxes();
     const CellFigures figures = file.figures();
     if (figures.empty()) return figures;
     if (const Status s = writeGlb(file.finish(), path); !s.ok()) return s.error();

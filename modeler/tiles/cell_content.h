@@ -28,6 +28,15 @@ struct CellObject {
     std::vector<CellPlace> places;
 };
 
+/// A place whose object is shown as a box.
+struct CellBox {
+    const Part* part;  ///< as CellPlace has it
+    std::string kind;  ///< name of the object
+    Material material;
+    Vec3d centre, half;  ///< metres, in the object's frame
+    Mat3 axes;           ///< of the box: object from local
+};
+
 /// A cell's content in metres about `centre`.
 struct CellContent {
     Vec3d centre;
@@ -37,6 +46,7 @@ struct CellContent {
     QuantizationGrid groundGrid;      ///< the same places as those of the neighbours' grids on the common border
     std::vector<Material> materials;  ///< of the ground
     std::vector<CellObject> objects;
+    std::vector<CellBox> boxes;
 };
 
 /// What is told of a cell for the tileset and the manifest.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <mutex>
+#include <utility>
 
 namespace sgm::tiles {
 namespace {
@@ -220,6 +221,14 @@ size_t SurfaceBuffer::addIndices(const Joined& joined) {
 }
 
 Json SurfaceBuffer::addPieces(const std::vector<SurfacePiece>& pieces, const std::vector<Material>& materials,
+                              const QuantizationGrid& grid, bool inColors, std::optional<Packing> packing) {
+    const Packing own = std::exchange(packing_, packing.value_or(packing_));
+    Json primitives = addJoined(pieces, materials, grid, inColors);
+    packing_ = own;
+    return primitives;
+}
+
+Json SurfaceBuffer::addJoined(const std::vector<SurfacePiece>& pieces, const std::vector<Material>& materials,
                               const QuantizationGrid& grid, bool inColors) {
     Joined joined;
     for (const SurfacePiece& piece : pieces) {

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,9 +48,10 @@ public:
     size_t materialOf(nlohmann::ordered_json material);
     /// Adds pieces as primitives, one a piece, that share their vertices; the list of primitives. With a packing
     /// positions are places of the grid, which the node with the mesh has to scale and move. `inColors`: one primitive
-    /// with a colour a vertex instead, all rough alike.
+    /// with a colour a vertex instead, all rough alike. `packing`: another one than the file's.
     nlohmann::ordered_json addPieces(const std::vector<SurfacePiece>& pieces, const std::vector<Material>& materials,
-                                     const QuantizationGrid& grid, bool inColors = false);
+                                     const QuantizationGrid& grid, bool inColors = false,
+                                     std::optional<Packing> packing = {});
     /// What a node needs to show such positions in metres: translation and scale; empty without a packing.
     nlohmann::ordered_json placeOf(const QuantizationGrid& grid) const;
     /// Takes the views and accessors of another file, whose bytes stay there, as those of an external buffer.
@@ -65,12 +67,14 @@ private:
     struct Joined;
     size_t addPacked(const std::vector<uint8_t>& bytes, size_t stride, size_t count, const char* mode,
                      const char* filter, int target);
+    nlohmann::ordered_json addJoined(const std::vector<SurfacePiece>& pieces, const std::vector<Material>& materials,
+                                     const QuantizationGrid& grid, bool inColors);
     size_t addPositions(const Joined& joined, const QuantizationGrid& grid);
     size_t addNormals(const Joined& joined);
     size_t addColors(const Joined& joined, const std::vector<Material>& materials);
     size_t addIndices(const Joined& joined);
 
-    const Packing packing_;
+    Packing packing_;
     Glb glb_;
     size_t unpacked_ = 0;                      ///< bytes of buffer 1
     std::map<std::string, size_t> materials_;  ///< by their text

@@ -186,7 +186,7 @@ TEST_F(BakeProgram, EndsWithWordsWhereTheDiskIsFull) {
 TEST_F(BakeProgram, BakesACaveInCellsOfItsOwnGrid) {
     const std::string file = grammar(
         "terminal rock color #8a8074\n"
-        "start Hill -> rock size (400, 60, 300) - sphere size (300, 40, 120) - tube size (30, 500, 30) turn (0deg, "
+        "start Hill -> rock size (400, 60, 300) - sphere size (300, 40, 120) - cylinder size (30, 500, 30) turn (0deg, "
         "0deg, 90deg)\n");
     for (const char* task : {"2/2", "1/2"})
         ASSERT_EQ(sgm("bake " + file + " -q -o " + path("hill") + " --side 128 --cell 2 --tile " + task).code, 0);
