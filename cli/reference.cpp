@@ -93,10 +93,11 @@ std::string parameterText(const field::PrimitiveParameter& p) {
     if (p.kind == Kind::Choice) return fmt::format("one of {}", listed(p.choices));
     if (p.kind == Kind::File) return "a file's name, in quotes";
     if (p.kind == Kind::Rotation) return "a rotation: rotX(a), rotY(a), rotZ(a)";
+    if (p.kind == Kind::Point && p.optional) return "a point, or left out";
     const char* each = p.kind == Kind::PerId ? "one or four, " : "";
     const bool angle = p.kind == Kind::Angle;
     const double unit = angle ? 180 / 3.14159265358979323846 : 1;
-    const char* name = angle ? "deg" : p.kind == Kind::Length ? "m" : "";
+    const char* name = angle ? "deg" : p.kind == Kind::Length || p.kind == Kind::Point ? "m" : "";
     return fmt::format("{}{:.4g}{} in {:.4g}{}..{:.4g}{}", each, p.fallback * unit, name, p.lo * unit, name,
                        p.hi * unit, name);
 }

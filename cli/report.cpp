@@ -110,6 +110,11 @@ std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh
     json["pieces"] = support.pieces;
     json["floating"] = floatingFigures(model, support);
     json["missing"] = missingFigures(model, missing);
+    for (uint32_t i = 0; i < d.grammar->reports.size(); ++i) {
+        const derive::Reported r = d.reported(i);
+        json["reports"][d.grammar->reports[i].name] = {
+            {"count", r.count}, {"sum", r.sum}, {"least", r.least}, {"greatest", r.greatest}};
+    }
     if (cave) json["cave"] = caveJson(*cave);
     json["peak_memory_bytes"] = peakMemory_bytes();
     json["threads"] = threadCount(threads);

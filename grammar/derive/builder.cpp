@@ -201,6 +201,11 @@ void TreeBuilder::linkBond(uint32_t index, int end) {
     if (first == none || (b.directed && !tree().bonds[first].directed)) first = index;
 }
 
+const Surroundings& TreeBuilder::surroundings() {
+    if (!surroundings_) surroundings_.emplace(tree());
+    return *surroundings_;
+}
+
 void TreeBuilder::bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
     if (isReplaying())
         replayBond(a, jointA, b, jointB);

@@ -9,6 +9,7 @@
 #include "grammar/derive/derive.h"
 #include "grammar/derive/recording.h"
 #include "grammar/derive/series.h"
+#include "grammar/derive/surroundings.h"
 
 namespace sgm::derive {
 
@@ -94,6 +95,10 @@ public:
     Progress* progress() const { return progress_; }
     ShapeTree& tree() { return derivation_.tree; }
     std::span<const uint64_t> counts() const { return counts_; }
+    /// What stands around shapes, as it was when the generation began.
+    const Surroundings& surroundings();
+    /// A generation begins: what stands now counts.
+    void forgetSurroundings() { surroundings_.reset(); }
     /// What repetitions have drawn so far.
     SeriesDraws& series() { return series_; }
     /// Live shapes added since the last call.
@@ -135,6 +140,7 @@ private:
     std::vector<std::pair<ShapeId, ShapeId>> bound_;   ///< cutters and where they come from
     std::unordered_map<ShapeId, ShapeId> lastBefore_;  ///< by shape: what was put before it last
     SeriesDraws series_;
+    std::optional<Surroundings> surroundings_;
     std::optional<Error> failure_;
     uint64_t work_ = 0;
     uint64_t pieceBegan_ = 0;  ///< work when the piece began

@@ -49,6 +49,8 @@ double figureOf(const Derivation& d, Figure figure) {
             return static_cast<double>(placementsOf(d).size());
         case Figure::Objects:
             return static_cast<double>(d.objects.size());
+        case Figure::Report:
+            break;
     }
     return 0;
 }
@@ -77,7 +79,8 @@ Expr constantOf(Expr e, double n, std::string& told) {
 Expr withFigures(Expr e, const Derivation& d, std::string& told) {
     if (e.kind == Expr::Kind::Figure) {
         const auto figure = static_cast<Figure>(e.index);
-        const double n = figureOf(d, figure);
+        const double n =
+            figure == Figure::Report ? d.reported(static_cast<uint32_t>(e.value.num())).sum : figureOf(d, figure);
         Expr number = constantOf(std::move(e), n, told);
         if (figure == Figure::Floating && n > 0) told += ": " + floatersOf(d);
         return number;

@@ -168,7 +168,14 @@ void Interpreter::standAsHigh(const Element& e, const Place& place, EvaluatedAtt
     const SolidValue value = evaluateSolid(*solid, place);
     for (size_t i = 0; i < value.args.size(); ++i) {
         const field::PrimitiveParameter& parameter = value.primitive->parameters[i];
-        arguments.emplace_back().value[0] = std::clamp(value.args[i].num(), parameter.lo, parameter.hi);
+        field::Argument& argument = arguments.emplace_back();
+        for (size_t k = 0; k < 2; ++k)  // points have two numbers, all others are told by their first
+            argument.value[k] =
+                std::clamp(value.args[i].n[std::min<size_t>(k, value.args[i].count - 1u)], parameter.lo, parameter.hi);
+    }
+    if (const std::string fault = field::profileFault(*value.primitive, arguments); !fault.empty()) {
+        builder_.fail(Error::Kind::Input, fault, solid->span);
+        return;
     }
     const AttributeContext context{place, out};
     const plan::Footprint footprint = context.footprint();

@@ -42,6 +42,12 @@ struct Warning {
     std::string message, hint;
 };
 
+/// What shapes reported under one word.
+struct Reported {
+    uint64_t count = 0;
+    double sum = 0, least = 0, greatest = 0;
+};
+
 struct Derivation {
     std::shared_ptr<const rules::Grammar> grammar;
     ShapeTree tree;
@@ -69,6 +75,8 @@ struct Derivation {
     uint64_t floating() const;
     /// Where each group of floating solids begins, in tree order.
     std::vector<ShapeId> floatingShapes() const;
+    /// What shapes of this tree reported under a word, an index into Grammar::reports. O(shapes).
+    Reported reported(uint32_t report) const;
     /// Memory of the arrays, bytes.
     uint64_t memory() const;
 };

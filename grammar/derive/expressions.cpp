@@ -119,6 +119,18 @@ Value ofMap(const Expr& expr, const Place& place) {
     return map.formula ? evaluate(*map.formula, place) : rules::valueAt(map.picture, planPlaceOf(place));
 }
 
+/// What stands around the shape; a second run with other numbers would find it as the first one left it.
+Value ofSurroundings(Fn fn, const Expr& expr, const Place& place) {
+    if (!place.builder || place.host == none) return Value::boolean(false);
+    if (Recording* r = noting(place)) r->unfit();
+    const Surroundings& around = place.builder->surroundings();
+    if (fn == Fn::Covered) return Value::number(around.covered(*place.tree, place.host));
+    const auto symbol = static_cast<rules::SymbolId>(expr.args[0].value.num());
+    return Value::boolean(fn == Fn::Overlaps  ? around.overlaps(*place.tree, place.host, symbol)
+                          : fn == Fn::Touches ? around.touches(*place.tree, place.host, symbol)
+                                              : around.inside(*place.tree, place.host, symbol));
+}
+
 Value called(const Expr& expr, const Place& place) {
     const Fn fn = static_cast<Fn>(expr.index);
     if (fn == Fn::Bump || fn == Fn::Fbm) return ofPlace(fn, expr, place);
@@ -127,6 +139,8 @@ Value called(const Expr& expr, const Place& place) {
         const auto symbol = static_cast<size_t>(expr.args[0].value.num());
         return Value::number(symbol < place.counts.size() ? static_cast<double>(place.counts[symbol]) : 0);
     }
+    if (fn == Fn::Overlaps || fn == Fn::Touches || fn == Fn::Inside || fn == Fn::Covered)
+        return ofSurroundings(fn, expr, place);
     if (fn == Fn::If) return evaluate(expr.args[holds(expr.args[0], place) ? 1 : 2], place);
     std::vector<Value> args;
     args.reserve(expr.args.size());

@@ -42,6 +42,22 @@ uint64_t Derivation::terminals() const {
         std::count_if(tree.shapes.begin(), tree.shapes.end(), [](const Shape& s) { return s.solid != none; }));
 }
 
+Reported Derivation::reported(uint32_t report) const {
+    Reported r;
+    for (ShapeId s = tree.shapes.empty() ? none : 0; s != none; s = tree.next(s)) {
+        const Extras* extras = tree.extrasOf(s);
+        if (!extras) continue;
+        for (const auto& [index, value] : extras->reports) {
+            if (index != report) continue;
+            r.least = r.count == 0 ? value : std::min(r.least, value);
+            r.greatest = r.count == 0 ? value : std::max(r.greatest, value);
+            r.sum += value;
+            ++r.count;
+        }
+    }
+    return r;
+}
+
 uint64_t Derivation::overlaps() const {
     const auto bonded = bondedPlaces(tree);
     const auto spans = intervals(tree);

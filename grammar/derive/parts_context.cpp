@@ -5,6 +5,7 @@
 #include "grammar/derive/scope_footprint.h"
 #include "modeler/core/random.h"
 #include "modeler/plan/cut.h"
+#include "modeler/plan/edit.h"
 #include "modeler/plan/validate.h"
 
 namespace sgm::derive {
@@ -30,12 +31,36 @@ void PartsContext::place(PlacedObject object) {
     builder.extras(frame_.node).object = builder.derivation().objects.put(std::move(object));
 }
 
+std::vector<double> PartsContext::facesAlong(rules::SymbolId symbol, int axis) const {
+    startsOver();
+    TreeBuilder& builder = interpreter_.builder_;
+    const Scope& own = scope();
+    const Vec3d along = own.axes * Vec3d{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+    const Vec3d low = own.centre - along * (own.size[axis] / 2);
+    std::vector<double> faces;
+    for (const ShapeId s : builder.surroundings().shapesOf(symbol)) {
+        const Scope& other = builder.tree().shapes[s].scope;
+        const Vec3d axes[3] = {other.axes.x, other.axes.y, other.axes.z};
+        for (int i = 0; i < 3; ++i) {
+            if (std::abs(dot(axes[i], along)) < 1 - 1e-9) continue;
+            const double at = dot(other.centre - low, along), half = other.size[i] / 2;
+            faces.push_back(at - half);
+            faces.push_back(at + half);
+        }
+    }
+    return faces;
+}
+
 plan::Footprint PartsContext::footprint() const {
     return footprintOf(scope(), interpreter_.builder_.tree().footprints);
 }
 
 std::optional<Scope> PartsContext::over(Scope scope, const plan::Footprint& footprint, syntax::SourceSpan span) {
-    const auto index = interpreter_.builder_.tree().footprints.put(footprint, scope.half());
+    Footprints& footprints = interpreter_.builder_.tree().footprints;
+    auto index = footprints.put(footprint, scope.half());
+    if (!index.ok())  // what was cut off a bend may touch itself by a hair
+        if (const auto sound = plan::resolved(footprint); sound.ok() && !sound->empty())
+            index = footprints.put(*sound, scope.half());
     if (!index.ok()) {
         fail(index.error().message, span);
         return std::nullopt;

@@ -36,6 +36,11 @@ public:
     }
     /// The value as a whole number where `whole`, a range drawing one of its whole numbers.
     rules::Value evaluate(const rules::Expr& expr, uint64_t key, bool whole) const;
+    /// Where the faces of shapes of that symbol cross an axis of the scope, metres from its low end, as things stood
+    /// when the generation began; those alone that run square to the axis.
+    std::vector<double> facesAlong(rules::SymbolId symbol, int axis) const;
+    /// Counts a unit of work; false once something failed.
+    bool work() { return interpreter_.builder_.work(); }
     /// Puts an object of its own into the scope.
     void place(PlacedObject object);
     const Derivation& derivation() const { return interpreter_.builder_.derivation(); }

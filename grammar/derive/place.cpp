@@ -64,6 +64,7 @@ void Interpreter::annotate(const Element& e, Frame& frame, uint64_t key) {
     all.displace.insert(all.displace.end(), x.displace.begin(), x.displace.end());
     all.values.insert(all.values.end(), x.values.begin(), x.values.end());
     all.tags.insert(all.tags.end(), x.tags.begin(), x.tags.end());
+    all.reports.insert(all.reports.end(), x.reports.begin(), x.reports.end());
     if (!x.values.empty()) frame.place.valuesAt = builder_.tree().shapes[frame.node].valuesAt = frame.node;
 }
 
@@ -256,8 +257,10 @@ bool Interpreter::cutAbove(const Element& e, const Target& target, const Frame& 
 }
 
 bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Target& target, uint64_t key) {
+    if (e.at && e.at->each) return placeOnFaces(host, e, frame, target, key);
     ElementCache& facts = factsOf(e);
-    Place place = frame.place;
+    Meeting meeting{host, centreJoint, {}, frame.place};
+    Place& place = meeting.place;
     place.key = key;
     const bool whole = frame.wholeContent && !e.at && !e.on;
     if (whole && builder_.recording()) builder_.recording()->readsWorld();
@@ -268,7 +271,6 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
     place.valuesAt = builder_.tree().shapes[host].valuesAt;
     place.host = host;
 
-    uint32_t oursIndex = centreJoint;
     if (e.at) {
         const auto open = openJoints(*e.at, host, place);
         if (builder_.failed()) return false;
@@ -283,34 +285,42 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
             return true;
         }
         if (open.size() > 1) builder_.noteChance();
-        oursIndex = open[open.size() == 1 ? 0 : pick(combine(key, hashText("at")), open.size())];
+        meeting.ours = open[open.size() == 1 ? 0 : pick(combine(key, hashText("at")), open.size())];
     }
+    meeting.joint = builder_.tree().joint(host, meeting.ours);
+    if (whole || (stated && !e.at)) meeting.joint.point = place.scope.centre;
+    return join(e, frame, target, meeting);
+}
+
+/// Puts the newcomer where its joint meets ours, and bonds both.
+bool Interpreter::join(const Element& e, Frame& frame, const Target& target, const Meeting& meeting) {
+    ElementCache& facts = factsOf(e);
+    const Place& place = meeting.place;
     EvaluatedAttributes attributes;
     if (!evaluateAttributes(e, place, attributes)) return false;
     if (attributes.vanishes) return true;
     Mating mating;
-    mating.ours = builder_.tree().joint(host, oursIndex);
-    if (whole || (stated && !e.at)) mating.ours.point = place.scope.centre;
+    mating.ours = meeting.joint;
     mating.moved_m = attributes.moved_m;
     mating.overlap = attributes.overlap;
     const uint32_t theirs = theirJoint(e, facts, mating.ours, attributes.scope.axes, place);
     if (theirs == none) return false;
     mating.theirs = jointShares(theirs, facts.jointSet);
 
-    Shape shape = shapeOf(e, attributes, place, key);
+    Shape shape = shapeOf(e, attributes, place, place.key);
     shape.parent = target.node;
     shape.scope = mate(mating, attributes.scope.axes, attributes.scope.size);
     shape.scope.footprint = attributes.scope.footprint;
     remarkLostTurn(e, mating, attributes.scope.axes, place, shape.scope.axes);
     if (e.through != rules::none) {
         shape.valuesAt = place.valuesAt;
-        return cutAbove(e, target, frame, shape, oursIndex, theirs, host);
+        return cutAbove(e, target, frame, shape, meeting.ours, theirs, meeting.host);
     }
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
-    builder_.bond(host, oursIndex, id, theirs);
+    builder_.bond(meeting.host, meeting.ours, id, theirs);
     builder_.bondCoincidentFaces(id);
-    remember(e, frame, id, oursIndex);
+    remember(e, frame, id, meeting.ours);
     return fill(e, id, frame);
 }
 

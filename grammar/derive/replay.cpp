@@ -61,14 +61,20 @@ uint32_t TreeBuilder::put(Extras extras) {
     }
     Extras& known = all[index];
     const auto sameName = [](const auto& a, const auto& b) { return a.first == b.first; };
+    const auto sameReport = [](const auto& a, const auto& b) { return a.first == b.first; };
     if (known.tags != extras.tags ||
+        !std::equal(known.reports.begin(), known.reports.end(), extras.reports.begin(), extras.reports.end(),
+                    sameReport) ||
         !std::equal(known.values.begin(), known.values.end(), extras.values.begin(), extras.values.end(), sameName) ||
         known.clad.size() != extras.clad.size() || known.displace.size() != extras.displace.size())
         diverge();
     const bool looks = known.clad != extras.clad || known.displace != extras.displace;
     extrasChange_ = static_cast<uint8_t>((looks ? Recording::LookChanged : 0) |
                                          (known.values != extras.values ? Recording::Values : 0));
-    if (extrasChange_ != 0) known = std::move(extras);
+    if (extrasChange_ != 0)
+        known = std::move(extras);
+    else
+        known.reports = std::move(extras.reports);
     return index;
 }
 

@@ -53,13 +53,27 @@ bool Rewriter::mayMatchLater(ShapeId shape) const {
     return std::any_of(candidates.begin(), candidates.end(), [&](uint32_t r) { return interpreter_.readsWorld(r); });
 }
 
+/// Whether a rule for the shape comes after shapes that still live.
+bool Rewriter::waits(ShapeId shape) const {
+    const auto& rules = grammar_.symbols[builder_.tree().shapes[shape].symbol].rules;
+    return std::any_of(rules.begin(), rules.end(), [&](uint32_t r) {
+        const rules::SymbolId after = grammar_.rules[r].after;
+        return after != rules::none && liveSymbols_[after];
+    });
+}
+
 /// Chooses rules by the state at the generation's start; `waiting` keeps the shapes that may match later.
 std::vector<Rewriter::Decision> Rewriter::decide(std::vector<ShapeId>& waiting) {
     std::vector<Decision> decisions;
     std::vector<ShapeId> later;
+    builder_.forgetSurroundings();
     for (const ShapeId s : waiting) {
         const Shape& shape = builder_.tree().shapes[s];
         if (!shape.live) continue;
+        if (hasOrder_ && waits(s)) {
+            later.push_back(s);
+            continue;
+        }
         builder_.beginPiece({.kind = Piece::Kind::Choice, .shape = s});
         if (!builder_.work()) return {};
         const uint32_t rule = choose(s);
@@ -76,11 +90,27 @@ std::vector<Rewriter::Decision> Rewriter::decide(std::vector<ShapeId>& waiting) 
     return decisions;
 }
 
+void Rewriter::noteLive(const std::vector<ShapeId>& waiting) {
+    if (!hasOrder_) return;
+    liveSymbols_.assign(grammar_.symbols.size(), false);
+    for (const ShapeId s : waiting)
+        if (builder_.tree().shapes[s].live) liveSymbols_[builder_.tree().shapes[s].symbol] = true;
+}
+
 void Rewriter::automatic() {
     builder_.takeLive();
     std::vector<ShapeId> waiting = live();
+    hasOrder_ = std::any_of(grammar_.rules.begin(), grammar_.rules.end(),
+                            [](const Rule& rule) { return rule.after != rules::none; });
+    if (Recording* r = builder_.recording(); r && hasOrder_) r->unfit();  // who lives then isn't recorded
     for (uint32_t generation = 1; !builder_.failed(); ++generation) {
-        const auto decisions = decide(waiting);
+        noteLive(waiting);
+        auto decisions = decide(waiting);
+        if (decisions.empty() && hasOrder_ &&
+            !builder_.failed()) {  // what lives has no rule that matches: none waits for it
+            liveSymbols_.assign(grammar_.symbols.size(), false);
+            decisions = decide(waiting);
+        }
         if (decisions.empty()) return;
         for (const Decision& d : decisions) {
             const Application& a = d.application;

@@ -50,6 +50,8 @@ private:
     uint32_t choose(ShapeId shape);
     uint32_t draw(ShapeId shape, const std::vector<uint32_t>& rules);
     bool mayMatchLater(ShapeId shape) const;
+    bool waits(ShapeId shape) const;
+    void noteLive(const std::vector<ShapeId>& waiting);
     std::vector<Decision> decide(std::vector<ShapeId>& waiting);
     void apply(Application application, uint32_t generation);
     bool stillMatches(Application application);
@@ -58,6 +60,8 @@ private:
     const rules::Grammar& grammar_;
     Interpreter interpreter_;
     std::vector<Application> applied_;
+    bool hasOrder_ = false;          ///< some rule says `after`
+    std::vector<bool> liveSymbols_;  ///< by symbol: a live shape of it was waiting when the generation began
 };
 
 }  // namespace sgm::derive

@@ -13,10 +13,15 @@ using rules::Rule;
 
 namespace {
 
-bool asksForCount(const rules::Expr& e) {
-    if (e.kind == rules::Expr::Kind::Call && static_cast<rules::Fn>(e.index) == rules::Fn::Count) return true;
+/// Whether other shapes decide about the value.
+bool asksForOthers(const rules::Expr& e) {
+    using rules::Fn;
+    const auto fn = static_cast<Fn>(e.index);
+    const bool others =
+        fn == Fn::Count || fn == Fn::Overlaps || fn == Fn::Touches || fn == Fn::Inside || fn == Fn::Covered;
+    if (e.kind == rules::Expr::Kind::Call && others) return true;
     for (const rules::Expr& arg : e.args)
-        if (asksForCount(arg)) return true;
+        if (asksForOthers(arg)) return true;
     return false;
 }
 
@@ -36,7 +41,8 @@ Interpreter::Interpreter(TreeBuilder& builder, std::span<const rules::Value> par
     for (const Rule& rule : grammar_.rules) {
         RuleInfo facts;
         facts.hash = hashText(rule.name);
-        facts.readsWorld = rule.beside != rules::none || (rule.when && asksForCount(*rule.when));
+        facts.readsWorld =
+            rule.beside != rules::none || rule.after != rules::none || (rule.when && asksForOthers(*rule.when));
         facts_.push_back(facts);
     }
 }
@@ -107,7 +113,7 @@ bool Interpreter::canGrow(const rules::Body& body, ShapeId host, const Place& pl
         for (const Element& e : sibling) {
             if (e.kind == Element::Kind::Let) return true;  // a joint may hang on its value
             if (e.kind != Element::Kind::Shape || e.op == rules::Operator::None) continue;
-            if (!e.at || e.on) return true;
+            if (!e.at || e.on || e.at->each) return true;
             if (!openJoints(*e.at, host, place).empty()) return true;
             asked = true;
         }

@@ -87,8 +87,11 @@ struct Extras {
     std::vector<Displacement> displace;  ///< acts on the node's whole content
     std::vector<std::pair<std::string, rules::Value>> values;  ///< `with`
     std::vector<std::string> tags;
-    uint32_t object = none;  ///< index into Derivation::objects: what `place` puts here
-    bool empty() const { return clad.empty() && displace.empty() && values.empty() && tags.empty() && object == none; }
+    std::vector<std::pair<uint32_t, double>> reports;  ///< by index in Grammar::reports
+    uint32_t object = none;                            ///< index into Derivation::objects: what `place` puts here
+    bool empty() const {
+        return clad.empty() && displace.empty() && values.empty() && tags.empty() && reports.empty() && object == none;
+    }
 };
 
 /// A node of the shape tree. Its field is its own solid combined with its children in order.

@@ -136,6 +136,7 @@ private:
             case ArgumentType::Shape:
                 return Want::Host;
             case ArgumentType::Axis:
+            case ArgumentType::Cut:
                 return Want::Axis;
             case ArgumentType::Plan:
                 return Want::Plan;

@@ -129,17 +129,26 @@ private:
         }
     }
 
+    void modules(const std::vector<syntax::LsystemDecl::Module>& all) {
+        for (const auto& module : all)
+            for (const Expr& arg : module.args) expr(arg);
+    }
     void lsystem(const syntax::LsystemDecl& d) {
         define(NameKind::Lsystem, d.name, d.span);
         for (const auto& s : d.settings) expr(s.value);
-        for (const auto& p : d.productions)
+        modules(d.axiomModules);
+        for (const auto& p : d.productions) {
+            modules(p.modules);
+            if (p.when) expr(*p.when);
             if (p.weight) expr(*p.weight);
+        }
     }
 
     void rule(const syntax::RuleDecl& d) {
         define(NameKind::Rule, d.name, d.span);
         define(NameKind::Symbol, d.symbol, d.span);
         use(NameKind::Symbol, d.beside);
+        use(NameKind::Symbol, d.after);
         for (const auto* e : {&d.when, &d.weight, &d.repeat})
             if (*e) expr(**e);
         body(d.body);

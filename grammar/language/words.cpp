@@ -71,7 +71,10 @@ constexpr Keyword valueTable[] = {
     {"sides", "`+x -x +z -z`"},
     {"last", "`on last`: the newest shape of the chain."},
     {"any", "`on any(d)`: one drawn among the shapes placed toward `d` in the step before."},
-    {"each", "`on each(Name)`: every shape of that name that the matched one holds."},
+    {"each",
+     "`on each(Name)`: every shape of that name that the matched one holds. `at each(side)`: every such face of a "
+     "block or roof: "
+     "side, front, back, left, right, court, a tag; corner, slope, eave, gable, apex."},
     {"free", "`at free(+x, +z)`: one of these joints that nothing has met, drawn by the seed."},
     {"centre", "The joint at the centre: `to centre` lays a newcomer's centre on our joint."},
     {"scope", "The size of the matched shape's scope: `scope.x`."},

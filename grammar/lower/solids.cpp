@@ -30,6 +30,7 @@ size_t componentsOf(field::ParameterKind kind) {
     if (kind == field::ParameterKind::File) return 0;
     if (kind == field::ParameterKind::Rotation) return 9;
     if (kind == field::ParameterKind::PerId) return 4;
+    if (kind == field::ParameterKind::Point) return 2;
     return kind == field::ParameterKind::Vector ? 3 : 1;
 }
 

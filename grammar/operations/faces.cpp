@@ -7,10 +7,10 @@
 
 #include "grammar/derive/parts_context.h"
 #include "grammar/operations/operations.h"
-#include "grammar/operations/plan_edges.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/operation_checker.h"
 #include "modeler/core/random.h"
+#include "modeler/plan/edge_words.h"
 #include "modeler/plan/edit.h"
 #include "modeler/plan/plates.h"
 
@@ -71,7 +71,7 @@ const Part* findPart(const Parts& faces, std::string_view label) {
 const Part* partOf(const Parts& faces, const plan::Footprint& footprint, const PlacedEdge& edge) {
     for (const Part& part : faces.parts)
         if (part.label != "top" && part.label != "bottom" && part.label != "rest" &&
-            isEdgeCalled(footprint, edge, part.label))
+            plan::isEdgeCalled(footprint, edge, part.label))
             return &part;
     return nullptr;
 }

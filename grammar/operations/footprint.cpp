@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "grammar/operations/operations.h"
-#include "grammar/operations/plan_edges.h"
 #include "grammar/operations/plan_expressions.h"
+#include "modeler/plan/edge_words.h"
 #include "modeler/plan/edit.h"
 
 namespace sgm::operations {
@@ -22,8 +22,8 @@ constexpr double most_m = 1e5;
 
 constexpr OperationArgument footprintArguments[] = {
     {"plan", ArgumentType::Plan,
-     "rect, ell, tee, yard, ring, ngon, round, arc, outline((x, z), …), file(\"lots.geojson\", n), an lsystem, or (a + "
-     "b), (a - b) of them"}};
+     "rect, ell, tee, yard, ring, ngon, round, arc, outline((x, z), …), file(\"lots.geojson\", n), an lsystem, "
+     "walls(lsystem, width), walls(width, (x, z), …), or (a + b), (a - b) of them"}};
 constexpr OperationArgument extrudeArguments[] = {
     {"height", ArgumentType::Length, "metres above the foot of the scope"}};
 constexpr OperationArgument offsetArguments[] = {{"distance", ArgumentType::Length, "outward; inward where negative"}};
@@ -103,7 +103,7 @@ void applySetback(AttributeContext& context, const Attribute& attribute) {
     for (const plan::PlacedEdge& edge : plan::edgesOf(footprint)) {
         const auto& words = attribute.plan->words;
         const auto word = std::find_if(words.begin(), words.end(),
-                                       [&](const std::string& w) { return isEdgeCalled(footprint, edge, w); });
+                                       [&](const std::string& w) { return plan::isEdgeCalled(footprint, edge, w); });
         distances.push_back(
             word == words.end()
                 ? 0

@@ -29,7 +29,10 @@ constexpr double most_m = 1e6;
 
 constexpr OperationArgument atArguments[] = {
     {"ours", ArgumentType::Joint,
-     "our joint: a face, centre, a declared name, free(…) or the variable of 'for d in axes'"}};
+     "our joint: a face, centre, a declared name, free(…) or the variable of 'for d in axes'; each(…): on every one of "
+     "those faces of a block or roof: a word for edges (side, front, court, a tag), or corner, slope, eave, gable, "
+     "apex, "
+     "each(slope, front) those of such edges"}};
 constexpr OperationArgument toArguments[] = {
     {"theirs", ArgumentType::Joint,
      "the newcomer's joint; the opposite face unless said; centre puts its centre on our joint"}};
@@ -62,13 +65,41 @@ void note(OperationChecker& checker, const syntax::Attribute& written) {
     checker.add(std::move(attribute));
 }
 
+/// each(side), each(slope, front)
+rules::FaceChoice readFaces(OperationChecker& checker, const Written& e) {
+    using Kind = rules::FaceChoice::Kind;
+    constexpr std::pair<std::string_view, Kind> kinds[] = {{"corner", Kind::Corner},
+                                                           {"slope", Kind::Slope},
+                                                           {"eave", Kind::Eave},
+                                                           {"gable", Kind::Gable},
+                                                           {"apex", Kind::Apex}};
+    rules::FaceChoice faces{Kind::Side, "side"};
+    const bool words =
+        std::all_of(e.args.begin(), e.args.end(), [](const Written& arg) { return arg.kind == Written::Kind::Name; });
+    if (!words || e.args.empty() || e.args.size() > 2) {
+        checker.error(e.span, "'each' takes the word of the faces to grow on, and maybe one for their edges",
+                      "write 'each(side)', 'each(front)', 'each(corner)', 'each(slope)' or 'each(slope, front)'");
+        return faces;
+    }
+    const auto kind =
+        std::find_if(std::begin(kinds), std::end(kinds), [&](const auto& k) { return k.first == e.args[0].text; });
+    if (kind != std::end(kinds)) faces.kind = kind->second;
+    if (kind == std::end(kinds) || e.args.size() == 2) faces.word = e.args.back().text;
+    if (kind == std::end(kinds) && e.args.size() == 2 && e.args[0].text != "side")
+        checker.error(e.args[0].span, fmt::format("'{}' is no kind of face", e.args[0].text),
+                      "before a word for edges stands side, corner, slope, eave, gable or apex");
+    return faces;
+}
+
 JointChoice readJoints(OperationChecker& checker, const syntax::Attribute& written) {
     JointChoice choice;
     choice.span = written.span;
     checker.beginDraws(std::string(written.operation->name));
     const Written& e = written.args[0];
     choice.free = isCalled(e, "free");
-    if (!choice.free)
+    if (e.kind == Written::Kind::Call && e.text == "each")
+        choice.each = readFaces(checker, e);
+    else if (!choice.free)
         choice.joints.push_back(checker.joint(e));
     else
         for (const Written& candidate : e.args) choice.joints.push_back(checker.joint(candidate));
@@ -84,9 +115,13 @@ void checkTo(OperationChecker& checker, const syntax::Attribute& written) {
     note(checker, written);
     if (written.args.empty()) return;
     JointChoice choice = readJoints(checker, written);
-    if (choice.free)
-        checker.error(written.args[0].span, "the newcomer's joints are all free: name one",
+    if (choice.free || choice.each) {
+        checker.error(written.args[0].span,
+                      choice.free ? "the newcomer's joints are all free: name one"
+                                  : "the newcomer comes with one of its joints: name it",
                       "write 'to centre' or 'to +y'");
+        return;
+    }
     checker.element().to = std::move(choice);
 }
 

@@ -11,6 +11,7 @@
 #include "grammar/rules/make.h"
 #include "modeler/core/random.h"
 #include "modeler/plan/edit.h"
+#include "modeler/plan/plates.h"
 
 namespace sgm::operations {
 namespace {
@@ -122,6 +123,31 @@ void checkOutline(OperationChecker& checker, const Written& e, PlanExpr& plan) {
         checker.error(e.span, "an outline has three points or more", "write 'outline((0, 0), (8, 0), (8, 6))'");
 }
 
+/// walls(Plan, .25m); walls(.3m, (0, 0), (8, 0), (8, 6))
+bool checkWalls(OperationChecker& checker, const Written& e, PlanExpr& plan) {
+    plan.kind = PlanExpr::Kind::Walls;
+    plan.index = rules::none;
+    std::vector<const Written*> given;
+    for (size_t i = 0; i < e.args.size(); ++i)
+        if (e.argNames[i].empty() || !checkPlacement(checker, e, i, plan)) given.push_back(&e.args[i]);
+    const auto refuse = [&] {
+        checker.error(e.span, "'walls' takes an lsystem and a width, or a width and two points or more",
+                      "write 'walls(Plan, .25m)' or 'walls(.3m, (0, 0), (8, 0), (8, 6))'");
+        return false;
+    };
+    const auto lsystem =
+        !given.empty() && given[0]->kind == Written::Kind::Name ? checker.findLsystem(given[0]->text) : std::nullopt;
+    if (lsystem) {
+        plan.index = *lsystem;
+        given.erase(given.begin());
+    }
+    if (given.empty() || (lsystem ? given.size() != 1 : given.size() < 3)) return refuse();
+    checker.beginDraws("footprint.walls");
+    plan.args.push_back(checker.expression(*given[0], Want::Length, "the width of 'walls'"));
+    for (size_t i = 1; i < given.size(); ++i) plan.args.push_back(checkPoint(checker, *given[i], nullptr));
+    return true;
+}
+
 /// file("lots.geojson", n)
 bool checkFile(OperationChecker& checker, const Written& e, PlanExpr& plan) {
     plan.kind = PlanExpr::Kind::File;
@@ -156,6 +182,7 @@ bool checkInto(OperationChecker& checker, const Written& e, PlanExpr& plan) {
         return true;
     }
     if (e.kind == Written::Kind::Call && e.text == "file") return checkFile(checker, e, plan);
+    if (e.kind == Written::Kind::Call && e.text == "walls") return checkWalls(checker, e, plan);
     plan.row = rules::findPlan(e.text);
     if (plan.row && (e.kind == Written::Kind::Call || e.kind == Written::Kind::Name)) {
         checkCall(checker, e, plan);
@@ -167,7 +194,7 @@ bool checkInto(OperationChecker& checker, const Written& e, PlanExpr& plan) {
         return true;
     }
     if (e.kind == Written::Kind::Error) return false;
-    std::vector<std::string> known{"outline", "file"};
+    std::vector<std::string> known{"outline", "file", "walls"};
     for (const rules::PlanRow& row : rules::planRows()) known.emplace_back(row.name);
     for (const rules::Lsystem& lsystem : checker.grammar().lsystems) known.push_back(lsystem.name);
     const std::string near = checker.nearest(e.text, known);
@@ -184,6 +211,23 @@ plan::Vec2 pointOf(const AttributeContext& context, const Expr& e) {
 
 Result<DrawnPlan> drawLsystem(const AttributeContext& context, const PlanExpr& plan) {
     auto drawn = derive::drawOutline(context.grammar().lsystems[plan.index], context.place);
+    if (!drawn.ok()) return drawn.error();
+    return DrawnPlan{std::move(*drawn), false};
+}
+
+Result<DrawnPlan> drawWallsOf(const AttributeContext& context, const PlanExpr& plan) {
+    const double width_m = context.number(plan.args[0]);
+    if (plan.index != rules::none) {
+        auto drawn = derive::drawWalls(context.grammar().lsystems[plan.index], context.place, width_m);
+        if (!drawn.ok()) return drawn.error();
+        return DrawnPlan{std::move(*drawn), false};
+    }
+    plan::Ring chain;
+    for (size_t i = 1; i < plan.args.size(); ++i) chain.points.push_back(pointOf(context, plan.args[i]));
+    const bool isClosed = chain.size() > 3 && chain.points.front() == chain.points.back();
+    if (isClosed) chain.points.pop_back();
+    chain.edges.resize(chain.size());
+    auto drawn = plan::band(chain, {""}, width_m, isClosed);
     if (!drawn.ok()) return drawn.error();
     return DrawnPlan{std::move(*drawn), false};
 }
@@ -239,6 +283,7 @@ Result<DrawnPlan> draw(const AttributeContext& context, const PlanExpr& plan) {
                               : plan.kind == PlanExpr::Kind::Outline ? Result<DrawnPlan>(drawPoints(context, plan))
                               : plan.kind == PlanExpr::Kind::Lsystem ? drawLsystem(context, plan)
                               : plan.kind == PlanExpr::Kind::File    ? drawFile(context, plan)
+                              : plan.kind == PlanExpr::Kind::Walls   ? drawWallsOf(context, plan)
                                                                      : drawParts(context, plan);
     if (!drawn.ok()) return drawn;
     if (plan.turn) drawn->footprint = plan::turned(drawn->footprint, context.number(*plan.turn));

@@ -1,10 +1,11 @@
-// displace, tag, with: what acts on all that a shape holds.
+// displace, tag, report, with: what acts on all that a shape holds.
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "grammar/derive/attribute_context.h"
 #include "grammar/operations/operations.h"
+#include "grammar/rules/checker.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/operation_checker.h"
 #include "grammar/rules/words.h"
@@ -28,6 +29,9 @@ constexpr OperationArgument displaceArguments[] = {
 constexpr OperationArgument tagArguments[] = {{"tag", ArgumentType::Name, "a word"}};
 constexpr OperationArgument withArguments[] = {{"name", ArgumentType::Name, "the value's name, followed by '='"},
                                                {"value", ArgumentType::Number, "its value, of any type"}};
+
+constexpr OperationArgument reportArguments[] = {{"name", ArgumentType::Name, "what is summed under this word"},
+                                                 {"value", ArgumentType::Number, "the shape's number, of any unit"}};
 
 /// Arguments of a checked `displace`.
 enum : size_t { amplitudeAt, frequencyAt, octavesAt, fbmAt };
@@ -107,6 +111,25 @@ void applyWith(AttributeContext& context, const Attribute& attribute) {
     context.out.extras.values.emplace_back(attribute.args[0].value.text, context.evaluate(attribute.args[1]));
 }
 
+void checkReport(OperationChecker& checker, const syntax::Attribute& written) {
+    if (written.args.size() != 2) return;
+    Attribute out;
+    out.operation = written.operation;
+    out.span = written.span;
+    checker.beginDraws("report " + written.args[0].text);
+    rules::Typed value = checker.value(written.args[1]);
+    const auto index = checker.report(written.args[0], value);
+    if (!index) return;
+    out.args.push_back(rules::makeConstant(written.args[0].span, rules::Value::number(*index)));
+    out.args.push_back(std::move(value.expr));
+    checker.add(std::move(out));
+}
+
+void applyReport(AttributeContext& context, const Attribute& attribute) {
+    context.out.extras.reports.emplace_back(static_cast<uint32_t>(attribute.args[0].value.num()),
+                                            context.number(attribute.args[1]));
+}
+
 }  // namespace
 
 constinit const Operation displace{
@@ -129,6 +152,21 @@ constinit const Operation tag{
     .repeatable = true,
     .beforeShape = true,
     .apply = applyTag,
+};
+
+constinit const Operation report{
+    .name = "report",
+    .doc =
+        "Reports a number of the shape under a word. Sums are told by 'sgm check' and '--report', and a check may ask "
+        "for "
+        "them by that word.",
+    .example = "Block report gfa (scope.area * 4)",
+    .arguments = reportArguments,
+    .phase = Phase::Whole,
+    .repeatable = true,
+    .beforeShape = true,
+    .check = checkReport,
+    .apply = applyReport,
 };
 
 constinit const Operation with{

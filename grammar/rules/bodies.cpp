@@ -330,14 +330,18 @@ void Checker::rule(const syntax::RuleDecl& decl) {
     if (out.weight)
         if (const auto weight = fold(*out.weight, defaults_); weight && weight->num() < 0)
             diagnostics_.error(out.weight->span, fmt::format("a weight is no less than 0, not {}", toText(*weight)));
-    if (!decl.beside.empty()) {
-        const auto beside = symbols_.find(decl.beside.text);
-        if (beside == symbols_.end())
-            unknown(decl.beside.span, decl.beside.text, fmt::format("there is no shape called '{}'", decl.beside.text),
-                    nearest(decl.beside.text, symbolNames(false)));
-        else
-            out.beside = beside->second;
-    }
+    const auto symbolOf = [&](const syntax::Name& name) {
+        if (name.empty()) return none;
+        const auto symbol = symbols_.find(name.text);
+        if (symbol != symbols_.end()) return symbol->second;
+        unknown(name.span, name.text, fmt::format("there is no shape called '{}'", name.text),
+                nearest(name.text, symbolNames(false)));
+        return none;
+    };
+    out.beside = symbolOf(decl.beside);
+    out.after = symbolOf(decl.after);
+    if (out.after == out.symbol && out.after != none)
+        diagnostics_.error(decl.after.span, fmt::format("'{}' would wait for itself", decl.after.text));
     Place place(out.repeat ? Place::Where::Chain : Place::Where::Body);
     if (out.repeat) {
         out.stepLocal = place.frame++;

@@ -181,6 +181,10 @@ private:
     // lsystems.cpp
     void declareLsystem(const syntax::LsystemDecl& decl);
     void lsystem(const syntax::LsystemDecl& decl);
+    void production(const syntax::LsystemDecl::Production& written, Lsystem& out);
+    void modules(Place& place, const std::vector<syntax::LsystemDecl::Module>& written,
+                 std::vector<Lsystem::Module>& out);
+    char letter(const syntax::Name& name);
 
     // maps.cpp
     void declareMap(const syntax::MapDecl& decl);

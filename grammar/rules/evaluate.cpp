@@ -9,6 +9,12 @@
 namespace sgm::rules {
 namespace {
 
+/// Whether more than arguments decide about the value: the shape, those around it, or the place.
+bool dependsOnPlace(Fn fn) {
+    constexpr Fn all[] = {Fn::Count, Fn::Bump, Fn::Fbm, Fn::Overlaps, Fn::Touches, Fn::Inside, Fn::Covered};
+    return std::find(std::begin(all), std::end(all), fn) != std::end(all);
+}
+
 constexpr size_t maxComponents = 6;
 
 bool isVector(const Value& v) { return v.kind == Value::Kind::Vector; }
@@ -236,6 +242,10 @@ Value applyFunction(Fn fn, std::span<const Value> a) {
             return Value::number(a[0].units[0] == Unit::Share ? x * y : x, Unit::Metre);
         case Fn::Bump:
         case Fn::Fbm:
+        case Fn::Overlaps:
+        case Fn::Touches:
+        case Fn::Inside:
+        case Fn::Covered:
             return Value::number(0);
         case Fn::Count:
             return whole(Value::number(0));
@@ -296,8 +306,7 @@ std::optional<Value> fold(const Expr& expr, std::span<const Value> params) {
         case Expr::Kind::Unary:
         case Expr::Kind::Binary:
         case Expr::Kind::Call:
-            if (const Fn fn = static_cast<Fn>(expr.index); fn == Fn::Count || fn == Fn::Bump || fn == Fn::Fbm)
-                return std::nullopt;
+            if (const Fn fn = static_cast<Fn>(expr.index); dependsOnPlace(fn)) return std::nullopt;
             return applyFunction(static_cast<Fn>(expr.index), args);
         default:
             return std::nullopt;

@@ -89,15 +89,20 @@ enum class Fn : uint32_t {
     RotY,
     RotZ,  ///< a Rotation from an angle
     Rgb,
-    Bump,   ///< of the place: bump((x, z), radius)
-    Fbm,    ///< of the place: fbm(size, octaves [, seed])
+    Bump,      ///< of the place: bump((x, z), radius)
+    Fbm,       ///< of the place: fbm(size, octaves [, seed])
+    Overlaps,  ///< whether another shape of a name shares volume with this one; args[0] as of Count
+    Touches,   ///< whether one meets it or shares volume with it
+    Inside,    ///< whether one holds it whole
+    Covered,   ///< the share of its outer face (+z) at or in other solids
     Count,  ///< number of live or derived shapes of a symbol: count(Name); args[0] is a Word whose n[0] is the SymbolId
     Metres,  ///< of a measure and the scope's extent: shares become metres, bare numbers are metres
 };
 /// What `check … expect` may ask of a derivation.
 // clang-format off
 enum class Figure : uint32_t { Bonds, Overlaps, Shapes, Terminals, Classic, Morphic, Floating, Roads, Blocks, Lots,
-                               Places, Objects };  ///< Places: where `place` puts objects; Objects: different ones
+                               Places, Objects, Report };  ///< Places: where `place` puts objects; Objects: different
+                                                           ///< ones; Report: the sum of value.n[0] in Grammar::reports
 // clang-format on
 
 }  // namespace sgm::rules

@@ -11,6 +11,7 @@
 #include "grammar/rules/checker.h"
 #include "grammar/rules/color.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/figures.h"
 #include "grammar/rules/functions.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/words.h"
@@ -23,9 +24,6 @@ using Written = syntax::Expr;
 using Where = Place::Where;
 
 constexpr std::array<std::string_view, 7> axisWords{"+x", "-x", "+y", "-y", "+z", "-z", "centre"};
-constexpr std::array<std::string_view, 12> figureWords{"bonds",   "overlaps", "shapes",   "terminals",
-                                                       "classic", "morphic",  "floating", "roads",
-                                                       "blocks",  "lots",     "places",   "objects"};
 constexpr std::array<std::string_view, 12> colorWords{"red",   "green", "blue", "yellow", "orange", "brown",
                                                       "black", "white", "grey", "gray",   "purple", "pink"};
 
@@ -159,11 +157,11 @@ Typed Checker::unknownName(const Place& place, const Written& e) {
     for (const auto& [let, constant] : lets_) known.push_back(let);
     for (const auto& [map, index] : maps_) known.push_back(map);
     known.insert(known.end(), withNames_.begin(), withNames_.end());
-    if (place.where == Where::Expect) known.assign(figureWords.begin(), figureWords.end());
+    if (place.where == Where::Expect) known = figureNames(grammar_);
     std::string hint = nearest(e.text, known);
     if (e.text == "i") hint = "'i' counts the steps inside a rule with 'repeat'";
     if (place.where == Where::Expect && hint.empty())
-        hint = fmt::format("a check may ask for {} and count(Name)", fmt::join(figureWords, ", "));
+        hint = fmt::format("a check may ask for {} and count(Name)", fmt::join(figureNames(grammar_), ", "));
     if (std::find(colorWords.begin(), colorWords.end(), e.text) != colorWords.end() && hint.empty())
         hint = "a colour is written #rrggbb, as #c8b090";
     if (symbols_.contains(e.text)) return failed(e.span, fmt::format("'{}' is a shape, not a value", e.text));
@@ -184,14 +182,12 @@ Typed Checker::name(Place& place, const Written& e) {
     if (e.text == "true" || e.text == "false") return makeTyped(e.span, Value::boolean(e.text == "true"));
     Typed result;
     result.expr.span = e.span;
-    if (place.where == Where::Expect) {
-        const auto figure = std::find(figureWords.begin(), figureWords.end(), e.text);
-        if (figure != figureWords.end()) {
-            result.expr.kind = Expr::Kind::Figure;
-            result.expr.index = static_cast<uint32_t>(figure - figureWords.begin());
-            result.type = Type::number(Unit::None, true);
-            return result;
-        }
+    if (place.where == Where::Expect)
+        if (auto figure = findFigure(grammar_, e)) return std::move(*figure);
+    if (e.text == "covered" && place.where == Where::Guard && !place.ofMap) {
+        result.expr = makeCall(Expr::Kind::Call, Fn::Covered, e.span, {});
+        result.type = Type::number();
+        return result;
     }
     if (const auto let = lets_.find(e.text); let != lets_.end()) return constant(place, e, let->second);
     if (const auto map = maps_.find(e.text); map != maps_.end()) return mapValue(place, e, map->second);

@@ -7,7 +7,7 @@ namespace sgm::rules {
 namespace {
 
 constexpr uint8_t many = 16;
-constexpr std::array<Function, 22> table = {{
+constexpr std::array<Function, 25> table = {{
     {"min", Fn::Min, 1, many, Signature::Alike, "the least of its arguments, or of one vector's components"},
     {"max", Fn::Max, 1, many, Signature::Alike, "the greatest of its arguments, or of one vector's components"},
     {"abs", Fn::Abs, 1, 1, Signature::Alike, "without its sign"},
@@ -32,6 +32,10 @@ constexpr std::array<Function, 22> table = {{
      "bump((x, z), radius): 1 at that place of the plan, falling to 0 at the radius"},
     {"fbm", Fn::Fbm, 2, 3, Signature::Place,
      "fbm(size, octaves, seed): smooth noise over the plan, -1 … 1; the seed is 0 unless said"},
+    {"overlaps", Fn::Overlaps, 1, 1, Signature::Symbol,
+     "overlaps(Name), in a rule's 'when': whether a shape of that name shares volume with this one"},
+    {"touches", Fn::Touches, 1, 1, Signature::Symbol, "touches(Name): whether one meets it or shares volume with it"},
+    {"inside", Fn::Inside, 1, 1, Signature::Symbol, "inside(Name): whether one holds it whole"},
     {"count", Fn::Count, 1, 1, Signature::Symbol, "count(Name): how many shapes of that name there are"},
 }};
 

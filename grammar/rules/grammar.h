@@ -44,6 +44,7 @@ struct PlanExpr {
         Drawn,       ///< row, args: one a parameter
         Outline,     ///< args: points, vectors of two, all lengths or all shares of the scope
         Lsystem,     ///< the outline that Grammar::lsystems[index] draws
+        Walls,       ///< args[0] wide, along what Grammar::lsystems[index] draws, or along the points that follow
         File,        ///< args[0]: which outline of Grammar::outlines[index], from 1
         Union,       ///< parts
         Difference,  ///< parts: the first less the others
@@ -61,17 +62,25 @@ struct PlanExpr {
 
 /// An L-system: letters rewritten in parallel, read by a turtle.
 struct Lsystem {
+    /// A letter and the numbers in parentheses behind it.
+    struct Module {
+        char letter = 'F';
+        std::vector<Expr> args;
+    };
     struct Production {
         SourceSpan span;
         char letter = 'F';
-        std::string text;
+        char before = 0, behind = 0;  ///< the letters that must stand beside it; 0: any
+        uint32_t parameters = 0;      ///< how many numbers it has: the locals 0, 1, … of `when` and `modules`
+        std::optional<Expr> when;
+        std::vector<Module> modules;
         double weight = 1;
     };
     std::string name;
     SourceSpan span;
-    std::string axiom;
+    std::vector<Module> axiom;
     std::vector<Production> productions;
-    Expr passes, angle, step, shrink;  ///< a whole number; radians; metres; metres that each pass takes from the step
+    Expr passes, angle, step, shrink;  ///< a whole number; radians; metres; metres that each step takes from the next
 };
 
 /// A value that depends on the place in the plan: a picture laid over it, or a formula.
@@ -114,11 +123,24 @@ struct Parts {
         std::shared_ptr<const Body> body;
         std::vector<Part> repeated;  ///< of `{ … }*`; then size and body say nothing
         uint32_t local = none;       ///< the local that counts repetitions from 1
+        bool atLeastOnce = false;    ///< `{ … }+`
+        std::optional<Expr> times;   ///< `{ … }3`: how often it repeats; nothing: as often as fits
+        /// Whether a draw decides about its size: a repetition then has sizes of its own.
+        bool isDrawn = false;
+    };
+    /// `snap NAME t`: where cuts may move.
+    struct Snap {
+        SymbolId symbol = none;
+        Expr reach;  ///< metres
+        SourceSpan span;
     };
     SourceSpan span;
     const Operation* operation = nullptr;
-    int axis = 0;             ///< 0 x, 1 y, 2 z
-    std::vector<Expr> args;   ///< of the operation itself
+    int axis = 0;            ///< 0 x, 1 y, 2 z
+    std::vector<Expr> args;  ///< of the operation itself
+    std::string edges;       ///< split along: the word of the edges it follows
+    bool byArea = false;     ///< split: sizes are square metres of the plan
+    std::optional<Snap> snap;
     uint32_t index = none;    ///< network: of Grammar::roads
     std::vector<Part> parts;  ///< in the order of the text
     Placing placing;          ///< place
@@ -169,9 +191,16 @@ struct Attribute {
     std::shared_ptr<const PlanExpr> plan;  ///< `footprint`: what draws it
 };
 
+/// `at each(…)`: the faces of a block or a roof that a newcomer grows on, one each.
+struct FaceChoice {
+    enum class Kind : uint8_t { Side, Corner, Slope, Eave, Gable, Apex } kind = Kind::Side;
+    std::string word;  ///< which of them: a word for edges (front, court, a tag); "side" for all
+};
+
 /// `at`, `to`: which joints are asked for.
 struct JointChoice {
     SourceSpan span;
+    std::optional<FaceChoice> each;
     bool free = false;         ///< `free(…)`: one of the candidates `joints` (empty: all) that nothing has met
     std::vector<Expr> joints;  ///< each evaluates to an Axis or a Word (a named joint)
 };
@@ -223,6 +252,7 @@ struct Rule {
     std::string name;  ///< "R0", or "Cell#2" for the second unnamed rule of Cell
     SymbolId symbol = none;
     SymbolId beside = none;
+    SymbolId after = none;    ///< it waits while a live shape of that name has a rule left
     bool besideWins = false;  ///< `beside` that holds wins over rules without a guard (grammar 2)
     SourceSpan span;
     SourceSpan symbolSpan;  ///< the symbol it matches: what messages about the rule point at
@@ -300,6 +330,13 @@ struct Check {
     SourceSpan span;
 };
 
+/// A name that shapes `report` numbers under, which are summed.
+struct Report {
+    std::string name;
+    Value like;  ///< kind and unit of its numbers
+    SourceSpan span;
+};
+
 struct Grammar {
     std::vector<syntax::SourcePtr> sources;  ///< sources[0] is the file itself, the rest came by `use`
     std::vector<int> versions;               ///< by source: the version of the language it is written in
@@ -314,6 +351,7 @@ struct Grammar {
     std::vector<Roads> roads;
     std::vector<Style> styles;
     std::vector<Check> checks;
+    std::vector<Report> reports;
     std::vector<std::shared_ptr<const plan::Features>> outlines;  ///< of files that footprints name, each once
     std::vector<field::SampledGridPtr> meshes;                    ///< of a solid's File argument, by its n[0]
 };

@@ -63,26 +63,63 @@ void Checker::lsystem(const syntax::LsystemDecl& decl) {
                                fmt::format("'{}' is {}, but must be {}", row->name, toText(*number), row->text));
         out.*row->field = std::move(value);
     }
-    out.axiom = decl.axiom.text;
+    Place letters(Place::Where::Guard);
+    modules(letters, decl.axiomModules, out.axiom);
     if (out.axiom.empty() && decl.axiom.kind == syntax::Expr::Kind::Text)
         diagnostics_.error(decl.axiom.span, "an axiom has at least one letter", "write 'axiom \"F+F+F+F\"'");
-    for (const auto& production : decl.productions) {
-        if (production.symbol.text.size() != 1) {
-            diagnostics_.error(production.symbol.span,
-                               fmt::format("a production rewrites one letter, not '{}'", production.symbol.text));
-            continue;
+    for (const auto& written : decl.productions) production(written, out);
+}
+
+char Checker::letter(const syntax::Name& name) {
+    if (name.empty()) return 0;
+    if (name.text.size() != 1)
+        diagnostics_.error(name.span, fmt::format("a production is about one letter, not '{}'", name.text));
+    return name.text[0];
+}
+
+/// Letters with their numbers: a turn takes an angle, what steps or widens a length.
+void Checker::modules(Place& place, const std::vector<syntax::LsystemDecl::Module>& written,
+                      std::vector<Lsystem::Module>& out) {
+    constexpr std::string_view turns = "+-&^\\/", lengths = "FGfg!";
+    for (const auto& module : written) {
+        Lsystem::Module& m = out.emplace_back();
+        m.letter = module.letter;
+        for (size_t i = 0; i < module.args.size(); ++i) {
+            const bool first = i == 0;
+            const Want want = first && turns.find(m.letter) != turns.npos       ? Want::Angle
+                              : first && lengths.find(m.letter) != lengths.npos ? Want::Length
+                                                                                : Want::Anything;
+            place.enter(fmt::format("{}.{}", m.letter, i));
+            m.args.push_back(expression(place, module.args[i], want, fmt::format("'{}'", module.letter)));
         }
-        Lsystem::Production& p = out.productions.emplace_back();
-        p.span = production.span;
-        p.letter = production.symbol.text[0];
-        p.text = production.text.text;
-        if (!production.weight) continue;
-        const auto weight = plain(*production.weight, false);
-        if (weight && !(weight->kind == Value::Kind::Number && weight->num() >= 0))
-            diagnostics_.error(production.weight->span, "the weight of a production is a number no less than 0");
-        else if (weight)
-            p.weight = weight->num();
     }
+}
+
+void Checker::production(const syntax::LsystemDecl::Production& written, Lsystem& out) {
+    if (written.symbol.empty()) return;
+    Lsystem::Production& p = out.productions.emplace_back();
+    p.span = written.span;
+    p.letter = letter(written.symbol);
+    p.before = letter(written.before);
+    p.behind = letter(written.behind);
+    p.parameters = static_cast<uint32_t>(written.parameters.size());
+    Place place(Place::Where::Guard);
+    for (const syntax::Name& name : written.parameters) {
+        if (params_.contains(name.text) || lets_.contains(name.text))
+            diagnostics_.error(
+                name.span,
+                fmt::format("'{}' is a value of the file: the letter's number needs another name", name.text));
+        place.locals.push_back({name.text, place.frame++, Type::unknown()});
+    }
+    place.enter("when");
+    if (written.when) p.when = expression(place, *written.when, Want::Truth, "'when'");
+    modules(place, written.modules, p.modules);
+    if (!written.weight) return;
+    const auto weight = plain(*written.weight, false);
+    if (weight && !(weight->kind == Value::Kind::Number && weight->num() >= 0))
+        diagnostics_.error(written.weight->span, "the weight of a production is a number no less than 0");
+    else if (weight)
+        p.weight = weight->num();
 }
 
 void Checker::lsystems(const syntax::Ast& ast) {

@@ -10,6 +10,7 @@
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/params.h"
+#include "grammar/rules/words.h"
 
 namespace sgm::rules {
 namespace {
@@ -225,6 +226,26 @@ std::optional<std::pair<uint32_t, Expr>> OperationChecker::setting(const syntax:
     const auto fitted = constant ? conform(target, sample) : conformKind(target, sample);
     if (!fitted.ok()) error(e.span, fitted.error().message, nearest(sample.text, target.choices));
     return std::pair(index, std::move(value.expr));
+}
+
+std::optional<uint32_t> OperationChecker::report(const syntax::Expr& name, const Typed& value) {
+    if (name.kind != syntax::Expr::Kind::Name) return std::nullopt;
+    if (value.type.known && value.type.like.kind != Value::Kind::Number) {
+        error(value.expr.span, fmt::format("'report' sums numbers, and this is {}", describe(value.type)));
+        return std::nullopt;
+    }
+    auto& all = checker_.grammar_.reports;
+    const auto known = std::find_if(all.begin(), all.end(), [&](const Report& r) { return r.name == name.text; });
+    if (known == all.end()) {
+        if (isTaken(name.text) || isParameter(name.text))
+            error(name.span, fmt::format("'{}' has a meaning already: what is reported needs another name", name.text));
+        all.push_back({name.text, value.type.like, name.span});
+        return static_cast<uint32_t>(all.size() - 1);
+    }
+    if (value.type.known && value.type.like.units[0] != known->like.units[0])
+        error(value.expr.span, fmt::format("'{}' is reported as {} elsewhere, and this is {}", name.text,
+                                           describe(Type::of(known->like)), describe(value.type)));
+    return static_cast<uint32_t>(known - all.begin());
 }
 
 std::optional<uint32_t> OperationChecker::findLsystem(std::string_view name) const {

@@ -80,6 +80,8 @@ public:
     /// The index of `roads` of the grammar.
     std::optional<uint32_t> findRoads(std::string_view name) const;
     std::optional<SymbolId> findSymbol(std::string_view name) const;
+    /// The index in Grammar::reports of a name that `value` is reported under; nothing after an error.
+    std::optional<uint32_t> report(const syntax::Expr& name, const Typed& value);
     bool isParameter(std::string_view name) const;
     /// True when some terminal or primitive declares a joint of that name.
     bool isJoint(std::string_view name) const;

@@ -45,18 +45,24 @@ const BinaryRow& binaryRow(std::string_view text) {
 
 }  // namespace
 
+/// count(Name), overlaps(Name) …: what is said of all shapes of a name.
 Typed Checker::countCall(Place& place, const Written& e) {
     const Written& arg = e.args[0];
+    const Fn fn = findFunction(e.text)->fn;
     if (place.where < Where::Guard) return failed(e.span, "there are no shapes here to count");
+    if (fn != Fn::Count && (place.where != Where::Guard || place.ofMap))
+        return failed(e.span, fmt::format("'{}' tells how things stand when a rule is chosen", e.text),
+                      "ask in the rule's 'when', and give the rule a body of its own");
     const auto symbol = symbols_.find(arg.text);
     if (arg.kind != Written::Kind::Name || symbol == symbols_.end())
-        return unknown(arg.span, arg.text,
-                       fmt::format("'count' takes the name of a shape, and there is none called '{}'", arg.span.text()),
-                       nearest(arg.text, symbolNames(false)));
+        return unknown(
+            arg.span, arg.text,
+            fmt::format("'{}' takes the name of a shape, and there is none called '{}'", e.text, arg.span.text()),
+            nearest(arg.text, symbolNames(false)));
     Value word = makeWord(arg.text);
     word.n[0] = symbol->second;
-    return {makeCall(Expr::Kind::Call, Fn::Count, e.span, {makeConstant(arg.span, std::move(word))}),
-            Type::number(Unit::None, true)};
+    return {makeCall(Expr::Kind::Call, fn, e.span, {makeConstant(arg.span, std::move(word))}),
+            fn == Fn::Count ? Type::number(Unit::None, true) : Type::of(Value::boolean(false))};
 }
 
 /// A function whose value hangs on where it is asked.
@@ -83,7 +89,6 @@ Typed Checker::placeCall(Place& place, const Written& e, const Function& row) {
 
 Typed Checker::call(Place& place, const Written& e) {
     const Function* row = findFunction(e.text);
-    if (e.text == "overlaps") return failed(e.span, "'overlaps(…)' is not supported yet");
     if (!row) {
         std::vector<std::string> known;
         for (const Function& f : functions()) known.emplace_back(f.name);

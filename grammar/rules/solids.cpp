@@ -26,6 +26,8 @@ Want wantOf(ParameterKind kind) {
             return Want::Count;
         case ParameterKind::Vector:
             return Want::Triple;
+        case ParameterKind::Point:
+            return Want::Pair;
         case ParameterKind::PerId:
             return Want::PerId;
         case ParameterKind::Rotation:
@@ -38,9 +40,9 @@ Want wantOf(ParameterKind kind) {
 }
 
 Value plainValue(ParameterKind kind, double v) {
-    const Unit unit = kind == ParameterKind::Length  ? Unit::Metre
-                      : kind == ParameterKind::Angle ? Unit::Angle
-                                                     : Unit::None;
+    const Unit unit = kind == ParameterKind::Length || kind == ParameterKind::Point ? Unit::Metre
+                      : kind == ParameterKind::Angle                                ? Unit::Angle
+                                                                                    : Unit::None;
     Value value = Value::number(v, unit);
     value.integer = kind == ParameterKind::Count;
     return value;
@@ -50,6 +52,10 @@ Value fallbackOf(const field::PrimitiveParameter& p) {
     Value value = plainValue(p.kind, p.fallback);
     if (p.kind == ParameterKind::Vector) {
         const std::array<Value, 3> same{value, value, value};
+        return tuple(same);
+    }
+    if (p.kind == ParameterKind::Point) {
+        const std::array<Value, 2> same{value, value};
         return tuple(same);
     }
     if (p.kind == ParameterKind::Rotation)

@@ -6,16 +6,20 @@
 
 namespace sgm::rules {
 
+/// Calls `visit` with the body of a part, or those of what it repeats.
+template <class Visit>
+void forEachBodyOf(const Parts::Part& part, const Visit& visit) {
+    if (part.body) visit(*part.body);
+    for (const Parts::Part& repeated : part.repeated) forEachBodyOf(repeated, visit);
+}
+
 /// Calls `visit` with every body that stands in `e`: its group, its parts, its loop and its alternatives.
 template <class Visit>
 void forEachInnerBody(const Element& e, const Visit& visit) {
     if (e.content.group()) visit(*e.content.group());
     if (e.body) visit(*e.body);
     if (const Parts* parts = e.content.parts())
-        for (const Parts::Part& part : parts->parts) {
-            if (part.body) visit(*part.body);
-            for (const Parts::Part& repeated : part.repeated) visit(*repeated.body);
-        }
+        for (const Parts::Part& part : parts->parts) forEachBodyOf(part, visit);
     for (const Choice& choice : e.choices) visit(*choice.body);
 }
 

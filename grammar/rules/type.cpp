@@ -98,6 +98,8 @@ std::string_view describe(Want want) {
             return "a number, a length or (x, y, z) of them";
         case Want::Triple:
             return "three numbers (x, y, z)";
+        case Want::Pair:
+            return "a point (.2m, .5m)";
         case Want::PerId:
             return "one plain number, or four: one for each facade id";
         case Want::Color:
@@ -163,6 +165,8 @@ bool fits(const Type& type, Want want) {
             return (one || three) && everyUnit(v, measure);
         case Want::Triple:
             return three && everyUnit(v, measure);
+        case Want::Pair:
+            return v.kind == Value::Kind::Vector && v.count == 2 && everyUnit(v, length);
         case Want::PerId:
             return (one || (v.kind == Value::Kind::Vector && v.count == 4)) && everyUnit(v, plain);
         case Want::Color:

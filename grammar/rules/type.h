@@ -37,6 +37,7 @@ enum class Want : uint8_t {
     Extent,  ///< one length or share
     Offset,  ///< plain numbers, shares or lengths, one or three
     Triple,  ///< plain numbers or lengths, exactly three
+    Pair,    ///< plain numbers or lengths, exactly two
     PerId,   ///< plain numbers, one or four
     Color,
     Rotation,

@@ -59,6 +59,8 @@ struct Case {
     std::optional<Expr> label;  ///< a size, a weight, or a word ("rim", "side"); empty for `tag K` and a repeated group
     Name tag;                   ///< the K of `tag K:`
     bool repeated = false;      ///< { cases }*
+    bool atLeastOnce = false;   ///< { cases }+
+    std::optional<Expr> times;  ///< { cases }3
     std::vector<Case> cases;    ///< of a repeated group
     std::shared_ptr<Body> body;
 };
@@ -159,7 +161,7 @@ struct RuleDecl {
     SourceSpan span;
     Name name;  ///< R0, or empty
     Name symbol;
-    Name beside;
+    Name beside, after;
     std::optional<Expr> when, weight, repeat;
     Body body;
     std::optional<Body> finally_;
@@ -195,12 +197,21 @@ struct LsystemDecl {
     SourceSpan span;
     Name name;
     std::vector<Setting> settings;  ///< passes, angle, step
-    Expr axiom;
+    /// A letter of an axiom or a production: F, or F(l * .9).
+    struct Module {
+        SourceSpan span;
+        char letter = 'F';
+        std::vector<Expr> args;
+    };
+    Expr axiom;  ///< the text, with its quotes
+    std::vector<Module> axiomModules;
     struct Production {
         SourceSpan span;
-        Name symbol;
+        Name before, symbol, behind;   ///< before < symbol > behind
+        std::vector<Name> parameters;  ///< A(l, w)
         Expr text;
-        std::optional<Expr> weight;
+        std::vector<Module> modules;
+        std::optional<Expr> when, weight;
     };
     std::vector<Production> productions;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "grammar/syntax/arguments.h"
 #include "grammar/syntax/expressions.h"
 #include "grammar/syntax/hints.h"
 
@@ -103,7 +104,22 @@ std::shared_ptr<Body> bodyOf(Expr solid) {
     return body;
 }
 
-/// { cases }* or label: body
+/// How often a block repeats: *, +, 3 or (n + 1).
+void readTimes(Cursor& cursor, SourceSpan braces, Case& part) {
+    const bool glued = cursor.peek().glued;
+    if (cursor.accept("*", Token::Role::Suffix)) return;
+    if (cursor.accept("+", Token::Role::Suffix)) {
+        part.atLeastOnce = true;
+    } else if (glued && (cursor.at(Token::Kind::Number) || cursor.at("("))) {
+        cursor.mark(Token::Role::Suffix);
+        part.times = readArgument(cursor);
+    } else {
+        cursor.complain(braces, "a block inside a block repeats, and says how often",
+                        "write '{ … }*' for as often as it fits, '{ … }+' for at least once, or '{ … }3'");
+    }
+}
+
+/// { cases }*, { cases }+, { cases }3 or label: body
 Case readCase(Cursor& cursor, std::string_view sample) {
     const Cursor::Nest nest(cursor);
     const Token first = cursor.peek();
@@ -112,8 +128,7 @@ Case readCase(Cursor& cursor, std::string_view sample) {
         part.repeated = true;
         part.cases = readBlock(cursor, "", sample);
         const SourceSpan braces = cursor.since(first.begin);
-        if (!cursor.accept("*", Token::Role::Suffix))
-            cursor.complain(braces, "a block inside a block repeats to fit, and says so with '*'", "write '{ … }*'");
+        readTimes(cursor, braces, part);
     } else {
         readLabel(cursor, part);
         const SourceSpan label = cursor.since(first.begin);
@@ -134,72 +149,6 @@ Case readCase(Cursor& cursor, std::string_view sample) {
     }
     part.span = cursor.since(first.begin);
     return part;
-}
-
-/// The word of an operation is the argument of the one before (a parameter may be called `blend`), unless it goes on as
-/// an operation does, with an argument of its own.
-bool beginsOperation(const Cursor& cursor) {
-    if (!atAttribute(cursor)) return false;
-    switch (cursor.peek(1).kind) {
-        case Token::Kind::Number:
-        case Token::Kind::Text:
-        case Token::Kind::Color:
-            return true;
-        case Token::Kind::Word:
-            return !cursor.operations().find(cursor.peekText(1)) && !isReserved(cursor.peekText(1));
-        default:
-            return cursor.at("(", 1) || cursor.at("{", 1) ||
-                   (cursor.peek(2).glued && !cursor.peek(1).glued && (cursor.at("-", 1) || cursor.at("+", 1)));
-    }
-}
-
-Expr readTyped(Cursor& cursor, ArgumentType type) {
-    if (type == ArgumentType::Solid) return readSolid(cursor);
-    const bool word = type == ArgumentType::Name || type == ArgumentType::Start || type == ArgumentType::Symbol;
-    if (word || type == ArgumentType::Axis) {
-        Expr e;
-        const Name name = readName(cursor, describe(type));
-        e.kind = name.empty() ? Expr::Kind::Error : Expr::Kind::Name;
-        e.text = name.text;
-        e.span = name.span;
-        return e;
-    }
-    return readArgument(cursor);
-}
-
-bool fits(const Cursor& cursor, ArgumentType type) {
-    const bool word = cursor.at(Token::Kind::Word);
-    if (type == ArgumentType::Axis) return cursor.at("x") || cursor.at("y") || cursor.at("z");
-    if (type == ArgumentType::Name || type == ArgumentType::Solid || type == ArgumentType::Start ||
-        type == ArgumentType::Symbol)
-        return word && !isReserved(cursor.peekText()) && !beginsOperation(cursor);
-    return startsArgument(cursor) && !beginsOperation(cursor);
-}
-
-void refuseCalculation(Cursor& cursor, std::string_view word) {
-    if (cursor.at("*") || cursor.at("/") || cursor.at("%"))
-        cursor.fail(cursor.found() + " can't follow the argument of '" + plain(word) + "'",
-                    "put a calculation in parentheses");
-}
-
-void readArguments(Cursor& cursor, const Operation& row, Attribute& attribute) {
-    for (const OperationArgument& argument : row.arguments) {
-        if (!argument.word.empty()) {
-            if (argument.optional && !cursor.at(argument.word)) return;
-            if (!cursor.expect(argument.word, "in '" + plain(row.name) + "'", "as in '" + plain(row.example) + "'"))
-                return;
-        }
-        if (!fits(cursor, argument.type)) {
-            if (argument.optional) continue;
-            cursor.fail(
-                "'" + plain(row.name) + "' needs " + plain(describe(argument.type)) + ", found " + cursor.found(),
-                "as in '" + plain(row.example) + "'");
-            return;
-        }
-        attribute.args.push_back(readTyped(cursor, argument.type));
-        if (row.namesValue && attribute.args.size() == 1) cursor.expect("=", "after the value's name");
-    }
-    refuseCalculation(cursor, row.name);
 }
 
 std::vector<Attribute> readAttributes(Cursor& cursor) {

@@ -30,6 +30,13 @@ Cursor::Cursor(const Source& source, std::span<Token> tokens, const OperationTab
       diagnostics_(diagnostics),
       lastEnd_(tokens.empty() ? 0 : tokens[0].begin) {}
 
+std::vector<Token> Cursor::tokensOf(SourceSpan range) const {
+    const Source part(source_.name(), std::string(range.text()));
+    std::vector<Token> tokens = lexSignificant(part);
+    for (Token& token : tokens) token.begin += range.begin, token.end += range.begin;
+    return tokens;
+}
+
 Token Cursor::peek(size_t ahead) const {
     if (ahead < tokens_.size() - at_) return tokens_[at_ + ahead];
     Token end;

@@ -47,6 +47,16 @@ public:
     /// What stands at the cursor, for a message: "'facade'", "the end of the rule".
     std::string found() const;
 
+    /// Reads the tokens of `range` with a cursor of its own: what stands in a text.
+    template <class Read>
+    void within(SourceSpan range, Read&& read) {
+        std::vector<Token> tokens = tokensOf(range);
+        Cursor inner(source_, tokens, operations_, diagnostics_);
+        read(inner);
+        if (!inner.failed() && !inner.done()) inner.fail("expected nothing more here, found " + inner.found());
+        failed_ = failed_ || inner.failed();
+    }
+
     /// Reports the token at the cursor and gives up the slice.
     void fail(std::string message, std::string hint = {});
     void failAt(SourceSpan span, std::string message, std::string hint = {});
@@ -68,6 +78,8 @@ public:
     };
 
 private:
+    std::vector<Token> tokensOf(SourceSpan range) const;
+
     const Source& source_;
     std::span<Token> tokens_;
     const OperationTable& operations_;

@@ -4,29 +4,11 @@
 
 #include "grammar/syntax/bodies.h"
 #include "grammar/syntax/expressions.h"
+#include "grammar/syntax/lsystems.h"
 
 namespace sgm::syntax {
 
 namespace {
-
-/// Takes a text in quotes, or fails.
-Expr readText(Cursor& cursor, std::string_view what) {
-    if (!cursor.at(Token::Kind::Text))
-        cursor.fail("expected " + std::string(what) + " in quotes, found " + cursor.found(),
-                    cursor.at(Token::Kind::Word) ? "write '\"" + std::string(cursor.peekText()) + "\"'" : "");
-    return readArgument(cursor);
-}
-
-/// Takes '->', also where another arrow was written.
-void expectArrow(Cursor& cursor, std::string_view where) {
-    if (cursor.at("=>") || cursor.at("=") || cursor.at("~>")) {
-        const std::string found = cursor.found();
-        cursor.complain(cursor.span(cursor.take()), "expected '->' " + std::string(where) + ", found " + found,
-                        "write '->'");
-    } else {
-        cursor.expect("->", where);
-    }
-}
 
 void readUse(Cursor& cursor, Ast& ast) {
     UseDecl use;
@@ -210,10 +192,13 @@ void readStart(Cursor& cursor, Ast& ast) {
 /// What may stand between a rule's symbol and its arrow, in any order, each once.
 bool readRuleCondition(Cursor& cursor, RuleDecl& rule) {
     const Token word = cursor.peek();
-    const bool again = (cursor.at("beside") && !rule.beside.empty()) || (cursor.at("when") && rule.when) ||
-                       (cursor.at("weight") && rule.weight) || (cursor.at("repeat") && rule.repeat);
+    const bool again = (cursor.at("beside") && !rule.beside.empty()) || (cursor.at("after") && !rule.after.empty()) ||
+                       (cursor.at("when") && rule.when) || (cursor.at("weight") && rule.weight) ||
+                       (cursor.at("repeat") && rule.repeat);
     if (cursor.accept("beside"))
         rule.beside = readName(cursor, "a symbol");
+    else if (cursor.accept("after"))
+        rule.after = readName(cursor, "a symbol");
     else if (cursor.accept("when"))
         rule.when = readExpr(cursor);
     else if (cursor.accept("weight"))
@@ -238,7 +223,7 @@ void readRule(Cursor& cursor, Ast& ast) {
     while (readRuleCondition(cursor, rule)) {
     }
     if (cursor.at(Token::Kind::Word) && !cursor.at("->")) {
-        const std::string near = didYouMean(cursor.peekText(), {"beside", "when", "weight", "repeat"});
+        const std::string near = didYouMean(cursor.peekText(), {"beside", "after", "when", "weight", "repeat"});
         cursor.fail(
             "expected '->' after what the rule matches, found " + cursor.found(),
             near.empty() ? "write '-> " + std::string(cursor.peekText()) + "'" : "did you mean '" + near + "'?");
@@ -292,38 +277,6 @@ void readDerive(Cursor& cursor, Ast& ast) {
     if (cursor.at("->")) cursor.fail("expected '=>' between steps, found '->'", "write '=>'");
     derive.span = cursor.since(begin);
     if (!derive.name.empty()) ast.derives.push_back(std::move(derive));
-}
-
-void readProductions(Cursor& cursor, LsystemDecl& lsystem) {
-    while (cursor.at(Token::Kind::Word) && cursor.at("->", 1)) {
-        LsystemDecl::Production production;
-        const uint32_t begin = cursor.peek().begin;
-        production.symbol = readName(cursor, "a letter");
-        cursor.take();
-        production.text = readText(cursor, "letters");
-        if (cursor.accept(":")) production.weight = readArgument(cursor);
-        production.span = cursor.since(begin);
-        lsystem.productions.push_back(std::move(production));
-    }
-}
-
-void readLsystem(Cursor& cursor, Ast& ast) {
-    LsystemDecl lsystem;
-    const uint32_t begin = cursor.take().begin;
-    lsystem.name = readName(cursor, "an lsystem");
-    while (cursor.at(Token::Kind::Word) && !cursor.at("axiom")) {
-        Setting setting;
-        setting.name = readName(cursor, "a setting");
-        setting.value = readArgument(cursor);
-        setting.span = join(setting.name.span, setting.value.span);
-        lsystem.settings.push_back(std::move(setting));
-    }
-    if (cursor.expect("axiom", "and a text after the settings")) {
-        lsystem.axiom = readText(cursor, "letters");
-        readProductions(cursor, lsystem);
-    }
-    lsystem.span = cursor.since(begin);
-    if (!lsystem.name.empty()) ast.lsystems.push_back(std::move(lsystem));
 }
 
 void readStyle(Cursor& cursor, Ast& ast) {

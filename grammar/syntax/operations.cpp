@@ -39,6 +39,8 @@ std::string_view describe(ArgumentType type) {
             return "the name of a shape";
         case ArgumentType::Material:
             return "a material";
+        case ArgumentType::Cut:
+            return "an axis, 'along' and a word for edges, or 'area' and an axis";
         case ArgumentType::Point:
             return "a point (x, y, z) or a joint";
     }

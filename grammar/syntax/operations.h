@@ -48,6 +48,7 @@ enum class ArgumentType : uint8_t {
     Plan,      ///< a plan by name, ell(16, 12, 5, 6), or a number
     Symbol,    ///< the name of a shape that rules rewrite
     Material,  ///< a `material` by name, or a value that holds one
+    Cut,       ///< how a split goes: an axis; `along WORD`, along edges; `area x`, by square metres along an axis
     Point,     ///< a point (x, y, z), or a joint
 };
 

@@ -17,12 +17,13 @@
 //   terminal    = "terminal" NAME {"," NAME} [ "=" solid ]
 //                 { attribute | "joint" NAME "at" argument "facing" argument } .
 //   start       = "start" NAME "->" body .
-//   rule        = "rule" [ NAME ":" ] NAME { "beside" NAME | "when" expr | "weight" expr | "repeat" expr }
+//   rule        = "rule" [ NAME ":" ] NAME { "beside" NAME | "after" NAME | "when" expr | "weight" expr | "repeat" expr }
 //                 "->" body [ "finally" body ] .
 //   derive      = "derive" NAME ":" step { "=>" step } .
 //   step        = NAME [ "#" DIGITS ] [ "at" path ] .                    glued; Cell#2 is the second unnamed rule for Cell
 //   path        = NAME { "/" NAME | "[" NUMBER "]" } .
-//   lsystem     = "lsystem" NAME { NAME argument } "axiom" TEXT { NAME "->" TEXT [ ":" argument ] } .
+//   lsystem     = "lsystem" NAME { NAME argument } "axiom" TEXT { production } .
+//   production  = [ NAME "<" ] NAME [ "(" NAME { "," NAME } ")" ] [ ">" NAME ] "->" TEXT [ "when" expr ] [ ":" argument ] .
 //   style       = "style" NAME [ "for" NAME ] settings .
 //   check       = "check" NAME [ settings ] "expect" expr .
 //   settings    = "{" { NAME "=" expr } "}" .

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "modeler/field/primitives.h"
@@ -16,6 +17,10 @@ namespace sgm::field {
 /// `arguments` need their values alone. O(n log n) and a search of the footprint's depth.
 double heightOver(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
                   std::span<const Argument> arguments);
+
+/// What is wrong with the numbers of a row as a whole: the sentence of a moulding whose profile crosses itself; ""
+/// where nothing is.
+std::string profileFault(const Primitive& row, std::span<const Argument> arguments);
 
 /// Which edges of a footprint a roof leaves as gables: where a ridge ends over them, those that face x or z, or all
 /// that can.

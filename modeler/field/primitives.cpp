@@ -4,6 +4,7 @@
 #include <array>
 
 #include "modeler/core/conventions.h"
+#include "modeler/field/plan_parameters.h"
 #include "modeler/field/plan_solids.h"
 #include "modeler/field/solids.h"
 
@@ -25,6 +26,14 @@ Field kifs(const PrimitiveInput& in);      ///< (center, scale, fold, turn, pass
 Field ornament(const PrimitiveInput& in);  ///< (FacadeParameter, modeler/field/facade.h)
 Field mesh(const PrimitiveInput& in);      ///< (file)
 Field block(const PrimitiveInput& in);
+Field taperBlock(const PrimitiveInput& in);
+Field shellBlock(const PrimitiveInput& in);
+Field moulding(const PrimitiveInput& in);
+Field corniceMoulding(const PrimitiveInput& in);
+Field plinthMoulding(const PrimitiveInput& in);
+Field stringMoulding(const PrimitiveInput& in);
+Field sillMoulding(const PrimitiveInput& in);
+Field gutterMoulding(const PrimitiveInput& in);
 Field hipRoof(const PrimitiveInput& in);
 Field gableRoof(const PrimitiveInput& in);      ///< …, ends
 Field halfHipRoof(const PrimitiveInput& in);    ///< …, ends, share
@@ -40,6 +49,8 @@ Field bellRoof(const PrimitiveInput& in);       ///< overhang, fascia
 }  // namespace solids
 
 namespace {
+
+using namespace plan_parameters;
 
 using Kind = ParameterKind;
 
@@ -102,54 +113,6 @@ constexpr auto ornamentParameters = fractalAnd({
 constexpr PrimitiveParameter meshParameters[] = {
     {"file", Kind::File, 0, 0, 0, "a closed mesh (.obj, .ply, .stl, .off, .glb, .gltf) in the grammar's own folder"},
 };
-
-// Roofs over a footprint.
-constexpr PrimitiveParameter pitch{"pitch",  Kind::Angle,   35 * pi / 180,
-                                   pi / 180, 85 * pi / 180, "slope of its planes from the level"};
-constexpr PrimitiveParameter overhang{"overhang", Kind::Length, 0, 0, 20, "metres that the eaves stand out"};
-constexpr PrimitiveParameter fascia{"fascia", Kind::Length, 0, 0, 5, "height of the upright board at the eaves"};
-constexpr PrimitiveParameter cover{
-    "cover", Kind::Length, 0, 0, 5, "thickness of a roof that is open below; 0 fills it"};
-constexpr PrimitiveParameter ends{
-    "ends",
-    Kind::Choice,
-    0,
-    0,
-    3,
-    "which walls go up to the ridge: where it ends over them, those toward x or z, or all",
-    "auto|x|z|all"};
-constexpr PrimitiveParameter lower{"lower",  Kind::Angle,   70 * pi / 180,
-                                   pi / 180, 89 * pi / 180, "slope of the lower planes"};
-constexpr PrimitiveParameter breakAt{"height", Kind::Length, 3, .01, 100, "height at which the upper planes begin"};
-constexpr PrimitiveParameter upper{"upper",  Kind::Angle,   22 * pi / 180,
-                                   pi / 180, 85 * pi / 180, "slope of the upper planes"};
-constexpr PrimitiveParameter hipParameters[] = {pitch, overhang, fascia, cover};
-constexpr PrimitiveParameter gableParameters[] = {pitch, overhang, fascia, cover, ends};
-constexpr PrimitiveParameter halfHipParameters[] = {
-    pitch, overhang, fascia,
-    cover, ends,     {"share", Kind::Share, .5, 0, 1, "of a gable's height at which its hip begins"}};
-constexpr PrimitiveParameter mansardParameters[] = {lower, breakAt, upper, overhang, fascia, cover};
-constexpr PrimitiveParameter gambrelParameters[] = {lower, breakAt, upper, overhang, fascia, cover, ends};
-constexpr PrimitiveParameter saltboxParameters[] = {
-    {"front", Kind::Angle, 45 * pi / 180, pi / 180, 85 * pi / 180, "slope of planes toward +z"},
-    {"back", Kind::Angle, 25 * pi / 180, pi / 180, 85 * pi / 180, "slope of the others"},
-    overhang,
-    fascia,
-    cover,
-    ends};
-constexpr PrimitiveParameter shedParameters[] = {
-    pitch,
-    overhang,
-    fascia,
-    cover,
-    {"to", Kind::Choice, 0, 0, 3, "the side toward which it rises", "back|front|left|right"}};
-constexpr PrimitiveParameter butterflyParameters[] = {
-    pitch, overhang, fascia, cover, {"valley", Kind::Choice, 0, 0, 1, "the direction of its valley", "x|z"}};
-constexpr PrimitiveParameter flatParameters[] = {
-    {"slab", Kind::Length, .3, .001, 20, "thickness of the roof"},
-    {"parapet", Kind::Length, .9, 0, 20, "height of the parapet above it; 0 for none"},
-    {"thickness", Kind::Length, .25, .001, 20, "of the parapet"}};
-constexpr PrimitiveParameter pyramidRoofParameters[] = {overhang, fascia};
 
 constexpr PrimitiveJoint apex[] = {{"apex", {0, 1, 0}, {0, 1, 0}}};
 constexpr PrimitiveJoint ridge[] = {{"ridge", {0, 1, 0}, {0, 1, 0}}};
@@ -238,6 +201,78 @@ constexpr Primitive table[] = {
      {},
      false,
      convex::cube,
+     PlanUse::Fills},
+    {"taperBlock",
+     "Block whose sides lean; the footprint is that of its foot.",
+     taperParameters,
+     solids::taperBlock,
+     true,
+     {},
+     false,
+     nullptr,
+     PlanUse::Fills},
+    {"shellBlock",
+     "Block with a room inside: walls along the outline, a floor and maybe a ceiling.",
+     shellParameters,
+     solids::shellBlock,
+     true,
+     {},
+     false,
+     nullptr,
+     PlanUse::Fills},
+    {"moulding",
+     "A profile of up to twelve points swept along the outline, mitred at every corner, courts included.",
+     mouldingParameters,
+     solids::moulding,
+     true,
+     {},
+     false,
+     nullptr,
+     PlanUse::OwnHeight},
+    {"corniceMoulding",
+     "Cornice along the outline, as high as the scope and widest at its top.",
+     corniceParameters,
+     solids::corniceMoulding,
+     true,
+     {},
+     false,
+     nullptr,
+     PlanUse::Fills},
+    {"plinthMoulding",
+     "Plinth along the outline, as high as the scope.",
+     plinthParameters,
+     solids::plinthMoulding,
+     true,
+     {},
+     false,
+     nullptr,
+     PlanUse::Fills},
+    {"stringMoulding",
+     "String course along the outline, as high as the scope.",
+     stringParameters,
+     solids::stringMoulding,
+     true,
+     {},
+     false,
+     nullptr,
+     PlanUse::Fills},
+    {"sillMoulding",
+     "Sill along the outline: its top falls outward.",
+     stringParameters,
+     solids::sillMoulding,
+     true,
+     {},
+     false,
+     nullptr,
+     PlanUse::Fills},
+    {"gutterMoulding",
+     "Half-round gutter along the outline, open at its top.",
+     gutterParameters,
+     solids::gutterMoulding,
+     true,
+     {},
+     false,
+     nullptr,
      PlanUse::Fills},
     {"hipRoof",
      "Roof with a plane over every edge of the footprint.",

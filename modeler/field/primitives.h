@@ -14,8 +14,8 @@
 namespace sgm::field {
 
 /// How a primitive parameter is read and shown.
-/// PerId: four numbers, one for each facade id; one number serves all.
-enum class ParameterKind { Share, Length, Angle, Count, Vector, Rotation, Choice, File, PerId };
+/// PerId: four numbers, one for each facade id; one number serves all. Point: two lengths.
+enum class ParameterKind { Share, Length, Angle, Count, Vector, Rotation, Choice, File, PerId, Point };
 
 /// One typed parameter of a primitive.
 struct PrimitiveParameter {
@@ -25,11 +25,12 @@ struct PrimitiveParameter {
     double lo, hi;    ///< inclusive range
     std::string_view doc;
     std::string_view choices{};  ///< for Choice: names separated by '|'; the value is the index
+    bool optional = false;       ///< may be left out: then `fallback` says so, and the row reads it as nothing
 };
 
 /// A value with the node(s) that carry it (slots, or expressions over them) and its present number(s) for bounds.
-/// A Share/Length/Angle/Count/Choice uses [0]; a Vector three; PerId four; a Rotation nine (matrix by columns, world
-/// from local); a File what was read from it.
+/// A Share/Length/Angle/Count/Choice uses [0]; a Point two; a Vector three; PerId four; a Rotation nine (matrix by
+/// columns, world from local); a File what was read from it.
 struct Argument {
     NodeRef node[9];
     double value[9]{};

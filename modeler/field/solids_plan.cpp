@@ -1,17 +1,16 @@
 // Blocks and roofs over the footprint of their scope (modeler/field/footprint.h, roofs.h).
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "modeler/core/random.h"
 #include "modeler/field/combine.h"
 #include "modeler/field/footprint.h"
+#include "modeler/field/plan_of.h"
 #include "modeler/field/plan_solids.h"
 #include "modeler/field/roofs.h"
 #include "modeler/field/solids.h"
 #include "modeler/plan/reflex.h"
-#include "modeler/plan/shapes.h"
 
 namespace sgm::field {
 namespace {
@@ -29,26 +28,6 @@ RoofFoot footOf(const PrimitiveInput& in, Quantity overhang, Quantity fascia) {
 RoofFoot footAt(const PrimitiveInput& in, size_t overhang) {
     return footOf(in, quantity(in.arguments[overhang]), quantity(in.arguments[overhang + 1]));
 }
-
-/// The footprint that a roof stands over: that of its scope, else the scope's rectangle.
-class PlanOf {
-public:
-    explicit PlanOf(const PrimitiveInput& in) : plan_(in.plan) {
-        if (plan_) return;
-        rectangle_ = plan::rectangle(2 * in.halfValue.x, 2 * in.halfValue.z).value();
-        formula_ = plan::monotoneFormula(rectangle_).value();
-        plan_ = &own_.emplace(rectangle_, formula_, in.p, combine(in.path, hashText("plan")));
-    }
-    PlanOf(const PlanOf&) = delete;
-    PlanOf& operator=(const PlanOf&) = delete;
-    const PlanField& operator*() const { return *plan_; }
-
-private:
-    const PlanField* plan_;
-    plan::Footprint rectangle_;
-    plan::Formula formula_;
-    std::optional<PlanField> own_;
-};
 
 /// The height of the scope above the board at the eaves.
 Quantity aboveFascia(const PrimitiveInput& in) {

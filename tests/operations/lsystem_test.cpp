@@ -1,6 +1,7 @@
 // L-systems that draw plans.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
 #include "grammar/derive/lsystem.h"
@@ -24,7 +25,7 @@ struct Grown {
     const rules::Lsystem& lsystem() const { return grammar->lsystems.at(0); }
     std::string letters() const {
         const auto text = derive::rewritten(lsystem(), place);
-        return text.ok() ? *text : text.error().message;
+        return text.ok() ? text->text : text.error().message;
     }
     plan::Footprint outline() const {
         auto drawn = derive::drawOutline(lsystem(), place);
@@ -90,6 +91,111 @@ TEST(Lsystems, WallsOnOneLineDrawNoPlan) {
         tryDerive("grammar 1\nlsystem Line passes 0\n  axiom \"FFF\"\nterminal wall\nstart A -> footprint Line wall\n");
     ASSERT_FALSE(d.ok());
     EXPECT_NE(d.error().message.find("on one line"), std::string::npos) << d.error().message;
+}
+
+TEST(Lsystems, LettersHaveNumbersAndConditions) {
+    // ABOP, figure 1.39: (a) of the parametric system with its letters alone.
+    const std::string text =
+        "lsystem Abop passes 2\n  axiom \"B(2) A(4, 4)\"\n  A(x, y) -> \"A(x * 2, x + y)\" when y <= 3\n"
+        "  A(x, y) -> \"B(x) A(x / y, 0)\" when y > 3\n  B(x) -> \"C\" when x < 1\n  B(x) -> \"B(x - 1)\" when x >= 1";
+    const Grown grown(text);
+    const auto letters = derive::rewritten(grown.lsystem(), grown.place);
+    ASSERT_TRUE(letters.ok()) << letters.error().message;
+    EXPECT_EQ(letters->text, "BBA");
+    const std::vector<double> expected{0, 3, 2, 1};
+    EXPECT_EQ(letters->numbers, expected);
+}
+
+TEST(Lsystems, NumbersMayAskParameters) {
+    const Grown grown(
+        "param r = .5 in .1..0.9\nlsystem P passes 3\n  axiom \"F(8m)\"\n  F(l) -> \"F(l * r)\" when l > 1.5");
+    const auto letters = derive::rewritten(grown.lsystem(), grown.place);
+    ASSERT_TRUE(letters.ok());
+    EXPECT_EQ(letters->numbers, std::vector<double>{1});
+}
+
+TEST(Lsystems, ASignalRunsThroughItsNeighbours) {
+    // ABOP, section 1.8: B is passed on from letter to letter, past branches and turns.
+    const std::string text = "axiom \"BA+A[-A]A\"\n  B < A -> \"B\"\n  B -> \"A\"";
+    EXPECT_EQ(Grown("lsystem S passes 1\n  " + text).letters(), "AB+A[-A]A");
+    EXPECT_EQ(Grown("lsystem S passes 2\n  " + text).letters(), "AA+B[-A]A");
+    EXPECT_EQ(Grown("lsystem S passes 3\n  " + text).letters(), "AA+A[-B]B");
+    EXPECT_EQ(Grown("lsystem S passes 1\n  axiom \"AA[B]AB\"\n  A > B -> \"C\"").letters(), "AA[B]CB");
+}
+
+TEST(Lsystems, BadLettersAreLocated) {
+    const auto messageOf = [](const std::string& text) {
+        const auto source =
+            std::make_shared<const syntax::Source>("t.sgm", "grammar 1\n" + text + "\nstart A -> cube\n");
+        syntax::Diagnostics diagnostics;
+        rules::load(source, operations::table(), rules::Loader(), diagnostics);
+        if (diagnostics.all().empty()) return std::string("nothing");
+        const auto place = source->place(diagnostics.all()[0].span.begin);
+        return std::to_string(place.line) + ":" + std::to_string(place.column) + " " + diagnostics.all()[0].message;
+    };
+    EXPECT_EQ(messageOf("lsystem P axiom \"F(2\""), "2:19 this '(' has no ')' behind it");
+    EXPECT_EQ(messageOf("lsystem P axiom \"F(nope)\"").substr(0, 4), "2:20");
+    EXPECT_NE(messageOf("lsystem P axiom \"F\" F(l) -> \"F(l + )\""), "nothing");
+    EXPECT_NE(messageOf("lsystem P axiom \"+(3m)F\""), "nothing") << "a turn takes an angle";
+}
+
+TEST(Turtle, StepsInSpaceAreJoined) {
+    const auto d = derived(
+        "grammar 1\nterminal wall\nterminal leaf = sphere\nlsystem P passes 0 angle 90deg step 2m\n  axiom "
+        "\"F+F&F^F[-F]L\"\n"
+        "start S -> size (1, 3, .2m) turtle P { F: wall | L: leaf }\n");
+    std::vector<const derive::Shape*> walls;
+    const derive::Shape* leaf = nullptr;
+    for (const derive::Shape& s : d.tree.shapes) {
+        const std::string label = d.tree.labels[s.label];
+        if (label == "wall") walls.push_back(&s);
+        if (label == "leaf") leaf = &s;
+    }
+    ASSERT_EQ(walls.size(), 5u);
+    ASSERT_TRUE(leaf);
+    for (const derive::Shape* s : walls) {
+        expectNear(s->scope.size, {2, 3, .2});
+        EXPECT_NEAR(dot(cross(s->scope.axes.x, s->scope.axes.y), s->scope.axes.z), 1, 1e-12);
+    }
+    expectNear(walls[0]->scope.centre, {1, 0, 0});
+    expectNear(walls[1]->scope.centre, {2, 0, 1});  // left turns go from +x to +z, as in outlines
+    expectNear(walls[2]->scope.centre, {2, -1, 2});
+    expectNear(walls[3]->scope.centre, {2, -2, 3});
+    expectNear(leaf->scope.centre, {2, -2, 4});
+}
+
+TEST(Turtle, ATreeRisesAndThins) {
+    const auto d = derived(
+        "grammar 1\nterminal wood = cylinder\nlsystem T passes 5\n  axiom \"A(2m, .4m)\"\n"
+        "  A(l, w) -> \"!(w) F(l) [+(30deg) A(l * .8, w * .7)] [-(30deg) A(l * .8, w * .7)]\"\n"
+        "start S -> turtle T upward { F: wood }\n");
+    size_t count = 0;
+    double least = 1, lowest = 9;
+    for (const derive::Shape& s : d.tree.shapes) {
+        if (d.tree.labels[s.label] != "wood") continue;
+        ++count;
+        least = std::min(least, s.scope.size.x);
+        lowest = std::min(lowest, s.scope.centre.y - s.scope.size.y / 2);
+    }
+    EXPECT_EQ(count, 31u) << "2^5 - 1 segments";
+    EXPECT_NEAR(least, .4 * std::pow(.7, 4), 1e-9);
+    EXPECT_NEAR(lowest, -.5, 1e-9) << "it stands on the scope's foot";
+}
+
+TEST(Walls, StandAlongLettersAndPoints) {
+    const auto areaOf = [](const std::string& plan) {
+        const auto d = derived(
+            "grammar 1\nterminal wall\nlsystem P passes 0 angle 90deg step 4m\n  axiom \"F+F+F\"\n"
+            "start S -> footprint " +
+            plan + " wall\n");
+        for (const derive::Shape& s : d.tree.shapes)
+            if (s.scope.footprint != derive::none)
+                return area(d.tree.footprints.inMetres(s.scope.footprint, s.scope.half()));
+        return 0.0;
+    };
+    EXPECT_NEAR(areaOf("walls(P, .2m)"), 12 * .2, 1e-4);
+    EXPECT_NEAR(areaOf("walls(.3m, (0, 0), (8, 0), (8, 6))"), 14 * .3, 1e-4);
+    EXPECT_NEAR(areaOf("walls(.3m, (0, 0), (8, 0), (8, 6), (0, 6), (0, 0))"), 28 * .3, 1e-4) << "closed";
 }
 
 }  // namespace

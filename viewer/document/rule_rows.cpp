@@ -69,6 +69,9 @@ std::string headOf(const syntax::Attribute& a) {
     return text;
 }
 
+/// How often a block repeats, as it is written.
+std::string timesOf(const Case& c) { return c.atLeastOnce ? "{ }+" : c.times ? "{ }" + oneLine(c.times) : "{ }*"; }
+
 class Writer {
 public:
     void start(const StartDecl& decl) {
@@ -135,7 +138,7 @@ private:
                 if (c.body) body(*c.body, depth);
                 continue;
             }
-            const std::string label = c.repeated      ? "{ }*"
+            const std::string label = c.repeated      ? timesOf(c)
                                       : c.tag.empty() ? oneLine(c.label) + ":"
                                                       : "tag " + c.tag.text + ":";
             RuleRow& row = add(Kind::Case, depth, c.span, label);

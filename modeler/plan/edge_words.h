@@ -6,10 +6,10 @@
 
 #include "modeler/plan/polygon.h"
 
-namespace sgm::operations {
+namespace sgm::plan {
 
 /// front (+z), back, left, right by its normal, side and rest for every edge, court, cut, or one of the words of its
 /// tag.
-bool isEdgeCalled(const plan::Footprint& footprint, const plan::PlacedEdge& edge, std::string_view word);
+bool isEdgeCalled(const Footprint& footprint, const PlacedEdge& edge, std::string_view word);
 
-}  // namespace sgm::operations
+}  // namespace sgm::plan

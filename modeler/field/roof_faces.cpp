@@ -1,0 +1,240 @@
+#include "modeler/field/roof_faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "modeler/plan/reflex.h"
+
+namespace sgm::field {
+namespace {
+
+using plan::Linear;
+using plan::PlacedEdge;
+using plan::Vec2;
+
+constexpr double leastFace_m = 1e-3;
+
+/// What rises over one edge.
+struct Side {
+    double slope = 0;  ///< tangent of its pitch; 0: a gable
+    double rise = 0;   ///< metres above the others at which it begins
+};
+
+/// A roof of planes over its edges.
+struct Planes {
+    std::vector<Side> sides;
+    double overhang_m = 0, fascia_m = 0;
+    double highest_m = 1e9;  ///< where broken slopes end
+};
+
+double valueAt(std::span<const Argument> arguments, size_t i) { return arguments[i].value[0]; }
+
+void setGables(Planes& planes, const plan::Footprint& footprint, const plan::Formula& formula, double ends) {
+    for (const uint32_t e : gablesOf(footprint, formula, static_cast<GableEnds>(static_cast<int>(ends))))
+        planes.sides[e] = {};
+}
+
+/// The planes of a row whose numbers stand as solids_plan.cpp reads them; nothing for other roofs.
+std::optional<Planes> planesOf(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
+                               std::span<const Argument> a) {
+    const std::vector<PlacedEdge> edges = plan::edgesOf(footprint);
+    Planes planes;
+    const bool isBroken = row.name == "mansardRoof" || row.name == "gambrelRoof";
+    const bool isSaltbox = row.name == "saltboxRoof";
+    if (!isBroken && !isSaltbox && row.name != "hipRoof" && row.name != "gableRoof" && row.name != "halfHipRoof")
+        return std::nullopt;
+    planes.sides.assign(edges.size(), {std::tan(valueAt(a, 0)), 0});
+    const size_t overhang = isBroken ? 3 : isSaltbox ? 2 : 1;
+    planes.overhang_m = valueAt(a, overhang);
+    planes.fascia_m = valueAt(a, overhang + 1);
+    if (isBroken) planes.highest_m = valueAt(a, 1);
+    for (size_t i = 0; isSaltbox && i < edges.size(); ++i)
+        planes.sides[i].slope = std::tan(valueAt(a, edges[i].normal().z > 0 ? 0 : 1));
+    if (row.name == "gableRoof") setGables(planes, footprint, formula, valueAt(a, 4));
+    if (row.name == "gambrelRoof") setGables(planes, footprint, formula, valueAt(a, 6));
+    if (isSaltbox) setGables(planes, footprint, formula, valueAt(a, 5));
+    if (row.name == "halfHipRoof")
+        for (const uint32_t e : gablesOf(footprint, formula, static_cast<GableEnds>(static_cast<int>(valueAt(a, 4)))))
+            planes.sides[e].rise = valueAt(a, 5) * planes.sides[e].slope * edges[e].length() / 2;
+    return planes;
+}
+
+/// The height of the slopes, negated, as leaves of the formula.
+std::vector<Linear> leavesOf(const plan::Footprint& footprint, const Planes& planes) {
+    std::vector<Linear> leaves = plan::distancesOf(footprint);
+    for (size_t i = 0; i < leaves.size(); ++i) {
+        const Side& side = planes.sides[i];
+        leaves[i] = side.slope > 0 ? Linear{leaves[i].a * side.slope, leaves[i].b * side.slope,
+                                            leaves[i].c * side.slope - side.rise}
+                                   : Linear{0, 0, -1e12};
+    }
+    return leaves;
+}
+
+/// The slopes of a roof and its outline, as leaves of the footprint's formula.
+struct Surface {
+    const plan::Formula& formula;
+    std::vector<Linear> slopes, outline;
+};
+
+/// How far the slope of `edge` goes on from `from` toward `way`, inside the outline.
+double reach(const Surface& roof, uint32_t edge, Vec2 from, Vec2 way) {
+    const auto alongWay = [&](const Linear& l) { return l.a * way.x + l.b * way.z; };
+    const Linear& own = roof.slopes[edge];
+    std::vector<double> stops;
+    const auto stopWhere = [&](double value, double by) {
+        if (std::abs(by) < 1e-12) return;
+        if (const double t = value / by; t > 1e-9 && t < 1e6) stops.push_back(t);
+    };
+    for (const Linear& l : roof.slopes) stopWhere(l.at(from) - own.at(from), alongWay(own) - alongWay(l));
+    for (const Linear& l : roof.outline) stopWhere(-l.at(from), alongWay(l));
+    std::sort(stops.begin(), stops.end());
+    double reached = 0;
+    for (const double stop : stops) {
+        const Vec2 middle = from + way * ((reached + stop) / 2);
+        const double value = own.at(middle);
+        if (plan::valueOf(roof.formula, roof.outline, middle) > 0) return reached;
+        if (std::abs(plan::valueOf(roof.formula, roof.slopes, middle) - value) > 1e-9 * (1 + std::abs(value)))
+            return reached;
+        reached = stop;
+    }
+    return reached;
+}
+
+/// How much longer an edge moved outward is at the end where `a` goes over into `b`, per metre.
+double mitre(const PlacedEdge& a, const PlacedEdge& b) {
+    const Vec2 m = a.normal(), n = b.normal();
+    const double c = 1 + dot(m, n);
+    return c > 1e-6 ? std::clamp(cross(m, n) / c, -4.0, 4.0) : 4.0;
+}
+
+/// The edges before and behind one of the same ring.
+struct Neighbours {
+    size_t before, after;
+};
+Neighbours neighboursOf(const std::vector<PlacedEdge>& edges, size_t i) {
+    const size_t first = i - edges[i].index;
+    size_t end = i + 1;
+    while (end < edges.size() && edges[end].polygon == edges[i].polygon && edges[end].ring == edges[i].ring) ++end;
+    return {i == first ? end - 1 : i - 1, i + 1 == end ? first : i + 1};
+}
+
+/// An edge's own place, moved out by `out` metres.
+RoofFace onEdge(RoofFace::Kind kind, const std::vector<PlacedEdge>& edges, size_t i, double out) {
+    const PlacedEdge& e = edges[i];
+    const Neighbours next = neighboursOf(edges, i);
+    const double before = out * mitre(edges[next.before], e), after = out * mitre(e, edges[next.after]);
+    const Vec2 along = (e.to - e.from) * (1 / e.length());
+    RoofFace face;
+    face.kind = kind;
+    face.edge = static_cast<uint32_t>(i);
+    face.outward = e.normal();
+    face.at = (e.from + e.to) * .5 + along * ((after - before) / 2) + face.outward * out;
+    face.width_m = e.length() + before + after;
+    return face;
+}
+
+/// The middle of the slope over an edge, where it is as wide as the lines around leave it.
+std::optional<RoofFace> slopeOver(const Planes& planes, const Surface& roof, const std::vector<PlacedEdge>& edges,
+                                  size_t i) {
+    RoofFace face = onEdge(RoofFace::Kind::Slope, edges, i, 0);
+    const Side& side = planes.sides[i];
+    const Vec2 in = face.outward * -1, along{face.outward.z * -1, face.outward.x};
+    const double whole = std::min(reach(roof, face.edge, face.at, in), std::max(0.0, planes.highest_m / side.slope));
+    if (whole < leastFace_m) return std::nullopt;
+    const Vec2 middle = face.at + in * (whole / 2);
+    const double left = reach(roof, face.edge, middle, along), right = reach(roof, face.edge, middle, along * -1);
+    face.at = middle + along * ((left - right) / 2);
+    face.width_m = left + right;
+    face.run_m = whole;
+    face.rise_m = whole * side.slope;
+    face.height_m = planes.fascia_m + side.rise + face.rise_m / 2;
+    if (face.width_m < leastFace_m) return std::nullopt;
+    return face;
+}
+
+std::vector<RoofFace> facesOf(const Planes& planes, const plan::Footprint& footprint, const plan::Formula& formula) {
+    const std::vector<PlacedEdge> edges = plan::edgesOf(footprint);
+    const Surface roof{formula, leavesOf(footprint, planes), plan::distancesOf(footprint)};
+    double least = 1e9;
+    for (const Side& side : planes.sides)
+        if (side.slope > 0) least = std::min(least, side.slope);
+    std::vector<RoofFace> faces;
+    for (size_t i = 0; i < edges.size(); ++i) {
+        if (planes.sides[i].slope > 0) {
+            if (auto slope = slopeOver(planes, roof, edges, i)) faces.push_back(*slope);
+            RoofFace& eave = faces.emplace_back(onEdge(RoofFace::Kind::Eave, edges, i, planes.overhang_m));
+            eave.rise_m = planes.fascia_m;
+            eave.height_m = planes.fascia_m / 2 - planes.overhang_m * least;
+            continue;
+        }
+        RoofFace& gable = faces.emplace_back(onEdge(RoofFace::Kind::Gable, edges, i, planes.overhang_m));
+        const Vec2 inside = (edges[i].from + edges[i].to) * .5 - gable.outward * 1e-4;
+        gable.rise_m = std::max(0.0, -plan::valueOf(formula, roof.slopes, inside)) + planes.fascia_m;
+        gable.height_m = gable.rise_m / 2;
+    }
+    const plan::Deepest top = plan::deepestPoint(footprint, formula);
+    RoofFace& apex = faces.emplace_back();
+    apex.kind = RoofFace::Kind::Apex;
+    apex.at = top.at;
+    apex.outward = {0, 1};
+    apex.height_m = planes.fascia_m - plan::valueOf(formula, roof.slopes, top.at);
+    return faces;
+}
+
+/// The one plane of a shed roof, over the middle of the outline.
+RoofFace shedSlope(const plan::Footprint& footprint, std::span<const Argument> a) {
+    constexpr Vec2 down[] = {{0, 1}, {0, -1}, {1, 0}, {-1, 0}};
+    RoofFace face;
+    face.outward = down[std::min<size_t>(static_cast<size_t>(valueAt(a, 4)), 3)];
+    const plan::Box2 box = bounds(footprint);
+    const Vec2 size = box.size();
+    const bool alongX = face.outward.x != 0;
+    face.at = box.centre();
+    face.run_m = alongX ? size.x : size.z;
+    face.width_m = alongX ? size.z : size.x;
+    face.rise_m = face.run_m * std::tan(valueAt(a, 0));
+    face.height_m = valueAt(a, 2) + face.rise_m / 2;
+    return face;
+}
+
+/// The planes of a pyramid, to the point over the centre of mass.
+std::vector<RoofFace> pyramidSlopes(const plan::Footprint& footprint, double fascia_m, double height_m) {
+    const std::vector<PlacedEdge> edges = plan::edgesOf(footprint);
+    const Vec2 top = plan::centroid(footprint);
+    std::vector<RoofFace> faces;
+    for (size_t i = 0; i < edges.size(); ++i) {
+        RoofFace face = onEdge(RoofFace::Kind::Slope, edges, i, 0);
+        face.run_m = dot(face.at - top, face.outward);
+        if (face.run_m < leastFace_m) return {};  // an edge looks away from the point: no pyramid stands there
+        face.at = (face.at + top) * .5;
+        face.width_m /= 2;
+        face.rise_m = height_m - fascia_m;
+        face.height_m = fascia_m + face.rise_m / 2;
+        faces.push_back(face);
+    }
+    return faces;
+}
+
+}  // namespace
+
+bool isRoof(const Primitive& row) { return row.name.ends_with("Roof"); }
+
+std::vector<RoofFace> roofFaces(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
+                                std::span<const Argument> arguments, double height_m) {
+    if (!isRoof(row) || footprint.empty()) return {};
+    if (const auto planes = planesOf(row, footprint, formula, arguments)) return facesOf(*planes, footprint, formula);
+    if (row.name == "shedRoof") return {shedSlope(footprint, arguments)};
+    if (row.plan != PlanUse::Fills) return {};
+    std::vector<RoofFace> faces;
+    if (row.name == "pyramidRoof") faces = pyramidSlopes(footprint, valueAt(arguments, 1), height_m);
+    RoofFace& apex = faces.emplace_back();
+    apex.kind = RoofFace::Kind::Apex;
+    apex.at = row.name == "pyramidRoof" ? plan::centroid(footprint) : plan::deepestPoint(footprint, formula).at;
+    apex.outward = {0, 1};
+    apex.height_m = height_m;
+    return faces;
+}
+
+}  // namespace sgm::field

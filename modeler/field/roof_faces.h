@@ -1,0 +1,39 @@
+// Where something can grow on a roof over a footprint: its slopes, eaves, gables and its highest point.
+// Enters: a roof of the primitive table, its footprint and numbers. Leaves: places in metres. Assumes a sound footprint
+// about the scope's centre. Slopes meet where the formula's leaves do, as those of the roof itself.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "modeler/field/plan_solids.h"
+
+namespace sgm::field {
+
+/// A box on a roof, upright, about the middle of a face.
+struct RoofFace {
+    enum class Kind : uint8_t {
+        Slope,  ///< the middle of what rises over an edge; of broken roofs its lower part
+        Eave,   ///< the middle of the board under a slope
+        Gable,  ///< the wall over an edge that has no slope
+        Apex    ///< the highest point
+    };
+    Kind kind = Kind::Slope;
+    uint32_t edge = 0;    ///< as in edgesOf(); 0 of an apex
+    plan::Vec2 at;        ///< in the plan
+    plan::Vec2 outward;   ///< unit; of an apex +z
+    double height_m = 0;  ///< above the roof's foot
+    double width_m = 0;   ///< along the edge; of a slope where its middle is
+    double rise_m = 0;    ///< from its lower to its upper end
+    double run_m = 0;     ///< the same in plan
+};
+
+/// Whether faces of the row are known: a roof over a footprint.
+bool isRoof(const Primitive& row);
+/// The faces of a roof in the order of its edges, the apex last; curved roofs have an apex alone, flat ones none, and
+/// a shed roof one slope. `height_m` is of the scope, for rows that fill it. `arguments` need their values alone.
+/// O(n²).
+std::vector<RoofFace> roofFaces(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
+                                std::span<const Argument> arguments, double height_m);
+
+}  // namespace sgm::field

@@ -1,0 +1,106 @@
+// `at each(…)`: newcomers on sides, corners and the faces of roofs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/lower/lowered.h"
+
+namespace sgm::testing_ {
+namespace {
+
+using derive::Derivation;
+using derive::Shape;
+
+std::vector<const Shape*> shapesCalled(const Derivation& d, const std::string& symbol) {
+    std::vector<const Shape*> found;
+    for (const Shape& s : d.tree.shapes)
+        if (s.symbol != rules::none && d.grammar->symbols[s.symbol].name == symbol) found.push_back(&s);
+    return found;
+}
+
+Derivation house(const std::string& rule, const std::string& plan = "ell(16, 12, 6, 5)") {
+    return derived("grammar 1\nterminal wall\nterminal bay = cube\nstart A -> footprint " + plan +
+                   " extrude 6m Mass\nrule Mass -> wall " + rule + "\n");
+}
+
+TEST(EachFace, SidesAreAsLongAsTheirEdgesAndLookOutward) {
+    const Derivation d = house("+ bay size (100%, 50%, 1m) at each(side)");
+    const auto bays = shapesCalled(d, "bay");
+    ASSERT_EQ(bays.size(), 6u);
+    double around = 0;
+    for (const Shape* bay : bays) {
+        around += bay->scope.size.x;
+        EXPECT_NEAR(bay->scope.size.y, 3, 1e-9);
+        EXPECT_NEAR(bay->scope.axes.y.y, 1, 1e-12);
+        EXPECT_NEAR(dot(cross(bay->scope.axes.x, bay->scope.axes.y), bay->scope.axes.z), 1, 1e-12);
+    }
+    EXPECT_NEAR(around, 56, 1e-9) << "the outline's length";
+}
+
+TEST(EachFace, WordsAndTagsChooseEdges) {
+    EXPECT_EQ(shapesCalled(house("+ bay size (1, 1, 1) at each(front)"), "bay").size(), 2u);
+    EXPECT_EQ(shapesCalled(house("+ bay size (1, 1, 1) at each(court)", "ring(30, 24, 7)"), "bay").size(), 4u);
+    EXPECT_EQ(
+        shapesCalled(house("+ bay size (1, 1, 1) at each(outer)", "arc(33m, 44m, 15deg, 130deg, 12)"), "bay").size(),
+        12u);
+    EXPECT_EQ(shapesCalled(house("+ bay size (1, 1, 1) at each(nowhere)"), "bay").size(), 0u);
+}
+
+TEST(EachFace, ANewcomerStandsOutsideOfTheWall) {
+    const Derivation d = house("+ bay size (1, 1, .4m) at each(front)", "rect(10, 6)");
+    const Shape& bay = *shapesCalled(d, "bay")[0];
+    expectNear(bay.scope.centre, {0, 2.5, 3.2});
+    const Derivation centred = house("+ bay size (1, 1, .4m) at each(front) to centre", "rect(10, 6)");
+    expectNear(shapesCalled(centred, "bay")[0]->scope.centre, {0, 2.5, 3});
+}
+
+TEST(EachFace, CornersThatStandOutAlone) {
+    EXPECT_EQ(shapesCalled(house("+ bay size (1, 100%, 1) at each(corner) to centre"), "bay").size(), 5u);
+    const Derivation d = house("+ bay size (1, 100%, 1) at each(corner) to centre", "rect(10, 6)");
+    for (const Shape* bay : shapesCalled(d, "bay")) {
+        EXPECT_NEAR(std::abs(bay->scope.centre.x), 5, 1e-9);
+        EXPECT_NEAR(std::abs(bay->scope.axes.z.x), std::sqrt(.5), 1e-9);
+    }
+}
+
+TEST(EachFace, SlopesOfRoofsLieOnTheRoof) {
+    for (const std::string roof : {"hipRoof(35deg, overhang: .5m, fascia: .2m)", "gableRoof(40deg, overhang: .4m)",
+                                   "halfHipRoof(40deg)", "mansardRoof(70deg, 2m, 20deg)",
+                                   "gambrelRoof(65deg, 2m, 25deg)", "saltboxRoof(45deg, 25deg)", "shedRoof(15deg)"}) {
+        for (const std::string plan :
+             {"rect(14, 9)", "ell(16, 12, 6, 5)", "outline((0, 0), (14, 1), (13, 9), (-1, 8))"}) {
+            const std::string text = "grammar 1\nterminal bay = cube\nstart A -> footprint " + plan + " " + roof;
+            const Lowered alone(text + "\n");
+            const Derivation d = derived(text + " + bay size .2m at each(slope)\n");
+            const auto bays = shapesCalled(d, "bay");
+            EXPECT_FALSE(bays.empty()) << roof << " over " << plan;
+            for (const Shape* bay : bays)
+                EXPECT_NEAR(alone.value(bay->scope.centre.as<float>()), 0, 1e-4) << roof << " over " << plan;
+        }
+    }
+}
+
+TEST(EachFace, GablesEavesAndApexesHaveTheirPlaces) {
+    const std::string text =
+        "grammar 1\nterminal bay = cube\nterminal top = cube\nterminal gutter = cube\n"
+        "start A -> footprint rect(12, 8) gableRoof(45deg) + bay size .2m at each(gable) to centre + top size .2m at "
+        "each(apex) "
+        "+ gutter size (100%, .1m, .1m) at each(eave)\n";
+    const Derivation d = derived(text);
+    EXPECT_EQ(shapesCalled(d, "bay").size(), 2u);
+    ASSERT_EQ(shapesCalled(d, "gutter").size(), 2u);
+    EXPECT_NEAR(shapesCalled(d, "gutter")[0]->scope.size.x, 12, 1e-9);
+    ASSERT_EQ(shapesCalled(d, "top").size(), 1u);
+    EXPECT_NEAR(shapesCalled(d, "top")[0]->scope.centre.y, -.5 + 4 + .1, .02) << "4 m above the eaves";
+}
+
+TEST(EachFace, RoofsThatCameBeforeAreFoundAndNoneIsAnError) {
+    const Derivation d = house("+ hipRoof(30deg) at +y + bay size .5m at each(slope)", "rect(10, 6)");
+    EXPECT_EQ(shapesCalled(d, "bay").size(), 4u);
+    const auto none = tryDerive("grammar 1\nstart A -> cube + sphere at each(slope)\n");
+    ASSERT_FALSE(none.ok());
+    EXPECT_NE(none.error().message.find("no roof stands here"), std::string::npos) << none.error().message;
+}
+
+}  // namespace
+}  // namespace sgm::testing_
