@@ -7,7 +7,7 @@
 #   ./run.sh gallery [NAME…]      draws the pictures of docs/ and README, and measures the times on the gallery's page
 #   ./run.sh package [FOLDER] [WHAT]   writes what other programs install, as the Blender add-on's zip, into out/
 #   ./run.sh site [FOLDER]        makes a site of docs/ with search in out/site (it wants mkdocs)
-#   ./run.sh fuzz [SECONDS] [TARGET…]  runs the fuzz targets mesh and syntax (clang++; 600 seconds each)
+#   ./run.sh fuzz [TIME] [TARGET…]  runs the fuzz targets of tests/fuzz/run.sh (10m each) and counts what they have had
 cd "$(dirname "$0")"
 . cmake/setup.sh
 case "${1:-}" in

@@ -126,6 +126,13 @@ TEST_F(Hostile, OutputsReplaceNoInputAndNoOutput) {
               1);
 }
 
+TEST_F(Hostile, NamesThatAreWrittenAlikeShareNoMaterialFile) {
+    const std::string file = grammar("start A -> cube color #ff0000\n");
+    EXPECT_EQ(quick("build -q " + file + " --resolution 8 -o '" + path("out a.obj") + "' -o " + path("out_a.obj")).code,
+              0);
+    EXPECT_EQ(scratch_.fileCount(), 5u) << "the grammar, and each its own material file";
+}
+
 TEST_F(Hostile, TargetsAreLookedAtBeforeTheWork) {
     const std::string endless =
         grammar("start A -> cube : B\nrule B weight 1 -> + cube at +x : B\nrule B weight 1 -> + cube at +y : B\n");

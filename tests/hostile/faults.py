@@ -6,7 +6,7 @@
     tests/hostile/faults.py signals [PROGRAM] [COUNT]   the same with SIGINT, SIGTERM and SIGHUP, and how long they take
     tests/hostile/faults.py disk    [PROGRAM]           full disks, folders that can't be written, closed pipes
 
-EVERY = 7 runs every seventh case. Every run has to end by itself with exit code 0, 1 or 3 (130 where it was cancelled), and
+EVERY = 7 runs every seventh case; SIGUSR1 ends a run early, with its counts. Every run has to end by itself with exit code 0, 1 or 3 (130 where it was cancelled), and
 an output is afterwards either what it was before or whole. Prints what went wrong, and the counts.
 """
 import collections
@@ -30,6 +30,16 @@ COMMANDS = [["build", "-q", "--resolution", "96", "-o", "x.glb"], ["build", "-q"
             ["build", "-q", "--resolution", "96", "--stream", "-o", "x.ply"], ["render", "-q", "-o", "x.png", "--size", "160x120"],
             ["check"], ["tree"], ["params"], ["fmt", "--check"], ["bake", "-q", "-o", "city"]]
 wrong = 0
+stopped = False
+
+
+def stop(*_):
+    """Ends the run after the case in hand, with what it has found."""
+    global stopped
+    stopped = True
+
+
+signal.signal(signal.SIGUSR1, stop)
 
 
 def tell(text):
@@ -51,6 +61,8 @@ def memory():
     counts = collections.Counter()
     cases = [(m, e, c) for m in (200, 400, 800, 4000) for e in EXAMPLES for c in COMMANDS]
     for mebibytes, example, command in cases[::NUMBER]:
+        if stopped:
+            break
         what = f"{mebibytes} MB: {' '.join(command)} {os.path.relpath(example)}"
         try:
             ended = run([command[0], example, *command[1:]], mebibytes * 1_000_000)
@@ -92,6 +104,8 @@ def interrupted(signals):
             whole[name] = file.read()
     counts, waits = collections.Counter(), []
     for i in range(NUMBER):
+        if stopped:
+            break
         job = JOBS[i % len(JOBS)]
         name = job[job.index("-o") + 1]
         path = os.path.join(FOLDER, name)
