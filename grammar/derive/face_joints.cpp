@@ -139,13 +139,13 @@ bool Interpreter::placeOnFaces(ShapeId host, const rules::Element& e, Frame& fra
                                           : facesOfRoof(scope, footprints, *builder_.tree().solidOf(at), choice);
         const uint64_t ofHost = at == host ? key : combine(key, builder_.tree().shapes[at].key);
         for (const Face& face : faces) {
-            Meeting meeting{at, centreJoint, {}, frame.place};
-            meeting.joint = {"each", face.scope.centre, face.direction};
-            meeting.place.key = combine(combine(ofHost, hashText("each")), face.key);
-            meeting.place.scope = face.scope;
-            meeting.place.valuesAt = builder_.tree().shapes[at].valuesAt;
-            meeting.place.host = at;
-            if (!builder_.work() || !join(e, frame, target, meeting)) return false;
+            Attachment attachment{at, centreJoint, {}, frame.place};
+            attachment.joint = {"each", face.scope.centre, face.direction};
+            attachment.place.key = combine(combine(ofHost, hashText("each")), face.key);
+            attachment.place.scope = face.scope;
+            attachment.place.valuesAt = builder_.tree().shapes[at].valuesAt;
+            attachment.place.host = at;
+            if (!builder_.work() || !join(e, frame, target, attachment)) return false;
         }
     }
     return !builder_.failed();

@@ -81,13 +81,13 @@ private:
     /// Grows the element on `host`; it becomes a child of `target`'s node.
     bool placeOn(ShapeId host, const rules::Element& e, Frame& frame, const Target& target, uint64_t key);
     /// A joint of a shape that a newcomer comes to, and where the newcomer's expressions stand.
-    struct Meeting {
+    struct Attachment {
         ShapeId host = none;
         uint32_t ours = none;  ///< index of `joint`
         Joint joint;
         Place place;
     };
-    bool join(const rules::Element& e, Frame& frame, const Target& target, const Meeting& meeting);
+    bool join(const rules::Element& e, Frame& frame, const Target& target, const Attachment& attachment);
     // face_joints.cpp
     bool placeOnFaces(ShapeId host, const rules::Element& e, Frame& frame, const Target& target, uint64_t key);
     std::vector<ShapeId> roofsOf(ShapeId host, ShapeId node, const rules::JointChoice& at);

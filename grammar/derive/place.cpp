@@ -259,8 +259,8 @@ bool Interpreter::cutAbove(const Element& e, const Target& target, const Frame& 
 bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Target& target, uint64_t key) {
     if (e.at && e.at->each) return placeOnFaces(host, e, frame, target, key);
     ElementCache& facts = factsOf(e);
-    Meeting meeting{host, centreJoint, {}, frame.place};
-    Place& place = meeting.place;
+    Attachment attachment{host, centreJoint, {}, frame.place};
+    Place& place = attachment.place;
     place.key = key;
     const bool whole = frame.wholeContent && !e.at && !e.on;
     if (whole && builder_.recording()) builder_.recording()->readsWorld();
@@ -285,22 +285,22 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
             return true;
         }
         if (open.size() > 1) builder_.noteChance();
-        meeting.ours = open[open.size() == 1 ? 0 : pick(combine(key, hashText("at")), open.size())];
+        attachment.ours = open[open.size() == 1 ? 0 : pick(combine(key, hashText("at")), open.size())];
     }
-    meeting.joint = builder_.tree().joint(host, meeting.ours);
-    if (whole || (stated && !e.at)) meeting.joint.point = place.scope.centre;
-    return join(e, frame, target, meeting);
+    attachment.joint = builder_.tree().joint(host, attachment.ours);
+    if (whole || (stated && !e.at)) attachment.joint.point = place.scope.centre;
+    return join(e, frame, target, attachment);
 }
 
 /// Puts the newcomer where its joint meets ours, and bonds both.
-bool Interpreter::join(const Element& e, Frame& frame, const Target& target, const Meeting& meeting) {
+bool Interpreter::join(const Element& e, Frame& frame, const Target& target, const Attachment& attachment) {
     ElementCache& facts = factsOf(e);
-    const Place& place = meeting.place;
+    const Place& place = attachment.place;
     EvaluatedAttributes attributes;
     if (!evaluateAttributes(e, place, attributes)) return false;
     if (attributes.vanishes) return true;
     Mating mating;
-    mating.ours = meeting.joint;
+    mating.ours = attachment.joint;
     mating.moved_m = attributes.moved_m;
     mating.overlap = attributes.overlap;
     const uint32_t theirs = theirJoint(e, facts, mating.ours, attributes.scope.axes, place);
@@ -314,13 +314,13 @@ bool Interpreter::join(const Element& e, Frame& frame, const Target& target, con
     remarkLostTurn(e, mating, attributes.scope.axes, place, shape.scope.axes);
     if (e.through != rules::none) {
         shape.valuesAt = place.valuesAt;
-        return cutAbove(e, target, frame, shape, meeting.ours, theirs, meeting.host);
+        return cutAbove(e, target, frame, shape, attachment.ours, theirs, attachment.host);
     }
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
-    builder_.bond(meeting.host, meeting.ours, id, theirs);
+    builder_.bond(attachment.host, attachment.ours, id, theirs);
     builder_.bondCoincidentFaces(id);
-    remember(e, frame, id, meeting.ours);
+    remember(e, frame, id, attachment.ours);
     return fill(e, id, frame);
 }
 

@@ -66,16 +66,16 @@ inline constexpr PrimitiveParameter mouldingParameters[] = {
     point("a",
           "metres outward of the outline (inward where negative) and up; three points or more, or none for a band"),
     point("b", "the next one"),
-    point("c", ""),
-    point("d", ""),
-    point("e", ""),
-    point("f", ""),
-    point("g", ""),
-    point("h", ""),
-    point("i", ""),
-    point("j", ""),
-    point("k", ""),
-    point("l", "")};
+    point("c", "the next one, if there is one"),
+    point("d", "the next one, if there is one"),
+    point("e", "the next one, if there is one"),
+    point("f", "the next one, if there is one"),
+    point("g", "the next one, if there is one"),
+    point("h", "the next one, if there is one"),
+    point("i", "the next one, if there is one"),
+    point("j", "the next one, if there is one"),
+    point("k", "the next one, if there is one"),
+    point("l", "the next one, if there is one")};
 inline constexpr PrimitiveParameter out(double fallback) {
     return {"out", Kind::Length, fallback, .001, 20, "how far it stands out"};
 }

@@ -111,7 +111,7 @@ TEST(ShapeRows, JointsAndBondsAsInFigure11) {
 }
 
 constexpr const char* manyKinds =
-    "grammar 1\n"
+    "grammar 2\n"
     "param n = 4 in 1..40 \"Number\" group Size key n\n"
     "param wide = 2m in 1m..9m \"Width\" group Size\n"
     "param bend = 10deg in 0deg..90deg\n"

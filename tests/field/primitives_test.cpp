@@ -25,7 +25,11 @@ std::vector<Argument> randomArguments(Graph& graph, const Primitive& row, Draws&
             list.push_back(argument(graph, {std::floor(a)}));
         else if (p.kind == ParameterKind::Choice)
             list.push_back(argument(graph, {double(draw.uniform(0, 1) < 0.5)}));
-        else if (p.kind == ParameterKind::Length)
+        else if (p.kind ==
+                 ParameterKind::Point) {  // corners of a regular polygon, for a section crosses itself nowhere
+            const double turn = 2 * pi * (p.name[0] - 'a') / 12;
+            list.push_back(argument(graph, {.3 * std::cos(turn), .3 * std::sin(turn)}));
+        } else if (p.kind == ParameterKind::Length)
             list.push_back(
                 argument(graph, {p.lo == 0 && draw.uniform(0, 1) < 0.5 ? 0 : draw.size(std::max(p.lo, 0.05), 50)}));
         else if (p.name == "bailout")

@@ -272,7 +272,7 @@ TEST_F(Client, RandomEditsNeverEndIt) {
 }
 
 TEST_F(Client, AKeystrokeOfAThousandLinesTakesLittle) {
-    std::string text = "grammar 1\nuse \"std/house.sgm\"\nstart Town -> Palace0\n";
+    std::string text = "grammar 2\nuse \"std/house.sgm\"\nstart Town -> Palace0\n";
     for (int i = 0; i < 330; ++i)
         text += "param n" + std::to_string(i) + " = " + std::to_string(i % 7 + 1) + " in 1..9 \"Number " +
                 std::to_string(i) + "\"\n// Palace " + std::to_string(i) + " of many.\nrule Palace" +

@@ -79,7 +79,7 @@ test("values are written as --set reads them", () => {
 test("the preview follows the text and the sliders", { timeout: 120000 }, async () => {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "sgm-test-"));
   const fileName = path.join(folder, "a.sgm");
-  let text = "grammar 1\nparam n = 2 in 1..9\nstart A -> cube size (n, 1, 1)\n";
+  let text = "grammar 2\nparam n = 2 in 1..9\nstart A -> cube size (n, 1, 1)\n";
   const shown = [];
   const drawing = new Drawing(() => program, (message) => shown.push(message), 64);
   const document = { fileName, getText: () => text };
@@ -90,10 +90,10 @@ test("the preview follows the text and the sliders", { timeout: 120000 }, async 
   drawing.values.n = 9;
   await drawing.draw(document);
   assert.notStrictEqual(shown[3].picture, first);
-  text = "grammar 1\nstart A -> spere\n";
+  text = "grammar 2\nstart A -> spere\n";
   await drawing.draw(document);
   assert.match(shown[4].problems, /a\.sgm:2:12: error: unknown solid 'spere'/);
-  text = "grammar 1\nstart A -> sphere\n";
+  text = "grammar 2\nstart A -> sphere\n";
   await Promise.all([drawing.draw(document), drawing.draw(document)]);
   assert.strictEqual(shown.filter((message) => message.picture).length, 3, "a newer picture takes the place of an older one");
   assert.deepStrictEqual(fs.readdirSync(folder), [], "nothing is left beside the grammar");

@@ -64,7 +64,7 @@ function open(server, file, text = fs.readFileSync(file, "utf8")) {
 test("problems are those of sgm check, with the model's", { timeout: 120000 }, async () => {
   const server = await connect();
   const file = path.join(root, "tests/bad/never.sgm");
-  const uri = open(server, file, "grammar 1\nstart A -> cube size 1 - cube size 1 move (9, 0, 0)\n");
+  const uri = open(server, file, "grammar 2\nstart A -> cube size 1 - cube size 1 move (9, 0, 0)\n");
   const problems = await server.problems(uri, 1, (list) => list.length > 0);
   assert.match(problems[0].message, /this cuts nothing/);
   assert.strictEqual(problems[0].severity, 2);
@@ -102,7 +102,7 @@ test("stale work is cancelled", { timeout: 60000 }, async () => {
 
 test("a keystroke is answered in 50 ms", { timeout: 60000 }, async () => {
   const server = await connect();
-  let text = 'grammar 1\nuse "std/house.sgm"\nstart Town -> P0\n';
+  let text = 'grammar 2\nuse "std/house.sgm"\nstart Town -> P0\n';
   for (let i = 0; i < 330; i++) text += `param n${i} = 2 in 1..9\n// ${i}\nrule P${i} -> cube size (n${i}, 2, 3)${i < 329 ? ` + P${i + 1} at +x` : ""}\n`;
   const uri = open(server, path.join(root, "examples/long.sgm"), text);
   await server.problems(uri, 1);
