@@ -76,8 +76,8 @@ def test_page(tab, served, manifest):
         return
     tab.value("sgmCity.look([120, 900, 180], [0, 0, 0])")
     tab.value("sgmCity.error = 0")
-    tab.wait(f"sgmCity.complete && sgmCity.count().instances == {manifest['instances']}", 120)
-    assert tab.value("sgmCity.count().triangles") == manifest["triangles"], "the finest cells, all of them"
+    finest = f"sgmCity.count().instances == {manifest['instances']} && sgmCity.count().triangles == {manifest['triangles']}"
+    tab.wait(f"sgmCity.complete && {finest}", 120)
     found = tab.value("""(() => { for (let y = 1; y < 40; ++y) for (let x = 1; x < 40; ++x) {
         const found = sgmCity.pick(x / 40, y / 40); if (found) return found; } })()""")
     assert found["object"] == "House" and found["rule"].startswith("Plot") and found["line"] == 6, found
