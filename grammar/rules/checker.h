@@ -130,6 +130,7 @@ private:
 
     // operators.cpp
     Typed call(Place& place, const syntax::Expr& e);
+    Typed unknownFunction(const syntax::Expr& e);
     Typed countCall(Place& place, const syntax::Expr& e);
     Typed placeCall(Place& place, const syntax::Expr& e, const Function& row);
     Typed unary(Place& place, const syntax::Expr& e);

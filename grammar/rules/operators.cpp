@@ -87,14 +87,16 @@ Typed Checker::placeCall(Place& place, const Written& e, const Function& row) {
     return result;
 }
 
+Typed Checker::unknownFunction(const Written& e) {
+    std::vector<std::string> known;
+    for (const Function& f : functions()) known.emplace_back(f.name);
+    const SourceSpan word{e.span.source, e.span.begin, e.span.begin + static_cast<uint32_t>(e.text.size())};
+    return failed(word, fmt::format("unknown function '{}'", e.text), nearest(e.text, known));
+}
+
 Typed Checker::call(Place& place, const Written& e) {
     const Function* row = findFunction(e.text);
-    if (!row) {
-        std::vector<std::string> known;
-        for (const Function& f : functions()) known.emplace_back(f.name);
-        const SourceSpan word{e.span.source, e.span.begin, e.span.begin + static_cast<uint32_t>(e.text.size())};
-        return failed(word, fmt::format("unknown function '{}'", e.text), nearest(e.text, known));
-    }
+    if (!row) return unknownFunction(e);
     if (e.args.size() < row->least || e.args.size() > row->most)
         return failed(e.span, fmt::format("'{}' takes {} argument{}{}, but {} {} given", row->name, row->least,
                                           row->least == 1 ? "" : "s", row->most > row->least ? " or more" : "",
