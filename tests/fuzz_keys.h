@@ -1,4 +1,4 @@
-// Which inputs a fuzz test makes: a few by themselves, others and more where ./run.sh fuzz asks.
+// Which inputs a fuzz test makes: a few by themselves, others and more when ./run.sh fuzz runs it.
 // Enters: the environment. Leaves: keys, each of which decides an input. Assumes nothing.
 #pragma once
 

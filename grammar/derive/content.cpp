@@ -164,15 +164,8 @@ bool Interpreter::evaluateAttributes(const Element& e, const Place& place, Evalu
 void Interpreter::standAsHigh(const Element& e, const Place& place, EvaluatedAttributes& out) {
     const Solid* solid = ownSolid(e, grammar_);
     if (!solid || !solid->primitive || solid->primitive->plan != field::PlanUse::OwnHeight || builder_.failed()) return;
-    std::vector<field::Argument> arguments;
     const SolidValue value = evaluateSolid(*solid, place);
-    for (size_t i = 0; i < value.args.size(); ++i) {
-        const field::PrimitiveParameter& parameter = value.primitive->parameters[i];
-        field::Argument& argument = arguments.emplace_back();
-        for (size_t k = 0; k < 2; ++k)  // points have two numbers, all others are told by their first
-            argument.value[k] =
-                std::clamp(value.args[i].n[std::min<size_t>(k, value.args[i].count - 1u)], parameter.lo, parameter.hi);
-    }
+    const std::vector<field::Argument> arguments = argumentNumbers(value);
     if (const std::string fault = field::profileFault(*value.primitive, arguments); !fault.empty()) {
         builder_.fail(Error::Kind::Input, fault, solid->span);
         return;

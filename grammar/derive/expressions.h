@@ -48,6 +48,8 @@ uint32_t drawByWeight(std::span<const double> weights, uint64_t key);
 
 /// A solid with its numbers bound.
 SolidValue evaluateSolid(const rules::Solid& solid, const Place& place);
+/// The numbers of a primitive's arguments within their ranges, without nodes: for what is asked before lowering.
+std::vector<field::Argument> argumentNumbers(const SolidValue& solid);
 
 /// Three components with their units.
 struct Vector {

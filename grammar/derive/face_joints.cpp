@@ -72,15 +72,6 @@ RoofFace::Kind roofKind(Kind kind) {
                                  : RoofFace::Kind::Slope;
 }
 
-std::vector<field::Argument> argumentsOf(const SolidValue& solid) {
-    std::vector<field::Argument> arguments;
-    for (size_t i = 0; i < solid.args.size(); ++i) {
-        const field::PrimitiveParameter& parameter = solid.primitive->parameters[i];
-        arguments.emplace_back().value[0] = std::clamp(solid.args[i].num(), parameter.lo, parameter.hi);
-    }
-    return arguments;
-}
-
 std::vector<Face> facesOfRoof(const Scope& scope, const Footprints& footprints, const SolidValue& solid,
                               const FaceChoice& choice) {
     const plan::Footprint footprint = footprintOf(scope, footprints);
@@ -89,7 +80,7 @@ std::vector<Face> facesOfRoof(const Scope& scope, const Footprints& footprints, 
     const std::vector<plan::PlacedEdge> edges = plan::edgesOf(footprint);
     std::vector<Face> faces;
     for (const RoofFace& roof :
-         field::roofFaces(*solid.primitive, footprint, *formula, argumentsOf(solid), scope.size.y)) {
+         field::roofFaces(*solid.primitive, footprint, *formula, argumentNumbers(solid), scope.size.y)) {
         if (roof.kind != roofKind(choice.kind)) continue;
         if (roof.kind != RoofFace::Kind::Apex && !plan::isEdgeCalled(footprint, edges[roof.edge], choice.word))
             continue;

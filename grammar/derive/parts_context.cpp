@@ -101,18 +101,8 @@ const rules::Grammar& PartsContext::grammar() const { return *interpreter_.build
 
 void PartsContext::draw(std::string layer, const Scope& scope, const plan::Footprint& area, uint64_t key,
                         double street_m) {
-    plan::Footprint placed = area;
-    const auto place = [&](plan::Ring& ring) {
-        for (plan::Vec2& p : ring.points) {
-            const Vec3d at = scope.centre + scope.axes * Vec3d{p.x, 0, p.z};
-            p = {at.x, at.z};
-        }
-    };
-    for (plan::Polygon& polygon : placed.polygons) {
-        place(polygon.outer);
-        for (plan::Ring& court : polygon.courts) place(court);
-    }
-    interpreter_.builder_.derivation().plan.features.push_back({std::move(layer), std::move(placed), key, street_m});
+    interpreter_.builder_.derivation().plan.features.push_back(
+        {std::move(layer), inModelPlan(scope, area), key, street_m});
 }
 
 void PartsContext::startsOver() const {

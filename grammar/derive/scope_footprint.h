@@ -13,4 +13,19 @@ inline plan::Footprint footprintOf(const Scope& scope, const Footprints& footpri
     return plan::footprintOf(plan::polygonOf({{-h.x, -h.z}, {h.x, -h.z}, {h.x, h.z}, {-h.x, h.z}}));
 }
 
+/// A footprint that is in metres about the centre of a scope, in the plan (x, z) of the model. O(edges).
+inline plan::Footprint inModelPlan(const Scope& scope, plan::Footprint footprint) {
+    const auto place = [&](plan::Ring& ring) {
+        for (plan::Vec2& p : ring.points) {
+            const Vec3d at = scope.centre + scope.axes * Vec3d{p.x, 0, p.z};
+            p = {at.x, at.z};
+        }
+    };
+    for (plan::Polygon& polygon : footprint.polygons) {
+        place(polygon.outer);
+        for (plan::Ring& court : polygon.courts) place(court);
+    }
+    return footprint;
+}
+
 }  // namespace sgm::derive

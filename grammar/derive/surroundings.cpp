@@ -29,18 +29,7 @@ bool areRelated(const ShapeTree& tree, ShapeId a, ShapeId b) { return standsIn(t
 
 /// The footprint of an upright scope in the plan of the model.
 plan::Footprint planOf(const Scope& scope, const Footprints& footprints) {
-    plan::Footprint footprint = footprintOf(scope, footprints);
-    const auto place = [&](plan::Ring& ring) {
-        for (plan::Vec2& p : ring.points) {
-            const Vec3d at = scope.centre + scope.axes * Vec3d{p.x, 0, p.z};
-            p = {at.x, at.z};
-        }
-    };
-    for (plan::Polygon& polygon : footprint.polygons) {
-        place(polygon.outer);
-        for (plan::Ring& court : polygon.courts) place(court);
-    }
-    return footprint;
+    return inModelPlan(scope, footprintOf(scope, footprints));
 }
 
 /// How far two volumes reach into each other: more than `least` metres.

@@ -9,6 +9,7 @@
 #include "grammar/derive/parts_context.h"
 #include "grammar/operations/operations.h"
 #include "grammar/operations/split_layout.h"
+#include "grammar/rules/lookup.h"
 #include "grammar/rules/operation_checker.h"
 #include "modeler/core/random.h"
 #include "modeler/plan/cut.h"
@@ -61,7 +62,8 @@ Part checkPart(OperationChecker& checker, const syntax::Case& written, const Par
             out.size = checker.measure(size, Want::Extent, "the size of a part", split.axis);
         if (const auto value = checker.atDefaults(out.size); value && value->num() < 0)
             checker.error(size.span, "the size of a part is no less than 0");
-        out.isDrawn = isDrawn(out.size, local);
+        // In `grammar 1` all repetitions have the sizes of the first.
+        out.isDrawn = rules::versionOf(checker.grammar(), written.span) >= 2 && isDrawn(out.size, local);
     } else if (!written.tag.empty()) {
         checker.error(written.tag.span, "a part of a split has a size, not a tag",
                       "write '4m: …', '30%: …' or '~1: …'");
@@ -275,8 +277,7 @@ constinit const Operation snap{
     .name = "snap",
     .doc =
         "Lets the cuts of a split move onto faces of other shapes: those between floating sizes, and fixed parts "
-        "between "
-        "them as a whole.",
+        "between them as a whole.",
     .example = "split x { 1m: wall | { ~2.4m: Tile }* | 1m: wall } snap Shop .4m",
     .arguments = snapArguments,
     .phase = Operation::Phase::Detail,

@@ -99,8 +99,9 @@ private:
     /// The i-th repetition of a group that fills.
     std::vector<Piece> repetition(const Slot& slot, double i) {
         std::vector<Piece> pieces;
-        Turns turns = slot.piece.turns;
+        Turns turns = slot.piece.turns, firstTurns = turns;
         turns.emplace_back(slot.fill->local, i);
+        firstTurns.emplace_back(slot.fill->local, 1);
         for (size_t k = 0; k < slot.fill->repeated.size(); ++k) {
             const Part& part = slot.fill->repeated[k];
             const uint64_t first = combine(slot.piece.key, k), own = combine(first, static_cast<uint64_t>(i));
@@ -109,9 +110,10 @@ private:
                 if (!times(part, own, turns, inner)) return {};
                 for (Slot& s : inner) pieces.push_back(std::move(s.piece));
             } else {
-                // The first one draws as all of them do that don't draw for themselves.
-                const uint64_t draw = part.isDrawn && i > 1 ? own : first;
-                pieces.push_back({&part, lengthOf(part, turns, draw), own, turns});
+                // Sizes that aren't drawn for every repetition are those of the first.
+                const bool isItsOwn = part.isDrawn && i > 1;
+                const Length length = isItsOwn ? lengthOf(part, turns, own) : lengthOf(part, firstTurns, first);
+                pieces.push_back({&part, length, own, turns});
             }
         }
         return pieces;

@@ -1,6 +1,6 @@
 // The model's own surface, cell by cell, on one grid for all cells of a level.
 // Enters: a model, cells. Leaves: their triangles, whose borders are the neighbours' bit for bit. Assumes that a block
-// of the grid is meshed the same whoever asks for it, which mesh::meshBlocks holds.
+// of the grid is meshed the same in every task, which mesh::meshBlocks holds.
 #pragma once
 
 #include <map>

@@ -8,7 +8,7 @@
 
 namespace sgm::syntax {
 
-/// Takes what `row` asks for into `attribute`; fails where something is missing.
+/// Reads the arguments that `row` declares into `attribute`, with a diagnostic where one is missing.
 void readArguments(Cursor& cursor, const Operation& row, Attribute& attribute);
 /// Fails where a calculation without parentheses goes on behind the argument of `word`.
 void refuseCalculation(Cursor& cursor, std::string_view word);

@@ -4,8 +4,7 @@
 //
 // clang-format off
 //   file        = "grammar" ( "1" | "2" ) { declaration } .              a declaration's word stands in column one
-//   declaration = use | param | let | map | material | terminal | start | rule | derive | lsystem | roads | style | check |
-//                 override .
+//   declaration = use | param | let | map | material | terminal | start | rule | derive | lsystem | roads | style | check .
 //
 //   use         = "use" TEXT [ settings ] .
 //   param       = "param" NAME "=" expr { "in" expr | "of" NAME {"," NAME} | TEXT | "group" NAME | "key" NAME } .
@@ -17,13 +16,14 @@
 //   terminal    = "terminal" NAME {"," NAME} [ "=" solid ]
 //                 { attribute | "joint" NAME "at" argument "facing" argument } .
 //   start       = "start" NAME "->" body .
-//   rule        = "rule" [ NAME ":" ] NAME { "beside" NAME | "after" NAME | "when" expr | "weight" expr | "repeat" expr }
-//                 "->" body [ "finally" body ] .
+//   rule        = "rule" [ NAME ":" ] NAME
+//                 { "beside" NAME | "after" NAME | "when" expr | "weight" expr | "repeat" expr } "->" body [ "finally" body ] .
 //   derive      = "derive" NAME ":" step { "=>" step } .
 //   step        = NAME [ "#" DIGITS ] [ "at" path ] .                    glued; Cell#2 is the second unnamed rule for Cell
 //   path        = NAME { "/" NAME | "[" NUMBER "]" } .
 //   lsystem     = "lsystem" NAME { NAME argument } "axiom" TEXT { production } .
-//   production  = [ NAME "<" ] NAME [ "(" NAME { "," NAME } ")" ] [ ">" NAME ] "->" TEXT [ "when" expr ] [ ":" argument ] .
+//   production  = [ NAME "<" ] NAME [ "(" NAME { "," NAME } ")" ] [ ">" NAME ] "->" TEXT [ "when" expr ]
+//                 [ ":" argument ] .
 //   style       = "style" NAME [ "for" NAME ] settings .
 //   check       = "check" NAME [ settings ] "expect" expr .
 //   settings    = "{" { NAME "=" expr } "}" .
@@ -59,7 +59,8 @@
 //               | "choose" [ "distinct" | "shuffled" ] "{" expr ":" expr { "|" expr ":" expr } "}" .
 //   call        = NAME "(" [ [ NAME ":" ] expr { "," [ NAME ":" ] expr } ] ")" .            "(" glued to NAME
 //
-//   NUMBER      = ( DIGITS [ "." DIGITS ] | "." DIGITS ) [ "e" [ "+" | "-" ] DIGITS ] [ "m" | "km" | "cm" | "mm" | "m2" | "m²" | "m3" | "m³" | "deg" | "%" | "/m" ] .  glued
+//   NUMBER      = ( DIGITS [ "." DIGITS ] | "." DIGITS ) [ "e" [ "+" | "-" ] DIGITS ]
+//                 [ "m" | "km" | "cm" | "mm" | "m2" | "m²" | "m3" | "m³" | "deg" | "%" | "/m" ] .  glued
 //   AXIS        = ( "+" | "-" ) ( "x" | "y" | "z" ) .                    glued, where a value is expected
 //   COLOR       = "#" and six hex digits.     TEXT = '"' … '"' on one line; \" and \\ are its escapes.
 //   NAME        = letters, digits and "_", beginning with no digit; no word of the language.    // begins a comment.

@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 constexpr uint32_t glbMagic = 0x46546C67, jsonChunk = 0x4E4F534A, binaryChunk = 0x004E4942;
 constexpr size_t header_bytes = 12, chunkHeader_bytes = 8;
-/// A tree of JSON takes some thirty times the room of its text.
+/// A parsed JSON tree takes about thirty times the memory of its text.
 constexpr size_t mostValues = 8'000'000;
 constexpr int deepest = 64;
 constexpr size_t mostBuffers = 1000;

@@ -34,9 +34,10 @@ Result<Footprint> soundFootprint(const Footprint& drawn, const Limits& limits) {
     const bool canBeResolved = fault->kind == FaultKind::Crossing || fault->kind == FaultKind::CourtOutside ||
                                fault->kind == FaultKind::Overlap;
     if (canBeResolved) {
-        Result<Footprint> mended = resolved(left);
-        if (mended.ok() ? !mended->empty() && !firstFault(*mended, limits) : mended.error().kind == Error::Kind::Budget)
-            return mended;
+        Result<Footprint> repaired = resolved(left);
+        if (repaired.ok() ? !repaired->empty() && !firstFault(*repaired, limits)
+                          : repaired.error().kind == Error::Kind::Budget)
+            return repaired;
     }
     return Error{Error::Kind::Input, sentenceOf(*fault, left)};
 }

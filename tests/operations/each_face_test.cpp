@@ -4,19 +4,13 @@
 #include <cmath>
 
 #include "tests/lower/lowered.h"
+#include "tests/operations/shapes_called.h"
 
 namespace sgm::testing_ {
 namespace {
 
 using derive::Derivation;
 using derive::Shape;
-
-std::vector<const Shape*> shapesCalled(const Derivation& d, const std::string& symbol) {
-    std::vector<const Shape*> found;
-    for (const Shape& s : d.tree.shapes)
-        if (s.symbol != rules::none && d.grammar->symbols[s.symbol].name == symbol) found.push_back(&s);
-    return found;
-}
 
 Derivation house(const std::string& rule, const std::string& plan = "ell(16, 12, 6, 5)") {
     return derived("grammar 1\nterminal wall\nterminal bay = cube\nstart A -> footprint " + plan +

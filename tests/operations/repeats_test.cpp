@@ -5,6 +5,7 @@
 #include <set>
 
 #include "tests/lower/lowered.h"
+#include "tests/operations/shapes_called.h"
 
 namespace sgm::testing_ {
 namespace {
@@ -12,15 +13,8 @@ namespace {
 using derive::Derivation;
 using derive::Shape;
 
-std::vector<const Shape*> shapesCalled(const Derivation& d, const std::string& symbol) {
-    std::vector<const Shape*> found;
-    for (const Shape& s : d.tree.shapes)
-        if (s.symbol != rules::none && d.grammar->symbols[s.symbol].name == symbol) found.push_back(&s);
-    return found;
-}
-
 Derivation cut(const std::string& block, const std::string& size = "(20, 3, 1)") {
-    return derived("grammar 1\nterminal a\nterminal b\nterminal c\nstart S -> size " + size + " split " + block + "\n");
+    return derived("grammar 2\nterminal a\nterminal b\nterminal c\nstart S -> size " + size + " split " + block + "\n");
 }
 
 TEST(Repeats, DrawSizesForEveryRepetition) {
