@@ -80,18 +80,23 @@ def write(folder, name, text):
 
 
 def import_all(folder, count, log):
-    """Runs the editor until so many files are imported; what it printed. Godot 3.2 doesn't always end by --quit."""
-    editor = godot(folder, log, "--editor", "--quit")
+    """Runs the editor until so many files are imported; what it printed. Godot 3.2 doesn't always end by --quit, and now and
+    then stands still before it imports anything."""
     cache = os.path.join(folder, ".import")
-    for _ in range(250):
-        done = os.path.isdir(cache) and sum(name.endswith(".md5") for name in os.listdir(cache)) >= count
-        if editor.poll() is not None or done:
+    printed = ""
+    for _ in range(4):
+        editor = godot(folder, log, "--editor", "--quit")
+        done = False
+        while not done and editor.poll() is None:
+            time.sleep(.2)
+            done = os.path.isdir(cache) and sum(name.endswith(".md5") for name in os.listdir(cache)) >= count
+        time.sleep(5)  # the refused one comes last
+        editor.terminate()
+        editor.wait()
+        printed += read(log)
+        if done:
             break
-        time.sleep(.2)
-    time.sleep(5)  # the refused one comes last
-    editor.terminate()
-    editor.wait()
-    return read(log)
+    return printed
 
 
 def main(folder):

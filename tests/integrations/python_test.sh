@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Packs the Python module into a wheel, installs that into a fresh virtual environment, and runs its tests and its notebook there.
-#   python_test.sh BUILD_FOLDER
+#   python_test.sh BUILD_FOLDER         the tests
+#   python_test.sh BUILD_FOLDER bench   what the module costs over the library
 set -euo pipefail
 build=$(realpath "$1")
 here=$(cd "$(dirname "$0")" && pwd)
@@ -17,6 +18,10 @@ trap 'rm -rf "$work"' EXIT
 "$work/fresh/bin/pip" install -q --no-index --no-deps "$work"/*.whl
 cd "$work"
 export PYTHONPATH=
+if [ "${2:-}" = bench ]; then
+  fresh/bin/python "$here/python_bench.py" "$here/../../examples"
+  exit
+fi
 fresh/bin/python "$here/python_test.py" "$here/../../examples"
 # What the module loads lies within it, but for what every system has.
 ldd fresh/lib/python3*/site-packages/sgm/lib/*.so* | sed -n 's/.* => \(\/\S*\) .*/\1/p' | sort -u |
