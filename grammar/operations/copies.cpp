@@ -106,7 +106,11 @@ bool runRow(PartsContext& context, const Parts& copies) {
     const double part_m = (whole_m - gap_m * (count - 1)) / count;
     if (count >= 1 && !(part_m > 1e-6))
         return context.fail(
-            fmt::format("{:g} parts with gaps of {:.4g}m don't fit into {:.4g}m", count, gap_m, whole_m), copies.span);
+            fmt::format(
+                "{:g} parts with gaps of {:.4g}m don't fit into {:.4g}m; write fewer parts or a smaller gap, or "
+                "give what they stand in a larger 'size'",
+                count, gap_m, whole_m),
+            copies.span);
     for (double i = 1; i <= count; ++i) {
         context.count(copies.parts[0].local, i);
         const double low_m = (i - 1) * (part_m + gap_m);

@@ -8,6 +8,7 @@
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/functions.h"
 #include "grammar/rules/make.h"
+#include "grammar/syntax/hints.h"
 #include "modeler/core/random.h"
 
 namespace sgm::rules {
@@ -91,7 +92,9 @@ Typed Checker::unknownFunction(const Written& e) {
     std::vector<std::string> known;
     for (const Function& f : functions()) known.emplace_back(f.name);
     const SourceSpan word{e.span.source, e.span.begin, e.span.begin + static_cast<uint32_t>(e.text.size())};
-    return failed(word, fmt::format("unknown function '{}'", e.text), nearest(e.text, known));
+    std::string hint = syntax::foreignFunctionHint(e.text);
+    if (hint.empty()) hint = nearest(e.text, known);
+    return failed(word, fmt::format("unknown function '{}'", e.text), hint);
 }
 
 Typed Checker::call(Place& place, const Written& e) {

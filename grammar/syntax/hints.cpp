@@ -1,6 +1,7 @@
 #include "grammar/syntax/hints.h"
 
 #include <algorithm>
+#include <span>
 
 namespace sgm::syntax {
 
@@ -58,10 +59,28 @@ constexpr ForeignWord foreignAttributes[] = {
     {"metalness", "write 'metal'"},
 };
 
+constexpr ForeignWord foreignFunctions[] = {
+    {"mod", "write 'a % b'"},
+    {"fmod", "write 'a % b'"},
+    {"mix", "write 'lerp(a, b, t)'"},
+    {"power", "write 'pow(x, y)'"},
+    {"atan", "write 'atan2(rise, run)'"},
+    {"rand", "write what is drawn as a range, '1m..3m'"},
+    {"random", "write what is drawn as a range, '1m..3m'"},
+    {"uniform", "write what is drawn as a range, '1m..3m'"},
+    {"radians", "write an angle with its unit, '30deg'"},
+    {"noise", "write 'fbm(size, octaves)'"},
+};
+
 constexpr std::string_view ifMend = "bodies choose by 'when condition { … }', values by 'if(condition, a, b)'";
 
 constexpr std::string_view roofForms[] = {"hip",  "gable",     "halfHip", "mansard", "gambrel", "saltbox",
                                           "shed", "butterfly", "flat",    "pyramid", "dome",    "bell"};
+
+std::string hintIn(std::span<const ForeignWord> words, std::string_view word) {
+    const auto row = std::find_if(words.begin(), words.end(), [&](const ForeignWord& w) { return w.word == word; });
+    return row == words.end() ? std::string() : std::string(row->hint);
+}
 
 /// The word before the parenthesis that the token before the cursor closes.
 std::string_view calledBefore(const Cursor& cursor) {
@@ -130,10 +149,8 @@ const ForeignDeclaration* findForeignDeclaration(std::string_view word) {
     return row == std::end(foreignDeclarations) ? nullptr : row;
 }
 
-std::string foreignAttributeHint(std::string_view word) {
-    const auto row = std::find_if(std::begin(foreignAttributes), std::end(foreignAttributes),
-                                  [&](const ForeignWord& w) { return w.word == word; });
-    return row == std::end(foreignAttributes) ? std::string() : std::string(row->hint);
-}
+std::string foreignAttributeHint(std::string_view word) { return hintIn(foreignAttributes, word); }
+
+std::string foreignFunctionHint(std::string_view word) { return hintIn(foreignFunctions, word); }
 
 }  // namespace sgm::syntax

@@ -29,4 +29,7 @@ const ForeignDeclaration* findForeignDeclaration(std::string_view word);
 /// What an attribute's name of another program is here ("rotate": "write 'turn'"); empty for other words.
 std::string foreignAttributeHint(std::string_view word);
 
+/// What a function of another language is here ("mod": "write 'a % b'"); empty for other words.
+std::string foreignFunctionHint(std::string_view word);
+
 }  // namespace sgm::syntax
