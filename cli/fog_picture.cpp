@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "modeler/export/fog_options.h"
-#include "viewer/fog_scene.h"
+#include "viewer/render/fog_scene.h"
 
 namespace sgm::cli {
 
@@ -27,21 +27,21 @@ Result<exporter::ExportOptions> fogOptions(const std::vector<std::string>& words
     return options;
 }
 
-Result<viewer::FogPainter> fogPainter(const Model& model, const Box3f& bounds, const GridRequest& cells,
+Result<render::FogPainter> fogPainter(const Model& model, const Box3f& bounds, const GridRequest& cells,
                                       const std::vector<std::string>& words, double extinction_per_m,
                                       Progress* progress) {
     const mesh::Grid grid = gridOver(bounds, cells);
-    const auto of = [&]() -> Result<std::pair<volume::Dense, viewer::FogLook>> {
+    const auto of = [&]() -> Result<std::pair<volume::Dense, render::FogLook>> {
         if (words.empty()) {
-            auto usual = viewer::fogGrid(model.tape, grid, bounds, cells.threads, progress);
+            auto usual = render::fogGrid(model.tape, grid, bounds, cells.threads, progress);
             if (!usual.ok()) return usual.error();
-            const viewer::FogLook look = viewer::usualFog(*usual);
+            const render::FogLook look = render::usualFog(*usual);
             return std::pair{std::move(usual->dense), look};
         }
         const volume::FogOptions options = exporter::fogOptionsOf(*fogOptions(words));
-        auto asked = viewer::fogGrid(model.tape, grid, options, cells.threads, progress);
+        auto asked = render::fogGrid(model.tape, grid, options, cells.threads, progress);
         if (!asked.ok()) return asked.error();
-        viewer::FogLook look{.extinction_per_m = static_cast<float>(180 * options.density) / length(bounds.size())};
+        render::FogLook look{.extinction_per_m = static_cast<float>(180 * options.density) / length(bounds.size())};
         look.wisps = 0;
         return std::pair{std::move(*asked), look};
     };
@@ -49,7 +49,7 @@ Result<viewer::FogPainter> fogPainter(const Model& model, const Box3f& bounds, c
     if (!fog.ok()) return fog.error();
     auto& [dense, look] = *fog;
     if (extinction_per_m > 0) look.extinction_per_m = static_cast<float>(extinction_per_m);
-    return viewer::FogPainter::create(dense, bounds, look, cells.threads, progress);
+    return render::FogPainter::create(dense, bounds, look, cells.threads, progress);
 }
 
 }  // namespace sgm::cli

@@ -7,7 +7,7 @@
 
 #include "cli/requests.h"
 #include "modeler/export/exporter.h"
-#include "viewer/offscreen.h"
+#include "viewer/render/draw.h"
 
 namespace sgm::cli {
 
@@ -15,7 +15,7 @@ namespace sgm::cli {
 Result<exporter::ExportOptions> fogOptions(const std::vector<std::string>& words);
 
 /// Fog in the model's place; `words` as above, none for the usual fog with billows; extinction 0: by the model's size.
-Result<viewer::FogPainter> fogPainter(const Model& model, const Box3f& bounds, const GridRequest& cells,
+Result<render::FogPainter> fogPainter(const Model& model, const Box3f& bounds, const GridRequest& cells,
                                       const std::vector<std::string>& words, double extinction_per_m,
                                       Progress* progress);
 

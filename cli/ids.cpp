@@ -17,15 +17,15 @@ uint8_t encoded(float light) {
 
 }  // namespace
 
-Result<viewer::Image> drawIds(const Model& model, const Box3f& bounds, const viewer::PictureOptions& options,
+Result<render::Image> drawIds(const Model& model, const Box3f& bounds, const render::PictureOptions& options,
                               Progress* progress) {
     const auto& tree = model.derivation.tree;
     if (std::none_of(tree.extras.begin(), tree.extras.end(), [](const derive::Extras& x) { return !x.clad.empty(); }))
         return Error{Error::Kind::Input, "--view ids: nothing is clad here; write 'clad ornament(…)' after a shape"};
     auto painter =
-        viewer::FieldPainter::create(model.tape, bounds, model.lowered->provenance, options.threads, progress);
+        render::FieldPainter::create(model.tape, bounds, model.lowered->provenance, options.threads, progress);
     if (!painter.ok()) return painter.error();
-    viewer::Layers layers;
+    render::Layers layers;
     auto image = painter->draw(options, progress, &layers);
     if (!image.ok()) return image;
     for (size_t i = 0; i < layers.origin.size(); ++i) {

@@ -3,13 +3,13 @@
 #pragma once
 
 #include "cli/requests.h"
-#include "viewer/offscreen.h"
+#include "viewer/render/draw.h"
 
 namespace sgm::cli {
 
 /// A hue for each facade id (of the wall's own axis), every other storey darker; what isn't clad is grey.
 /// Error::Input where nothing is clad.
-Result<viewer::Image> drawIds(const Model& model, const Box3f& bounds, const viewer::PictureOptions& options,
+Result<render::Image> drawIds(const Model& model, const Box3f& bounds, const render::PictureOptions& options,
                               Progress* progress);
 
 }  // namespace sgm::cli

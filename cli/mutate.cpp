@@ -16,12 +16,12 @@
 #include "grammar/rules/params.h"
 #include "grammar/syntax/parser.h"
 #include "modeler/core/random.h"
-#include "viewer/offscreen.h"
+#include "viewer/render/draw.h"
 
 namespace sgm::cli {
 namespace {
 
-using viewer::edits::NamedValue;
+using document::edits::NamedValue;
 
 struct MutateRequest {
     ModelRequest model;
@@ -118,7 +118,7 @@ Result<std::vector<Variation>> search(const MutateRequest& request,
 }
 
 /// A number in the picture's corner, of squares three by five to a digit.
-void stamp(viewer::Image& image, int x, int y, int number) {
+void stamp(render::Image& image, int x, int y, int number) {
     constexpr uint16_t digits[] = {0x7b6f, 0x2492, 0x73e7, 0x73cf, 0x5bc9, 0x79cf, 0x79ef, 0x7249, 0x7bef, 0x7bcf};
     const int dot = std::max(1, image.width / 700);
     const std::string text = std::to_string(number);
@@ -138,16 +138,16 @@ void stamp(viewer::Image& image, int x, int y, int number) {
         }
 }
 
-Result<viewer::Image> sheet(const MutateRequest& request, const std::vector<Variation>& found,
-                            viewer::PictureOptions options, Progress* progress) {
-    viewer::Image all{request.columns * options.width, request.rows * options.height, {}};
+Result<render::Image> sheet(const MutateRequest& request, const std::vector<Variation>& found,
+                            render::PictureOptions options, Progress* progress) {
+    render::Image all{request.columns * options.width, request.rows * options.height, {}};
     all.rgb.assign(static_cast<size_t>(all.width) * static_cast<size_t>(all.height) * 3, 255);
     const double aspect = static_cast<double>(options.width) / options.height;
     for (size_t k = 0; k < found.size(); ++k) {
         const Model& model = found[k].model;
-        const Box3f bounds = viewer::tighten(model.tape, model.lowered->field.bounds);
-        options.camera = viewer::frame(model.tape, bounds, aspect);
-        const auto image = viewer::drawField(model.tape, bounds, model.lowered->provenance, options, progress);
+        const Box3f bounds = render::tighten(model.tape, model.lowered->field.bounds);
+        options.camera = render::frame(model.tape, bounds, aspect);
+        const auto image = render::drawField(model.tape, bounds, model.lowered->provenance, options, progress);
         if (!image.ok()) return image.error();
         const int left = static_cast<int>(k) % request.columns * options.width,
                   top = static_cast<int>(k) / request.columns * options.height;
@@ -181,9 +181,9 @@ Status saveChoice(const MutateRequest& request, const rules::Grammar& grammar, c
         if (options->params[i] != fresh[i]) add({grammar.params[i].name, rules::toText(options->params[i])});
     for (const NamedValue& v : found[static_cast<size_t>(request.pick)].values) add(v);
     const std::string start = grammar.symbols[grammar.starts[options->start].symbol].name;
-    const auto edit = viewer::edits::saveStyle(ast, request.save, start, values);
+    const auto edit = document::edits::saveStyle(ast, request.save, start, values);
     if (!edit.ok()) return edit.error();
-    return pipeline::writeText(request.model.file, viewer::applied((*source)->text(), *edit));
+    return pipeline::writeText(request.model.file, document::applied((*source)->text(), *edit));
 }
 
 Status checkRequest(const MutateRequest& request, const rules::Grammar& grammar) {
@@ -198,7 +198,7 @@ Status checkRequest(const MutateRequest& request, const rules::Grammar& grammar)
 }
 
 Status mutated(const MutateRequest& request) {
-    viewer::PictureOptions options;
+    render::PictureOptions options;
     int used = 0;
     if (std::sscanf(request.size.c_str(), "%dx%d%n", &options.width, &options.height, &used) != 2 ||
         used != static_cast<int>(request.size.size()) || std::min(options.width, options.height) < 32 ||
@@ -220,7 +220,7 @@ Status mutated(const MutateRequest& request) {
         options.samples = 3;
         const auto image = sheet(request, *found, options, watch.progress());
         if (!image.ok()) return image.error();
-        if (const Status s = viewer::writePng(*image, request.output); !s.ok()) return s;
+        if (const Status s = render::writePng(*image, request.output); !s.ok()) return s;
         if (!request.quiet) fmt::print("wrote {}\n", request.output);
     }
     if (!request.quiet)

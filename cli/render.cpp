@@ -19,7 +19,7 @@
 #include "grammar/pipeline/mesh_edits.h"
 #include "grammar/pipeline/missing.h"
 #include "modeler/core/conventions.h"
-#include "viewer/offscreen.h"
+#include "viewer/render/draw.h"
 
 namespace sgm::cli {
 namespace {
@@ -43,9 +43,9 @@ bool drawsMesh(const RenderRequest& request) {
     return request.view == "mesh" || request.view == "labels" || request.view == "creases";
 }
 
-Result<viewer::PictureOptions> parseSize(const std::string& text) {
+Result<render::PictureOptions> parseSize(const std::string& text) {
     constexpr int longestSide = 16384;
-    viewer::PictureOptions options;
+    render::PictureOptions options;
     int used = 0;
     if (std::sscanf(text.c_str(), "%dx%d%n", &options.width, &options.height, &used) != 2 ||
         used != static_cast<int>(text.size()) || std::min(options.width, options.height) < 1 ||
@@ -60,18 +60,18 @@ Result<viewer::PictureOptions> parseSize(const std::string& text) {
 using DrawnMesh = std::optional<mesh::FlatScene>;
 
 /// "ex,ey,ez,ax,ay,az": where the eye is and what it looks at, metres; "inside"; or nothing for the default frame.
-Result<viewer::Camera> parseCamera(const RenderRequest& request, const Model& model, const Box3f& bounds,
+Result<render::Camera> parseCamera(const RenderRequest& request, const Model& model, const Box3f& bounds,
                                    double aspect) {
     const std::string& text = request.camera;
     const bool hasObjects = !model.derivation.objects.empty();  // which the tape is without
-    if (text.empty() && hasObjects) return viewer::frame(bounds, aspect);
+    if (text.empty() && hasObjects) return render::frame(bounds, aspect);
     if (text.empty())
-        return request.turntable > 0 ? viewer::frameTurning(model.tape, bounds, aspect)
-                                     : viewer::frame(model.tape, bounds, aspect);
+        return request.turntable > 0 ? render::frameTurning(model.tape, bounds, aspect)
+                                     : render::frame(model.tape, bounds, aspect);
     if (text == "inside" && hasObjects)
         return Error{Error::Kind::Usage, "--camera inside: with objects that 'place' puts, say where the eye is"};
-    if (text == "inside") return viewer::inside(model.tape, bounds);
-    viewer::Camera c;
+    if (text == "inside") return render::inside(model.tape, bounds);
+    render::Camera c;
     int used = 0;
     if (std::sscanf(text.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf%n", &c.eye.x, &c.eye.y, &c.eye.z, &c.at.x, &c.at.y, &c.at.z,
                     &used) != 6 ||
@@ -115,24 +115,24 @@ Status checkRequest(const RenderRequest& request) {
 /// What draws pictures of a view.
 struct Painter {
     /// Draws a picture, and its layers unless null.
-    std::function<Result<viewer::Image>(const viewer::PictureOptions&, Progress*, viewer::Layers*)> draw;
+    std::function<Result<render::Image>(const render::PictureOptions&, Progress*, render::Layers*)> draw;
     /// What the latest picture cost; null for views that don't count.
-    std::function<viewer::DrawCost()> cost;
+    std::function<render::DrawCost()> cost;
 };
 
 Result<Painter> fogPainter(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
     const auto painter = fogPainter(model, bounds, request.grid, request.fog, request.extinction, progress);
     if (!painter.ok()) return painter.error();
-    return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers*) mutable {
+    return Painter{[p = *painter](const auto& options, Progress* progress, render::Layers*) mutable {
                        return p.draw(options, progress);
                    },
                    {}};
 }
 
-viewer::TracedBy tracedBy(const std::string& name) {
-    return name == "shaders"     ? viewer::TracedBy::Gpu
-           : name == "processor" ? viewer::TracedBy::Processor
-                                 : viewer::TracedBy::Best;
+render::TracedBy tracedBy(const std::string& name) {
+    return name == "shaders"     ? render::TracedBy::Gpu
+           : name == "processor" ? render::TracedBy::Processor
+                                 : render::TracedBy::Best;
 }
 
 /// Tells what floats and what is too thin for the cells.
@@ -172,27 +172,27 @@ Result<Painter> painterOf(const RenderRequest& request, const Model& model, cons
                           Progress* progress) {
     const Provenance& provenance = model.lowered->provenance;
     if (request.view == "field") {
-        const auto painter = viewer::FieldPainter::create(model.tape, bounds, provenance, request.grid.threads,
+        const auto painter = render::FieldPainter::create(model.tape, bounds, provenance, request.grid.threads,
                                                           progress, tracedBy(request.rays));
         if (!painter.ok()) return painter.error();
-        return Painter{[p = *painter](const auto& options, Progress* progress, viewer::Layers* layers) mutable {
+        return Painter{[p = *painter](const auto& options, Progress* progress, render::Layers* layers) mutable {
                            return p.draw(options, progress, layers);
                        },
                        [p = *painter] { return p.cost(); }};
     }
     if (request.view == "fog") return fogPainter(request, model, bounds, progress);
     if (request.view == "ids")
-        return Painter{[&model, bounds](const auto& options, Progress* progress, viewer::Layers*) {
+        return Painter{[&model, bounds](const auto& options, Progress* progress, render::Layers*) {
                            return drawIds(model, bounds, options, progress);
                        },
                        {}};
-    const auto painter = viewer::MeshPainter::create(mesh->mesh, mesh->provenance, progress);
+    const auto painter = render::MeshPainter::create(mesh->mesh, mesh->provenance, progress);
     if (!painter.ok()) return painter.error();
-    viewer::MeshStyle style;
+    render::MeshStyle style;
     style.wireframe = request.wires;
-    if (request.view == "labels") style.look = viewer::MeshLook::Labels;
-    if (request.view == "creases") style.look = viewer::MeshLook::Creases;
-    return Painter{[p = *painter, style](const auto& options, Progress* progress, viewer::Layers*) mutable {
+    if (request.view == "labels") style.look = render::MeshLook::Labels;
+    if (request.view == "creases") style.look = render::MeshLook::Creases;
+    return Painter{[p = *painter, style](const auto& options, Progress* progress, render::Layers*) mutable {
                        return p.draw(options, progress, style);
                    },
                    {}};
@@ -213,13 +213,13 @@ std::map<std::string, std::string> metadataOf(const RenderRequest& request, cons
 }
 
 /// Evaluations of the field beside those of plain sphere tracing for the same samples, and seconds.
-void printStatistics(const viewer::DrawCost& cost, const Model& model, const Box3f& bounds,
-                     const viewer::PictureOptions& options, const Stages& stages) {
+void printStatistics(const render::DrawCost& cost, const Model& model, const Box3f& bounds,
+                     const render::PictureOptions& options, const Stages& stages) {
     const double pixels = static_cast<double>(options.width) * options.height,
                  samples = static_cast<double>(cost.samples) / pixels;
     const double hits = static_cast<double>(cost.hitEvaluations) / pixels,
                  light = static_cast<double>(cost.lightEvaluations) / pixels, all = std::max(hits + light, 1e-9);
-    const double plain = viewer::plainEvaluations(model.tape, bounds, options, cost.probes) * samples;
+    const double plain = render::plainEvaluations(model.tape, bounds, options, cost.probes) * samples;
     const double length = static_cast<double>(cost.instructions) / pixels / all,
                  whole = static_cast<double>(model.tape.size());
     fmt::print("samples a pixel       {:9.2f}\n", samples);
@@ -234,25 +234,25 @@ void printStatistics(const viewer::DrawCost& cost, const Model& model, const Box
                cost.prepareSeconds, cost.drawSeconds, cost.drawProcessorSeconds);
 }
 
-Status drawOne(const RenderRequest& request, const Painter& paint, const viewer::PictureOptions& options,
+Status drawOne(const RenderRequest& request, const Painter& paint, const render::PictureOptions& options,
                const Provenance& provenance, const std::string& file, Progress* progress) {
-    viewer::Layers layers;
+    render::Layers layers;
     const auto image = paint.draw(options, progress, isExr(request) ? &layers : nullptr);
     if (!image.ok()) return image.error();
     const Status written = isExr(request)
-                               ? viewer::writeExr(layers, request.layers, metadataOf(request, provenance), file)
-                               : viewer::writePng(*image, file);
+                               ? render::writeExr(layers, request.layers, metadataOf(request, provenance), file)
+                               : render::writePng(*image, file);
     if (written.ok() && !request.quiet) fmt::print("wrote {}\n", file);
     std::fflush(stdout);
     return written;
 }
 
 /// The camera after a share of a turn: around the model, or from inside it around where the eye stands.
-viewer::Camera cameraAfter(const RenderRequest& request, viewer::Camera camera, int picture) {
+render::Camera cameraAfter(const RenderRequest& request, render::Camera camera, int picture) {
     const double angle = 2 * pi * picture / request.turntable;
-    if (request.camera != "inside") return viewer::turned(camera, angle);
+    if (request.camera != "inside") return render::turned(camera, angle);
     std::swap(camera.eye, camera.at);
-    camera = viewer::turned(camera, angle);
+    camera = render::turned(camera, angle);
     std::swap(camera.eye, camera.at);
     return camera;
 }
@@ -276,7 +276,7 @@ Status drawAll(const RenderRequest& request) {
         if (!built.ok()) return built.error();
         mesh = std::move(*built);
     }
-    const Box3f bounds = model->derivation.objects.empty() ? viewer::tighten(model->tape, model->lowered->field.bounds)
+    const Box3f bounds = model->derivation.objects.empty() ? render::tighten(model->tape, model->lowered->field.bounds)
                                                            : mesh->mesh.bounds();
     const auto camera = parseCamera(request, *model, bounds, static_cast<double>(options->width) / options->height);
     if (!camera.ok()) return camera.error();
@@ -362,7 +362,7 @@ void addRender(CLI::App& app, int& exitCode) {
                      "with their names in the file")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(CLI::IsMember(viewer::layerNames()));
+        ->check(CLI::IsMember(render::layerNames()));
     command
         ->add_option("--turntable", request->turntable,
                      "Draw this many pictures around the model; -o needs a number: turn_%04d.png")

@@ -150,7 +150,7 @@ Status Dialogue::save(const std::string& name) {
         return refusal(fmt::format("'{}' was changed by another program: nothing was saved", request_.file));
     const auto options = optionsFor(*grammar_, request_);
     if (!options.ok()) return options.error();
-    const auto saved = viewer::withWay(session_, *grammar_, *options, name, pipeline::fileLoader());
+    const auto saved = document::withWay(session_, *grammar_, *options, name, pipeline::fileLoader());
     if (!saved.ok()) return saved.error();
     if (const Status s = pipeline::writeText(request_.file, saved->text); !s.ok()) return s;
     grammar_ = saved->grammar;

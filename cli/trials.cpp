@@ -24,7 +24,7 @@ struct Setting {
 };
 
 /// Where an error says it is, if that is in one of the grammar's files.
-syntax::SourceSpan placeOf(const viewer::Problem& problem, const rules::Grammar& grammar) {
+syntax::SourceSpan placeOf(const document::Problem& problem, const rules::Grammar& grammar) {
     for (const syntax::SourcePtr& source : grammar.sources) {
         if (printable(source->name()) != problem.file || problem.line == 0) continue;
         const std::string_view line = source->line(problem.line);
@@ -189,7 +189,7 @@ private:
 
     /// An error of the main model, or a warning for another; once a place and sentence.
     void tell(const Error& error, const std::string& words, bool isMain) {
-        const viewer::Problem problem = viewer::problemOf(error);
+        const document::Problem problem = document::problemOf(error);
         const syntax::SourceSpan span = placeOf(problem, *grammar_);
         // One warning a place: at other settings it is another number or path.
         if (!said_.insert(keyOf(span, words.empty() ? problem.message : std::string())).second) return;

@@ -10,30 +10,30 @@
 
 namespace sgm::cli {
 
-std::vector<viewer::edits::NamedValue> variation(const rules::Grammar& grammar, const pipeline::ModelChoice& choice,
-                                                 const std::set<std::string>& locked, double spread, uint64_t seed) {
+std::vector<document::edits::NamedValue> variation(const rules::Grammar& grammar, const pipeline::ModelChoice& choice,
+                                                   const std::set<std::string>& locked, double spread, uint64_t seed) {
     const auto options = pipeline::optionsFor(grammar, choice);
     if (!options.ok()) return {};
-    viewer::Choice panel;
+    document::Choice panel;
     panel.start = choice.start;
     panel.style = choice.style;
     panel.locked = locked;
-    const std::vector<viewer::ParamRow> now = viewer::paramRows(grammar, *options, panel);
-    std::vector<viewer::ParamRow> rows = viewer::rerolled(now, seed);
-    std::vector<viewer::edits::NamedValue> values;
+    const std::vector<document::ParamRow> now = document::paramRows(grammar, *options, panel);
+    std::vector<document::ParamRow> rows = document::rerolled(now, seed);
+    std::vector<document::edits::NamedValue> values;
     for (size_t i = 0; i < rows.size(); ++i) {
-        viewer::ParamRow& row = rows[i];
+        document::ParamRow& row = rows[i];
         if (row.locked) continue;
         if (row.lo.empty()) {  // a word or a switch
             if (uniform(combine(combine(seed, hashText(row.name)), 7), 0, 1) >= spread) row = now[i];
         } else {
             for (size_t k = 0; k < row.number.size(); ++k) {
                 const double v = now[i].number[k] + spread * (row.number[k] - now[i].number[k]);
-                row.number[k] = row.kind == viewer::ParamRow::Kind::Integer ? std::round(v) : v;
+                row.number[k] = row.kind == document::ParamRow::Kind::Integer ? std::round(v) : v;
             }
         }
-        const std::string text = viewer::valueText(row);
-        if (text != viewer::valueText(now[i])) values.push_back({row.name, text});
+        const std::string text = document::valueText(row);
+        if (text != document::valueText(now[i])) values.push_back({row.name, text});
     }
     return values;
 }

@@ -16,8 +16,8 @@ namespace sgm::cli {
 /// Values for every parameter that may vary: drawn by `seed` alone, `spread` (0 … 1) of the way from the present ones
 /// to any in their ranges; words and switches change with that chance. Rounded as a slider would, so that what is
 /// written into a text gives the very same model.
-std::vector<viewer::edits::NamedValue> variation(const rules::Grammar& grammar, const pipeline::ModelChoice& choice,
-                                                 const std::set<std::string>& locked, double spread, uint64_t seed);
+std::vector<document::edits::NamedValue> variation(const rules::Grammar& grammar, const pipeline::ModelChoice& choice,
+                                                   const std::set<std::string>& locked, double spread, uint64_t seed);
 
 /// Why a model isn't worth a look: nothing solid; mostly debris; parts in the air; or a few bare planes. Empty for a
 /// good one. `cell_m` is that of the mesh.

@@ -9,7 +9,7 @@
 int main(int argc, char** argv) {
     CLI::App app{"sgm-viewer: see a grammar's model at once, change it by hand, keep the text"};
     app.set_version_flag("--version", SGM_VERSION);
-    sgm::viewer::AppOptions options;
+    sgm::window::AppOptions options;
     std::string size = "1280x800";
     app.add_option("FILE", options.file, "Grammar file (.sgm); without one a new grammar begins");
     app.add_option("--size", size, "Pixels of the window, WxH")->capture_default_str();
@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
         return 2;
     }
     try {
-        return sgm::viewer::runApp(options);
+        return sgm::window::runApp(options);
     } catch (const std::exception& e) {
         fmt::print(stderr, "sgm-viewer: internal error: {}\n", e.what());
         return 1;

@@ -9,6 +9,7 @@
 
 #include "cli/requests.h"
 #include "grammar/lower/solid_tree.h"
+#include "grammar/pipeline/products.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/export/exporter.h"
 #include "modeler/mesh/simplify.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "viewer/offscreen.h"
+#include "viewer/render/draw.h"
 
 namespace sgm::bench {
 namespace {
@@ -18,13 +18,13 @@ struct Subject {
 };
 
 /// Who walks the rays, and what a row says of it.
-const std::pair<viewer::TracedBy, const char*> tracers[] = {{viewer::TracedBy::Best, ""},
-                                                            {viewer::TracedBy::Gpu, ", shaders"}};
+const std::pair<render::TracedBy, const char*> tracers[] = {{render::TracedBy::Best, ""},
+                                                            {render::TracedBy::Gpu, ", shaders"}};
 
 const Subject subjects[] = {{{"5,000 spheres", "tests/bench/cloud5000.sgm", ""}, "", 0},
                             {{"12 storeys", "examples/kifs/mcgraw.sgm", ""}, "floors", 12}};
 
-Result<PictureResult> measured(const Subject& subject, const std::pair<viewer::TracedBy, const char*>& tracer,
+Result<PictureResult> measured(const Subject& subject, const std::pair<render::TracedBy, const char*>& tracer,
                                int repeats, Running running) {
     auto grammar = loadGrammar(subject.entry);
     if (!grammar.ok()) return grammar.error();
@@ -33,19 +33,19 @@ Result<PictureResult> measured(const Subject& subject, const std::pair<viewer::T
         if (params[i].name == subject.parameter) grammar->options.params[i].n[0] = subject.value;
     const auto scene = makeScene(*grammar, running);
     if (!scene.ok()) return scene.error();
-    const Box3f bounds = viewer::tighten(scene->tape, scene->model->field.bounds);
-    auto painter = viewer::FieldPainter::create(scene->tape, bounds, scene->model->provenance, running.threads, nullptr,
+    const Box3f bounds = render::tighten(scene->tape, scene->model->field.bounds);
+    auto painter = render::FieldPainter::create(scene->tape, bounds, scene->model->provenance, running.threads, nullptr,
                                                 tracer.first);
     if (!painter.ok()) return painter.error();
-    viewer::PictureOptions coarse, full;
+    render::PictureOptions coarse, full;
     full.width = full.height = fullEdge;
     coarse.width = coarse.height = coarseEdge;
     coarse.samples = 1;
-    full.camera = coarse.camera = viewer::frame(scene->tape, bounds, 1);
+    full.camera = coarse.camera = render::frame(scene->tape, bounds, 1);
     full.threads = coarse.threads = running.threads;
     PictureResult result;
     result.name = std::string(subject.entry.name) + tracer.second;
-    result.asked = tracer.first == viewer::TracedBy::Best;
+    result.asked = tracer.first == render::TracedBy::Best;
     const auto best = [](double& kept, double now) { kept = kept == 0 ? now : std::min(kept, now); };
     // The first picture finishes the driver's compile.
     if (const auto first = painter->draw(coarse, nullptr); !first.ok()) return first.error();
@@ -57,12 +57,12 @@ Result<PictureResult> measured(const Subject& subject, const std::pair<viewer::T
         best(result.fullSeconds, painter->cost().drawSeconds);
         best(result.fullProcessorSeconds, painter->cost().drawProcessorSeconds);
     }
-    const viewer::DrawCost& cost = painter->cost();
+    const render::DrawCost& cost = painter->cost();
     const double pixels = double(fullEdge) * fullEdge;
     result.samples = static_cast<double>(cost.samples) / pixels;
     result.hits = static_cast<double>(cost.hitEvaluations) / pixels;
     result.light = static_cast<double>(cost.lightEvaluations) / pixels;
-    result.plain = viewer::plainEvaluations(scene->tape, bounds, full, cost.probes) * result.samples;
+    result.plain = render::plainEvaluations(scene->tape, bounds, full, cost.probes) * result.samples;
     return result;
 }
 

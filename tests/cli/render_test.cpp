@@ -1,4 +1,4 @@
-// `sgm render`: what it writes and what it refuses. Pictures themselves are tested in tests/viewer.
+// `sgm render`: what it writes and what it refuses. Pictures themselves are tested in tests/render.
 #include <csignal>
 #include <set>
 

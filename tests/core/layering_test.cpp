@@ -1,11 +1,13 @@
 // The layering rules for includes: no upward include, no cycle, heavy headers only in .cpp files.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -33,29 +35,35 @@ std::vector<Include> includesUnder(const std::vector<std::string>& folders) {
     return found;
 }
 
-/// "modeler/eval/tape.h" → "modeler/eval"; viewer and cli are one module each.
+/// "modeler/eval/tape.h" → "modeler/eval"; cli is one module.
 std::string moduleOf(const std::string& path) {
     const size_t first = path.find('/');
     const std::string top = path.substr(0, first);
-    if (top != "modeler" && top != "grammar") return top;
-    return path.substr(0, path.find('/', first + 1));
+    return top == "cli" ? top : path.substr(0, path.find('/', first + 1));
 }
 
 const std::vector<std::string> folders{"modeler", "grammar", "viewer", "cli"};
 
-/// Bottom to top: a module may see those before it.
-const std::vector<std::string> order{
-    "modeler/core",       "modeler/plan",     "modeler/town",  "modeler/field",    "modeler/eval",  "modeler/mesh",
-    "modeler/volume",     "modeler/export",   "modeler/tiles", "grammar/syntax",   "grammar/rules", "grammar/derive",
-    "grammar/operations", "grammar/language", "grammar/lower", "grammar/pipeline", "viewer",        "cli"};
+/// The modules as the build adds them, bottom to top: a module may see those before it.
+std::vector<std::string> modulesOfTheBuild() {
+    std::vector<std::string> modules;
+    std::istringstream names(SGM_MODULES);
+    for (std::string name; std::getline(names, name, ',');) modules.push_back(name);
+    modules.push_back("cli");
+    return modules;
+}
 
 TEST(Layering, NoUpwardInclude) {
     std::map<std::string, size_t> level;
+    const std::vector<std::string> order = modulesOfTheBuild();
     for (size_t i = 0; i < order.size(); ++i) level[order[i]] = i;
     size_t seen = 0;
     for (const Include& include : includesUnder(folders)) {
         const std::string from = moduleOf(include.from), to = moduleOf(include.to);
-        if (!level.count(to)) continue;
+        if (from == to || include.to == "viewer/window/app.h") continue;  // the window's one door is for its program
+        if (std::find(folders.begin(), folders.end(), include.to.substr(0, include.to.find('/'))) == folders.end())
+            continue;
+        ASSERT_TRUE(level.count(to)) << include.to << " is in no module";
         ASSERT_TRUE(level.count(from)) << include.from << " is in no module";
         EXPECT_LE(level[to], level[from]) << include.from << " includes " << include.to;
         ++seen;

@@ -7,7 +7,7 @@
 #include "tests/document/texts.h"
 #include "tests/scratch.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 TextEdit edit(const Document& document, std::string_view from, std::string_view to) {
@@ -196,4 +196,4 @@ TEST(Documents, AskWhenBothHaveChanged) {
 }
 
 }  // namespace
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -4,7 +4,7 @@
 
 #include "tests/document/texts.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 using edits::Edit;
@@ -281,4 +281,4 @@ TEST(TextEdits, DifferenceInverseAndMerge) {
 }
 
 }  // namespace
-}  // namespace sgm::viewer
+}  // namespace sgm::document

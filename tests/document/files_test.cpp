@@ -6,7 +6,7 @@
 
 #include "tests/scratch.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,4 +110,4 @@ TEST_F(Reach, NoMoreTextThanAnybodyWrites) {
 }
 
 }  // namespace
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -9,7 +9,7 @@
 #include "viewer/document/rule_rows.h"
 #include "viewer/document/shape_rows.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 TEST(RuleRows, ShowTheRuleTree) {
@@ -356,4 +356,4 @@ TEST(Exports, WriteFilesOrSayWhyNot) {
 }
 
 }  // namespace
-}  // namespace sgm::viewer
+}  // namespace sgm::document

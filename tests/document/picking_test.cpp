@@ -3,7 +3,7 @@
 
 #include "tests/document/shown.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 constexpr const char* pair =
@@ -97,4 +97,4 @@ TEST(PickingUsedFiles, SaysWhoseTextItIs) {
 }
 
 }  // namespace
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -11,7 +11,7 @@
 #include "tests/fuzz_keys.h"
 #include "viewer/document/nodes.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 using edits::Edit;
@@ -352,4 +352,4 @@ TEST(RandomEdits, KeepComments) {
 }
 
 }  // namespace
-}  // namespace sgm::viewer
+}  // namespace sgm::document

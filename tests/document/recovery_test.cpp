@@ -13,7 +13,7 @@
 #include "tests/document/texts.h"
 #include "tests/scratch.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 size_t filesIn(const std::filesystem::path& folder) {
@@ -142,4 +142,4 @@ TEST(Recoveries, FollowTheDesktopsRules) {
 }
 
 }  // namespace
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -7,7 +7,7 @@
 #include "tests/mesh/mesh_bytes.h"
 #include "tests/scratch.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 constexpr const char* chain =
@@ -396,4 +396,4 @@ TEST(Problems, TellPlacesOfLaterErrors) {
 }
 
 }  // namespace
-}  // namespace sgm::viewer
+}  // namespace sgm::document

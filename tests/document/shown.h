@@ -6,7 +6,7 @@
 #include "tests/document/texts.h"
 #include "viewer/document/session.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 /// Polls until the session has nothing left to do.
 inline void settle(Session& session) {
@@ -32,4 +32,4 @@ inline std::shared_ptr<const BuiltModel> shown(const Document& document) {
     return session.model();
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -4,7 +4,7 @@
 #include "grammar/derive/print.h"
 #include "tests/document/shown.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 constexpr const char* figure1 =
@@ -113,4 +113,4 @@ TEST_F(Steps, BeginWithAWay) {
 }
 
 }  // namespace
-}  // namespace sgm::viewer
+}  // namespace sgm::document

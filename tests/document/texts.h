@@ -13,7 +13,7 @@
 #include "viewer/document/document.h"
 #include "viewer/document/edits.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 /// Comments and odd layout everywhere, so that an edit that touches too much is seen.
 inline constexpr const char* tower =
@@ -57,4 +57,4 @@ inline syntax::Ast parsed(const std::string& text) {
 
 inline std::string meaning(const syntax::Ast& ast) { return syntax::Dump(ast).text(); }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -7,12 +7,12 @@
 #include "modeler/eval/evaluate.h"
 #include "modeler/eval/glsl.h"
 #include "modeler/field/ops.h"
-#include "tests/viewer/gpu_fixture.h"
-#include "tests/viewer/scenes.h"
-#include "viewer/offscreen.h"
-#include "viewer/samples.h"
+#include "tests/render/gpu_fixture.h"
+#include "tests/render/scenes.h"
+#include "viewer/render/evaluate_gpu.h"
+#include "viewer/render/samples.h"
 
-namespace sgm::viewer::test {
+namespace sgm::render::test {
 namespace {
 
 using field::NodeRef;
@@ -31,7 +31,7 @@ std::vector<Vec3f> scatter(size_t count) {
 /// At most 1 % of 10⁴ points (those beside a discontinuity) may differ by more than 1e-4 of the scene.
 void expectAgreement(const eval::Tape& tape, const std::string& what) {
     const std::vector<Vec3f> points = scatter(10000);
-    const std::vector<float> cpu = viewer::valuesAt(tape, points);
+    const std::vector<float> cpu = render::valuesAt(tape, points);
     const auto gpu = evaluateOnGpu(tape, points);
     ASSERT_TRUE(gpu.ok()) << what << ": " << gpu.error().message;
     ASSERT_EQ(gpu->size(), points.size());
@@ -170,4 +170,4 @@ TEST_F(Glsl, InterpretsOnlyTheOpsAskedFor) {
 }
 
 }  // namespace
-}  // namespace sgm::viewer::test
+}  // namespace sgm::render::test

@@ -10,7 +10,7 @@
 #include "grammar/syntax/lexer.h"
 #include "modeler/field/primitives.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 using syntax::Token;
@@ -80,4 +80,4 @@ std::vector<std::vector<Coloured>> colours(const syntax::Ast& ast) {
     return coloured;
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -8,7 +8,7 @@
 
 #include "grammar/syntax/ast.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 enum class TextColour : uint8_t {
     Plain,
@@ -36,4 +36,4 @@ struct Coloured {
 /// The lines of the tree's source, each with its stretches from left to right; blanks have none.
 std::vector<std::vector<Coloured>> colours(const syntax::Ast& ast);
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

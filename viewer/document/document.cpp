@@ -7,7 +7,7 @@
 #include "grammar/syntax/parser.h"
 #include "modeler/core/stopwatch.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace fs = std::filesystem;
 
 Document::Document(std::string text) : saved_(text) { setText(std::move(text)); }
@@ -203,4 +203,4 @@ Status Document::keepMine() {
     return Done{};
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

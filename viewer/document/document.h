@@ -15,7 +15,7 @@
 #include "modeler/core/result.h"
 #include "viewer/document/text_edit.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 /// What is chosen besides the text: it decides which model of the grammar is shown, and is undone with the text.
 struct Choice {
@@ -140,4 +140,4 @@ private:
     std::optional<Drag> drag_;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -7,7 +7,7 @@
 #include "grammar/syntax/printer.h"
 #include "viewer/document/nodes.h"
 
-namespace sgm::viewer::edits {
+namespace sgm::document::edits {
 namespace {
 
 using syntax::Attribute;
@@ -211,4 +211,4 @@ Edit setBody(const Ast& ast, const syntax::Body& body, std::string_view text) {
     return tried(ast, {body.span.begin, body.span.end, std::string(text)});
 }
 
-}  // namespace sgm::viewer::edits
+}  // namespace sgm::document::edits

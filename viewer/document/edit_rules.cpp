@@ -5,7 +5,7 @@
 
 #include "viewer/document/nodes.h"
 
-namespace sgm::viewer::edits {
+namespace sgm::document::edits {
 namespace {
 
 using syntax::Expr;
@@ -185,4 +185,4 @@ Edit setBeside(const Ast& ast, const RuleDecl& rule, std::string_view symbol) {
     return setPart(ast, rule, "beside", rule.beside.empty() ? nullptr : &rule.beside.span, symbol);
 }
 
-}  // namespace sgm::viewer::edits
+}  // namespace sgm::document::edits

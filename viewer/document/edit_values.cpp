@@ -5,7 +5,7 @@
 
 #include "viewer/document/nodes.h"
 
-namespace sgm::viewer::edits {
+namespace sgm::document::edits {
 namespace {
 
 using syntax::ParamDecl;
@@ -165,4 +165,4 @@ Edit removeStyle(const Ast& ast, std::string_view name, std::string_view start) 
     return tried(ast, removal(ast.source->text(), found->span.begin, found->span.end));
 }
 
-}  // namespace sgm::viewer::edits
+}  // namespace sgm::document::edits

@@ -5,7 +5,7 @@
 
 #include "viewer/document/nodes.h"
 
-namespace sgm::viewer::edits {
+namespace sgm::document::edits {
 namespace {
 
 /// How a `derive` line calls the rule at `index`: its name, or its number among the nameless ones of its symbol.
@@ -50,4 +50,4 @@ Edit withWays(const Ast& ast, TextEdit edit, const std::vector<ListedRule>& now)
     return tried(ast, all.size() == 1 ? std::move(edit) : merged(ast.source->text(), std::move(all)));
 }
 
-}  // namespace sgm::viewer::edits
+}  // namespace sgm::document::edits

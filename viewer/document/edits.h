@@ -13,7 +13,7 @@
 #include "modeler/core/result.h"
 #include "viewer/document/text_edit.h"
 
-namespace sgm::viewer::edits {
+namespace sgm::document::edits {
 
 using syntax::Ast;
 using syntax::Element;
@@ -90,4 +90,4 @@ Edit saveStyle(const Ast& ast, std::string_view name, std::string_view start, co
 Edit removeSetting(const Ast& ast, std::string_view start, std::string_view style, std::string_view param);
 Edit removeStyle(const Ast& ast, std::string_view name, std::string_view start);
 
-}  // namespace sgm::viewer::edits
+}  // namespace sgm::document::edits

@@ -7,7 +7,7 @@
 #include "modeler/core/atomic_file.h"
 #include "modeler/core/guarded.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace fs = std::filesystem;
 namespace {
 
@@ -145,4 +145,4 @@ std::optional<Status> ExportJob::take() {
     return std::exchange(outcome_, std::nullopt);
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -15,7 +15,7 @@
 #include "modeler/mesh/connected_components.h"
 #include "viewer/document/session.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 /// One option as a dialog shows it: a combo of `choices`, or a number in lo … hi, or text.
 struct ExportRow {
@@ -68,4 +68,4 @@ private:
     std::optional<Status> outcome_;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -7,7 +7,7 @@
 #include "grammar/syntax/lexer.h"
 #include "grammar/syntax/parser.h"
 
-namespace sgm::viewer::edits {
+namespace sgm::document::edits {
 
 using syntax::Body;
 using syntax::Case;
@@ -198,4 +198,4 @@ Result<std::string> asName(std::string_view text) {
     return written;
 }
 
-}  // namespace sgm::viewer::edits
+}  // namespace sgm::document::edits

@@ -7,7 +7,7 @@
 #include "grammar/syntax/ast.h"
 #include "viewer/document/edits.h"
 
-namespace sgm::viewer::edits {
+namespace sgm::document::edits {
 
 /// An element's place in the tree.
 struct Place {
@@ -60,4 +60,4 @@ Result<std::string> asName(std::string_view text);
 /// Error::Input with this sentence.
 Error refused(std::string why);
 
-}  // namespace sgm::viewer::edits
+}  // namespace sgm::document::edits

@@ -9,7 +9,7 @@
 #include "grammar/rules/params.h"
 #include "modeler/core/random.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 using rules::Value;
@@ -190,4 +190,4 @@ std::vector<std::string> waysOf(const rules::Grammar& grammar) {
     return names;
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -10,7 +10,7 @@
 #include "viewer/document/document.h"
 #include "viewer/document/edits.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 struct ParamRow {
     enum class Kind : uint8_t {
@@ -59,4 +59,4 @@ std::vector<std::string> stylesFor(const rules::Grammar& grammar, uint32_t start
 std::vector<std::string> startsOf(const rules::Grammar& grammar);
 std::vector<std::string> waysOf(const rules::Grammar& grammar);
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

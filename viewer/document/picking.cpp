@@ -6,7 +6,7 @@
 
 #include "viewer/document/nodes.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 using derive::Derivation;
 using derive::none;
@@ -124,4 +124,4 @@ edits::Edit attach(const Document& document, const BuiltModel& shown, ShapeId mo
     return edits::attach(*document.ast(), *element, tree.joint(host, joint).name);
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

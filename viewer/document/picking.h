@@ -8,7 +8,7 @@
 #include "viewer/document/edits.h"
 #include "viewer/document/session.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 /// What is known of a shape: for the hover label and the selection.
 struct Picked {
@@ -42,4 +42,4 @@ const syntax::Element* elementOf(const Document& document, const BuiltModel& sho
 edits::Edit attach(const Document& document, const BuiltModel& shown, derive::ShapeId moved, derive::ShapeId host,
                    uint32_t joint);
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

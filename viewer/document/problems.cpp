@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 /// Reads "NUMBER:" off the end of `text` (without the colon), or gives 0.
@@ -49,4 +49,4 @@ Problem problemOf(const Error& error) {
     return row;
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -9,7 +9,7 @@
 #include "grammar/syntax/source.h"
 #include "modeler/core/result.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 struct Problem {
     syntax::Severity severity = syntax::Severity::Error;
@@ -26,4 +26,4 @@ std::vector<Problem> problemsOf(const syntax::Diagnostics& diagnostics);
 /// An error of a later stage; its place is read off the "file:line:column: " that it begins with.
 Problem problemOf(const Error& error);
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -15,7 +15,7 @@
 #include "modeler/core/atomic_file.h"
 #include "modeler/core/regular_file.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace fs = std::filesystem;
 namespace {
 
@@ -174,4 +174,4 @@ Status Recovery::write(const Work& work) {
     return pipeline::writeText(file_, fmt::format("{}{}\n{}{}", magic, work.document.size(), work.document, work.text));
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -15,7 +15,7 @@
 
 #include "viewer/document/document.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 /// $XDG_STATE_HOME/sgm, else ~/.local/state/sgm (XDG base directories).
 std::filesystem::path recoveryFolder();
@@ -69,4 +69,4 @@ private:
     std::thread thread_;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

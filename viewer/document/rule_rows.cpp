@@ -5,7 +5,7 @@
 #include "grammar/syntax/lexer.h"
 #include "grammar/syntax/printer.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 using syntax::Body;
@@ -177,4 +177,4 @@ size_t rowAt(const std::vector<RuleRow>& rows, uint32_t offset) {
     return found;
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -8,7 +8,7 @@
 
 #include "grammar/syntax/ast.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 struct RuleRow {
     enum class Kind : uint8_t {
@@ -40,4 +40,4 @@ std::vector<RuleRow> ruleRows(const syntax::Ast& ast);
 /// The row whose node is the smallest that holds the byte, or the number of rows where none does.
 size_t rowAt(const std::vector<RuleRow>& rows, uint32_t offset);
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -6,7 +6,7 @@
 
 #include "modeler/core/guarded.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace fs = std::filesystem;
 namespace {
 
@@ -337,4 +337,4 @@ Result<std::shared_ptr<const BuiltModel>> Session::made(const ShowRequest& reque
     return finished(std::move(shown));
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -21,7 +21,7 @@
 #include "viewer/document/document.h"
 #include "viewer/document/problems.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 /// A good model. Immutable; shapes point into sources that `grammar` holds.
 struct BuiltModel {
@@ -176,4 +176,4 @@ private:
     std::thread worker_;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

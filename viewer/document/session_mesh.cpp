@@ -3,7 +3,7 @@
 #include "grammar/pipeline/missing.h"
 #include "viewer/document/session.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 constexpr float keptCells =
@@ -90,4 +90,4 @@ void Session::meshCutOpen(const ShowRequest& request, Progress& progress) {
     publish(std::move(update));
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

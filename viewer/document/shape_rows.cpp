@@ -7,7 +7,7 @@
 
 #include "grammar/syntax/printer.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 namespace {
 
 using derive::none;
@@ -118,4 +118,4 @@ std::vector<BondMark> bondMarks(const ShapeTree& tree, size_t most) {
     return marks;
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

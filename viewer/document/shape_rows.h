@@ -9,7 +9,7 @@
 
 #include "grammar/derive/derive.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 struct ShapeRow {
     derive::ShapeId shape = 0;
@@ -65,4 +65,4 @@ struct BondMark {
 /// Every bond of the tree, at most `most` of them.
 std::vector<BondMark> bondMarks(const derive::ShapeTree& tree, size_t most = 100'000);
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -10,7 +10,7 @@
 #include "grammar/rules/params.h"
 #include "viewer/document/nodes.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 using derive::none;
 using derive::ShapeId;
@@ -136,4 +136,4 @@ Result<size_t> Stepper::follow(std::shared_ptr<const rules::Grammar> grammar, de
     return kept;
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

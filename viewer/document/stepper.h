@@ -11,7 +11,7 @@
 #include "grammar/pipeline/files.h"
 #include "viewer/document/edits.h"
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 /// A rule that may rewrite a live shape.
 struct StepRule {
@@ -82,4 +82,4 @@ struct WithWay {
 Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& grammar, derive::Options options,
                         const std::string& name, const rules::Loader& loader);
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 std::string applied(std::string_view text, const TextEdit& edit) {
     const size_t begin = std::min<size_t>(edit.begin, text.size()),
@@ -39,4 +39,4 @@ TextEdit merged(std::string_view text, std::vector<TextEdit> edits) {
     return all;
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

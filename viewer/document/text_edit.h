@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace sgm::viewer {
+namespace sgm::document {
 
 /// Bytes [begin, end) go, `replacement` stands in their place.
 struct TextEdit {
@@ -32,4 +32,4 @@ TextEdit difference(std::string_view before, std::string_view after);
 /// One edit that does what all of them do to `text`. They must not overlap; their order doesn't count.
 TextEdit merged(std::string_view text, std::vector<TextEdit> edits);
 
-}  // namespace sgm::viewer
+}  // namespace sgm::document

@@ -14,7 +14,7 @@
 #include "viewer/window/widgets.h"
 #include "viewer/window/window.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 constexpr int settlingFrames = 3;     // after an event, until ImGui's hover and layout have settled
@@ -154,12 +154,12 @@ void describe(const Workbench& bench, nlohmann::json& state) {
     state["redo"] = bench.document.redoLabel();
     state["notice"] = bench.notice;
     state["problems"] = nlohmann::json::array();
-    for (const Problem& p : bench.session.problems())
+    for (const document::Problem& p : bench.session.problems())
         state["problems"].push_back({{"line", p.line}, {"message", p.message}});
     state["selection"] = bench.selected() == derive::none ? "" : bench.tree()->path(bench.selected(), true);
     state["hover"] = bench.hover ? bench.hover->text : "";
     state["shapes"] = bench.tree() ? bench.tree()->shapes.size() : 0;
-    const Camera camera = bench.orbit.camera();
+    const render::Camera camera = bench.orbit.camera();
     state["eye"] = {camera.eye.x, camera.eye.y, camera.eye.z};
     state["at"] = {camera.at.x, camera.at.y, camera.at.z};
     state["pane"] = static_cast<int>(bench.look.pane);
@@ -201,7 +201,7 @@ Result<bool> refine(Workbench& bench) {
     return drew;
 }
 
-std::string titleOf(const Document& document) {
+std::string titleOf(const document::Document& document) {
     const std::string name = document.path().empty() ? "untitled" : document.path().filename().string();
     return fmt::format("{}{} - sgm", document.dirty() ? "*" : "", name);
 }
@@ -339,4 +339,4 @@ int runApp(const AppOptions& options) {
     return Loop(options, window, bench, report).run();
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -6,7 +6,7 @@
 
 #include "viewer/window/orbit.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 struct AppOptions {
     std::filesystem::path file;    ///< empty for a new document
@@ -18,4 +18,4 @@ struct AppOptions {
 /// Runs until the window is closed. Prints errors to stderr; 0 or 1.
 int runApp(const AppOptions& options);
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

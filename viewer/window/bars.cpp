@@ -9,7 +9,7 @@
 #include "viewer/window/style.h"
 #include "viewer/window/widgets.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 using namespace widgets;
@@ -26,7 +26,7 @@ void gap() {
 
 void Bars::top(Workbench& bench) {
     Report& report = bench.report;
-    const Document& document = bench.document;
+    const document::Document& document = bench.document;
     ImGui::AlignTextToFramePadding();
     ImGui::PushFont(strongFont());
     ImGui::TextUnformatted(document.path().empty() ? "untitled" : document.path().filename().c_str());
@@ -95,7 +95,7 @@ void Bars::meshControls(Workbench& bench) {
                                                 "Components", "Labels",  "Creases"};
     int look = static_cast<int>(bench.look.mesh.look);
     if (choice(report, "mesh.look", looks, look, ImGui::GetFontSize() * 7))
-        bench.look.mesh.look = static_cast<MeshLook>(look);
+        bench.look.mesh.look = static_cast<render::MeshLook>(look);
     hint("What the mesh's colours tell");
     ImGui::SameLine();
     static const std::vector<std::string> sizes{"64", "128", "192", "256", "384"};
@@ -336,4 +336,4 @@ void Bars::questions(Workbench& bench) {
     ImGui::EndPopup();
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -4,7 +4,7 @@
 
 #include "viewer/window/workbench.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 class Bars {
 public:
@@ -30,4 +30,4 @@ private:
     std::string folder_, name_;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

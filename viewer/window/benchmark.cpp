@@ -7,15 +7,17 @@
 
 #include "viewer/document/param_rows.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 constexpr size_t mostDrags = 20, mostStructures = 6;
 
 /// The parameter that a user would drag first.
-const ParamRow* firstSlider(const std::vector<ParamRow>& rows) {
-    for (const ParamRow& row : rows)
-        if ((row.kind == ParamRow::Kind::Real || row.kind == ParamRow::Kind::Integer) && !row.lo.empty()) return &row;
+const document::ParamRow* firstSlider(const std::vector<document::ParamRow>& rows) {
+    for (const document::ParamRow& row : rows)
+        if ((row.kind == document::ParamRow::Kind::Real || row.kind == document::ParamRow::Kind::Integer) &&
+            !row.lo.empty())
+            return &row;
     return nullptr;
 }
 
@@ -34,9 +36,9 @@ bool Benchmark::begin(Workbench& bench) {
     compiles_ = bench.compiles;
     waiting_ = true;
     if (phase_ == Phase::Drag) {
-        const std::vector<ParamRow> rows =
+        const std::vector<document::ParamRow> rows =
             paramRows(*bench.shown()->grammar, bench.shown()->options, bench.document.choice());
-        const ParamRow* slider = firstSlider(rows);
+        const document::ParamRow* slider = firstSlider(rows);
         if (slider && drags_.size() < mostDrags) {
             if (drags_.empty()) bench.document.beginDrag();
             bench.edit(
@@ -55,7 +57,7 @@ bool Benchmark::begin(Workbench& bench) {
     const syntax::Element* first = firstElement(*bench.document.ast());
     if (!first) return false;
     const uint64_t before = bench.document.revision();
-    bench.edit(edits::addElement(*bench.document.ast(), *first, "+ cylinder at +y"), "Add a shape");
+    bench.edit(document::edits::addElement(*bench.document.ast(), *first, "+ cylinder at +y"), "Add a shape");
     return bench.document.revision() != before;
 }
 
@@ -133,4 +135,4 @@ void Benchmark::print(const Workbench& bench, const std::string& driver) const {
                        spent.processor * 1000);
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -9,7 +9,7 @@
 #include "modeler/core/stopwatch.h"
 #include "viewer/window/workbench.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 class Benchmark {
 public:
@@ -37,4 +37,4 @@ private:
     bool waiting_ = false;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

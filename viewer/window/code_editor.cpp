@@ -10,34 +10,34 @@
 
 #include "viewer/window/style.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
-ImU32 tintOf(TextColour color) {
+ImU32 tintOf(document::TextColour color) {
     switch (color) {
-        case TextColour::Keyword:
+        case document::TextColour::Keyword:
             return IM_COL32(198, 146, 220, 255);
-        case TextColour::Operation:
+        case document::TextColour::Operation:
             return IM_COL32(110, 184, 200, 255);
-        case TextColour::Solid:
-        case TextColour::Terminal:
+        case document::TextColour::Solid:
+        case document::TextColour::Terminal:
             return IM_COL32(232, 140, 120, 255);
-        case TextColour::NonTerminal:
+        case document::TextColour::NonTerminal:
             return IM_COL32(110, 164, 236, 255);
-        case TextColour::Parameter:
+        case document::TextColour::Parameter:
             return IM_COL32(226, 190, 120, 255);
-        case TextColour::Number:
-        case TextColour::Hex:
+        case document::TextColour::Number:
+        case document::TextColour::Hex:
             return IM_COL32(150, 200, 130, 255);
-        case TextColour::Text:
+        case document::TextColour::Text:
             return IM_COL32(178, 196, 120, 255);
-        case TextColour::Comment:
+        case document::TextColour::Comment:
             return IM_COL32(112, 120, 132, 255);
-        case TextColour::Sign:
+        case document::TextColour::Sign:
             return IM_COL32(176, 182, 192, 255);
-        case TextColour::Wrong:
+        case document::TextColour::Wrong:
             return tint::error;
-        case TextColour::Plain:
+        case document::TextColour::Plain:
             break;
     }
     return tint::text;
@@ -111,7 +111,7 @@ void CodeEditor::layOut(const std::string& text, const std::vector<LineNote>& no
     }
 }
 
-void CodeEditor::drawLine(const std::string& text, uint32_t line, const std::vector<Coloured>& colors,
+void CodeEditor::drawLine(const std::string& text, uint32_t line, const std::vector<document::Coloured>& colors,
                           const std::vector<LineNote>& notes, ImVec2 low) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     ImFont* font = codeFont();
@@ -126,7 +126,7 @@ void CodeEditor::drawLine(const std::string& text, uint32_t line, const std::vec
     list.AddText(font, font->FontSize,
                  {low.x + gutter_ - 14 - widthOf(number, 0, static_cast<uint32_t>(number.size())), low.y},
                  line == lineOf(caret_) ? tint::text : IM_COL32(92, 98, 108, 255), number.c_str());
-    for (const Coloured& c : colors) {
+    for (const document::Coloured& c : colors) {
         const uint32_t a = std::min(start + c.begin, end), b = std::min(start + c.end, end);
         if (a < b)
             list.AddText(font, font->FontSize, {low.x + xOf(text, line, a), low.y}, tintOf(c.colour), text.data() + a,
@@ -253,7 +253,7 @@ void CodeEditor::follow(const std::string& text) {
 }
 
 std::optional<std::string> CodeEditor::show(Report& report, const std::string& text,
-                                            const std::vector<std::vector<Coloured>>& colors,
+                                            const std::vector<std::vector<document::Coloured>>& colors,
                                             const std::vector<LineNote>& notes) {
     height_ = std::round(codeFont()->FontSize * 1.32f);
     layOut(text, notes);
@@ -277,7 +277,7 @@ std::optional<std::string> CodeEditor::show(Report& report, const std::string& t
         for (uint32_t line = 0; line < starts_.size(); ++line)
             widest = std::max(widest, xOf(text, line, endOf(text, line)));
         ImDrawList& list = *ImGui::GetWindowDrawList();
-        static const std::vector<Coloured> plain;
+        static const std::vector<document::Coloured> plain;
         for (size_t i = first; i < last; ++i) {
             const Row& row = rows_[i];
             const ImVec2 low(origin.x, origin.y + static_cast<float>(i) * height_);
@@ -308,4 +308,4 @@ std::optional<std::string> CodeEditor::show(Report& report, const std::string& t
     return changed;
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

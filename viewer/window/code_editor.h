@@ -14,7 +14,7 @@
 #include "viewer/document/colours.h"
 #include "viewer/window/report.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 /// A sentence under a line, and what of the line it is about.
 struct LineNote {
@@ -29,7 +29,7 @@ public:
     /// Fills the rest of the window. The text after what was typed, or nothing where it stays. `colors` are of this
     /// very text, a list a line.
     std::optional<std::string> show(Report& report, const std::string& text,
-                                    const std::vector<std::vector<Coloured>>& colors,
+                                    const std::vector<std::vector<document::Coloured>>& colors,
                                     const std::vector<LineNote>& notes);
     /// Selects bytes [begin, end) and scrolls there.
     void reveal(uint32_t begin, uint32_t end);
@@ -48,7 +48,7 @@ private:
         int note;  ///< −1: the line itself
     };
     void layOut(const std::string& text, const std::vector<LineNote>& notes);
-    void drawLine(const std::string& text, uint32_t line, const std::vector<Coloured>& colors,
+    void drawLine(const std::string& text, uint32_t line, const std::vector<document::Coloured>& colors,
                   const std::vector<LineNote>& notes, ImVec2 low);
     void mouse(const std::string& text, ImVec2 origin);
     std::optional<std::string> keys(const std::string& text);
@@ -69,4 +69,4 @@ private:
     float gutter_ = 0, height_ = 0;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

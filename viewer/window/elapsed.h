@@ -7,7 +7,7 @@
 
 #include "modeler/core/stopwatch.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 /// Seconds on both clocks.
 struct ElapsedTimes {
@@ -62,4 +62,4 @@ private:
     ElapsedWatch watch_;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

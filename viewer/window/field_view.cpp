@@ -5,9 +5,9 @@
 #include <set>
 
 #include "modeler/core/stopwatch.h"
-#include "viewer/scene.h"
+#include "viewer/render/scene.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 constexpr double coarseSeconds = 0.05, batchSeconds = 0.018;
@@ -16,20 +16,21 @@ constexpr double coarseSeconds = 0.05, batchSeconds = 0.018;
 constexpr int tile = 32;
 
 /// Every pixel once, tile by tile, the tiles from the middle outwards.
-std::vector<Job> fromTheMiddle(int width, int height) {
-    std::vector<Job> jobs = firstSamples(width, height);
-    const auto away = [&](const Job& job) {
+std::vector<render::Job> fromTheMiddle(int width, int height) {
+    std::vector<render::Job> jobs = render::firstSamples(width, height);
+    const auto away = [&](const render::Job& job) {
         const int i = static_cast<int>(job.x()) / tile, j = static_cast<int>(job.y()) / tile;
         const double x = i * tile + tile / 2 - width / 2.0, y = j * tile + tile / 2 - height / 2.0;
         return std::pair(x * x + y * y, j * 4096 + i);
     };
-    std::stable_sort(jobs.begin(), jobs.end(), [&](const Job& a, const Job& b) { return away(a) < away(b); });
+    std::stable_sort(jobs.begin(), jobs.end(),
+                     [&](const render::Job& a, const render::Job& b) { return away(a) < away(b); });
     return jobs;
 }
 
 }  // namespace
 
-std::shared_ptr<const PreparedField> FieldView::setField(std::unique_ptr<FieldScene> scene) {
+std::shared_ptr<const render::PreparedField> FieldView::setField(std::unique_ptr<render::FieldScene> scene) {
     std::swap(scene_, scene);
     if (!drawsFog()) restart();
     if (!scene) return nullptr;
@@ -38,7 +39,7 @@ std::shared_ptr<const PreparedField> FieldView::setField(std::unique_ptr<FieldSc
     return last;
 }
 
-void FieldView::setFog(std::unique_ptr<FogScene> fog) {
+void FieldView::setFog(std::unique_ptr<render::FogScene> fog) {
     fog_ = std::move(fog);
     if (drawsFog()) restart();
 }
@@ -49,18 +50,18 @@ void FieldView::showFog(bool fog) {
     if (fog_) restart();
 }
 
-void FieldView::point(const PictureOptions& options, double fine) {
+void FieldView::point(const render::PictureOptions& options, double fine) {
     drawsFog() ? fog_->look(options) : scene_->look(options, fine);
 }
 
-Result<std::vector<std::array<float, 4>>> FieldView::colorsOf(std::span<const Job> jobs) {
+Result<std::vector<std::array<float, 4>>> FieldView::colorsOf(std::span<const render::Job> jobs) {
     if (drawsFog()) return fog_->draw(jobs, nullptr);
-    Result<Rays> rays = scene_->draw(jobs, nullptr);
+    Result<render::Rays> rays = scene_->draw(jobs, nullptr);
     if (!rays) return rays.error();
     return std::move(rays->colors);
 }
 
-void FieldView::setLook(const PictureOptions& options) {
+void FieldView::setLook(const render::PictureOptions& options) {
     if (options == look_ && phase_ != Phase::Idle) return;
     if (options.width != look_.width || options.height != look_.height) first_.clear();
     look_ = options;
@@ -79,16 +80,16 @@ Status FieldView::drawCoarse() {
     const double pixels = static_cast<double>(look_.width) * look_.height;
     double& perRay = secondsPerRay_[drawsFog()];
     const double scale = std::clamp(std::sqrt(pixels * perRay / coarseSeconds), 1.0, 10.0);
-    PictureOptions small = look_;
+    render::PictureOptions small = look_;
     small.width = std::max(1, static_cast<int>(std::ceil(look_.width / scale)));
     small.height = std::max(1, static_cast<int>(std::ceil(look_.height / scale)));
     // A block's surface is as exact as a pixel's, lest edges get dark rims.
     point(small, scale);
-    const std::vector<Job> jobs = firstSamples(small.width, small.height);
-    PixelSums sums(small.width, small.height);
+    const std::vector<render::Job> jobs = render::firstSamples(small.width, small.height);
+    render::PixelSums sums(small.width, small.height);
     const Stopwatch watch;
-    for (size_t first = 0; first < jobs.size(); first += mostJobs) {
-        const std::span chunk = std::span(jobs).subspan(first, std::min(mostJobs, jobs.size() - first));
+    for (size_t first = 0; first < jobs.size(); first += render::mostJobs) {
+        const std::span chunk = std::span(jobs).subspan(first, std::min(render::mostJobs, jobs.size() - first));
         const auto colors = colorsOf(chunk);
         if (!colors) return colors.error();
         sums.add(chunk, *colors);
@@ -101,7 +102,7 @@ Status FieldView::drawCoarse() {
 
     point(look_);
     fine_.resize(look_.width, look_.height);
-    sums_ = PixelSums(look_.width, look_.height);
+    sums_ = render::PixelSums(look_.width, look_.height);
     fine_.write(sums_.bytes(0, 0, look_.width, look_.height), 0, 0, look_.width, look_.height);
     if (first_.empty()) first_ = fromTheMiddle(look_.width, look_.height);
     jobs_ = first_;
@@ -117,7 +118,8 @@ Status FieldView::drawBatch() {
     if (!colors) return colors.error();
     sums_.add(chunk, *colors);
     std::set<std::pair<int, int>> tiles;
-    for (const Job& job : chunk) tiles.emplace(static_cast<int>(job.x()) / tile, static_cast<int>(job.y()) / tile);
+    for (const render::Job& job : chunk)
+        tiles.emplace(static_cast<int>(job.x()) / tile, static_cast<int>(job.y()) / tile);
     for (const auto& [i, j] : tiles) {
         const int x = i * tile, y = j * tile, width = std::min(tile, look_.width - x),
                   height = std::min(tile, look_.height - y);
@@ -125,7 +127,7 @@ Status FieldView::drawBatch() {
     }
     times_.full += watch.seconds();
     const double wanted = static_cast<double>(chunk.size()) * std::clamp(batchSeconds / watch.seconds(), 0.25, 2.0);
-    if (chunk.size() == batch_) batch_ = std::clamp(static_cast<size_t>(wanted), size_t(256), mostJobs);
+    if (chunk.size() == batch_) batch_ = std::clamp(static_cast<size_t>(wanted), size_t(256), render::mostJobs);
     next_ += chunk.size();
     return Done{};
 }
@@ -156,10 +158,10 @@ Status FieldView::drawMore() {
 std::optional<Pick> FieldView::pick(int x, int y) {
     if (!scene_ || x < 0 || y < 0 || x >= look_.width || y >= look_.height) return std::nullopt;
     scene_->look(look_);
-    const Job job{static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16, 0};
-    const Result<Rays> rays = scene_->trace({&job, 1}, nullptr);
+    const render::Job job{static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16, 0};
+    const Result<render::Rays> rays = scene_->trace({&job, 1}, nullptr);
     if (!rays) return std::nullopt;
     return Pick{rays->hits[0].kind(), rays->hits[0].position, rays->origins[0]};
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -8,15 +8,15 @@
 #include <optional>
 #include <vector>
 
-#include "viewer/field_scene.h"
-#include "viewer/fog_scene.h"
+#include "viewer/render/field_scene.h"
+#include "viewer/render/fog_scene.h"
 #include "viewer/window/elapsed.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 /// Where a ray through a pixel ends.
 struct Pick {
-    HitKind kind = HitKind::Sky;
+    render::HitKind kind = render::HitKind::Sky;
     Vec3f position;       ///< metres
     OriginId origin = 0;  ///< of an object
 };
@@ -31,13 +31,13 @@ class FieldView {
 public:
     const FieldTimes& times() const { return times_; }
     /// The picture starts again; gives what the last one was of.
-    std::shared_ptr<const PreparedField> setField(std::unique_ptr<FieldScene> scene);
-    void setFog(std::unique_ptr<FogScene> fog);
+    std::shared_ptr<const render::PreparedField> setField(std::unique_ptr<render::FieldScene> scene);
+    void setFog(std::unique_ptr<render::FogScene> fog);
     /// Draws fog rather than the field, as soon as there is any.
     void showFog(bool fog);
     bool drawsFog() const { return fogWanted_ && fog_; }
     /// Starts the picture again, unless it is of this look already.
-    void setLook(const PictureOptions& options);
+    void setLook(const render::PictureOptions& options);
     bool hasField() const { return scene_ != nullptr; }
     /// Of the solid; only with a field.
     Box3f bounds() const { return scene_->field()->bounds; }
@@ -55,29 +55,29 @@ public:
     /// Where the ray through the middle of pixel (x, y) ends, from the top left; nothing without a field.
     std::optional<Pick> pick(int x, int y);
     /// The picture so far; whole when `finished`.
-    Image image() const { return sums_.image(); }
+    render::Image image() const { return sums_.image(); }
 
 private:
     enum class Phase { Idle, Coarse, First, Edges, Finished };
     void restart();
     /// Sets the picture for `colorsOf`.
-    void point(const PictureOptions& options, double fine = 1);
-    Result<std::vector<std::array<float, 4>>> colorsOf(std::span<const Job> jobs);
+    void point(const render::PictureOptions& options, double fine = 1);
+    Result<std::vector<std::array<float, 4>>> colorsOf(std::span<const render::Job> jobs);
     Status drawMore();
     Status drawCoarse();
     Status drawBatch();
 
-    std::unique_ptr<FieldScene> scene_;
-    std::unique_ptr<FogScene> fog_;
+    std::unique_ptr<render::FieldScene> scene_;
+    std::unique_ptr<render::FogScene> fog_;
     bool fogWanted_ = false;
-    PictureOptions look_;
+    render::PictureOptions look_;
     Phase phase_ = Phase::Idle;
-    std::vector<Job> jobs_, first_;
+    std::vector<render::Job> jobs_, first_;
     size_t next_ = 0, batch_ = 2048;
-    PixelSums sums_;
-    DisplayTexture coarse_, fine_;
+    render::PixelSums sums_;
+    render::DisplayTexture coarse_, fine_;
     double secondsPerRay_[2] = {4e-6, 4e-6};  ///< of the field, of fog
     FieldTimes times_;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -1,12 +1,13 @@
 #include "viewer/window/mesh_view.h"
 
-#include "viewer/shader_text.h"
+#include "viewer/render/shader_text.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
-Status MeshView::setMesh(std::unique_ptr<MeshScene> scene) {
+Status MeshView::setMesh(std::unique_ptr<render::MeshScene> scene) {
     if (encode_.id() == 0) {
-        Result<Program> made = Program::draw(shaderText("screen"), shaderText("encode"));
+        Result<render::Program> made =
+            render::Program::draw(render::shaderText("screen"), render::shaderText("encode"));
         if (!made) return made.error();
         encode_ = std::move(*made);
     }
@@ -23,7 +24,7 @@ Status MeshView::light() {
     return Done{};
 }
 
-void MeshView::setLook(const PictureOptions& options, const MeshStyle& style) {
+void MeshView::setLook(const render::PictureOptions& options, const render::MeshStyle& style) {
     if (drawn_ && options == look_ && style == style_) return;
     look_ = options;
     style_ = style;
@@ -31,9 +32,9 @@ void MeshView::setLook(const PictureOptions& options, const MeshStyle& style) {
 }
 
 Status MeshView::draw(int samples) {
-    std::optional<ColorTarget>& target = targets_[samples > 1];
+    std::optional<render::ColorTarget>& target = targets_[samples > 1];
     if (!target || target->width != look_.width || target->height != look_.height) {
-        Result<ColorTarget> made = ColorTarget::create(look_.width, look_.height, samples);
+        Result<render::ColorTarget> made = render::ColorTarget::create(look_.width, look_.height, samples);
         if (!made) return made.error();
         target.emplace(std::move(*made));
     }
@@ -55,4 +56,4 @@ Status MeshView::step() {
     return smooth_ ? Status(Done{}) : draw(std::max(look_.samples, 2));
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

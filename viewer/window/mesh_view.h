@@ -5,14 +5,14 @@
 #include <memory>
 #include <optional>
 
-#include "viewer/mesh_scene.h"
+#include "viewer/render/mesh_scene.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 class MeshView {
 public:
-    Status setMesh(std::unique_ptr<MeshScene> scene);
-    void setLook(const PictureOptions& options, const MeshStyle& style);
+    Status setMesh(std::unique_ptr<render::MeshScene> scene);
+    void setLook(const render::PictureOptions& options, const render::MeshStyle& style);
     bool hasMesh() const { return scene_ != nullptr; }
     /// Draws what changed, else completes the light, else draws with smooth edges.
     Status step();
@@ -21,19 +21,19 @@ public:
     uint32_t texture() const { return texture_.id(); }
     size_t triangleCount() const { return scene_ ? scene_->triangleCount() : 0; }
     /// The picture so far; whole when `finished`.
-    Image image() const { return {texture_.width(), texture_.height(), texture_.read()}; }
+    render::Image image() const { return {texture_.width(), texture_.height(), texture_.read()}; }
 
 private:
     Status draw(int samples);
     Status light();
 
-    std::unique_ptr<MeshScene> scene_;
-    Program encode_;
-    PictureOptions look_;
-    MeshStyle style_;
-    DisplayTexture texture_;
-    std::optional<ColorTarget> targets_[2];  ///< one sample a pixel; several
+    std::unique_ptr<render::MeshScene> scene_;
+    render::Program encode_;
+    render::PictureOptions look_;
+    render::MeshStyle style_;
+    render::DisplayTexture texture_;
+    std::optional<render::ColorTarget> targets_[2];  ///< one sample a pixel; several
     bool drawn_ = false, smooth_ = false, sunlit_ = false, lit_ = false;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

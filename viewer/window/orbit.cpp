@@ -5,7 +5,7 @@
 
 #include "modeler/core/conventions.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 constexpr double steepest = 0.5 * pi - 1e-4;  // straight up there is no "right"
@@ -18,7 +18,7 @@ Vec3d towardsEye(const Orbit& orbit) {
 
 }  // namespace
 
-Orbit Orbit::from(const Camera& camera) {
+Orbit Orbit::from(const render::Camera& camera) {
     Orbit orbit;
     const Vec3d v = camera.eye - camera.at;
     orbit.at = camera.at;
@@ -30,8 +30,8 @@ Orbit Orbit::from(const Camera& camera) {
     return orbit;
 }
 
-Camera Orbit::camera() const {
-    Camera camera;
+render::Camera Orbit::camera() const {
+    render::Camera camera;
     camera.at = at;
     camera.eye = at + towardsEye(*this) * distance;
     camera.fieldOfView = fieldOfView;
@@ -39,8 +39,8 @@ Camera Orbit::camera() const {
     return camera;
 }
 
-Camera Orbit::camera(double aspect) const {
-    Camera narrow = camera();
+render::Camera Orbit::camera(double aspect) const {
+    render::Camera narrow = camera();
     if (aspect < 1) narrow.fieldOfView = 2 * std::atan(std::tan(fieldOfView / 2) / aspect);
     return narrow;
 }
@@ -88,7 +88,7 @@ void Orbit::look(StandardView view) {
             yaw = 0, pitch = -steepest;
             break;
         case StandardView::ThreeQuarter: {
-            const Orbit usual = from(viewer::frame(Box3f{{-1, -1, -1}, {1, 1, 1}}, 1));
+            const Orbit usual = from(render::frame(Box3f{{-1, -1, -1}, {1, 1, 1}}, 1));
             yaw = usual.yaw, pitch = usual.pitch;
             break;
         }
@@ -98,7 +98,7 @@ void Orbit::look(StandardView view) {
 void Orbit::frame(const Box3d& bounds) {
     at = bounds.centre();
     const Vec3d back = towardsEye(*this), right = normalized(cross(Vec3d{0, 1, 0}, back)), up = cross(back, right);
-    constexpr double fill = 0.84;  // as viewer::frame
+    constexpr double fill = 0.84;  // as render::frame
     const double reach = std::tan(fieldOfView / 2) * fill;
     distance = 1e-3;
     for (int i = 0; i < 8; ++i) {
@@ -110,4 +110,4 @@ void Orbit::frame(const Box3d& bounds) {
     }
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

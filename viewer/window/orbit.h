@@ -2,9 +2,9 @@
 // Enters: movements of the pointer as shares of the view's height. Leaves: a Camera. Assumes Y up.
 #pragma once
 
-#include "viewer/offscreen.h"
+#include "viewer/render/camera.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 /// Views along an axis, and the one from which every picture starts.
 enum class StandardView { Front = 1, Back, Right, Left, Top, Bottom, ThreeQuarter };
@@ -15,13 +15,13 @@ struct Orbit {
     double distance = 10;  ///< from eye to `at`, metres
     double yaw = 0;        ///< radians about +y; 0 looks along −z
     double pitch = 0.4;    ///< radians above the horizon, −π/2 … π/2
-    double fieldOfView = Camera{}.fieldOfView;
+    double fieldOfView = render::Camera{}.fieldOfView;
     double lamp_m = 0;  ///< as Camera::lamp_m
 
-    static Orbit from(const Camera& camera);
-    Camera camera() const;
+    static Orbit from(const render::Camera& camera);
+    render::Camera camera() const;
     /// For a picture of this shape: the narrower side shows the angle `fieldOfView`.
-    Camera camera(double aspect) const;
+    render::Camera camera(double aspect) const;
 
     /// Turns by a drag of (x right, y down) heights of the view: half a turn a height.
     void turn(double x, double y);
@@ -36,4 +36,4 @@ struct Orbit {
     friend bool operator==(const Orbit&, const Orbit&) = default;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -4,14 +4,14 @@
 
 #include "viewer/window/style.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 constexpr size_t mostMarks = 4000;  // more would only be a cloud of dots
 
 }  // namespace
 
-Projection::Projection(const Camera& camera, ImVec2 low, ImVec2 size)
+Projection::Projection(const render::Camera& camera, ImVec2 low, ImVec2 size)
     : view(viewOf(camera, std::max(1, static_cast<int>(size.x)), std::max(1, static_cast<int>(size.y)))),
       low(low),
       size(size) {}
@@ -31,7 +31,7 @@ std::vector<ScreenJoint> screenJoints(const derive::ShapeTree& tree, const std::
     std::vector<ScreenJoint> joints;
     for (const derive::ShapeId shape : shapes) {
         if (joints.size() > mostMarks) break;
-        for (const JointMark& mark : jointMarks(tree, shape)) {
+        for (const document::JointMark& mark : document::jointMarks(tree, shape)) {
             // An open centre says nothing: every shape has one.
             if (mark.joint == derive::centreJoint && !mark.bonded) continue;
             if (const auto at = project(mark.point)) joints.push_back({mark, *at});
@@ -72,7 +72,7 @@ void drawBonds(const Workbench& bench, const Projection& project, ImDrawList& li
     const JointsShown shown = bench.look.joints;
     if (!tree || shown == JointsShown::None || (shown == JointsShown::Selected && bench.selected() == derive::none))
         return;
-    for (const BondMark& bond : bondMarks(*tree, mostMarks)) {
+    for (const document::BondMark& bond : document::bondMarks(*tree, mostMarks)) {
         if (shown == JointsShown::Selected && bond.shapes[0] != bench.selected() && bond.shapes[1] != bench.selected())
             continue;
         const auto from = project(bond.from), at = project(bond.at), to = project(bond.to);
@@ -87,7 +87,7 @@ void drawBonds(const Workbench& bench, const Projection& project, ImDrawList& li
 
 void drawScope(const Workbench& bench, derive::ShapeId shape, const Projection& project, ImDrawList& list) {
     const derive::Shape& s = bench.tree()->shapes[shape];
-    const bool terminal = isTerminal(bench.shown()->model.derivation, shape);
+    const bool terminal = document::isTerminal(bench.shown()->model.derivation, shape);
     std::optional<ImVec2> corners[8];
     for (int i = 0; i < 8; ++i)
         corners[i] = project(s.scope.point({i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0}));
@@ -121,4 +121,4 @@ void drawAxes(const Projection& project, ImDrawList& list) {
     }
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

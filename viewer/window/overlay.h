@@ -8,24 +8,24 @@
 #include <optional>
 
 #include "viewer/document/shape_rows.h"
-#include "viewer/scene.h"
+#include "viewer/render/scene.h"
 #include "viewer/window/workbench.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 /// From space to the screen.
 struct Projection {
-    View view;
+    render::View view;
     ImVec2 low, size;  ///< of the picture, screen pixels
 
-    Projection(const Camera& camera, ImVec2 low, ImVec2 size);
+    Projection(const render::Camera& camera, ImVec2 low, ImVec2 size);
     /// Nothing for what lies behind the eye.
     std::optional<ImVec2> operator()(Vec3d p) const;
 };
 
 /// A joint as it stands on the screen, for a pointer to find.
 struct ScreenJoint {
-    JointMark mark;
+    document::JointMark mark;
     ImVec2 at;
 };
 std::vector<ScreenJoint> screenJoints(const derive::ShapeTree& tree, const std::vector<derive::ShapeId>& shapes,
@@ -43,4 +43,4 @@ void drawScope(const Workbench& bench, derive::ShapeId shape, const Projection& 
 /// x, y and z in a corner.
 void drawAxes(const Projection& project, ImDrawList& list);
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

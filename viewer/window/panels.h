@@ -15,7 +15,7 @@
 #include "viewer/window/code_editor.h"
 #include "viewer/window/workbench.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 /// Parameters from the annotations, with locks, styles, seed and re-roll.
 class ParametersPanel {
@@ -27,20 +27,20 @@ public:
 private:
     void choices(Workbench& bench);
     void styles(Workbench& bench);
-    void row(Workbench& bench, ParamRow row);
-    bool control(Workbench& bench, ParamRow& row);
-    bool numbers(Workbench& bench, ParamRow& row);
-    bool color(Workbench& bench, ParamRow& row);
+    void row(Workbench& bench, document::ParamRow row);
+    bool control(Workbench& bench, document::ParamRow& row);
+    bool numbers(Workbench& bench, document::ParamRow& row);
+    bool color(Workbench& bench, document::ParamRow& row);
 
     /// Writes the row's value into the text.
-    void set(Workbench& bench, const ParamRow& row);
+    void set(Workbench& bench, const document::ParamRow& row);
     /// `rows_` as the text has them, though the model may still be an earlier one.
     void list(Workbench& bench);
 
-    std::vector<ParamRow> rows_;
-    std::vector<ParamRow> ahead_;   ///< what was set since the shown model
-    uint64_t aheadRevision_ = 0;    ///< of the document, when the last of them was
-    std::optional<ParamRow> held_;  ///< what is dragged; the model follows it
+    std::vector<document::ParamRow> rows_;
+    std::vector<document::ParamRow> ahead_;   ///< what was set since the shown model
+    uint64_t aheadRevision_ = 0;              ///< of the document, when the last of them was
+    std::optional<document::ParamRow> held_;  ///< what is dragged; the model follows it
     std::string styleName_;
     float labelShare_ = 0.46f;  ///< of a row's width
 };
@@ -51,13 +51,13 @@ public:
     void show(Workbench& bench);
 
 private:
-    void row(Workbench& bench, const ShapeRow& row);
+    void row(Workbench& bench, const document::ShapeRow& row);
 
-    ShapeFilter filter_, listedFilter_;
-    Folded folded_;
-    std::shared_ptr<const BuiltModel> listed_;  ///< what `rows_` are of
+    document::ShapeFilter filter_, listedFilter_;
+    document::Folded folded_;
+    std::shared_ptr<const document::BuiltModel> listed_;  ///< what `rows_` are of
     bool stale_ = true;
-    std::vector<ShapeRow> rows_;
+    std::vector<document::ShapeRow> rows_;
     derive::ShapeId seen_ = derive::none;  ///< the selection that was last scrolled to
 };
 
@@ -69,19 +69,19 @@ public:
 private:
     void row(Workbench& bench, size_t index);
     void newRule(Workbench& bench, size_t selected);
-    void dragRule(const RuleRow& row, ImVec2 low);
-    void inspector(Workbench& bench, const RuleRow& row);
-    void ruleInspector(Workbench& bench, const RuleRow& row);
-    void elementInspector(Workbench& bench, const RuleRow& row);
+    void dragRule(const document::RuleRow& row, ImVec2 low);
+    void inspector(Workbench& bench, const document::RuleRow& row);
+    void ruleInspector(Workbench& bench, const document::RuleRow& row);
+    void elementInspector(Workbench& bench, const document::RuleRow& row);
     void attributes(Workbench& bench, const syntax::Element& element);
     /// A field for a part of the node; `commit` makes the edit when it is left.
     template <class Commit>
     void part(Workbench& bench, const char* name, const std::string& value, Commit commit);
 
     std::shared_ptr<const syntax::Ast> listed_;
-    std::vector<RuleRow> rows_;
+    std::vector<document::RuleRow> rows_;
     std::optional<uint32_t> at_;  ///< first byte of the selected row's node
-    RuleRow::Kind kind_ = RuleRow::Kind::Rule;
+    document::RuleRow::Kind kind_ = document::RuleRow::Kind::Rule;
     bool scroll_ = false;  ///< the selected row is to be seen
     /// Where a rule that is dragged would go.
     struct Drop {
@@ -101,7 +101,7 @@ public:
 private:
     CodeEditor editor_;
     std::shared_ptr<const syntax::Ast> colored_;
-    std::vector<std::vector<Coloured>> colors_;
+    std::vector<std::vector<document::Coloured>> colors_;
 };
 
 /// The derivation by hand: live shapes, the rules that match, forward and back, saved as a `derive` line.
@@ -127,18 +127,18 @@ private:
     void take(size_t format);
     void chooseFormat(Workbench& bench);
     void chooseMesh(Workbench& bench);
-    void option(Workbench& bench, ExportRow& row);
+    void option(Workbench& bench, document::ExportRow& row);
 
     size_t format_ = 0;  // row of the table
     int resolution_ = 192;
     int keep_ = 0;  // mesh::Keep
     std::string objects_ = "material";
     std::filesystem::path document_;  // that `file_` was named after
-    std::vector<ExportRow> options_;
+    std::vector<document::ExportRow> options_;
     std::string file_;
 };
 
 /// What is wrong, a row each; a click shows the place.
 void problemsPanel(Workbench& bench);
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 struct Report::Data {
     nlohmann::json widgets = nlohmann::json::object(), state = nlohmann::json::object();
@@ -37,4 +37,4 @@ void Report::write() {
     if (failed) file_.clear();  // nowhere to report to
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

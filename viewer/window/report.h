@@ -10,7 +10,7 @@
 #include <imgui.h>
 #include <nlohmann/json_fwd.hpp>
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 class Report {
 public:
@@ -34,4 +34,4 @@ private:
     std::unique_ptr<Data> data_;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

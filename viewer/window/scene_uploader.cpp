@@ -6,13 +6,13 @@
 #include "modeler/core/stopwatch.h"
 #include "modeler/mesh/simplify.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 /// Depth of the cells: few while a slider is dragged, for the user waits for them, and no picture of it is drawn whole.
-int levelsFor(const BuiltModel& model) {
+int levelsFor(const document::BuiltModel& model) {
     constexpr size_t longTape = 4096;  // that two levels leave too long for rays
-    return !model.held ? cellDepth(TracedBy::Best) : model.model.tape.size() > longTape ? 3 : 2;
+    return !model.held ? cellDepth(render::TracedBy::Best) : model.model.tape.size() > longTape ? 3 : 2;
 }
 
 }  // namespace
@@ -37,28 +37,28 @@ void SceneUploader::ask(const std::function<void(Wanted&)>& how) {
     }
     changed_.notify_one();
 }
-void SceneUploader::prepare(std::shared_ptr<const BuiltModel> model, bool withCamera) {
+void SceneUploader::prepare(std::shared_ptr<const document::BuiltModel> model, bool withCamera) {
     ask([&](Wanted& wanted) {
         wanted.deferred.push_back(std::exchange(wanted.model, std::move(model)));
         wanted.withCamera = withCamera;
     });
 }
-void SceneUploader::lookInside(std::shared_ptr<const BuiltModel> model) {
+void SceneUploader::lookInside(std::shared_ptr<const document::BuiltModel> model) {
     ask([&](Wanted& wanted) { wanted.inside = std::move(model); });
 }
-void SceneUploader::prepareFog(std::shared_ptr<const BuiltModel> model, int resolution) {
+void SceneUploader::prepareFog(std::shared_ptr<const document::BuiltModel> model, int resolution) {
     ask([&](Wanted& wanted) {
         wanted.fog = std::move(model);
         wanted.fogResolution = resolution;
     });
 }
-void SceneUploader::preview(std::shared_ptr<const BuiltModel> model, int resolution) {
+void SceneUploader::preview(std::shared_ptr<const document::BuiltModel> model, int resolution) {
     ask([&](Wanted& wanted) {
         wanted.preview = std::move(model);
         wanted.previewResolution = resolution;
     });
 }
-void SceneUploader::prepare(std::shared_ptr<const BuiltMesh> mesh) {
+void SceneUploader::prepare(std::shared_ptr<const document::BuiltMesh> mesh) {
     ask([&](Wanted& wanted) {
         wanted.mesh = std::move(mesh);
         wanted.preview = nullptr;  // of a model before: made after the mesh it would stay in its place
@@ -99,29 +99,30 @@ double SceneUploader::fraction() const {
 
 template <class Scene>
 void SceneUploader::give(UploadResult<Scene> Update::*where, UploadResult<Scene> ready) {
-    finish();  // so that the window's context finds all of it
+    render::finish();  // so that the window's context finds all of it
     const std::lock_guard lock(mutex_);
     std::swap(update_.*where, ready);  // what was never taken dies with `ready`, when nobody waits for the lock
-    if constexpr (std::is_same_v<Scene, MeshScene>) update_.meshIsPreview = false;
+    if constexpr (std::is_same_v<Scene, render::MeshScene>) update_.meshIsPreview = false;
 }
 
-Status SceneUploader::makeField(std::shared_ptr<const BuiltModel> model, bool withCamera, Progress& progress) {
-    UploadResult<FieldScene> ready;
+Status SceneUploader::makeField(std::shared_ptr<const document::BuiltModel> model, bool withCamera,
+                                Progress& progress) {
+    UploadResult<render::FieldScene> ready;
     Stopwatch watch;
     const lower::Model& lowered = *model->model.lowered;
     const eval::Tape& tape = model->model.tape;
-    Result<PreparedField> field =
-        prepareField(tape, tighten(tape, lowered.field.bounds), lowered.provenance, 0, &progress, levelsFor(*model));
+    Result<render::PreparedField> field = render::prepareField(tape, render::tighten(tape, lowered.field.bounds),
+                                                               lowered.provenance, 0, &progress, levelsFor(*model));
     if (!field) return field.error();
     ready.times.prepare = watch.seconds();
-    if (withCamera) ready.camera = frame(tape, field->bounds, 1);
+    if (withCamera) ready.camera = render::frame(tape, field->bounds, 1);
     watch = {};
     auto programs = programsFor(*field, fieldPrograms_);
     if (!programs) return programs.error();
     const double made = watch.seconds();
     watch = {};
-    ready.scene = std::make_unique<FieldScene>(std::move(*field), *programs, 0);
-    finish();
+    ready.scene = std::make_unique<render::FieldScene>(std::move(*field), *programs, 0);
+    render::finish();
     ready.times.upload = watch.seconds();
     if (*programs != fieldPrograms_) {
         watch = {};
@@ -133,34 +134,34 @@ Status SceneUploader::makeField(std::shared_ptr<const BuiltModel> model, bool wi
     return Done{};
 }
 
-Status SceneUploader::makeFog(std::shared_ptr<const BuiltModel> model, int resolution, Progress& progress) {
-    UploadResult<FogScene> ready;
+Status SceneUploader::makeFog(std::shared_ptr<const document::BuiltModel> model, int resolution, Progress& progress) {
+    UploadResult<render::FogScene> ready;
     Stopwatch watch;
     const eval::Tape& tape = model->model.tape;
-    const Box3f bounds = tighten(tape, model->model.lowered->field.bounds);
-    const Result<FogGrid> grid =
-        fogGrid(tape, mesh::gridFor(bounds, mesh::cellFor(bounds, resolution)), bounds, 0, &progress);
+    const Box3f bounds = render::tighten(tape, model->model.lowered->field.bounds);
+    const Result<render::FogGrid> grid =
+        render::fogGrid(tape, mesh::gridFor(bounds, mesh::cellFor(bounds, resolution)), bounds, 0, &progress);
     if (!grid) return grid.error();
-    const Result<PreparedFog> fog = viewer::prepareFog(grid->dense, bounds, usualFog(*grid), 0, &progress);
+    const Result<render::PreparedFog> fog = render::prepareFog(grid->dense, bounds, usualFog(*grid), 0, &progress);
     if (!fog) return fog.error();
     ready.times.prepare = watch.seconds();
     if (!fogPrograms_) {
         watch = {};
-        auto programs = FogPrograms::create();
+        auto programs = render::FogPrograms::create();
         if (!programs) return programs.error();
         fogPrograms_ = *programs;
         ready.times.compile = watch.seconds();
     }
     watch = {};
-    ready.scene = std::make_unique<FogScene>(*fog, fogPrograms_);
+    ready.scene = std::make_unique<render::FogScene>(*fog, fogPrograms_);
     ready.times.upload = watch.seconds();
     give(&Update::fog, std::move(ready));
     return Done{};
 }
 
-Status SceneUploader::findInside(const BuiltModel& model) {
+Status SceneUploader::findInside(const document::BuiltModel& model) {
     const eval::Tape& tape = model.model.tape;
-    const Camera found = inside(tape, tighten(tape, model.model.lowered->field.bounds));
+    const render::Camera found = render::inside(tape, render::tighten(tape, model.model.lowered->field.bounds));
     const std::lock_guard lock(mutex_);
     update_.inside = found;
     return Done{};
@@ -169,49 +170,52 @@ Status SceneUploader::findInside(const BuiltModel& model) {
 Status SceneUploader::ensureMeshPrograms(UploadTimes& times) {
     if (meshPrograms_) return Done{};
     const Stopwatch watch;
-    auto programs = MeshPrograms::create();
+    auto programs = render::MeshPrograms::create();
     if (!programs) return programs.error();
     meshPrograms_ = *programs;
     times.compile += watch.seconds();
     return Done{};
 }
 
-Status SceneUploader::makeMesh(std::shared_ptr<const BuiltMesh> meshed, Progress& progress) {
-    UploadResult<MeshScene> ready;
+Status SceneUploader::makeMesh(std::shared_ptr<const document::BuiltMesh> meshed, Progress& progress) {
+    UploadResult<render::MeshScene> ready;
     Stopwatch watch;
     // As it would be exported.
     Result<mesh::Mesh> simple = mesh::Mesh();
     if (meshed->mesh->triangleCount() > 0)
         simple = mesh::simplify(*meshed->mesh, {mesh::usualTolerance(meshed->grid.cell_m), 0}, &progress);
     if (!simple) return simple.error();
-    const Result<PreparedMesh> mesh = prepareMesh(*simple, meshed->of->model.lowered->provenance);
+    const Result<render::PreparedMesh> mesh = render::prepareMesh(*simple, meshed->of->model.lowered->provenance);
     if (!mesh) return mesh.error();
     ready.times.prepare = watch.seconds();
     if (Status s = ensureMeshPrograms(ready.times); !s) return s;
     watch = {};
-    ready.scene = std::make_unique<MeshScene>(*mesh, meshPrograms_);
+    ready.scene = std::make_unique<render::MeshScene>(*mesh, meshPrograms_);
     ready.times.upload = watch.seconds();
     give(&Update::mesh, std::move(ready));
     return Done{};
 }
 
-Status SceneUploader::makePreview(std::shared_ptr<const BuiltModel> model, int resolution, Progress& progress) {
-    UploadResult<MeshScene> ready;
+Status SceneUploader::makePreview(std::shared_ptr<const document::BuiltModel> model, int resolution,
+                                  Progress& progress) {
+    UploadResult<render::MeshScene> ready;
     const lower::Model& lowered = *model->model.lowered;
     const Stopwatch watch;
-    const Box3f bounds = tighten(model->model.tape, lowered.field.bounds);  // the ground lies where the field's does
-    const Result<PreparedBlocks> blocks =
-        prepareBlocks(model->model.tape, mesh::gridFor(bounds, mesh::cellFor(bounds, resolution)), 0, &progress);
+    const Box3f bounds =
+        render::tighten(model->model.tape, lowered.field.bounds);  // the ground lies where the field's does
+    const Result<render::PreparedBlocks> blocks = render::prepareBlocks(
+        model->model.tape, mesh::gridFor(bounds, mesh::cellFor(bounds, resolution)), 0, &progress);
     if (!blocks) return blocks.error();
     auto programs = programsFor(*blocks, blockPrograms_);
     if (!programs) return programs.error();
     blockPrograms_ = *programs;
-    Result<GpuTriangles> triangles = polygonizeOnGpu(*blocks, *blockPrograms_, &progress);
+    Result<render::GpuTriangles> triangles = polygonizeOnGpu(*blocks, *blockPrograms_, &progress);
     if (!triangles) return triangles.error();
     ready.times.prepare = watch.seconds();
     if (Status s = ensureMeshPrograms(ready.times); !s) return s;
     const std::vector<OriginId> owners = ownersOf(*blocks, *triangles, 0);
-    ready.scene = std::make_unique<MeshScene>(std::move(*triangles), owners, bounds, lowered.provenance, meshPrograms_);
+    ready.scene =
+        std::make_unique<render::MeshScene>(std::move(*triangles), owners, bounds, lowered.provenance, meshPrograms_);
     give(&Update::mesh, std::move(ready));
     const std::lock_guard lock(mutex_);
     update_.meshIsPreview = true;
@@ -264,4 +268,4 @@ void SceneUploader::work() {
     context_->giveBack();
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

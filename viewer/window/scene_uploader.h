@@ -10,14 +10,14 @@
 #include <optional>
 #include <thread>
 
-#include "viewer/blocks_scene.h"
 #include "viewer/document/session.h"
-#include "viewer/field_scene.h"
-#include "viewer/fog_scene.h"
-#include "viewer/mesh_scene.h"
+#include "viewer/render/blocks_scene.h"
+#include "viewer/render/field_scene.h"
+#include "viewer/render/fog_scene.h"
+#include "viewer/render/mesh_scene.h"
 #include "viewer/window/window.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 /// What it took to make a scene, seconds; compile is 0 where no shader was missing.
 struct UploadTimes {
@@ -27,7 +27,7 @@ struct UploadTimes {
 template <class Scene>
 struct UploadResult {
     std::unique_ptr<Scene> scene;
-    std::optional<Camera> camera;  ///< where it is best seen from; of fields, when asked for
+    std::optional<render::Camera> camera;  ///< where it is best seen from; of fields, when asked for
     UploadTimes times;
 };
 
@@ -40,26 +40,26 @@ public:
     SceneUploader& operator=(const SceneUploader&) = delete;
 
     /// Asks for the model's field; an earlier one that still waits is forgotten, one that runs may end first.
-    void prepare(std::shared_ptr<const BuiltModel> model, bool withCamera);
+    void prepare(std::shared_ptr<const document::BuiltModel> model, bool withCamera);
     /// For a place inside it, as `inside` finds it.
-    void lookInside(std::shared_ptr<const BuiltModel> model);
+    void lookInside(std::shared_ptr<const document::BuiltModel> model);
     /// For its fog with so many voxels along the longest side.
-    void prepareFog(std::shared_ptr<const BuiltModel> model, int resolution);
+    void prepareFog(std::shared_ptr<const document::BuiltModel> model, int resolution);
     /// For a mesh of it, made on the GPU with so many cells along the longest side.
-    void preview(std::shared_ptr<const BuiltModel> model, int resolution);
+    void preview(std::shared_ptr<const document::BuiltModel> model, int resolution);
     /// For a mesh.
-    void prepare(std::shared_ptr<const BuiltMesh> mesh);
+    void prepare(std::shared_ptr<const document::BuiltMesh> mesh);
     /// Frees what nobody looks at any more, for large fields and models take long.
     void deferDelete(std::shared_ptr<const void> deferred);
     /// Stops what runs and forgets what waits.
     void cancel();
     /// What has become ready since the last call.
     struct Update {
-        UploadResult<FieldScene> field;
-        UploadResult<FogScene> fog;
-        UploadResult<MeshScene> mesh;
+        UploadResult<render::FieldScene> field;
+        UploadResult<render::FogScene> fog;
+        UploadResult<render::MeshScene> mesh;
         bool meshIsPreview = false;
-        std::optional<Camera> inside;
+        std::optional<render::Camera> inside;
         std::string problem;  ///< why something can't be drawn, "" where nothing failed
     };
     Update poll();
@@ -73,8 +73,8 @@ public:
 
 private:
     struct Wanted {
-        std::shared_ptr<const BuiltModel> model, fog, inside, preview;
-        std::shared_ptr<const BuiltMesh> mesh;
+        std::shared_ptr<const document::BuiltModel> model, fog, inside, preview;
+        std::shared_ptr<const document::BuiltMesh> mesh;
         int fogResolution = 0, previewResolution = 0;
         bool withCamera = false;
         std::vector<std::shared_ptr<const void>> deferred;
@@ -82,12 +82,12 @@ private:
     };
     void ask(const std::function<void(Wanted&)>& how);
     void work();
-    Status makeField(std::shared_ptr<const BuiltModel> model, bool withCamera, Progress& progress);
-    Status makeFog(std::shared_ptr<const BuiltModel> model, int resolution, Progress& progress);
-    Status makePreview(std::shared_ptr<const BuiltModel> model, int resolution, Progress& progress);
+    Status makeField(std::shared_ptr<const document::BuiltModel> model, bool withCamera, Progress& progress);
+    Status makeFog(std::shared_ptr<const document::BuiltModel> model, int resolution, Progress& progress);
+    Status makePreview(std::shared_ptr<const document::BuiltModel> model, int resolution, Progress& progress);
     Status ensureMeshPrograms(UploadTimes& times);
-    Status findInside(const BuiltModel& model);
-    Status makeMesh(std::shared_ptr<const BuiltMesh> meshed, Progress& progress);
+    Status findInside(const document::BuiltModel& model);
+    Status makeMesh(std::shared_ptr<const document::BuiltMesh> meshed, Progress& progress);
     template <class Scene>
     void give(UploadResult<Scene> Update::*where, UploadResult<Scene> ready);
 
@@ -101,12 +101,12 @@ private:
     bool quit_ = false, makingField_ = false;
 
     // The worker's.
-    std::shared_ptr<const FieldPrograms> fieldPrograms_;
-    std::shared_ptr<const FogPrograms> fogPrograms_;
-    std::shared_ptr<const MeshPrograms> meshPrograms_;
-    std::shared_ptr<const BlockPrograms> blockPrograms_;
+    std::shared_ptr<const render::FieldPrograms> fieldPrograms_;
+    std::shared_ptr<const render::FogPrograms> fogPrograms_;
+    std::shared_ptr<const render::MeshPrograms> meshPrograms_;
+    std::shared_ptr<const render::BlockPrograms> blockPrograms_;
 
     std::thread worker_;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

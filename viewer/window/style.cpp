@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <initializer_list>
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 /// The first of the fonts that this system has; ImGui's own, scaled, where it has none.
@@ -112,4 +112,4 @@ void dress(float scale) {
 ImFont* codeFont() { return ImGui::GetIO().Fonts->Fonts[1]; }
 ImFont* strongFont() { return ImGui::GetIO().Fonts->Fonts[2]; }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

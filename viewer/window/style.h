@@ -4,7 +4,7 @@
 
 #include <imgui.h>
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 /// Sets fonts, sizes and colours; `scale` is 1 for some 96 dots an inch.
 void dress(float scale);
@@ -27,4 +27,4 @@ inline constexpr ImU32 terminal = IM_COL32(226, 102, 88, 255);  ///< figure 1 of
 inline constexpr ImU32 nonTerminal = IM_COL32(98, 152, 226, 255);
 }  // namespace tint
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

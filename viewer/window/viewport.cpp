@@ -11,7 +11,7 @@
 #include "viewer/window/overlay.h"
 #include "viewer/window/style.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 constexpr float clickSlack = 4;  // pixels a click may wander
@@ -79,8 +79,8 @@ void takeShape(Workbench& bench, const Projection& project, ImDrawList& list) {
     ImGui::EndDragDropTarget();
 }
 
-PictureOptions optionsFor(const Workbench& bench, ImVec2 size) {
-    PictureOptions options;
+render::PictureOptions optionsFor(const Workbench& bench, ImVec2 size) {
+    render::PictureOptions options;
     options.width = static_cast<int>(size.x);
     options.height = static_cast<int>(size.y);
     options.camera = bench.orbit.camera(size.x / size.y);
@@ -191,4 +191,4 @@ void viewKeys(Workbench& bench) {
             bench.orbit.look(static_cast<StandardView>(view));
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -4,7 +4,7 @@
 
 #include "viewer/window/workbench.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 /// Fills the rest of the present ImGui window.
 void viewport(Workbench& bench);
@@ -12,4 +12,4 @@ void viewport(Workbench& bench);
 /// Keys of the view: frames, standard views, panes. Call once a frame, when no text takes keys.
 void viewKeys(Workbench& bench);
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

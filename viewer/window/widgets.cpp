@@ -5,7 +5,7 @@
 
 #include "viewer/window/style.h"
 
-namespace sgm::viewer::widgets {
+namespace sgm::window::widgets {
 
 void hint(const char* text) {
     if (!text || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
@@ -118,4 +118,4 @@ void faint(const std::string& text) {
     ImGui::PopStyleColor();
 }
 
-}  // namespace sgm::viewer::widgets
+}  // namespace sgm::window::widgets

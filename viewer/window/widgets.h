@@ -7,7 +7,7 @@
 
 #include "viewer/window/report.h"
 
-namespace sgm::viewer::widgets {
+namespace sgm::window::widgets {
 
 /// A button; `hint` explains it while the pointer rests on it.
 bool button(Report& report, const std::string& name, const char* label, const char* hint = nullptr,
@@ -32,4 +32,4 @@ void faint(const std::string& text);
 /// Explains the widget just made while the pointer rests on it.
 void hint(const char* text);
 
-}  // namespace sgm::viewer::widgets
+}  // namespace sgm::window::widgets

@@ -14,7 +14,7 @@
 
 #include "viewer/window/style.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 Error cannotOpen(const char* fallback) {
@@ -212,4 +212,4 @@ std::string Window::driver() const {
     return text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

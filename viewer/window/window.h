@@ -14,7 +14,7 @@
 
 struct GLFWwindow;
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 /// A context of OpenGL for another thread, whose buffers, textures and programs are the window's too.
 class SharedContext {
@@ -93,4 +93,4 @@ private:
     std::vector<std::filesystem::path> dropped_;
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -6,7 +6,7 @@
 
 #include "modeler/core/conventions.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 constexpr int fogVoxels = 96, previewCells = 64;  // along the longest side
 
@@ -14,7 +14,7 @@ Workbench::Workbench(Report& report, std::unique_ptr<SharedContext> shared, std:
     : report(report), session(notify), uploader(std::move(shared), notify), notify_(std::move(notify)) {}
 
 Status Workbench::open(const std::filesystem::path& path) {
-    Result<Document> opened = Document::open(path);
+    Result<document::Document> opened = document::Document::open(path);
     if (!opened) return opened.error();
     document = std::move(*opened);
     selected_ = derive::none;
@@ -25,7 +25,7 @@ Status Workbench::open(const std::filesystem::path& path) {
     return Done{};
 }
 
-void Workbench::edit(const edits::Edit& edit, const std::string& label) {
+void Workbench::edit(const document::edits::Edit& edit, const std::string& label) {
     if (!edit) return say(edit.error().message, true);
     if (const Status s = document.apply(*edit, label); !s) return say(s.error().message, true);
     say(label);
@@ -66,7 +66,7 @@ void Workbench::refresh() {
     if (asked_ == document.revision() && askedResolution_ == resolution && askedDragging_ == dragging &&
         askedByHand_ == byHand_.get() && askedSection_ == section)
         return;
-    ShowRequest request = requestOf(document);
+    document::ShowRequest request = requestOf(document);
     request.dragging = dragging;
     request.meshResolution = resolution;
     request.section = section;
@@ -140,7 +140,7 @@ void Workbench::cancel() {
     say("Cancelled: what is shown was made before");
 }
 
-void Workbench::exportTo(ExportRequest request) {
+void Workbench::exportTo(document::ExportRequest request) {
     request.inputs = session.usedFiles();
     if (!document.path().empty()) request.inputs.push_back(document.path());
     if (const Status s = exporting.start(session.model(), std::move(request), notify_); !s)
@@ -158,7 +158,7 @@ void Workbench::select(derive::ShapeId shape, bool quiet) {
     }
 }
 
-void Workbench::revealPlace(const Problem& problem) {
+void Workbench::revealPlace(const document::Problem& problem) {
     const syntax::Source& source = *document.ast()->source;
     if (problem.file != source.name() || !problem.line)
         return say(fmt::format("{}:{}: {}", problem.file, problem.line, problem.message), true);
@@ -171,12 +171,12 @@ void Workbench::revealPlace(const Problem& problem) {
 }
 
 void Workbench::resolveSelection() {
-    selected_ = tree() ? viewer::selected(*tree(), document.choice().selection) : derive::none;
+    selected_ = tree() ? document::selected(*tree(), document.choice().selection) : derive::none;
 }
 
 void Workbench::selectText(uint32_t offset) {
     if (!shown() || !isCurrent(document, *shown())) return;
-    const std::vector<derive::ShapeId> made = shapesAt(shown()->model.derivation, offset);
+    const std::vector<derive::ShapeId> made = document::shapesAt(shown()->model.derivation, offset);
     if (made.empty()) return;
     const auto present = std::find(made.begin(), made.end(), selected_);
     select(present == made.end() || present + 1 == made.end() ? made.front() : present[1], true);
@@ -185,8 +185,8 @@ void Workbench::selectText(uint32_t offset) {
 }
 
 std::optional<Hover> Workbench::hoverOf(const Pick& pick) const {
-    if (pick.kind != HitKind::Object || !shown()) return std::nullopt;
-    const auto picked = viewer::pick(*shown(), pick.origin);
+    if (pick.kind != render::HitKind::Object || !shown()) return std::nullopt;
+    const auto picked = document::pick(*shown(), pick.origin);
     if (!picked) return std::nullopt;
     Hover hover{pick.position, picked->shape,
                 fmt::format("{}  ·  {}", picked->symbol, picked->rule.empty() ? "start" : "rule " + picked->rule)};
@@ -198,7 +198,7 @@ std::optional<Hover> Workbench::hoverOf(const Pick& pick) const {
 }
 
 void Workbench::attach(derive::ShapeId moved, derive::ShapeId host, uint32_t joint) {
-    edit(viewer::attach(document, *shown(), moved, host, joint),
+    edit(document::attach(document, *shown(), moved, host, joint),
          fmt::format("Join at {}", tree()->joint(host, joint).name));
 }
 
@@ -206,7 +206,7 @@ void Workbench::beginSteps(const std::string& way) {
     if (!shown()) return;
     derive::Options options = shown()->options;
     options.derive = way;
-    Result<Stepper> begun = Stepper::begin(shown()->grammar, options);
+    Result<document::Stepper> begun = document::Stepper::begin(shown()->grammar, options);
     if (!begun) return say(begun.error().message, true);
     stepper.emplace(std::move(*begun));
     steppedAt_ = document.revision();
@@ -252,7 +252,7 @@ Box3d Workbench::boundsOf(derive::ShapeId shape) const {
 
 void Workbench::frameAll() {
     orbit.lamp_m = 0;
-    orbit.fieldOfView = Camera{}.fieldOfView;
+    orbit.fieldOfView = render::Camera{}.fieldOfView;
     orbit.frame(bounds());
 }
 
@@ -261,15 +261,15 @@ void Workbench::frameSelection() {
     orbit.frame(boundsOf(selected_));
 }
 
-MeshStyle Workbench::meshStyle() const {
-    MeshStyle style = look.mesh;
+render::MeshStyle Workbench::meshStyle() const {
+    render::MeshStyle style = look.mesh;
     if (look.section) {
         // A little beyond the plane, so that the cut of a mesh that ends there is seen; one that doesn't yet is cut
         // here.
         const Box3f box = session.model() ? session.model()->model.lowered->field.bounds : bounds().as<float>();
         const pipeline::Section plane = look.plane();
-        style.section =
-            Section{plane.normal().as<float>(), static_cast<float>(plane.offset_m(box)) + 1e-4f * length(box.size())};
+        style.section = render::Section{plane.normal().as<float>(),
+                                        static_cast<float>(plane.offset_m(box)) + 1e-4f * length(box.size())};
     }
     return style;
 }
@@ -311,4 +311,4 @@ void Workbench::say(std::string text, bool problem) {
     noticeIsProblem = problem;
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

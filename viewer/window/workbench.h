@@ -20,7 +20,7 @@
 #include "viewer/window/report.h"
 #include "viewer/window/scene_uploader.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 enum class Pane { Field, Fog, Mesh, Split };
 enum class NavigationPreset { Usual, Blender };
@@ -29,7 +29,7 @@ enum class JointsShown { None, Selected, All };
 /// How the model is looked at; not part of the document.
 struct Look {
     Pane pane = Pane::Field;
-    MeshStyle mesh;
+    render::MeshStyle mesh;
     int sectionAxis = 0;        ///< 0 x, 1 y, 2 z
     float sectionShare = 0.5f;  ///< of the bounds, from low to high
     bool section = false;
@@ -67,7 +67,7 @@ public:
     // --- The document ---
     Status open(const std::filesystem::path& path);
     /// Nothing but a notice where the edit was refused.
-    void edit(const edits::Edit& edit, const std::string& label);
+    void edit(const document::edits::Edit& edit, const std::string& label);
     void undo();
     void redo();
     void save(bool overwrite = false);
@@ -88,13 +88,13 @@ public:
     bool busy() const { return !settled_ || working(); }
 
     /// Writes the shown model to a file on a thread of its own.
-    void exportTo(ExportRequest request);
+    void exportTo(document::ExportRequest request);
 
     // --- The selection ---
     /// A shape of the shown model, or none. The text that made it is revealed unless `quiet`.
     void select(derive::ShapeId shape, bool quiet = false);
     derive::ShapeId selected() const { return selected_; }
-    const BuiltModel* shown() const { return session.model().get(); }
+    const document::BuiltModel* shown() const { return session.model().get(); }
     const derive::ShapeTree* tree() const { return shown() ? &shown()->model.derivation.tree : nullptr; }
     std::optional<Hover> hoverOf(const Pick& pick) const;
     /// Joins a shape at a joint of another: what dropping it there asks for.
@@ -109,7 +109,7 @@ public:
     /// Selects what the text at this byte made; asked again for the same, the next of several.
     void selectText(uint32_t offset);
     /// Shows the line of the document that a problem is in.
-    void revealPlace(const Problem& problem);
+    void revealPlace(const document::Problem& problem);
 
     // --- The view ---
     Box3d bounds() const;
@@ -121,7 +121,7 @@ public:
     void startTurntable(int count);
     /// Writes pictures that were asked for, once the view is whole. True when the view moves on.
     Result<bool> takePictures();
-    MeshStyle meshStyle() const;
+    render::MeshStyle meshStyle() const;
     bool wantsMesh() const { return look.pane == Pane::Mesh || look.pane == Pane::Split; }
     /// The field shown will make room for another: not worth a finer picture.
     bool outdated() const {
@@ -135,10 +135,10 @@ public:
     void say(std::string text, bool problem = false);
 
     Report& report;
-    Document document;
-    Session session;
+    document::Document document;
+    document::Session session;
     SceneUploader uploader;
-    ExportJob exporting;
+    document::ExportJob exporting;
     FieldView field;
     MeshView mesh;
     Orbit orbit;
@@ -148,7 +148,7 @@ public:
     bool noticeIsProblem = false;
     std::optional<std::pair<uint32_t, uint32_t>> reveal;  ///< bytes of the text to show, taken by the Text panel
     std::optional<uint32_t> revealRule;                   ///< a byte of the rule to show, taken by the Rules panel
-    std::optional<Stepper> stepper;                       ///< while the user derives by hand
+    std::optional<document::Stepper> stepper;             ///< while the user derives by hand
     std::string hotkeys;                                  ///< of the grammar's parameters: they go before the view's
     bool typing = false;                                  ///< the text takes keys
     std::optional<Question> question;
@@ -167,18 +167,18 @@ private:
     void followSteps();
 
     std::function<void()> notify_;
-    Recovery recovery_;
+    document::Recovery recovery_;
     std::shared_ptr<const derive::Derivation> byHand_;  ///< shown instead of deriving
     uint64_t steppedAt_ = 0;                            ///< the revision that the steps belong to
     derive::ShapeId selected_ = derive::none;
     uint64_t asked_ = ~uint64_t(0);  ///< the revision the session was last asked for
     int askedResolution_ = 0;
     bool askedDragging_ = false;
-    std::shared_ptr<const BuiltModel> askedFog_, prepared_;  ///< the last that the preparer was given
+    std::shared_ptr<const document::BuiltModel> askedFog_, prepared_;  ///< the last that the preparer was given
     const derive::Derivation* askedByHand_ = nullptr;
     std::optional<pipeline::Section> askedSection_;
     bool settled_ = false;  ///< all that was computed has been taken over
     bool framed_ = false;   ///< the camera has been set for this file
 };
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -4,7 +4,7 @@
 
 #include "viewer/window/workbench.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 /// The same file by whatever name; one that is gone, by its name.
@@ -16,26 +16,26 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
 }  // namespace
 
 void Workbench::offerAbandoned() {
-    const std::vector<Abandoned> left = abandonedWork();
+    const std::vector<document::Abandoned> left = document::abandonedWork();
     if (left.empty()) return;
     std::error_code ignored;
     const std::filesystem::path here = std::filesystem::absolute(document.path(), ignored);
-    const auto about =
-        document.path().empty()
-            ? left.begin()
-            : std::find_if(left.begin(), left.end(), [&](const Abandoned& a) { return sameFile(a.document, here); });
-    const auto nameOf = [](const Abandoned& a) {
+    const auto about = document.path().empty()
+                           ? left.begin()
+                           : std::find_if(left.begin(), left.end(),
+                                          [&](const document::Abandoned& a) { return sameFile(a.document, here); });
+    const auto nameOf = [](const document::Abandoned& a) {
         return a.document.empty() ? "a grammar without a name" : a.document.filename().string();
     };
     if (about == left.end())
         return say(fmt::format("Unsaved work on {} is kept; {} to go on with it", nameOf(left.front()),
                                left.front().document.empty() ? "start without a file" : "open it"));
-    const Abandoned work = *about;
+    const document::Abandoned work = *about;
     const std::string name = nameOf(work);
     question = Question{fmt::format("The window was closed by force; unsaved work on {} was kept.", name),
                         {{"Go on with it",
                           [this, work] {
-                              document = Document::recovered(work.document, work.text);
+                              document = document::Document::recovered(work.document, work.text);
                               selected_ = derive::none;
                               framed_ = false;
                               asked_ = ~uint64_t(0);
@@ -80,15 +80,15 @@ bool Workbench::mayClose() {
 bool Workbench::lookAtFiles() {
     if (session.usedFilesChanged()) asked_ = ~uint64_t(0);
     switch (document.poll()) {
-        case Document::Outside::Same:
+        case document::Document::Outside::Same:
             return asked_ == ~uint64_t(0);
-        case Document::Outside::Reloaded:
+        case document::Document::Outside::Reloaded:
             say("The file was changed by another program, and is read again");
             break;
-        case Document::Outside::Gone:
+        case document::Document::Outside::Gone:
             say("The file can't be read any more; save to write it again", true);
             break;
-        case Document::Outside::Conflict:
+        case document::Document::Outside::Conflict:
             if (question) return false;
             question = Question{"Another program has changed the file, and so have you.",
                                 {{"Take the file", [this] { (void)document.takeOutside(); }},
@@ -97,4 +97,4 @@ bool Workbench::lookAtFiles() {
     return true;
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -5,11 +5,11 @@
 #include "viewer/window/style.h"
 #include "viewer/window/widgets.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 using namespace widgets;
 
-void ExportPanel::option(Workbench& bench, ExportRow& row) {
+void ExportPanel::option(Workbench& bench, document::ExportRow& row) {
     const std::string name = "export." + row.name;
     const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
     ImGui::AlignTextToFramePadding();
@@ -29,7 +29,7 @@ void ExportPanel::option(Workbench& bench, ExportRow& row) {
 
 void ExportPanel::take(size_t format) {
     format_ = format;
-    options_ = exportRows(exporter::exporters()[format]);
+    options_ = document::exportRows(exporter::exporters()[format]);
 }
 
 void ExportPanel::chooseFormat(Workbench& bench) {
@@ -88,7 +88,7 @@ void ExportPanel::show(Workbench& bench) {
     chooseFormat(bench);
     heading("Options");
     chooseMesh(bench);
-    for (ExportRow& row : options_) option(bench, row);
+    for (document::ExportRow& row : options_) option(bench, row);
     heading("File");
     // The ending says the format, whichever of the two is changed.
     const auto formats = exporter::exporters();
@@ -97,14 +97,14 @@ void ExportPanel::show(Workbench& bench) {
             take(static_cast<size_t>(named - formats.data()));
     ImGui::Dummy({0, 4});
     if (button(bench.report, "export.export", "Export", nullptr, bench.shown() && !bench.exporting.running())) {
-        ExportRequest request;
+        document::ExportRequest request;
         request.file = file_;
         request.resolution = resolution_;
         request.keep = static_cast<mesh::Keep>(keep_);
         request.objects = objects_;
-        for (const ExportRow& row : options_) request.options[row.name] = row.value;
+        for (const document::ExportRow& row : options_) request.options[row.name] = row.value;
         bench.exportTo(std::move(request));
     }
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

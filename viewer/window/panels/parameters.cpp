@@ -9,7 +9,7 @@
 #include "viewer/window/style.h"
 #include "viewer/window/widgets.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 using namespace widgets;
@@ -32,9 +32,9 @@ bool lockButton(Report& report, const std::string& name, bool locked) {
     return pressed;
 }
 
-std::string formatOf(const ParamRow& row) {
+std::string formatOf(const document::ParamRow& row) {
     const std::string unit = row.unit == "deg" ? "°" : row.unit == "%" ? "%%" : row.unit.empty() ? "" : " " + row.unit;
-    if (row.kind == ParamRow::Kind::Integer) return "%.0f" + unit;
+    if (row.kind == document::ParamRow::Kind::Integer) return "%.0f" + unit;
     const double span = row.lo.empty() ? 10 : row.hi[0] - row.lo[0];
     return fmt::format("%.{}f{}", span > 50 ? 1 : span > 3 ? 2 : 3, unit);
 }
@@ -51,11 +51,11 @@ void ParametersPanel::show(Workbench& bench) {
     if (ImGui::BeginChild("rows")) {
         // As wide as the longest label asks for, within what leaves the sliders room.
         float longest = 0;
-        for (const ParamRow& r : rows_)
+        for (const document::ParamRow& r : rows_)
             if (r.number.size() < 3) longest = std::max(longest, ImGui::CalcTextSize(r.label.c_str()).x);
         labelShare_ = std::clamp((longest + 10) / ImGui::GetContentRegionAvail().x, 0.3f, 0.54f);
         std::string group;
-        for (const ParamRow& r : rows_) {
+        for (const document::ParamRow& r : rows_) {
             if (r.group != group && !r.group.empty()) heading(r.group.c_str());
             group = r.group;
             row(bench, r);
@@ -68,25 +68,25 @@ void ParametersPanel::show(Workbench& bench) {
 void ParametersPanel::list(Workbench& bench) {
     rows_ = paramRows(*bench.shown()->grammar, bench.shown()->options, bench.document.choice());
     if (aheadRevision_ != bench.document.revision() || bench.shown()->revision == aheadRevision_) ahead_.clear();
-    for (const ParamRow& row : ahead_)
-        for (ParamRow& r : rows_)
+    for (const document::ParamRow& row : ahead_)
+        for (document::ParamRow& r : rows_)
             if (r.name == row.name) r = row;
 }
 
-void ParametersPanel::set(Workbench& bench, const ParamRow& row) {
+void ParametersPanel::set(Workbench& bench, const document::ParamRow& row) {
     const bool goesOn = aheadRevision_ == bench.document.revision();
     bench.edit(setParams(*bench.document.ast(), bench.document.choice(), {row}), "Set " + row.name);
     if (!goesOn) ahead_.clear();
-    std::erase_if(ahead_, [&](const ParamRow& r) { return r.name == row.name; });
+    std::erase_if(ahead_, [&](const document::ParamRow& r) { return r.name == row.name; });
     ahead_.push_back(row);
     aheadRevision_ = bench.document.revision();
 }
 
 void ParametersPanel::choices(Workbench& bench) {
-    Choice choice = bench.document.choice();
+    document::Choice choice = bench.document.choice();
     const rules::Grammar& grammar = *bench.shown()->grammar;
     const float room = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
-    const std::vector<std::string> starts = startsOf(grammar);
+    const std::vector<std::string> starts = document::startsOf(grammar);
     if (starts.size() > 1) {
         int at = 0;
         for (size_t i = 0; i < starts.size(); ++i)
@@ -98,7 +98,8 @@ void ParametersPanel::choices(Workbench& bench) {
         }
         hint("What the derivation starts from");
     }
-    std::vector<std::string> styles = stylesFor(grammar, bench.shown()->options.start), ways = waysOf(grammar);
+    std::vector<std::string> styles = document::stylesFor(grammar, bench.shown()->options.start),
+                             ways = document::waysOf(grammar);
     const auto oneOfNames = [&](const char* name, std::vector<std::string>& names, const char* none,
                                 std::string& chosen, const char* why, float width) {
         int at = 0;
@@ -136,7 +137,7 @@ void ParametersPanel::choices(Workbench& bench) {
     }
 }
 
-bool ParametersPanel::numbers(Workbench& bench, ParamRow& row) {
+bool ParametersPanel::numbers(Workbench& bench, document::ParamRow& row) {
     const std::string name = "param." + row.name, format = formatOf(row);
     const float room = ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight(), gap = 3;
     const float each = (room + gap) / static_cast<float>(row.number.size()) - gap;
@@ -152,7 +153,7 @@ bool ParametersPanel::numbers(Workbench& bench, ParamRow& row) {
                                                    nullptr, nullptr, format.c_str())
                                : ImGui::SliderScalar("##n", ImGuiDataType_Double, &value, &row.lo[i], &row.hi[i],
                                                      format.c_str(), ImGuiSliderFlags_AlwaysClamp);
-        if (moved) row.number[i] = row.kind == ParamRow::Kind::Integer ? std::round(value) : value;
+        if (moved) row.number[i] = row.kind == document::ParamRow::Kind::Integer ? std::round(value) : value;
         changed |= moved;
         bench.report.mark(row.number.size() == 1 ? name : fmt::format("{}.{}", name, i));
         if (ImGui::IsItemActivated()) bench.document.beginDrag();
@@ -165,7 +166,7 @@ bool ParametersPanel::numbers(Workbench& bench, ParamRow& row) {
     return changed;
 }
 
-bool ParametersPanel::color(Workbench& bench, ParamRow& row) {
+bool ParametersPanel::color(Workbench& bench, document::ParamRow& row) {
     // ImGui's swatch speaks sRGB.
     const auto curve = [](double v, bool back) {
         return back ? (v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4))
@@ -181,15 +182,15 @@ bool ParametersPanel::color(Workbench& bench, ParamRow& row) {
     return changed;
 }
 
-bool ParametersPanel::control(Workbench& bench, ParamRow& row) {
+bool ParametersPanel::control(Workbench& bench, document::ParamRow& row) {
     const std::string name = "param." + row.name;
     const float room = ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight();
     bool changed = false;
     switch (row.kind) {
-        case ParamRow::Kind::Integer:
-        case ParamRow::Kind::Real:
+        case document::ParamRow::Kind::Integer:
+        case document::ParamRow::Kind::Real:
             return numbers(bench, row);
-        case ParamRow::Kind::Choice: {
+        case document::ParamRow::Kind::Choice: {
             int at = 0;
             for (size_t i = 0; i < row.choices.size(); ++i)
                 if (row.choices[i] == row.word) at = static_cast<int>(i);
@@ -197,22 +198,22 @@ bool ParametersPanel::control(Workbench& bench, ParamRow& row) {
             if (changed) row.word = row.choices[size_t(at)];
             break;
         }
-        case ParamRow::Kind::Color:
+        case document::ParamRow::Kind::Color:
             return color(bench, row);
-        case ParamRow::Kind::Truth: {
+        case document::ParamRow::Kind::Truth: {
             bool truth = row.number[0] != 0;
             changed = toggle(bench.report, name, "", truth);
             row.number[0] = truth;
             break;
         }
-        case ParamRow::Kind::Text:
+        case document::ParamRow::Kind::Text:
             changed = field(bench.report, name, row.word, nullptr, room);
             break;
     }
     return changed;
 }
 
-void ParametersPanel::row(Workbench& bench, ParamRow row) {
+void ParametersPanel::row(Workbench& bench, document::ParamRow row) {
     if (held_ && held_->name == row.name) row = *held_;
     ImGui::PushID(row.name.c_str());
     const float width = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX();
@@ -227,13 +228,13 @@ void ParametersPanel::row(Workbench& bench, ParamRow row) {
     if (!wide) ImGui::SameLine(left + labelWidth);
     const bool active = held_.has_value();
     if (control(bench, row)) {
-        if (row.kind == ParamRow::Kind::Integer || row.kind == ParamRow::Kind::Real) held_ = row;
+        if (row.kind == document::ParamRow::Kind::Integer || row.kind == document::ParamRow::Kind::Real) held_ = row;
         set(bench, row);
     }
     if (active && !ImGui::IsMouseDown(0) && !ImGui::GetIO().WantTextInput) held_.reset();
     ImGui::SameLine(left + width - ImGui::GetFrameHeight() * 0.8f);
     if (lockButton(bench.report, "lock." + row.name, row.locked)) {
-        Choice choice = bench.document.choice();
+        document::Choice choice = bench.document.choice();
         if (!choice.locked.erase(row.name)) choice.locked.insert(row.name);
         bench.document.choose(choice, row.locked ? "Unlock " + row.name : "Lock " + row.name);
     }
@@ -250,26 +251,27 @@ void ParametersPanel::styles(Workbench& bench) {
     if (!widgets::button(bench.report, "style.save", "Save style", "Write a `style` with all values into the text",
                          !styleName_.empty()))
         return;
-    std::vector<edits::NamedValue> values;
-    for (const ParamRow& r : rows_) values.push_back({r.name, valueText(r)});
+    std::vector<document::edits::NamedValue> values;
+    for (const document::ParamRow& r : rows_) values.push_back({r.name, valueText(r)});
     const rules::Grammar& grammar = *bench.shown()->grammar;
     const std::string& start = grammar.symbols[grammar.starts[bench.shown()->options.start].symbol].name;
-    bench.edit(edits::saveStyle(*bench.document.ast(), styleName_, start, values), "Save style " + styleName_);
+    bench.edit(document::edits::saveStyle(*bench.document.ast(), styleName_, start, values),
+               "Save style " + styleName_);
 }
 
 void ParametersPanel::keys(Workbench& bench) {
     bench.hotkeys.clear();
-    for (const ParamRow& r : rows_)
+    for (const document::ParamRow& r : rows_)
         if (r.key) bench.hotkeys += r.key;
     const ImGuiIO& io = ImGui::GetIO();
     if (io.KeyCtrl || io.KeyAlt || io.KeySuper) return;
     for (const ImWchar c : io.InputQueueCharacters) {
         if (c > 127) continue;
-        const ParamRow* row = rowOfKey(rows_, static_cast<char>(std::tolower(c)));
+        const document::ParamRow* row = rowOfKey(rows_, static_cast<char>(std::tolower(c)));
         if (!row) continue;
         set(bench, stepped(*row, std::isupper(c)));
         list(bench);  // the next letter steps on from here
     }
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -4,13 +4,13 @@
 #include "viewer/window/panels.h"
 #include "viewer/window/style.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 void problemsPanel(Workbench& bench) {
-    const std::vector<Problem>& problems = bench.session.problems();
+    const std::vector<document::Problem>& problems = bench.session.problems();
     ImGui::BeginChild("rows");
     for (size_t i = 0; i < problems.size(); ++i) {
-        const Problem& p = problems[i];
+        const document::Problem& p = problems[i];
         ImGui::PushID(static_cast<int>(i));
         const bool isError = p.severity == syntax::Severity::Error;
         ImGui::PushStyleColor(ImGuiCol_Text, isError ? tint::error : tint::warning);
@@ -26,4 +26,4 @@ void problemsPanel(Workbench& bench) {
     ImGui::EndChild();
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -10,14 +10,14 @@
 #include "viewer/window/style.h"
 #include "viewer/window/widgets.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 using namespace widgets;
 using syntax::Element;
 using syntax::Operation;
 using syntax::Operator;
-using Kind = RuleRow::Kind;
+using Kind = document::RuleRow::Kind;
 
 std::string textOf(const std::optional<syntax::Expr>& e) { return e ? std::string(e->span.text()) : std::string(); }
 
@@ -28,7 +28,7 @@ std::string argumentsOf(const syntax::Attribute& attribute) {
     return from == std::string_view::npos ? "" : std::string(all.substr(from));
 }
 
-ImU32 colorOf(const RuleRow& row) {
+ImU32 colorOf(const document::RuleRow& row) {
     switch (row.kind) {
         case Kind::Start:
         case Kind::Rule:
@@ -78,7 +78,7 @@ void nameUses(const syntax::Ast& ast) {
 void RulesPanel::show(Workbench& bench) {
     if (listed_ != bench.document.ast()) {
         listed_ = bench.document.ast();
-        rows_ = ruleRows(*listed_);
+        rows_ = document::ruleRows(*listed_);
     }
     if (bench.revealRule) {
         const size_t row = rowAt(rows_, *bench.revealRule);
@@ -107,7 +107,7 @@ void RulesPanel::show(Workbench& bench) {
     ImGui::PopStyleVar();
     if (const auto drop = std::exchange(drop_, std::nullopt); drop && drop->rule < listed_->rules.size()) {
         const syntax::RuleDecl* before = drop->before < listed_->rules.size() ? &listed_->rules[drop->before] : nullptr;
-        bench.edit(edits::moveRule(*listed_, listed_->rules[drop->rule], before),
+        bench.edit(document::edits::moveRule(*listed_, listed_->rules[drop->rule], before),
                    "Move rule " + listed_->rules[drop->rule].symbol.text);
     }
     ImGui::Separator();
@@ -130,12 +130,12 @@ void RulesPanel::newRule(Workbench& bench, size_t selected) {
         while (!symbol.empty() && symbol.back() == ' ') symbol.pop_back();
         const syntax::RuleDecl* after = selected < rows_.size() ? rows_[selected].rule : nullptr;
         const size_t body = std::min(newRule_.find_first_not_of(' ', arrow + 2), newRule_.size());
-        bench.edit(edits::addRule(*listed_, symbol, newRule_.substr(body), after), "Add rule for " + symbol);
+        bench.edit(document::edits::addRule(*listed_, symbol, newRule_.substr(body), after), "Add rule for " + symbol);
     }
 }
 
 void RulesPanel::row(Workbench& bench, size_t index) {
-    const RuleRow& row = rows_[index];
+    const document::RuleRow& row = rows_[index];
     ImGui::PushID(static_cast<int>(index));
     const ImVec2 low = ImGui::GetCursorScreenPos();
     const bool isHead = row.depth == 0, selected = at_ && *at_ == row.span.begin && kind_ == row.kind;
@@ -156,7 +156,7 @@ void RulesPanel::row(Workbench& bench, size_t index) {
 }
 
 /// Rules are dragged by their head rows, above the upper half of another or below its lower half.
-void RulesPanel::dragRule(const RuleRow& row, ImVec2 low) {
+void RulesPanel::dragRule(const document::RuleRow& row, ImVec2 low) {
     const auto at = static_cast<size_t>(row.rule - listed_->rules.data());
     if (ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceNoDisableHover)) {
         ImGui::SetDragDropPayload("rule", &at, sizeof at);
@@ -194,7 +194,7 @@ void RulesPanel::part(Workbench& bench, const char* name, const std::string& val
     if (done && text != value) bench.edit(commit(text), fmt::format("Change {}", name));
 }
 
-void RulesPanel::inspector(Workbench& bench, const RuleRow& row) {
+void RulesPanel::inspector(Workbench& bench, const document::RuleRow& row) {
     const syntax::Ast& ast = *listed_;
     if (row.kind == Kind::Element || row.kind == Kind::Attribute)
         elementInspector(bench, row);
@@ -202,61 +202,69 @@ void RulesPanel::inspector(Workbench& bench, const RuleRow& row) {
         ruleInspector(bench, row);
     else if (row.start)
         part(bench, "body", std::string(row.start->body.span.text()),
-             [&](const std::string& t) { return edits::setBody(ast, row.start->body, t); });
+             [&](const std::string& t) { return document::edits::setBody(ast, row.start->body, t); });
     if (row.kind == Kind::Case && row.expression)
         part(bench, "label", std::string(row.expression->span.text()),
-             [&](const std::string& t) { return edits::setExpression(ast, *row.expression, t); });
+             [&](const std::string& t) { return document::edits::setExpression(ast, *row.expression, t); });
 }
 
-void RulesPanel::ruleInspector(Workbench& bench, const RuleRow& row) {
+void RulesPanel::ruleInspector(Workbench& bench, const document::RuleRow& row) {
     const syntax::Ast& ast = *listed_;
     const syntax::RuleDecl& rule = *row.rule;
     const std::string called = rule.name.empty() ? rule.symbol.text : rule.name.text;
     if (button(bench.report, "rule.duplicate", "Duplicate"))
-        bench.edit(edits::duplicateRule(ast, rule), "Duplicate rule " + called);
+        bench.edit(document::edits::duplicateRule(ast, rule), "Duplicate rule " + called);
     ImGui::SameLine();
     if (button(bench.report, "rule.delete", "Delete"))
-        bench.edit(edits::removeRule(ast, rule), "Delete rule " + called);
+        bench.edit(document::edits::removeRule(ast, rule), "Delete rule " + called);
     const auto at = static_cast<size_t>(&rule - ast.rules.data());
     ImGui::SameLine();
     if (button(bench.report, "rule.up", "Up", nullptr, at > 0))
-        bench.edit(edits::moveRule(ast, rule, &ast.rules[at - 1]), "Move rule " + called);
+        bench.edit(document::edits::moveRule(ast, rule, &ast.rules[at - 1]), "Move rule " + called);
     ImGui::SameLine();
     if (button(bench.report, "rule.down", "Down", nullptr, at + 1 < ast.rules.size()))
-        bench.edit(edits::moveRule(ast, rule, at + 2 < ast.rules.size() ? &ast.rules[at + 2] : nullptr),
+        bench.edit(document::edits::moveRule(ast, rule, at + 2 < ast.rules.size() ? &ast.rules[at + 2] : nullptr),
                    "Move rule " + called);
-    part(bench, "name", rule.name.text, [&](const std::string& t) { return edits::setName(ast, rule, t); });
-    part(bench, "shape", rule.symbol.text, [&](const std::string& t) { return edits::setSymbol(ast, rule, t); });
-    part(bench, "when", textOf(rule.when), [&](const std::string& t) { return edits::setGuard(ast, rule, t); });
-    part(bench, "repeat", textOf(rule.repeat), [&](const std::string& t) { return edits::setRepeat(ast, rule, t); });
-    part(bench, "weight", textOf(rule.weight), [&](const std::string& t) { return edits::setWeight(ast, rule, t); });
-    part(bench, "beside", rule.beside.text, [&](const std::string& t) { return edits::setBeside(ast, rule, t); });
+    part(bench, "name", rule.name.text, [&](const std::string& t) { return document::edits::setName(ast, rule, t); });
+    part(bench, "shape", rule.symbol.text,
+         [&](const std::string& t) { return document::edits::setSymbol(ast, rule, t); });
+    part(bench, "when", textOf(rule.when),
+         [&](const std::string& t) { return document::edits::setGuard(ast, rule, t); });
+    part(bench, "repeat", textOf(rule.repeat),
+         [&](const std::string& t) { return document::edits::setRepeat(ast, rule, t); });
+    part(bench, "weight", textOf(rule.weight),
+         [&](const std::string& t) { return document::edits::setWeight(ast, rule, t); });
+    part(bench, "beside", rule.beside.text,
+         [&](const std::string& t) { return document::edits::setBeside(ast, rule, t); });
 }
 
-void RulesPanel::elementInspector(Workbench& bench, const RuleRow& row) {
+void RulesPanel::elementInspector(Workbench& bench, const document::RuleRow& row) {
     const syntax::Ast& ast = *listed_;
     const Element& element = *row.element;
     constexpr std::array operators{"content", "+", "-", "&", "morph"};
     int op = static_cast<int>(element.op);
     if (oneOf(bench.report, "op", operators, op))
-        bench.edit(edits::setOperator(ast, element, static_cast<Operator>(op)),
+        bench.edit(document::edits::setOperator(ast, element, static_cast<Operator>(op)),
                    fmt::format("{} becomes {}", operators[static_cast<size_t>(element.op)], operators[size_t(op)]));
     if (button(bench.report, "element.duplicate", "Duplicate"))
-        bench.edit(edits::duplicateElement(ast, element), "Duplicate a shape");
+        bench.edit(document::edits::duplicateElement(ast, element), "Duplicate a shape");
     ImGui::SameLine();
     if (button(bench.report, "element.delete", "Delete"))
-        bench.edit(edits::removeElement(ast, element), "Delete a shape");
+        bench.edit(document::edits::removeElement(ast, element), "Delete a shape");
     ImGui::SameLine();
-    if (button(bench.report, "element.up", "Up")) bench.edit(edits::moveElement(ast, element, -1), "Move a shape");
+    if (button(bench.report, "element.up", "Up"))
+        bench.edit(document::edits::moveElement(ast, element, -1), "Move a shape");
     ImGui::SameLine();
-    if (button(bench.report, "element.down", "Down")) bench.edit(edits::moveElement(ast, element, 1), "Move a shape");
+    if (button(bench.report, "element.down", "Down"))
+        bench.edit(document::edits::moveElement(ast, element, 1), "Move a shape");
     if (element.kind == Element::Kind::Shape) {
         part(bench, "solid", textOf(element.solid),
-             [&](const std::string& t) { return edits::setSolid(ast, element, t); });
-        part(bench, "live", element.live.text, [&](const std::string& t) { return edits::setLive(ast, element, t); });
+             [&](const std::string& t) { return document::edits::setSolid(ast, element, t); });
+        part(bench, "live", element.live.text,
+             [&](const std::string& t) { return document::edits::setLive(ast, element, t); });
     } else if (element.over) {
         part(bench, "over", textOf(element.over),
-             [&](const std::string& t) { return edits::setExpression(ast, *element.over, t); });
+             [&](const std::string& t) { return document::edits::setExpression(ast, *element.over, t); });
     }
     attributes(bench, element);
 }
@@ -279,7 +287,7 @@ void RulesPanel::attributes(Workbench& bench, const Element& element) {
         float left = 0;
         label("joint", left);
         if (oneOf(bench.report, "joint", joints, joint))
-            bench.edit(edits::setAttribute(ast, element, operations::at, joints[size_t(joint)]),
+            bench.edit(document::edits::setAttribute(ast, element, operations::at, joints[size_t(joint)]),
                        fmt::format("Join at {}", joints[size_t(joint)]));
     }
     std::vector<std::string> more{"Add …"};
@@ -294,8 +302,8 @@ void RulesPanel::attributes(Workbench& bench, const Element& element) {
         }
         const std::string name(operation.name);
         part(bench, name.c_str(), argumentsOf(*there), [&](const std::string& t) {
-            return t.empty() ? edits::removeAttribute(ast, element, operation)
-                             : edits::setAttribute(ast, element, operation, t);
+            return t.empty() ? document::edits::removeAttribute(ast, element, operation)
+                             : document::edits::setAttribute(ast, element, operation, t);
         });
         hint(std::string(operation.doc).c_str());
     }
@@ -309,7 +317,8 @@ void RulesPanel::attributes(Workbench& bench, const Element& element) {
     const size_t from = example.find(operation.name);
     example = from == std::string_view::npos ? std::string_view("1") : example.substr(from + operation.name.size());
     const std::string arguments = operation.arguments.size() > 1 ? std::string(example) : firstArgument(example);
-    bench.edit(edits::setAttribute(ast, element, operation, arguments), fmt::format("Add {}", operation.name));
+    bench.edit(document::edits::setAttribute(ast, element, operation, arguments),
+               fmt::format("Add {}", operation.name));
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -5,7 +5,7 @@
 #include "viewer/window/style.h"
 #include "viewer/window/widgets.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 using namespace widgets;
@@ -31,7 +31,7 @@ void ShapesPanel::show(Workbench& bench) {
     ImGui::SameLine();
     toggle(bench.report, "shapes.live", "Live", filter_.liveOnly, "Only those that rules may still rewrite");
     if (bench.selected() != seen_ && bench.selected() != derive::none) {
-        reveal(*bench.tree(), bench.selected(), folded_);
+        document::reveal(*bench.tree(), bench.selected(), folded_);
         stale_ = true;
     }
     if (listed_ != shown || !(listedFilter_ == filter_) || stale_) {
@@ -58,10 +58,10 @@ void ShapesPanel::show(Workbench& bench) {
     ImGui::PopStyleVar();
 }
 
-void ShapesPanel::row(Workbench& bench, const ShapeRow& row) {
+void ShapesPanel::row(Workbench& bench, const document::ShapeRow& row) {
     const derive::Derivation& derivation = bench.shown()->model.derivation;
     const derive::Shape& shape = derivation.tree.shapes[row.shape];
-    const ShapeLabel label = labelOf(derivation, row.shape);
+    const document::ShapeLabel label = document::labelOf(derivation, row.shape);
     ImGui::PushID(static_cast<int>(row.shape));
     const float height = ImGui::GetTextLineHeight() + 4, indent = static_cast<float>(std::min(row.depth, 24u)) * 11;
     const ImVec2 low = ImGui::GetCursorScreenPos();
@@ -108,4 +108,4 @@ void ShapesPanel::row(Workbench& bench, const ShapeRow& row) {
     ImGui::PopID();
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

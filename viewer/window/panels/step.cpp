@@ -5,7 +5,7 @@
 #include "viewer/window/style.h"
 #include "viewer/window/widgets.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 
 using namespace widgets;
 
@@ -18,7 +18,7 @@ void StepPanel::begin(Workbench& bench) {
     ImGui::Dummy({0, 4});
     if (!bench.shown()) return;
     if (button(bench.report, "step.begin", "Begin at the start")) bench.beginSteps("");
-    const std::vector<std::string> ways = waysOf(*bench.shown()->grammar);
+    const std::vector<std::string> ways = document::waysOf(*bench.shown()->grammar);
     if (ways.empty()) return;
     heading("Walk a way");
     for (const std::string& way : ways) {
@@ -30,7 +30,7 @@ void StepPanel::begin(Workbench& bench) {
 
 void StepPanel::show(Workbench& bench) {
     if (!bench.stepper) return begin(bench);
-    Stepper& stepper = *bench.stepper;
+    document::Stepper& stepper = *bench.stepper;
     if (button(bench.report, "step.undo", "Back", "Take the last step back", stepper.canUndo()))
         bench.stepped(stepper.undo(), "A step back");
     ImGui::SameLine();
@@ -54,11 +54,12 @@ void StepPanel::shapes(Workbench& bench) {
     std::string rule;
     if (ImGui::BeginChild("live", {0, -below})) {
         size_t waiting = 0;
-        for (const StepRow& row : bench.stepper->rows()) waiting += !row.rules.empty();
+        for (const document::StepRow& row : bench.stepper->rows()) waiting += !row.rules.empty();
         const size_t live = bench.stepper->rows().size();
         heading(fmt::format("{} live shape{}, {} of them matched", live, live == 1 ? "" : "s", waiting).c_str());
-        const StepRow* picked = bench.selected() == derive::none ? nullptr : bench.stepper->rowOf(bench.selected());
-        for (const StepRow& row : bench.stepper->rows()) {
+        const document::StepRow* picked =
+            bench.selected() == derive::none ? nullptr : bench.stepper->rowOf(bench.selected());
+        for (const document::StepRow& row : bench.stepper->rows()) {
             ImGui::PushID(static_cast<int>(row.shape));
             const bool selected = picked == &row;
             ImGui::PushStyleColor(ImGuiCol_Text, row.rules.empty() ? tint::faint : tint::nonTerminal);
@@ -71,7 +72,7 @@ void StepPanel::shapes(Workbench& bench) {
                 seen_ = bench.selected();
             }
             ImGui::Indent();
-            for (const StepRule& r : row.rules) {
+            for (const document::StepRule& r : row.rules) {
                 if (button(bench.report, fmt::format("apply.{}.{}", row.path, r.name), r.name.c_str(),
                            std::string(r.span.text()).c_str())) {
                     chosen = {row.shape, r.rule};
@@ -104,4 +105,4 @@ void StepPanel::save(Workbench& bench) {
         bench.edit(bench.stepper->save(*bench.document.ast(), way_), "Save way " + way_);
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

@@ -6,14 +6,14 @@
 #include "viewer/window/panels.h"
 #include "viewer/window/style.h"
 
-namespace sgm::viewer {
+namespace sgm::window {
 namespace {
 
 /// Problems of the document's own file, as far as they are about its present text.
 std::vector<LineNote> notesOf(const Workbench& bench) {
     std::vector<LineNote> notes;
     const std::string& name = bench.document.ast()->source->name();
-    for (const Problem& p : bench.session.problems()) {
+    for (const document::Problem& p : bench.session.problems()) {
         if (p.file != name || p.line == 0) continue;
         const uint32_t end = p.endLine == p.line ? p.endColumn - 1 : ~uint32_t(0) >> 1;
         notes.push_back({p.line - 1, p.column - 1, end, p.message + (p.hint.empty() ? "" : "  (" + p.hint + ")"),
@@ -27,7 +27,7 @@ std::vector<LineNote> notesOf(const Workbench& bench) {
 void TextPanel::show(Workbench& bench) {
     if (colored_ != bench.document.ast()) {
         colored_ = bench.document.ast();
-        colors_ = colours(*colored_);
+        colors_ = document::colours(*colored_);
     }
     if (bench.reveal) {
         editor_.reveal(bench.reveal->first, bench.reveal->second);
@@ -45,4 +45,4 @@ void TextPanel::show(Workbench& bench) {
         bench.selectText(editor_.caret());
 }
 
-}  // namespace sgm::viewer
+}  // namespace sgm::window

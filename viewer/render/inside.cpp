@@ -1,0 +1,101 @@
+// Where to stand inside a hollow: a coarse grid of the field says which empty places are enclosed and how deep they
+// are, rays say where one can look far.
+#include <cmath>
+#include <vector>
+
+#include "modeler/core/conventions.h"
+#include "viewer/render/camera.h"
+#include "viewer/render/samples.h"
+
+namespace sgm::render {
+namespace {
+
+/// Share of the 26 directions of the grid in which solid stands between cell (i, j, k) and the outside.
+double enclosure(const Samples& grid, int i, int j, int k) {
+    int walls = 0;
+    for (int d = 0; d < 27; ++d) {
+        const int dx = d % 3 - 1, dy = d / 3 % 3 - 1, dz = d / 9 - 1;
+        if (d == 13) continue;
+        for (int s = 1; grid.holds(i + s * dx, j + s * dy, k + s * dz); ++s)
+            if (grid.values[grid.index(i + s * dx, j + s * dy, k + s * dz)] < 0) {
+                ++walls;
+                break;
+            }
+    }
+    return walls / 26.0;
+}
+
+/// A place and which side of the surface it is on: 1 in the empty, −1 in the solid.
+struct Stand {
+    Vec3f place;
+    float depth = 0;  ///< |f| there, metres
+    float side = 1;
+};
+
+/// The best enclosed empty place: deep, and rather under a roof than in a pit, whose open sky leaves it 17 of the 26
+/// directions; failing that, the deepest place in the solid.
+Stand deepest(const Samples& grid) {
+    Stand hollow, solid;
+    double best = 0;
+    solid.side = -1;
+    solid.place = grid.bounds.centre();
+    for (int k = 0; k < grid.count.z; ++k)
+        for (int j = 0; j < grid.count.y; ++j)
+            for (int i = 0; i < grid.count.x; ++i) {
+                const float f = grid.values[grid.index(i, j, k)];
+                if (-f > solid.depth) solid = {grid.at(i, j, k), -f, -1};
+                if (!(f > 0.5f * grid.cell)) continue;
+                const double enclosed = enclosure(grid, i, j, k), score = f * enclosed * enclosed;
+                if (enclosed > 0.6 && score > best) {
+                    best = score;
+                    hollow = {grid.at(i, j, k), f, 1};
+                }
+            }
+    return best > 0 ? hollow : solid;
+}
+
+/// How far one can go from the stand in each direction before meeting the surface or leaving the bounds, metres.
+std::vector<float> freeDistances(const eval::Tape& tape, const Samples& grid, const Stand& stand,
+                                 const std::vector<Vec3f>& directions) {
+    std::vector<float> distances(directions.size(), 0.0f);
+    std::vector<bool> stopped(directions.size(), false);
+    for (int step = 0; step < 64; ++step) {
+        std::vector<Vec3f> points;
+        for (size_t i = 0; i < directions.size(); ++i) points.push_back(stand.place + directions[i] * distances[i]);
+        const std::vector<float> values = valuesAt(tape, points);
+        for (size_t i = 0; i < directions.size(); ++i) {
+            const float free = stand.side * values[i] / std::max(tape.lipschitz(), 1e-6f);
+            stopped[i] = stopped[i] || free < 0.1f * grid.cell || !grid.bounds.contains(points[i]);
+            if (!stopped[i]) distances[i] += free;
+        }
+    }
+    return distances;
+}
+
+}  // namespace
+
+Camera inside(const eval::Tape& tape, const Box3f& bounds) {
+    const Samples grid = sample(tape, bounds);
+    const Stand stand = deepest(grid);
+    // Looking level or a little up or down, as a visitor does.
+    std::vector<Vec3f> directions;
+    for (int turn = 0; turn < 48; ++turn)
+        for (const double rise : {0.0, -0.2, 0.2}) {
+            const double angle = turn * pi / 24;
+            directions.push_back(normalized(Vec3d{std::cos(angle), rise, std::sin(angle)}).as<float>());
+        }
+    const std::vector<float> distances = freeDistances(tape, grid, stand, directions);
+    const size_t best = static_cast<size_t>(std::max_element(distances.begin(), distances.end()) - distances.begin());
+    const Vec3f look = directions[best];
+    // Step back from the deepest place, to see the hollow from its edge.
+    const float back = freeDistances(tape, grid, stand, {-look}).front();
+    const Vec3f eye = stand.place - look * std::max(0.0f, 0.6f * back - 0.2f * stand.depth);
+    Camera camera;
+    camera.eye = eye.as<double>();
+    camera.at = (eye + look * std::max(distances[best], grid.cell)).as<double>();
+    camera.fieldOfView = radians(70);
+    camera.lamp_m = std::max(2.0f * stand.depth, 0.5f * (back + distances[best]));
+    return camera;
+}
+
+}  // namespace sgm::render

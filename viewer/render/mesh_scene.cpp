@@ -1,0 +1,354 @@
+// The mesh by rasterisation, under the same light as the field: soft sun shadow from one depth map, sky visibility from
+// many (a depth map a direction). Drawn in batches of triangles, so that no draw takes long.
+#include "viewer/render/mesh_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "modeler/mesh/components.h"
+#include "modeler/mesh/corners.h"
+#include "viewer/render/mesh_marks.h"
+#include "viewer/render/scene.h"
+#include "viewer/render/shader_text.h"
+
+namespace sgm::render {
+namespace {
+
+constexpr size_t batchTriangles = 1u << 17;  // a draw
+constexpr float lineWidth = 1.6f;            // of hard edges, pixels
+constexpr int sunMapEdge = 2048, skyMapEdge = 256;
+constexpr size_t leastSkyMaps = 12, mostSkyMaps = 40;  // the latter as in visibility.glsl
+
+/// As many as the driver draws in a second or less; software draws some 3 million triangles a second
+/// (docs/lab/pictures.md).
+size_t skyMapsFor(size_t triangles) {
+    const size_t drawn = softwareGl() ? size_t{5} << 19 : size_t{24} << 20;
+    return std::clamp(drawn / std::max<size_t>(triangles, 1), leastSkyMaps, mostSkyMaps);
+}
+
+/// Metres across a map that takes in all of the object from any side.
+double mapSpan(const Box3f& bounds) { return 1.02 * length(bounds.size().as<double>()); }
+
+/// Four rows as a matrix by columns.
+Matrix4 matrixOf(const std::array<std::array<double, 4>, 4>& rows) {
+    Matrix4 matrix;
+    for (size_t r = 0; r < 4; ++r)
+        for (size_t c = 0; c < 4; ++c) matrix[c * 4 + r] = static_cast<float>(rows[r][c]);
+    return matrix;
+}
+
+/// Looks along −`towardsLight` at a ball of diameter `span`: all of it maps to lo … hi in the three components.
+Matrix4 lightMatrix(Vec3d towardsLight, Vec3d centre, double span, double lo, double hi) {
+    const Vec3d right =
+        normalized(cross(std::abs(towardsLight.y) > 0.99 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}, towardsLight));
+    const Vec3d up = cross(towardsLight, right);
+    const double scale = (hi - lo) / span, middle = (hi + lo) / 2;
+    const auto row = [&](Vec3d axis) {
+        const Vec3d a = axis * scale;
+        return std::array<double, 4>{a.x, a.y, a.z, middle - dot(a, centre)};
+    };
+    return matrixOf({row(right), row(up), row(-towardsLight), {0, 0, 0, 1}});
+}
+
+/// Directions spread evenly over the sphere (Fibonacci's lattice).
+Vec3d skyDirection(size_t i, size_t count) {
+    const double y = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(count), r = std::sqrt(1 - y * y);
+    const double angle = static_cast<double>(i) * 2.39996322972865332;
+    return {r * std::cos(angle), y, r * std::sin(angle)};
+}
+
+/// Clip space of one tile of the picture: x0, y0 its lower left pixel from the bottom left.
+Matrix4 tileMatrix(const View& view, const PictureOptions& options, double near, double far, double x0, double y0,
+                   int width, int height) {
+    const double right2 = dot(view.right, view.right), up2 = dot(view.up, view.up);
+    const Vec3d x = view.right / right2, y = view.up / up2, z = view.forward;
+    // Picture coordinates −1 … 1 become the tile's by a scale and a shift, before the division by depth.
+    const double sx = static_cast<double>(options.width) / width, sy = static_cast<double>(options.height) / height;
+    const double tx = sx - 1 - 2.0 * x0 / width, ty = sy - 1 - 2.0 * y0 / height;
+    const Vec3d cx = x * sx + z * tx, cy = y * sy + z * ty, cz = z * ((far + near) / (far - near));
+    const auto row = [&](Vec3d a, double w) { return std::array<double, 4>{a.x, a.y, a.z, w - dot(a, view.eye)}; };
+    return matrixOf({row(cx, 0), row(cy, 0), row(cz, -2 * far * near / (far - near)), row(z, 0)});
+}
+
+/// Mean over a vertex's edges of the normal curvature along them: (n_j − n_i)·(p_j − p_i) / |p_j − p_i|².
+std::vector<float> curvaturesOf(const PreparedMesh& mesh) {
+    std::vector<float> sums(mesh.positions.size(), 0.0f), counts(mesh.positions.size(), 0.0f);
+    for (const Vec3<uint32_t>& t : mesh.triangles)
+        for (int side = 0; side < 3; ++side) {
+            const uint32_t a = t[side], b = t[(side + 1) % 3];
+            const Vec3f along = mesh.positions[b] - mesh.positions[a];
+            const float k = dot(mesh.normals[b] - mesh.normals[a], along) / std::max(dot(along, along), 1e-20f);
+            for (const uint32_t v : {a, b}) {
+                sums[v] += k;
+                counts[v] += 1;
+            }
+        }
+    for (size_t v = 0; v < sums.size(); ++v) sums[v] /= std::max(counts[v], 1.0f);
+    return sums;
+}
+
+/// Numbers the connected components in the order of their first triangles.
+void findComponents(PreparedMesh& mesh) {
+    const mesh::SurfaceLabels surfaces = mesh::labelSurfaces(mesh.positions.size(), [&](auto f) {
+        for (const Vec3<uint32_t>& t : mesh.triangles) f(t);
+    });
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) mesh.owners[i].component = surfaces.of[mesh.triangles[i].x];
+    mesh.components = surfaces.count;
+}
+
+/// Gives a vertex of its own to every normal that meets in one on a crease, after all others. Whose position a vertex
+/// has says what hangs together, so components are found before.
+void splitHardCorners(PreparedMesh& mesh, const mesh::CornerNormalTable& corners) {
+    if (corners.empty()) return;
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> split;  // by vertex and normal
+    for (size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const uint32_t own = corners.of[t][k];
+            if (own == mesh::noIndex) continue;
+            uint32_t& vertex = mesh.triangles[t][k];
+            const auto [at, fresh] = split.try_emplace({vertex, own}, static_cast<uint32_t>(mesh.positions.size()));
+            if (fresh) {
+                mesh.positions.push_back(Vec3f(mesh.positions[vertex]));
+                mesh.normals.push_back(corners.normals[own]);
+            }
+            vertex = at->second;
+        }
+}
+
+/// By OriginId: the rule that made it, numbered in the order of the parts.
+std::vector<uint32_t> rulesOf(const Provenance& provenance) {
+    std::map<std::string, uint32_t> numbers;
+    std::vector<uint32_t> rules;
+    for (const Part& part : provenance.parts)
+        rules.push_back(numbers.emplace(part.rule, static_cast<uint32_t>(numbers.size())).first->second);
+    return rules;
+}
+
+/// Material and rule of each triangle, by whose it is.
+std::vector<PreparedMesh::Owner> ownersFrom(std::span<const OriginId> origins, const Provenance& provenance) {
+    const std::vector<uint32_t> rules = rulesOf(provenance);
+    std::vector<PreparedMesh::Owner> owners;
+    for (const OriginId origin : origins) {
+        const OriginId part = origin < provenance.parts.size() ? origin : 0;
+        owners.push_back({provenance.parts[part].material, rules[part], 0, part});
+    }
+    return owners;
+}
+
+TexelBuffer upload(const std::vector<PreparedMesh::Owner>& owners) {
+    std::vector<uint32_t> words;
+    for (const PreparedMesh::Owner& owner : owners)
+        words.insert(words.end(), {owner.material, owner.rule, owner.component, owner.piece});
+    if (words.empty()) words.push_back(0);  // buffers hold something
+    return TexelBuffer::of(words, 1);
+}
+
+}  // namespace
+
+Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& provenance) {
+    PreparedMesh prepared;
+    std::vector<OriginId> origins;
+    for (const mesh::Chunk& chunk : mesh.chunks) {
+        prepared.positions.insert(prepared.positions.end(), chunk.positions.begin(), chunk.positions.end());
+        prepared.normals.insert(prepared.normals.end(), chunk.normals.begin(), chunk.normals.end());
+        for (const mesh::Triangle& t : chunk.triangles) prepared.triangles.push_back(chunk.inMesh(t));
+        origins.insert(origins.end(), chunk.origins.begin(), chunk.origins.end());
+    }
+    prepared.owners = ownersFrom(origins, provenance);
+    if (prepared.normals.size() != prepared.positions.size() || prepared.owners.size() != prepared.triangles.size())
+        return Error{Error::Kind::Internal, "the mesh has no normal for every vertex or no origin for every triangle"};
+    prepared.bounds = mesh.bounds();
+    prepared.materials = provenance.materials;
+    findComponents(prepared);
+    const auto neighbours = mesh::findEdgeNeighbours(prepared.triangles, prepared.positions.size());
+    const std::vector<uint32_t> pieces = numberSmoothPieces(mesh, neighbours);
+    for (size_t t = 0; t < pieces.size(); ++t) prepared.owners[t].piece = pieces[t];
+    const mesh::CornerNormalTable corners = mesh::collectCornerNormals(mesh);
+    prepared.hardEdges = findHardEdges(prepared.positions, prepared.triangles, neighbours, corners);
+    splitHardCorners(prepared, corners);
+    prepared.curvatures = curvaturesOf(prepared);
+    return prepared;
+}
+
+Result<std::shared_ptr<const MeshPrograms>> MeshPrograms::create() {
+    const auto programs = std::make_shared<MeshPrograms>();
+    struct Wanted {
+        Program& program;
+        std::string_view vertex, fragment;
+    };
+    for (const Wanted& wanted :
+         {Wanted{programs->depth, "mesh", "depth"}, Wanted{programs->mask, "screen", "mask"},
+          Wanted{programs->blur, "screen", "blur_depth"}, Wanted{programs->color, "mesh", "mesh_color"},
+          Wanted{programs->section, "mesh", "mesh_section"}, Wanted{programs->backdrop, "screen", "backdrop"},
+          Wanted{programs->crease, "crease", "crease_color"}}) {
+        Result<Program> made = Program::draw(shaderText(wanted.vertex), shaderText(wanted.fragment));
+        if (!made) return made.error();
+        wanted.program = std::move(*made);
+    }
+    return std::shared_ptr<const MeshPrograms>(programs);
+}
+
+MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs)
+    : programs_(std::move(programs)),
+      bounds_(mesh.bounds),
+      triangles_(TriangleBuffers::of(mesh.positions, mesh.normals, mesh.curvatures, mesh.triangles)),
+      triangleCount_(mesh.triangles.size()),
+      owners_(upload(mesh.owners)),
+      hardEdges_(mesh.hardEdges),
+      materials_(uploadMaterials(mesh.materials)),
+      skyCount_(skyMapsFor(triangleCount_)) {
+    makeMaps();
+}
+
+MeshScene::MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, const Box3f& bounds,
+                     const Provenance& provenance, std::shared_ptr<const MeshPrograms> programs)
+    : programs_(std::move(programs)),
+      bounds_(bounds),
+      triangleCount_(triangles.count),
+      owners_(upload(ownersFrom(owners, provenance))),
+      materials_(uploadMaterials(provenance.materials)),
+      skyCount_(leastSkyMaps) {
+    const std::vector<float> flat(triangleCount_ * 3 + 1, 0.0f);
+    triangles_ = TriangleBuffers::of(std::move(triangles.positions), std::move(triangles.normals),
+                                     Buffer::of<float>(flat), std::move(triangles.indices));
+    makeMaps();
+}
+
+void MeshScene::makeMaps() {
+    sunMap_ = MapStack::create(MapStack::Kind::Depth, sunMapEdge, 1);
+    skyMaps_ = MapStack::create(MapStack::Kind::Number, skyMapEdge, static_cast<int>(skyCount_));
+    skyDepth_ = MapStack::create(MapStack::Kind::Depth, skyMapEdge, 1);
+}
+
+/// All triangles, in batches.
+Status MeshScene::drawTriangles(const Program& program, Progress* progress) const {
+    program.use();
+    for (size_t first = 0; first < triangleCount_; first += batchTriangles) {
+        if (cancelled(progress)) return cancelledError();
+        program.set("firstTriangle", static_cast<int>(first));
+        triangles_.draw(first, std::min(batchTriangles, triangleCount_ - first));
+        finish();
+        tick(progress);
+    }
+    return Done{};
+}
+
+Status MeshScene::drawMap(const MapStack& map, Vec3d towardsLight, Progress* progress) const {
+    setDepthTest(true);
+    map.bindCleared(0);
+    const Program& depth = programs_->depth;
+    depth.set("clipFromWorld", lightMatrix(towardsLight, bounds_.centre().as<double>(), mapSpan(bounds_), -1, 1));
+    return drawTriangles(depth, progress);
+}
+
+Status MeshScene::light(Progress* progress) {
+    if (progress) progress->begin("light", (skyCount_ + 1) * (triangleCount_ / batchTriangles + 1));
+    for (;;) {
+        const Result<bool> all = lightMore(progress);
+        if (!all) return all.error();
+        if (*all) return Done{};
+    }
+}
+
+Result<bool> MeshScene::lightMore(Progress* progress) {
+    if (mapsDrawn_ > skyCount_) return true;
+    if (mapsDrawn_ == 0) {
+        if (Status s = drawMap(sunMap_, sunDirection().as<double>(), progress); !s) return s.error();
+    } else {
+        const size_t sky = mapsDrawn_ - 1;
+        if (Status s = drawMap(skyDepth_, skyDirection(sky, skyCount_), progress); !s) return s.error();
+        setDepthTest(false);
+        skyMaps_.bindCleared(static_cast<int>(sky));
+        skyDepth_.bindTexture(0);
+        programs_->blur.use();
+        ScreenTriangle().draw();
+    }
+    return ++mapsDrawn_ > skyCount_;
+}
+
+void MeshScene::setLight(const Program& program, bool sky) const {
+    const Vec3d centre = bounds_.centre().as<double>();
+    const double span = mapSpan(bounds_);
+    std::vector<Matrix4> matrices(mostSkyMaps, Matrix4{});
+    for (size_t i = 0; i < skyCount_; ++i) matrices[i] = lightMatrix(skyDirection(i, skyCount_), centre, span, 0, 1);
+    program.set("ownerOfTriangle", 0);
+    program.set("sunMap", 1);
+    program.set("skyMaps", 2);
+    program.set("sunFromWorld", lightMatrix(sunDirection().as<double>(), centre, span, 0, 1));
+    program.set("skyFromWorld", std::span<const Matrix4>(matrices));
+    program.set("mapSpan", static_cast<float>(span));
+    program.set("skyCount", sky ? static_cast<int>(skyCount_) : 0);
+}
+
+void MeshScene::drawMask(const Subsample& subsample, int columns) const {
+    if (!subsample.wanted) return;
+    const WithoutColor depthAlone;
+    const Program& mask = programs_->mask;
+    subsample.wanted->bind(0);
+    mask.set("wanted", 0);
+    mask.set("columns", columns);
+    mask.use();
+    ScreenTriangle().draw();
+}
+
+Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureOptions& options, const MeshStyle& style,
+                       Progress* progress, const Subsample& subsample) const {
+    const View view = viewOf(options.camera, options.width, options.height);
+    const double size = length(bounds_.size().as<double>()), away = length(bounds_.centre().as<double>() - view.eye);
+    const double near = std::max(away - size / 2, 1e-3 * size), far = near + 2 * size + away;
+    // Inside a hollow no sky is seen: the lamp does it alone.
+    const bool sky = mapsDrawn_ > skyCount_ && options.camera.lamp_m == 0;
+    const Program &color = style.section ? programs_->section : programs_->color, &backdrop = programs_->backdrop;
+    for (const Program* program : {&color, &backdrop}) {
+        setScene(*program, bounds_, options);
+        setLight(*program, sky);
+    }
+    target.bind();
+    setDepthTest(true);
+    drawMask(subsample, target.width);
+    owners_.bind(0);
+    sunMap_.bindTexture(1);
+    skyMaps_.bindTexture(2);
+    materials_.bindStorage(4);
+    const double left = x0 + subsample.right, low = y0 - subsample.down;
+    const Matrix4 clipFromWorld = tileMatrix(view, options, near, far, left, low, target.width, target.height);
+    if (!style.section && !subsample.wanted) {  // depth first, for shading what is hidden costs as much as what is seen
+        const WithoutColor depthAlone;
+        programs_->depth.set("clipFromWorld", clipFromWorld);
+        if (Status s = drawTriangles(programs_->depth, progress); !s) return s;
+    }
+    color.set("clipFromWorld", clipFromWorld);
+    color.set("meshLook", static_cast<int>(style.look));
+    if (style.section) {
+        color.set("sectionNormal", style.section->normal);
+        color.set("sectionOffset", style.section->offset);
+    }
+    color.set("wire", 0);
+    if (Status s = drawTriangles(color, progress); !s) return s;
+    backdrop.use();  // where nothing was drawn
+    backdrop.set("tileCorner", Vec3f{static_cast<float>(left), static_cast<float>(low), 0});
+    ScreenTriangle().draw();
+    if (style.wireframe) {
+        color.set("wire", 1);
+        const WireDrawing wires;
+        if (Status s = drawTriangles(color, progress); !s) return s;
+    }
+    if (style.look != MeshLook::Creases) return Done{};
+    return drawCreases({clipFromWorld, view.eye.as<float>(), static_cast<float>(near)}, target, style, progress);
+}
+
+Status MeshScene::drawCreases(const Projection& from, const ColorTarget& target, const MeshStyle& style,
+                              Progress* progress) const {
+    const Program& crease = programs_->crease;
+    crease.set("clipFromWorld", from.clipFromWorld);
+    crease.set("eyeAt", from.eye);
+    crease.set("nearest", from.near);
+    crease.set("targetSize", Vec3f{static_cast<float>(target.width), static_cast<float>(target.height), 1});
+    crease.set("lineWidth", lineWidth);
+    crease.set("sectionNormal", style.section ? style.section->normal : Vec3f{});
+    crease.set("sectionOffset", style.section ? style.section->offset : 0.0f);
+    return hardEdges_.draw(crease, progress);
+}
+
+}  // namespace sgm::render
