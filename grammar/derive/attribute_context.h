@@ -3,6 +3,7 @@
 // are applied before the others, which may ask for the newcomer's size.
 #pragma once
 
+#include <compare>
 #include <optional>
 #include <string>
 
@@ -18,6 +19,13 @@ struct EvaluatedAttributes {
     std::optional<Vec3f> color;            ///< linear RGB
     const rules::Expr* colorBy = nullptr;  ///< what gave the colour
     std::optional<float> rough, metal;
+    /// Pictures by place in Grammar::images + 1, 0 for none.
+    struct Texture {
+        uint32_t color = 0, normals = 0, roughness = 0;
+        float width_m = 1, height_m = 1;  ///< of a tile
+        auto operator<=>(const Texture&) const = default;
+    };
+    std::optional<Texture> texture;
     std::optional<uint32_t> material;  ///< what `of` names, index into Grammar::materials or none
     struct Span {
         Vec3d from_m, to_m;  ///< about the centre of the scope it is measured against, in its axes

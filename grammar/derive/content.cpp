@@ -223,6 +223,16 @@ std::string Interpreter::nameOfLook(const EvaluatedAttributes& attributes, uint3
     return "color_" + rules::toText(evaluate(*attributes.colorBy, place)).substr(1);
 }
 
+/// One object for all that are alike, so that materials of one look are one.
+std::shared_ptr<const image::Texture> Interpreter::textureOf(const EvaluatedAttributes::Texture& asked) {
+    auto& texture = textures_[asked];
+    if (texture) return texture;
+    const auto file = [&](uint32_t place) { return place > 0 ? grammar_.images[place - 1] : nullptr; };
+    texture = std::make_shared<image::Texture>(
+        image::Texture{file(asked.color), file(asked.normals), file(asked.roughness), asked.width_m, asked.height_m});
+    return texture;
+}
+
 /// The material of the terminal, or of the first in a solid, changed by colour, roughness and metalness where given.
 uint32_t Interpreter::materialOf(const EvaluatedAttributes& attributes, const Element& e, const Place& place) {
     const rules::SymbolId symbol = e.content.symbol();
@@ -231,13 +241,14 @@ uint32_t Interpreter::materialOf(const EvaluatedAttributes& attributes, const El
                           : terminal          ? grammar_.symbols[symbol].material
                           : e.content.solid() ? e.content.solid()->material
                                               : rules::none;
-    if (!attributes.color && !attributes.rough && !attributes.metal) return base;
+    if (!attributes.color && !attributes.rough && !attributes.metal && !attributes.texture) return base;
     auto& materials = builder_.derivation().materials;
     Material m = base == rules::none ? materials[0] : materials[base];
     if (attributes.color) m.color = *attributes.color;
     if (attributes.rough) m.roughness = *attributes.rough;
     if (attributes.metal) m.metallic = *attributes.metal;
-    const std::array<float, 5> key{m.color.x, m.color.y, m.color.z, m.roughness, m.metallic};
+    if (attributes.texture) m.texture = textureOf(*attributes.texture);
+    const Look key{{m.color.x, m.color.y, m.color.z, m.roughness, m.metallic}, m.texture};
     const auto [at, fresh] = mixedMaterials_.try_emplace(key, static_cast<uint32_t>(materials.size()));
     if (fresh) {
         m.name = nameOfLook(attributes, base, place);

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
+#include <numbers>
 
 #include "grammar/derive/builder.h"
 #include "grammar/derive/scope_footprint.h"
 #include "grammar/rules/arithmetic_warnings.h"
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/lookup.h"
+#include "grammar/rules/make.h"
 #include "modeler/core/random.h"
 #include "modeler/town/noise.h"
 
@@ -29,6 +32,23 @@ uint64_t drawKey(const Expr& range, const Place& place, uint64_t component) {
 /// Who wants to know what is read, or null.
 Recording* noting(const Place& place) { return place.builder ? place.builder->recording() : nullptr; }
 
+}  // namespace
+
+std::string propertyName(std::string_view property) { return "file:" + std::string(property); }
+
+namespace {
+
+/// What this shape or the nearest one above it sets by that name; null where none does.
+const Value* inherited(std::string_view wanted, const Place& place) {
+    for (ShapeId s = place.valuesAt; s != none;) {
+        for (const auto& [name, value] : place.tree->extrasOf(s)->values)
+            if (name == wanted) return &value;
+        const ShapeId parent = place.tree->shapes[s].parent;
+        s = parent == none ? none : place.tree->shapes[parent].valuesAt;
+    }
+    return nullptr;
+}
+
 /// The value where it stands already, without a copy; null when it must be computed.
 const Value* stored(const Expr& expr, const Place& place) {
     switch (expr.kind) {
@@ -42,12 +62,7 @@ const Value* stored(const Expr& expr, const Place& place) {
             return &place.locals[expr.index];
         case Kind::Inherited:
             if (Recording* r = noting(place)) r->readsValues();
-            for (ShapeId s = place.valuesAt; s != none;) {
-                for (const auto& [name, value] : place.tree->extrasOf(s)->values)
-                    if (name == expr.value.text) return &value;
-                const ShapeId parent = place.tree->shapes[s].parent;
-                s = parent == none ? none : place.tree->shapes[parent].valuesAt;
-            }
+            if (const Value* value = inherited(expr.value.text, place)) return value;
             if (place.builder)
                 place.builder->fail(Error::Kind::Input,
                                     "neither this shape nor any above it sets '" + expr.value.text + "' by 'with'",
@@ -131,8 +146,28 @@ Value ofSurroundings(Fn fn, const Expr& expr, const Place& place) {
                                               : around.inside(*place.tree, place.host, symbol));
 }
 
+/// What the file says of the outline on which the shape or one above it stands; the second argument where it says
+/// nothing, or no number.
+Value ofOutline(Fn fn, const Expr& expr, const Place& place) {
+    if (Recording* r = noting(place)) r->readsValues();
+    const Value* said = inherited(propertyName(expr.args[0].value.text), place);
+    Value otherwise = evaluate(expr.args[1], place);
+    if (!said) return otherwise;
+    if (fn == Fn::FileWord) return rules::makeWord(said->text);
+    double number = said->num();
+    if (said->kind == Value::Kind::Word) {  // "12", "12.5 m"
+        const char* begin = said->text.c_str();
+        const auto read = std::from_chars(begin, begin + said->text.size(), number);
+        if (read.ec != std::errc()) return otherwise;
+    }
+    otherwise.n[0] = otherwise.units[0] == rules::Unit::Angle ? number * std::numbers::pi / 180 : number;
+    otherwise.integer = false;
+    return otherwise;
+}
+
 Value called(const Expr& expr, const Place& place) {
     const Fn fn = static_cast<Fn>(expr.index);
+    if (fn == Fn::FileNumber || fn == Fn::FileWord) return ofOutline(fn, expr, place);
     if (fn == Fn::Bump || fn == Fn::Fbm) return ofPlace(fn, expr, place);
     if (fn == Fn::Count) {
         if (Recording* r = noting(place)) r->readsWorld();

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "grammar/derive/shape_tree.h"
 
@@ -61,5 +63,8 @@ Vector vector(const rules::Expr& expr, const Place& place, bool eachDraws);
 
 /// The rotation that an angle (about y), three angles (x, then y, then z) or a rotation means.
 Mat3 rotation(const rules::Value& value);
+
+/// The name among inherited values of what a file says of an outline: one that no `with` can set.
+std::string propertyName(std::string_view property);
 
 }  // namespace sgm::derive

@@ -21,8 +21,9 @@ bool needsGroup(const Element& e, const Shape& shape) {
 }
 
 /// The matched scope as prefix attributes leave it; each sees what those before it made.
-/// Nothing where no footprint is left.
-std::optional<Scope> changedScope(const std::vector<Attribute>& prefix, Place place) {
+/// Nothing where no footprint is left. What they say of the shapes below goes to `values`.
+std::optional<Scope> changedScope(const std::vector<Attribute>& prefix, Place place,
+                                  std::vector<std::pair<std::string, rules::Value>>& values) {
     for (const Attribute& a : prefix) {
         if (a.operation->phase != Phase::Scope) continue;
         EvaluatedAttributes out;
@@ -30,6 +31,7 @@ std::optional<Scope> changedScope(const std::vector<Attribute>& prefix, Place pl
         AttributeContext context{place, out};
         a.operation->apply(context, a);
         if (out.vanishes) return std::nullopt;
+        values.insert(values.end(), out.extras.values.begin(), out.extras.values.end());
         place.scope = out.scope;
         place.scope.centre += out.moved_m;
     }
@@ -54,8 +56,8 @@ void applyWhole(const std::vector<Attribute>& list, const Place& place, Evaluate
 void Interpreter::annotate(const Element& e, Frame& frame, uint64_t key) {
     Place place = frame.place;
     place.key = key;
-    if (const auto scope = changedScope(e.prefix, place)) frame.place.scope = *scope;
     EvaluatedAttributes attributes;
+    if (const auto scope = changedScope(e.prefix, place, attributes.extras.values)) frame.place.scope = *scope;
     applyWhole(e.prefix, place, attributes);
     const Extras& x = attributes.extras;
     if (x.empty()) return;
@@ -71,12 +73,12 @@ void Interpreter::annotate(const Element& e, Frame& frame, uint64_t key) {
 bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint64_t key, bool followed) {
     Place place = frame.place;
     place.key = key;
+    EvaluatedAttributes attributes;
     if (!e.prefix.empty()) {
-        const auto scope = changedScope(e.prefix, place);
+        const auto scope = changedScope(e.prefix, place, attributes.extras.values);
         if (!scope || builder_.failed()) return !builder_.failed();
         place.scope = *scope;
     }
-    EvaluatedAttributes attributes;
     applyWhole(e.prefix, place, attributes);
     if (!evaluateAttributes(e, place, attributes)) return false;
     if (attributes.vanishes) return true;

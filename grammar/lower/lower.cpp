@@ -30,6 +30,16 @@ bool Lowering::flattensIntoParent(ShapeId id) const {
     return tree_.shapes[id].parent != none && isSum(tree_.shapes[id]) && plain_[id];
 }
 
+namespace {
+
+bool hasFlatFaces(const derive::SolidValue& solid) {
+    if (solid.kind == rules::Solid::Kind::Primitive) return solid.primitive->hasFlatFaces;
+    return solid.kind == rules::Solid::Kind::Combination &&
+           std::all_of(solid.parts.begin(), solid.parts.end(), hasFlatFaces);
+}
+
+}  // namespace
+
 /// Who owns surface: the part is made when it is first asked for.
 OriginId Lowering::ownerOf(ShapeId id) {
     if (owners_[id] != 0) return owners_[id];
@@ -45,6 +55,8 @@ OriginId Lowering::ownerOf(ShapeId id) {
     }
     part.material = materials_.of(id);
     part.pose = {s.scope.centre, s.scope.axes};
+    const derive::SolidValue* solid = tree_.solidOf(id);
+    part.hasFlatFaces = solid && hasFlatFaces(*solid);
     model_.provenance.parts.push_back(std::move(part));
     model_.shapeOf.push_back(id);
     return owners_[id];
@@ -315,10 +327,10 @@ void Lowering::poseTheWhole() {
 /// One material a look, of those that parts have: a look keeps the name of the first one that the grammar gives it, the
 /// default's only where no other has it. Looks of one name are numbered.
 void Lowering::mergeMaterials() {
-    using Look = std::array<float, 5>;
+    using Look = std::pair<std::array<float, 5>, std::shared_ptr<const image::Texture>>;
     const auto lookOf = [&](size_t i) {
         const Material& m = d_.materials[i];
-        return Look{m.color.x, m.color.y, m.color.z, m.roughness, m.metallic};
+        return Look{{m.color.x, m.color.y, m.color.z, m.roughness, m.metallic}, m.texture};
     };
     std::set<size_t> used;
     for (const Part& part : model_.provenance.parts) used.insert(part.material);

@@ -236,8 +236,17 @@ Result<DrawnPlan> drawWallsOf(const AttributeContext& context, const PlanExpr& p
 Result<DrawnPlan> drawFile(const AttributeContext& context, const PlanExpr& plan) {
     const std::vector<plan::Feature>& list = context.grammar().outlines[plan.index]->list;
     const double n = std::floor(context.number(plan.args[0]));
-    if (n >= 1 && n <= static_cast<double>(list.size()))
-        return DrawnPlan{list[static_cast<size_t>(n) - 1].footprint, true};
+    if (n >= 1 && n <= static_cast<double>(list.size())) {
+        const plan::Feature& feature = list[static_cast<size_t>(n) - 1];
+        for (const plan::Property& property : feature.properties) {
+            if (!context.grammar().properties.contains(property.name)) continue;
+            const double* number = std::get_if<double>(&property.value);
+            Value value = number ? Value::number(*number) : rules::makeWord(std::get<std::string>(property.value));
+            if (number) value.text = fmt::format("{}", *number);
+            context.out.extras.values.emplace_back(derive::propertyName(property.name), std::move(value));
+        }
+        return DrawnPlan{feature.footprint, true};
+    }
     return Error{Error::Kind::Input, fmt::format("the file has {} outlines, and none is number {:g}", list.size(), n)};
 }
 

@@ -190,6 +190,30 @@ private:
     std::map<std::string, Read> known_;
 };
 
+/// Pictures of textures read so far.
+class Images {
+public:
+    explicit Images(const Progress* progress) : progress_(progress) {}
+
+    Result<image::ImageFilePtr> operator()(const fs::path& path) {
+        std::error_code failed;
+        const auto time = fs::last_write_time(path, failed);
+        Read& read = known_[path.string()];
+        if (!failed && read.file && read.time == time) return read.file;
+        auto file = image::readImageFile(path, {}, progress_);
+        if (file.ok()) read = {time, *file};
+        return file;
+    }
+
+private:
+    struct Read {
+        fs::file_time_type time;
+        image::ImageFilePtr file;
+    };
+    const Progress* progress_;
+    std::map<std::string, Read> known_;
+};
+
 /// Pictures of maps read so far.
 class Pictures {
 public:
@@ -286,6 +310,16 @@ rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) 
         const auto raster = pictures(*path);
         if (raster.ok()) return *raster;
         why = raster.error().message;
+        return nullptr;
+    };
+    loader.image = [note, images = Images(progress)](const std::string& name, const syntax::Source& from,
+                                                     std::string& why) mutable -> image::ImageFilePtr {
+        const auto path = pathOf(name, from, why);
+        if (!path) return nullptr;
+        note(*path);
+        const auto file = images(*path);
+        if (file.ok()) return *file;
+        why = file.error().message;
         return nullptr;
     };
     loader.declares = [names = LibraryNames()](const std::string& name) mutable { return names(name); };

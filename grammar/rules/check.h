@@ -8,6 +8,7 @@
 
 #include "grammar/rules/grammar.h"
 #include "modeler/core/result.h"
+#include "modeler/image/image_file.h"
 #include "modeler/plan/read.h"
 
 namespace sgm::rules {
@@ -20,6 +21,8 @@ struct Loader {
     using Outlines = std::function<std::shared_ptr<const plan::Features>(const std::string& name,
                                                                          const syntax::Source& from, std::string& why)>;
 
+    using Image =
+        std::function<image::ImageFilePtr(const std::string& name, const syntax::Source& from, std::string& why)>;
     using Picture =
         std::function<town::RasterPtr(const std::string& name, const syntax::Source& from, std::string& why)>;
 
@@ -39,6 +42,8 @@ struct Loader {
     Outlines outlines;
     /// The picture behind `map … = "name"` of `from`.
     Picture picture;
+    /// The picture behind `texture "name"` of `from`.
+    Image image;
 };
 
 /// Null when `diagnostics` has errors. Reports everything wrong in one run, in the order of the text, used files first:

@@ -132,6 +132,9 @@ private:
     Typed call(Place& place, const syntax::Expr& e);
     Typed unknownFunction(const syntax::Expr& e);
     Typed countCall(Place& place, const syntax::Expr& e);
+    Typed outlineCount(const syntax::Expr& e);
+    std::optional<uint32_t> outlinesOf(const syntax::Expr& name);
+    Typed propertyCall(Place& place, const syntax::Expr& e, const Function& row);
     Typed placeCall(Place& place, const syntax::Expr& e, const Function& row);
     Typed unary(Place& place, const syntax::Expr& e);
     Typed binary(Place& place, const syntax::Expr& e);
@@ -228,6 +231,7 @@ private:
     bool anythingExcused_ = false;  ///< a used file is missing, and nobody knows what it declares
     Loader load_;
     std::map<std::pair<const syntax::Source*, std::string>, size_t> outlineFiles_;  ///< places in Grammar::outlines
+    std::map<std::pair<const syntax::Source*, std::string>, size_t> imageFiles_;    ///< places in Grammar::images
     std::map<std::pair<const syntax::Source*, std::string>, size_t> files_;  ///< read so far: places in Grammar::meshes
     /// A file's constant: its text and, once it was read, its value.
     struct Constant {

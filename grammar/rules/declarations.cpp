@@ -160,8 +160,9 @@ void Checker::look(const syntax::TerminalDecl& decl, Material& material, std::ve
             open = grammar_.symbols[base].look;
             continue;
         }
-        if (a.operation->decorate) a.operation->decorate(*value, material);
-        if (!a.operation->decorate || !fold(a.args[0], {})) open.push_back(a);
+        const bool isFile = value->kind == Value::Kind::Text;
+        if (a.operation->decorate && !isFile) a.operation->decorate(*value, material);
+        if (!a.operation->decorate || isFile || !fold(a.args[0], {})) open.push_back(a);
     }
 }
 

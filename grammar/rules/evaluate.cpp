@@ -11,7 +11,8 @@ namespace {
 
 /// Whether more than arguments decide about the value: the shape, those around it, or the place.
 bool dependsOnPlace(Fn fn) {
-    constexpr Fn all[] = {Fn::Count, Fn::Bump, Fn::Fbm, Fn::Overlaps, Fn::Touches, Fn::Inside, Fn::Covered};
+    constexpr Fn all[] = {Fn::Count,  Fn::Bump,    Fn::Fbm,        Fn::Overlaps, Fn::Touches,
+                          Fn::Inside, Fn::Covered, Fn::FileNumber, Fn::FileWord};
     return std::find(std::begin(all), std::end(all), fn) != std::end(all);
 }
 
@@ -247,6 +248,9 @@ Value applyFunction(Fn fn, std::span<const Value> a) {
         case Fn::Inside:
         case Fn::Covered:
             return Value::number(0);
+        case Fn::FileNumber:
+        case Fn::FileWord:
+            return a[1];
         case Fn::Count:
             return whole(Value::number(0));
         default:

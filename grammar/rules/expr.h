@@ -96,7 +96,9 @@ enum class Fn : uint32_t {
     Inside,    ///< whether one holds it whole
     Covered,   ///< the share of its outer face (+z) at or in other solids
     Count,  ///< number of live or derived shapes of a symbol: count(Name); args[0] is a Word whose n[0] is the SymbolId
-    Metres,  ///< of a measure and the scope's extent: shares become metres, bare numbers are metres
+    FileNumber,  ///< what the file says of the outline a shape stands on; args[0] is the property, args[1] what else
+    FileWord,    ///< the same as a word
+    Metres,      ///< of a measure and the scope's extent: shares become metres, bare numbers are metres
 };
 /// What `check … expect` may ask of a derivation.
 // clang-format off

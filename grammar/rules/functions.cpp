@@ -7,7 +7,7 @@ namespace sgm::rules {
 namespace {
 
 constexpr uint8_t many = 16;
-constexpr std::array<Function, 25> table = {{
+constexpr std::array<Function, 28> table = {{
     {"min", Fn::Min, 1, many, Signature::Alike, "the least of its arguments, or of one vector's components"},
     {"max", Fn::Max, 1, many, Signature::Alike, "the greatest of its arguments, or of one vector's components"},
     {"abs", Fn::Abs, 1, 1, Signature::Alike, "without its sign"},
@@ -36,6 +36,12 @@ constexpr std::array<Function, 25> table = {{
      "overlaps(Name), in a rule's 'when': whether a shape of that name shares volume with this one"},
     {"touches", Fn::Touches, 1, 1, Signature::Symbol, "touches(Name): whether one meets it or shares volume with it"},
     {"inside", Fn::Inside, 1, 1, Signature::Symbol, "inside(Name): whether one holds it whole"},
+    {"outlines", Fn::FileNumber, 1, 1, Signature::File,
+     "outlines(\"lots.geojson\"): how many outlines a file has, for `for k in 1..outlines(…)`"},
+    {"value", Fn::FileNumber, 2, 2, Signature::Property,
+     "value(\"height\", 8m): the number that a file says of the outline on which the shape stands, else the second"},
+    {"word", Fn::FileWord, 2, 2, Signature::Property,
+     "word(\"roof:shape\", gabled): the word that a file says of it, else the second"},
     {"count", Fn::Count, 1, 1, Signature::Symbol, "count(Name): how many shapes of that name there are"},
 }};
 

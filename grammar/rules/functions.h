@@ -11,14 +11,16 @@ namespace sgm::rules {
 
 /// What a function asks of its arguments.
 enum class Signature : uint8_t {
-    Alike,   ///< numbers or vectors whose units can meet
-    Plain,   ///< plain numbers
-    Root,    ///< a plain number, or an area
-    Angle,   ///< one angle
-    Lerp,    ///< two alike numbers, vectors or colours, and a plain number
-    If,      ///< a condition and two alike values
-    Symbol,  ///< the name of a shape
-    Place,   ///< a place or a length, and numbers; its value depends on where it is asked
+    Alike,     ///< numbers or vectors whose units can meet
+    Plain,     ///< plain numbers
+    Root,      ///< a plain number, or an area
+    Angle,     ///< one angle
+    Lerp,      ///< two alike numbers, vectors or colours, and a plain number
+    If,        ///< a condition and two alike values
+    Symbol,    ///< the name of a shape
+    File,      ///< the name of a file in quotes; known when the grammar is read
+    Property,  ///< the name of a property in quotes, and what it is where the file says nothing
+    Place,     ///< a place or a length, and numbers; its value depends on where it is asked
 };
 
 struct Function {

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -16,6 +17,7 @@
 #include "grammar/syntax/ast.h"
 #include "modeler/core/provenance.h"
 #include "modeler/field/primitives.h"
+#include "modeler/image/image_file.h"
 #include "modeler/plan/read.h"
 #include "modeler/town/grow.h"
 
@@ -352,7 +354,9 @@ struct Grammar {
     std::vector<Style> styles;
     std::vector<Check> checks;
     std::vector<Report> reports;
+    std::set<std::string, std::less<>> properties;                ///< of outlines, which values and words ask for
     std::vector<std::shared_ptr<const plan::Features>> outlines;  ///< of files that footprints name, each once
+    std::vector<image::ImageFilePtr> images;                      ///< of textures, each once; null: unreadable
     std::vector<field::SampledGridPtr> meshes;                    ///< of a solid's File argument, by its n[0]
 };
 

@@ -177,12 +177,14 @@ Solid OperationChecker::solidOfRow(SourceSpan span, const field::Primitive& row)
     return Checker::solidOfRow(span, row);
 }
 
-std::optional<uint32_t> OperationChecker::readOutlines(const syntax::Expr& name) {
-    auto& all = checker_.grammar_.outlines;
-    const auto [known, fresh] = checker_.outlineFiles_.try_emplace({name.span.source, name.text}, all.size());
+std::optional<uint32_t> OperationChecker::readOutlines(const syntax::Expr& name) { return checker_.outlinesOf(name); }
+
+std::optional<uint32_t> OperationChecker::readImage(const syntax::Expr& name) {
+    auto& all = checker_.grammar_.images;
+    const auto [known, fresh] = checker_.imageFiles_.try_emplace({name.span.source, name.text}, all.size());
     if (fresh) {
         std::string why = "no files can be read here";
-        all.push_back(checker_.load_.outlines ? checker_.load_.outlines(name.text, *name.span.source, why) : nullptr);
+        all.push_back(checker_.load_.image ? checker_.load_.image(name.text, *name.span.source, why) : nullptr);
         if (!all.back()) error(name.span, fmt::format("can't use \"{}\": {}", name.text, why));
     }
     return all[known->second] ? std::optional(static_cast<uint32_t>(known->second)) : std::nullopt;

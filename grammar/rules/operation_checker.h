@@ -71,6 +71,8 @@ public:
 
     /// The place in Grammar::outlines of the file that `name` (a text) stands for, read here; nothing after an error.
     std::optional<uint32_t> readOutlines(const syntax::Expr& name);
+    /// The place in Grammar::images of the picture that `name` (a text) stands for, read here; nothing after an error.
+    std::optional<uint32_t> readImage(const syntax::Expr& name);
     /// The symbol of the start of that name, wherever in the text it stands; nothing after an error.
     std::optional<SymbolId> findStart(const syntax::Expr& name);
     /// A parameter by index and a value for it, which may depend on the shape; nothing after an error.

@@ -66,6 +66,60 @@ Typed Checker::countCall(Place& place, const Written& e) {
             fn == Fn::Count ? Type::number(Unit::None, true) : Type::of(Value::boolean(false))};
 }
 
+/// outlines("lots.geojson"): a constant.
+Typed Checker::outlineCount(const Written& e) {
+    if (e.args[0].kind != Written::Kind::Text)
+        return failed(e.args[0].span, "'outlines' takes the name of a file in quotes",
+                      "write 'outlines(\"lots.geojson\")'");
+    const auto file = outlinesOf(e.args[0]);
+    if (!file) return {makeUnreadable(e.span), Type::unknown()};
+    Value count = Value::number(static_cast<double>(grammar_.outlines[*file]->list.size()));
+    count.integer = true;
+    return makeTyped(e.span, std::move(count));
+}
+
+/// The place in Grammar::outlines of a file, read once; nothing after an error.
+std::optional<uint32_t> Checker::outlinesOf(const Written& name) {
+    const auto [known, fresh] = outlineFiles_.try_emplace({name.span.source, name.text}, grammar_.outlines.size());
+    if (fresh) {
+        std::string why = "no files can be read here";
+        grammar_.outlines.push_back(load_.outlines ? load_.outlines(name.text, *name.span.source, why) : nullptr);
+        if (!grammar_.outlines.back())
+            diagnostics_.error(name.span, fmt::format("can't use \"{}\": {}", name.text, why));
+    }
+    return grammar_.outlines[known->second] ? std::optional(static_cast<uint32_t>(known->second)) : std::nullopt;
+}
+
+/// value("height", 8m), word("roof:shape", gabled): what a file says of an outline.
+Typed Checker::propertyCall(Place& place, const Written& e, const Function& row) {
+    const std::string example =
+        row.fn == Fn::FileWord ? "write 'word(\"roof:shape\", gabled)'" : "write 'value(\"height\", 8m)'";
+    if (place.where < Where::Guard || place.ofMap || place.where == Where::Expect)
+        return failed(e.span, fmt::format("'{}' asks about the outline of a shape, and there is none here", row.name));
+    const Written &name = e.args[0], &otherwise = e.args[1];
+    if (name.kind != Written::Kind::Text)
+        return failed(name.span, fmt::format("'{}' takes the name of a property in quotes", row.name), example);
+    Typed fallback;
+    if (row.fn == Fn::FileWord) {
+        if (otherwise.kind != Written::Kind::Name && otherwise.kind != Written::Kind::Text)
+            return failed(otherwise.span, "what 'word' says without a file is a word", example);
+        fallback = makeTyped(otherwise.span, makeWord(otherwise.text));
+    } else {
+        fallback = expression(place, otherwise);
+        if (!expectType(fallback, Want::Anything, "'value'", &otherwise)) return {{}, Type::unknown()};
+        if (fallback.type.known && fallback.type.like.kind != Value::Kind::Number)
+            return failed(otherwise.span, "what 'value' says without a file is a number", example);
+        fallback.type.like.integer = false;
+    }
+    grammar_.properties.insert(name.text);
+    Value text;
+    text.kind = Value::Kind::Text;
+    text.text = name.text;
+    return {makeCall(Expr::Kind::Call, row.fn, e.span,
+                     {makeConstant(name.span, std::move(text)), std::move(fallback.expr)}),
+            fallback.type};
+}
+
 /// A function whose value hangs on where it is asked.
 Typed Checker::placeCall(Place& place, const Written& e, const Function& row) {
     std::vector<Typed> args;
@@ -109,6 +163,8 @@ Typed Checker::call(Place& place, const Written& e) {
             return failed(e.args[i].span, fmt::format("the arguments of '{}' have no names", row->name),
                           fmt::format("leave '{}:' out", e.argNames[i]));
     if (row->signature == Signature::Symbol) return countCall(place, e);
+    if (row->signature == Signature::File) return outlineCount(e);
+    if (row->signature == Signature::Property) return propertyCall(place, e, *row);
     if (row->signature == Signature::Place) return placeCall(place, e, *row);
 
     const std::string what = fmt::format("'{}'", row->name);
@@ -148,6 +204,8 @@ Typed Checker::call(Place& place, const Written& e) {
             pair(1, 2);
             break;
         case Signature::Symbol:
+        case Signature::File:
+        case Signature::Property:
         case Signature::Place:
             break;
     }
@@ -171,6 +229,10 @@ Typed Checker::unary(Place& place, const Written& e) {
 
 /// A bare word beside `==`: one of the words of the parameter it is compared with.
 Typed Checker::comparedWord(Place& place, const Written& e, const Type& other) {
+    // What a file says may be any word.
+    const bool isAnyWord = other.known && !other.words && other.like.kind == Value::Kind::Word;
+    if (isAnyWord && (e.kind == Written::Kind::Text || (e.kind == Written::Kind::Name && !params_.contains(e.text))))
+        return makeTyped(e.span, makeWord(e.text));
     if (!other.words || e.kind != Written::Kind::Name || params_.contains(e.text)) return expression(place, e);
     if (std::find(other.words->begin(), other.words->end(), e.text) == other.words->end())
         return failed(e.span, fmt::format("it is never '{}', but one of {}", e.text, fmt::join(*other.words, ", ")),

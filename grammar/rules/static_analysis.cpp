@@ -305,6 +305,48 @@ void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostic
     }
 }
 
+void findWaitingCycles(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
+    const auto awaited = [&](SymbolId symbol) {
+        std::vector<std::pair<SymbolId, const Rule*>> found;
+        for (const uint32_t rule : grammar.symbols[symbol].rules)
+            if (const SymbolId after = grammar.rules[rule].after; after != none)
+                found.emplace_back(after, &grammar.rules[rule]);
+        return found;
+    };
+    std::vector<bool> done(grammar.symbols.size(), false);
+    for (SymbolId first = 0; first < grammar.symbols.size(); ++first) {
+        // Depth first, without recursion: the symbols of the way, each with what it waits for.
+        std::vector<std::pair<SymbolId, std::vector<std::pair<SymbolId, const Rule*>>>> way;
+        if (!done[first]) way.emplace_back(first, awaited(first));
+        while (!way.empty()) {
+            auto& [symbol, next] = way.back();
+            if (next.empty()) {
+                done[symbol] = true;
+                way.pop_back();
+                continue;
+            }
+            const auto [after, rule] = next.back();
+            next.pop_back();
+            const SymbolId name = after;
+            const auto again =
+                std::find_if(way.begin(), way.end(), [&](const auto& step) { return step.first == name; });
+            if (again == way.end()) {
+                if (!done[after]) way.emplace_back(after, awaited(after));
+                continue;
+            }
+            std::string chain;
+            for (auto step = again; step != way.end(); ++step)
+                chain += fmt::format("{}'{}' waits for ",
+                                     step == again ? "" : fmt::format("'{}', and ", grammar.symbols[step->first].name),
+                                     grammar.symbols[step->first].name);
+            diagnostics.warning(
+                rule->span,
+                fmt::format("{}'{}': nothing decides which comes first", chain, grammar.symbols[after].name),
+                "take one 'after' out");
+        }
+    }
+}
+
 void findEndless(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
     const Endings endings(grammar);
     // By symbol: the walk that came by, counted from 1, and after how many steps.

@@ -17,6 +17,9 @@ void findShadowed(const Grammar& grammar, syntax::Diagnostics& diagnostics);
 /// Warns of shares (%) at the first shapes of a start, which have no scope but the start's own of 1 m.
 void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostics);
 
+/// Warns of symbols that wait for each other by `after`: nothing decides which comes first. Once a cycle.
+void findWaitingCycles(const Grammar& grammar, syntax::Diagnostics& diagnostics);
+
 /// Refuses reachable rules that never end: whose symbol always makes another live one of its kind, with no guard,
 /// repeat, choice, or joint that could run out to stop it.
 void findEndless(const Grammar& grammar, syntax::Diagnostics& diagnostics);

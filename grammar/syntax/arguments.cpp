@@ -74,6 +74,7 @@ bool fits(const Cursor& cursor, ArgumentType type) {
     if (type == ArgumentType::Name || type == ArgumentType::Solid || type == ArgumentType::Start ||
         type == ArgumentType::Symbol)
         return word && !isReserved(cursor.peekText()) && !beginsOperation(cursor);
+    if (type == ArgumentType::File) return cursor.at(Token::Kind::Text);
     return startsArgument(cursor) && !beginsOperation(cursor);
 }
 

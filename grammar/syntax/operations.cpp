@@ -43,6 +43,8 @@ std::string_view describe(ArgumentType type) {
             return "an axis, 'along' and a word for edges, or 'area' and an axis";
         case ArgumentType::Point:
             return "a point (x, y, z) or a joint";
+        case ArgumentType::File:
+            return "the name of a file in quotes";
     }
     return "a value";
 }

@@ -50,6 +50,7 @@ enum class ArgumentType : uint8_t {
     Material,  ///< a `material` by name, or a value that holds one
     Cut,       ///< how a split goes: an axis; `along WORD`, along edges; `area x`, by square metres along an axis
     Point,     ///< a point (x, y, z), or a joint
+    File,      ///< the name of a file in quotes
 };
 
 /// "a length", "a joint": an argument's type in words.

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "modeler/core/vec.h"
 
+namespace sgm::image {
+struct Texture;
+}
 namespace sgm {
 
 /// Index into Provenance::parts; 0 is "nobody's" and stands for the whole object.
@@ -17,8 +21,9 @@ using OriginId = uint32_t;
 struct Material {
     std::string name = "default";  ///< of what gives the look: a parameter, a terminal, or the colour itself
     Vec3f color{0.8f, 0.78f, 0.74f};
-    float roughness = 0.8f;  ///< 0 … 1
-    float metallic = 0.0f;   ///< 0 … 1
+    float roughness = 0.8f;                         ///< 0 … 1
+    float metallic = 0.0f;                          ///< 0 … 1
+    std::shared_ptr<const image::Texture> texture;  ///< covers the surface; null: none
     friend bool operator==(const Material&, const Material&) = default;
 };
 
@@ -31,13 +36,14 @@ struct Pose {
 
 /// One shape of the derived tree that owns surface.
 struct Part {
-    std::string path;       ///< path in the shape tree, "Cave/Cell[3]"
-    std::string symbol;     ///< terminal or non-terminal name
-    std::string rule;       ///< the rule application that made it, "" for the start
-    std::string file;       ///< grammar file
-    uint32_t line = 0;      ///< 1-based line of the text that made it
-    uint32_t material = 0;  ///< index into Provenance::materials
-    Pose pose;              ///< of the shape's scope
+    std::string path;           ///< path in the shape tree, "Cave/Cell[3]"
+    std::string symbol;         ///< terminal or non-terminal name
+    std::string rule;           ///< the rule application that made it, "" for the start
+    std::string file;           ///< grammar file
+    uint32_t line = 0;          ///< 1-based line of the text that made it
+    uint32_t material = 0;      ///< index into Provenance::materials
+    Pose pose;                  ///< of the shape's scope
+    bool hasFlatFaces = false;  ///< its surface is made of planes, so that textures lie in them
 };
 
 /// The table behind OriginId and material indices. parts[0] and materials[0] always exist; no two materials look the

@@ -33,6 +33,13 @@ Placement placementOf(const ExportInput& input) {
     return {option(input, "up", "y") == "z", unit == "mm" ? 1000.0f : unit == "cm" ? 100.0f : 1.0f};
 }
 
+std::string pathFrom(const std::filesystem::path& folder, const std::filesystem::path& file) {
+    std::error_code failed;
+    const std::filesystem::path from = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, failed);
+    const std::filesystem::path way = failed ? std::filesystem::path() : file.lexically_relative(from);
+    return validUtf8((way.empty() ? file : way).generic_string());
+}
+
 std::string validUtf8(const std::string& text) {
     using Json = nlohmann::json;
     return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();

@@ -63,6 +63,8 @@ std::string validUtf8(const std::string& text);
 std::string oneLine(std::string text);
 /// A name a line of text can hold as one word: white space, control characters, quotes and '#' become '_'.
 std::string wordOf(std::string name);
+/// How a file in `folder` names another one, with '/': the way to it, or all of it where there is none.
+std::string pathFrom(const std::filesystem::path& folder, const std::filesystem::path& file);
 /// The material library beside an OBJ file.
 Path materialFile(const Path& target);
 /// A letter or '_' followed by letters, digits and '_': what USD calls an identifier.

@@ -19,6 +19,7 @@
 #include "modeler/export/gltf_levels.h"
 #include "modeler/export/gltf_meshopt.h"
 #include "modeler/export/gltf_nodes.h"
+#include "modeler/export/gltf_textures.h"
 #include "modeler/export/surface.h"
 #include "modeler/export/texture_sets.h"
 
@@ -61,13 +62,14 @@ int addAccessor(tinygltf::Model& model, const View& view, size_t first, size_t c
 /// A number as it was meant: 0.8f as 0.8, six digits being more than a colour has.
 double decimal(float v) { return std::round(std::clamp(static_cast<double>(v), 0.0, 1.0) * 1e6) / 1e6; }
 
-int addMaterial(tinygltf::Model& model, const Material& material) {
+int addMaterial(tinygltf::Model& model, const Material& material, GltfTextures* textures) {
     tinygltf::Material entry;
     entry.name = validUtf8(material.name);
     auto& pbr = entry.pbrMetallicRoughness;
     pbr.baseColorFactor = {decimal(material.color.x), decimal(material.color.y), decimal(material.color.z), 1.0};
     pbr.roughnessFactor = decimal(material.roughness);
     pbr.metallicFactor = decimal(material.metallic);
+    if (textures && material.texture) textures->cover(entry, *material.texture);
     model.materials.push_back(entry);
     return static_cast<int>(model.materials.size()) - 1;
 }
@@ -78,8 +80,10 @@ uint16_t word(float light) { return static_cast<uint16_t>(std::lround(65535 * st
 /// Fills the buffer patch by patch and adds a mesh an object, a primitive a patch.
 class MeshBuilder {
 public:
-    MeshBuilder(const ExportInput& input, TextureSets texture)
+    /// `textures` gathers the pictures of the materials.
+    MeshBuilder(const ExportInput& input, TextureSets texture, GltfTextures& textures)
         : input_(input),
+          textures_(textures),
           texture_(std::move(texture)),
           patched_(cutIntoPatches(*input.mesh, *input.provenance,
                                   {input.objects, texture_.charts.ofTriangle, input.byMaterial})),
@@ -163,8 +167,9 @@ private:
     int materialOf(uint32_t material) {
         int& index = materials_[input_.byMaterial ? material : 0];
         if (index < 0) {
-            const Material colorsAlone{"colors", {1, 1, 1}, 0.8f, 0.0f};
-            index = addMaterial(model, input_.byMaterial ? input_.provenance->materials[material] : colorsAlone);
+            const Material colorsAlone{"colors", {1, 1, 1}, 0.8f, 0.0f, nullptr};
+            index = addMaterial(model, input_.byMaterial ? input_.provenance->materials[material] : colorsAlone,
+                                texture_.empty() ? nullptr : &textures_);
         }
         return index;
     }
@@ -190,6 +195,7 @@ private:
     static std::array<float, 2> downwards(std::array<float, 2> uv) { return {uv[0], 1 - uv[1]}; }
 
     const ExportInput& input_;
+    GltfTextures& textures_;
     TextureSets texture_;
     PatchedMesh patched_;
     Vertices vertices_;
@@ -217,10 +223,10 @@ static Status writeStream(const ExportInput& input, const Path& temporary, const
     return Done{};
 }
 
-Result<tinygltf::Model> modelOfMesh(const ExportInput& input) {
+Result<tinygltf::Model> modelOfMesh(const ExportInput& input, GltfTextures& textures) {
     auto texture = makeTexture(input);
     if (!texture.ok()) return texture.error();
-    MeshBuilder builder(input, std::move(*texture));
+    MeshBuilder builder(input, std::move(*texture), textures);
     if (!builder.build()) return cancelledError();
     return std::move(builder.model);
 }
@@ -234,22 +240,26 @@ static Status writeScene(const ExportInput& input, const Path& temporary, const 
     if (shared && shared->mesh) own.mesh = &*shared->mesh;
     auto texture = makeTexture(own);
     if (!texture.ok()) return texture.error();
-    MeshBuilder builder(own, std::move(*texture));
+    GltfTextures textures;
+    const ModelOfMesh modelOf = [&](const ExportInput& other) { return modelOfMesh(other, textures); };
+    MeshBuilder builder(own, std::move(*texture), textures);
     if (!builder.build()) return cancelledError();
     addScene(builder.model, input, shared ? &*shared : nullptr, builder.meshOfNode);
     builder.model.asset.extras = originTable(*input.provenance, *input.mesh);
-    if (Status status = addInstances(builder.model, input, modelOfMesh); !status.ok()) return status;
-    if (Status status = addLevels(builder.model, input, modelOfMesh); !status.ok()) return status;
+    if (Status status = addInstances(builder.model, input, modelOf); !status.ok()) return status;
+    if (Status status = addLevels(builder.model, input, modelOf); !status.ok()) return status;
     if (Status status = addColliders(builder.model, input); !status.ok()) return status;
     const std::string_view pack = option(input, "pack", "none");
     if (pack == "meshopt") {
         auto packed = packByMeshopt(std::move(builder.model), input.progress);
         if (!packed.ok()) return packed.error();
+        textures.embed(packed->model);
         if (!fits(packed->model, binary)) return tooLarge(target);
         return writeStream(input, temporary, target, [&](std::ostream& out) { writeMeshopt(*packed, out, binary); });
     }
     if (pack == "draco")
         if (Status status = packByDraco(builder.model, input.progress); !status.ok()) return status;
+    textures.embed(builder.model);
     if (!fits(builder.model, binary)) return tooLarge(target);
     return writeStream(input, temporary, target, [&](std::ostream& out) {
         tinygltf::TinyGLTF().WriteGltfSceneToStream(&builder.model, out, !binary, binary);

@@ -12,6 +12,7 @@
 #include "modeler/export/out_file.h"
 #include "modeler/export/surface.h"
 #include "modeler/export/texture.h"
+#include "modeler/image/texture.h"
 
 namespace sgm::exporter {
 namespace {
@@ -124,6 +125,20 @@ private:
     size_t normalCount_ = 0;           ///< lines of normals
 };
 
+/// The lines of a texture: its pictures where they are, as many tiles to a metre as `-s` says.
+std::string mapsOf(const image::Texture& texture, const Path& folder) {
+    std::string text;
+    const auto map = [&](std::string_view keyword, const image::ImageFilePtr& file) {
+        if (file)
+            text += fmt::format("{} -s {} {} 1 {}\n", keyword, 1 / texture.width_m, 1 / texture.height_m,
+                                pathFrom(folder, file->path));
+    };
+    map("map_Kd", texture.color);
+    map("map_Pr", texture.roughness);
+    map("norm", texture.normals);
+    return text;
+}
+
 static Status writeMaterials(const ExportInput& input, const std::set<uint32_t>& used,
                              const std::vector<std::string>& names, const Path& target) {
     return replaceFile(target, [&](const Path& temporary) {
@@ -133,6 +148,7 @@ static Status writeMaterials(const ExportInput& input, const std::set<uint32_t>&
             const Material& m = input.provenance->materials[index];
             out.text(fmt::format("newmtl {}\nKd {} {} {}\nPr {}\nPm {}\nillum 2\n", names[index], m.color.x, m.color.y,
                                  m.color.z, m.roughness, m.metallic));
+            if (m.texture && option(input, "uv", "scope") != "none") out.text(mapsOf(*m.texture, target.parent_path()));
         }
         return out.finish();
     });

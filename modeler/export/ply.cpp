@@ -9,6 +9,7 @@
 #include "modeler/export/lists.h"
 #include "modeler/export/origins.h"
 #include "modeler/export/surface.h"
+#include "modeler/image/texture_axes.h"
 
 namespace sgm::exporter {
 namespace {
@@ -52,8 +53,10 @@ public:
         const std::vector<uint32_t> materials = vertexMaterials(chunk);
         for (size_t i = 0; i < chunk.positions.size() && !out.failed(); ++i) {
             const Vec3f normal = unitNormal(chunk.normals[i]);
-            out.raw(place_.position(chunk.positions[i]), place_.direction(normal),
-                    boxProjection(chunk.positions[i], facing(normal)), colors_[materials[i]]);
+            const image::TextureAxes along = image::axesAgainst(image::nearestAxis(normal));
+            const Vec3f p = chunk.positions[i];
+            const std::array<float, 2> uv{dot(p, along.u.as<float>()), dot(p, along.v.as<float>())};
+            out.raw(place_.position(p), place_.direction(normal), uv, colors_[materials[i]]);
         }
     }
 

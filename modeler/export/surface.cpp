@@ -166,29 +166,6 @@ Rgb8 srgb(Vec3f linear) {
     return bytes;
 }
 
-int facing(Vec3f d) {
-    const Vec3f a{std::abs(d.x), std::abs(d.y), std::abs(d.z)};
-    const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
-    return 2 * axis + (d[axis] < 0 ? 1 : 0);
-}
-
-std::array<float, 2> boxProjection(Vec3f p, int facing) {
-    switch (facing) {
-        case 0:
-            return {-p.z, p.y};
-        case 1:
-            return {p.z, p.y};
-        case 2:
-            return {p.x, -p.z};
-        case 3:
-            return {p.x, p.z};
-        case 4:
-            return {p.x, p.y};
-        default:
-            return {-p.x, p.y};
-    }
-}
-
 PatchedMesh cutIntoPatches(const mesh::Mesh& mesh, const Provenance& provenance, const Cut& cut) {
     PatchedMesh out;
     out.corners = mesh::collectCornerNormals(mesh);

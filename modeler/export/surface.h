@@ -38,11 +38,6 @@ using Rgb8 = std::array<uint8_t, 3>;
 /// A linear colour (clipped to 0 … 1) with the transfer curve of sRGB (IEC 61966-2-1).
 Rgb8 srgb(Vec3f linear);
 
-/// The axis a direction points along most: +x -x +y -y +z -z as 0 … 5; ties go to the earlier axis.
-int facing(Vec3f direction);
-/// Texture coordinates in metres of a point seen against the axis `facing`, u to the right and v up, never mirrored.
-std::array<float, 2> boxProjection(Vec3f p, int facing);
-
 /// Into which patches a mesh is cut.
 struct Cut {
     const ObjectTree* objects = nullptr;  ///< null: all are of object 0

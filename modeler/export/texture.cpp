@@ -5,19 +5,13 @@
 
 #include "modeler/core/random.h"
 #include "modeler/export/surface.h"
+#include "modeler/image/texture_axes.h"
 
 namespace sgm::exporter {
 namespace {
 
 /// A share of the area of a smooth piece by which its triangles' normals may lean away from their mean: rounding.
 constexpr double flatness = 1e-3;
-/// A face that looks up or down within 2° has no direction of its own that is level.
-constexpr double steepest = 0.9995;
-
-/// As boxProjection: u to the right and v up, seen against each of the six axes.
-constexpr ChartAxes boxAxes[] = {{{0, 0, -1}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 0}}, {{1, 0, 0}, {0, 0, -1}},
-                                 {{1, 0, 0}, {0, 0, 1}},  {{1, 0, 0}, {0, 1, 0}}, {{-1, 0, 0}, {0, 1, 0}}};
-
 /// The triangles of one origin and label: the face of a box, the side of a roof, or something curved.
 struct SmoothPiece {
     Vec3d normal;  ///< twice the area, then the unit normal of a flat one
@@ -90,22 +84,9 @@ private:
 
     uint32_t chartOf(OriginId origin, Vec3d c, const SmoothPiece* piece) {
         const Mat3& axes = provenance_.parts[origin < provenance_.parts.size() ? origin : 0].pose.axes;
-        const Mat3 local = axes.transposed();
-        if (!piece || !piece->flat) {
-            const ChartAxes& box = boxAxes[facing((local * c).as<float>())];
-            return table_.index(axes * box.u.as<double>(), axes * box.v.as<double>(), charts_.axes);
-        }
-        Vec3d n = local * piece->normal, u, v;
-        for (int i = 0; i < 3; ++i)
-            if (1 - std::abs(n[i]) < 1e-8) n = Vec3d{}, n[i] = std::copysign(1.0, (local * piece->normal)[i]);
-        if (std::abs(n.y) > steepest) {
-            u = normalized(Vec3d{1, 0, 0} - n * n.x);
-            v = cross(n, u);
-        } else {
-            v = normalized(Vec3d{0, 1, 0} - n * n.y);
-            u = cross(v, n);
-        }
-        return table_.index(axes * u, axes * v, charts_.axes);
+        const image::TextureAxes along =
+            piece && piece->flat ? image::axesInPlane(axes, piece->normal) : image::axesAlongNearest(axes, c);
+        return table_.index(along.u, along.v, charts_.axes);
     }
 
     const mesh::Mesh& mesh_;
@@ -118,14 +99,17 @@ private:
 
 TextureCharts boxCharts(const mesh::Mesh& mesh) {
     TextureCharts charts;
-    charts.axes.assign(std::begin(boxAxes), std::end(boxAxes));
+    for (int axis = 0; axis < 6; ++axis) {
+        const image::TextureAxes along = image::axesAgainst(axis);
+        charts.axes.push_back({along.u.as<float>(), along.v.as<float>()});
+    }
     Vertices vertices(mesh);
     charts.ofTriangle.reserve(mesh.triangleCount());
     for (const mesh::Chunk& chunk : mesh.chunks)
         for (const mesh::Triangle& local : chunk.triangles) {
             const mesh::Triangle t = chunk.inMesh(local);
             const Vec3f a = vertices.position(t.x), b = vertices.position(t.y), c = vertices.position(t.z);
-            charts.ofTriangle.push_back(static_cast<uint32_t>(facing(cross(b - a, c - a))));
+            charts.ofTriangle.push_back(static_cast<uint32_t>(image::nearestAxis(cross(b - a, c - a))));
         }
     return charts;
 }

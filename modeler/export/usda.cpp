@@ -13,6 +13,7 @@
 #include "modeler/export/out_file.h"
 #include "modeler/export/shared_objects.h"
 #include "modeler/export/usda_mesh.h"
+#include "modeler/image/texture.h"
 
 namespace sgm::exporter {
 namespace {
@@ -149,21 +150,67 @@ void writeLayer(OutFile& out, const ExportInput& input, const std::string& root)
                     root, 1.0 / static_cast<double>(place.unitsPerMetre), place.zUp ? "Z" : "Y"));
 }
 
+/// The shaders of a texture below the prim of its material.
+std::string textureShaders(const image::Texture& texture, const std::string& prim, const Path& folder) {
+    std::string text = fmt::format(
+        "\n            def Shader \"Coordinates\"\n            {{\n"
+        "                uniform token info:id = \"UsdPrimvarReader_float2\"\n"
+        "                string inputs:varname = \"st\"\n                float2 outputs:result\n            }}\n"
+        "\n            def Shader \"Tiles\"\n            {{\n"
+        "                uniform token info:id = \"UsdTransform2d\"\n"
+        "                float2 inputs:in.connect = <{}/Coordinates.outputs:result>\n"
+        "                float2 inputs:scale = ({}, {})\n                float2 outputs:result\n            }}\n",
+        prim, 1 / texture.width_m, 1 / texture.height_m);
+    const auto picture = [&](std::string_view name, const image::ImageFilePtr& file, std::string_view space,
+                             std::string_view more) {
+        if (!file) return;
+        text += fmt::format(
+            "\n            def Shader \"{}\"\n            {{\n"
+            "                uniform token info:id = \"UsdUVTexture\"\n"
+            "                asset inputs:file = @{}@\n"
+            "                float2 inputs:st.connect = <{}/Tiles.outputs:result>\n"
+            "                token inputs:wrapS = \"repeat\"\n                token inputs:wrapT = \"repeat\"\n"
+            "                token inputs:sourceColorSpace = \"{}\"\n{}            }}\n",
+            name, pathFrom(folder, file->path), prim, space, more);
+    };
+    picture("Color", texture.color, "sRGB", "                float3 outputs:rgb\n");
+    picture("Roughness", texture.roughness, "raw", "                float outputs:g\n");
+    picture("Normals", texture.normals, "raw",
+            "                float4 inputs:scale = (2, 2, 2, 1)\n                float4 inputs:bias = (-1, -1, -1, 0)\n"
+            "                float3 outputs:rgb\n");
+    return text;
+}
+
+/// The inputs of a material's surface that its pictures give.
+std::string textureInputs(const image::Texture& texture, const std::string& prim) {
+    std::string text;
+    if (texture.color)
+        text += fmt::format("                color3f inputs:diffuseColor.connect = <{}/Color.outputs:rgb>\n", prim);
+    if (texture.roughness)
+        text += fmt::format("                float inputs:roughness.connect = <{}/Roughness.outputs:g>\n", prim);
+    if (texture.normals)
+        text += fmt::format("                normal3f inputs:normal.connect = <{}/Normals.outputs:rgb>\n", prim);
+    return text;
+}
+
 void writeMaterials(OutFile& out, const ExportInput& input, const std::set<uint32_t>& used,
-                    const std::vector<std::string>& names, const std::string& root) {
+                    const std::vector<std::string>& names, const std::string& root, const Path& folder) {
     out.text("    def Scope \"Materials\"\n    {\n");
     for (const uint32_t material : used) {
         const Material& m = input.provenance->materials[material];
-        out.text(
-            fmt::format("        def Material \"{0}\"\n        {{\n"
-                        "            token outputs:surface.connect = </{1}/Materials/{0}/Surface.outputs:surface>\n\n"
-                        "            def Shader \"Surface\"\n            {{\n"
-                        "                uniform token info:id = \"UsdPreviewSurface\"\n"
-                        "                color3f inputs:diffuseColor = {2}\n"
-                        "                float inputs:roughness = {3}\n"
-                        "                float inputs:metallic = {4}\n"
-                        "                token outputs:surface\n            }}\n        }}\n",
-                        names[material], root, usdTuple(m.color), m.roughness, m.metallic));
+        const std::string prim = fmt::format("/{}/Materials/{}", root, names[material]);
+        const bool textured = m.texture && option(input, "uv", "scope") != "none";
+        out.text(fmt::format(
+            "        def Material \"{0}\"\n        {{\n"
+            "            token outputs:surface.connect = </{1}/Materials/{0}/Surface.outputs:surface>\n\n"
+            "            def Shader \"Surface\"\n            {{\n"
+            "                uniform token info:id = \"UsdPreviewSurface\"\n"
+            "                color3f inputs:diffuseColor = {2}\n"
+            "                float inputs:roughness = {3}\n"
+            "                float inputs:metallic = {4}\n"
+            "{5}                token outputs:surface\n            }}\n{6}        }}\n",
+            names[material], root, usdTuple(m.color), m.roughness, m.metallic,
+            textured ? textureInputs(*m.texture, prim) : "", textured ? textureShaders(*m.texture, prim, folder) : ""));
     }
     out.text("    }\n");
 }
@@ -316,7 +363,7 @@ static Status writeUsda(const ExportInput& input, const Path& temporary, const P
     if (!input.levels.empty()) out.text(levelVariants(input));
     if (input.scene)
         if (const Status s = Places(out, input, names, root).write(used); !s.ok()) return s;
-    if (input.byMaterial) writeMaterials(out, input, used, names, root);
+    if (input.byMaterial) writeMaterials(out, input, used, names, root, target.parent_path());
     out.text("}\n");
     return out.finish();
 }

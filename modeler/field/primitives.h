@@ -74,6 +74,7 @@ struct Primitive {
     bool morphs = false;                    ///< its first parameter is the share of a morph
     convex::PartsOf convexParts = nullptr;  ///< null where it has none, or where they must be found from its field
     PlanUse plan = PlanUse::None;
+    bool hasFlatFaces = true;  ///< its surface is made of planes
 };
 
 /// The table, in the order of docs/reference.md.

@@ -122,7 +122,8 @@ Material materialOf(const Json& json) {
     return {json.value("name", ""),
             {color.at(0).get<float>(), color.at(1).get<float>(), color.at(2).get<float>()},
             pbr.value("roughnessFactor", .8f),
-            pbr.value("metallicFactor", 0.f)};
+            pbr.value("metallicFactor", 0.f),
+            nullptr};
 }
 
 /// The pieces of a mesh of the file's own, in metres.

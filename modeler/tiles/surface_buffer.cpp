@@ -244,7 +244,7 @@ Json SurfaceBuffer::addJoined(const std::vector<SurfacePiece>& pieces, const std
     const size_t indices = addIndices(joined);
     const int component = joined.vertices < 65535 ? shortType : uintType;
     if (inColors) {
-        const Material colors{"colors", {1, 1, 1}, .85f, 0};
+        const Material colors{"colors", {1, 1, 1}, .85f, 0, nullptr};
         primitives.push_back({{"attributes", attributes},
                               {"indices", addAccessor(indices, 0, component, joined.corners, "SCALAR")},
                               {"material", materialOf(asJson(colors))}});

@@ -6,6 +6,7 @@
 #include "viewer/document/colours.h"
 #include "viewer/document/export_job.h"
 #include "viewer/document/param_rows.h"
+#include "viewer/document/report_rows.h"
 #include "viewer/document/rule_rows.h"
 #include "viewer/document/shape_rows.h"
 
@@ -34,6 +35,19 @@ TEST(RuleRows, ShowTheRuleTree) {
     EXPECT_EQ(text,
               "start A\n  \n    split x\n      1m:\n        b\n      { }*\n        ~2m:\n          C\n            with "
               "n = 3\n      ~1:\n        choose\n          2:\n            d\n          1:\n            nil\n");
+}
+
+TEST(ReportRows, SumWithTheirUnits) {
+    const auto model =
+        shown(Document("grammar 2\nstart A -> cube size (4, 3, 5) report floors (20m2) + cube size (2, 3, 5) at +x "
+                       "report floors (10m2) "
+                       "report doors 2\n"));
+    const auto rows = reportRows(model->model.derivation);
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[0].name, "floors");
+    EXPECT_EQ(rows[0].sum, "30m2");
+    EXPECT_EQ(rows[0].details, "2 shapes, from 10m2 to 20m2");
+    EXPECT_EQ(rows[1].sum, "2");
 }
 
 TEST(RuleRows, FindTheRowOfAPlace) {

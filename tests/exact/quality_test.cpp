@@ -72,7 +72,9 @@ mesh::Mesh boxMesh(Vec3d lo, Vec3d hi, bool capped = false) {
 
 Provenance twoLooks() {
     Provenance p;
-    p.materials = {{"red", {1, 0, 0}, 1, 0}, {"green", {0, 1, 0}, 1, 0}, {"red again", {1, 0, 0}, 1, 0}};
+    p.materials = {{"red", {1, 0, 0}, 1, 0, nullptr},
+                   {"green", {0, 1, 0}, 1, 0, nullptr},
+                   {"red again", {1, 0, 0}, 1, 0, nullptr}};
     p.parts = {
         {}, {"A", "A", "", "a.sgm", 1, 0, {}}, {"B", "B", "", "a.sgm", 2, 1, {}}, {"C", "C", "", "a.sgm", 3, 2, {}}};
     return p;

@@ -22,7 +22,8 @@ struct House : testing::Test {
     Scratch folder;
 
     House() {
-        provenance.materials = {{"stone", {.5f, .5f, .5f}, .8f, 0}, {"glass", {.1f, .3f, .5f}, .1f, 0}};
+        provenance.materials = {{"stone", {.5f, .5f, .5f}, .8f, 0, nullptr},
+                                {"glass", {.1f, .3f, .5f}, .1f, 0, nullptr}};
         provenance.parts = {{}};
         const std::pair<const char*, uint32_t> parts[] = {
             {"House/wall", 0}, {"House/Wing/Window", 1}, {"House/Wing/Window[2]", 1}, {"House/Door", 0}};

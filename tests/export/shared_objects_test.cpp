@@ -22,7 +22,7 @@ struct Street : testing::Test {
     Scratch folder;
 
     Street() {
-        provenance.materials = {{"stone", {.5f, .5f, .5f}, .8f, 0}};
+        provenance.materials = {{"stone", {.5f, .5f, .5f}, .8f, 0, nullptr}};
         tree.nodes.push_back({"street", 0, "Street", "Street", "", "a.sgm", 1, {}});
         tree.ofOrigin = {0};
         input.mesh = &mesh;

@@ -60,8 +60,8 @@ TEST(Materials, ATerminalsLookFollowsItsParameters) {
     other.params = {blue, rules::Value::number(.25)};
     const Lowered d(text, other);
     ASSERT_EQ(d.model->provenance.materials.size(), 2u);
-    EXPECT_EQ(d.model->provenance.materials[0], (Material{"rock", {0, 0, 1}, .25f, 0}));
-    EXPECT_EQ(d.model->provenance.materials[1], (Material{"rock_2", {0, 1, 0}, .25f, 0}));
+    EXPECT_EQ(d.model->provenance.materials[0], (Material{"rock", {0, 0, 1}, .25f, 0, nullptr}));
+    EXPECT_EQ(d.model->provenance.materials[1], (Material{"rock_2", {0, 1, 0}, .25f, 0, nullptr}));
 }
 
 TEST(Materials, AColourThatNothingNamesIsItsOwnName) {

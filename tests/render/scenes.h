@@ -50,7 +50,7 @@ struct Scene {
 
     /// A new origin with a material of its own.
     OriginId origin(Vec3f color, float roughness = 0.8f, float metallic = 0) {
-        provenance.materials.push_back({"", color, roughness, metallic});
+        provenance.materials.push_back({"", color, roughness, metallic, nullptr});
         Part part;
         part.material = static_cast<uint32_t>(provenance.materials.size() - 1);
         provenance.parts.push_back(part);

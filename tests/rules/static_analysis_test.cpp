@@ -18,6 +18,17 @@ TEST(Endless, RulesAreNamed) {
     EXPECT_EQ(judged("rule A -> cube for d in axes { + A }\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
 }
 
+TEST(WaitingCycles, AreToldOnce) {
+    EXPECT_EQ(judged("rule A -> cube : B, cube : C\nrule B after C -> cube\nrule C after B -> cube\n"),
+              "warning: 'B' waits for 'C', and 'C' waits for 'B': nothing decides which comes first\n");
+    EXPECT_EQ(judged("rule A -> cube : B, cube : C\nrule B after C -> cube\nrule C -> cube\n"), "");
+    EXPECT_EQ(
+        judged("rule A -> cube : B, cube : C, cube : D\nrule B after C -> cube\nrule C after D -> cube\n"
+               "rule D after B -> cube\nrule D after C -> cube\n"),
+        "warning: 'B' waits for 'C', and 'C' waits for 'D', and 'D' waits for 'B': nothing decides which comes first\n"
+        "warning: 'C' waits for 'D', and 'D' waits for 'C': nothing decides which comes first\n");
+}
+
 TEST(Endless, CirclesAreNamed) {
     EXPECT_EQ(judged("rule A -> B\nrule B -> C, cube\nrule C -> sphere : A\n"),
               "rule 'A#1' never ends: 'A' (A#1) -> 'B' (B#1) -> 'C' (C#1) -> 'A'\n");

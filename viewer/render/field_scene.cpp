@@ -1,8 +1,10 @@
 #include "viewer/render/field_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
+#include "modeler/core/parallel.h"
 #include "viewer/render/scene.h"
 #include "viewer/render/shader_text.h"
 
@@ -40,6 +42,7 @@ void FieldScene::look(const PictureOptions& options, double fine, bool share) {
     setScene(programs_->shade, field_->bounds, options);
     tracer_->look(options, fine);
     seen_.look(options, fine);
+    view_ = viewOf(options.camera, options.width, options.height);
     share_ = share;
 }
 
@@ -123,20 +126,49 @@ Result<Rays> FieldScene::trace(std::span<const Job> jobs, Progress* progress) {
     return rays;
 }
 
+/// A hit on a texture has a row of its own behind those of the materials.
+FieldScene::Surfaces FieldScene::surfacesOf(const Rays& rays) const {
+    Surfaces surfaces{{}, {}, rays.shadings};
+    for (const OriginId origin : rays.origins) surfaces.materialOfHit.push_back(field_->materialOf[origin]);
+    const SurfaceTextures& textures = field_->textures;
+    if (!textures.any()) return surfaces;
+    surfaces.rows = materialRows(field_->materials);
+    const auto before = static_cast<uint32_t>(field_->materials.size());
+    std::vector<uint32_t> covered;
+    for (uint32_t i = 0; i < rays.hits.size(); ++i)
+        if (rays.hits[i].kind() == HitKind::Object && textures.covers(rays.origins[i])) covered.push_back(i);
+    surfaces.rows.resize(2 * (before + covered.size()));
+    parallelFor(covered.size(), threads_, nullptr, [&](size_t k, int) {
+        const uint32_t i = covered[k];
+        const Material& m = field_->materials[surfaces.materialOfHit[i]];
+        SurfaceLook look{m.color, m.roughness, m.metallic, surfaces.shadings[i].normal};
+        const Vec3f toEye = view_.eye.as<float>() - rays.hits[i].position;
+        const float distance_m = length(toEye), slope = std::abs(dot(toEye, look.normal)) / std::max(distance_m, 1e-9f);
+        const double footprint_m =
+            static_cast<double>(distance_m / std::sqrt(std::max(slope, .05f))) * view_.pixelAngle;
+        textures.apply(rays.origins[i], rays.hits[i].position, footprint_m, look);
+        surfaces.materialOfHit[i] = before + static_cast<uint32_t>(k);
+        surfaces.shadings[i].normal = look.normal;
+        surfaces.rows[2 * (before + k)] = {look.color.x, look.color.y, look.color.z, look.roughness};
+        surfaces.rows[2 * (before + k) + 1] = {look.metallic, 0, 0, 0};
+    });
+    return surfaces;
+}
+
 Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
     Result<Rays> traced = trace(jobs, progress);
     if (!traced) return traced;
     Rays& rays = *traced;
     if (Status s = light(jobs, rays, progress); !s) return s.error();
-    std::vector<uint32_t> materialOfHit;
-    for (const OriginId origin : rays.origins) materialOfHit.push_back(field_->materialOf[origin]);
-    const Buffer hitBuffer = Buffer::of<Hit>(rays.hits), litBuffer = Buffer::of<Shading>(rays.shadings),
-                 materialBuffer = Buffer::of<uint32_t>(materialOfHit),
+    const Surfaces surfaces = surfacesOf(rays);
+    const Buffer hitBuffer = Buffer::of<Hit>(rays.hits), litBuffer = Buffer::of<Shading>(surfaces.shadings),
+                 materialBuffer = Buffer::of<uint32_t>(surfaces.materialOfHit),
+                 textured = surfaces.rows.empty() ? Buffer() : Buffer::of<std::array<float, 4>>(surfaces.rows),
                  colors = Buffer::ofBytes(nullptr, jobs.size() * sizeof(rays.colors[0]));
     hitBuffer.bindStorage(2);
     litBuffer.bindStorage(3);
     materialBuffer.bindStorage(4);
-    materials_.bindStorage(5);
+    (surfaces.rows.empty() ? materials_ : textured).bindStorage(5);
     colors.bindStorage(6);
     if (Status s = runInPieces(programs_->shade, jobs.size(), shadePiece_, progress); !s) return s.error();
     rays.colors = colors.read<std::array<float, 4>>(jobs.size());

@@ -9,6 +9,7 @@
 
 #include "viewer/render/gpu_tracer.h"
 #include "viewer/render/pixel_cache.h"
+#include "viewer/render/scene.h"
 #include "viewer/render/tracer.h"
 
 namespace sgm::render {
@@ -53,6 +54,13 @@ private:
     /// Asks the tracer about some of the hits.
     Status ask(Tracer::What what, const std::vector<uint32_t>& which, Rays& rays, Progress* progress);
     Status light(std::span<const Job> jobs, Rays& rays, Progress* progress);
+    /// What the hits are like, for the shader that colours them.
+    struct Surfaces {
+        std::vector<uint32_t> materialOfHit;
+        MaterialRows rows;              ///< empty: those of the materials alone
+        std::vector<Shading> shadings;  ///< with the normals of textures
+    };
+    Surfaces surfacesOf(const Rays& rays) const;
 
     std::shared_ptr<const PreparedField> field_;
     std::shared_ptr<const FieldPrograms> programs_;
@@ -60,6 +68,7 @@ private:
     PixelCache seen_;
     bool share_ = true;
     Buffer materials_;
+    View view_{};
     int threads_;
     size_t shadePiece_ = 2048;  ///< jobs a dispatch
 };

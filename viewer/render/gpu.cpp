@@ -281,6 +281,32 @@ void MapStack::bindTexture(uint32_t unit) const {
     glBindTexture(GL_TEXTURE_2D_ARRAY, texture.id());
 }
 
+PictureStack PictureStack::of(std::span<const std::vector<uint8_t>> pictures, int edge, bool colors) {
+    const std::vector<uint8_t> black{0, 0, 0, 255};
+    const std::vector<std::vector<uint8_t>> none{black};
+    if (pictures.empty()) pictures = none, edge = 1;
+    PictureStack stack;
+    GLuint id = 0;
+    glGenTextures(1, &id);
+    stack.texture_ = Texture(id);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, id);
+    const auto levels = static_cast<GLsizei>(std::bit_width(static_cast<uint32_t>(edge)));
+    glTexStorage3D(GL_TEXTURE_2D_ARRAY, levels, colors ? GL_SRGB8_ALPHA8 : GL_RGBA8, edge, edge,
+                   static_cast<GLsizei>(pictures.size()));
+    for (size_t i = 0; i < pictures.size(); ++i)
+        glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, static_cast<GLint>(i), edge, edge, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+                        pictures[i].data());
+    glGenerateMipmap(GL_TEXTURE_2D_ARRAY);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    return stack;
+}
+
+void PictureStack::bindTexture(uint32_t unit) const {
+    glActiveTexture(GL_TEXTURE0 + unit);
+    glBindTexture(GL_TEXTURE_2D_ARRAY, texture_.id());
+}
+
 TriangleBuffers TriangleBuffers::of(std::span<const Vec3f> positions, std::span<const Vec3f> normals,
                                     std::span<const float> numbers, std::span<const Vec3<uint32_t>> triangles) {
     TriangleBuffers buffers;

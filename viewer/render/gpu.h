@@ -200,6 +200,18 @@ struct MapStack {
     void bindTexture(uint32_t unit) const;
 };
 
+/// Square pictures of one size, RGBA from the lowest row up, that repeat and have mip maps.
+class PictureStack {
+public:
+    /// With `colors` the bytes are sRGB and shaders read linear light. Without pictures there is one black pixel.
+    static PictureStack of(std::span<const std::vector<uint8_t>> pictures, int edge, bool colors);
+    /// Makes the stack the texture of a unit.
+    void bindTexture(uint32_t unit) const;
+
+private:
+    Texture texture_;
+};
+
 /// Positions, normals and a number a vertex with indices; `draw` sends triangles [first, first + count).
 class TriangleBuffers {
 public:

@@ -160,6 +160,9 @@ Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& prove
         return Error{Error::Kind::Internal, "the mesh has no normal for every vertex or no origin for every triangle"};
     prepared.bounds = mesh.bounds();
     prepared.materials = provenance.materials;
+    auto textures = prepareMeshTextures(mesh, provenance);
+    if (!textures) return textures.error();
+    prepared.textures = std::move(*textures);
     findComponents(prepared);
     const auto neighbours = mesh::findEdgeNeighbours(prepared.triangles, prepared.positions.size());
     const std::vector<uint32_t> pieces = numberSmoothPieces(mesh, neighbours);
@@ -197,8 +200,14 @@ MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshProgram
       owners_(upload(mesh.owners)),
       hardEdges_(mesh.hardEdges),
       materials_(uploadMaterials(mesh.materials)),
+      textured_(!mesh.textures.frames.empty()),
       skyCount_(skyMapsFor(triangleCount_)) {
     makeMaps();
+    if (!textured_) return;
+    frameOfTriangle_ = TexelBuffer::of(mesh.textures.frameOfTriangle, 1);
+    frames_ = Buffer::of<MeshTextures::Frame>(mesh.textures.frames);
+    colorPictures_ = PictureStack::of(mesh.textures.colors, MeshTextures::edge, true);
+    numberPictures_ = PictureStack::of(mesh.textures.numbers, MeshTextures::edge, false);
 }
 
 MeshScene::MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, const Box3f& bounds,
@@ -281,6 +290,18 @@ void MeshScene::setLight(const Program& program, bool sky) const {
     program.set("skyCount", sky ? static_cast<int>(skyCount_) : 0);
 }
 
+void MeshScene::bindTextures(const Program& program) const {
+    program.set("textured", textured_ ? 1 : 0);
+    program.set("frameOfTriangle", 3);
+    program.set("colorPictures", 4);
+    program.set("numberPictures", 5);
+    if (!textured_) return;
+    frameOfTriangle_.bind(3);
+    frames_.bindStorage(5);
+    colorPictures_.bindTexture(4);
+    numberPictures_.bindTexture(5);
+}
+
 void MeshScene::drawMask(const Subsample& subsample, int columns) const {
     if (!subsample.wanted) return;
     const WithoutColor depthAlone;
@@ -311,6 +332,7 @@ Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureO
     sunMap_.bindTexture(1);
     skyMaps_.bindTexture(2);
     materials_.bindStorage(4);
+    bindTextures(color);
     const double left = x0 + subsample.right, low = y0 - subsample.down;
     const Matrix4 clipFromWorld = tileMatrix(view, options, near, far, left, low, target.width, target.height);
     if (!style.section && !subsample.wanted) {  // depth first, for shading what is hidden costs as much as what is seen

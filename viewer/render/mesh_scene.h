@@ -11,6 +11,7 @@
 #include "viewer/render/draw.h"
 #include "viewer/render/gpu.h"
 #include "viewer/render/mesh_style.h"
+#include "viewer/render/mesh_textures.h"
 
 namespace sgm::render {
 
@@ -27,10 +28,11 @@ struct PreparedMesh {
     std::vector<Owner> owners;  ///< by triangle
     std::vector<Segment> hardEdges;
     std::vector<Material> materials;
+    MeshTextures textures;
     Box3f bounds;
     uint32_t components = 0;
 };
-/// Error::Internal when a vertex lacks its normal or a triangle its origin.
+/// Error::Internal when a vertex lacks its normal or a triangle its origin; the errors of prepareMeshTextures.
 Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& provenance);
 
 /// The shaders that draw meshes.
@@ -69,6 +71,7 @@ private:
     Status drawTriangles(const Program& program, Progress* progress) const;
     Status drawMap(const MapStack& map, Vec3d towardsLight, Progress* progress) const;
     void setLight(const Program& program, bool sky) const;
+    void bindTextures(const Program& program) const;
     /// Nothing is drawn where a subsample isn't wanted.
     void drawMask(const Subsample& subsample, int columns) const;
     /// Where all triangles are drawn: a picture's projection and its nearest distance.
@@ -87,6 +90,10 @@ private:
     TexelBuffer owners_;
     CreaseLines hardEdges_;
     Buffer materials_;
+    bool textured_ = false;
+    TexelBuffer frameOfTriangle_;
+    Buffer frames_;
+    PictureStack colorPictures_, numberPictures_;
     MapStack sunMap_, skyMaps_, skyDepth_;
     size_t skyCount_ = 0, mapsDrawn_ = 0;
 };

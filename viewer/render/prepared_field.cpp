@@ -11,7 +11,10 @@ Result<PreparedField> prepareField(const eval::Tape& tape, const Box3f& bounds, 
                                    int threads, Progress* progress, int levels) {
     // Soft shadows and occlusion ask for exact distances up to the margin, and no further.
     const float margin = 0.03f * length(bounds.size());
-    PreparedField field{tape, bounds, bounds.inflated(margin), {}, provenance.materials, {}};
+    PreparedField field{tape, bounds, bounds.inflated(margin), {}, provenance.materials, {}, {}};
+    Result<SurfaceTextures> textures = SurfaceTextures::create(provenance, progress);
+    if (!textures) return textures.error();
+    field.textures = std::move(*textures);
     Result<CellTree> tree = cutIntoCells(tape, field.box, margin, threads, progress, levels);
     if (!tree) return tree.error();
     field.tree = std::move(*tree);

@@ -8,6 +8,7 @@
 #include "modeler/core/provenance.h"
 #include "modeler/core/result.h"
 #include "viewer/render/cells.h"
+#include "viewer/render/surface_textures.h"
 
 namespace sgm::render {
 
@@ -18,6 +19,7 @@ struct PreparedField {
     CellTree tree;
     std::vector<Material> materials;
     std::vector<uint32_t> materialOf;  ///< by OriginId
+    SurfaceTextures textures;
 
     float inverseLipschitz() const { return 1.0f / std::max(tape.lipschitz(), 1e-6f); }
     /// 1; −1 where `eye` stands inside the solid, which is then drawn inside out.
@@ -26,7 +28,7 @@ struct PreparedField {
     std::vector<OriginId> originsOf(const std::vector<Vec3f>& places, int threads) const;
 };
 
-/// Cuts space into cells, at most `levels` deep. Error::Cancelled when `progress` says so.
+/// Cuts space into cells, at most `levels` deep. The errors of SurfaceTextures::create.
 Result<PreparedField> prepareField(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
                                    int threads, Progress* progress, int levels = CellTree::surfaceDepth);
 

@@ -66,13 +66,17 @@ void setScene(const Program& program, const Box3f& bounds, const PictureOptions&
     program.set("lampReach", static_cast<float>(options.camera.lamp_m));
 }
 
-Buffer uploadMaterials(const std::vector<Material>& materials) {
-    std::vector<std::array<float, 4>> rows;
+MaterialRows materialRows(const std::vector<Material>& materials) {
+    MaterialRows rows;
     for (const Material& m : materials) {
         rows.push_back({m.color.x, m.color.y, m.color.z, m.roughness});
         rows.push_back({m.metallic, 0, 0, 0});
     }
-    return Buffer::of<std::array<float, 4>>(rows);
+    return rows;
+}
+
+Buffer uploadMaterials(const std::vector<Material>& materials) {
+    return Buffer::of<std::array<float, 4>>(materialRows(materials));
 }
 
 namespace {

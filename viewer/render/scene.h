@@ -24,6 +24,8 @@ Vec3f sunDirection();
 void setScene(const Program& program, const Box3f& bounds, const PictureOptions& options);
 
 /// Two rows of four floats a material: colour and roughness; metallic.
+using MaterialRows = std::vector<std::array<float, 4>>;
+MaterialRows materialRows(const std::vector<Material>& materials);
 Buffer uploadMaterials(const std::vector<Material>& materials);
 
 /// Error::Input when there is nothing that could be drawn.

@@ -10,6 +10,7 @@
 
 #include "viewer/document/export_job.h"
 #include "viewer/document/param_rows.h"
+#include "viewer/document/report_rows.h"
 #include "viewer/document/rule_rows.h"
 #include "viewer/document/shape_rows.h"
 #include "viewer/window/code_editor.h"
@@ -26,6 +27,8 @@ public:
 
 private:
     void choices(Workbench& bench);
+    /// What shapes report, below the parameters.
+    void reports(Workbench& bench);
     void styles(Workbench& bench);
     void row(Workbench& bench, document::ParamRow row);
     bool control(Workbench& bench, document::ParamRow& row);
@@ -42,6 +45,8 @@ private:
     uint64_t aheadRevision_ = 0;              ///< of the document, when the last of them was
     std::optional<document::ParamRow> held_;  ///< what is dragged; the model follows it
     std::string styleName_;
+    std::shared_ptr<const document::BuiltModel> reported_;  ///< what `reports_` are of
+    std::vector<document::ReportRow> reports_;
     float labelShare_ = 0.46f;  ///< of a row's width
 };
 

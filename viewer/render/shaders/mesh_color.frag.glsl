@@ -6,6 +6,11 @@ out vec4 color;
 layout(std430, binding = 4) readonly buffer Materials { vec4 materials[]; };  // two a material: colour, roughness; metallic
 uniform usamplerBuffer ownerOfTriangle;  // material, rule, component, smooth piece
 uniform int firstTriangle;
+struct Frame { vec4 u, v, more; };  // metres to tiles with a layer of colours; the same, of normals; layer of roughness
+layout(std430, binding = 5) readonly buffer Frames { Frame frames[]; };
+uniform int textured;                   // whether any triangle is
+uniform usamplerBuffer frameOfTriangle;  // and how, from 1
+uniform sampler2DArray colorPictures, numberPictures;
 uniform int meshLook;  // as viewer::MeshLook
 uniform int wire;
 const int lookMaterials = 0, lookNormals = 1, lookCurvature = 2, lookOrigin = 3, lookComponents = 4, lookLabels = 5, lookCreases = 6;
@@ -25,11 +30,33 @@ vec3 curvatureColor(float k) {
 /// Plain light from the eye, for colours that tell something.
 vec3 told(vec3 told, vec3 normal, vec3 toEye) { return told * (0.25 + 0.75 * max(dot(normal, toEye), 0.0)); }
 
+/// What the triangle's texture changes.
+void cover(int triangle, inout Surface s) {
+    vec3 right = dFdx(worldPosition), up = dFdy(worldPosition);
+    if (textured == 0) return;
+    int number = int(texelFetch(frameOfTriangle, triangle).x);
+    if (number == 0) return;
+    Frame f = frames[number - 1];
+    vec2 at = vec2(dot(s.position, f.u.xyz), dot(s.position, f.v.xyz));
+    vec2 dx = vec2(dot(right, f.u.xyz), dot(right, f.v.xyz)), dy = vec2(dot(up, f.u.xyz), dot(up, f.v.xyz));
+    if (f.u.w >= 0.0) s.color = textureGrad(colorPictures, vec3(at, f.u.w), dx, dy).rgb;
+    if (f.more.x >= 0.0) {
+        vec3 told = textureGrad(numberPictures, vec3(at, f.more.x), dx, dy).rgb;
+        s.roughness = told.g;
+        s.metallic *= told.b;
+    }
+    if (f.v.w >= 0.0) {
+        vec3 t = 2.0 * textureGrad(numberPictures, vec3(at, f.v.w), dx, dy).xyz - 1.0;
+        s.normal = normalize(normalize(f.u.xyz) * t.x + normalize(f.v.xyz) * t.y + s.normal * max(t.z, 0.05));
+    }
+}
+
 vec3 materialLight(int triangle, vec3 normal, vec3 toEye) {
     int m = int(texelFetch(ownerOfTriangle, triangle).x) * 2;
     Surface s = Surface(worldPosition, normal, materials[m].rgb, materials[m].a, materials[m + 1].x);
+    cover(triangle / 4, s);
     vec3 start = worldPosition + normal * (1.5e-3 * mapSpan);
-    float sunlight = lampReach == 0.0 && dot(normal, sunDirection) > 0.0 ? sunlightAt(start) : 0.0;
+    float sunlight = lampReach == 0.0 && dot(s.normal, sunDirection) > 0.0 ? sunlightAt(start) : 0.0;
     vec3 light = shade(s, toEye, sunlight, opennessAt(start, normal, 0.0), lampReach == 0.0 ? 1.0 : 0.12);
     return tonemap(hazed(light, length(eye - worldPosition), skyColor(-toEye)));
 }

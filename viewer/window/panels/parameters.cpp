@@ -60,9 +60,27 @@ void ParametersPanel::show(Workbench& bench) {
             group = r.group;
             row(bench, r);
         }
+        reports(bench);
         styles(bench);
     }
     ImGui::EndChild();
+}
+
+void ParametersPanel::reports(Workbench& bench) {
+    if (reported_ != bench.session.model()) {
+        reported_ = bench.session.model();
+        reports_ = document::reportRows(reported_->model.derivation);
+    }
+    if (reports_.empty()) return;
+    heading("Reports");
+    for (const document::ReportRow& row : reports_) {
+        ImGui::AlignTextToFramePadding();
+        faint(row.name.c_str());
+        ImGui::SameLine(labelShare_ * ImGui::GetContentRegionAvail().x);
+        ImGui::TextUnformatted(row.sum.c_str());
+        hint(row.details.c_str());
+        bench.report.mark("reports." + row.name);
+    }
 }
 
 void ParametersPanel::list(Workbench& bench) {

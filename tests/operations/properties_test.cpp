@@ -1,0 +1,102 @@
+// What a file says of the outlines on which shapes stand: value, word and outlines.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "modeler/plan/shapes.h"
+#include "tests/derive/grammars.h"
+#include "tests/operations/shapes_called.h"
+
+namespace sgm::testing_ {
+namespace {
+
+constexpr const char* town = R"({"type": "FeatureCollection", "features": [
+  {"type": "Feature", "properties": {"height": 12, "roof:shape": "flat", "turned": 90},
+   "geometry": {"type": "Polygon", "coordinates": [[[0, 0], [200, 0], [200, 100], [0, 100], [0, 0]]]}},
+  {"type": "Feature", "properties": {"height": "7.5 m"},
+   "geometry": {"type": "Polygon", "coordinates": [[[300, 0], [500, 0], [500, 100], [300, 100], [300, 0]]]}},
+  {"type": "Feature", "properties": {"height": "high"},
+   "geometry": {"type": "Polygon", "coordinates": [[[600, 0], [800, 0], [800, 100], [600, 100], [600, 0]]]}}]})";
+
+std::shared_ptr<const rules::Grammar> overTown(const std::string& text, std::string* errors = nullptr) {
+    rules::Loader loader;
+    loader.outlines = [](const std::string& name, const syntax::Source&,
+                         std::string& why) -> std::shared_ptr<const plan::Features> {
+        why = "No such file or directory";
+        if (name != "town.geojson") return nullptr;
+        auto features = plan::readGeoJson(town);
+        EXPECT_TRUE(features.ok()) << (features.ok() ? "" : features.error().message);
+        return std::make_shared<const plan::Features>(std::move(*features));
+    };
+    static std::vector<syntax::SourcePtr> kept;
+    kept.push_back(std::make_shared<const syntax::Source>("test.sgm", "grammar 2\n" + text));
+    syntax::Diagnostics diagnostics;
+    auto grammar = rules::load(kept.back(), operations::table(), loader, diagnostics);
+    for (const auto& d : diagnostics.all()) {
+        if (d.severity != syntax::Severity::Error) continue;
+        if (errors)
+            *errors += syntax::render(d);
+        else
+            ADD_FAILURE() << syntax::render(d);
+    }
+    return grammar;
+}
+
+derive::Derivation derivedOver(const std::string& text) {
+    auto d = derive::derive(overTown(text), {}, nullptr);
+    EXPECT_TRUE(d.ok()) << (d.ok() ? "" : d.error().message);
+    return std::move(*d);
+}
+
+TEST(OutlineProperties, ReachRulesBelow) {
+    const auto d = derivedOver(
+        "terminal wall\nstart S -> for k in 1..outlines(\"town.geojson\") { Lot footprint file(\"town.geojson\", k) }\n"
+        "rule Lot -> Deep\nrule Deep -> extrude (value(\"height\", 5m)) wall\n");
+    std::multiset<double> heights_m;
+    for (const derive::Shape* wall : shapesCalled(d, "wall")) heights_m.insert(wall->scope.size.y);
+    EXPECT_EQ(heights_m, (std::multiset<double>{5, 7.5, 12}))
+        << "texts that begin with a number count, and what is no number is as if nothing was said";
+}
+
+TEST(OutlineProperties, AreSaidBeforeAShapeToo) {
+    const auto d = derivedOver(
+        "terminal wall\nstart S -> footprint file(\"town.geojson\", 1) Lot\nrule Lot -> extrude (value(\"height\", "
+        "5m)) wall\n");
+    EXPECT_DOUBLE_EQ(shapesCalled(d, "wall")[0]->scope.size.y, 12);
+}
+
+TEST(OutlineProperties, WordsChooseRules) {
+    const auto d = derivedOver(
+        "terminal flat = cube\nterminal gable = prism\nstart S -> for k in 1..3 { Lot footprint file(\"town.geojson\", "
+        "k) }\n"
+        "rule Lot when word(\"roof:shape\", gabled) == flat -> flat\nrule Lot -> gable\n");
+    EXPECT_EQ(shapesCalled(d, "flat").size(), 1u);
+    EXPECT_EQ(shapesCalled(d, "gable").size(), 2u);
+}
+
+TEST(OutlineProperties, NumbersHaveTheUnitOfWhatStandsForThem) {
+    const auto d = derivedOver(
+        "terminal wall = cube\nstart S -> footprint file(\"town.geojson\", 1) Lot\nrule Lot -> wall turn "
+        "(value(\"turned\", 0deg))\n");
+    const derive::Shape& wall = *shapesCalled(d, "wall")[0];
+    EXPECT_NEAR(std::abs(wall.scope.axes.x.z), 1, 1e-9) << "a quarter turn, in degrees in the file";
+}
+
+TEST(OutlineProperties, WhatIsWrongIsTold) {
+    const auto told = [](const std::string& text) {
+        std::string errors;
+        overTown(text + "\n", &errors);
+        return errors;
+    };
+    EXPECT_NE(told("start S -> cube size (value(height, 3m), 1, 1)").find("the name of a property in quotes"),
+              std::string::npos);
+    EXPECT_NE(told("start S -> cube size (value(\"height\", true), 1, 1)").find("is a number"), std::string::npos);
+    EXPECT_NE(told("param a = value(\"height\", 3m)\nstart S -> cube size a").find("there is none here"),
+              std::string::npos);
+    EXPECT_NE(told("start S -> for k in 1..outlines(\"no.svg\") { cube }").find("can't use \"no.svg\""),
+              std::string::npos);
+    EXPECT_NE(told("start S -> for k in 1..outlines(3) { cube }").find("write 'outlines("), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sgm::testing_
