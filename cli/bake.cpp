@@ -124,7 +124,7 @@ const std::map<std::string, tiles::Delivery> deliveries{
 
 struct MergeOptions {
     std::string folder, at, format;
-    bool verify = false, quiet = false;
+    bool verify = false, quiet = false, progressLines = false;
 };
 
 Status mergeCells(const MergeOptions& options) {
@@ -143,7 +143,9 @@ Status mergeCells(const MergeOptions& options) {
     if (!options.quiet)
         fmt::print("wrote {0}/tileset.json\nwrote {0}/manifest.json\nwrote {0}/index.html\n", options.folder);
     if (options.format.empty()) return Done{};
-    Watch watch(options.quiet);
+    Watch watch(options.progressLines ? ProgressDisplay::Lines
+                : options.quiet       ? ProgressDisplay::None
+                                      : ProgressDisplay::Terminal);
     const Status made = tiles::deliver(options.folder, deliveries.at(options.format), watch.progress());
     if (made.ok() && !options.quiet) fmt::print("wrote {}/{}/\n", options.folder, options.format);
     return made;
@@ -205,6 +207,8 @@ void addMerge(CLI::App& app, int& exitCode) {
         ->check(CLI::IsMember({"blender", "usd", "heights"}));
     command->add_flag("--verify", options->verify, "Read every cell and compare it with its digest");
     command->add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
+    command->add_flag("--progress", options->progressLines,
+                      "Say how far `--for` is as lines `progress: STAGE PERCENT`");
     command->footer("Example:\n  sgm merge city --at 52.52,13.405");
     command->callback([options, &exitCode] {
         const Status done = mergeCells(*options);

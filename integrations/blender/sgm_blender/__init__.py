@@ -1,7 +1,7 @@
 """Builds sgm's grammars in place: see docs/blender.md."""
 import bpy
 
-from . import bake, jobs, operators, panels
+from . import bake, jobs, operators, panels, tiles
 
 bl_info = {
     "name": "sgm: grammars of implicit solids",
@@ -17,6 +17,7 @@ HANDLERS = (
     (bpy.app.handlers.depsgraph_update_post, jobs.on_change),
     (bpy.app.handlers.load_pre, jobs.on_load),
     (bpy.app.handlers.load_pre, bake.on_load),
+    (bpy.app.handlers.load_pre, tiles.on_load),
 )
 
 
@@ -32,9 +33,10 @@ def register():
 def unregister():
     jobs.stop_all()
     bake.stop_all()
+    tiles.stop_all()
     for handlers, handler in HANDLERS:
         handlers.remove(handler)
-    for step in (jobs.step, bake.step):
+    for step in (jobs.step, bake.step, tiles.step):
         if bpy.app.timers.is_registered(step):
             bpy.app.timers.unregister(step)
     bpy.types.VIEW3D_MT_add.remove(panels.add_to_menu)

@@ -6,7 +6,7 @@ import bpy
 from bpy.props import IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from . import bake, jobs, link, program
+from . import bake, jobs, link, program, tiles
 
 
 class ForModel(bpy.types.Operator):
@@ -178,6 +178,55 @@ class SGM_OT_unbake(ForModel):
         bake.remove(root)
 
 
+class SGM_OT_tiles(bpy.types.Operator, ImportHelper):
+    """Bring in a city that `sgm bake` made: pick its manifest.json"""
+
+    bl_idname, bl_label, bl_options = "sgm.tiles", "sgm City", {"REGISTER", "UNDO"}
+    filename_ext = ".json"
+    filter_glob: StringProperty(default="manifest.json;plan.json", options={"HIDDEN"})
+
+    def execute(self, context):
+        folder = os.path.dirname(os.path.abspath(self.filepath))
+        if not os.path.isfile(os.path.join(folder, "plan.json")):
+            self.report({"ERROR"}, f"{folder} is no folder that sgm bake wrote")
+            return {"CANCELLED"}
+        root = tiles.make_root(folder)
+        for thing in context.selected_objects:
+            thing.select_set(False)
+        context.view_layer.objects.active = root
+        root.select_set(True)
+        return read_tiles(self, root)
+
+
+class ForTiles(bpy.types.Operator):
+    """Base of operators on the city of the active object."""
+
+    @classmethod
+    def poll(cls, context):
+        return tiles.root_of(context.object) is not None
+
+
+class SGM_OT_tiles_again(ForTiles):
+    """Read the folder again: what has changed is replaced, the rest stays"""
+
+    bl_idname, bl_label, bl_options = "sgm.tiles_again", "Read Again", {"REGISTER", "UNDO"}
+
+    def execute(self, context):
+        return read_tiles(self, tiles.root_of(context.object))
+
+
+class SGM_OT_tiles_cancel(ForTiles):
+    """Stop; the cells that are there stay"""
+
+    bl_idname, bl_label, bl_options = "sgm.tiles_cancel", "Cancel", {"INTERNAL"}
+
+    def execute(self, context):
+        name = tiles.root_of(context.object).name
+        if name in tiles.imports:
+            tiles.imports[name].cancel()
+        return {"FINISHED"}
+
+
 class SGM_OT_open_line(bpy.types.Operator):
     """Open the grammar at this line in Blender's text editor"""
 
@@ -199,6 +248,16 @@ class SGM_OT_open_line(bpy.types.Operator):
         return {"FINISHED"}
 
 
+def read_tiles(operator, root):
+    try:
+        tiles.start(root)
+    except program.Failed as problem:
+        tiles.messages[root.name] = problem.messages
+        operator.report({"ERROR"}, str(problem))
+        return {"CANCELLED"}
+    return {"FINISHED"}
+
+
 def used_start(root):
     starts = link.panel_of(root)["starts"]
     return root.sgm.start or (starts[0]["name"] if starts else "")
@@ -212,4 +271,5 @@ def changed(root):
 
 
 CLASSES = (SGM_OT_add, SGM_OT_build, SGM_OT_cancel, SGM_OT_random_seed, SGM_OT_reset, SGM_OT_style, SGM_OT_start, SGM_OT_way,
-           SGM_OT_choose, SGM_OT_toggle, SGM_OT_bake, SGM_OT_unbake, SGM_OT_open_line)
+           SGM_OT_choose, SGM_OT_toggle, SGM_OT_bake, SGM_OT_unbake, SGM_OT_open_line, SGM_OT_tiles,
+           SGM_OT_tiles_again, SGM_OT_tiles_cancel)

@@ -4,7 +4,7 @@ import os
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from . import bake, jobs, link, operators
+from . import bake, jobs, link, operators, tiles
 
 
 def on_setting(settings, _context):
@@ -66,8 +66,13 @@ class SGM_PT_model(bpy.types.Panel):
 
     def draw(self, context):
         layout, root = self.layout, link.root_of(context.object)
+        city = tiles.root_of(context.object)
+        if root is None and city is not None:
+            draw_tiles(layout, city)
+            return
         if root is None:
             layout.operator("sgm.add", text="Grammar…", icon="FILE_FOLDER")
+            layout.operator("sgm.tiles", text="City…", icon="FILE_FOLDER")
             return
         panel = link.panel_of(root)
         layout.prop(root.sgm, "grammar", text="")
@@ -82,7 +87,19 @@ class SGM_PT_model(bpy.types.Panel):
         row.prop(root.sgm, "seed")
         row.operator("sgm.random_seed", text="", icon="FILE_REFRESH")
         draw_build(layout, root)
-        draw_messages(layout, root)
+        draw_messages(layout, jobs.messages.get(root[link.ROOT], []))
+
+
+def draw_tiles(layout, root):
+    layout.prop(root, f'["{tiles.FOLDER}"]', text="")
+    running = tiles.imports.get(root.name)
+    row = layout.row(align=True)
+    if running is not None:
+        row.label(text=running.stage)
+        row.operator("sgm.tiles_cancel", icon="X")
+    else:
+        row.operator("sgm.tiles_again", icon="FILE_REFRESH")
+    draw_messages(layout, tiles.messages.get(root.name, []))
 
 
 def draw_names(layout, label, names, used, operator, argument, none=None):
@@ -109,8 +126,8 @@ def draw_build(layout, root):
     row.prop(root.sgm, "live", toggle=True)
 
 
-def draw_messages(layout, root):
-    for message in jobs.messages.get(root[link.ROOT], [])[:12]:
+def draw_messages(layout, told):
+    for message in told[:12]:
         box = layout.box().column(align=True)
         row = box.row()
         place = f"{os.path.basename(message.file)}:{message.line}: " if message.line else ""
@@ -195,6 +212,7 @@ class SGM_PT_frames(ModelPanel):
 
 def add_to_menu(self, _context):
     self.layout.operator("sgm.add", text="sgm Grammar", icon="MOD_BUILD")
+    self.layout.operator("sgm.tiles", text="sgm City", icon="COMMUNITY")
 
 
 CLASSES = (SgmPreferences, SgmSettings, SGM_PT_model, SGM_PT_parameters, SGM_PT_form, SGM_PT_frames)
