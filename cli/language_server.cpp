@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <charconv>
 #include <condition_variable>
 #include <cstdio>
@@ -77,7 +78,6 @@ public:
             cancelled_.insert(textOf(memberOf(memberOf(message, "params"), "id")));
         } else {
             messages_.push_back(std::move(message));
-            if (progress_) progress_->cancel();  // what is done idly waits
         }
         changed_.notify_one();
     }
@@ -85,7 +85,13 @@ public:
     void close() {
         const std::lock_guard lock(mutex_);
         closed_ = true;
-        if (progress_) progress_->cancel();
+        changed_.notify_one();
+    }
+
+    /// Tells who waits that a trial has ended.
+    void noteTrial() {
+        const std::lock_guard lock(mutex_);
+        trialEnded_ = true;
         changed_.notify_one();
     }
 
@@ -95,14 +101,16 @@ public:
         bool superseded = false;  ///< a later change of the same text waits already
     };
 
-    /// The next message, waiting for it so long; nothing when none came. `closed` says that none will.
+    /// The next message, waiting for it so long; nothing when none came or a trial has ended. `closed` says that none
+    /// will.
     std::optional<Taken> take(std::optional<std::chrono::milliseconds> patience, bool& closed) {
         std::unique_lock lock(mutex_);
-        const auto ready = [this] { return closed_ || !messages_.empty(); };
+        const auto ready = [this] { return closed_ || trialEnded_ || !messages_.empty(); };
         if (patience)
             changed_.wait_for(lock, *patience, ready);
         else
             changed_.wait(lock, ready);
+        trialEnded_ = false;
         closed = closed_ && messages_.empty();
         if (messages_.empty()) return std::nullopt;
         Taken taken{std::move(messages_.front())};
@@ -112,25 +120,6 @@ public:
         taken.superseded = isSuperseded(taken.message);
         return taken;
     }
-
-    /// While it lives, a message cancels `progress`.
-    class Work {
-    public:
-        Work(Queue& queue, Progress& progress) : queue_(queue) {
-            const std::lock_guard lock(queue_.mutex_);
-            queue_.progress_ = &progress;
-            if (queue_.closed_ || !queue_.messages_.empty()) progress.cancel();
-        }
-        ~Work() {
-            const std::lock_guard lock(queue_.mutex_);
-            queue_.progress_ = nullptr;
-        }
-        Work(const Work&) = delete;
-        Work& operator=(const Work&) = delete;
-
-    private:
-        Queue& queue_;
-    };
 
 private:
     static std::string textOf(const Json& id) { return id.dump(-1, ' ', false, Json::error_handler_t::replace); }
@@ -150,8 +139,59 @@ private:
     std::condition_variable changed_;
     std::deque<Json> messages_;
     std::set<std::string> cancelled_;
-    Progress* progress_ = nullptr;
-    bool closed_ = false;
+    bool closed_ = false, trialEnded_ = false;
+};
+
+/// Runs trials of models on a thread of its own, one at a time, so that nobody who types waits for them.
+class Trials {
+public:
+    Trials(const language::Server& server, Queue& queue) : server_(server), queue_(queue) {}
+    ~Trials() {
+        cancel();
+        if (thread_.joinable()) thread_.join();
+    }
+    Trials(const Trials&) = delete;
+    Trials& operator=(const Trials&) = delete;
+
+    bool isBusy() const { return trial_.has_value(); }
+
+    void begin(language::Server::Trial trial) {
+        trial_ = std::move(trial);
+        progress_ = std::make_unique<Progress>();
+        ended_ = false;
+        thread_ = std::thread([this] {
+            try {
+                server_.run(*trial_, progress_.get());
+            } catch (const std::exception&) {
+                // As when memory is short: the text is left untried.
+            }
+            ended_ = true;
+            queue_.noteTrial();
+        });
+    }
+
+    /// What is no longer asked for ends soon.
+    void cancel() {
+        if (isBusy()) progress_->cancel();
+    }
+
+    /// The trial, once it has ended; one that was cancelled goes.
+    std::optional<language::Server::Trial> take() {
+        if (!isBusy() || !ended_) return std::nullopt;
+        thread_.join();
+        std::optional<language::Server::Trial> done;
+        done.swap(trial_);
+        if (cancelled(progress_.get())) done.reset();
+        return done;
+    }
+
+private:
+    const language::Server& server_;
+    Queue& queue_;
+    std::optional<language::Server::Trial> trial_;
+    std::unique_ptr<Progress> progress_;
+    std::atomic<bool> ended_{false};
+    std::thread thread_;
 };
 
 void readAll(Queue& queue) {
@@ -203,18 +243,22 @@ int serve() {
     language::Server server(std::move(environment));
     Queue queue;
     std::thread reader([&queue] { readAll(queue); });
+    Trials trials(server, queue);
     bool closed = false;
     while (!closed && server.exitCode() < 0) {
-        const bool idle = server.hasIdleWork();
-        const auto taken = queue.take(idle ? std::optional(settled) : std::nullopt, closed);
+        auto next = trials.isBusy() ? std::nullopt : server.nextTrial();
+        const auto taken = queue.take(next ? std::optional(settled) : std::nullopt, closed);
         if (taken) {
+            if (!isCalled(taken->message, "$/cancelRequest") && memberOf(taken->message, "id").is_null())
+                trials.cancel();
             answer(server, *taken);
-        } else if (idle && !closed) {
-            Progress progress;
-            const Queue::Work work(queue, progress);
-            for (const Json& out : server.workIdly(&progress)) writeMessage(out);
+        } else if (auto done = trials.take()) {
+            for (const Json& out : server.finish(std::move(*done))) writeMessage(out);
+        } else if (next && !closed) {
+            trials.begin(std::move(*next));
         }
     }
+    trials.cancel();
     reader.join();
     return std::max(server.exitCode(), 0);
 }

@@ -56,7 +56,16 @@ std::optional<Figures> figuresOf(std::shared_ptr<const rules::Grammar> grammar, 
         ++applied;
         made += step.madeCount;
     }
-    for (const derive::Shape& shape : derivation->tree.shapes) ++figures.symbols[derivation->tree.labels[shape.label]];
+    for (const derive::Shape& shape : derivation->tree.shapes) {
+        ++figures.symbols[derivation->tree.labels[shape.label]];
+        if (shape.span.source != grammar->sources[0].get() || shape.parent == derive::none) continue;
+        const auto [at, fresh] = figures.sizes.try_emplace(shape.span.begin);
+        Sizes& sizes = at->second;
+        sizes.least = fresh ? shape.scope.size : min(sizes.least, shape.scope.size);
+        sizes.most = fresh ? shape.scope.size : max(sizes.most, shape.scope.size);
+        sizes.end = shape.span.end;
+        ++sizes.count;
+    }
     return figures;
 }
 

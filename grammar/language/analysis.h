@@ -7,6 +7,7 @@
 #include "grammar/language/names.h"
 #include "grammar/rules/check.h"
 #include "modeler/core/progress.h"
+#include "modeler/core/vec.h"
 
 namespace sgm::language {
 
@@ -16,10 +17,18 @@ struct File {
     std::vector<Occurrence> names;
 };
 
-/// What the first model at the defaults made, by rule and symbol; for hovers.
+/// The sizes of the shapes that one element of a rule made.
+struct Sizes {
+    uint32_t end = 0;    ///< byte offset behind the element
+    uint64_t count = 0;  ///< shapes
+    Vec3d least, most;   ///< metres, each axis by itself
+};
+
+/// What the first model at the defaults made, by rule and symbol; for hovers and inlay hints.
 struct Figures {
     std::map<std::string, std::pair<uint64_t, uint64_t>> rules;  ///< by name: applications and shapes made
     std::map<std::string, uint64_t> symbols;                     ///< shapes, by label
+    std::map<uint32_t, Sizes> sizes;                             ///< by the byte offset of an element of the main file
 };
 
 struct Analysis {

@@ -53,6 +53,7 @@ Json capabilities(const std::string& version) {
               {"documentFormattingProvider", true},
               {"foldingRangeProvider", true},
               {"colorProvider", true},
+              {"inlayHintProvider", true},
               {"renameProvider", {{"prepareProvider", true}}},
               {"codeActionProvider", {{"codeActionKinds", {"quickfix"}}}},
               {"semanticTokensProvider",
@@ -217,6 +218,18 @@ Json semanticTokensJson(const Analysis& analysis) {
         last = range.begin;
     }
     return {{"data", data}};
+}
+
+Json hintsJson(const syntax::Source& source, const std::vector<SizeHint>& hints, const Json& range) {
+    const Position begin = positionFrom(range.at("start")), end = positionFrom(range.at("end"));
+    Json list = Json::array();
+    for (const SizeHint& hint : hints) {
+        const Position at = positionOf(source, hint.offset);
+        if (at < begin || end < at) continue;
+        list.push_back(
+            {{"position", jsonOf(at)}, {"label", hint.label}, {"tooltip", hint.detail}, {"paddingLeft", true}});
+    }
+    return list;
 }
 
 }  // namespace sgm::language

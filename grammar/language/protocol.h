@@ -6,6 +6,7 @@
 
 #include "grammar/language/completion.h"
 #include "grammar/language/edits.h"
+#include "grammar/language/sizes.h"
 
 namespace sgm::language {
 
@@ -30,5 +31,7 @@ nlohmann::json foldingJson(const Analysis& analysis);
 nlohmann::json colorsJson(const Analysis& analysis);
 nlohmann::json colorPresentationJson(const nlohmann::json& params);
 nlohmann::json semanticTokensJson(const Analysis& analysis);
+/// Those within a range of the protocol.
+nlohmann::json hintsJson(const syntax::Source& source, const std::vector<SizeHint>& hints, const nlohmann::json& range);
 
 }  // namespace sgm::language

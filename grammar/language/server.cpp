@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "grammar/language/protocol.h"
+#include "grammar/language/sizes.h"
 
 namespace sgm::language {
 namespace {
@@ -21,14 +22,19 @@ struct UnknownMethod : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Applies one change of the protocol to a text.
-std::string changed(std::string text, const nlohmann::json& change) {
-    if (!change.contains("range")) return change.at("text").get<std::string>();
+/// Applies one change of the protocol to a text and the hints in it.
+void applyChange(std::string& text, std::vector<SizeHint>& hints, const nlohmann::json& change) {
+    std::string put = change.at("text").get<std::string>();
+    if (!change.contains("range")) {
+        hints.clear();
+        text = std::move(put);
+        return;
+    }
     const syntax::Source source("", text);
     const uint32_t begin = offsetOf(source, positionFrom(change.at("range").at("start")));
     const uint32_t end = std::max(begin, offsetOf(source, positionFrom(change.at("range").at("end"))));
-    text.replace(begin, end - begin, change.at("text").get<std::string>());
-    return text;
+    shiftHints(hints, begin, end, static_cast<uint32_t>(put.size()));
+    text.replace(begin, end - begin, put);
 }
 
 bool overlaps(const nlohmann::json& a, const nlohmann::json& b) {
@@ -52,8 +58,11 @@ size_t weigh(const Analysis& analysis, std::string_view message, uint32_t offset
 struct Server::Document {
     std::string uri, text;
     int64_t version = 0;
+    uint64_t revision = 0;  ///< another one after every analysis
     std::unique_ptr<Analysis> analysis;
+    bool figured = false;                         ///< the figures of this text are there, or can't be had
     std::optional<syntax::Diagnostics> ofModels;  ///< of this text; empty until the models were tried
+    std::vector<SizeHint> hints;                  ///< of the last models, where their elements stand by now
 };
 
 Server::Server(Environment environment) : environment_(std::move(environment)) {}
@@ -101,8 +110,14 @@ Server::Document& Server::documentOf(const Json& params) {
     return *found->second;
 }
 
+nlohmann::json Server::initialize(const Json& params) {
+    const Json::json_pointer refresh("/capabilities/workspace/inlayHint/refreshSupport");
+    refreshesHints_ = params.is_object() && params.contains(refresh) && params.at(refresh) == true;
+    return capabilities(environment_.version);
+}
+
 nlohmann::json Server::answer(const std::string& method, const Json& params) {
-    if (method == "initialize") return capabilities(environment_.version);
+    if (method == "initialize") return initialize(params);
     if (method == "shutdown") {
         shutDown_ = true;
         return nullptr;
@@ -117,6 +132,7 @@ nlohmann::json Server::answer(const std::string& method, const Json& params) {
     if (method == "textDocument/documentColor") return colorsJson(analysis);
     if (method == "textDocument/semanticTokens/full") return semanticTokensJson(analysis);
     if (method == "textDocument/codeAction") return actions(document, params);
+    if (method == "textDocument/inlayHint") return hintsJson(analysis.source(), document.hints, params.at("range"));
     const uint32_t offset =
         params.contains("position") ? offsetOf(analysis.source(), positionFrom(params["position"])) : 0;
     if (method == "textDocument/completion") return completionJson(analysis, offset, environment_.library);
@@ -154,11 +170,9 @@ void Server::notice(const std::string& method, const Json& params, bool supersed
         const auto found = documents_.find(uri);
         if (found == documents_.end()) return;
         Document& document = *found->second;
-        for (const Json& change : params.at("contentChanges"))
-            document.text = changed(std::move(document.text), change);
+        for (const Json& change : params.at("contentChanges")) applyChange(document.text, document.hints, change);
         document.version = params.at("textDocument").value("version", document.version);
         document.analysis.reset();
-        document.ofModels.reset();
         if (!superseded) analyzeAll(uri, out);
     } else if (method == "textDocument/didClose") {
         const std::string uri = params.at("textDocument").at("uri").get<std::string>();
@@ -178,7 +192,6 @@ void Server::analyzeAll(const std::string& changed, std::vector<Json>& out) {
         const bool uses =
             std::any_of(files.begin() + 1, files.end(), [&](const File& f) { return f.source->name() == path; });
         if (!uses) continue;
-        document->ofModels.reset();
         analyze(*document, out);
     }
 }
@@ -198,6 +211,9 @@ rules::Loader Server::loader() const {
 void Server::analyze(Document& document, std::vector<Json>& out) {
     auto source = std::make_shared<const syntax::Source>(pathOf(document.uri), document.text);
     document.analysis = std::make_unique<Analysis>(language::analyze(std::move(source), loader()));
+    document.revision = ++revisions_;
+    document.figured = false;
+    document.ofModels.reset();
     out.push_back(diagnosticsOf(document));
 }
 
@@ -239,25 +255,40 @@ nlohmann::json Server::actions(const Document& document, const Json& params) con
     return found;
 }
 
-bool Server::hasIdleWork() const {
-    return std::any_of(documents_.begin(), documents_.end(), [](const auto& entry) {
-        const Document& d = *entry.second;
-        return d.analysis && d.analysis->grammar && !d.ofModels;
-    });
+std::optional<Server::Trial> Server::nextTrial() const {
+    for (const bool ofFigures : {true, false})
+        for (const auto& [uri, document] : documents_)
+            if (document->analysis && document->analysis->grammar &&
+                (ofFigures ? !document->figured : !document->ofModels))
+                return Trial{uri, document->revision, ofFigures, document->analysis->grammar, {}, {}};
+    return std::nullopt;
 }
 
-std::vector<nlohmann::json> Server::workIdly(Progress* progress) {
-    std::vector<Json> out;
-    for (auto& [uri, document] : documents_) {
-        if (!document->analysis || !document->analysis->grammar || document->ofModels) continue;
-        syntax::Diagnostics found;
-        environment_.tryModels(document->analysis->grammar, progress, found);
-        if (cancelled(progress)) return out;
-        document->analysis->figures = figuresOf(document->analysis->grammar, progress);
-        if (cancelled(progress)) return out;
-        document->ofModels = std::move(found);
-        out.push_back(diagnosticsOf(*document));
+void Server::run(Trial& trial, Progress* progress) const {
+    if (trial.ofFigures)
+        trial.figures = figuresOf(trial.grammar, progress);
+    else
+        environment_.tryModels(trial.grammar, progress, trial.found);
+}
+
+std::vector<nlohmann::json> Server::finish(Trial trial) {
+    const auto found = documents_.find(trial.uri);
+    if (found == documents_.end() || found->second->revision != trial.revision || !found->second->analysis) return {};
+    Document& document = *found->second;
+    if (!trial.ofFigures) {
+        document.ofModels = std::move(trial.found);
+        return {diagnosticsOf(document)};
     }
+    document.figured = true;
+    document.hints.clear();
+    if (trial.figures) document.hints = sizeHints(document.analysis->source(), *trial.figures);
+    document.analysis->figures = std::move(trial.figures);
+    if (!refreshesHints_) return {};
+    std::vector<Json> out;
+    out.push_back({{"jsonrpc", "2.0"},
+                   {"id", fmt::format("sgm-{}", ++requests_)},
+                   {"method", "workspace/inlayHint/refresh"},
+                   {"params", nullptr}});
     return out;
 }
 

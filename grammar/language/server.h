@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,22 @@ public:
     /// only taken in. Never throws.
     std::vector<nlohmann::json> handle(const nlohmann::json& message, bool superseded = false);
 
-    /// Whether a text waits for the work that takes longer: models, and figures for hovers.
-    bool hasIdleWork() const;
-    /// Does some of it; where progress is cancelled it waits for the next time.
-    std::vector<nlohmann::json> workIdly(Progress* progress);
+    /// Work on a text that takes longer: first the figures for hovers and inlay hints, then the problems of its models.
+    struct Trial {
+        std::string uri;
+        uint64_t revision = 0;   ///< of the text
+        bool ofFigures = false;  ///< else of problems
+        std::shared_ptr<const rules::Grammar> grammar;
+        syntax::Diagnostics found;
+        std::optional<Figures> figures;
+    };
+    /// That of a text that hasn't been tried as it is now.
+    std::optional<Trial> nextTrial() const;
+    /// Does it. May run on a thread of its own beside all other calls; where progress is cancelled, what it leaves is
+    /// thrown away by the caller.
+    void run(Trial& trial, Progress* progress) const;
+    /// Takes what was found; nothing where the text has changed meanwhile.
+    std::vector<nlohmann::json> finish(Trial trial);
 
     /// After `exit`: the exit code, 1 where no `shutdown` came before. −1 while it goes on.
     int exitCode() const { return exitCode_; }
@@ -46,6 +59,7 @@ private:
     using Json = nlohmann::json;
 
     Json answer(const std::string& method, const Json& params);
+    Json initialize(const Json& params);
     void notice(const std::string& method, const Json& params, bool superseded, std::vector<Json>& out);
     void analyzeAll(const std::string& changed, std::vector<Json>& out);
     void analyze(Document& document, std::vector<Json>& out);
@@ -56,6 +70,9 @@ private:
 
     Environment environment_;
     std::map<std::string, std::unique_ptr<Document>> documents_;  ///< by URI
+    uint64_t revisions_ = 0;                                      ///< of all texts so far
+    uint64_t requests_ = 0;                                       ///< to the client so far
+    bool refreshesHints_ = false;  ///< the client asks again for inlay hints when it is told to
     bool shutDown_ = false;
     int exitCode_ = -1;
 };

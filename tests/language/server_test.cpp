@@ -2,6 +2,7 @@
 // keystroke costs.
 #include "grammar/language/server.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -191,6 +192,44 @@ TEST_F(Client, ChangesOfAUsedTextReachThoseThatUseIt) {
     uri_ = house;
     EXPECT_EQ(askAt("definition", {2, 12})[0]["uri"], uriOf(parts));
     EXPECT_EQ(askAt("rename", {2, 12}, {{"newName", "board"}})["changes"].size(), 2u);
+}
+
+TEST_F(Client, SizesAreThoseOfTheTextThatWasTried) {
+    const auto hints = [&] {
+        std::string text;
+        for (const Json& hint :
+             ask("textDocument/inlayHint",
+                 {{"textDocument", {{"uri", uri_}}},
+                  {"range", {{"start", {{"line", 0}, {"character", 0}}}, {"end", {{"line", 99}, {"character", 0}}}}}}))
+            text += fmt::format("{}:{} {}; ", hint["position"]["line"].get<int>(),
+                                hint["position"]["character"].get<int>(), hint["label"].get<std::string>());
+        return text;
+    };
+    const auto work = [&] {
+        std::optional<Server::Trial> trial = server_.nextTrial();
+        ASSERT_TRUE(trial && trial->ofFigures) << "figures come before the models";
+        server_.run(*trial, nullptr);
+        server_.finish(std::move(*trial));
+    };
+    open("/nowhere/a.sgm",
+         "grammar 2\nparam n = 2 in 1..9\nstart A -> cube size (n, 3, .2) + sphere size 1 at +y + cube size (1, 2, 3) "
+         "at +x\n");
+    EXPECT_EQ(hints(), "");
+    work();
+    EXPECT_EQ(hints(), "2:31 2 × 3 × 0.2 m; ") << "what the text says isn't said again";
+    change({{2, 0}, {2, 0}}, "// one line more\n");
+    EXPECT_EQ(hints(), "3:31 2 × 3 × 0.2 m; ");
+    change({{3, 28}, {3, 28}}, "1");
+    EXPECT_EQ(hints(), "3:32 2 × 3 × 0.2 m; ");
+    std::optional<Server::Trial> stale = server_.nextTrial();
+    server_.run(*stale, nullptr);
+    change({{1, 10}, {1, 11}}, "4");
+    EXPECT_TRUE(server_.finish(std::move(*stale)).empty());
+    EXPECT_EQ(hints(), "3:32 2 × 3 × 0.2 m; ") << "figures of an older text aren't taken";
+    work();
+    EXPECT_EQ(hints(), "3:32 4 × 3 × 1.2 m; ");
+    change({{3, 20}, {3, 33}}, "2");
+    EXPECT_EQ(hints(), "") << "a hint within the change goes";
 }
 
 TEST_F(Client, RequestsThatCantBeMetSayWhy) {
