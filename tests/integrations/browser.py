@@ -17,6 +17,8 @@ def installed():
 class Browser:
     """A browser with one page. `requests` are the addresses that were asked for, `errors` what pages complained of."""
 
+    name = "Chromium"
+
     def __init__(self, width=1000, height=700):
         self.profile = tempfile.mkdtemp()
         ours_in, theirs_out = os.pipe()

@@ -1,15 +1,18 @@
 #!/usr/bin/python3
-"""Opens pages that `sgm build -o model.html` writes in a browser: they draw the mesh that was built, ask for nothing, and answer
-the pointer.  page_test.py SGM"""
+"""Opens pages that `sgm build -o model.html` writes in Chromium and Firefox: they draw the mesh that was built, ask for nothing, and
+answer the pointer.  page_test.py SGM [FOLDER for pictures of what is seen]"""
 import json
 import os
+import socket
 import subprocess
 import sys
 import tempfile
 
 import browser
+import firefox
 
 SGM = sys.argv[1]
+PICTURES = sys.argv[2] if len(sys.argv) > 2 else None
 PALACE_BYTES = 1_500_000
 
 
@@ -25,7 +28,7 @@ def built(folder, name, *arguments):
 def opened(tab, page):
     tab.open("file://" + page)
     tab.wait("window.sgmPage && document.getElementById('view').dataset.drawn > 0")
-    assert tab.requests == ["file://" + page, "data:,"] or tab.requests == ["file://" + page], tab.requests
+    assert set(tab.requests) <= {"file://" + page, "data:,"}, tab.requests
     assert not tab.errors, tab.errors
 
 
@@ -48,6 +51,22 @@ def drawn_after(tab, action):
     return tab.value(state) != before
 
 
+def test_requests_are_seen(tab, folder):
+    """That nothing is asked for means something: what a page does ask for is noticed."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"http://127.0.0.1:{server.getsockname()[1]}/seen.png"
+        page = os.path.join(folder, "asking.html")
+        with open(page, "w", encoding="utf-8") as file:
+            file.write(f"<!doctype html><script>new Image().src = '{address}'</script>")
+        tab.open("file://" + page)
+        server.settimeout(30)
+        with server.accept()[0] as asked:
+            asked.recv(4096)
+            asked.sendall(b"HTTP/1.1 200 OK\r\nContent-Type: image/svg+xml\r\nConnection: close\r\n\r\n<svg xmlns='http://www.w3.org/2000/svg'/>")
+    tab.value('1')  # lets what was told meanwhile be read
+    assert address in tab.requests, (address, tab.requests)
+
+
 def test_tower(tab, folder):
     page, report = built(folder, "tower", "examples/tower.sgm")
     opened(tab, page)
@@ -58,7 +77,7 @@ def test_tower(tab, folder):
         found = tab.value(f"(() => {{ let lo = 1e9, hi = -1e9; for (let i = {axis}; i < {model}positions.length; i += 3) {{ lo = Math.min(lo, {model}positions[i]); hi = Math.max(hi, {model}positions[i]); }} return [lo, hi]; }})()")
         assert abs(found[0] - lo[axis]) <= step and abs(found[1] - hi[axis]) <= step, (axis, found)
     volume = tab.value("""(() => { const { positions: p, indices: t } = sgmPage.model; let v = 0;
-        for (let i = 0; i < t.length; i += 3) { const q = [0, 1, 2].map((c) => [0, 1, 2].map((a) => p[3 * t[i + c] + a])); v += dot(q[0], cross(q[1], q[2])); }
+        for (let i = 0; i < t.length; i += 3) { const q = [0, 1, 2].map((c) => [0, 1, 2].map((a) => p[3 * t[i + c] + a])); for (const [a, b, c] of [[0, 1, 2], [1, 2, 0], [2, 0, 1]]) v += q[0][a] * (q[1][b] * q[2][c] - q[1][c] * q[2][b]); }
         return v / 6; })()""")
     assert abs(volume / report["mesh"]["volume_m3"] - 1) < 1e-3, volume
     assert colours(tab) > 2000, "shaded"
@@ -108,6 +127,9 @@ def test_palace(tab, folder):
     assert size <= PALACE_BYTES
     opened(tab, page)
     assert colours(tab) > 2000
+    picture = os.path.join(PICTURES or folder, tab.name + ".png")
+    tab.screenshot(picture)
+    assert os.path.getsize(picture) > 20_000, "a picture of one colour is small"
 
 
 def test_objects(tab, folder):
@@ -127,10 +149,15 @@ def test_hostile_names(tab, folder):
     assert tab.value("document.querySelectorAll('b[onmouseover]').length") == 0
 
 
-if not browser.installed():
-    print("chromium isn't installed")
+engines = [engine for engine in (browser, firefox) if engine.installed()]
+if not engines:
+    print("neither chromium nor firefox-esr with xvfb is installed")
     sys.exit(77)
-with tempfile.TemporaryDirectory() as folder, browser.Browser() as tab:
-    for test in (test_tower, test_palace, test_objects, test_hostile_names):
-        test(tab, folder)
-        print(test.__name__)
+for engine in (browser, firefox):
+    if engine not in engines:
+        print(f"{engine.Browser.name} isn't installed: nothing is opened in it")
+        continue
+    with tempfile.TemporaryDirectory() as folder, engine.Browser() as tab:
+        for test in (test_requests_are_seen, test_tower, test_palace, test_objects, test_hostile_names):
+            test(tab, folder)
+            print(f"{tab.name}: {test.__name__}")
