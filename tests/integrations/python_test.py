@@ -247,5 +247,55 @@ class Work(unittest.TestCase):
         self.assertGreater(len(counted), 5)
 
 
+class Scenes(unittest.TestCase):
+    TOWN = "grammar 2\nterminal lawn\nterminal stone color #c8b090\nstart Town -> size (60, 2, 60) (lawn, split x { { ~20m: Row }* })\n" \
+           "rule Row -> split z { { ~20m: Plot }* }\nrule Plot -> move (0, 5m, 0) size 5 turn (0deg..90deg) place House variety 3\n" \
+           "start House -> stone size (5, 3m..5m, 4)\n"
+
+    def test_objects_are_made_once_and_stand_at_many_places(self):
+        model = sgm.parse(self.TOWN, "town.sgm").model(apart=True)
+        scene = model.scene(32)
+        self.assertEqual(len(scene.objects), 3)
+        self.assertEqual(scene.object_of.shape, (9,))
+        self.assertEqual(set(scene.object_of), {0, 1, 2})
+        self.assertEqual([place.line for place in scene.places], [6] * 9)
+        self.assertTrue(all(place.path.startswith("Town/") for place in scene.places))
+        for thing in scene.objects:
+            self.assertEqual(thing.values["start"], "House")
+            self.assertEqual(thing.mesh.report()["mesh"]["boundary_edges"], 0)
+            self.assertEqual({thing.mesh.materials[m].name for m in set(thing.mesh.triangle_materials)}, {"stone"})
+        matrices = scene.matrices
+        np.testing.assert_allclose(np.linalg.det(matrices[:, :3, :3]), 1, atol=1e-9)
+        self.assertFalse(matrices.flags.writeable)
+        # Where an object's vertices stand, the field of the model that has them inside is zero.
+        grafted = sgm.parse(self.TOWN, "town.sgm").model()
+        for number, matrix in zip(scene.object_of, matrices):
+            mesh = scene.objects[number].mesh
+            there = mesh.positions @ matrix[:3, :3].T + matrix[:3, 3]
+            self.assertLess(np.abs(grafted.values(there)).max(), 0.02)
+        self.assertGreater(model.values([matrices[0][:3, 3]])[0], 0, "apart, the field is without them")
+
+    def test_scenes_are_written_as_the_program_writes_them(self):
+        model = sgm.parse(self.TOWN, "town.sgm").model(apart=True)
+        scene, ground = model.scene(32), model.mesh(32)
+        with tempfile.TemporaryDirectory() as folder:
+            scene.save(os.path.join(folder, "town.gltf"), ground)
+            with open(os.path.join(folder, "town.gltf"), encoding="utf-8") as file:
+                gltf = json.load(file)
+            self.assertEqual(len(gltf["meshes"]), 4)
+            self.assertGreaterEqual(sum("mesh" in node for node in gltf["nodes"]), 10)
+            scene.save(os.path.join(folder, "town.stl"))
+            scene.objects[0].mesh.save(os.path.join(folder, "house.glb"))
+            with self.assertRaises(sgm.UsageError):
+                scene.objects[0].mesh.save(os.path.join(folder, "house.glb"), levels=2)
+            with self.assertRaises(sgm.UsageError):
+                scene.save(os.path.join(folder, "town.glb"), sgm.parse(BOX).model().mesh(16))
+        with self.assertRaises(sgm.UsageError):
+            sgm.parse(self.TOWN).model().scene(16)
+        with self.assertRaises(sgm.BudgetError):
+            model.scene(16, max_places=3)
+        self.assertEqual(len(sgm.parse(BOX).model(apart=True).scene().objects), 0)
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=1)

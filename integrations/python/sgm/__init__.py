@@ -11,22 +11,21 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _sgm
 from .errors import BudgetError, Cancelled, Diagnostic, Error, GrammarError, InternalError, UsageError
+from .mesh import Material, Mesh, Part, Place, Point, Progress, Scene, SceneObject
 
 __all__ = [
     "BudgetError", "Cancelled", "Diagnostic", "Error", "Grammar", "GrammarError", "InternalError", "LevelSet", "Live",
-    "Material", "Mesh", "Model", "Parameter", "Part", "Style", "UsageError", "load", "parse",
+    "Material", "Mesh", "Model", "Parameter", "Part", "Place", "Scene", "SceneObject", "Style", "UsageError", "load", "parse",
 ]
 __version__: str = _sgm.version
 
 Value = Union[bool, int, float, str, Iterable[float]]
-Progress = Optional[Callable[[str, float], Any]]
-Point = Tuple[float, float, float]
 
 
 class Parameter(NamedTuple):
@@ -50,26 +49,6 @@ class Style(NamedTuple):
     name: str
     start: str
     values: Dict[str, Any]
-
-
-class Part(NamedTuple):
-    """A shape that owns surface: its path in the shape tree, and the rule and line that made it."""
-
-    path: str
-    symbol: str
-    rule: str
-    file: str
-    line: int
-    material: int
-
-
-class Material(NamedTuple):
-    """How a part looks: a linear colour, roughness and metalness of 0 to 1."""
-
-    name: str
-    color: Point
-    roughness: float
-    metallic: float
 
 
 def load(path: Union[str, "os.PathLike[str]"]) -> Grammar:
@@ -155,16 +134,17 @@ class Grammar:
 
     def model(self, parameters: Optional[Mapping[str, Value]] = None, /, *, seed: int = 1, start: str = "",
               style: str = "", derive: str = "", max_shapes: int = 250_000, max_seconds: float = 600, threads: int = 0,
-              progress: Progress = None, **more: Value) -> Model:
+              apart: bool = False, progress: Progress = None, **more: Value) -> Model:
         """The model of these values of parameters, by a mapping or by keywords; the others have their defaults.
 
         Numbers are in the parameter's unit, colours are "#rrggbb", and a text is read as the language writes values:
         "3m", "45deg". `threads` 0 takes all. `progress(stage, fraction)` is called now and then; an exception from it
-        ends the work. Raises UsageError for unknown names, GrammarError for values that don't fit and for errors of
+        ends the work. Objects that `place` puts are part of the field, or where `apart` is said left out of it: then
+        Model.scene makes each of them once. Raises UsageError for unknown names, GrammarError for values that don't fit and for errors of
         the derivation, BudgetError where it makes too much.
         """
         choice = self._choice(parameters, more, seed, start, style, derive, max_shapes, max_seconds)
-        return Model(self._core.model(choice, threads, progress))
+        return Model(self._core.model(choice, threads, apart, progress))
 
     def live(self, *, resolution: int = 128, cell: Optional[float] = None, surface: str = "crisp",
              tolerance: Optional[float] = 0, threads: int = 0) -> Live:
@@ -247,81 +227,18 @@ class Model:
         """
         return Mesh(self._core.mesh(_request(resolution, cell, surface, keep, smooth, simplify, tolerance), progress))
 
+    def scene(self, resolution: int = 128, *, cell: Optional[float] = None, surface: str = "crisp", keep: str = "all",
+              smooth: int = 0, simplify: float = 1, tolerance: Optional[float] = None, max_places: int = 250_000,
+              progress: Progress = None) -> Scene:
+        """The objects that `place` puts, each meshed once, and where they stand. The model is one of `apart=True`; its
+        own mesh is that of Model.mesh. Arguments are those of Model.mesh, cells being counted along each object."""
+        request = _request(resolution, cell, surface, keep, smooth, simplify, tolerance)
+        return Scene(self._core.scene(request, max_places, progress))
+
     def level_set(self, resolution: int = 128, *, cell: Optional[float] = None, half_width: int = 3,
                   progress: Progress = None) -> LevelSet:
         """Signed distances in a narrow band of `half_width` voxels (1 to 32) to each side of the surface."""
         return LevelSet(self._core.level_set(resolution, cell, half_width, progress))
-
-
-class Mesh:
-    """A closed, oriented mesh of triangles. Its arrays show its own memory: they are read-only and keep it alive."""
-
-    def __init__(self, core: _sgm.Mesh) -> None:
-        self._core = core
-
-    def __repr__(self) -> str:
-        return f"<sgm.Mesh, {len(self.positions)} vertices, {len(self.triangles)} triangles>"
-
-    @property
-    def positions(self) -> np.ndarray:
-        """Vertices, float32 of shape (n, 3), metres."""
-        return self._core.positions
-
-    @property
-    def normals(self) -> np.ndarray:
-        """Unit normals by vertex, float32 of shape (n, 3); on hard edges see corner_normals."""
-        return self._core.normals
-
-    @property
-    def triangles(self) -> np.ndarray:
-        """Vertices of each triangle, uint32 of shape (m, 3), counter-clockwise seen from outside."""
-        return self._core.triangles
-
-    @property
-    def origins(self) -> np.ndarray:
-        """The part of each triangle, uint32 of shape (m,): indices into parts."""
-        return self._core.origins
-
-    @property
-    def corner_normals(self) -> np.ndarray:
-        """Unit normals by corner of triangle, float32 of shape (m, 3, 3), hard edges included; made when asked for."""
-        return self._core.corner_normals
-
-    @property
-    def parts(self) -> List[Part]:
-        """What `origins` counts; the first stands for nobody's."""
-        return [Part(*row) for row in self._core.parts]
-
-    @property
-    def materials(self) -> List[Material]:
-        """What Part.material counts."""
-        return [Material(*row) for row in self._core.materials]
-
-    @property
-    def triangle_materials(self) -> np.ndarray:
-        """The material of each triangle, uint32 of shape (m,)."""
-        return np.array([row[5] for row in self._core.parts], np.uint32)[self.origins]
-
-    @property
-    def cell(self) -> float:
-        """The edge of the cells that it was made with, metres."""
-        return self._core.cell
-
-    @property
-    def stages(self) -> Dict[str, float]:
-        """Seconds that its making took, by stage; "arrays" is what the arrays cost."""
-        return self._core.stages
-
-    def report(self) -> Dict[str, Any]:
-        """Figures: `mesh` (triangles, components, edges that aren't closed, volume, area, bounds, how many components
-        float), `field` (instructions, evaluations) and `stages`."""
-        return {"mesh": self._core.figures, "field": self._core.field_figures, "stages": self.stages}
-
-    def save(self, path: Union[str, "os.PathLike[str]"], *, objects: str = "", collider: str = "", levels: int = 1,
-             options: Optional[Mapping[str, str]] = None, progress: Progress = None) -> None:
-        """Writes it in the format that the file's ending names, all or nothing: as `sgm build -o` does, `objects`,
-        `collider` and `levels` being --objects, --collider and --lod, `options` those of the format."""
-        self._core.save(os.fspath(path), objects, collider, levels, dict(options or {}), progress)
 
 
 class LevelSet:

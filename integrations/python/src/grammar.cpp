@@ -35,13 +35,15 @@ Grammar loadText(const std::string& text, const std::string& name) {
     return checked(std::move(loaded), diagnostics);
 }
 
-Model modelOf(const Grammar& grammar, const Choice& choice, int threads, const py::object& progress) {
+Model modelOf(const Grammar& grammar, const Choice& choice, int threads, bool apart, const py::object& progress) {
     const derive::Options options = choice.optionsFor(*grammar.rules);
     Model model;
     model.threads = threads;
+    model.apart = apart;
     model.made =
         std::make_shared<pipeline::Model>(staged<pipeline::Model>(progress, threads, model.stages, [&](auto& context) {
-            return pipeline::makeModel(grammar.rules, options, context);
+            return pipeline::makeModel(grammar.rules, options, context,
+                                       apart ? pipeline::Objects::Apart : pipeline::Objects::Grafted);
         }));
     return model;
 }
@@ -75,7 +77,7 @@ void bindGrammar(py::module_& module) {
         .def_property_readonly("text", [](const Grammar& g) { return std::string(g.rules->sources[0]->text()); })
         .def_property_readonly("panel", [](const Grammar& g) { return rules::panelJson(*g.rules); })
         .def_readonly("warnings", &Grammar::warnings)
-        .def("model", &modelOf, py::arg("choice"), py::arg("threads"), py::arg("progress"));
+        .def("model", &modelOf, py::arg("choice"), py::arg("threads"), py::arg("apart"), py::arg("progress"));
 }
 
 }  // namespace sgm::python

@@ -80,14 +80,14 @@ py::array cornerNormalsOf(const py::object& self) {
 
 py::list partsOf(const Mesh& mesh) {
     py::list parts;
-    for (const Part& p : mesh.model->lowered->provenance.parts)
+    for (const Part& p : mesh.provenance->parts)
         parts.append(py::make_tuple(p.path, p.symbol, p.rule, p.file, p.line, p.material));
     return parts;
 }
 
 py::list materialsOf(const Mesh& mesh) {
     py::list materials;
-    for (const Material& m : mesh.model->lowered->provenance.materials)
+    for (const Material& m : mesh.provenance->materials)
         materials.append(
             py::make_tuple(m.name, py::make_tuple(m.color.x, m.color.y, m.color.z), m.roughness, m.metallic));
     return materials;
@@ -112,8 +112,8 @@ py::dict figuresOf(const Mesh& mesh) {
 py::dict fieldFiguresOf(const Mesh& mesh) {
     using namespace py::literals;
     const mesh::Counts& c = mesh.counts;
-    return py::dict("instructions"_a = mesh.model->tape.size(), "point_evaluations"_a = c.pointEvaluations,
-                    "refinement_evaluations"_a = c.refinementEvaluations,
+    return py::dict("instructions"_a = mesh.model ? mesh.model->tape.size() : 0,
+                    "point_evaluations"_a = c.pointEvaluations, "refinement_evaluations"_a = c.refinementEvaluations,
                     "interval_evaluations"_a = c.intervalEvaluations, "surface_cells"_a = c.surfaceCells);
 }
 
@@ -124,8 +124,24 @@ struct FileRequest {
     exporter::ExportOptions options;
 };
 
+/// An object of a scene by itself.
+Status writeObject(const Mesh& mesh, const FileRequest& request, const exporter::Exporter& row,
+                   pipeline::Context& context) {
+    if (row.wantsSolids || row.wantsPlan || !request.objects.empty() || !request.collider.empty() || request.levels > 1)
+        return Error{Error::Kind::Usage,
+                     "an object of a scene is saved as a mesh alone, without objects, collider and levels"};
+    exporter::ExportInput input;
+    input.mesh = &mesh.chunks;
+    input.provenance = mesh.provenance.get();
+    input.name = mesh.name;
+    input.options = request.options;
+    input.progress = context.progress;
+    return context.timed("write", [&] { return exporter::write(input, request.path); });
+}
+
 Status writeFile(const Mesh& mesh, const FileRequest& request, const exporter::Exporter& row,
                  pipeline::Context& context) {
+    if (!mesh.model) return writeObject(mesh, request, row, context);
     const pipeline::Model& model = *mesh.model;
     auto division = pipeline::divide(model, request.objects);
     if (!division.ok()) return division.error();
@@ -193,6 +209,7 @@ Result<std::shared_ptr<Mesh>> finish(std::shared_ptr<const pipeline::Model> mode
     if (!edited.ok()) return edited.error();
     if (edited->triangleCount() == 0) return pipeline::noSurface(*model, cell_m);
     auto made = std::make_shared<Mesh>();
+    made->provenance = {model, &model->lowered->provenance};
     made->model = std::move(model);
     made->chunks = std::move(*edited);
     made->grid = meshed.grid;

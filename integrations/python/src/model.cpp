@@ -179,6 +179,7 @@ void bindModel(py::module_& module) {
         .def("gradients", &gradients, py::arg("points"), "The field and its derivatives at points of shape (…, 3).")
         .def("origins", &origins, py::arg("points"), "For each point the part whose surface is nearest by the field.")
         .def("mesh", &meshOf, py::arg("request"), py::arg("progress"))
+        .def("scene", &sceneOf, py::arg("request"), py::arg("max_places"), py::arg("progress"))
         .def("level_set", &levelSetOf, py::arg("resolution"), py::arg("cell"), py::arg("half_width"),
              py::arg("progress"))
         .def("_evaluation_seconds", &evaluationSeconds, py::arg("points"))

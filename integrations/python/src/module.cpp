@@ -6,6 +6,7 @@ PYBIND11_MODULE(_sgm, module) {
     module.attr("version") = SGM_VERSION;
     sgm::python::bindGrammar(module);
     sgm::python::bindMesh(module);
+    sgm::python::bindScene(module);
     sgm::python::bindLevelSet(module);
     sgm::python::bindModel(module);
     sgm::python::bindLive(module);

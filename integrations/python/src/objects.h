@@ -13,6 +13,7 @@
 #include "grammar/pipeline/incremental.h"
 #include "grammar/pipeline/mesh_edits.h"
 #include "grammar/pipeline/meshing.h"
+#include "grammar/pipeline/scene.h"
 #include "modeler/core/pages.h"
 #include "modeler/volume/dense.h"
 
@@ -31,6 +32,7 @@ struct Model {
     std::shared_ptr<const pipeline::Model> made;
     pipeline::Stages stages;
     int threads = 0;
+    bool apart = false;  ///< the objects that `place` puts are left out of the field
 };
 
 /// How a mesh is made.
@@ -43,7 +45,9 @@ struct MeshRequest {
 
 /// A mesh as flat arrays, with the chunks they were made of.
 struct Mesh {
-    std::shared_ptr<const pipeline::Model> model;
+    std::shared_ptr<const pipeline::Model> model;  ///< null for an object of a scene
+    std::shared_ptr<const Provenance> provenance;
+    std::string name;  ///< of an object of a scene
     mesh::Mesh chunks;
     mesh::Grid grid;
     mesh::Counts counts;
@@ -60,6 +64,17 @@ struct Mesh {
     bool isOneChunk() const;
     /// Fills positions, normals, triangles and origins, in parallel.
     void flatten();
+};
+
+/// The objects of a model and their places.
+struct Scene {
+    std::shared_ptr<const pipeline::Model> model;
+    pipeline::MadeScene made;
+    std::vector<std::shared_ptr<Mesh>> meshes;  ///< by object
+    std::vector<uint32_t> objectOf;             ///< by place
+    std::vector<double> matrices;               ///< 16 a place, row after row
+    pipeline::Stages stages;
+    int threads = 0;
 };
 
 /// A level set, with its array once it is asked for.
@@ -94,6 +109,9 @@ MeshRequest requestOf(int resolution, std::optional<double> cell_m, const std::s
 Result<std::shared_ptr<Mesh>> finish(std::shared_ptr<const pipeline::Model> model, pipeline::MeshedModel meshed,
                                      const MeshRequest& request, pipeline::Context& context);
 
+/// The scene of a model whose objects are apart; `most` places.
+Scene sceneOf(const Model& model, const MeshRequest& request, uint64_t most, const pybind11::object& progress);
+
 /// The stages as {name: seconds}.
 pybind11::dict dictOf(const pipeline::Stages& stages);
 /// ((x, y, z), (x, y, z)).
@@ -102,6 +120,7 @@ pybind11::tuple tupleOf(const Box3f& box);
 void bindGrammar(pybind11::module_& module);
 void bindModel(pybind11::module_& module);
 void bindMesh(pybind11::module_& module);
+void bindScene(pybind11::module_& module);
 void bindLevelSet(pybind11::module_& module);
 void bindLive(pybind11::module_& module);
 
