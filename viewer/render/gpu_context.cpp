@@ -1,3 +1,4 @@
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <sys/resource.h>
@@ -16,6 +17,16 @@ bool hasAddressSpace() {
     constexpr rlim_t least_bytes = rlim_t{700} << 20;
     rlimit limit{};
     return getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur >= least_bytes;
+}
+
+/// Whether the system has the libraries that libepoxy opens with its first call, and without which it ends the program.
+bool hasOpenGl() {
+    const auto opens = [](const char* library) {
+        void* const handle = dlopen(library, RTLD_LAZY | RTLD_LOCAL);
+        if (handle) dlclose(handle);
+        return handle != nullptr;
+    };
+    return opens("libEGL.so.1") && (opens("libOpenGL.so.0") || opens("libGL.so.1"));
 }
 
 /// The displays worth trying, in order: surfaceless (Mesa, no hardware needed), then the first EGL devices.
@@ -59,6 +70,10 @@ EGLContext contextOn(EGLDisplay display) {
 Result<GpuContext> GpuContext::create() {
     if (!hasAddressSpace())
         return Error{Error::Kind::Budget, "out of memory: OpenGL drivers need 700 MiB of address space (ulimit -v)"};
+    if (!hasOpenGl())
+        return Error{Error::Kind::Internal,
+                     "the system has no OpenGL: libEGL.so.1 and libOpenGL.so.0 aren't there (on Debian, libegl1 and "
+                     "libopengl0)"};
     for (const EGLDisplay display : displays())
         if (const EGLContext context = contextOn(display); context != EGL_NO_CONTEXT)
             return GpuContext(display, context);
