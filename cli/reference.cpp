@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "grammar/language/textmate.h"
+#include "grammar/language/tree_sitter.h"
 #include "grammar/operations/operations.h"
 #include "grammar/rules/functions.h"
 #include "grammar/rules/roads.h"
@@ -152,9 +153,11 @@ void addReference(CLI::App& app, int& exitCode) {
         app.add_subcommand("reference", "Print the reference page: operations, primitives, functions, formats");
     auto textMate = std::make_shared<bool>(false);
     command->add_flag("--textmate", *textMate, "Print a TextMate grammar instead, for editors that highlight by one");
-    command->callback([textMate, &exitCode] {
-        if (*textMate) {
-            fmt::print("{}", language::textMateGrammar());
+    auto treeSitter = std::make_shared<bool>(false);
+    command->add_flag("--tree-sitter", *treeSitter, "Print a tree-sitter grammar instead, the input of its generator");
+    command->callback([textMate, treeSitter, &exitCode] {
+        if (*textMate || *treeSitter) {
+            fmt::print("{}", *textMate ? language::textMateGrammar() : language::treeSitterGrammar());
             return;
         }
         fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}{}{}{}",

@@ -11,6 +11,11 @@ TEST(Editor, TextMateGrammarIsUpToDate) {
         << "run: sgm reference --textmate > integrations/vscode/syntaxes/sgm.tmLanguage.json";
 }
 
+TEST(Editor, TreeSitterGrammarIsUpToDate) {
+    EXPECT_EQ(sgm("reference --tree-sitter").out, read("integrations/tree-sitter/grammar.js"))
+        << "run: sgm reference --tree-sitter > integrations/tree-sitter/grammar.js";
+}
+
 /// A message as the stream has it.
 std::string framed(const Json& message) {
     const std::string text = message.dump();
