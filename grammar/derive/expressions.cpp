@@ -134,6 +134,31 @@ Value ofMap(const Expr& expr, const Place& place) {
     return map.formula ? evaluate(*map.formula, place) : rules::valueAt(map.picture, planPlaceOf(place));
 }
 
+/// The mean of what an expression says over the scope's plan, by a lattice of places about its middle.
+Value meanOf(const Expr& value, const Place& place) {
+    constexpr int steps = 16;  // along each side of the plan's box
+    if (!place.tree) return Value::number(0);
+    const plan::Footprint land = footprintOf(place.scope, place.tree->footprints);
+    const plan::Box2 box = bounds(land);
+    Place there = place;
+    Value mean = evaluate(value, place);
+    if (mean.kind == Value::Kind::Bool) mean = Value::number(mean.num());
+    const auto ask = [&](plan::Vec2 p) {
+        there.scope.centre = place.scope.centre + place.scope.axes * Vec3d{p.x, 0, p.z};
+        return number(value, there);
+    };
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < steps; ++i)
+        for (int k = 0; k < steps; ++k) {
+            const plan::Vec2 p = box.lo + plan::Vec2{box.size().x * (i + .5) / steps, box.size().z * (k + .5) / steps};
+            if (contains(land, p)) sum += ask(p), ++count;
+        }
+    if (count > 0) mean.n[0] = sum / count;
+    mean.integer = false;
+    return mean;
+}
+
 /// What stands around the shape; a second run with other numbers would find it as the first one left it.
 Value ofSurroundings(Fn fn, const Expr& expr, const Place& place) {
     if (!place.builder || place.host == none) return Value::boolean(false);
@@ -169,6 +194,7 @@ Value called(const Expr& expr, const Place& place) {
     const Fn fn = static_cast<Fn>(expr.index);
     if (fn == Fn::FileNumber || fn == Fn::FileWord) return ofOutline(fn, expr, place);
     if (fn == Fn::Bump || fn == Fn::Fbm) return ofPlace(fn, expr, place);
+    if (fn == Fn::Mean) return meanOf(expr.args[0], place);
     if (fn == Fn::Count) {
         if (Recording* r = noting(place)) r->readsWorld();
         const auto symbol = static_cast<size_t>(expr.args[0].value.num());

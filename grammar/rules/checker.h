@@ -197,9 +197,11 @@ private:
     void mapRange(const syntax::MapDecl& decl, MapPicture& picture);
     double costOf(const Expr& e) const;
     Typed mapValue(Place& place, const syntax::Expr& e, uint32_t index);
+    Typed meanCall(Place& place, const syntax::Expr& e);
 
     // roads.cpp
     void declareRoads(const syntax::RoadsDecl& decl);
+    void ownStreets(const syntax::Expr& file, Roads& out);
     void roadSetting(Place& place, const syntax::Setting& written, Roads& out);
     void roadNumber(Place& place, const syntax::Setting& written, const town::RoadParameter& row, Roads& out);
     Expr roadWord(Place& place, const syntax::Expr& e, const RoadWord& row);

@@ -11,8 +11,8 @@ namespace {
 
 /// Whether more than arguments decide about the value: the shape, those around it, or the place.
 bool dependsOnPlace(Fn fn) {
-    constexpr Fn all[] = {Fn::Count,  Fn::Bump,    Fn::Fbm,        Fn::Overlaps, Fn::Touches,
-                          Fn::Inside, Fn::Covered, Fn::FileNumber, Fn::FileWord};
+    constexpr Fn all[] = {Fn::Count,   Fn::Bump,   Fn::Fbm,     Fn::Mean,       Fn::Overlaps,
+                          Fn::Touches, Fn::Inside, Fn::Covered, Fn::FileNumber, Fn::FileWord};
     return std::find(std::begin(all), std::end(all), fn) != std::end(all);
 }
 
@@ -243,6 +243,7 @@ Value applyFunction(Fn fn, std::span<const Value> a) {
             return Value::number(a[0].units[0] == Unit::Share ? x * y : x, Unit::Metre);
         case Fn::Bump:
         case Fn::Fbm:
+        case Fn::Mean:
         case Fn::Overlaps:
         case Fn::Touches:
         case Fn::Inside:

@@ -17,8 +17,8 @@ bool productHasUnit(Unit a, Unit b);
 
 /// `fn` over `args`. Numbers act on every component of a vector; units follow (metre · plain = metre, metre / metre =
 /// plain, share · metre = metre). Division and remainder by zero give 0, so that no value is ever infinite; `%` is the
-/// floor remainder. A comparison of vectors is that of their first components, except == and !=. Fn::Count, Bump and
-/// Fbm give 0.
+/// floor remainder. A comparison of vectors is that of their first components, except == and !=. Fn::Count, Bump,
+/// Fbm and Mean give 0.
 Value applyFunction(Fn fn, std::span<const Value> args);
 
 /// `vector[index]`: an Axis indexes 0 … 5, a number from 0; past the end gives the last component.

@@ -91,6 +91,7 @@ enum class Fn : uint32_t {
     Rgb,
     Bump,      ///< of the place: bump((x, z), radius)
     Fbm,       ///< of the place: fbm(size, octaves [, seed])
+    Mean,      ///< of args[0], asked over the plan of the shape's scope
     Overlaps,  ///< whether another shape of a name shares volume with this one; args[0] as of Count
     Touches,   ///< whether one meets it or shares volume with it
     Inside,    ///< whether one holds it whole

@@ -7,7 +7,7 @@ namespace sgm::rules {
 namespace {
 
 constexpr uint8_t many = 16;
-constexpr std::array<Function, 28> table = {{
+constexpr std::array<Function, 29> table = {{
     {"min", Fn::Min, 1, many, Signature::Alike, "the least of its arguments, or of one vector's components"},
     {"max", Fn::Max, 1, many, Signature::Alike, "the greatest of its arguments, or of one vector's components"},
     {"abs", Fn::Abs, 1, 1, Signature::Alike, "without its sign"},
@@ -32,6 +32,8 @@ constexpr std::array<Function, 28> table = {{
      "bump((x, z), radius): 1 at that place of the plan, falling to 0 at the radius"},
     {"fbm", Fn::Fbm, 2, 3, Signature::Place,
      "fbm(size, octaves, seed): smooth noise over the plan, -1 … 1; the seed is 0 unless said"},
+    {"mean", Fn::Mean, 1, 1, Signature::Mean,
+     "mean(value): the mean of a map, or of whatever depends on the place, over the plan of the shape's scope"},
     {"overlaps", Fn::Overlaps, 1, 1, Signature::Symbol,
      "overlaps(Name), in a rule's 'when': whether a shape of that name shares volume with this one"},
     {"touches", Fn::Touches, 1, 1, Signature::Symbol, "touches(Name): whether one meets it or shares volume with it"},

@@ -18,6 +18,7 @@ enum class Signature : uint8_t {
     Lerp,      ///< two alike numbers, vectors or colours, and a plain number
     If,        ///< a condition and two alike values
     Symbol,    ///< the name of a shape
+    Mean,      ///< a number that depends on the place
     File,      ///< the name of a file in quotes; known when the grammar is read
     Property,  ///< the name of a property in quotes, and what it is where the file says nothing
     Place,     ///< a place or a length, and numbers; its value depends on where it is asked

@@ -90,9 +90,15 @@ void Checker::mapRange(const syntax::MapDecl& decl, MapPicture& picture) {
 
 void Checker::mapPicture(const syntax::MapDecl& decl, Map& map) {
     MapPicture& picture = map.picture;
+    std::string why = "no files can be read here";
+    picture.raster = load_.picture ? load_.picture(decl.file.text, *decl.file.span.source, why) : nullptr;
+    if (!picture.raster) diagnostics_.error(decl.file.span, fmt::format("can't use \"{}\": {}", decl.file.text, why));
+    const auto said = picture.raster ? picture.raster->extent_m : std::nullopt;
     const auto over = decl.over ? plain(*decl.over, false) : std::nullopt;
     const bool two = over && over->kind == Value::Kind::Vector && over->count == 2 && over->n[0] > 0 && over->n[1] > 0;
-    if (!two && (!decl.over || decl.over->kind != Written::Kind::Error))
+    if (!decl.over && said)
+        picture.over_m = *said;
+    else if (!two && (!decl.over || decl.over->kind != Written::Kind::Error))
         diagnostics_.error(decl.over ? decl.over->span : decl.name.span,
                            "a map from a file says how much ground it covers", "write 'over (2km, 2km)' behind it");
     if (two) picture.over_m = {over->n[0], over->n[1]};
@@ -100,9 +106,6 @@ void Checker::mapPicture(const syntax::MapDecl& decl, Map& map) {
         mapClasses(decl, picture);
     else
         mapRange(decl, picture);
-    std::string why = "no files can be read here";
-    picture.raster = load_.picture ? load_.picture(decl.file.text, *decl.file.span.source, why) : nullptr;
-    if (!picture.raster) diagnostics_.error(decl.file.span, fmt::format("can't use \"{}\": {}", decl.file.text, why));
     if (picture.words.empty())
         map.like = interpolate(picture.black, picture.white, .5);
     else
@@ -158,6 +161,22 @@ Typed Checker::mapValue(Place& place, const Written& e, uint32_t index) {
     const Map& map = grammar_.maps[index];
     result.type = Type::of(map.like);
     if (!map.picture.words.empty()) result.type.words = &map.picture.words;
+    return result;
+}
+
+/// mean(people): over the plan of the shape's scope.
+Typed Checker::meanCall(Place& place, const Written& e) {
+    if (place.ofMap || place.where < Place::Where::Guard || place.where == Place::Where::Expect)
+        return failed(e.span, "'mean' is over the plan of a shape, and there is none here",
+                      "ask in a rule, where a shape stands");
+    Typed value = expression(place, e.args[0]);
+    if (value.type.known && !value.type.numeric() && value.type.like.kind != Value::Kind::Bool)
+        return failed(e.args[0].span, fmt::format("a mean is one of numbers, but this is {}", describe(value.type)),
+                      "ask 'mean(land == park)' for the share of a class");
+    Typed result;
+    result.type = value.type.like.kind == Value::Kind::Bool ? Type::number() : value.type;
+    result.expr = makeCall(Expr::Kind::Call, Fn::Mean, e.span, {});
+    result.expr.args.push_back(std::move(value.expr));
     return result;
 }
 

@@ -166,6 +166,7 @@ Typed Checker::call(Place& place, const Written& e) {
     if (row->signature == Signature::File) return outlineCount(e);
     if (row->signature == Signature::Property) return propertyCall(place, e, *row);
     if (row->signature == Signature::Place) return placeCall(place, e, *row);
+    if (row->signature == Signature::Mean) return meanCall(place, e);
 
     const std::string what = fmt::format("'{}'", row->name);
     std::vector<Typed> args;
@@ -207,6 +208,7 @@ Typed Checker::call(Place& place, const Written& e) {
         case Signature::File:
         case Signature::Property:
         case Signature::Place:
+        case Signature::Mean:
             break;
     }
     if (!good) return {{}, Type::unknown()};

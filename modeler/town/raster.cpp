@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "modeler/core/regular_file.h"
+#include "modeler/town/raster_parts.h"
 
 namespace sgm::town {
 namespace {
@@ -21,7 +22,7 @@ Result<Header> headerOf(const std::string& bytes) {
     constexpr size_t headerBytes = 33;
     const auto* b = reinterpret_cast<const unsigned char*>(bytes.data());
     if (bytes.size() < headerBytes || png_sig_cmp(b, 0, 8) != 0 || bytes.compare(12, 4, "IHDR") != 0)
-        return Error{Error::Kind::Input, "it is no PNG picture"};
+        return Error{Error::Kind::Input, "it is no picture: PNG, TIFF and OpenEXR files are read"};
     const auto number = [&](size_t at) {
         return uint64_t{b[at]} << 24 | uint64_t{b[at + 1]} << 16 | uint64_t{b[at + 2]} << 8 | b[at + 3];
     };
@@ -54,8 +55,7 @@ Status readGrey(const std::string& bytes, const Header& header, Raster& out) {
         return readInto(bytes, PNG_FORMAT_LINEAR_Y, out.grey.data());
     for (size_t i = 0; i < count; ++i) {
         const auto& c = out.color[i];
-        // Rec. 709 luma in thousandths.
-        out.grey[i] = static_cast<uint16_t>((213 * c[0] + 715 * c[1] + 72 * c[2]) * 257 / 1000);
+        out.grey[i] = lumaOf(c);
     }
     return Done{};
 }
@@ -67,25 +67,43 @@ double Raster::greyAt(double u, double v) const {
     const auto x0 = static_cast<size_t>(x), y0 = static_cast<size_t>(y);
     const size_t x1 = std::min<size_t>(x0 + 1, width - 1), y1 = std::min<size_t>(y0 + 1, height - 1);
     const double s = x - static_cast<double>(x0), t = y - static_cast<double>(y0);
-    const auto at = [&](size_t i, size_t k) { return grey[k * width + i] / 65535.0; };
+    const auto at = [&](size_t i, size_t k) {
+        return numbers.empty() ? grey[k * width + i] / 65535.0 : double{numbers[k * width + i]};
+    };
     return (at(x0, y0) * (1 - s) + at(x1, y0) * s) * (1 - t) + (at(x0, y1) * (1 - s) + at(x1, y1) * s) * t;
 }
 
 std::array<uint8_t, 3> Raster::colorAt(double u, double v) const {
     const double x = std::clamp(std::floor(u * width), 0.0, width - 1.0),
                  y = std::clamp(std::floor(v * height), 0.0, height - 1.0);
-    return color[static_cast<size_t>(y) * width + static_cast<size_t>(x)];
+    const size_t at = static_cast<size_t>(y) * width + static_cast<size_t>(x);
+    if (!color.empty()) return color[at];
+    const auto byte = static_cast<uint8_t>(std::clamp(numbers[at], 0.f, 1.f) * 255 + .5f);
+    return {byte, byte, byte};
+}
+
+Status judgeSize(uint64_t width, uint64_t height, const RasterLimits& limits) {
+    if (width == 0 || height == 0) return Error{Error::Kind::Input, "it has no pixels"};
+    if (width > limits.mostSide || height > limits.mostSide || width * height > limits.mostPixels)
+        return Error{Error::Kind::Input,
+                     fmt::format("its {} x {} pixels are more than {} a side or {} in all: make it smaller", width,
+                                 height, limits.mostSide, limits.mostPixels)};
+    return Done{};
+}
+
+/// In thousandths of the weights.
+uint16_t lumaOf(const std::array<uint8_t, 3>& c) {
+    return static_cast<uint16_t>((213 * c[0] + 715 * c[1] + 72 * c[2]) * 257 / 1000);
 }
 
 Result<RasterPtr> readRasterBytes(const std::string& bytes, const RasterLimits& limits) {
+    return isExr(bytes) ? readExr(bytes, limits) : isTiff(bytes) ? readTiff(bytes, limits) : readPng(bytes, limits);
+}
+
+Result<RasterPtr> readPng(const std::string& bytes, const RasterLimits& limits) {
     const auto header = headerOf(bytes);
     if (!header.ok()) return header.error();
-    if (header->width == 0 || header->height == 0) return Error{Error::Kind::Input, "it has no pixels"};
-    if (header->width > limits.mostSide || header->height > limits.mostSide ||
-        header->width * header->height > limits.mostPixels)
-        return Error{Error::Kind::Input,
-                     fmt::format("its {} x {} pixels are more than {} a side or {} in all: make it smaller",
-                                 header->width, header->height, limits.mostSide, limits.mostPixels)};
+    if (const Status judged = judgeSize(header->width, header->height, limits); !judged.ok()) return judged.error();
     auto out = std::make_shared<Raster>();
     out->width = static_cast<uint32_t>(header->width), out->height = static_cast<uint32_t>(header->height);
     out->color.resize(static_cast<size_t>(header->width * header->height));
