@@ -26,10 +26,12 @@ using syntax::OperationArgument;
 constexpr std::string_view partWords[] = {"lot", "corner", "inner"};
 constexpr double mostLots = 1e6;
 constexpr OperationArgument lotsArguments[] = {
-    {"area", syntax::ArgumentType::Plan, "area of a lot, or box(420m2, front: 8m, jitter: 15%)"}};
+    {"area", syntax::ArgumentType::Plan,
+     "area of a lot, or box(420m2, front: 8m, jitter: 15%), or skeleton(420m2, front: 8m, jitter: 15%, depth: 30m)"}};
 
-/// box(area, front: length, jitter: share)
-void checkBox(OperationChecker& checker, const syntax::Expr& e, Parts& out) {
+/// box(area, front: length, jitter: share), skeleton(area, front: length, jitter: share, depth: length)
+void checkCuts(OperationChecker& checker, const syntax::Expr& e, Parts& out) {
+    const bool hasDepth = e.text == "skeleton";
     for (size_t i = 0; i < e.args.size(); ++i) {
         const std::string& name = e.argNames[i];
         checker.beginDraws("lots." + (name.empty() ? "area" : name));
@@ -39,14 +41,19 @@ void checkBox(OperationChecker& checker, const syntax::Expr& e, Parts& out) {
             out.args[1] = checker.expression(e.args[i], Want::Length, "'front'");
         else if (name == "jitter")
             out.args[2] = checker.expression(e.args[i], Want::Number, "'jitter'");
+        else if (name == "depth" && hasDepth)
+            out.args[3] = checker.expression(e.args[i], Want::Length, "'depth'");
         else
-            checker.error(
-                e.args[i].span,
-                name.empty() ? "'box' takes one number, the area of a lot" : fmt::format("'box' has no '{}'", name),
-                name.empty() ? "write 'box(420m2, front: 8m)'" : checker.nearest(name, {"front", "jitter"}));
+            checker.error(e.args[i].span,
+                          name.empty() ? fmt::format("'{}' takes one number, the area of a lot", e.text)
+                                       : fmt::format("'{}' has no '{}'", e.text, name),
+                          name.empty() ? fmt::format("write '{}(420m2, front: 8m)'", e.text)
+                          : hasDepth   ? checker.nearest(name, {"front", "jitter", "depth"})
+                                       : checker.nearest(name, {"front", "jitter"}));
     }
     if (e.args.empty() || !e.argNames[0].empty())
-        checker.error(e.span, "'box' begins with the area of a lot", "write 'box(420, front: 8m)'");
+        checker.error(e.span, fmt::format("'{}' begins with the area of a lot", e.text),
+                      fmt::format("write '{}(420, front: 8m)'", e.text));
 }
 
 std::shared_ptr<Parts> checkLots(OperationChecker& checker, const syntax::Attribute& written) {
@@ -56,19 +63,24 @@ std::shared_ptr<Parts> checkLots(OperationChecker& checker, const syntax::Attrib
     const town::LotParameters usual;
     out->args = {rules::makeConstant(written.span, rules::Value::number(usual.area_m2)),
                  rules::makeConstant(written.span, rules::Value::number(usual.front_m, Unit::Metre)),
-                 rules::makeConstant(written.span, rules::Value::number(usual.jitter))};
+                 rules::makeConstant(written.span, rules::Value::number(usual.jitter)),
+                 rules::makeConstant(written.span, rules::Value::number(usual.depth_m, Unit::Metre)),
+                 rules::makeConstant(written.span, rules::Value::boolean(false))};
     if (!written.args.empty()) {
         const syntax::Expr& e = written.args[0];
         checker.beginDraws("lots");
-        if (e.kind == syntax::Expr::Kind::Call && e.text == "box")
-            checkBox(checker, e, *out);
+        const bool isCall = e.kind == syntax::Expr::Kind::Call;
+        out->args[4] = rules::makeConstant(written.span, rules::Value::boolean(isCall && e.text == "skeleton"));
+        if (isCall && (e.text == "box" || e.text == "skeleton"))
+            checkCuts(checker, e, *out);
         else
             out->args[0] = checker.expression(e, Want::Area, "the area of a lot");
     }
-    constexpr std::pair<double, double> ranges[] = {{4, 1e8}, {0, 1000}, {0, .45}};
+    constexpr std::pair<double, double> ranges[] = {{4, 1e8}, {0, 1000}, {0, .45}, {0, 1000}};
     constexpr std::string_view texts[] = {"the area of a lot is 4 … 10⁸ square metres", "'front' is 0 … 1 km",
-                                          "'jitter' is 0 … 45%"};
-    for (size_t i = 0; i < 3; ++i)
+                                          "'jitter' is 0 … 45%",
+                                          "'depth' is 0 … 1 km, where 0 is twice the root of the area"};
+    for (size_t i = 0; i < std::size(ranges); ++i)
         if (const auto value = checker.atDefaults(out->args[i]);
             value && !(value->num() >= ranges[i].first && value->num() <= ranges[i].second))
             checker.error(out->args[i].span, fmt::format("{}, not {}", texts[i], rules::toText(*value)));
@@ -83,6 +95,8 @@ bool runLots(PartsContext& context, const Parts& parts) {
     parameters.area_m2 = std::clamp(number(0), 4.0, 1e8);
     parameters.front_m = std::clamp(number(1), 0.0, 1000.0);
     parameters.jitter = std::clamp(number(2), 0.0, .45);
+    parameters.depth_m = std::clamp(number(3), 0.0, 1000.0);
+    parameters.cuts = number(4) != 0 ? town::Cuts::Skeleton : town::Cuts::Boxes;
     const Parts::Part *lotPart = findPart(parts, "lot"), *cornerPart = findPart(parts, "corner"),
                       *innerPart = findPart(parts, "inner");
     const plan::Footprint block = context.footprint();
@@ -115,7 +129,9 @@ constinit const Operation lots{
     .doc =
         "Cuts a block into lots of about so many square metres, each with a piece of street: x runs along it, z to it. "
         "corner is a lot at two streets (lot, where it isn't said), inner what lies behind all lots. Edges keep the "
-        "block's tags; those between lots are called cut.",
+        "block's tags; those between lots are called cut. By box they are halves of halves; by skeleton strips along "
+        "the "
+        "streets, cut square to them.",
     .example = "size (60, 4, 40) lots box(300, front: 8m) { lot: setback 2m wall | inner: lawn }",
     .arguments = lotsArguments,
     .phase = Operation::Phase::Content,
