@@ -95,12 +95,15 @@ town() {
   "$sgm" build examples/city/town.sgm -q -o "$drawn/a.svg"
   /usr/bin/convert -density 100 "$drawn/a.svg" "$drawn/a.png"
   keep "$drawn/a.png" town/plan 700
-  for pattern in grown raster radial; do
+  for pattern in grown raster radial field; do
     "$sgm" build examples/city/town.sgm -q --set side=1200m --set pattern=$pattern -o "$drawn/a.svg"
     /usr/bin/convert -background white -density 60 "$drawn/a.svg" -resize 540x540 -gravity center -extent 540x540 "$drawn/$pattern.png"
   done
-  montage "$drawn/grown.png" "$drawn/raster.png" "$drawn/radial.png" -tile 3x1 -geometry +0+0 "$drawn/a.png"
+  montage "$drawn/grown.png" "$drawn/raster.png" "$drawn/radial.png" "$drawn/field.png" -tile 4x1 -geometry +0+0 "$drawn/a.png"
   keep "$drawn/a.png" town/patterns 800
+  "$sgm" build examples/city/quarter.sgm -q -o "$drawn/a.svg"
+  /usr/bin/convert -density 100 -background white "$drawn/a.svg" "$drawn/a.png"
+  keep "$drawn/a.png" town/curves 500
   "$sgm" render examples/city/town.sgm --view mesh --cell 4 --object-cell .8 --size 1600x900 --camera "1150,620,1500,-150,-60,-150" -q -o "$drawn/a.png"
   keep "$drawn/a.png" town/town 1000
   "$sgm" render examples/city/town.sgm --set side=1000 --view mesh --cell 1 --object-cell .25 --size 1400x900 --camera "330,180,330,-30,20,-30" -q -o "$drawn/a.png"

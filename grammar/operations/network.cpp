@@ -13,6 +13,7 @@
 #include "modeler/plan/validate.h"
 #include "modeler/town/blocks.h"
 #include "modeler/town/outline.h"
+#include "modeler/town/own_streets.h"
 
 namespace sgm::operations {
 namespace {
@@ -65,6 +66,14 @@ public:
         if (roads_.water) land.water = [this](Vec2 p) { return number(*roads_.water, p) != 0; };
         if (roads_.park) land.park = [this](Vec2 p) { return number(*roads_.park, p) != 0; };
         if (roads_.height) land.height = [this](Vec2 p) { return number(*roads_.height, p); };
+        const std::pair<const std::optional<rules::Expr>*, std::function<double(Vec2)>*> weights[] = {
+            {&roads_.grid, &land.grid},
+            {&roads_.rings, &land.rings},
+            {&roads_.shore, &land.shore},
+            {&roads_.contours, &land.contours}};
+        for (const auto& [expr, weight] : weights)
+            if (*expr) *weight = [this, expr = &**expr](Vec2 p) { return number(*expr, p); };
+        land.streets = roads_.streets.get();
         return land;
     }
 
@@ -91,8 +100,10 @@ public:
 
     bool run() {
         if (!evaluateParameters()) return false;
-        auto grown = town::growRoads(parameters_, land_, context_.progress());
+        town::OwnStreetsReport own;
+        auto grown = town::growRoads(parameters_, land_, context_.progress(), &own);
         if (!grown.ok()) return context_.fail(grown.error(), parts_.span);
+        if (roads_.streets && !judgeOwn(own)) return false;
         if (grown->edges().empty())
             context_.warn(parts_.span, "no road grows here",
                           "let 'pull' and 'spread' hold somewhere, or make the scope larger");
@@ -139,6 +150,33 @@ private:
         const Scope& scope = context_.scope();
         const Vec3d at = scope.axes.transposed() * (Vec3d{v.n[0], scope.centre.y, v.n[1]} - scope.centre);
         return Vec2{at.x, at.z};
+    }
+
+    /// What became of the streets of a file: none at all is an error, some are a warning.
+    bool judgeOwn(const town::OwnStreetsReport& own) {
+        const town::OwnStreets& streets = *roads_.streets;
+        const Vec2 size = parameters_.hi - parameters_.lo, extent = streets.box.size();
+        if (own.laid == 0)
+            return context_.fail(
+                fmt::format(
+                    "no street of {} lies in the network's {:.6g} x {:.6g} m: they cover {:.6g} x {:.6g} m from "
+                    "({:.6g}, {:.6g}) to ({:.6g}, {:.6g}). Make the scope larger, or move the lines: degrees lie about "
+                    "their "
+                    "middle, metres as they are",
+                    streets.name, size.x, size.z, extent.x, extent.z, streets.box.lo.x, streets.box.lo.z,
+                    streets.box.hi.x, streets.box.hi.z),
+                roads_.streetsSpan);
+        if (own.refused > 0)
+            context_.warn(roads_.streetsSpan,
+                          fmt::format("{} pieces of {} were left out: they would touch others between crossings",
+                                      own.refused, streets.name),
+                          "let lines end where they meet, and draw each street once");
+        if (own.apart > 0)
+            context_.warn(
+                roads_.streetsSpan,
+                fmt::format("{} pieces of {} were left out: no road joins them to the others", own.apart, streets.name),
+                "draw a street to them, or let roads grow there ('spread')");
+        return true;
     }
 
     bool runGround() {

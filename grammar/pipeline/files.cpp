@@ -12,6 +12,7 @@
 #include "modeler/core/atomic_file.h"
 #include "modeler/core/installation.h"
 #include "modeler/core/regular_file.h"
+#include "modeler/town/own_streets.h"
 #include "modeler/mesh/distances.h"
 
 namespace sgm::pipeline {
@@ -320,6 +321,16 @@ rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) 
         const auto file = images(*path);
         if (file.ok()) return *file;
         why = file.error().message;
+        return nullptr;
+    };
+    loader.streets = [note, progress](const std::string& name, const syntax::Source& from,
+                                      std::string& why) -> std::shared_ptr<const town::OwnStreets> {
+        const auto path = pathOf(name, from, why);
+        if (!path) return nullptr;
+        note(*path);
+        auto streets = town::readStreets(*path, progress);
+        if (streets.ok()) return std::make_shared<const town::OwnStreets>(std::move(*streets));
+        why = streets.error().message;
         return nullptr;
     };
     loader.declares = [names = LibraryNames()](const std::string& name) mutable { return names(name); };

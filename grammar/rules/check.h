@@ -26,6 +26,9 @@ struct Loader {
     using Picture =
         std::function<town::RasterPtr(const std::string& name, const syntax::Source& from, std::string& why)>;
 
+    using Streets = std::function<std::shared_ptr<const town::OwnStreets>(const std::string& name,
+                                                                          const syntax::Source& from, std::string& why)>;
+
     Loader() = default;
     /// One that reads grammars alone.
     template <class Fn>
@@ -44,6 +47,8 @@ struct Loader {
     Picture picture;
     /// The picture behind `texture "name"` of `from`.
     Image image;
+    /// The streets of the file behind `roads … from "name"` of `from`.
+    Streets streets;
 };
 
 /// Null when `diagnostics` has errors. Reports everything wrong in one run, in the order of the text, used files first:

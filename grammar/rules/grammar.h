@@ -99,8 +99,11 @@ struct Roads {
     std::string name;
     SourceSpan span;
     std::optional<Expr> pull, spread, water, park, height;  ///< asked everywhere
+    std::optional<Expr> grid, rings, shore, contours;       ///< asked everywhere: weights of the field's parts
     std::optional<Expr> from, centre;                       ///< places
     std::optional<Expr> pattern, turns, ends;               ///< words
+    std::shared_ptr<const town::OwnStreets> streets;        ///< of a file, where growth begins; or null
+    SourceSpan streetsSpan;                                 ///< of the file's name
     std::vector<std::pair<const town::RoadParameter*, Expr>> numbers;
 };
 

@@ -8,6 +8,7 @@
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/make.h"
 #include "modeler/core/conventions.h"
+#include "modeler/town/own_streets.h"
 
 namespace sgm::rules {
 namespace {
@@ -21,16 +22,22 @@ constexpr RoadField fields[] = {
     {"water", &Roads::water, Want::Truth, "where roads need bridges, and nothing is built"},
     {"park", &Roads::park, Want::Truth, "where neither roads nor lots may be"},
     {"height", &Roads::height, Want::Length, "of the ground, which `slope` limits along a road"},
+    {"grid", &Roads::grid, Want::Number, "of the field: weight of the directions of `axis`; 1 where none is said"},
+    {"rings", &Roads::rings, Want::Number, "of the field: weight of rings and rays about `centre`"},
+    {"shore", &Roads::shore, Want::Number, "of the field: weight of the banks of water, within `reach` of it"},
+    {"contours", &Roads::contours, Want::Number,
+     "of the field: weight of the level lines of `height`, whole where it is as steep as `slope`"},
 };
 constexpr RoadField points[] = {
     {"from", &Roads::from, Want::Anything, "where growth begins, (x, z); else where `pull` is greatest"},
     {"centre", &Roads::centre, Want::Anything, "the middle of the radial pattern; else where growth begins"},
 };
-constexpr std::string_view patterns[] = {"grown", "raster", "radial"}, turns[] = {"left", "right", "both"},
+constexpr std::string_view patterns[] = {"grown", "raster", "radial", "field"}, turns[] = {"left", "right", "both"},
                            ends[] = {"prune", "join", "keep"};
 constexpr RoadWord words[] = {
     {"pattern", &Roads::pattern, patterns,
-     "highways seek what pulls them, or all roads follow a raster, or rings and rays"},
+     "highways seek what pulls them, or all roads follow a raster, or rings and rays, or a tensor field of the weights "
+     "above"},
     {"turns", &Roads::turns, turns, "to which side streets branch, seen from above"},
     {"ends", &Roads::ends, ends, "dead ends are taken away, prolonged to the next road or taken away, or kept"},
 };
@@ -54,7 +61,16 @@ void Checker::declareRoads(const syntax::RoadsDecl& decl) {
     Roads out;
     out.name = decl.name.text;
     out.span = decl.span;
+    if (decl.file) ownStreets(*decl.file, out);
     grammar_.roads.push_back(std::move(out));
+}
+
+/// `from "streets.geojson"`: what is there before roads grow.
+void Checker::ownStreets(const Written& file, Roads& out) {
+    std::string why = "no files can be read here";
+    out.streetsSpan = file.span;
+    out.streets = load_.streets ? load_.streets(file.text, *file.span.source, why) : nullptr;
+    if (!out.streets) diagnostics_.error(file.span, fmt::format("can't use \"{}\": {}", file.text, why));
 }
 
 Expr Checker::roadWord(Place& place, const Written& e, const RoadWord& row) {

@@ -131,6 +131,7 @@ struct MapDecl {
 struct RoadsDecl {
     SourceSpan span;
     Name name;
+    std::optional<Expr> file;  ///< after `from`: a text, of streets that are there already
     std::vector<Setting> settings;
 };
 struct LetDecl {

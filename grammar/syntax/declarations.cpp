@@ -124,6 +124,13 @@ void readRoads(Cursor& cursor, Ast& ast) {
     RoadsDecl roads;
     const uint32_t begin = cursor.take().begin;
     roads.name = readName(cursor, "roads");
+    if (cursor.at("from")) {
+        cursor.take();
+        if (cursor.at(Token::Kind::Text))
+            roads.file = readArgument(cursor);
+        else
+            cursor.fail("expected a file's name in quotes, found " + cursor.found(), "write 'from \"streets.geojson\"'");
+    }
     roads.settings = readSettings(cursor);
     roads.span = cursor.since(begin);
     if (!roads.name.empty()) ast.roads.push_back(std::move(roads));

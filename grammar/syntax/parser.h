@@ -10,7 +10,7 @@
 //   param       = "param" NAME "=" expr { "in" expr | "of" NAME {"," NAME} | TEXT | "group" NAME | "key" NAME } .
 //   map         = "map" NAME "=" ( TEXT | expr ) { "as" expr | "of" class {"," class} | "over" expr } .
 //   class       = ( COLOR | "else" ) ":" NAME .
-//   roads       = "roads" NAME settings .
+//   roads       = "roads" NAME [ "from" TEXT ] settings .
 //   let         = "let" NAME "=" expr .
 //   material    = "material" NAME {"," NAME} { attribute } .
 //   terminal    = "terminal" NAME {"," NAME} [ "=" solid ]

@@ -48,6 +48,18 @@ struct Features {
     double east = 0, north = 0;  ///< of x = z = 0: degrees where they were, else metres
 };
 
+/// Lines of a file's feature.
+struct LineFeature {
+    std::vector<std::vector<Vec2>> lines;
+    std::vector<Property> properties;
+    uint64_t place = 0;  ///< number of the feature from 1
+};
+/// The lines of a file, in metres.
+struct Lines {
+    std::vector<LineFeature> list;
+    bool fromDegrees = false;  ///< coordinates were longitude and latitude
+};
+
 /// By the name's ending: .geojson and .json, .svg, .obj. The error names the file.
 Result<Features> readOutlines(const std::filesystem::path& path, const ReadLimits& limits = {},
                               const Progress* progress = nullptr);
@@ -60,6 +72,9 @@ Result<Features> readOutlines(const std::filesystem::path& path, const ReadLimit
 /// are taken as metres, about the middle where they are large. x is east, z is south. Properties that are texts,
 /// numbers or truth values are kept; a list "tags" tags the edges of the first outline in the file's order.
 Result<Features> readGeoJson(std::string_view bytes, const ReadLimits& limits = {}, const Progress* progress = nullptr);
+/// RFC 7946 lines, alone or in features and collections, by the same rules; other geometries are passed over.
+Result<Lines> readGeoJsonLines(std::string_view bytes, const ReadLimits& limits = {},
+                               const Progress* progress = nullptr);
 /// path, polygon and rect, with the transforms of their groups; each one feature. A path's rings inside others are
 /// courts by turns (even-odd). A curve becomes 8 chords. User units are metres; x is right, z is down. The property
 /// "class" is kept.

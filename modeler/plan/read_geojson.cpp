@@ -4,50 +4,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "modeler/core/conventions.h"
 #include "modeler/core/printable.h"
+#include "modeler/plan/geojson_parts.h"
 #include "modeler/plan/read_parts.h"
 
 namespace sgm::plan {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr int deepest = 64;
-constexpr size_t longestText = 4096, mostProperties = 256;
-
-/// An error where lists and objects nest too deep: found before anything is built.
-std::optional<Error> tooDeep(std::string_view bytes) {
-    int depth = 0;
-    bool inText = false;
-    for (size_t i = 0; i < bytes.size(); ++i) {
-        const char c = bytes[i];
-        if (inText) {
-            if (c == '\\')
-                ++i;
-            else if (c == '"')
-                inText = false;
-        } else if (c == '"') {
-            inText = true;
-        } else if (c == '[' || c == '{') {
-            if (++depth > deepest)
-                return Error{Error::Kind::Input, fmt::format("lists nest deeper than {} at byte {}", deepest, i + 1)};
-        } else if (c == ']' || c == '}') {
-            --depth;
-        }
-    }
-    return {};
-}
-
-std::string textOf(const Json& value) { return shortened(printable(value.get_ref<const std::string&>()), longestText); }
-
-/// A member that is a text, or "".
-std::string_view member(const Json& object, const char* name) {
-    if (!object.is_object()) return {};
-    const auto at = object.find(name);
-    return at != object.end() && at->is_string() ? std::string_view(at->get_ref<const std::string&>())
-                                                 : std::string_view{};
-}
 
 /// What was read so far; points as the file has them.
 struct Reading {
@@ -114,22 +78,6 @@ std::optional<Error> readGeometry(const Json& geometry, Reading& reading, Footpr
     return {};
 }
 
-void readProperties(const Json& object, Feature& feature) {
-    for (const auto& [name, value] : object.items()) {
-        if (feature.properties.size() >= mostProperties) return;
-        Property property{shortened(printable(name), longestText), 0.0};
-        if (value.is_string())
-            property.value = textOf(value);
-        else if (value.is_boolean())
-            property.value = value.get<bool>() ? "true" : "false";
-        else if (value.is_number() && std::isfinite(value.get<double>()))
-            property.value = value.get<double>();
-        else
-            continue;
-        feature.properties.push_back(std::move(property));
-    }
-}
-
 /// Words for the edges of the first outline.
 void readTags(const Json& properties, Footprint& footprint) {
     const auto tags = properties.find("tags");
@@ -153,7 +101,7 @@ std::optional<Error> readFeature(const Json& object, Reading& reading) {
     if (isFeature) {
         const auto properties = object.find("properties");
         if (properties != object.end() && properties->is_object()) {
-            readProperties(*properties, feature);
+            readProperties(*properties, feature.properties);
             readTags(*properties, feature.footprint);
             feature.name = shortened(printable(member(*properties, "name")), longestText);
         }
@@ -176,35 +124,17 @@ void forEachRing(Features& features, Fn&& fn) {
         }
 }
 
-/// Whether the file says that its coordinates are on a plane (a member from before RFC 7946).
-bool namesPlane(const Json& root) {
-    const auto crs = root.is_object() ? root.find("crs") : root.end();
-    if (crs == root.end() || !crs->is_object() || !crs->contains("properties")) return false;
-    const std::string_view name = member((*crs)["properties"], "name");
-    return !name.empty() && name.find("CRS84") == name.npos && name.find("4326") == name.npos;
-}
-
 /// East and north to x and −z in metres.
 void layOnPlane(Features& features, bool isPlane, double farthest_m) {
     Box2 box;
     forEachRing(features, [&](const Ring& ring) {
         for (const Vec2 p : ring.points) box.add(p);
     });
-    const Vec2 middle = box.centre();
-    features.fromDegrees = !isPlane && box.lo.x >= -180 && box.hi.x <= 180 && box.lo.z >= -90 && box.hi.z <= 90;
-    Vec2 scale{1, 1}, origin;
-    if (features.fromDegrees) {  // metres of a degree on the WGS84 ellipsoid, by its series
-        const double at = radians(middle.z);
-        scale.x = 111412.84 * std::cos(at) - 93.5 * std::cos(3 * at) + 0.118 * std::cos(5 * at);
-        scale.z = 111132.92 - 559.82 * std::cos(2 * at) + 1.175 * std::cos(4 * at);
-        origin = middle;
-    } else if (std::max({std::abs(box.lo.x), std::abs(box.hi.x), std::abs(box.lo.z), std::abs(box.hi.z)}) >
-               farthest_m) {
-        origin = {std::round(middle.x), std::round(middle.z)};
-    }
-    features.east = origin.x, features.north = origin.z;
+    const Plane plane = planeOf(box, isPlane, farthest_m);
+    features.fromDegrees = plane.fromDegrees;
+    features.east = plane.origin.x, features.north = plane.origin.z;
     forEachRing(features, [&](Ring& ring) {
-        for (Vec2& p : ring.points) p = {(p.x - origin.x) * scale.x, -(p.z - origin.z) * scale.z};
+        for (Vec2& p : ring.points) p = plane.at(p);
     });
 }
 
@@ -212,17 +142,9 @@ void layOnPlane(Features& features, bool isPlane, double farthest_m) {
 
 Result<Features> readGeoJson(std::string_view bytes, const ReadLimits& limits, const Progress* progress) {
     if (bytes.size() > limits.mostBytes) return Error{Error::Kind::Input, "it is too large"};
-    if (const auto e = tooDeep(bytes)) return *e;
-    Json root;
-    try {
-        root = Json::parse(bytes);
-    } catch (const Json::parse_error& e) {
-        const auto line =
-            1 + std::count(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(std::min(e.byte, bytes.size())), '\n');
-        return damaged("line", static_cast<uint64_t>(line), "this is no JSON");
-    } catch (const Json::out_of_range&) {
-        return Error{Error::Kind::Input, "a number is too large"};
-    }
+    const Result<Json> parsed = parseGeoJson(bytes);
+    if (!parsed.ok()) return parsed.error();
+    const Json& root = *parsed;
     Reading reading{limits, progress, ReadBudget(limits)};
     const auto list = root.is_object() ? root.find("features") : root.end();
     if (member(root, "type") == "FeatureCollection" && list != root.end() && list->is_array()) {

@@ -5,6 +5,7 @@
 
 #include "modeler/core/random.h"
 #include "modeler/plan/edit.h"
+#include "modeler/town/lot_parts.h"
 #include "modeler/town/outline.h"
 
 namespace sgm::town {
@@ -40,6 +41,21 @@ Footprint stripOf(const RoadGraph& graph, const RoadParameters& parameters, uint
     plan::Ring ring = plan::ringOf({a - d - n, b + d - n, b + d + n, a - d + n}, tagged);
     out.polygons.push_back({std::move(ring), {}});
     return out;
+}
+
+/// The outline with every edge moved in by its distance, where it is convex: what all the moved lines leave. Most
+/// blocks are, and this is ten times as fast as the general way.
+std::optional<Footprint> insetConvex(const Footprint& land, const std::vector<double>& distances) {
+    if (land.polygons.size() != 1 || !isConvex(land.polygons[0])) return std::nullopt;
+    const plan::Ring& outline = land.polygons[0].outer;
+    plan::Ring ring = outline;
+    for (size_t i = 0; i < outline.size() && ring.size() >= 3; ++i) {
+        const Vec2 d = unit(outline.to(i) - outline.from(i)), out{d.z, -d.x};
+        ring = convexPart(ring, out, dot(out, outline.from(i)) - distances[i], outline.edges[i]);
+    }
+    Footprint left{{}, land.tags};
+    if (ring.size() >= 3) left.polygons.push_back({std::move(ring), {}});
+    return left;
 }
 
 /// Where `holds` in the box of the land, taken off it. Edges of `what` keep their tag.
@@ -146,7 +162,8 @@ std::vector<Block> blocksOf(const RoadGraph& graph, const RoadParameters& parame
         const bool highway = land.tags[e.edge.tag].find("highway") != std::string::npos;
         distances.push_back(parameters.width_m(highway ? RoadClass::Highway : RoadClass::Street) / 2);
     }
-    land = plan::setback(land, distances);
+    const auto inset = insetConvex(land, distances);
+    land = inset ? *inset : plan::setback(land, distances);
     for (const uint32_t spur : face.spurs)
         land = plan::boolean(Boolean::Difference, land, stripOf(graph, parameters, spur));
     cut(land, cuts.water, cuts.cell_m, "water");
@@ -182,6 +199,18 @@ std::vector<RoadSurface> surfacesOf(const RoadGraph& graph, const RoadParameters
     }
     for (uint32_t e = 0; e < ends.size(); ++e) {
         const RoadEdge& edge = graph.edge(e);
+        if (edge.curve) {  // all edges of a curve stand side by side, each going on where the one before ends
+            uint32_t last = e;
+            while (last + 1 < ends.size() && graph.edge(last + 1).curve == edge.curve) ++last;
+            std::vector<Vec2> band{ends[e].right[0]};
+            for (uint32_t i = e; i <= last; ++i) band.push_back(ends[i].left[1]);
+            for (uint32_t i = last + 1; i-- > e;) band.push_back(ends[i].right[1]);
+            band.push_back(ends[e].left[0]);
+            out.push_back({plan::footprintOf(plan::polygonOf(std::move(band))), e, noIndex, graph.metresAt(edge.a),
+                           graph.metresAt(graph.edge(last).b)});
+            e = last;
+            continue;
+        }
         const Vec2 a = graph.metresAt(edge.a), b = graph.metresAt(edge.b), d = unit(b - a);
         const Ends& at = ends[e];
         if (length(b - a) - at.cut_m[0] - at.cut_m[1] < least_m) continue;

@@ -25,14 +25,15 @@ struct LandCuts {
 std::vector<Block> blocksOf(const RoadGraph& graph, const RoadParameters& parameters, const Face& face,
                             const LandCuts& cuts);
 
-/// A stretch of road between two crossings, or a crossing.
+/// A straight piece of road, a curve, or a crossing.
 struct RoadSurface {
     plan::Footprint area;
-    uint32_t edge = noIndex, node = noIndex;  ///< one of them
+    uint32_t edge = noIndex, node = noIndex;  ///< one of them; of a curve its first edge
     Vec2 from, to;                            ///< of an edge: the ends of its middle line, crossings left out
 };
 
-/// The surfaces of all roads: a quadrilateral for every edge, a polygon for every node where three or more meet.
+/// The surfaces of all roads: a quadrilateral for every edge, a band for every curve, a polygon for every node where
+/// three or more meet.
 std::vector<RoadSurface> surfacesOf(const RoadGraph& graph, const RoadParameters& parameters);
 
 }  // namespace sgm::town

@@ -7,7 +7,10 @@
 #include <queue>
 
 #include "modeler/core/random.h"
+#include "modeler/town/curves.h"
 #include "modeler/town/grower.h"
+#include "modeler/town/own_streets.h"
+#include "modeler/town/tensor_field.h"
 
 namespace sgm::town {
 namespace {
@@ -35,6 +38,12 @@ constexpr RoadParameter table[] = {
     {"slope", &RoadParameters::slope, Unit::Share, 0, 10, "0 … 1000%", "steepest rise along a road"},
     {"axis", &RoadParameters::axis, Unit::Angle, -7, 7, "at most 360deg",
      "of the raster and the first highways, from +x towards +z"},
+    {"reach", &RoadParameters::reach_m, Unit::Length, 10, 2000, "10 m … 2 km",
+     "how far from water `shore` turns the roads of the field"},
+    {"highwayRadius", &RoadParameters::highwayRadius_m, Unit::Length, 0, 2000, "0 … 2 km",
+     "least radius of the curves in bends of highways; 0 for none"},
+    {"streetRadius", &RoadParameters::streetRadius_m, Unit::Length, 0, 2000, "0 … 2 km",
+     "least radius of the curves in bends of streets; 0 for none"},
     {"limit", &RoadParameters::limit, Unit::Count, 1, 1e6, "1 … 1000000", "most pieces of road"},
 };
 
@@ -58,12 +67,15 @@ public:
     Growth(const RoadParameters& parameters, const Land& land, RoadGraph& graph)
         : parameters_(parameters), land_(land), graph_(graph), grower_(graph, parameters, land) {}
 
-    Status run(Progress* progress);
+    Status run(Progress* progress, OwnStreetsReport& report);
 
 private:
+    Status begin(OwnStreetsReport& report);
+    void pushSides(const OwnStop& stop);
+    void finish(OwnStreetsReport& report);
     std::optional<Vec2> densest() const;
     Vec2 best(Vec2 from, Vec2 heading) const;
-    Vec2 snapped(Vec2 from, Vec2 heading) const;
+    Vec2 snapped(Vec2 from, Vec2 heading, RoadClass kind) const;
     void push(uint64_t tick, uint32_t node, Vec2 heading, RoadClass kind, double sinceJunction);
     void branch(const Tip& tip, const Built& built);
     void joinEnds();
@@ -73,6 +85,7 @@ private:
     RoadGraph& graph_;
     Grower grower_;
     Vec2 centre_;
+    std::optional<TensorField> field_;
     std::priority_queue<Tip, std::vector<Tip>, std::greater<>> tips_;
 };
 
@@ -117,8 +130,10 @@ Vec2 Growth::best(Vec2 from, Vec2 heading) const {
 }
 
 /// The pattern's direction nearest to the heading.
-Vec2 Growth::snapped(Vec2 from, Vec2 heading) const {
+Vec2 Growth::snapped(Vec2 from, Vec2 heading, RoadClass kind) const {
     if (parameters_.pattern == Pattern::Grown) return heading;
+    if (field_)
+        return field_->direction(from, heading, kind == RoadClass::Highway ? parameters_.step_m : parameters_.block_m);
     Vec2 axis = directionAt(parameters_.axis);
     if (parameters_.pattern == Pattern::Radial) {
         const Vec2 out = from - centre_;
@@ -165,18 +180,53 @@ void Growth::joinEnds() {
         if (graph_.degree(n) == 1) grower_.join(n, 1.5 * parameters_.block_m);
 }
 
-Status Growth::run(Progress* progress) {
-    const auto seed = parameters_.from ? parameters_.from : densest();
-    if (!seed || !grower_.isInside(*seed) || grower_.isWater(*seed) || grower_.isPark(*seed))
+/// Streets on both sides of a place along an own street; where it ends, the street itself goes on.
+void Growth::pushSides(const OwnStop& stop) {
+    const Vec2 at = graph_.metresAt(stop.node);
+    if (graph_.degree(stop.node) == 1) {
+        const uint32_t last = graph_.nodes()[stop.node].edges.front();
+        push(0, stop.node, unit(graph_.along(last, stop.node)) * -1, graph_.edge(last).kind, 0);
+    }
+    if (!grower_.spreadsAt(at) || grower_.isWater(at)) return;
+    const auto when = stop.kind == RoadClass::Highway ? static_cast<uint64_t>(parameters_.delay) : 0;
+    for (const Vec2 side : {leftOf(stop.heading), leftOf(stop.heading) * -1})
+        push(1 + when, stop.node, side, RoadClass::Street, 0);
+}
+
+/// The first tips: at own streets, else where the pull is greatest, and wherever `from` says.
+Status Growth::begin(OwnStreetsReport& report) {
+    std::vector<OwnStop> stops;
+    if (land_.streets) stops = layStreets(graph_, *land_.streets, parameters_, land_, report);
+    for (const OwnStop& stop : stops) pushSides(stop);
+    const bool isOwn = !stops.empty();
+    const auto seed = parameters_.from ? parameters_.from : isOwn ? graph_.metresAt(stops[0].node) : densest();
+    const bool isLegal = seed && grower_.isInside(*seed) && !grower_.isWater(*seed) && !grower_.isPark(*seed);
+    if (!isLegal && (!isOwn || parameters_.from))
         return Error{Error::Kind::Input,
                      seed ? fmt::format("no road can begin at ({:.6g}, {:.6g}): it lies in water, in a "
                                         "park or outside of the scope",
                                         seed->x, seed->z)
                           : std::string("no road can begin: all of the scope is water or park")};
     centre_ = parameters_.centre.value_or(*seed);
+    if (parameters_.pattern == Pattern::Field) field_.emplace(parameters_, land_, centre_);
+    if (isOwn && !parameters_.from) return Done{};
     const uint32_t first = graph_.addNode(pointAt(*seed));
     const Vec2 axis = directionAt(parameters_.axis);
     for (const Vec2 d : {axis, leftOf(axis), axis * -1, leftOf(axis) * -1}) push(0, first, d, RoadClass::Highway, 0);
+    return Done{};
+}
+
+/// Treats dead ends and what hangs on nothing, and rounds bends.
+void Growth::finish(OwnStreetsReport& report) {
+    if (parameters_.ends == Ends::Join) joinEnds();
+    if (parameters_.ends != Ends::Keep) pruneEnds(graph_);
+    if (land_.streets) report.apart += keepLargestComponent(graph_);
+    curveBends(graph_, parameters_, land_);
+    graph_.compact();
+}
+
+Status Growth::run(Progress* progress, OwnStreetsReport& report) {
+    if (const Status begun = begin(report); !begun.ok()) return begun.error();
     if (progress) progress->begin("roads", static_cast<uint64_t>(parameters_.limit));
     while (!tips_.empty()) {
         if (cancelled(progress)) return cancelledError();
@@ -185,7 +235,7 @@ Status Growth::run(Progress* progress) {
         const Vec2 from = graph_.metresAt(tip.node);
         Vec2 heading = tip.kind == RoadClass::Highway && parameters_.pattern == Pattern::Grown ? best(from, tip.heading)
                                                                                                : tip.heading;
-        heading = snapped(from, heading);
+        heading = snapped(from, heading, tip.kind);
         const bool mayBridge =
             tip.kind == RoadClass::Highway || uniform(combine(tip.key, 7)) < parameters_.streetBridges;
         const auto built = grower_.extend(tip.node, heading, tip.kind, mayBridge);
@@ -196,9 +246,7 @@ Status Growth::run(Progress* progress) {
                          fmt::format("more than {:.0f} pieces of road grow here", parameters_.limit)};
         if (!built->joined) branch(tip, *built);
     }
-    if (parameters_.ends == Ends::Join) joinEnds();
-    if (parameters_.ends != Ends::Keep) pruneEnds(graph_);
-    graph_.compact();
+    finish(report);
     return Done{};
 }
 
@@ -215,14 +263,17 @@ void pruneEnds(RoadGraph& graph) {
         open.pop_back();
         if (graph.degree(node) != 1) continue;
         const uint32_t edge = graph.nodes()[node].edges.front(), far = graph.edge(edge).other(node);
+        if (graph.edge(edge).own) continue;
         graph.remove(edge);
         if (graph.degree(far) == 1) open.push_back(far);
     }
 }
 
-Result<RoadGraph> growRoads(const RoadParameters& parameters, const Land& land, Progress* progress) {
+Result<RoadGraph> growRoads(const RoadParameters& parameters, const Land& land, Progress* progress,
+                            OwnStreetsReport* report) {
     RoadGraph graph;
-    const Status done = Growth(parameters, land, graph).run(progress);
+    OwnStreetsReport unused;
+    const Status done = Growth(parameters, land, graph).run(progress, report ? *report : unused);
     if (!done.ok()) return done.error();
     return graph;
 }

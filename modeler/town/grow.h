@@ -21,6 +21,7 @@ enum class Pattern : uint8_t {
     Grown,   ///< highways seek the densest ground, streets go straight on
     Raster,  ///< all along the axes of `axis`
     Radial,  ///< towards `centre` and around it
+    Field,   ///< along the eigenvectors of a tensor field (tensor_field.h)
 };
 enum class Turns : uint8_t { Left, Right, Both };
 enum class Ends : uint8_t {
@@ -31,19 +32,21 @@ enum class Ends : uint8_t {
 
 /// What grows roads. The paper prints no number: the defaults are ours.
 struct RoadParameters {
-    Vec2 lo{-1000, -1000}, hi{1000, 1000};  ///< where roads may be
-    double highway_m = 20, street_m = 10;   ///< widths
-    double step_m = 80, block_m = 80;       ///< lengths of a piece of highway and of street
-    double turn = .1222, look_m = 800;      ///< radians that a highway bends at most a piece; how far it looks
-    double probes = 5;                      ///< rays it looks along
-    double junction = 8;                    ///< pieces between places where highways branch
-    double delay = 60;                      ///< ticks before streets leave highways
-    double snap_m = 30;                     ///< a road that ends nearer than this to another joins it
-    double angle = .61;                     ///< least angle between roads, radians
-    double bridge_m = 300;                  ///< longest bridge
-    double streetBridges = .25;             ///< share of streets that may cross water
-    double slope = .12;                     ///< steepest rise along a road
-    double axis = 0;                        ///< radians, of the raster and of the first highways
+    Vec2 lo{-1000, -1000}, hi{1000, 1000};           ///< where roads may be
+    double highway_m = 20, street_m = 10;            ///< widths
+    double step_m = 80, block_m = 80;                ///< lengths of a piece of highway and of street
+    double turn = .1222, look_m = 800;               ///< radians that a highway bends at most a piece; how far it looks
+    double probes = 5;                               ///< rays it looks along
+    double junction = 8;                             ///< pieces between places where highways branch
+    double delay = 60;                               ///< ticks before streets leave highways
+    double snap_m = 30;                              ///< a road that ends nearer than this to another joins it
+    double angle = .61;                              ///< least angle between roads, radians
+    double bridge_m = 300;                           ///< longest bridge
+    double streetBridges = .25;                      ///< share of streets that may cross water
+    double slope = .12;                              ///< steepest rise along a road
+    double axis = 0;                                 ///< radians, of the raster and of the first highways
+    double reach_m = 200;                            ///< how far from water the field's `shore` turns roads
+    double highwayRadius_m = 0, streetRadius_m = 0;  ///< least radius of curves in bends; 0: bends stay corners
     Turns turns = Turns::Left;
     Pattern pattern = Pattern::Grown;
     Ends ends = Ends::Prune;
@@ -54,12 +57,25 @@ struct RoadParameters {
     double width_m(RoadClass kind) const { return kind == RoadClass::Highway ? highway_m : street_m; }
 };
 
+struct OwnStreets;
+
 /// The maps. Functions that are empty answer 1, true, false, false and 0.
 struct Land {
     std::function<double(Vec2)> pull;  ///< what highways seek
     std::function<bool(Vec2)> spread;  ///< whether streets grow on from here
     std::function<bool(Vec2)> water, park;
     std::function<double(Vec2)> height;  ///< metres
+    /// Weights of the tensor field's parts: along `axis`, about `centre`, along the banks of water, along level lines
+    /// of `height`. Empty ones weigh 0; `grid` weighs 1 where all are empty.
+    std::function<double(Vec2)> grid, rings, shore, contours;
+    const OwnStreets* streets = nullptr;  ///< what is there already: growth begins along them
+};
+
+/// What became of streets that were there already.
+struct OwnStreetsReport {
+    size_t laid = 0;     ///< pieces of the graph
+    size_t refused = 0;  ///< pieces that couldn't lie on the lattice without touching another
+    size_t apart = 0;    ///< pieces left out because no road joins them to the rest
 };
 
 /// A numeric parameter: a row of the table that the language, its reference and its checks read.
@@ -75,9 +91,10 @@ std::span<const RoadParameter> roadParameters();
 
 /// The grown graph, its dead ends treated. Error::Budget beyond `limit` pieces, Error::Input where no road can begin,
 /// Error::Cancelled.
-Result<RoadGraph> growRoads(const RoadParameters& parameters, const Land& land, Progress* progress = nullptr);
+Result<RoadGraph> growRoads(const RoadParameters& parameters, const Land& land, Progress* progress = nullptr,
+                            OwnStreetsReport* report = nullptr);
 
-/// Removes dead ends until there are none.
+/// Removes dead ends until there are none but those of own streets.
 void pruneEnds(RoadGraph& graph);
 
 }  // namespace sgm::town

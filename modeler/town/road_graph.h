@@ -28,6 +28,8 @@ struct RoadEdge {
     RoadClass kind = RoadClass::Street;
     bool bridge = false;   ///< over water
     bool removed = false;  ///< by `remove`; keeps its number until `compact`
+    bool own = false;      ///< of a file: it stays, and so does its end
+    uint32_t curve = 0;    ///< of pieces that make one curve: its number from 1
     uint32_t other(uint32_t node) const { return node == a ? b : a; }
 };
 
@@ -44,7 +46,7 @@ public:
     bool areJoined(uint32_t a, uint32_t b) const;
 
     uint32_t addNode(Point at);
-    uint32_t addEdge(uint32_t a, uint32_t b, RoadClass kind, bool bridge);
+    uint32_t addEdge(uint32_t a, uint32_t b, RoadClass kind, bool bridge, bool own = false, uint32_t curve = 0);
     /// Puts a node into an edge, which goes on to it; the rest is a new edge.
     uint32_t splitEdge(uint32_t edge, Point at);
     void remove(uint32_t edge);

@@ -2,48 +2,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <map>
 #include <set>
 
-#include "modeler/plan/edit.h"
-#include "tests/derive/grammars.h"
-#include "tests/rules/read.h"
+#include "tests/operations/town_grammars.h"
 
 namespace sgm::testing_ {
 namespace {
-
-using derive::Derivation;
-using derive::Shape;
-
-const std::string head = R"(grammar 1
-map people = bump((-40m, -30m), 400m)
-map bank = here.z - 80m - .2 * here.x
-roads Net {
-  pull = people  spread = people > .2
-  water = bank > -12m and bank < 12m  park = bump((-110m, -120m), 50m) > 0
-  highway = 14m  street = 9m  block = 60m  step = 60m  junction = 4
-}
-terminal asphalt, deck, lawn, sea, grove, wall, yard
-)";
-const std::string start = "start Town -> size (500, 10, 500) network Net { ";
-
-std::map<std::string, std::vector<const Shape*>> solidsOf(const Derivation& d) {
-    std::map<std::string, std::vector<const Shape*>> found;
-    for (const Shape& s : d.tree.shapes)
-        if (s.solid != derive::none) found[d.tree.labels[s.label]].push_back(&s);
-    return found;
-}
-
-std::map<std::string, size_t> layersOf(const Derivation& d) {
-    std::map<std::string, size_t> count;
-    for (const auto& f : d.plan.features) ++count[f.layer];
-    return count;
-}
-
-double areaOf(const Derivation& d, const Shape& s) {
-    if (s.scope.footprint == derive::none) return s.scope.size.x * s.scope.size.z;
-    return area(d.tree.footprints.inMetres(s.scope.footprint, s.scope.half()));
-}
 
 TEST(Network, PutsABodyInEveryPart) {
     const Derivation d = derived(head + start +
@@ -143,8 +107,9 @@ TEST(Lots, AreTheSameEverywhereButAtTheRuleThatChanged) {
     // A body of another part takes nothing away from the draws of the lots.
     const Derivation c = derived(head + start + "street: asphalt | " + body);
     std::multiset<double> heights, again;
-    for (const Shape* s : solidsOf(a).at("wall")) heights.insert(s->scope.size.y);
-    for (const Shape* s : solidsOf(c).at("wall")) again.insert(s->scope.size.y);
+    const auto solidsOfA = solidsOf(a), solidsOfC = solidsOf(c);
+    for (const Shape* s : solidsOfA.at("wall")) heights.insert(s->scope.size.y);
+    for (const Shape* s : solidsOfC.at("wall")) again.insert(s->scope.size.y);
     EXPECT_EQ(heights, again);
 }
 
@@ -167,16 +132,15 @@ TEST(Network, SaysWhyNothingGrows) {
     EXPECT_NE(d.error().message.find("'street' is 900, but must be 2 … 200 m"), std::string::npos) << d.error().message;
 }
 
-std::string messagesOf(const std::string& text) { return rules::checkedBody(text).messages(); }
-
 TEST(Roads, AreCheckedWithALocatedError) {
     const std::string use = "start A -> size 400 network Net { block: cube }\n";
     EXPECT_NE(messagesOf("roads Net { pul = 1 }\n" + use).find("roads have no 'pul'"), std::string::npos);
     EXPECT_NE(messagesOf("roads Net { pull = 3m }\n" + use).find("'pull' takes"), std::string::npos);
     EXPECT_NE(messagesOf("roads Net { street = 900m }\n" + use).find("'street' is 900m, but must be 2 … 200 m"),
               std::string::npos);
-    EXPECT_NE(messagesOf("roads Net { pattern = square }\n" + use).find("'pattern' is one of grown, raster, radial"),
-              std::string::npos);
+    EXPECT_NE(
+        messagesOf("roads Net { pattern = square }\n" + use).find("'pattern' is one of grown, raster, radial, field"),
+        std::string::npos);
     EXPECT_NE(messagesOf("roads Net { turn = 7 }\n" + use).find("'turn' takes an angle"), std::string::npos);
     EXPECT_NE(messagesOf("roads Net { }\nroads Net { }\n" + use).find("there is already a roads 'Net'"),
               std::string::npos);

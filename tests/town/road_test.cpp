@@ -169,6 +169,32 @@ TEST(Roads, AreTheSameAgainAndFarFromAChange) {
     EXPECT_NE(all, placesOf(grown(p, moved), {}, 0));
 }
 
+TEST(Roads, FarFromAMovedParkStayAsTheyWere) {
+    // As a town is planned: dead ends pruned, curves rounded, every pattern.
+    for (const Pattern pattern : {Pattern::Grown, Pattern::Raster, Pattern::Radial, Pattern::Field}) {
+        RoadParameters p = smallTown(7, pattern);
+        p.lo = {-1500, -1500}, p.hi = {1500, 1500};
+        p.from = p.centre = Vec2{-200, -150};
+        p.highwayRadius_m = 80, p.streetRadius_m = 12;
+        Land land = test::valley();
+        land.spread = nullptr;
+        land.shore = land.grid = [](Vec2) { return 1.; };
+        const Vec2 corner{1200, -1200}, beside{1000, -1100};
+        const auto withPark = [&](Vec2 at) {
+            Land moved = land;
+            moved.park = [&land, at](Vec2 q) { return land.park(q) || length(q - at) < 150; };
+            return grown(p, moved);
+        };
+        const RoadGraph before = withPark(corner), after = withPark(beside);
+        const auto far = placesOf(before, corner, 1500), again = placesOf(after, corner, 1500);
+        size_t kept = 0;
+        for (const auto& e : far) kept += again.contains(e);
+        EXPECT_GE(kept, far.size() * 95 / 100) << static_cast<int>(pattern);
+        EXPECT_GT(far.size(), 500u);
+        EXPECT_NE(placesOf(before, {}, 0), placesOf(after, {}, 0));
+    }
+}
+
 TEST(Roads, PatternsLayThemAlongTheirAxes) {
     for (const Pattern pattern : {Pattern::Raster, Pattern::Radial}) {
         RoadParameters p = smallTown(4, pattern);

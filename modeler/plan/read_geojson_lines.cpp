@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "modeler/plan/geojson_parts.h"
+#include "modeler/plan/read_parts.h"
+
+namespace sgm::plan {
+namespace {
+
+using Json = nlohmann::json;
+
+/// What was read so far; points as the file has them.
+struct Reading {
+    ReadBudget budget;
+    Lines lines{};
+    uint64_t number = 0;  ///< of the feature
+};
+
+std::optional<Error> readLine(const Json& list, Reading& reading, std::vector<Vec2>& line) {
+    if (!list.is_array()) return damaged("feature", reading.number, "a line is no list of positions");
+    if (auto e = reading.budget.addPoints(list.size())) return e;
+    for (const Json& at : list) {
+        if (!at.is_array() || at.size() < 2 || !at[0].is_number() || !at[1].is_number())
+            return damaged("feature", reading.number,
+                           fmt::format("position {} of a line is not a list of two numbers", line.size() + 1));
+        line.push_back({at[0].get<double>(), at[1].get<double>()});
+        if (!std::isfinite(line.back().x) || !std::isfinite(line.back().z))
+            return damaged("feature", reading.number, fmt::format("position {} of a line is not finite", line.size()));
+    }
+    if (line.size() < 2) return damaged("feature", reading.number, "a line has fewer than two points");
+    return {};
+}
+
+std::optional<Error> readGeometry(const Json& geometry, Reading& reading, LineFeature& into) {
+    if (!geometry.is_object()) return {};
+    const std::string_view type = member(geometry, "type");
+    if (type == "GeometryCollection") {
+        const auto list = geometry.find("geometries");
+        if (list != geometry.end() && list->is_array())
+            for (const Json& one : *list)
+                if (auto e = readGeometry(one, reading, into)) return e;
+        return {};
+    }
+    if (type != "LineString" && type != "MultiLineString") return {};
+    const auto coordinates = geometry.find("coordinates");
+    if (coordinates == geometry.end() || !coordinates->is_array())
+        return damaged("feature", reading.number, "a line has no coordinates");
+    if (type == "LineString") return readLine(*coordinates, reading, into.lines.emplace_back());
+    for (const Json& one : *coordinates)
+        if (auto e = readLine(one, reading, into.lines.emplace_back())) return e;
+    return {};
+}
+
+std::optional<Error> readFeature(const Json& object, Reading& reading) {
+    ++reading.number;
+    LineFeature feature;
+    feature.place = reading.number;
+    const bool isFeature = member(object, "type") == "Feature";
+    const auto geometry = isFeature ? object.find("geometry") : object.end();
+    if (isFeature && geometry == object.end()) return damaged("feature", reading.number, "it has no geometry");
+    if (auto e = readGeometry(isFeature ? *geometry : object, reading, feature)) return e;
+    if (feature.lines.empty()) return {};
+    if (auto e = reading.budget.addFeature()) return e;
+    const auto properties = isFeature ? object.find("properties") : object.end();
+    if (isFeature && properties != object.end() && properties->is_object())
+        readProperties(*properties, feature.properties);
+    reading.lines.list.push_back(std::move(feature));
+    return {};
+}
+
+}  // namespace
+
+Result<Lines> readGeoJsonLines(std::string_view bytes, const ReadLimits& limits, const Progress* progress) {
+    if (bytes.size() > limits.mostBytes) return Error{Error::Kind::Input, "it is too large"};
+    const Result<Json> root = parseGeoJson(bytes);
+    if (!root.ok()) return root.error();
+    Reading reading{ReadBudget(limits)};
+    const auto list = root->is_object() ? root->find("features") : root->end();
+    if (member(*root, "type") == "FeatureCollection" && list != root->end() && list->is_array()) {
+        for (const Json& object : *list) {
+            if (cancelled(progress)) return cancelledError();
+            if (auto e = readFeature(object, reading)) return *e;
+        }
+    } else if (auto e = readFeature(*root, reading)) {
+        return *e;
+    }
+    if (reading.lines.list.empty())
+        return Error{Error::Kind::Input, "it has no lines; GeoJSON's LineString and MultiLineString are read"};
+    Box2 box;
+    for (const LineFeature& feature : reading.lines.list)
+        for (const auto& line : feature.lines)
+            for (const Vec2 p : line) box.add(p);
+    const Plane plane = planeOf(box, namesPlane(*root), limits.footprint.farthest_m);
+    reading.lines.fromDegrees = plane.fromDegrees;
+    for (LineFeature& feature : reading.lines.list)
+        for (auto& line : feature.lines)
+            for (Vec2& p : line) p = plane.at(p);
+    return std::move(reading.lines);
+}
+
+}  // namespace sgm::plan
