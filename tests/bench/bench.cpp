@@ -11,6 +11,7 @@
 #include "tests/bench/kifs.h"
 #include "tests/bench/meshes.h"
 #include "tests/bench/pictures.h"
+#include "tests/bench/plan_costs.h"
 #include "tests/bench/report.h"
 
 namespace {
@@ -24,7 +25,7 @@ struct Request {
     MeasureOptions measure;
     std::string json, drag, gallery;
     bool bars = false, cpu = false, noPeers = false, noDense = false, kifs = false, pictures = false;
-    bool meshes = false, crossings = false, city = false;
+    bool meshes = false, crossings = false, city = false, plan = false;
     double buildings = 1e6;
     int sides = MeshesOptions{}.sides;
 };
@@ -62,6 +63,7 @@ void addOptions(CLI::App& app, Request& request) {
         ->needs(city)
         ->check(CLI::Range(1e4, 1e6))
         ->capture_default_str();
+    app.add_flag("--plan", request.plan, "Measure what the plans of cities cost instead: roads, blocks and lots");
     auto* meshes =
         app.add_flag("--meshes", request.meshes,
                      "Hold meshes of buildings against exact solid geometry instead (needs node and manifold-3d)");
@@ -174,6 +176,18 @@ Status runCity(double mostBuildings) {
     return Done{};
 }
 
+/// The table of --plan.
+void runPlan() {
+    fmt::print("{}\n", planHeader());
+    std::vector<PlanCosts> all;
+    for (const PlanCase& what : planCases()) {
+        all.push_back(measurePlan(what));
+        fmt::print("{}\n", planLine(all.back()));
+        std::fflush(stdout);
+    }
+    for (const Bar& bar : judge(all)) fmt::print("{}\n", barLine(bar));
+}
+
 int fail(const Error& error) {
     fmt::print(stderr, "{}\n", error.message);
     return error.kind == Error::Kind::Usage ? 2 : 1;
@@ -191,6 +205,10 @@ int main(int argc, char** argv) {
     if (request.meshes) {
         const Status done = runMeshes(request);
         return done.ok() ? 0 : fail(done.error());
+    }
+    if (request.plan) {
+        runPlan();
+        return 0;
     }
     if (request.city) {
         const Status done = runCity(request.buildings);
