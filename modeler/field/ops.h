@@ -45,6 +45,7 @@
 #include "modeler/field/blend_op.h"
 #include "modeler/field/facade_op.h"
 #include "modeler/field/graph.h"
+#include "modeler/field/heights_op.h"
 #include "modeler/field/kifs.h"
 #include "modeler/field/noise.h"
 #include "modeler/field/ops_math.h"
@@ -246,10 +247,10 @@ template <class... Rows>
 struct TypeList {
     static constexpr size_t size = sizeof...(Rows);
 };
-using OpTable =
-    TypeList<ops::Input, ops::Literal, ops::Slot, ops::Copy, ops::Add, ops::Sub, ops::Mul, ops::Div, ops::Neg, ops::Abs,
-             ops::Sqrt, ops::Square, ops::Floor, ops::Mod, ops::Min, ops::Max, ops::Rim, ops::Morph, ops::Sin, ops::Cos,
-             ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend, ops::Ball, ops::Box, ops::Sampled, ops::Facade>;
+using OpTable = TypeList<ops::Input, ops::Literal, ops::Slot, ops::Copy, ops::Add, ops::Sub, ops::Mul, ops::Div,
+                         ops::Neg, ops::Abs, ops::Sqrt, ops::Square, ops::Floor, ops::Mod, ops::Min, ops::Max, ops::Rim,
+                         ops::Morph, ops::Sin, ops::Cos, ops::Exp, ops::Atan2, ops::Kifs, ops::Noise, ops::Blend,
+                         ops::Ball, ops::Box, ops::Sampled, ops::Facade, ops::Heights>;
 
 namespace detail {
 template <class Row, class... Rows>

@@ -16,7 +16,7 @@ struct OneOp {
     static OneOp make(const Example& example, Draws& draws) {
         OneOp one;
         one.tight = example.tight;
-        one.graph.grid(field::test::sampledTorus());
+        addGrids(one.graph);
         std::vector<field::Operand> nodes;
         const NodeRef axes[] = {one.graph.x(), one.graph.y(), one.graph.z()};
         for (size_t i = 0; i < example.operands.size(); ++i) {

@@ -60,6 +60,9 @@ std::vector<NodeRef> sampleNodes(field::Graph& g, field::OpCode op) {
         if (row.name == "box") operands.pop_back();
         return {g.apply(op, operands)};
     }
+    if (row.name == "heights")
+        return {g.apply(op, {a, b}, g.grid(field::test::waves())),
+                g.apply(op, {b * 3.0f, a}, g.grid(field::test::waves()))};
     if (row.readsGrid)
         return {g.apply(op, {a, b, g.z()}, g.grid(field::test::sampledTorus(5))),
                 g.apply(op, {b, a, g.z() * 0.3f}, g.grid(field::test::sampledTorus(9)))};

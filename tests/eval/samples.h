@@ -10,6 +10,7 @@
 #include "modeler/core/random.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/field/ops.h"
+#include "tests/field/heights.h"
 #include "tests/field/sampled.h"
 
 namespace sgm::eval::testing {
@@ -126,9 +127,15 @@ struct Example {
         bool varies = true;  ///< false: a slot, as a parameter is
     };
     std::vector<Operand> operands;
-    uint32_t data = 0;  ///< of a row that reads a grid: 0, its graph's only one
+    uint32_t data = 0;  ///< of a row that reads a grid: its number in `addGrids`
     bool tight = true;  ///< the interval of a point is a point, but for rounding
 };
+
+/// The grids that rows of the table read, by number: samples of a torus, heights.
+inline void addGrids(Graph& graph) {
+    graph.grid(field::test::sampledTorus());
+    graph.grid(field::test::waves());
+}
 
 /// A KIFS with fixed parameters: a turn about y, a fold about z, both small.
 inline Example kifsExample(ops::Kifs::Form form) {
@@ -172,6 +179,10 @@ std::vector<Example> examplesOf() {
                 {{{-r, r}, {0, 1}, {5, 9}}, ops::Noise::pack(true, 3, 8)}};
     else if constexpr (std::is_same_v<Row, ops::Sampled>)
         return {{{{-2, 2}, {-2, 2}, {-1, 1}}}, {{{-1, 1}, {0.9f, 0.9f, false}, {-0.3f, 0.3f}}}};
+    else if constexpr (std::is_same_v<Row, ops::Heights>)
+        return {{{{-2, 2}, {-2, 2}}, 1, false},
+                {{{-0.02f, 0.01f}, {0.1f, 0.13f}}, 1, false},
+                {{{-1, 1}, {0.9f, 0.9f, false}}, 1, false}};
     else if constexpr (std::is_same_v<Row, ops::Blend>)
         return {{{{0.3f, 0.3f, false}, {-r, r}, {-r, r}}},
                 {{{0, 2, false}, {-1, 1}, {-1, 1}, {-1, 0}, {0.5f, 0.5f, false}}},
@@ -198,7 +209,7 @@ std::vector<Example> examplesOf() {
 
 /// A random expression of up to `size` ops, rich in min and max, with owners on their operands.
 inline NodeRef randomExpression(Graph& graph, size_t size, Draws& draws) {
-    graph.grid(field::test::sampledTorus());
+    addGrids(graph);
     std::vector<NodeRef> pool{graph.x(), graph.y(), graph.z()};
     for (int i = 0; i < 4; ++i) pool.push_back(graph.slot(draws.real(-2, 2)));
     for (int i = 0; i < 3; ++i) pool.push_back(graph.literal(draws.real(-2, 2)));
