@@ -53,7 +53,9 @@ private:
     double roomAt(uint32_t n) const {
         if (graph_.degree(n) != 2) return 0;
         const RoadEdge &e = graph_.edge(graph_.nodes()[n].edges[0]), &f = graph_.edge(graph_.nodes()[n].edges[1]);
-        if (e.kind != f.kind || e.bridge || f.bridge || e.own || f.own || leastRadius(e.kind) <= 0) return 0;
+        if (e.kind != f.kind || e.bridge || f.bridge || e.tunnel || f.tunnel || e.own || f.own ||
+            leastRadius(e.kind) <= 0)
+            return 0;
         return share * std::min(lengthOf(graph_.along(graph_.nodes()[n].edges[0], n)),
                                 lengthOf(graph_.along(graph_.nodes()[n].edges[1], n)));
     }

@@ -44,6 +44,9 @@ struct RoadParameters {
     double bridge_m = 300;                           ///< longest bridge
     double streetBridges = .25;                      ///< share of streets that may cross water
     double slope = .12;                              ///< steepest rise along a road
+    double bank = .6;                                ///< steepest rise of ground cut or filled beside roads and water
+    double bed_m = 4;                                ///< depth of water
+    double tunnel_m = 0;                             ///< longest tunnel
     double axis = 0;                                 ///< radians, of the raster and of the first highways
     double reach_m = 200;                            ///< how far from water the field's `shore` turns roads
     double highwayRadius_m = 0, streetRadius_m = 0;  ///< least radius of curves in bends; 0: bends stay corners

@@ -10,6 +10,7 @@ constexpr double sample_m = 5;   // between the places where a road asks the map
 constexpr double inland_m = 15;  // behind the shore, where a bridge ends
 constexpr double bridgeStep_m = 20;
 constexpr double least_m = 8;  // shortest piece
+constexpr double deep_m = 10;  // cuts and fills that are deeper become tunnels and bridges
 
 double lengthOf(Vec2 v) { return std::sqrt(dot(v, v)); }
 
@@ -29,17 +30,44 @@ bool Grower::isInside(Vec2 p) const {
 Grower::Survey Grower::survey(Vec2 from, Vec2 to) const {
     Survey out;
     const Vec2 d = to - from;
-    const int count = std::max(1, static_cast<int>(std::ceil(lengthOf(d) / sample_m)));
+    out.length_m = lengthOf(d);
+    const int count = std::max(1, static_cast<int>(std::ceil(out.length_m / sample_m)));
+    const double low = land_.height ? land_.height(from) : 0, rise = land_.height ? land_.height(to) - low : 0;
     for (int i = 1; i <= count; ++i) {
         const Vec2 p = from + d * (static_cast<double>(i) / count);
         if (!isInside(p) || isPark(p)) out.legal = false;
         if (!out.legal) return out;
         out.water = out.water || isWater(p);
+        if (!land_.height) continue;
+        const double over = land_.height(p) - low - rise * i / count;
+        out.above_m = std::max(out.above_m, over), out.below_m = std::max(out.below_m, -over);
     }
     if (isWater(to)) out.legal = false;
-    if (out.legal && !out.water && land_.height)
-        out.legal = std::abs(land_.height(to) - land_.height(from)) <= parameters_.slope * lengthOf(d);
+    out.rise_m = std::abs(rise);
+    if (out.legal && !out.water && land_.height) out.legal = out.rise_m <= parameters_.slope * out.length_m;
     return out;
+}
+
+/// Whether a straight piece is a tunnel: so deep in a hill that a cut would be no road any more.
+bool Grower::tunnels(const Survey& survey) const {
+    return survey.above_m > deep_m && survey.below_m < deep_m / 2 && !survey.water &&
+           survey.length_m <= parameters_.tunnel_m + 2 * inland_m;
+}
+
+/// Whether it is a bridge over a valley.
+bool Grower::spans(const Survey& survey) const {
+    return survey.below_m > deep_m && survey.above_m < deep_m / 2 &&
+           survey.length_m <= parameters_.bridge_m + 2 * inland_m;
+}
+
+/// Where a piece ends that goes through a hill or over a valley which it can't follow.
+std::optional<Vec2> Grower::beyondSlope(Vec2 from, Vec2 heading, double first_m) const {
+    const double most_m = std::max(parameters_.tunnel_m, parameters_.bridge_m);
+    for (double l = first_m + bridgeStep_m; l <= most_m; l += bridgeStep_m) {
+        const Survey found = survey(from, from + heading * l);
+        if (found.legal && (tunnels(found) || spans(found))) return from + heading * l;
+    }
+    return std::nullopt;
 }
 
 /// How long a piece must be to land beyond the water.
@@ -145,7 +173,8 @@ std::optional<Built> Grower::build(uint32_t node, const Target& target, RoadClas
         const RoadEdge& e = graph_.edge(target.edge);
         const Point p = graph_.at(e.a), q = graph_.at(e.b);
         const Vec2 line = unit(metres(q) - metres(p));
-        if (e.bridge || std::abs(dot(line, direction)) > directionAt(parameters_.angle).x) return std::nullopt;
+        if (e.bridge || e.tunnel || std::abs(dot(line, direction)) > directionAt(parameters_.angle).x)
+            return std::nullopt;
         if (target.at == p || target.at == q) return std::nullopt;
         if (!graph_.isFree(p, target.at, e.a, noIndex, target.edge) ||
             !graph_.isFree(target.at, q, noIndex, e.b, target.edge))
@@ -160,7 +189,8 @@ std::optional<Built> Grower::build(uint32_t node, const Target& target, RoadClas
     built.node = target.node != noIndex   ? target.node
                  : target.edge != noIndex ? graph_.splitEdge(target.edge, target.at)
                                           : graph_.addNode(target.at);
-    built.edge = graph_.addEdge(node, built.node, kind, found.water);
+    const bool bridge = found.water || (mayBridge && spans(found));
+    built.edge = graph_.addEdge(node, built.node, kind, bridge, false, 0, !bridge && mayBridge && tunnels(found));
     return built;
 }
 
@@ -174,6 +204,8 @@ std::optional<Built> Grower::extend(uint32_t node, Vec2 heading, RoadClass kind,
         const auto length_m = bridgeLength(from, heading, piece_m);
         if (!length_m) return std::nullopt;
         to = from + heading * *length_m;
+    } else if (land_.height && mayBridge && ideal.rise_m > parameters_.slope * ideal.length_m) {
+        to = beyondSlope(from, heading, piece_m).value_or(to);
     }
     if (!isInside(to)) return std::nullopt;
     return build(node, resolve(node, to), kind, mayBridge);

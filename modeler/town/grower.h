@@ -35,6 +35,9 @@ private:
     /// What a straight piece runs over.
     struct Survey {
         bool legal = true, water = false;
+        double rise_m = 0;                ///< between its ends, either way
+        double above_m = 0, below_m = 0;  ///< how far the ground stands above the straight line between them, and below
+        double length_m = 0;
     };
     /// Where a piece ends: at a node, in an edge, or on open ground.
     struct Target {
@@ -44,6 +47,9 @@ private:
     };
 
     Survey survey(Vec2 from, Vec2 to) const;
+    bool tunnels(const Survey& survey) const;
+    bool spans(const Survey& survey) const;
+    std::optional<Vec2> beyondSlope(Vec2 from, Vec2 heading, double first_m) const;
     std::optional<double> bridgeLength(Vec2 from, Vec2 heading, double first_m) const;
     std::optional<Target> firstCrossing(uint32_t node, Point to) const;
     Target resolve(uint32_t node, Vec2 to) const;

@@ -68,9 +68,10 @@ void RoadGraph::leave(uint32_t edge) {
     eachCell(at(edges_[edge].a), at(edges_[edge].b), 0, [&](uint64_t key) { std::erase(edgeCells_[key], edge); });
 }
 
-uint32_t RoadGraph::addEdge(uint32_t a, uint32_t b, RoadClass kind, bool bridge, bool own, uint32_t curve) {
+uint32_t RoadGraph::addEdge(uint32_t a, uint32_t b, RoadClass kind, bool bridge, bool own, uint32_t curve,
+                            bool tunnel) {
     const auto index = static_cast<uint32_t>(edges_.size());
-    edges_.push_back({a, b, kind, bridge, false, own, curve});
+    edges_.push_back({a, b, kind, bridge, tunnel, false, own, curve});
     nodes_[a].edges.push_back(index);
     nodes_[b].edges.push_back(index);
     enter(index);
@@ -84,7 +85,8 @@ uint32_t RoadGraph::splitEdge(uint32_t edge, Point at) {
     edges_[edge].b = node;
     nodes_[node].edges.push_back(edge);
     enter(edge);
-    addEdge(node, far, edges_[edge].kind, edges_[edge].bridge, edges_[edge].own, edges_[edge].curve);
+    addEdge(node, far, edges_[edge].kind, edges_[edge].bridge, edges_[edge].own, edges_[edge].curve,
+            edges_[edge].tunnel);
     return node;
 }
 
@@ -101,7 +103,7 @@ void RoadGraph::compact() {
     for (uint32_t n = 0; n < nodes_.size(); ++n)
         if (!nodes_[n].edges.empty()) number[n] = kept.addNode(nodes_[n].at);
     for (const RoadEdge& e : edges_)
-        if (!e.removed) kept.addEdge(number[e.a], number[e.b], e.kind, e.bridge, e.own, e.curve);
+        if (!e.removed) kept.addEdge(number[e.a], number[e.b], e.kind, e.bridge, e.own, e.curve, e.tunnel);
     *this = std::move(kept);
 }
 

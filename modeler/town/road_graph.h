@@ -26,7 +26,8 @@ struct RoadNode {
 struct RoadEdge {
     uint32_t a = noIndex, b = noIndex;
     RoadClass kind = RoadClass::Street;
-    bool bridge = false;   ///< over water
+    bool bridge = false;   ///< over water or a valley
+    bool tunnel = false;   ///< under a hill
     bool removed = false;  ///< by `remove`; keeps its number until `compact`
     bool own = false;      ///< of a file: it stays, and so does its end
     uint32_t curve = 0;    ///< of pieces that make one curve: its number from 1
@@ -46,7 +47,8 @@ public:
     bool areJoined(uint32_t a, uint32_t b) const;
 
     uint32_t addNode(Point at);
-    uint32_t addEdge(uint32_t a, uint32_t b, RoadClass kind, bool bridge, bool own = false, uint32_t curve = 0);
+    uint32_t addEdge(uint32_t a, uint32_t b, RoadClass kind, bool bridge, bool own = false, uint32_t curve = 0,
+                     bool tunnel = false);
     /// Puts a node into an edge, which goes on to it; the rest is a new edge.
     uint32_t splitEdge(uint32_t edge, Point at);
     void remove(uint32_t edge);

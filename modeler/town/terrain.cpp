@@ -1,0 +1,262 @@
+#include "modeler/town/terrain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sgm::town {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double mostCorners = 1 << 20;  // of the lattice
+constexpr double fall = .005;            // of a body of water along it
+constexpr double shore = .4;             // how steep a bed begins
+constexpr double extendedSlope = .25;    // how steep decks and water go on beside themselves
+constexpr double cover_m = 7;            // ground above a tunnel's road where the tunnel begins
+
+bool isKnown(double v) { return !std::isnan(v); }
+
+double bilinearAt(Vec2 low, double cell_m, int columns, int rows, Vec2 p, const auto& heights) {
+    const double u = std::clamp((p.x - low.x) / cell_m, 0.0, columns - 1.0);
+    const double v = std::clamp((p.z - low.z) / cell_m, 0.0, rows - 1.0);
+    const int i = std::min(static_cast<int>(u), columns - 2), k = std::min(static_cast<int>(v), rows - 2);
+    const auto h = [&](int x, int z) {
+        return static_cast<double>(
+            heights[static_cast<size_t>(z) * static_cast<size_t>(columns) + static_cast<size_t>(x)]);
+    };
+    const double near = h(i, k) + (u - i) * (h(i + 1, k) - h(i, k));
+    const double far = h(i, k + 1) + (u - i) * (h(i + 1, k + 1) - h(i, k + 1));
+    return near + (v - k) * (far - near);
+}
+
+}  // namespace
+
+double HeightMap::at(Vec2 p) const { return bilinearAt(low, cell_m, columns, rows, p, heights); }
+
+double Terrain::bilinear(const std::vector<double>& heights, Vec2 p) const {
+    return bilinearAt(low_, cell_m_, columns_, rows_, p, heights);
+}
+
+double Terrain::naturalAt(Vec2 p) const { return bilinear(natural_, p); }
+
+bool Terrain::isLevel() const {
+    const auto [least, most] = std::minmax_element(natural_.begin(), natural_.end());
+    return !hasWater_ && *most - *least < 1e-6;
+}
+
+double Terrain::leastRise(Vec2 p, double step_m) const {
+    double least = 1e9;
+    for (int i = 0; i < 32; ++i) {
+        const Vec2 to = p + directionAt(i * .19634954084936207) * step_m;
+        least = std::min(least, std::abs(naturalAt(to) - naturalAt(p)) / step_m);
+    }
+    return least;
+}
+
+HeightMap Terrain::mapOf(const std::vector<double>& heights) const {
+    HeightMap map{low_, cell_m_, columns_, rows_, {}};
+    map.heights.reserve(heights.size());
+    for (const double h : heights) map.heights.push_back(static_cast<float>(h));
+    return map;
+}
+
+Result<Terrain> Terrain::survey(const RoadParameters& parameters, const Land& land, Progress* progress) {
+    Terrain t;
+    t.parameters_ = parameters;
+    const Vec2 size = parameters.hi - parameters.lo;
+    t.cell_m_ = std::max({parameters.street_m / 4, std::sqrt(size.x * size.z / mostCorners), 1e-3 * size.x});
+    t.low_ = parameters.lo - Vec2{t.cell_m_, t.cell_m_};
+    t.columns_ = static_cast<int>(std::ceil(size.x / t.cell_m_)) + 3;
+    t.rows_ = static_cast<int>(std::ceil(size.z / t.cell_m_)) + 3;
+    const size_t count = static_cast<size_t>(t.columns_) * static_cast<size_t>(t.rows_);
+    t.natural_.reserve(count), t.water_.assign(count, unknown);
+    t.fixed_.assign(count, unknown);
+    if (progress) progress->begin("heights", static_cast<uint64_t>(t.rows_));
+    for (int k = 0; k < t.rows_; ++k) {
+        if (cancelled(progress)) return cancelledError();
+        tick(progress);
+        for (int i = 0; i < t.columns_; ++i) {
+            const Vec2 p = t.placeOf(i, k);
+            const double h = land.height(p);
+            if (!(std::abs(h) <= 1e5))
+                return Error{Error::Kind::Input,
+                             fmt::format("the ground is {:.6g} m high at ({:.6g}, {:.6g}); heights are at most 100 km",
+                                         h, p.x, p.z)};
+            t.natural_.push_back(h);
+            if (land.water && land.water(p)) t.water_[t.indexOf(i, k)] = h, t.hasWater_ = true;
+        }
+    }
+    if (t.hasWater_) t.carve(land);
+    return t;
+}
+
+/// Two sweeps over the lattice: afterwards no corner is more than `slope` times its distance above (below) another,
+/// distances being those of steps to eight neighbours.
+void Terrain::spread(std::vector<double>& heights, double slope, bool upper) const {
+    const double step = slope * cell_m_, across = step * std::sqrt(2.0);
+    const auto relax = [&](int i, int k, int di, int dk) {
+        const int x = i + di, z = k + dk;
+        if (x < 0 || z < 0 || x >= columns_ || z >= rows_) return;
+        const double by = di != 0 && dk != 0 ? across : step, from = heights[indexOf(x, z)];
+        double& to = heights[indexOf(i, k)];
+        to = upper ? std::min(to, from + by) : std::max(to, from - by);
+    };
+    for (int k = 0; k < rows_; ++k)
+        for (int i = 0; i < columns_; ++i)
+            relax(i, k, -1, 0), relax(i, k, -1, -1), relax(i, k, 0, -1), relax(i, k, 1, -1);
+    for (int k = rows_ - 1; k >= 0; --k)
+        for (int i = columns_ - 1; i >= 0; --i)
+            relax(i, k, 1, 0), relax(i, k, 1, 1), relax(i, k, 0, 1), relax(i, k, -1, 1);
+}
+
+std::vector<double> Terrain::extended(const std::vector<double>& known, double slope) const {
+    constexpr double far = 1e9;
+    std::vector<double> upper(known.size()), lower(known.size());
+    for (size_t n = 0; n < known.size(); ++n)
+        upper[n] = isKnown(known[n]) ? known[n] : far, lower[n] = isKnown(known[n]) ? known[n] : -far;
+    spread(upper, slope, true);
+    spread(lower, slope, false);
+    for (size_t n = 0; n < known.size(); ++n) upper[n] = isKnown(known[n]) ? known[n] : (upper[n] + lower[n]) / 2;
+    return upper;
+}
+
+/// Water falls by little along its way; the land beside it is cut down to it, and its bed lies below it.
+void Terrain::carve(const Land& land) {
+    // Heights spread among the corners of one body of water alone, as often as its windings ask for.
+    const double step = fall * cell_m_, across = step * std::sqrt(2.0);
+    bool changed = true;
+    const auto relax = [&](int i, int k, int di, int dk) {
+        const int x = i + di, z = k + dk;
+        if (x < 0 || z < 0 || x >= columns_ || z >= rows_) return;
+        const double from = water_[indexOf(x, z)] + (di != 0 && dk != 0 ? across : step);
+        double& to = water_[indexOf(i, k)];
+        if (from < to - 1e-6) to = from, changed = true;  // unknown compares as false
+    };
+    for (int turn = 0; changed && turn < 64; ++turn) {
+        changed = false;
+        for (int k = 0; k < rows_; ++k)
+            for (int i = 0; i < columns_; ++i)
+                relax(i, k, -1, 0), relax(i, k, -1, -1), relax(i, k, 0, -1), relax(i, k, 1, -1);
+        for (int k = rows_ - 1; k >= 0; --k)
+            for (int i = columns_ - 1; i >= 0; --i)
+                relax(i, k, 1, 0), relax(i, k, 1, 1), relax(i, k, 0, 1), relax(i, k, -1, 1);
+    }
+    layBeds(land);
+}
+
+/// Banks and beds begin at the shore itself, which lies somewhere between a corner in water and one on land.
+void Terrain::layBeds(const Land& land) {
+    constexpr double far = 1e9;
+    std::vector<double> banks(water_.size(), far), depth(water_.size(), far);
+    const auto meet = [&](int i, int k, int x, int z) {
+        const size_t wet = indexOf(i, k), dry = indexOf(x, z);
+        if (!isKnown(water_[wet]) || isKnown(water_[dry])) return;
+        double near = 0, beyond = 1;  // shares of the way from the wet corner
+        for (int halving = 0; halving < 6; ++halving) {
+            const double middle = (near + beyond) / 2;
+            (land.water(placeOf(i, k) + (placeOf(x, z) - placeOf(i, k)) * middle) ? near : beyond) = middle;
+        }
+        banks[dry] = std::min(banks[dry], water_[wet] + parameters_.bank * cell_m_ * (1 - near));
+        depth[wet] = std::min(depth[wet], shore * cell_m_ * near);
+    };
+    for (int k = 0; k < rows_; ++k)
+        for (int i = 0; i < columns_; ++i) {
+            if (i + 1 < columns_) meet(i, k, i + 1, k), meet(i + 1, k, i, k);
+            if (k + 1 < rows_) meet(i, k, i, k + 1), meet(i, k + 1, i, k);
+        }
+    spread(banks, parameters_.bank, true);
+    spread(depth, shore, true);
+    for (size_t n = 0; n < water_.size(); ++n)
+        natural_[n] =
+            isKnown(water_[n]) ? water_[n] - std::min(depth[n], parameters_.bed_m) : std::min(natural_[n], banks[n]);
+}
+
+/// What is fixed, as the lower and the upper envelope of cones that steep.
+std::pair<std::vector<double>, std::vector<double>> Terrain::cones(double slope) const {
+    constexpr double far = 1e9;
+    std::vector<double> upper(fixed_.size()), lower(fixed_.size());
+    for (size_t n = 0; n < fixed_.size(); ++n)
+        upper[n] = isKnown(fixed_[n]) ? fixed_[n] : far, lower[n] = isKnown(fixed_[n]) ? fixed_[n] : -far;
+    spread(upper, slope, true);
+    spread(lower, slope, false);
+    return {std::move(lower), std::move(upper)};
+}
+
+std::vector<double> Terrain::shaped() const {
+    auto [lower, upper] = cones(parameters_.bank);
+    for (size_t n = 0; n < fixed_.size(); ++n)
+        upper[n] = isKnown(fixed_[n])    ? fixed_[n]
+                   : lower[n] > upper[n] ? (lower[n] + upper[n]) / 2
+                                         : std::clamp(natural_[n], lower[n], upper[n]);
+    return std::move(upper);
+}
+
+void Terrain::grade(const RoadGraph& graph) {
+    solve(graph);
+    layRoads(graph);
+    layBridges(graph);
+}
+
+/// Corners beside a road get its height there; where roads meet, the mean of theirs by how near they are.
+void Terrain::layRoads(const RoadGraph& graph) {
+    std::vector<double> sum(natural_.size(), 0), weight(natural_.size(), 0);
+    for (const RoadEdge& e : graph.edges()) {
+        if (e.removed || e.bridge) continue;  // a tunnel is laid as far as its ground is low enough for a cut
+        const Vec2 a = graph.metresAt(e.a), b = graph.metresAt(e.b), d = b - a;
+        const double wide = parameters_.width_m(e.kind) / 2 + reach * cell_m_, from = nodeHeights_[e.a],
+                     to = nodeHeights_[e.b];
+        plan::Box2 box;
+        box.add(a), box.add(b);
+        eachNear(box, wide, [&](int i, int k) {
+            const Vec2 p = placeOf(i, k);
+            const double t = std::clamp(dot(p - a, d) / dot(d, d), 0.0, 1.0);
+            const Vec2 off = p - (a + d * t);
+            const double away = std::sqrt(dot(off, off));
+            const double height = from + t * (to - from);
+            if (away > wide || (e.tunnel && natural_[indexOf(i, k)] > height + cover_m)) return;
+            const double near = 1.001 - away / wide, w = near * near;
+            sum[indexOf(i, k)] += w * height, weight[indexOf(i, k)] += w;
+        });
+    }
+    for (size_t n = 0; n < sum.size(); ++n)
+        if (weight[n] > 0) fixed_[n] = sum[n] / weight[n];
+}
+
+void Terrain::layBridges(const RoadGraph& graph) {
+    deck_.assign(natural_.size(), unknown);
+    std::vector<double> nearest(natural_.size(), 1e9);
+    for (const RoadEdge& e : graph.edges()) {
+        if (e.removed || !(e.bridge || e.tunnel)) continue;
+        hasBridge_ = true;
+        const Vec2 a = graph.metresAt(e.a), b = graph.metresAt(e.b), d = b - a;
+        const double wide = parameters_.width_m(e.kind) / 2 + reach * cell_m_, from = nodeHeights_[e.a],
+                     to = nodeHeights_[e.b];
+        plan::Box2 box;
+        box.add(a), box.add(b);
+        eachNear(box, wide, [&](int i, int k) {
+            const Vec2 p = placeOf(i, k);
+            const double t = std::clamp(dot(p - a, d) / dot(d, d), 0.0, 1.0);
+            const Vec2 off = p - (a + d * t);
+            const double away = std::sqrt(dot(off, off));
+            const size_t n = indexOf(i, k);
+            if (away <= wide && away < nearest[n]) nearest[n] = away, deck_[n] = from + t * (to - from);
+        });
+    }
+}
+
+size_t Terrain::level(const plan::Footprint& area) {
+    pads_.push_back(area);
+    return pads_.size() - 1;
+}
+
+void Terrain::finish() {
+    if (!pads_.empty()) layPads();
+    layers_.ground = mapOf(shaped());
+    if (hasBridge_) layers_.deck = mapOf(extended(deck_, extendedSlope));
+    if (hasWater_) layers_.water = mapOf(extended(water_, extendedSlope));
+    for (auto* done : {&natural_, &water_, &fixed_, &deck_}) *done = {};
+}
+
+}  // namespace sgm::town
