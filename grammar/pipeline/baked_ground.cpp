@@ -45,6 +45,7 @@ Gathered gather(std::vector<mesh::Chunk> chunks, const std::vector<Columns>& cel
     static_cast<void>(numbering.add(chunks));
     for (mesh::Chunk& chunk : chunks) {
         out.mesh.positions.insert(out.mesh.positions.end(), chunk.positions.begin(), chunk.positions.end());
+        out.mesh.normals.insert(out.mesh.normals.end(), chunk.normals.begin(), chunk.normals.end());
         const auto owner = std::find_if(cells.begin(), cells.end(),
                                         [&](const Columns& c) { return c.has(chunk.block.x, chunk.block.z); });
         if (owner == cells.end()) continue;

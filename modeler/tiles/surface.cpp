@@ -93,15 +93,23 @@ std::map<uint32_t, std::vector<uint32_t>> byMaterial(const mesh::PackedMesh& mes
     return lists;
 }
 
-/// Every triangle with a normal of its own where its neighbours lie in other planes.
-SurfacePiece faceted(uint32_t material, const std::vector<uint32_t>& indices, const std::vector<Vec3f>& positions) {
+constexpr float nearly = .94f;  // cosine of the angle, 20°, between a triangle and what it may be shaded as
+
+/// Every triangle with a normal of its own where its neighbours lie in other planes. Corners whose vertex has a normal
+/// (by `normals`, where there are some) that is nearly the triangle's get that one, so that hills look smooth.
+SurfacePiece faceted(uint32_t material, const std::vector<uint32_t>& indices, const std::vector<Vec3f>& positions,
+                     const std::vector<Vec3f>& normals = {}) {
     PieceBuilder builder(material, indices.size() / 3);
     for (size_t t = 0; t + 2 < indices.size(); t += 3) {
         const Vec3f &a = positions[indices[t]], &b = positions[indices[t + 1]], &c = positions[indices[t + 2]];
         const Vec3f across = cross(b - a, c - a);
         // A triangle without area covers nothing, but holds a vertex of the border that a neighbour has, too.
         const Vec3f normal = length(across) > 0 ? normalized(across) : Vec3f{0, 1, 0};
-        for (size_t k = 0; k < 3; ++k) builder.add(indices[t + k], positions[indices[t + k]], normal);
+        for (size_t k = 0; k < 3; ++k) {
+            const uint32_t vertex = indices[t + k];
+            const bool smooth = !normals.empty() && dot(normals[vertex], normal) > nearly;
+            builder.add(vertex, positions[vertex], smooth ? normals[vertex] : normal);
+        }
     }
     return std::move(builder.piece);
 }
@@ -178,7 +186,7 @@ std::vector<SurfacePiece> groundPieces(const mesh::PackedMesh& mesh, const std::
     std::vector<SurfacePiece> pieces;
     std::vector<uint32_t> local(mesh.positions.size(), none);
     for (const auto& [material, corners] : lists) {
-        std::vector<Vec3f> positions;
+        std::vector<Vec3f> positions, normals;
         std::vector<uint32_t> indices, used;
         indices.reserve(corners.size());
         for (const uint32_t vertex : corners) {
@@ -187,13 +195,14 @@ std::vector<SurfacePiece> groundPieces(const mesh::PackedMesh& mesh, const std::
                 used.push_back(vertex);
                 // Exact: positions and centre are multiples of a cell's share.
                 positions.push_back((mesh.positions[vertex].as<double>() - centre).as<float>());
+                normals.push_back(mesh.normals[vertex]);
             }
             indices.push_back(local[vertex]);
         }
         for (const uint32_t vertex : used) local[vertex] = none;
         SurfacePiece piece =
             faceted(material, simplified(indices, positions, static_cast<double>(error_m), meshopt_SimplifyLockBorder),
-                    positions);
+                    positions, normals);
         if (!piece.indices.empty()) pieces.push_back(std::move(piece));
     }
     return pieces;

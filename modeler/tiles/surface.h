@@ -26,7 +26,8 @@ std::vector<SurfacePiece> piecesOf(const mesh::PackedMesh& mesh, const Provenanc
 std::vector<SurfacePiece> coarsePiecesOf(const mesh::PackedMesh& mesh, const Provenance& provenance, double error_m);
 
 /// Simplifies the ground's triangles that belong to a cell, which `triangles` names in `mesh`, within `error_m`;
-/// vertices on the cell's border, and those between materials, stay. Positions become those about `centre`.
+/// vertices on the cell's border, and those between materials, stay. Positions become those about `centre`; normals are
+/// the mesh's where they are nearly those of the triangles.
 std::vector<SurfacePiece> groundPieces(const mesh::PackedMesh& mesh, const std::vector<uint32_t>& triangles,
                                        const Provenance& provenance, Vec3d centre, float error_m);
 

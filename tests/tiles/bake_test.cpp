@@ -30,11 +30,19 @@ rule Plot -> move (0, 6m, 0) size (9, 8, 9) turn (0deg..90deg) place House { hig
 start House -> stone size (8, high, 6) - cube size (1, 2, 9) at -y to centre
 )";
 
+/// Ground that ends 14 m higher on its hill than beside it.
+const std::string hills = R"(grammar 2
+map hill = 14m * bump((10m, 6m), 85m)
+roads Net { height = hill spread = false }
+terminal lawn color #86a35f
+start Town -> size (180m, 40m, 180m) network Net { ground: extrude 20m lawn }
+)";
+
 class Baked {
 public:
-    Baked() {
+    explicit Baked(const std::string& grammarText = text) {
         syntax::Diagnostics problems;
-        const auto grammar = load("town.sgm", text, problems);
+        const auto grammar = load("town.sgm", grammarText, problems);
         EXPECT_TRUE(grammar) << (problems.all().empty() ? "" : problems.all()[0].message);
         model_ = std::make_unique<Model>(*makeModel(grammar, *optionsFor(*grammar, {}), context_, Objects::Apart));
     }
@@ -107,20 +115,53 @@ std::set<std::array<uint32_t, 3>> borderOf(const fs::path& folder, const tiles::
     return found;
 }
 
-TEST(Bake, NeighbouringCellsOfTheGroundWeldWithoutTolerance) {
-    Baked baked;
-    const Scratch folder;
-    baked.run(folder.path(), {1, 1}, 2);
+/// Expects the ground of neighbouring cells to have the same vertices on their border, level by level: how many borders
+/// there are.
+size_t weld(const Baked& baked, const fs::path& folder) {
     size_t borders = 0;
     for (const tiles::Cell& cell : baked.plan.cells) {
         const tiles::Cell right{cell.level, cell.x + 1, cell.z};
         const double x = cell.centre(64).x + cell.side_m(64) / 2;
-        const auto left = borderOf(folder.path(), cell, 64, x), theirs = borderOf(folder.path(), right, 64, x);
+        const auto left = borderOf(folder, cell, 64, x), theirs = borderOf(folder, right, 64, x);
         if (left.empty() && theirs.empty()) continue;
         EXPECT_EQ(left, theirs) << cell.name();
         ++borders;
     }
-    EXPECT_GT(borders, 6u);
+    return borders;
+}
+
+TEST(Bake, NeighbouringCellsOfTheGroundWeldWithoutTolerance) {
+    Baked baked;
+    const Scratch folder;
+    baked.run(folder.path(), {1, 1}, 2);
+    EXPECT_GT(weld(baked, folder.path()), 6u);
+}
+
+/// The height of the highest sample of all height maps, metres.
+double highestOf(const Scratch& folder) {
+    const json heights = json::parse(folder.read("heights/heights.json"));
+    uint16_t highest = 0;
+    for (const json& file : heights["files"]) {
+        const std::string raw = folder.read("heights/" + file["name"].get<std::string>() + ".r16");
+        EXPECT_EQ(raw.size(), 2 * file["samples"].get<size_t>() * file["samples"].get<size_t>());
+        for (size_t i = 0; i < raw.size(); i += 2) {
+            uint16_t v = 0;
+            std::memcpy(&v, raw.data() + i, 2);
+            highest = std::max(highest, v);
+        }
+    }
+    return heights["height_of_0_m"].get<double>() + highest * heights["metres_a_step"].get<double>();
+}
+
+TEST(Bake, HillsWeldAndAreAsHighAsTheyShould) {
+    Baked baked(hills);
+    const Scratch folder;
+    baked.run(folder.path(), {1, 1}, 2);
+    EXPECT_GT(weld(baked, folder.path()), 6u);
+    baked.merge(folder.path());
+    const Status done = tiles::deliver(folder.path(), tiles::Delivery::Heights, nullptr);
+    ASSERT_TRUE(done.ok()) << done.error().message;
+    EXPECT_NEAR(highestOf(folder), 14, .1);
 }
 
 TEST(Bake, TellsWhoPutWhatWhere) {
@@ -185,19 +226,7 @@ TEST(Bake, GivesPlainFilesUsdAndHeightsOfTheSameGround) {
         ++found;
     EXPECT_EQ(found, payloads);
     // The slab's top lies at 2 m where nothing was cut, sampled at its own vertices and between them.
-    const json heights = json::parse(folder.read("heights/heights.json"));
-    uint16_t highest = 0;
-    for (const json& file : heights["files"]) {
-        const std::string raw = folder.read("heights/" + file["name"].get<std::string>() + ".r16");
-        ASSERT_EQ(raw.size(), 2 * file["samples"].get<size_t>() * file["samples"].get<size_t>());
-        for (size_t i = 0; i < raw.size(); i += 2) {
-            uint16_t v = 0;
-            std::memcpy(&v, raw.data() + i, 2);
-            highest = std::max(highest, v);
-        }
-    }
-    EXPECT_NEAR(heights["height_of_0_m"].get<double>() + highest * heights["metres_a_step"].get<double>(), 2.6, .02)
-        << "the road's top";
+    EXPECT_NEAR(highestOf(folder), 2.6, .02) << "the road's top";
 }
 
 TEST(Bake, ShowsEveryPlaceOnceALevel) {
