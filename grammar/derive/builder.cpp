@@ -364,6 +364,7 @@ void TreeBuilder::finish() {
         if (recording_) recording_->unfit();
     }
     numberOccurrences();
+    finishReliefs(derivation_);
 }
 
 }  // namespace sgm::derive

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "grammar/derive/placed_objects.h"
+#include "grammar/derive/reliefs.h"
 #include "grammar/derive/shape_tree.h"
 #include "grammar/rules/grammar.h"
 #include "modeler/core/progress.h"
@@ -57,6 +58,7 @@ struct Derivation {
     std::vector<Material> materials;  ///< the grammar's, then those given by attributes
     town::TownPlan plan;              ///< what `network` and `lots` laid out
     PlacedObjects objects;            ///< what `place` puts; Extras::object says where
+    std::vector<Relief> reliefs;      ///< heights that lift shapes; Extras::relief says which
     /// What became of objects that were grafted: places that hold copies of their shapes, or boxes in their stead.
     uint64_t copies = 0, masses = 0;
     std::vector<rules::Value> params;

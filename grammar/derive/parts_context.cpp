@@ -9,6 +9,17 @@
 #include "modeler/plan/validate.h"
 
 namespace sgm::derive {
+namespace {
+
+/// Calls `change` for every child of a node behind `before` (none: all).
+template <class Change>
+void eachNew(ShapeTree& tree, ShapeId node, ShapeId before, Change&& change) {
+    for (ShapeId s = before == none ? tree.shapes[node].firstChild : tree.shapes[before].nextSibling; s != none;
+         s = tree.shapes[s].nextSibling)
+        change(s);
+}
+
+}  // namespace
 
 rules::Value PartsContext::evaluate(const rules::Expr& expr, uint64_t key) const {
     Place place = frame_.place;
@@ -95,6 +106,28 @@ bool PartsContext::run(const rules::Body& body, const Scope& part, uint64_t key)
     inner.place.scope = part;
     inner.place.host = none;
     return interpreter_.builder_.work() && interpreter_.runBody(body, inner, 0);
+}
+
+uint32_t PartsContext::addRelief(Relief relief) {
+    std::vector<Relief>& reliefs = interpreter_.builder_.derivation().reliefs;
+    reliefs.push_back(std::move(relief));
+    return static_cast<uint32_t>(reliefs.size() - 1);
+}
+
+bool PartsContext::runOn(uint32_t relief, const rules::Body& body, const Scope& part, uint64_t key) {
+    TreeBuilder& builder = interpreter_.builder_;
+    const ShapeId before = builder.tree().shapes[frame_.node].lastChild;
+    if (!run(body, part, key)) return false;
+    eachNew(builder.tree(), frame_.node, before, [&](ShapeId s) { builder.extras(s).relief = relief; });
+    return true;
+}
+
+bool PartsContext::cutting(const std::function<bool()>& run) {
+    ShapeTree& tree = interpreter_.builder_.tree();
+    const ShapeId before = tree.shapes[frame_.node].lastChild;
+    if (!run()) return false;
+    eachNew(tree, frame_.node, before, [&](ShapeId s) { tree.shapes[s].op = rules::Operator::Difference; });
+    return true;
 }
 
 const rules::Grammar& PartsContext::grammar() const { return *interpreter_.builder_.derivation().grammar; }

@@ -2,6 +2,7 @@
 // Enters: the checked parts. Leaves: shapes below the node that holds them. Assumes it lives while its operation runs.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "grammar/derive/interpreter.h"
@@ -28,6 +29,12 @@ public:
     std::optional<Scope> over(Scope scope, const plan::Footprint& footprint, syntax::SourceSpan span);
     /// Runs `body` in a part of the scope; `key` tells the part from its neighbours. False after a failure.
     bool run(const rules::Body& body, const Scope& part, uint64_t key);
+    /// Calls `run`; what it makes is cut from what stands before it. False where `run` is.
+    bool cutting(const std::function<bool()>& run);
+    /// Adds a relief to the derivation: its index.
+    uint32_t addRelief(Relief relief);
+    /// As `run`, with all that it makes, and what rules make of that, lifted by a relief.
+    bool runOn(uint32_t relief, const rules::Body& body, const Scope& part, uint64_t key);
     const rules::Grammar& grammar() const;
     /// The stream of the shape whose scope is cut.
     uint64_t key() const {

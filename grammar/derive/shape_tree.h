@@ -89,8 +89,11 @@ struct Extras {
     std::vector<std::string> tags;
     std::vector<std::pair<uint32_t, double>> reports;  ///< by index in Grammar::reports
     uint32_t object = none;                            ///< index into Derivation::objects: what `place` puts here
+    uint32_t relief = none;  ///< index into Derivation::reliefs: what lifts the node's whole content, after noise
+    double lift_m = 0;       ///< by how much a relief lifts the object
     bool empty() const {
-        return clad.empty() && displace.empty() && values.empty() && tags.empty() && reports.empty() && object == none;
+        return clad.empty() && displace.empty() && values.empty() && tags.empty() && reports.empty() &&
+               object == none && relief == none;
     }
 };
 

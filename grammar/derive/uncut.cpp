@@ -72,7 +72,7 @@ private:
     bool changesShape(ShapeId s) const {
         const Extras* x = tree_.extrasOf(s);
         const SolidValue* solid = tree_.solidOf(s);
-        return (x && !(x->displace.empty() && x->clad.empty())) || (solid && isUnbounded(*solid));
+        return (x && !(x->displace.empty() && x->clad.empty() && x->relief == none)) || (solid && isUnbounded(*solid));
     }
 
     static bool isUnbounded(const SolidValue& solid) {

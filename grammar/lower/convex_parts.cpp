@@ -74,7 +74,8 @@ private:
 
     void leave(ShapeId id) {
         const auto* x = tree_.extrasOf(id);
-        if (x && !open_.back().empty() && !(x->clad.empty() && x->displace.empty())) note(Unlike::Plain, id);
+        if (x && !open_.back().empty() && !(x->clad.empty() && x->displace.empty() && x->relief == none))
+            note(Unlike::Plain, id);
         cutting_ -= tree_.shapes[id].op == Operator::Difference;
         if (open_.size() == 1) return;
         ConvexContent part = std::move(open_.back());

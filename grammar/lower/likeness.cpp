@@ -34,7 +34,7 @@ uint64_t add(uint64_t hash, const derive::SolidValue& solid) {
 uint64_t likenessOf(const derive::ShapeTree& tree, ShapeId id) {
     const Shape& s = tree.shapes[id];
     const derive::Extras* extras = tree.extrasOf(id);
-    if (s.blend_m > 0 || (extras && !extras->displace.empty())) return 0;
+    if (s.blend_m > 0 || (extras && (!extras->displace.empty() || extras->relief != none))) return 0;
     uint64_t hash = combine(hashText(tree.labels[s.label]), static_cast<uint64_t>(s.op));
     hash = combine(hash, hashed(s.amount));
     for (const Vec3d& v : {s.scope.size, s.scope.axes.x, s.scope.axes.y, s.scope.axes.z}) hash = add(hash, v);

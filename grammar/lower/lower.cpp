@@ -7,10 +7,12 @@
 #include <map>
 #include <set>
 
+#include "grammar/derive/lift.h"
 #include "grammar/lower/lowering.h"
 #include "grammar/lower/solids.h"
 #include "modeler/core/random.h"
 #include "modeler/field/domain.h"
+#include "modeler/field/drape.h"
 
 namespace sgm::lower {
 
@@ -19,7 +21,7 @@ std::vector<bool> Lowering::plainSums() const {
     for (ShapeId s = 0; s < tree_.shapes.size(); ++s) {
         const Shape& shape = tree_.shapes[s];
         const auto* x = tree_.extrasOf(s);
-        if (x && !(x->displace.empty() && x->clad.empty())) plain[s] = false;
+        if (x && !(x->displace.empty() && x->clad.empty() && x->relief == none)) plain[s] = false;
         if (shape.parent != none && !isSum(shape)) plain[shape.parent] = false;
     }
     return plain;
@@ -54,7 +56,7 @@ OriginId Lowering::ownerOf(ShapeId id) {
         part.line = s.span.source->place(s.span.begin).line;
     }
     part.material = materials_.of(id);
-    part.pose = {s.scope.centre, s.scope.axes};
+    part.pose = {derive::liftedScope(d_, id).centre, s.scope.axes};
     const derive::SolidValue* solid = tree_.solidOf(id);
     part.hasFlatFaces = solid && hasFlatFaces(*solid);
     model_.provenance.parts.push_back(std::move(part));
@@ -194,6 +196,17 @@ Owned Lowering::displaced(Owned part, ShapeId id) {
     return part;
 }
 
+/// Laid over the heights of its relief.
+Owned Lowering::draped(Owned part, ShapeId id) {
+    const auto* x = tree_.extrasOf(id);
+    if (!x || x->relief == none) return part;
+    const derive::Relief& relief = d_.reliefs[x->relief];
+    if (relief.heights)
+        part.field = field::drape(part.field, relief.heights, {relief.frame.origin, relief.frame.axes},
+                                  combine(combine(tree_.shapes[0].key, x->relief), hashText("relief")));
+    return part;
+}
+
 /// The shape's own solid.
 Owned Lowering::solidOf(ShapeId id) {
     const Shape& s = tree_.shapes[id];
@@ -215,7 +228,7 @@ void Lowering::enter(ShapeId id) {
 
 void Lowering::leave(ShapeId id) {
     if (flattensIntoParent(id)) return;
-    Owned part = displaced(applyCladding(whole(open_.back(), id), id), id);
+    Owned part = draped(displaced(applyCladding(whole(open_.back(), id), id), id), id);
     open_.pop_back();
     if (keeps_) known_[id] = part;
     if (id == 0)

@@ -79,6 +79,7 @@ private:
     Owned applyCladding(Owned part, ShapeId id);
     bool cladsTooMuch() const;
     Owned displaced(Owned part, ShapeId id);
+    Owned draped(Owned part, ShapeId id);
     bool flattensIntoParent(ShapeId id) const;
     bool isSum(const Shape& s) const { return (s.op == Operator::Sum || s.op == Operator::None) && s.blend_m <= 0; }
     std::vector<bool> plainSums() const;

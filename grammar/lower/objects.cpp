@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "grammar/derive/lift.h"
 #include "grammar/lower/likeness.h"
 #include "modeler/field/primitives.h"
 
@@ -108,7 +109,7 @@ private:
             node.line = s.span.source->place(s.span.begin).line;
         }
         node.likeness = likenesses_[id];
-        node.centre = s.scope.centre;
+        node.centre = derive::liftedScope(d_, id).centre;
         node.values.emplace_back("size", s.scope.size);
         addSolid(tree_.solidOf(id), node);
         if (const auto* extras = tree_.extrasOf(id))

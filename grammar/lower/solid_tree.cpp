@@ -271,6 +271,8 @@ void Collector::leave(ShapeId id) {
             part = inexact(std::move(part), id, "is clad with an ornament");
         else if (noise)
             part = inexact(std::move(part), id, "is displaced by noise");
+        else if (x->relief != none)
+            part = inexact(std::move(part), id, "follows hills");
     }
     if (open_.empty()) return void(open_.push_back(std::move(part)));
     if (!part.operands.empty())

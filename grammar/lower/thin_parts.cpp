@@ -7,6 +7,7 @@
 #include <numbers>
 #include <unordered_set>
 
+#include "grammar/derive/lift.h"
 #include "modeler/core/parallel.h"
 #include "modeler/eval/evaluate.h"
 
@@ -223,12 +224,14 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
                                                int threads, Progress* progress) {
     std::vector<Candidate> thin;
+    std::deque<derive::Scope> scopes;  // where they stand on hills; a deque, for references stay
     std::vector<bool> isThin(model.shapeOf.size());
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
         if (model.shapeOf[part] == derive::none) continue;
         const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[part]];
         if (shape.solid == derive::none || !(cellThatHolds(shape.scope) < static_cast<double>(cell_m))) continue;
-        thin.push_back({part, &shape.scope, 0});
+        scopes.push_back(derive::liftedScope(derivation, model.shapeOf[part]));
+        thin.push_back({part, &scopes.back(), 0});
         isThin[part] = true;
     }
     if (thin.empty() || mesh.hasPositionsOnly()) return std::vector<ThinPart>{};

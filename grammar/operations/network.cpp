@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "grammar/derive/parts_context.h"
+#include "grammar/operations/network_terrain.h"
 #include "grammar/operations/operations.h"
 #include "grammar/operations/plan_parts.h"
 #include "grammar/rules/roads.h"
@@ -27,8 +28,8 @@ using syntax::Operation;
 using syntax::OperationArgument;
 using town::RoadGraph;
 
-constexpr std::string_view partWords[] = {"ground", "water",    "park",   "highway",
-                                          "street", "crossing", "bridge", "block"};
+constexpr std::string_view partWords[] = {"ground", "bore",     "water",  "park",   "highway",
+                                          "street", "crossing", "bridge", "tunnel", "block"};
 constexpr double mostSide_m = 50'000;
 constexpr double mostCells = 512;  // along a side of the lattice that outlines of water and parks are sought on
 
@@ -96,19 +97,21 @@ public:
           parts_(parts),
           roads_(context.grammar().roads[parts.index]),
           maps_(context, roads_),
-          land_(maps_.land()) {}
+          land_(maps_.land()),
+          terrain_(context, roads_) {}
 
     bool run() {
         if (!evaluateParameters()) return false;
+        warnOfUncovered(context_, roads_);
+        if (!terrain_.survey(parameters_, land_)) return false;
         town::OwnStreetsReport own;
         auto grown = town::growRoads(parameters_, land_, context_.progress(), &own);
         if (!grown.ok()) return context_.fail(grown.error(), parts_.span);
         if (roads_.streets && !judgeOwn(own)) return false;
-        if (grown->edges().empty())
-            context_.warn(parts_.span, "no road grows here",
-                          "let 'pull' and 'spread' hold somewhere, or make the scope larger");
-        return runGround() && runOutline("water", land_.water) && runOutline("park", land_.park) && runRoads(*grown) &&
-               runBlocks(*grown);
+        if (grown->edges().empty()) warnOfNoRoad();
+        if (!terrain_.grade(*grown, parameters_)) return false;
+        return runGround() && runBores(*grown) && runOutline("water", land_.water) && runOutline("park", land_.park) &&
+               runRoads(*grown) && runBlocks(*grown);
     }
 
 private:
@@ -179,16 +182,44 @@ private:
         return true;
     }
 
+    void warnOfNoRoad() {
+        if (const std::string hill = terrain_.obstacle(parameters_, land_); !hill.empty())
+            context_.warn(roads_.height->span, hill, "raise 'slope', or let the heights vary less");
+        else
+            context_.warn(parts_.span, "no road grows here",
+                          "let 'pull' and 'spread' hold somewhere, or make the scope larger");
+    }
+
     bool runGround() {
         const Parts::Part* part = findPart(parts_, "ground");
-        return !part || context_.run(*part->body, context_.scope(), hashText("ground"));
+        return !part || runPart(*part->body, "ground", context_.scope(), hashText("ground"));
+    }
+
+    /// What tunnels take out of the ground.
+    bool runBores(const RoadGraph& graph) {
+        const Parts::Part* part = findPart(parts_, "bore");
+        if (!part) return true;
+        for (const town::RoadSurface& surface : town::surfacesOf(graph, parameters_)) {
+            if (surface.edge == town::noIndex || !graph.edge(surface.edge).tunnel) continue;
+            const Vec2 front = town::unit(surface.to - surface.from);
+            const town::Point at = town::pointAt((surface.from + surface.to) * .5);
+            const uint64_t key = combine(static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.z));
+            if (!context_.cutting([&] { return runOver(part, "bore", surface.area, front, key); })) return false;
+        }
+        return true;
+    }
+
+    /// Runs a body on the hills, where there are some.
+    bool runPart(const rules::Body& body, const std::string& layer, const Scope& scope, uint64_t key) {
+        const uint32_t relief = terrain_.reliefOf(layer);
+        return relief == derive::none ? context_.run(body, scope, key) : context_.runOn(relief, body, scope, key);
     }
 
     /// Runs the part's body over an area in metres about the scope's centre, in an upright box around it whose z axis
     /// is `front` there.
     bool runOver(const Parts::Part* part, const std::string& layer, const plan::Footprint& area, Vec2 front,
                  uint64_t key) {
-        context_.draw(layer, context_.scope(), area, key);
+        if (layer != "bore") context_.draw(layer, context_.scope(), area, key);
         if (!part) return true;
         const Vec2 right{front.z, -front.x};
         plan::Footprint own = area;
@@ -212,7 +243,7 @@ private:
             if (!over) return false;
             scope = *over;
         }
-        return context_.run(*part->body, scope, combine(hashText(layer), key));
+        return runPart(*part->body, layer, scope, combine(hashText(layer), key));
     }
 
     bool runOutline(const std::string& layer, const std::function<bool(Vec2)>& holds) {
@@ -236,6 +267,7 @@ private:
             const town::RoadEdge edge = crossing ? town::RoadEdge{} : graph.edge(surface.edge);
             const std::string layer = crossing                                ? "crossing"
                                       : edge.bridge                           ? "bridge"
+                                      : edge.tunnel                           ? "tunnel"
                                       : edge.kind == town::RoadClass::Highway ? "highway"
                                                                               : "street";
             const town::Point at = crossing ? graph.at(surface.node) : town::pointAt((surface.from + surface.to) * .5);
@@ -261,6 +293,7 @@ private:
     const rules::Roads& roads_;
     MapsInScope maps_;
     town::Land land_;
+    NetworkTerrain terrain_;
     town::RoadParameters parameters_;
 };
 
@@ -277,7 +310,8 @@ constinit const Operation network{
         "Splits the ground by roads that grow over maps: ground is the whole scope; highway, street and bridge are "
         "stretches of "
         "road with z along them, crossing lies between them; water and park are where the roads' maps say so; block is "
-        "what roads enclose, its edges tagged street, highway, bridge, water or park.",
+        "what roads enclose, its edges tagged street, highway, bridge, water or park. With the roads' height all of it "
+        "follows the hills; tunnel is a stretch of road under them, and bore is taken out of the ground along it.",
     .example = "size (400, 4, 400) network Net { street: asphalt | crossing: asphalt | block: lawn }",
     .arguments = networkArguments,
     .phase = Operation::Phase::Content,

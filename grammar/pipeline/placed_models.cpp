@@ -179,7 +179,8 @@ Status PlacedModels::addPlaces(const Derivation& derivation, const std::vector<u
         const PlacedModel& object = objects_[index];
         Part part = partOf(derivation, placement.shape);
         if (!path.empty()) part.path = path + "/" + part.path;
-        const Pose local = poseOf(object, derivation.tree.shapes[placement.shape].scope);
+        Pose local = poseOf(object, derivation.tree.shapes[placement.shape].scope);
+        local.origin.y += derivation.tree.extrasOf(placement.shape)->lift_m;
         part.pose = {frame.origin + frame.axes * local.origin, frame.axes * local.axes};
         places.push_back({index, part});
         if (places.size() > most)

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "grammar/derive/lift.h"
 #include "viewer/window/style.h"
 
 namespace sgm::window {
@@ -86,11 +87,11 @@ void drawBonds(const Workbench& bench, const Projection& project, ImDrawList& li
 }
 
 void drawScope(const Workbench& bench, derive::ShapeId shape, const Projection& project, ImDrawList& list) {
-    const derive::Shape& s = bench.tree()->shapes[shape];
+    const derive::Scope scope = derive::liftedScope(bench.shown()->model.derivation, shape);
     const bool terminal = document::isTerminal(bench.shown()->model.derivation, shape);
     std::optional<ImVec2> corners[8];
     for (int i = 0; i < 8; ++i)
-        corners[i] = project(s.scope.point({i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0}));
+        corners[i] = project(scope.point({i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0}));
     for (int i = 0; i < 8; ++i)
         for (const int bit : {1, 2, 4}) {
             if (i & bit || !corners[i] || !corners[i | bit]) continue;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "grammar/derive/lift.h"
 #include "modeler/core/conventions.h"
 
 namespace sgm::window {
@@ -243,10 +244,11 @@ Box3d Workbench::bounds() const {
 Box3d Workbench::boundsOf(derive::ShapeId shape) const {
     Box3d box;
     const derive::ShapeTree& shapes = *tree();
-    for (derive::ShapeId id = shape; id != derive::none; id = shapes.next(id, shape))
+    for (derive::ShapeId id = shape; id != derive::none; id = shapes.next(id, shape)) {
+        const derive::Scope scope = derive::liftedScope(shown()->model.derivation, id);
         for (int corner = 0; corner < 8; ++corner)
-            box = hull(box, shapes.shapes[id].scope.point(
-                                {corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0}));
+            box = hull(box, scope.point({corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0}));
+    }
     return box;
 }
 
