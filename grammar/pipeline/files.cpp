@@ -12,8 +12,8 @@
 #include "modeler/core/atomic_file.h"
 #include "modeler/core/installation.h"
 #include "modeler/core/regular_file.h"
-#include "modeler/town/own_streets.h"
 #include "modeler/mesh/distances.h"
+#include "modeler/town/own_streets.h"
 
 namespace sgm::pipeline {
 namespace fs = std::filesystem;

@@ -26,8 +26,8 @@ struct Loader {
     using Picture =
         std::function<town::RasterPtr(const std::string& name, const syntax::Source& from, std::string& why)>;
 
-    using Streets = std::function<std::shared_ptr<const town::OwnStreets>(const std::string& name,
-                                                                          const syntax::Source& from, std::string& why)>;
+    using Streets = std::function<std::shared_ptr<const town::OwnStreets>(
+        const std::string& name, const syntax::Source& from, std::string& why)>;
 
     Loader() = default;
     /// One that reads grammars alone.

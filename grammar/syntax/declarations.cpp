@@ -129,7 +129,8 @@ void readRoads(Cursor& cursor, Ast& ast) {
         if (cursor.at(Token::Kind::Text))
             roads.file = readArgument(cursor);
         else
-            cursor.fail("expected a file's name in quotes, found " + cursor.found(), "write 'from \"streets.geojson\"'");
+            cursor.fail("expected a file's name in quotes, found " + cursor.found(),
+                        "write 'from \"streets.geojson\"'");
     }
     roads.settings = readSettings(cursor);
     roads.span = cursor.since(begin);

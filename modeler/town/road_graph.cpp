@@ -6,7 +6,7 @@
 namespace sgm::town {
 namespace {
 
-constexpr int cellBits = 16;  // cells of 65.536 m
+constexpr int cellBits = 17;  // cells of 131.072 m
 
 uint64_t cellKey(int32_t x, int32_t z) {
     return static_cast<uint64_t>(static_cast<uint32_t>(x)) << 32 | static_cast<uint32_t>(z);
@@ -31,6 +31,7 @@ void RoadGraph::eachCell(Point a, Point b, int32_t margin_mm, Visit&& visit) {
 
 std::vector<uint32_t> RoadGraph::gather(const Cells& cells, Point a, Point b, double margin_m) {
     std::vector<uint32_t> found;
+    found.reserve(32);
     eachCell(a, b, static_cast<int32_t>(std::ceil(margin_m * 1000)), [&](uint64_t key) {
         if (const auto cell = cells.find(key); cell != cells.end())
             found.insert(found.end(), cell->second.begin(), cell->second.end());
