@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "tests/document/shown.h"
 #include "tests/scratch.h"
 
 namespace sgm::document {
@@ -107,6 +108,21 @@ TEST_F(Reach, NoMoreTextThanAnybodyWrites) {
     fs::resize_file(scratch_ / "inside/large.sgm", (16 << 20) + 1);
     EXPECT_FALSE(use("large.sgm"));
     EXPECT_NE(why_.find("larger than 16 MiB"), std::string::npos) << why_;
+}
+
+TEST(FilesBeside, ArePartOfWhatTheWindowShows) {
+    const Scratch scratch;
+    scratch.write("streets.geojson",
+                  "{\"type\":\"LineString\",\"crs\":{\"properties\":{\"name\":\"EPSG:25832\"}},"
+                  "\"coordinates\":[[-150,20],[150,-20]]}");
+    const auto path = scratch.write("town.sgm",
+                                    "grammar 2\nterminal wall\nroads Net from \"streets.geojson\" { block = 60m }\n"
+                                    "start Town -> size (400, 10, 400) network Net { block: wall }\n");
+    const auto document = Document::open(path);
+    ASSERT_TRUE(document.ok());
+    const auto model = shown(*document);
+    ASSERT_TRUE(model);
+    EXPECT_GT(model->model.derivation.tree.shapes.size(), 5u);
 }
 
 }  // namespace

@@ -301,6 +301,7 @@ bool Session::checked(const ShowRequest& request, pipeline::Context& context, st
         noting.mesh = beside(loader_.mesh);
         noting.outlines = beside(loader_.outlines);
         noting.picture = beside(loader_.picture);
+        noting.streets = beside(loader_.streets);
         noting.declares = loader_.declares;
         syntax::Diagnostics diagnostics = request.syntaxProblems;
         ast_ = request.ast;
