@@ -20,8 +20,8 @@ double processorSeconds() {
 /// 0 … ½, with a period of 1.
 double wave(double v) { return std::abs(v - std::floor(v) - .5); }
 
-/// People about a centre every 2.5 km, a river, and a park every 1.5 km: as dense whatever the size. They cost little, so
-/// that the plan is what is measured.
+/// People about a centre every 2.5 km, a river, and a park every 1.5 km: as dense whatever the size. They cost little,
+/// so that the plan is what is measured.
 town::Land landOf() {
     town::Land land;
     land.pull = [](plan::Vec2 p) { return 1 - .8 * (wave(p.x / 2500) + wave(p.z / 2500)); };
