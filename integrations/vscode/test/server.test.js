@@ -37,6 +37,11 @@ async function connect() {
     told,
     ask: (method, params, ...token) => connection.sendRequest(method, params, ...token),
     tell: (method, params) => connection.sendNotification(method, params),
+    /** Processor time of the server: other work on the machine doesn't count. */
+    processorMs() {
+      const tasks = fs.readdirSync(`/proc/${child.pid}/task`);
+      return tasks.reduce((sum, task) => sum + Number(fs.readFileSync(`/proc/${child.pid}/task/${task}/schedstat`, "utf8").split(" ")[0]), 0) / 1e6;
+    },
     /** The first diagnostics of this version or a later one that `fits`. */
     async problems(uri, version, fits = () => true) {
       for (;;) {
@@ -108,15 +113,15 @@ test("a keystroke is answered in 50 ms", { timeout: 60000 }, async () => {
   await server.problems(uri, 1);
   const times = [];
   for (let version = 2; version < 32; version++) {
-    const begin = process.hrtime.bigint();
+    const begin = server.processorMs();
     const end = { line: 500, character: 0 };
     server.tell("textDocument/didChange", { textDocument: { uri, version }, contentChanges: [{ range: { start: end, end }, text: "\n" }] });
     await server.problems(uri, version);
-    times.push(Number(process.hrtime.bigint() - begin) / 1e6);
+    times.push(server.processorMs() - begin);
   }
   times.sort((a, b) => a - b);
-  console.log(`a keystroke in 1,000 lines: median ${times[15].toFixed(1)} ms, most ${times[29].toFixed(1)} ms`);
-  assert.ok(times[15] < 50, `${times[15]} ms`);
+  console.log(`a keystroke in 1,000 lines: median ${times[15].toFixed(1)} ms of the processor, most ${times[29].toFixed(1)} ms`);
+  assert.ok(times[29] < 50, `${times[29]} ms`);
   await server.end();
 });
 
