@@ -93,7 +93,7 @@ bool NetworkTerrain::grade(const town::RoadGraph& graph, const town::RoadParamet
     if (!terrain_) return true;
     terrain_->grade(graph);
     const town::Terrain::Steepest steepest = terrain_->steepest();
-    if (steepest.slope > parameters.slope * 1.001 + 1e-6)
+    if (steepest.slope > parameters.slope * 1.01 + 1e-6)
         context_.warn(roads_.height->span,
                       fmt::format("a road at ({:.0f}, {:.0f}) rises by {:.1f}%, more than 'slope', {:.1f}%: roads or a "
                                   "bridge hold both of its ends",
