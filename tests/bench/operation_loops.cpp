@@ -49,8 +49,8 @@ V number(float f) {
     return v;
 }
 
-/// A grid of a single cell, header and samples.
-constexpr float grid[] = {0, 0, 0, 1, 1, 1, -1, 1, 1, 1, 2, 4, 1, -1, 1, 1, 1, 1, 1, 1};
+/// A grid of a single cell, header and samples; heights lie farther on, all 0.
+constexpr float grid[128] = {0, 0, 0, 1, 1, 1, -1, 1, 1, 1, 2, 4, 1, -1, 1, 1, 1, 1, 1, 1};
 
 template <class Row>
 auto dataOf(const eval::Operation& operation) {

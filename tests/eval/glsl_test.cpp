@@ -7,6 +7,7 @@
 #include "modeler/eval/evaluate.h"
 #include "modeler/eval/glsl.h"
 #include "modeler/field/ops.h"
+#include "tests/field/heights.h"
 #include "tests/render/gpu_fixture.h"
 #include "tests/render/scenes.h"
 #include "viewer/render/evaluate_gpu.h"
