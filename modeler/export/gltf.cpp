@@ -22,6 +22,7 @@
 #include "modeler/export/gltf_textures.h"
 #include "modeler/export/surface.h"
 #include "modeler/export/texture_sets.h"
+#include "modeler/image/texture.h"
 
 namespace sgm::exporter {
 namespace {
@@ -97,6 +98,7 @@ public:
         positions_ = addView(model, count, 3, TINYGLTF_TARGET_ARRAY_BUFFER);
         normals_ = addView(model, count, 3, TINYGLTF_TARGET_ARRAY_BUFFER);
         if (textured) uvs_ = addView(model, count, 2, TINYGLTF_TARGET_ARRAY_BUFFER);
+        if (textured && hasReliefs()) tangents_ = addView(model, count, 4, TINYGLTF_TARGET_ARRAY_BUFFER);
         if (texture_.light) lightUvs_ = addView(model, count, 2, TINYGLTF_TARGET_ARRAY_BUFFER);
         if (!input.byMaterial) colors_ = addView(model, count, 2, TINYGLTF_TARGET_ARRAY_BUFFER);
         indices_ = addView(model, patched_.triangles.size(), 3, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
@@ -150,6 +152,7 @@ private:
         model.accessors[static_cast<size_t>(position)].maxValues = {bounds.hi.x, bounds.hi.y, bounds.hi.z};
         primitive.attributes["NORMAL"] = attribute(normals_, TINYGLTF_TYPE_VEC3);
         if (!texture_.empty()) primitive.attributes["TEXCOORD_0"] = attribute(uvs_, TINYGLTF_TYPE_VEC2);
+        if (hasRelief(patch.material)) primitive.attributes["TANGENT"] = attribute(tangents_, TINYGLTF_TYPE_VEC4);
         if (texture_.light) primitive.attributes["TEXCOORD_1"] = attribute(lightUvs_, TINYGLTF_TYPE_VEC2);
         if (!input_.byMaterial) {
             const int color = primitive.attributes["COLOR_0"] =
@@ -161,6 +164,17 @@ private:
                         TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
         primitive.extras = originRuns(patched_, patch);
         return primitive;
+    }
+
+    /// Whether a normal map covers the material: readers need tangents for it.
+    bool hasRelief(uint32_t material) const {
+        const auto& texture = input_.provenance->materials[material].texture;
+        return texture && texture->normals && input_.byMaterial && !texture_.empty();
+    }
+    bool hasReliefs() const {
+        for (uint32_t m = 0; m < input_.provenance->materials.size(); ++m)
+            if (hasRelief(m)) return true;
+        return false;
     }
 
     /// The file's material, added with its first use.
@@ -186,9 +200,19 @@ private:
                 put(colors_, v, std::array<uint16_t, 4>{word(c.x), word(c.y), word(c.z), 65535});
             }
             const uint32_t chart = patched_.charts[v];
+            if (hasRelief(patch.material))
+                put(tangents_, v, tangentOf(texture_.charts.axes[chart], patched_.normal(v, vertices_)));
             if (!texture_.empty()) put(uvs_, v, downwards(texture_.charts.at(chart, position)));
             if (texture_.light) put(lightUvs_, v, downwards(texture_.light->at(chart, position)));
         }
+    }
+
+    /// Along u and square to the normal; the relief's y is up, along v.
+    static std::array<float, 4> tangentOf(const ChartAxes& axes, Vec3f normal) {
+        Vec3f along = axes.u - normal * dot(normal, axes.u);
+        if (length(along) < 1e-3f) along = cross(axes.v, normal);
+        along = along / length(along);
+        return {along.x, along.y, along.z, 1};
     }
 
     /// glTF counts v downwards.
@@ -199,7 +223,7 @@ private:
     TextureSets texture_;
     PatchedMesh patched_;
     Vertices vertices_;
-    View positions_, normals_, uvs_, lightUvs_, colors_, indices_;
+    View positions_, normals_, tangents_{}, uvs_, lightUvs_, colors_, indices_;
     std::vector<int> materials_;  ///< by Provenance::materials: the file's, -1 where not yet used
 };
 

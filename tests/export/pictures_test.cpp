@@ -2,7 +2,11 @@
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>
 
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <fstream>
+#include <sstream>
 
 #include "modeler/export/exporter.h"
 #include "modeler/image/texture.h"
@@ -92,6 +96,32 @@ TEST_F(PicturesTest, TilesAreInMetres) {
     EXPECT_EQ(model.extensionsUsed, std::vector<std::string>{"KHR_texture_transform"});
 }
 
+TEST_F(PicturesTest, ReliefsComeWithTangentsAlongTheirTiles) {
+    const tinygltf::Model model = written();
+    const auto& attributes = model.meshes[0].primitives[0].attributes;
+    const auto floats = [&](const char* name) {
+        const auto& accessor = model.accessors[static_cast<size_t>(attributes.at(name))];
+        const auto& view = model.bufferViews[static_cast<size_t>(accessor.bufferView)];
+        const size_t each = static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)));
+        std::vector<float> numbers(accessor.count * each);
+        std::memcpy(numbers.data(), model.buffers[0].data.data() + view.byteOffset + accessor.byteOffset,
+                    4 * numbers.size());
+        return numbers;
+    };
+    const std::vector<float> normals = floats("NORMAL"), tangents = floats("TANGENT");
+    ASSERT_EQ(tangents.size() / 4, normals.size() / 3);
+    for (size_t i = 0; i < normals.size() / 3; ++i) {
+        const Vec3f n{normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]},
+            t{tangents[4 * i], tangents[4 * i + 1], tangents[4 * i + 2]};
+        EXPECT_NEAR(dot(n, t), 0, 1e-6);
+        EXPECT_NEAR(length(t), 1, 1e-6);
+        EXPECT_EQ(tangents[4 * i + 3], 1);
+        if (std::abs(n.y) < .5f) {
+            EXPECT_NEAR(cross(n, t).y, 1, 1e-6) << "up a wall";
+        }
+    }
+}
+
 TEST_F(PicturesTest, PackedFilesHoldThemToo) {
     for (const std::string pack : {"meshopt", "draco"}) {
         written(pack);
@@ -123,6 +153,26 @@ TEST_F(PicturesTest, UsdReadsThemByShaders) {
     for (const char* part : {"asset inputs:file = @brick.png@", "asset inputs:file = @bump.jpg@",
                              "float2 inputs:scale = (0.5, 2)", "inputs:diffuseColor.connect", "inputs:normal.connect"})
         EXPECT_NE(text.find(part), std::string::npos) << part;
+}
+
+TEST_F(PicturesTest, GltfValidatorFindsNothing) {
+    std::string command = "node tests/export/validate_gltf.js", verdict = (folder / "verdict").string();
+    for (const std::string pack : {"none", "meshopt", "draco"}) {
+        input.options = {{"pack", pack}};
+        const auto path = folder / (pack + ".glb");
+        ASSERT_TRUE(write(input, path).ok());
+        command += " " + path.string();
+    }
+    const int status = std::system((command + " > " + verdict + " 2>/dev/null").c_str());
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    if (code == 3 || code == 127)
+        GTEST_SKIP() << "gltf-validator isn't installed: npm install --prefix build gltf-validator";
+    ASSERT_EQ(code, 0);
+    std::istringstream lines(contentOf(verdict));
+    size_t files = 0;
+    for (std::string line; std::getline(lines, line); ++files)
+        EXPECT_NE(line.find("\"errors\":0,\"warnings\":0"), std::string::npos) << line;
+    EXPECT_EQ(files, 3u);
 }
 
 }  // namespace
