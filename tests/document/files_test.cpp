@@ -125,5 +125,17 @@ TEST(FilesBeside, ArePartOfWhatTheWindowShows) {
     EXPECT_GT(model->model.derivation.tree.shapes.size(), 5u);
 }
 
+TEST(FilesBeside, TexturesAreReadToo) {
+    const Scratch scratch;
+    fs::copy("examples/buildings/textures/brick.jpg", scratch / "brick.jpg");
+    const auto path = scratch.write("wall.sgm", "grammar 2\nstart Wall -> cube texture \"brick.jpg\" 1m\n");
+    const auto document = Document::open(path);
+    ASSERT_TRUE(document.ok());
+    const auto model = shown(*document);
+    ASSERT_TRUE(model);
+    const Provenance& provenance = model->model.lowered->provenance;
+    EXPECT_TRUE(provenance.materialOf(1).texture);
+}
+
 }  // namespace
 }  // namespace sgm::document

@@ -282,14 +282,15 @@ bool Session::checked(const ShowRequest& request, pipeline::Context& context, st
     if (request.ast != ast_ || !asChecked()) {
         std::vector<syntax::SourcePtr> sources;  // diagnostics point into them
         usedByCheck_.clear();
-        rules::Loader noting([&](const std::string& name, const syntax::Source& from, std::string& why) {
+        rules::Loader noting = loader_;  // a copy, so that every kind of file can be read
+        noting.use = [&](const std::string& name, const syntax::Source& from, std::string& why) {
             const syntax::SourcePtr source = loader_.use ? loader_.use(name, from, why) : nullptr;
             if (source) {
                 sources.push_back(source);
                 usedByCheck_.push_back({source->name(), timeOf(source->name())});
             }
             return source;
-        });
+        };
         // `load` for a file beside the grammar, whose path and time are noted.
         const auto beside = [&](const auto& load) {
             return [&](const std::string& name, const syntax::Source& from, std::string& why) {
@@ -302,7 +303,7 @@ bool Session::checked(const ShowRequest& request, pipeline::Context& context, st
         noting.outlines = beside(loader_.outlines);
         noting.picture = beside(loader_.picture);
         noting.streets = beside(loader_.streets);
-        noting.declares = loader_.declares;
+        noting.image = beside(loader_.image);
         syntax::Diagnostics diagnostics = request.syntaxProblems;
         ast_ = request.ast;
         context.stages.emplace_back("parse", request.parseSeconds);
