@@ -109,7 +109,7 @@ public:
         if (!grown.ok()) return context_.fail(grown.error(), parts_.span);
         if (roads_.streets && !judgeOwn(own)) return false;
         if (grown->edges().empty()) warnOfNoRoad();
-        if (!terrain_.grade(*grown, parameters_)) return false;
+        terrain_.grade(*grown, parameters_);
         return runGround() && runBores(*grown) && runOutline("water", land_.water) && runOutline("park", land_.park) &&
                runRoads(*grown) && runBlocks(*grown);
     }

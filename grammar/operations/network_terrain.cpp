@@ -89,8 +89,8 @@ bool NetworkTerrain::survey(const town::RoadParameters& parameters, town::Land& 
     return true;
 }
 
-bool NetworkTerrain::grade(const town::RoadGraph& graph, const town::RoadParameters& parameters) {
-    if (!terrain_) return true;
+void NetworkTerrain::grade(const town::RoadGraph& graph, const town::RoadParameters& parameters) {
+    if (!terrain_) return;
     terrain_->grade(graph);
     const town::Terrain::Steepest steepest = terrain_->steepest();
     if (steepest.slope > parameters.slope * 1.01 + 1e-6)
@@ -99,7 +99,6 @@ bool NetworkTerrain::grade(const town::RoadGraph& graph, const town::RoadParamet
                                   "bridge hold both of its ends",
                                   steepest.at.x, steepest.at.z, 100 * steepest.slope, 100 * parameters.slope),
                       "raise 'slope', or let the heights vary less");
-    return true;
 }
 
 std::string NetworkTerrain::obstacle(const town::RoadParameters& parameters, const town::Land& land) const {

@@ -19,8 +19,8 @@ public:
     /// Samples the heights, where the roads have some; from then on `land` has the ground with its river beds. False
     /// after a failure.
     bool survey(const town::RoadParameters& parameters, town::Land& land);
-    /// Heights for the roads; warns of those that stay too steep. False after a failure.
-    bool grade(const town::RoadGraph& graph, const town::RoadParameters& parameters);
+    /// Heights for the roads; warns of those that stay too steep.
+    void grade(const town::RoadGraph& graph, const town::RoadParameters& parameters);
     /// Why nothing grew, and what to do, where the ground is to blame; "" where it isn't.
     std::string obstacle(const town::RoadParameters& parameters, const town::Land& land) const;
     /// The relief of a part of the network, or none on level ground.

@@ -166,78 +166,53 @@ private:
     std::map<std::string, Read> known_;
 };
 
-/// Outlines read so far.
-class OutlineFiles {
+/// Files read so far, each again when its time has changed.
+template <class Pointer>
+class ReadFiles {
 public:
-    explicit OutlineFiles(const Progress* progress) : progress_(progress) {}
+    using Read = std::function<Result<Pointer>(const fs::path& path)>;
+    explicit ReadFiles(Read read) : read_(std::move(read)) {}
 
-    Result<std::shared_ptr<const plan::Features>> operator()(const fs::path& path) {
+    Result<Pointer> operator()(const fs::path& path) {
         std::error_code failed;
         const auto time = fs::last_write_time(path, failed);
-        Read& read = known_[path.string()];
-        if (!failed && read.features && read.time == time) return read.features;
-        auto features = plan::readOutlines(path, {}, progress_);
-        if (!features.ok()) return features.error();
-        read = {time, std::make_shared<const plan::Features>(std::move(*features))};
-        return read.features;
-    }
-
-private:
-    struct Read {
-        fs::file_time_type time;
-        std::shared_ptr<const plan::Features> features;
-    };
-    const Progress* progress_;
-    std::map<std::string, Read> known_;
-};
-
-/// Pictures of textures read so far.
-class Images {
-public:
-    explicit Images(const Progress* progress) : progress_(progress) {}
-
-    Result<image::ImageFilePtr> operator()(const fs::path& path) {
-        std::error_code failed;
-        const auto time = fs::last_write_time(path, failed);
-        Read& read = known_[path.string()];
-        if (!failed && read.file && read.time == time) return read.file;
-        auto file = image::readImageFile(path, {}, progress_);
-        if (file.ok()) read = {time, *file};
+        Known& known = known_[path.string()];
+        if (!failed && known.file && known.time == time) return known.file;
+        auto file = read_(path);
+        if (file.ok()) known = {time, *file};
         return file;
     }
 
 private:
-    struct Read {
+    struct Known {
         fs::file_time_type time;
-        image::ImageFilePtr file;
+        Pointer file;
     };
-    const Progress* progress_;
-    std::map<std::string, Read> known_;
+    Read read_;
+    std::map<std::string, Known> known_;
 };
 
-/// Pictures of maps read so far.
-class Pictures {
-public:
-    explicit Pictures(const Progress* progress) : progress_(progress) {}
+template <class T>
+Result<std::shared_ptr<const T>> shared(Result<T> made) {
+    if (!made.ok()) return made.error();
+    return std::make_shared<const T>(std::move(*made));
+}
 
-    Result<town::RasterPtr> operator()(const fs::path& path) {
-        std::error_code failed;
-        const auto time = fs::last_write_time(path, failed);
-        Read& read = known_[path.string()];
-        if (!failed && read.raster && read.time == time) return read.raster;
-        auto raster = town::readRaster(path, {}, progress_);
-        if (raster.ok()) read = {time, *raster};
-        return raster;
-    }
-
-private:
-    struct Read {
-        fs::file_time_type time;
-        town::RasterPtr raster;
+/// Reads a file that the grammar may reach, and tells `note` of it: what a Loader has for each kind of file.
+template <class Note, class Read>
+auto besideGrammar(Note note, Read read) {
+    using Pointer = std::decay_t<decltype(*read(fs::path()))>;
+    return [note, files = ReadFiles<Pointer>(read)](const std::string& name, const syntax::Source& from,
+                                                    std::string& why) mutable -> Pointer {
+        const auto path = pathOf(name, from, why);
+        if (!path) return nullptr;
+        note(*path);
+        const auto file = files(*path);
+        if (file.ok()) return *file;
+        why = file.error().message;
+        return nullptr;
     };
-    const Progress* progress_;
-    std::map<std::string, Read> known_;
-};
+}
 
 }  // namespace
 
@@ -292,47 +267,14 @@ rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) 
         why = grid.error().message;
         return nullptr;
     };
-    loader.outlines = [note, files = OutlineFiles(progress)](
-                          const std::string& name, const syntax::Source& from,
-                          std::string& why) mutable -> std::shared_ptr<const plan::Features> {
-        const auto path = pathOf(name, from, why);
-        if (!path) return nullptr;
-        note(*path);
-        const auto features = files(*path);
-        if (features.ok()) return *features;
-        why = features.error().message;
-        return nullptr;
-    };
-    loader.picture = [note, pictures = Pictures(progress)](const std::string& name, const syntax::Source& from,
-                                                           std::string& why) mutable -> town::RasterPtr {
-        const auto path = pathOf(name, from, why);
-        if (!path) return nullptr;
-        note(*path);
-        const auto raster = pictures(*path);
-        if (raster.ok()) return *raster;
-        why = raster.error().message;
-        return nullptr;
-    };
-    loader.image = [note, images = Images(progress)](const std::string& name, const syntax::Source& from,
-                                                     std::string& why) mutable -> image::ImageFilePtr {
-        const auto path = pathOf(name, from, why);
-        if (!path) return nullptr;
-        note(*path);
-        const auto file = images(*path);
-        if (file.ok()) return *file;
-        why = file.error().message;
-        return nullptr;
-    };
-    loader.streets = [note, progress](const std::string& name, const syntax::Source& from,
-                                      std::string& why) -> std::shared_ptr<const town::OwnStreets> {
-        const auto path = pathOf(name, from, why);
-        if (!path) return nullptr;
-        note(*path);
-        auto streets = town::readStreets(*path, progress);
-        if (streets.ok()) return std::make_shared<const town::OwnStreets>(std::move(*streets));
-        why = streets.error().message;
-        return nullptr;
-    };
+    loader.outlines = besideGrammar(
+        note, [progress](const fs::path& path) { return shared(plan::readOutlines(path, {}, progress)); });
+    loader.picture =
+        besideGrammar(note, [progress](const fs::path& path) { return town::readRaster(path, {}, progress); });
+    loader.image =
+        besideGrammar(note, [progress](const fs::path& path) { return image::readImageFile(path, {}, progress); });
+    loader.streets =
+        besideGrammar(note, [progress](const fs::path& path) { return shared(town::readStreets(path, progress)); });
     loader.declares = [names = LibraryNames()](const std::string& name) mutable { return names(name); };
     return loader;
 }

@@ -92,34 +92,39 @@ Result<Terrain> Terrain::survey(const RoadParameters& parameters, const Land& la
     return t;
 }
 
+/// Calls relax(corner, neighbour, diagonal) over the lattice there and back, with the four neighbours that were come by
+/// before.
+template <class Relax>
+void Terrain::sweep(Relax&& relax) const {
+    const auto beside = [&](int i, int k, int di, int dk) {
+        const int x = i + di, z = k + dk;
+        if (x < 0 || z < 0 || x >= columns_ || z >= rows_) return;
+        relax(indexOf(i, k), indexOf(x, z), di != 0 && dk != 0);
+    };
+    for (int k = 0; k < rows_; ++k)
+        for (int i = 0; i < columns_; ++i)
+            beside(i, k, -1, 0), beside(i, k, -1, -1), beside(i, k, 0, -1), beside(i, k, 1, -1);
+    for (int k = rows_ - 1; k >= 0; --k)
+        for (int i = columns_ - 1; i >= 0; --i)
+            beside(i, k, 1, 0), beside(i, k, 1, 1), beside(i, k, 0, 1), beside(i, k, -1, 1);
+}
+
 /// Two sweeps over the lattice: afterwards no corner is more than `slope` times its distance above (below) another,
 /// distances being those of steps to eight neighbours.
 void Terrain::spread(std::vector<double>& heights, double slope, bool upper) const {
     const double step = slope * cell_m_, across = step * std::sqrt(2.0);
-    const auto relax = [&](int i, int k, int di, int dk) {
-        const int x = i + di, z = k + dk;
-        if (x < 0 || z < 0 || x >= columns_ || z >= rows_) return;
-        const double by = di != 0 && dk != 0 ? across : step, from = heights[indexOf(x, z)];
-        double& to = heights[indexOf(i, k)];
+    const auto relax = [&](size_t at, size_t beside, bool diagonal) {
+        const double by = diagonal ? across : step, from = heights[beside];
+        double& to = heights[at];
         to = upper ? std::min(to, from + by) : std::max(to, from - by);
     };
-    for (int k = 0; k < rows_; ++k)
-        for (int i = 0; i < columns_; ++i)
-            relax(i, k, -1, 0), relax(i, k, -1, -1), relax(i, k, 0, -1), relax(i, k, 1, -1);
-    for (int k = rows_ - 1; k >= 0; --k)
-        for (int i = columns_ - 1; i >= 0; --i)
-            relax(i, k, 1, 0), relax(i, k, 1, 1), relax(i, k, 0, 1), relax(i, k, -1, 1);
+    sweep(relax);
 }
 
 std::vector<double> Terrain::extended(const std::vector<double>& known, double slope) const {
-    constexpr double far = 1e9;
-    std::vector<double> upper(known.size()), lower(known.size());
-    for (size_t n = 0; n < known.size(); ++n)
-        upper[n] = isKnown(known[n]) ? known[n] : far, lower[n] = isKnown(known[n]) ? known[n] : -far;
-    spread(upper, slope, true);
-    spread(lower, slope, false);
+    auto [lower, upper] = cones(known, slope);
     for (size_t n = 0; n < known.size(); ++n) upper[n] = isKnown(known[n]) ? known[n] : (upper[n] + lower[n]) / 2;
-    return upper;
+    return std::move(upper);
 }
 
 /// Water falls by little along its way; the land beside it is cut down to it, and its bed lies below it.
@@ -127,21 +132,14 @@ void Terrain::carve(const Land& land) {
     // Heights spread among the corners of one body of water alone, as often as its windings ask for.
     const double step = fall * cell_m_, across = step * std::sqrt(2.0);
     bool changed = true;
-    const auto relax = [&](int i, int k, int di, int dk) {
-        const int x = i + di, z = k + dk;
-        if (x < 0 || z < 0 || x >= columns_ || z >= rows_) return;
-        const double from = water_[indexOf(x, z)] + (di != 0 && dk != 0 ? across : step);
-        double& to = water_[indexOf(i, k)];
+    const auto relax = [&](size_t at, size_t beside, bool diagonal) {
+        const double from = water_[beside] + (diagonal ? across : step);
+        double& to = water_[at];
         if (from < to - 1e-6) to = from, changed = true;  // unknown compares as false
     };
     for (int turn = 0; changed && turn < 64; ++turn) {
         changed = false;
-        for (int k = 0; k < rows_; ++k)
-            for (int i = 0; i < columns_; ++i)
-                relax(i, k, -1, 0), relax(i, k, -1, -1), relax(i, k, 0, -1), relax(i, k, 1, -1);
-        for (int k = rows_ - 1; k >= 0; --k)
-            for (int i = columns_ - 1; i >= 0; --i)
-                relax(i, k, 1, 0), relax(i, k, 1, 1), relax(i, k, 0, 1), relax(i, k, -1, 1);
+        sweep(relax);
     }
     layBeds(land);
 }
@@ -173,19 +171,19 @@ void Terrain::layBeds(const Land& land) {
             isKnown(water_[n]) ? water_[n] - std::min(depth[n], parameters_.bed_m) : std::min(natural_[n], banks[n]);
 }
 
-/// What is fixed, as the lower and the upper envelope of cones that steep.
-std::pair<std::vector<double>, std::vector<double>> Terrain::cones(double slope) const {
+std::pair<std::vector<double>, std::vector<double>> Terrain::cones(const std::vector<double>& known,
+                                                                   double slope) const {
     constexpr double far = 1e9;
-    std::vector<double> upper(fixed_.size()), lower(fixed_.size());
-    for (size_t n = 0; n < fixed_.size(); ++n)
-        upper[n] = isKnown(fixed_[n]) ? fixed_[n] : far, lower[n] = isKnown(fixed_[n]) ? fixed_[n] : -far;
+    std::vector<double> upper(known.size()), lower(known.size());
+    for (size_t n = 0; n < known.size(); ++n)
+        upper[n] = isKnown(known[n]) ? known[n] : far, lower[n] = isKnown(known[n]) ? known[n] : -far;
     spread(upper, slope, true);
     spread(lower, slope, false);
     return {std::move(lower), std::move(upper)};
 }
 
 std::vector<double> Terrain::shaped() const {
-    auto [lower, upper] = cones(parameters_.bank);
+    auto [lower, upper] = cones(fixed_, parameters_.bank);
     for (size_t n = 0; n < fixed_.size(); ++n)
         upper[n] = isKnown(fixed_[n])    ? fixed_[n]
                    : lower[n] > upper[n] ? (lower[n] + upper[n]) / 2
@@ -199,25 +197,33 @@ void Terrain::grade(const RoadGraph& graph) {
     layBridges(graph);
 }
 
+double Terrain::besideWidth(const RoadEdge& e) const { return parameters_.width_m(e.kind) / 2 + reach * cell_m_; }
+
+template <class Visit>
+void Terrain::eachBeside(const RoadGraph& graph, const RoadEdge& e, Visit&& visit) const {
+    const Vec2 a = graph.metresAt(e.a), b = graph.metresAt(e.b), d = b - a;
+    const double wide = besideWidth(e), from = nodeHeights_[e.a], to = nodeHeights_[e.b];
+    plan::Box2 box;
+    box.add(a), box.add(b);
+    eachNear(box, wide, [&](int i, int k) {
+        const Vec2 p = placeOf(i, k);
+        const double t = std::clamp(dot(p - a, d) / dot(d, d), 0.0, 1.0);
+        const Vec2 off = p - (a + d * t);
+        const double away = std::sqrt(dot(off, off));
+        if (away <= wide) visit(indexOf(i, k), from + t * (to - from), away);
+    });
+}
+
 /// Corners beside a road get its height there; where roads meet, the mean of theirs by how near they are.
 void Terrain::layRoads(const RoadGraph& graph) {
     std::vector<double> sum(natural_.size(), 0), weight(natural_.size(), 0);
     for (const RoadEdge& e : graph.edges()) {
         if (e.removed || e.bridge) continue;  // a tunnel is laid as far as its ground is low enough for a cut
-        const Vec2 a = graph.metresAt(e.a), b = graph.metresAt(e.b), d = b - a;
-        const double wide = parameters_.width_m(e.kind) / 2 + reach * cell_m_, from = nodeHeights_[e.a],
-                     to = nodeHeights_[e.b];
-        plan::Box2 box;
-        box.add(a), box.add(b);
-        eachNear(box, wide, [&](int i, int k) {
-            const Vec2 p = placeOf(i, k);
-            const double t = std::clamp(dot(p - a, d) / dot(d, d), 0.0, 1.0);
-            const Vec2 off = p - (a + d * t);
-            const double away = std::sqrt(dot(off, off));
-            const double height = from + t * (to - from);
-            if (away > wide || (e.tunnel && natural_[indexOf(i, k)] > height + cover_m)) return;
+        const double wide = besideWidth(e);
+        eachBeside(graph, e, [&](size_t n, double height, double away) {
+            if (e.tunnel && natural_[n] > height + cover_m) return;
             const double near = 1.001 - away / wide, w = near * near;
-            sum[indexOf(i, k)] += w * height, weight[indexOf(i, k)] += w;
+            sum[n] += w * height, weight[n] += w;
         });
     }
     for (size_t n = 0; n < sum.size(); ++n)
@@ -230,18 +236,8 @@ void Terrain::layBridges(const RoadGraph& graph) {
     for (const RoadEdge& e : graph.edges()) {
         if (e.removed || !(e.bridge || e.tunnel)) continue;
         hasBridge_ = true;
-        const Vec2 a = graph.metresAt(e.a), b = graph.metresAt(e.b), d = b - a;
-        const double wide = parameters_.width_m(e.kind) / 2 + reach * cell_m_, from = nodeHeights_[e.a],
-                     to = nodeHeights_[e.b];
-        plan::Box2 box;
-        box.add(a), box.add(b);
-        eachNear(box, wide, [&](int i, int k) {
-            const Vec2 p = placeOf(i, k);
-            const double t = std::clamp(dot(p - a, d) / dot(d, d), 0.0, 1.0);
-            const Vec2 off = p - (a + d * t);
-            const double away = std::sqrt(dot(off, off));
-            const size_t n = indexOf(i, k);
-            if (away <= wide && away < nearest[n]) nearest[n] = away, deck_[n] = from + t * (to - from);
+        eachBeside(graph, e, [&](size_t n, double height, double away) {
+            if (away < nearest[n]) nearest[n] = away, deck_[n] = height;
         });
     }
 }

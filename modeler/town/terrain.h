@@ -91,7 +91,15 @@ private:
     void layPads();
     template <class Visit>
     void eachNear(const plan::Box2& box, double margin_m, Visit&& visit) const;
-    std::pair<std::vector<double>, std::vector<double>> cones(double slope) const;
+    /// Calls visit(corner, the road's height there, metres from its axis) for the corners at a road.
+    template <class Visit>
+    void eachBeside(const RoadGraph& graph, const RoadEdge& e, Visit&& visit) const;
+    /// Half a road's width and the reach of its corners, metres.
+    double besideWidth(const RoadEdge& e) const;
+    template <class Relax>
+    void sweep(Relax&& relax) const;
+    /// What is known at some corners, as the lower and the upper envelope of cones that steep.
+    std::pair<std::vector<double>, std::vector<double>> cones(const std::vector<double>& known, double slope) const;
     /// `natural_` between the cones of what is fixed.
     std::vector<double> shaped() const;
     /// Heights that are known at some corners, over the whole lattice, as steep as `slope` where they can be.

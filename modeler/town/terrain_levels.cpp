@@ -14,7 +14,7 @@ constexpr int turns = 24;     // of bringing neighbours nearer to each other
 
 std::vector<Terrain::Level> Terrain::levelAreas() const {
     const std::vector<double> before = shaped();
-    const auto [lower, upper] = cones(wall);
+    const auto [lower, upper] = cones(fixed_, wall);
     const double margin_m = reach * cell_m_;
     std::vector<Level> areas;
     for (const plan::Footprint& pad : pads_) {

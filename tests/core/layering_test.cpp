@@ -60,7 +60,8 @@ TEST(Layering, NoUpwardInclude) {
     size_t seen = 0;
     for (const Include& include : includesUnder(folders)) {
         const std::string from = moduleOf(include.from), to = moduleOf(include.to);
-        if (from == to || include.to == "viewer/window/app.h") continue;  // the window's one door is for its program
+        if (from == to || include.to == "viewer/window/app.h")
+            continue;  // the header that the window's program includes
         if (std::find(folders.begin(), folders.end(), include.to.substr(0, include.to.find('/'))) == folders.end())
             continue;
         ASSERT_TRUE(level.count(to)) << include.to << " is in no module";

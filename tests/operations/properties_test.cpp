@@ -4,7 +4,7 @@
 #include <set>
 
 #include "modeler/plan/shapes.h"
-#include "tests/derive/grammars.h"
+#include "tests/operations/loaded.h"
 #include "tests/operations/shapes_called.h"
 
 namespace sgm::testing_ {
@@ -28,18 +28,7 @@ std::shared_ptr<const rules::Grammar> overTown(const std::string& text, std::str
         EXPECT_TRUE(features.ok()) << (features.ok() ? "" : features.error().message);
         return std::make_shared<const plan::Features>(std::move(*features));
     };
-    static std::vector<syntax::SourcePtr> kept;
-    kept.push_back(std::make_shared<const syntax::Source>("test.sgm", "grammar 2\n" + text));
-    syntax::Diagnostics diagnostics;
-    auto grammar = rules::load(kept.back(), operations::table(), loader, diagnostics);
-    for (const auto& d : diagnostics.all()) {
-        if (d.severity != syntax::Severity::Error) continue;
-        if (errors)
-            *errors += syntax::render(d);
-        else
-            ADD_FAILURE() << syntax::render(d);
-    }
-    return grammar;
+    return loaded(loader, "grammar 2\n" + text, errors);
 }
 
 derive::Derivation derivedOver(const std::string& text) {

@@ -4,6 +4,7 @@
 #include "modeler/image/texture.h"
 #include "tests/image/pictures.h"
 #include "tests/lower/lowered.h"
+#include "tests/operations/loaded.h"
 
 namespace sgm::testing_ {
 namespace {
@@ -18,7 +19,6 @@ image::ImageFilePtr picture(const std::string& name, uint32_t width, uint32_t he
 
 /// A grammar that may read brick.png (2 x 1 pixels), bump.png and rough.png; its errors as text.
 std::shared_ptr<const rules::Grammar> textured(const std::string& text, std::string* errors = nullptr) {
-    syntax::Diagnostics diagnostics;
     rules::Loader loader;
     loader.image = [](const std::string& name, const syntax::Source&, std::string& why) -> image::ImageFilePtr {
         if (name == "brick.png") return picture(name, 2, 1);
@@ -26,17 +26,7 @@ std::shared_ptr<const rules::Grammar> textured(const std::string& text, std::str
         why = "No such file or directory";
         return nullptr;
     };
-    static std::vector<syntax::SourcePtr> kept;
-    kept.push_back(std::make_shared<const syntax::Source>("test.sgm", text));
-    auto grammar = rules::load(kept.back(), operations::table(), loader, diagnostics);
-    for (const auto& d : diagnostics.all()) {
-        if (d.severity != syntax::Severity::Error) continue;
-        if (errors)
-            *errors += syntax::render(d);
-        else
-            ADD_FAILURE() << syntax::render(d);
-    }
-    return grammar;
+    return loaded(loader, text, errors);
 }
 
 struct Covered {

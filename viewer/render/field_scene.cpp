@@ -128,11 +128,12 @@ Result<Rays> FieldScene::trace(std::span<const Job> jobs, Progress* progress) {
 
 /// A hit on a texture has a row of its own behind those of the materials.
 FieldScene::Surfaces FieldScene::surfacesOf(const Rays& rays) const {
-    Surfaces surfaces{{}, {}, rays.shadings};
+    Surfaces surfaces;
     for (const OriginId origin : rays.origins) surfaces.materialOfHit.push_back(field_->materialOf[origin]);
     const SurfaceTextures& textures = field_->textures;
     if (!textures.any()) return surfaces;
     surfaces.rows = materialRows(field_->materials);
+    surfaces.shadings = rays.shadings;
     const auto before = static_cast<uint32_t>(field_->materials.size());
     std::vector<uint32_t> covered;
     for (uint32_t i = 0; i < rays.hits.size(); ++i)
@@ -161,7 +162,8 @@ Result<Rays> FieldScene::draw(std::span<const Job> jobs, Progress* progress) {
     Rays& rays = *traced;
     if (Status s = light(jobs, rays, progress); !s) return s.error();
     const Surfaces surfaces = surfacesOf(rays);
-    const Buffer hitBuffer = Buffer::of<Hit>(rays.hits), litBuffer = Buffer::of<Shading>(surfaces.shadings),
+    const Buffer hitBuffer = Buffer::of<Hit>(rays.hits),
+                 litBuffer = Buffer::of<Shading>(surfaces.rows.empty() ? rays.shadings : surfaces.shadings),
                  materialBuffer = Buffer::of<uint32_t>(surfaces.materialOfHit),
                  textured = surfaces.rows.empty() ? Buffer() : Buffer::of<std::array<float, 4>>(surfaces.rows),
                  colors = Buffer::ofBytes(nullptr, jobs.size() * sizeof(rays.colors[0]));

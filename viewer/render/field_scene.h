@@ -58,7 +58,7 @@ private:
     struct Surfaces {
         std::vector<uint32_t> materialOfHit;
         MaterialRows rows;              ///< empty: those of the materials alone
-        std::vector<Shading> shadings;  ///< with the normals of textures
+        std::vector<Shading> shadings;  ///< with the normals of textures; empty as well then
     };
     Surfaces surfacesOf(const Rays& rays) const;
 

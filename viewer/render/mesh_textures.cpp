@@ -12,7 +12,7 @@ namespace sgm::render {
 namespace {
 
 /// Gathers pictures as layers of one size.
-class Layers {
+class PictureLayers {
 public:
     /// The layer of a picture; -1 for none.
     Result<float> layerOf(const image::ImageFilePtr& file) {
@@ -53,7 +53,7 @@ Result<MeshTextures> prepareMeshTextures(const mesh::Mesh& mesh, const Provenanc
     if (std::none_of(materials.begin(), materials.end(), [](const Material& m) { return m.texture != nullptr; }))
         return made;
     const exporter::TextureCharts charts = exporter::chartTexture("scope", mesh, provenance);
-    Layers colors, numbers;
+    PictureLayers colors, numbers;
     std::map<std::pair<uint32_t, const image::Texture*>, uint32_t> known;
     size_t triangle = 0;
     for (const mesh::Chunk& chunk : mesh.chunks)
