@@ -108,6 +108,26 @@ private:
     std::vector<std::string> symbolNames(bool withRulesOnly) const;
     std::string nearest(std::string_view word, const std::vector<std::string>& candidates) const;
 
+    /// What `load`, one of the loader's functions, makes of the file that `name` (a text) stands for; null after an
+    /// error.
+    template <class Load>
+    auto readFile(const Load& load, const syntax::Expr& name) {
+        std::string why = "no files can be read here";
+        auto file = load ? load(name.text, *name.span.source, why) : nullptr;
+        if (!file) diagnostics_.error(name.span, "can't use \"" + name.text + "\": " + why);
+        return file;
+    }
+    /// The same, once a file: its place in `all`, where null stands for one that couldn't be read.
+    using FilePlaces = std::map<std::pair<const syntax::Source*, std::string>, size_t>;
+    template <class Pointer, class Load>
+    size_t placeOfFile(FilePlaces& known, std::vector<Pointer>& all, const Load& load, const syntax::Expr& name) {
+        const auto [at, fresh] = known.try_emplace({name.span.source, name.text}, all.size());
+        if (fresh) all.push_back(readFile(load, name));
+        return at->second;
+    }
+    std::optional<uint32_t> outlinesOf(const syntax::Expr& name);
+    std::optional<uint32_t> imageOf(const syntax::Expr& name);
+
     // expressions.cpp
     Typed expression(Place& place, const syntax::Expr& e);
     Expr expression(Place& place, const syntax::Expr& e, Want want, std::string_view what);
@@ -133,7 +153,6 @@ private:
     Typed unknownFunction(const syntax::Expr& e);
     Typed countCall(Place& place, const syntax::Expr& e);
     Typed outlineCount(const syntax::Expr& e);
-    std::optional<uint32_t> outlinesOf(const syntax::Expr& name);
     Typed propertyCall(Place& place, const syntax::Expr& e, const Function& row);
     Typed placeCall(Place& place, const syntax::Expr& e, const Function& row);
     Typed unary(Place& place, const syntax::Expr& e);
@@ -232,9 +251,9 @@ private:
     std::set<std::string> excused_;
     bool anythingExcused_ = false;  ///< a used file is missing, and nobody knows what it declares
     Loader load_;
-    std::map<std::pair<const syntax::Source*, std::string>, size_t> outlineFiles_;  ///< places in Grammar::outlines
-    std::map<std::pair<const syntax::Source*, std::string>, size_t> imageFiles_;    ///< places in Grammar::images
-    std::map<std::pair<const syntax::Source*, std::string>, size_t> files_;  ///< read so far: places in Grammar::meshes
+    FilePlaces outlineFiles_;  ///< places in Grammar::outlines
+    FilePlaces imageFiles_;    ///< places in Grammar::images
+    FilePlaces meshFiles_;     ///< places in Grammar::meshes
     /// A file's constant: its text and, once it was read, its value.
     struct Constant {
         const syntax::LetDecl* decl = nullptr;

@@ -90,9 +90,7 @@ void Checker::mapRange(const syntax::MapDecl& decl, MapPicture& picture) {
 
 void Checker::mapPicture(const syntax::MapDecl& decl, Map& map) {
     MapPicture& picture = map.picture;
-    std::string why = "no files can be read here";
-    picture.raster = load_.picture ? load_.picture(decl.file.text, *decl.file.span.source, why) : nullptr;
-    if (!picture.raster) diagnostics_.error(decl.file.span, fmt::format("can't use \"{}\": {}", decl.file.text, why));
+    picture.raster = readFile(load_.picture, decl.file);
     const auto said = picture.raster ? picture.raster->extent_m : std::nullopt;
     const auto over = decl.over ? plain(*decl.over, false) : std::nullopt;
     const bool two = over && over->kind == Value::Kind::Vector && over->count == 2 && over->n[0] > 0 && over->n[1] > 0;

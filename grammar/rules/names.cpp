@@ -180,4 +180,14 @@ std::string Checker::nearest(std::string_view word, const std::vector<std::strin
     return name.empty() ? std::string() : fmt::format("did you mean '{}'?", name);
 }
 
+std::optional<uint32_t> Checker::outlinesOf(const syntax::Expr& name) {
+    const size_t place = placeOfFile(outlineFiles_, grammar_.outlines, load_.outlines, name);
+    return grammar_.outlines[place] ? std::optional(static_cast<uint32_t>(place)) : std::nullopt;
+}
+
+std::optional<uint32_t> Checker::imageOf(const syntax::Expr& name) {
+    const size_t place = placeOfFile(imageFiles_, grammar_.images, load_.image, name);
+    return grammar_.images[place] ? std::optional(static_cast<uint32_t>(place)) : std::nullopt;
+}
+
 }  // namespace sgm::rules

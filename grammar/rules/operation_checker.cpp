@@ -179,16 +179,7 @@ Solid OperationChecker::solidOfRow(SourceSpan span, const field::Primitive& row)
 
 std::optional<uint32_t> OperationChecker::readOutlines(const syntax::Expr& name) { return checker_.outlinesOf(name); }
 
-std::optional<uint32_t> OperationChecker::readImage(const syntax::Expr& name) {
-    auto& all = checker_.grammar_.images;
-    const auto [known, fresh] = checker_.imageFiles_.try_emplace({name.span.source, name.text}, all.size());
-    if (fresh) {
-        std::string why = "no files can be read here";
-        all.push_back(checker_.load_.image ? checker_.load_.image(name.text, *name.span.source, why) : nullptr);
-        if (!all.back()) error(name.span, fmt::format("can't use \"{}\": {}", name.text, why));
-    }
-    return all[known->second] ? std::optional(static_cast<uint32_t>(known->second)) : std::nullopt;
-}
+std::optional<uint32_t> OperationChecker::readImage(const syntax::Expr& name) { return checker_.imageOf(name); }
 
 std::optional<SymbolId> OperationChecker::findStart(const syntax::Expr& name) {
     std::vector<std::string> known;

@@ -78,18 +78,6 @@ Typed Checker::outlineCount(const Written& e) {
     return makeTyped(e.span, std::move(count));
 }
 
-/// The place in Grammar::outlines of a file, read once; nothing after an error.
-std::optional<uint32_t> Checker::outlinesOf(const Written& name) {
-    const auto [known, fresh] = outlineFiles_.try_emplace({name.span.source, name.text}, grammar_.outlines.size());
-    if (fresh) {
-        std::string why = "no files can be read here";
-        grammar_.outlines.push_back(load_.outlines ? load_.outlines(name.text, *name.span.source, why) : nullptr);
-        if (!grammar_.outlines.back())
-            diagnostics_.error(name.span, fmt::format("can't use \"{}\": {}", name.text, why));
-    }
-    return grammar_.outlines[known->second] ? std::optional(static_cast<uint32_t>(known->second)) : std::nullopt;
-}
-
 /// value("height", 8m), word("roof:shape", gabled): what a file says of an outline.
 Typed Checker::propertyCall(Place& place, const Written& e, const Function& row) {
     const std::string example =

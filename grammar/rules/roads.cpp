@@ -67,10 +67,8 @@ void Checker::declareRoads(const syntax::RoadsDecl& decl) {
 
 /// `from "streets.geojson"`: what is there before roads grow.
 void Checker::ownStreets(const Written& file, Roads& out) {
-    std::string why = "no files can be read here";
     out.streetsSpan = file.span;
-    out.streets = load_.streets ? load_.streets(file.text, *file.span.source, why) : nullptr;
-    if (!out.streets) diagnostics_.error(file.span, fmt::format("can't use \"{}\": {}", file.text, why));
+    out.streets = readFile(load_.streets, file);
 }
 
 Expr Checker::roadWord(Place& place, const Written& e, const RoadWord& row) {

@@ -137,12 +137,7 @@ Expr Checker::fileArgument(const Written& e, const field::Primitive& row) {
                            fmt::format("write '{}(\"statue.obj\")'", row.name));
         return makeConstant(e.span, file);
     }
-    std::string why = "no files can be read here";
-    const auto known = files_.try_emplace({e.span.source, e.text}, grammar_.meshes.size());
-    if (known.second) grammar_.meshes.push_back(load_.mesh ? load_.mesh(e.text, *e.span.source, why) : nullptr);
-    file.n[0] = static_cast<double>(known.first->second);
-    if (known.second && !grammar_.meshes.back())
-        diagnostics_.error(e.span, fmt::format("can't use \"{}\": {}", e.text, why));
+    file.n[0] = static_cast<double>(placeOfFile(meshFiles_, grammar_.meshes, load_.mesh, e));
     return makeConstant(e.span, file);
 }
 
