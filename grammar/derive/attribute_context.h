@@ -11,6 +11,14 @@
 
 namespace sgm::derive {
 
+/// Pictures that cover a shape, by place in Grammar::images + 1, 0 for none.
+struct PlacedTexture {
+    uint32_t color = 0, normals = 0, roughness = 0;
+    float width_m = 1, height_m = 1;  ///< of a tile
+    bool fits = false;                ///< whole numbers of tiles fill what they cover
+    auto operator<=>(const PlacedTexture&) const = default;
+};
+
 /// What an element's attributes say of its newcomer, or of the matched shape where no shape stands beside them.
 struct EvaluatedAttributes {
     Scope scope;    ///< size and axes; the centre comes from the mating
@@ -19,13 +27,7 @@ struct EvaluatedAttributes {
     std::optional<Vec3f> color;            ///< linear RGB
     const rules::Expr* colorBy = nullptr;  ///< what gave the colour
     std::optional<float> rough, metal;
-    /// Pictures by place in Grammar::images + 1, 0 for none.
-    struct Texture {
-        uint32_t color = 0, normals = 0, roughness = 0;
-        float width_m = 1, height_m = 1;  ///< of a tile
-        auto operator<=>(const Texture&) const = default;
-    };
-    std::optional<Texture> texture;
+    std::optional<PlacedTexture> texture;
     std::optional<uint32_t> material;  ///< what `of` names, index into Grammar::materials or none
     struct Span {
         Vec3d from_m, to_m;  ///< about the centre of the scope it is measured against, in its axes

@@ -224,12 +224,12 @@ std::string Interpreter::nameOfLook(const EvaluatedAttributes& attributes, uint3
 }
 
 /// One object for all that are alike, so that materials of one look are one.
-std::shared_ptr<const image::Texture> Interpreter::textureOf(const EvaluatedAttributes::Texture& asked) {
+std::shared_ptr<const image::Texture> Interpreter::textureOf(const PlacedTexture& asked) {
     auto& texture = textures_[asked];
     if (texture) return texture;
     const auto file = [&](uint32_t place) { return place > 0 ? grammar_.images[place - 1] : nullptr; };
-    texture = std::make_shared<image::Texture>(
-        image::Texture{file(asked.color), file(asked.normals), file(asked.roughness), asked.width_m, asked.height_m});
+    texture = std::make_shared<image::Texture>(image::Texture{
+        file(asked.color), file(asked.normals), file(asked.roughness), asked.width_m, asked.height_m, asked.fits});
     return texture;
 }
 

@@ -120,7 +120,7 @@ private:
     bool inBounds(const rules::Element& e, const EvaluatedAttributes& attributes);
     std::string nameOfColor(const rules::Expr& e, Vec3f color, const Place& place) const;
     std::string nameOfLook(const EvaluatedAttributes& attributes, uint32_t base, const Place& place) const;
-    std::shared_ptr<const image::Texture> textureOf(const EvaluatedAttributes::Texture& asked);
+    std::shared_ptr<const image::Texture> textureOf(const PlacedTexture& asked);
     uint32_t materialOf(const EvaluatedAttributes& attributes, const rules::Element& e, const Place& place);
     uint32_t solidOf(const rules::Element& e, ElementCache& facts, const Place& place, const Scope& scope);
     uint32_t blockSolid();
@@ -143,7 +143,7 @@ private:
     /// Colour, roughness, metalness; texture.
     using Look = std::pair<std::array<float, 5>, std::shared_ptr<const image::Texture>>;
     std::map<Look, uint32_t> mixedMaterials_;  ///< those of attributes
-    std::map<EvaluatedAttributes::Texture, std::shared_ptr<const image::Texture>> textures_;
+    std::map<PlacedTexture, std::shared_ptr<const image::Texture>> textures_;
     std::vector<rules::Value> locals_;
     std::vector<uint64_t> series_;  ///< by local that counts: the stream of its repetition
     uint32_t block_ = none;         ///< index of blockSolid

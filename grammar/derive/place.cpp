@@ -67,6 +67,10 @@ void Interpreter::annotate(const Element& e, Frame& frame, uint64_t key) {
     all.values.insert(all.values.end(), x.values.begin(), x.values.end());
     all.tags.insert(all.tags.end(), x.tags.begin(), x.tags.end());
     all.reports.insert(all.reports.end(), x.reports.begin(), x.reports.end());
+    if (x.laid) {
+        all.laid = true;
+        if (frame.place.scope != builder_.tree().shapes[frame.node].scope) all.laidScope = frame.place.scope;
+    }
     if (!x.values.empty()) frame.place.valuesAt = builder_.tree().shapes[frame.node].valuesAt = frame.node;
 }
 

@@ -62,7 +62,7 @@ uint32_t TreeBuilder::put(Extras extras) {
     Extras& known = all[index];
     const auto sameName = [](const auto& a, const auto& b) { return a.first == b.first; };
     const auto sameReport = [](const auto& a, const auto& b) { return a.first == b.first; };
-    if (known.tags != extras.tags ||
+    if (known.tags != extras.tags || known.laid != extras.laid ||
         !std::equal(known.reports.begin(), known.reports.end(), extras.reports.begin(), extras.reports.end(),
                     sameReport) ||
         !std::equal(known.values.begin(), known.values.end(), extras.values.begin(), extras.values.end(), sameName) ||
@@ -74,7 +74,7 @@ uint32_t TreeBuilder::put(Extras extras) {
     if (extrasChange_ != 0)
         known = std::move(extras);
     else
-        known.reports = std::move(extras.reports);
+        known.reports = std::move(extras.reports), known.laidScope = extras.laidScope;
     return index;
 }
 

@@ -3,6 +3,7 @@
 // before their children. Nothing here recurses: a chain may be thousands of shapes deep.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -91,8 +92,10 @@ struct Extras {
     uint32_t object = none;                            ///< index into Derivation::objects: what `place` puts here
     uint32_t relief = none;  ///< index into Derivation::reliefs: what lifts the node's whole content, after noise
     double lift_m = 0;       ///< by how much a relief lifts the object
+    bool laid = false;       ///< textures of the node's whole content begin at its scope's corner
+    std::optional<Scope> laidScope;  ///< in place of the shape's own scope, where what it matched was changed first
     bool empty() const {
-        return clad.empty() && displace.empty() && values.empty() && tags.empty() && reports.empty() &&
+        return !laid && clad.empty() && displace.empty() && values.empty() && tags.empty() && reports.empty() &&
                object == none && relief == none;
     }
 };

@@ -82,6 +82,7 @@ bool Lowering::replay(std::span<const ShapeId> changed) {
         if (owners_[id] != 0) model_.provenance.parts[owners_[id]].pose = {scope.centre, scope.axes};
     }
     poseTheWhole();
+    layTextures(d_, model_);
     const Box3f& bounds = model_.field.bounds;
     return model_.graph.nodeCount() == nodes && model_.provenance.parts.size() == parts && !bounds.empty() &&
            bounds.finite();

@@ -311,6 +311,7 @@ Status Lowering::run(Progress* progress) {
                                  syntax::placeText(tree_.shapes[boundless_].span), tree_.path(boundless_))};
     nameTheWhole();
     mergeMaterials();
+    layTextures(d_, model_);
     const bool nothing = model_.field.bounds.empty();
     if (nothing && !d_.objects.empty()) return Done{};  // objects of their own are all there is
     if (!nothing && model_.field.bounds.finite()) return Done{};

@@ -17,6 +17,10 @@ struct Model {
     std::vector<derive::ShapeId> shapeOf;  ///< by OriginId; none for 0
 };
 
+/// Gives every part below a shape that is laid (`lay`), or whose own texture fits, the frame that its textures begin
+/// at. O(parts · depth) where a material has a texture, else nothing.
+void layTextures(const derive::Derivation& derivation, Model& model);
+
 /// Fails when the solid is unbounded, or when nothing solid is left of a derivation that holds no objects of their own:
 /// they aren't part of the field (derive::graft makes them so).
 Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress);

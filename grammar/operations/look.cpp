@@ -1,4 +1,4 @@
-// color, rough, metal, texture, normals, walk, of: the material of a shape, or of a terminal.
+// color, rough, metal, texture, normals, lay, fitted, walk, of: the material of a shape, or of a terminal.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -90,13 +90,13 @@ void checkPictures(rules::OperationChecker& checker, const syntax::Attribute& wr
 
 uint32_t imageOf(const Attribute& attribute) { return static_cast<uint32_t>(attribute.args[0].value.n[0]) + 1; }
 
-EvaluatedAttributes::Texture& textureOf(AttributeContext& context) {
+derive::PlacedTexture& textureOf(AttributeContext& context) {
     if (!context.out.texture) context.out.texture.emplace();
     return *context.out.texture;
 }
 
 void applyTexture(AttributeContext& context, const Attribute& attribute) {
-    EvaluatedAttributes::Texture& texture = textureOf(context);
+    derive::PlacedTexture& texture = textureOf(context);
     texture.color = imageOf(attribute);
     const image::ImageFile& file = *context.grammar().images[texture.color - 1];
     const double shape = static_cast<double>(file.height) / static_cast<double>(file.width);
@@ -174,6 +174,10 @@ void checkWalk(rules::OperationChecker& checker, const syntax::Attribute& writte
     checker.add(std::move(out));
 }
 
+void applyFitted(AttributeContext& context, const Attribute&) { textureOf(context).fits = true; }
+
+void applyLay(AttributeContext& context, const Attribute&) { context.out.extras.laid = true; }
+
 void applyWalk(AttributeContext& context, const Attribute& attribute) {
     context.out.extras.tags.push_back(attribute.args[0].value.text);
 }
@@ -238,6 +242,26 @@ constinit const Operation normals{
     .phase = Operation::Phase::Look,
     .check = checkPictures,
     .apply = applyNormals,
+};
+
+constinit const Operation lay{
+    .name = "lay",
+    .doc =
+        "Lets the textures of the shape and of all it becomes begin at its lower left corner: on its sides they run "
+        "on around its outline, corners included.",
+    .example = "cube lay texture \"brick.png\"",
+    .phase = Operation::Phase::Whole,
+    .apply = applyLay,
+};
+
+constinit const Operation fitted{
+    .name = "fitted",
+    .doc =
+        "Stretches the tiles of a texture so that whole numbers of them go round and up the shape that is laid, or "
+        "fill the faces of its own scope.",
+    .example = "cube texture \"brick.png\" fitted",
+    .phase = Operation::Phase::Look,
+    .apply = applyFitted,
 };
 
 constinit const Operation of{

@@ -26,6 +26,12 @@ bool beginsOperation(const Cursor& cursor) {
     }
 }
 
+/// The word of an operation that takes no argument.
+bool isWholeOperation(const Cursor& cursor) {
+    const Operation* row = cursor.at(Token::Kind::Word) ? cursor.operations().find(cursor.peekText()) : nullptr;
+    return row && row->arguments.empty() && row->blockLabel.empty();
+}
+
 /// x; along street; area x
 Expr readCut(Cursor& cursor) {
     const Token first = cursor.peek();
@@ -93,6 +99,7 @@ void readArguments(Cursor& cursor, const Operation& row, Attribute& attribute) {
             if (!cursor.expect(argument.word, "in '" + plain(row.name) + "'", "as in '" + plain(row.example) + "'"))
                 return;
         }
+        if (argument.optional && isWholeOperation(cursor)) continue;
         if (!fits(cursor, argument.type)) {
             if (argument.optional) continue;
             cursor.fail(

@@ -11,7 +11,8 @@
 
 namespace sgm::image {
 struct Texture;
-}
+struct TextureFrame;
+}  // namespace sgm::image
 namespace sgm {
 
 /// Index into Provenance::parts; 0 is "nobody's" and stands for the whole object.
@@ -44,6 +45,8 @@ struct Part {
     uint32_t material = 0;      ///< index into Provenance::materials
     Pose pose;                  ///< of the shape's scope
     bool hasFlatFaces = false;  ///< its surface is made of planes, so that textures lie in them
+    /// Where its textures begin; null: at the object's origin.
+    std::shared_ptr<const image::TextureFrame> textureFrame;
 };
 
 /// The table behind OriginId and material indices. parts[0] and materials[0] always exist; no two materials look the

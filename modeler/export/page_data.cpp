@@ -11,6 +11,7 @@
 #include "modeler/export/formats.h"
 #include "modeler/export/gltf_primitive.h"
 #include "modeler/export/origins.h"
+#include "modeler/export/page_textures.h"
 #include "modeler/export/surface.h"
 
 namespace sgm::exporter {
@@ -53,7 +54,8 @@ public:
     Packer(const ExportInput& input, const ObjectTree& objects)
         : input_(input),
           objects_(objects),
-          patched_(cutIntoPatches(*input.mesh, *input.provenance, {&objects, {}, true})),
+          textures_(*input.mesh, *input.provenance),
+          patched_(cutIntoPatches(*input.mesh, *input.provenance, {&objects, textures_.charts(), true})),
           vertices_(*input.mesh),
           bounds_(input.mesh->bounds()),
           grid_(gridOver(static_cast<double>(maxComponent(bounds_.size())))) {}
@@ -89,6 +91,8 @@ public:
                 for (const uint16_t v : *plane) all.push_back(static_cast<uint8_t>(v >> shift));
         for (const auto* plane : {&u_, &v_}) all.insert(all.end(), plane->begin(), plane->end());
         all.insert(all.end(), corners_.begin(), corners_.end());
+        all.insert(all.end(), charts_.begin(), charts_.end());
+        textures_.appendBytes(all);
         return all;
     }
 
@@ -104,17 +108,17 @@ private:
                 uint32_t& at = number[vertex - patch.firstVertex];
                 if (at == unset) {
                     at = fresh++;
-                    putNumber(0);
+                    putNumber(corners_, 0);
                     putVertex(vertex);
                 } else {
-                    putNumber(fresh - at);
+                    putNumber(corners_, fresh - at);
                 }
             }
     }
 
-    void putNumber(uint32_t v) {
-        for (; v >= 128; v >>= 7) corners_.push_back(static_cast<uint8_t>(v | 128));
-        corners_.push_back(static_cast<uint8_t>(v));
+    static void putNumber(std::vector<uint8_t>& to, uint32_t v) {
+        for (; v >= 128; v >>= 7) to.push_back(static_cast<uint8_t>(v | 128));
+        to.push_back(static_cast<uint8_t>(v));
     }
 
     void putVertex(uint32_t vertex) {
@@ -134,6 +138,10 @@ private:
             (i == 0 ? u_ : v_).push_back(static_cast<uint8_t>(zigzag(difference)));
             lastNormal_[i] = normal[i];
         }
+        if (textures_.empty()) return;
+        const auto chart = static_cast<int32_t>(patched_.charts[vertex]);
+        putNumber(charts_, zigzag(chart - lastChart_));
+        lastChart_ = chart;
     }
 
     /// Part, triangles, part, triangles …; parts are numbered as they come.
@@ -172,6 +180,12 @@ private:
                                           {"color", vector(m.color)},
                                           {"roughness", m.roughness},
                                           {"metallic", m.metallic}});
+        if (!textures_.empty()) {
+            for (size_t i = 0; i < input_.provenance->materials.size(); ++i)
+                json_["materials"][i]["texture"] = textures_.ofMaterial(input_.provenance->materials[i]);
+            json_["charts"] = textures_.chartList();
+            json_["files"] = textures_.fileList();
+        }
         std::vector<uint32_t> count(objects_.nodes.size(), 0);
         for (const OriginId part : parts_) ++count[objects_.nodeOf(part)];
         for (size_t i = 0; i < objects_.nodes.size(); ++i) {
@@ -192,6 +206,7 @@ private:
 
     const ExportInput& input_;
     const ObjectTree& objects_;
+    PageTextures textures_;
     PatchedMesh patched_;
     Vertices vertices_;
     Box3f bounds_;
@@ -199,7 +214,8 @@ private:
     Vec3<int64_t> origin_, last_{0, 0, 0};
     std::array<int, 2> lastNormal_{0, 0};
     std::vector<uint16_t> x_, y_, z_;
-    std::vector<uint8_t> u_, v_, corners_;
+    std::vector<uint8_t> u_, v_, corners_, charts_;
+    int32_t lastChart_ = 0;
     std::vector<uint32_t> partNumber_;  ///< by origin: 1 + its place in parts_, 0 where it has none yet
     std::vector<OriginId> parts_;
     Json json_;

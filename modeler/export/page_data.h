@@ -5,7 +5,8 @@
 // shapes), parts, and patches of triangles of one group and material, each with runs of one part. Then, over the
 // vertices of all patches, positions in steps of 16 bits from `origin` (x, y, z: each as differences from the vertex
 // before, zigzag, low bytes and then high bytes), normals (octahedral, 8 bits, likewise), and for each corner how far
-// its vertex lies behind the next new one of its patch, in 7 bits a byte.
+// its vertex lies behind the next new one of its patch, in 7 bits a byte. Where materials have textures: for each
+// vertex the difference of its chart from the one before, zigzag, in 7 bits a byte, and the pictures' files.
 #pragma once
 
 #include <cstdint>

@@ -6,6 +6,7 @@
 #include "modeler/core/random.h"
 #include "modeler/export/surface.h"
 #include "modeler/image/texture_axes.h"
+#include "modeler/image/texture_frame.h"
 
 namespace sgm::exporter {
 namespace {
@@ -22,12 +23,21 @@ struct SmoothPiece {
 /// Distinct axes, by their numbers in steps that no eye sees.
 class AxesTable {
 public:
-    uint32_t index(Vec3d u, Vec3d v, std::vector<ChartAxes>& all) {
+    uint32_t index(const image::TextureMap& map, std::vector<ChartAxes>& all) {
         uint64_t key = 0;
-        for (const Vec3d& axis : {u, v})
-            for (int i = 0; i < 3; ++i) key = combine(key, static_cast<uint64_t>(std::llround(axis[i] * 4096)));
+        const auto note = [&](double x) { key = combine(key, static_cast<uint64_t>(std::llround(x * 4096))); };
+        for (const Vec3d& axis : {map.u, map.v})
+            for (int i = 0; i < 3; ++i) note(axis[i]);
+        for (const size_t i : {0u, 1u}) note(map.begin_m[i]), note(map.stretch[i]);
         const auto [at, fresh] = known_.try_emplace(key, static_cast<uint32_t>(all.size()));
-        if (fresh) all.push_back({u.as<float>(), v.as<float>()});
+        if (fresh) {
+            ChartAxes axes{map.u.as<float>(), map.v.as<float>()};
+            for (const size_t i : {0u, 1u}) {
+                axes.begin_m[i] = static_cast<float>(map.begin_m[i]);
+                axes.stretch[i] = static_cast<float>(map.stretch[i]);
+            }
+            all.push_back(axes);
+        }
         return at->second;
     }
 
@@ -42,26 +52,26 @@ public:
         : mesh_(mesh), provenance_(provenance), vertices_(mesh) {}
 
     TextureCharts run() {
-        forTriangles([&](OriginId, Vec3d c, SmoothPiece* piece) {
+        forTriangles([&](OriginId, Vec3d, Vec3d c, SmoothPiece* piece) {
             if (piece) piece->normal += c;
         });
         std::unordered_map<uint64_t, double> areas;
         for (auto& [key, piece] : pieces_) areas[key] = length(piece.normal), piece.normal = normalized(piece.normal);
-        forTriangles([&](OriginId, Vec3d c, SmoothPiece* piece) {
+        forTriangles([&](OriginId, Vec3d, Vec3d c, SmoothPiece* piece) {
             if (piece)
                 piece->bent +=
                     length(c - piece->normal * dot(c, piece->normal)) + std::max(0.0, -dot(c, piece->normal));
         });
         for (auto& [key, piece] : pieces_) piece.flat = piece.bent <= flatness * areas[key];
         charts_.ofTriangle.reserve(mesh_.triangleCount());
-        forTriangles([&](OriginId origin, Vec3d c, SmoothPiece* piece) {
-            charts_.ofTriangle.push_back(chartOf(origin, c, piece));
+        forTriangles([&](OriginId origin, Vec3d at, Vec3d c, SmoothPiece* piece) {
+            charts_.ofTriangle.push_back(chartOf(origin, at, c, piece));
         });
         return std::move(charts_);
     }
 
 private:
-    /// Calls visit(origin, cross product of the edges, its piece or null) for every triangle.
+    /// Calls visit(origin, a corner, cross product of the edges, its piece or null) for every triangle.
     template <class Visit>
     void forTriangles(Visit visit) {
         for (const mesh::Chunk& chunk : mesh_.chunks) {
@@ -77,16 +87,18 @@ private:
                     const uint64_t key = uint64_t{origin} << 32 | chunk.labels[i];
                     if (!piece || key != last) piece = &pieces_[last = key];
                 }
-                visit(origin, c, piece);
+                visit(origin, a, c, piece);
             }
         }
     }
 
-    uint32_t chartOf(OriginId origin, Vec3d c, const SmoothPiece* piece) {
-        const Mat3& axes = provenance_.parts[origin < provenance_.parts.size() ? origin : 0].pose.axes;
-        const image::TextureAxes along =
-            piece && piece->flat ? image::axesInPlane(axes, piece->normal) : image::axesAlongNearest(axes, c);
-        return table_.index(along.u, along.v, charts_.axes);
+    uint32_t chartOf(OriginId origin, Vec3d point, Vec3d c, const SmoothPiece* piece) {
+        const Part& part = provenance_.parts[origin < provenance_.parts.size() ? origin : 0];
+        const bool flat = piece && piece->flat;
+        return table_.index(
+            image::mapFace(part.textureFrame.get(), part.pose.axes, provenance_.materials[part.material].texture.get(),
+                           flat, flat ? piece->normal : c, point),
+            charts_.axes);
     }
 
     const mesh::Mesh& mesh_;

@@ -12,6 +12,7 @@ struct Texture {
     ImageFilePtr normals;    ///< of the surface, in tangent space, y up (as glTF and OpenGL have it); null: none
     ImageFilePtr roughness;  ///< its green is the roughness, 0 … 1; null: none
     float width_m = 1, height_m = 1;  ///< of one tile
+    bool fits = false;                ///< tiles are stretched so that whole numbers of them fill what they cover
 };
 
 }  // namespace sgm::image

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <unordered_map>
+
+#include "modeler/image/texture_frame.h"
 
 namespace sgm::mesh {
 namespace {
@@ -148,6 +151,17 @@ std::array<double, 4> quaternionOf(const Mat3& m) {
     return q;
 }
 
+namespace {
+
+std::shared_ptr<const image::TextureFrame> moved(const image::TextureFrame& frame, const Pose& pose) {
+    auto there = std::make_shared<image::TextureFrame>(frame);
+    there->origin = pose.origin + pose.axes * frame.origin;
+    there->axes = pose.axes * frame.axes;
+    return there;
+}
+
+}  // namespace
+
 Result<FlatScene> flatten(const Scene& scene, const Mesh& ground) {
     uint64_t total = ground.vertexCount();
     for (const Instance& instance : scene.instances) total += scene.objects[instance.object].mesh.vertexCount();
@@ -163,10 +177,16 @@ Result<FlatScene> flatten(const Scene& scene, const Mesh& ground) {
         const SceneObject& object = scene.objects[instance.object];
         const auto firstOrigin = static_cast<OriginId>(flat.provenance.parts.size());
         append(flat.mesh, vertices, object.mesh, instance.part.pose, firstOrigin);
+        std::unordered_map<const image::TextureFrame*, std::shared_ptr<const image::TextureFrame>> frames;
         for (Part part : object.provenance.parts) {
             part.path = instance.part.path + "/" + part.path;
             part.pose = {instance.part.pose.origin + instance.part.pose.axes * part.pose.origin,
                          instance.part.pose.axes * part.pose.axes};
+            if (part.textureFrame) {
+                auto& frame = frames[part.textureFrame.get()];
+                if (!frame) frame = moved(*part.textureFrame, instance.part.pose);
+                part.textureFrame = frame;
+            }
             flat.provenance.parts.push_back(std::move(part));
         }
     }

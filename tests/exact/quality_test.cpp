@@ -75,8 +75,10 @@ Provenance twoLooks() {
     p.materials = {{"red", {1, 0, 0}, 1, 0, nullptr},
                    {"green", {0, 1, 0}, 1, 0, nullptr},
                    {"red again", {1, 0, 0}, 1, 0, nullptr}};
-    p.parts = {
-        {}, {"A", "A", "", "a.sgm", 1, 0, {}}, {"B", "B", "", "a.sgm", 2, 1, {}}, {"C", "C", "", "a.sgm", 3, 2, {}}};
+    p.parts = {{},
+               {"A", "A", "", "a.sgm", 1, 0, {}, false, nullptr},
+               {"B", "B", "", "a.sgm", 2, 1, {}, false, nullptr},
+               {"C", "C", "", "a.sgm", 3, 2, {}, false, nullptr}};
     return p;
 }
 

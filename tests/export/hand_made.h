@@ -18,7 +18,9 @@ inline Provenance twoMaterials() {
     Provenance p;
     p.materials = {{"stone", {0.5f, 0.25f, 0.125f}, 0.8f, 0.0f, nullptr},
                    {"moss", {0.1f, 0.6f, 0.2f}, 0.9f, 0.1f, nullptr}};
-    p.parts = {{}, {"Cave/A", "A", "start", "a.sgm", 1, 0, {}}, {"Cave/B", "B", "grow", "a.sgm", 2, 1, {}}};
+    p.parts = {Part{},
+               {"Cave/A", "A", "start", "a.sgm", 1, 0, {}, false, nullptr},
+               {"Cave/B", "B", "grow", "a.sgm", 2, 1, {}, false, nullptr}};
     return p;
 }
 

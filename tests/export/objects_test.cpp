@@ -24,11 +24,11 @@ struct House : testing::Test {
     House() {
         provenance.materials = {{"stone", {.5f, .5f, .5f}, .8f, 0, nullptr},
                                 {"glass", {.1f, .3f, .5f}, .1f, 0, nullptr}};
-        provenance.parts = {{}};
+        provenance.parts = {Part{}};
         const std::pair<const char*, uint32_t> parts[] = {
             {"House/wall", 0}, {"House/Wing/Window", 1}, {"House/Wing/Window[2]", 1}, {"House/Door", 0}};
         for (const auto& [path, material] : parts)
-            provenance.parts.push_back({path, "box", "grow", "a.sgm", 7, material, {}});
+            provenance.parts.push_back({path, "box", "grow", "a.sgm", 7, material, {}, false, nullptr});
         const auto node = [&](const char* name, uint32_t parent) {
             tree.nodes.push_back({name, parent, "House/…", name, "grow", "a.sgm", 5, {{"size", Vec3d{1, 2, 3}}}});
         };

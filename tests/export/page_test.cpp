@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "modeler/export/page_data.h"
+#include "modeler/image/texture.h"
 #include "tests/export/hand_made.h"
+#include "tests/image/pictures.h"
 #include "tests/scratch.h"
 
 namespace sgm::exporter {
@@ -47,6 +49,31 @@ std::pair<Json, std::vector<uint8_t>> unpacked(const std::vector<uint8_t>& packe
     std::memcpy(&length, bytes.data(), sizeof length);
     const auto begin = bytes.begin() + sizeof length, end = begin + length;
     return {Json::parse(begin, end), {end, bytes.end()}};
+}
+
+TEST(Page, CarriesPicturesAndWhereTheyLie) {
+    Fixture sphere;
+    const auto plain = packPage(sphere.input);
+    ASSERT_TRUE(plain.ok());
+    EXPECT_FALSE(unpacked(*plain).first.contains("files")) << "nothing for models without";
+    auto texture = std::make_shared<image::Texture>();
+    texture->color = *image::readImageBytes(image::pngOf(2, 1, {255, 0, 0, 0, 0, 255}));
+    texture->roughness = texture->color;
+    texture->width_m = 2, texture->height_m = .5f;
+    sphere.provenance.materials.back().texture = texture;
+    const auto packed = packPage(sphere.input);
+    ASSERT_TRUE(packed.ok());
+    const auto [json, numbers] = unpacked(*packed);
+    const std::string& file = texture->color->bytes;
+    ASSERT_EQ(json["files"], Json::parse(R"([{"type": "image/png", "length": )" + std::to_string(file.size()) + "}]"));
+    EXPECT_EQ(json["materials"].back()["texture"],
+              Json({{"width", 2}, {"height", .5}, {"color", 0}, {"normals", -1}, {"roughness", 0}}));
+    EXPECT_TRUE(json["materials"][0]["texture"].is_null());
+    EXPECT_GT(json["charts"].size(), 1u);
+    for (const Json& chart : json["charts"]) EXPECT_EQ(chart.size(), 10u);
+    ASSERT_GE(numbers.size(), file.size());
+    EXPECT_TRUE(std::equal(file.begin(), file.end(), numbers.end() - static_cast<std::ptrdiff_t>(file.size()),
+                           [](char a, uint8_t b) { return static_cast<uint8_t>(a) == b; }));
 }
 
 TEST(Page, HoldsEveryTriangleByPartAndMaterial) {

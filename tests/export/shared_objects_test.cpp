@@ -40,7 +40,7 @@ struct Street : testing::Test {
     /// A box of the node; its chunk.
     mesh::Chunk box(uint32_t node, Vec3d half) {
         tree.ofOrigin.push_back(node);
-        provenance.parts.push_back({tree.nodes[node].name + "/box", "box", "grow", "a.sgm", 3, 0, {}});
+        provenance.parts.push_back({tree.nodes[node].name + "/box", "box", "grow", "a.sgm", 3, 0, {}, false, nullptr});
         return hardBox(tree.nodes[node].centre, {}, half, static_cast<OriginId>(provenance.parts.size() - 1));
     }
     void addHouse(std::vector<mesh::Chunk>& chunks, double x, double halfHeight = 1) {

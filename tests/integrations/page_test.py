@@ -132,6 +132,27 @@ def test_palace(tab, folder):
     assert os.path.getsize(picture) > 20_000, "a picture of one colour is small"
 
 
+def test_textures(tab, folder):
+    """The bricks are there, and they run on from the front to the side: the page has the coordinates of `lay`."""
+    page, _ = built(folder, "warehouse", "examples/buildings/warehouse.sgm", "--resolution", "96")
+    opened(tab, page)
+    assert tab.value("sgmPage.model.pictures.map((p) => p.width > 64 && p.height > 64)") == [True] * 4
+    assert tab.value("sgmPage.renderer.gl.getError()") == 0
+    textured = colours(tab)
+    assert drawn_after(tab, lambda: tab.value("(sgmPage.model.materials.forEach((m) => { m.texture = null; }), sgmPage.refresh())"))
+    assert textured > 2 * colours(tab), "bricks have more colours than plain walls"
+    assert tab.value("""(() => {
+        const { positions: p, uvs, vertices } = sgmPage.model, places = new Map();
+        for (let v = 0; v < vertices; ++v) {
+            const key = [0, 1, 2].map((a) => p[3 * v + a].toFixed(2)).join();
+            if (!places.has(key)) places.set(key, []);
+            if (uvs[2 * v] !== 0) places.get(key).push(uvs[2 * v]);
+        }
+        const corner = [...places].find(([key, us]) => { const [x, y, z] = key.split(",").map(Number); return Math.abs(x - 10.2) < .05 && Math.abs(z - 6.5) < .05 && us.length > 1; });
+        return corner !== undefined && Math.max(...corner[1]) - Math.min(...corner[1]) < 0.02;
+    })()"""), "u at the front's right corner"
+
+
 def test_objects(tab, folder):
     page, _ = built(folder, "objects", "examples/tower.sgm", "--resolution", "64", "--objects", "Storey,Roof")
     opened(tab, page)
@@ -158,6 +179,6 @@ for engine in (browser, firefox):
         print(f"{engine.Browser.name} isn't installed: nothing is opened in it")
         continue
     with tempfile.TemporaryDirectory() as folder, engine.Browser() as tab:
-        for test in (test_requests_are_seen, test_tower, test_palace, test_objects, test_hostile_names):
+        for test in (test_requests_are_seen, test_tower, test_palace, test_textures, test_objects, test_hostile_names):
             test(tab, folder)
             print(f"{tab.name}: {test.__name__}")

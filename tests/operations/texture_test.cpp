@@ -1,7 +1,7 @@
 // Pictures that cover surfaces: what the language says of them, and what materials become.
 #include <gtest/gtest.h>
 
-#include "modeler/image/texture.h"
+#include "modeler/image/texture_frame.h"
 #include "tests/image/pictures.h"
 #include "tests/lower/lowered.h"
 #include "tests/operations/loaded.h"
@@ -96,6 +96,50 @@ TEST(Textures, PartsKnowWhetherTheirFacesAreFlat) {
         if (part.symbol == "box" || part.symbol == "ball") {
             EXPECT_EQ(part.hasFlatFaces, part.symbol == "box");
         }
+}
+
+TEST(Textures, OfShapesThatAreLaidRunOnAroundTheirOutline) {
+    const Covered c(
+        "grammar 2\nterminal wall = block texture \"brick.png\"\nterminal bare = cube color #ffffff\n"
+        "start S -> footprint ell(9m, 8m, 3m, 2m) extrude 6m lay split y { 2m: wall | ~1: Upper }\n"
+        "rule Upper -> wall + bare at +y\n");
+    std::set<std::shared_ptr<const image::TextureFrame>> frames;
+    for (const Part& part : c.model->provenance.parts) {
+        if (part.symbol == "wall") frames.insert(part.textureFrame);
+        if (part.symbol == "bare") {
+            EXPECT_EQ(part.textureFrame, nullptr);
+        }
+    }
+    ASSERT_EQ(frames.size(), 1u) << "one for all storeys";
+    const image::TextureFrame& frame = **frames.begin();
+    ASSERT_EQ(frame.sides.size(), 6u);
+    EXPECT_NEAR(frame.size_m.y, 6, 1e-9);
+    for (size_t i = 0; i < 6; ++i) {
+        const image::TextureSide &side = frame.sides[i], &next = frame.sides[(i + 1) % 6];
+        const Vec3d end = side.from + side.along * side.length_m;
+        EXPECT_NEAR(length(end - next.from), 0, 1e-9) << "the next side begins where this one ends";
+        EXPECT_NEAR(side.round_m, 34, 1e-9);
+        if (i < 5) {
+            EXPECT_NEAR(side.begin_m + side.length_m, next.begin_m, 1e-9);
+        }
+        const Vec3d normal = cross(Vec3d{0, 1, 0}, side.along) * -1.0;
+        const auto map = image::mapFace(&frame, frame.axes, nullptr, true, frame.axes * normal,
+                                        frame.origin + frame.axes * (side.from + side.along * (side.length_m / 2)));
+        EXPECT_NEAR(dot(frame.origin + frame.axes * side.from, map.u) - map.begin_m[0], side.begin_m, 1e-9) << i;
+    }
+}
+
+TEST(Textures, TilesThatFitFillTheirOwnScopeWhereNothingIsLaid) {
+    const Covered c(
+        "grammar 2\nstart S -> cube size 3m texture \"brick.png\" fitted + cube at +x texture \"brick.png\"\n");
+    size_t fitting = 0;
+    for (const Part& part : c.model->provenance.parts) {
+        const auto& texture = c.model->provenance.materials[part.material].texture;
+        if (!texture) continue;
+        EXPECT_EQ(part.textureFrame != nullptr, texture->fits);
+        fitting += texture->fits ? 1 : 0;
+    }
+    EXPECT_GT(fitting, 0u);
 }
 
 TEST(Textures, WhatIsWrongIsToldWithItsPlace) {

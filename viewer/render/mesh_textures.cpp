@@ -70,8 +70,13 @@ Result<MeshTextures> prepareMeshTextures(const mesh::Mesh& mesh, const Provenanc
             for (const auto* layer : {&color, &normals, &roughness})
                 if (!layer->ok()) return layer->error();
             const exporter::ChartAxes& axes = charts.axes[chart];
-            made.frames.push_back(
-                {axes.u / texture->width_m, *color, axes.v / texture->height_m, *normals, *roughness});
+            const float acrossTile = axes.stretch[0] / texture->width_m, upTile = axes.stretch[1] / texture->height_m;
+            made.frames.push_back({axes.u * acrossTile,
+                                   *color,
+                                   axes.v * upTile,
+                                   *normals,
+                                   *roughness,
+                                   {axes.begin_m[0] * acrossTile, axes.begin_m[1] * upTile}});
         }
     made.colors = std::move(colors.pictures);
     made.numbers = std::move(numbers.pictures);

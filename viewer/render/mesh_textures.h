@@ -22,7 +22,8 @@ struct MeshTextures {
         Vec3f v;
         float normalLayer;  ///< into `numbers`; -1: none
         float roughnessLayer;
-        float unused[3]{};
+        float begin[2]{};  ///< taken from the products
+        float unused{};
     };
     std::vector<uint32_t> frameOfTriangle;  ///< place in `frames` + 1, 0 for triangles without; empty: none has any
     std::vector<Frame> frames;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "modeler/image/texture_axes.h"
+#include "modeler/image/texture_frame.h"
 
 namespace sgm::render {
 namespace {
@@ -103,7 +103,8 @@ Result<SurfaceTextures> SurfaceTextures::create(const Provenance& provenance, Pr
     if (!made.any()) return made;
     for (const Part& part : provenance.parts) {
         const auto& texture = provenance.materials[part.material].texture;
-        made.parts_.push_back({texture ? made.textures_.at(texture) : nullptr, part.pose.axes, part.hasFlatFaces});
+        made.parts_.push_back({texture ? made.textures_.at(texture) : nullptr, part.textureFrame, texture.get(),
+                               part.pose.axes, part.hasFlatFaces});
     }
     return made;
 }
@@ -115,10 +116,10 @@ void SurfaceTextures::apply(OriginId origin, Vec3f position, double footprint_m,
     for (int i = 0; i < 3; ++i)
         if (std::abs(n[i]) < noise) n[i] = 0;
     n = part.axes * normalized(n);
-    const image::TextureAxes along =
-        part.flat ? image::axesInPlane(part.axes, n) : image::axesAlongNearest(part.axes, n);
     const Vec3d p = position.as<double>();
-    const double u = dot(p, along.u) / texture.width_m, v = dot(p, along.v) / texture.height_m;
+    const image::TextureMap along = image::mapFace(part.frame.get(), part.axes, part.looks, part.flat, n, p);
+    const double u = (dot(p, along.u) - along.begin_m[0]) * along.stretch[0] / texture.width_m,
+                 v = (dot(p, along.v) - along.begin_m[1]) * along.stretch[1] / texture.height_m;
     const auto ask = [&](const MipMap& map) {
         return map.at(u, v, footprint_m * std::max(map.width() / texture.width_m, map.height() / texture.height_m));
     };

@@ -63,6 +63,8 @@ private:
     };
     struct CoveredPart {
         std::shared_ptr<const Texture> texture;
+        std::shared_ptr<const image::TextureFrame> frame;
+        const image::Texture* looks = nullptr;
         Mat3 axes;
         bool flat = false;
     };

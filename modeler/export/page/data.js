@@ -47,10 +47,29 @@ async function readModel(text) {
     vertex += fresh;
   }
   addRuns(model);
+  model.pictures = [];
+  if (model.files) {
+    addTextureCoordinates(model, number);
+    for (const { type, length } of model.files) {
+      const blob = new Blob([bytes.subarray(at, (at += length))], { type });
+      model.pictures.push(await createImageBitmap(blob, { premultiplyAlpha: "none", colorSpaceConversion: "none" }));
+    }
+  }
   model.size = [0, 1, 2].map((axis) => model.hi[axis] - model.lo[axis]);
   model.middle = [0, 1, 2].map((axis) => (model.hi[axis] + model.lo[axis]) / 2);
   model.radius = Math.hypot(...model.size) / 2 || 1;
   return model;
+}
+
+/** Metres along the chart of every vertex, by the numbers that follow. */
+function addTextureCoordinates(model, number) {
+  model.uvs = new Float32Array(2 * model.vertices);
+  for (let v = 0, chart = 0; v < model.vertices; ++v) {
+    const change = number(), p = [0, 1, 2].map((axis) => model.positions[3 * v + axis]);
+    chart += (change >>> 1) ^ -(change & 1);
+    const axes = model.charts[chart];
+    for (const k of [0, 1]) model.uvs[2 * v + k] = (dot(p, axes.slice(5 * k, 5 * k + 3)) - axes[5 * k + 3]) * axes[5 * k + 4];
+  }
 }
 
 /** Gives every patch its runs of triangles of one part, each with the box around it. */

@@ -17,6 +17,8 @@ class Renderer {
     gl.bindVertexArray(this.vertices);
     this.attribute(0, model.positions, 3, gl.FLOAT);
     this.attribute(1, model.normals, 2, gl.BYTE);
+    if (model.uvs) this.attribute(2, model.uvs, 2, gl.FLOAT);
+    this.textures = model.pictures.map(() => ({}));
     this.triangleBuffer = this.elements(model.indices);
     this.edgeBuffer = this.elements(edgesOf(model));
     this.none = gl.createVertexArray();
@@ -76,6 +78,33 @@ class Renderer {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
+  /** A picture that repeats, as colours (sRGB) or as numbers. */
+  texture(file, isColor) {
+    const { gl } = this, made = this.textures[file], key = isColor ? "color" : "number";
+    if (made[key]) return made[key];
+    const texture = (made[key] = gl.createTexture());
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, isColor ? gl.SRGB8_ALPHA8 : gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, this.model.pictures[file]);
+    gl.generateMipmap(gl.TEXTURE_2D);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+    const sharp = gl.getExtension("EXT_texture_filter_anisotropic");
+    if (sharp) gl.texParameterf(gl.TEXTURE_2D, sharp.TEXTURE_MAX_ANISOTROPY_EXT, 8);
+    return texture;
+  }
+
+  /** Sets what covers the patches of a material that are drawn next. */
+  cover(places, material) {
+    const { gl } = this, texture = material.texture, files = texture ? [texture.color, texture.normals, texture.roughness] : [-1, -1, -1];
+    gl.uniform3f(places.mapped, ...files.map((file) => (file >= 0 ? 1 : 0)));
+    gl.uniform2f(places.tiles, texture ? 1 / texture.width : 0, texture ? 1 / texture.height : 0);
+    files.forEach((file, i) => {
+      if (file < 0) return;
+      gl.activeTexture(gl.TEXTURE1 + i);
+      gl.bindTexture(gl.TEXTURE_2D, this.texture(file, i === 0));
+    });
+    gl.activeTexture(gl.TEXTURE0);
+  }
+
   use({ program, places }, camera) {
     const { gl } = this;
     gl.useProgram(program);
@@ -85,6 +114,8 @@ class Renderer {
       sun: (p) => gl.uniform3fv(p, this.sun), eye: (p) => gl.uniform3fv(p, this.eye), depths: (p) => gl.uniform1i(p, 0),
       section: (p) => gl.uniform4f(p, ...section.normal, section.at), shadows: (p) => gl.uniform1f(p, this.shown.shadow ? 0.85 : 0),
       marked: (p) => gl.uniform3f(p, 0, 0, 0), flat_: (p) => gl.uniform1f(p, 0), color: (p) => gl.uniform3f(p, 0, 0, 0), finish: (p) => gl.uniform2f(p, 1, 0),
+      mapped: (p) => gl.uniform3f(p, 0, 0, 0), tiles: (p) => gl.uniform2f(p, 0, 0),
+      colorMap: (p) => gl.uniform1i(p, 1), normalMap: (p) => gl.uniform1i(p, 2), roughnessMap: (p) => gl.uniform1i(p, 3),
     };
     for (const [name, place] of Object.entries(places)) if (set[name]) set[name](place);
     return places;
@@ -140,6 +171,7 @@ class Renderer {
       const material = model.materials[patch.material];
       gl.uniform3fv(places.color, material.color);
       gl.uniform2f(places.finish, material.roughness, material.metallic);
+      this.cover(places, material);
       gl.drawElements(gl.TRIANGLES, 3 * patch.triangles, gl.UNSIGNED_INT, 4 * patch.first);
       const runs = patch.runs.filter((run) => mark(patch, run));
       if (runs.length === 0) continue;

@@ -6,7 +6,7 @@ out vec4 color;
 layout(std430, binding = 4) readonly buffer Materials { vec4 materials[]; };  // two a material: colour, roughness; metallic
 uniform usamplerBuffer ownerOfTriangle;  // material, rule, component, smooth piece
 uniform int firstTriangle;
-struct Frame { vec4 u, v, more; };  // metres to tiles with a layer of colours; the same, of normals; layer of roughness
+struct Frame { vec4 u, v, more; };  // metres to tiles with a layer of colours; the same, of normals; layer of roughness, what both begin with
 layout(std430, binding = 5) readonly buffer Frames { Frame frames[]; };
 uniform int textured;                   // whether any triangle is
 uniform usamplerBuffer frameOfTriangle;  // and how, from 1
@@ -37,7 +37,7 @@ void cover(int triangle, inout Surface s) {
     int number = int(texelFetch(frameOfTriangle, triangle).x);
     if (number == 0) return;
     Frame f = frames[number - 1];
-    vec2 at = vec2(dot(s.position, f.u.xyz), dot(s.position, f.v.xyz));
+    vec2 at = vec2(dot(s.position, f.u.xyz), dot(s.position, f.v.xyz)) - f.more.yz;
     vec2 dx = vec2(dot(right, f.u.xyz), dot(right, f.v.xyz)), dy = vec2(dot(up, f.u.xyz), dot(up, f.v.xyz));
     if (f.u.w >= 0.0) s.color = textureGrad(colorPictures, vec3(at, f.u.w), dx, dy).rgb;
     if (f.more.x >= 0.0) {
