@@ -94,6 +94,40 @@ std::vector<Face> facesOfRoof(const Scope& scope, const Footprints& footprints, 
     return faces;
 }
 
+bool isLine(Kind kind) { return kind == Kind::Ridge || kind == Kind::Hip || kind == Kind::Valley; }
+
+field::RoofLine::Kind lineKind(Kind kind) {
+    return kind == Kind::Hip      ? field::RoofLine::Kind::Hip
+           : kind == Kind::Valley ? field::RoofLine::Kind::Valley
+                                  : field::RoofLine::Kind::Ridge;
+}
+
+/// Lines where slopes meet: x uphill along them, y up, z level.
+std::vector<Face> linesOfRoof(const Scope& scope, const Footprints& footprints, const SolidValue& solid,
+                              const FaceChoice& choice) {
+    const plan::Footprint footprint = footprintOf(scope, footprints);
+    const auto formula = plan::monotoneFormula(footprint);
+    if (!formula.ok()) return {};
+    const std::vector<plan::PlacedEdge> edges = plan::edgesOf(footprint);
+    std::vector<Face> faces;
+    for (const field::RoofLine& line :
+         field::roofLines(*solid.primitive, footprint, *formula, argumentNumbers(solid))) {
+        if (line.kind != lineKind(choice.kind)) continue;
+        if (!plan::isEdgeCalled(footprint, edges[line.edges[0]], choice.word) &&
+            !plan::isEdgeCalled(footprint, edges[line.edges[1]], choice.word))
+            continue;
+        const Vec3d x = normalized(Vec3d{line.along.x * line.run_m, line.rise_m, line.along.z * line.run_m});
+        const Vec3d z{-line.along.z, 0, line.along.x};
+        Face face;
+        face.scope.centre = scope.centre + scope.axes * Vec3d{line.at.x, line.height_m - scope.size.y / 2, line.at.z};
+        face.scope.axes = scope.axes * Mat3{x, cross(z, x), z};
+        face.scope.size = {std::hypot(line.run_m, line.rise_m), unknown_m, unknown_m};
+        face.key = combine(combine(line.edges[0], line.edges[1]), static_cast<uint64_t>(faces.size()));
+        faces.push_back(face);
+    }
+    return faces;
+}
+
 bool hasRoof(const SolidValue* solid) { return solid && solid->primitive && field::isRoof(*solid->primitive); }
 
 }  // namespace
@@ -124,9 +158,17 @@ bool Interpreter::placeOnFaces(ShapeId host, const rules::Element& e, Frame& fra
     for (const ShapeId at : hosts) {
         const Scope scope = builder_.tree().shapes[at].scope;
         const Footprints& footprints = builder_.tree().footprints;
+        if (isLine(choice.kind) && footprintOf(scope, footprints).edgeCount() > field::mostRoofLineEdges) {
+            builder_.fail(Error::Kind::Input,
+                          fmt::format("ridges, hips and valleys are known of roofs over at most {} edges",
+                                      field::mostRoofLineEdges),
+                          e.at->span);
+            return false;
+        }
         const std::vector<Face> faces =
             choice.kind == Kind::Side     ? sidesOf(scope, footprintOf(scope, footprints), choice.word)
             : choice.kind == Kind::Corner ? cornersOf(scope, footprintOf(scope, footprints), choice.word)
+            : isLine(choice.kind)         ? linesOfRoof(scope, footprints, *builder_.tree().solidOf(at), choice)
                                           : facesOfRoof(scope, footprints, *builder_.tree().solidOf(at), choice);
         const uint64_t ofHost = at == host ? key : combine(key, builder_.tree().shapes[at].key);
         for (const Face& face : faces) {

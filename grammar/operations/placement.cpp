@@ -68,11 +68,9 @@ void note(OperationChecker& checker, const syntax::Attribute& written) {
 /// each(side), each(slope, front)
 rules::FaceChoice readFaces(OperationChecker& checker, const Written& e) {
     using Kind = rules::FaceChoice::Kind;
-    constexpr std::pair<std::string_view, Kind> kinds[] = {{"corner", Kind::Corner},
-                                                           {"slope", Kind::Slope},
-                                                           {"eave", Kind::Eave},
-                                                           {"gable", Kind::Gable},
-                                                           {"apex", Kind::Apex}};
+    constexpr std::pair<std::string_view, Kind> kinds[] = {
+        {"corner", Kind::Corner}, {"slope", Kind::Slope}, {"eave", Kind::Eave}, {"gable", Kind::Gable},
+        {"apex", Kind::Apex},     {"ridge", Kind::Ridge}, {"hip", Kind::Hip},   {"valley", Kind::Valley}};
     rules::FaceChoice faces{Kind::Side, "side"};
     const bool words =
         std::all_of(e.args.begin(), e.args.end(), [](const Written& arg) { return arg.kind == Written::Kind::Name; });
@@ -87,7 +85,7 @@ rules::FaceChoice readFaces(OperationChecker& checker, const Written& e) {
     if (kind == std::end(kinds) || e.args.size() == 2) faces.word = e.args.back().text;
     if (kind == std::end(kinds) && e.args.size() == 2 && e.args[0].text != "side")
         checker.error(e.args[0].span, fmt::format("'{}' is no kind of face", e.args[0].text),
-                      "before a word for edges stands side, corner, slope, eave, gable or apex");
+                      "before a word for edges stands side, corner, slope, eave, gable, apex, ridge, hip or valley");
     return faces;
 }
 

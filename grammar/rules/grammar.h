@@ -198,7 +198,8 @@ struct Attribute {
 
 /// `at each(…)`: the faces of a block or a roof that a newcomer grows on, one each.
 struct FaceChoice {
-    enum class Kind : uint8_t { Side, Corner, Slope, Eave, Gable, Apex } kind = Kind::Side;
+    enum class Kind : uint8_t { Side, Corner, Slope, Eave, Gable, Apex, Ridge, Hip, Valley };
+    Kind kind = Kind::Side;
     std::string word;  ///< which of them: a word for edges (front, court, a tag); "side" for all
 };
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "modeler/plan/reflex.h"
+#include "modeler/field/roof_planes.h"
 
 namespace sgm::field {
 namespace {
@@ -15,71 +15,10 @@ using plan::Vec2;
 
 constexpr double leastFace_m = 1e-3;
 
-/// What rises over one edge.
-struct Side {
-    double slope = 0;  ///< tangent of its pitch; 0: a gable
-    double rise = 0;   ///< metres above the others at which it begins
-};
-
-/// A roof of planes over its edges.
-struct Planes {
-    std::vector<Side> sides;
-    double overhang_m = 0, fascia_m = 0;
-    double highest_m = 1e9;  ///< where broken slopes end
-};
-
 double valueAt(std::span<const Argument> arguments, size_t i) { return arguments[i].value[0]; }
 
-void setGables(Planes& planes, const plan::Footprint& footprint, const plan::Formula& formula, double ends) {
-    for (const uint32_t e : gablesOf(footprint, formula, static_cast<GableEnds>(static_cast<int>(ends))))
-        planes.sides[e] = {};
-}
-
-/// The planes of a row whose numbers stand as solids_plan.cpp reads them; nothing for other roofs.
-std::optional<Planes> planesOf(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
-                               std::span<const Argument> a) {
-    const std::vector<PlacedEdge> edges = plan::edgesOf(footprint);
-    Planes planes;
-    const bool isBroken = row.name == "mansardRoof" || row.name == "gambrelRoof";
-    const bool isSaltbox = row.name == "saltboxRoof";
-    if (!isBroken && !isSaltbox && row.name != "hipRoof" && row.name != "gableRoof" && row.name != "halfHipRoof")
-        return std::nullopt;
-    planes.sides.assign(edges.size(), {std::tan(valueAt(a, 0)), 0});
-    const size_t overhang = isBroken ? 3 : isSaltbox ? 2 : 1;
-    planes.overhang_m = valueAt(a, overhang);
-    planes.fascia_m = valueAt(a, overhang + 1);
-    if (isBroken) planes.highest_m = valueAt(a, 1);
-    for (size_t i = 0; isSaltbox && i < edges.size(); ++i)
-        planes.sides[i].slope = std::tan(valueAt(a, edges[i].normal().z > 0 ? 0 : 1));
-    if (row.name == "gableRoof") setGables(planes, footprint, formula, valueAt(a, 4));
-    if (row.name == "gambrelRoof") setGables(planes, footprint, formula, valueAt(a, 6));
-    if (isSaltbox) setGables(planes, footprint, formula, valueAt(a, 5));
-    if (row.name == "halfHipRoof")
-        for (const uint32_t e : gablesOf(footprint, formula, static_cast<GableEnds>(static_cast<int>(valueAt(a, 4)))))
-            planes.sides[e].rise = valueAt(a, 5) * planes.sides[e].slope * edges[e].length() / 2;
-    return planes;
-}
-
-/// The height of the slopes, negated, as leaves of the formula.
-std::vector<Linear> leavesOf(const plan::Footprint& footprint, const Planes& planes) {
-    std::vector<Linear> leaves = plan::distancesOf(footprint);
-    for (size_t i = 0; i < leaves.size(); ++i) {
-        const Side& side = planes.sides[i];
-        leaves[i] = side.slope > 0 ? Linear{leaves[i].a * side.slope, leaves[i].b * side.slope,
-                                            leaves[i].c * side.slope - side.rise}
-                                   : Linear{0, 0, -1e12};
-    }
-    return leaves;
-}
-
-/// The slopes of a roof and its outline, as leaves of the footprint's formula.
-struct Surface {
-    const plan::Formula& formula;
-    std::vector<Linear> slopes, outline;
-};
-
 /// How far the slope of `edge` goes on from `from` toward `way`, inside the outline.
-double reach(const Surface& roof, uint32_t edge, Vec2 from, Vec2 way) {
+double reach(const RoofSurface& roof, uint32_t edge, Vec2 from, Vec2 way) {
     const auto alongWay = [&](const Linear& l) { return l.a * way.x + l.b * way.z; };
     const Linear& own = roof.slopes[edge];
     std::vector<double> stops;
@@ -136,10 +75,10 @@ RoofFace onEdge(RoofFace::Kind kind, const std::vector<PlacedEdge>& edges, size_
 }
 
 /// The middle of the slope over an edge, where it is as wide as the lines around leave it.
-std::optional<RoofFace> slopeOver(const Planes& planes, const Surface& roof, const std::vector<PlacedEdge>& edges,
-                                  size_t i) {
+std::optional<RoofFace> slopeOver(const RoofPlanes& planes, const RoofSurface& roof,
+                                  const std::vector<PlacedEdge>& edges, size_t i) {
     RoofFace face = onEdge(RoofFace::Kind::Slope, edges, i, 0);
-    const Side& side = planes.sides[i];
+    const RoofPlanes::Side& side = planes.sides[i];
     const Vec2 in = face.outward * -1, along{face.outward.z * -1, face.outward.x};
     const double whole = std::min(reach(roof, face.edge, face.at, in), std::max(0.0, planes.highest_m / side.slope));
     if (whole < leastFace_m) return std::nullopt;
@@ -154,11 +93,12 @@ std::optional<RoofFace> slopeOver(const Planes& planes, const Surface& roof, con
     return face;
 }
 
-std::vector<RoofFace> facesOf(const Planes& planes, const plan::Footprint& footprint, const plan::Formula& formula) {
+std::vector<RoofFace> facesOf(const RoofPlanes& planes, const plan::Footprint& footprint,
+                              const plan::Formula& formula) {
     const std::vector<PlacedEdge> edges = plan::edgesOf(footprint);
-    const Surface roof{formula, leavesOf(footprint, planes), plan::distancesOf(footprint)};
+    const RoofSurface roof = surfaceOf(planes, footprint, formula);
     double least = 1e9;
-    for (const Side& side : planes.sides)
+    for (const RoofPlanes::Side& side : planes.sides)
         if (side.slope > 0) least = std::min(least, side.slope);
     std::vector<RoofFace> faces;
     for (size_t i = 0; i < edges.size(); ++i) {
@@ -224,7 +164,7 @@ bool isRoof(const Primitive& row) { return row.name.ends_with("Roof"); }
 std::vector<RoofFace> roofFaces(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
                                 std::span<const Argument> arguments, double height_m) {
     if (!isRoof(row) || footprint.empty()) return {};
-    if (const auto planes = planesOf(row, footprint, formula, arguments)) return facesOf(*planes, footprint, formula);
+    if (const auto planes = roofPlanes(row, footprint, formula, arguments)) return facesOf(*planes, footprint, formula);
     if (row.name == "shedRoof") return {shedSlope(footprint, arguments)};
     if (row.plan != PlanUse::Fills) return {};
     std::vector<RoofFace> faces;

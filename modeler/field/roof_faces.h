@@ -1,4 +1,5 @@
-// Where something can grow on a roof over a footprint: its slopes, eaves, gables and its highest point.
+// Where something can grow on a roof over a footprint: its slopes, eaves, gables and its highest point, and the lines
+// where slopes meet.
 // Enters: a roof of the primitive table, its footprint and numbers. Leaves: places in metres. Assumes a sound footprint
 // about the scope's centre. Slopes meet where the formula's leaves do, as those of the roof itself.
 #pragma once
@@ -35,5 +36,28 @@ bool isRoof(const Primitive& row);
 /// O(n²).
 std::vector<RoofFace> roofFaces(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
                                 std::span<const Argument> arguments, double height_m);
+
+/// A line where two slopes meet.
+struct RoofLine {
+    enum class Kind : uint8_t {
+        Ridge,  ///< level; both slopes fall away from it
+        Hip,    ///< rising; both fall away from it
+        Valley  ///< both rise from it
+    };
+    Kind kind = Kind::Ridge;
+    uint32_t edges[2] = {0, 0};  ///< over which the slopes rise, the lesser first; as in edgesOf()
+    plan::Vec2 at;               ///< its middle in the plan
+    plan::Vec2 along;            ///< unit, uphill in the plan; of a ridge either way
+    double height_m = 0;         ///< of its middle above the roof's foot
+    double rise_m = 0;           ///< from end to end
+    double run_m = 0;            ///< the same in plan
+};
+
+/// Roofs over more edges than these have no lines: every pair of slopes is looked at.
+inline constexpr size_t mostRoofLineEdges = 128;
+/// The ridges, hips and valleys of a roof of planes, by pairs of edges, up to its eaves and gables; of broken roofs
+/// those of the lower slopes. Curved roofs, pyramids and shed roofs have none. O(n⁴) at most.
+std::vector<RoofLine> roofLines(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
+                                std::span<const Argument> arguments);
 
 }  // namespace sgm::field

@@ -88,6 +88,57 @@ TEST(EachFace, GablesEavesAndApexesHaveTheirPlaces) {
     EXPECT_NEAR(shapesCalled(d, "top")[0]->scope.centre.y, -.5 + 4 + .1, .02) << "4 m above the eaves";
 }
 
+TEST(EachFace, RidgesHipsAndValleysAreWhereSlopesMeet) {
+    const auto lines = [](const std::string& plan, const std::string& roof, const std::string& kind) {
+        const Derivation d = derived("grammar 1\nterminal bay = cube\nstart A -> footprint " + plan + " " + roof +
+                                     " + bay size (100%, .2m, .2m) at each(" + kind + ")\n");
+        std::vector<double> lengths;
+        for (const Shape* bay : shapesCalled(d, "bay")) lengths.push_back(bay->scope.size.x);
+        return lengths;
+    };
+    const auto expect = [](const std::vector<double>& found, const std::vector<double>& expected) {
+        ASSERT_EQ(found.size(), expected.size());
+        for (size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-9);
+    };
+    const double hip = std::sqrt(48.0), roofed = std::sqrt(75.0);
+    expect(lines("rect(12, 8)", "hipRoof(45deg)", "ridge"), {4});
+    expect(lines("rect(12, 8)", "hipRoof(45deg)", "hip"), {hip, hip, hip, hip});
+    expect(lines("rect(12, 8)", "hipRoof(45deg, overhang: 1m)", "hip"), {roofed, roofed, roofed, roofed});
+    expect(lines("rect(12, 8)", "hipRoof(45deg)", "valley"), {});
+    expect(lines("rect(12, 8)", "gableRoof(30deg, overhang: .5m)", "ridge"), {13});
+    expect(lines("ngon(4)", "hipRoof(45deg)", "ridge"), {});
+    EXPECT_EQ(lines("ell(16, 12, 6, 5)", "hipRoof(40deg)", "valley").size(), 1u);
+    EXPECT_EQ(lines("ell(16, 12, 6, 5)", "hipRoof(40deg)", "ridge").size(), 2u);
+    EXPECT_EQ(lines("tee(16, 12, 5, 6)", "gableRoof(40deg)", "valley").size(), 2u);
+    EXPECT_EQ(lines("ring(30, 24, 7)", "hipRoof(40deg)", "valley").size(), 4u);
+    EXPECT_TRUE(lines("rect(12, 8)", "domeRoof", "ridge").empty());
+}
+
+TEST(EachFace, LinesOfRoofsLieOnTheRoof) {
+    for (const std::string roof : {"hipRoof(35deg, overhang: .5m, fascia: .2m)", "gableRoof(40deg, overhang: .4m)",
+                                   "halfHipRoof(40deg)", "mansardRoof(70deg, 2m, 20deg)", "saltboxRoof(45deg, 25deg)"})
+        for (const std::string plan :
+             {"rect(14, 9)", "ell(16, 12, 6, 5)", "yard(20, 16, 5)", "outline((0, 0), (14, 1), (13, 9), (-1, 8))"}) {
+            const std::string text = "grammar 1\nterminal bay = cube\nstart A -> footprint " + plan + " " + roof;
+            const Lowered alone(text + "\n");
+            for (const std::string kind : {"ridge", "hip", "valley"}) {
+                const Derivation d = derived(text + " + bay size (100%, .2m, .2m) at each(" + kind + ")\n");
+                for (const Shape* bay : shapesCalled(d, "bay"))
+                    for (const double at : {-.45, -.2, .1, .45}) {
+                        const Vec3d p = bay->scope.point({2 * at, 0, 0});
+                        EXPECT_NEAR(alone.value(p.as<float>()), 0, 1e-4) << roof << " over " << plan << " " << kind;
+                        EXPECT_GT(bay->scope.axes.y.y, .2) << "upright";
+                    }
+            }
+        }
+}
+
+TEST(EachFace, LinesOfRoofsOverTooManyEdgesAreRefused) {
+    const auto d = tryDerive("grammar 1\nstart A -> footprint round(200, 9m) hipRoof(30deg) + cube at each(hip)\n");
+    ASSERT_FALSE(d.ok());
+    EXPECT_NE(d.error().message.find("at most 128 edges"), std::string::npos) << d.error().message;
+}
+
 TEST(EachFace, RoofsThatCameBeforeAreFoundAndNoneIsAnError) {
     const Derivation d = house("+ hipRoof(30deg) at +y + bay size .5m at each(slope)", "rect(10, 6)");
     EXPECT_EQ(shapesCalled(d, "bay").size(), 4u);
