@@ -42,6 +42,12 @@ void PartsContext::place(PlacedObject object) {
     builder.extras(frame_.node).object = builder.derivation().objects.put(std::move(object));
 }
 
+double PartsContext::sharedBy(const Scope& part) const {
+    startsOver();
+    TreeBuilder& builder = interpreter_.builder_;
+    return builder.surroundings().shared(builder.tree(), frame_.node, part);
+}
+
 std::vector<double> PartsContext::facesAlong(rules::SymbolId symbol, int axis) const {
     startsOver();
     TreeBuilder& builder = interpreter_.builder_;

@@ -46,6 +46,9 @@ public:
     /// Where the faces of shapes of that symbol cross an axis of the scope, metres from its low end, as things stood
     /// when the generation began; those alone that run square to the axis.
     std::vector<double> facesAlong(rules::SymbolId symbol, int axis) const;
+    /// The share of the outer face (+z) of a part, 0 … 1, at which another shape stood when the generation began; one
+    /// that this one stands in or that stands in it doesn't count.
+    double sharedBy(const Scope& part) const;
     /// Counts a unit of work; false once something failed.
     bool work() { return interpreter_.builder_.work(); }
     /// Puts an object of its own into the scope.

@@ -1,4 +1,5 @@
 #include "grammar/derive/rewriter.h"
+#include "grammar/rules/traverse.h"
 
 #include <fmt/format.h>
 
@@ -67,6 +68,7 @@ std::vector<Rewriter::Decision> Rewriter::decide(std::vector<ShapeId>& waiting) 
     std::vector<Decision> decisions;
     std::vector<ShapeId> later;
     builder_.forgetSurroundings();
+    if (partsLookAround_) builder_.surroundings();  // as things stand now, before any rule is applied
     for (const ShapeId s : waiting) {
         const Shape& shape = builder_.tree().shapes[s];
         if (!shape.live) continue;
@@ -97,8 +99,27 @@ void Rewriter::noteLive(const std::vector<ShapeId>& waiting) {
         if (builder_.tree().shapes[s].live) liveSymbols_[builder_.tree().shapes[s].symbol] = true;
 }
 
+namespace {
+
+bool lookAround(const rules::Parts& parts) {
+    return parts.snap || std::any_of(parts.parts.begin(), parts.parts.end(),
+                                     [](const rules::Parts::Part& part) { return part.label == "shared"; });
+}
+
+bool partsLookAround(const rules::Grammar& grammar) {
+    bool found = false;
+    for (const Rule& rule : grammar.rules)
+        rules::forEachElement(rule.body, [&](const rules::Element& e) {
+            if (const rules::Parts* parts = e.content.parts()) found = found || lookAround(*parts);
+        });
+    return found;
+}
+
+}  // namespace
+
 void Rewriter::automatic() {
     builder_.takeLive();
+    partsLookAround_ = partsLookAround(grammar_);
     std::vector<ShapeId> waiting = live();
     hasOrder_ = std::any_of(grammar_.rules.begin(), grammar_.rules.end(),
                             [](const Rule& rule) { return rule.after != rules::none; });

@@ -61,6 +61,7 @@ private:
     Interpreter interpreter_;
     std::vector<Application> applied_;
     bool hasOrder_ = false;          ///< some rule says `after`
+    bool partsLookAround_ = false;   ///< some part is `shared` or snaps: they ask who stood around
     std::vector<bool> liveSymbols_;  ///< by symbol: a live shape of it was waiting when the generation began
 };
 

@@ -70,10 +70,13 @@ Surroundings::Surroundings(const ShapeTree& tree) {
         const Shape& shape = tree.shapes[s];
         if (shape.dead) continue;
         if (shape.symbol != rules::none) add(bySymbol_[shape.symbol], shape.scope, s);
-        if (shape.solid != none && shape.op != rules::Operator::Difference) add(solids_, shape.scope, s);
+        const bool cuts = shape.op == rules::Operator::Difference;
+        if (shape.solid != none && !cuts) add(solids_, shape.scope, s);
+        if ((shape.solid != none || shape.live) && !cuts) add(standing_, shape.scope, s);
     }
     for (auto& [symbol, list] : bySymbol_) sort(list);
     sort(solids_);
+    sort(standing_);
 }
 
 std::vector<ShapeId> Surroundings::shapesOf(rules::SymbolId symbol) const {
@@ -140,14 +143,22 @@ bool Surroundings::inside(const ShapeTree& tree, ShapeId shape, rules::SymbolId 
 }
 
 double Surroundings::covered(const ShapeTree& tree, ShapeId shape) const {
+    return shareOf(tree, shape, tree.shapes[shape].scope, solids_);
+}
+
+double Surroundings::shared(const ShapeTree& tree, ShapeId shape, const Scope& part) const {
+    return shareOf(tree, shape, part, standing_);
+}
+
+/// By points just before the outer face of `own`.
+double Surroundings::shareOf(const ShapeTree& tree, ShapeId shape, const Scope& own, const List& list) const {
     constexpr int points = 5;
     constexpr double out_m = .01;  // in front of the face, where another solid may begin
-    const Scope& own = tree.shapes[shape].scope;
     Scope face = own;
     face.centre = own.centre + own.axes.z * own.half().z;
     face.size.z = 4 * out_m;
     std::vector<ShapeId> near;
-    forNear(solids_, boxOf(face), [&](ShapeId other) {
+    forNear(list, boxOf(face), [&](ShapeId other) {
         if (!areRelated(tree, shape, other)) near.push_back(other);
         return false;
     });

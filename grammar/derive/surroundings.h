@@ -27,6 +27,10 @@ public:
     /// stands.
     double covered(const ShapeTree& tree, ShapeId shape) const;
 
+    /// The same share of the outer face of `part`, a part of the shape's volume, at which the volume of a shape stands
+    /// that lives or is solid.
+    double shared(const ShapeTree& tree, ShapeId shape, const Scope& part) const;
+
     /// Shapes of that symbol, oldest first.
     std::vector<ShapeId> shapesOf(rules::SymbolId symbol) const;
 
@@ -46,7 +50,9 @@ private:
     static void sort(List& list);
 
     std::unordered_map<rules::SymbolId, List> bySymbol_;
-    List solids_;
+    double shareOf(const ShapeTree& tree, ShapeId shape, const Scope& own, const List& list) const;
+
+    List solids_, standing_;
 };
 
 }  // namespace sgm::derive

@@ -67,14 +67,8 @@ const Part* findPart(const Parts& faces, std::string_view label) {
     return part == faces.parts.end() ? nullptr : &*part;
 }
 
-/// The first part whose word the edge is called by; top, bottom and rest are no words for edges.
-const Part* partOf(const Parts& faces, const plan::Footprint& footprint, const PlacedEdge& edge) {
-    for (const Part& part : faces.parts)
-        if (part.label != "top" && part.label != "bottom" && part.label != "rest" &&
-            plan::isEdgeCalled(footprint, edge, part.label))
-            return &part;
-    return nullptr;
-}
+/// The share of a side from which on it is `shared` with what stands there.
+constexpr double mostlyShared = .5;
 
 /// The heights that side plates, and what is between top and bottom plates, fill.
 struct Levels {
@@ -94,7 +88,7 @@ public:
     bool run() {
         plan::Footprint core = std::move(plates_.core);
         for (plan::Plate& plate : plates_.plates) {
-            const Part* part = partOf(faces_, footprint_, edges_[plate.edge]);
+            const Part* part = partOf(edges_[plate.edge]);
             if (part && !runSide(*part, plate)) return false;
             if (!part)
                 core = core.empty() ? std::move(plate.footprint)
@@ -111,15 +105,37 @@ public:
     }
 
 private:
-    /// The plate in its own frame: x from left to right seen from outside, z outward, about the middle of its edge.
-    bool runSide(const Part& part, const plan::Plate& plate) {
-        const PlacedEdge& edge = edges_[plate.edge];
-        const Vec2 n = edge.normal(), right{n.z, -n.x}, middle = (edge.from + edge.to) * .5 - n * (thickness_m_ / 2);
+    /// The first part whose word the edge is called by; top, bottom and rest are no words for edges.
+    const Part* partOf(const PlacedEdge& edge) {
+        for (const Part& part : faces_.parts) {
+            if (part.label == "top" || part.label == "bottom" || part.label == "rest") continue;
+            if (plan::isEdgeCalled(footprint_, edge, part.label)) return &part;
+            if (part.label == "shared" && context_.sharedBy(plateOf(edge)) >= mostlyShared) return &part;
+        }
+        return nullptr;
+    }
+
+    Vec2 middleOf(const PlacedEdge& edge) const {
+        return (edge.from + edge.to) * .5 - edge.normal() * (thickness_m_ / 2);
+    }
+
+    /// The scope of the plate along an edge: x from left to right seen from outside, z outward.
+    Scope plateOf(const PlacedEdge& edge) const {
+        const Vec2 n = edge.normal(), right{n.z, -n.x}, middle = middleOf(edge);
         const Scope& whole = context_.scope();
         Scope scope = whole;
         scope.centre = whole.centre + whole.axes * Vec3d{middle.x, 0, middle.z};
         scope.axes = whole.axes * Mat3{{right.x, 0, right.z}, {0, 1, 0}, {n.x, 0, n.z}};
         scope.size = {edge.length(), whole.size.y, thickness_m_};
+        scope.footprint = derive::none;
+        return scope;
+    }
+
+    /// The plate in its own frame, about the middle of its edge.
+    bool runSide(const Part& part, const plan::Plate& plate) {
+        const PlacedEdge& edge = edges_[plate.edge];
+        const Vec2 n = edge.normal(), right{n.z, -n.x}, middle = middleOf(edge);
+        const Scope scope = plateOf(edge);
         plan::Footprint own = plate.footprint;
         for (plan::Polygon& polygon : own.polygons) {
             const auto place = [&](plan::Ring& ring) {
@@ -165,7 +181,7 @@ constinit const Operation faces{
     .name = "faces",
     .doc =
         "Takes a block apart: plates along the edges of its footprint, called side, front (+z), back, left, right, "
-        "court or by a tag; "
+        "court, shared (where another shape stood before most of it when the generation began) or by a tag; "
         "top and bottom plates; and rest, the core. The first word that fits an edge wins; in a plate x runs from left "
         "to right seen "
         "from outside and z outward.",

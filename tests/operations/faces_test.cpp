@@ -1,6 +1,7 @@
 // faces: plates and core of a block.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "modeler/core/random.h"
@@ -90,6 +91,27 @@ TEST(Faces, EdgesOfACourtAreCalledSo) {
         volumesOf(derived(block("rect(20, 16) court 5m", "faces .5m { court: front | side: wall | rest: core }")));
     EXPECT_GT(volumes.at("wall"), volumes.at("front"));
     EXPECT_NEAR(volumes.at("front"), ((10.5) * 2 + 6.5 * 2) * .5 * 4, .1);
+}
+
+TEST(Faces, SharedSidesAreThoseThatAnotherShapeStandsBefore) {
+    const auto count = [](const Derivation& d, const std::string& label) {
+        return std::count_if(d.tree.shapes.begin(), d.tree.shapes.end(), [&](const Shape& s) {
+            return s.solid != derive::none && d.tree.labels[s.label] == label;
+        });
+    };
+    const std::string house =
+        "rule House -> faces .3m { shared: party | front: street | side: wall | rest: nil }\n"
+        "terminal party, street, wall, shed\n";
+    const Derivation row =
+        derived("grammar 1\n" + house + "start A -> size (18m, 6m, 9m) split x { { ~6m: House }* }\n");
+    EXPECT_EQ(count(row, "party"), 4) << "two of the middle house, one of either end";
+    EXPECT_EQ(count(row, "street"), 3);
+    EXPECT_EQ(count(row, "wall"), 5);
+    const Derivation alone = derived("grammar 1\n" + house + "start A -> size (6m, 6m, 9m) House\n");
+    EXPECT_EQ(count(alone, "party"), 0);
+    const std::string beside = "start A -> size (6m, 6m, 9m) House + shed size (2m, 100%, ";
+    EXPECT_EQ(count(derived("grammar 1\n" + house + beside + "2m) at +x\n"), "party"), 0) << "most of it is free";
+    EXPECT_EQ(count(derived("grammar 1\n" + house + beside + "7m) at +x\n"), "party"), 1);
 }
 
 TEST(Faces, MessagesNameTheirPlace) {
