@@ -93,7 +93,7 @@ private:
 
 }  // namespace
 
-void NavigationPreset::dropFile(const std::filesystem::path& file) {
+void SimulatedUser::dropFile(const std::filesystem::path& file) {
     Display* display = XOpenDisplay(display_.c_str());
     ASSERT_NE(display, nullptr);
     EXPECT_TRUE(Source(display, "file://" + file.string() + "\r\n").drop(640, 400)) << "the window takes no drop";

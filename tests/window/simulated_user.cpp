@@ -80,11 +80,11 @@ render::Image screenOf(const fs::path& dump) {
 
 }  // namespace
 
-pid_t NavigationPreset::server_ = 0;
-std::string NavigationPreset::display_;
-fs::path NavigationPreset::screen_;
+pid_t SimulatedUser::server_ = 0;
+std::string SimulatedUser::display_;
+fs::path SimulatedUser::screen_;
 
-void NavigationPreset::SetUpTestSuite() {
+void SimulatedUser::SetUpTestSuite() {
     if (!isInstalled("Xvfb") || !isInstalled("xdotool")) return;
     screen_ = fs::temp_directory_path() / ("sgm_screen_" + std::to_string(getpid()));
     fs::create_directories(screen_);
@@ -101,39 +101,39 @@ void NavigationPreset::SetUpTestSuite() {
     if (!number.empty()) display_ = ":" + number;
 }
 
-void NavigationPreset::TearDownTestSuite() {
+void SimulatedUser::TearDownTestSuite() {
     if (server_ <= 0) return;
     ::kill(server_, SIGTERM);
     waitpid(server_, nullptr, 0);
     fs::remove_all(screen_);
 }
 
-void NavigationPreset::SetUp() {
+void SimulatedUser::SetUp() {
     if (display_.empty()) GTEST_SKIP() << "no window can be driven here: Xvfb or xdotool isn't installed";
     folder = fs::temp_directory_path() / ("sgm_window_" + std::to_string(getpid()));
     fs::create_directories(folder);
 }
 
-void NavigationPreset::TearDown() {
+void SimulatedUser::TearDown() {
     if (display_.empty()) return;
     if (HasFailure()) shoot("failed");
     kill();
     fs::remove_all(folder);
 }
 
-void NavigationPreset::open(const std::string& example) {
+void SimulatedUser::open(const std::string& example) {
     file = folder / fs::path(example).filename();
     fs::copy_file(example, file, fs::copy_options::overwrite_existing);
     start();
 }
 
-void NavigationPreset::openText(const std::string& text, const std::string& name) {
+void SimulatedUser::openText(const std::string& text, const std::string& name) {
     file = folder / name;
     std::ofstream(file) << text;
     start();
 }
 
-void NavigationPreset::start() {
+void SimulatedUser::start() {
     fs::remove(folder / "report.json");
     program_ = spawn({SGM_VIEWER, file.string(), "--report", (folder / "report.json").string()}, [&] {
         setenv("DISPLAY", display_.c_str(), 1);
@@ -149,14 +149,14 @@ void NavigationPreset::start() {
     until("a model", [](const auto& s) { return s["shapes"] > 0 && !s["busy"]; });
 }
 
-void NavigationPreset::kill() {
+void SimulatedUser::kill() {
     if (program_ <= 0) return;
     ::kill(program_, SIGKILL);
     waitpid(program_, nullptr, 0);
     program_ = 0;
 }
 
-nlohmann::json NavigationPreset::report() const {
+nlohmann::json SimulatedUser::report() const {
     const auto parsed = nlohmann::json::parse(contentOf(folder / "report.json"), nullptr, false);
     return parsed.is_object() ? parsed
                               : nlohmann::json{{"frame", 0},
@@ -164,8 +164,8 @@ nlohmann::json NavigationPreset::report() const {
                                                {"state", {{"shapes", 0}, {"busy", true}, {"still", false}}}};
 }
 
-nlohmann::json NavigationPreset::until(const std::string& what, const std::function<bool(const nlohmann::json&)>& holds,
-                                       double seconds) {
+nlohmann::json SimulatedUser::until(const std::string& what, const std::function<bool(const nlohmann::json&)>& holds,
+                                    double seconds) {
     for (double waited = 0; waited < seconds; waited += 0.01) {
         const nlohmann::json now = state();
         if (now.contains("text") && holds(now)) return now;
@@ -178,33 +178,33 @@ nlohmann::json NavigationPreset::until(const std::string& what, const std::funct
     throw std::runtime_error("waited in vain for " + what + "\n" + report().dump(1));
 }
 
-nlohmann::json NavigationPreset::settled() {
+nlohmann::json SimulatedUser::settled() {
     return until("an idle program", [](const auto& s) { return !s["busy"] && s["still"]; });
 }
 
-void NavigationPreset::send(const std::vector<std::string>& arguments,
-                            const std::function<bool(const nlohmann::json&)>& taken) {
+void SimulatedUser::send(const std::vector<std::string>& arguments,
+                         const std::function<bool(const nlohmann::json&)>& taken) {
     tool(arguments);
     until("what xdotool sends to be taken", [&](const auto& s) { return taken(s["input"]) && s["still"]; });
 }
 
-void NavigationPreset::move(int x, int y) {
+void SimulatedUser::move(int x, int y) {
     send({"mousemove", std::to_string(x), std::to_string(y)},
          [&](const auto& input) { return input["x"] == x && input["y"] == y; });
 }
 
-void NavigationPreset::press(int button) {
+void SimulatedUser::press(int button) {
     send({"mousedown", std::to_string(button)},
          [&](const auto& input) { return (input["buttons"].template get<unsigned>() & bitOf(button)) != 0; });
 }
 
-void NavigationPreset::release(int button) {
+void SimulatedUser::release(int button) {
     send({"mouseup", std::to_string(button)},
          [&](const auto& input) { return (input["buttons"].template get<unsigned>() & bitOf(button)) == 0; });
     settled();
 }
 
-void NavigationPreset::tool(const std::vector<std::string>& arguments) const {
+void SimulatedUser::tool(const std::vector<std::string>& arguments) const {
     std::vector<std::string> words{"xdotool"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     const pid_t child = spawn(words, [&] {
@@ -214,7 +214,7 @@ void NavigationPreset::tool(const std::vector<std::string>& arguments) const {
     waitpid(child, nullptr, 0);
 }
 
-std::pair<int, int> NavigationPreset::placeOf(const std::string& widget, double x, double y) {
+std::pair<int, int> SimulatedUser::placeOf(const std::string& widget, double x, double y) {
     nlohmann::json box;
     until("the widget " + widget,
           [&](const auto&) { return !(box = report()["widgets"].value(widget, nlohmann::json())).is_null(); });
@@ -222,23 +222,23 @@ std::pair<int, int> NavigationPreset::placeOf(const std::string& widget, double 
             static_cast<int>(box[1].get<double>() + y * box[3].get<double>())};
 }
 
-void NavigationPreset::point(const std::string& widget, double x, double y) {
+void SimulatedUser::point(const std::string& widget, double x, double y) {
     const auto [px, py] = placeOf(widget, x, y);
     move(px, py);
 }
 
-void NavigationPreset::click(const std::string& widget, double x, double y, int button) {
+void SimulatedUser::click(const std::string& widget, double x, double y, int button) {
     point(widget, x, y);
     press(button);
     release(button);
 }
 
-void NavigationPreset::poke(const std::string& widget, double x) {
+void SimulatedUser::poke(const std::string& widget, double x) {
     const auto [px, py] = placeOf(widget, x, 0.5);
     tool({"mousemove", std::to_string(px), std::to_string(py), "mousedown", "1", "mouseup", "1"});
 }
 
-void NavigationPreset::dragAtWork(const std::string& widget, double x, const std::function<void()>& act) {
+void SimulatedUser::dragAtWork(const std::string& widget, double x, const std::function<void()>& act) {
     const auto [fx, fy] = placeOf(widget, 0.1, 0.5);
     const auto [tx, ty] = placeOf(widget, x, 0.5);
     move(fx, fy);
@@ -248,7 +248,7 @@ void NavigationPreset::dragAtWork(const std::string& widget, double x, const std
     tool({"mouseup", "1"});
 }
 
-void NavigationPreset::drag(const std::string& widget, double fromX, double fromY, double toX, double toY, int button) {
+void SimulatedUser::drag(const std::string& widget, double fromX, double fromY, double toX, double toY, int button) {
     const auto [fx, fy] = placeOf(widget, fromX, fromY);
     const auto [x, y] = placeOf(widget, toX, toY);
     move(fx, fy);
@@ -258,7 +258,7 @@ void NavigationPreset::drag(const std::string& widget, double fromX, double from
     release(button);
 }
 
-void NavigationPreset::hold(const std::string& widget, const std::function<void()>& look) {
+void SimulatedUser::hold(const std::string& widget, const std::function<void()>& look) {
     const auto [x, y] = placeOf(widget, 0.5, 0.5);
     move(x, y);
     press(1);
@@ -268,7 +268,7 @@ void NavigationPreset::hold(const std::string& widget, const std::function<void(
     release(1);
 }
 
-void NavigationPreset::dragTo(const std::string& from, int x, int y) {
+void SimulatedUser::dragTo(const std::string& from, int x, int y) {
     const auto [fx, fy] = placeOf(from, 0.5, 0.5);
     move(fx, fy);
     press(1);
@@ -278,7 +278,7 @@ void NavigationPreset::dragTo(const std::string& from, int x, int y) {
     release(1);
 }
 
-void NavigationPreset::wheel(const std::string& widget, int clicks) {
+void SimulatedUser::wheel(const std::string& widget, int clicks) {
     point(widget);
     const double wanted = state()["input"]["wheel"].get<double>() + clicks;
     send({"click", "--repeat", std::to_string(std::abs(clicks)), "--delay", "10", clicks > 0 ? "4" : "5"},
@@ -286,7 +286,7 @@ void NavigationPreset::wheel(const std::string& widget, int clicks) {
     settled();
 }
 
-void NavigationPreset::burst(const std::string& widget, const std::vector<std::string>& keys) {
+void SimulatedUser::burst(const std::string& widget, const std::vector<std::string>& keys) {
     const auto [x, y] = placeOf(widget, 0.5, 0.5);
     std::vector<std::string> words{
         "mousemove", std::to_string(x), std::to_string(y), "mousedown", "1", "mouseup", "1", "key", "--delay",
@@ -299,19 +299,19 @@ void NavigationPreset::burst(const std::string& widget, const std::vector<std::s
     settled();
 }
 
-void NavigationPreset::key(const std::string& keys) {
+void SimulatedUser::key(const std::string& keys) {
     const uint64_t wanted = state()["input"]["releases"].get<uint64_t>() + keysIn(keys);
     send({"key", keys}, [&](const auto& input) { return input["releases"] >= wanted && input["keys"] == 0; });
     settled();
 }
 
-void NavigationPreset::holding(const std::string& key, const std::function<void()>& act) {
+void SimulatedUser::holding(const std::string& key, const std::function<void()>& act) {
     send({"keydown", key}, [](const auto& input) { return input["keys"] == 1; });
     act();
     send({"keyup", key}, [](const auto& input) { return input["keys"] == 0; });
 }
 
-void NavigationPreset::keys(const std::vector<std::string>& keys) {
+void SimulatedUser::keys(const std::vector<std::string>& keys) {
     std::vector<std::string> words{"key", "--delay", "4"};
     words.insert(words.end(), keys.begin(), keys.end());
     const uint64_t wanted = state()["input"]["releases"].get<uint64_t>() + keys.size();
@@ -319,21 +319,21 @@ void NavigationPreset::keys(const std::vector<std::string>& keys) {
     settled();
 }
 
-void NavigationPreset::type(const std::string& text) {
+void SimulatedUser::type(const std::string& text) {
     const uint64_t wanted = state()["input"]["releases"].get<uint64_t>() + text.size();
     send({"type", "--delay", "5", text},
          [&](const auto& input) { return input["releases"] >= wanted && input["keys"] == 0; });
     settled();
 }
 
-void NavigationPreset::fill(const std::string& field, const std::string& text) {
+void SimulatedUser::fill(const std::string& field, const std::string& text) {
     click(field, 0.3);
     key("ctrl+a");
     type(text);
     key("Return");
 }
 
-void NavigationPreset::shoot(const std::string& name) const {
+void SimulatedUser::shoot(const std::string& name) const {
     const fs::path pictures = "build/window";
     fs::create_directories(pictures);
     const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
@@ -341,6 +341,6 @@ void NavigationPreset::shoot(const std::string& name) const {
     EXPECT_TRUE(written.ok());
 }
 
-std::string NavigationPreset::fileText() const { return contentOf(file); }
+std::string SimulatedUser::fileText() const { return contentOf(file); }
 
 }  // namespace sgm::window::test

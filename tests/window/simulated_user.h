@@ -13,7 +13,7 @@
 
 namespace sgm::window::test {
 
-class NavigationPreset : public testing::Test {
+class SimulatedUser : public testing::Test {
 protected:
     static void SetUpTestSuite();
     static void TearDownTestSuite();

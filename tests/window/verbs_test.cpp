@@ -8,7 +8,7 @@ namespace sgm::window::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Verbs = NavigationPreset;
+using Verbs = SimulatedUser;
 
 constexpr const char* hall = R"(grammar 1
 param wide = 2m in 1m..4m "Width" group Size key w
@@ -144,10 +144,10 @@ TEST_F(Verbs, TheView) {
         EXPECT_EQ(cameraAfter([&] { drag("view.field", 0.5, 0.8, 0.5, 0.7, 3); }), turned) << "right";
     });
     holding("shift", [&] { EXPECT_EQ(cameraAfter([&] { drag("view.field", 0.5, 0.8, 0.6, 0.7); }), moved); });
-    key("h");
-    click("hands.Blender's");
+    key("F1");
+    click("navigation.Blender's");
     key("Escape");
-    EXPECT_EQ(state()["look"]["hands"], 1);
+    EXPECT_EQ(state()["look"]["navigation"], 1);
     holding("shift", [&] { EXPECT_EQ(cameraAfter([&] { drag("view.field", 0.5, 0.8, 0.6, 0.7, 2); }), moved); });
     holding("ctrl", [&] { EXPECT_EQ(cameraAfter([&] { drag("view.field", 0.5, 0.8, 0.5, 0.7, 2); }), turned); });
 

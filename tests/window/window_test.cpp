@@ -7,7 +7,7 @@
 namespace sgm::window::test {
 namespace {
 
-using Window = NavigationPreset;
+using Window = SimulatedUser;
 
 /// Lines that differ, from 1; −1 where the texts have other numbers of lines.
 std::vector<int> changedLines(const std::string& a, const std::string& b) {
@@ -104,7 +104,8 @@ TEST_F(Window, HandsMoveTheCamera) {
     EXPECT_EQ(cameraAfter([&] { drag("view.field", 0.5, 0.8, 0.5, 0.7, 3); }), turned) << "right button comes nearer";
     EXPECT_EQ(cameraAfter([&] { wheel("view.field", 2); }), turned);
     EXPECT_EQ(cameraAfter([&] { click("view.field", 0.5, 0.95); }), still) << "a click is no drag";
-    EXPECT_EQ(cameraAfter([&] { key("a"); }), moved);
+    for (const char* turns : {"s", "a", "d", "k"}) EXPECT_EQ(cameraAfter([&] { key(turns); }), turned) << turns;
+    EXPECT_EQ(cameraAfter([&] { key("Home"); }).first, true);
     key("1");
     const auto front = state();
     EXPECT_NEAR(front["eye"][0].get<double>(), front["at"][0].get<double>(), 1e-6);
@@ -117,10 +118,10 @@ TEST_F(Window, HandsMoveTheCamera) {
     EXPECT_EQ(cameraAfter([&] { key("Home"); }).first, true);
     click("shape.Pair/Base/Ball");
     EXPECT_EQ(cameraAfter([&] { key("f"); }), moved);
-    key("h");
+    key("F1");
     until("the sheet", [&](const auto&) { return has("help"); });
     shoot("sheet");
-    click("hands.Blender's");
+    click("navigation.Blender's");
     key("Escape");
     EXPECT_EQ(cameraAfter([&] { drag("view.field", 0.5, 0.8, 0.6, 0.7); }), still)
         << "Blender's left button only selects";

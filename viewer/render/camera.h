@@ -1,6 +1,8 @@
 // Where a picture is taken from, and ways to find such a place.
 #pragma once
 
+#include <optional>
+
 #include "modeler/core/vec.h"
 #include "modeler/eval/tape.h"
 
@@ -27,5 +29,8 @@ Camera turned(Camera camera, double angle);
 /// inside`). A field without a hollow is taken as the hollow itself: the camera stands in its solid, which is then
 /// drawn inside out.
 Camera inside(const eval::Tape& tape, const Box3f& bounds);
+/// The height of the surface straight below a place that is in the open, metres; nothing where none is found above
+/// `lowest_m`. Some fifty values of the field.
+std::optional<double> surfaceBelow(const eval::Tape& tape, Vec3d from, double lowest_m);
 
 }  // namespace sgm::render

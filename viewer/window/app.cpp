@@ -176,7 +176,9 @@ void describe(const Workbench& bench, nlohmann::json& state) {
                      {"cells", look.meshResolution},
                      {"ground", look.ground},
                      {"joints", static_cast<int>(look.joints)},
-                     {"hands", static_cast<int>(look.hands)}};
+                     {"navigation", static_cast<int>(look.navigation)},
+                     {"motion", static_cast<int>(look.motion)},
+                     {"map", bench.mapLayer.chosen()}};
     state["preview"] = bench.previewed;
     state["lamp"] = bench.orbit.lamp_m;
     state["fog"] = bench.field.drawsFog();

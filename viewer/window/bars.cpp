@@ -86,7 +86,16 @@ void Bars::lookControls(Workbench& bench) {
                "Stand in the largest hollow with a lamp, or leave it", bench.field.hasField()))
         within ? bench.frameAll() : bench.stepInside();
     ImGui::SameLine();
-    if (quietButton(report, "bar.help", "?", "Keys and buttons (H)")) help_ = !help_;
+    if (bench.mapLayer.choose(bench)) ImGui::SameLine();
+    static const std::vector<std::string> motions{"Orbit", "Fly", "Walk"};
+    int motion = static_cast<int>(bench.look.motion);
+    if (choice(report, "look.motion", motions, motion, ImGui::GetFontSize() * 5)) {
+        bench.look.motion = static_cast<Motion>(motion);
+        bench.orbit.stands = bench.look.motion != Motion::Orbit;
+    }
+    hint("W A S D Q E turn about the model, fly through it, or walk on its ground");
+    ImGui::SameLine();
+    if (quietButton(report, "bar.help", "?", "Keys and buttons (F1)")) help_ = !help_;
 }
 
 void Bars::meshControls(Workbench& bench) {
@@ -184,7 +193,7 @@ void Bars::keys(Workbench& bench) {
     const auto free = [&](int key) {
         return pressed(key) && bench.hotkeys.find(static_cast<char>(std::tolower(key))) == std::string::npos;
     };
-    if (free(GLFW_KEY_H)) help_ = !help_;
+    if (pressed(GLFW_KEY_F1)) help_ = !help_;
     if (free(GLFW_KEY_P)) bench.pictureWanted = true;
     if (free(GLFW_KEY_T)) bench.startTurntable(36);
 }
@@ -197,23 +206,26 @@ void Bars::dialogs(Workbench& bench) {
 }
 
 void Bars::cheatSheet(Workbench& bench) {
-    const bool blender = bench.look.hands == NavigationPreset::Blender;
+    const bool blender = bench.look.navigation == NavigationPreset::Blender;
+    const bool orbits = bench.look.motion == Motion::Orbit;
     const std::pair<const char*, const char*> rows[] = {
-        {blender ? "MMB drag" : "LMB drag", "FrameTimeline"},
+        {blender ? "MMB drag" : "LMB drag", "Turn"},
         {blender ? "Shift MMB" : "MMB drag", "Move"},
         {blender ? "Ctrl MMB" : "RMB drag", "Nearer, farther"},
         {"Wheel", "Nearer, farther"},
         {"Click", "Select what is there, and its text"},
         {"Ctrl+Click", "On a slider: type its value"},
+        {"W S  A D", orbits ? "Turn up, down, left, right" : "Ahead, back, left, right"},
+        {"Q E", orbits ? "Narrow the view, widen it" : "Down, up"},
+        {"K  Shift+K", "Nearer, farther"},
         {"F", "Frame the selection"},
-        {"A", "Frame all"},
         {"Home", "All, from the usual side"},
         {"1 - 7", "Front, back, right, left, top, bottom, three-quarter"},
         {"P", "Picture of the view beside the file"},
         {"T", "Turntable: 36 pictures"},
         {"Ctrl+S  Ctrl+O", "Save, open"},
         {"Ctrl+Z  Ctrl+Y", "Undo, redo"},
-        {"H", "This sheet"}};
+        {"F1", "This sheet"}};
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
     if (ImGui::Begin(
@@ -236,9 +248,10 @@ void Bars::cheatSheet(Workbench& bench) {
                             fmt::format("{} (Shift reverses)", param.label.empty() ? param.name : param.label).c_str());
             ImGui::EndTable();
         }
-        int hands = static_cast<int>(bench.look.hands);
-        constexpr std::array presets{"Usual hands", "Blender's"};
-        if (oneOf(bench.report, "hands", presets, hands)) bench.look.hands = static_cast<NavigationPreset>(hands);
+        int preset = static_cast<int>(bench.look.navigation);
+        constexpr std::array presets{"Usual buttons", "Blender's"};
+        if (oneOf(bench.report, "navigation", presets, preset))
+            bench.look.navigation = static_cast<NavigationPreset>(preset);
         bench.report.mark(
             "help", ImGui::GetWindowPos(),
             {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});

@@ -46,11 +46,11 @@ render::Camera Orbit::camera(double aspect) const {
 }
 
 void Orbit::turn(double x, double y) {
-    // In a hollow one looks about from where one stands.
+    // One who stands, or is in a hollow, looks about from there.
     const Vec3d eye = at + towardsEye(*this) * distance;
     yaw = std::remainder(yaw - x * pi, 2 * pi);
     pitch = std::clamp(pitch + y * pi, -steepest, steepest);
-    if (lamp_m > 0) at = eye - towardsEye(*this) * distance;
+    if (lamp_m > 0 || stands) at = eye - towardsEye(*this) * distance;
 }
 
 void Orbit::move(double x, double y) {
@@ -59,8 +59,14 @@ void Orbit::move(double x, double y) {
     at += (up * y - right * x) * height;
 }
 
+void Orbit::walk(double right_m, double up_m, double ahead_m, bool isLevel) {
+    const Vec3d back = towardsEye(*this), right = normalized(cross(Vec3d{0, 1, 0}, back));
+    const Vec3d ahead = isLevel ? cross(Vec3d{0, 1, 0}, right) : back * -1.0;
+    at += right * right_m + Vec3d{0, up_m, 0} + ahead * ahead_m;
+}
+
 void Orbit::approach(double factor) {
-    if (lamp_m > 0)
+    if (lamp_m > 0 || stands)
         at += towardsEye(*this) * (distance * (factor - 1));
     else
         distance = std::clamp(distance * factor, 1e-3, 1e6);

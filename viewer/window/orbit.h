@@ -16,7 +16,8 @@ struct Orbit {
     double yaw = 0;        ///< radians about +y; 0 looks along −z
     double pitch = 0.4;    ///< radians above the horizon, −π/2 … π/2
     double fieldOfView = render::Camera{}.fieldOfView;
-    double lamp_m = 0;  ///< as Camera::lamp_m
+    double lamp_m = 0;    ///< as Camera::lamp_m
+    bool stands = false;  ///< turns about the eye, not about `at`: flying and walking
 
     static Orbit from(const render::Camera& camera);
     render::Camera camera() const;
@@ -27,7 +28,12 @@ struct Orbit {
     void turn(double x, double y);
     /// Moves with the pointer, so that what lies at `at` stays under it.
     void move(double x, double y);
-    /// `factor` below 1 comes nearer. Inside a hollow the eye walks instead, so that it can pass by `at`.
+    /// Moves the eye, metres: to the right, straight up, and ahead, which is level where `isLevel`.
+    void walk(double right_m, double up_m, double ahead_m, bool isLevel);
+    /// Where the eye is.
+    Vec3d eye() const { return camera().eye; }
+    /// `factor` below 1 comes nearer. Where one stands or is in a hollow the eye walks instead, so that it can pass by
+    /// `at`.
     void approach(double factor);
     void look(StandardView view);
     /// Keeps the direction and shows `bounds` whole in a picture of any shape.

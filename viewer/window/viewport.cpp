@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "viewer/window/camera_keys.h"
 #include "viewer/window/overlay.h"
 #include "viewer/window/style.h"
 
@@ -18,18 +19,18 @@ constexpr float clickSlack = 4;  // pixels a click may wander
 
 ImTextureID textureOf(uint32_t id) { return reinterpret_cast<ImTextureID>(static_cast<intptr_t>(id)); }
 
-enum class Grip { None, FrameTimeline, Move, Approach };
+enum class Grip { None, Turn, Move, Approach };
 
 /// What the pressed buttons do to the camera.
-Grip gripOf(NavigationPreset hands) {
+Grip gripOf(NavigationPreset preset) {
     const ImGuiIO& io = ImGui::GetIO();
     const auto down = [](int button) { return ImGui::IsMouseDragging(button, clickSlack); };
-    if (hands == NavigationPreset::Blender) {
+    if (preset == NavigationPreset::Blender) {
         if (!down(ImGuiMouseButton_Middle)) return Grip::None;
-        return io.KeyShift ? Grip::Move : io.KeyCtrl ? Grip::Approach : Grip::FrameTimeline;
+        return io.KeyShift ? Grip::Move : io.KeyCtrl ? Grip::Approach : Grip::Turn;
     }
     // With Alt the same buttons mean the same, as users of Maya expect.
-    if (down(ImGuiMouseButton_Left)) return io.KeyShift ? Grip::Move : Grip::FrameTimeline;
+    if (down(ImGuiMouseButton_Left)) return io.KeyShift ? Grip::Move : Grip::Turn;
     if (down(ImGuiMouseButton_Middle)) return Grip::Move;
     return down(ImGuiMouseButton_Right) ? Grip::Approach : Grip::None;
 }
@@ -37,8 +38,8 @@ Grip gripOf(NavigationPreset hands) {
 void moveCamera(Workbench& bench, float height) {
     const ImGuiIO& io = ImGui::GetIO();
     const double x = io.MouseDelta.x / height, y = io.MouseDelta.y / height;
-    switch (gripOf(bench.look.hands)) {
-        case Grip::FrameTimeline:
+    switch (gripOf(bench.look.navigation)) {
+        case Grip::Turn:
             bench.orbit.turn(x, y);
             break;
         case Grip::Move:
@@ -122,16 +123,18 @@ void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMe
     bench.report.mark(name);
     const ImGuiIO& io = ImGui::GetIO();
     const bool hovered = ImGui::IsItemHovered();
-    if (ImGui::IsItemActive()) moveCamera(bench, size.y);
+    if (ImGui::IsItemActive() && !bench.planHandles.isDragging()) moveCamera(bench, size.y);
     if (hovered && io.MouseWheel != 0) bench.orbit.approach(std::pow(0.85, io.MouseWheel));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.PushClipRect(low, ImVec2(low.x + size.x, low.y + size.y), true);
     isMesh ? showMesh(bench, low, size) : showField(bench, low, size);
     const Projection project(bench.orbit.camera(size.x / size.y), low, size);
     if (bench.tree() && bench.selected() != derive::none) drawScope(bench, bench.selected(), project, list);
+    bench.mapLayer.draw(bench, project, list);
     drawBonds(bench, project, list);
     drawAxes(project, list);
     takeShape(bench, project, list);
+    const bool onHandle = bench.planHandles.use(bench, project, list, hovered);
     list.PopClipRect();
     const bool moving = io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
     if (!hovered || ImGui::IsAnyMouseDown()) {
@@ -140,13 +143,13 @@ void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMe
         bench.hover = hoverAt(bench, low, io.MousePos);
     }
     const ImVec2 wandered = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0);
-    const bool click =
-        hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && std::hypot(wandered.x, wandered.y) < clickSlack;
+    const bool click = hovered && !onHandle && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
+                       std::hypot(wandered.x, wandered.y) < clickSlack;
     if (click) {
         bench.hover = hoverAt(bench, low, io.MousePos);
         bench.select(bench.hover ? bench.hover->shape : derive::none);
     }
-    if (hovered && bench.hover && !ImGui::IsAnyMouseDown()) {
+    if (hovered && !onHandle && bench.hover && !ImGui::IsAnyMouseDown()) {
         ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(10, 6));
         ImGui::BeginTooltip();
         ImGui::TextUnformatted(bench.hover->text.c_str());
@@ -180,8 +183,8 @@ void viewKeys(Workbench& bench) {
         return ImGui::IsKeyPressed(key, false) &&
                bench.hotkeys.find(static_cast<char>(std::tolower(key & 127))) == std::string::npos;
     };
+    cameraKeys(bench);
     if (pressed(GLFW_KEY_F)) bench.frameSelection();
-    if (pressed(GLFW_KEY_A)) bench.frameAll();
     if (ImGui::IsKeyPressed(GLFW_KEY_HOME, false)) {
         bench.orbit.look(StandardView::ThreeQuarter);
         bench.frameAll();

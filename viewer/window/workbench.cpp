@@ -282,6 +282,11 @@ void Workbench::stepInside() {
     settled_ = false;
 }
 
+std::optional<double> Workbench::groundBelow(Vec3d from) const {
+    if (!shown()) return std::nullopt;
+    return render::surfaceBelow(shown()->model.tape, from, static_cast<double>(bounds().lo.y));
+}
+
 void Workbench::startTurntable(int count) { turntable = Turntable{0, count, orbit.yaw}; }
 
 Result<bool> Workbench::takePictures() {

@@ -15,8 +15,10 @@
 #include "viewer/document/session.h"
 #include "viewer/document/stepper.h"
 #include "viewer/window/field_view.h"
+#include "viewer/window/map_layer_view.h"
 #include "viewer/window/mesh_view.h"
 #include "viewer/window/orbit.h"
+#include "viewer/window/plan_handle_control.h"
 #include "viewer/window/report.h"
 #include "viewer/window/scene_uploader.h"
 
@@ -24,6 +26,8 @@ namespace sgm::window {
 
 enum class Pane { Field, Fog, Mesh, Split };
 enum class NavigationPreset { Usual, Blender };
+/// What the keys W A S D Q E do to the camera.
+enum class Motion { Orbit, Fly, Walk };
 enum class JointsShown { None, Selected, All };
 
 /// How the model is looked at; not part of the document.
@@ -37,7 +41,8 @@ struct Look {
     int meshResolution = 128;  ///< cells along the longest side
     bool ground = true;
     JointsShown joints = JointsShown::Selected;
-    NavigationPreset hands = NavigationPreset::Usual;
+    Motion motion = Motion::Orbit;
+    NavigationPreset navigation = NavigationPreset::Usual;
 };
 
 /// Something the user must decide before it goes on.
@@ -122,6 +127,8 @@ public:
     /// Writes pictures that were asked for, once the view is whole. True when the view moves on.
     Result<bool> takePictures();
     render::MeshStyle meshStyle() const;
+    /// The height of the model's ground below a place, metres; nothing where there is none.
+    std::optional<double> groundBelow(Vec3d from) const;
     bool wantsMesh() const { return look.pane == Pane::Mesh || look.pane == Pane::Split; }
     /// The field shown will make room for another: not worth a finer picture.
     bool outdated() const {
@@ -142,6 +149,8 @@ public:
     FieldView field;
     MeshView mesh;
     Orbit orbit;
+    MapLayerView mapLayer;
+    PlanHandleControl planHandles;
     Look look;
     std::optional<Hover> hover;
     std::string notice;

@@ -1,0 +1,66 @@
+// Plans in the view: their handles, maps over the ground, cameras that fly and walk.
+#include "tests/window/simulated_user.h"
+
+namespace sgm::window::test {
+namespace {
+
+using Plans = SimulatedUser;
+
+TEST_F(Plans, KeysFlyAndWalk) {
+    openText("grammar 2\nstart A -> cube size (30m, 2m, 30m)\n");
+    const auto eye = [&] { return state()["eye"][1].get<double>(); };
+    const auto choose = [&](const std::string& motion) {
+        click("look.motion");
+        click("look.motion." + motion);
+    };
+    choose("Fly");
+    const nlohmann::json before = state();
+    key("w");
+    EXPECT_NE(state()["eye"], before["eye"]);
+    EXPECT_NE(state()["at"], before["at"]) << "the eye goes ahead, and what it looks at with it";
+    const double height = eye();
+    key("e");
+    EXPECT_GT(eye(), height);
+    const nlohmann::json standing = state();
+    drag("view.field", 0.5, 0.8, 0.52, 0.8);
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(state()["eye"][i].get<double>(), standing["eye"][i].get<double>(), 1e-6) << "looks about";
+    // Down over the slab: the ground carries a visitor.
+    key("Home");
+    key("5");
+    choose("Walk");
+    key("w");
+    EXPECT_NEAR(eye(), 1 + 1.7, .01);
+}
+
+TEST_F(Plans, APlanIsDraggedByItsHandles) {
+    openText("grammar 2\nstart A -> footprint rect(8, 6) extrude 3m block\n");
+    key("5");  // from above, where the pointer moves in the plan
+    click("view.field");
+    ASSERT_TRUE(has("handle.side 1"));
+    ASSERT_TRUE(has("handle.side 4"));
+    const auto [x, y] = placeOf("handle.side 1", .5, .5);
+    const auto [cx, cy] = placeOf("view.field", .5, .5);
+    dragTo("handle.side 1", x + (x - cx) / 2, y + (y - cy) / 2);
+    settled();
+    EXPECT_NE(text().find("rect("), std::string::npos);
+    EXPECT_EQ(text().find("rect(8, 6)"), std::string::npos) << "half as far again from the middle";
+    EXPECT_EQ(state()["undo"], "Move side 1");
+    shoot("handles");
+    key("ctrl+z");
+    EXPECT_NE(text().find("rect(8, 6)"), std::string::npos) << "one step back for the whole drag";
+}
+
+TEST_F(Plans, AMapIsLaidOverTheGround) {
+    openText("grammar 2\nmap rise = here.x\nstart A -> cube size (30m, 2m, 30m) color #808080\n");
+    click("look.map");
+    click("look.map.rise");
+    EXPECT_EQ(state()["look"]["map"], "rise");
+    shoot("map");
+    click("look.map");
+    click("look.map.No map");
+    EXPECT_EQ(state()["look"]["map"], "");
+}
+
+}  // namespace
+}  // namespace sgm::window::test
