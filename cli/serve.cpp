@@ -31,7 +31,8 @@ const char* typeOf(const fs::path& file) {
                                       {".json", "application/json"},
                                       {".geojson", "application/geo+json"},
                                       {".glb", "model/gltf-binary"},
-                                      {".png", "image/png"}})
+                                      {".png", "image/png"},
+                                      {".jpg", "image/jpeg"}})
         if (ending == known) return type;
     return "application/octet-stream";
 }

@@ -16,10 +16,21 @@ namespace {
 namespace fs = std::filesystem;
 using tiles::Cell;
 
+template <class T>
+std::string_view bytesOf(const std::vector<T>& list) {
+    return {reinterpret_cast<const char*>(list.data()), list.size() * sizeof(T)};
+}
+
 /// Everything that decides the bytes of a bake, in one text.
 std::string digestOf(const derive::Derivation& d, const BakeRequest& request) {
     std::string text;
     for (const syntax::SourcePtr& source : d.grammar->sources) text += std::string(source->text()) + '\0';
+    for (const image::ImageFilePtr& picture : d.grammar->images)
+        if (picture) text += tiles::digestOf(picture->bytes);
+    for (const rules::Map& map : d.grammar->maps)
+        if (const auto& raster = map.picture.raster)
+            text += tiles::digestOf(bytesOf(raster->grey)) + tiles::digestOf(bytesOf(raster->color)) +
+                    tiles::digestOf(bytesOf(raster->numbers));
     for (const rules::Value& value : d.params) text += rules::toText(value) + '\0';
     text += fmt::format("{} {} {:a} {:a} {:a} {} {}", d.start, d.seed, request.side_m, request.cell_m,
                         request.objectCell_m, request.levels, static_cast<int>(request.packing));
@@ -172,6 +183,8 @@ Status Bake::makeFolders() const {
         fs::create_directories(request_.folder / "cells" / std::to_string(level), failed);
     if (failed) return writeError(request_.folder, failed.message());
     if (const Status s = tiles::keepPlan(plan_, request_.folder); !s.ok()) return s;
+    const auto& materials = model_.lowered->provenance.materials;
+    if (const Status s = tiles::writePictures(materials, request_.folder / "lib" / "textures"); !s.ok()) return s;
     const fs::path plan = request_.folder / "plan.geojson";
     if (model_.derivation.plan.empty() || fs::exists(plan, failed)) return Done{};
     exporter::ExportInput input;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modeler/eval/evaluate.h"
 #include "modeler/mesh/chunk.h"
+#include "modeler/tiles/skirt.h"
 
 namespace sgm::pipeline {
 namespace {
@@ -137,10 +139,41 @@ Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const
     auto chunks = mesh::meshBlocks(*found, grid, options, context.progress, counts);
     if (!chunks.ok()) return chunks.error();
     const Gathered gathered = gather(std::move(*chunks), cells);
-    for (size_t i = 0; i < group.size(); ++i)
-        made[group[i]] = tiles::groundPieces(gathered.mesh, gathered.triangles[i], model_.lowered->provenance,
-                                             group[i].centre(request_.side_m), static_cast<float>(pitch / 20));
+    for (size_t i = 0; i < group.size(); ++i) {
+        auto& pieces = made[group[i]] =
+            tiles::groundPieces(gathered.mesh, gathered.triangles[i], model_.lowered->provenance,
+                                group[i].centre(request_.side_m), static_cast<float>(pitch / 20));
+        if (request_.levels > 1) addSkirts(group[i], pieces);
+    }
     return made;
+}
+
+void BakedGround::addSkirts(const Cell& cell, std::vector<tiles::SurfacePiece>& pieces) const {
+    if (pieces.empty()) return;
+    const double side = cell.side_m(request_.side_m), depth = pitch_m(cell.level) / 2;
+    const Vec3d centre = cell.centre(request_.side_m);
+    Box3f around = tiles::boundsOf(pieces);
+    const Vec3d margin{depth + 1, depth + 1, depth + 1};
+    around.lo = (around.lo.as<double>() + centre - margin).as<float>();
+    around.hi = (around.hi.as<double>() + centre + margin).as<float>();
+    eval::Workspace workspace;
+    eval::FloatInterval range;
+    eval::evaluateRanges(model_.tape, {&around, 1}, &range, workspace);
+    const eval::Tape tape = eval::shorten(model_.tape, 0, workspace);
+    const tiles::InsideTest inside = [&](const std::vector<Vec3d>& places) {
+        std::vector<float> x, y, z, value(places.size());
+        for (const Vec3d& place : places) {
+            const Vec3f p = (place + centre).as<float>();
+            x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
+        }
+        if (!places.empty()) eval::evaluate(tape, {x.data(), y.data(), z.data(), x.size()}, value.data(), workspace);
+        std::vector<bool> is;
+        for (const float v : value) is.push_back(v < 0);
+        return is;
+    };
+    // Surfaces of neighbouring levels are closer to each other than half a cell of the coarser one's grid.
+    const tiles::SkirtRequest request{side, depth, inside};
+    for (tiles::SurfacePiece& piece : pieces) tiles::addSkirts(piece, request);
 }
 
 tiles::QuantizationGrid BakedGround::placesOf(const Cell& cell) const {

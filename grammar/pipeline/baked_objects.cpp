@@ -47,7 +47,13 @@ Status BakedObjects::make(uint32_t object, Detail detail, Context& context) {
     return makeMeshes(object, context);
 }
 
-Result<tiles::CellBox> BakedObjects::boxOf(uint32_t object, const Part& place) const {
+Material BakedObjects::fromAfar(Material material) {
+    material.color = farColors_.of(material);
+    material.texture = nullptr;
+    return material;
+}
+
+Result<tiles::CellBox> BakedObjects::boxOf(uint32_t object, const Part& place) {
     const PlacedModel& placed = objects_[object];
     const auto mass = derive::massOf(*placed.derivation);
     if (!mass) return Error{Error::Kind::Internal, "the object has no solid"};
@@ -55,13 +61,13 @@ Result<tiles::CellBox> BakedObjects::boxOf(uint32_t object, const Part& place) c
     const auto edge = [&](Vec3d axis) { return length(box.point(axis) - box.centre); };
     return tiles::CellBox{&place,
                           objects_.nameOf(placed),
-                          placed.derivation->materials[mass->material == derive::none ? 0 : mass->material],
+                          fromAfar(placed.derivation->materials[mass->material == derive::none ? 0 : mass->material]),
                           box.centre,
                           {edge({1, 0, 0}), edge({0, 1, 0}), edge({0, 0, 1})},
                           box.axes};
 }
 
-Status BakedObjects::makeMeshes(uint32_t object, Context& context) const {
+Status BakedObjects::makeMeshes(uint32_t object, Context& context) {
     const PlacedModel& placed = objects_[object];
     SceneRequest request;
     request.meshing.surface = mesh::Surface::Crisp;
@@ -73,7 +79,7 @@ Status BakedObjects::makeMeshes(uint32_t object, Context& context) const {
     tiles::LibraryObject made;
     made.name = objects_.nameOf(placed);
     made.values = objects_.valuesOf(placed);
-    made.materials = meshed->provenance.materials;
+    for (const Material& material : meshed->provenance.materials) made.materials.push_back(fromAfar(material));
     made.pieces = tiles::coarsePiecesOf(mesh, meshed->provenance, coarseError_m());
     made.inColors = true;
     if (made.pieces.empty()) {  // all of it is thinner than the error

@@ -8,6 +8,7 @@
 
 #include "grammar/pipeline/placed_models.h"
 #include "modeler/tiles/cell_content.h"
+#include "modeler/tiles/textures.h"
 
 namespace sgm::pipeline {
 
@@ -31,12 +32,14 @@ public:
     /// an object that can't be meshed.
     Status make(uint32_t object, Detail detail, Context& context);
     /// The object's box for a place. Error::Internal for an object without a solid.
-    Result<tiles::CellBox> boxOf(uint32_t object, const Part& place) const;
+    Result<tiles::CellBox> boxOf(uint32_t object, const Part& place);
     /// How far the coarse detail may be off, metres.
     double coarseError_m() const { return 1.5 * cell_m_; }
 
 private:
-    Status makeMeshes(uint32_t object, Context& context) const;
+    Status makeMeshes(uint32_t object, Context& context);
+    /// A material as it looks from afar: in a single colour.
+    Material fromAfar(Material material);
     std::filesystem::path pathOf(uint32_t object, Detail detail) const { return folder_ / nameOf(object, detail); }
 
     PlacedModels& objects_;
@@ -44,6 +47,7 @@ private:
     const double cell_m_;
     const tiles::Packing packing_;
     std::string model_;
+    tiles::FarColors farColors_;
 };
 
 }  // namespace sgm::pipeline

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "modeler/tiles/property_table.h"
+#include "modeler/tiles/textures.h"
 
 namespace sgm::tiles {
 namespace {
@@ -15,7 +16,7 @@ constexpr int floatType = 5126;
 /// One cell's file as it grows.
 class CellFile {
 public:
-    explicit CellFile(const CellContent& content) : content_(content), file_(content.packing) {
+    explicit CellFile(const CellContent& content) : content_(content), file_(content.packing, content.pictures) {
         json()["scenes"].push_back({{"nodes", {0}}});
         json()["nodes"].push_back({{"name", "cell"}, {"children", Json::array()}});
         // Files that stand by themselves lie where the cell does; in a tileset the tile says where.
@@ -202,11 +203,13 @@ private:
     /// The mesh of a library file, whose bytes stay there.
     size_t addLibraryMesh(const CellObject& object, const Glb& held) {
         const auto at = file_.addExternal(held, object.file);
+        const std::string folder = std::filesystem::path(object.file).parent_path().string();
         Json mesh = held.json["meshes"][0];
         for (Json& primitive : mesh["primitives"]) {
             for (auto& [name, index] : primitive["attributes"].items()) index = index.get<size_t>() + at.firstAccessor;
             primitive["indices"] = primitive["indices"].get<size_t>() + at.firstAccessor;
-            primitive["material"] = file_.materialOf(held.json["materials"][primitive["material"].get<size_t>()]);
+            primitive["material"] = file_.materialOf(
+                file_.adopted(held.json["materials"][primitive["material"].get<size_t>()], held, folder));
         }
         json()["meshes"].push_back(std::move(mesh));
         return json()["meshes"].size() - 1;
@@ -245,7 +248,10 @@ Vec3d vectorOf(const Json& node, const char* key, Vec3d fallback) {
 }  // namespace
 
 Status writeObject(const LibraryObject& object, Packing packing, const std::filesystem::path& path) {
-    SurfaceBuffer file(packing);
+    if (!object.inColors)
+        if (const Status s = writePictures(object.materials, path.parent_path().parent_path() / "textures"); !s.ok())
+            return s;
+    SurfaceBuffer file(packing, "../textures/");
     const QuantizationGrid grid = gridOver(boundsOf(object.pieces));
     Json node{{"name", object.name}, {"mesh", 0}};
     node.update(file.placeOf(grid));

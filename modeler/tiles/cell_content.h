@@ -42,6 +42,7 @@ struct CellContent {
     Vec3d centre;
     Packing packing = Packing::Meshopt;
     bool asNodes = false;  ///< a node a place, which every reader takes, instead of instances; without the table
+    std::string pictures = "../../lib/textures/";  ///< where those of the ground's materials lie, from the cell's file
     std::vector<SurfacePiece> ground;
     QuantizationGrid groundGrid;      ///< the same places as those of the neighbours' grids on the common border
     std::vector<Material> materials;  ///< of the ground
@@ -65,7 +66,7 @@ struct LibraryObject {
     std::vector<Material> materials;
     bool inColors = false;  ///< one primitive with a colour a vertex
 };
-/// Writes it, all or nothing.
+/// Writes it, all or nothing, and its pictures into the folder "textures" beside that of the file.
 Status writeObject(const LibraryObject& object, Packing packing, const std::filesystem::path& path);
 
 /// What is known of the library's files, each read once; their bytes aren't kept.

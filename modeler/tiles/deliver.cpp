@@ -7,6 +7,7 @@
 #include "modeler/core/atomic_file.h"
 #include "modeler/tiles/heights.h"
 #include "modeler/tiles/read_back.h"
+#include "modeler/tiles/textures.h"
 #include "modeler/tiles/tileset.h"
 #include "modeler/tiles/usd.h"
 
@@ -33,6 +34,7 @@ public:
         const fs::path file = out_ / "cells" / (name + (usd_ ? ".usda" : ".glb"));
         if (const Status s = makeFolder(file); !s.ok()) return s;
         if (usd_) {
+            for (Material& material : content.materials) material.color = farColors_.of(material);
             std::string prim = "Cell_" + name;
             std::replace(prim.begin(), prim.end(), '-', 'm');
             payloads_.push_back({prim, "./cells/" + name + ".usda", content.centre});
@@ -40,6 +42,8 @@ public:
         }
         content.packing = Packing::None;
         content.asNodes = true;
+        content.pictures = "../lib/textures/";
+        if (const Status s = writePictures(content.materials, out_ / "lib" / "textures"); !s.ok()) return s;
         const auto written = writeCell(content, plain_, file);
         return written.ok() ? Status(Done{}) : Status(written.error());
     }
@@ -61,8 +65,10 @@ private:
         object.file = "../" + name.string();
         object.path = out_ / name;
         if (!made_.insert(name.string()).second) return Done{};
-        const auto read = readObject(held);
+        auto read = readObject(held);
         if (!read.ok()) return read.error();
+        if (usd_)
+            for (Material& material : read->materials) material.color = farColors_.of(material);
         if (const Status s = makeFolder(object.path); !s.ok()) return s;
         return usd_ ? writeUsdObject(*read, object.path) : writeObject(*read, Packing::None, object.path);
     }
@@ -71,6 +77,7 @@ private:
     const fs::path folder_, out_;
     const bool usd_;
     Library packed_, plain_;
+    FarColors farColors_;  ///< what stands in USD for pictures
     std::set<std::string> made_;
     std::vector<UsdPayload> payloads_;
 };

@@ -6,6 +6,8 @@
 #include <array>
 #include <cstring>
 
+#include "modeler/image/texture.h"
+
 namespace sgm::tiles {
 namespace {
 
@@ -94,7 +96,9 @@ private:
         const int failed = isTriangles ? meshopt_decodeIndexBuffer(out.data(), count, stride, from, length)
                                        : meshopt_decodeVertexBuffer(out.data(), count, stride, from, length);
         if (failed != 0) throw Broken{};
-        if (facts.value("filter", "") == "OCTAHEDRAL") meshopt_decodeFilterOct(out.data(), count, stride);
+        const std::string filter = facts.value("filter", "");
+        if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(out.data(), count, stride);
+        if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(out.data(), count, stride);
         return out;
     }
 
@@ -116,14 +120,52 @@ QuantizationGrid gridOf(const Json& node) {
     return {vectorOf(node, "translation", {}), vectorOf(node, "scale", {1, 1, 1})};
 }
 
-Material materialOf(const Json& json) {
+/// What covers a material, from the picture files beside that of the mesh; null where nothing does.
+std::shared_ptr<const image::Texture> textureOf(const Json& material, const Glb& glb, const fs::path& folder) {
+    image::Texture texture;
+    bool any = false;
+    const auto read = [&](const Json& where, const char* slot, image::ImageFilePtr& picture) {
+        if (!where.contains(slot)) return;
+        const Json& json = glb.json.at("textures").at(where[slot].at("index").get<size_t>());
+        const std::string uri = glb.json.at("images").at(json.at("source").get<size_t>()).at("uri");
+        auto file = image::readImageFile(folder / uri);
+        if (!file.ok()) throw Broken{};
+        picture = std::move(*file);
+        const Json& scale = where[slot].at("extensions").at("KHR_texture_transform").at("scale");
+        texture.width_m = 1 / scale.at(0).get<float>(), texture.height_m = 1 / scale.at(1).get<float>();
+        any = true;
+    };
+    read(material.at("pbrMetallicRoughness"), "baseColorTexture", texture.color);
+    read(material.at("pbrMetallicRoughness"), "metallicRoughnessTexture", texture.roughness);
+    read(material, "normalTexture", texture.normals);
+    return any ? std::make_shared<const image::Texture>(std::move(texture)) : nullptr;
+}
+
+Material materialOf(const Json& json, const Glb& glb, const fs::path& folder) {
     const Json& pbr = json.at("pbrMetallicRoughness");
     const Json& color = pbr.at("baseColorFactor");
     return {json.value("name", ""),
             {color.at(0).get<float>(), color.at(1).get<float>(), color.at(2).get<float>()},
             pbr.value("roughnessFactor", .8f),
             pbr.value("metallicFactor", 0.f),
-            nullptr};
+            textureOf(json, glb, folder)};
+}
+
+/// Texture coordinates and tangents of those vertices, where a mesh has them.
+void readCover(const Numbers& numbers, const Json& attributes, const std::vector<uint32_t>& vertices,
+               SurfacePiece& piece) {
+    const auto all = [&](const char* name, size_t components) {
+        return attributes.contains(name) ? numbers.of(attributes[name], components) : std::vector<double>();
+    };
+    const auto uvs = all("TEXCOORD_0", 2), tangents = all("TANGENT", 4);
+    for (const uint32_t v : vertices) {
+        const auto at = [v](const std::vector<double>& list, size_t components, size_t c) {
+            return static_cast<float>(list.at(components * v + c));
+        };
+        if (!uvs.empty()) piece.uvs.push_back({at(uvs, 2, 0), -at(uvs, 2, 1)});
+        if (!tangents.empty())
+            piece.tangents.push_back(normalized(Vec3f{at(tangents, 4, 0), at(tangents, 4, 1), at(tangents, 4, 2)}));
+    }
 }
 
 /// The pieces of a mesh of the file's own, in metres.
@@ -133,15 +175,21 @@ std::vector<SurfacePiece> piecesOf(const Glb& glb, const Json& mesh, const Quant
     for (const Json& primitive : mesh.at("primitives")) {
         const auto p = numbers.of(primitive.at("attributes").at("POSITION"), 3);
         const auto n = numbers.of(primitive.at("attributes").at("NORMAL"), 3);
-        const auto corners = numbers.of(primitive.at("indices"), 1);
+        auto corners = numbers.of(primitive.at("indices"), 1);
+        if (primitive.contains("extras")) {
+            const size_t skirts = primitive["extras"].value("skirtTriangles", size_t{0});
+            if (skirts > corners.size() / 3) throw Broken{};
+            corners.resize(corners.size() - 3 * skirts);
+        }
         SurfacePiece piece;
         piece.material = primitive.at("material");
-        std::vector<uint32_t> local(p.size() / 3, 0xffffffffu);  // primitives share their vertices
+        std::vector<uint32_t> local(p.size() / 3, 0xffffffffu), used;  // primitives share their vertices
         for (const double corner : corners) {
             const auto vertex = static_cast<size_t>(corner);
             if (3 * vertex + 2 >= p.size() || 3 * vertex + 2 >= n.size()) throw Broken{};
             if (local[vertex] == 0xffffffffu) {
                 local[vertex] = static_cast<uint32_t>(piece.positions.size());
+                used.push_back(static_cast<uint32_t>(vertex));
                 const Vec3d q{p[3 * vertex], p[3 * vertex + 1], p[3 * vertex + 2]};
                 piece.positions.push_back((grid.origin + grid.step * q).as<float>());
                 piece.normals.push_back(
@@ -149,6 +197,7 @@ std::vector<SurfacePiece> piecesOf(const Glb& glb, const Json& mesh, const Quant
             }
             piece.indices.push_back(local[vertex]);
         }
+        readCover(numbers, primitive["attributes"], used, piece);
         pieces.push_back(std::move(piece));
     }
     return pieces;
@@ -161,9 +210,9 @@ Mat3 turnOf(const double* q) {
             {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}};
 }
 
-std::vector<Material> materialsOf(const Glb& glb) {
+std::vector<Material> materialsOf(const Glb& glb, const fs::path& folder) {
     std::vector<Material> materials;
-    for (const Json& json : glb.json.at("materials")) materials.push_back(materialOf(json));
+    for (const Json& json : glb.json.at("materials")) materials.push_back(materialOf(json, glb, folder));
     return materials;
 }
 
@@ -235,12 +284,12 @@ Result<T> read(const fs::path& path, Work work) {
 }  // namespace
 
 Result<LibraryObject> readObject(const fs::path& path) {
-    return read<LibraryObject>(path, [](const Glb& glb) {
+    return read<LibraryObject>(path, [&](const Glb& glb) {
         const Json& node = glb.json.at("nodes").at(0);
         LibraryObject object;
         object.name = node.value("name", "object");
         object.values = valuesOf(node);
-        object.materials = materialsOf(glb);
+        object.materials = materialsOf(glb, path.parent_path());
         object.pieces = piecesOf(glb, glb.json.at("meshes").at(0), gridOf(node));
         return object;
     });
@@ -252,7 +301,7 @@ Result<ReadCell> readCell(const fs::path& path, Library& library) {
         cell.content.packing = glb.json["buffers"].size() > 1 && !glb.json["buffers"][1].contains("uri")
                                    ? Packing::Meshopt
                                    : Packing::None;
-        cell.content.materials = materialsOf(glb);
+        cell.content.materials = materialsOf(glb, path.parent_path());
         cell.parts = partsOf(glb);
         for (const Json& node : glb.json.at("nodes")) {
             if (!node.contains("mesh")) continue;

@@ -1,6 +1,6 @@
 // Files of a baked city as what they were written from, for those who make other formats of them.
 // Enters: .glb files of cells and of the library. Leaves: content in metres. Assumes files that writeCell and
-// writeObject made; packed positions and normals come back rounded as they are stored.
+// writeObject made; packed positions and normals come back rounded as they are stored, skirts don't come back.
 #pragma once
 
 #include <deque>

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
+
+#include "modeler/tiles/textures.h"
 
 namespace sgm::tiles {
 namespace {
@@ -65,12 +68,20 @@ public:
         piece.material = material;
         piece.indices.reserve(3 * triangles);
     }
+    /// What comes lies in a chart of a texture, and shares no vertices with what came.
+    void enter(const TextureChart& chart, const image::Texture& texture, size_t triangles) {
+        chart_ = &chart, hasRelief_ = texture.normals != nullptr;
+        known_ = KeyTable(triangles);
+        first_ = static_cast<uint32_t>(piece.positions.size());
+    }
     void add(uint32_t vertex, Vec3f position, Vec3f normal) {
         bool fresh = false;
-        const uint32_t number = known_.take(static_cast<uint64_t>(vertex) << 24 | codeOf(normal), fresh);
+        const uint32_t number = first_ + known_.take(static_cast<uint64_t>(vertex) << 24 | codeOf(normal), fresh);
         if (fresh) {
             piece.positions.push_back(position);
             piece.normals.push_back(normal);
+            if (chart_) piece.uvs.push_back(chart_->at(position));
+            if (chart_ && hasRelief_) piece.tangents.push_back(chart_->tangentAt(normal));
         }
         piece.indices.push_back(number);
     }
@@ -79,11 +90,18 @@ public:
 
 private:
     KeyTable known_;
+    const TextureChart* chart_ = nullptr;
+    bool hasRelief_ = false;
+    uint32_t first_ = 0;  ///< of the chart's vertices
 };
 
-uint32_t materialOf(const mesh::PackedMesh& mesh, const Provenance& provenance, size_t triangle) {
+const Part& partOf(const mesh::PackedMesh& mesh, const Provenance& provenance, size_t triangle) {
     const OriginId origin = mesh.origins[triangle];
-    return provenance.parts[origin < provenance.parts.size() ? origin : 0].material;
+    return provenance.parts[origin < provenance.parts.size() ? origin : 0];
+}
+
+uint32_t materialOf(const mesh::PackedMesh& mesh, const Provenance& provenance, size_t triangle) {
+    return partOf(mesh, provenance, triangle).material;
 }
 
 /// The triangles' numbers, by material.
@@ -93,25 +111,25 @@ std::map<uint32_t, std::vector<uint32_t>> byMaterial(const mesh::PackedMesh& mes
     return lists;
 }
 
+Vec3f unitOr(Vec3f v, Vec3f otherwise) { return length(v) > 0 ? normalized(v) : otherwise; }
+
 constexpr float nearly = .94f;  // cosine of the angle, 20°, between a triangle and what it may be shaded as
 
 /// Every triangle with a normal of its own where its neighbours lie in other planes. Corners whose vertex has a normal
 /// (by `normals`, where there are some) that is nearly the triangle's get that one, so that hills look smooth.
-SurfacePiece faceted(uint32_t material, const std::vector<uint32_t>& indices, const std::vector<Vec3f>& positions,
-                     const std::vector<Vec3f>& normals = {}) {
-    PieceBuilder builder(material, indices.size() / 3);
+void addFaceted(PieceBuilder& builder, const std::vector<uint32_t>& indices, const std::vector<Vec3f>& positions,
+                const std::vector<Vec3f>& normals = {}) {
     for (size_t t = 0; t + 2 < indices.size(); t += 3) {
         const Vec3f &a = positions[indices[t]], &b = positions[indices[t + 1]], &c = positions[indices[t + 2]];
         const Vec3f across = cross(b - a, c - a);
         // A triangle without area covers nothing, but holds a vertex of the border that a neighbour has, too.
-        const Vec3f normal = length(across) > 0 ? normalized(across) : Vec3f{0, 1, 0};
+        const Vec3f normal = unitOr(across, {0, 1, 0});
         for (size_t k = 0; k < 3; ++k) {
             const uint32_t vertex = indices[t + k];
             const bool smooth = !normals.empty() && dot(normals[vertex], normal) > nearly;
             builder.add(vertex, positions[vertex], smooth ? normals[vertex] : normal);
         }
     }
-    return std::move(builder.piece);
 }
 
 /// `indices` with fewer triangles.
@@ -132,14 +150,30 @@ std::vector<SurfacePiece> piecesOf(const mesh::PackedMesh& mesh, const Provenanc
     for (size_t t = 0; t < mesh.triangles.size(); ++t)
         for (int k = 0; k < 3; ++k) normals[3 * t + static_cast<size_t>(k)] = mesh.normals[mesh.triangles[t][k]];
     for (const mesh::CornerNormal& corner : mesh.cornerNormals) normals[corner.corner] = corner.normal;
-    std::vector<SurfacePiece> pieces;
-    for (const auto& [material, triangles] : byMaterial(mesh, provenance)) {
-        PieceBuilder builder(material, triangles.size());
+    const auto add = [&](PieceBuilder& builder, const std::vector<uint32_t>& triangles) {
         for (const uint32_t t : triangles)
             for (int k = 0; k < 3; ++k) {
                 const uint32_t vertex = mesh.triangles[t][k];
                 builder.add(vertex, mesh.positions[vertex], normals[3 * size_t{t} + static_cast<size_t>(k)]);
             }
+    };
+    std::vector<SurfacePiece> pieces;
+    TextureCharts charts;
+    for (const auto& [material, triangles] : byMaterial(mesh, provenance)) {
+        PieceBuilder builder(material, triangles.size());
+        if (const auto& texture = provenance.materials[material].texture) {
+            std::map<uint32_t, std::vector<uint32_t>> byChart;
+            for (const uint32_t t : triangles) {
+                const Vec3f normal = normals[3 * size_t{t}] + normals[3 * size_t{t} + 1] + normals[3 * size_t{t} + 2];
+                byChart[charts.of(partOf(mesh, provenance, t), unitOr(normal, {0, 1, 0}))].push_back(t);
+            }
+            for (const auto& [chart, list] : byChart) {
+                builder.enter(charts[chart], *texture, list.size());
+                add(builder, list);
+            }
+        } else {
+            add(builder, triangles);
+        }
         pieces.push_back(std::move(builder.piece));
     }
     return pieces;
@@ -172,38 +206,60 @@ std::vector<SurfacePiece> coarsePiecesOf(const mesh::PackedMesh& mesh, const Pro
                     simple.begin() + static_cast<std::ptrdiff_t>(t) + 3);
     }
     std::vector<SurfacePiece> pieces;
-    for (const auto& [material, list] : lists) pieces.push_back(faceted(material, list, positions));
+    for (const auto& [material, list] : lists) {
+        PieceBuilder builder(material, list.size() / 3);
+        addFaceted(builder, list, positions);
+        pieces.push_back(std::move(builder.piece));
+    }
     return pieces;
 }
 
 std::vector<SurfacePiece> groundPieces(const mesh::PackedMesh& mesh, const std::vector<uint32_t>& triangles,
                                        const Provenance& provenance, Vec3d centre, float error_m) {
-    std::map<uint32_t, std::vector<uint32_t>> lists;  // vertices, three a triangle
+    TextureCharts charts;
+    std::map<uint32_t, std::map<uint32_t, std::vector<uint32_t>>> lists;  // material, chart: vertices, three a triangle
     for (const uint32_t t : triangles) {
-        auto& list = lists[materialOf(mesh, provenance, t)];
+        const uint32_t material = materialOf(mesh, provenance, t);
+        uint32_t chart = 0;
+        if (provenance.materials[material].texture) {
+            const mesh::Triangle& c = mesh.triangles[t];
+            // Those of vertices lean where planes meet.
+            const Vec3f& a = mesh.positions[c.x];
+            const Vec3f across = cross(mesh.positions[c.y] - a, mesh.positions[c.z] - a);
+            chart = charts.of(partOf(mesh, provenance, t), unitOr(across, unitOr(mesh.normals[c.x], {0, 1, 0})));
+        }
+        auto& list = lists[material][chart];
         for (int k = 0; k < 3; ++k) list.push_back(mesh.triangles[t][k]);
     }
     std::vector<SurfacePiece> pieces;
     std::vector<uint32_t> local(mesh.positions.size(), none);
-    for (const auto& [material, corners] : lists) {
-        std::vector<Vec3f> positions, normals;
-        std::vector<uint32_t> indices, used;
-        indices.reserve(corners.size());
-        for (const uint32_t vertex : corners) {
-            if (local[vertex] == none) {
-                local[vertex] = static_cast<uint32_t>(positions.size());
-                used.push_back(vertex);
-                // Exact: positions and centre are multiples of a cell's share.
-                positions.push_back((mesh.positions[vertex].as<double>() - centre).as<float>());
-                normals.push_back(mesh.normals[vertex]);
+    for (const auto& [material, byChart] : lists) {
+        PieceBuilder builder(material, byChart.begin()->second.size() / 6);
+        for (const auto& [chart, corners] : byChart) {
+            std::vector<Vec3f> positions, normals;
+            std::vector<uint32_t> indices, used;
+            indices.reserve(corners.size());
+            for (const uint32_t vertex : corners) {
+                if (local[vertex] == none) {
+                    local[vertex] = static_cast<uint32_t>(positions.size());
+                    used.push_back(vertex);
+                    // Exact: positions and centre are multiples of a cell's share.
+                    positions.push_back((mesh.positions[vertex].as<double>() - centre).as<float>());
+                    normals.push_back(mesh.normals[vertex]);
+                }
+                indices.push_back(local[vertex]);
             }
-            indices.push_back(local[vertex]);
+            for (const uint32_t vertex : used) local[vertex] = none;
+            TextureChart lies;
+            if (const auto& texture = provenance.materials[material].texture) {
+                lies = movedTo(charts[chart], centre, *texture);
+                builder.enter(lies, *texture, indices.size() / 3);
+            }
+            addFaceted(builder,
+                       simplified(indices, positions, static_cast<double>(error_m), meshopt_SimplifyLockBorder),
+                       positions, normals);
         }
-        for (const uint32_t vertex : used) local[vertex] = none;
-        SurfacePiece piece =
-            faceted(material, simplified(indices, positions, static_cast<double>(error_m), meshopt_SimplifyLockBorder),
-                    positions, normals);
-        if (!piece.indices.empty()) pieces.push_back(std::move(piece));
+        if (!builder.piece.indices.empty()) pieces.push_back(std::move(builder.piece));
     }
     return pieces;
 }

@@ -2,6 +2,7 @@
 // Enters: meshes with provenance. Leaves: pieces. Assumes crisp meshes, whose flat parts have flat normals.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -15,7 +16,10 @@ namespace sgm::tiles {
 struct SurfacePiece {
     uint32_t material = 0;  ///< index into the provenance's materials
     std::vector<Vec3f> positions, normals;
-    std::vector<uint32_t> indices;  ///< three a triangle
+    std::vector<std::array<float, 2>> uvs;  ///< metres to the right and upwards; empty where no picture covers it
+    std::vector<Vec3f> tangents;            ///< along the first of those; empty where no normal map covers it
+    std::vector<uint32_t> indices;          ///< three a triangle
+    uint32_t skirtTriangles = 0;            ///< how many of the last triangles belong to no surface: see addSkirts
 };
 
 /// A mesh by material, with its own normals. O(n).

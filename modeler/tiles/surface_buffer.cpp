@@ -18,6 +18,7 @@ constexpr const char* meshoptExtension = "EXT_meshopt_compression";
 constexpr int byteType = 5120, unsignedByteType = 5121, shortType = 5123, uintType = 5125, floatType = 5126;
 constexpr int arrayTarget = 34962, elementTarget = 34963;
 constexpr int normalBits = 8;
+constexpr int uvBits = 20;  ///< a millimetre at a kilometre
 
 template <class T>
 void append(std::vector<uint8_t>& bytes, const T& value) {
@@ -29,13 +30,23 @@ void append(std::vector<uint8_t>& bytes, const T& value) {
 SurfacePiece ordered(const SurfacePiece& piece) {
     SurfacePiece out = piece;
     const size_t corners = piece.indices.size(), vertices = piece.positions.size();
-    meshopt_optimizeVertexCache(out.indices.data(), piece.indices.data(), corners, vertices);
+    const size_t own = corners - 3 * size_t{piece.skirtTriangles};  // skirts stay behind the others
+    meshopt_optimizeVertexCache(out.indices.data(), piece.indices.data(), own, vertices);
+    meshopt_optimizeVertexCache(out.indices.data() + own, piece.indices.data() + own, corners - own, vertices);
     std::vector<uint32_t> order(vertices);
     const size_t used = meshopt_optimizeVertexFetchRemap(order.data(), out.indices.data(), corners, vertices);
     meshopt_remapIndexBuffer(out.indices.data(), out.indices.data(), corners, order.data());
     meshopt_remapVertexBuffer(out.positions.data(), piece.positions.data(), vertices, sizeof(Vec3f), order.data());
     meshopt_remapVertexBuffer(out.normals.data(), piece.normals.data(), vertices, sizeof(Vec3f), order.data());
     out.positions.resize(used), out.normals.resize(used);
+    if (!piece.uvs.empty()) {
+        meshopt_remapVertexBuffer(out.uvs.data(), piece.uvs.data(), vertices, sizeof piece.uvs[0], order.data());
+        out.uvs.resize(used);
+    }
+    if (!piece.tangents.empty()) {
+        meshopt_remapVertexBuffer(out.tangents.data(), piece.tangents.data(), vertices, sizeof(Vec3f), order.data());
+        out.tangents.resize(used);
+    }
     return out;
 }
 
@@ -66,9 +77,11 @@ QuantizationGrid gridOver(const Box3f& box) {
 struct SurfaceBuffer::Joined {
     std::vector<SurfacePiece> pieces;
     size_t vertices = 0, corners = 0;
+    bool hasUvs = false, hasTangents = false;
 };
 
-SurfaceBuffer::SurfaceBuffer(Packing packing) : packing_(packing) {
+SurfaceBuffer::SurfaceBuffer(Packing packing, std::string pictures)
+    : packing_(packing), pictures_(std::move(pictures)) {
     json()["asset"] = {{"version", "2.0"}, {"generator", "sgm"}};
     json()["scene"] = 0;
     json()["scenes"] = Json::array();
@@ -127,12 +140,6 @@ size_t SurfaceBuffer::addAccessor(size_t view, size_t offset, int component, siz
     return json()["accessors"].size() - 1;
 }
 
-size_t SurfaceBuffer::materialOf(Json material) {
-    const auto [at, fresh] = materials_.try_emplace(material.dump(), json()["materials"].size());
-    if (fresh) json()["materials"].push_back(std::move(material));
-    return at->second;
-}
-
 size_t SurfaceBuffer::addPositions(const Joined& joined, const QuantizationGrid& grid) {
     std::vector<uint8_t> bytes;
     Vec3d lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
@@ -148,14 +155,7 @@ size_t SurfaceBuffer::addPositions(const Joined& joined, const QuantizationGrid&
             }
         }
     const bool plain = packing_ == Packing::None;
-    size_t view = 0;
-    if (plain) {
-        view = addView(bytes.data(), bytes.size(), arrayTarget);
-    } else {
-        std::vector<uint8_t> packed(meshopt_encodeVertexBufferBound(joined.vertices, 8));
-        packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), bytes.data(), joined.vertices, 8));
-        view = addPacked(packed, 8, joined.vertices, "ATTRIBUTES", nullptr, arrayTarget);
-    }
+    const size_t view = addVertices(bytes, 8, joined.vertices, nullptr);
     const size_t accessor = addAccessor(view, 0, plain ? floatType : shortType, joined.vertices, "VEC3");
     json()["accessors"][accessor]["min"] = {lo.x, lo.y, lo.z};
     json()["accessors"][accessor]["max"] = {hi.x, hi.y, hi.z};
@@ -175,12 +175,9 @@ size_t SurfaceBuffer::addNormals(const Joined& joined) {
             meshopt_encodeFilterOct(&encoded, 1, sizeof encoded, normalBits, unit);
             append(bytes, encoded);
         }
-    if (packing_ == Packing::None)
-        return addAccessor(addView(bytes.data(), bytes.size(), arrayTarget), 0, floatType, joined.vertices, "VEC3");
-    std::vector<uint8_t> packed(meshopt_encodeVertexBufferBound(joined.vertices, 4));
-    packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), bytes.data(), joined.vertices, 4));
-    const size_t view = addPacked(packed, 4, joined.vertices, "ATTRIBUTES", "OCTAHEDRAL", arrayTarget);
-    return addAccessor(view, 0, byteType, joined.vertices, "VEC3", true);
+    const bool plain = packing_ == Packing::None;
+    const size_t view = addVertices(bytes, 4, joined.vertices, "OCTAHEDRAL");
+    return addAccessor(view, 0, plain ? floatType : byteType, joined.vertices, "VEC3", !plain);
 }
 
 size_t SurfaceBuffer::addColors(const Joined& joined, const std::vector<Material>& materials) {
@@ -191,13 +188,52 @@ size_t SurfaceBuffer::addColors(const Joined& joined, const std::vector<Material
         for (size_t i = 0; i < piece.positions.size(); ++i)
             append(bytes, std::array<uint8_t, 4>{byte(c.x), byte(c.y), byte(c.z), 255});
     }
-    if (packing_ == Packing::None)
-        return addAccessor(addView(bytes.data(), bytes.size(), arrayTarget), 0, unsignedByteType, joined.vertices,
-                           "VEC4", true);
-    std::vector<uint8_t> packed(meshopt_encodeVertexBufferBound(joined.vertices, 4));
-    packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), bytes.data(), joined.vertices, 4));
-    const size_t view = addPacked(packed, 4, joined.vertices, "ATTRIBUTES", nullptr, arrayTarget);
-    return addAccessor(view, 0, unsignedByteType, joined.vertices, "VEC4", true);
+    return addAccessor(addVertices(bytes, 4, joined.vertices, nullptr), 0, unsignedByteType, joined.vertices, "VEC4",
+                       true);
+}
+
+/// The view of numbers that vertices have.
+size_t SurfaceBuffer::addVertices(const std::vector<uint8_t>& bytes, size_t stride, size_t count, const char* filter) {
+    if (packing_ == Packing::None) return addView(bytes.data(), bytes.size(), arrayTarget);
+    std::vector<uint8_t> packed(meshopt_encodeVertexBufferBound(count, stride));
+    packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), bytes.data(), count, stride));
+    return addPacked(packed, stride, count, "ATTRIBUTES", filter, arrayTarget);
+}
+
+/// Metres, v downwards as glTF has it; none where no picture covers a vertex.
+size_t SurfaceBuffer::addUvs(const Joined& joined) {
+    std::vector<uint8_t> bytes;
+    for (const SurfacePiece& piece : joined.pieces)
+        for (size_t i = 0; i < piece.positions.size(); ++i) {
+            const std::array<float, 2> uv = piece.uvs.empty() ? std::array<float, 2>{} : piece.uvs[i];
+            const std::array<float, 2> down{uv[0], -uv[1]};
+            if (packing_ == Packing::None) {
+                append(bytes, down);
+                continue;
+            }
+            std::array<uint32_t, 2> encoded{};
+            meshopt_encodeFilterExp(encoded.data(), 1, sizeof encoded, uvBits, down.data());
+            append(bytes, encoded);
+        }
+    return addAccessor(addVertices(bytes, 8, joined.vertices, "EXPONENTIAL"), 0, floatType, joined.vertices, "VEC2");
+}
+
+size_t SurfaceBuffer::addTangents(const Joined& joined) {
+    const bool plain = packing_ == Packing::None;
+    std::vector<uint8_t> bytes;
+    for (const SurfacePiece& piece : joined.pieces)
+        for (size_t i = 0; i < piece.positions.size(); ++i) {
+            const Vec3f t = piece.tangents.empty() ? Vec3f{1, 0, 0} : piece.tangents[i];
+            const std::array<float, 4> tangent{t.x, t.y, t.z, 1};
+            uint32_t encoded = 0;
+            meshopt_encodeFilterOct(&encoded, 1, sizeof encoded, normalBits, tangent.data());
+            if (plain)
+                append(bytes, tangent);
+            else
+                append(bytes, encoded);
+        }
+    const size_t view = addVertices(bytes, plain ? 16 : 4, joined.vertices, "OCTAHEDRAL");
+    return addAccessor(view, 0, plain ? floatType : byteType, joined.vertices, "VEC4", !plain);
 }
 
 /// The view of all indices, 16 bits each where that does.
@@ -236,6 +272,8 @@ Json SurfaceBuffer::addJoined(const std::vector<SurfacePiece>& pieces, const std
         joined.pieces.push_back(packing_ == Packing::None ? piece : ordered(piece));
         joined.vertices += joined.pieces.back().positions.size();
         joined.corners += piece.indices.size();
+        joined.hasUvs |= !inColors && !piece.uvs.empty();
+        joined.hasTangents |= !inColors && !piece.tangents.empty();
     }
     Json primitives = Json::array();
     if (joined.corners == 0) return primitives;
@@ -250,13 +288,19 @@ Json SurfaceBuffer::addJoined(const std::vector<SurfacePiece>& pieces, const std
                               {"material", materialOf(asJson(colors))}});
         return primitives;
     }
+    const size_t uvs = joined.hasUvs ? addUvs(joined) : 0, tangents = joined.hasTangents ? addTangents(joined) : 0;
     size_t first = 0;
     for (const SurfacePiece& piece : joined.pieces) {
         const size_t accessor =
             addAccessor(indices, first * (component == shortType ? 2 : 4), component, piece.indices.size(), "SCALAR");
-        primitives.push_back({{"attributes", attributes},
+        const Material& material = materials[piece.material];
+        Json own = attributes;
+        if (!piece.uvs.empty()) own["TEXCOORD_0"] = uvs;
+        if (!piece.tangents.empty()) own["TANGENT"] = tangents;
+        primitives.push_back({{"attributes", std::move(own)},
                               {"indices", accessor},
-                              {"material", materialOf(asJson(materials[piece.material]))}});
+                              {"material", materialOf(piece.uvs.empty() ? asJson(material) : covered(material))}});
+        if (piece.skirtTriangles > 0) primitives.back()["extras"] = {{"skirtTriangles", piece.skirtTriangles}};
         first += piece.indices.size();
     }
     return primitives;
@@ -306,15 +350,6 @@ Glb SurfaceBuffer::finish() {
     for (const char* list : {"meshes", "materials", "accessors", "bufferViews"})
         if (json()[list].empty()) json().erase(list);
     return std::move(glb_);
-}
-
-Json asJson(const Material& m) {
-    const auto digits = [](float v) { return std::round(static_cast<double>(v) * 1e6) / 1e6; };
-    return {{"name", m.name},
-            {"pbrMetallicRoughness",
-             {{"baseColorFactor", {digits(m.color.x), digits(m.color.y), digits(m.color.z), 1.0}},
-              {"roughnessFactor", digits(m.roughness)},
-              {"metallicFactor", digits(m.metallic)}}}};
 }
 
 }  // namespace sgm::tiles

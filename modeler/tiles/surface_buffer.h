@@ -34,7 +34,8 @@ double stepOver(double extent);
 /// A file's JSON and bytes as they grow.
 class SurfaceBuffer {
 public:
-    explicit SurfaceBuffer(Packing packing);
+    /// `pictures` is where files of pictures lie, relative to this one: "../textures/".
+    SurfaceBuffer(Packing packing, std::string pictures);
 
     nlohmann::ordered_json& json() { return glb_.json; }
     Packing packing() const { return packing_; }
@@ -46,6 +47,8 @@ public:
                        bool normalized = false);
     /// The index of a material, which is added where no other is equal.
     size_t materialOf(nlohmann::ordered_json material);
+    /// A material that another file has, whose pictures lie below `folder`, with this file's textures.
+    nlohmann::ordered_json adopted(const nlohmann::ordered_json& material, const Glb& from, const std::string& folder);
     /// Adds pieces as primitives, one a piece, that share their vertices; the list of primitives. With a packing
     /// positions are places of the grid, which the node with the mesh has to scale and move. `inColors`: one primitive
     /// with a colour a vertex instead, all rough alike. `packing`: another one than the file's.
@@ -71,10 +74,16 @@ private:
                                      const QuantizationGrid& grid, bool inColors);
     size_t addPositions(const Joined& joined, const QuantizationGrid& grid);
     size_t addNormals(const Joined& joined);
+    size_t addUvs(const Joined& joined);
+    size_t addTangents(const Joined& joined);
+    size_t addVertices(const std::vector<uint8_t>& bytes, size_t stride, size_t count, const char* filter);
+    nlohmann::ordered_json covered(const Material& material);
+    size_t textureOf(const std::string& uri);
     size_t addColors(const Joined& joined, const std::vector<Material>& materials);
     size_t addIndices(const Joined& joined);
 
     Packing packing_;
+    const std::string pictures_;
     Glb glb_;
     size_t unpacked_ = 0;                      ///< bytes of buffer 1
     std::map<std::string, size_t> materials_;  ///< by their text

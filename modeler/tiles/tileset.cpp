@@ -305,7 +305,7 @@ Status merge(const fs::path& folder, const std::optional<EarthPlace>& at, bool v
     std::map<std::string, fs::path> files;
     std::error_code ignored;
     for (const auto& entry : fs::recursive_directory_iterator(folder / "lib", ignored))
-        if (entry.path().extension() == ".glb")
+        if (entry.is_regular_file() && entry.path().extension() != ".tmp")
             files.emplace(fs::relative(entry.path(), folder / "lib").string(), entry.path());
     for (const auto& [name, path] : files) {
         const std::string held = textOf(path).value_or("");

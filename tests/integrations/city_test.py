@@ -107,12 +107,12 @@ Cesium.Cesium3DTileset.fromUrl('tileset.json', { maximumScreenSpaceError: 0, ski
   window.tileset = tileset;
   tileset.tileFailed.addEventListener((e) => failed.push(e.message));
   widget.scene.primitives.add(tileset);
-  widget.camera.viewBoundingSphere(tileset.boundingSphere, new Cesium.HeadingPitchRange(.4, -1.2, tileset.boundingSphere.radius * 2.4));
+  widget.camera.viewBoundingSphere(tileset.boundingSphere, new Cesium.HeadingPitchRange(.4, -1.2, tileset.boundingSphere.radius * 3.4));
   tileset.allTilesLoaded.addEventListener(() => { window.loaded = true; });
 }).catch((e) => failed.push(String(e)));
 </script>""")
     tab.open(served.url + "cesium.html")
-    tab.wait("window.loaded || failed.length", 150)
+    tab.wait("window.loaded || window.failed?.length", 150)
     assert not tab.value("failed.length"), tab.value("failed")
     count = tab.value("""(() => { let sum = 0; const walk = (tile) => { for (const c of tile.children) walk(c);
         if (!tile.children.length && tile.content?.featuresLength) sum += tile.content.featuresLength; }; walk(tileset.root); return sum; })()""")
@@ -126,7 +126,7 @@ Cesium.Cesium3DTileset.fromUrl('tileset.json', { maximumScreenSpaceError: 0, ski
 
 def test_validator(folder):
     cells = [os.path.join(at, name) for at, _, names in os.walk(os.path.join(folder, "cells")) for name in names if name.endswith(".glb")]
-    library = [os.path.join(at, name) for at, _, names in os.walk(os.path.join(folder, "lib")) for name in names]
+    library = [os.path.join(at, name) for at, _, names in os.walk(os.path.join(folder, "lib")) for name in names if name.endswith(".glb")]
     verdict = subprocess.run(["node", "tests/export/validate_gltf.js", *cells, *library], capture_output=True, text=True)
     if verdict.returncode in (3, 127):
         return print("gltf-validator isn't installed (npm install --prefix build gltf-validator)")

@@ -1,4 +1,4 @@
-// Baked folders: the same bytes however the work is shared, ground that welds, instances that add up.
+// Baked folders: the same bytes however the work is shared, instances that add up, files for other programs.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -6,11 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "grammar/pipeline/bake.h"
-#include "grammar/pipeline/load.h"
 #include "modeler/tiles/deliver.h"
 #include "modeler/tiles/read_back.h"
 #include "tests/scratch.h"
+#include "tests/tiles/baked.h"
 
 namespace sgm::pipeline {
 namespace {
@@ -38,38 +37,6 @@ terminal lawn color #86a35f
 start Town -> size (180m, 40m, 180m) network Net { ground: extrude 20m lawn }
 )";
 
-class Baked {
-public:
-    explicit Baked(const std::string& grammarText = text) {
-        syntax::Diagnostics problems;
-        const auto grammar = load("town.sgm", grammarText, problems);
-        EXPECT_TRUE(grammar) << (problems.all().empty() ? "" : problems.all()[0].message);
-        model_ = std::make_unique<Model>(*makeModel(grammar, *optionsFor(*grammar, {}), context_, Objects::Apart));
-    }
-    /// Bakes a task into a folder, at 64 m a cell.
-    void run(const fs::path& folder, tiles::Share share, int threads = 1) {
-        BakeRequest request{.folder = folder, .side_m = 64, .cell_m = 1, .objectCell_m = .5, .levels = 3, .budget = {}};
-        Context context{nullptr, threads};
-        auto bake = Bake::begin(*model_, request, context);
-        ASSERT_TRUE(bake.ok()) << bake.error().message;
-        plan = bake->plan();
-        const Status done = bake->run(share, context);
-        ASSERT_TRUE(done.ok()) << done.error().message;
-        missing = bake->missing(7);
-    }
-    void merge(const fs::path& folder) {
-        const Status merged = tiles::merge(folder, tiles::EarthPlace{52.5, 13.4}, true);
-        ASSERT_TRUE(merged.ok()) << merged.error().message;
-    }
-
-    tiles::BakePlan plan;
-    std::vector<int> missing;
-
-private:
-    Context context_{nullptr, 2};
-    std::unique_ptr<Model> model_;
-};
-
 std::map<std::string, std::string> filesOf(const fs::path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -78,7 +45,7 @@ std::map<std::string, std::string> filesOf(const fs::path& folder) {
 }
 
 TEST(Bake, HasTheSameBytesHoweverTheWorkIsShared) {
-    Baked baked;
+    Baked baked(text);
     const Scratch one, seven;
     baked.run(one.path(), {1, 1}, 2);
     EXPECT_TRUE(baked.missing.empty());
@@ -94,47 +61,6 @@ TEST(Bake, HasTheSameBytesHoweverTheWorkIsShared) {
     ASSERT_EQ(a.size(), b.size());
     EXPECT_GT(a.size(), 20u);
     for (const auto& [name, bytes] : a) EXPECT_TRUE(b.contains(name) && b.at(name) == bytes) << name;
-}
-
-/// Border positions of a cell's ground at its high x side, in the model's frame, as bits.
-std::set<std::array<uint32_t, 3>> borderOf(const fs::path& folder, const tiles::Cell& cell, double side_m, double x_m) {
-    std::set<std::array<uint32_t, 3>> found;
-    tiles::Library library;
-    const auto read = tiles::readCell(tiles::contentFile(folder, cell), library);
-    if (!read.ok()) return found;
-    const Vec3d centre = cell.centre(side_m);
-    for (const tiles::SurfacePiece& piece : read->content.ground)
-        for (const Vec3f& p : piece.positions) {
-            const float at[3] = {static_cast<float>(static_cast<double>(p.x) + centre.x), p.y,
-                                 static_cast<float>(static_cast<double>(p.z) + centre.z)};
-            if (static_cast<double>(at[0]) != x_m) continue;
-            std::array<uint32_t, 3> bits;
-            std::memcpy(bits.data(), at, sizeof at);
-            found.insert(bits);
-        }
-    return found;
-}
-
-/// Expects the ground of neighbouring cells to have the same vertices on their border, level by level: how many borders
-/// there are.
-size_t weld(const Baked& baked, const fs::path& folder) {
-    size_t borders = 0;
-    for (const tiles::Cell& cell : baked.plan.cells) {
-        const tiles::Cell right{cell.level, cell.x + 1, cell.z};
-        const double x = cell.centre(64).x + cell.side_m(64) / 2;
-        const auto left = borderOf(folder, cell, 64, x), theirs = borderOf(folder, right, 64, x);
-        if (left.empty() && theirs.empty()) continue;
-        EXPECT_EQ(left, theirs) << cell.name();
-        ++borders;
-    }
-    return borders;
-}
-
-TEST(Bake, NeighbouringCellsOfTheGroundWeldWithoutTolerance) {
-    Baked baked;
-    const Scratch folder;
-    baked.run(folder.path(), {1, 1}, 2);
-    EXPECT_GT(weld(baked, folder.path()), 6u);
 }
 
 /// The height of the highest sample of all height maps, metres.
@@ -153,11 +79,10 @@ double highestOf(const Scratch& folder) {
     return heights["height_of_0_m"].get<double>() + highest * heights["metres_a_step"].get<double>();
 }
 
-TEST(Bake, HillsWeldAndAreAsHighAsTheyShould) {
+TEST(Bake, HillsAreAsHighAsTheyShould) {
     Baked baked(hills);
     const Scratch folder;
     baked.run(folder.path(), {1, 1}, 2);
-    EXPECT_GT(weld(baked, folder.path()), 6u);
     baked.merge(folder.path());
     const Status done = tiles::deliver(folder.path(), tiles::Delivery::Heights, nullptr);
     ASSERT_TRUE(done.ok()) << done.error().message;
@@ -165,7 +90,7 @@ TEST(Bake, HillsWeldAndAreAsHighAsTheyShould) {
 }
 
 TEST(Bake, TellsWhoPutWhatWhere) {
-    Baked baked;
+    Baked baked(text);
     const Scratch folder;
     baked.run(folder.path(), {1, 1}, 2);
     tiles::Library library;
@@ -196,7 +121,7 @@ TEST(Bake, TellsWhoPutWhatWhere) {
 }
 
 TEST(Bake, GivesPlainFilesUsdAndHeightsOfTheSameGround) {
-    Baked baked;
+    Baked baked(text);
     const Scratch folder;
     baked.run(folder.path(), {1, 1}, 2);
     baked.merge(folder.path());
@@ -230,7 +155,7 @@ TEST(Bake, GivesPlainFilesUsdAndHeightsOfTheSameGround) {
 }
 
 TEST(Bake, ShowsEveryPlaceOnceALevel) {
-    Baked baked;
+    Baked baked(text);
     const Scratch folder;
     baked.run(folder.path(), {1, 1}, 2);
     baked.merge(folder.path());
@@ -258,7 +183,7 @@ TEST(Bake, ShowsEveryPlaceOnceALevel) {
 }
 
 TEST(Bake, RefusesAFolderOfAnotherModelAndADamagedCell) {
-    Baked baked;
+    Baked baked(text);
     const Scratch folder;
     baked.run(folder.path(), {1, 1});
     const auto content = tiles::contentFile(folder.path(), baked.plan.cells[0]);
