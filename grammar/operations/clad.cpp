@@ -5,7 +5,7 @@
 
 #include "grammar/derive/attribute_context.h"
 #include "grammar/operations/operations.h"
-#include "grammar/rules/checker.h"
+#include "grammar/rules/bodies.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/operation_checker.h"
 #include "modeler/field/facade.h"
@@ -57,9 +57,10 @@ void checkClad(OperationChecker& checker, const syntax::Attribute& written) {
     checker.beginDraws("clad");
     const size_t before = checker.problemCount();
     const Solid given = checker.solid(e);
-    const bool good = checker.problemCount() == before && !checker.areErrorsSuppressed(e.text);
+    const bool good = checker.problemCount() == before && !checker.names().areErrorsSuppressed(e.text);
     const bool fractal = given.primitive && given.primitive->name == "kifs";
-    if (good && e.kind == syntax::Expr::Kind::Name) out.symbol = checker.findSymbol(e.text).value_or(rules::none);
+    if (good && e.kind == syntax::Expr::Kind::Name)
+        out.symbol = checker.names().findSymbol(e.text).value_or(rules::none);
     if (good && !fractal && given.primitive != &ornamentRow()) {
         checker.error(e.span, fmt::format("'clad' takes an ornament or a kifs, not '{}'", e.span.text()),
                       "write 'clad ornament(…)', or name a terminal that is one");
@@ -67,7 +68,7 @@ void checkClad(OperationChecker& checker, const syntax::Attribute& written) {
         checker.error(e.span, "a kifs with a jump or a bailout has no distance to clad with",
                       "leave 'form' and 'bailout' out");
     } else if (good) {
-        out.pattern = std::make_shared<Solid>(fractal ? OperationChecker::solidOfRow(e.span, ornamentRow()) : given);
+        out.pattern = std::make_shared<Solid>(fractal ? rules::solidOfRow(e.span, ornamentRow()) : given);
         if (fractal) std::copy_n(given.args.begin(), static_cast<size_t>(Parameter::Bay), out.pattern->args.begin());
     }
     checker.add(std::move(out));

@@ -5,7 +5,7 @@
 
 #include "grammar/derive/attribute_context.h"
 #include "grammar/operations/operations.h"
-#include "grammar/rules/checker.h"
+#include "grammar/rules/file_tables.h"
 #include "grammar/rules/lookup.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/operation_checker.h"
@@ -53,7 +53,7 @@ void applyMetal(AttributeContext& context, const Attribute& attribute) {
 
 /// The picture's file as a constant: its name, and its place in Grammar::images.
 std::optional<rules::Expr> fileOf(rules::OperationChecker& checker, const syntax::Expr& written) {
-    const auto image = checker.readImage(written);
+    const auto image = checker.files().readImage(written);
     if (!image) return std::nullopt;
     Value file;
     file.kind = Value::Kind::Text;

@@ -7,6 +7,7 @@
 #include "grammar/operations/operations.h"
 #include "grammar/operations/plan_parts.h"
 #include "grammar/rules/make.h"
+#include "grammar/rules/words.h"
 #include "modeler/core/random.h"
 #include "modeler/town/lots.h"
 
@@ -48,8 +49,8 @@ void checkCuts(OperationChecker& checker, const syntax::Expr& e, Parts& out) {
                           name.empty() ? fmt::format("'{}' takes one number, the area of a lot", e.text)
                                        : fmt::format("'{}' has no '{}'", e.text, name),
                           name.empty() ? fmt::format("write '{}(420m2, front: 8m)'", e.text)
-                          : hasDepth   ? checker.nearest(name, {"front", "jitter", "depth"})
-                                       : checker.nearest(name, {"front", "jitter"}));
+                          : hasDepth   ? rules::nearestHint(name, {"front", "jitter", "depth"})
+                                       : rules::nearestHint(name, {"front", "jitter"}));
     }
     if (e.args.empty() || !e.argNames[0].empty())
         checker.error(e.span, fmt::format("'{}' begins with the area of a lot", e.text),

@@ -10,6 +10,7 @@
 #include "grammar/operations/operations.h"
 #include "grammar/operations/plan_parts.h"
 #include "grammar/rules/roads.h"
+#include "grammar/rules/words.h"
 #include "modeler/core/random.h"
 #include "modeler/plan/validate.h"
 #include "modeler/town/blocks.h"
@@ -41,13 +42,13 @@ std::shared_ptr<Parts> checkNetwork(OperationChecker& checker, const syntax::Att
     out->operation = written.operation;
     if (!written.args.empty()) {
         const syntax::Expr& name = written.args[0];
-        const auto index = checker.findRoads(name.text);
+        const auto index = checker.names().findRoads(name.text);
         std::vector<std::string> known;
         for (const rules::Roads& r : checker.grammar().roads) known.push_back(r.name);
         if (!index && name.kind != syntax::Expr::Kind::Error)
             checker.unknownName(name.span, name.text, fmt::format("there are no roads called '{}'", name.text),
                                 known.empty() ? fmt::format("write 'roads {} {{ }}' above", name.text)
-                                              : checker.nearest(name.text, known));
+                                              : rules::nearestHint(name.text, known));
         out->index = index.value_or(rules::none);
     }
     out->parts = checkWordParts(checker, written, partWords);

@@ -49,7 +49,7 @@ std::shared_ptr<Parts> checkPlace(OperationChecker& checker, const syntax::Attri
     out->operation = written.operation;
     Placing& placing = out->placing;
     if (!written.args.empty() && written.args[0].kind == syntax::Expr::Kind::Name)
-        placing.start = checker.findStart(written.args[0]).value_or(rules::none);
+        placing.start = checker.names().findStart(written.args[0]).value_or(rules::none);
     const Element& element = checker.element();
     if (element.op != Operator::None && element.op != Operator::Sum)
         checker.error(written.span, "an object of its own can only stand beside what is there: nothing is cut by it",

@@ -7,6 +7,7 @@
 #include "grammar/operations/operations.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/operation_checker.h"
+#include "grammar/rules/words.h"
 
 namespace sgm::operations {
 namespace {
@@ -127,12 +128,12 @@ void checkTo(OperationChecker& checker, const syntax::Attribute& written) {
 void readEach(OperationChecker& checker, const Written& e, HostChoice& host) {
     host.kind = HostChoice::Kind::Each;
     const bool named = e.args.size() == 1 && e.args[0].kind == Written::Kind::Name;
-    const auto symbol = named ? checker.findSymbol(e.args[0].text) : std::nullopt;
+    const auto symbol = named ? checker.names().findSymbol(e.args[0].text) : std::nullopt;
     if (symbol)
         host.of = rules::makeConstant(e.span, rules::Value::number(*symbol));
     else if (named)
         checker.unknownName(e.args[0].span, e.args[0].text, fmt::format("no shape is called '{}'", e.args[0].text),
-                            checker.nearest(e.args[0].text, checker.symbolNames()));
+                            rules::nearestHint(e.args[0].text, checker.names().symbols()));
     else
         checker.error(e.span, "'each' takes the name of shapes", "write 'each(Cell)'");
 }
@@ -216,9 +217,9 @@ void agreeTo(OperationChecker& checker, const Element& element, const Attribute&
         for (const auto& joint : solid->primitive->joints) known.emplace_back(joint.name);
     const rules::Expr& joint = element.to->joints[0];
     const std::string& wanted = joint.value.text;
-    if (std::find(known.begin(), known.end(), wanted) == known.end() && checker.isJoint(wanted))
+    if (std::find(known.begin(), known.end(), wanted) == known.end() && checker.names().isJoint(wanted))
         checker.error(joint.span, fmt::format("'{}' has no joint '{}'", element.label, wanted),
-                      checker.nearest(wanted, known));
+                      rules::nearestHint(wanted, known));
 }
 
 void agreeBy(OperationChecker& checker, const Element& element, const Attribute& attribute) {
@@ -240,11 +241,11 @@ void checkThrough(OperationChecker& checker, const syntax::Attribute& written) {
     note(checker, written);
     if (written.args.empty() || written.args[0].kind != Written::Kind::Name) return;
     const Written& e = written.args[0];
-    if (const auto symbol = checker.findSymbol(e.text))
+    if (const auto symbol = checker.names().findSymbol(e.text))
         checker.element().through = *symbol;
     else
         checker.unknownName(e.span, e.text, fmt::format("no shape is called '{}'", e.text),
-                            checker.nearest(e.text, checker.symbolNames()));
+                            rules::nearestHint(e.text, checker.names().symbols()));
 }
 
 void agreeThrough(OperationChecker& checker, const Element& element, const Attribute& attribute) {

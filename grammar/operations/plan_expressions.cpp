@@ -7,8 +7,9 @@
 
 #include "grammar/derive/builder.h"
 #include "grammar/derive/lsystem.h"
-#include "grammar/rules/checker.h"
+#include "grammar/rules/file_tables.h"
 #include "grammar/rules/make.h"
+#include "grammar/rules/words.h"
 #include "modeler/core/random.h"
 #include "modeler/plan/edit.h"
 #include "modeler/plan/plates.h"
@@ -85,7 +86,7 @@ void checkCall(OperationChecker& checker, const Written& e, PlanExpr& plan) {
                           name.empty()
                               ? fmt::format("'{}' takes no more than {} numbers", row.name, row.parameters.size())
                               : fmt::format("'{}' has no parameter '{}'", row.name, name),
-                          checker.nearest(name, known));
+                          rules::nearestHint(name, known));
             return;
         }
         checker.beginDraws(fmt::format("footprint.{}", row.parameters[index].name));
@@ -135,8 +136,9 @@ bool checkWalls(OperationChecker& checker, const Written& e, PlanExpr& plan) {
                       "write 'walls(Plan, .25m)' or 'walls(.3m, (0, 0), (8, 0), (8, 6))'");
         return false;
     };
-    const auto lsystem =
-        !given.empty() && given[0]->kind == Written::Kind::Name ? checker.findLsystem(given[0]->text) : std::nullopt;
+    const auto lsystem = !given.empty() && given[0]->kind == Written::Kind::Name
+                             ? checker.names().findLsystem(given[0]->text)
+                             : std::nullopt;
     if (lsystem) {
         plan.index = *lsystem;
         given.erase(given.begin());
@@ -164,7 +166,7 @@ bool checkFile(OperationChecker& checker, const Written& e, PlanExpr& plan) {
                       "write 'file(\"lots.geojson\", 3)'");
         return false;
     }
-    const auto index = checker.readOutlines(e.args[0]);
+    const auto index = checker.files().readOutlines(e.args[0]);
     plan.index = index.value_or(0);
     return index.has_value();
 }
@@ -188,7 +190,7 @@ bool checkInto(OperationChecker& checker, const Written& e, PlanExpr& plan) {
         checkCall(checker, e, plan);
         return true;
     }
-    if (const auto index = e.kind == Written::Kind::Name ? checker.findLsystem(e.text) : std::nullopt) {
+    if (const auto index = e.kind == Written::Kind::Name ? checker.names().findLsystem(e.text) : std::nullopt) {
         plan.kind = PlanExpr::Kind::Lsystem;
         plan.index = *index;
         return true;
@@ -197,7 +199,7 @@ bool checkInto(OperationChecker& checker, const Written& e, PlanExpr& plan) {
     std::vector<std::string> known{"outline", "file", "walls"};
     for (const rules::PlanRow& row : rules::planRows()) known.emplace_back(row.name);
     for (const rules::Lsystem& lsystem : checker.grammar().lsystems) known.push_back(lsystem.name);
-    const std::string near = checker.nearest(e.text, known);
+    const std::string near = rules::nearestHint(e.text, known);
     checker.unknownName(
         e.span, e.text, fmt::format("'{}' draws no footprint", e.span.text()),
         near.empty() ? fmt::format("write one of {}, or the name of an lsystem", fmt::join(known, ", ")) : near);

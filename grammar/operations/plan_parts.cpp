@@ -1,4 +1,5 @@
 #include "grammar/operations/plan_parts.h"
+#include "grammar/rules/words.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +16,7 @@ std::vector<Part> checkWordParts(rules::OperationChecker& checker, const syntax:
         const bool isWord = c.label && c.label->kind == syntax::Expr::Kind::Name;
         if (c.repeated || !isWord || std::find(words.begin(), words.end(), c.label->text) == words.end()) {
             const std::vector<std::string> known(words.begin(), words.end());
-            const std::string near = isWord ? checker.nearest(c.label->text, known) : std::string();
+            const std::string near = isWord ? rules::nearestHint(c.label->text, known) : std::string();
             checker.error(
                 c.label ? c.label->span : c.span,
                 fmt::format("a part of '{}' is called by one of {}", written.operation->name, fmt::join(words, ", ")),

@@ -36,7 +36,7 @@ constexpr OperationArgument fromArguments[] = {
 
 /// A point of the scope: a joint by its name, or three measures.
 rules::Expr checkPoint(OperationChecker& checker, const syntax::Expr& e) {
-    if (e.kind == syntax::Expr::Kind::Name && (rules::axisNumber(e.text) >= 0 || checker.isJoint(e.text)))
+    if (e.kind == syntax::Expr::Kind::Name && (rules::axisNumber(e.text) >= 0 || checker.names().isJoint(e.text)))
         return checker.joint(e);
     rules::Expr point = checker.point(e, "an end of 'from … to …'");
     return point;

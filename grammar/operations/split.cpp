@@ -11,6 +11,7 @@
 #include "grammar/operations/split_layout.h"
 #include "grammar/rules/lookup.h"
 #include "grammar/rules/operation_checker.h"
+#include "grammar/rules/words.h"
 #include "modeler/core/random.h"
 #include "modeler/plan/cut.h"
 #include "modeler/plan/edge_words.h"
@@ -99,12 +100,12 @@ void checkSnap(OperationChecker& checker, const syntax::Attribute& written) {
     rules::Attribute out;
     out.operation = written.operation;
     out.span = written.span;
-    if (const auto symbol = checker.findSymbol(written.args[0].text))
+    if (const auto symbol = checker.names().findSymbol(written.args[0].text))
         out.symbol = *symbol;
     else
         checker.unknownName(written.args[0].span, written.args[0].text,
                             fmt::format("no shape is called '{}'", written.args[0].text),
-                            checker.nearest(written.args[0].text, checker.symbolNames()));
+                            rules::nearestHint(written.args[0].text, checker.names().symbols()));
     checker.beginDraws("snap");
     out.args.push_back(checker.expression(written.args[1], Want::Length, "how far a cut moves"));
     checker.add(std::move(out));

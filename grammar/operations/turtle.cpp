@@ -9,6 +9,7 @@
 #include "grammar/derive/parts_context.h"
 #include "grammar/operations/operations.h"
 #include "grammar/rules/operation_checker.h"
+#include "grammar/rules/words.h"
 #include "modeler/core/random.h"
 
 namespace sgm::operations {
@@ -37,11 +38,11 @@ std::shared_ptr<Parts> checkTurtle(OperationChecker& checker, const syntax::Attr
         const syntax::Expr& name = written.args[0];
         std::vector<std::string> known;
         for (const rules::Lsystem& lsystem : checker.grammar().lsystems) known.push_back(lsystem.name);
-        if (const auto index = checker.findLsystem(name.text))
+        if (const auto index = checker.names().findLsystem(name.text))
             out->index = *index;
         else
             checker.unknownName(name.span, name.text, fmt::format("there is no lsystem called '{}'", name.text),
-                                checker.nearest(name.text, known));
+                                rules::nearestHint(name.text, known));
     }
     if (written.args.size() > 1 && written.args[1].kind == syntax::Expr::Kind::Name) {
         out->axis = 1;

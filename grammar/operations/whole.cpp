@@ -5,7 +5,6 @@
 
 #include "grammar/derive/attribute_context.h"
 #include "grammar/operations/operations.h"
-#include "grammar/rules/checker.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/operation_checker.h"
 #include "grammar/rules/words.h"
@@ -97,7 +96,7 @@ void checkWith(OperationChecker& checker, const syntax::Attribute& written) {
     out.span = written.span;
     Expr word = rules::makeConstant(written.args[0].span, rules::makeWord(written.args[0].text));
     const std::string& name = word.value.text;
-    if (checker.isParameter(name))
+    if (checker.names().isParameter(name))
         checker.error(word.span, fmt::format("'{}' is a parameter: a shape's own value needs another name", name));
     else if (rules::isTaken(name))
         checker.error(word.span, fmt::format("'{}' is a word of the language and can't name a value", name));

@@ -7,8 +7,9 @@
 #include <map>
 #include <set>
 
-#include "grammar/rules/checker.h"
+#include "grammar/rules/declarations.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/expressions.h"
 #include "grammar/rules/params.h"
 #include "grammar/rules/static_analysis.h"
 #include "grammar/rules/upgrade.h"
@@ -83,31 +84,31 @@ void warnOfVersion(const syntax::Ast& ast, syntax::Diagnostics& diagnostics) {
 /// Everything behind the names, and what follows from it all.
 void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax::Diagnostics& unread,
           syntax::Diagnostics& diagnostics) {
-    Checker checker(grammar, diagnostics, load);
-    checker.suppressErrors(unread, files.missing);
-    const auto each = [&](void (Checker::*step)(const syntax::Ast&)) {
-        for (const syntax::Ast& part : files.asts) (checker.*step)(part);
+    CheckContext ctx(grammar, diagnostics, load);
+    ctx.suppressed.read(unread, files.missing);
+    const auto each = [&](void (*pass)(CheckContext&, const syntax::Ast&)) {
+        for (const syntax::Ast& part : files.asts) pass(ctx, part);
     };
-    each(&Checker::declare);
-    each(&Checker::parameters);
-    each(&Checker::lets);
-    each(&Checker::materials);
-    each(&Checker::lsystems);
-    each(&Checker::maps);
-    each(&Checker::roads);
-    each(&Checker::terminals);
-    each(&Checker::productions);
+    each(declareNames);
+    each(checkParameters);
+    each(checkLets);
+    each(checkMaterials);
+    each(checkLsystems);
+    each(checkMaps);
+    each(checkRoads);
+    each(checkTerminals);
+    each(checkProductions);
     // The file's own starts come before those of files that it uses.
     std::stable_partition(grammar.starts.begin(), grammar.starts.end(),
                           [&](const Start& start) { return start.span.source == grammar.sources[0].get(); });
-    each(&Checker::checkDeclarations);
+    each(checkDeclarations);
     if (diagnostics.hasErrors() || unread.hasErrors()) return;
     if (grammar.starts.empty()) {
         diagnostics.error({grammar.sources[0].get(), 0, 0}, "there is nothing to begin with",
                           "write 'start Name -> cube'");
         return;
     }
-    checker.unused(files.asts.back());
+    warnOfUnused(ctx, files.asts.back());
     findUnreachable(grammar, diagnostics);
     findShadowed(grammar, diagnostics);
     findSharesOfNothing(grammar, diagnostics);
@@ -148,7 +149,10 @@ Result<Value> parseValue(const Param& param, const std::string& text) {
     const syntax::Expr expr = syntax::parseExpression(source, diagnostics);
     Grammar empty;
     std::optional<Value> value;
-    if (!diagnostics.hasErrors()) value = Checker(empty, diagnostics).plain(expr, !param.choices.empty());
+    if (!diagnostics.hasErrors()) {
+        CheckContext ctx(empty, diagnostics);
+        value = plainValue(ctx, expr, !param.choices.empty());
+    }
     if (value) return conform(param, std::move(*value));
     if (param.value.kind == Value::Kind::Bool)
         return Error{Error::Kind::Input, fmt::format("'{}' is true or false, not '{}'", param.name, text)};

@@ -1,4 +1,5 @@
-// Expressions: names found, units checked, constants folded. Functions and operators stand in operators.cpp.
+// Expressions: names found, units checked, constants folded. Functions and operators stand in operators.cpp, what is
+// drawn in chance.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,10 +8,9 @@
 #include <numbers>
 #include <utility>
 
-#include "grammar/rules/arithmetic_warnings.h"
-#include "grammar/rules/checker.h"
 #include "grammar/rules/color.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/expressions.h"
 #include "grammar/rules/figures.h"
 #include "grammar/rules/functions.h"
 #include "grammar/rules/make.h"
@@ -24,6 +24,7 @@ using Written = syntax::Expr;
 using Where = Place::Where;
 
 constexpr std::array<std::string_view, 7> axisWords{"+x", "-x", "+y", "-y", "+z", "-z", "centre"};
+
 constexpr std::array<std::string_view, 12> colorWords{"red",   "green", "blue", "yellow", "orange", "brown",
                                                       "black", "white", "grey", "gray",   "purple", "pink"};
 
@@ -48,94 +49,8 @@ void adapt(Expr& e, Want want) {
 bool takesThree(Want want) {
     return want == Want::Size || want == Want::Offset || want == Want::Triple || want == Want::Angles;
 }
-bool isZero(const Expr& e) {
-    return e.kind == Expr::Kind::Constant && e.value.kind == Value::Kind::Number && e.value.num() == 0 &&
-           e.value.units[0] == Unit::None;
-}
 
-}  // namespace
-
-int axisNumber(std::string_view word) {
-    const auto axis = std::find(axisWords.begin(), axisWords.end(), word == "center" ? "centre" : word);
-    return axis == axisWords.end() ? -1 : static_cast<int>(axis - axisWords.begin());
-}
-
-Typed Checker::failed(SourceSpan span, std::string message, std::string hint) {
-    diagnostics_.error(span, std::move(message), std::move(hint));
-    Typed result;
-    result.expr.span = span;
-    result.type = Type::unknown();
-    return result;
-}
-
-Typed Checker::unknown(SourceSpan span, const std::string& word, std::string message, std::string hint) {
-    if (!anythingExcused_ && !excused_.contains(word)) return failed(span, std::move(message), std::move(hint));
-    return {makeConstant(span, {}), Type::unknown()};
-}
-
-/// `kind` over `args`, folded where everything is constant; its type is that of the samples.
-Typed Checker::applied(Expr::Kind kind, Fn fn, SourceSpan span, std::vector<Typed> args) {
-    Typed result;
-    result.expr.kind = kind;
-    result.expr.span = span;
-    result.expr.index = static_cast<uint32_t>(fn);
-    std::vector<Value> samples;
-    for (Typed& arg : args) {
-        result.type.known = result.type.known && arg.type.known;
-        samples.push_back(arg.type.like);
-        result.expr.args.push_back(std::move(arg.expr));
-    }
-    if (!result.type.known) return {std::move(result.expr), Type::unknown()};
-    result.type = Type::of(applyFunction(fn, samples));
-    if (auto value = fold(result.expr, {})) {
-        if (auto suspect = findDoubtWithin(result.expr, {}))
-            diagnostics_.warning(suspect->span, std::move(suspect->message), std::move(suspect->hint));
-        return makeTyped(span, std::move(*value));
-    }
-    return result;
-}
-
-bool Checker::expectType(const Typed& value, Want want, std::string_view what, const Written* written) {
-    if (fits(value.type, want)) return true;
-    const bool angle = want == Want::Angle || want == Want::Angles;
-    if (angle && isZero(value.expr)) return true;
-    std::string hint;
-    if (written && written->kind == Written::Kind::Number) {
-        const std::string digits = fmt::format("{:.12g}", written->number);
-        if (angle) hint = fmt::format("write '{}deg'", digits);
-        if (want == Want::Length && value.type.like.units[0] == Unit::Share)
-            hint = fmt::format("write a length such as '{}m'", digits);
-    }
-    if (want == Want::Color && written && written->kind == Written::Kind::Text && written->text.starts_with('#'))
-        hint = "leave the quotes out";
-    if (want == Want::Count && value.type.like.kind == Value::Kind::Number && value.type.like.units[0] == Unit::None)
-        hint = "write 'round(…)' around it";
-    const std::string got = want == Want::Count && !hint.empty() ? "may have a fraction" : "is " + describe(value.type);
-    diagnostics_.error(value.expr.span, fmt::format("{} takes {}, but this {}", what, describe(want), got),
-                       std::move(hint));
-    return false;
-}
-
-bool Checker::sameType(const Typed& a, const Typed& b, std::string_view verb) {
-    if (!a.type.known || !b.type.known) return true;
-    const auto say = [&](const Typed& at, std::string message) {
-        diagnostics_.error(at.expr.span, std::move(message));
-        return false;
-    };
-    if (!a.type.numeric()) return say(a, fmt::format("can't {} {}", verb, describe(a.type)));
-    if (!b.type.numeric()) return say(b, fmt::format("can't {} {}", verb, describe(b.type)));
-    if (compatible(a.type, b.type)) return true;
-    const Unit ua = a.type.like.units[0], ub = b.type.like.units[0];
-    const bool measures = (ua == Unit::Share && ub == Unit::Metre) || (ua == Unit::Metre && ub == Unit::Share);
-    diagnostics_.error(syntax::join(a.expr.span, b.expr.span),
-                       fmt::format("can't {} {} and {}", verb, describe(a.type), describe(b.type)),
-                       measures ? "they meet in 'size', 'move' and the sizes of a 'split'; elsewhere write 'scope.x', "
-                                  "'scope.y' or 'scope.z' for 100%"
-                                : "");
-    return false;
-}
-
-Typed Checker::number(const Written& e) {
+Typed numberOf(const Written& e) {
     Value value = Value::number(e.number);
     value.integer = e.unit.empty() && e.span.text().find_first_of(".eE") == std::string_view::npos;
     if (e.unit == "m") value.units[0] = Unit::Metre;
@@ -150,25 +65,26 @@ Typed Checker::number(const Written& e) {
     return makeTyped(e.span, value);
 }
 
-Typed Checker::unknownName(const Place& place, const Written& e) {
+Typed unknownName(CheckContext& ctx, const Place& place, const Written& e) {
     std::vector<std::string> known;
-    for (const auto& [param, index] : params_) known.push_back(param);
+    for (const auto& [param, index] : ctx.names.params) known.push_back(param);
     for (const auto& local : place.locals) known.push_back(local.name);
-    for (const auto& [let, constant] : lets_) known.push_back(let);
-    for (const auto& [map, index] : maps_) known.push_back(map);
-    known.insert(known.end(), withNames_.begin(), withNames_.end());
-    if (place.where == Where::Expect) known = figureNames(grammar_);
-    std::string hint = nearest(e.text, known);
+    for (const auto& [let, constant] : ctx.names.lets) known.push_back(let);
+    for (const auto& [map, index] : ctx.names.maps) known.push_back(map);
+    known.insert(known.end(), ctx.names.inherited.begin(), ctx.names.inherited.end());
+    if (place.where == Where::Expect) known = figureNames(ctx.grammar);
+    std::string hint = nearestHint(e.text, known);
     if (e.text == "i") hint = "'i' counts the steps inside a rule with 'repeat'";
     if (place.where == Where::Expect && hint.empty())
-        hint = fmt::format("a check may ask for {} and count(Name)", fmt::join(figureNames(grammar_), ", "));
+        hint = fmt::format("a check may ask for {} and count(Name)", fmt::join(figureNames(ctx.grammar), ", "));
     if (std::find(colorWords.begin(), colorWords.end(), e.text) != colorWords.end() && hint.empty())
         hint = "a colour is written #rrggbb, as #c8b090";
-    if (symbols_.contains(e.text)) return failed(e.span, fmt::format("'{}' is a shape, not a value", e.text));
-    return unknown(e.span, e.text, fmt::format("unknown name '{}'", e.text), std::move(hint));
+    if (ctx.names.symbols.contains(e.text))
+        return fail(ctx, e.span, fmt::format("'{}' is a shape, not a value", e.text));
+    return failUnknown(ctx, e.span, e.text, fmt::format("unknown name '{}'", e.text), std::move(hint));
 }
 
-Typed Checker::name(Place& place, const Written& e) {
+Typed checkName(CheckContext& ctx, Place& place, const Written& e) {
     for (auto local = place.locals.rbegin(); local != place.locals.rend(); ++local)
         if (local->name == e.text) {
             Typed result;
@@ -183,34 +99,37 @@ Typed Checker::name(Place& place, const Written& e) {
     Typed result;
     result.expr.span = e.span;
     if (place.where == Where::Expect)
-        if (auto figure = findFigure(grammar_, e)) return std::move(*figure);
+        if (auto figure = findFigure(ctx.grammar, e)) return std::move(*figure);
     if (e.text == "covered" && place.where == Where::Guard && !place.ofMap) {
         result.expr = makeCall(Expr::Kind::Call, Fn::Covered, e.span, {});
         result.type = Type::number();
         return result;
     }
-    if (const auto let = lets_.find(e.text); let != lets_.end()) return constant(place, e, let->second);
-    if (const auto map = maps_.find(e.text); map != maps_.end()) return mapValue(place, e, map->second);
-    if (const auto param = params_.find(e.text); param != params_.end()) {
+    if (const auto let = ctx.names.lets.find(e.text); let != ctx.names.lets.end())
+        return checkConstant(ctx, place, e, let->second);
+    if (const auto map = ctx.names.maps.find(e.text); map != ctx.names.maps.end())
+        return checkMapName(ctx, place, e, map->second);
+    if (const auto param = ctx.names.params.find(e.text); param != ctx.names.params.end()) {
         if (place.where == Where::Constant)
-            return failed(e.span, fmt::format("'{}' is a parameter, but a plain value must stand here", e.text));
-        usedParams_.insert(param->second);
-        const Param& p = grammar_.params[param->second];
+            return fail(ctx, e.span, fmt::format("'{}' is a parameter, but a plain value must stand here", e.text));
+        ctx.params.used.insert(param->second);
+        const Param& p = ctx.grammar.params[param->second];
         result.expr.kind = Expr::Kind::Param;
         result.expr.index = param->second;
         result.type = Type::of(p.value);
         if (!p.choices.empty()) result.type.words = &p.choices;
-        if (brokenParams_.contains(param->second)) return {makeUnreadable(e.span), Type::unknown()};
+        if (ctx.params.broken.contains(param->second)) return {makeUnreadable(e.span), Type::unknown()};
         return result;
     }
-    if (withNames_.contains(e.text) && !place.ofMap && place.where >= Where::Guard && place.where != Where::Expect) {
+    if (ctx.names.inherited.contains(e.text) && !place.ofMap && place.where >= Where::Guard &&
+        place.where != Where::Expect) {
         result.expr.kind = Expr::Kind::Inherited;
         result.expr.value = makeWord(e.text);
         result.type = Type::unknown();
         return result;
     }
-    if (const auto symbol = symbols_.find(e.text); symbol != symbols_.end()) {
-        const Symbol& s = grammar_.symbols[symbol->second];
+    if (const auto symbol = ctx.names.symbols.find(e.text); symbol != ctx.names.symbols.end()) {
+        const Symbol& s = ctx.grammar.symbols[symbol->second];
         if (s.isMaterial || (place.material && s.terminal)) {
             Value word = makeWord(e.text);
             word.n[0] = symbol->second;
@@ -218,32 +137,32 @@ Typed Checker::name(Place& place, const Written& e) {
         }
     }
     if (e.text == "pi") return makeTyped(e.span, Value::number(std::numbers::pi));
-    return unknownName(place, e);
+    return unknownName(ctx, place, e);
 }
 
-Typed Checker::member(Place& place, const Written& e) {
+Typed checkMember(CheckContext& ctx, Place& place, const Written& e) {
     const int axis = e.text == "x" ? 0 : e.text == "y" ? 1 : e.text == "z" ? 2 : -1;
     const bool named = e.args[0].kind == Written::Kind::Name;
     const bool ofScope = named && e.args[0].text == "scope", isArea = ofScope && e.text == "area";
     if (axis < 0 && !isArea)
-        return failed(e.span, fmt::format("there is no '.{}'", e.text),
-                      ofScope ? "write .x, .y, .z or .area" : "write .x, .y or .z");
+        return fail(ctx, e.span, fmt::format("there is no '.{}'", e.text),
+                    ofScope ? "write .x, .y, .z or .area" : "write .x, .y or .z");
     Typed result;
     result.expr.span = e.span;
     if (ofScope || (named && e.args[0].text == "here")) {
         if (place.where < Where::Guard || place.where == Where::Expect || (ofScope && place.ofMap))
-            return failed(e.span,
-                          fmt::format("there is no shape here whose {} could be asked", ofScope ? "scope" : "place"),
-                          place.ofMap ? "a map asks 'here.x' and 'here.z', and maps above it" : "");
+            return fail(ctx, e.span,
+                        fmt::format("there is no shape here whose {} could be asked", ofScope ? "scope" : "place"),
+                        place.ofMap ? "a map asks 'here.x' and 'here.z', and maps above it" : "");
         result.expr.kind = ofScope ? Expr::Kind::Scope : Expr::Kind::Here;
         result.expr.index = isArea ? 3u : static_cast<uint32_t>(axis);
         result.type = Type::number(isArea ? Unit::SquareMetre : Unit::Metre);
         return result;
     }
-    Typed vector = expression(place, e.args[0]);
+    Typed vector = checkExpression(ctx, place, e.args[0]);
     if (!vector.type.known) return vector;
     if (vector.type.like.kind != Value::Kind::Vector || axis >= vector.type.like.count)
-        return failed(e.span, fmt::format("'.{}' asks for a vector, but this is {}", e.text, describe(vector.type)));
+        return fail(ctx, e.span, fmt::format("'.{}' asks for a vector, but this is {}", e.text, describe(vector.type)));
     Value number = Value::number(axis);
     result.type = Type::of(component(vector.type.like, number));
     result.expr.kind = Expr::Kind::Element;
@@ -252,9 +171,9 @@ Typed Checker::member(Place& place, const Written& e) {
     return result;
 }
 
-Typed Checker::index(Place& place, const Written& e) {
-    Typed vector = expression(place, e.args[0]);
-    Typed at = expression(place, e.args[1]);
+Typed checkIndex(CheckContext& ctx, Place& place, const Written& e) {
+    Typed vector = checkExpression(ctx, place, e.args[0]);
+    Typed at = checkExpression(ctx, place, e.args[1]);
     const auto element = [&](Type type) {
         Typed result{{}, type};
         result.expr.kind = Expr::Kind::Element;
@@ -267,20 +186,20 @@ Typed Checker::index(Place& place, const Written& e) {
     if (!vector.type.known || !at.type.known) return element(Type::unknown());
     const uint8_t count = vector.type.like.count;
     if (vector.type.like.kind != Value::Kind::Vector)
-        return failed(e.args[0].span, fmt::format("[ ] asks for a vector, but this is {}", describe(vector.type)));
+        return fail(ctx, e.args[0].span, fmt::format("[ ] asks for a vector, but this is {}", describe(vector.type)));
     const bool axis = at.type.like.kind == Value::Kind::Axis;
     if (axis && count != 6)
-        return failed(
-            e.span,
+        return fail(
+            ctx, e.span,
             fmt::format("a direction chooses among 6 values, +x -x +y -y +z -z, but this is a vector of {}", count));
-    if (!axis && !expectType(at, Want::Count, "[ ]", nullptr)) return {std::move(vector.expr), Type::unknown()};
+    if (!axis && !expectType(ctx, at, Want::Count, "[ ]", nullptr)) return {std::move(vector.expr), Type::unknown()};
     if (const auto value = fold(at.expr, {}); value && (value->num() < 0 || value->num() >= count))
-        return failed(e.args[1].span, fmt::format("there is no value number {:.12g}: the vector's are 0 … {}",
-                                                  value->num(), count - 1));
+        return fail(ctx, e.args[1].span,
+                    fmt::format("there is no value number {:.12g}: the vector's are 0 … {}", value->num(), count - 1));
     return element(Type::of(component(vector.type.like, Value::number(0))));
 }
 
-Typed Checker::tuple(Place& place, const Written& e) {
+Typed checkTuple(CheckContext& ctx, Place& place, const Written& e) {
     Typed result;
     result.expr.kind = Expr::Kind::Tuple;
     result.expr.span = e.span;
@@ -290,28 +209,28 @@ Typed Checker::tuple(Place& place, const Written& e) {
     for (size_t i = 0; i < e.args.size(); ++i) {
         const Written& arg = e.args[i];
         if (axis >= 0) place.axis = e.args.size() == 3 ? static_cast<int>(i) : -1;
-        Typed part = expression(place, arg);
+        Typed part = checkExpression(ctx, place, arg);
         if (part.type.known && part.type.like.kind != Value::Kind::Number)
-            part = failed(arg.span, fmt::format("a vector is made of numbers, but this is {}", describe(part.type)));
+            part = fail(ctx, arg.span, fmt::format("a vector is made of numbers, but this is {}", describe(part.type)));
         known = known && part.type.known;
         samples.push_back(part.type.like);
         result.expr.args.push_back(std::move(part.expr));
     }
     place.axis = axis;
     if (e.args.size() > 6)
-        return failed(e.span, fmt::format("a vector has at most 6 numbers, but this has {}", e.args.size()));
+        return fail(ctx, e.span, fmt::format("a vector has at most 6 numbers, but this has {}", e.args.size()));
     if (!known) return {std::move(result.expr), Type::unknown()};
     result.type = Type::of(rules::tuple(samples));
     if (auto value = fold(result.expr, {})) return makeTyped(e.span, std::move(*value));
     return result;
 }
 
-Typed Checker::infer(Place& place, const Written& e) {
+Typed infer(CheckContext& ctx, Place& place, const Written& e) {
     switch (e.kind) {
         case Written::Kind::Number:
-            return number(e);
+            return numberOf(e);
         case Written::Kind::Floating:
-            return failed(e.span, "'~' is a size in a split, not a value");
+            return fail(ctx, e.span, "'~' is a size in a split, not a value");
         case Written::Kind::Text: {
             Value text;
             text.kind = Value::Kind::Text;
@@ -327,45 +246,52 @@ Typed Checker::infer(Place& place, const Written& e) {
             return makeTyped(e.span, color);
         }
         case Written::Kind::Name:
-            return name(place, e);
+            return checkName(ctx, place, e);
         case Written::Kind::Member:
-            return member(place, e);
+            return checkMember(ctx, place, e);
         case Written::Kind::Index:
-            return index(place, e);
+            return checkIndex(ctx, place, e);
         case Written::Kind::Call:
-            return call(place, e);
+            return checkCall(ctx, place, e);
         case Written::Kind::Tuple:
-            return tuple(place, e);
+            return checkTuple(ctx, place, e);
         case Written::Kind::Unary:
-            return unary(place, e);
+            return checkUnary(ctx, place, e);
         case Written::Kind::Binary:
-            return binary(place, e);
+            return checkBinary(ctx, place, e);
         case Written::Kind::Range:
-            return range(place, e);
+            return checkRange(ctx, place, e);
         case Written::Kind::Ramp:
-            return ramp(place, e);
+            return checkRamp(ctx, place, e);
         case Written::Kind::Choose:
-            return choice(place, e);
+            return checkChoice(ctx, place, e);
         case Written::Kind::Error:
             break;
     }
     return {{}, Type::unknown()};
 }
 
-Typed Checker::expression(Place& place, const Written& e) {
-    Typed result = infer(place, e);
+}  // namespace
+
+int axisNumber(std::string_view word) {
+    const auto axis = std::find(axisWords.begin(), axisWords.end(), word == "center" ? "centre" : word);
+    return axis == axisWords.end() ? -1 : static_cast<int>(axis - axisWords.begin());
+}
+
+Typed checkExpression(CheckContext& ctx, Place& place, const Written& e) {
+    Typed result = infer(ctx, place, e);
     result.expr.span = e.span;
     if (!result.type.known && result.expr.kind == Expr::Kind::Constant) result.expr = makeUnreadable(e.span);
     return result;
 }
 
-Expr Checker::expression(Place& place, const Written& e, Want want, std::string_view what) {
+Expr checkExpression(CheckContext& ctx, Place& place, const Written& e, Want want, std::string_view what) {
     const bool outer = std::exchange(place.material, place.material || want == Want::Anything);
-    Typed result = expression(place, e);
+    Typed result = checkExpression(ctx, place, e);
     place.material = outer;
     const bool byComponent =
         e.kind == Written::Kind::Tuple && e.args.size() == 3 && takesThree(want) && !fits(result.type, want);
-    bool good = byComponent || expectType(result, want, what, &e);
+    bool good = byComponent || expectType(ctx, result, want, what, &e);
     for (size_t i = 0; byComponent && i < 3; ++i) {
         const SourceSpan span = e.args[i].span;
         const Value index = makeWhole(static_cast<double>(i));
@@ -373,7 +299,8 @@ Expr Checker::expression(Place& place, const Written& e, Want want, std::string_
                                                           : makeConstant(span, component(result.expr.value, index));
         part.span = span;
         good =
-            expectType({std::move(part), Type::of(component(result.type.like, index))}, want, what, &e.args[i]) && good;
+            expectType(ctx, {std::move(part), Type::of(component(result.type.like, index))}, want, what, &e.args[i]) &&
+            good;
     }
     if (!good) return makeUnreadable(e.span);
     adapt(result.expr, want);

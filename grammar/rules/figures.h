@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "grammar/rules/checker.h"
+#include "grammar/rules/grammar.h"
+#include "grammar/rules/typed.h"
 
 namespace sgm::rules {
 

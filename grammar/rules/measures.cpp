@@ -1,7 +1,7 @@
 // Constants of a file, and measures of the scope in which shares and lengths meet.
 #include <fmt/format.h>
 
-#include "grammar/rules/checker.h"
+#include "grammar/rules/expressions.h"
 #include "grammar/rules/make.h"
 
 namespace sgm::rules {
@@ -10,24 +10,24 @@ using Written = syntax::Expr;
 using Where = Place::Where;
 
 /// A constant of the file, in its place.
-Typed Checker::constant(Place& place, const Written& e, Constant& constant) {
+Typed checkConstant(CheckContext& ctx, Place& place, const Written& e, Constant& constant) {
     constant.used = true;
     if (place.where == Where::Constant) {  // before parameters are known: those it asks are no plain value
-        if (constant.inWork) return failed(e.span, fmt::format("the value '{}' is made of itself", e.text));
+        if (constant.inWork) return fail(ctx, e.span, fmt::format("the value '{}' is made of itself", e.text));
         constant.inWork = true;
         Place own(Where::Constant);
-        Typed value = expression(own, constant.decl->value);
+        Typed value = checkExpression(ctx, own, constant.decl->value);
         constant.inWork = false;
         return value;
     }
     if (constant.value) return *constant.value;
-    return failed(e.span, fmt::format("the value '{}' isn't known here", e.text),
-                  "a 'let' may ask parameters and the values above it");
+    return fail(ctx, e.span, fmt::format("the value '{}' isn't known here", e.text),
+                "a 'let' may ask parameters and the values above it");
 }
 
 /// One of two numbers becomes metres where it is a share of the scope and the other a length: 100% - 1m. What another
 /// shape set by `with` is found to be one or the other where it is read.
-bool Checker::mix(Place& place, Typed& a, Typed& b) const {
+bool mixShares(Place& place, Typed& a, Typed& b) {
     const auto isOf = [](const Typed& t, Unit unit) {
         return t.type.known && t.type.like.kind == Value::Kind::Number && t.type.like.units[0] == unit;
     };
@@ -56,11 +56,11 @@ bool Checker::mix(Place& place, Typed& a, Typed& b) const {
 }
 
 /// A measure of the scope, one number or three. One that mixes shares and lengths is another along each axis.
-Expr Checker::measured(Place& place, const Written& e, Want want, std::string_view what) {
+Expr checkMeasure(CheckContext& ctx, Place& place, const Written& e, Want want, std::string_view what) {
     const uint32_t ranges = place.ranges;
     place.axis = 0;
     place.mixes = false;
-    Expr first = expression(place, e, want, what);
+    Expr first = checkExpression(ctx, place, e, want, what);
     const bool eachAxis = place.mixes && e.kind != Written::Kind::Tuple;
     if (eachAxis) {
         Expr all;
@@ -69,7 +69,7 @@ Expr Checker::measured(Place& place, const Written& e, Want want, std::string_vi
         all.args.push_back(std::move(first));
         for (place.axis = 1; place.axis < 3; ++place.axis) {
             place.ranges = ranges;  // the same draw along every axis
-            all.args.push_back(expression(place, e, want, what));
+            all.args.push_back(checkExpression(ctx, place, e, want, what));
         }
         first = std::move(all);
     }

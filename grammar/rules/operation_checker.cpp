@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "grammar/rules/arithmetic_warnings.h"
-#include "grammar/rules/checker.h"
+#include "grammar/rules/bodies.h"
+#include "grammar/rules/declarations.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/expressions.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/params.h"
 #include "grammar/rules/words.h"
@@ -58,7 +60,7 @@ void eachConstant(const Expr& e, const std::vector<Value>& params, Visit visit) 
 
 }  // namespace
 
-const Grammar& OperationChecker::grammar() const { return checker_.grammar_; }
+const Grammar& OperationChecker::grammar() const { return context_.grammar; }
 bool OperationChecker::isInChain() const { return place_.where == Place::Where::Chain; }
 bool OperationChecker::isInFinally() const { return place_.where == Place::Where::Finally; }
 
@@ -75,21 +77,21 @@ void OperationChecker::checkArguments(const syntax::Attribute& written) {
         if (isWord(type))
             out.args.push_back(makeConstant(arg.span, makeWord(arg.text)));
         else if (operation.phase == Operation::Phase::Scope && isMeasure(type))
-            out.args.push_back(checker_.measured(place_, arg, wantOf(type), what));
+            out.args.push_back(checkMeasure(context_, place_, arg, wantOf(type), what));
         else
             out.args.push_back(expression(arg, wantOf(type), what));
     }
     const syntax::OperationRange& range = operation.range;
     for (const Expr& arg : out.args) {
         bool said = range.text.empty();
-        eachConstant(arg, checker_.defaults_, [&](const Expr& e, const Value& v) {
+        eachConstant(arg, context_.params.defaults, [&](const Expr& e, const Value& v) {
             for (size_t i = 0; i < v.count && !said && (v.kind == Value::Kind::Number || v.kind == Value::Kind::Vector);
                  ++i) {
                 if (v.n[i] >= range.lo && v.n[i] <= range.hi) continue;
                 said = true;
                 const std::string outside =
                     fmt::format("'{}' is {}, but must be {}", operation.name, toText(v), range.text);
-                if (auto suspect = findDoubtWithin(e, checker_.defaults_))
+                if (auto suspect = findDoubtWithin(e, context_.params.defaults))
                     error(suspect->span, suspect->message + ", so " + outside, "keep what is divided by from 0");
                 else
                     error(e.span, outside);
@@ -108,22 +110,22 @@ Attribute* OperationChecker::find(const Operation& operation) {
 void OperationChecker::beginDraws(std::string name) { place_.enter(std::move(name)); }
 
 Expr OperationChecker::expression(const syntax::Expr& e, Want want, std::string_view what) {
-    return checker_.expression(place_, e, want, what);
+    return checkExpression(context_, place_, e, want, what);
 }
 
 Expr OperationChecker::measure(const syntax::Expr& e, Want want, std::string_view what, int axis) {
     place_.axis = axis;
-    Expr result = checker_.expression(place_, e, want, what);
+    Expr result = checkExpression(context_, place_, e, want, what);
     place_.axis = -1;
     return result;
 }
 
 Expr OperationChecker::point(const syntax::Expr& e, std::string_view what) {
-    return checker_.measured(place_, e, Want::Triple, what);
+    return checkMeasure(context_, place_, e, Want::Triple, what);
 }
 
 std::shared_ptr<const Body> OperationChecker::partBody(const syntax::Body& written) {
-    auto made = std::make_shared<Body>(checker_.body(place_, written));
+    auto made = std::make_shared<Body>(checkBody(context_, place_, written));
     if (!made->grows) return made;
     const auto cutsAbove = [](const Body& body) {
         for (const Element& e : body.siblings[0])
@@ -146,78 +148,61 @@ std::shared_ptr<const Body> OperationChecker::partBody(const syntax::Body& writt
     return whole;
 }
 
-Expr OperationChecker::material(const syntax::Expr& e) { return checker_.material(place_, e); }
+Expr OperationChecker::material(const syntax::Expr& e) { return checkMaterial(context_, place_, e); }
 
-Typed OperationChecker::value(const syntax::Expr& e) { return checker_.expression(place_, e); }
-Solid OperationChecker::solid(const syntax::Expr& e) { return checker_.solid(place_, e); }
-Expr OperationChecker::joint(const syntax::Expr& e) { return checker_.joint(place_, e); }
+Typed OperationChecker::value(const syntax::Expr& e) { return checkExpression(context_, place_, e); }
+Solid OperationChecker::solid(const syntax::Expr& e) { return checkSolid(context_, place_, e); }
+Expr OperationChecker::joint(const syntax::Expr& e) { return checkJoint(context_, place_, e); }
 
 std::shared_ptr<const Body> OperationChecker::body(const syntax::Body& written) {
-    return std::make_shared<const Body>(checker_.body(place_, written));
+    return std::make_shared<const Body>(checkBody(context_, place_, written));
 }
 
-size_t OperationChecker::pushLocal(const std::string& name, uint32_t& local) {
-    const size_t outside = place_.locals.size();
-    local = place_.frame++;
-    place_.locals.push_back({name, local, Type::number(Unit::None, true), true});
-    return outside;
-}
-
-void OperationChecker::popLocals(size_t outside) {
-    place_.locals.resize(outside, Place::Local{{}, 0, Type::unknown()});
-}
-
-std::optional<Value> OperationChecker::atDefaults(const Expr& e) const { return fold(e, checker_.defaults_); }
+std::optional<Value> OperationChecker::atDefaults(const Expr& e) const { return fold(e, context_.params.defaults); }
 
 void OperationChecker::checkRange(const Expr& e, const field::Primitive& row, size_t parameter) {
-    checker_.inRange(e, row, parameter);
+    checkParameterRange(context_, e, row, parameter);
 }
 
-Solid OperationChecker::solidOfRow(SourceSpan span, const field::Primitive& row) {
-    return Checker::solidOfRow(span, row);
-}
+FileTables& OperationChecker::files() const { return context_.files; }
 
-std::optional<uint32_t> OperationChecker::readOutlines(const syntax::Expr& name) { return checker_.outlinesOf(name); }
-
-std::optional<uint32_t> OperationChecker::readImage(const syntax::Expr& name) { return checker_.imageOf(name); }
-
-std::optional<SymbolId> OperationChecker::findStart(const syntax::Expr& name) {
+std::optional<SymbolId> OperationNames::findStart(const syntax::Expr& name) {
     std::vector<std::string> known;
-    for (const auto& [start, span] : checker_.seenStarts_) known.push_back(start);
+    for (const auto& [start, span] : context_.seen.starts) known.push_back(start);
     const auto symbol = findSymbol(name.text);
-    if (symbol && checker_.seenStarts_.contains(name.text)) return symbol;
-    unknownName(
-        name.span, name.text,
+    if (symbol && context_.seen.starts.contains(name.text)) return symbol;
+    failUnknown(
+        context_, name.span, name.text,
         symbol ? fmt::format("'{}' is no start, and an object of its own begins with one", name.text)
                : fmt::format("there is no start '{}'", name.text),
-        symbol ? fmt::format("write 'start {} -> …', or leave 'place' out", name.text) : nearest(name.text, known));
+        symbol ? fmt::format("write 'start {} -> …', or leave 'place' out", name.text) : nearestHint(name.text, known));
     return std::nullopt;
 }
 
 std::optional<std::pair<uint32_t, Expr>> OperationChecker::setting(const syntax::Setting& written) {
-    const auto param = checker_.params_.find(written.name.text);
+    const auto param = context_.names.params.find(written.name.text);
     if (written.name.empty()) return std::nullopt;
-    if (param == checker_.params_.end()) {
+    if (param == context_.names.params.end()) {
         std::vector<std::string> known;
-        for (const Param& p : checker_.grammar_.params) known.push_back(p.name);
+        for (const Param& p : context_.grammar.params) known.push_back(p.name);
         unknownName(written.name.span, written.name.text, fmt::format("there is no parameter '{}'", written.name.text),
-                    nearest(written.name.text, known));
+                    nearestHint(written.name.text, known));
         return std::nullopt;
     }
     const uint32_t index = param->second;
-    const Param& target = checker_.grammar_.params[index];
+    const Param& target = context_.grammar.params[index];
     const syntax::Expr& e = written.value;
-    const bool isChoice = e.kind == syntax::Expr::Kind::Name && !isParameter(e.text) && !target.choices.empty();
+    const bool isChoice = e.kind == syntax::Expr::Kind::Name && !names().isParameter(e.text) && !target.choices.empty();
     beginDraws("place." + target.name);
-    Typed value = isChoice ? makeTyped(e.span, makeWord(e.text)) : checker_.expression(place_, e);
-    if (checker_.brokenParams_.contains(index) || !value.type.known) return std::pair(index, std::move(value.expr));
+    Typed value = isChoice ? makeTyped(e.span, makeWord(e.text)) : checkExpression(context_, place_, e);
+    if (context_.params.broken.contains(index) || !value.type.known) return std::pair(index, std::move(value.expr));
     const auto constant = fold(value.expr, {});
     Value sample = constant ? *constant : value.type.like;
     if (sample.kind == Value::Kind::Number && target.value.integer)
         sample.integer = !constant || sample.num() == std::floor(sample.num());
     // What isn't constant derivation looks at.
     const auto fitted = constant ? conform(target, sample) : conformKind(target, sample);
-    if (!fitted.ok()) error(e.span, fitted.error().message, nearest(sample.text, target.choices));
+    if (!fitted.ok()) error(e.span, fitted.error().message, nearestHint(sample.text, target.choices));
     return std::pair(index, std::move(value.expr));
 }
 
@@ -227,10 +212,10 @@ std::optional<uint32_t> OperationChecker::report(const syntax::Expr& name, const
         error(value.expr.span, fmt::format("'report' sums numbers, and this is {}", describe(value.type)));
         return std::nullopt;
     }
-    auto& all = checker_.grammar_.reports;
+    auto& all = context_.grammar.reports;
     const auto known = std::find_if(all.begin(), all.end(), [&](const Report& r) { return r.name == name.text; });
     if (known == all.end()) {
-        if (isTaken(name.text) || isParameter(name.text))
+        if (isTaken(name.text) || names().isParameter(name.text))
             error(name.span, fmt::format("'{}' has a meaning already: what is reported needs another name", name.text));
         all.push_back({name.text, value.type.like, name.span});
         return static_cast<uint32_t>(all.size() - 1);
@@ -241,41 +226,39 @@ std::optional<uint32_t> OperationChecker::report(const syntax::Expr& name, const
     return static_cast<uint32_t>(known - all.begin());
 }
 
-std::optional<uint32_t> OperationChecker::findLsystem(std::string_view name) const {
-    const auto& all = checker_.grammar_.lsystems;
+std::optional<uint32_t> OperationNames::findLsystem(std::string_view name) const {
+    const auto& all = context_.grammar.lsystems;
     const auto found = std::find_if(all.begin(), all.end(), [&](const Lsystem& l) { return l.name == name; });
     return found == all.end() ? std::nullopt : std::optional(static_cast<uint32_t>(found - all.begin()));
 }
 
-std::optional<uint32_t> OperationChecker::findRoads(std::string_view name) const {
-    const auto& all = checker_.grammar_.roads;
+std::optional<uint32_t> OperationNames::findRoads(std::string_view name) const {
+    const auto& all = context_.grammar.roads;
     const auto found = std::find_if(all.begin(), all.end(), [&](const Roads& r) { return r.name == name; });
     return found == all.end() ? std::nullopt : std::optional(static_cast<uint32_t>(found - all.begin()));
 }
 
-std::optional<SymbolId> OperationChecker::findSymbol(std::string_view name) const {
-    const auto symbol = checker_.symbols_.find(std::string(name));
-    return symbol == checker_.symbols_.end() ? std::nullopt : std::optional(symbol->second);
+std::optional<SymbolId> OperationNames::findSymbol(std::string_view name) const {
+    const auto symbol = context_.names.symbols.find(std::string(name));
+    return symbol == context_.names.symbols.end() ? std::nullopt : std::optional(symbol->second);
 }
 
-bool OperationChecker::isParameter(std::string_view name) const { return checker_.params_.contains(std::string(name)); }
-bool OperationChecker::isJoint(std::string_view name) const { return checker_.jointNames_.contains(std::string(name)); }
-
-std::string OperationChecker::nearest(std::string_view word, const std::vector<std::string>& candidates) const {
-    return checker_.nearest(word, candidates);
+bool OperationNames::isParameter(std::string_view name) const {
+    return context_.names.params.contains(std::string(name));
 }
+bool OperationNames::isJoint(std::string_view name) const { return context_.names.joints.contains(std::string(name)); }
 
-std::vector<std::string> OperationChecker::symbolNames() const { return checker_.symbolNames(false); }
+std::vector<std::string> OperationNames::symbols() const { return symbolNames(context_, false); }
 
 void OperationChecker::error(SourceSpan span, std::string message, std::string fix) {
-    checker_.diagnostics_.error(span, std::move(message), std::move(fix));
+    context_.diagnostics.error(span, std::move(message), std::move(fix));
 }
 
 void OperationChecker::unknownName(SourceSpan span, const std::string& name, std::string message, std::string fix) {
-    checker_.unknown(span, name, std::move(message), std::move(fix));
+    failUnknown(context_, span, name, std::move(message), std::move(fix));
 }
 
-bool OperationChecker::areErrorsSuppressed(const std::string& name) const { return checker_.excused_.contains(name); }
-size_t OperationChecker::problemCount() const { return checker_.diagnostics_.all().size(); }
+bool OperationNames::areErrorsSuppressed(const std::string& name) const { return context_.suppressed.contains(name); }
+size_t OperationChecker::problemCount() const { return context_.diagnostics.all().size(); }
 
 }  // namespace sgm::rules

@@ -10,18 +10,42 @@
 #include <vector>
 
 #include "grammar/rules/grammar.h"
+#include "grammar/rules/place.h"
 #include "grammar/rules/type.h"
+#include "grammar/rules/typed.h"
 
 namespace sgm::rules {
 
-class Checker;
-struct Place;
-struct Typed;
+struct CheckContext;
+class FileTables;
+
+/// What names mean where an operation stands.
+class OperationNames {
+public:
+    explicit OperationNames(CheckContext& context) : context_(context) {}
+
+    std::optional<SymbolId> findSymbol(std::string_view name) const;
+    /// The symbol of the start of that name, wherever in the text it stands; nothing after an error.
+    std::optional<SymbolId> findStart(const syntax::Expr& name);
+    /// The index of an lsystem of the grammar.
+    std::optional<uint32_t> findLsystem(std::string_view name) const;
+    /// The index of `roads` of the grammar.
+    std::optional<uint32_t> findRoads(std::string_view name) const;
+    bool isParameter(std::string_view name) const;
+    /// True when some terminal or primitive declares a joint of that name.
+    bool isJoint(std::string_view name) const;
+    std::vector<std::string> symbols() const;
+    /// True when nothing should be said of a name, since its declaration could not be read.
+    bool areErrorsSuppressed(const std::string& name) const;
+
+private:
+    CheckContext& context_;
+};
 
 class OperationChecker {
 public:
-    OperationChecker(Checker& checker, Place& place, Element& element, std::vector<Attribute>& attributes)
-        : checker_(checker), place_(place), element_(element), attributes_(attributes) {}
+    OperationChecker(CheckContext& context, Place& place, Element& element, std::vector<Attribute>& attributes)
+        : context_(context), place_(place), element_(element), attributes_(attributes) {}
 
     /// The element that the operation is said of; its content and `live` are known in `agree` alone.
     Element& element() { return element_; }
@@ -58,51 +82,34 @@ public:
     /// The body of something that runs several times, in sight of a whole number `name` whose local is `local`.
     template <class Check>
     void withLocal(const std::string& name, uint32_t& local, Check&& check) {
-        const size_t outside = pushLocal(name, local);
+        const size_t outside = place_.locals.size();
+        local = place_.frame++;
+        place_.locals.push_back({name, local, Type::number(Unit::None, true), true});
         check();
-        popLocals(outside);
+        place_.leave(outside);
     }
 
     /// The value at the defaults of all parameters, or nothing where a shape, a local or chance decides.
     std::optional<Value> atDefaults(const Expr& e) const;
     /// Refuses a constant that a primitive's parameter can't take.
     void checkRange(const Expr& e, const field::Primitive& row, size_t parameter);
-    static Solid solidOfRow(SourceSpan span, const field::Primitive& row);
 
-    /// The place in Grammar::outlines of the file that `name` (a text) stands for, read here; nothing after an error.
-    std::optional<uint32_t> readOutlines(const syntax::Expr& name);
-    /// The place in Grammar::images of the picture that `name` (a text) stands for, read here; nothing after an error.
-    std::optional<uint32_t> readImage(const syntax::Expr& name);
-    /// The symbol of the start of that name, wherever in the text it stands; nothing after an error.
-    std::optional<SymbolId> findStart(const syntax::Expr& name);
+    /// What names mean here.
+    OperationNames names() const { return OperationNames(context_); }
+    /// The files that the grammar names, each read once.
+    FileTables& files() const;
     /// A parameter by index and a value for it, which may depend on the shape; nothing after an error.
     std::optional<std::pair<uint32_t, Expr>> setting(const syntax::Setting& written);
-    /// The index of an lsystem of the grammar.
-    std::optional<uint32_t> findLsystem(std::string_view name) const;
-    /// The index of `roads` of the grammar.
-    std::optional<uint32_t> findRoads(std::string_view name) const;
-    std::optional<SymbolId> findSymbol(std::string_view name) const;
     /// The index in Grammar::reports of a name that `value` is reported under; nothing after an error.
     std::optional<uint32_t> report(const syntax::Expr& name, const Typed& value);
-    bool isParameter(std::string_view name) const;
-    /// True when some terminal or primitive declares a joint of that name.
-    bool isJoint(std::string_view name) const;
-    /// "did you mean 'x'?", or "".
-    std::string nearest(std::string_view word, const std::vector<std::string>& candidates) const;
-    std::vector<std::string> symbolNames() const;
 
     void error(SourceSpan span, std::string message, std::string fix = {});
     /// An error about a name, silent where the name stands in a text that could not be read.
     void unknownName(SourceSpan span, const std::string& name, std::string message, std::string fix = {});
-    /// True when nothing should be said of a name, since its declaration could not be read.
-    bool areErrorsSuppressed(const std::string& name) const;
     size_t problemCount() const;
 
 private:
-    size_t pushLocal(const std::string& name, uint32_t& local);
-    void popLocals(size_t outside);
-
-    Checker& checker_;
+    CheckContext& context_;
     Place& place_;
     Element& element_;
     std::vector<Attribute>& attributes_;

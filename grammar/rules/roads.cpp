@@ -4,9 +4,11 @@
 
 #include <algorithm>
 
-#include "grammar/rules/checker.h"
+#include "grammar/rules/declarations.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/expressions.h"
 #include "grammar/rules/make.h"
+#include "grammar/rules/words.h"
 #include "modeler/core/conventions.h"
 #include "modeler/town/own_streets.h"
 
@@ -28,12 +30,15 @@ constexpr RoadField fields[] = {
     {"contours", &Roads::contours, Want::Number,
      "of the field: weight of the level lines of `height`, whole where it is as steep as `slope`"},
 };
+
 constexpr RoadField points[] = {
     {"from", &Roads::from, Want::Anything, "where growth begins, (x, z); else where `pull` is greatest"},
     {"centre", &Roads::centre, Want::Anything, "the middle of the radial pattern; else where growth begins"},
 };
+
 constexpr std::string_view patterns[] = {"grown", "raster", "radial", "field"}, turns[] = {"left", "right", "both"},
                            ends[] = {"prune", "join", "keep"};
+
 constexpr RoadWord words[] = {
     {"pattern", &Roads::pattern, patterns,
      "highways seek what pulls them, or all roads follow a raster, or rings and rays, or a tensor field of the weights "
@@ -50,106 +55,109 @@ Want wantOf(town::RoadParameter::Unit unit) {
                                  : Want::Number;
 }
 
-}  // namespace
-
-std::span<const RoadField> roadFields() { return fields; }
-std::span<const RoadField> roadPoints() { return points; }
-std::span<const RoadWord> roadWords() { return words; }
-
-void Checker::declareRoads(const syntax::RoadsDecl& decl) {
-    if (twice(seenRoads_, decl.name, "roads")) return;
-    Roads out;
-    out.name = decl.name.text;
-    out.span = decl.span;
-    if (decl.file) ownStreets(*decl.file, out);
-    grammar_.roads.push_back(std::move(out));
-}
-
-/// `from "streets.geojson"`: what is there before roads grow.
-void Checker::ownStreets(const Written& file, Roads& out) {
-    out.streetsSpan = file.span;
-    out.streets = readFile(load_.streets, file);
-}
-
-Expr Checker::roadWord(Place& place, const Written& e, const RoadWord& row) {
+Expr checkRoadWord(CheckContext& ctx, Place& place, const Written& e, const RoadWord& row) {
     const std::vector<std::string> known(row.words.begin(), row.words.end());
     if (e.kind == Written::Kind::Name && std::find(known.begin(), known.end(), e.text) != known.end() &&
-        !params_.contains(e.text))
+        !ctx.names.params.contains(e.text))
         return makeConstant(e.span, makeWord(e.text));
-    if (e.kind == Written::Kind::Name && !params_.contains(e.text)) {
-        unknown(e.span, e.text, fmt::format("'{}' is one of {}, not '{}'", row.name, fmt::join(known, ", "), e.text),
-                nearest(e.text, known));
+    if (e.kind == Written::Kind::Name && !ctx.names.params.contains(e.text)) {
+        failUnknown(ctx, e.span, e.text,
+                    fmt::format("'{}' is one of {}, not '{}'", row.name, fmt::join(known, ", "), e.text),
+                    nearestHint(e.text, known));
         return makeUnreadable(e.span);
     }
-    Typed value = expression(place, e);
+    Typed value = checkExpression(ctx, place, e);
     const auto* offered = value.type.words;
     const bool good = offered && std::all_of(offered->begin(), offered->end(), [&](const std::string& w) {
                           return std::find(known.begin(), known.end(), w) != known.end();
                       });
     if (!good && value.type.known)
-        diagnostics_.error(
+        ctx.diagnostics.error(
             e.span, fmt::format("'{}' is one of {}, not {}", row.name, fmt::join(known, ", "), describe(value.type)));
     return std::move(value.expr);
 }
 
-Expr Checker::roadPoint(Place& place, const Written& e, std::string_view name) {
-    Typed point = expression(place, e);
+Expr checkRoadPoint(CheckContext& ctx, Place& place, const Written& e, std::string_view name) {
+    Typed point = checkExpression(ctx, place, e);
     const Value& like = point.type.like;
     const auto length = [](Unit u) { return u == Unit::None || u == Unit::Metre; };
     if (point.type.known &&
         !(like.kind == Value::Kind::Vector && like.count == 2 && length(like.units[0]) && length(like.units[1])))
-        diagnostics_.error(e.span, fmt::format("'{}' is a place (x, z), not {}", name, describe(point.type)),
-                           "write '(-120m, 40m)'");
+        ctx.diagnostics.error(e.span, fmt::format("'{}' is a place (x, z), not {}", name, describe(point.type)),
+                              "write '(-120m, 40m)'");
     return std::move(point.expr);
 }
 
-void Checker::roadNumber(Place& place, const syntax::Setting& written, const town::RoadParameter& row, Roads& out) {
-    Expr value = expression(place, written.value, wantOf(row.unit), fmt::format("'{}'", row.name));
-    if (const auto number = fold(value, defaults_); number && !(number->num() >= row.lo && number->num() <= row.hi))
-        diagnostics_.error(written.value.span,
-                           fmt::format("'{}' is {}, but must be {}", row.name, toText(*number), row.range));
+void checkRoadNumber(CheckContext& ctx, Place& place, const syntax::Setting& written, const town::RoadParameter& row,
+                     Roads& out) {
+    Expr value = checkExpression(ctx, place, written.value, wantOf(row.unit), fmt::format("'{}'", row.name));
+    if (const auto number = fold(value, ctx.params.defaults);
+        number && !(number->num() >= row.lo && number->num() <= row.hi))
+        ctx.diagnostics.error(written.value.span,
+                              fmt::format("'{}' is {}, but must be {}", row.name, toText(*number), row.range));
     out.numbers.emplace_back(&row, std::move(value));
 }
 
-void Checker::roadSetting(Place& place, const syntax::Setting& written, Roads& out) {
+void checkRoadSetting(CheckContext& ctx, Place& place, const syntax::Setting& written, Roads& out) {
     const std::string& name = written.name.text;
     place.enter("roads." + name);
     for (const RoadField& row : fields)
         if (row.name == name) {
-            out.*row.field = expression(place, written.value, row.want, fmt::format("'{}'", name));
+            out.*row.field = checkExpression(ctx, place, written.value, row.want, fmt::format("'{}'", name));
             return;
         }
     for (const RoadField& row : points)
         if (row.name == name) {
-            out.*row.field = roadPoint(place, written.value, name);
+            out.*row.field = checkRoadPoint(ctx, place, written.value, name);
             return;
         }
     for (const RoadWord& row : words)
         if (row.name == name) {
-            out.*row.field = roadWord(place, written.value, row);
+            out.*row.field = checkRoadWord(ctx, place, written.value, row);
             return;
         }
     for (const town::RoadParameter& row : town::roadParameters())
-        if (row.name == name) return roadNumber(place, written, row, out);
+        if (row.name == name) return checkRoadNumber(ctx, place, written, row, out);
     std::vector<std::string> known;
     for (const RoadField& row : fields) known.emplace_back(row.name);
     for (const RoadField& row : points) known.emplace_back(row.name);
     for (const RoadWord& row : words) known.emplace_back(row.name);
     for (const town::RoadParameter& row : town::roadParameters()) known.emplace_back(row.name);
-    const std::string near = nearest(name, known);
-    diagnostics_.error(written.name.span, fmt::format("roads have no '{}'", name),
-                       near.empty() ? fmt::format("what they have: {}", fmt::join(known, ", ")) : near);
+    const std::string near = nearestHint(name, known);
+    ctx.diagnostics.error(written.name.span, fmt::format("roads have no '{}'", name),
+                          near.empty() ? fmt::format("what they have: {}", fmt::join(known, ", ")) : near);
 }
 
-void Checker::roads(const syntax::Ast& ast) {
+}  // namespace
+
+std::span<const RoadField> roadFields() { return fields; }
+
+std::span<const RoadField> roadPoints() { return points; }
+
+std::span<const RoadWord> roadWords() { return words; }
+
+void declareRoads(CheckContext& ctx, const syntax::RoadsDecl& decl) {
+    if (isDeclaredTwice(ctx, ctx.seen.roads, decl.name, "roads")) return;
+    Roads out;
+    out.name = decl.name.text;
+    out.span = decl.span;
+    if (decl.file) {  // `from "streets.geojson"`: what is there before roads grow
+        out.streetsSpan = decl.file->span;
+        out.streets = ctx.files.readStreets(*decl.file);
+    }
+    ctx.grammar.roads.push_back(std::move(out));
+}
+
+void checkRoads(CheckContext& ctx, const syntax::Ast& ast) {
     for (const auto& decl : ast.roads) {
-        const auto found = std::find_if(grammar_.roads.begin(), grammar_.roads.end(),
+        const auto found = std::find_if(ctx.grammar.roads.begin(), ctx.grammar.roads.end(),
                                         [&](const Roads& r) { return r.name == decl.name.text; });
-        if (found == grammar_.roads.end() || found->span.begin != decl.span.begin) continue;
+        if (found == ctx.grammar.roads.end() || found->span.begin != decl.span.begin) continue;
         std::map<std::string, SourceSpan> seen;
         Place place(Place::Where::Guard);
         for (const syntax::Setting& written : decl.settings)
-            if (!written.name.empty() && !twice(seen, written.name, "setting")) roadSetting(place, written, *found);
+            if (!written.name.empty() && !isDeclaredTwice(ctx, seen, written.name, "setting"))
+                checkRoadSetting(ctx, place, written, *found);
     }
 }
 

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 
-#include "grammar/rules/checker.h"
+#include "grammar/rules/bodies.h"
+#include "grammar/rules/declarations.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/expressions.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/words.h"
 
@@ -83,8 +85,6 @@ Operator operatorOf(std::string_view text) {
     return text == "-" ? Operator::Difference : text == "&" ? Operator::Intersection : Operator::Sum;
 }
 
-}  // namespace
-
 /// What other programs call our solids and operators.
 constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
     {"box", "did you mean 'cube'?"},      {"ball", "did you mean 'sphere'?"},
@@ -92,18 +92,9 @@ constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
     {"union", "join shapes with '+'"},    {"difference", "cut with '-'"},
     {"subtract", "cut with '-'"},         {"intersection", "keep with '&' what both share"}};
 
-std::string Checker::unknownSolid(std::string_view word) const {
-    for (const auto& [theirs, hint] : elsewhere)
-        if (theirs == word) return std::string(hint);
-    const std::string file = load_.declares ? load_.declares(std::string(word)) : std::string();
-    if (!file.empty()) return fmt::format("it is declared in {0}: write 'use \"{0}\"'", file);
-    std::vector<std::string> known = symbolNames(true);
-    for (const field::Primitive& row : field::primitives()) known.emplace_back(row.name);
-    return nearest(word, known);
-}
-
 /// One word of a choice becomes its index; a parameter that offers the same words is asked at every derivation.
-Expr Checker::choiceArgument(Place& place, const Written& e, const field::PrimitiveParameter& parameter) {
+Expr checkChoiceArgument(CheckContext& ctx, Place& place, const Written& e,
+                         const field::PrimitiveParameter& parameter) {
     const std::vector<std::string> words = split(parameter.choices, '|');
     const auto indexOf = [&](size_t i) {
         return makeConstant(e.span, plainValue(parameter.kind, static_cast<double>(i)));
@@ -111,10 +102,10 @@ Expr Checker::choiceArgument(Place& place, const Written& e, const field::Primit
     const auto word = std::find(words.begin(), words.end(), e.text);
     if (e.kind == Written::Kind::Name && word != words.end()) return indexOf(static_cast<size_t>(word - words.begin()));
     Typed chosen;
-    if (e.kind == Written::Kind::Name && params_.contains(e.text)) chosen = expression(place, e);
+    if (e.kind == Written::Kind::Name && ctx.names.params.contains(e.text)) chosen = checkExpression(ctx, place, e);
     if (!chosen.type.words || *chosen.type.words != words) {
-        diagnostics_.error(e.span, fmt::format("'{}' is one of {}", parameter.name, fmt::join(words, ", ")),
-                           nearest(e.text, words));
+        ctx.diagnostics.error(e.span, fmt::format("'{}' is one of {}", parameter.name, fmt::join(words, ", ")),
+                              nearestHint(e.text, words));
         return indexOf(0);
     }
     Expr result = indexOf(0);
@@ -127,57 +118,33 @@ Expr Checker::choiceArgument(Place& place, const Written& e, const field::Primit
 }
 
 /// The name of a file, read here; each file once.
-Expr Checker::fileArgument(const Written& e, const field::Primitive& row) {
+Expr checkFileArgument(CheckContext& ctx, const Written& e, const field::Primitive& row) {
     Value file;
     file.kind = Value::Kind::Text;
     file.text = e.text;
     if (e.kind != Written::Kind::Text) {
-        diagnostics_.error(e.span,
-                           fmt::format("'{}' takes the name of a file in quotes, not '{}'", row.name, e.span.text()),
-                           fmt::format("write '{}(\"statue.obj\")'", row.name));
+        ctx.diagnostics.error(e.span,
+                              fmt::format("'{}' takes the name of a file in quotes, not '{}'", row.name, e.span.text()),
+                              fmt::format("write '{}(\"statue.obj\")'", row.name));
         return makeConstant(e.span, file);
     }
-    file.n[0] = static_cast<double>(placeOfFile(meshFiles_, grammar_.meshes, load_.mesh, e));
+    file.n[0] = static_cast<double>(ctx.files.readMesh(e));
     return makeConstant(e.span, file);
 }
 
-/// Numbers that are known already and outside the parameter's range.
-void Checker::inRange(const Expr& expr, const field::Primitive& row, size_t index) {
-    const field::PrimitiveParameter& parameter = row.parameters[index];
-    const auto value = fold(expr, defaults_);
-    if (!value || parameter.kind == ParameterKind::Rotation || value->kind == Value::Kind::Word) return;
-    for (size_t i = 0; i < value->count; ++i)
-        if (value->n[i] < parameter.lo || value->n[i] > parameter.hi) {
-            diagnostics_.error(expr.span,
-                               fmt::format("'{}' of '{}' is {}, but must be {} … {}", parameter.name, row.name,
-                                           toText(*value), toText(plainValue(parameter.kind, parameter.lo)),
-                                           toText(plainValue(parameter.kind, parameter.hi))));
-            break;
-        }
-}
-
-/// Every parameter at its default.
-Solid Checker::solidOfRow(SourceSpan span, const field::Primitive& row) {
-    Solid solid;
-    solid.kind = Solid::Kind::Primitive;
-    solid.span = span;
-    solid.primitive = &row;
-    for (const auto& parameter : row.parameters) solid.args.push_back(makeConstant(span, fallbackOf(parameter)));
-    return solid;
-}
-
-Expr Checker::primitiveArgument(Place& place, const Written& e, const field::Primitive& row, size_t index) {
+Expr checkPrimitiveArgument(CheckContext& ctx, Place& place, const Written& e, const field::Primitive& row,
+                            size_t index) {
     const field::PrimitiveParameter& parameter = row.parameters[index];
     const std::string what = fmt::format("'{}' of '{}'", parameter.name, row.name);
     place.enter(fmt::format("{}.{}", row.name, parameter.name));
-    if (parameter.kind == ParameterKind::File) return fileArgument(e, row);
-    if (parameter.kind == ParameterKind::Choice) return choiceArgument(place, e, parameter);
-    Expr expr = expression(place, e, wantOf(parameter.kind), what);
-    inRange(expr, row, index);
+    if (parameter.kind == ParameterKind::File) return checkFileArgument(ctx, e, row);
+    if (parameter.kind == ParameterKind::Choice) return checkChoiceArgument(ctx, place, e, parameter);
+    Expr expr = checkExpression(ctx, place, e, wantOf(parameter.kind), what);
+    checkParameterRange(ctx, expr, row, index);
     return expr;
 }
 
-Solid Checker::primitiveSolid(Place& place, const Written& e, const field::Primitive& row) {
+Solid checkPrimitive(CheckContext& ctx, Place& place, const Written& e, const field::Primitive& row) {
     Solid solid = solidOfRow(e.span, row);
     std::vector<bool> given(row.parameters.size(), false);
     for (size_t i = 0; i < e.args.size(); ++i) {
@@ -195,138 +162,175 @@ Solid Checker::primitiveSolid(Place& place, const Written& e, const field::Primi
                                         : known.empty() ? fmt::format("'{}' takes no parameters", row.name)
                                                         : fmt::format("'{}' takes no more than {} parameters: {}",
                                                                       row.name, known.size(), fmt::join(known, ", "));
-            diagnostics_.error(e.args[i].span, message, nearest(name, known));
+            ctx.diagnostics.error(e.args[i].span, message, nearestHint(name, known));
             break;
         }
         if (given[index])
-            diagnostics_.error(e.args[i].span, fmt::format("'{}' is given twice", row.parameters[index].name));
+            ctx.diagnostics.error(e.args[i].span, fmt::format("'{}' is given twice", row.parameters[index].name));
         given[index] = true;
-        solid.args[index] = primitiveArgument(place, e.args[i], row, index);
+        solid.args[index] = checkPrimitiveArgument(ctx, place, e.args[i], row, index);
     }
     for (size_t i = 0; i < given.size() && e.args.empty(); ++i)
         if (row.parameters[i].kind == ParameterKind::File)
-            diagnostics_.error(e.span, fmt::format("'{}' takes the name of a file", row.name),
-                               fmt::format("write '{}(\"statue.obj\")'", row.name));
+            ctx.diagnostics.error(e.span, fmt::format("'{}' takes the name of a file", row.name),
+                                  fmt::format("write '{}(\"statue.obj\")'", row.name));
     return solid;
 }
 
-void Checker::bounded(const Solid& solid, std::string_view verb) {
-    if (solid.kind == Solid::Kind::Primitive && solid.primitive && !solid.primitive->bounded)
-        diagnostics_.error(solid.span,
-                           fmt::format("a {} has no end and can't be {}: it may only cut", solid.primitive->name, verb),
-                           fmt::format("write '- {0}' or '& {0}' after a solid", solid.primitive->name));
-}
-
 /// A solid of parts looks like the first that has a look. Terminals made of terminals can double at every step.
-Solid Checker::composed(Solid solid) {
+Solid compose(CheckContext& ctx, Solid solid) {
     for (const Solid& part : solid.parts)
         if (solid.material == none) solid.material = part.material;
     constexpr size_t most = 1000;
     if (partsOf(solid) <= most) return solid;
-    diagnostics_.error(solid.span, fmt::format("a solid has at most {} parts", most), "build it with rules");
+    ctx.diagnostics.error(solid.span, fmt::format("a solid has at most {} parts", most), "build it with rules");
     return {};
 }
 
-Solid Checker::morphSolid(Place& place, const Written& e) {
+Solid checkMorphSolid(CheckContext& ctx, Place& place, const Written& e) {
     Solid result;
     result.kind = Solid::Kind::Morph;
     result.span = e.span;
     if (e.args.size() != 3) {
-        diagnostics_.error(e.span,
-                           fmt::format("'morph' takes two solids and a share, but {} {} given", e.args.size(),
-                                       e.args.size() == 1 ? "is" : "are"),
-                           "write 'morph(sphere, cube, .5)'");
+        ctx.diagnostics.error(e.span,
+                              fmt::format("'morph' takes two solids and a share, but {} {} given", e.args.size(),
+                                          e.args.size() == 1 ? "is" : "are"),
+                              "write 'morph(sphere, cube, .5)'");
         return {};
     }
     for (size_t i = 0; i < 2; ++i) {
-        result.parts.push_back(solid(place, e.args[i]));
-        bounded(result.parts.back(), "morphed");
+        result.parts.push_back(checkSolid(ctx, place, e.args[i]));
+        expectBounded(ctx, result.parts.back(), "morphed");
     }
     place.enter("morph");
-    result.amount = expression(place, e.args[2], Want::Number, "the share of a morph");
-    if (const auto value = fold(result.amount, defaults_); value && (value->num() < 0 || value->num() > 1))
-        diagnostics_.error(e.args[2].span,
-                           fmt::format("the share of a morph is {}, but must be 0 … 1", toText(*value)));
+    result.amount = checkExpression(ctx, place, e.args[2], Want::Number, "the share of a morph");
+    if (const auto value = fold(result.amount, ctx.params.defaults); value && (value->num() < 0 || value->num() > 1))
+        ctx.diagnostics.error(e.args[2].span,
+                              fmt::format("the share of a morph is {}, but must be 0 … 1", toText(*value)));
     place.morphs = true;
-    return composed(std::move(result));
+    return compose(ctx, std::move(result));
 }
 
-Solid Checker::combination(Place& place, const Written& e) {
+Solid checkCombination(CheckContext& ctx, Place& place, const Written& e) {
     Solid result;
     result.kind = Solid::Kind::Combination;
     result.span = e.span;
     result.op = operatorOf(e.text);
-    for (const Written& part : e.args) result.parts.push_back(solid(place, part));
-    bounded(result.parts[0], "cut or added to");
-    if (result.op == Operator::Sum) bounded(result.parts[1], "added");
-    return composed(std::move(result));
+    for (const Written& part : e.args) result.parts.push_back(checkSolid(ctx, place, part));
+    expectBounded(ctx, result.parts[0], "cut or added to");
+    if (result.op == Operator::Sum) expectBounded(ctx, result.parts[1], "added");
+    return compose(ctx, std::move(result));
 }
 
-Solid Checker::terminalSolid(const syntax::Name& name) {
-    const syntax::TerminalDecl& decl = *terminalDecls_.at(name.text);
+Solid checkNamedSolid(CheckContext& ctx, Place& place, const Written& e) {
+    Solid nil;
+    nil.span = e.span;
+    if (e.text == "nil") return nil;
+    if (const field::Primitive* row = field::findPrimitive(e.text)) return checkPrimitive(ctx, place, e, *row);
+    const auto symbol = ctx.names.symbols.find(e.text);
+    if (symbol != ctx.names.symbols.end() && ctx.grammar.symbols[symbol->second].isMaterial) {
+        ctx.diagnostics.error(e.span, fmt::format("'{}' is a material, not a solid", e.text),
+                              fmt::format("write 'cube of {}' where the shape stands", e.text));
+        return nil;
+    }
+    if (symbol != ctx.names.symbols.end() && ctx.grammar.symbols[symbol->second].terminal) {
+        if (e.kind == Written::Kind::Call)
+            ctx.diagnostics.error(e.span, fmt::format("the terminal '{}' takes no parameters", e.text));
+        Solid result = terminalSolid(ctx, {e.text, e.span});
+        if (const uint32_t own = ctx.grammar.symbols[symbol->second].material; own != none) result.material = own;
+        return result;
+    }
+    if (isNonTerminal(e.text))
+        ctx.diagnostics.error(e.span,
+                              fmt::format("'{}' may still be rewritten: a solid is a primitive or a terminal", e.text));
+    else
+        failUnknown(ctx, e.span, e.text, fmt::format("unknown solid '{}'", e.text), hintForSolid(ctx, e.text));
+    return nil;
+}
+
+}  // namespace
+
+std::string hintForSolid(CheckContext& ctx, std::string_view word) {
+    for (const auto& [theirs, hint] : elsewhere)
+        if (theirs == word) return std::string(hint);
+    const std::string file = ctx.files.declaring(std::string(word));
+    if (!file.empty()) return fmt::format("it is declared in {0}: write 'use \"{0}\"'", file);
+    std::vector<std::string> known = symbolNames(ctx, true);
+    for (const field::Primitive& row : field::primitives()) known.emplace_back(row.name);
+    return nearestHint(word, known);
+}
+
+/// Numbers that are known already and outside the parameter's range.
+void checkParameterRange(CheckContext& ctx, const Expr& expr, const field::Primitive& row, size_t index) {
+    const field::PrimitiveParameter& parameter = row.parameters[index];
+    const auto value = fold(expr, ctx.params.defaults);
+    if (!value || parameter.kind == ParameterKind::Rotation || value->kind == Value::Kind::Word) return;
+    for (size_t i = 0; i < value->count; ++i)
+        if (value->n[i] < parameter.lo || value->n[i] > parameter.hi) {
+            ctx.diagnostics.error(expr.span,
+                                  fmt::format("'{}' of '{}' is {}, but must be {} … {}", parameter.name, row.name,
+                                              toText(*value), toText(plainValue(parameter.kind, parameter.lo)),
+                                              toText(plainValue(parameter.kind, parameter.hi))));
+            break;
+        }
+}
+
+/// Every parameter at its default.
+Solid solidOfRow(SourceSpan span, const field::Primitive& row) {
+    Solid solid;
+    solid.kind = Solid::Kind::Primitive;
+    solid.span = span;
+    solid.primitive = &row;
+    for (const auto& parameter : row.parameters) solid.args.push_back(makeConstant(span, fallbackOf(parameter)));
+    return solid;
+}
+
+void expectBounded(CheckContext& ctx, const Solid& solid, std::string_view verb) {
+    if (solid.kind == Solid::Kind::Primitive && solid.primitive && !solid.primitive->bounded)
+        ctx.diagnostics.error(
+            solid.span, fmt::format("a {} has no end and can't be {}: it may only cut", solid.primitive->name, verb),
+            fmt::format("write '- {0}' or '& {0}' after a solid", solid.primitive->name));
+}
+
+Solid terminalSolid(CheckContext& ctx, const syntax::Name& name) {
+    const syntax::TerminalDecl& decl = *ctx.names.terminals.at(name.text);
     Place place(Place::Where::Look);
     Solid result;
     result.kind = Solid::Kind::Primitive;
     result.span = name.span;
     result.primitive = field::findPrimitive("cube");
     if (!decl.solid) return result;
-    if (const auto known = terminalSolids_.find(name.text); known != terminalSolids_.end()) return known->second;
-    if (std::find(terminalsInWork_.begin(), terminalsInWork_.end(), name.text) != terminalsInWork_.end()) {
-        diagnostics_.error(name.span, fmt::format("the solid of '{}' is made of itself", name.text));
+    if (const auto known = ctx.solids.known.find(name.text); known != ctx.solids.known.end()) return known->second;
+    if (std::find(ctx.solids.inWork.begin(), ctx.solids.inWork.end(), name.text) != ctx.solids.inWork.end()) {
+        ctx.diagnostics.error(name.span, fmt::format("the solid of '{}' is made of itself", name.text));
         return result;
     }
-    terminalsInWork_.push_back(name.text);
-    result = solid(place, *decl.solid);
-    terminalsInWork_.pop_back();
-    terminalSolids_.emplace(name.text, result);
+    ctx.solids.inWork.push_back(name.text);
+    result = checkSolid(ctx, place, *decl.solid);
+    ctx.solids.inWork.pop_back();
+    ctx.solids.known.emplace(name.text, result);
     return result;
 }
 
-Solid Checker::namedSolid(Place& place, const Written& e) {
-    Solid nil;
-    nil.span = e.span;
-    if (e.text == "nil") return nil;
-    if (const field::Primitive* row = field::findPrimitive(e.text)) return primitiveSolid(place, e, *row);
-    const auto symbol = symbols_.find(e.text);
-    if (symbol != symbols_.end() && grammar_.symbols[symbol->second].isMaterial) {
-        diagnostics_.error(e.span, fmt::format("'{}' is a material, not a solid", e.text),
-                           fmt::format("write 'cube of {}' where the shape stands", e.text));
-        return nil;
-    }
-    if (symbol != symbols_.end() && grammar_.symbols[symbol->second].terminal) {
-        if (e.kind == Written::Kind::Call)
-            diagnostics_.error(e.span, fmt::format("the terminal '{}' takes no parameters", e.text));
-        Solid result = terminalSolid({e.text, e.span});
-        if (const uint32_t own = grammar_.symbols[symbol->second].material; own != none) result.material = own;
-        return result;
-    }
-    if (isNonTerminal(e.text))
-        diagnostics_.error(e.span,
-                           fmt::format("'{}' may still be rewritten: a solid is a primitive or a terminal", e.text));
-    else
-        unknown(e.span, e.text, fmt::format("unknown solid '{}'", e.text), unknownSolid(e.text));
-    return nil;
-}
-
-Solid Checker::solid(Place& place, const Written& e) {
+Solid checkSolid(CheckContext& ctx, Place& place, const Written& e) {
     Solid nil;
     nil.span = e.span;
     switch (e.kind) {
         case Written::Kind::Call:
-            if (e.text == "morph") return morphSolid(place, e);
-            return namedSolid(place, e);
+            if (e.text == "morph") return checkMorphSolid(ctx, place, e);
+            return checkNamedSolid(ctx, place, e);
         case Written::Kind::Name:
-            return namedSolid(place, e);
+            return checkNamedSolid(ctx, place, e);
         case Written::Kind::Binary:
-            if (e.text == "+" || e.text == "-" || e.text == "&") return combination(place, e);
+            if (e.text == "+" || e.text == "-" || e.text == "&") return checkCombination(ctx, place, e);
             break;
         case Written::Kind::Error:
             return nil;
         default:
             break;
     }
-    diagnostics_.error(e.span,
-                       fmt::format("a solid is a primitive, a terminal or 'morph(…)', not '{}'", e.span.text()));
+    ctx.diagnostics.error(e.span,
+                          fmt::format("a solid is a primitive, a terminal or 'morph(…)', not '{}'", e.span.text()));
     return nil;
 }
 

@@ -1,0 +1,102 @@
+// What is expected of expressions: kinds and units, and what is said where they aren't met.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "grammar/rules/arithmetic_warnings.h"
+#include "grammar/rules/evaluate.h"
+#include "grammar/rules/expressions.h"
+#include "grammar/rules/functions.h"
+#include "grammar/rules/make.h"
+
+namespace sgm::rules {
+
+using Written = syntax::Expr;
+
+namespace {
+
+bool isZero(const Expr& e) {
+    return e.kind == Expr::Kind::Constant && e.value.kind == Value::Kind::Number && e.value.num() == 0 &&
+           e.value.units[0] == Unit::None;
+}
+
+}  // namespace
+
+Typed fail(CheckContext& ctx, SourceSpan span, std::string message, std::string hint) {
+    ctx.diagnostics.error(span, std::move(message), std::move(hint));
+    Typed result;
+    result.expr.span = span;
+    result.type = Type::unknown();
+    return result;
+}
+
+Typed failUnknown(CheckContext& ctx, SourceSpan span, const std::string& word, std::string message, std::string hint) {
+    if (!ctx.suppressed.covers(word)) return fail(ctx, span, std::move(message), std::move(hint));
+    return {makeConstant(span, {}), Type::unknown()};
+}
+
+/// `kind` over `args`, folded where everything is constant; its type is that of the samples.
+Typed makeApplied(CheckContext& ctx, Expr::Kind kind, Fn fn, SourceSpan span, std::vector<Typed> args) {
+    Typed result;
+    result.expr.kind = kind;
+    result.expr.span = span;
+    result.expr.index = static_cast<uint32_t>(fn);
+    std::vector<Value> samples;
+    for (Typed& arg : args) {
+        result.type.known = result.type.known && arg.type.known;
+        samples.push_back(arg.type.like);
+        result.expr.args.push_back(std::move(arg.expr));
+    }
+    if (!result.type.known) return {std::move(result.expr), Type::unknown()};
+    result.type = Type::of(applyFunction(fn, samples));
+    if (auto value = fold(result.expr, {})) {
+        if (auto suspect = findDoubtWithin(result.expr, {}))
+            ctx.diagnostics.warning(suspect->span, std::move(suspect->message), std::move(suspect->hint));
+        return makeTyped(span, std::move(*value));
+    }
+    return result;
+}
+
+bool expectType(CheckContext& ctx, const Typed& value, Want want, std::string_view what, const Written* written) {
+    if (fits(value.type, want)) return true;
+    const bool angle = want == Want::Angle || want == Want::Angles;
+    if (angle && isZero(value.expr)) return true;
+    std::string hint;
+    if (written && written->kind == Written::Kind::Number) {
+        const std::string digits = fmt::format("{:.12g}", written->number);
+        if (angle) hint = fmt::format("write '{}deg'", digits);
+        if (want == Want::Length && value.type.like.units[0] == Unit::Share)
+            hint = fmt::format("write a length such as '{}m'", digits);
+    }
+    if (want == Want::Color && written && written->kind == Written::Kind::Text && written->text.starts_with('#'))
+        hint = "leave the quotes out";
+    if (want == Want::Count && value.type.like.kind == Value::Kind::Number && value.type.like.units[0] == Unit::None)
+        hint = "write 'round(…)' around it";
+    const std::string got = want == Want::Count && !hint.empty() ? "may have a fraction" : "is " + describe(value.type);
+    ctx.diagnostics.error(value.expr.span, fmt::format("{} takes {}, but this {}", what, describe(want), got),
+                          std::move(hint));
+    return false;
+}
+
+bool sameType(CheckContext& ctx, const Typed& a, const Typed& b, std::string_view verb) {
+    if (!a.type.known || !b.type.known) return true;
+    const auto say = [&](const Typed& at, std::string message) {
+        ctx.diagnostics.error(at.expr.span, std::move(message));
+        return false;
+    };
+    if (!a.type.numeric()) return say(a, fmt::format("can't {} {}", verb, describe(a.type)));
+    if (!b.type.numeric()) return say(b, fmt::format("can't {} {}", verb, describe(b.type)));
+    if (compatible(a.type, b.type)) return true;
+    const Unit ua = a.type.like.units[0], ub = b.type.like.units[0];
+    const bool measures = (ua == Unit::Share && ub == Unit::Metre) || (ua == Unit::Metre && ub == Unit::Share);
+    ctx.diagnostics.error(syntax::join(a.expr.span, b.expr.span),
+                          fmt::format("can't {} {} and {}", verb, describe(a.type), describe(b.type)),
+                          measures
+                              ? "they meet in 'size', 'move' and the sizes of a 'split'; elsewhere write 'scope.x', "
+                                "'scope.y' or 'scope.z' for 100%"
+                              : "");
+    return false;
+}
+
+}  // namespace sgm::rules

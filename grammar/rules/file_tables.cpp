@@ -1,0 +1,54 @@
+#include "grammar/rules/file_tables.h"
+
+namespace sgm::rules {
+namespace {
+
+/// What `load`, one of the loader's functions, makes of the file that `name` (a text) stands for; null after an
+/// error.
+template <class Load>
+auto readFile(syntax::Diagnostics& diagnostics, const Load& load, const syntax::Expr& name) {
+    std::string why = "no files can be read here";
+    auto file = load ? load(name.text, *name.span.source, why) : nullptr;
+    if (!file) diagnostics.error(name.span, "can't use \"" + name.text + "\": " + why);
+    return file;
+}
+
+/// The place in `all` of the file that `name` stands for, which `read` reads the first time.
+template <class Places, class Pointer, class Read>
+size_t placeOfFile(Places& known, std::vector<Pointer>& all, const syntax::Expr& name, const Read& read) {
+    const auto [at, fresh] = known.try_emplace({name.span.source, name.text}, all.size());
+    if (fresh) all.push_back(read());
+    return at->second;
+}
+
+}  // namespace
+
+std::optional<uint32_t> FileTables::readOutlines(const syntax::Expr& name) {
+    const size_t place =
+        placeOfFile(outlines_, grammar_.outlines, name, [&] { return readFile(diagnostics_, load_.outlines, name); });
+    return grammar_.outlines[place] ? std::optional(static_cast<uint32_t>(place)) : std::nullopt;
+}
+
+std::optional<uint32_t> FileTables::readImage(const syntax::Expr& name) {
+    const size_t place =
+        placeOfFile(images_, grammar_.images, name, [&] { return readFile(diagnostics_, load_.image, name); });
+    return grammar_.images[place] ? std::optional(static_cast<uint32_t>(place)) : std::nullopt;
+}
+
+size_t FileTables::readMesh(const syntax::Expr& name) {
+    return placeOfFile(meshes_, grammar_.meshes, name, [&] { return readFile(diagnostics_, load_.mesh, name); });
+}
+
+town::RasterPtr FileTables::readPicture(const syntax::Expr& name) {
+    return readFile(diagnostics_, load_.picture, name);
+}
+
+std::shared_ptr<const town::OwnStreets> FileTables::readStreets(const syntax::Expr& name) {
+    return readFile(diagnostics_, load_.streets, name);
+}
+
+std::string FileTables::declaring(const std::string& word) const {
+    return load_.declares ? load_.declares(word) : std::string();
+}
+
+}  // namespace sgm::rules
