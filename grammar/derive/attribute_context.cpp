@@ -34,7 +34,7 @@ void AttributeContext::setFootprint(plan::Footprint footprint, syntax::SourceSpa
 const rules::Grammar& AttributeContext::grammar() const { return *place.builder->derivation().grammar; }
 
 void AttributeContext::fail(const std::string& what, syntax::SourceSpan span) const {
-    place.builder->fail(Error::Kind::Input, what, span);
+    place.builder->monitor().fail(Error::Kind::Input, what, span);
 }
 
 }  // namespace sgm::derive

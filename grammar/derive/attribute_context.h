@@ -19,16 +19,20 @@ struct PlacedTexture {
     auto operator<=>(const PlacedTexture&) const = default;
 };
 
-/// What an element's attributes say of its newcomer, or of the matched shape where no shape stands beside them.
-struct EvaluatedAttributes {
-    Scope scope;    ///< size and axes; the centre comes from the mating
-    Vec3d moved_m;  ///< added to where it is placed, in the object's frame
-    double overlap = 0, amount = 0.5, blend_m = 0;
+/// How a newcomer looks.
+struct EvaluatedLook {
     std::optional<Vec3f> color;            ///< linear RGB
     const rules::Expr* colorBy = nullptr;  ///< what gave the colour
     std::optional<float> rough, metal;
     std::optional<PlacedTexture> texture;
     std::optional<uint32_t> material;  ///< what `of` names, index into Grammar::materials or none
+};
+
+/// What an element's attributes say of its newcomer, or of the matched shape where no shape stands beside them.
+struct EvaluatedAttributes : EvaluatedLook {
+    Scope scope;    ///< size and axes; the centre comes from the mating
+    Vec3d moved_m;  ///< added to where it is placed, in the object's frame
+    double overlap = 0, amount = 0.5, blend_m = 0;
     struct Span {
         Vec3d from_m, to_m;  ///< about the centre of the scope it is measured against, in its axes
         syntax::SourceSpan at;

@@ -1,8 +1,8 @@
-// Control in the bodies of rules: siblings, for, while, when, choose.
+// Control in the bodies of rules: siblings, for, while, when, choose; and what fills a shape.
 #include <bit>
 #include <cmath>
 
-#include "grammar/derive/interpreter.h"
+#include "grammar/derive/parts_context.h"
 #include "modeler/core/random.h"
 
 namespace sgm::derive {
@@ -88,15 +88,15 @@ bool Interpreter::runElement(const Element& e, Frame& frame, Target& target, uin
             Place place = frame.place;
             place.key = combine(combine(frame.key, hashText(e.label)), loop);
             locals_[e.local] = drawnOnce(*e.over, place);
-            return !builder_.failed();
+            return !builder_.monitor().failed();
         }
         case Element::Kind::Shape:
             break;
     }
-    const uint64_t key = combine(combine(frame.key, factsOf(e).hash), loop);
+    const uint64_t key = combine(combine(frame.key, maker_.factsOf(e).hash), loop);
     if (e.content.empty()) {
         annotate(e, frame, key);
-        return !builder_.failed();
+        return !builder_.monitor().failed();
     }
     const bool nil = e.content.solid() && e.content.solid()->kind == rules::Solid::Kind::Nil;
     if (nil && e.op != rules::Operator::Intersection) return true;
@@ -110,7 +110,7 @@ bool Interpreter::runFor(const Element& e, Frame& frame, Target& target, uint64_
         const uint64_t key = turnKey(loop, value.num());
         locals_[e.local] = std::move(value);
         frame.place.key = combine(combine(frame.key, hashText("for")), key);
-        if (!builder_.work()) return false;
+        if (!builder_.monitor().work()) return false;
         return (e.guard && !holds(*e.guard, frame.place)) || runInner(*e.body, frame, target, key, followed);
     };
     if (e.over->kind != rules::Expr::Kind::Range) {
@@ -132,7 +132,7 @@ bool Interpreter::runWhile(const Element& e, Frame& frame, Target& target, uint6
     for (uint64_t turn = 1;; ++turn) {
         const uint64_t key = turnKey(loop, static_cast<double>(turn));
         frame.place.key = combine(combine(frame.key, hashText("while")), key);
-        if (!builder_.work()) return false;
+        if (!builder_.monitor().work()) return false;
         if (!e.guard || !holds(*e.guard, frame.place)) return true;
         if (!runInner(*e.body, frame, target, key, followed)) return false;
     }
@@ -143,14 +143,46 @@ bool Interpreter::runChoose(const Element& e, Frame& frame, Target& target, uint
     frame.place.key = key;
     std::vector<double> weights;
     for (const rules::Choice& c : e.choices) weights.push_back(number(c.weight, frame.place));
-    if (weights.size() > 1) builder_.noteChance();
+    if (weights.size() > 1) builder_.monitor().noteChance();
     const uint64_t draw = combine(hashText("choose"), e.ordinal);
     const uint32_t at = e.series == rules::Series::None
                             ? drawByWeight(weights, combine(key, hashText("weight")))
                             : drawInSeries(weights, e.series, e.local, draw, frame.place, e.span);
     if (at != none) return runInner(*e.choices[at].body, frame, target, loop, followed);
-    builder_.fail(Error::Kind::Input, std::string(allZero), e.span);
+    builder_.monitor().fail(Error::Kind::Input, std::string(allZero), e.span);
     return false;
+}
+
+/// What stands inside a shape: the non-terminal that `: Name` wraps, the shapes of a group, or the parts of a content
+/// operation.
+bool Interpreter::fill(const Element& e, ShapeId id, const Frame& frame) {
+    const Shape& s = builder_.tree().shapes[id];
+    if (e.content.group() || e.content.parts()) {
+        RunState state;
+        state.root = state.last = id;
+        Frame inner = frame;
+        inner.matched = inner.node = id;
+        inner.key = s.key;
+        inner.state = &state;
+        inner.wholeContent = false;
+        inner.place.scope = s.scope;
+        inner.place.host = id;
+        inner.place.valuesAt = s.valuesAt;
+        if (const rules::Body* group = e.content.group()) return runBody(*group, inner, 0);
+        PartsContext parts(*this, inner);
+        return e.content.parts()->operation->run(parts, *e.content.parts());
+    }
+    const rules::SymbolId symbol = e.content.symbol();
+    if (e.live == rules::none || symbol == rules::none || grammar_.symbols[symbol].terminal) return true;
+    Shape inner;
+    inner.key = combine(s.key, hashText("content"));
+    inner.parent = id;
+    inner.symbol = symbol;
+    inner.live = true;
+    inner.scope = s.scope;
+    inner.span = e.span;
+    inner.label = maker_.labelIndex(grammar_.symbols[inner.symbol].name);
+    return builder_.add(inner) != none;
 }
 
 }  // namespace sgm::derive

@@ -14,10 +14,6 @@ uint64_t bytes(const std::vector<T>& v) {
     return v.capacity() * sizeof(T);
 }
 
-constexpr const char* stopsGrowth = "let the rule end ('when', 'repeat'), ask for fewer, or allow more by --max-shapes";
-
-bool isDirected(const Joint& j) { return j.direction != Vec3d{}; }
-
 }  // namespace
 
 uint64_t Derivation::memory() const {
@@ -26,21 +22,11 @@ uint64_t Derivation::memory() const {
 }
 
 TreeBuilder::TreeBuilder(Derivation& derivation, const Budget& budget, Progress* progress)
-    : derivation_(derivation), budget_(budget), progress_(progress), counts_(derivation.grammar->symbols.size()) {}
-
-void TreeBuilder::fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span, const char* fix) {
-    if (failure_) return;
-    const auto& grammar = *derivation_.grammar;
-    std::string text = syntax::placeText(span) + what;
-    text += rule_ == none ? std::string(" in the start") : fmt::format(" in rule '{}'", grammar.rules[rule_].name);
-    if (shape_ < tree().shapes.size()) text += fmt::format(" at {}", tree().path(shape_));
-    text += fmt::format(", seed {}", derivation_.seed);
-    for (const Warning& r : derivation_.warnings)  // what was remarked in the text that fails is the cause as a rule
-        if (r.span.source == span.source && r.span.begin >= span.begin && r.span.end <= span.end)
-            text += "; " + r.message;
-    if (*fix) text += fmt::format("; {}", fix);
-    failure_ = Error{kind, std::move(text)};
-}
+    : derivation_(derivation),
+      monitor_(derivation, joints_, budget, progress),
+      recorder_(derivation, monitor_),
+      bonds_(derivation.tree, joints_, monitor_, recorder_),
+      counts_(derivation.grammar->symbols.size()) {}
 
 void TreeBuilder::warn(syntax::SourceSpan span, std::string message, std::string hint) {
     constexpr size_t most = 300;
@@ -51,31 +37,6 @@ void TreeBuilder::warn(syntax::SourceSpan span, std::string message, std::string
     };
     if (std::none_of(warnings.begin(), warnings.end(), isHere))
         warnings.push_back({span, std::move(message), std::move(hint)});
-}
-
-syntax::SourceSpan TreeBuilder::here() const {
-    if (rule_ != none) return derivation_.grammar->rules[rule_].span;
-    return derivation_.tree.shapes.empty() ? syntax::SourceSpan{} : derivation_.tree.shapes[0].span;
-}
-
-void TreeBuilder::poll() {
-    const syntax::SourceSpan span = here();
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
-    if (cancelled(progress_))
-        failure_ = Error{Error::Kind::Cancelled, "cancelled while deriving"};
-    else if (spent.count() > budget_.seconds)
-        fail(Error::Kind::Budget, fmt::format("the budget of {:g} seconds is spent", budget_.seconds), span,
-             "--max-seconds allows more");
-    else if (derivation_.memory() + joints_.memory() > budget_.memory_bytes)
-        fail(Error::Kind::Budget, fmt::format("the budget of {} MiB of memory is spent", budget_.memory_bytes >> 20),
-             span);
-}
-
-bool TreeBuilder::work() {
-    if (++work_ % 1024 == 0) poll();
-    if (work_ > 4 * budget_.shapes + 4096 && !failure_)
-        fail(Error::Kind::Budget, fmt::format("{} turns were made and there is no end", work_), here(), stopsGrowth);
-    return !failure_;
 }
 
 /// Joins a new shape to its parent's children: as the last one, or before another. The parent knows it under `id`
@@ -104,19 +65,19 @@ ShapeId TreeBuilder::add(Shape shape, ShapeId before) {
     if (isReplaying()) return replayShape(shape);
     ShapeTree& t = tree();
     const auto id = static_cast<ShapeId>(t.shapes.size());
-    if (!work()) return none;
-    if (id >= budget_.shapes) {
-        fail(Error::Kind::Budget, fmt::format("the budget of {} shapes is spent", budget_.shapes), shape.span,
-             stopsGrowth);
+    if (!monitor_.work()) return none;
+    if (id >= monitor_.budget().shapes) {
+        monitor_.failOfGrowth(fmt::format("the budget of {} shapes is spent", monitor_.budget().shapes), shape.span);
         return none;
     }
-    shape.madeBy = step_;
+    shape.madeBy = monitor_.step();
     if (shape.parent != none) {
         Shape& parent = t.shapes[shape.parent];
         shape.depth = parent.depth + 1;
-        if (shape.depth > budget_.depth) {
-            fail(Error::Kind::Budget, fmt::format("the budget of {} levels of depth is spent", budget_.depth),
-                 shape.span, "a rule that makes itself again needs an end, such as 'when scope.x > .1m'");
+        if (shape.depth > monitor_.budget().depth) {
+            monitor_.fail(Error::Kind::Budget,
+                          fmt::format("the budget of {} levels of depth is spent", monitor_.budget().depth), shape.span,
+                          "a rule that makes itself again needs an end, such as 'when scope.x > .1m'");
             return none;
         }
         if (shape.extras != none && !t.extras[shape.extras].values.empty())
@@ -140,13 +101,13 @@ ShapeId TreeBuilder::add(Shape shape, ShapeId before) {
     if (shape.symbol != rules::none) ++counts_[shape.symbol];
     if (shape.live) live_.push_back(id);
     t.shapes.push_back(shape);
-    if (progress_) progress_->tick();
+    if (Progress* progress = monitor_.progress()) progress->tick();
     return id;
 }
 
 Extras& TreeBuilder::extras(ShapeId id) {
-    if (isReplaying()) diverge();
-    if (recording_) recording_->annotated(id);
+    if (isReplaying()) monitor_.diverge();
+    if (recording()) recording()->made().annotated(id);
     Shape& s = tree().shapes[id];
     if (s.extras == none) {
         s.extras = static_cast<uint32_t>(tree().extras.size());
@@ -162,12 +123,12 @@ uint32_t TreeBuilder::beginStep(Step step) {
         steps.push_back(step);
         return static_cast<uint32_t>(steps.size() - 1);
     }
-    const uint32_t index = recording_->nextStep();
+    const uint32_t index = recording()->nextStep();
     const auto told = [](const Step& s) {
         return std::tie(s.rule, s.shape, s.generation, s.chainIndex, s.closing, s.firstMade);
     };
     if (index != none && told(steps[index]) == told(step)) return index;
-    diverge();
+    monitor_.diverge();
     return 0;
 }
 
@@ -175,7 +136,7 @@ void TreeBuilder::endStep(uint32_t index, bool morphic) {
     Step& step = derivation_.steps[index];
     const uint32_t made = nextShape() - step.firstMade;
     if (isReplaying()) {
-        if (made != step.madeCount || morphic != step.morphic) diverge();
+        if (made != step.madeCount || morphic != step.morphic) monitor_.diverge();
         return;
     }
     step.madeCount = made;
@@ -184,21 +145,7 @@ void TreeBuilder::endStep(uint32_t index, bool morphic) {
 }
 
 ShapeId TreeBuilder::nextShape() const {
-    return isReplaying() ? recording_->shapesMade() : static_cast<ShapeId>(derivation_.tree.shapes.size());
-}
-
-uint32_t& TreeBuilder::firstBondAt(ShapeId id, uint32_t joint) {
-    const Shape& s = tree().shapes[id];
-    return joint < firstNamedJoint ? tree().bodies[s.body].bond[joint]
-                                   : tree().namedBonds[s.firstNamedBond + joint - firstNamedJoint];
-}
-
-void TreeBuilder::linkBond(uint32_t index, int end) {
-    Bond& b = tree().bonds[index];
-    Body& body = tree().bodies[tree().shapes[b.shape[end]].body];
-    b.next[end] = std::exchange(body.firstBond, index);
-    uint32_t& first = firstBondAt(b.shape[end], b.joint[end]);
-    if (first == none || (b.directed && !tree().bonds[first].directed)) first = index;
+    return isReplaying() ? recording()->shapesMade() : static_cast<ShapeId>(derivation_.tree.shapes.size());
 }
 
 const Surroundings& TreeBuilder::surroundings() {
@@ -206,62 +153,10 @@ const Surroundings& TreeBuilder::surroundings() {
     return *surroundings_;
 }
 
-void TreeBuilder::bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
-    if (isReplaying())
-        replayBond(a, jointA, b, jointB);
-    else
-        join(a, jointA, b, jointB);
-}
-
-void TreeBuilder::join(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
-    const Joint ja = tree().joint(a, jointA), jb = tree().joint(b, jointB);
-    const auto index = static_cast<uint32_t>(tree().bonds.size());
-    tree().bonds.push_back(
-        {{a, b}, {jointA, jointB}, jb.point - ja.point, isDirected(ja) && isDirected(jb), {none, none}});
-    linkBond(index, 0);
-    linkBond(index, 1);
-    if (isDirected(ja) && !isDirected(jb)) {
-        const uint32_t back = opposedFace(tree().shapes[b].scope.axes, ja.direction);
-        if (dot(tree().joint(b, back).direction, ja.direction) < -0.999 && firstBondAt(b, back) == none)
-            firstBondAt(b, back) = index;
-    }
-}
-
-void TreeBuilder::bondCoincidentFaces(ShapeId id) {
-    if (!ownsBody(id)) return;
-    if (isReplaying()) return replayContacts(id);
-    meeting_.clear();
-    for (uint32_t j = 0; j < tree().jointCount(id); ++j)
-        if (const Joint joint = tree().joint(id, j); isDirected(joint))
-            meeting_.push_back({j, joint, joints_.expect(joint)});
-    for (const auto& [j, joint, spot] : meeting_) {
-        const auto partner = joints_.add(tree(), {id, j}, joint, spot);
-        if (partner && recording_) recording_->met({id, j}, *partner);
-        if (!partner || tree().closed(id, j) || tree().closed(partner->shape, partner->joint)) continue;
-        if (tree().shapes[partner->shape].body == tree().shapes[id].body) continue;
-        if (recording_) recording_->bondedByContact(tree().bonds.size());
-        join(partner->shape, partner->joint, id, j);
-    }
-}
-
-/// The bonds of a vanished place free its partners' joints.
-void TreeBuilder::release(ShapeId id) {
-    ShapeTree& t = tree();
-    const Body& body = t.bodies[t.shapes[id].body];
-    if (body.owner != id) return;
-    for (uint32_t i = body.firstBond; i != none;) {
-        const Bond& b = t.bonds[i];
-        const int mine = t.bodies[t.shapes[b.shape[0]].body].owner == id ? 0 : 1;
-        uint32_t& first = firstBondAt(b.shape[1 - mine], b.joint[1 - mine]);
-        if (first == i) first = none;
-        i = b.next[mine];
-    }
-}
-
 void TreeBuilder::clearContent(ShapeId id) {
     if (isReplaying()) return;
     ShapeTree& t = tree();
-    if (recording_ && t.shapes[id].solid != none) recording_->cleared(id);
+    if (recording() && t.shapes[id].solid != none) recording()->made().cleared(id);
     t.shapes[id].solid = none;
     if (t.shapes[id].firstChild == none) return;
     for (ShapeId s = t.next(id, id); s != none; s = t.next(s, id)) kill(s);
@@ -275,7 +170,7 @@ void TreeBuilder::kill(ShapeId id) {
     dead.live = false;
     ++deadCount_;
     if (dead.symbol != rules::none) --counts_[dead.symbol];
-    release(id);
+    bonds_.release(id);
 }
 
 /// Takes away what stands elsewhere and comes from shapes that are gone.
@@ -293,14 +188,17 @@ void TreeBuilder::killBound() {
     }
 }
 
-std::vector<uint32_t> TreeBuilder::sweepShapes() {
-    ShapeTree& t = tree();
+namespace {
+
+/// Removes dead shapes; gives the new ids by old ones.
+std::vector<uint32_t> sweepShapes(Derivation& derivation) {
+    ShapeTree& t = derivation.tree;
     std::vector<uint32_t> newId(t.shapes.size(), none);
     uint32_t kept = 0;
     for (ShapeId s = 0; s < t.shapes.size(); ++s)
         if (!t.shapes[s].dead) newId[s] = kept++;
     const auto renamed = [&](ShapeId s) { return s == none ? none : newId[s]; };
-    for (Step& step : derivation_.steps) {
+    for (Step& step : derivation.steps) {
         // The shapes of a step stay together; those that are left begin at the first one kept.
         uint32_t left = 0, first = none;
         for (uint32_t i = 0; i < step.madeCount; ++i)
@@ -320,9 +218,10 @@ std::vector<uint32_t> TreeBuilder::sweepShapes() {
     return newId;
 }
 
-void TreeBuilder::sweepBonds(std::vector<Bond> old, const std::vector<uint32_t>& newId,
-                             const std::vector<uint32_t>& ownerOf) {
-    ShapeTree& t = tree();
+/// Bonds what is left of shapes that were bonded.
+void sweepBonds(ShapeTree& t, BondBuilder& bonds, const std::vector<uint32_t>& newId,
+                const std::vector<uint32_t>& ownerOf) {
+    const std::vector<Bond> old = std::exchange(t.bonds, {});
     for (Body& body : t.bodies) body = Body{};
     for (ShapeId s = 0; s < t.shapes.size(); ++s) {
         ShapeId& owner = t.bodies[t.shapes[s].body].owner;
@@ -336,12 +235,11 @@ void TreeBuilder::sweepBonds(std::vector<Bond> old, const std::vector<uint32_t>&
             end[k] = newId[b.shape[k]];
             if (end[k] == none && b.joint[k] < firstNamedJoint) end[k] = newId[ownerOf[b.shape[k]]];
         }
-        if (end[0] != none && end[1] != none) bond(end[0], b.joint[0], end[1], b.joint[1]);
+        if (end[0] != none && end[1] != none) bonds.bond(end[0], b.joint[0], end[1], b.joint[1]);
     }
 }
 
-void TreeBuilder::numberOccurrences() {
-    ShapeTree& t = tree();
+void numberOccurrences(ShapeTree& t) {
     std::vector<uint32_t> seen(t.labels.size(), 0), touched;
     for (const Shape& parent : t.shapes) {
         for (ShapeId c = parent.firstChild; c != none; c = t.shapes[c].nextSibling) {
@@ -355,15 +253,17 @@ void TreeBuilder::numberOccurrences() {
     t.shapes[0].occurrence = 1;
 }
 
+}  // namespace
+
 void TreeBuilder::finish() {
     if (deadCount_ > 0) {
         std::vector<uint32_t> ownerOf;
         for (const Shape& s : tree().shapes) ownerOf.push_back(tree().bodies[s.body].owner);
-        const auto newId = sweepShapes();
-        sweepBonds(std::exchange(tree().bonds, {}), newId, ownerOf);
-        if (recording_) recording_->unfit();
+        const auto newId = sweepShapes(derivation_);
+        sweepBonds(tree(), bonds_, newId, ownerOf);
+        if (recording()) recording()->unfit();
     }
-    numberOccurrences();
+    numberOccurrences(tree());
     finishReliefs(derivation_);
 }
 

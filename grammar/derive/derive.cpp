@@ -55,7 +55,7 @@ Result<Derivation> derive(std::shared_ptr<const Grammar> grammar, const Options&
         rewriter.along(*way);
     else
         rewriter.automatic();
-    if (builder.failed()) return builder.takeFailure();
+    if (builder.monitor().failed()) return builder.monitor().takeFailure();
     builder.finish();
     return d;
 }

@@ -25,7 +25,7 @@ using rules::Value;
 using Kind = Expr::Kind;
 
 uint64_t drawKey(const Expr& range, const Place& place, uint64_t component) {
-    if (place.builder) place.builder->noteChance();
+    if (place.builder) place.builder->monitor().noteChance();
     return combine(combine(place.key, range.draw), component);
 }
 
@@ -64,9 +64,9 @@ const Value* stored(const Expr& expr, const Place& place) {
             if (Recording* r = noting(place)) r->readsValues();
             if (const Value* value = inherited(expr.value.text, place)) return value;
             if (place.builder)
-                place.builder->fail(Error::Kind::Input,
-                                    "neither this shape nor any above it sets '" + expr.value.text + "' by 'with'",
-                                    expr.span, "set it where a shape above is made, or declare a 'param'");
+                place.builder->monitor().fail(
+                    Error::Kind::Input, "neither this shape nor any above it sets '" + expr.value.text + "' by 'with'",
+                    expr.span, "set it where a shape above is made, or declare a 'param'");
             return &expr.value;
         default:
             return nullptr;
@@ -90,7 +90,7 @@ const Expr& chosen(const Expr& expr, const Place& place) {
         series == rules::Series::None
             ? drawByWeight(weights, drawKey(expr, place, 0))
             : drawInSeries(weights, series, static_cast<uint32_t>(expr.value.num()), expr.draw, place, expr.span);
-    if (at == none && place.builder) place.builder->fail(Error::Kind::Input, std::string(allZero), expr.span);
+    if (at == none && place.builder) place.builder->monitor().fail(Error::Kind::Input, std::string(allZero), expr.span);
     return expr.args[2 * (at == none ? 0 : at) + 1];
 }
 
@@ -123,7 +123,7 @@ Value ofMap(const Expr& expr, const Place& place) {
     if (!place.builder) return {};
     const rules::Map& map = place.builder->derivation().grammar->maps[expr.index];
     if (place.builder->derivation().isPlaced) {
-        place.builder->fail(
+        place.builder->monitor().fail(
             Error::Kind::Input,
             fmt::format("the map '{}' is of the ground, and an object that 'place' puts stands on none: "
                         "hand its value down as a parameter, 'place … {{ share = {} }}'",
@@ -210,7 +210,7 @@ Value called(const Expr& expr, const Place& place) {
         if (auto suspect = rules::findArithmeticWarning(expr, args)) {
             const bool divides = fn == Fn::Div || fn == Fn::Rem;
             if (divides && rules::versionOf(*place.builder->derivation().grammar, suspect->span) >= 2)
-                place.builder->fail(Error::Kind::Input, suspect->message, suspect->span);
+                place.builder->monitor().fail(Error::Kind::Input, suspect->message, suspect->span);
             else
                 place.builder->warn(suspect->span, std::move(suspect->message), std::move(suspect->hint));
         }

@@ -130,39 +130,39 @@ std::vector<Face> linesOfRoof(const Scope& scope, const Footprints& footprints, 
 
 bool hasRoof(const SolidValue* solid) { return solid && solid->primitive && field::isRoof(*solid->primitive); }
 
-}  // namespace
-
 /// The host where it is a roof, else the roofs that stand in what the operators join so far; a failure where there is
 /// none.
-std::vector<ShapeId> Interpreter::roofsOf(ShapeId host, ShapeId node, const rules::JointChoice& at) {
-    const ShapeTree& tree = builder_.tree();
+std::vector<ShapeId> roofsOf(TreeBuilder& builder, ShapeId host, ShapeId node, const rules::JointChoice& at) {
+    const ShapeTree& tree = builder.tree();
     if (hasRoof(tree.solidOf(host))) return {host};
-    if (builder_.recording()) builder_.recording()->readsWorld();
+    if (builder.recording()) builder.recording()->readsWorld();
     std::vector<ShapeId> roofs;
     for (ShapeId s = node; s != none; s = tree.next(s, node))
         if (hasRoof(tree.solidOf(s)) && tree.shapes[s].op != rules::Operator::Difference) roofs.push_back(s);
     if (roofs.empty())
-        builder_.fail(Error::Kind::Input,
-                      "no roof stands here whose faces 'each' could name: write it behind the roof, as in "
-                      "'hipRoof(35deg) + Dormer at each(slope)'",
-                      at.span);
+        builder.monitor().fail(Error::Kind::Input,
+                               "no roof stands here whose faces 'each' could name: write it behind the roof, as in "
+                               "'hipRoof(35deg) + Dormer at each(slope)'",
+                               at.span);
     return roofs;
 }
+
+}  // namespace
 
 bool Interpreter::placeOnFaces(ShapeId host, const rules::Element& e, Frame& frame, const Target& target,
                                uint64_t key) {
     const FaceChoice& choice = *e.at->each;
     const bool ofBlock = choice.kind == Kind::Side || choice.kind == Kind::Corner;
     std::vector<ShapeId> hosts{host};
-    if (!ofBlock) hosts = roofsOf(host, target.node, *e.at);
+    if (!ofBlock) hosts = roofsOf(builder_, host, target.node, *e.at);
     for (const ShapeId at : hosts) {
         const Scope scope = builder_.tree().shapes[at].scope;
         const Footprints& footprints = builder_.tree().footprints;
         if (isLine(choice.kind) && footprintOf(scope, footprints).edgeCount() > field::mostRoofLineEdges) {
-            builder_.fail(Error::Kind::Input,
-                          fmt::format("ridges, hips and valleys are known of roofs over at most {} edges",
-                                      field::mostRoofLineEdges),
-                          e.at->span);
+            builder_.monitor().fail(Error::Kind::Input,
+                                    fmt::format("ridges, hips and valleys are known of roofs over at most {} edges",
+                                                field::mostRoofLineEdges),
+                                    e.at->span);
             return false;
         }
         const std::vector<Face> faces =
@@ -178,10 +178,10 @@ bool Interpreter::placeOnFaces(ShapeId host, const rules::Element& e, Frame& fra
             attachment.place.scope = face.scope;
             attachment.place.valuesAt = builder_.tree().shapes[at].valuesAt;
             attachment.place.host = at;
-            if (!builder_.work() || !join(e, frame, target, attachment)) return false;
+            if (!builder_.monitor().work() || !join(e, frame, target, attachment)) return false;
         }
     }
-    return !builder_.failed();
+    return !builder_.monitor().failed();
 }
 
 }  // namespace sgm::derive

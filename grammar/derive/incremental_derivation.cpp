@@ -13,7 +13,7 @@ struct IncrementalDerivation::State {
           derivation(std::move(empty)),
           builder(derivation, options.budget, progress),
           rewriter(builder, derivation.params) {
-        builder.record(&recording);
+        builder.recorder().record(&recording);
     }
 
     Options options;
@@ -31,7 +31,7 @@ IncrementalDerivation& IncrementalDerivation::operator=(IncrementalDerivation&&)
 
 const Derivation& IncrementalDerivation::derivation() const { return state_->derivation; }
 
-std::span<const ShapeId> IncrementalDerivation::changed() const { return state_->recording.changed(); }
+std::span<const ShapeId> IncrementalDerivation::changed() const { return state_->recording.changes().shapes(); }
 
 namespace {
 
@@ -43,10 +43,10 @@ bool sameBudget(const Budget& a, const Budget& b) {
 bool isDirty(const Piece& piece, uint64_t params, const ShapeTree& tree, const Recording& recording) {
     if ((piece.params & params) != 0) return true;
     if (piece.shape == none) return false;
-    if (recording.has(piece.shape, Recording::Moved)) return true;
-    if (piece.readsWorld && recording.has(piece.shape, Recording::Below)) return true;
+    if (recording.changes().has(piece.shape, ShapeChanges::Moved)) return true;
+    if (piece.readsWorld && recording.changes().has(piece.shape, ShapeChanges::Below)) return true;
     for (ShapeId s = piece.inherits ? tree.shapes[piece.shape].valuesAt : none; s != none;) {
-        if (recording.has(s, Recording::Values)) return true;
+        if (recording.changes().has(s, ShapeChanges::Values)) return true;
         const ShapeId parent = tree.shapes[s].parent;
         s = parent == none ? none : tree.shapes[parent].valuesAt;
     }
@@ -66,11 +66,11 @@ Status IncrementalDerivation::startOver(std::shared_ptr<const rules::Grammar> gr
     TreeBuilder& builder = state->builder;
     state->rewriter.start(state->derivation.grammar->starts[options.start], options);
     state->rewriter.automatic();
-    if (builder.failed()) return builder.takeFailure();
-    state->recording.finish(builder.end());
-    builder.endPiece();
+    if (builder.monitor().failed()) return builder.monitor().takeFailure();
+    state->recording.finish(builder.recorder().end());
+    builder.recorder().endPiece();
     builder.finish();
-    state->joints = builder.jointsIndexed();
+    state->joints = builder.bonds().jointsIndexed();
     state_ = std::move(state);
     return Done{};
 }
@@ -85,15 +85,16 @@ bool IncrementalDerivation::follow(const Options& options, Progress* progress) {
         if (options.params[i] != d.params[i]) changed |= uint64_t{1} << i % 64, d.params[i] = options.params[i];
     state_->options.params = options.params;
     recording.beginReplay(d.tree.shapes.size());
-    builder.watch(progress);
+    builder.monitor().watch(progress);
     for (size_t i = 0; i < recording.pieces().size(); ++i) {
         if (!isDirty(recording.pieces()[i], changed, d.tree, recording)) continue;
         if (recording.pieces()[i].readsWorld) return false;  // it would find the world of today
-        if (!builder.replay(i, [&](const Piece& piece) { return state_->rewriter.repeat(piece); })) return false;
+        if (!builder.recorder().replay(i, [&](const Piece& piece) { return state_->rewriter.repeat(piece); }))
+            return false;
     }
-    if (!builder.revalidateContacts() || !recording.isReplayable()) return false;
+    if (!builder.bonds().revalidateContacts() || !recording.isReplayable()) return false;
     recording.endAgain();
-    builder.watch(nullptr);
+    builder.monitor().watch(nullptr);
     return true;
 }
 
@@ -113,7 +114,7 @@ Status IncrementalDerivation::to(std::shared_ptr<const rules::Grammar> grammar, 
                        state_->options.derive.empty() && state_->options.start == options.start &&
                        state_->options.seed == options.seed && sameBudget(state_->options.budget, options.budget) &&
                        options.params.size() == state_->derivation.params.size() &&
-                       state_->builder.jointsIndexed() <= mostMoved * state_->joints;
+                       state_->builder.bonds().jointsIndexed() <= mostMoved * state_->joints;
     if (alike && follow(options, progress)) {
         whole_ = false;
         return Done{};

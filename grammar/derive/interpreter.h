@@ -1,17 +1,13 @@
 // Runs the bodies of rules: what an application of a rule adds to the tree.
 // Enters: a rule and the shape it matched. Leaves: new shapes and bonds in the builder, steps in the log. Assumes
 // checked rules. Recursion follows the nesting of the text, never the depth of the tree. Sources: rules.cpp matches and
-// applies, bodies.cpp runs control, place.cpp puts shapes, content.cpp fills them; content operations cut their scopes
-// through parts_context.h.
+// applies, bodies.cpp runs control and fills shapes, place.cpp puts them, shape_maker.cpp makes them; content
+// operations cut their scopes through parts_context.h.
 #pragma once
 
 #include <array>
-#include <map>
-#include <unordered_map>
 
-#include "grammar/derive/attribute_context.h"
-#include "grammar/derive/builder.h"
-#include "modeler/image/texture.h"
+#include "grammar/derive/shape_maker.h"
 
 namespace sgm::derive {
 
@@ -37,14 +33,6 @@ private:
     struct RuleInfo {
         uint64_t hash = 0;
         bool readsWorld = false;
-    };
-    /// What is known of an element before it runs: filled at its first use.
-    struct ElementCache {
-        uint64_t hash = 0;
-        uint32_t label = 0, jointSet = 0, solid = none, closed = none;
-        bool constantSolid = false;
-        uint64_t solidParams = 0;  ///< those that the constant solid reads, as Piece::params
-        uint32_t solidTurn = 0;    ///< in which run it was made (Recording::turn)
     };
     /// The shapes of a chain that `on` speaks of.
     struct RunState {
@@ -74,6 +62,7 @@ private:
     bool runFor(const rules::Element& e, Frame& frame, Target& target, uint64_t loop, bool followed);
     bool runWhile(const rules::Element& e, Frame& frame, Target& target, uint64_t loop, bool followed);
     bool runChoose(const rules::Element& e, Frame& frame, Target& target, uint64_t loop, bool followed);
+    bool fill(const rules::Element& e, ShapeId id, const Frame& frame);
 
     // place.cpp
     bool placeHead(const rules::Element& e, Frame& frame, Target& target, uint64_t key, bool followed);
@@ -91,45 +80,14 @@ private:
     bool join(const rules::Element& e, Frame& frame, const Target& target, const Attachment& attachment);
     // face_joints.cpp
     bool placeOnFaces(ShapeId host, const rules::Element& e, Frame& frame, const Target& target, uint64_t key);
-    std::vector<ShapeId> roofsOf(ShapeId host, ShapeId node, const rules::JointChoice& at);
-    /// Where an element cuts: a shape, and the child of it before which the cutter joins (none: as the last one).
-    struct CutPlace {
-        ShapeId shape = none, before = none;
-    };
-    std::vector<CutPlace> cutPlaces(const rules::Element& e, ShapeId node);
     bool cutAbove(const rules::Element& e, const Target& target, const Frame& frame, Shape shape, uint32_t ours,
                   uint32_t theirs, ShapeId host);
     void count(uint32_t local, double turn, uint64_t stream);
     ShapeId hostOf(const rules::Element& e, const Frame& frame, const Target& target, const Place& place) const;
-    std::vector<uint32_t> openJoints(const rules::JointChoice& at, ShapeId host, const Place& place);
-    uint32_t jointNamed(const rules::Expr& expr, ShapeId host, const Place& place);
-    uint32_t theirJoint(const rules::Element& e, const ElementCache& facts, const Joint& ours, const Mat3& axes,
-                        const Place& place);
-    uint32_t faceNamed(const rules::Value& value, syntax::SourceSpan span);
-    rules::Joint jointShares(uint32_t joint, uint32_t jointSet) const;
-    void remarkLostTurn(const rules::Element& e, const Mating& mating, const Mat3& asked, const Place& place,
-                        const Mat3& axes);
     void remember(const rules::Element& e, const Frame& frame, ShapeId id, uint32_t ours);
-
-    // content.cpp
-    ElementCache& factsOf(const rules::Element& e);
-    uint32_t labelOf(const rules::Element& e);
-    uint32_t jointSetOf(const rules::Element& e);
-    bool evaluateAttributes(const rules::Element& e, const Place& place, EvaluatedAttributes& out);
-    void standAsHigh(const rules::Element& e, const Place& place, EvaluatedAttributes& out);
-    bool inBounds(const rules::Element& e, const EvaluatedAttributes& attributes);
-    std::string nameOfColor(const rules::Expr& e, Vec3f color, const Place& place) const;
-    std::string nameOfLook(const EvaluatedAttributes& attributes, uint32_t base, const Place& place) const;
-    std::shared_ptr<const image::Texture> textureOf(const PlacedTexture& asked);
-    uint32_t materialOf(const EvaluatedAttributes& attributes, const rules::Element& e, const Place& place);
-    uint32_t solidOf(const rules::Element& e, ElementCache& facts, const Place& place, const Scope& scope);
-    uint32_t blockSolid();
-    Shape shapeOf(const rules::Element& e, EvaluatedAttributes& attributes, const Place& place, uint64_t key);
-    bool fill(const rules::Element& e, ShapeId id, const Frame& frame);
 
     // rules.cpp
     bool canGrow(const rules::Body& body, ShapeId host, const Place& place);
-    bool isBeside(ShapeId shape, rules::SymbolId symbol) const;
     void runChain(uint32_t rule, ShapeId root, uint32_t generation);
     void runFinally(uint32_t rule, ShapeId root, RunState& state, uint32_t generation);
     bool runLogged(const rules::Body& body, const Frame& frame, Step step);
@@ -138,15 +96,9 @@ private:
     const rules::Grammar& grammar_;
     std::span<const rules::Value> params_;
     std::vector<RuleInfo> facts_;
-    std::unordered_map<const rules::Element*, ElementCache> elements_;
-    std::map<std::string, uint32_t, std::less<>> labels_;
-    /// Colour, roughness, metalness; texture.
-    using Look = std::pair<std::array<float, 5>, std::shared_ptr<const image::Texture>>;
-    std::map<Look, uint32_t> mixedMaterials_;  ///< those of attributes
-    std::map<PlacedTexture, std::shared_ptr<const image::Texture>> textures_;
+    ShapeMaker maker_;
     std::vector<rules::Value> locals_;
     std::vector<uint64_t> series_;  ///< by local that counts: the stream of its repetition
-    uint32_t block_ = none;         ///< index of blockSolid
     uint32_t chainRule_ = none;     ///< the rule whose chain is being run
 };
 

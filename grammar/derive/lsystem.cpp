@@ -126,7 +126,7 @@ private:
         for (const Production* p : of_[static_cast<unsigned char>(now_.text[i])])
             if (p->weight > 0 && fits(*p, i, locals)) fitting_.push_back(p), total += p->weight;
         if (fitting_.size() < 2) return fitting_.empty() ? nullptr : fitting_[0];
-        if (place_.builder) place_.builder->noteChance();
+        if (place_.builder) place_.builder->monitor().noteChance();
         double drawn = uniform(now_.keys[i]) * total;
         for (const Production* p : fitting_)
             if ((drawn -= p->weight) < 0) return p;
@@ -155,7 +155,7 @@ private:
                 return errorOf(
                     Error::Kind::Budget, lsystem_,
                     fmt::format("has more than {} letters after {} passes; give it fewer", mostLetters, pass + 1));
-            if (++read_ % lettersPerTurn == 0 && place_.builder && !place_.builder->work())
+            if (++read_ % lettersPerTurn == 0 && place_.builder && !place_.builder->monitor().work())
                 return errorOf(Error::Kind::Budget, lsystem_, "takes too long");
         }
         end();

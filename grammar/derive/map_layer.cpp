@@ -27,7 +27,7 @@ Result<MapLayer> mapLayer(const Derivation& derivation, uint32_t map, const plan
             place.scope.centre = {area.lo.x + area.size().x * (column + .5) / columns, 0,
                                   area.lo.z + area.size().z * (row + .5) / rows};
             const rules::Value value = evaluate(ask, place);
-            if (builder.failed()) return builder.takeFailure();
+            if (builder.monitor().failed()) return builder.monitor().takeFailure();
             if (value.kind != rules::Value::Kind::Word) {
                 layer.values.push_back(static_cast<float>(value.num()));
                 continue;

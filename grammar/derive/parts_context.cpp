@@ -111,7 +111,7 @@ bool PartsContext::run(const rules::Body& body, const Scope& part, uint64_t key)
     inner.key = inner.place.key = combine(frame_.key, key);
     inner.place.scope = part;
     inner.place.host = none;
-    return interpreter_.builder_.work() && interpreter_.runBody(body, inner, 0);
+    return interpreter_.builder_.monitor().work() && interpreter_.runBody(body, inner, 0);
 }
 
 uint32_t PartsContext::addRelief(Relief relief) {
@@ -149,7 +149,7 @@ void PartsContext::startsOver() const {
 }
 
 bool PartsContext::fail(const Error& why, syntax::SourceSpan span) {
-    interpreter_.builder_.fail(why.kind, why.message, span);
+    interpreter_.builder_.monitor().fail(why.kind, why.message, span);
     return false;
 }
 
@@ -158,7 +158,7 @@ void PartsContext::warn(syntax::SourceSpan span, std::string message, std::strin
 }
 
 bool PartsContext::fail(const std::string& what, syntax::SourceSpan span) {
-    interpreter_.builder_.fail(Error::Kind::Input, what, span);
+    interpreter_.builder_.monitor().fail(Error::Kind::Input, what, span);
     return false;
 }
 

@@ -38,7 +38,7 @@ public:
     const rules::Grammar& grammar() const;
     /// The stream of the shape whose scope is cut.
     uint64_t key() const {
-        interpreter_.builder_.noteChance();
+        interpreter_.builder_.monitor().noteChance();
         return frame_.key;
     }
     /// The value as a whole number where `whole`, a range drawing one of its whole numbers.
@@ -50,7 +50,7 @@ public:
     /// that this one stands in or that stands in it doesn't count.
     double sharedBy(const Scope& part) const;
     /// Counts a unit of work; false once something failed.
-    bool work() { return interpreter_.builder_.work(); }
+    bool work() { return interpreter_.builder_.monitor().work(); }
     /// Puts an object of its own into the scope.
     void place(PlacedObject object);
     const Derivation& derivation() const { return interpreter_.builder_.derivation(); }
@@ -58,7 +58,7 @@ public:
     ShapeId shape() const { return frame_.node; }
     /// Where expressions of the block stand, for those that are asked at many places of the plan.
     Place place() const { return frame_.place; }
-    Progress* progress() const { return interpreter_.builder_.progress(); }
+    Progress* progress() const { return interpreter_.builder_.monitor().progress(); }
     /// Takes note of what lies on the ground: `area` in metres about the centre of `scope`.
     void draw(std::string layer, const Scope& scope, const plan::Footprint& area, uint64_t key, double street_m = 0);
     /// What is cut here can't be brought to other numbers in place: the derivation starts over where one changes.

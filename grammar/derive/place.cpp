@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "grammar/derive/interpreter.h"
+#include "grammar/derive/joint_choice.h"
 #include "modeler/core/random.h"
 
 namespace sgm::derive {
@@ -10,7 +11,6 @@ namespace sgm::derive {
 using rules::Attribute;
 using rules::Element;
 using rules::HostChoice;
-using rules::JointChoice;
 using Phase = rules::Operation::Phase;
 
 namespace {
@@ -50,6 +50,59 @@ void applyWhole(const std::vector<Attribute>& list, const Place& place, Evaluate
         if (a.operation->phase == Phase::Whole) a.operation->apply(context, a);
 }
 
+/// Joints that face each other leave of a `turn` what goes about them: the rest is told.
+void remarkLostTurn(TreeBuilder& builder, const Element& e, const Mating& mating, const Mat3& asked, const Place& place,
+                    const Mat3& axes) {
+    const auto turn = std::find_if(e.attributes.begin(), e.attributes.end(),
+                                   [](const Attribute& a) { return a.operation->turnsShape; });
+    if (turn == e.attributes.end() || mating.ours.direction == Vec3d{} || mating.theirs.facing == Vec3d{}) return;
+    constexpr double slack = 1e-3;
+    bool lost = angleBetween(axes, asked) > slack;
+    if (e.to)
+        lost = angleBetween(axes, mate(mating, place.scope.axes, place.scope.size).axes) <
+               angleBetween(asked, place.scope.axes) - slack;
+    if (lost)
+        builder.warn(turn->span, "the joints face each other all the same: only the turn about them is left",
+                     "turn what a group holds, as in '+ (cube turn (30deg, 0deg, 0deg)) size (1, 3, 1) at +y', or "
+                     "place it by 'move'");
+}
+
+/// Where an element cuts: a shape, and the child of it before which the cutter joins (none: as the last one).
+struct CutPlace {
+    ShapeId shape = none, before = none;
+};
+
+/// The nearest shape above that `through` names, and those that its content begins with on the way down to the part
+/// that cuts: wherever something stands before the part. What the part itself adds stays whole.
+std::vector<CutPlace> cutPlaces(TreeBuilder& builder, const Element& e, ShapeId node) {
+    const ShapeTree& tree = builder.tree();
+    std::vector<CutPlace> way{{node, none}};
+    while (way.back().shape != none && tree.shapes[way.back().shape].symbol != e.through)
+        way.push_back({tree.shapes[way.back().shape].parent, way.back().shape});
+    if (way.back().shape == none) {
+        builder.monitor().fail(Error::Kind::Input,
+                               "no '" + builder.derivation().grammar->symbols[e.through].name +
+                                   "' stands above this shape, so it can't cut one",
+                               e.span);
+        return {};
+    }
+    const auto holds = [&](const CutPlace& place) {
+        if (tree.shapes[place.shape].solid != none) return true;
+        for (ShapeId c = tree.shapes[place.shape].firstChild; c != place.before; c = tree.shapes[c].nextSibling)
+            if (tree.shapes[c].op != rules::Operator::Difference) return true;
+        return false;
+    };
+    const CutPlace named = way.back();
+    if (way.size() == 1) return {named};
+    std::vector<CutPlace> found;
+    for (; way.size() > 1; way.pop_back()) {
+        if (holds(way.back())) found.push_back(way.back());
+        if (tree.shapes[way.back().before].op != rules::Operator::None) break;
+    }
+    if (found.empty()) found.push_back(named);  // it cuts nothing, and `uncut` tells so
+    return found;
+}
+
 }  // namespace
 
 /// Attributes without a shape change the matched one.
@@ -80,22 +133,20 @@ bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint
     EvaluatedAttributes attributes;
     if (!e.prefix.empty()) {
         const auto scope = changedScope(e.prefix, place, attributes.extras.values);
-        if (!scope || builder_.failed()) return !builder_.failed();
+        if (!scope || builder_.monitor().failed()) return !builder_.monitor().failed();
         place.scope = *scope;
     }
     applyWhole(e.prefix, place, attributes);
-    if (!evaluateAttributes(e, place, attributes)) return false;
+    if (!maker_.evaluateAttributes(e, place, attributes)) return false;
     if (attributes.vanishes) return true;
-    Shape shape = shapeOf(e, attributes, place, key);
+    Shape shape = maker_.shapeOf(e, attributes, place, key, chainRule_);
     shape.scope = attributes.scope;
     shape.scope.centre += attributes.moved_m;
     shape.parent = frame.node;
     if (followed && needsGroup(e, shape)) {
         Shape group;
         group.key = combine(key, hashText("group"));
-        const auto [at, fresh] = labels_.try_emplace("group", static_cast<uint32_t>(labels_.size()));
-        if (fresh) builder_.tree().labels.push_back(at->first);
-        group.label = at->second;
+        group.label = maker_.labelIndex("group");
         group.parent = frame.node;
         group.scope = shape.scope;
         group.span = e.span;
@@ -104,8 +155,8 @@ bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint
     }
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
-    if (shape.parent != frame.node) builder_.bondCoincidentFaces(shape.parent);
-    builder_.bondCoincidentFaces(id);
+    if (shape.parent != frame.node) builder_.bonds().bondCoincidentFaces(shape.parent);
+    builder_.bonds().bondCoincidentFaces(id);
     if (!fill(e, id, frame)) return false;
     target = {shape.parent == frame.node ? id : shape.parent, id};
     remember(e, frame, id, centreJoint);
@@ -118,64 +169,8 @@ ShapeId Interpreter::hostOf(const Element& e, const Frame& frame, const Target& 
     const auto direction = static_cast<size_t>(evaluate(e.on->of, place).num());
     if (direction >= faceCount || frame.state->toward[direction].empty()) return frame.state->root;
     const auto& candidates = frame.state->toward[direction];
-    if (candidates.size() > 1) builder_.noteChance();
+    if (candidates.size() > 1) builder_.monitor().noteChance();
     return candidates[pick(combine(place.key, hashText("on")), candidates.size())];
-}
-
-/// The joint of a face that a value names; what `with` sets may be anything.
-uint32_t Interpreter::faceNamed(const rules::Value& value, syntax::SourceSpan span) {
-    if (value.kind == rules::Value::Kind::Axis) return static_cast<uint32_t>(value.num());
-    builder_.fail(Error::Kind::Input,
-                  "'" + std::string(span.text()) + "' is " + rules::toText(value) +
-                      " here, and a joint is a direction, as +x, or a joint's name",
-                  span);
-    return none;
-}
-
-uint32_t Interpreter::jointNamed(const rules::Expr& expr, ShapeId host, const Place& place) {
-    const rules::Value v = evaluate(expr, place);
-    if (v.kind != rules::Value::Kind::Word) return faceNamed(v, expr.span);
-    const uint32_t joint = builder_.tree().findJoint(host, v.text);
-    if (joint == none)
-        builder_.fail(
-            Error::Kind::Input,
-            "'" + builder_.tree().labels[builder_.tree().shapes[host].label] + "' has no joint '" + v.text + "'",
-            expr.span);
-    return joint;
-}
-
-/// The host's joints that `at` may take: a named one unless a directed bond closed it; of `free(…)` those nobody met.
-std::vector<uint32_t> Interpreter::openJoints(const JointChoice& at, ShapeId host, const Place& place) {
-    std::vector<uint32_t> joints;
-    const ShapeTree& tree = builder_.tree();
-    for (const rules::Expr& e : at.joints)
-        if (const uint32_t j = jointNamed(e, host, place); j != none) joints.push_back(j);
-    if (at.free && at.joints.empty())
-        for (uint32_t j = 0; j < tree.jointCount(host); ++j)
-            if (tree.joint(host, j).direction != Vec3d{}) joints.push_back(j);
-    Recording* const recording = builder_.recording();
-    const std::vector<uint32_t> asked = recording ? joints : std::vector<uint32_t>();
-    const auto taken = [&](uint32_t j) { return at.free ? tree.joint(host, j).bond != none : tree.closed(host, j); };
-    joints.erase(std::remove_if(joints.begin(), joints.end(), taken), joints.end());
-    if (recording && !recording->answer(asked, joints)) builder_.diverge();
-    return joints;
-}
-
-rules::Joint Interpreter::jointShares(uint32_t joint, uint32_t jointSet) const {
-    if (joint >= firstNamedJoint) return builder_.tree().namedJoints[jointSet][joint - firstNamedJoint];
-    return {std::string(faceName(joint)), faceDirection(joint), faceDirection(joint)};
-}
-
-uint32_t Interpreter::theirJoint(const Element& e, const ElementCache& facts, const Joint& ours, const Mat3& axes,
-                                 const Place& place) {
-    if (!e.to) return ours.direction == Vec3d{} ? centreJoint : opposedFace(axes, ours.direction);
-    const rules::Value v = evaluate(e.to->joints[0], place);
-    if (v.kind != rules::Value::Kind::Word) return faceNamed(v, e.to->joints[0].span);
-    const auto& named = builder_.tree().namedJoints[facts.jointSet];
-    for (uint32_t i = 0; i < named.size(); ++i)
-        if (named[i].name == v.text) return firstNamedJoint + i;
-    builder_.fail(Error::Kind::Input, "the newcomer has no joint '" + v.text + "'", e.to->span);
-    return none;
 }
 
 bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& target, uint64_t key) {
@@ -194,57 +189,10 @@ bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& targe
     return true;
 }
 
-/// Joints that face each other leave of a `turn` what goes about them: the rest is told.
-void Interpreter::remarkLostTurn(const Element& e, const Mating& mating, const Mat3& asked, const Place& place,
-                                 const Mat3& axes) {
-    const auto turn = std::find_if(e.attributes.begin(), e.attributes.end(),
-                                   [](const Attribute& a) { return a.operation->turnsShape; });
-    if (turn == e.attributes.end() || mating.ours.direction == Vec3d{} || mating.theirs.facing == Vec3d{}) return;
-    constexpr double slack = 1e-3;
-    bool lost = angleBetween(axes, asked) > slack;
-    if (e.to)
-        lost = angleBetween(axes, mate(mating, place.scope.axes, place.scope.size).axes) <
-               angleBetween(asked, place.scope.axes) - slack;
-    if (lost)
-        builder_.warn(turn->span, "the joints face each other all the same: only the turn about them is left",
-                      "turn what a group holds, as in '+ (cube turn (30deg, 0deg, 0deg)) size (1, 3, 1) at +y', or "
-                      "place it by 'move'");
-}
-
-/// The nearest shape above that `through` names, and those that its content begins with on the way down to the part
-/// that cuts: wherever something stands before the part. What the part itself adds stays whole.
-std::vector<Interpreter::CutPlace> Interpreter::cutPlaces(const Element& e, ShapeId node) {
-    const ShapeTree& tree = builder_.tree();
-    std::vector<CutPlace> way{{node, none}};
-    while (way.back().shape != none && tree.shapes[way.back().shape].symbol != e.through)
-        way.push_back({tree.shapes[way.back().shape].parent, way.back().shape});
-    if (way.back().shape == none) {
-        builder_.fail(Error::Kind::Input,
-                      "no '" + grammar_.symbols[e.through].name + "' stands above this shape, so it can't cut one",
-                      e.span);
-        return {};
-    }
-    const auto holds = [&](const CutPlace& place) {
-        if (tree.shapes[place.shape].solid != none) return true;
-        for (ShapeId c = tree.shapes[place.shape].firstChild; c != place.before; c = tree.shapes[c].nextSibling)
-            if (tree.shapes[c].op != rules::Operator::Difference) return true;
-        return false;
-    };
-    const CutPlace named = way.back();
-    if (way.size() == 1) return {named};
-    std::vector<CutPlace> found;
-    for (; way.size() > 1; way.pop_back()) {
-        if (holds(way.back())) found.push_back(way.back());
-        if (tree.shapes[way.back().before].op != rules::Operator::None) break;
-    }
-    if (found.empty()) found.push_back(named);  // it cuts nothing, and `uncut` tells so
-    return found;
-}
-
 /// Puts a cutter where `through` says; it is placed and bonded as any newcomer.
 bool Interpreter::cutAbove(const Element& e, const Target& target, const Frame& frame, Shape shape, uint32_t ours,
                            uint32_t theirs, ShapeId host) {
-    const std::vector<CutPlace> places = cutPlaces(e, target.node);
+    const std::vector<CutPlace> places = cutPlaces(builder_, e, target.node);
     const uint64_t key = shape.key;
     for (size_t i = 0; i < places.size(); ++i) {
         shape.parent = places[i].shape;
@@ -253,8 +201,8 @@ bool Interpreter::cutAbove(const Element& e, const Target& target, const Frame& 
         if (id == none) return false;
         if (places[i].before != none && !builder_.isReplaying()) builder_.bindTo(id, target.node);
         if (i == 0) {
-            builder_.bond(host, ours, id, theirs);
-            builder_.bondCoincidentFaces(id);
+            builder_.bonds().bond(host, ours, id, theirs);
+            builder_.bonds().bondCoincidentFaces(id);
             remember(e, frame, id, ours);
         }
         if (!fill(e, id, frame)) return false;
@@ -264,7 +212,7 @@ bool Interpreter::cutAbove(const Element& e, const Target& target, const Frame& 
 
 bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Target& target, uint64_t key) {
     if (e.at && e.at->each) return placeOnFaces(host, e, frame, target, key);
-    ElementCache& facts = factsOf(e);
+    ElementCache& facts = maker_.factsOf(e);
     Attachment attachment{host, centreJoint, {}, frame.place};
     Place& place = attachment.place;
     place.key = key;
@@ -278,8 +226,8 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
     place.host = host;
 
     if (e.at) {
-        const auto open = openJoints(*e.at, host, place);
-        if (builder_.failed()) return false;
+        const auto open = openJoints(builder_, *e.at, host, place);
+        if (builder_.monitor().failed()) return false;
         if (open.empty()) {  // nothing grows where a bond has closed the joint
             if (builder_.isReplaying()) return true;
             auto& closed = builder_.derivation().closed;
@@ -290,7 +238,7 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
             ++closed[facts.closed].count;
             return true;
         }
-        if (open.size() > 1) builder_.noteChance();
+        if (open.size() > 1) builder_.monitor().noteChance();
         attachment.ours = open[open.size() == 1 ? 0 : pick(combine(key, hashText("at")), open.size())];
     }
     attachment.joint = builder_.tree().joint(host, attachment.ours);
@@ -300,32 +248,32 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
 
 /// Puts the newcomer where its joint meets ours, and bonds both.
 bool Interpreter::join(const Element& e, Frame& frame, const Target& target, const Attachment& attachment) {
-    ElementCache& facts = factsOf(e);
+    ElementCache& facts = maker_.factsOf(e);
     const Place& place = attachment.place;
     EvaluatedAttributes attributes;
-    if (!evaluateAttributes(e, place, attributes)) return false;
+    if (!maker_.evaluateAttributes(e, place, attributes)) return false;
     if (attributes.vanishes) return true;
     Mating mating;
     mating.ours = attachment.joint;
     mating.moved_m = attributes.moved_m;
     mating.overlap = attributes.overlap;
-    const uint32_t theirs = theirJoint(e, facts, mating.ours, attributes.scope.axes, place);
+    const uint32_t theirs = theirJoint(builder_, e, facts.jointSet, mating.ours, attributes.scope.axes, place);
     if (theirs == none) return false;
-    mating.theirs = jointShares(theirs, facts.jointSet);
+    mating.theirs = jointShares(builder_.tree(), theirs, facts.jointSet);
 
-    Shape shape = shapeOf(e, attributes, place, place.key);
+    Shape shape = maker_.shapeOf(e, attributes, place, place.key, chainRule_);
     shape.parent = target.node;
     shape.scope = mate(mating, attributes.scope.axes, attributes.scope.size);
     shape.scope.footprint = attributes.scope.footprint;
-    remarkLostTurn(e, mating, attributes.scope.axes, place, shape.scope.axes);
+    remarkLostTurn(builder_, e, mating, attributes.scope.axes, place, shape.scope.axes);
     if (e.through != rules::none) {
         shape.valuesAt = place.valuesAt;
         return cutAbove(e, target, frame, shape, attachment.ours, theirs, attachment.host);
     }
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
-    builder_.bond(attachment.host, attachment.ours, id, theirs);
-    builder_.bondCoincidentFaces(id);
+    builder_.bonds().bond(attachment.host, attachment.ours, id, theirs);
+    builder_.bonds().bondCoincidentFaces(id);
     remember(e, frame, id, attachment.ours);
     return fill(e, id, frame);
 }

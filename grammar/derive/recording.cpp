@@ -4,11 +4,6 @@
 
 namespace sgm::derive {
 
-void Recording::set(std::vector<bool>& flags, size_t at) {
-    if (flags.size() <= at) flags.resize(at + 1 + at / 2);
-    flags[at] = true;
-}
-
 void Recording::begin(Piece piece) {
     piece.from.answer = answers_.size();
     running_ = pieces_.size();
@@ -40,7 +35,7 @@ bool Recording::answer(const std::vector<uint32_t>& asked, std::vector<uint32_t>
     return read(then) && read(open) && then == asked;
 }
 
-std::optional<JointIndex::Entry> Recording::partnerOf(JointIndex::Entry at) const {
+std::optional<JointIndex::Entry> MadeNotes::partnerOf(JointIndex::Entry at) const {
     const auto before = [](const Contact& m, JointIndex::Entry e) {
         return std::pair(m.at.shape, m.at.joint) < std::pair(e.shape, e.joint);
     };
@@ -52,11 +47,7 @@ std::optional<JointIndex::Entry> Recording::partnerOf(JointIndex::Entry at) cons
 void Recording::beginReplay(size_t shapes) {
     replaying_ = true;
     ++turn_;
-    changes_.resize(shapes, 0);
-    for (const ShapeId id : marked_) changes_[id] = 0;
-    marked_.clear();
-    changed_.clear();
-    differing_.clear();
+    changes_.begin(shapes);
 }
 
 Piece& Recording::enter(size_t piece) {
@@ -67,12 +58,12 @@ Piece& Recording::enter(size_t piece) {
 }
 
 uint32_t Recording::nextSolid() {
-    while (at_.solid < end_.solid && has(shared_, at_.solid)) ++at_.solid;
+    while (at_.solid < end_.solid && made_.isSharedSolid(at_.solid)) ++at_.solid;
     return next(at_.solid, end_.solid);
 }
 
 uint32_t Recording::nextBond() {
-    while (at_.bond < end_.bond && has(byMeeting_, at_.bond)) ++at_.bond;
+    while (at_.bond < end_.bond && made_.isBondedByContact(at_.bond)) ++at_.bond;
     return next(at_.bond, end_.bond);
 }
 
@@ -81,7 +72,15 @@ bool Recording::complete() {
            nextBond() == none && at_.answer == end_.answer;
 }
 
-void Recording::change(const ShapeTree& tree, ShapeId id, uint8_t what) {
+void ShapeChanges::begin(size_t shapes) {
+    changes_.resize(shapes, 0);
+    for (const ShapeId id : marked_) changes_[id] = 0;
+    marked_.clear();
+    changed_.clear();
+    solids_.clear();
+}
+
+void ShapeChanges::add(const ShapeTree& tree, ShapeId id, uint8_t what) {
     constexpr uint8_t own = LookChanged | Moved | Turned | Values;
     if (changes_[id] == 0) marked_.push_back(id);
     if ((changes_[id] & own) == 0) changed_.push_back(id);

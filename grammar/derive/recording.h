@@ -5,7 +5,9 @@
 // pieces that read a changed number run again, and each must put the same shapes with the same bonds.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "grammar/derive/joints.h"
 
@@ -29,13 +31,61 @@ struct Piece {
     } from{};
 };
 
-class Recording {
+/// Flags by index, in a list that grows as they are set.
+inline void setFlag(std::vector<bool>& flags, size_t at) {
+    if (flags.size() <= at) flags.resize(at + 1 + at / 2);
+    flags[at] = true;
+}
+inline bool hasFlag(const std::vector<bool>& flags, size_t at) { return at < flags.size() && flags[at]; }
+
+/// What a second run finds changed of shapes and solids.
+class ShapeChanges {
+public:
+    enum Change : uint8_t { LookChanged = 1, Moved = 2, Turned = 4, Values = 8, Below = 16 };
+
+    /// Forgets what changed in the last run.
+    void begin(size_t shapes);
+    void add(const ShapeTree& tree, ShapeId id, uint8_t what);
+    bool has(ShapeId id, Change what) const { return (changes_[id] & what) != 0; }
+    /// Shapes that changed by themselves, in the order in which they did.
+    std::span<const ShapeId> shapes() const { return changed_; }
+    void addSolid(uint32_t solid) { setFlag(solids_, solid); }
+    bool hasSolid(uint32_t solid) const { return hasFlag(solids_, solid); }
+
+private:
+    std::vector<uint8_t> changes_;  ///< by shape
+    std::vector<ShapeId> changed_, marked_;
+    std::vector<bool> solids_;
+};
+
+/// What the first run noted of what it made.
+class MadeNotes {
 public:
     /// A face that met another when it was put, open or not: `at` met `partner`.
     struct Contact {
         JointIndex::Entry at, partner;
     };
 
+    void met(JointIndex::Entry at, JointIndex::Entry partner) { contacts_.push_back({at, partner}); }
+    std::span<const Contact> contacts() const { return contacts_; }
+    /// Whom the joint met, if anyone.
+    std::optional<JointIndex::Entry> partnerOf(JointIndex::Entry at) const;
+    void bondedByContact(size_t bond) { setFlag(byContact_, bond); }
+    bool isBondedByContact(size_t bond) const { return hasFlag(byContact_, bond); }
+    void sharedSolid(size_t solid) { setFlag(shared_, solid); }
+    bool isSharedSolid(size_t solid) const { return hasFlag(shared_, solid); }
+    void annotated(ShapeId id) { setFlag(annotated_, id); }
+    bool isAnnotated(ShapeId id) const { return hasFlag(annotated_, id); }
+    void cleared(ShapeId id) { setFlag(cleared_, id); }
+    bool isCleared(ShapeId id) const { return hasFlag(cleared_, id); }
+
+private:
+    std::vector<Contact> contacts_;  ///< in the order of `at`
+    std::vector<bool> byContact_, shared_, annotated_, cleared_;
+};
+
+class Recording {
+public:
     /// Begins a piece, with the lists as long as `from` says.
     void begin(Piece piece);
     /// The piece begun last, to note what came of it.
@@ -55,22 +105,15 @@ public:
     void readsLocal() {
         replayable_ = replayable_ && (now().kind == Piece::Kind::Start || now().kind == Piece::Kind::Application);
     }
+    /// A material that wasn't there: when pieces run again, the list would have another order.
+    void freshMaterial() { replayable_ = replayable_ && !replaying_; }
 
     /// The joints that are open of those asked for. Notes `open` the first time; again, `open` becomes what it was
     /// then. False where others were asked for then.
     bool answer(const std::vector<uint32_t>& asked, std::vector<uint32_t>& open);
-    void met(JointIndex::Entry at, JointIndex::Entry partner) { contacts_.push_back({at, partner}); }
-    void bondedByContact(size_t bond) { set(byMeeting_, bond); }
-    /// A material that wasn't there: when pieces run again, the list would have another order.
-    void freshMaterial() { replayable_ = replayable_ && !replaying_; }
-    void sharedSolid(size_t solid) { set(shared_, solid); }
-    void annotated(ShapeId id) { set(annotated_, id); }
-    void cleared(ShapeId id) { set(cleared_, id); }
-    bool isAnnotated(ShapeId id) const { return has(annotated_, id); }
-    bool isCleared(ShapeId id) const { return has(cleared_, id); }
-    std::span<const Contact> contacts() const { return contacts_; }
-    /// Whom the joint met, if anyone.
-    std::optional<JointIndex::Entry> partnerOf(JointIndex::Entry at) const;
+    MadeNotes& made() { return made_; }
+    ShapeChanges& changes() { return changes_; }
+    const ShapeChanges& changes() const { return changes_; }
 
     /// True while pieces run again.
     bool isReplaying() const { return replaying_; }
@@ -91,17 +134,7 @@ public:
     uint32_t nextBond();
     uint32_t shapesMade() const { return static_cast<uint32_t>(at_.shape); }
 
-    /// What a second run finds changed of a shape.
-    enum Change : uint8_t { LookChanged = 1, Moved = 2, Turned = 4, Values = 8, Below = 16 };
-    void change(const ShapeTree& tree, ShapeId id, uint8_t what);
-    bool has(ShapeId id, Change what) const { return (changes_[id] & what) != 0; }
-    std::span<const ShapeId> changed() const { return changed_; }
-    void solidDiffers(uint32_t solid) { set(differing_, solid); }
-    bool solidDiffered(uint32_t solid) const { return has(differing_, solid); }
-
 private:
-    static void set(std::vector<bool>& flags, size_t at);
-    static bool has(const std::vector<bool>& flags, size_t at) { return at < flags.size() && flags[at]; }
     static uint32_t next(size_t& at, size_t end) { return at < end ? static_cast<uint32_t>(at++) : none; }
 
     std::vector<Piece> pieces_;
@@ -109,13 +142,10 @@ private:
     size_t running_ = 0;
     /// Answers: how many were asked for, who, how many were open, who.
     std::vector<uint32_t> answers_;
-    std::vector<Contact> contacts_;  ///< in the order of `at`
-    std::vector<bool> byMeeting_, shared_, annotated_, cleared_;
+    MadeNotes made_;
+    ShapeChanges changes_;
     bool replayable_ = true, replaying_ = false;
     uint32_t turn_ = 0;
-    std::vector<uint8_t> changes_;  ///< by shape
-    std::vector<ShapeId> changed_, marked_;
-    std::vector<bool> differing_;  ///< by solid
 };
 
 }  // namespace sgm::derive

@@ -17,7 +17,7 @@ uint32_t Rewriter::choose(ShapeId shape) {
     std::vector<uint32_t> plain;
     for (const uint32_t r : candidates) {
         const Rule& rule = grammar_.rules[r];
-        builder_.at(r, shape, none);
+        builder_.monitor().at(r, shape, none);
         if (!rule.when && rule.besideWins) {
             if (interpreter_.matches(r, shape)) return r;
         } else if (!rule.when) {
@@ -32,7 +32,7 @@ uint32_t Rewriter::choose(ShapeId shape) {
 
 /// One of `rules` by weight; fails when all weigh 0.
 uint32_t Rewriter::draw(ShapeId shape, const std::vector<uint32_t>& rules) {
-    builder_.noteChance();
+    builder_.monitor().noteChance();
     const Place place = interpreter_.placeOf(shape);
     std::vector<double> weights;
     for (const uint32_t r : rules) {
@@ -41,11 +41,11 @@ uint32_t Rewriter::draw(ShapeId shape, const std::vector<uint32_t>& rules) {
     }
     const uint32_t at = drawByWeight(weights, combine(place.key, hashText("rule")));
     if (at != none) return rules[at];
-    builder_.at(rules[0], shape, none);
-    builder_.fail(Error::Kind::Input,
-                  fmt::format("every rule for '{}' that matches has weight 0",
-                              grammar_.symbols[builder_.tree().shapes[shape].symbol].name),
-                  grammar_.rules[rules[0]].weight->span);
+    builder_.monitor().at(rules[0], shape, none);
+    builder_.monitor().fail(Error::Kind::Input,
+                            fmt::format("every rule for '{}' that matches has weight 0",
+                                        grammar_.symbols[builder_.tree().shapes[shape].symbol].name),
+                            grammar_.rules[rules[0]].weight->span);
     return none;
 }
 
@@ -76,8 +76,8 @@ std::vector<Rewriter::Decision> Rewriter::decide(std::vector<ShapeId>& waiting) 
             later.push_back(s);
             continue;
         }
-        builder_.beginPiece({.kind = Piece::Kind::Choice, .shape = s});
-        if (!builder_.work()) return {};
+        builder_.recorder().beginPiece({.kind = Piece::Kind::Choice, .shape = s});
+        if (!builder_.monitor().work()) return {};
         const uint32_t rule = choose(s);
         if (Recording* r = builder_.recording()) r->now().rule = rule;
         if (rule != none)
@@ -124,11 +124,11 @@ void Rewriter::automatic() {
     hasOrder_ = std::any_of(grammar_.rules.begin(), grammar_.rules.end(),
                             [](const Rule& rule) { return rule.after != rules::none; });
     if (Recording* r = builder_.recording(); r && hasOrder_) r->unfit();  // who lives then isn't recorded
-    for (uint32_t generation = 1; !builder_.failed(); ++generation) {
+    for (uint32_t generation = 1; !builder_.monitor().failed(); ++generation) {
         noteLive(waiting);
         auto decisions = decide(waiting);
         if (decisions.empty() && hasOrder_ &&
-            !builder_.failed()) {  // what lives has no rule that matches: none waits for it
+            !builder_.monitor().failed()) {  // what lives has no rule that matches: none waits for it
             liveSymbols_.assign(grammar_.symbols.size(), false);
             decisions = decide(waiting);
         }
@@ -141,7 +141,7 @@ void Rewriter::automatic() {
                 apply(a, generation);
             else
                 waiting.push_back(a.shape);
-            if (builder_.failed()) return;
+            if (builder_.monitor().failed()) return;
         }
         const auto made = builder_.takeLive();
         waiting.insert(waiting.end(), made.begin(), made.end());
@@ -149,12 +149,12 @@ void Rewriter::automatic() {
 }
 
 void Rewriter::start(const rules::Start& start, const Options& options) {
-    builder_.beginPiece({.kind = Piece::Kind::Start});
+    builder_.recorder().beginPiece({.kind = Piece::Kind::Start});
     interpreter_.start(start, options.seed, options.lot ? &*options.lot : nullptr);
 }
 
 bool Rewriter::stillMatches(Application a) {
-    builder_.beginPiece({.kind = Piece::Kind::Match, .rule = a.rule, .shape = a.shape});
+    builder_.recorder().beginPiece({.kind = Piece::Kind::Match, .rule = a.rule, .shape = a.shape});
     const bool matched = interpreter_.matches(a.rule, a.shape);
     if (Recording* r = builder_.recording()) r->now().matched = matched;
     return matched;
@@ -167,7 +167,7 @@ bool Rewriter::repeat(const Piece& piece) {
             interpreter_.start(grammar_.starts[d.start], d.seed, nullptr);
             return true;
         case Piece::Kind::Choice:
-            return builder_.work() && choose(piece.shape) == piece.rule;
+            return builder_.monitor().work() && choose(piece.shape) == piece.rule;
         case Piece::Kind::Match:
             return interpreter_.matches(piece.rule, piece.shape) == piece.matched;
         case Piece::Kind::Application:
@@ -178,7 +178,8 @@ bool Rewriter::repeat(const Piece& piece) {
 }
 
 void Rewriter::apply(Application a, uint32_t generation) {
-    builder_.beginPiece({.kind = Piece::Kind::Application, .rule = a.rule, .shape = a.shape, .generation = generation});
+    builder_.recorder().beginPiece(
+        {.kind = Piece::Kind::Application, .rule = a.rule, .shape = a.shape, .generation = generation});
     applied_.push_back(a);
     interpreter_.apply(a.rule, a.shape, generation);
 }
@@ -196,7 +197,7 @@ std::vector<ShapeId> Rewriter::live() const {
 
 bool Rewriter::usable(Application a) {
     const Rule& rule = grammar_.rules[a.rule];
-    builder_.at(a.rule, a.shape, none);
+    builder_.monitor().at(a.rule, a.shape, none);
     return builder_.tree().shapes[a.shape].live && interpreter_.matches(a.rule, a.shape) &&
            (!rule.when || holds(*rule.when, interpreter_.placeOf(a.shape)));
 }
@@ -226,13 +227,13 @@ Result<ShapeId> Rewriter::meant(uint32_t index, const std::string& place) {
 
 void Rewriter::along(const rules::Derive& way) {
     for (const rules::Derive::Step& step : way.steps) {
-        if (builder_.failed()) return;
+        if (builder_.monitor().failed()) return;
         const auto shape = meant(step.rule, step.place);
         if (shape.ok()) {
             apply({step.rule, *shape});
         } else {
-            builder_.at(step.rule, none, none);
-            builder_.fail(shape.error().kind, shape.error().message, step.span);
+            builder_.monitor().at(step.rule, none, none);
+            builder_.monitor().fail(shape.error().kind, shape.error().message, step.span);
         }
     }
 }

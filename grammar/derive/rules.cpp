@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "grammar/derive/interpreter.h"
+#include "grammar/derive/joint_choice.h"
 #include "modeler/core/random.h"
 
 namespace sgm::derive {
@@ -33,10 +34,31 @@ bool morphs(const SolidValue& solid) {
     return std::any_of(solid.parts.begin(), solid.parts.end(), morphs);
 }
 
+/// Whether a shape of that symbol is bonded to `shape`.
+bool isBeside(TreeBuilder& builder, ShapeId shape, rules::SymbolId symbol) {
+    if (builder.recording()) builder.recording()->readsWorld();
+    const ShapeTree& tree = builder.tree();
+    const uint32_t body = tree.shapes[shape].body;
+    for (uint32_t i = tree.bodies[body].firstBond; i != none;) {
+        const Bond& bond = tree.bonds[i];
+        const int mine = tree.shapes[bond.shape[0]].body == body ? 0 : 1;
+        // The neighbour, what it wraps and what wraps it stand at one place.
+        const uint32_t theirs = tree.shapes[bond.shape[1 - mine]].body;
+        const ShapeId owner = tree.bodies[theirs].owner;
+        for (ShapeId s = owner; s != none && !tree.shapes[owner].dead;) {
+            if (tree.shapes[s].symbol == symbol && !tree.shapes[s].dead) return true;
+            const ShapeId child = tree.shapes[s].firstChild;
+            s = child != none && tree.shapes[child].body == theirs ? child : none;
+        }
+        i = bond.next[mine];
+    }
+    return false;
+}
+
 }  // namespace
 
 Interpreter::Interpreter(TreeBuilder& builder, std::span<const rules::Value> params)
-    : builder_(builder), grammar_(*builder.derivation().grammar), params_(params) {
+    : builder_(builder), grammar_(*builder.derivation().grammar), params_(params), maker_(builder) {
     builder_.tree().namedJoints.emplace_back();
     for (const Rule& rule : grammar_.rules) {
         RuleInfo facts;
@@ -57,15 +79,13 @@ void Interpreter::start(const rules::Start& start, uint64_t seed, const Lot* lot
     Shape root;
     root.symbol = start.symbol;
     root.key = combine(mix(seed), hashText(grammar_.symbols[start.symbol].name));
-    const auto [label, fresh] = labels_.try_emplace(grammar_.symbols[start.symbol].name, 0);
-    if (fresh) builder_.tree().labels.push_back(label->first);
-    root.label = label->second;
+    root.label = maker_.labelIndex(grammar_.symbols[start.symbol].name);
     root.span = start.span;
-    builder_.at(none, none, none);
+    builder_.monitor().at(none, none, none);
     if (lot) root.scope.size = lot->size_m;
     if (lot && !lot->footprint.empty()) {
         const auto footprint = builder_.tree().footprints.put(lot->footprint, root.scope.half());
-        if (!footprint.ok()) return builder_.fail(Error::Kind::Input, footprint.error().message, start.span);
+        if (!footprint.ok()) return builder_.monitor().fail(Error::Kind::Input, footprint.error().message, start.span);
         root.scope.footprint = *footprint;
     }
     const ShapeId id = builder_.add(root);
@@ -75,26 +95,6 @@ void Interpreter::start(const rules::Start& start, uint64_t seed, const Lot* lot
     state.root = state.last = state.newest = id;
     Frame frame{id, id, combine(root.key, hashText("start")), placeOf(id), &state, false};
     runBody(start.body, frame, 0);
-}
-
-bool Interpreter::isBeside(ShapeId shape, rules::SymbolId symbol) const {
-    if (builder_.recording()) builder_.recording()->readsWorld();
-    const ShapeTree& tree = builder_.tree();
-    const uint32_t body = tree.shapes[shape].body;
-    for (uint32_t i = tree.bodies[body].firstBond; i != none;) {
-        const Bond& bond = tree.bonds[i];
-        const int mine = tree.shapes[bond.shape[0]].body == body ? 0 : 1;
-        // The neighbour, what it wraps and what wraps it stand at one place.
-        const uint32_t theirs = tree.shapes[bond.shape[1 - mine]].body;
-        const ShapeId owner = tree.bodies[theirs].owner;
-        for (ShapeId s = owner; s != none && !tree.shapes[owner].dead;) {
-            if (tree.shapes[s].symbol == symbol && !tree.shapes[s].dead) return true;
-            const ShapeId child = tree.shapes[s].firstChild;
-            s = child != none && tree.shapes[child].body == theirs ? child : none;
-        }
-        i = bond.next[mine];
-    }
-    return false;
 }
 
 /// Counts a turn of a repetition, whose draws come from `stream`.
@@ -114,7 +114,7 @@ bool Interpreter::canGrow(const rules::Body& body, ShapeId host, const Place& pl
             if (e.kind == Element::Kind::Let) return true;  // a joint may hang on its value
             if (e.kind != Element::Kind::Shape || e.op == rules::Operator::None) continue;
             if (!e.at || e.on || e.at->each) return true;
-            if (!openJoints(*e.at, host, place).empty()) return true;
+            if (!openJoints(builder_, *e.at, host, place).empty()) return true;
             asked = true;
         }
     return !asked;
@@ -124,7 +124,7 @@ bool Interpreter::matches(uint32_t index, ShapeId id) {
     const Rule& rule = grammar_.rules[index];
     const Shape& s = builder_.tree().shapes[id];
     if (s.symbol != rule.symbol || (rule.repeat && s.chainRule == index)) return false;
-    if (rule.beside != rules::none && !isBeside(id, rule.beside)) return false;
+    if (rule.beside != rules::none && !isBeside(builder_, id, rule.beside)) return false;
     if (locals_.size() < rule.locals) locals_.resize(rule.locals);
     return canGrow(rule.body, id, placeOf(id));
 }
@@ -132,13 +132,13 @@ bool Interpreter::matches(uint32_t index, ShapeId id) {
 bool Interpreter::runLogged(const rules::Body& body, const Frame& frame, Step step) {
     step.shape = frame.matched;
     const uint32_t index = builder_.beginStep(step);
-    builder_.at(step.rule, step.shape, index);
-    const bool good = builder_.work() && runBody(body, frame, 0);
+    builder_.monitor().at(step.rule, step.shape, index);
+    const bool good = builder_.monitor().work() && runBody(body, frame, 0);
     bool morphic = step.morphic;
     for (ShapeId id = builder_.derivation().steps[index].firstMade; id < builder_.nextShape() && !morphic; ++id)
         if (const SolidValue* solid = builder_.tree().solidOf(id)) morphic = morphs(*solid);
     builder_.endStep(index, morphic);
-    return good && !builder_.failed();
+    return good && !builder_.monitor().failed();
 }
 
 void Interpreter::apply(uint32_t index, ShapeId id, uint32_t generation) {
@@ -158,7 +158,7 @@ void Interpreter::apply(uint32_t index, ShapeId id, uint32_t generation) {
 void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
     const Rule& rule = grammar_.rules[index];
     chainRule_ = index;
-    builder_.at(index, root, none);
+    builder_.monitor().at(index, root, none);
     const double steps = wholeNumber(*rule.repeat, placeOf(root));
     if (steps < 0)
         builder_.warn(rule.repeat->span, fmt::format("'repeat' is {:g} here, so the rule adds nothing", steps),

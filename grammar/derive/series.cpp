@@ -51,10 +51,10 @@ uint32_t drawInSeries(std::span<const double> weights, rules::Series series, uin
     const double turn = std::floor(place.locals[counter].num());
     const uint64_t stream = combine((*place.series)[counter], draw);
     if (!(std::abs(turn) <= static_cast<double>(mostTurns))) {
-        place.builder->fail(Error::Kind::Budget, "a series of draws has at most a million turns", span);
+        place.builder->monitor().fail(Error::Kind::Budget, "a series of draws has at most a million turns", span);
         return 0;
     }
-    place.builder->noteChance();
+    place.builder->monitor().noteChance();
     SeriesDraws& draws = place.builder->series();
     if (turn >= 1) return draws.draw(weights, series, stream, static_cast<size_t>(turn - 1));
     // Turns below the first run the other way, and the first of them stands beside it.

@@ -24,7 +24,7 @@ Result<std::shared_ptr<Session::State>> Session::begun(std::shared_ptr<const rul
     if (!empty.ok()) return empty.error();
     auto state = std::make_shared<State>(std::move(*empty), options, progress);
     state->rewriter.start(grammar->starts[options.start], options);
-    if (state->builder.failed()) return state->builder.takeFailure();
+    if (state->builder.monitor().failed()) return state->builder.monitor().takeFailure();
     return state;
 }
 
@@ -43,7 +43,7 @@ Result<std::shared_ptr<Session::State>> Session::replayed(const std::vector<Appl
     if (!state.ok()) return state;
     for (const Applications& step : steps)
         for (const Application& a : step) (*state)->rewriter.apply(a);
-    if ((*state)->builder.failed()) return (*state)->builder.takeFailure();
+    if ((*state)->builder.monitor().failed()) return (*state)->builder.monitor().takeFailure();
     return state;
 }
 
@@ -56,26 +56,26 @@ std::vector<uint32_t> Session::rulesFor(ShapeId shape) {
     for (const uint32_t rule : grammar_->symbols[tree().shapes[shape].symbol].rules) {
         if (state_->rewriter.usable({rule, shape})) found.push_back(rule);
         // A guard that asks for what is not set fails; to ask it changes nothing.
-        if (state_->builder.failed()) (void)state_->builder.takeFailure();
+        if (state_->builder.monitor().failed()) (void)state_->builder.monitor().takeFailure();
     }
     return found;
 }
 
 Result<ShapeId> Session::meant(uint32_t rule, const std::string& place) {
     auto shape = state_->rewriter.meant(rule, place);
-    if (state_->builder.failed()) return state_->builder.takeFailure();
+    if (state_->builder.monitor().failed()) return state_->builder.monitor().takeFailure();
     return shape;
 }
 
 Status Session::apply(Application application, Progress* progress) {
-    state_->builder.resume(progress);
+    state_->builder.monitor().resume(progress);
     state_->rewriter.apply(application);
     return settled({application});
 }
 
 Status Session::applyRest(Progress* progress) {
     const size_t before = state_->rewriter.applied().size();
-    state_->builder.resume(progress);
+    state_->builder.monitor().resume(progress);
     state_->rewriter.automatic();
     const auto& all = state_->rewriter.applied();
     return settled({all.begin() + static_cast<ptrdiff_t>(before), all.end()});
@@ -83,9 +83,9 @@ Status Session::applyRest(Progress* progress) {
 
 /// Keeps a step that went well; takes one back that failed.
 Status Session::settled(Applications step) {
-    state_->builder.resume(nullptr);
-    if (state_->builder.failed()) {
-        const Error error = state_->builder.takeFailure();
+    state_->builder.monitor().resume(nullptr);
+    if (state_->builder.monitor().failed()) {
+        const Error error = state_->builder.monitor().takeFailure();
         auto state = replayed(done_);
         if (!state.ok()) return state.error();
         state_ = std::move(*state);
@@ -146,7 +146,7 @@ Result<std::vector<rules::Derive::Step>> Session::way() const {
                                          "that stood otherwise when it was chosen",
                                          steps.size() + 1, rule.name)};
             const auto meant = rewriter.meant(a.rule, "");
-            if ((*state)->builder.failed()) (void)(*state)->builder.takeFailure();
+            if ((*state)->builder.monitor().failed()) (void)(*state)->builder.monitor().takeFailure();
             steps.push_back({a.rule, meant.ok() ? "" : placeOf((*state)->derivation.tree, a.shape), {}});
             rewriter.apply(a);
         }

@@ -312,7 +312,7 @@ std::shared_ptr<const PlanExpr> checkPlan(OperationChecker& checker, const Writt
 std::optional<DrawnPlan> drawPlan(const AttributeContext& context, const PlanExpr& plan) {
     auto drawn = draw(context, plan);
     if (drawn.ok()) return std::move(*drawn);
-    context.place.builder->fail(drawn.error().kind, drawn.error().message, plan.span);
+    context.place.builder->monitor().fail(drawn.error().kind, drawn.error().message, plan.span);
     return std::nullopt;
 }
 

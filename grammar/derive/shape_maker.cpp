@@ -1,7 +1,7 @@
-// What a shape is made of and looks like: solids, materials, declared joints, evaluated attributes, and what fills it.
+#include "grammar/derive/shape_maker.h"
+
 #include <cmath>
 
-#include "grammar/derive/parts_context.h"
 #include "modeler/core/random.h"
 #include "modeler/field/plan_solids.h"
 
@@ -76,27 +76,25 @@ void spanBetween(AttributeContext& context) {
 
 }  // namespace
 
-Interpreter::ElementCache& Interpreter::factsOf(const Element& e) {
+ElementCache& ShapeMaker::factsOf(const Element& e) {
     const auto [at, fresh] = elements_.try_emplace(&e);
     ElementCache& facts = at->second;
     if (!fresh) return facts;
     facts.hash = combine(hashText(e.label), e.ordinal);
-    facts.label = labelOf(e);
+    facts.label = labelIndex(e.live != rules::none ? grammar_.symbols[e.live].name : e.label);
     facts.jointSet = jointSetOf(e);
     if (const Solid* solid = ownSolid(e, grammar_)) facts.constantSolid = isConstant(*solid);
     return facts;
 }
 
-uint32_t Interpreter::labelOf(const Element& e) {
-    std::string text = e.label;
-    if (e.live != rules::none) text = grammar_.symbols[e.live].name;
+uint32_t ShapeMaker::labelIndex(std::string text) {
     const auto [at, fresh] = labels_.try_emplace(std::move(text), static_cast<uint32_t>(labels_.size()));
     if (fresh) builder_.tree().labels.push_back(at->first);
     return at->second;
 }
 
 /// The joints that the symbol, its solid's row and the live name declare.
-uint32_t Interpreter::jointSetOf(const Element& e) {
+uint32_t ShapeMaker::jointSetOf(const Element& e) {
     std::vector<rules::Joint> set;
     for (const rules::SymbolId symbol : {e.content.symbol(), e.live})
         if (symbol != rules::none)
@@ -111,7 +109,7 @@ uint32_t Interpreter::jointSetOf(const Element& e) {
 }
 
 /// The solid of terminals over a footprint: one for all.
-uint32_t Interpreter::blockSolid() {
+uint32_t ShapeMaker::blockSolid() {
     if (block_ == none) {
         SolidValue block;
         block.kind = Solid::Kind::Primitive;
@@ -121,7 +119,7 @@ uint32_t Interpreter::blockSolid() {
     return block_;
 }
 
-uint32_t Interpreter::solidOf(const Element& e, ElementCache& facts, const Place& place, const Scope& scope) {
+uint32_t ShapeMaker::solidOf(const Element& e, ElementCache& facts, const Place& place, const Scope& scope) {
     if (scope.footprint != none && fillsFootprint(e, grammar_)) return blockSolid();
     const Solid* solid = ownSolid(e, grammar_);
     if (!solid || solid->kind == Solid::Kind::Nil) return none;
@@ -141,7 +139,7 @@ uint32_t Interpreter::solidOf(const Element& e, ElementCache& facts, const Place
     return index;
 }
 
-bool Interpreter::evaluateAttributes(const Element& e, const Place& place, EvaluatedAttributes& out) {
+bool ShapeMaker::evaluateAttributes(const Element& e, const Place& place, EvaluatedAttributes& out) {
     out.scope = place.scope;
     AttributeContext context{place, out};
     const auto apply = [&](const std::vector<Attribute>& list, bool scope) {
@@ -161,13 +159,15 @@ bool Interpreter::evaluateAttributes(const Element& e, const Place& place, Evalu
 }
 
 /// A roof is as high as its pitch makes it; where no joint places it, its foot stays that of the scope.
-void Interpreter::standAsHigh(const Element& e, const Place& place, EvaluatedAttributes& out) {
+void ShapeMaker::standAsHigh(const Element& e, const Place& place, EvaluatedAttributes& out) {
     const Solid* solid = ownSolid(e, grammar_);
-    if (!solid || !solid->primitive || solid->primitive->plan != field::PlanUse::OwnHeight || builder_.failed()) return;
+    if (!solid || !solid->primitive || solid->primitive->plan != field::PlanUse::OwnHeight ||
+        builder_.monitor().failed())
+        return;
     const SolidValue value = evaluateSolid(*solid, place);
     const std::vector<field::Argument> arguments = argumentNumbers(value);
     if (const std::string fault = field::profileFault(*value.primitive, arguments); !fault.empty()) {
-        builder_.fail(Error::Kind::Input, fault, solid->span);
+        builder_.monitor().fail(Error::Kind::Input, fault, solid->span);
         return;
     }
     const AttributeContext context{place, out};
@@ -180,22 +180,22 @@ void Interpreter::standAsHigh(const Element& e, const Place& place, EvaluatedAtt
 }
 
 /// Refuses numbers that no model can be made of, where they are written.
-bool Interpreter::inBounds(const Element& e, const EvaluatedAttributes& attributes) {
+bool ShapeMaker::inBounds(const Element& e, const EvaluatedAttributes& attributes) {
     for (int i = 0; i < 3; ++i) {
         const double s = attributes.scope.size[i];
         if (s > 0 && s < 1e9 && std::abs(attributes.moved_m[i]) < 1e9) continue;
-        builder_.fail(Error::Kind::Input,
-                      s > 0 ? "the shape would be larger or farther away than 1e9 metres"
-                            : "the size of the shape isn't positive",
-                      attributes.sizeSpan.value_or(e.span));
+        builder_.monitor().fail(Error::Kind::Input,
+                                s > 0 ? "the shape would be larger or farther away than 1e9 metres"
+                                      : "the size of the shape isn't positive",
+                                attributes.sizeSpan.value_or(e.span));
         return false;
     }
-    return !builder_.failed();
+    return !builder_.monitor().failed();
 }
 
 /// The parameter or inherited value that gives an expression its colour: one that has it, else the first one that is a
 /// colour at all; "" where none is.
-std::string Interpreter::nameOfColor(const rules::Expr& e, Vec3f color, const Place& place) const {
+std::string ShapeMaker::nameOfColor(const rules::Expr& e, Vec3f color, const Place& place) const {
     std::string first;
     std::vector<const rules::Expr*> open{&e};
     while (!open.empty()) {
@@ -213,7 +213,7 @@ std::string Interpreter::nameOfColor(const rules::Expr& e, Vec3f color, const Pl
 }
 
 /// What names a look: what gives it its colour, the terminal it changes, or the colour itself.
-std::string Interpreter::nameOfLook(const EvaluatedAttributes& attributes, uint32_t base, const Place& place) const {
+std::string ShapeMaker::nameOfLook(const EvaluatedAttributes& attributes, uint32_t base, const Place& place) const {
     const auto& materials = builder_.derivation().materials;
     std::string name;
     if (attributes.colorBy) name = nameOfColor(*attributes.colorBy, *attributes.color, place);
@@ -224,7 +224,7 @@ std::string Interpreter::nameOfLook(const EvaluatedAttributes& attributes, uint3
 }
 
 /// One object for all that are alike, so that materials of one look are one.
-std::shared_ptr<const image::Texture> Interpreter::textureOf(const PlacedTexture& asked) {
+std::shared_ptr<const image::Texture> ShapeMaker::textureOf(const PlacedTexture& asked) {
     auto& texture = textures_[asked];
     if (texture) return texture;
     const auto file = [&](uint32_t place) { return place > 0 ? grammar_.images[place - 1] : nullptr; };
@@ -234,7 +234,7 @@ std::shared_ptr<const image::Texture> Interpreter::textureOf(const PlacedTexture
 }
 
 /// The material of the terminal, or of the first in a solid, changed by colour, roughness and metalness where given.
-uint32_t Interpreter::materialOf(const EvaluatedAttributes& attributes, const Element& e, const Place& place) {
+uint32_t ShapeMaker::materialOf(const EvaluatedAttributes& attributes, const Element& e, const Place& place) {
     const rules::SymbolId symbol = e.content.symbol();
     const bool terminal = symbol != rules::none && grammar_.symbols[symbol].terminal;
     const uint32_t base = attributes.material ? *attributes.material
@@ -258,8 +258,8 @@ uint32_t Interpreter::materialOf(const EvaluatedAttributes& attributes, const El
     return at->second;
 }
 
-/// The node of an element, unplaced: everything but parent, centre and children.
-Shape Interpreter::shapeOf(const Element& e, EvaluatedAttributes& attributes, const Place& place, uint64_t key) {
+Shape ShapeMaker::shapeOf(const Element& e, EvaluatedAttributes& attributes, const Place& place, uint64_t key,
+                          uint32_t chainRule) {
     ElementCache& facts = factsOf(e);
     Shape s;
     s.key = key;
@@ -274,46 +274,11 @@ Shape Interpreter::shapeOf(const Element& e, EvaluatedAttributes& attributes, co
     s.blend_m = attributes.blend_m;
     s.span = e.span;
     if (!attributes.extras.empty()) {
-        if (!attributes.extras.displace.empty()) builder_.noteChance();  // noise hangs on the shape's key
+        if (!attributes.extras.displace.empty()) builder_.monitor().noteChance();  // noise hangs on the shape's key
         s.extras = builder_.put(std::move(attributes.extras));
     }
-    if (e.live != rules::none) s.chainRule = chainRule_;
+    if (e.live != rules::none) s.chainRule = chainRule;
     return s;
-}
-
-/// What stands inside a shape: the non-terminal that `: Name` wraps, the shapes of a group, or the parts of a content
-/// operation.
-bool Interpreter::fill(const Element& e, ShapeId id, const Frame& frame) {
-    const Shape& s = builder_.tree().shapes[id];
-    if (e.content.group() || e.content.parts()) {
-        RunState state;
-        state.root = state.last = id;
-        Frame inner = frame;
-        inner.matched = inner.node = id;
-        inner.key = s.key;
-        inner.state = &state;
-        inner.wholeContent = false;
-        inner.place.scope = s.scope;
-        inner.place.host = id;
-        inner.place.valuesAt = s.valuesAt;
-        if (const rules::Body* group = e.content.group()) return runBody(*group, inner, 0);
-        PartsContext parts(*this, inner);
-        return e.content.parts()->operation->run(parts, *e.content.parts());
-    }
-    const rules::SymbolId symbol = e.content.symbol();
-    if (e.live == rules::none || symbol == rules::none || grammar_.symbols[symbol].terminal) return true;
-    Shape inner;
-    inner.key = combine(s.key, hashText("content"));
-    inner.parent = id;
-    inner.symbol = symbol;
-    inner.live = true;
-    inner.scope = s.scope;
-    inner.span = e.span;
-    const auto [at, fresh] =
-        labels_.try_emplace(grammar_.symbols[inner.symbol].name, static_cast<uint32_t>(labels_.size()));
-    if (fresh) builder_.tree().labels.push_back(at->first);
-    inner.label = at->second;
-    return builder_.add(inner) != none;
 }
 
 }  // namespace sgm::derive
