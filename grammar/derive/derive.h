@@ -66,6 +66,7 @@ struct Derivation {
     uint64_t seed = 0;
     uint64_t classic = 0, morphic = 0;  ///< rule applications of R_C and R_M
     bool isPlaced = false;              ///< it is an object of another model, and stands on no ground of its own
+    bool planAlone = false;             ///< made with Options::planAlone
     bool usedChance = false;            ///< another seed could have made another tree
 
     /// Pairs of shapes with a solid whose boxes overlap by more than 0.1 mm without being bonded or related (one above
@@ -116,6 +117,7 @@ struct Options {
     uint64_t seed = 1;
     Budget budget;
     bool isPlaced = false;   ///< derives an object that `place` puts: maps can't be asked
+    bool planAlone = false;  ///< lays out towns: what stands on roads, waters, parks and lots isn't derived
     std::optional<Lot> lot;  ///< the scope of the start; none: 1 m a side
 };
 

@@ -7,13 +7,13 @@
 #include <numbers>
 
 #include "grammar/derive/builder.h"
+#include "grammar/derive/map_values.h"
 #include "grammar/derive/scope_footprint.h"
 #include "grammar/rules/arithmetic_warnings.h"
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/lookup.h"
 #include "grammar/rules/make.h"
 #include "modeler/core/random.h"
-#include "modeler/town/noise.h"
 
 namespace sgm::derive {
 namespace {
@@ -101,64 +101,6 @@ double extentOf(const Expr& expr, const Place& place) {
     return place.extents_m ? (*place.extents_m)[axis] : place.scope.size[axis];
 }
 
-plan::Vec2 planPlaceOf(const Place& place) { return {place.scope.centre.x, place.scope.centre.z}; }
-
-/// Functions of the place in the plan.
-Value ofPlace(Fn fn, const Expr& expr, const Place& place) {
-    const plan::Vec2 p = planPlaceOf(place);
-    if (fn == Fn::Bump) {
-        const Value centre = evaluate(expr.args[0], place);
-        return Value::number(town::bump(p, {centre.n[0], centre.n[1]}, number(expr.args[1], place)));
-    }
-    const double size_m = std::max(1e-3, number(expr.args[0], place)),
-                 octaves = std::clamp(number(expr.args[1], place), 1.0, 12.0);
-    const double seed = expr.args.size() > 2 ? std::clamp(number(expr.args[2], place), -1e15, 1e15) : 0;
-    return Value::number(
-        town::fbmNoise(p, size_m, static_cast<int>(octaves), static_cast<uint64_t>(static_cast<int64_t>(seed))));
-}
-
-/// The value of a map where the shape stands. A formula's depth is bounded by the number of maps: each asks those above
-/// it.
-Value ofMap(const Expr& expr, const Place& place) {
-    if (!place.builder) return {};
-    const rules::Map& map = place.builder->derivation().grammar->maps[expr.index];
-    if (place.builder->derivation().isPlaced) {
-        place.builder->monitor().fail(
-            Error::Kind::Input,
-            fmt::format("the map '{}' is of the ground, and an object that 'place' puts stands on none: "
-                        "hand its value down as a parameter, 'place … {{ share = {} }}'",
-                        map.name, map.name),
-            expr.span);
-        return {};
-    }
-    return map.formula ? evaluate(*map.formula, place) : rules::valueAt(map.picture, planPlaceOf(place));
-}
-
-/// The mean of what an expression says over the scope's plan, by a lattice of places about its middle.
-Value meanOf(const Expr& value, const Place& place) {
-    constexpr int steps = 16;  // along each side of the plan's box
-    if (!place.tree) return Value::number(0);
-    const plan::Footprint land = footprintOf(place.scope, place.tree->footprints);
-    const plan::Box2 box = bounds(land);
-    Place there = place;
-    Value mean = evaluate(value, place);
-    if (mean.kind == Value::Kind::Bool) mean = Value::number(mean.num());
-    const auto ask = [&](plan::Vec2 p) {
-        there.scope.centre = place.scope.centre + place.scope.axes * Vec3d{p.x, 0, p.z};
-        return number(value, there);
-    };
-    double sum = 0;
-    int count = 0;
-    for (int i = 0; i < steps; ++i)
-        for (int k = 0; k < steps; ++k) {
-            const plan::Vec2 p = box.lo + plan::Vec2{box.size().x * (i + .5) / steps, box.size().z * (k + .5) / steps};
-            if (contains(land, p)) sum += ask(p), ++count;
-        }
-    if (count > 0) mean.n[0] = sum / count;
-    mean.integer = false;
-    return mean;
-}
-
 /// What stands around the shape; a second run with other numbers would find it as the first one left it.
 Value ofSurroundings(Fn fn, const Expr& expr, const Place& place) {
     if (!place.builder || place.host == none) return Value::boolean(false);
@@ -239,6 +181,13 @@ bool arithmetic(Fn fn, const Expr& expr, const Place& place, double& out) {
         case Fn::GreaterEq:
             out = arg(0) >= arg(1);
             return true;
+        case Fn::Equal:
+        case Fn::NotEqual:
+            if (const auto equal = isOfClass(expr, place)) {
+                out = *equal == (fn == Fn::Equal);
+                return true;
+            }
+            return false;
         case Fn::And:
             out = arg(0) != 0 && arg(1) != 0;
             return true;

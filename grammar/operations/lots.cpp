@@ -116,7 +116,7 @@ bool runLots(PartsContext& context, const Parts& parts) {
         const plan::Box2 box = bounds(lot.land);
         scope.size = {box.size().x, scope.size.y, box.size().z};
         context.draw(inner ? "inner" : lot.corner ? "corner" : "lot", scope, lot.land, lot.key, lot.street_m);
-        if (!part) continue;
+        if (!part || context.derivation().planAlone) continue;
         const auto over = context.over(scope, lot.land, parts.span);
         if (!over || !context.run(*part->body, *over, lot.key)) return false;
     }

@@ -193,7 +193,8 @@ private:
 
     bool runGround() {
         const Parts::Part* part = findPart(parts_, "ground");
-        return !part || runPart(*part->body, "ground", context_.scope(), hashText("ground"));
+        return !part || context_.derivation().planAlone ||
+               runPart(*part->body, "ground", context_.scope(), hashText("ground"));
     }
 
     /// What tunnels take out of the ground.
@@ -221,7 +222,7 @@ private:
     bool runOver(const Parts::Part* part, const std::string& layer, const plan::Footprint& area, Vec2 front,
                  uint64_t key) {
         if (layer != "bore") context_.draw(layer, context_.scope(), area, key);
-        if (!part) return true;
+        if (!part || (context_.derivation().planAlone && layer != "block")) return true;
         const Vec2 right{front.z, -front.x};
         plan::Footprint own = area;
         plan::Box2 box;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "grammar/rules/declarations.h"
 #include "grammar/rules/evaluate.h"
@@ -94,16 +95,20 @@ double costOf(CheckContext& ctx, const Expr& e) {
 
 }  // namespace
 
+const std::string& wordAt(const MapPicture& picture, plan::Vec2 p) {
+    const auto color = picture.raster->colorAt(p.x / picture.over_m.x + .5, p.z / picture.over_m.z + .5);
+    std::optional<uint32_t> nearest;
+    int least = picture.otherwise ? likeness + 1 : std::numeric_limits<int>::max();
+    for (const MapPicture::Class& known : picture.classes)
+        if (const int difference = differenceOf(known.color, color); difference < least)
+            nearest = known.word, least = difference;
+    return picture.words[nearest.value_or(picture.otherwise.value_or(0))];
+}
+
 Value valueAt(const MapPicture& picture, plan::Vec2 p) {
+    if (!picture.words.empty()) return makeWord(wordAt(picture, p));
     const double u = p.x / picture.over_m.x + .5, v = p.z / picture.over_m.z + .5;
-    if (picture.words.empty()) return interpolate(picture.black, picture.white, picture.raster->greyAt(u, v));
-    const auto color = picture.raster->colorAt(u, v);
-    const auto nearest = std::min_element(
-        picture.classes.begin(), picture.classes.end(),
-        [&](const auto& a, const auto& b) { return differenceOf(a.color, color) < differenceOf(b.color, color); });
-    const bool found =
-        nearest != picture.classes.end() && (!picture.otherwise || differenceOf(nearest->color, color) <= likeness);
-    return makeWord(picture.words[found ? nearest->word : picture.otherwise.value_or(0)]);
+    return interpolate(picture.black, picture.white, picture.raster->greyAt(u, v));
 }
 
 void declareMap(CheckContext& ctx, const syntax::MapDecl& decl) {

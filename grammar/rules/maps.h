@@ -30,5 +30,7 @@ struct MapPicture {
 /// The value at (x, z): between pixels for numbers; the word of the nearest colour (with `else`: within 12 of 255) for
 /// classes.
 Value valueAt(const MapPicture& picture, plan::Vec2 p);
+/// The word at (x, z) of a map of classes, without the making of a value.
+const std::string& wordAt(const MapPicture& picture, plan::Vec2 p);
 
 }  // namespace sgm::rules

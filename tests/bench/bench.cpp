@@ -185,7 +185,10 @@ void runPlan() {
         fmt::print("{}\n", planLine(all.back()));
         std::fflush(stdout);
     }
-    for (const Bar& bar : judge(all)) fmt::print("{}\n", barLine(bar));
+    std::vector<Bar> bars = judge(all);
+    if (const auto slider_s = measureSlider("examples/city/town.sgm"); slider_s.ok())
+        bars.push_back({"examples/city/town.sgm, s from a slider to its plan", .1, false, *slider_s, ""});
+    for (const Bar& bar : bars) fmt::print("{}\n", barLine(bar));
 }
 
 int fail(const Error& error) {

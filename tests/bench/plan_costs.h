@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "modeler/core/result.h"
 #include "modeler/town/lots.h"
 #include "tests/bench/bars.h"
 
@@ -23,6 +25,10 @@ struct PlanCosts {
     double roads_s = 0, blocks_s = 0, lots_s = 0;  ///< processor time
     double bytesPerLot = 0;                        ///< of roads and lots as they are kept, one line a lot
 };
+
+/// Processor time from a parameter's value to the plan of a town, its maps and language included: what a slider in the
+/// window waits for. Error::Input where the grammar can't be read.
+Result<double> measureSlider(const std::filesystem::path& town);
 
 std::vector<PlanCase> planCases();
 PlanCosts measurePlan(const PlanCase& what);

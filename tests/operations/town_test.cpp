@@ -37,6 +37,25 @@ TEST(Network, PartsThatAreNotNamedStayEmpty) {
     EXPECT_GT(d.plan.features.size(), 50u);
 }
 
+TEST(Network, ThePlanAloneIsThatOfTheWholeTown) {
+    const std::string text = head + start +
+                             "ground: lawn | highway: asphalt | street: asphalt | water: sea | park: grove | block: "
+                             "Block }\nrule Block -> lots box(300) { lot: setback 2m wall | inner: yard }\n";
+    const Derivation whole = derived(text);
+    derive::Options options;
+    options.planAlone = true;
+    const Derivation alone = derived(text, options);
+    ASSERT_EQ(alone.plan.features.size(), whole.plan.features.size());
+    for (size_t i = 0; i < alone.plan.features.size(); ++i) {
+        const auto &a = alone.plan.features[i], &b = whole.plan.features[i];
+        EXPECT_EQ(a.layer, b.layer);
+        EXPECT_EQ(a.key, b.key);
+        EXPECT_TRUE(a.area == b.area);
+    }
+    EXPECT_TRUE(solidsOf(alone).empty()) << "nothing stands on it";
+    EXPECT_GT(solidsOf(whole).at("wall").size(), 100u);
+}
+
 TEST(Lots, StandAlongTheirStreets) {
     const Derivation d =
         derived(head + start + "block: lots box(300, front: 8m) { lot: wall | corner: asphalt | inner: yard } }\n");

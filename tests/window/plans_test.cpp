@@ -62,5 +62,21 @@ TEST_F(Plans, AMapIsLaidOverTheGround) {
     EXPECT_EQ(state()["look"]["map"], "");
 }
 
+TEST_F(Plans, OfATownFollowsASlider) {
+    openText(
+        "grammar 2\nmap people = bump((0m, 0m), 300m)\nparam width = 9m in 4m..20m \"Street\"\n"
+        "roads Net { pull = people spread = people > .1 street = width block = 60m step = 60m junction = 4 }\n"
+        "terminal lawn\nstart Town -> size (500m, 4m, 500m) network Net { ground: lawn | block: Block }\n"
+        "rule Block -> lots box(300m2) { lot: nil }\n");
+    click("look.plan");
+    EXPECT_EQ(state()["look"]["plan"], true);
+    key("5");
+    shoot("plan");
+    drag("param.width", 0.4, 0.5, 0.8, 0.5);
+    settled();
+    EXPECT_EQ(text().find("width = 9m"), std::string::npos);
+    shoot("plan-wide");
+}
+
 }  // namespace
 }  // namespace sgm::window::test

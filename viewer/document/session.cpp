@@ -105,6 +105,7 @@ bool Session::poll() {
     if (!fresh_) return false;
     fresh_ = false;
     Update update = std::exchange(update_, Update{});
+    if (update.model || update.plan) plan_ = std::move(update.plan);
     if (update.model) deferred_.push_back(std::exchange(model_, std::move(update.model)));
     if (update.mesh) deferred_.push_back(std::exchange(mesh_, std::move(update.mesh)));
     wanted_.notify_one();
@@ -189,12 +190,30 @@ void Session::publish(Update update) {
         const std::lock_guard lock(mutex_);
         if (update.model) update_.model = std::move(update.model);
         if (update.mesh) update_.mesh = std::move(update.mesh);
+        if (update.plan) update_.plan = std::move(update.plan);
         if (update.problems) update_.problems = std::move(update.problems);
         if (update.used) update_.used = std::move(update.used);
         update_.attempted = std::max(update_.attempted, update.attempted);
         fresh_ = true;
     }
     if (notify_) notify_();
+}
+
+/// Where a slider is dragged over a town, its plan is there long before its buildings.
+void Session::sketchPlan(const std::shared_ptr<const rules::Grammar>& grammar, derive::Options options,
+                         Progress& progress) {
+    if (grammar->roads.empty()) return;
+    options.planAlone = true;
+    auto laid = derive::derive(grammar, options, &progress);
+    if (!laid.ok() || laid->plan.empty()) return;  // what is wrong is told of the model
+    Update update;
+    update.plan = std::make_shared<const town::TownPlan>(std::move(laid->plan));
+    publish(std::move(update));
+}
+
+std::shared_ptr<const town::TownPlan> Session::plan() const {
+    if (plan_ || !model_ || model_->model.derivation.plan.empty()) return plan_;
+    return {model_, &model_->model.derivation.plan};
 }
 
 void Session::attempt(const ShowRequest& request, Progress& progress) {
@@ -265,6 +284,7 @@ Result<std::shared_ptr<const BuiltModel>> Session::followed(const ShowRequest& r
     shown.options = std::move(*options);
     shown.held = true;
     pipeline::Context context{&progress};
+    sketchPlan(shown.grammar, shown.options, progress);
     auto model = liveEdit_->to(shown.options, context);
     if (!model.ok()) return model.error();
     shown.model = std::move(*model);
@@ -324,6 +344,7 @@ Result<std::shared_ptr<const BuiltModel>> Session::made(const ShowRequest& reque
         sameOptions(shown_->options, *options))
         return shown_;
     constexpr auto objects = pipeline::Objects::Sketched;
+    if (request.dragging && !request.byHand) sketchPlan(grammar_, *options, *context.progress);
     auto model = request.byHand ? pipeline::makeModel(derive::Derivation(*request.byHand), context, objects)
                                 : pipeline::makeModel(grammar_, *options, context, objects);
     if (!model.ok()) return model.error();

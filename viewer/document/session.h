@@ -93,6 +93,9 @@ public:
     const std::vector<Problem>& problems() const { return problems_; }
     /// The revision that `problems` speaks of.
     uint64_t attempted() const { return attempted_; }
+    /// The plan of the newest town, which is there before its model while a slider is dragged; null where there is
+    /// none.
+    std::shared_ptr<const town::TownPlan> plan() const;
 
     /// Something runs or waits.
     bool busy() const;
@@ -114,6 +117,7 @@ private:
     struct Update {
         std::shared_ptr<const BuiltModel> model;
         std::shared_ptr<const BuiltMesh> mesh;
+        std::shared_ptr<const town::TownPlan> plan;
         std::optional<std::vector<Problem>> problems;
         std::optional<std::vector<UsedFile>> used;
         uint64_t attempted = 0;
@@ -129,6 +133,7 @@ private:
                                                        Progress& progress);
     Result<std::shared_ptr<const BuiltModel>> made(const ShowRequest& request, pipeline::Context& context,
                                                    std::vector<Problem>& problems);
+    void sketchPlan(const std::shared_ptr<const rules::Grammar>& grammar, derive::Options options, Progress& progress);
     void meshIt(const ShowRequest& request, Progress& progress);
     void meshCutOpen(const ShowRequest& request, Progress& progress);
     void tellOfMesh();
@@ -141,6 +146,7 @@ private:
     // The window's.
     std::shared_ptr<const BuiltModel> model_;
     std::shared_ptr<const BuiltMesh> mesh_;
+    std::shared_ptr<const town::TownPlan> plan_;  ///< newer than the model's, or null
     std::vector<Problem> problems_;
     std::vector<UsedFile> used_;
     uint64_t attempted_ = 0;

@@ -178,7 +178,8 @@ void describe(const Workbench& bench, nlohmann::json& state) {
                      {"joints", static_cast<int>(look.joints)},
                      {"navigation", static_cast<int>(look.navigation)},
                      {"motion", static_cast<int>(look.motion)},
-                     {"map", bench.mapLayer.chosen()}};
+                     {"map", bench.mapLayer.chosen()},
+                     {"plan", look.plan}};
     state["preview"] = bench.previewed;
     state["lamp"] = bench.orbit.lamp_m;
     state["fog"] = bench.field.drawsFog();

@@ -6,6 +6,7 @@
 
 #include <array>
 
+#include "viewer/window/plan_overlay.h"
 #include "viewer/window/style.h"
 #include "viewer/window/widgets.h"
 
@@ -87,6 +88,7 @@ void Bars::lookControls(Workbench& bench) {
         within ? bench.frameAll() : bench.stepInside();
     ImGui::SameLine();
     if (bench.mapLayer.choose(bench)) ImGui::SameLine();
+    if (choosePlan(bench)) ImGui::SameLine();
     static const std::vector<std::string> motions{"Orbit", "Fly", "Walk"};
     int motion = static_cast<int>(bench.look.motion);
     if (choice(report, "look.motion", motions, motion, ImGui::GetFontSize() * 5)) {

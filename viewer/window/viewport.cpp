@@ -10,6 +10,7 @@
 
 #include "viewer/window/camera_keys.h"
 #include "viewer/window/overlay.h"
+#include "viewer/window/plan_overlay.h"
 #include "viewer/window/style.h"
 
 namespace sgm::window {
@@ -131,6 +132,7 @@ void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMe
     const Projection project(bench.orbit.camera(size.x / size.y), low, size);
     if (bench.tree() && bench.selected() != derive::none) drawScope(bench, bench.selected(), project, list);
     bench.mapLayer.draw(bench, project, list);
+    drawPlan(bench, project, list);
     drawBonds(bench, project, list);
     drawAxes(project, list);
     takeShape(bench, project, list);

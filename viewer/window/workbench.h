@@ -40,6 +40,7 @@ struct Look {
     pipeline::Section plane() const { return {sectionAxis, true, static_cast<double>(sectionShare), true}; }
     int meshResolution = 128;  ///< cells along the longest side
     bool ground = true;
+    bool plan = false;  ///< the plan of a town over the view
     JointsShown joints = JointsShown::Selected;
     Motion motion = Motion::Orbit;
     NavigationPreset navigation = NavigationPreset::Usual;
