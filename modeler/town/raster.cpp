@@ -74,9 +74,8 @@ double Raster::greyAt(double u, double v) const {
 }
 
 std::array<uint8_t, 3> Raster::colorAt(double u, double v) const {
-    const double x = std::clamp(std::floor(u * width), 0.0, width - 1.0),
-                 y = std::clamp(std::floor(v * height), 0.0, height - 1.0);
-    const size_t at = static_cast<size_t>(y) * width + static_cast<size_t>(x);
+    const double x = std::clamp(u * width, 0.0, width - 1.0), y = std::clamp(v * height, 0.0, height - 1.0);
+    const size_t at = static_cast<size_t>(y) * width + static_cast<size_t>(x);  // rounded down
     if (!color.empty()) return color[at];
     const auto byte = static_cast<uint8_t>(std::clamp(numbers[at], 0.f, 1.f) * 255 + .5f);
     return {byte, byte, byte};
