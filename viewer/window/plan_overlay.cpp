@@ -18,8 +18,8 @@ struct Pen {
 
 const Pen& penOf(std::string_view layer) {
     static constexpr Pen pens[] = {
-        {"highway", IM_COL32(255, 196, 92, 255), 2.0f},   {"street", IM_COL32(245, 240, 225, 230), 1.2f},
-        {"crossing", IM_COL32(245, 240, 225, 150), 1.0f}, {"bridge", IM_COL32(255, 140, 110, 255), 2.0f},
+        {"highway", IM_COL32(255, 196, 92, 255), 2.0f},   {"street", IM_COL32(70, 74, 84, 230), 1.2f},
+        {"crossing", IM_COL32(70, 74, 84, 150), 1.0f}, {"bridge", IM_COL32(255, 140, 110, 255), 2.0f},
         {"tunnel", IM_COL32(190, 140, 220, 255), 2.0f},   {"water", IM_COL32(90, 170, 240, 255), 1.5f},
         {"park", IM_COL32(110, 200, 110, 255), 1.5f},     {"", IM_COL32(120, 130, 150, 150), 1.0f}};
     for (const Pen& pen : pens)
