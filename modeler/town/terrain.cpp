@@ -35,11 +35,11 @@ double bilinearAt(Vec2 low, double cell_m, int columns, int rows, Vec2 p, const 
 
 double HeightMap::at(Vec2 p) const { return bilinearAt(low, cell_m, columns, rows, p, heights); }
 
-double Terrain::bilinear(const std::vector<double>& heights, Vec2 p) const {
-    return bilinearAt(low_, cell_m_, columns_, rows_, p, heights);
+double HeightLattice::bilinear(const std::vector<double>& heights, Vec2 p) const {
+    return bilinearAt(low, cell_m, columns, rows, p, heights);
 }
 
-double Terrain::naturalAt(Vec2 p) const { return bilinear(natural_, p); }
+double Terrain::naturalAt(Vec2 p) const { return lattice_.bilinear(natural_, p); }
 
 bool Terrain::isLevel() const {
     const auto [least, most] = std::minmax_element(natural_.begin(), natural_.end());
@@ -56,7 +56,7 @@ double Terrain::leastRise(Vec2 p, double step_m) const {
 }
 
 HeightMap Terrain::mapOf(const std::vector<double>& heights) const {
-    HeightMap map{low_, cell_m_, columns_, rows_, {}};
+    HeightMap map{lattice_.low, lattice_.cell_m, lattice_.columns, lattice_.rows, {}};
     map.heights.reserve(heights.size());
     for (const double h : heights) map.heights.push_back(static_cast<float>(h));
     return map;
@@ -66,26 +66,26 @@ Result<Terrain> Terrain::survey(const RoadParameters& parameters, const Land& la
     Terrain t;
     t.parameters_ = parameters;
     const Vec2 size = parameters.hi - parameters.lo;
-    t.cell_m_ = std::max({parameters.street_m / 4, std::sqrt(size.x * size.z / mostCorners), 1e-3 * size.x});
-    t.low_ = parameters.lo - Vec2{t.cell_m_, t.cell_m_};
-    t.columns_ = static_cast<int>(std::ceil(size.x / t.cell_m_)) + 3;
-    t.rows_ = static_cast<int>(std::ceil(size.z / t.cell_m_)) + 3;
-    const size_t count = static_cast<size_t>(t.columns_) * static_cast<size_t>(t.rows_);
+    t.lattice_.cell_m = std::max({parameters.street_m / 4, std::sqrt(size.x * size.z / mostCorners), 1e-3 * size.x});
+    t.lattice_.low = parameters.lo - Vec2{t.lattice_.cell_m, t.lattice_.cell_m};
+    t.lattice_.columns = static_cast<int>(std::ceil(size.x / t.lattice_.cell_m)) + 3;
+    t.lattice_.rows = static_cast<int>(std::ceil(size.z / t.lattice_.cell_m)) + 3;
+    const size_t count = static_cast<size_t>(t.lattice_.columns) * static_cast<size_t>(t.lattice_.rows);
     t.natural_.reserve(count), t.water_.assign(count, unknown);
     t.fixed_.assign(count, unknown);
-    if (progress) progress->begin("heights", static_cast<uint64_t>(t.rows_));
-    for (int k = 0; k < t.rows_; ++k) {
+    if (progress) progress->begin("heights", static_cast<uint64_t>(t.lattice_.rows));
+    for (int k = 0; k < t.lattice_.rows; ++k) {
         if (cancelled(progress)) return cancelledError();
         tick(progress);
-        for (int i = 0; i < t.columns_; ++i) {
-            const Vec2 p = t.placeOf(i, k);
+        for (int i = 0; i < t.lattice_.columns; ++i) {
+            const Vec2 p = t.lattice_.placeOf(i, k);
             const double h = land.height(p);
             if (!(std::abs(h) <= 1e5))
                 return Error{Error::Kind::Input,
                              fmt::format("the ground is {:.6g} m high at ({:.6g}, {:.6g}); heights are at most 100 km",
                                          h, p.x, p.z)};
             t.natural_.push_back(h);
-            if (land.water && land.water(p)) t.water_[t.indexOf(i, k)] = h, t.hasWater_ = true;
+            if (land.water && land.water(p)) t.water_[t.lattice_.indexOf(i, k)] = h, t.hasWater_ = true;
         }
     }
     if (t.hasWater_) t.carve(land);
@@ -98,21 +98,21 @@ template <class Relax>
 void Terrain::sweep(Relax&& relax) const {
     const auto beside = [&](int i, int k, int di, int dk) {
         const int x = i + di, z = k + dk;
-        if (x < 0 || z < 0 || x >= columns_ || z >= rows_) return;
-        relax(indexOf(i, k), indexOf(x, z), di != 0 && dk != 0);
+        if (x < 0 || z < 0 || x >= lattice_.columns || z >= lattice_.rows) return;
+        relax(lattice_.indexOf(i, k), lattice_.indexOf(x, z), di != 0 && dk != 0);
     };
-    for (int k = 0; k < rows_; ++k)
-        for (int i = 0; i < columns_; ++i)
+    for (int k = 0; k < lattice_.rows; ++k)
+        for (int i = 0; i < lattice_.columns; ++i)
             beside(i, k, -1, 0), beside(i, k, -1, -1), beside(i, k, 0, -1), beside(i, k, 1, -1);
-    for (int k = rows_ - 1; k >= 0; --k)
-        for (int i = columns_ - 1; i >= 0; --i)
+    for (int k = lattice_.rows - 1; k >= 0; --k)
+        for (int i = lattice_.columns - 1; i >= 0; --i)
             beside(i, k, 1, 0), beside(i, k, 1, 1), beside(i, k, 0, 1), beside(i, k, -1, 1);
 }
 
 /// Two sweeps over the lattice: afterwards no corner is more than `slope` times its distance above (below) another,
 /// distances being those of steps to eight neighbours.
 void Terrain::spread(std::vector<double>& heights, double slope, bool upper) const {
-    const double step = slope * cell_m_, across = step * std::sqrt(2.0);
+    const double step = slope * lattice_.cell_m, across = step * std::sqrt(2.0);
     const auto relax = [&](size_t at, size_t beside, bool diagonal) {
         const double by = diagonal ? across : step, from = heights[beside];
         double& to = heights[at];
@@ -130,7 +130,7 @@ std::vector<double> Terrain::extended(const std::vector<double>& known, double s
 /// Water falls by little along its way; the land beside it is cut down to it, and its bed lies below it.
 void Terrain::carve(const Land& land) {
     // Heights spread among the corners of one body of water alone, as often as its windings ask for.
-    const double step = fall * cell_m_, across = step * std::sqrt(2.0);
+    const double step = fall * lattice_.cell_m, across = step * std::sqrt(2.0);
     bool changed = true;
     const auto relax = [&](size_t at, size_t beside, bool diagonal) {
         const double from = water_[beside] + (diagonal ? across : step);
@@ -149,20 +149,22 @@ void Terrain::layBeds(const Land& land) {
     constexpr double far = 1e9;
     std::vector<double> banks(water_.size(), far), depth(water_.size(), far);
     const auto meet = [&](int i, int k, int x, int z) {
-        const size_t wet = indexOf(i, k), dry = indexOf(x, z);
+        const size_t wet = lattice_.indexOf(i, k), dry = lattice_.indexOf(x, z);
         if (!isKnown(water_[wet]) || isKnown(water_[dry])) return;
         double near = 0, beyond = 1;  // shares of the way from the wet corner
         for (int halving = 0; halving < 6; ++halving) {
             const double middle = (near + beyond) / 2;
-            (land.water(placeOf(i, k) + (placeOf(x, z) - placeOf(i, k)) * middle) ? near : beyond) = middle;
+            (land.water(lattice_.placeOf(i, k) + (lattice_.placeOf(x, z) - lattice_.placeOf(i, k)) * middle) ? near
+                                                                                                             : beyond) =
+                middle;
         }
-        banks[dry] = std::min(banks[dry], water_[wet] + parameters_.bank * cell_m_ * (1 - near));
-        depth[wet] = std::min(depth[wet], shore * cell_m_ * near);
+        banks[dry] = std::min(banks[dry], water_[wet] + parameters_.bank * lattice_.cell_m * (1 - near));
+        depth[wet] = std::min(depth[wet], shore * lattice_.cell_m * near);
     };
-    for (int k = 0; k < rows_; ++k)
-        for (int i = 0; i < columns_; ++i) {
-            if (i + 1 < columns_) meet(i, k, i + 1, k), meet(i + 1, k, i, k);
-            if (k + 1 < rows_) meet(i, k, i, k + 1), meet(i, k + 1, i, k);
+    for (int k = 0; k < lattice_.rows; ++k)
+        for (int i = 0; i < lattice_.columns; ++i) {
+            if (i + 1 < lattice_.columns) meet(i, k, i + 1, k), meet(i + 1, k, i, k);
+            if (k + 1 < lattice_.rows) meet(i, k, i, k + 1), meet(i, k + 1, i, k);
         }
     spread(banks, parameters_.bank, true);
     spread(depth, shore, true);
@@ -197,7 +199,9 @@ void Terrain::grade(const RoadGraph& graph) {
     layBridges(graph);
 }
 
-double Terrain::besideWidth(const RoadEdge& e) const { return parameters_.width_m(e.kind) / 2 + reach * cell_m_; }
+double Terrain::besideWidth(const RoadEdge& e) const {
+    return parameters_.width_m(e.kind) / 2 + reach * lattice_.cell_m;
+}
 
 template <class Visit>
 void Terrain::eachBeside(const RoadGraph& graph, const RoadEdge& e, Visit&& visit) const {
@@ -206,11 +210,11 @@ void Terrain::eachBeside(const RoadGraph& graph, const RoadEdge& e, Visit&& visi
     plan::Box2 box;
     box.add(a), box.add(b);
     eachNear(box, wide, [&](int i, int k) {
-        const Vec2 p = placeOf(i, k);
+        const Vec2 p = lattice_.placeOf(i, k);
         const double t = std::clamp(dot(p - a, d) / dot(d, d), 0.0, 1.0);
         const Vec2 off = p - (a + d * t);
         const double away = std::sqrt(dot(off, off));
-        if (away <= wide) visit(indexOf(i, k), from + t * (to - from), away);
+        if (away <= wide) visit(lattice_.indexOf(i, k), from + t * (to - from), away);
     });
 }
 

@@ -34,6 +34,20 @@ struct TerrainLayers {
     HeightMap water;  ///< its surface, and how its heights go on beside it; empty without water
 };
 
+/// The corners of squares over a town's area, row by row.
+struct HeightLattice {
+    Vec2 low;
+    double cell_m = 1;
+    int columns = 0, rows = 0;
+
+    size_t indexOf(int i, int k) const {
+        return static_cast<size_t>(k) * static_cast<size_t>(columns) + static_cast<size_t>(i);
+    }
+    Vec2 placeOf(int i, int k) const { return low + Vec2{i * cell_m, k * cell_m}; }
+    /// Between the four corners around `p`; that of the border beyond.
+    double bilinear(const std::vector<double>& heights, Vec2 p) const;
+};
+
 class Terrain {
 public:
     /// Samples `land.height` over the roads' area and lays beds of rivers and lakes into it: a body of water is level
@@ -69,11 +83,6 @@ public:
     const std::vector<double>& nodeHeights() const { return nodeHeights_; }
 
 private:
-    size_t indexOf(int i, int k) const {
-        return static_cast<size_t>(k) * static_cast<size_t>(columns_) + static_cast<size_t>(i);
-    }
-    Vec2 placeOf(int i, int k) const { return low_ + Vec2{i * cell_m_, k * cell_m_}; }
-    double bilinear(const std::vector<double>& heights, Vec2 p) const;
     HeightMap mapOf(const std::vector<double>& heights) const;
     void carve(const Land& land);
     void layBeds(const Land& land);
@@ -107,9 +116,7 @@ private:
     void spread(std::vector<double>& heights, double slope, bool upper) const;
 
     RoadParameters parameters_;
-    Vec2 low_;
-    double cell_m_ = 1;
-    int columns_ = 0, rows_ = 0;
+    HeightLattice lattice_;
     std::vector<double> natural_;  ///< the ground with beds of water
     std::vector<double> water_;    ///< its surface where there is water, else NaN
     std::vector<double> fixed_;    ///< what roads and level areas say, else NaN
@@ -127,13 +134,14 @@ private:
 template <class Visit>
 void Terrain::eachNear(const plan::Box2& box, double margin_m, Visit&& visit) const {
     const auto first = [&](double v, double low) {
-        return std::max(0, static_cast<int>(std::ceil((v - margin_m - low) / cell_m_)));
+        return std::max(0, static_cast<int>(std::ceil((v - margin_m - low) / lattice_.cell_m)));
     };
     const auto last = [&](double v, double low, int count) {
-        return std::min(count - 1, static_cast<int>(std::floor((v + margin_m - low) / cell_m_)));
+        return std::min(count - 1, static_cast<int>(std::floor((v + margin_m - low) / lattice_.cell_m)));
     };
-    for (int k = first(box.lo.z, low_.z); k <= last(box.hi.z, low_.z, rows_); ++k)
-        for (int i = first(box.lo.x, low_.x); i <= last(box.hi.x, low_.x, columns_); ++i) visit(i, k);
+    for (int k = first(box.lo.z, lattice_.low.z); k <= last(box.hi.z, lattice_.low.z, lattice_.rows); ++k)
+        for (int i = first(box.lo.x, lattice_.low.x); i <= last(box.hi.x, lattice_.low.x, lattice_.columns); ++i)
+            visit(i, k);
 }
 
 }  // namespace sgm::town

@@ -23,13 +23,15 @@ void Terrain::solve(const RoadGraph& graph) {
     for (const RoadEdge& e : graph.edges()) {
         if (e.removed || !e.bridge) continue;
         const Vec2 a = graph.metresAt(e.a), d = graph.metresAt(e.b) - a;
-        const int steps = std::max(1, static_cast<int>(std::sqrt(dot(d, d)) / cell_m_));
+        const int steps = std::max(1, static_cast<int>(std::sqrt(dot(d, d)) / lattice_.cell_m));
         double surface = -1e9;
         for (int i = 0; i <= steps; ++i) {
             const Vec2 p = a + d * (static_cast<double>(i) / steps);
-            const int x = std::clamp(static_cast<int>((p.x - low_.x) / cell_m_ + .5), 0, columns_ - 1);
-            const int z = std::clamp(static_cast<int>((p.z - low_.z) / cell_m_ + .5), 0, rows_ - 1);
-            if (const double w = water_[indexOf(x, z)]; w > surface) surface = w;
+            const int x =
+                std::clamp(static_cast<int>((p.x - lattice_.low.x) / lattice_.cell_m + .5), 0, lattice_.columns - 1);
+            const int z =
+                std::clamp(static_cast<int>((p.z - lattice_.low.z) / lattice_.cell_m + .5), 0, lattice_.rows - 1);
+            if (const double w = water_[lattice_.indexOf(x, z)]; w > surface) surface = w;
         }
         for (const uint32_t end : {e.a, e.b}) {
             least[end] = std::max(least[end], surface + clearance_m);

@@ -15,7 +15,7 @@ constexpr int turns = 24;     // of bringing neighbours nearer to each other
 std::vector<Terrain::Level> Terrain::levelAreas() const {
     const std::vector<double> before = shaped();
     const auto [lower, upper] = cones(fixed_, wall);
-    const double margin_m = reach * cell_m_;
+    const double margin_m = reach * lattice_.cell_m;
     std::vector<Level> areas;
     for (const plan::Footprint& pad : pads_) {
         Level& area = areas.emplace_back(Level{{}, 0, -1e9, 1e9});
@@ -26,7 +26,7 @@ std::vector<Terrain::Level> Terrain::levelAreas() const {
             sum += before[n];
             area.least = std::max(area.least, lower[n]), area.most = std::min(area.most, upper[n]);
         }
-        const double mean = area.corners.empty() ? bilinear(before, box.empty() ? Vec2{} : box.centre())
+        const double mean = area.corners.empty() ? lattice_.bilinear(before, box.empty() ? Vec2{} : box.centre())
                                                  : sum / static_cast<double>(area.corners.size());
         if (area.least > area.most) area.least = area.most = (area.least + area.most) / 2;
         area.height = std::clamp(mean, area.least, area.most);
@@ -38,9 +38,10 @@ std::vector<Terrain::Level> Terrain::levelAreas() const {
 std::vector<std::pair<size_t, double>> Terrain::cornersNear(const plan::Footprint& area, double margin_m) const {
     std::vector<std::pair<size_t, double>> corners;
     eachNear(bounds(area), margin_m, [&](int i, int k) {
-        const Vec2 p = placeOf(i, k);
+        const Vec2 p = lattice_.placeOf(i, k);
         const double away = contains(area, p) ? 0 : distanceToEdges(area, p);
-        if (away <= margin_m && std::isnan(fixed_[indexOf(i, k)])) corners.emplace_back(indexOf(i, k), away);
+        if (away <= margin_m && std::isnan(fixed_[lattice_.indexOf(i, k)]))
+            corners.emplace_back(lattice_.indexOf(i, k), away);
     });
     return corners;
 }
@@ -60,7 +61,7 @@ void Terrain::stepBetween(std::vector<Level>& areas) const {
         for (const auto& [a, b] : neighbours) {
             const bool up = areas[a].height <= areas[b].height;
             Level &low = areas[up ? a : b], &high = areas[up ? b : a];
-            const double over = high.height - low.height - step * cell_m_;
+            const double over = high.height - low.height - step * lattice_.cell_m;
             if (over <= .01) continue;
             changed = true;
             low.height = std::min(low.height + over / 2, low.most);
