@@ -118,9 +118,13 @@ private:
     std::vector<Probe> probes_;
     std::vector<uint32_t> cellEnds_;
     uint32_t firstVertex_ = 0;
-    Vec3f low_, high_;                          ///< of the cell in work
-    std::vector<std::array<Vec3f, 3>> places_;  ///< of its triangles
-    std::vector<Vec3d> normals_;                ///< of its polygons
+    /// The cell in work.
+    struct CellInWork {
+        Vec3f low, high;
+        std::vector<std::array<Vec3f, 3>> places;  ///< of its triangles
+        std::vector<Vec3d> normals;                ///< of its polygons
+    };
+    CellInWork cell_;
 };
 
 }  // namespace sgm::mesh

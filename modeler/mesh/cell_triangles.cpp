@@ -37,7 +37,7 @@ void CellPieces::emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, c
         out.cornerNormals.push_back({3 * triangle + k, n == Vec3f{} ? normal : n});
     }
     out.triangles.push_back({a.vertex, b.vertex, c.vertex});
-    places_.push_back({a.at, b.at, c.at});
+    cell_.places.push_back({a.at, b.at, c.at});
     out.labels.push_back(piece.label);
     out.origins.push_back(piece.origin);
 }
@@ -45,7 +45,7 @@ void CellPieces::emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, c
 /// Whether a diagonal lies in a face of the cell in work: it might be the neighbour's too.
 bool CellPieces::liesInFace(Vec3f a, Vec3f b) const {
     for (int axis = 0; axis < 3; ++axis)
-        if (a[axis] == b[axis] && (a[axis] == low_[axis] || a[axis] == high_[axis])) return true;
+        if (a[axis] == b[axis] && (a[axis] == cell_.low[axis] || a[axis] == cell_.high[axis])) return true;
     return false;
 }
 
@@ -82,7 +82,7 @@ bool CellPieces::triangulatePolygon(const Polygon& polygon, PieceTriangles& out)
     if (!(dot(sum, expected) > 0)) return false;
     const Vec3d n = normalized(sum);
     const Vec3f normal = n.as<float>();
-    normals_.push_back(n);
+    cell_.normals.push_back(n);
     const auto cut = [&](size_t before, size_t at, size_t after) {
         emit(nodes_[ring_[before].first], nodes_[ring_[at].first], nodes_[ring_[after].first], polygon, normal, out);
     };
@@ -112,7 +112,7 @@ bool CellPieces::isPartedByCrease(const Loop& loop) const {
     // The first one was cut off between its ends.
     const LoopNode &begin = nodes_[a.first], &end = nodes_[a.end - 1];
     const Vec3d from = begin.at.as<double>();
-    const Vec3d across = cross(end.at.as<double>() - from, normals_[0] + normals_[1]);
+    const Vec3d across = cross(end.at.as<double>() - from, cell_.normals[0] + cell_.normals[1]);
     const auto liesBeside = [&](const Polygon& polygon, Vec3d direction) {
         for (uint32_t i = polygon.first; i < polygon.end; ++i) {
             if (nodes_[i].vertex == begin.vertex || nodes_[i].vertex == end.vertex) continue;
@@ -126,7 +126,7 @@ bool CellPieces::isPartedByCrease(const Loop& loop) const {
 }
 
 bool CellPieces::crosses(const PieceTriangles& out, size_t firstTriangle) const {
-    return anyCross(places_, std::span(out.triangles).subspan(firstTriangle));
+    return anyCross(cell_.places, std::span(out.triangles).subspan(firstTriangle));
 }
 
 /// The middle of all nodes of some loops.
@@ -186,8 +186,9 @@ void CellPieces::triangulate(PieceTriangles& out, std::vector<uint32_t>& cellEnd
     for (const uint32_t end : cellEnds_) {
         const size_t triangles = out.triangles.size(), normals = out.cornerNormals.size();
         const Vec3i cell = loops_[next].cell;
-        low_ = grid_->corner(cell.x, cell.y, cell.z), high_ = grid_->corner(cell.x + 1, cell.y + 1, cell.z + 1);
-        places_.clear(), normals_.clear();
+        cell_.low = grid_->corner(cell.x, cell.y, cell.z),
+        cell_.high = grid_->corner(cell.x + 1, cell.y + 1, cell.z + 1);
+        cell_.places.clear(), cell_.normals.clear();
         bool good = true;
         for (uint32_t l = next; l < end && good; ++l) good = triangulateLoop(loops_[l], out);
         const bool parted = good && end - next == 1 && isPartedByCrease(loops_[next]);
@@ -196,7 +197,7 @@ void CellPieces::triangulate(PieceTriangles& out, std::vector<uint32_t>& cellEnd
             for (const float apart : {0.0f, 0.5f, 1.0f, 2.0f, 4.0f}) {
                 out.triangles.resize(triangles), out.labels.resize(triangles), out.origins.resize(triangles);
                 out.cornerNormals.resize(normals);
-                places_.clear();
+                cell_.places.clear();
                 for (uint32_t l = next; l < end; ++l) fan(l, middleOf(next, end), apart, out);
                 if (end - next == 1 || !crosses(out, triangles)) break;
             }

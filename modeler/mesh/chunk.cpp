@@ -92,13 +92,13 @@ BlockMesher::BlockMesher(const Grid& grid, const PolygonizeOptions& options)
 }
 
 void BlockMesher::clear() {
-    positions_.clear(), normals_.clear(), origins_.clear(), labels_.clear();
+    vertices_.positions.clear(), vertices_.normals.clear(), vertices_.origins.clear(), vertices_.labels.clear();
     bricks_.clear();
     owned_.bricks = owned_.alike = 0;
-    for (auto& list : ghosts_) list.clear();
-    for (auto& list : shared_) list.clear();
-    vertices_ = 0, cellCount_ = 0, triangles_ = 0, flat_ = false;
-    waiting_ = 0;
+    for (auto& list : seams_.ghosts) list.clear();
+    for (auto& list : seams_.shared) list.clear();
+    vertices_.count = 0, cells_.count = 0, cells_.triangles = 0, vertices_.flat = false;
+    cut_.waiting = 0;
 }
 
 bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chunk) {
@@ -113,15 +113,15 @@ bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chun
         const int brick = std::countr_zero(rest);
         addBrick(brick, sampled(brick), block.tape);
     }
-    if (waiting_ > 0) findWaiting(block.tape);
+    if (cut_.waiting > 0) findWaiting(block.tape);
     counts_.sampleSeconds += sampling.seconds();
 
     const Stopwatch joining;
     chunk.block = block.index;
-    copyTo(chunk.positions, positions_);
-    if (!bare_) copyTo(chunk.normals, normals_);
-    for (size_t i = 0; flat_ && !bare_ && i < normals_.size(); ++i)
-        if (normals_[i] == Vec3f{}) chunk.faceted.push_back(static_cast<uint32_t>(i));
+    copyTo(chunk.positions, vertices_.positions);
+    if (!bare_) copyTo(chunk.normals, vertices_.normals);
+    for (size_t i = 0; vertices_.flat && !bare_ && i < vertices_.normals.size(); ++i)
+        if (vertices_.normals[i] == Vec3f{}) chunk.faceted.push_back(static_cast<uint32_t>(i));
     listSeams(chunk);
     writeTriangles(chunk);
     if (crisp_) splitAtCreases(block, chunk);
@@ -150,41 +150,42 @@ const eval::Tape& BlockMesher::sampled(int brick) {
 
 /// The brick's cells with surface; returns how many.
 size_t BlockMesher::addCells(const BrickSigns& signs, Vec3i brick) {
-    SurfaceCell* const cells = cells_.data() + cellCount_;
+    SurfaceCell* const cells = cells_.list.data() + cells_.count;
     const size_t count = brickLoops().cells(signs.low.data(), signs.high.data(), brickCorner(brick), blockCorners,
                                             blockCorners * blockCorners, cells);
     const uint8_t* const triangles = triangleCounts().data();
-    for (size_t c = 0; c < count; ++c) triangles_ += triangles[cells[c].inside];
-    cellCount_ += count;
+    for (size_t c = 0; c < count; ++c) cells_.triangles += triangles[cells[c].inside];
+    cells_.count += count;
     counts_.surfaceCells += count;
     return count;
 }
 
-/// The brick's own edges that the surface cuts, one after the other as their vertices are numbered from vertices_ on.
+/// The brick's own edges that the surface cuts, one after the other as their vertices are numbered from vertices_.count
+/// on.
 void BlockMesher::addOwnEdges(const BrickSigns& signs) {
-    if (waiting_ == 0) edges_.reserve(enoughEdges + 3 * brickRows * brickCorners);
-    edges_.size = ownEdges_ = brickLoops().ownEdges(signs.low.data(), signs.high.data(), edges_.list.data());
+    if (cut_.waiting == 0) cut_.edges.reserve(enoughEdges + 3 * brickRows * brickCorners);
+    cut_.edges.size = cut_.own = brickLoops().ownEdges(signs.low.data(), signs.high.data(), cut_.edges.list.data());
 }
 
 /// Lists cut edges on low sides of the block: lower blocks own them. Their places are looked for only where that tells
 /// their origin.
 void BlockMesher::addGhosts(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner) {
     const int sides = lowSidesOf(brick);
-    borrowedPlaces_.clear();
+    cut_.borrowed.clear();
     for (int axis = 0; axis < 3; ++axis) {
         if ((sides & ~(1 << axis)) == 0) continue;
         forEachBit(cutsOnLowSides(signs, axis, sides), [&](int row, int i) {
             const Vec3i inBrick{i, rowJ(row), rowK(row)}, at = brick * brickCells + inBrick;
             const int edge = edgePlace(cornerNumber(at.x, at.y, at.z), axis), kind = sidesAt(0, at, axis) - 1;
             if (!owner) {
-                borrowedPlaces_.emplace_back(kind, ghosts_[kind].size());
-                edges_.list[edges_.size++] = codeAt(inBrick, axis);
+                cut_.borrowed.emplace_back(kind, seams_.ghosts[kind].size());
+                cut_.edges.list[cut_.edges.size++] = codeAt(inBrick, axis);
             }
-            ghosts_[kind].push_back({static_cast<uint32_t>(edge), owner.value_or(0), {}});
+            seams_.ghosts[kind].push_back({static_cast<uint32_t>(edge), owner.value_or(0), {}});
         });
     }
-    uint32_t* const codes = edges_.list.data();
-    std::fill(codes + edges_.size, codes + wholeVectors(edges_.size), 0u);
+    uint32_t* const codes = cut_.edges.list.data();
+    std::fill(codes + cut_.edges.size, codes + wholeVectors(cut_.edges.size), 0u);
 }
 
 /// Looks up where the listed edges begin and end, behind those that wait, and numbers the brick's own.
@@ -196,12 +197,12 @@ void BlockMesher::placeEdges(Vec3i brick) {
         values.corner,
         {1, values.row, values.layer},
         {1, blockCorners, blockCorners * blockCorners}};
-    uint32_t* const places = edges_.list.data();
-    edgeLoops().place(ends, places, edges_.size, from(edges_.arrays, waiting_), places);
-    uint32_t* const number = number_.data() + edgePlace(brickCorner(brick), 0);
-    for (size_t e = 0; e < ownEdges_; ++e) number[places[e]] = static_cast<uint32_t>(vertices_ + e);
-    vertices_ += static_cast<uint32_t>(ownEdges_);
-    if (!bare_) origins_.resize(vertices_);
+    uint32_t* const places = cut_.edges.list.data();
+    edgeLoops().place(ends, places, cut_.edges.size, from(cut_.edges.arrays, cut_.waiting), places);
+    uint32_t* const number = vertices_.number.data() + edgePlace(brickCorner(brick), 0);
+    for (size_t e = 0; e < cut_.own; ++e) number[places[e]] = static_cast<uint32_t>(vertices_.count + e);
+    vertices_.count += static_cast<uint32_t>(cut_.own);
+    if (!bare_) vertices_.origins.resize(vertices_.count);
 }
 
 /// Lists own vertices on high sides of the block for every block that meets this one there.
@@ -211,9 +212,9 @@ void BlockMesher::addShared(const BrickSigns& signs, Vec3i brick) {
         if ((sides & ~(1 << axis)) == 0) continue;
         forEachBit(cutsOnHighSides(signs, axis, sides), [&](int row, int i) {
             const Vec3i at = brick * brickCells + Vec3i{i, rowJ(row), rowK(row)};
-            const uint32_t vertex = number_[edgePlace(cornerNumber(at.x, at.y, at.z), axis)];
+            const uint32_t vertex = vertices_.number[edgePlace(cornerNumber(at.x, at.y, at.z), axis)];
             const int on = sidesAt(blockCells, at, axis);
-            for (int kind = on; kind > 0; kind = (kind - 1) & on) shared_[kind - 1].push_back(vertex);
+            for (int kind = on; kind > 0; kind = (kind - 1) & on) seams_.shared[kind - 1].push_back(vertex);
         });
     }
 }
@@ -223,44 +224,44 @@ void BlockMesher::findPlaces(const eval::Tape& tape, size_t own) {
     // Blocks around an edge have to agree on crisp vertices, so which search is taken can't hang on a block's tape.
     const bool expensive = !crisp_ && samples_.isExpensive() && isExpensive(tape);
     const VertexSearch search{refineSteps_, expensive, !bare_, crisp_ != nullptr, fieldTime_};
-    counts_.refinementEvaluations += findVertices(tape, search, workspace_, openEdges_, edges_);
-    flat_ = flat_ || (edges_.size > 0 && edges_.flat > 0);
-    const size_t first = positions_.size();
-    positions_.resize(first + own);
+    counts_.refinementEvaluations += findVertices(tape, search, workspace_, cut_.open, cut_.edges);
+    vertices_.flat = vertices_.flat || (cut_.edges.size > 0 && cut_.edges.flat > 0);
+    const size_t first = vertices_.positions.size();
+    vertices_.positions.resize(first + own);
     if (own == 0) return;
-    const EdgeArrays& e = edges_.arrays;
-    edgeLoops().interleave(e.x, e.y, e.z, own, &positions_[first].x);
+    const EdgeArrays& e = cut_.edges.arrays;
+    edgeLoops().interleave(e.x, e.y, e.z, own, &vertices_.positions[first].x);
     if (bare_) return;
-    normals_.resize(first + own);
-    edgeLoops().interleave(e.dx, e.dy, e.dz, own, &normals_[first].x);
+    vertices_.normals.resize(first + own);
+    edgeLoops().interleave(e.dx, e.dy, e.dz, own, &vertices_.normals[first].x);
 }
 
 /// Finds the vertices that wait.
 void BlockMesher::findWaiting(const eval::Tape& tape) {
-    edges_.size = waiting_;
-    findPlaces(tape, waiting_);
-    waiting_ = 0;
+    cut_.edges.size = cut_.waiting;
+    findPlaces(tape, cut_.waiting);
+    cut_.waiting = 0;
 }
 
 /// Asks whose surface each vertex lies on, the latest own ones and ghosts. Returns the owner of all of
 /// them, where that is one.
 std::optional<OriginId> BlockMesher::findOrigins(const eval::Tape& tape) {
-    const size_t n = edges_.size;
+    const size_t n = cut_.edges.size;
     if (n == 0) return {};
-    found_.resize(n);
+    found_.origins.resize(n);
     {
         const AddTime evaluating(fieldTime_);
-        eval::evaluateOrigin(tape, {edges_.arrays.x, edges_.arrays.y, edges_.arrays.z, n, true}, found_.data(),
-                             workspace_);
+        eval::evaluateOrigin(tape, {cut_.edges.arrays.x, cut_.edges.arrays.y, cut_.edges.arrays.z, n, true},
+                             found_.origins.data(), workspace_);
     }
-    std::copy_n(found_.data(), ownEdges_, origins_.data() + origins_.size() - ownEdges_);
-    for (size_t e = ownEdges_; e < n; ++e) {
-        const auto [kind, place] = borrowedPlaces_[e - ownEdges_];
-        ghosts_[static_cast<size_t>(kind)][place].origin = found_[e];
+    std::copy_n(found_.origins.data(), cut_.own, vertices_.origins.data() + vertices_.origins.size() - cut_.own);
+    for (size_t e = cut_.own; e < n; ++e) {
+        const auto [kind, place] = cut_.borrowed[e - cut_.own];
+        seams_.ghosts[static_cast<size_t>(kind)][place].origin = found_.origins[e];
     }
     OriginId others = 0;
-    for (size_t e = 1; e < n; ++e) others |= found_[e] ^ found_[0];
-    return others == 0 ? std::optional(found_[0]) : std::nullopt;
+    for (size_t e = 1; e < n; ++e) others |= found_.origins[e] ^ found_.origins[0];
+    return others == 0 ? std::optional(found_.origins[0]) : std::nullopt;
 }
 
 /// `owner`, which all edges of the brick have, where those on its low sides that lower bricks own have it too.
@@ -282,25 +283,25 @@ void BlockMesher::addBrick(int number, const eval::Tape& tape, const eval::Tape&
     if (crisp_) return addCrispBrick(brick, signs, tape);
     std::optional<OriginId> owner = onlyOwner(tape);
     const bool mayWait = owner && leavesNothingOut(tape, whole);
-    if (!mayWait && waiting_ > 0) findWaiting(whole);
+    if (!mayWait && cut_.waiting > 0) findWaiting(whole);
     addOwnEdges(signs);
     if (lowSidesOf(brick) != 0) addGhosts(signs, brick, owner);
     placeEdges(brick);
     if (highSidesOf(brick) != 0) addShared(signs, brick);
     if (mayWait) {
-        waiting_ += ownEdges_;
-        if (waiting_ >= enoughEdges) findWaiting(whole);
+        cut_.waiting += cut_.own;
+        if (cut_.waiting >= enoughEdges) findWaiting(whole);
     } else {
-        findPlaces(tape, ownEdges_);
+        findPlaces(tape, cut_.own);
     }
     std::optional<OriginId> edgesOwner = owner;
     if (owner) {
-        if (!bare_) std::fill_n(origins_.data() + origins_.size() - ownEdges_, ownEdges_, *owner);
+        if (!bare_) std::fill_n(vertices_.origins.data() + vertices_.origins.size() - cut_.own, cut_.own, *owner);
     } else {
         edgesOwner = findOrigins(tape);
         if (edgesOwner) owner = ownerAround(brick, *edgesOwner);
     }
-    bricks_.push_back({triangles_, owner});
+    bricks_.push_back({cells_.triangles, owner});
     owned_.bricks |= 1ull << number;
     owned_.alike |= uint64_t{edgesOwner.has_value()} << number;
     owned_.owner[static_cast<size_t>(number)] = edgesOwner.value_or(0);
@@ -311,12 +312,13 @@ void BlockMesher::listSeams(Chunk& chunk) {
     uint32_t ghosts = 0;
     for (int kind = 0; kind < seamKinds; ++kind) {
         chunk.ghosts.begin[kind] = ghosts;
-        for (const GhostVertex& b : ghosts_[kind]) {
-            number_[b.edge] = ghostBit | ghosts++;
-            if (!bare_) origins_.push_back(b.origin);
+        for (const GhostVertex& b : seams_.ghosts[kind]) {
+            vertices_.number[b.edge] = ghostBit | ghosts++;
+            if (!bare_) vertices_.origins.push_back(b.origin);
         }
         chunk.shared.begin[kind] = static_cast<uint32_t>(chunk.shared.vertices.size());
-        chunk.shared.vertices.insert(chunk.shared.vertices.end(), shared_[kind].begin(), shared_[kind].end());
+        chunk.shared.vertices.insert(chunk.shared.vertices.end(), seams_.shared[kind].begin(),
+                                     seams_.shared[kind].end());
     }
     chunk.ghosts.vertices.resize(ghosts);
     chunk.ghosts.begin.back() = ghosts;
@@ -325,14 +327,15 @@ void BlockMesher::listSeams(Chunk& chunk) {
 
 /// Joins vertices. A triangle takes the origin of most of its vertices, the lowest where all three differ.
 void BlockMesher::writeTriangles(Chunk& chunk) const {
-    chunk.triangles.resize(triangles_);
-    if (triangles_ == 0) return;
-    brickLoops().join(cells_.data(), cellCount_, number_.data(), blockCorners, blockCorners * blockCorners,
-                      placedCases().data(), &chunk.triangles[0].x);
+    chunk.triangles.resize(cells_.triangles);
+    if (cells_.triangles == 0) return;
+    brickLoops().join(cells_.list.data(), cells_.count, vertices_.number.data(), blockCorners,
+                      blockCorners * blockCorners, placedCases().data(), &chunk.triangles[0].x);
     if (bare_) return;
-    chunk.origins.resize(triangles_);
+    chunk.origins.resize(cells_.triangles);
     if (crisp_) {
-        brickLoops().owners(&chunk.triangles[0].x, triangles_, origins_.data(), vertices_, chunk.origins.data());
+        brickLoops().owners(&chunk.triangles[0].x, cells_.triangles, vertices_.origins.data(), vertices_.count,
+                            chunk.origins.data());
         return;
     }
     OriginId* const origin = chunk.origins.data();
@@ -342,7 +345,8 @@ void BlockMesher::writeTriangles(Chunk& chunk) const {
         if (brick.owner)
             std::fill_n(origin + first, count, *brick.owner);
         else
-            brickLoops().owners(&chunk.triangles[first].x, count, origins_.data(), vertices_, origin + first);
+            brickLoops().owners(&chunk.triangles[first].x, count, vertices_.origins.data(), vertices_.count,
+                                origin + first);
         first = brick.trianglesEnd;
     }
 }

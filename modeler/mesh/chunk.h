@@ -57,6 +57,38 @@ private:
         std::array<OriginId, bricksPerBlock> owner;
     };
 
+    struct CutEdgesOfBrick {
+        CutEdges edges;  ///< its own first; before them those that wait
+        size_t own = 0;
+        size_t waiting = 0;  ///< edges of bricks before, whose vertices the block's whole tape is still to find
+        std::vector<CutEdges> open;
+        std::vector<std::pair<int, size_t>> borrowed;  ///< of the others: kind of seam, place in its list
+    };
+    struct Vertices {
+        /// Of the vertex on an edge, see edgePlace; the last ones are read and never used.
+        PageVector<uint32_t> number = PageVector<uint32_t>(3 * cornersPerBlock + rowPadding);
+        PageVector<Vec3f> positions, normals;
+        PageVector<OriginId> origins;  ///< at last the origins of ghosts come after those of the own
+        PageVector<uint32_t> labels;   ///< of a crisp surface, as origins
+        uint32_t count = 0;
+        bool flat = false;  ///< some vertex has no normal
+    };
+    /// What the field says at the vertices of a brick.
+    struct Found {
+        PageVector<OriginId> origins;
+        PageVector<uint32_t> labels;
+    };
+    struct Cells {
+        PageVector<SurfaceCell> list =
+            PageVector<SurfaceCell>(blockCells * blockCells * blockCells + rowPadding);  ///< the first `count` count
+        size_t count = 0, triangles = 0;
+    };
+    /// What other blocks share.
+    struct Seams {
+        std::array<std::vector<GhostVertex>, seamKinds> ghosts;
+        std::array<std::vector<uint32_t>, seamKinds> shared;
+    };
+
     void clear();
     const eval::Tape& sampled(int brick);
     std::optional<OriginId> onlyOwner(const eval::Tape& tape) const;
@@ -80,28 +112,16 @@ private:
     const Grid grid_;
     const size_t refineSteps_;
     const bool bare_;
-    std::unique_ptr<CrispBlock> crisp_;          ///< null for plain marching cubes
-    PageVector<uint32_t> labels_, foundLabels_;  ///< of a crisp surface, as origins_
+    std::unique_ptr<CrispBlock> crisp_;  ///< null for plain marching cubes
     eval::Workspace workspace_;
     BlockSamples samples_;
-    CutEdges edges_;  ///< of a brick, its own first; before them those that wait
-    size_t ownEdges_ = 0;
-    size_t waiting_ = 0;  ///< edges of bricks before, whose vertices the block's whole tape is still to find
-    std::vector<CutEdges> openEdges_;
-    std::vector<std::pair<int, size_t>> borrowedPlaces_;  ///< of the others: kind of seam, place in its list
-    /// Of the vertex on an edge, see edgePlace; the last ones are read and never used.
-    PageVector<uint32_t> number_ = PageVector<uint32_t>(3 * cornersPerBlock + rowPadding);
-    PageVector<Vec3f> positions_, normals_;
-    PageVector<OriginId> origins_, found_;  ///< at last the origins of ghosts come after those of the own
-    PageVector<SurfaceCell> cells_ =
-        PageVector<SurfaceCell>(blockCells * blockCells * blockCells + rowPadding);  ///< the first cellCount_ count
+    CutEdgesOfBrick cut_;
+    Vertices vertices_;
+    Found found_;
+    Cells cells_;
     std::vector<Brick> bricks_;
     Owned owned_;
-    std::array<std::vector<GhostVertex>, seamKinds> ghosts_;
-    std::array<std::vector<uint32_t>, seamKinds> shared_;
-    uint32_t vertices_ = 0;
-    size_t cellCount_ = 0, triangles_ = 0;
-    bool flat_ = false;  ///< some vertex has no normal
+    Seams seams_;
     Counts counts_;
     SumOfTimes* fieldTime_ = nullptr;  ///< counts_.field, if that is measured
 };

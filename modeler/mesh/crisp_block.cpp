@@ -55,7 +55,7 @@ uint32_t CrispBlock::vertexAt(Vec3i low, int edge) const {
 const CellLoops& CrispBlock::loopsOfCell(const MixedCell& mixed) {
     const int inside = surface_->cells[mixed.cell].inside;
     if (mixed.joined == 0) return loopTable()[static_cast<size_t>(inside)];
-    return joinedLoops_ = loopsOf(inside, mixed.joined);
+    return loops_.joined = loopsOf(inside, mixed.joined);
 }
 
 /// Where two segments of a face would both lead from one piece to another, the field amid the face says whether they
@@ -119,81 +119,82 @@ int32_t CrispBlock::segmentOf(const SurfaceCell& cell, const CellLoop& loop, int
         segment.face = first_ + corner, segment.axis = axis;
         segment.alone = !isAmbiguous(cell.inside, axis, face % 2);
         segment.brick = static_cast<size_t>(brickNumber({low.x / brickCells, low.y / brickCells, low.z / brickCells}));
-        segments_.push_back(segment);
-        ends_.push_back({place[reversed], place[1 ^ reversed]});
-        codes_.push_back(static_cast<uint8_t>(std::min(codes[0], codes[1])));
-        known = static_cast<uint32_t>(segments_.size());
+        segments_.list.push_back(segment);
+        segments_.ends.push_back({place[reversed], place[1 ^ reversed]});
+        segments_.codes.push_back(static_cast<uint8_t>(std::min(codes[0], codes[1])));
+        known = static_cast<uint32_t>(segments_.list.size());
     }
     return 2 * static_cast<int32_t>(known - 1) + reversed;
 }
 
 void CrispBlock::findSegments() {
-    segments_.clear(), ends_.clear(), codes_.clear(), sides_.clear();
+    segments_.list.clear(), segments_.ends.clear(), segments_.codes.clear(), loops_.sides.clear();
     for (const MixedCell& mixed : mixed_) {
         const SurfaceCell& cell = surface_->cells[mixed.cell];
         const CellLoops& loops = loopsOfCell(mixed);
         for (int l = 0; l < loops.count; ++l)
             for (int side = 0; side < loops.loops[l].size; ++side)
-                sides_.push_back(segmentOf(cell, loops.loops[l], side));
+                loops_.sides.push_back(segmentOf(cell, loops.loops[l], side));
     }
-    for (size_t s = 0; s < segments_.size(); ++s)
-        segmentAt_[static_cast<size_t>(4 * edgePlace(segments_[s].face - first_, segments_[s].axis) + codes_[s])] = 0;
+    for (size_t s = 0; s < segments_.list.size(); ++s)
+        segmentAt_[static_cast<size_t>(4 * edgePlace(segments_.list[s].face - first_, segments_.list[s].axis) +
+                                       segments_.codes[s])] = 0;
 }
 
 /// Looks at the pieces once at each vertex that ends a segment. Returns at how many.
 uint64_t CrispBlock::evaluateEnds(eval::Workspace& workspace) {
-    samples_.clear(), points_.clear();
-    points_.reserve(surface_->positions.size());  // so that nodes may point there
-    pointOf_.assign(surface_->positions.size(), 0);
-    for (size_t s = 0; s < segments_.size(); ++s)
-        for (const uint32_t p : ends_[s]) {
-            if (pointOf_[p] != 0) continue;
-            samples_.add(surface_->tapes, segments_[s].brick, surface_->positions[p]);
-            points_.push_back({{}, {}, surface_->labels[p], surface_->origins[p]});
-            pointOf_[p] = static_cast<uint32_t>(points_.size());
+    samples_.clear(), points_.list.clear();
+    points_.list.reserve(surface_->positions.size());  // so that nodes may point there
+    points_.of.assign(surface_->positions.size(), 0);
+    for (size_t s = 0; s < segments_.list.size(); ++s)
+        for (const uint32_t p : segments_.ends[s]) {
+            if (points_.of[p] != 0) continue;
+            samples_.add(surface_->tapes, segments_.list[s].brick, surface_->positions[p]);
+            points_.list.push_back({{}, {}, surface_->labels[p], surface_->origins[p]});
+            points_.of[p] = static_cast<uint32_t>(points_.list.size());
         }
     samples_.evaluate(workspace);
     std::vector<float> values(samples_.size());
     for (size_t i = 0; i < values.size(); ++i) {
         const PiecePoint found = samples_.point(i, values[i]);
-        points_[i].at = found.at, points_[i].gradient = found.gradient;
+        points_.list[i].at = found.at, points_.list[i].gradient = found.gradient;
     }
-    for (size_t s = 0; s < segments_.size(); ++s)
+    for (size_t s = 0; s < segments_.list.size(); ++s)
         for (size_t end = 0; end < 2; ++end) {
-            const size_t i = pointOf_[ends_[s][end]] - 1;
-            segments_[s].ends[end] = points_[i], segments_[s].values[end] = values[i];
+            const size_t i = points_.of[segments_.ends[s][end]] - 1;
+            segments_.list[s].ends[end] = points_.list[i], segments_.list[s].values[end] = values[i];
         }
     return samples_.size();
 }
 
 /// The piece at a vertex of a mixed cell.
 const PiecePoint& CrispBlock::pointAt(uint32_t place) {
-    if (pointOf_[place] == 0) {
-        points_.push_back(
+    if (points_.of[place] == 0) {
+        points_.list.push_back(
             {surface_->positions[place], surface_->normals[place], surface_->labels[place], surface_->origins[place]});
-        pointOf_[place] = static_cast<uint32_t>(points_.size());
+        points_.of[place] = static_cast<uint32_t>(points_.list.size());
     }
-    return points_[pointOf_[place] - 1];
+    return points_.list[points_.of[place] - 1];
 }
 
 /// Numbers breaks: own ones after the block's other vertices, those on its low sides as ghosts after the others.
 /// On sides they come in order of place.
 void CrispBlock::numberBreaks() {
-    breakVertex_.assign(creases_.breaks().size(), 0);
+    segments_.breakVertex.assign(creases_.breaks().size(), 0);
     std::array<std::vector<std::pair<uint32_t, uint32_t>>, 3> low, high;
     uint32_t own = surface_->own;
-    for (uint32_t s = 0; s < segments_.size(); ++s) {
-        const FaceSegment& segment = segments_[s];
+    for (uint32_t s = 0; s < segments_.list.size(); ++s) {
+        const FaceSegment& segment = segments_.list[s];
         const Vec3i at = segment.face - first_;
         const auto axis = static_cast<size_t>(segment.axis);
         const auto key =
-            static_cast<uint32_t>(4 * edgePlace(at - unit(segment.axis) * at[segment.axis], 0) + codes_[s]);
+            static_cast<uint32_t>(4 * edgePlace(at - unit(segment.axis) * at[segment.axis], 0) + segments_.codes[s]);
         if (at[segment.axis] == 0) {
             low[axis].emplace_back(key, s);
             continue;
         }
         if (at[segment.axis] == blockCells) high[axis].emplace_back(key, s);
-        for (uint32_t b = 0; b < segment.breaks; ++b) breakVertex_[segment.firstBreak + b] = own++;
+        for (uint32_t b = 0; b < segment.breaks; ++b) segments_.breakVertex[segment.firstBreak + b] = own++;
     }
     auto ghosts = static_cast<uint32_t>(surface_->positions.size()) - surface_->own;
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -201,22 +202,22 @@ void CrispBlock::numberBreaks() {
         std::sort(high[axis].begin(), high[axis].end());
         const uint32_t before = ghosts;
         for (const auto& [key, s] : low[axis])
-            for (uint32_t b = 0; b < segments_[s].breaks; ++b)
-                breakVertex_[segments_[s].firstBreak + b] = ghostBit | ghosts++;
-        ghostCount_[axis] = ghosts - before;
-        shared_[axis].clear();
+            for (uint32_t b = 0; b < segments_.list[s].breaks; ++b)
+                segments_.breakVertex[segments_.list[s].firstBreak + b] = ghostBit | ghosts++;
+        border_.ghostCount[axis] = ghosts - before;
+        border_.shared[axis].clear();
         for (const auto& [key, s] : high[axis])
-            for (uint32_t b = 0; b < segments_[s].breaks; ++b)
-                shared_[axis].push_back(breakVertex_[segments_[s].firstBreak + b]);
+            for (uint32_t b = 0; b < segments_.list[s].breaks; ++b)
+                border_.shared[axis].push_back(segments_.breakVertex[segments_.list[s].firstBreak + b]);
     }
     out_.positions.resize(own - surface_->own), out_.normals.resize(own - surface_->own);
-    for (size_t b = 0; b < breakVertex_.size(); ++b) {
-        if (breakVertex_[b] & ghostBit) continue;
+    for (size_t b = 0; b < segments_.breakVertex.size(); ++b) {
+        if (segments_.breakVertex[b] & ghostBit) continue;
         const Break& at = creases_.breaks()[b];
         const Vec3f n = normalized(normalized(at.sides[0].gradient) + normalized(at.sides[1].gradient));
-        out_.positions[breakVertex_[b] - surface_->own] = at.at;
-        if (at.crossing != at.at) out_.confined.push_back({breakVertex_[b], at.crossing});
-        out_.normals[breakVertex_[b] - surface_->own] = n == Vec3f{} ? Vec3f{0, 1, 0} : n;
+        out_.positions[segments_.breakVertex[b] - surface_->own] = at.at;
+        if (at.crossing != at.at) out_.confined.push_back({segments_.breakVertex[b], at.crossing});
+        out_.normals[segments_.breakVertex[b] - surface_->own] = n == Vec3f{} ? Vec3f{0, 1, 0} : n;
     }
 }
 
@@ -231,16 +232,16 @@ void CrispBlock::addNodes(const SurfaceCell& cell, const CellLoop& loop, size_t&
         const PiecePoint& own = pointAt(place);
         LoopNode node{vertex, own.at, own.label, own.origin};
         node.sides = {&own, &own};
-        const int32_t known = sides_[side];
+        const int32_t known = loops_.sides[side];
         nodes_.push_back(node);
         if (known < 0) continue;
-        const FaceSegment& segment = segments_[static_cast<size_t>(known / 2)];
+        const FaceSegment& segment = segments_.list[static_cast<size_t>(known / 2)];
         const bool reversed = known % 2 != 0;
         for (uint32_t k = 0; k < segment.breaks; ++k) {
             const uint32_t b = segment.firstBreak + (reversed ? segment.breaks - 1 - k : k);
             const Break& at = creases_.breaks()[b];
             LoopNode& point = nodes_.emplace_back();
-            point.vertex = breakVertex_[b], point.at = at.at;
+            point.vertex = segments_.breakVertex[b], point.at = at.at;
             point.sides = {&at.sides[reversed ? 1 : 0], &at.sides[reversed ? 0 : 1]};
             point.label = point.sides[1]->label, point.origin = point.sides[1]->origin;
             point.isBreak = true;
@@ -302,14 +303,14 @@ uint64_t CrispBlock::run(const BlockSurface& surface, eval::Workspace& workspace
     surface_ = &surface;
     first_ = surface.block->index * blockCells;
     out_.clear(), split_.clear();
-    for (auto& list : shared_) list.clear();
-    ghostCount_ = {};
+    for (auto& list : border_.shared) list.clear();
+    border_.ghostCount = {};
     findMixedCells();
     if (mixed_.empty()) return 0;
     uint64_t evaluations = joinFaces(workspace);
     findSegments();
     evaluations += evaluateEnds(workspace);
-    evaluations += creases_.solve(surface.tapes, *surface.grid, workspace, segments_);
+    evaluations += creases_.solve(surface.tapes, *surface.grid, workspace, segments_.list);
     numberBreaks();
     splitCells();
     const auto corners = surface.own + static_cast<uint32_t>(out_.positions.size());

@@ -43,8 +43,8 @@ public:
     const PieceTriangles& triangles() const { return out_; }
     /// Vertices inside faces on the block's sides, by axis: as own vertices on high sides, and how many are ghosts
     /// on low sides. Both blocks at a side list them in the same order.
-    const std::vector<uint32_t>& shared(int axis) const { return shared_[static_cast<size_t>(axis)]; }
-    uint32_t ghosts(int axis) const { return ghostCount_[static_cast<size_t>(axis)]; }
+    const std::vector<uint32_t>& shared(int axis) const { return border_.shared[static_cast<size_t>(axis)]; }
+    uint32_t ghosts(int axis) const { return border_.ghostCount[static_cast<size_t>(axis)]; }
 
 private:
     struct MixedCell {
@@ -70,24 +70,40 @@ private:
     const BlockSurface* surface_ = nullptr;
     Vec3i first_;  ///< the block's first cell in the grid
     std::vector<MixedCell> mixed_;
-    std::vector<FaceSegment> segments_;
-    std::vector<std::array<uint32_t, 2>> ends_;  ///< of segments: places of their vertices
-    std::vector<uint32_t> pointOf_;              ///< by place: 1 + number of the point there in points_
-    std::vector<PiecePoint> points_;             ///< of vertices of mixed cells
+    /// Segments of loops in the faces of cells.
+    struct Segments {
+        std::vector<FaceSegment> list;
+        std::vector<std::array<uint32_t, 2>> ends;  ///< places of their vertices
+        std::vector<uint8_t> codes;                 ///< their order in a face
+        std::vector<uint32_t> breakVertex;
+    };
+    Segments segments_;
+    /// Points of vertices of mixed cells.
+    struct Points {
+        std::vector<uint32_t> of;  ///< by place: 1 + number of the point there
+        std::vector<PiecePoint> list;
+    };
+    Points points_;
     PieceSamples samples_;
-    std::vector<uint8_t> codes_;  ///< of segments: their order in a face
-    std::vector<int32_t> sides_;  ///< by side of a mixed cell's loops: 2 · segment + reversed, or −1
-    CellLoops joinedLoops_;
+    /// Loops of mixed cells.
+    struct Loops {
+        std::vector<int32_t> sides;  ///< by side: 2 · segment + reversed, or −1
+        CellLoops joined;
+    };
+    Loops loops_;
     /// By face and code, 1 + segment; before that, 1 + number of an ambiguous face.
     PageVector<uint32_t> segmentAt_ = PageVector<uint32_t>(4 * edgePlaces, 0u);
-    std::vector<uint32_t> breakVertex_;
     FaceCreases creases_;
     CellPieces pieces_;
     std::vector<LoopNode> nodes_;
     PieceTriangles split_, out_;
     std::vector<uint32_t> cellEnds_;
-    std::array<std::vector<uint32_t>, 3> shared_;
-    std::array<uint32_t, 3> ghostCount_{};
+    /// Vertices on the block's sides, by axis.
+    struct Sides {
+        std::array<std::vector<uint32_t>, 3> shared;
+        std::array<uint32_t, 3> ghostCount{};
+    };
+    Sides border_;
 };
 
 }  // namespace sgm::mesh

@@ -8,53 +8,58 @@ namespace sgm::mesh {
 /// A brick of a crisp surface: every vertex has a label.
 void BlockMesher::addCrispBrick(Vec3i brick, const BrickSigns& signs, const eval::Tape& tape) {
     addOwnEdges(signs);
-    borrowedPlaces_.clear();
+    cut_.borrowed.clear();
     if (lowSidesOf(brick) != 0) addGhosts(signs, brick, {});
     placeEdges(brick);
     if (highSidesOf(brick) != 0) addShared(signs, brick);
-    findPlaces(tape, ownEdges_);
+    findPlaces(tape, cut_.own);
     findLabels(tape);
 }
 
 /// Asks for the piece of surface that each vertex lies on, the latest own ones and ghosts.
 void BlockMesher::findLabels(const eval::Tape& tape) {
-    const size_t n = edges_.size;
-    labels_.resize(vertices_);
+    const size_t n = cut_.edges.size;
+    vertices_.labels.resize(vertices_.count);
     if (n == 0) return;
-    found_.resize(n), foundLabels_.resize(n);
-    const EdgeArrays& e = edges_.arrays;
+    found_.origins.resize(n), found_.labels.resize(n);
+    const EdgeArrays& e = cut_.edges.arrays;
     {
         const AddTime evaluating(fieldTime_);
-        eval::evaluateLabels(tape, {e.x, e.y, e.z, n, true}, foundLabels_.data(), found_.data(), workspace_);
+        eval::evaluateLabels(tape, {e.x, e.y, e.z, n, true}, found_.labels.data(), found_.origins.data(), workspace_);
     }
-    for (size_t i = 0; i < n; ++i) foundLabels_[i] = labelOf(foundLabels_[i], found_[i]);
-    std::copy_n(found_.data(), ownEdges_, origins_.data() + origins_.size() - ownEdges_);
-    std::copy_n(foundLabels_.data(), ownEdges_, labels_.data() + labels_.size() - ownEdges_);
-    for (size_t i = ownEdges_; i < n; ++i) {
-        const auto [kind, place] = borrowedPlaces_[i - ownEdges_];
-        GhostVertex& ghosts = ghosts_[static_cast<size_t>(kind)][place];
-        ghosts.origin = found_[i];
-        ghosts.point = {{e.x[i], e.y[i], e.z[i]}, {e.dx[i], e.dy[i], e.dz[i]}, foundLabels_[i], found_[i]};
+    for (size_t i = 0; i < n; ++i) found_.labels[i] = labelOf(found_.labels[i], found_.origins[i]);
+    std::copy_n(found_.origins.data(), cut_.own, vertices_.origins.data() + vertices_.origins.size() - cut_.own);
+    std::copy_n(found_.labels.data(), cut_.own, vertices_.labels.data() + vertices_.labels.size() - cut_.own);
+    for (size_t i = cut_.own; i < n; ++i) {
+        const auto [kind, place] = cut_.borrowed[i - cut_.own];
+        GhostVertex& ghosts = seams_.ghosts[static_cast<size_t>(kind)][place];
+        ghosts.origin = found_.origins[i];
+        ghosts.point = {{e.x[i], e.y[i], e.z[i]}, {e.dx[i], e.dy[i], e.dz[i]}, found_.labels[i], found_.origins[i]};
     }
 }
 
 void BlockMesher::splitAtCreases(const Block& block, Chunk& chunk) {
-    for (const auto& list : ghosts_)
+    for (const auto& list : seams_.ghosts)
         for (const GhostVertex& b : list) {
-            positions_.push_back(b.point.at);
-            normals_.push_back(b.point.gradient);
-            labels_.push_back(b.point.label);
+            vertices_.positions.push_back(b.point.at);
+            vertices_.normals.push_back(b.point.gradient);
+            vertices_.labels.push_back(b.point.label);
         }
     std::array<BrickTape, bricksPerBlock> tapes{};
     for (uint64_t rest = samples_.active(); rest != 0; rest &= rest - 1) {
         const int brick = std::countr_zero(rest);
         tapes[static_cast<size_t>(brick)] = {&samples_.tapeOf(brick), samples_.boxOf(brick)};
     }
-    const BlockSurface surface{&block,         {&block.tape, tapes},
-                               &grid_,         {cells_.data(), cellCount_},
-                               number_.data(), vertices_,
-                               positions_,     normals_,
-                               labels_,        origins_,
+    const BlockSurface surface{&block,
+                               {&block.tape, tapes},
+                               &grid_,
+                               {cells_.list.data(), cells_.count},
+                               vertices_.number.data(),
+                               vertices_.count,
+                               vertices_.positions,
+                               vertices_.normals,
+                               vertices_.labels,
+                               vertices_.origins,
                                chunk.triangles};
     {
         const AddTime evaluating(fieldTime_);
@@ -62,8 +67,9 @@ void BlockMesher::splitAtCreases(const Block& block, Chunk& chunk) {
     }
     const PieceTriangles& split = crisp_->triangles();
     if (!crisp_->hasCreases()) {
-        chunk.labels.resize(triangles_);
-        for (size_t t = 0; t < triangles_; ++t) chunk.labels[t] = labels_[surface.placeOf(chunk.triangles[t].x)];
+        chunk.labels.resize(cells_.triangles);
+        for (size_t t = 0; t < cells_.triangles; ++t)
+            chunk.labels[t] = vertices_.labels[surface.placeOf(chunk.triangles[t].x)];
         return;
     }
     chunk.triangles.assign(split.triangles.begin(), split.triangles.end());

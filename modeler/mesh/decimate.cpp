@@ -96,23 +96,23 @@ uint32_t PatchLattice::cubeOf(Vec3f p) const {
 
 Decimation::Decimation(const DecimationInput& in, const DecimationLimits& within) : input(in), limits(within) {
     const size_t vertices = input.mesh.positions.size();
-    neighboursBegin.resize(vertices + 1);
-    std::fill(neighboursBegin.begin(), neighboursBegin.end(), 0);
+    neighbours.begin.resize(vertices + 1);
+    std::fill(neighbours.begin.begin(), neighbours.begin.end(), 0);
     for (uint32_t t = 0; t < input.mesh.triangles.size(); ++t) {
         const uint32_t region = input.regions.ofTriangle[t];
         if (input.planes[region].planar()) continue;
-        for (int i = 0; i < 3; ++i) ++neighboursBegin[input.mesh.triangles[t][i] + 1];
+        for (int i = 0; i < 3; ++i) ++neighbours.begin[input.mesh.triangles[t][i] + 1];
     }
-    for (size_t v = 1; v <= vertices; ++v) neighboursBegin[v] += neighboursBegin[v - 1];
-    neighbours.resize(neighboursBegin[vertices]);
+    for (size_t v = 1; v <= vertices; ++v) neighbours.begin[v] += neighbours.begin[v - 1];
+    neighbours.list.resize(neighbours.begin[vertices]);
     reset();
-    PageVector<uint32_t> fill(neighboursBegin.begin(), neighboursBegin.end() - 1);
+    PageVector<uint32_t> fill(neighbours.begin.begin(), neighbours.begin.end() - 1);
     for (const SimpleTriangle& t : triangles)
         for (int i = 0; i < 3; ++i) {
             const uint32_t a = t.corners[i], b = t.corners[(i + 1) % 3];
             const Vec3f edge = input.mesh.positions[b] - input.mesh.positions[a];
             longestEdge_m = std::max(longestEdge_m, dot(edge, edge));  // squared for now
-            neighbours[fill[a]++] = b;
+            neighbours.list[fill[a]++] = b;
         }
     longestEdge_m = 1.0001f * std::sqrt(longestEdge_m);
     for (PageVector<uint8_t>* const flags : {&kept, &settled, &changed_}) {
@@ -132,7 +132,7 @@ Decimation::Decimation(const DecimationInput& in, const DecimationLimits& within
 
 void Decimation::reset() {
     triangles.clear();
-    triangles.reserve(neighbours.size() / 3);
+    triangles.reserve(neighbours.list.size() / 3);
     for (uint32_t t = 0; t < input.mesh.triangles.size(); ++t) {
         const uint32_t region = input.regions.ofTriangle[t];
         if (!input.planes[region].planar()) triangles.push_back({input.mesh.triangles[t], region});
@@ -153,7 +153,7 @@ bool Decimation::keepAround(uint32_t triangle) {
     for (int i = 0; i < 3; ++i) {
         const uint32_t v = triangles[triangle].corners[i];
         fresh |= keep(v);
-        for (uint32_t n = neighboursBegin[v]; n < neighboursBegin[v + 1]; ++n) fresh |= keep(neighbours[n]);
+        for (uint32_t n = neighbours.begin[v]; n < neighbours.begin[v + 1]; ++n) fresh |= keep(neighbours.list[n]);
     }
     return fresh;
 }

@@ -54,6 +54,12 @@ struct DecimationPass {
     std::vector<DecimatedPatch> patches;  ///< ascending by cube
 };
 
+/// The vertices beside each vertex.
+struct Neighbours {
+    std::vector<uint32_t> list;  ///< vertex after vertex
+    PageVector<uint32_t> begin;  ///< by vertex and one more
+};
+
 /// Curved regions while they are decimated, in jobs that share no vertex they move.
 struct Decimation {
     static constexpr uint32_t none = 0xffffffffu;
@@ -66,9 +72,8 @@ struct Decimation {
     PageVector<uint8_t> kept;              ///< by vertex: whether it must stay
     PageVector<uint8_t> settled;           ///< by vertex: the first pass that looked at it, counted from 1, or 0
     std::vector<uint32_t> previous, next;  ///< by place in the chains: the places beside it that are left
-    std::vector<uint32_t> neighbours;      ///< of vertices in the original surface, as neighboursBegin tells
+    Neighbours neighbours;                 ///< in the original surface
     float longestEdge_m = 0;               ///< of the original surface
-    PageVector<uint32_t> neighboursBegin;  ///< by vertex and one more
     std::vector<std::array<uint32_t, 2>> planarAtNodes;  ///< ascending: node and planar region beside it
 
     /// The original triangles of curved regions; nothing is kept yet.

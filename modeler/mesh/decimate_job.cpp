@@ -16,22 +16,26 @@ constexpr float sliver = 1e-3f;       ///< doubled area by squared length below 
 }  // namespace
 
 DecimatedPatch DecimationJob::run(std::span<const uint32_t> triangles, const Progress* progress) {
-    load(triangles);
+    patch_.load(triangles);
+    unlinked_.clear(), stamp_ = 0;
     for (const float step : steps) {
         const float tolerance = step * static_cast<float>(all_.limits.surface_m);
-        for (size_t v = 0; v < vertexCount_; ++v) locals_[v].dirty |= !isSettled(locals_[v].vertex);
+        for (size_t v = 0; v < patch_.vertexCount; ++v)
+            patch_.vertices[v].dirty |= !patch_.isSettled(patch_.vertices[v].vertex);
         for (int i = 0; i < mostSweeps && !cancelled(progress); ++i)
-            if (static_cast<float>(sweep(tolerance)) < worthASweep * static_cast<float>(vertexCount_)) break;
+            if (static_cast<float>(sweep(tolerance)) < worthASweep * static_cast<float>(patch_.vertexCount)) break;
     }
-    return store();
+    DecimatedPatch stored = patch_.store();
+    stored.unlinked = unlinked_;
+    return stored;
 }
 
 /// Collapses where no other collapse of this sweep has changed the star; the number of collapses.
 size_t DecimationJob::sweep(float tolerance) {
     ++sweep_;
     size_t collapses = 0;
-    for (uint32_t v = 0; v < vertexCount_; ++v) {
-        Local& local = locals_[v];
+    for (uint32_t v = 0; v < patch_.vertexCount; ++v) {
+        PatchVertex& local = patch_.vertices[v];
         if (!local.dirty || local.touched == sweep_ || !isFree(v)) continue;
         local.dirty = false;
         collapses += tryCollapse(v, tolerance);
@@ -40,22 +44,22 @@ size_t DecimationJob::sweep(float tolerance) {
 }
 
 bool DecimationJob::isFree(uint32_t v) const {
-    const Local& local = locals_[v];
+    const PatchVertex& local = patch_.vertices[v];
     return local.whole && local.kind != Kind::Node && local.half != none && !all_.kept[local.vertex];
 }
 
 /// False where too many triangles meet.
 bool DecimationJob::gatherStar(uint32_t u) {
-    ring_.clear(), star_.clear();
-    uint32_t first = locals_[u].half;
+    star_.ring.clear(), star_.halves.clear();
+    uint32_t first = patch_.vertices[u].half;
     const auto walk = [&] {
         for (uint32_t h = first;;) {
-            if (star_.size() == mostAround - 1) return none;
-            star_.push_back(h), ring_.push_back(to(h));
-            const uint32_t last = behind(h), next = opposite_[last];
+            if (star_.halves.size() == mostAround - 1) return none;
+            star_.halves.push_back(h), star_.ring.push_back(patch_.to(h));
+            const uint32_t last = LoadedPatch::behind(h), next = patch_.opposite[last];
             if (next == first) return first;
             if (next == none) {
-                ring_.push_back(from(last));
+                star_.ring.push_back(patch_.from(last));
                 return last;
             }
             h = next;
@@ -63,49 +67,51 @@ bool DecimationJob::gatherStar(uint32_t u) {
     };
     uint32_t end = walk();
     if (end == none) return false;
-    closed_ = end == first;
-    if (closed_ || opposite_[first] == none) return true;
-    while (opposite_[first] != none) first = ahead(opposite_[first]);
-    ring_.clear(), star_.clear();
+    star_.closed = end == first;
+    if (star_.closed || patch_.opposite[first] == none) return true;
+    while (patch_.opposite[first] != none) first = LoadedPatch::ahead(patch_.opposite[first]);
+    star_.ring.clear(), star_.halves.clear();
     return walk() != none;
 }
 
 /// The sides of a star; false where a side is a single triangle or the chain isn't on the ring.
 bool DecimationJob::splitAtChain(uint32_t u) {
-    sideCount_ = 1;
-    sides_[0].from = 0, sides_[0].to = closed_ ? star_.size() : ring_.size() - 1;
-    if (locals_[u].kind == Kind::Inner) return closed_ && star_.size() >= 3;
-    if (!closed_) return sides_[0].to >= 2;
+    star_.sideCount = 1;
+    star_.sides[0].from = 0, star_.sides[0].to = star_.closed ? star_.halves.size() : star_.ring.size() - 1;
+    if (patch_.vertices[u].kind == Kind::Inner) return star_.closed && star_.halves.size() >= 3;
+    if (!star_.closed) return star_.sides[0].to >= 2;
     const std::vector<uint32_t>& vertices = all_.input.chains.vertices;
-    const uint32_t place = chainPlace(u), next = vertices[all_.next[place]], previous = vertices[all_.previous[place]];
+    const uint32_t place = patch_.chainPlace(u), next = vertices[all_.next[place]],
+                   previous = vertices[all_.previous[place]];
     const auto find = [&](uint32_t vertex) {
-        return std::find_if(ring_.begin(), ring_.end(), [&](uint32_t r) { return locals_[r].vertex == vertex; }) -
-               ring_.begin();
+        return std::find_if(star_.ring.begin(), star_.ring.end(),
+                            [&](uint32_t r) { return patch_.vertices[r].vertex == vertex; }) -
+               star_.ring.begin();
     };
     const auto shift = find(next);
-    if (static_cast<size_t>(shift) == ring_.size()) return false;
-    std::rotate(ring_.begin(), ring_.begin() + shift, ring_.end());
-    std::rotate(star_.begin(), star_.begin() + shift, star_.end());
+    if (static_cast<size_t>(shift) == star_.ring.size()) return false;
+    std::rotate(star_.ring.begin(), star_.ring.begin() + shift, star_.ring.end());
+    std::rotate(star_.halves.begin(), star_.halves.begin() + shift, star_.halves.end());
     const auto middle = static_cast<size_t>(find(previous));
-    if (middle == ring_.size() || middle < 2 || ring_.size() - middle < 2) return false;
-    sideCount_ = 2;
-    sides_[0].to = sides_[1].from = middle;
-    sides_[1].to = ring_.size();
+    if (middle == star_.ring.size() || middle < 2 || star_.ring.size() - middle < 2) return false;
+    star_.sideCount = 2;
+    star_.sides[0].to = star_.sides[1].from = middle;
+    star_.sides[1].to = star_.ring.size();
     return true;
 }
 
 /// The mean normals of the sides and the quadric of the star's planes; false where a side is bent too much.
 bool DecimationJob::findNormals() {
     std::array<Vec3f, mostAround> across;
-    const auto position = [&](uint32_t v) { return locals_[v].position; };
-    quadric_ = {}, area_ = 0;
-    for (size_t s = 0; s < sideCount_; ++s) {
-        Side& side = sides_[s];
+    const auto position = [&](uint32_t v) { return patch_.vertices[v].position; };
+    star_.quadric = {}, star_.area = 0;
+    for (size_t s = 0; s < star_.sideCount; ++s) {
+        Side& side = star_.sides[s];
         side.normal = {};
         for (size_t i = side.from; i < side.to; ++i) {
-            const uint32_t h = star_[i];
-            const Vec3f p = position(from(h));
-            across[i] = cross(position(to(h)) - p, position(from(behind(h))) - p);
+            const uint32_t h = star_.halves[i];
+            const Vec3f p = position(patch_.from(h));
+            across[i] = cross(position(patch_.to(h)) - p, position(patch_.from(LoadedPatch::behind(h))) - p);
             side.normal += across[i];
         }
         side.normal = normalized(side.normal);
@@ -113,26 +119,27 @@ bool DecimationJob::findNormals() {
             const Vec3f n = across[i];
             const float twice = length(n);
             if (dot(n, side.normal) < bent * twice) {
-                const Vec3f edge = position(to(star_[i])) - position(from(star_[i]));
+                const Vec3f edge = position(patch_.to(star_.halves[i])) - position(patch_.from(star_.halves[i]));
                 if (twice > sliver * dot(edge, edge)) return false;
             }
             if (!(twice > 0)) continue;
             const float w = 1 / twice;  // n n^T / |n|: the plane's quadric by its area
-            quadric_[0] += n.x * n.x * w, quadric_[1] += n.y * n.y * w, quadric_[2] += n.z * n.z * w;
-            quadric_[3] += n.x * n.y * w, quadric_[4] += n.y * n.z * w, quadric_[5] += n.z * n.x * w;
-            area_ += twice;
+            star_.quadric[0] += n.x * n.x * w, star_.quadric[1] += n.y * n.y * w, star_.quadric[2] += n.z * n.z * w;
+            star_.quadric[3] += n.x * n.y * w, star_.quadric[4] += n.y * n.z * w, star_.quadric[5] += n.z * n.x * w;
+            star_.area += twice;
         }
     }
-    return area_ > 0;
+    return star_.area > 0;
 }
 
 /// Mean squared distance of the neighbour from the star's planes, and a little for its own distance.
 float DecimationJob::cost(size_t target) const {
-    const Vec3f d = locals_[ring_[target]].position - locals_[from(star_[0])].position;
-    const auto& q = quadric_;
+    const Vec3f d =
+        patch_.vertices[star_.ring[target]].position - patch_.vertices[patch_.from(star_.halves[0])].position;
+    const auto& q = star_.quadric;
     const float planes = d.x * d.x * q[0] + d.y * d.y * q[1] + d.z * d.z * q[2] +
                          2 * (d.x * d.y * q[3] + d.y * d.z * q[4] + d.z * d.x * q[5]);
-    return planes / area_ + 1e-5f * dot(d, d);
+    return planes / star_.area + 1e-5f * dot(d, d);
 }
 
 bool DecimationJob::tryCollapse(uint32_t u, float tolerance) {
@@ -142,14 +149,14 @@ bool DecimationJob::tryCollapse(uint32_t u, float tolerance) {
     const float most = 9 * tolerance * tolerance;
     const auto add = [&](size_t target) {
         const float c = cost(target);
-        const Vec3f d = locals_[ring_[target]].position - locals_[u].position;
+        const Vec3f d = patch_.vertices[star_.ring[target]].position - patch_.vertices[u].position;
         if (c <= most + 1e-5f * dot(d, d)) targets[count++] = {c, target};
     };
-    if (locals_[u].kind == Kind::Inner) {
-        for (size_t i = 0; i < ring_.size(); ++i) add(i);
+    if (patch_.vertices[u].kind == Kind::Inner) {
+        for (size_t i = 0; i < star_.ring.size(); ++i) add(i);
     } else {
         if (!chainStays(u, tolerance)) return false;
-        add(0), add(sides_[0].to);
+        add(0), add(star_.sides[0].to);
     }
     if (count == 0) return false;
     gatherPoints();
@@ -163,52 +170,53 @@ bool DecimationJob::tryCollapse(uint32_t u, float tolerance) {
 
 bool DecimationJob::tryInto(uint32_t u, size_t target, float tolerance) {
     if (!keepsManifold(u, target)) return false;
-    for (size_t side = 0; side < sideCount_; ++side)
+    for (size_t side = 0; side < star_.sideCount; ++side)
         if (!fits(u, target, side, tolerance)) return false;
     collapse(u, target);
     return true;
 }
 
-/// Moves u into ring_[target]: two triangles go, the others turn about the target.
+/// Moves u into star_.ring[target]: two triangles go, the others turn about the target.
 void DecimationJob::collapse(uint32_t u, size_t target) {
-    const uint32_t v = ring_[target];
-    if (locals_[u].kind == Kind::Chain) {
-        unlinked_.push_back(chainPlace(u));
+    const uint32_t v = star_.ring[target];
+    if (patch_.vertices[u].kind == Kind::Chain) {
+        unlinked_.push_back(patch_.chainPlace(u));
         all_.unlink(unlinked_.back());
     }
-    for (const uint32_t h : star_) firstPoint_[h / 3] = none;
-    if (locals_[u].kind == Kind::Inner) points_.push_back({u, 0, uOver_});
+    for (const uint32_t h : star_.halves) patch_.triangles.firstPoint[h / 3] = none;
+    if (patch_.vertices[u].kind == Kind::Inner) points_.push_back({u, 0, uOver_});
     for (const Point& p : points_) {
-        uint32_t& first = firstPoint_[sides_[p.side].triangles[p.over] / 3];
-        locals_[p.local].next = first;
+        uint32_t& first = patch_.triangles.firstPoint[star_.sides[p.side].triangles[p.over] / 3];
+        patch_.vertices[p.local].next = first;
         first = p.local;
     }
-    for (const uint32_t h : star_)
-        if (to(h) == v || from(behind(h)) == v) glue(h / 3, u, v);
-    for (const uint32_t h : star_) {
-        if (dead_[h / 3]) continue;
-        corners_[h] = v;
-        locals_[v].half = h;
+    for (const uint32_t h : star_.halves)
+        if (patch_.to(h) == v || patch_.from(LoadedPatch::behind(h)) == v) glue(h / 3, u, v);
+    for (const uint32_t h : star_.halves) {
+        if (patch_.triangles.dead[h / 3]) continue;
+        patch_.corners[h] = v;
+        patch_.vertices[v].half = h;
     }
-    for (const uint32_t r : ring_) locals_[r].dirty = locals_[r].changed = true, locals_[r].touched = sweep_;
-    locals_[u].half = none;
+    for (const uint32_t r : star_.ring)
+        patch_.vertices[r].dirty = patch_.vertices[r].changed = true, patch_.vertices[r].touched = sweep_;
+    patch_.vertices[u].half = none;
 }
 
 /// Joins what is on the two other sides of a triangle that holds u and v, and takes it away.
 void DecimationJob::glue(uint32_t triangle, uint32_t u, uint32_t v) {
     uint32_t acrossU = none, acrossV = none, other = none;
     for (uint32_t h = 3 * triangle; h < 3 * triangle + 3; ++h) {
-        const uint32_t a = from(h), b = to(h);
-        if (a != u && b != u) acrossV = opposite_[h];
-        if (a != v && b != v) acrossU = opposite_[h];
+        const uint32_t a = patch_.from(h), b = patch_.to(h);
+        if (a != u && b != u) acrossV = patch_.opposite[h];
+        if (a != v && b != v) acrossU = patch_.opposite[h];
         if (a != u && a != v) other = a;
     }
-    if (acrossU != none) opposite_[acrossU] = acrossV;
-    if (acrossV != none) opposite_[acrossV] = acrossU;
-    dead_[triangle] = true;
-    if (locals_[other].half / 3 != triangle) return;
+    if (acrossU != none) patch_.opposite[acrossU] = acrossV;
+    if (acrossV != none) patch_.opposite[acrossV] = acrossU;
+    patch_.triangles.dead[triangle] = true;
+    if (patch_.vertices[other].half / 3 != triangle) return;
     for (const uint32_t h : {acrossU, acrossV})
-        if (h != none) locals_[other].half = from(h) == other ? h : ahead(h);
+        if (h != none) patch_.vertices[other].half = patch_.from(h) == other ? h : LoadedPatch::ahead(h);
 }
 
 }  // namespace sgm::mesh

@@ -21,18 +21,22 @@ constexpr uint32_t codeOf(uint32_t i, uint32_t j, uint32_t k, uint32_t axis = 0)
     return i | j << 8 | k << 16 | axis << 24;
 }
 
-/// One entry an edge.
-struct EdgeArrays {
+/// Where the field is evaluated on edges, and what came of it.
+struct EdgePoints {
     float *x, *y, *z;     ///< where the field is evaluated and, at last, the vertex; metres
     float *dx, *dy, *dz;  ///< derivatives where last evaluated; at last the normal
     float* f;             ///< value where last evaluated
-    float* base;          ///< moving coordinate of the low end, metres
-    float* span;          ///< the way to the high end, metres
-    float *tIn, *fIn;     ///< end of the bracket that is inside: share of the edge, value
-    float *tOut, *fOut;   ///< the other end
-    float* t;             ///< share of the edge
-    float* axis;          ///< along which it lies: 0, 1, 2
-    float* open;          ///< 1 where the vertex has to be looked at again, else 0
+};
+
+/// One entry an edge.
+struct EdgeArrays : EdgePoints {
+    float* base;         ///< moving coordinate of the low end, metres
+    float* span;         ///< the way to the high end, metres
+    float *tIn, *fIn;    ///< end of the bracket that is inside: share of the edge, value
+    float *tOut, *fOut;  ///< the other end
+    float* t;            ///< share of the edge
+    float* axis;         ///< along which it lies: 0, 1, 2
+    float* open;         ///< 1 where the vertex has to be looked at again, else 0
 };
 
 /// A brick's corners, and the block's samples and numbers from the brick's low corner on.

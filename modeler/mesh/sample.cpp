@@ -56,7 +56,7 @@ bool isQuick(const eval::Tape& tape) {
 
 void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts) {
     block_ = &block;
-    inVain_ = 0, whole_ = 0;
+    tapes_.inVain = 0, tapes_.whole = 0;
     relevant_ = relevantRangeFor(block.tape, grid);
     const Vec3i first = block.index * blockCells;
     last_ = grid.cells - first;
@@ -77,17 +77,17 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
                 const Vec3i low = Vec3i{i, j, k} * brickCells, high = min(low + Vec3i{1, 1, 1} * brickCells, last_);
                 const int brick = brickNumber({i, j, k});
                 bricks |= 1ull << brick;
-                region_[brick] = static_cast<uint8_t>(n);
-                boxes_[n++] = {cornerAt(low), cornerAt(high)};
+                regions_.of[brick] = static_cast<uint8_t>(n);
+                regions_.boxes[n++] = {cornerAt(low), cornerAt(high)};
             }
-    eval::evaluateRanges(block.tape, {boxes_.data(), n}, ranges_.data(), workspace);
+    eval::evaluateRanges(block.tape, {regions_.boxes.data(), n}, regions_.ranges.data(), workspace);
     counts.intervalEvaluations += n;
     active_ = 0;
     uint64_t regions = 0;
     const uint64_t border = onBorder(bricks);
     for (uint64_t rest = bricks; rest != 0; rest &= rest - 1) {
-        const int brick = std::countr_zero(rest), region = region_[brick];
-        if (!mayHoldSurface(ranges_[region], border >> brick & 1)) continue;
+        const int brick = std::countr_zero(rest), region = regions_.of[brick];
+        if (!mayHoldSurface(regions_.ranges[region], border >> brick & 1)) continue;
         regions |= 1ull << region;
         active_ |= 1ull << brick;
     }
@@ -193,18 +193,18 @@ void WholeBricks::enter(const CornerCoordinates& coordinates) {
 const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Counts& counts) {
     const Vec3i at = brickAt(brick), first = at * brickCells;
     if (oneTape_) {
-        whole_ |= 1ull << brick;
+        tapes_.whole |= 1ull << brick;
         sealBorder(brick);
         return block_->tape;
     }
     const size_t length = block_->tape.size();
-    const bool whole = length <= shortEnough || (length <= notLong && inVain_ >= vainEnough);
-    eval::Tape& shortened = tapes_[tapes_.size() == 1 ? 0 : static_cast<size_t>(brick)];
+    const bool whole = length <= shortEnough || (length <= notLong && tapes_.inVain >= vainEnough);
+    eval::Tape& shortened = tapes_.list[tapes_.list.size() == 1 ? 0 : static_cast<size_t>(brick)];
     if (!whole) {
-        eval::shorten(block_->tape, region_[brick], workspace, shortened, relevant_);
-        inVain_ = shortened.size() < length ? 0 : inVain_ + 1;
+        eval::shorten(block_->tape, regions_.of[brick], workspace, shortened, relevant_);
+        tapes_.inVain = shortened.size() < length ? 0 : tapes_.inVain + 1;
     }
-    whole_ |= static_cast<uint64_t>(whole) << brick;
+    tapes_.whole |= static_cast<uint64_t>(whole) << brick;
     const eval::Tape& tape = whole ? block_->tape : shortened;
     if (expensive_) {
         coarse_.sample(1ull << brick, active_, tape, coordinates_, last_, values_.data(), workspace, counts);

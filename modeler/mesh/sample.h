@@ -57,11 +57,11 @@ public:
 
     /// The tape that `sample` returned for a brick of this block, where `keepTapes` was called; good in `boxOf` it.
     const eval::Tape& tapeOf(int brick) const {
-        return whole_ >> brick & 1 ? block_->tape : tapes_[static_cast<size_t>(brick)];
+        return tapes_.whole >> brick & 1 ? block_->tape : tapes_.list[static_cast<size_t>(brick)];
     }
-    const Box3f& boxOf(int brick) const { return boxes_[region_[static_cast<size_t>(brick)]]; }
+    const Box3f& boxOf(int brick) const { return regions_.boxes[regions_.of[static_cast<size_t>(brick)]]; }
     /// From now on each brick's tape lasts until the block is left.
-    void keepTapes() { tapes_.resize(bricksPerBlock); }
+    void keepTapes() { tapes_.list.resize(bricksPerBlock); }
 
     /// The samples of an active brick, once it was sampled. Corners on the grid's border or beyond are never inside.
     BrickValues values(int brick) const {
@@ -91,13 +91,21 @@ private:
         false;  ///< `coarse_` takes care of the bricks, and values_ is by the block's corners, not by brick
     bool oneTape_ = false;
     CoarseSamples coarse_;
-    std::array<uint8_t, bricksPerBlock> region_{};  ///< of a brick, in the last evaluateRanges
-    std::array<Box3f, bricksPerBlock> boxes_;       ///< by region
-    std::array<eval::FloatInterval, bricksPerBlock> ranges_;
-    std::vector<eval::Tape> tapes_ = std::vector<eval::Tape>(1);  ///< the latest one, or by brick
-    uint64_t whole_ = 0;                                          ///< bricks whose tape is the block's
-    int inVain_ = 0;  ///< latest bricks of the block that needed its whole tape
-    Vec3i last_;      ///< the highest corner in the grid, counted from the block's first
+    /// What the last evaluateRanges was asked.
+    struct Regions {
+        std::array<uint8_t, bricksPerBlock> of{};  ///< of a brick
+        std::array<Box3f, bricksPerBlock> boxes;   ///< by region
+        std::array<eval::FloatInterval, bricksPerBlock> ranges;
+    };
+    Regions regions_;
+    /// The tapes of bricks.
+    struct Tapes {
+        std::vector<eval::Tape> list = std::vector<eval::Tape>(1);  ///< the latest one, or by brick
+        uint64_t whole = 0;                                         ///< bricks whose tape is the block's
+        int inVain = 0;  ///< latest bricks of the block that needed its whole tape
+    };
+    Tapes tapes_;
+    Vec3i last_;  ///< the highest corner in the grid, counted from the block's first
     PageVector<float> values_ = PageVector<float>(std::max(cornersPerBlock, bricksPerBlock* brickRoom) + rowPadding);
     CornerCoordinates coordinates_{};
     WholeBricks wholeBricks_;
