@@ -61,22 +61,26 @@ struct PieceNames {
     Names label, origin;
 };
 
-/// Aligned, so that no two threads write to one line of cache, nor to the next one, which processors fetch with it.
-struct alignas(128) Workspace::Impl {
-    Kernels kernels;
-    Tally* tally = nullptr;  ///< where operations are counted, if at all
-    AlignedFloats registers, arguments;
-    AlignedFloats points;  ///< copies of coordinates that aren't padded
-    UseDefChains chains;   ///< of the last evaluateRanges
-    UnionParts parts;      ///< of the same tape
-    size_t regions = 0;    ///< that it asked about
-    AlignedFloats bounds;  ///< rows of maxBoxes floats, see UseDefChains::bounds
+/// Registers of owners and names, beside those of values.
+struct OwnerRegisters {
     AlignedFloats owners;  ///< registers of owners, as bits
     std::vector<Owners> registerOwners;
     std::vector<OwnedOperand> ownedOperands;
-    std::array<Step, field::opCount> pieceGradients;  ///< see evaluatePieces
-    std::vector<uint32_t> nameRows;                   ///< two a register: labels, origins
+    std::vector<uint32_t> nameRows;  ///< two a register: labels, origins
     std::vector<PieceNames> registerNames;
+};
+
+/// Aligned, so that no two threads write to one line of cache, nor to the next one, which processors fetch with it.
+struct alignas(128) Workspace::Impl : OwnerRegisters {
+    Kernels kernels;
+    Tally* tally = nullptr;  ///< where operations are counted, if at all
+    AlignedFloats registers, arguments;
+    AlignedFloats points;                             ///< copies of coordinates that aren't padded
+    UseDefChains chains;                              ///< of the last evaluateRanges
+    UnionParts parts;                                 ///< of the same tape
+    size_t regions = 0;                               ///< that it asked about
+    AlignedFloats bounds;                             ///< rows of maxBoxes floats, see UseDefChains::bounds
+    std::array<Step, field::opCount> pieceGradients;  ///< see evaluatePieces
     TapeBuilder builder;
     std::vector<TapeBuilder::Use> uses;
 

@@ -86,12 +86,12 @@ public:
         std::vector<uint8_t> all(sizeof length + text.size());
         std::memcpy(all.data(), &length, sizeof length);
         std::memcpy(all.data() + sizeof length, text.data(), text.size());
-        for (const auto* plane : {&x_, &y_, &z_})
+        for (const auto* plane : {&planes_.x, &planes_.y, &planes_.z})
             for (int shift = 0; shift < 16; shift += 8)
                 for (const uint16_t v : *plane) all.push_back(static_cast<uint8_t>(v >> shift));
-        for (const auto* plane : {&u_, &v_}) all.insert(all.end(), plane->begin(), plane->end());
-        all.insert(all.end(), corners_.begin(), corners_.end());
-        all.insert(all.end(), charts_.begin(), charts_.end());
+        for (const auto* plane : {&planes_.u, &planes_.v}) all.insert(all.end(), plane->begin(), plane->end());
+        all.insert(all.end(), planes_.corners.begin(), planes_.corners.end());
+        all.insert(all.end(), planes_.charts.begin(), planes_.charts.end());
         textures_.appendBytes(all);
         return all;
     }
@@ -108,10 +108,10 @@ private:
                 uint32_t& at = number[vertex - patch.firstVertex];
                 if (at == unset) {
                     at = fresh++;
-                    putNumber(corners_, 0);
+                    putNumber(planes_.corners, 0);
                     putVertex(vertex);
                 } else {
-                    putNumber(corners_, fresh - at);
+                    putNumber(planes_.corners, fresh - at);
                 }
             }
     }
@@ -129,18 +129,18 @@ private:
             from = to;
             return static_cast<uint16_t>(zigzag(difference));
         };
-        x_.push_back(change(steps.x, last_.x));
-        y_.push_back(change(steps.y, last_.y));
-        z_.push_back(change(steps.z, last_.z));
+        planes_.x.push_back(change(steps.x, last_.x));
+        planes_.y.push_back(change(steps.y, last_.y));
+        planes_.z.push_back(change(steps.z, last_.z));
         const auto normal = octahedral(unitNormal(patched_.normal(vertex, vertices_)));
         for (size_t i = 0; i < 2; ++i) {
             const auto difference = static_cast<int8_t>(static_cast<uint8_t>(normal[i] - lastNormal_[i]));
-            (i == 0 ? u_ : v_).push_back(static_cast<uint8_t>(zigzag(difference)));
+            (i == 0 ? planes_.u : planes_.v).push_back(static_cast<uint8_t>(zigzag(difference)));
             lastNormal_[i] = normal[i];
         }
         if (textures_.empty()) return;
         const auto chart = static_cast<int32_t>(patched_.charts[vertex]);
-        putNumber(charts_, zigzag(chart - lastChart_));
+        putNumber(planes_.charts, zigzag(chart - lastChart_));
         lastChart_ = chart;
     }
 
@@ -162,7 +162,7 @@ private:
     void head(Json patches) {
         const auto vector = [](auto v) { return Json{v.x, v.y, v.z}; };
         json_ = {{"name", validUtf8(input_.name)},
-                 {"vertices", x_.size()},
+                 {"vertices", planes_.x.size()},
                  {"triangles", patched_.triangles.size()},
                  {"step", grid_.step},
                  {"origin", vector(origin_)},
@@ -213,8 +213,12 @@ private:
     QuantizationGrid grid_;
     Vec3<int64_t> origin_, last_{0, 0, 0};
     std::array<int, 2> lastNormal_{0, 0};
-    std::vector<uint16_t> x_, y_, z_;
-    std::vector<uint8_t> u_, v_, corners_, charts_;
+    /// What the page reads, number by number.
+    struct Planes {
+        std::vector<uint16_t> x, y, z;
+        std::vector<uint8_t> u, v, corners, charts;
+    };
+    Planes planes_;
     int32_t lastChart_ = 0;
     std::vector<uint32_t> partNumber_;  ///< by origin: 1 + its place in parts_, 0 where it has none yet
     std::vector<OriginId> parts_;

@@ -60,7 +60,22 @@ struct FloorCell {
     float y_m = 0;         ///< height of the floor
 };
 
-struct Cave {
+/// The floor of a cave, and walks on it.
+struct CaveFloor {
+    static constexpr int slopeClasses_deg[4] = {15, 30, 45, 60};  ///< steeper is wall
+    double floor_m2[4] = {};                                      ///< of each class, down to the one before
+    struct Headroom {
+        float least_m = 0, median_m = 0, greatest_m = 0;
+    } headroom;              ///< over floors not too steep, under a roof, where the agent's ball fits
+    double walkable_m2 = 0;  ///< floor on which the agent can stand
+    uint32_t walkParts = 0;  ///< parts of that floor with no walk between them
+    double reachable_m2 =
+        0;  ///< of it, what can be walked to from an entrance; from the largest part where none has floor
+    double longestWalk_m = 0;         ///< longest shortest walk on the reachable floor
+    std::vector<FloorCell> walkable;  ///< ordered by (x, z, y)
+};
+
+struct Cave : CaveFloor {
     Agent agent;
     Vec3f origin;  ///< of column (0, 0), metres
     float voxel_m = 0;
@@ -71,18 +86,7 @@ struct Cave {
     std::vector<Passage> passages;
     std::vector<Entrance> entrances;  ///< largest first
 
-    static constexpr int slopeClasses_deg[4] = {15, 30, 45, 60};  ///< steeper is wall
-    double floor_m2[4] = {};                                      ///< of each class, down to the one before
-    struct Headroom {
-        float least_m = 0, median_m = 0, greatest_m = 0;
-    } headroom;              ///< over floors not too steep, under a roof, where the agent's ball fits
-    double walkable_m2 = 0;  ///< floor on which the agent can stand
-    uint32_t walkParts = 0;  ///< parts of that floor with no walk between them
-    double reachable_m2 =
-        0;  ///< of it, what can be walked to from an entrance; from the largest part where none has floor
-    double longestPath_m = 0;         ///< longest shortest way of the agent's ball through the air, along the grid
-    double longestWalk_m = 0;         ///< longest shortest walk on the reachable floor
-    std::vector<FloorCell> walkable;  ///< ordered by (x, z, y)
+    double longestPath_m = 0;  ///< longest shortest way of the agent's ball through the air, along the grid
 
     /// Narrowest place on the best ways between the rooms and entrances of the largest space; infinite with one room
     /// and no entrance.
