@@ -25,8 +25,8 @@ ShapeId Lowering::partOf(ShapeId id) const {
 
 /// Puts a part in its place in the kept sum; false where it had none, or was another node.
 bool Lowering::changeTerm(ShapeId part, ShapeId from, const Owned& to) {
-    if (termOf_[from] == none) return to.field.bounds.empty();
-    Owned& known = sums_.at(part).terms[termOf_[from]];
+    if (kept_.termOf[from] == none) return to.field.bounds.empty();
+    Owned& known = kept_.sums.at(part).terms[kept_.termOf[from]];
     if (!sameNode(known, to) || to.field.bounds.empty()) return false;
     known = to;
     return true;
@@ -35,10 +35,10 @@ bool Lowering::changeTerm(ShapeId part, ShapeId from, const Owned& to) {
 /// Notes which parts have to be made again for a shape that changed.
 bool Lowering::mark(ShapeId id, Dirty& dirty) {
     const Shape& s = tree_.shapes[id];
-    if (isSum(s) != joins_[id]) return false;
+    if (isSum(s) != kept_.joins[id]) return false;
     const ShapeId part = partOf(id);
     dirty.insert(part);
-    if (s.solid != none && sums_.contains(part) && !changeTerm(part, id, solidOf(id))) return false;
+    if (s.solid != none && kept_.sums.contains(part) && !changeTerm(part, id, solidOf(id))) return false;
     // How it joins its parent may have changed.
     if (part == id && s.parent != none && !isSum(s)) dirty.insert(partOf(s.parent));
     return true;
@@ -46,19 +46,19 @@ bool Lowering::mark(ShapeId id, Dirty& dirty) {
 
 /// Makes a part again, and marks what it belongs to where its reach is another.
 bool Lowering::replayPart(ShapeId id, Dirty& dirty) {
-    const Owned before = known_[id];
-    if (const auto kept = sums_.find(id); kept != sums_.end()) {
-        known_[id] = {field::summed(kept->second.value, kept->second.terms), 0};
-        if (id == 0) model_.field = known_[id].field;
+    const Owned before = kept_.parts[id];
+    if (const auto kept = kept_.sums.find(id); kept != kept_.sums.end()) {
+        kept_.parts[id] = {field::summed(kept->second.value, kept->second.terms), 0};
+        if (id == 0) model_.field = kept_.parts[id].field;
     } else if (!walk(id, nullptr).ok()) {
         return false;
     }
-    const Owned& now = known_[id];
+    const Owned& now = kept_.parts[id];
     if (!sameNode(before, now) || before.field.bounds.empty() != now.field.bounds.empty()) return false;
     if (id == 0 || sameReach(before.field, now.field)) return true;
     const ShapeId above = partOf(tree_.shapes[id].parent);
     dirty.insert(above);
-    return !sums_.contains(above) || changeTerm(above, id, now);
+    return !kept_.sums.contains(above) || changeTerm(above, id, now);
 }
 
 bool Lowering::replay(std::span<const ShapeId> changed) {

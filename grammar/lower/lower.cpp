@@ -230,7 +230,7 @@ void Lowering::leave(ShapeId id) {
     if (flattensIntoParent(id)) return;
     Owned part = draped(displaced(applyCladding(whole(open_.back(), id), id), id), id);
     open_.pop_back();
-    if (keeps_) known_[id] = part;
+    if (keeps_) kept_.parts[id] = part;
     if (id == 0)
         model_.field = field::sum(model_.graph, std::span(&part, 1));  // one part alone keeps its owner
     else if (!open_.empty())
@@ -241,9 +241,9 @@ void Lowering::leave(ShapeId id) {
 Owned Lowering::whole(Content& content, ShapeId id) {
     constexpr size_t many = 16;
     if (!keeps_ || !plain_[id] || content.terms.size() < many) return take(content);
-    for (uint32_t i = 0; i < content.from.size(); ++i) termOf_[content.from[i]] = i;
+    for (uint32_t i = 0; i < content.from.size(); ++i) kept_.termOf[content.from[i]] = i;
     const field::Field sum = field::sum(model_.graph, content.terms);
-    sums_[id] = {std::move(content.terms), sum.value};
+    kept_.sums[id] = {std::move(content.terms), sum.value};
     return {sum, 0};
 }
 
@@ -261,7 +261,7 @@ Status Lowering::walk(ShapeId top, Progress* progress) {
     for (ShapeId s = top;;) {
         const bool known = again_ && s != top && !flattensIntoParent(s);
         if (known)
-            attachToParent(s, known_[s]);
+            attachToParent(s, kept_.parts[s]);
         else
             enter(s);
         if (progress) progress->tick();
@@ -292,9 +292,9 @@ Status Lowering::run(Progress* progress) {
     findTurns();
     plain_ = plainSums();
     if (keeps_) {
-        known_.resize(tree_.shapes.size());
-        termOf_.resize(tree_.shapes.size(), none);
-        for (const Shape& s : tree_.shapes) joins_.push_back(isSum(s));
+        kept_.parts.resize(tree_.shapes.size());
+        kept_.termOf.resize(tree_.shapes.size(), none);
+        for (const Shape& s : tree_.shapes) kept_.joins.push_back(isSum(s));
     }
     if (progress) progress->begin("lower", tree_.shapes.size());
     model_.shapeOf.push_back(none);

@@ -96,13 +96,16 @@ private:
     ShapeId refused_ = none;        ///< the first shape whose cladding was one too much
     ShapeId boundless_ = none;      ///< the first shape whose noise left no bounds
 
-    // For a second run.
+    /// What a second run begins with.
+    struct Kept {
+        std::vector<bool> joins;                    ///< by shape: isSum
+        std::vector<Owned> parts;                   ///< by shape: the part it is, unless it pours
+        std::unordered_map<ShapeId, KeptSum> sums;  ///< by the shape whose content it is
+        std::vector<uint32_t> termOf;               ///< by shape: its place among the terms of a kept sum, or none
+    };
     const bool keeps_;
-    bool again_ = false;                         ///< parts below the top of a walk are known
-    std::vector<bool> joins_;                    ///< by shape: isSum
-    std::vector<Owned> known_;                   ///< by shape: the part it is, unless it pours
-    std::unordered_map<ShapeId, KeptSum> sums_;  ///< by the shape whose content it is
-    std::vector<uint32_t> termOf_;               ///< by shape: its place among the terms of a kept sum, or none
+    bool again_ = false;  ///< parts below the top of a walk are known
+    Kept kept_;
 };
 
 }  // namespace sgm::lower
