@@ -26,16 +26,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What the command prints.
+struct PrintRequest {
+    bool stats = false, quiet = false;
+};
+
+struct FogRequest {
+    std::vector<std::string> options;  ///< "NAME=VALUE", as .vdb files take them
+    double extinction = 0;
+};
+
 struct RenderRequest {
     ModelRequest model;
     GridRequest grid{.resolution = 256};
     MeshEdits edits;
     std::string output, size = "960x720", view = "field", camera, rays = "best";
     std::vector<std::string> layers;
-    std::vector<std::string> fog;  ///< "NAME=VALUE", as .vdb files take them
-    double extinction = 0;
+    FogRequest fog;
     int samples = 8, turntable = 0;  ///< turntable: how many pictures around the model, 0 for one
-    bool noGround = false, wires = false, stats = false, quiet = false;
+    bool noGround = false, wires = false;
+    PrintRequest print;
 };
 
 /// Whether the view draws a mesh.
@@ -101,11 +111,11 @@ Status checkRequest(const RenderRequest& request) {
         return wrong("--keep, --smooth, --simplify and --tolerance change a mesh: add --view mesh, labels or creases");
     if (request.grid.objectCell_m > 0 && !drawsMesh(request))
         return wrong("--object-cell is of meshes: add --view mesh, labels or creases");
-    if (request.extinction > 0 && request.view != "fog") return wrong("--extinction is of fog: add --view fog");
-    if (!request.fog.empty() && request.view != "fog")
+    if (request.fog.extinction > 0 && request.view != "fog") return wrong("--extinction is of fog: add --view fog");
+    if (!request.fog.options.empty() && request.view != "fog")
         return wrong("--format-option is of fog, as .vdb files have it: add --view fog");
-    if (const auto fog = fogOptions(request.fog); !fog.ok()) return fog.error();
-    if (request.stats && (request.view != "field" || request.turntable > 0))
+    if (const auto fog = fogOptions(request.fog.options); !fog.ok()) return fog.error();
+    if (request.print.stats && (request.view != "field" || request.turntable > 0))
         return wrong("--stats counts evaluations of the field for one picture: leave out --view and --turntable");
     if (request.turntable == 0) return Done{};
     const auto name = frameName(request.output, 0, "--turntable");
@@ -121,7 +131,7 @@ struct Painter {
 };
 
 Result<Painter> fogPainter(const RenderRequest& request, const Model& model, const Box3f& bounds, Progress* progress) {
-    const auto painter = fogPainter(model, bounds, request.grid, request.fog, request.extinction, progress);
+    const auto painter = fogPainter(model, bounds, request.grid, request.fog.options, request.fog.extinction, progress);
     if (!painter.ok()) return painter.error();
     return Painter{[p = *painter](const auto& options, Progress* progress, render::Layers*) mutable {
                        return p.draw(options, progress);
@@ -155,12 +165,12 @@ Result<DrawnMesh> meshAsBuilt(const RenderRequest& request, const Model& model, 
     Context context{progress, request.grid.threads};
     auto meshed = makeMesh(model, request.grid, context);
     if (!meshed.ok()) return meshed.error();
-    if (!request.quiet)
+    if (!request.print.quiet)
         if (const Status s = warnOfMesh(model, *meshed, context); !s.ok()) return s.error();
-    keepOnly(request.edits.keep, *meshed, request.grid.threads, request.quiet);
+    keepOnly(request.edits.keep, *meshed, request.grid.threads, request.print.quiet);
     auto mesh = edited(std::move(meshed->mesh), request.edits, request.grid.surface, meshed->grid.cell_m, context);
     if (!mesh.ok()) return mesh.error();
-    const auto scene = makeScene(model, request.model, request.grid, request.edits, request.quiet, context);
+    const auto scene = makeScene(model, request.model, request.grid, request.edits, request.print.quiet, context);
     if (!scene.ok()) return scene.error();
     auto flat = mesh::flatten(*scene, *mesh);
     if (!flat.ok()) return flat.error();
@@ -242,7 +252,7 @@ Status drawOne(const RenderRequest& request, const Painter& paint, const render:
     const Status written = isExr(request)
                                ? render::writeExr(layers, request.layers, metadataOf(request, provenance), file)
                                : render::writePng(*image, file);
-    if (written.ok() && !request.quiet) fmt::print("wrote {}\n", file);
+    if (written.ok() && !request.print.quiet) fmt::print("wrote {}\n", file);
     std::fflush(stdout);
     return written;
 }
@@ -260,15 +270,15 @@ render::Camera cameraAfter(const RenderRequest& request, render::Camera camera, 
 Status drawAll(const RenderRequest& request) {
     auto options = parseSize(request.size);
     if (!options.ok()) return options.error();
-    Watch watch(request.quiet);
+    Watch watch(request.print.quiet);
     Context context{watch.progress()};
     const auto model =
         makeModel(request.model, context, drawsMesh(request) ? pipeline::Objects::Apart : pipeline::Objects::Sketched);
     if (!model.ok()) return model.error();
-    if (!request.quiet) printWarnings(*model);
-    if (!request.quiet && request.view == "field" && model->derivation.objects.empty())
+    if (!request.print.quiet) printWarnings(*model);
+    if (!request.print.quiet && request.view == "field" && model->derivation.objects.empty())
         if (const Status s = warnAsBuild(request, *model, watch.progress()); !s.ok()) return s;
-    if (const std::string note = pipeline::sketchNote(model->derivation); !note.empty() && !request.quiet)
+    if (const std::string note = pipeline::sketchNote(model->derivation); !note.empty() && !request.print.quiet)
         printMessage("note: {}; add --view mesh\n", note);
     DrawnMesh mesh;
     if (drawsMesh(request)) {
@@ -289,7 +299,7 @@ Status drawAll(const RenderRequest& request) {
     const Provenance& provenance = model->lowered->provenance;
     if (request.turntable == 0) {
         const Status drawn = drawOne(request, *paint, *options, provenance, request.output, watch.progress());
-        if (drawn.ok() && request.stats) printStatistics(paint->cost(), *model, bounds, *options, context.stages);
+        if (drawn.ok() && request.print.stats) printStatistics(paint->cost(), *model, bounds, *options, context.stages);
         return drawn;
     }
     for (int i = 0; i < request.turntable; ++i) {
@@ -319,13 +329,13 @@ int render(RenderRequest request) {
 
 /// How fog looks, and how finely and by whom the rays are walked.
 void addRayOptions(CLI::App& app, RenderRequest& request) {
-    app.add_option("--extinction", request.extinction, "Of fog, per metre (default: 180 over the model's diagonal)")
+    app.add_option("--extinction", request.fog.extinction, "Of fog, per metre (default: 180 over the model's diagonal)")
         ->check(between(1e-6, 1e6));
-    app.add_option("--format-option", request.fog,
+    app.add_option("--format-option", request.fog.options,
                    "Of fog, NAME=VALUE as `sgm build` takes it for .vdb: density, edge, wisps, billow, lump; the "
                    "picture then is of the fog that such a file holds")
         ->allow_extra_args(false);
-    addRenamedOption(app, "--export", "--format-option", request.fog);
+    addRenamedOption(app, "--export", "--format-option", request.fog.options);
     app.add_option("--samples", request.samples, "Samples a pixel, for smooth edges")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
@@ -370,9 +380,9 @@ void addRender(CLI::App& app, int& exitCode) {
     addRayOptions(*command, *request);
     command->add_flag("--wires", request->wires, "Draw the edges of the mesh's triangles");
     command->add_flag("--no-ground", request->noGround, "Leave out the ground");
-    command->add_flag("--stats", request->stats,
+    command->add_flag("--stats", request->print.stats,
                       "Print how often the field was evaluated a pixel, beside plain sphere tracing, and the times");
-    command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
+    command->add_flag("-q,--quiet", request->print.quiet, "Say nothing but errors");
     command->footer(
         "Examples:\n  sgm render examples/cumulus.sgm -o cumulus.png --size 640x640\n  sgm render examples/grotto.sgm "
         "-o in.png --camera inside\n"

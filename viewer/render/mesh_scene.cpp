@@ -200,8 +200,8 @@ MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshProgram
       owners_(upload(mesh.owners)),
       hardEdges_(mesh.hardEdges),
       materials_(uploadMaterials(mesh.materials)),
-      textured_(!mesh.textures.frames.empty()),
-      skyCount_(skyMapsFor(triangleCount_)) {
+      textured_(!mesh.textures.frames.empty()) {
+    maps_.skyCount = skyMapsFor(triangleCount_);
     makeMaps();
     if (!textured_) return;
     frameOfTriangle_ = TexelBuffer::of(mesh.textures.frameOfTriangle, 1);
@@ -216,8 +216,8 @@ MeshScene::MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, c
       bounds_(bounds),
       triangleCount_(triangles.count),
       owners_(upload(ownersFrom(owners, provenance))),
-      materials_(uploadMaterials(provenance.materials)),
-      skyCount_(leastSkyMaps) {
+      materials_(uploadMaterials(provenance.materials)) {
+    maps_.skyCount = leastSkyMaps;
     const std::vector<float> flat(triangleCount_ * 3 + 1, 0.0f);
     triangles_ = TriangleBuffers::of(std::move(triangles.positions), std::move(triangles.normals),
                                      Buffer::of<float>(flat), std::move(triangles.indices));
@@ -225,9 +225,9 @@ MeshScene::MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, c
 }
 
 void MeshScene::makeMaps() {
-    sunMap_ = MapStack::create(MapStack::Kind::Depth, sunMapEdge, 1);
-    skyMaps_ = MapStack::create(MapStack::Kind::Number, skyMapEdge, static_cast<int>(skyCount_));
-    skyDepth_ = MapStack::create(MapStack::Kind::Depth, skyMapEdge, 1);
+    maps_.sun = MapStack::create(MapStack::Kind::Depth, sunMapEdge, 1);
+    maps_.sky = MapStack::create(MapStack::Kind::Number, skyMapEdge, static_cast<int>(maps_.skyCount));
+    maps_.skyDepth = MapStack::create(MapStack::Kind::Depth, skyMapEdge, 1);
 }
 
 /// All triangles, in batches.
@@ -252,7 +252,7 @@ Status MeshScene::drawMap(const MapStack& map, Vec3d towardsLight, Progress* pro
 }
 
 Status MeshScene::light(Progress* progress) {
-    if (progress) progress->begin("light", (skyCount_ + 1) * (triangleCount_ / batchTriangles + 1));
+    if (progress) progress->begin("light", (maps_.skyCount + 1) * (triangleCount_ / batchTriangles + 1));
     for (;;) {
         const Result<bool> all = lightMore(progress);
         if (!all) return all.error();
@@ -261,33 +261,34 @@ Status MeshScene::light(Progress* progress) {
 }
 
 Result<bool> MeshScene::lightMore(Progress* progress) {
-    if (mapsDrawn_ > skyCount_) return true;
-    if (mapsDrawn_ == 0) {
-        if (Status s = drawMap(sunMap_, sunDirection().as<double>(), progress); !s) return s.error();
+    if (maps_.drawn > maps_.skyCount) return true;
+    if (maps_.drawn == 0) {
+        if (Status s = drawMap(maps_.sun, sunDirection().as<double>(), progress); !s) return s.error();
     } else {
-        const size_t sky = mapsDrawn_ - 1;
-        if (Status s = drawMap(skyDepth_, skyDirection(sky, skyCount_), progress); !s) return s.error();
+        const size_t sky = maps_.drawn - 1;
+        if (Status s = drawMap(maps_.skyDepth, skyDirection(sky, maps_.skyCount), progress); !s) return s.error();
         setDepthTest(false);
-        skyMaps_.bindCleared(static_cast<int>(sky));
-        skyDepth_.bindTexture(0);
+        maps_.sky.bindCleared(static_cast<int>(sky));
+        maps_.skyDepth.bindTexture(0);
         programs_->blur.use();
         ScreenTriangle().draw();
     }
-    return ++mapsDrawn_ > skyCount_;
+    return ++maps_.drawn > maps_.skyCount;
 }
 
 void MeshScene::setLight(const Program& program, bool sky) const {
     const Vec3d centre = bounds_.centre().as<double>();
     const double span = mapSpan(bounds_);
     std::vector<Matrix4> matrices(mostSkyMaps, Matrix4{});
-    for (size_t i = 0; i < skyCount_; ++i) matrices[i] = lightMatrix(skyDirection(i, skyCount_), centre, span, 0, 1);
+    for (size_t i = 0; i < maps_.skyCount; ++i)
+        matrices[i] = lightMatrix(skyDirection(i, maps_.skyCount), centre, span, 0, 1);
     program.set("ownerOfTriangle", 0);
     program.set("sunMap", 1);
     program.set("skyMaps", 2);
     program.set("sunFromWorld", lightMatrix(sunDirection().as<double>(), centre, span, 0, 1));
     program.set("skyFromWorld", std::span<const Matrix4>(matrices));
     program.set("mapSpan", static_cast<float>(span));
-    program.set("skyCount", sky ? static_cast<int>(skyCount_) : 0);
+    program.set("skyCount", sky ? static_cast<int>(maps_.skyCount) : 0);
 }
 
 void MeshScene::bindTextures(const Program& program) const {
@@ -319,7 +320,7 @@ Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureO
     const double size = length(bounds_.size().as<double>()), away = length(bounds_.centre().as<double>() - view.eye);
     const double near = std::max(away - size / 2, 1e-3 * size), far = near + 2 * size + away;
     // Inside a hollow no sky is seen: the lamp does it alone.
-    const bool sky = mapsDrawn_ > skyCount_ && options.camera.lamp_m == 0;
+    const bool sky = maps_.drawn > maps_.skyCount && options.camera.lamp_m == 0;
     const Program &color = style.section ? programs_->section : programs_->color, &backdrop = programs_->backdrop;
     for (const Program* program : {&color, &backdrop}) {
         setScene(*program, bounds_, options);
@@ -329,8 +330,8 @@ Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureO
     setDepthTest(true);
     drawMask(subsample, target.width);
     owners_.bind(0);
-    sunMap_.bindTexture(1);
-    skyMaps_.bindTexture(2);
+    maps_.sun.bindTexture(1);
+    maps_.sky.bindTexture(2);
     materials_.bindStorage(4);
     bindTextures(color);
     const double left = x0 + subsample.right, low = y0 - subsample.down;

@@ -94,8 +94,12 @@ private:
     TexelBuffer frameOfTriangle_;
     Buffer frames_;
     PictureStack colorPictures_, numberPictures_;
-    MapStack sunMap_, skyMaps_, skyDepth_;
-    size_t skyCount_ = 0, mapsDrawn_ = 0;
+    /// Maps of shadow and sky.
+    struct LightMaps {
+        MapStack sun, sky, skyDepth;
+        size_t skyCount = 0, drawn = 0;
+    };
+    LightMaps maps_;
 };
 
 }  // namespace sgm::render

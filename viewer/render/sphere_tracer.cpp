@@ -58,26 +58,22 @@ std::array<float, 2> CellSpace::span(Vec3f origin, Vec3f inverseDirection) const
 }
 
 SphereTracer::SphereTracer(const CellSpace& space, Vec3f origin, Vec3f direction, float pixelAngle, const Ray& ray)
-    : origin_(origin),
-      direction_(direction),
-      inverse_(inverseOf(direction)),
-      tolerance_(2e-6f * space.size),
-      angle_(0.1f * pixelAngle),
-      pixelAngle_(pixelAngle),
+    : line_{origin, direction, inverseOf(direction)},
+      precision_{2e-6f * space.size, 0.1f * pixelAngle, pixelAngle},
       beside_(ray.beside) {
-    const auto [near, far] = space.span(origin, inverse_);
+    const auto [near, far] = space.span(origin, line_.inverse);
     t_ = freeBeside_ = std::max(near, ray.start);
     end_ = far;
 }
 
 void SphereTracer::settleDoubt() {
-    doubted_ = false;
-    if (probe_.found()) {
-        found_ = candidate_;
+    doubt_.active = false;
+    if (doubt_.probe.found()) {
+        found_ = doubt_.candidate;
         ended_ = true;
         return;
     }
-    t_ += std::max(2 * gap(t_), 2 * tolerance_);
+    t_ += std::max(2 * gap(t_), 2 * precision_.tolerance);
     free_ = stride_ = 0;
     slope_ = -1;
 }
@@ -87,31 +83,32 @@ void SphereTracer::setFree(float from, float to) {
 }
 
 bool SphereTracer::ask(const CellSpace& space, Question& question) {
-    if (doubted_) {
-        if (probe_.ask(space, question)) return true;
+    if (doubt_.active) {
+        if (doubt_.probe.ask(space, question)) return true;
         settleDoubt();
     }
     for (; !ended_ && steps_ < 512 && t_ + stride_ <= end_; ++steps_) {
-        const Vec3f place = origin_ + (t_ + stride_) * direction_;
+        const Vec3f place = line_.origin + (t_ + stride_) * line_.direction;
         if (!cell_.holds(place)) cell_ = space.cellAt(place);
         if (cell_.least > 0 && stride_ <= free_ + cell_.least * space.inverseLipschitz) {
             t_ += stride_;
             while (cell_.least > 0 && t_ <= end_) {
                 const float from = t_;
-                t_ += cell_.exit(origin_ + t_ * direction_, inverse_);
+                t_ += cell_.exit(line_.origin + t_ * line_.direction, line_.inverse);
                 const float spare =
                     cell_.least * space.inverseLipschitz - beside_ * t_;  // of a ball about any of the way
                 if (spare >= 0) setFree(from - spare, t_);
-                cell_ = space.cellAt(origin_ + t_ * direction_);
+                cell_ = space.cellAt(line_.origin + t_ * line_.direction);
             }
             free_ = stride_ = 0;
             slope_ = -1;
             if (t_ > end_) break;
         }
         if (cell_.state == CellState::Near) {
-            question = {origin_ + (t_ + stride_) * direction_, cell_.tape};
+            question = {line_.origin + (t_ + stride_) * line_.direction, cell_.tape};
             ++steps_;
-            angle_ = std::min(angle_ + 0.015f * pixelAngle_, 0.3f * pixelAngle_);
+            precision_.angle =
+                std::min(precision_.angle + 0.015f * precision_.pixelAngle, 0.3f * precision_.pixelAngle);
             return true;
         }
         answer(space, cell_.state == CellState::Inside ? -space.margin : space.margin);
@@ -120,7 +117,7 @@ bool SphereTracer::ask(const CellSpace& space, Question& question) {
 }
 
 void SphereTracer::answer(const CellSpace& space, float value) {
-    if (doubted_) return probe_.answer(space, value);
+    if (doubt_.active) return doubt_.probe.answer(space, value);
     const float next = value * space.inverseLipschitz;
     if (stride_ > free_ + std::abs(next) + gap(t_) && stride_ > 0) {  // back to the safe step
         stride_ = free_;
@@ -129,12 +126,13 @@ void SphereTracer::answer(const CellSpace& space, float value) {
     }
     if (stride_ > 0) slope_ += 0.4f * ((next - free_) / stride_ - slope_);
     t_ += stride_;
-    if (value < std::max(tolerance_, angle_ * t_)) {  // one more safe step, or back out by the secant
-        candidate_ = std::max(t_ + (next < 0 && stride_ > 0 ? stride_ * next / (free_ - next) : next), 0.0f);
-        const float into = std::max(tolerance_, 0.05f * pixelAngle_ * t_);
-        doubted_ = cell_.doubtful && value > -0.25f * into;
-        if (doubted_) return probe_.begin(origin_ + t_ * direction_, value, into, direction_);
-        found_ = candidate_;
+    if (value <
+        std::max(precision_.tolerance, precision_.angle * t_)) {  // one more safe step, or back out by the secant
+        doubt_.candidate = std::max(t_ + (next < 0 && stride_ > 0 ? stride_ * next / (free_ - next) : next), 0.0f);
+        const float into = std::max(precision_.tolerance, 0.05f * precision_.pixelAngle * t_);
+        doubt_.active = cell_.doubtful && value > -0.25f * into;
+        if (doubt_.active) return doubt_.probe.begin(line_.origin + t_ * line_.direction, value, into, line_.direction);
+        found_ = doubt_.candidate;
         ended_ = true;
         return;
     }
@@ -149,26 +147,24 @@ void SphereTracer::answer(const CellSpace& space, float value) {
 }
 
 DiscWalk::DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float radius, float pixel)
-    : place_(place),
-      direction_(direction),
-      inverse_(inverseOf(direction)),
+    : line_{place, direction, inverseOf(direction)},
       radius_(radius),
       pixel_(pixel),
       into_(std::max(4e-6f * space.size, 0.05f * pixel)) {
-    const auto [near, far] = space.span(place, inverse_);
+    const auto [near, far] = space.span(place, line_.inverse);
     start_ = t_ = std::max(near, 3e-4f * space.size);
     end_ = far;
 }
 
 bool DiscWalk::settleDoubt() {
-    probing_ = false;
-    if (careful_) {
-        if (probe_.found()) clearance_ = std::min(clearance_, probedClearance_);
+    doubts_.probing = false;
+    if (doubts_.careful) {
+        if (doubts_.probe.found()) clearance_ = std::min(clearance_, doubts_.probedClearance);
         return true;
     }
-    doubtful_ = false;
-    if (probe_.found()) return true;
-    careful_ = true;
+    doubts_.any = false;
+    if (doubts_.probe.found()) return true;
+    doubts_.careful = true;
     t_ = start_;
     clearance_ = 1;
     within_ = free_ = stride_ = 0;
@@ -177,30 +173,30 @@ bool DiscWalk::settleDoubt() {
 }
 
 void DiscWalk::doubt(Vec3f place, float value, float clearance) {
-    if (careful_) {
-        probe_.begin(place, value, into_);
-        probedClearance_ = clearance;
-        probing_ = true;
+    if (doubts_.careful) {
+        doubts_.probe.begin(place, value, into_);
+        doubts_.probedClearance = clearance;
+        doubts_.probing = true;
         return;
     }
     clearance_ = clearance;
-    doubtful_ = true;
-    leastPlace_ = place;
-    leastValue_ = value;
+    doubts_.any = true;
+    doubts_.leastPlace = place;
+    doubts_.leastValue = value;
 }
 
 bool DiscWalk::ask(const CellSpace& space, Question& question) {
     for (;;) {
-        if (probing_) {
-            if (probe_.ask(space, question)) return true;
+        if (doubts_.probing) {
+            if (doubts_.probe.ask(space, question)) return true;
             settleDoubt();
         }
         for (; steps_ < 128 && t_ + stride_ <= end_ && clearance_ > -0.9f; ++steps_) {
-            const Vec3f place = place_ + (t_ + stride_) * direction_;
+            const Vec3f place = line_.origin + (t_ + stride_) * line_.direction;
             if (!cell_.holds(place)) cell_ = space.cellAt(place);
             // Nothing of the cell comes into the disc.
             if (cell_.least >= space.margin || cell_.least >= radius_ * (t_ + stride_ + 2 * cell_.edge)) {
-                t_ += stride_ + cell_.exit(place, inverse_);
+                t_ += stride_ + cell_.exit(place, line_.inverse);
                 free_ = stride_ = 0;
                 continue;
             }
@@ -211,14 +207,14 @@ bool DiscWalk::ask(const CellSpace& space, Question& question) {
             }
             answer(space, -space.margin);
         }
-        if (!doubtful_) return false;
-        probe_.begin(leastPlace_, leastValue_, into_);
-        probing_ = true;
+        if (!doubts_.any) return false;
+        doubts_.probe.begin(doubts_.leastPlace, doubts_.leastValue, into_);
+        doubts_.probing = true;
     }
 }
 
 void DiscWalk::answer(const CellSpace& space, float value) {
-    if (probing_) return probe_.answer(space, value);
+    if (doubts_.probing) return doubts_.probe.answer(space, value);
     const float next = std::abs(value) * space.inverseLipschitz;
     const float disc = std::min(radius_ * (t_ + stride_), space.margin),
                 least = std::max(0.5f * disc, std::max(1e-3f * space.size, disc < pixel_ ? 1.4f * pixel_ : 0));
@@ -228,10 +224,10 @@ void DiscWalk::answer(const CellSpace& space, float value) {
     }
     if (value / disc < clearance_) {
         if (cell_.doubtful && value > -0.25f * into_) {
-            doubt(place_ + (t_ + stride_) * direction_, value, value / disc);
+            doubt(line_.origin + (t_ + stride_) * line_.direction, value, value / disc);
         } else {
             clearance_ = value / disc;
-            doubtful_ = false;
+            doubts_.any = false;
         }
     }
     // Inside, fields may fall little however deep the place is. Where nobody sees the penumbra, a way through the solid
@@ -239,7 +235,7 @@ void DiscWalk::answer(const CellSpace& space, float value) {
     within_ = value < 0 ? within_ + stride_ : 0;
     if (value < 0 && disc < pixel_ && -0.5f * within_ / disc < clearance_) {
         clearance_ = -0.5f * within_ / disc;
-        doubtful_ = false;
+        doubts_.any = false;
     }
     t_ += stride_;
     free_ = next;

@@ -98,6 +98,11 @@ private:
     SolidProbe probe_;
 };
 
+/// The line that a walk goes along.
+struct WalkLine {
+    Vec3f origin, direction, inverse;
+};
+
 /// The first surface along a ray.
 class SphereTracer {
 public:
@@ -114,19 +119,29 @@ public:
 
 private:
     /// What may be stepped over unseen at t, metres.
-    float gap(float t) const { return 0.3f * pixelAngle_ * t; }
+    float gap(float t) const { return 0.3f * precision_.pixelAngle * t; }
     /// The cone beside the ray holds no surface between two places of it.
     void setFree(float from, float to);
     /// Takes what the probe behind a small value found: the surface, or nothing, and the walk goes on behind it.
     void settleDoubt();
 
-    Vec3f origin_, direction_, inverse_;
-    float t_, end_, free_ = 0, slope_ = -1, stride_ = 0, tolerance_, angle_, pixelAngle_, found_ = -1;
+    /// How near a surface a hit lies: metres at the eye, radians along the ray.
+    struct Precision {
+        float tolerance, angle, pixelAngle;
+    };
+    /// A small value, where the field may say nothing of a surface.
+    struct SmallValue {
+        bool active = false;
+        float candidate = -1;
+        SolidProbe probe;
+    };
+    WalkLine line_;
+    Precision precision_;
+    float t_, end_, free_ = 0, slope_ = -1, stride_ = 0, found_ = -1;
     float beside_, freeBeside_;
     int steps_ = 0;
-    bool ended_ = false, doubted_ = false;
-    float candidate_ = -1;
-    SolidProbe probe_;
+    bool ended_ = false;
+    SmallValue doubt_;
     Cell cell_;
 };
 
@@ -146,13 +161,17 @@ private:
     /// A disc this small a share of which is free, by a value that may say nothing.
     void doubt(Vec3f place, float value, float clearance);
 
-    Vec3f place_, direction_, inverse_;
+    /// Values that may say nothing of a surface.
+    struct Doubts {
+        bool careful = false, any = false, probing = false;
+        Vec3f leastPlace;
+        float leastValue = 0, probedClearance = 1;
+        SolidProbe probe;
+    };
+    WalkLine line_;
     float start_, t_, end_, radius_, pixel_, into_, clearance_ = 1, within_ = 0, free_ = 0, stride_ = 0;
     int steps_ = 0;
-    bool careful_ = false, doubtful_ = false, probing_ = false;
-    Vec3f leastPlace_;
-    float leastValue_ = 0, probedClearance_ = 1;
-    SolidProbe probe_;
+    Doubts doubts_;
     Cell cell_;
 };
 
