@@ -194,22 +194,11 @@ bool productHasUnit(Unit a, Unit b) {
     return a != Unit::Angle || b != Unit::Angle;
 }
 
-Value applyFunction(Fn fn, std::span<const Value> a) {
-    if (fn <= Fn::Or) return applyOperator(fn, a);
-    const double x = a.empty() ? 0 : a[0].num(), y = a.size() < 2 ? 0 : a[1].num();
+namespace {
+
+/// Angles, powers and rotations.
+std::optional<Value> applyGeometry(Fn fn, std::span<const Value> a, double x, double y) {
     switch (fn) {
-        case Fn::Min:
-            return extreme(a, smaller);
-        case Fn::Max:
-            return extreme(a, larger);
-        case Fn::Abs:
-            return componentwise(a[0], [](double v) { return std::abs(v); });
-        case Fn::Floor:
-            return whole(componentwise(a[0], [](double v) { return std::floor(v); }));
-        case Fn::Ceil:
-            return whole(componentwise(a[0], [](double v) { return std::ceil(v); }));
-        case Fn::Round:
-            return whole(componentwise(a[0], [](double v) { return std::floor(v + 0.5); }));
         case Fn::Sqrt:
             return Value::number(std::sqrt(larger(x, 0)),
                                  a[0].units[0] == Unit::SquareMetre ? Unit::Metre : Unit::None);
@@ -225,18 +214,42 @@ Value applyFunction(Fn fn, std::span<const Value> a) {
             const double power = std::pow(x, y);
             return Value::number(std::isfinite(power) ? power : 0);
         }
-        case Fn::Clamp:
-            return componentwise(componentwise(a[0], a[1], larger, either), a[2], smaller, either);
-        case Fn::Lerp:
-            return interpolate(a[0], a[1], a[2].num());
-        case Fn::If:
-            return a[0].truth() ? a[1] : a[2];
         case Fn::RotX:
             return rotationOf(Mat3::rotation({1, 0, 0}, x));
         case Fn::RotY:
             return rotationOf(Mat3::rotation({0, 1, 0}, x));
         case Fn::RotZ:
             return rotationOf(Mat3::rotation({0, 0, 1}, x));
+        default:
+            return std::nullopt;
+    }
+}
+
+}  // namespace
+
+Value applyFunction(Fn fn, std::span<const Value> a) {
+    if (fn <= Fn::Or) return applyOperator(fn, a);
+    const double x = a.empty() ? 0 : a[0].num(), y = a.size() < 2 ? 0 : a[1].num();
+    if (auto value = applyGeometry(fn, a, x, y)) return *std::move(value);
+    switch (fn) {
+        case Fn::Min:
+            return extreme(a, smaller);
+        case Fn::Max:
+            return extreme(a, larger);
+        case Fn::Abs:
+            return componentwise(a[0], [](double v) { return std::abs(v); });
+        case Fn::Floor:
+            return whole(componentwise(a[0], [](double v) { return std::floor(v); }));
+        case Fn::Ceil:
+            return whole(componentwise(a[0], [](double v) { return std::ceil(v); }));
+        case Fn::Round:
+            return whole(componentwise(a[0], [](double v) { return std::floor(v + 0.5); }));
+        case Fn::Clamp:
+            return componentwise(componentwise(a[0], a[1], larger, either), a[2], smaller, either);
+        case Fn::Lerp:
+            return interpolate(a[0], a[1], a[2].num());
+        case Fn::If:
+            return a[0].truth() ? a[1] : a[2];
         case Fn::Rgb:
             return rgb(a);
         case Fn::Metres:

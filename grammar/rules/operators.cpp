@@ -153,29 +153,9 @@ Typed checkComparedWord(CheckContext& ctx, Place& place, const Written& e, const
     return makeTyped(e.span, makeWord(e.text));
 }
 
-}  // namespace
-
-Typed checkCall(CheckContext& ctx, Place& place, const Written& e) {
-    const Function* row = findFunction(e.text);
-    if (!row) return unknownFunction(ctx, e);
-    if (e.args.size() < row->least || e.args.size() > row->most)
-        return fail(ctx, e.span,
-                    fmt::format("'{}' takes {} argument{}{}, but {} {} given", row->name, row->least,
-                                row->least == 1 ? "" : "s", row->most > row->least ? " or more" : "", e.args.size(),
-                                e.args.size() == 1 ? "is" : "are"));
-    for (size_t i = 0; i < e.argNames.size(); ++i)
-        if (!e.argNames[i].empty())
-            return fail(ctx, e.args[i].span, fmt::format("the arguments of '{}' have no names", row->name),
-                        fmt::format("leave '{}:' out", e.argNames[i]));
-    if (row->signature == Signature::Symbol) return checkCount(ctx, place, e);
-    if (row->signature == Signature::File) return checkOutlineCount(ctx, e);
-    if (row->signature == Signature::Property) return checkProperty(ctx, place, e, *row);
-    if (row->signature == Signature::Place) return checkPlaceCall(ctx, place, e, *row);
-    if (row->signature == Signature::Mean) return checkMean(ctx, place, e);
-
-    const std::string what = fmt::format("'{}'", row->name);
-    std::vector<Typed> args;
-    for (const Written& arg : e.args) args.push_back(checkExpression(ctx, place, arg));
+/// Whether the arguments of a function are of the kinds that its signature asks for.
+bool checkSignature(CheckContext& ctx, Place& place, const Written& e, const Function& row, std::vector<Typed>& args) {
+    const std::string what = fmt::format("'{}'", row.name);
     bool good = true;
     const auto each = [&](Want want, size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) good = expectType(ctx, args[i], want, what, &e.args[i]) && good;
@@ -184,7 +164,7 @@ Typed checkCall(CheckContext& ctx, Place& place, const Written& e) {
         const bool sameKind = args[a].type.like.kind == args[b].type.like.kind && !args[a].type.numeric();
         good = good && (sameKind || sameType(ctx, args[a], args[b], "choose between"));
     };
-    switch (row->signature) {
+    switch (row.signature) {
         case Signature::Alike:
             for (size_t i = 1; i < args.size(); ++i)
                 if (mixShares(place, args[0], args[i])) i = 0;
@@ -216,7 +196,32 @@ Typed checkCall(CheckContext& ctx, Place& place, const Written& e) {
         case Signature::Mean:
             break;
     }
-    if (!good) return {{}, Type::unknown()};
+    return good;
+}
+
+}  // namespace
+
+Typed checkCall(CheckContext& ctx, Place& place, const Written& e) {
+    const Function* row = findFunction(e.text);
+    if (!row) return unknownFunction(ctx, e);
+    if (e.args.size() < row->least || e.args.size() > row->most)
+        return fail(ctx, e.span,
+                    fmt::format("'{}' takes {} argument{}{}, but {} {} given", row->name, row->least,
+                                row->least == 1 ? "" : "s", row->most > row->least ? " or more" : "", e.args.size(),
+                                e.args.size() == 1 ? "is" : "are"));
+    for (size_t i = 0; i < e.argNames.size(); ++i)
+        if (!e.argNames[i].empty())
+            return fail(ctx, e.args[i].span, fmt::format("the arguments of '{}' have no names", row->name),
+                        fmt::format("leave '{}:' out", e.argNames[i]));
+    if (row->signature == Signature::Symbol) return checkCount(ctx, place, e);
+    if (row->signature == Signature::File) return checkOutlineCount(ctx, e);
+    if (row->signature == Signature::Property) return checkProperty(ctx, place, e, *row);
+    if (row->signature == Signature::Place) return checkPlaceCall(ctx, place, e, *row);
+    if (row->signature == Signature::Mean) return checkMean(ctx, place, e);
+
+    std::vector<Typed> args;
+    for (const Written& arg : e.args) args.push_back(checkExpression(ctx, place, arg));
+    if (!checkSignature(ctx, place, e, *row, args)) return {{}, Type::unknown()};
     return makeApplied(ctx, Expr::Kind::Call, row->fn, e.span, std::move(args));
 }
 
