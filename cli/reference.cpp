@@ -32,7 +32,7 @@ std::string operationsPage() {
     for (const syntax::Operation* row : operations::table().rows()) {
         const syntax::Operation& o = *row;
         page += fmt::format("\n### `{}{}{}`\n\n{}\n", o.name, argumentList(o),
-                            o.hasBlock() || o.takesSettings ? " { … }" : "", o.doc);
+                            o.hasBlock() || o.traits.takesSettings ? " { … }" : "", o.doc);
         for (const syntax::OperationArgument& a : o.arguments) page += fmt::format("- `{}`: {}\n", a.name, a.doc);
         if (!o.example.empty()) page += fmt::format("\n    {}\n", o.example);
     }

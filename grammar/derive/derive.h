@@ -49,7 +49,23 @@ struct Reported {
     double sum = 0, least = 0, greatest = 0;
 };
 
-struct Derivation {
+/// What a derivation was made of, besides its grammar.
+struct DerivationInput {
+    std::vector<rules::Value> params;
+    uint32_t start = 0;  ///< index into Grammar::starts
+    uint64_t seed = 0;
+    bool isPlaced = false;   ///< it is an object of another model, and stands on no ground of its own
+    bool planAlone = false;  ///< made with Options::planAlone
+};
+
+/// What a derivation counted.
+struct DerivationCounts {
+    /// What became of objects that were grafted: places that hold copies of their shapes, or boxes in their stead.
+    uint64_t copies = 0, masses = 0;
+    uint64_t classic = 0, morphic = 0;  ///< rule applications of R_C and R_M
+};
+
+struct Derivation : DerivationInput, DerivationCounts {
     std::shared_ptr<const rules::Grammar> grammar;
     ShapeTree tree;
     std::vector<Step> steps;
@@ -59,15 +75,7 @@ struct Derivation {
     town::TownPlan plan;              ///< what `network` and `lots` laid out
     PlacedObjects objects;            ///< what `place` puts; Extras::object says where
     std::vector<Relief> reliefs;      ///< heights that lift shapes; Extras::relief says which
-    /// What became of objects that were grafted: places that hold copies of their shapes, or boxes in their stead.
-    uint64_t copies = 0, masses = 0;
-    std::vector<rules::Value> params;
-    uint32_t start = 0;  ///< index into Grammar::starts
-    uint64_t seed = 0;
-    uint64_t classic = 0, morphic = 0;  ///< rule applications of R_C and R_M
-    bool isPlaced = false;              ///< it is an object of another model, and stands on no ground of its own
-    bool planAlone = false;             ///< made with Options::planAlone
-    bool usedChance = false;            ///< another seed could have made another tree
+    bool usedChance = false;          ///< another seed could have made another tree
 
     /// Pairs of shapes with a solid whose boxes overlap by more than 0.1 mm without being bonded or related (one above
     /// the other in the tree); counting ends at a million. O(n log n) plus the pairs that share an interval of an axis.

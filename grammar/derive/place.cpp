@@ -54,7 +54,7 @@ void applyWhole(const std::vector<Attribute>& list, const Place& place, Evaluate
 void remarkLostTurn(TreeBuilder& builder, const Element& e, const Mating& mating, const Mat3& asked, const Place& place,
                     const Mat3& axes) {
     const auto turn = std::find_if(e.attributes.begin(), e.attributes.end(),
-                                   [](const Attribute& a) { return a.operation->turnsShape; });
+                                   [](const Attribute& a) { return a.operation->traits.turnsShape; });
     if (turn == e.attributes.end() || mating.ours.direction == Vec3d{} || mating.theirs.facing == Vec3d{}) return;
     constexpr double slack = 1e-3;
     bool lost = angleBetween(axes, asked) > slack;

@@ -100,29 +100,37 @@ struct Extras {
     }
 };
 
-/// A node of the shape tree. Its field is its own solid combined with its children in order.
-struct Shape {
-    uint64_t key = 0;  ///< hash(parent's key, rule, label, ordinal, repeat index): its random stream
+/// Where a shape stands in the tree.
+struct ShapeLinks {
     ShapeId parent = none;
     ShapeId firstChild = none, lastChild = none, nextSibling = none;  ///< children in joining order
-    rules::SymbolId symbol = rules::none;                             ///< none for an anonymous solid or group
-    uint32_t label = 0;              ///< index into ShapeTree::labels: symbol or primitive name
-    uint32_t occurrence = 0;         ///< 1 for the first child of this label under its parent; 0: not yet counted
-    uint32_t depth = 0;              ///< 0 at the root
-    uint32_t solid = none;           ///< index into ShapeTree::solids
-    uint32_t material = none;        ///< index into Derivation::materials; none inherits
-    uint32_t extras = none;          ///< index into ShapeTree::extras
-    ShapeId valuesAt = none;         ///< nearest shape, itself or above, that sets values by `with`
-    uint32_t body = none;            ///< index into ShapeTree::bodies
-    uint32_t jointSet = 0;           ///< index into ShapeTree::namedJoints
-    uint32_t firstNamedBond = none;  ///< index into ShapeTree::namedBonds, one a named joint
-    uint32_t madeBy = none;          ///< step that made it; none for the start
-    uint32_t chainRule = none;       ///< the `repeat` rule whose chain it is a link of: starts no such chain itself
+    uint32_t occurrence = 0;  ///< 1 for the first child of this label under its parent; 0: not yet counted
+    uint32_t depth = 0;       ///< 0 at the root
+};
+
+/// What a shape holds and looks like.
+struct ShapeContent {
+    uint32_t solid = none;                       ///< index into ShapeTree::solids
+    uint32_t material = none;                    ///< index into Derivation::materials; none inherits
+    uint32_t extras = none;                      ///< index into ShapeTree::extras
     rules::Operator op = rules::Operator::None;  ///< how it joins what its parent holds so far; None: as its content
-    bool live = false;                           ///< rules may still rewrite it
-    bool dead = false;                           ///< replaced; swept away before `derive` returns
     double amount = 0.5;                         ///< for op Morph: a (`by`)
     double blend_m = 0;                          ///< blends into what stands with this radius
+};
+
+/// A node of the shape tree. Its field is its own solid combined with its children in order.
+struct Shape : ShapeLinks, ShapeContent {
+    uint64_t key = 0;  ///< hash(parent's key, rule, label, ordinal, repeat index): its random stream
+    rules::SymbolId symbol = rules::none;  ///< none for an anonymous solid or group
+    uint32_t label = 0;                    ///< index into ShapeTree::labels: symbol or primitive name
+    ShapeId valuesAt = none;               ///< nearest shape, itself or above, that sets values by `with`
+    uint32_t body = none;                  ///< index into ShapeTree::bodies
+    uint32_t jointSet = 0;                 ///< index into ShapeTree::namedJoints
+    uint32_t firstNamedBond = none;        ///< index into ShapeTree::namedBonds, one a named joint
+    uint32_t madeBy = none;                ///< step that made it; none for the start
+    uint32_t chainRule = none;  ///< the `repeat` rule whose chain it is a link of: starts no such chain itself
+    bool live = false;          ///< rules may still rewrite it
+    bool dead = false;          ///< replaced; swept away before `derive` returns
     Scope scope;
     syntax::SourceSpan span;  ///< the text that made it
 };

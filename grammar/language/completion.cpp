@@ -174,7 +174,8 @@ private:
         // { name = value … } behind an operation's argument.
         const syntax::Operation* row =
             open != none && text(open) == "{" && open > begin_ + 1 ? operations::table().find(text(open - 2)) : nullptr;
-        if (row && row->takesSettings) return last == "=" || isOperator(last) ? Want::Expression : Want::Settings;
+        if (row && row->traits.takesSettings)
+            return last == "=" || isOperator(last) ? Want::Expression : Want::Settings;
         if (last == ":") {
             const bool label = open != none && text(open) == "{";
             return label ? Want::Body : Want::Live;

@@ -227,7 +227,7 @@ private:
     void attribute(const syntax::Attribute& a) {
         for (size_t i = 0; i < a.args.size(); ++i) {
             const auto* row = a.operation && i < a.operation->arguments.size() ? &a.operation->arguments[i] : nullptr;
-            if (i == 0 && a.operation && a.operation->namesValue)
+            if (i == 0 && a.operation && a.operation->traits.namesValue)
                 add(NameKind::Value, a.args[0].text, wordIn(a.args[0].span, a.args[0].text), a.span);
             else if (row && (row->type == ArgumentType::Start || row->type == ArgumentType::Symbol))
                 add(NameKind::Symbol, a.args[i].text, wordIn(a.args[i].span, a.args[i].text));
@@ -292,7 +292,7 @@ void Known::add(const syntax::Ast& ast) {
             symbols.insert(e.solid->text);
         for (const auto* attributes : {&e.before, &e.after})
             for (const syntax::Attribute& a : *attributes)
-                if (a.operation && a.operation->namesValue && !a.args.empty()) values.insert(a.args[0].text);
+                if (a.operation && a.operation->traits.namesValue && !a.args.empty()) values.insert(a.args[0].text);
     };
     for (const auto& d : ast.params) {
         parameters.insert(d.name.text);

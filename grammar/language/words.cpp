@@ -97,7 +97,7 @@ std::string operationDoc(const syntax::Operation& o) {
         const std::string argument = a.word.empty() ? std::string(a.name) : fmt::format("{} {}", a.word, a.name);
         text += a.optional ? fmt::format(" [{}]", argument) : " " + argument;
     }
-    text += fmt::format("{}`, operation\n\n{}\n", o.hasBlock() || o.takesSettings ? " { … }" : "", o.doc);
+    text += fmt::format("{}`, operation\n\n{}\n", o.hasBlock() || o.traits.takesSettings ? " { … }" : "", o.doc);
     for (const auto& a : o.arguments) text += fmt::format("\n- `{}`: {}", a.name, a.doc);
     if (!o.example.empty()) text += fmt::format("\n\n```sgm\n{}\n```", o.example);
     return text;

@@ -186,7 +186,7 @@ constinit const Operation mirror{
     .example = "cube clad ornate mirror (.25, .125, .4)",
     .arguments = mirrorArguments,
     .phase = Phase::Detail,
-    .withBlock = &mirrored,
+    .block = {.operation = &mirrored},
     .check = checkMirror,
 };
 

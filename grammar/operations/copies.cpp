@@ -145,7 +145,7 @@ constinit const Operation around{
     .example = "around 12 radius 4m { cylinder size (.5m, 3m, .5m) }",
     .arguments = aroundArguments,
     .phase = Operation::Phase::Content,
-    .bodyBlock = true,
+    .block = {.isBody = true},
     .checkParts = checkAround,
     .run = runAround,
 };
@@ -156,7 +156,7 @@ constinit const Operation row{
     .example = "row 5 along x gap .4m { cube of stone }",
     .arguments = rowArguments,
     .phase = Operation::Phase::Content,
-    .bodyBlock = true,
+    .block = {.isBody = true},
     .checkParts = checkRow,
     .run = runRow,
 };
@@ -168,7 +168,7 @@ constinit const Operation mirrored{
     .example = "mirror x { cylinder size (.4m, 3m, .4m) move (2m, 0, 0) }",
     .arguments = mirrorArguments,
     .phase = Operation::Phase::Content,
-    .bodyBlock = true,
+    .block = {.isBody = true},
     .checkParts = checkMirror,
     .run = runMirror,
 };

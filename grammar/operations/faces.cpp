@@ -189,7 +189,7 @@ constinit const Operation faces{
         "footprint ell(16, 12, 5, 6) extrude 6m faces .3m { front: split x { ~1: wall } | side: wall | rest: nil }",
     .arguments = facesArguments,
     .phase = Operation::Phase::Content,
-    .blockLabel = "side",
+    .block = {.label = "side"},
     .checkParts = checkFaces,
     .run = runFaces,
 };

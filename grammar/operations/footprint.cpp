@@ -143,7 +143,7 @@ constinit const Operation footprint{
         "along x and z.",
     .example = "footprint ell(16, 12, 5, 6) block",
     .arguments = footprintArguments,
-    .beforeShape = true,
+    .traits = {.beforeShape = true},
     .check = checkFootprint,
     .apply = applyFootprint,
 };
@@ -154,7 +154,7 @@ constinit const Operation extrude{
     .example = "footprint ngon(6) extrude 9m block",
     .arguments = extrudeArguments,
     .range = {1e-6, most_m, "more than 0, and at most 100 km"},
-    .beforeShape = true,
+    .traits = {.beforeShape = true},
     .apply = applyExtrude,
 };
 
@@ -164,7 +164,7 @@ constinit const Operation offset{
     .example = "footprint ell(16, 12, 5, 6) offset .4m block",
     .arguments = offsetArguments,
     .range = {-most_m, most_m, "at most 100 km"},
-    .beforeShape = true,
+    .traits = {.beforeShape = true},
     .apply = applyOffset,
 };
 
@@ -175,7 +175,7 @@ constinit const Operation setback{
         "rest, or a tag.",
     .example = "footprint rect(30, 20) setback edges(front: 5m, rest: 2m) block",
     .arguments = setbackArguments,
-    .beforeShape = true,
+    .traits = {.beforeShape = true},
     .check = checkSetback,
     .apply = applySetback,
 };
@@ -186,7 +186,7 @@ constinit const Operation court{
     .example = "footprint rect(40, 30) court 11m block",
     .arguments = courtArguments,
     .range = {1e-3, most_m, "at least 1 mm"},
-    .beforeShape = true,
+    .traits = {.beforeShape = true},
     .apply = applyCourt,
 };
 
@@ -195,7 +195,7 @@ constinit const Operation rectify{
     .doc = "Lays the edges of a surveyed plan along its main directions, where they are nearly so.",
     .example = "footprint outline((0, 0), (9, .2), (9.1, 6), (0, 6)) rectify 5deg block",
     .arguments = rectifyArguments,
-    .beforeShape = true,
+    .traits = {.beforeShape = true},
     .apply = applyRectify,
 };
 
@@ -203,7 +203,7 @@ constinit const Operation inner{
     .name = "inner",
     .doc = "Makes the largest rectangle inside the footprint the scope.",
     .example = "footprint ell(16, 12, 5, 6) inner cube",
-    .beforeShape = true,
+    .traits = {.beforeShape = true},
     .apply = applyInner,
 };
 

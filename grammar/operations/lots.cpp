@@ -136,7 +136,7 @@ constinit const Operation lots{
     .example = "size (60, 4, 40) lots box(300, front: 8m) { lot: setback 2m wall | inner: lawn }",
     .arguments = lotsArguments,
     .phase = Operation::Phase::Content,
-    .blockLabel = "lot",
+    .block = {.label = "lot"},
     .checkParts = checkLots,
     .run = runLots,
 };

@@ -317,7 +317,7 @@ constinit const Operation network{
     .example = "size (400, 4, 400) network Net { street: asphalt | crossing: asphalt | block: lawn }",
     .arguments = networkArguments,
     .phase = Operation::Phase::Content,
-    .blockLabel = "block",
+    .block = {.label = "block"},
     .checkParts = checkNetwork,
     .run = runNetwork,
 };

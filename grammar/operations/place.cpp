@@ -160,7 +160,7 @@ constinit const Operation place{
     .example = "size (12, 1, 12) place House { storeys = 3 } variety 6",
     .arguments = placeArguments,
     .phase = Phase::Content,
-    .takesSettings = true,
+    .traits = {.takesSettings = true},
     .checkParts = checkPlace,
     .run = runPlace,
 };
@@ -172,7 +172,7 @@ constinit const Operation variety{
     .arguments = varietyArguments,
     .phase = Phase::Detail,
     .range = {1, 1e6, "1 … 1000000"},
-    .beforeShape = true,
+    .traits = {.beforeShape = true},
     .agree = agreeVariety,
 };
 

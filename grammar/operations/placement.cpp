@@ -255,7 +255,7 @@ void agreeThrough(OperationChecker& checker, const Element& element, const Attri
     if (element.on && element.on->kind == HostChoice::Kind::Each)
         checker.error(attribute.span, "'on each(…)' cuts the shapes that it stands on", "leave one of both out");
     for (const Attribute& a : element.attributes)
-        if (a.operation->namesValue)
+        if (a.operation->traits.namesValue)
             checker.error(a.span, fmt::format("'{}' hands nothing to a shape that cuts elsewhere", a.operation->name),
                           "say it of the shape that the cutter stands in");
 }

@@ -132,7 +132,7 @@ constinit const Operation size{
     .example = "cube size (12, 3.5, 9)",
     .arguments = sizeArguments,
     .range = {1e-6, most_m, "at least 0.000001m, and at most 1000 km"},
-    .beforeShape = true,
+    .traits = {.beforeShape = true},
     .apply = applySize,
 };
 
@@ -142,8 +142,7 @@ constinit const Operation move{
     .example = "sphere move (0, 1.5, 0)",
     .arguments = moveArguments,
     .range = {-most_m, most_m, "at most 1000 km"},
-    .stacks = true,
-    .beforeShape = true,
+    .traits = {.stacks = true, .beforeShape = true},
     .apply = applyMove,
 };
 
@@ -152,9 +151,7 @@ constinit const Operation turn{
     .doc = "Turns the shape about its own centre.",
     .example = "cube turn 30deg",
     .arguments = turnArguments,
-    .stacks = true,
-    .beforeShape = true,
-    .turnsShape = true,
+    .traits = {.stacks = true, .beforeShape = true, .turnsShape = true},
     .apply = applyTurn,
 };
 

@@ -269,7 +269,7 @@ constinit const Operation split{
     .example = "split x { 1m: wall | { ~2.4m: Tile }* | 1m: wall }",
     .arguments = splitArguments,
     .phase = Operation::Phase::Content,
-    .blockLabel = "~1",
+    .block = {.label = "~1"},
     .checkParts = checkSplit,
     .run = runSplit,
 };

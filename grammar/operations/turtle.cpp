@@ -118,7 +118,7 @@ constinit const Operation turtle{
     .example = "turtle Oak upward { F: cylinder | L: sphere size .5m }",
     .arguments = turtleArguments,
     .phase = Operation::Phase::Content,
-    .blockLabel = "F",
+    .block = {.label = "F"},
     .checkParts = checkTurtle,
     .run = runTurtle,
 };

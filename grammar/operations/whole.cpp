@@ -137,7 +137,7 @@ constinit const Operation displace{
     .example = "sphere displace billow(.05m, 2.2/m)",
     .arguments = displaceArguments,
     .phase = Phase::Whole,
-    .repeatable = true,
+    .traits = {.repeatable = true},
     .check = checkDisplace,
     .apply = applyDisplace,
 };
@@ -148,8 +148,7 @@ constinit const Operation tag{
     .example = "cube tag K",
     .arguments = tagArguments,
     .phase = Phase::Whole,
-    .repeatable = true,
-    .beforeShape = true,
+    .traits = {.repeatable = true, .beforeShape = true},
     .apply = applyTag,
 };
 
@@ -162,8 +161,7 @@ constinit const Operation report{
     .example = "Block report gfa (scope.area * 4)",
     .arguments = reportArguments,
     .phase = Phase::Whole,
-    .repeatable = true,
-    .beforeShape = true,
+    .traits = {.repeatable = true, .beforeShape = true},
     .check = checkReport,
     .apply = applyReport,
 };
@@ -174,9 +172,7 @@ constinit const Operation with{
     .example = "Level with storey = 3",
     .arguments = withArguments,
     .phase = Phase::Whole,
-    .repeatable = true,
-    .beforeShape = true,
-    .namesValue = true,
+    .traits = {.repeatable = true, .beforeShape = true, .namesValue = true},
     .check = checkWith,
     .apply = applyWith,
 };

@@ -91,11 +91,13 @@ std::vector<Attribute> checkAttributes(CheckContext& ctx, Place& place, Element&
     OperationChecker checker(ctx, place, element, result);
     std::vector<const Operation*> seen;
     for (const syntax::Attribute& a : written) {
-        const bool again = a.operation->repeatable || (a.operation->stacks && versionOf(ctx.grammar, a.span) >= 2);
+        const bool again =
+            a.operation->traits.repeatable || (a.operation->traits.stacks && versionOf(ctx.grammar, a.span) >= 2);
         if (!again && std::find(seen.begin(), seen.end(), a.operation) != seen.end())
-            ctx.diagnostics.error(
-                a.span, fmt::format("'{}' is given twice", a.name.text),
-                a.operation->stacks ? "say it once; 'grammar 2' takes several, one after the other" : "say it once");
+            ctx.diagnostics.error(a.span, fmt::format("'{}' is given twice", a.name.text),
+                                  a.operation->traits.stacks
+                                      ? "say it once; 'grammar 2' takes several, one after the other"
+                                      : "say it once");
         seen.push_back(a.operation);
     }
     using Phase = Operation::Phase;

@@ -114,7 +114,7 @@ void checkShape(CheckContext& ctx, Place& place, const syntax::Element& written,
     else
         out.attributes.insert(out.attributes.begin(), before.begin(), before.end());
     for (const Attribute& a : out.prefix)
-        if (!a.operation->beforeShape)
+        if (!a.operation->traits.beforeShape)
             ctx.diagnostics.error(a.span, fmt::format("'{}' can't stand before a shape", a.operation->name),
                                   "write it after the shape");
     if (cut) {

@@ -94,16 +94,20 @@ struct Map {
     Value like;                   ///< kind and unit of its values
 };
 
-/// Roads that `network` grows (grammar/rules/roads.h has the rows).
-struct Roads {
-    std::string name;
-    SourceSpan span;
+/// What `roads` are asked for everywhere.
+struct RoadExpressions {
     std::optional<Expr> pull, spread, water, park, height;  ///< asked everywhere
     std::optional<Expr> grid, rings, shore, contours;       ///< asked everywhere: weights of the field's parts
-    std::optional<Expr> from, centre;                       ///< places
-    std::optional<Expr> pattern, turns, ends;               ///< words
-    std::shared_ptr<const town::OwnStreets> streets;        ///< of a file, where growth begins; or null
-    SourceSpan streetsSpan;                                 ///< of the file's name
+};
+
+/// Roads that `network` grows (grammar/rules/roads.h has the rows).
+struct Roads : RoadExpressions {
+    std::string name;
+    SourceSpan span;
+    std::optional<Expr> from, centre;                 ///< places
+    std::optional<Expr> pattern, turns, ends;         ///< words
+    std::shared_ptr<const town::OwnStreets> streets;  ///< of a file, where growth begins; or null
+    SourceSpan streetsSpan;                           ///< of the file's name
     std::vector<std::pair<const town::RoadParameter*, Expr>> numbers;
 };
 
@@ -223,21 +227,17 @@ struct Choice {
     std::shared_ptr<Body> body;
 };
 
-struct Element {
-    enum class Kind : uint8_t { Shape, For, While, When, Choose, Let };
-    Kind kind = Kind::Shape;
-    SourceSpan span;
+/// How an element joins what stands.
+struct ElementJoin {
     Operator op = Operator::None;
-    std::vector<Attribute> prefix;  ///< change the matched scope
-    Content content;
-    std::vector<Attribute> attributes;
     std::optional<JointChoice> at, to;
     std::optional<HostChoice> on;  ///< none: the matched shape
-    SymbolId live = none;          ///< `: Name`
     bool inMatchedFrame = false;   ///< `%`, `scope`, `move` and the place are of the matched scope (grammar 2)
     SymbolId through = none;       ///< Difference: the shape above the matched one that it cuts
-    uint32_t ordinal = 0;          ///< ordinal of this symbol in the rule's body: part of the child's key
-    std::string label;             ///< key text: symbol or primitive name
+};
+
+/// What control around bodies asks and repeats.
+struct ElementControl {
     /// For: `local` runs over `over` (a Tuple whose args are the values, or a Range of whole numbers) where `guard`
     /// holds. Let: `local` becomes the value of `over`. Choose in a series: `local` counts its draws.
     uint32_t local = 0;
@@ -247,6 +247,18 @@ struct Element {
     std::vector<Choice> choices;
 };
 
+struct Element : ElementJoin, ElementControl {
+    enum class Kind : uint8_t { Shape, For, While, When, Choose, Let };
+    Kind kind = Kind::Shape;
+    SourceSpan span;
+    std::vector<Attribute> prefix;  ///< change the matched scope
+    Content content;
+    std::vector<Attribute> attributes;
+    SymbolId live = none;  ///< `: Name`
+    uint32_t ordinal = 0;  ///< ordinal of this symbol in the rule's body: part of the child's key
+    std::string label;     ///< key text: symbol or primitive name
+};
+
 /// Siblings, each a chain: a content and what its operators join on.
 struct Body {
     SourceSpan span;
@@ -254,16 +266,20 @@ struct Body {
     bool grows = false;  ///< starts with an operator: the matched content stays
 };
 
-struct Rule {
-    std::string name;  ///< "R0", or "Cell#2" for the second unnamed rule of Cell
-    SymbolId symbol = none;
+/// What a rule asks before it rewrites a shape.
+struct RuleGuard {
     SymbolId beside = none;
     SymbolId after = none;    ///< it waits while a live shape of that name has a rule left
     bool besideWins = false;  ///< `beside` that holds wins over rules without a guard (grammar 2)
-    SourceSpan span;
-    SourceSpan symbolSpan;  ///< the symbol it matches: what messages about the rule point at
     std::optional<Expr> when, repeat;
     std::optional<Expr> weight;
+};
+
+struct Rule : RuleGuard {
+    std::string name;  ///< "R0", or "Cell#2" for the second unnamed rule of Cell
+    SymbolId symbol = none;
+    SourceSpan span;
+    SourceSpan symbolSpan;  ///< the symbol it matches: what messages about the rule point at
     Body body;
     std::optional<Body> finally_;
     bool morphic = false;         ///< R_M: its body morphs; else R_C
@@ -343,9 +359,16 @@ struct Report {
     SourceSpan span;
 };
 
-struct Grammar {
+/// What a grammar was read from.
+struct GrammarFiles {
     std::vector<syntax::SourcePtr> sources;  ///< sources[0] is the file itself, the rest came by `use`
     std::vector<int> versions;               ///< by source: the version of the language it is written in
+    std::vector<std::shared_ptr<const plan::Features>> outlines;  ///< of files that footprints name, each once
+    std::vector<image::ImageFilePtr> images;                      ///< of textures, each once; null: unreadable
+    std::vector<field::SampledGridPtr> meshes;                    ///< of a solid's File argument, by its n[0]
+};
+
+struct Grammar : GrammarFiles {
     std::vector<Symbol> symbols;
     std::vector<Param> params;
     std::vector<Material> materials;  ///< materials[0] is the default
@@ -358,10 +381,7 @@ struct Grammar {
     std::vector<Style> styles;
     std::vector<Check> checks;
     std::vector<Report> reports;
-    std::set<std::string, std::less<>> properties;                ///< of outlines, which values and words ask for
-    std::vector<std::shared_ptr<const plan::Features>> outlines;  ///< of files that footprints name, each once
-    std::vector<image::ImageFilePtr> images;                      ///< of textures, each once; null: unreadable
-    std::vector<field::SampledGridPtr> meshes;                    ///< of a solid's File argument, by its n[0]
+    std::set<std::string, std::less<>> properties;  ///< of outlines, which values and words ask for
 };
 
 }  // namespace sgm::rules

@@ -84,7 +84,8 @@ void collectNames(CheckContext& ctx, const std::vector<syntax::Case>& cases) {
 }
 
 void collectNames(CheckContext& ctx, const syntax::Attribute& attribute) {
-    if (attribute.operation->namesValue && !attribute.args.empty()) ctx.names.inherited.insert(attribute.args[0].text);
+    if (attribute.operation->traits.namesValue && !attribute.args.empty())
+        ctx.names.inherited.insert(attribute.args[0].text);
     collectNames(ctx, attribute.cases);
 }
 

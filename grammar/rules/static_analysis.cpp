@@ -154,7 +154,7 @@ private:
                 fails = fails || e.at->free || !axis || *axis > 5 || !used.insert(*axis).second;
             }
             if (e.to) fails = fails || axisOf(*e.to).value_or(0) < 6;
-            for (const Attribute& a : e.attributes) fails = fails || a.operation->turnsShape;
+            for (const Attribute& a : e.attributes) fails = fails || a.operation->traits.turnsShape;
         });
         return fails || used.size() > 1;
     }

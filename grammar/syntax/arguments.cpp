@@ -29,7 +29,7 @@ bool beginsOperation(const Cursor& cursor) {
 /// The word of an operation that takes no argument.
 bool isWholeOperation(const Cursor& cursor) {
     const Operation* row = cursor.at(Token::Kind::Word) ? cursor.operations().find(cursor.peekText()) : nullptr;
-    return row && row->arguments.empty() && row->blockLabel.empty();
+    return row && row->arguments.empty() && row->block.label.empty();
 }
 
 /// x; along street; area x
@@ -108,7 +108,7 @@ void readArguments(Cursor& cursor, const Operation& row, Attribute& attribute) {
             return;
         }
         attribute.args.push_back(readTyped(cursor, argument.type));
-        if (row.namesValue && attribute.args.size() == 1) cursor.expect("=", "after the value's name");
+        if (row.traits.namesValue && attribute.args.size() == 1) cursor.expect("=", "after the value's name");
     }
     refuseCalculation(cursor, row.name);
 }

@@ -290,23 +290,23 @@ Attribute readAttribute(Cursor& cursor) {
     const Token word = cursor.take();
     const Operation* found = cursor.operations().find(cursor.text(word));
     const bool axis = cursor.at("x") || cursor.at("y") || cursor.at("z");
-    if (found->withBlock && axis && cursor.at("{", 1)) found = found->withBlock;
+    if (found->block.operation && axis && cursor.at("{", 1)) found = found->block.operation;
     const Operation& row = *found;
     Attribute attribute;
     attribute.name = {plain(row.name), cursor.span(word)};
     attribute.operation = &row;
     readArguments(cursor, row, attribute);
     const std::string where = "after '" + plain(row.name) + "'";
-    if (row.bodyBlock) {
+    if (row.block.isBody) {
         Case whole;
         const uint32_t begin = cursor.peek().begin;
         whole.body = readBracedBody(cursor, where);
         whole.span = cursor.since(begin);
         attribute.cases.push_back(std::move(whole));
     } else if (row.hasBlock()) {
-        attribute.cases = readBlock(cursor, where, row.blockLabel);
+        attribute.cases = readBlock(cursor, where, row.block.label);
     }
-    if (row.takesSettings && cursor.at("{")) attribute.settings = readSettings(cursor);
+    if (row.traits.takesSettings && cursor.at("{")) attribute.settings = readSettings(cursor);
     attribute.span = cursor.since(word.begin);
     return attribute;
 }

@@ -70,6 +70,25 @@ struct OperationRange {
     std::string_view text;  ///< "at most 1": what a message says that the number must be; empty: any number
 };
 
+struct Operation;
+
+/// The block of an operation.
+struct OperationBlock {
+    std::string_view label{};              ///< a label that fits its { label: body | … }; empty: it has none
+    bool isBody = false;                   ///< it is a body without labels: { body }
+    const Operation* operation = nullptr;  ///< the operation of that name whose block begins behind one axis
+};
+
+/// Where an operation may be said.
+struct OperationTraits {
+    bool repeatable = false;     ///< may be said several times of one shape
+    bool stacks = false;         ///< may be said several times from `grammar 2` on, one after the other
+    bool beforeShape = false;    ///< may stand before a shape without an operator
+    bool namesValue = false;     ///< its first argument is a name, followed by '=': rules below may read it
+    bool takesSettings = false;  ///< { name = value … } may follow its arguments
+    bool turnsShape = false;     ///< may leave the newcomer's joints in other directions
+};
+
 /// One rule operation. Behaviour that a row leaves out falls back to what most operations do.
 struct Operation {
     /// When an operation acts, in this order.
@@ -95,15 +114,8 @@ struct Operation {
     std::span<const OperationArgument> arguments{};
     Phase phase = Phase::Scope;
     OperationRange range{};
-    std::string_view blockLabel{};         ///< a label that fits its { label: body | … }; empty: it has none
-    bool bodyBlock = false;                ///< its block is a body without labels: { body }
-    const Operation* withBlock = nullptr;  ///< the operation of that name whose block begins behind one axis
-    bool repeatable = false;               ///< may be said several times of one shape
-    bool stacks = false;                   ///< may be said several times from `grammar 2` on, one after the other
-    bool beforeShape = false;              ///< may stand before a shape without an operator
-    bool namesValue = false;               ///< its first argument is a name, followed by '=': rules below may read it
-    bool takesSettings = false;            ///< { name = value … } may follow its arguments
-    bool turnsShape = false;               ///< may leave the newcomer's joints in other directions
+    OperationBlock block{};
+    OperationTraits traits{};
     /// Checks the arguments and adds an attribute; null: every argument as its type asks, numbers within `range`.
     Check check = nullptr;
     /// Refuses what contradicts the element's operator or its other attributes; null: nothing does.
@@ -117,7 +129,7 @@ struct Operation {
     CheckParts checkParts = nullptr;
     Run run = nullptr;
 
-    bool hasBlock() const { return !blockLabel.empty() || bodyBlock; }
+    bool hasBlock() const { return !block.label.empty() || block.isBody; }
 };
 
 /// The operations of a language, by name.

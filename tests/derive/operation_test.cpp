@@ -56,7 +56,7 @@ constexpr Operation halves{
     .doc = "Cuts the scope into a left and a right half.",
     .example = "halves { left: cube | right: sphere }",
     .phase = Operation::Phase::Content,
-    .blockLabel = "left",
+    .block = {.label = "left"},
     .checkParts = checkHalves,
     .run = runHalves,
 };

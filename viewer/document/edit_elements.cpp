@@ -73,7 +73,7 @@ Edit attributeEdit(const Ast& ast, const Element& element, const syntax::Operati
     if (!arguments.ok()) return arguments.error();
     const Attribute* present = find(element, operation);
     // A shape may set several values: `with` changes the one of this name, or adds one.
-    if (operation.namesValue) present = nullptr;
+    if (operation.traits.namesValue) present = nullptr;
     if (present && !present->args.empty())
         return TextEdit{present->args.front().span.begin, present->args.back().span.end, *arguments};
     if (present)

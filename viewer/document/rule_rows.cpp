@@ -64,7 +64,7 @@ std::string headOf(const Element& e) {
 std::string headOf(const syntax::Attribute& a) {
     std::string text = a.name.text;
     for (const Expr& arg : a.args) text += ' ' + oneLine(arg.span);
-    if (a.operation->namesValue && a.args.size() == 2)
+    if (a.operation->traits.namesValue && a.args.size() == 2)
         text = "with " + a.args[0].text + " = " + oneLine(a.args[1].span);
     return text;
 }
