@@ -24,17 +24,17 @@ TEST(Documents, UndoAndRedoWithChoiceAndSelection) {
     choice.seed = 7;
     choice.locked = {"floors"};
     document.choose(choice, "New seed");
-    EXPECT_EQ(document.undoLabel(), "New seed");
+    EXPECT_EQ(document.history().undoLabel(), "New seed");
     document.undo();
     EXPECT_EQ(document.choice().seed, 1u);
     EXPECT_TRUE(document.choice().locked.empty());
     EXPECT_EQ(document.choice().selection, "Tower/Storey[2]");
-    EXPECT_EQ(document.undoLabel(), "Set floors");
-    EXPECT_EQ(document.redoLabel(), "New seed");
+    EXPECT_EQ(document.history().undoLabel(), "Set floors");
+    EXPECT_EQ(document.history().redoLabel(), "New seed");
     document.undo();
     EXPECT_EQ(document.text(), tower);
     EXPECT_EQ(document.choice().selection, "Tower/Storey");
-    EXPECT_FALSE(document.canUndo());
+    EXPECT_FALSE(document.history().canUndo());
     EXPECT_FALSE(document.dirty());
     document.undo();
     document.redo();
@@ -44,7 +44,7 @@ TEST(Documents, UndoAndRedoWithChoiceAndSelection) {
     // A new edit after an undo forgets what was undone.
     document.undo();
     ASSERT_TRUE(document.apply(edit(document, "// the end", "// end"), "Cut").ok());
-    EXPECT_FALSE(document.canRedo());
+    EXPECT_FALSE(document.history().canRedo());
 }
 
 TEST(Documents, TheTreeIsAlwaysOfTheText) {
@@ -75,10 +75,10 @@ TEST(Documents, ADragIsOneEntry) {
     }
     document.endDrag();
     EXPECT_EQ(document.text(), replaced(tower, "floors = 3", "floors = 7"));
-    EXPECT_EQ(document.undoLabel(), "Set floors");
+    EXPECT_EQ(document.history().undoLabel(), "Set floors");
     document.undo();
     EXPECT_EQ(document.text(), tower);
-    EXPECT_FALSE(document.canUndo());
+    EXPECT_FALSE(document.history().canUndo());
     document.redo();
     EXPECT_EQ(document.text(), replaced(tower, "floors = 3", "floors = 7"));
     // There and back leaves no trace, and undo in the middle takes the drag back.
@@ -86,7 +86,7 @@ TEST(Documents, ADragIsOneEntry) {
     ASSERT_TRUE(document.apply(edit(document, "lean   = .1", "lean   = .2"), "Set lean").ok());
     ASSERT_TRUE(document.apply(edit(document, "lean   = .2", "lean   = .1"), "Set lean").ok());
     document.endDrag();
-    EXPECT_EQ(document.undoLabel(), "Set floors");
+    EXPECT_EQ(document.history().undoLabel(), "Set floors");
     document.beginDrag();
     ASSERT_TRUE(document.apply(edit(document, "lean   = .1", "lean   = .2"), "Set lean").ok());
     document.undo();

@@ -324,10 +324,10 @@ TEST(RandomEdits, KeepTextAndTreeInAgreementAndUndoToTheBytes) {
         for (uint64_t k = 0; k < 40 && !HasFailure(); ++k) twins.step(combine(round, k)) ? ++done : ++refused;
         ASSERT_FALSE(HasFailure());
         const std::string last = twins.document.text();
-        while (twins.document.canUndo()) twins.document.undo();
+        while (twins.document.history().canUndo()) twins.document.undo();
         ASSERT_EQ(twins.document.text(), twins.first);
         EXPECT_FALSE(twins.document.dirty());
-        while (twins.document.canRedo()) twins.document.redo();
+        while (twins.document.history().canRedo()) twins.document.redo();
         ASSERT_EQ(twins.document.text(), last);
     }
     EXPECT_GT(done, 2 * refused);

@@ -54,7 +54,7 @@ TEST(Recoveries, SurviveAKill) {
     EXPECT_EQ(found[0].text, replaced(tower, "floors = 3", "floors = 9"));
     Document document = Document::recovered(found[0].document, found[0].text);
     EXPECT_TRUE(document.dirty());
-    EXPECT_EQ(document.undoLabel(), "Recover unsaved work");
+    EXPECT_EQ(document.history().undoLabel(), "Recover unsaved work");
     document.undo();
     EXPECT_EQ(document.text(), tower);
     EXPECT_FALSE(document.dirty());

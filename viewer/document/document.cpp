@@ -52,10 +52,10 @@ void Document::setText(std::string text) {
     parseSeconds_ = watch.seconds();
 }
 
-void Document::push(Entry entry) {
-    history_.resize(at_);
-    history_.push_back(std::move(entry));
-    at_ = history_.size();
+void History::push(Entry entry) {
+    entries_.resize(at_);
+    entries_.push_back(std::move(entry));
+    at_ = entries_.size();
 }
 
 Status Document::apply(const TextEdit& edit, std::string label) {
@@ -66,16 +66,16 @@ Status Document::apply(const TextEdit& edit, std::string label) {
     if (drag_) {
         if (drag_->label.empty()) drag_->label = std::move(label);
     } else {
-        push({edit, inverse(text_, edit), choice_, choice_, std::move(label)});
+        history_.push({edit, inverse(text_, edit), choice_, choice_, std::move(label)});
     }
     setText(applied(text_, edit));
     return Done{};
 }
 
 /// A keystroke joins the one before it when it goes on where that one ended, on the same line.
-bool Document::joins(const TextEdit& edit) const {
-    if (drag_ || at_ == 0 || at_ != history_.size() || !history_.back().typed) return false;
-    const TextEdit& last = history_.back().forward;
+bool Document::joins(const TextEdit& edit) {
+    if (drag_ || !history_.canUndo() || history_.canRedo() || !history_.last().typed) return false;
+    const TextEdit& last = history_.last().forward;
     const bool typesOn = edit.begin == edit.end && edit.begin == last.begin + last.replacement.size() &&
                          !last.replacement.empty() && edit.replacement.find('\n') == std::string::npos;
     const bool erasesOn = edit.replacement.empty() && last.replacement.empty() && edit.end == last.begin;
@@ -86,7 +86,7 @@ void Document::type(std::string text) {
     const TextEdit edit = difference(text_, text);
     if (edit.empty()) return;
     if (joins(edit)) {
-        Entry& last = history_.back();
+        History::Entry& last = history_.last();
         const std::string before = applied(text_, last.backward);
         last.forward = difference(before, text);
         last.backward = inverse(before, last.forward);
@@ -94,7 +94,7 @@ void Document::type(std::string text) {
         return;
     }
     (void)apply(edit, "Type");
-    if (!drag_) history_.back().typed = true;
+    if (!drag_) history_.last().typed = true;
 }
 
 void Document::choose(Choice choice, std::string label) {
@@ -103,7 +103,7 @@ void Document::choose(Choice choice, std::string label) {
     if (same != choice_) {
         ++revision_;
         if (!drag_)
-            push({{}, {}, choice_, choice, std::move(label)});
+            history_.push({{}, {}, choice_, choice, std::move(label)});
         else if (drag_->label.empty())
             drag_->label = std::move(label);
     }
@@ -120,21 +120,22 @@ void Document::endDrag() {
     const TextEdit edit = difference(drag.text, text_);
     Choice same = drag.choice;
     same.selection = choice_.selection;
-    if (!edit.empty() || same != choice_) push({edit, inverse(drag.text, edit), drag.choice, choice_, drag.label});
+    if (!edit.empty() || same != choice_)
+        history_.push({edit, inverse(drag.text, edit), drag.choice, choice_, drag.label});
 }
 
 void Document::undo() {
     endDrag();
-    if (!canUndo()) return;
-    const Entry& entry = history_[--at_];
+    if (!history_.canUndo()) return;
+    const History::Entry& entry = history_.back();
     choice_ = entry.before;
     setText(applied(text_, entry.backward));
 }
 
 void Document::redo() {
     endDrag();
-    if (!canRedo()) return;
-    const Entry& entry = history_[at_++];
+    if (!history_.canRedo()) return;
+    const History::Entry& entry = history_.forward();
     choice_ = entry.after;
     setText(applied(text_, entry.forward));
 }

@@ -28,6 +28,39 @@ struct Choice {
     friend bool operator==(const Choice&, const Choice&) = default;
 };
 
+/// What was done to a document, in order.
+class History {
+public:
+    /// One entry of the history; either edit may be empty, where only the choice changed.
+    struct Entry {
+        TextEdit forward, backward;
+        Choice before, after;
+        std::string label;
+        bool typed = false;
+    };
+
+    bool canUndo() const { return at_ > 0; }
+    bool canRedo() const { return at_ < entries_.size(); }
+    /// What undo would take back, "" where there is nothing.
+    std::string_view undoLabel() const {
+        return canUndo() ? std::string_view(entries_[at_ - 1].label) : std::string_view();
+    }
+    std::string_view redoLabel() const {
+        return canRedo() ? std::string_view(entries_[at_].label) : std::string_view();
+    }
+    /// The entry that undo would take back.
+    Entry& last() { return entries_[at_ - 1]; }
+    /// Adds an entry; those that were undone are gone.
+    void push(Entry entry);
+    /// Goes one entry back or forward: that entry.
+    const Entry& back() { return entries_[--at_]; }
+    const Entry& forward() { return entries_[at_++]; }
+
+private:
+    std::vector<Entry> entries_;
+    size_t at_ = 0;  ///< entries before it are done, the others undone
+};
+
 class Document {
 public:
     /// A new one without a file. Counts as saved until it is edited.
@@ -70,15 +103,8 @@ public:
 
     bool dragging() const { return drag_.has_value(); }
 
-    bool canUndo() const { return at_ > 0; }
-    bool canRedo() const { return at_ < history_.size(); }
-    /// What undo would take back, "" where there is nothing.
-    std::string_view undoLabel() const {
-        return canUndo() ? std::string_view(history_[at_ - 1].label) : std::string_view();
-    }
-    std::string_view redoLabel() const {
-        return canRedo() ? std::string_view(history_[at_].label) : std::string_view();
-    }
+    /// What can be undone and done again.
+    const History& history() const { return history_; }
     /// Takes the last entry back, or does it again, with the selection of that time. Ends a drag.
     void undo();
     void redo();
@@ -103,13 +129,6 @@ public:
     Status keepMine();
 
 private:
-    /// One entry of the history; either edit may be empty, where only the choice changed.
-    struct Entry {
-        TextEdit forward, backward;
-        Choice before, after;
-        std::string label;
-        bool typed = false;
-    };
     struct Stamp {
         std::filesystem::file_time_type time;
         uintmax_t size = 0;
@@ -117,8 +136,7 @@ private:
     };
     static std::optional<Stamp> stampOf(const std::filesystem::path& path);
     void setText(std::string text);
-    void push(Entry entry);
-    bool joins(const TextEdit& edit) const;
+    bool joins(const TextEdit& edit);
     Status write(const std::filesystem::path& path);
 
     std::filesystem::path path_;
@@ -128,8 +146,7 @@ private:
     std::shared_ptr<const syntax::Ast> ast_;
     std::shared_ptr<const syntax::Diagnostics> problems_;
     Choice choice_;
-    std::vector<Entry> history_;
-    size_t at_ = 0;  ///< entries before it are done, the others undone
+    History history_;
     uint64_t revision_ = 0;
     double parseSeconds_ = 0;
 

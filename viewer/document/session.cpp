@@ -76,39 +76,39 @@ Session::Session(std::function<void()> notify, rules::Loader loader)
 
 Session::~Session() {
     {
-        const std::lock_guard lock(mutex_);
-        quit_ = true;
-        if (running_) running_->cancel();
+        const std::lock_guard lock(queue_.mutex);
+        queue_.quit = true;
+        if (queue_.running) queue_.running->cancel();
     }
-    wanted_.notify_one();
+    queue_.wanted.notify_one();
     worker_.join();
 }
 
 void Session::show(ShowRequest request) {
     {
-        const std::lock_guard lock(mutex_);
-        pending_ = std::move(request);
-        if (running_ && (meshing_ || since_.seconds() > patience_s)) running_->cancel();
+        const std::lock_guard lock(queue_.mutex);
+        queue_.pending = std::move(request);
+        if (queue_.running && (queue_.meshing || queue_.since.seconds() > patience_s)) queue_.running->cancel();
     }
-    wanted_.notify_one();
+    queue_.wanted.notify_one();
 }
 
 void Session::cancel() {
-    const std::lock_guard lock(mutex_);
-    pending_.reset();
-    if (running_) running_->cancel();
+    const std::lock_guard lock(queue_.mutex);
+    queue_.pending.reset();
+    if (queue_.running) queue_.running->cancel();
 }
 
 bool Session::poll() {
-    const std::lock_guard lock(mutex_);
-    if (pending_ && running_ && since_.seconds() > patience_s) running_->cancel();
-    if (!fresh_) return false;
-    fresh_ = false;
-    Update update = std::exchange(update_, Update{});
+    const std::lock_guard lock(queue_.mutex);
+    if (queue_.pending && queue_.running && queue_.since.seconds() > patience_s) queue_.running->cancel();
+    if (!queue_.fresh) return false;
+    queue_.fresh = false;
+    Update update = std::exchange(queue_.update, Update{});
     if (update.model || update.plan) plan_ = std::move(update.plan);
-    if (update.model) deferred_.push_back(std::exchange(model_, std::move(update.model)));
-    if (update.mesh) deferred_.push_back(std::exchange(mesh_, std::move(update.mesh)));
-    wanted_.notify_one();
+    if (update.model) queue_.deferred.push_back(std::exchange(model_, std::move(update.model)));
+    if (update.mesh) queue_.deferred.push_back(std::exchange(mesh_, std::move(update.mesh)));
+    queue_.wanted.notify_one();
     if (update.problems) problems_ = std::move(*update.problems);
     if (update.used) used_ = std::move(*update.used);
     attempted_ = std::max(attempted_, update.attempted);
@@ -116,18 +116,18 @@ bool Session::poll() {
 }
 
 bool Session::busy() const {
-    const std::lock_guard lock(mutex_);
-    return running_ || pending_;
+    const std::lock_guard lock(queue_.mutex);
+    return queue_.running || queue_.pending;
 }
 
 std::string_view Session::stage() const {
-    const std::lock_guard lock(mutex_);
-    return running_ ? running_->stage() : "";
+    const std::lock_guard lock(queue_.mutex);
+    return queue_.running ? queue_.running->stage() : "";
 }
 
 double Session::fraction() const {
-    const std::lock_guard lock(mutex_);
-    return running_ ? running_->fraction() : 0;
+    const std::lock_guard lock(queue_.mutex);
+    return queue_.running ? queue_.running->fraction() : 0;
 }
 
 bool Session::usedFilesChanged() const {
@@ -146,16 +146,16 @@ void Session::work() {
         std::vector<std::shared_ptr<const void>> deferred;
         std::shared_ptr<Progress> progress;
         {
-            std::unique_lock lock(mutex_);
-            running_.reset();
-            meshing_ = false;
-            wanted_.wait(lock, [this] { return pending_ || quit_ || !deferred_.empty(); });
-            if (quit_) return;
-            deferred.swap(deferred_);
-            request = std::exchange(pending_, std::nullopt);
+            std::unique_lock lock(queue_.mutex);
+            queue_.running.reset();
+            queue_.meshing = false;
+            queue_.wanted.wait(lock, [this] { return queue_.pending || queue_.quit || !queue_.deferred.empty(); });
+            if (queue_.quit) return;
+            deferred.swap(queue_.deferred);
+            request = std::exchange(queue_.pending, std::nullopt);
             if (request) {
-                running_ = progress = std::make_shared<Progress>();
-                since_ = Stopwatch();
+                queue_.running = progress = std::make_shared<Progress>();
+                queue_.since = Stopwatch();
             }
         }
         deferred.clear();
@@ -167,13 +167,13 @@ void Session::work() {
 
 /// What an exception left half made is let go; the last good model stays.
 void Session::giveUp(const ShowRequest& request, const Error& error) {
-    liveEdit_.reset();
-    rebuild_ = mesh::Rebuild(mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp});
-    ast_.reset();
-    grammar_.reset();
-    shown_.reset();
-    handShown_.reset();
-    meshed_.reset();
+    last_.liveEdit.reset();
+    last_.rebuild = mesh::Rebuild(mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp});
+    last_.ast.reset();
+    last_.grammar.reset();
+    last_.shown.reset();
+    last_.handShown.reset();
+    last_.meshed.reset();
     Update update;
     update.attempted = request.revision;
     update.problems = std::vector<Problem>{problemOf(error)};
@@ -181,20 +181,20 @@ void Session::giveUp(const ShowRequest& request, const Error& error) {
 }
 
 bool Session::superseded() {
-    const std::lock_guard lock(mutex_);
-    return pending_ || quit_;
+    const std::lock_guard lock(queue_.mutex);
+    return queue_.pending || queue_.quit;
 }
 
 void Session::publish(Update update) {
     {
-        const std::lock_guard lock(mutex_);
-        if (update.model) update_.model = std::move(update.model);
-        if (update.mesh) update_.mesh = std::move(update.mesh);
-        if (update.plan) update_.plan = std::move(update.plan);
-        if (update.problems) update_.problems = std::move(update.problems);
-        if (update.used) update_.used = std::move(update.used);
-        update_.attempted = std::max(update_.attempted, update.attempted);
-        fresh_ = true;
+        const std::lock_guard lock(queue_.mutex);
+        if (update.model) queue_.update.model = std::move(update.model);
+        if (update.mesh) queue_.update.mesh = std::move(update.mesh);
+        if (update.plan) queue_.update.plan = std::move(update.plan);
+        if (update.problems) queue_.update.problems = std::move(update.problems);
+        if (update.used) queue_.update.used = std::move(update.used);
+        queue_.update.attempted = std::max(queue_.update.attempted, update.attempted);
+        queue_.fresh = true;
     }
     if (notify_) notify_();
 }
@@ -223,16 +223,16 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
     update.attempted = request.revision;
     const bool follow = follows(request);
     bool good = follow || checked(request, context, problems);
-    update.used = usedByCheck_;
+    update.used = last_.usedByCheck;
     if (good) {
         auto shown = follow ? followed(request, problems, progress) : made(request, context, problems);
         good = shown.ok();
         if (good) {
-            if (*shown != shown_) update.model = *shown;
-            shown_ = *shown;
+            if (*shown != last_.shown) update.model = *shown;
+            last_.shown = *shown;
             // While a slider is dragged the last ones stay: to look for them takes as long as a frame.
-            if (!follow) derivedProblems_ = problemsOf(derive::warnings(shown_->model.derivation));
-            problems.insert(problems.end(), derivedProblems_.begin(), derivedProblems_.end());
+            if (!follow) last_.problems.derived = problemsOf(derive::warnings(last_.shown->model.derivation));
+            problems.insert(problems.end(), last_.problems.derived.begin(), last_.problems.derived.end());
         } else if (shown.error().kind != Error::Kind::Cancelled) {
             problems.push_back(problemOf(shown.error()));
         } else if (superseded()) {
@@ -243,71 +243,72 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
         }
     }
     update.problems = problems;
-    modelProblems_ = std::move(problems);
+    last_.problems.model = std::move(problems);
     publish(std::move(update));
     if (good && request.meshResolution > 0) meshIt(request, progress);
 }
 
 /// No file that the grammar uses has changed since it was checked.
 bool Session::asChecked() const {
-    return std::none_of(usedByCheck_.begin(), usedByCheck_.end(),
+    return std::none_of(last_.usedByCheck.begin(), last_.usedByCheck.end(),
                         [](const UsedFile& used) { return timeOf(used.path) != used.time; });
 }
 
 /// Whether the request can be shown by the grammar of the moment the slider was taken; else that grammar is let go.
 bool Session::follows(const ShowRequest& request) {
-    const bool may = request.dragging && grammar_ && !request.byHand && asChecked();
+    const bool may = request.dragging && last_.grammar && !request.byHand && asChecked();
     if (!may) {
-        liveEdit_.reset();
+        last_.liveEdit.reset();
         return false;
     }
     const std::string_view text = request.ast->source->text();
-    if (liveEdit_)
-        if ((valueChange_ = pipeline::valueChange(*liveEdit_->grammar(), text))) return true;
-    liveEdit_.reset();
-    if (!(valueChange_ = pipeline::valueChange(*grammar_, text))) return false;
-    liveEdit_.emplace(grammar_);
+    if (last_.liveEdit)
+        if ((last_.valueChange = pipeline::valueChange(*last_.liveEdit->grammar(), text))) return true;
+    last_.liveEdit.reset();
+    if (!(last_.valueChange = pipeline::valueChange(*last_.grammar, text))) return false;
+    last_.liveEdit.emplace(last_.grammar);
     return true;
 }
 
 /// The model of a request that `follows`.
 Result<std::shared_ptr<const BuiltModel>> Session::followed(const ShowRequest& request, std::vector<Problem>& problems,
                                                             Progress& progress) {
-    problems = checkProblems_;
-    const rules::Grammar& grammar = *liveEdit_->grammar();
-    auto options = pipeline::optionsFor(grammar, wordsOf(request.choice, grammar, problems), *valueChange_);
+    problems = last_.problems.check;
+    const rules::Grammar& grammar = *last_.liveEdit->grammar();
+    auto options = pipeline::optionsFor(grammar, wordsOf(request.choice, grammar, problems), *last_.valueChange);
     if (!options.ok()) return options.error();
     options->budget = request.budget;
     BuiltModel shown;
     shown.revision = request.revision;
-    shown.grammar = liveEdit_->grammar();
+    shown.grammar = last_.liveEdit->grammar();
     shown.options = std::move(*options);
     shown.held = true;
     pipeline::Context context{&progress};
     sketchPlan(shown.grammar, shown.options, progress);
-    auto model = liveEdit_->to(shown.options, context);
+    auto model = last_.liveEdit->to(shown.options, context);
     if (!model.ok()) return model.error();
     shown.model = std::move(*model);
     shown.stages = std::move(context.stages);
-    shown.shapesMade = liveEdit_->shapesMade();
+    shown.shapesMade = last_.liveEdit->shapesMade();
     // What the slider stood at when it was taken is shown already.
-    if (shown_ && shown_->grammar == shown.grammar && !handShown_ && sameOptions(shown_->options, shown.options))
-        return shown_;
-    handShown_ = nullptr;
+    if (last_.shown && last_.shown->grammar == shown.grammar && !last_.handShown &&
+        sameOptions(last_.shown->options, shown.options))
+        return last_.shown;
+    last_.handShown = nullptr;
     return finished(std::move(shown));
 }
 
 /// Parsed text to a grammar, unless neither the text nor a file it uses has changed. Adds what is wrong to `problems`.
 bool Session::checked(const ShowRequest& request, pipeline::Context& context, std::vector<Problem>& problems) {
-    if (request.ast != ast_ || !asChecked()) {
+    if (request.ast != last_.ast || !asChecked()) {
         std::vector<syntax::SourcePtr> sources;  // diagnostics point into them
-        usedByCheck_.clear();
+        last_.usedByCheck.clear();
         rules::Loader noting = loader_;  // a copy, so that every kind of file can be read
         noting.use = [&](const std::string& name, const syntax::Source& from, std::string& why) {
             const syntax::SourcePtr source = loader_.use ? loader_.use(name, from, why) : nullptr;
             if (source) {
                 sources.push_back(source);
-                usedByCheck_.push_back({source->name(), timeOf(source->name())});
+                last_.usedByCheck.push_back({source->name(), timeOf(source->name())});
             }
             return source;
         };
@@ -315,7 +316,7 @@ bool Session::checked(const ShowRequest& request, pipeline::Context& context, st
         const auto beside = [&](const auto& load) {
             return [&](const std::string& name, const syntax::Source& from, std::string& why) {
                 const std::string path = (fs::path(from.name()).parent_path() / name).string();
-                usedByCheck_.push_back({path, timeOf(path)});
+                last_.usedByCheck.push_back({path, timeOf(path)});
                 return load ? load(name, from, why) : nullptr;
             };
         };
@@ -325,33 +326,33 @@ bool Session::checked(const ShowRequest& request, pipeline::Context& context, st
         noting.streets = beside(loader_.streets);
         noting.image = beside(loader_.image);
         syntax::Diagnostics diagnostics = request.syntaxProblems;
-        ast_ = request.ast;
+        last_.ast = request.ast;
         context.stages.emplace_back("parse", request.parseSeconds);
-        grammar_ = context.timed("check", [&] { return rules::check(*request.ast, noting, diagnostics); });
-        checkProblems_ = problemsOf(diagnostics);
+        last_.grammar = context.timed("check", [&] { return rules::check(*request.ast, noting, diagnostics); });
+        last_.problems.check = problemsOf(diagnostics);
     }
-    problems = checkProblems_;
-    return grammar_ != nullptr;
+    problems = last_.problems.check;
+    return last_.grammar != nullptr;
 }
 
 /// The model of the request: the last one where nothing it is made from has changed.
 Result<std::shared_ptr<const BuiltModel>> Session::made(const ShowRequest& request, pipeline::Context& context,
                                                         std::vector<Problem>& problems) {
-    auto options = pipeline::optionsFor(*grammar_, wordsOf(request.choice, *grammar_, problems));
+    auto options = pipeline::optionsFor(*last_.grammar, wordsOf(request.choice, *last_.grammar, problems));
     if (!options.ok()) return options.error();
     options->budget = request.budget;
-    if (shown_ && !shown_->held && shown_->grammar == grammar_ && handShown_ == request.byHand &&
-        sameOptions(shown_->options, *options))
-        return shown_;
+    if (last_.shown && !last_.shown->held && last_.shown->grammar == last_.grammar &&
+        last_.handShown == request.byHand && sameOptions(last_.shown->options, *options))
+        return last_.shown;
     constexpr auto objects = pipeline::Objects::Sketched;
-    if (request.dragging && !request.byHand) sketchPlan(grammar_, *options, *context.progress);
+    if (request.dragging && !request.byHand) sketchPlan(last_.grammar, *options, *context.progress);
     auto model = request.byHand ? pipeline::makeModel(derive::Derivation(*request.byHand), context, objects)
-                                : pipeline::makeModel(grammar_, *options, context, objects);
+                                : pipeline::makeModel(last_.grammar, *options, context, objects);
     if (!model.ok()) return model.error();
-    handShown_ = request.byHand;
+    last_.handShown = request.byHand;
     BuiltModel shown;
     shown.revision = request.revision;
-    shown.grammar = grammar_;
+    shown.grammar = last_.grammar;
     shown.options = std::move(*options);
     shown.model = std::move(*model);
     shown.byHand = request.byHand != nullptr;

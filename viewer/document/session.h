@@ -123,6 +123,41 @@ private:
         uint64_t attempted = 0;
     };
 
+    /// What the window and the worker share.
+    struct Queue {
+        mutable std::mutex mutex;
+        std::condition_variable wanted;
+        std::optional<ShowRequest> pending;
+        std::shared_ptr<Progress> running;  ///< of the request that runs, or null
+        bool meshing = false, quit = false;
+        Stopwatch since;  ///< the running request began
+        Update update;
+        bool fresh = false;
+        std::vector<std::shared_ptr<const void>>
+            deferred;  ///< what the window let go: large trees are freed by the worker
+    };
+    /// Problems that the worker found, by what they are of.
+    struct Found {
+        std::vector<Problem> check;
+        std::vector<Problem> derived;  ///< warnings of the derivation that was last made anew
+        std::vector<Problem> model;    ///< what was last published of the model
+        std::vector<Problem> mesh;     ///< warnings of the mesh that was last made at rest
+    };
+    /// The worker's last products, to begin from the first stage that changed.
+    struct Last {
+        std::shared_ptr<const syntax::Ast> ast;
+        std::shared_ptr<const rules::Grammar> grammar;
+        Found problems;
+        std::vector<UsedFile> usedByCheck;
+        std::optional<pipeline::LiveEdit> liveEdit;        ///< while a slider is held
+        std::optional<pipeline::ValueChange> valueChange;  ///< of the request that it follows
+        std::shared_ptr<const BuiltModel> shown;
+        std::shared_ptr<const derive::Derivation> handShown;
+        std::shared_ptr<const BuiltMesh> meshed;
+        int meshResolution = 0;
+        mesh::Rebuild rebuild{mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp}};
+    };
+
     void work();
     void attempt(const ShowRequest& request, Progress& progress);
     void giveUp(const ShowRequest& request, const Error& error);
@@ -151,33 +186,8 @@ private:
     std::vector<UsedFile> used_;
     uint64_t attempted_ = 0;
 
-    // Shared.
-    mutable std::mutex mutex_;
-    std::condition_variable wanted_;
-    std::optional<ShowRequest> pending_;
-    std::shared_ptr<Progress> running_;  ///< of the request that runs, or null
-    bool meshing_ = false, quit_ = false;
-    Stopwatch since_;  ///< the running request began
-    Update update_;
-    bool fresh_ = false;
-    std::vector<std::shared_ptr<const void>>
-        deferred_;  ///< what the window let go: large trees are freed by the worker
-
-    // The worker's: the last products, to begin from the first stage that changed.
-    std::shared_ptr<const syntax::Ast> ast_;
-    std::shared_ptr<const rules::Grammar> grammar_;
-    std::vector<Problem> checkProblems_;
-    std::vector<Problem> derivedProblems_;  ///< warnings of the derivation that was last made anew
-    std::vector<Problem> modelProblems_;    ///< what was last published of the model
-    std::vector<Problem> meshProblems_;     ///< warnings of the mesh that was last made at rest
-    std::vector<UsedFile> usedByCheck_;
-    std::optional<pipeline::LiveEdit> liveEdit_;        ///< while a slider is held
-    std::optional<pipeline::ValueChange> valueChange_;  ///< of the request that it follows
-    std::shared_ptr<const BuiltModel> shown_;
-    std::shared_ptr<const derive::Derivation> handShown_;
-    std::shared_ptr<const BuiltMesh> meshed_;
-    int meshResolution_ = 0;
-    mesh::Rebuild rebuild_{mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp}};
+    Queue queue_;
+    Last last_;
 
     std::thread worker_;
 };

@@ -13,78 +13,81 @@ constexpr float keptCells =
 
 void Session::meshIt(const ShowRequest& request, Progress& progress) {
     {
-        const std::lock_guard lock(mutex_);
-        if (pending_ || quit_) return;
-        meshing_ = true;
+        const std::lock_guard lock(queue_.mutex);
+        if (queue_.pending || queue_.quit) return;
+        queue_.meshing = true;
     }
-    if (meshed_ && meshed_->of == shown_ && meshResolution_ == request.meshResolution &&
-        meshed_->section == request.section)
+    if (last_.meshed && last_.meshed->of == last_.shown && last_.meshResolution == request.meshResolution &&
+        last_.meshed->section == request.section)
         return tellOfMesh();
     if (request.section) return meshCutOpen(request, progress);
-    const Box3f& bounds = shown_->model.lowered->field.bounds;
-    const float wished_m = mesh::cellFor(bounds, request.meshResolution), before_m = meshed_ ? meshed_->grid.cell_m : 0;
-    const bool keep =
-        meshResolution_ == request.meshResolution && before_m < wished_m * keptCells && before_m * keptCells > wished_m;
+    const Box3f& bounds = last_.shown->model.lowered->field.bounds;
+    const float wished_m = mesh::cellFor(bounds, request.meshResolution),
+                before_m = last_.meshed ? last_.meshed->grid.cell_m : 0;
+    const bool keep = last_.meshResolution == request.meshResolution && before_m < wished_m * keptCells &&
+                      before_m * keptCells > wished_m;
     auto meshed = std::make_shared<BuiltMesh>();
-    meshed->of = shown_;
-    meshed->grid = mesh::gridToKeep(meshed_ ? meshed_->grid : mesh::Grid{}, bounds, keep ? before_m : wished_m);
-    const auto mesh = rebuild_.update(shown_->model.tape, meshed->grid, &progress, meshed->counts);
+    meshed->of = last_.shown;
+    meshed->grid =
+        mesh::gridToKeep(last_.meshed ? last_.meshed->grid : mesh::Grid{}, bounds, keep ? before_m : wished_m);
+    const auto mesh = last_.rebuild.update(last_.shown->model.tape, meshed->grid, &progress, meshed->counts);
     if (!mesh.ok()) {
         if (mesh.error().kind == Error::Kind::Cancelled) return;
         Update update;
-        update.problems = checkProblems_;
+        update.problems = last_.problems.check;
         update.problems->push_back(problemOf(mesh.error()));
         publish(std::move(update));
         return;
     }
     meshed->mesh = std::make_shared<const mesh::Mesh>(**mesh);
-    meshed->blocksMade = rebuild_.blocksMade();
-    meshed->blocksKept = rebuild_.blocksKept();
+    meshed->blocksMade = last_.rebuild.blocksMade();
+    meshed->blocksKept = last_.rebuild.blocksKept();
     meshed->stages = {{"subdivide", meshed->counts.subdivideSeconds},
                       {"sample", meshed->counts.sampleSeconds},
                       {"polygonize", meshed->counts.polygonizeSeconds}};
-    meshed_ = meshed;
-    meshResolution_ = request.meshResolution;
+    last_.meshed = meshed;
+    last_.meshResolution = request.meshResolution;
     Update update;
     update.mesh = meshed;
     publish(std::move(update));
-    meshProblems_.clear();
+    last_.problems.mesh.clear();
     if (request.dragging || superseded()) return;
     pipeline::Context context{&progress};
-    const auto warnings = pipeline::meshWarnings(shown_->model, *meshed->mesh, meshed->grid, context);
+    const auto warnings = pipeline::meshWarnings(last_.shown->model, *meshed->mesh, meshed->grid, context);
     if (!warnings.ok()) return;
     syntax::Diagnostics found;
     for (const pipeline::MeshWarning& w : *warnings) found.warning(w.span, w.text);
-    meshProblems_ = problemsOf(found);
+    last_.problems.mesh = problemsOf(found);
     tellOfMesh();
 }
 
 /// What floats or is too thin, behind what is known of the model.
 void Session::tellOfMesh() {
-    if (meshProblems_.empty()) return;
+    if (last_.problems.mesh.empty()) return;
     Update update;
-    update.problems = modelProblems_;
-    update.problems->insert(update.problems->end(), meshProblems_.begin(), meshProblems_.end());
+    update.problems = last_.problems.model;
+    update.problems->insert(update.problems->end(), last_.problems.mesh.begin(), last_.problems.mesh.end());
     publish(std::move(update));
 }
 
 /// The mesh of what a section leaves: as `sgm build --section` makes it, whole each time.
 void Session::meshCutOpen(const ShowRequest& request, Progress& progress) {
     pipeline::Context context{&progress};
-    const auto model = pipeline::makeModel(derive::Derivation(shown_->model.derivation), *request.section, context);
+    const auto model =
+        pipeline::makeModel(derive::Derivation(last_.shown->model.derivation), *request.section, context);
     if (!model.ok()) return;  // cancelled, or nothing is left: what was shown stays
     auto meshed = pipeline::makeMesh(*model, pipeline::gridOf(*model, request.meshResolution),
                                      {.surface = mesh::Surface::Crisp}, context);
     if (!meshed.ok()) return;
     auto cut = std::make_shared<BuiltMesh>();
-    cut->of = shown_;
+    cut->of = last_.shown;
     cut->grid = meshed->grid;
     cut->mesh = std::make_shared<const mesh::Mesh>(std::move(meshed->mesh));
     cut->counts = meshed->counts;
     cut->stages = std::move(context.stages);
     cut->section = request.section;
-    meshed_ = cut;
-    meshResolution_ = request.meshResolution;
+    last_.meshed = cut;
+    last_.meshResolution = request.meshResolution;
     Update update;
     update.mesh = std::move(cut);
     publish(std::move(update));

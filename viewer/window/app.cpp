@@ -1,4 +1,5 @@
 #include "viewer/window/app.h"
+#include "viewer/window/pictures.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -87,7 +88,7 @@ void Workspace::left(ImVec2 low, ImVec2 size) {
 }
 
 void Workspace::right(ImVec2 low, ImVec2 size) {
-    bench_.typing = false;
+    bench_.panels.typing = false;
     if (begin("Right", low, size) && ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_NoTooltip)) {
         const auto tab = [&](const char* name, auto&& panel, bool wanted = false) {
             const bool open = ImGui::BeginTabItem(name, nullptr, wanted ? ImGuiTabItemFlags_SetSelected : 0);
@@ -134,9 +135,9 @@ void Workspace::show() {
     splitter("##left", leftWidth, bar, height, leftWidth, left_, 1);
     splitter("##right", io.DisplaySize.x - rightWidth, bar, height, rightWidth, right_, -1);
     ImGui::PopStyleVar();
-    if (!io.WantTextInput || bench_.typing) {
+    if (!io.WantTextInput || bench_.panels.typing) {
         bars_.keys(bench_);
-        if (!bench_.typing) {
+        if (!bench_.panels.typing) {
             parameters_.keys(bench_);
             viewKeys(bench_);
         }
@@ -147,27 +148,27 @@ void Workspace::show() {
 /// What a test may know.
 void describe(const Workbench& bench, nlohmann::json& state) {
     state["busy"] = bench.busy();
-    state["drawn"] = bench.drawn();
+    state["drawn"] = bench.view.drawn();
     state["text"] = bench.document.text();
     state["dirty"] = bench.document.dirty();
-    state["undo"] = bench.document.undoLabel();
-    state["redo"] = bench.document.redoLabel();
-    state["notice"] = bench.notice;
+    state["undo"] = bench.document.history().undoLabel();
+    state["redo"] = bench.document.history().redoLabel();
+    state["notice"] = bench.panels.notice;
     state["problems"] = nlohmann::json::array();
     for (const document::Problem& p : bench.session.problems())
         state["problems"].push_back({{"line", p.line}, {"message", p.message}});
     state["selection"] = bench.selected() == derive::none ? "" : bench.tree()->path(bench.selected(), true);
-    state["hover"] = bench.hover ? bench.hover->text : "";
+    state["hover"] = bench.view.hover ? bench.view.hover->text : "";
     state["shapes"] = bench.tree() ? bench.tree()->shapes.size() : 0;
-    const render::Camera camera = bench.orbit.camera();
+    const render::Camera camera = bench.view.orbit.camera();
     state["eye"] = {camera.eye.x, camera.eye.y, camera.eye.z};
     state["at"] = {camera.at.x, camera.at.y, camera.at.z};
-    state["pane"] = static_cast<int>(bench.look.pane);
-    state["triangles"] = bench.mesh.triangleCount();
+    state["pane"] = static_cast<int>(bench.view.look.pane);
+    state["triangles"] = bench.view.mesh.triangleCount();
     state["stepping"] = bench.stepper.has_value();
     state["locked"] = bench.document.choice().locked;
     state["seed"] = bench.document.choice().seed;
-    const Look& look = bench.look;
+    const Look& look = bench.view.look;
     state["look"] = {{"mesh", static_cast<int>(look.mesh.look)},
                      {"wire", look.mesh.wireframe},
                      {"section", look.section},
@@ -178,27 +179,28 @@ void describe(const Workbench& bench, nlohmann::json& state) {
                      {"joints", static_cast<int>(look.joints)},
                      {"navigation", static_cast<int>(look.navigation)},
                      {"motion", static_cast<int>(look.motion)},
-                     {"map", bench.mapLayer.chosen()},
+                     {"map", bench.view.mapLayer.chosen()},
                      {"plan", look.plan}};
-    state["preview"] = bench.previewed;
-    state["lamp"] = bench.orbit.lamp_m;
-    state["fog"] = bench.field.drawsFog();
-    state["turning"] = bench.turntable.has_value();
+    state["preview"] = bench.status.previewed;
+    state["lamp"] = bench.view.orbit.lamp_m;
+    state["fog"] = bench.view.field.drawsFog();
+    state["turning"] = bench.pictures.turntable.has_value();
     state["choice"] = {{"start", bench.document.choice().start},
                        {"style", bench.document.choice().style},
                        {"way", bench.document.choice().way}};
-    state["question"] = bench.question ? bench.question->text : "";
+    state["question"] = bench.panels.question ? bench.panels.question->text : "";
 }
 
 /// Draws a little more of what is shown; true when something was drawn.
 Result<bool> refine(Workbench& bench) {
     bool drew = false;
-    if (bench.look.pane != Pane::Mesh && bench.field.hasField() && !bench.field.finished() && !bench.outdated()) {
-        if (const Status s = bench.field.step(); !s) return s.error();
+    if (bench.view.look.pane != Pane::Mesh && bench.view.field.hasField() && !bench.view.field.finished() &&
+        !bench.outdated()) {
+        if (const Status s = bench.view.field.step(); !s) return s.error();
         drew = true;
     }
-    if (bench.wantsMesh() && !bench.mesh.finished()) {
-        if (const Status s = bench.mesh.step(); !s) return s.error();
+    if (bench.view.wantsMesh() && !bench.view.mesh.finished()) {
+        if (const Status s = bench.view.mesh.step(); !s) return s.error();
         drew = true;
     }
     return drew;
@@ -287,10 +289,10 @@ void Loop::draw(FrameTimeline& timeline, const Stopwatch& whole) {
     if (wanted_ > 0) --wanted_;
     sinceShown_ = {};
     window_.setTitle(titleOf(bench_.document));
-    const ElapsedTimes before = bench_.field.times().drawn;
+    const ElapsedTimes before = bench_.view.field.times().drawn;
     window_.beginFrame();
     workspace_.show();
-    timeline.was("panels", bench_.field.times().drawn - before);
+    timeline.was("panels", bench_.view.field.times().drawn - before);
     window_.endFrame();
     timeline.drew();
     frameSeconds_ = whole.seconds();
@@ -310,7 +312,7 @@ std::optional<int> Loop::turn() {
     const Result<bool> ended = refineWhenDue();
     if (!ended) return fail(ended.error());
     timeline.drew();
-    const Result<bool> taken = bench_.takePictures();
+    const Result<bool> taken = takePictures(bench_);
     if (!taken) bench_.say(taken.error().message, true);
     if (!taken || *taken) wanted_ = settlingFrames;
     timeline.was("pictures");
@@ -318,7 +320,7 @@ std::optional<int> Loop::turn() {
     if (wanted_ > 0 || *ended ||
         ((refining_ || working) && sinceShown_.seconds() >= std::max(shownEvery, 3 * frameSeconds_)))
         draw(timeline, whole);
-    if (bench_.leaving) return 0;
+    if (bench_.panels.leaving) return 0;
     if (options_.benchmark && !benchmark_.go(bench_, timeline)) {
         benchmark_.print(bench_, window_.driver());
         return bench_.shown() ? 0 : 1;

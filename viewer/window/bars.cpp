@@ -1,4 +1,6 @@
 #include "viewer/window/bars.h"
+#include "viewer/window/framing.h"
+#include "viewer/window/pictures.h"
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
@@ -40,24 +42,26 @@ void Bars::top(Workbench& bench) {
     if (quietButton(report, "bar.save", "Save", "Write the file (Ctrl+S)", document.dirty()))
         document.path().empty() ? void(naming_ = true) : bench.save();
     ImGui::SameLine(0, 2);
-    const std::string undo = fmt::format("Take back: {} (Ctrl+Z)", document.undoLabel()),
-                      redo = fmt::format("Do again: {} (Ctrl+Y)", document.redoLabel());
-    if (quietButton(report, "bar.undo", "Undo", document.canUndo() ? undo.c_str() : nullptr, document.canUndo()))
+    const std::string undo = fmt::format("Take back: {} (Ctrl+Z)", document.history().undoLabel()),
+                      redo = fmt::format("Do again: {} (Ctrl+Y)", document.history().redoLabel());
+    if (quietButton(report, "bar.undo", "Undo", document.history().canUndo() ? undo.c_str() : nullptr,
+                    document.history().canUndo()))
         bench.undo();
     ImGui::SameLine(0, 2);
-    if (quietButton(report, "bar.redo", "Redo", document.canRedo() ? redo.c_str() : nullptr, document.canRedo()))
+    if (quietButton(report, "bar.redo", "Redo", document.history().canRedo() ? redo.c_str() : nullptr,
+                    document.history().canRedo()))
         bench.redo();
     gap();
-    int pane = static_cast<int>(bench.look.pane);
+    int pane = static_cast<int>(bench.view.look.pane);
     constexpr std::array panes{"Field", "Fog", "Mesh", "Split"};
     constexpr std::array meanings{"The field itself, by rays: exact, and there at once",
                                   "The solid as a cloud of that shape", "The mesh that would be exported",
                                   "Field and mesh side by side"};
-    if (oneOf(report, "pane", panes, pane, meanings)) bench.look.pane = static_cast<Pane>(pane);
+    if (oneOf(report, "pane", panes, pane, meanings)) bench.view.look.pane = static_cast<Pane>(pane);
     gap();
     lookControls(bench);
     const float end = ImGui::GetItemRectMax().x;
-    if (bench.wantsMesh()) {
+    if (bench.view.wantsMesh()) {
         if (!wrapped_) gap();
         const float start = ImGui::GetCursorScreenPos().x;
         meshControls(bench);
@@ -75,25 +79,25 @@ float Bars::height() const {
 void Bars::lookControls(Workbench& bench) {
     Report& report = bench.report;
     static const std::vector<std::string> joints{"No joints", "Its joints", "All joints"};
-    int shown = static_cast<int>(bench.look.joints);
+    int shown = static_cast<int>(bench.view.look.joints);
     if (choice(report, "look.joints", joints, shown, ImGui::GetFontSize() * 7))
-        bench.look.joints = static_cast<JointsShown>(shown);
+        bench.view.look.joints = static_cast<JointsShown>(shown);
     hint("Joints of the selected shape or of all: red joins to a centre, green face to face, bonded ones filled");
     ImGui::SameLine();
-    toggle(report, "look.ground", "Ground", bench.look.ground, "Stand the model on a plane that takes its shadow");
+    toggle(report, "look.ground", "Ground", bench.view.look.ground, "Stand the model on a plane that takes its shadow");
     ImGui::SameLine();
-    const bool within = bench.orbit.lamp_m > 0;
+    const bool within = bench.view.orbit.lamp_m > 0;
     if (button(report, "look.inside", within ? "Outside" : "Inside",
-               "Stand in the largest hollow with a lamp, or leave it", bench.field.hasField()))
-        within ? bench.frameAll() : bench.stepInside();
+               "Stand in the largest hollow with a lamp, or leave it", bench.view.field.hasField()))
+        within ? frameAll(bench) : bench.stepInside();
     ImGui::SameLine();
-    if (bench.mapLayer.choose(bench)) ImGui::SameLine();
+    if (bench.view.mapLayer.choose(bench)) ImGui::SameLine();
     if (choosePlan(bench)) ImGui::SameLine();
     static const std::vector<std::string> motions{"Orbit", "Fly", "Walk"};
-    int motion = static_cast<int>(bench.look.motion);
+    int motion = static_cast<int>(bench.view.look.motion);
     if (choice(report, "look.motion", motions, motion, ImGui::GetFontSize() * 5)) {
-        bench.look.motion = static_cast<Motion>(motion);
-        bench.orbit.stands = bench.look.motion != Motion::Orbit;
+        bench.view.look.motion = static_cast<Motion>(motion);
+        bench.view.orbit.stands = bench.view.look.motion != Motion::Orbit;
     }
     hint("W A S D Q E turn about the model, fly through it, or walk on its ground");
     ImGui::SameLine();
@@ -104,29 +108,29 @@ void Bars::meshControls(Workbench& bench) {
     Report& report = bench.report;
     static const std::vector<std::string> looks{"Materials",  "Normals", "Curvature", "Rules",
                                                 "Components", "Labels",  "Creases"};
-    int look = static_cast<int>(bench.look.mesh.look);
+    int look = static_cast<int>(bench.view.look.mesh.look);
     if (choice(report, "mesh.look", looks, look, ImGui::GetFontSize() * 7))
-        bench.look.mesh.look = static_cast<render::MeshLook>(look);
+        bench.view.look.mesh.look = static_cast<render::MeshLook>(look);
     hint("What the mesh's colours tell");
     ImGui::SameLine();
     static const std::vector<std::string> sizes{"64", "128", "192", "256", "384"};
     int size = 0;
     for (int i = 0; i < static_cast<int>(sizes.size()); ++i)
-        if (std::stoi(sizes[size_t(i)]) == bench.look.meshResolution) size = i;
+        if (std::stoi(sizes[size_t(i)]) == bench.view.look.meshResolution) size = i;
     if (choice(report, "mesh.cells", sizes, size, ImGui::GetFontSize() * 4))
-        bench.look.meshResolution = std::stoi(sizes[size_t(size)]);
+        bench.view.look.meshResolution = std::stoi(sizes[size_t(size)]);
     hint("Cells along the longest side: more are finer and slower");
     ImGui::SameLine();
-    toggle(report, "mesh.wire", "Wire", bench.look.mesh.wireframe, "The edges of the triangles");
+    toggle(report, "mesh.wire", "Wire", bench.view.look.mesh.wireframe, "The edges of the triangles");
     ImGui::SameLine();
-    toggle(report, "mesh.section", "Section", bench.look.section, "Cut the mesh open along an axis");
-    if (!bench.look.section) return;
+    toggle(report, "mesh.section", "Section", bench.view.look.section, "Cut the mesh open along an axis");
+    if (!bench.view.look.section) return;
     ImGui::SameLine();
     constexpr std::array axes{"x", "y", "z"};
-    oneOf(report, "section.axis", axes, bench.look.sectionAxis);
+    oneOf(report, "section.axis", axes, bench.view.look.sectionAxis);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6);
-    ImGui::SliderFloat("##section", &bench.look.sectionShare, 0, 1, "");
+    ImGui::SliderFloat("##section", &bench.view.look.sectionShare, 0, 1, "");
     report.mark("section.share");
 }
 
@@ -154,21 +158,22 @@ void Bars::status(Workbench& bench) {
     if (bench.exporting.running() && progress(bench.exporting.stage(), bench.exporting.fraction(), "export.cancel",
                                               "Stop the export; the file stays as it was"))
         bench.exporting.cancel();
-    ImGui::PushStyleColor(ImGuiCol_Text, bench.noticeIsProblem ? tint::error : tint::faint);
-    ImGui::TextUnformatted(bench.hover && !bench.noticeIsProblem ? bench.hover->text.c_str() : bench.notice.c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, bench.panels.noticeIsProblem ? tint::error : tint::faint);
+    ImGui::TextUnformatted(bench.view.hover && !bench.panels.noticeIsProblem ? bench.view.hover->text.c_str()
+                                                                             : bench.panels.notice.c_str());
     ImGui::PopStyleColor();
     std::string facts, stages;
     if (bench.shown()) {
-        double seconds = bench.fieldTimes.prepare;
+        double seconds = bench.status.fieldTimes.prepare;
         for (const auto& [stage, took] : bench.shown()->stages) {
             seconds += took;
             stages += fmt::format("{}  {:.1f} ms\n", stage, took * 1000);
         }
-        stages += fmt::format("cells for the rays  {:.1f} ms", bench.fieldTimes.prepare * 1000);
+        stages += fmt::format("cells for the rays  {:.1f} ms", bench.status.fieldTimes.prepare * 1000);
         facts = fmt::format("{} shapes  ·  {} steps  ·  made in {:.0f} ms", bench.tree()->shapes.size(),
                             bench.shown()->model.derivation.steps.size(), seconds * 1000);
-        if (bench.wantsMesh() && bench.mesh.hasMesh())
-            facts += fmt::format("  ·  {} triangles", bench.mesh.triangleCount());
+        if (bench.view.wantsMesh() && bench.view.mesh.hasMesh())
+            facts += fmt::format("  ·  {} triangles", bench.view.mesh.triangleCount());
     }
     ImGui::SameLine(right - ImGui::CalcTextSize(facts.c_str()).x - 12);
     faint(facts);
@@ -180,7 +185,7 @@ void Bars::keys(Workbench& bench) {
     const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
     if (pressed(GLFW_KEY_ESCAPE)) {
         help_ = false;
-        bench.turntable.reset();
+        bench.pictures.turntable.reset();
         // A user who drags a slider can't click Cancel.
         if (bench.document.dragging() && bench.busy()) bench.cancel();
     }
@@ -191,13 +196,13 @@ void Bars::keys(Workbench& bench) {
         if (ImGui::IsKeyPressed(GLFW_KEY_Y)) bench.redo();
         return;
     }
-    if (bench.typing) return;
+    if (bench.panels.typing) return;
     const auto free = [&](int key) {
-        return pressed(key) && bench.hotkeys.find(static_cast<char>(std::tolower(key))) == std::string::npos;
+        return pressed(key) && bench.panels.hotkeys.find(static_cast<char>(std::tolower(key))) == std::string::npos;
     };
     if (pressed(GLFW_KEY_F1)) help_ = !help_;
-    if (free(GLFW_KEY_P)) bench.pictureWanted = true;
-    if (free(GLFW_KEY_T)) bench.startTurntable(36);
+    if (free(GLFW_KEY_P)) bench.pictures.wanted = true;
+    if (free(GLFW_KEY_T)) startTurntable(bench, 36);
 }
 
 void Bars::dialogs(Workbench& bench) {
@@ -208,8 +213,8 @@ void Bars::dialogs(Workbench& bench) {
 }
 
 void Bars::cheatSheet(Workbench& bench) {
-    const bool blender = bench.look.navigation == NavigationPreset::Blender;
-    const bool orbits = bench.look.motion == Motion::Orbit;
+    const bool blender = bench.view.look.navigation == NavigationPreset::Blender;
+    const bool orbits = bench.view.look.motion == Motion::Orbit;
     const std::pair<const char*, const char*> rows[] = {
         {blender ? "MMB drag" : "LMB drag", "Turn"},
         {blender ? "Shift MMB" : "MMB drag", "Move"},
@@ -250,10 +255,10 @@ void Bars::cheatSheet(Workbench& bench) {
                             fmt::format("{} (Shift reverses)", param.label.empty() ? param.name : param.label).c_str());
             ImGui::EndTable();
         }
-        int preset = static_cast<int>(bench.look.navigation);
+        int preset = static_cast<int>(bench.view.look.navigation);
         constexpr std::array presets{"Usual buttons", "Blender's"};
         if (oneOf(bench.report, "navigation", presets, preset))
-            bench.look.navigation = static_cast<NavigationPreset>(preset);
+            bench.view.look.navigation = static_cast<NavigationPreset>(preset);
         bench.report.mark(
             "help", ImGui::GetWindowPos(),
             {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
@@ -324,23 +329,23 @@ void Bars::saveDialog(Workbench& bench) {
 }
 
 void Bars::questions(Workbench& bench) {
-    if (bench.question && !ImGui::IsPopupOpen("Question")) ImGui::OpenPopup("Question");
+    if (bench.panels.question && !ImGui::IsPopupOpen("Question")) ImGui::OpenPopup("Question");
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
     if (!ImGui::BeginPopupModal(
             "Question", nullptr,
             ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize))
         return;
-    if (bench.question) {
+    if (bench.panels.question) {
         ImGui::PushTextWrapPos(ImGui::GetFontSize() * 28);
-        ImGui::TextUnformatted(bench.question->text.c_str());
+        ImGui::TextUnformatted(bench.panels.question->text.c_str());
         ImGui::PopTextWrapPos();
         ImGui::Dummy({0, 4});
-        const auto answers = bench.question->answers;
+        const auto answers = bench.panels.question->answers;
         for (size_t i = 0; i < answers.size(); ++i) {
             if (i > 0) ImGui::SameLine();
             if (!button(bench.report, "answer." + answers[i].first, answers[i].first.c_str())) continue;
-            bench.question.reset();
+            bench.panels.question.reset();
             if (answers[i].second) answers[i].second();
             ImGui::CloseCurrentPopup();
             break;

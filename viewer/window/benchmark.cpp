@@ -33,7 +33,7 @@ const syntax::Element* firstElement(const syntax::Ast& ast) {
 
 bool Benchmark::begin(Workbench& bench) {
     since_ = {};
-    compiles_ = bench.compiles;
+    compiles_ = bench.status.compiles;
     waiting_ = true;
     if (phase_ == Phase::Drag) {
         const std::vector<document::ParamRow> rows =
@@ -66,23 +66,24 @@ bool Benchmark::go(Workbench& bench, const FrameTimeline& turn) {
     if (spent.wall > gap_.wall) longest_ = turn.parts();
     gap_ = {std::max(gap_.wall, spent.wall), std::max(gap_.processor, spent.processor)};
     if (!bench.shown()) return bench.session.problems().empty() || bench.busy();
-    const FieldTimes& times = bench.field.times();
+    const FieldTimes& times = bench.view.field.times();
     if (phase_ == Phase::Load) {
-        if (!bench.field.finished()) return true;
+        if (!bench.view.field.finished()) return true;
         first_ = bench.shown()->stages;
-        for (const auto& [name, seconds] : {std::pair{"cells", bench.fieldTimes.prepare},
-                                            {"upload", bench.fieldTimes.upload},
-                                            {"compile shaders", bench.fieldTimes.compile},
+        for (const auto& [name, seconds] : {std::pair{"cells", bench.status.fieldTimes.prepare},
+                                            {"upload", bench.status.fieldTimes.upload},
+                                            {"compile shaders", bench.status.fieldTimes.compile},
                                             {"coarse frame", times.coarse},
                                             {"full frame", times.full}})
             first_.emplace_back(name, seconds);
         phase_ = Phase::Drag;
         return begin(bench);
     }
-    if (waiting_ && (bench.busy() || !bench.field.visible() || bench.shown()->revision != bench.document.revision()))
+    if (waiting_ &&
+        (bench.busy() || !bench.view.field.visible() || bench.shown()->revision != bench.document.revision()))
         return since_.seconds() < 60;
     (phase_ == Phase::Drag ? drags_ : structures_)
-        .push_back({since_.seconds(), bench.compiles - compiles_, bench.shown()->stages});
+        .push_back({since_.seconds(), bench.status.compiles - compiles_, bench.shown()->stages});
     return begin(bench);
 }
 

@@ -1,4 +1,5 @@
 #include "viewer/window/camera_keys.h"
+#include "viewer/window/framing.h"
 
 #include <imgui.h>
 
@@ -16,14 +17,14 @@ constexpr double eyeHeight_m = 1.7, step_m = 1;  // of a visitor who walks
 /// What is held of two keys that do the opposite: −1, 0 or 1.
 double held(const Workbench& bench, char less, char more) {
     const auto down = [&](char key) {
-        const bool isFree = bench.hotkeys.find(static_cast<char>(std::tolower(key))) == std::string::npos;
+        const bool isFree = bench.panels.hotkeys.find(static_cast<char>(std::tolower(key))) == std::string::npos;
         return isFree && ImGui::IsKeyDown(key) ? 1.0 : 0.0;
     };
     return down(more) - down(less);
 }
 
 void orbitByKeys(Workbench& bench, double seconds) {
-    Orbit& orbit = bench.orbit;
+    Orbit& orbit = bench.view.orbit;
     orbit.turn(held(bench, 'D', 'A') * seconds / 2, held(bench, 'S', 'W') * seconds / 2);
     const double wider = held(bench, 'Q', 'E') * seconds;
     if (wider != 0) orbit.fieldOfView = std::clamp(orbit.fieldOfView * std::exp(wider), radians(5), radians(120));
@@ -31,16 +32,16 @@ void orbitByKeys(Workbench& bench, double seconds) {
 
 /// A visitor walks as fast as a person, through large models faster; the ground carries the eye.
 void travel(Workbench& bench, double seconds) {
-    Orbit& orbit = bench.orbit;
-    const bool walks = bench.look.motion == Motion::Walk;
-    const double span_m = static_cast<double>(length(bench.bounds().size()));
+    Orbit& orbit = bench.view.orbit;
+    const bool walks = bench.view.look.motion == Motion::Walk;
+    const double span_m = static_cast<double>(length(bounds(bench).size()));
     const double pace_m = seconds * std::max(1.4, walks ? span_m / 60 : span_m / 8);
     const double right = held(bench, 'A', 'D'), ahead = held(bench, 'S', 'W'), up = walks ? 0 : held(bench, 'Q', 'E');
     if (right == 0 && ahead == 0 && up == 0) return;
     orbit.walk(right * pace_m, up * pace_m, ahead * pace_m, walks);
     if (!walks) return;
     const Vec3d eye = orbit.eye();
-    if (const auto ground = bench.groundBelow(eye + Vec3d{0, step_m, 0}))
+    if (const auto ground = groundBelow(bench, eye + Vec3d{0, step_m, 0}))
         orbit.walk(0, *ground + eyeHeight_m - eye.y, 0, true);
 }
 
@@ -49,9 +50,10 @@ void travel(Workbench& bench, double seconds) {
 void cameraKeys(Workbench& bench) {
     constexpr double longest = 1.0 / 15;  // the first frame after a rest isn't one long step
     const double seconds = std::min(static_cast<double>(ImGui::GetIO().DeltaTime), longest);
-    bench.look.motion == Motion::Orbit ? orbitByKeys(bench, seconds) : travel(bench, seconds);
-    const bool isFree = bench.hotkeys.find('k') == std::string::npos;
-    if (isFree && ImGui::IsKeyDown('K')) bench.orbit.approach(std::exp(ImGui::GetIO().KeyShift ? seconds : -seconds));
+    bench.view.look.motion == Motion::Orbit ? orbitByKeys(bench, seconds) : travel(bench, seconds);
+    const bool isFree = bench.panels.hotkeys.find('k') == std::string::npos;
+    if (isFree && ImGui::IsKeyDown('K'))
+        bench.view.orbit.approach(std::exp(ImGui::GetIO().KeyShift ? seconds : -seconds));
 }
 
 }  // namespace sgm::window

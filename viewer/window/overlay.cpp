@@ -70,7 +70,7 @@ void drawJoints(const std::vector<ScreenJoint>& joints, ImDrawList& list) {
 
 void drawBonds(const Workbench& bench, const Projection& project, ImDrawList& list) {
     const derive::ShapeTree* tree = bench.tree();
-    const JointsShown shown = bench.look.joints;
+    const JointsShown shown = bench.view.look.joints;
     if (!tree || shown == JointsShown::None || (shown == JointsShown::Selected && bench.selected() == derive::none))
         return;
     for (const document::BondMark& bond : document::bondMarks(*tree, mostMarks)) {

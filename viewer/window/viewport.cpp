@@ -1,4 +1,6 @@
 #include "viewer/window/viewport.h"
+#include "viewer/window/framing.h"
+#include "viewer/window/selecting.h"
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
@@ -39,15 +41,15 @@ Grip gripOf(NavigationPreset preset) {
 void moveCamera(Workbench& bench, float height) {
     const ImGuiIO& io = ImGui::GetIO();
     const double x = io.MouseDelta.x / height, y = io.MouseDelta.y / height;
-    switch (gripOf(bench.look.navigation)) {
+    switch (gripOf(bench.view.look.navigation)) {
         case Grip::Turn:
-            bench.orbit.turn(x, y);
+            bench.view.orbit.turn(x, y);
             break;
         case Grip::Move:
-            bench.orbit.move(x, y);
+            bench.view.orbit.move(x, y);
             break;
         case Grip::Approach:
-            bench.orbit.approach(std::exp(2.5 * (y - x)));
+            bench.view.orbit.approach(std::exp(2.5 * (y - x)));
             break;
         case Grip::None:
             break;
@@ -56,8 +58,8 @@ void moveCamera(Workbench& bench, float height) {
 
 /// What lies under a place of the picture.
 std::optional<Hover> hoverAt(Workbench& bench, ImVec2 low, ImVec2 mouse) {
-    const auto pick = bench.field.pick(static_cast<int>(mouse.x - low.x), static_cast<int>(mouse.y - low.y));
-    return pick ? bench.hoverOf(*pick) : std::nullopt;
+    const auto pick = bench.view.field.pick(static_cast<int>(mouse.x - low.x), static_cast<int>(mouse.y - low.y));
+    return pick ? hoverOf(bench, *pick) : std::nullopt;
 }
 
 /// A shape that is dragged here from the Shapes panel is joined at the joint under the pointer.
@@ -77,7 +79,7 @@ void takeShape(Workbench& bench, const Projection& project, ImDrawList& list) {
     if (!ImGui::BeginDragDropTarget()) return;
     if (const ImGuiPayload* dropped = ImGui::AcceptDragDropPayload("shape", ImGuiDragDropFlags_AcceptNoDrawDefaultRect);
         dropped && nearest)
-        bench.attach(*static_cast<const derive::ShapeId*>(dropped->Data), nearest->mark.shape, nearest->mark.joint);
+        attach(bench, *static_cast<const derive::ShapeId*>(dropped->Data), nearest->mark.shape, nearest->mark.joint);
     ImGui::EndDragDropTarget();
 }
 
@@ -85,31 +87,31 @@ render::PictureOptions optionsFor(const Workbench& bench, ImVec2 size) {
     render::PictureOptions options;
     options.width = static_cast<int>(size.x);
     options.height = static_cast<int>(size.y);
-    options.camera = bench.orbit.camera(size.x / size.y);
-    options.ground = bench.look.ground && bench.orbit.lamp_m == 0;
+    options.camera = bench.view.orbit.camera(size.x / size.y);
+    options.ground = bench.view.look.ground && bench.view.orbit.lamp_m == 0;
     return options;
 }
 
 void showField(Workbench& bench, ImVec2 low, ImVec2 size) {
-    bench.field.setLook(optionsFor(bench, size));
+    bench.view.field.setLook(optionsFor(bench, size));
     // A camera that moves always has a picture, if a coarse one.
-    if (!bench.field.visible())
-        if (const Status s = bench.field.step(); !s) bench.say(s.error().message, true);
-    if (!bench.field.visible()) return;
+    if (!bench.view.field.visible())
+        if (const Status s = bench.view.field.step(); !s) bench.say(s.error().message, true);
+    if (!bench.view.field.visible()) return;
     const ImVec2 high(low.x + size.x, low.y + size.y);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddImage(textureOf(bench.field.coarse()), low, high);
-    list.AddImage(textureOf(bench.field.fine()), low, high);
+    list.AddImage(textureOf(bench.view.field.coarse()), low, high);
+    list.AddImage(textureOf(bench.view.field.fine()), low, high);
 }
 
 void showMesh(Workbench& bench, ImVec2 low, ImVec2 size) {
-    bench.mesh.setLook(optionsFor(bench, size), bench.meshStyle());
-    if (!bench.mesh.visible())
-        if (const Status s = bench.mesh.step(); !s) bench.say(s.error().message, true);
+    bench.view.mesh.setLook(optionsFor(bench, size), meshStyle(bench));
+    if (!bench.view.mesh.visible())
+        if (const Status s = bench.view.mesh.step(); !s) bench.say(s.error().message, true);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    if (bench.mesh.visible())
-        list.AddImage(textureOf(bench.mesh.texture()), low, ImVec2(low.x + size.x, low.y + size.y));
-    if (bench.mesh.hasMesh()) return;
+    if (bench.view.mesh.visible())
+        list.AddImage(textureOf(bench.view.mesh.texture()), low, ImVec2(low.x + size.x, low.y + size.y));
+    if (bench.view.mesh.hasMesh()) return;
     const char* text = bench.busy() ? "Meshing…" : "No mesh";
     const ImVec2 half = ImGui::CalcTextSize(text);
     list.AddText(ImVec2(low.x + (size.x - half.x) / 2, low.y + (size.y - half.y) / 2), tint::faint, text);
@@ -124,37 +126,37 @@ void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMe
     bench.report.mark(name);
     const ImGuiIO& io = ImGui::GetIO();
     const bool hovered = ImGui::IsItemHovered();
-    if (ImGui::IsItemActive() && !bench.planHandles.isDragging()) moveCamera(bench, size.y);
-    if (hovered && io.MouseWheel != 0) bench.orbit.approach(std::pow(0.85, io.MouseWheel));
+    if (ImGui::IsItemActive() && !bench.view.planHandles.isDragging()) moveCamera(bench, size.y);
+    if (hovered && io.MouseWheel != 0) bench.view.orbit.approach(std::pow(0.85, io.MouseWheel));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.PushClipRect(low, ImVec2(low.x + size.x, low.y + size.y), true);
     isMesh ? showMesh(bench, low, size) : showField(bench, low, size);
-    const Projection project(bench.orbit.camera(size.x / size.y), low, size);
+    const Projection project(bench.view.orbit.camera(size.x / size.y), low, size);
     if (bench.tree() && bench.selected() != derive::none) drawScope(bench, bench.selected(), project, list);
-    bench.mapLayer.draw(bench, project, list);
+    bench.view.mapLayer.draw(bench, project, list);
     drawPlan(bench, project, list);
     drawBonds(bench, project, list);
     drawAxes(project, list);
     takeShape(bench, project, list);
-    const bool onHandle = bench.planHandles.use(bench, project, list, hovered);
+    const bool onHandle = bench.view.planHandles.use(bench, project, list, hovered);
     list.PopClipRect();
     const bool moving = io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
     if (!hovered || ImGui::IsAnyMouseDown()) {
-        if (!hovered && bench.look.pane != Pane::Split) bench.hover.reset();
-    } else if (moving || !bench.hover) {
-        bench.hover = hoverAt(bench, low, io.MousePos);
+        if (!hovered && bench.view.look.pane != Pane::Split) bench.view.hover.reset();
+    } else if (moving || !bench.view.hover) {
+        bench.view.hover = hoverAt(bench, low, io.MousePos);
     }
     const ImVec2 wandered = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0);
     const bool click = hovered && !onHandle && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
                        std::hypot(wandered.x, wandered.y) < clickSlack;
     if (click) {
-        bench.hover = hoverAt(bench, low, io.MousePos);
-        bench.select(bench.hover ? bench.hover->shape : derive::none);
+        bench.view.hover = hoverAt(bench, low, io.MousePos);
+        bench.select(bench.view.hover ? bench.view.hover->shape : derive::none);
     }
-    if (hovered && !onHandle && bench.hover && !ImGui::IsAnyMouseDown()) {
+    if (hovered && !onHandle && bench.view.hover && !ImGui::IsAnyMouseDown()) {
         ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(10, 6));
         ImGui::BeginTooltip();
-        ImGui::TextUnformatted(bench.hover->text.c_str());
+        ImGui::TextUnformatted(bench.view.hover->text.c_str());
         ImGui::EndTooltip();
         ImGui::PopStyleVar();
     }
@@ -165,14 +167,14 @@ void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMe
 void viewport(Workbench& bench) {
     const ImVec2 low = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const ImVec2 size(std::floor(std::max(room.x, 32.0f)), std::floor(std::max(room.y, 32.0f)));
-    if (bench.look.pane == Pane::Split) {
+    if (bench.view.look.pane == Pane::Split) {
         const float half = std::floor((size.x - 2) / 2);
         view(bench, "view.field", low, {half, size.y}, false);
         view(bench, "view.mesh", {low.x + half + 2, low.y}, {half, size.y}, true);
     } else {
-        const bool isMesh = bench.look.pane == Pane::Mesh;
+        const bool isMesh = bench.view.look.pane == Pane::Mesh;
         // Picking asks the field, so its look follows even where it isn't shown.
-        if (isMesh) bench.field.setLook(optionsFor(bench, size));
+        if (isMesh) bench.view.field.setLook(optionsFor(bench, size));
         view(bench, isMesh ? "view.mesh" : "view.field", low, size, isMesh);
     }
 }
@@ -183,17 +185,17 @@ void viewKeys(Workbench& bench) {
     // The grammar's own keys go first.
     const auto pressed = [&](int key) {
         return ImGui::IsKeyPressed(key, false) &&
-               bench.hotkeys.find(static_cast<char>(std::tolower(key & 127))) == std::string::npos;
+               bench.panels.hotkeys.find(static_cast<char>(std::tolower(key & 127))) == std::string::npos;
     };
     cameraKeys(bench);
-    if (pressed(GLFW_KEY_F)) bench.frameSelection();
+    if (pressed(GLFW_KEY_F)) frameSelection(bench);
     if (ImGui::IsKeyPressed(GLFW_KEY_HOME, false)) {
-        bench.orbit.look(StandardView::ThreeQuarter);
-        bench.frameAll();
+        bench.view.orbit.look(StandardView::ThreeQuarter);
+        frameAll(bench);
     }
     for (int view = 1; view <= 7; ++view)
         if (pressed(GLFW_KEY_0 + view) || pressed(GLFW_KEY_KP_0 + view))
-            bench.orbit.look(static_cast<StandardView>(view));
+            bench.view.orbit.look(static_cast<StandardView>(view));
 }
 
 }  // namespace sgm::window

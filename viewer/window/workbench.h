@@ -65,6 +65,47 @@ struct Hover {
     std::string text;  ///< "Cell · rule Cell · grotto.sgm:24"
 };
 
+/// What looks at the model, and how.
+struct ModelView {
+    FieldView field;
+    MeshView mesh;
+    Orbit orbit;
+    MapLayerView mapLayer;
+    PlanHandleControl planHandles;
+    Look look;
+    std::optional<Hover> hover;
+    bool framed = false;  ///< the camera has been set for this file
+
+    bool wantsMesh() const { return look.pane == Pane::Mesh || look.pane == Pane::Split; }
+    /// All that the window shows is whole.
+    bool drawn() const { return (look.pane == Pane::Mesh || field.finished()) && (!wantsMesh() || mesh.finished()); }
+};
+
+/// What panels and bars tell each other and the user.
+struct Panels {
+    std::string notice;
+    bool noticeIsProblem = false;
+    std::optional<std::pair<uint32_t, uint32_t>> reveal;  ///< bytes of the text to show, taken by the Text panel
+    std::optional<uint32_t> revealRule;                   ///< a byte of the rule to show, taken by the Rules panel
+    std::string hotkeys;                                  ///< of the grammar's parameters: they go before the view's
+    bool typing = false;                                  ///< the text takes keys
+    std::optional<Question> question;
+    bool leaving = false;  ///< the window may close
+};
+
+/// Pictures that were asked for.
+struct Pictures {
+    std::optional<Turntable> turntable;
+    bool wanted = false;  ///< one
+};
+
+/// What is known of the last field and mesh shown.
+struct RenderStatus {
+    bool previewed = false;  ///< the mesh shown is the GPU's, of a model that is being dragged
+    UploadTimes fieldTimes;  ///< that the last field took
+    int compiles = 0;        ///< of shaders for fields, so far
+};
+
 class Workbench {
 public:
     /// `shared` is a context for the worker that uploads.
@@ -91,7 +132,7 @@ public:
     /// Takes over what the workers have finished. True when something is new.
     bool poll();
     /// Something is computed, or has been and waits for `poll`.
-    bool busy() const { return !settled_ || working(); }
+    bool busy() const { return !asked_.settled || working(); }
 
     /// Writes the shown model to a file on a thread of its own.
     void exportTo(document::ExportRequest request);
@@ -102,9 +143,6 @@ public:
     derive::ShapeId selected() const { return selected_; }
     const document::BuiltModel* shown() const { return session.model().get(); }
     const derive::ShapeTree* tree() const { return shown() ? &shown()->model.derivation.tree : nullptr; }
-    std::optional<Hover> hoverOf(const Pick& pick) const;
-    /// Joins a shape at a joint of another: what dropping it there asks for.
-    void attach(derive::ShapeId moved, derive::ShapeId host, uint32_t joint);
 
     // --- The derivation by hand ---
     void beginSteps(const std::string& way);
@@ -112,31 +150,12 @@ public:
     void stepped(const Status& done, const std::string& what);
     void endSteps();
 
-    /// Selects what the text at this byte made; asked again for the same, the next of several.
-    void selectText(uint32_t offset);
-    /// Shows the line of the document that a problem is in.
-    void revealPlace(const document::Problem& problem);
-
     // --- The view ---
-    Box3d bounds() const;
-    /// Bounds of a shape and all below it, metres.
-    Box3d boundsOf(derive::ShapeId shape) const;
-    void frameAll();
-    void frameSelection();
     void stepInside();
-    void startTurntable(int count);
-    /// Writes pictures that were asked for, once the view is whole. True when the view moves on.
-    Result<bool> takePictures();
-    render::MeshStyle meshStyle() const;
-    /// The height of the model's ground below a place, metres; nothing where there is none.
-    std::optional<double> groundBelow(Vec3d from) const;
-    bool wantsMesh() const { return look.pane == Pane::Mesh || look.pane == Pane::Split; }
     /// The field shown will make room for another: not worth a finer picture.
     bool outdated() const {
         return uploader.makesField() || (session.busy() && session.attempted() != document.revision());
     }
-    /// All that the window shows is whole.
-    bool drawn() const;
     /// Stops what runs; what is shown stays.
     void cancel();
     /// One sentence at the bottom of the window.
@@ -147,29 +166,29 @@ public:
     document::Session session;
     SceneUploader uploader;
     document::ExportJob exporting;
-    FieldView field;
-    MeshView mesh;
-    Orbit orbit;
-    MapLayerView mapLayer;
-    PlanHandleControl planHandles;
-    Look look;
-    std::optional<Hover> hover;
-    std::string notice;
-    bool noticeIsProblem = false;
-    std::optional<std::pair<uint32_t, uint32_t>> reveal;  ///< bytes of the text to show, taken by the Text panel
-    std::optional<uint32_t> revealRule;                   ///< a byte of the rule to show, taken by the Rules panel
-    std::optional<document::Stepper> stepper;             ///< while the user derives by hand
-    std::string hotkeys;                                  ///< of the grammar's parameters: they go before the view's
-    bool typing = false;                                  ///< the text takes keys
-    std::optional<Question> question;
-    std::optional<Turntable> turntable;
-    bool pictureWanted = false;
-    bool leaving = false;    ///< the window may close
-    bool previewed = false;  ///< the mesh shown is the GPU's, of a model that is being dragged
-    UploadTimes fieldTimes;  ///< that the last field took
-    int compiles = 0;        ///< of shaders for fields, so far
+    ModelView view;
+    Panels panels;
+    Pictures pictures;
+    RenderStatus status;
+    std::optional<document::Stepper> stepper;  ///< while the user derives by hand
 
 private:
+    /// The derivation that the user makes, shown instead of deriving.
+    struct ByHand {
+        std::shared_ptr<const derive::Derivation> derivation;
+        uint64_t steppedAt = 0;  ///< the revision that the steps belong to
+    };
+    /// What the session and the uploader were last asked for.
+    struct LastRequest {
+        uint64_t revision = ~uint64_t(0);
+        int resolution = 0;
+        bool dragging = false;
+        const derive::Derivation* byHand = nullptr;
+        std::optional<pipeline::Section> section;
+        std::shared_ptr<const document::BuiltModel> fog, prepared;
+        bool settled = false;  ///< all that was computed has been taken over
+    };
+
     void resolveSelection();
 
     bool working() const { return session.busy() || uploader.busy(); }
@@ -178,17 +197,9 @@ private:
 
     std::function<void()> notify_;
     document::Recovery recovery_;
-    std::shared_ptr<const derive::Derivation> byHand_;  ///< shown instead of deriving
-    uint64_t steppedAt_ = 0;                            ///< the revision that the steps belong to
+    ByHand byHand_;
     derive::ShapeId selected_ = derive::none;
-    uint64_t asked_ = ~uint64_t(0);  ///< the revision the session was last asked for
-    int askedResolution_ = 0;
-    bool askedDragging_ = false;
-    std::shared_ptr<const document::BuiltModel> askedFog_, prepared_;  ///< the last that the preparer was given
-    const derive::Derivation* askedByHand_ = nullptr;
-    std::optional<pipeline::Section> askedSection_;
-    bool settled_ = false;  ///< all that was computed has been taken over
-    bool framed_ = false;   ///< the camera has been set for this file
+    LastRequest asked_;
 };
 
 }  // namespace sgm::window

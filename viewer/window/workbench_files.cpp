@@ -32,18 +32,18 @@ void Workbench::offerAbandoned() {
                                left.front().document.empty() ? "start without a file" : "open it"));
     const document::Abandoned work = *about;
     const std::string name = nameOf(work);
-    question = Question{fmt::format("The window was closed by force; unsaved work on {} was kept.", name),
-                        {{"Go on with it",
-                          [this, work] {
-                              document = document::Document::recovered(work.document, work.text);
-                              selected_ = derive::none;
-                              framed_ = false;
-                              asked_ = ~uint64_t(0);
-                              recovery_.keep(document);
-                              discard(work);
-                          }},
-                         {"Throw it away", [work] { discard(work); }},
-                         {"Later", {}}}};
+    panels.question = Question{fmt::format("The window was closed by force; unsaved work on {} was kept.", name),
+                               {{"Go on with it",
+                                 [this, work] {
+                                     document = document::Document::recovered(work.document, work.text);
+                                     selected_ = derive::none;
+                                     view.framed = false;
+                                     asked_.revision = ~uint64_t(0);
+                                     recovery_.keep(document);
+                                     discard(work);
+                                 }},
+                                {"Throw it away", [work] { discard(work); }},
+                                {"Later", {}}}};
 }
 
 void Workbench::drop(const std::filesystem::path& path) {
@@ -52,7 +52,7 @@ void Workbench::drop(const std::filesystem::path& path) {
         offerAbandoned();
     };
     if (!document.dirty()) return go();
-    question = Question{
+    panels.question = Question{
         fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
         {{"Save and open",
           [this, go] {
@@ -65,23 +65,23 @@ void Workbench::drop(const std::filesystem::path& path) {
 
 bool Workbench::mayClose() {
     if (!document.dirty()) return true;
-    question = Question{
+    panels.question = Question{
         fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
         {{"Save and close",
           [this] {
               save();
-              leaving = !document.dirty();
+              panels.leaving = !document.dirty();
           }},
-         {"Close without saving", [this] { leaving = true; }},
+         {"Close without saving", [this] { panels.leaving = true; }},
          {"Stay", {}}}};
     return false;
 }
 
 bool Workbench::lookAtFiles() {
-    if (session.usedFilesChanged()) asked_ = ~uint64_t(0);
+    if (session.usedFilesChanged()) asked_.revision = ~uint64_t(0);
     switch (document.poll()) {
         case document::Document::Outside::Same:
-            return asked_ == ~uint64_t(0);
+            return asked_.revision == ~uint64_t(0);
         case document::Document::Outside::Reloaded:
             say("The file was changed by another program, and is read again");
             break;
@@ -89,10 +89,10 @@ bool Workbench::lookAtFiles() {
             say("The file can't be read any more; save to write it again", true);
             break;
         case document::Document::Outside::Conflict:
-            if (question) return false;
-            question = Question{"Another program has changed the file, and so have you.",
-                                {{"Take the file", [this] { (void)document.takeOutside(); }},
-                                 {"Keep mine", [this] { (void)document.keepMine(); }}}};
+            if (panels.question) return false;
+            panels.question = Question{"Another program has changed the file, and so have you.",
+                                       {{"Take the file", [this] { (void)document.takeOutside(); }},
+                                        {"Keep mine", [this] { (void)document.keepMine(); }}}};
     }
     return true;
 }

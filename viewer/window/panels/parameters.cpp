@@ -278,9 +278,9 @@ void ParametersPanel::styles(Workbench& bench) {
 }
 
 void ParametersPanel::keys(Workbench& bench) {
-    bench.hotkeys.clear();
+    bench.panels.hotkeys.clear();
     for (const document::ParamRow& r : rows_)
-        if (r.key) bench.hotkeys += r.key;
+        if (r.key) bench.panels.hotkeys += r.key;
     const ImGuiIO& io = ImGui::GetIO();
     if (io.KeyCtrl || io.KeyAlt || io.KeySuper) return;
     for (const ImWchar c : io.InputQueueCharacters) {

@@ -2,6 +2,7 @@
 #include <imgui.h>
 
 #include "viewer/window/panels.h"
+#include "viewer/window/selecting.h"
 #include "viewer/window/style.h"
 
 namespace sgm::window {
@@ -19,7 +20,7 @@ void problemsPanel(Workbench& bench) {
         ImGui::SameLine();
         const std::string place = p.line ? fmt::format("line {}: ", p.line) : std::string();
         const std::string text = place + p.message + (p.hint.empty() ? "" : "  -  " + p.hint);
-        if (ImGui::Selectable(text.c_str()) && p.line) bench.revealPlace(p);
+        if (ImGui::Selectable(text.c_str()) && p.line) revealPlace(bench, p);
         bench.report.mark(fmt::format("problem.{}", i));
         ImGui::PopID();
     }

@@ -7,6 +7,7 @@
 
 #include "grammar/operations/operations.h"
 #include "viewer/window/panels.h"
+#include "viewer/window/selecting.h"
 #include "viewer/window/style.h"
 #include "viewer/window/widgets.h"
 
@@ -80,10 +81,10 @@ void RulesPanel::show(Workbench& bench) {
         listed_ = bench.document.ast();
         rows_ = document::ruleRows(*listed_);
     }
-    if (bench.revealRule) {
-        const size_t row = rowAt(rows_, *bench.revealRule);
+    if (bench.panels.revealRule) {
+        const size_t row = rowAt(rows_, *bench.panels.revealRule);
         if (row < rows_.size()) at_ = rows_[row].span.begin, kind_ = rows_[row].kind;
-        bench.revealRule.reset();
+        bench.panels.revealRule.reset();
         scroll_ = true;
     }
     size_t selected = rows_.size();
@@ -142,8 +143,8 @@ void RulesPanel::row(Workbench& bench, size_t index) {
     if (ImGui::Selectable("##row", selected, 0, {0, ImGui::GetTextLineHeight() + 4})) {
         at_ = row.span.begin;
         kind_ = row.kind;
-        bench.reveal = {row.span.begin, row.span.end};
-        bench.selectText(row.span.begin);
+        bench.panels.reveal = {row.span.begin, row.span.end};
+        selectText(bench, row.span.begin);
     }
     bench.report.mark(fmt::format("rule.{}.{}", listed_->source->place(row.span.begin).line, row.text));
     if (row.kind == Kind::Rule) dragRule(row, low);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "viewer/window/panels.h"
+#include "viewer/window/selecting.h"
 #include "viewer/window/style.h"
 
 namespace sgm::window {
@@ -29,12 +30,12 @@ void TextPanel::show(Workbench& bench) {
         colored_ = bench.document.ast();
         colors_ = document::colours(*colored_);
     }
-    if (bench.reveal) {
-        editor_.reveal(bench.reveal->first, bench.reveal->second);
-        bench.reveal.reset();
+    if (bench.panels.reveal) {
+        editor_.reveal(bench.panels.reveal->first, bench.panels.reveal->second);
+        bench.panels.reveal.reset();
     }
     const std::optional<std::string> typed = editor_.show(bench.report, bench.document.text(), colors_, notesOf(bench));
-    bench.typing = editor_.active();
+    bench.panels.typing = editor_.active();
     const auto [begin, end] = editor_.selection();
     if (bench.report.active())
         bench.report.state()["textSelection"] =
@@ -42,7 +43,7 @@ void TextPanel::show(Workbench& bench) {
     if (typed)
         bench.document.type(*typed);
     else if (editor_.clicked())
-        bench.selectText(editor_.caret());
+        selectText(bench, editor_.caret());
 }
 
 }  // namespace sgm::window

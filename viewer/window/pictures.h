@@ -1,0 +1,14 @@
+// Pictures of the view, written to files.
+// Enters: a workbench. Leaves: files beside its document.
+#pragma once
+
+#include "viewer/window/workbench.h"
+
+namespace sgm::window {
+
+/// Asks for pictures from all around.
+void startTurntable(Workbench& bench, int count);
+/// Writes pictures that were asked for, once the view is whole. True when the view moves on.
+Result<bool> takePictures(Workbench& bench);
+
+}  // namespace sgm::window
