@@ -17,17 +17,19 @@ struct CityCase {
     double side_m = 4500;
     bool isDistinct = false;  ///< every building is an object of its own as far as chance decides something of it
     double objectCell_m = .3;
-    double share = 1;  ///< of the cells, drawn by their places
-    double bar_s = 0;  ///< of processor time
+    double share = 1;       ///< of the cells, drawn by their places
+    double bar_s = 0;       ///< of processor time; 0: none
+    bool isShared = false;  ///< baked once more by two processes at a time
 };
 
 struct CityCosts {
     CityCase what;
     uint64_t places = 0, objects = 0, cells = 0, bakedCells = 0, bakedObjects = 0;
-    double plan_s = 0, baked_s = 0;               ///< processor time, measured
-    double total_s = 0;                           ///< plan and all cells; projected where only a share was baked
-    double planMemory_MB = 0, bakeMemory_MB = 0;  ///< the second beyond the first
-    double folder_MB = 0, largestDwelling_kB = 0;
+    double plan_s = 0, baked_s = 0;                ///< processor time, measured
+    double total_s = 0;                            ///< plan and all cells; projected where only a share was baked
+    double planMemory_MB = 0, bakeMemory_MB = 0;   ///< the second beyond the first
+    double folder_MB = 0, largestDwelling_kB = 0;  ///< the first projected as the time
+    double twoWorkers_s = 0;  ///< processor time of the slower of two, with its plan; 0: not measured
 };
 
 /// The cases of docs/city.md with at most so many buildings.

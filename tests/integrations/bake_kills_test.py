@@ -77,6 +77,18 @@ class Baker:
         return kills
 
 
+    def interrupted(self, folder, after_s):
+        """Ends a task by Ctrl-C; finishes what it left."""
+        process = subprocess.Popen(self.command(folder, 1, 1, 1), stderr=subprocess.PIPE, text=True)
+        time.sleep(after_s)
+        process.send_signal(signal.SIGINT)
+        said = process.communicate()[1]
+        assert process.returncode == 130 or process.returncode == 0 and not self.missing(folder, 3), (process.returncode, said)
+        begun = len(self.missing(folder, 64))
+        self.bake(folder, 1, 1)
+        return begun
+
+
 def compare(whole, other, what):
     assert whole.keys() == other.keys(), (what, sorted(whole.keys() ^ other.keys())[:5])
     wrong = [name for name in whole if whole[name] != other[name]]
@@ -115,6 +127,9 @@ def main():
             for task in tasks:
                 baker.bake(folder, task, of, 1 + task % 2)
             compare(whole, baker.merge(folder), f"{of} tasks in any order, one thread and two")
+        folder = os.path.join(scratch, "interrupted")
+        left = baker.interrupted(folder, .35 * took_s)
+        compare(whole, baker.merge(folder), f"ended by Ctrl-C with {left} of 64 tasks to do")
         kills, rounds = 0, 0
         while kills < given.kills:
             rounds += 1
