@@ -62,6 +62,20 @@ Gathered gather(std::vector<mesh::Chunk> chunks, const std::vector<Columns>& cel
     return out;
 }
 
+/// The box around pieces about `centre` and what hangs from them, in the model's frame.
+Box3f spaceOf(const std::vector<tiles::SurfacePiece>& pieces, Vec3d centre, double depth_m) {
+    const Box3f box = tiles::boundsOf(pieces);
+    const Vec3d margin{depth_m + 1, depth_m + 1, depth_m + 1};
+    return {(box.lo.as<double>() + centre - margin).as<float>(), (box.hi.as<double>() + centre + margin).as<float>()};
+}
+
+/// The tape without what can't matter in a box.
+eval::Tape within(const eval::Tape& tape, const Box3f& box, eval::Workspace& workspace) {
+    eval::FloatInterval range;
+    eval::evaluateRanges(tape, {&box, 1}, &range, workspace);
+    return eval::shorten(tape, 0, workspace);
+}
+
 }  // namespace
 
 std::vector<Cell> BakedGround::groupOf(const std::vector<Cell>& cells) {
@@ -139,27 +153,28 @@ Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const
     auto chunks = mesh::meshBlocks(*found, grid, options, context.progress, counts);
     if (!chunks.ok()) return chunks.error();
     const Gathered gathered = gather(std::move(*chunks), cells);
+    Box3f space;
     for (size_t i = 0; i < group.size(); ++i) {
-        auto& pieces = made[group[i]] =
-            tiles::groundPieces(gathered.mesh, gathered.triangles[i], model_.lowered->provenance,
-                                group[i].centre(request_.side_m), static_cast<float>(pitch / 20));
-        if (request_.levels > 1) addSkirts(group[i], pieces);
+        const Vec3d centre = group[i].centre(request_.side_m);
+        auto& pieces = made[group[i]] = tiles::groundPieces(
+            gathered.mesh, gathered.triangles[i], model_.lowered->provenance, centre, static_cast<float>(pitch / 20));
+        if (!pieces.empty()) space = hull(space, spaceOf(pieces, centre, pitch / 2));
     }
+    if (request_.levels < 2 || space.empty()) return made;
+    eval::Workspace workspace;
+    const eval::Tape around = within(model_.tape, space, workspace);
+    for (auto& [cell, pieces] : made)
+        if (!pieces.empty()) addSkirts(cell, around, pieces);
     return made;
 }
 
-void BakedGround::addSkirts(const Cell& cell, std::vector<tiles::SurfacePiece>& pieces) const {
-    if (pieces.empty()) return;
-    const double side = cell.side_m(request_.side_m), depth = pitch_m(cell.level) / 2;
+void BakedGround::addSkirts(const Cell& cell, const eval::Tape& around,
+                            std::vector<tiles::SurfacePiece>& pieces) const {
     const Vec3d centre = cell.centre(request_.side_m);
-    Box3f around = tiles::boundsOf(pieces);
-    const Vec3d margin{depth + 1, depth + 1, depth + 1};
-    around.lo = (around.lo.as<double>() + centre - margin).as<float>();
-    around.hi = (around.hi.as<double>() + centre + margin).as<float>();
+    // Surfaces of neighbouring levels are closer to each other than half a cell of the finer one's grid.
+    const double depth = pitch_m(cell.level) / 2;
     eval::Workspace workspace;
-    eval::FloatInterval range;
-    eval::evaluateRanges(model_.tape, {&around, 1}, &range, workspace);
-    const eval::Tape tape = eval::shorten(model_.tape, 0, workspace);
+    const eval::Tape tape = within(around, spaceOf(pieces, centre, depth), workspace);
     const tiles::InsideTest inside = [&](const std::vector<Vec3d>& places) {
         std::vector<float> x, y, z, value(places.size());
         for (const Vec3d& place : places) {
@@ -171,8 +186,7 @@ void BakedGround::addSkirts(const Cell& cell, std::vector<tiles::SurfacePiece>& 
         for (const float v : value) is.push_back(v < 0);
         return is;
     };
-    // Surfaces of neighbouring levels are closer to each other than half a cell of the coarser one's grid.
-    const tiles::SkirtRequest request{side, depth, inside};
+    const tiles::SkirtRequest request{cell.side_m(request_.side_m), depth, inside};
     for (tiles::SurfacePiece& piece : pieces) tiles::addSkirts(piece, request);
 }
 

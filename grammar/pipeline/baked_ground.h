@@ -37,8 +37,9 @@ public:
     double pitch_m(int level) const { return request_.cell_m * (1 << level); }
 
 private:
-    /// Closes the gaps to neighbours of other levels, by strips on the cell's borders.
-    void addSkirts(const tiles::Cell& cell, std::vector<tiles::SurfacePiece>& pieces) const;
+    /// Closes the gaps to neighbours of other levels, by strips on the cell's borders; `around` is a tape that holds
+    /// there.
+    void addSkirts(const tiles::Cell& cell, const eval::Tape& around, std::vector<tiles::SurfacePiece>& pieces) const;
     mesh::Grid gridOver(const std::vector<tiles::Cell>& group, Vec3i& corner) const;
 
     const Model& model_;

@@ -69,12 +69,13 @@ void readLibrary(const fs::path& folder, CityCosts& costs) {
     }
 }
 
-/// The cells that are baked: drawn by their places, at least one.
+/// The cells that are baked: squares of four by four, whose ground is made together, drawn by their places; at least
+/// one cell.
 std::vector<size_t> drawn(const std::vector<tiles::Cell>& cells, double share) {
     std::vector<size_t> out;
     for (size_t i = 0; i < cells.size(); ++i) {
-        const uint64_t key =
-            combine(combine(uint64_t(cells[i].level), uint64_t(uint32_t(cells[i].x))), uint64_t(uint32_t(cells[i].z)));
+        const uint64_t key = combine(combine(uint64_t(cells[i].level), uint64_t(uint32_t(cells[i].x >> 2))),
+                                     uint64_t(uint32_t(cells[i].z >> 2)));
         if (static_cast<double>(key % 100'000) < 1e5 * share) out.push_back(i);
     }
     if (out.empty()) out.push_back(0);
@@ -110,7 +111,7 @@ std::vector<CityCase> cityCases(double mostBuildings) {
     std::vector<CityCase> cases{{"10³, variety", sideFor(1e3), false, .3, 1, 0},
                                 {"10⁴, variety", townSide_m, false, .3, 1, 60, true},
                                 {"10⁴, all distinct", townSide_m, true, .2, .1, 450},
-                                {"10⁵, variety", sideFor(1e5), false, .3, .05, 150},
+                                {"10⁵, variety", sideFor(1e5), false, .3, .1, 150},
                                 {"10⁶, variety", sideFor(1e6), false, .3, .01, 1500}};
     std::erase_if(cases, [&](const CityCase& c) {
         return townBuildings * c.side_m * c.side_m / (townSide_m * townSide_m) > 1.1 * mostBuildings;
