@@ -87,10 +87,12 @@ ElementCache& ShapeMaker::factsOf(const Element& e) {
     return facts;
 }
 
-uint32_t ShapeMaker::labelIndex(std::string text) {
-    const auto [at, fresh] = labels_.try_emplace(std::move(text), static_cast<uint32_t>(labels_.size()));
-    if (fresh) builder_.tree().labels.push_back(at->first);
-    return at->second;
+uint32_t ShapeMaker::labelIndex(std::string_view text) {
+    if (const auto known = labels_.find(text); known != labels_.end()) return known->second;
+    const auto index = static_cast<uint32_t>(labels_.size());
+    labels_.emplace(text, index);
+    builder_.tree().labels.emplace_back(text);
+    return index;
 }
 
 /// The joints that the symbol, its solid's row and the live name declare.

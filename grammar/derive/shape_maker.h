@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 
 #include "grammar/derive/attribute_context.h"
@@ -30,7 +31,7 @@ public:
 
     ElementCache& factsOf(const rules::Element& e);
     /// The index of a label in the tree.
-    uint32_t labelIndex(std::string text);
+    uint32_t labelIndex(std::string_view text);
     /// What the element's attributes say of a newcomer at `place`; false after a failure.
     bool evaluateAttributes(const rules::Element& e, const Place& place, EvaluatedAttributes& out);
     /// The node of an element, unplaced: everything but parent, centre and children. What grows on it in a chain knows
