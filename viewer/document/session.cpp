@@ -180,11 +180,6 @@ void Session::giveUp(const ShowRequest& request, const Error& error) {
     publish(std::move(update));
 }
 
-bool Session::superseded() {
-    const std::lock_guard lock(queue_.mutex);
-    return queue_.pending || queue_.quit;
-}
-
 void Session::publish(Update update) {
     {
         const std::lock_guard lock(queue_.mutex);
@@ -235,7 +230,7 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
             problems.insert(problems.end(), last_.problems.derived.begin(), last_.problems.derived.end());
         } else if (shown.error().kind != Error::Kind::Cancelled) {
             problems.push_back(problemOf(shown.error()));
-        } else if (superseded()) {
+        } else if (queue_.isSuperseded()) {
             return;
         } else {
             problems.push_back(

@@ -135,6 +135,12 @@ private:
         bool fresh = false;
         std::vector<std::shared_ptr<const void>>
             deferred;  ///< what the window let go: large trees are freed by the worker
+
+        /// Whether what runs is of no use any more.
+        bool isSuperseded() const {
+            const std::lock_guard lock(mutex);
+            return pending || quit;
+        }
     };
     /// Problems that the worker found, by what they are of.
     struct Found {
@@ -173,7 +179,6 @@ private:
     void meshCutOpen(const ShowRequest& request, Progress& progress);
     void tellOfMesh();
     void publish(Update update);
-    bool superseded();
 
     std::function<void()> notify_;
     rules::Loader loader_;

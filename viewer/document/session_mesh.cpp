@@ -51,7 +51,7 @@ void Session::meshIt(const ShowRequest& request, Progress& progress) {
     update.mesh = meshed;
     publish(std::move(update));
     last_.problems.mesh.clear();
-    if (request.dragging || superseded()) return;
+    if (request.dragging || queue_.isSuperseded()) return;
     pipeline::Context context{&progress};
     const auto warnings = pipeline::meshWarnings(last_.shown->model, *meshed->mesh, meshed->grid, context);
     if (!warnings.ok()) return;
