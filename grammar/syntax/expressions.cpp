@@ -175,6 +175,9 @@ private:
         while (!cursor_.failed() && (cursor_.at("[") || cursor_.at("."))) {
             if (tooLong()) break;
             Expr outer;
+            // '92m .x' without its blank is another number.
+            if (e.kind == Kind::Number && cursor_.at(".") && cursor_.at(Token::Kind::Word, 1))
+                return cursor_.fail("a number has no members", "take the '.' out, or write 'scope.x'"), e;
             const Token symbol = cursor_.take(Token::Role::Tight);
             if (cursor_.text(symbol) == "[") {
                 outer.kind = Kind::Index;
