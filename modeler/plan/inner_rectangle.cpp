@@ -31,14 +31,13 @@ Intervals insideStrip(const std::vector<PlacedEdge>& edges, double lo, double hi
     return inside;
 }
 
-Intervals common(const Intervals& a, const Intervals& b) {
-    Intervals both;
+void common(const Intervals& a, const Intervals& b, Intervals& both) {
+    both.clear();
     for (size_t i = 0, j = 0; i < a.size() && j < b.size();) {
         const double lo = std::max(a[i].lo, b[j].lo), hi = std::min(a[i].hi, b[j].hi);
         if (hi > lo) both.push_back({lo, hi});
         ++(a[i].hi < b[j].hi ? i : j);
     }
-    return both;
 }
 
 /// The largest rectangle whose sides across x lie at two of `at` (ascending).
@@ -47,13 +46,18 @@ std::optional<Box2> largest(const std::vector<PlacedEdge>& edges, const std::vec
     for (size_t i = 0; i + 1 < at.size(); ++i) strips.push_back(insideStrip(edges, at[i], at[i + 1]));
     std::optional<Box2> best;
     double most = 0;
+    Intervals open, both;
     for (size_t i = 0; i < strips.size(); ++i) {
-        Intervals open = strips[i];
-        for (size_t j = i; j < strips.size() && !open.empty(); ++j) {
-            if (j > i) open = common(open, strips[j]);
-            for (const Interval& z : open)
+        open = strips[i];
+        bool mayGrow = true;  // what is open, as wide as the whole, would be larger
+        for (size_t j = i; j < strips.size() && mayGrow; ++j) {
+            if (j > i) common(open, strips[j], both), std::swap(open, both);
+            mayGrow = false;
+            for (const Interval& z : open) {
                 if (const double size = (z.hi - z.lo) * (at[j + 1] - at[i]); size > most)
                     most = size, best = Box2{{at[i], z.lo}, {at[j + 1], z.hi}};
+                mayGrow = mayGrow || (z.hi - z.lo) * (at.back() - at[i]) > most;
+            }
         }
     }
     return best;
