@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "grammar/derive/interpreter.h"
 #include "grammar/derive/scope_footprint.h"
@@ -72,18 +73,32 @@ RoofFace::Kind roofKind(Kind kind) {
                                  : RoofFace::Kind::Slope;
 }
 
+/// The plan below a roof.
+struct RoofPlan {
+    plan::Footprint footprint;
+    std::vector<plan::PlacedEdge> edges;
+    plan::Formula formula;
+    bool isCalled(uint32_t edge, const std::string& word) const {
+        return plan::isEdgeCalled(footprint, edges[edge], word);
+    }
+};
+std::optional<RoofPlan> planBelow(const Scope& scope, const Footprints& footprints) {
+    plan::Footprint footprint = footprintOf(scope, footprints);
+    auto formula = plan::monotoneFormula(footprint);
+    if (!formula.ok()) return std::nullopt;
+    std::vector<plan::PlacedEdge> edges = plan::edgesOf(footprint);
+    return RoofPlan{std::move(footprint), std::move(edges), std::move(*formula)};
+}
+
 std::vector<Face> facesOfRoof(const Scope& scope, const Footprints& footprints, const SolidValue& solid,
                               const FaceChoice& choice) {
-    const plan::Footprint footprint = footprintOf(scope, footprints);
-    const auto formula = plan::monotoneFormula(footprint);
-    if (!formula.ok()) return {};
-    const std::vector<plan::PlacedEdge> edges = plan::edgesOf(footprint);
+    const auto below = planBelow(scope, footprints);
+    if (!below) return {};
     std::vector<Face> faces;
     for (const RoofFace& roof :
-         field::roofFaces(*solid.primitive, footprint, *formula, argumentNumbers(solid), scope.size.y)) {
+         field::roofFaces(*solid.primitive, below->footprint, below->formula, argumentNumbers(solid), scope.size.y)) {
         if (roof.kind != roofKind(choice.kind)) continue;
-        if (roof.kind != RoofFace::Kind::Apex && !plan::isEdgeCalled(footprint, edges[roof.edge], choice.word))
-            continue;
+        if (roof.kind != RoofFace::Kind::Apex && !below->isCalled(roof.edge, choice.word)) continue;
         Face face = faceAt(scope, roof.at, roof.height_m - scope.size.y / 2, roof.outward,
                            {roof.width_m, roof.rise_m, roof.run_m});
         if (roof.kind == RoofFace::Kind::Slope) face.direction = {};
@@ -105,17 +120,13 @@ field::RoofLine::Kind lineKind(Kind kind) {
 /// Lines where slopes meet: x uphill along them, y up, z level.
 std::vector<Face> linesOfRoof(const Scope& scope, const Footprints& footprints, const SolidValue& solid,
                               const FaceChoice& choice) {
-    const plan::Footprint footprint = footprintOf(scope, footprints);
-    const auto formula = plan::monotoneFormula(footprint);
-    if (!formula.ok()) return {};
-    const std::vector<plan::PlacedEdge> edges = plan::edgesOf(footprint);
+    const auto below = planBelow(scope, footprints);
+    if (!below) return {};
     std::vector<Face> faces;
     for (const field::RoofLine& line :
-         field::roofLines(*solid.primitive, footprint, *formula, argumentNumbers(solid))) {
+         field::roofLines(*solid.primitive, below->footprint, below->formula, argumentNumbers(solid))) {
         if (line.kind != lineKind(choice.kind)) continue;
-        if (!plan::isEdgeCalled(footprint, edges[line.edges[0]], choice.word) &&
-            !plan::isEdgeCalled(footprint, edges[line.edges[1]], choice.word))
-            continue;
+        if (!below->isCalled(line.edges[0], choice.word) && !below->isCalled(line.edges[1], choice.word)) continue;
         const Vec3d x = normalized(Vec3d{line.along.x * line.run_m, line.rise_m, line.along.z * line.run_m});
         const Vec3d z{-line.along.z, 0, line.along.x};
         Face face;

@@ -20,7 +20,7 @@ struct MapLayer {
     float least = 0, most = 0;       ///< of the values
 };
 
-/// Asks a map (index into Grammar::maps) at `columns` × `rows` places. Error::Input where its formula fails.
+/// Evaluates a map (index into Grammar::maps) at `columns` × `rows` places. Error::Input where its formula fails.
 /// O(places) times what one value costs.
 Result<MapLayer> mapLayer(const Derivation& derivation, uint32_t map, const plan::Box2& area, uint32_t columns,
                           uint32_t rows);

@@ -9,7 +9,7 @@ namespace sgm::derive {
 /// bump and fbm at the middle of the scope.
 rules::Value ofPlace(rules::Fn fn, const rules::Expr& expr, const Place& place);
 /// The value of a map where the shape stands; a failure in objects that `place` puts. A formula's depth is bounded by
-/// the number of maps: each asks those above it.
+/// the number of maps: each evaluates those above it.
 rules::Value ofMap(const rules::Expr& expr, const Place& place);
 /// Whether a map of classes says a word where the shape stands, for 'map == word', which plans ask at a hundred
 /// thousand places; nothing for other expressions.

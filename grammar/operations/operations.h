@@ -10,7 +10,8 @@
 /// Every operation, in the order of the reference page.
 #define SGM_OPERATIONS(X) \
     X(size) X(move) X(turn) X(from) X(at) X(to) X(overlap) X(shift) X(on) X(by) X(blend) X(through) X(displace) \
-    X(of) X(color) X(rough) X(metal) X(texture) X(normals) X(lay) X(fitted) X(walk) X(tag) X(report) X(with) X(footprint) X(extrude) X(offset) \
+    X(of) X(color) X(rough) X(metal) X(texture) X(normals) X(lay) X(fitted) X(walk) X(tag) X(report) X(with) \
+    X(footprint) X(extrude) X(offset) \
     X(setback) X(court) X(rectify) X(inner) X(split) X(snap) X(turtle) X(row) X(around) X(faces) X(network) \
     X(lots) X(place) X(variety) X(clad) X(thickness) X(tile) X(mirror)
 // clang-format on

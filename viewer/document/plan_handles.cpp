@@ -130,11 +130,11 @@ public:
         }
         std::vector<TextEdit> edits;
         for (const size_t i : moved) {
-            const double stepX = isShare() ? .001 : step_m, stepZ = stepX;
-            if (std::abs(values[i].x - points_[i].x.value) > stepX / 2)
-                edits.push_back(written(points_[i].x, values[i].x, stepX));
-            if (std::abs(values[i].z - points_[i].z.value) > stepZ / 2)
-                edits.push_back(written(points_[i].z, values[i].z, stepZ));
+            const double step = isShare() ? .001 : step_m;
+            if (std::abs(values[i].x - points_[i].x.value) > step / 2)
+                edits.push_back(written(points_[i].x, values[i].x, step));
+            if (std::abs(values[i].z - points_[i].z.value) > step / 2)
+                edits.push_back(written(points_[i].z, values[i].z, step));
         }
         return edits;
     }

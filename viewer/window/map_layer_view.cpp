@@ -45,7 +45,7 @@ bool MapLayerView::choose(Workbench& bench) {
     }
     if (widgets::choice(bench.report, "look.map", names, at, ImGui::GetFontSize() * 7)) {
         chosen_ = at == 0 ? "" : names[static_cast<size_t>(at)];
-        shown_ = nullptr;
+        shown_.reset();
     }
     widgets::hint("A map of the grammar over the ground");
     return true;
@@ -62,7 +62,7 @@ void MapLayerView::draw(Workbench& bench, const Projection& project, ImDrawList&
     const auto& maps = derivation.grammar->maps;
     const auto map = std::find_if(maps.begin(), maps.end(), [&](const rules::Map& m) { return m.name == chosen_; });
     if (map == maps.end()) return;
-    if (shown_ != bench.shown()) {
+    if (shown_.lock() != bench.session.model()) {
         const derive::Scope& ground = derivation.tree.shapes[document::widestShape(derivation.tree)].scope;
         const Vec3d h = ground.half(), c = ground.centre;
         const plan::Box2 area{{c.x - h.x, c.z - h.z}, {c.x + h.x, c.z + h.z}};
@@ -71,7 +71,7 @@ void MapLayerView::draw(Workbench& bench, const Projection& project, ImDrawList&
         auto asked = derive::mapLayer(derivation, static_cast<uint32_t>(map - maps.begin()), area,
                                       static_cast<uint32_t>(std::ceil(area.size().x / cell_m)),
                                       static_cast<uint32_t>(std::ceil(area.size().z / cell_m)));
-        shown_ = bench.shown();
+        shown_ = bench.session.model();
         layer_ = asked.ok() ? std::move(*asked) : derive::MapLayer{};
         if (!asked.ok()) bench.say(asked.error().message, true);
     }

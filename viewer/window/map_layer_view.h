@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grammar/derive/map_layer.h"
+#include "viewer/document/session.h"
 
 namespace sgm::window {
 
@@ -29,8 +30,8 @@ private:
 
     std::string chosen_;  ///< a map by its name, which outlives models
     derive::MapLayer layer_;
-    double height_m_ = 0;          ///< of the sheet
-    const void* shown_ = nullptr;  ///< the model that the layer is of
+    double height_m_ = 0;                              ///< of the sheet
+    std::weak_ptr<const document::BuiltModel> shown_;  ///< the model that the layer is of
 };
 
 }  // namespace sgm::window

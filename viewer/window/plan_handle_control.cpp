@@ -27,10 +27,10 @@ double pixel_m(const Projection& project, Vec3d at) {
 }  // namespace
 
 void PlanHandleControl::renew(const Workbench& bench) {
-    if (drag_ || (shown_ == bench.shown() && selected_ == bench.selected())) return;
+    if (drag_ || (shown_.lock() == bench.session.model() && selected_ == bench.selected())) return;
     if (!bench.shown() || !document::isCurrent(bench.document, *bench.shown())) return;
     handles_ = document::PlanHandles::of(bench.document, *bench.shown(), bench.selected());
-    shown_ = bench.shown();
+    shown_ = bench.session.model();
     selected_ = bench.selected();
 }
 
@@ -77,7 +77,7 @@ void PlanHandleControl::drag(Workbench& bench, const Projection& project) {
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
         bench.document.endDrag();
         drag_.reset();
-        shown_ = nullptr;
+        shown_.reset();
         return;
     }
     const auto place = onLevel(project, ImGui::GetIO().MousePos, drag_->from.y);

@@ -31,7 +31,7 @@ private:
     void drag(Workbench& bench, const Projection& project);
 
     document::PlanHandles handles_;
-    const void* shown_ = nullptr;  ///< the model and the selection that they are of
+    std::weak_ptr<const document::BuiltModel> shown_;  ///< the model and the selection that they are of
     derive::ShapeId selected_ = derive::none;
     std::optional<Drag> drag_;
 };
