@@ -111,8 +111,12 @@ public:
         if (roads_.streets && !judgeOwn(own)) return false;
         if (grown->edges().empty()) warnOfNoRoad();
         terrain_.grade(*grown, parameters_);
-        return runGround() && runBores(*grown) && runOutline("water", land_.water) && runOutline("park", land_.park) &&
-               runRoads(*grown) && runBlocks(*grown);
+        const auto once = [&](std::function<bool(Vec2)> holds) {
+            return town::remembered(std::move(holds), parameters_.lo, parameters_.hi, cellOf());
+        };
+        const town::LandCuts cuts{once(land_.water), once(land_.park), cellOf()};
+        return runGround() && runBores(*grown) && runOutline("water", cuts.water) && runOutline("park", cuts.park) &&
+               runRoads(*grown) && runBlocks(*grown, cuts);
     }
 
 private:
@@ -280,8 +284,7 @@ private:
         return true;
     }
 
-    bool runBlocks(const RoadGraph& graph) {
-        const town::LandCuts cuts{land_.water, land_.park, cellOf()};
+    bool runBlocks(const RoadGraph& graph, const town::LandCuts& cuts) {
         for (const town::Face& face : town::facesOf(graph)) {
             if (cancelled(context_.progress())) return context_.fail(cancelledError(), parts_.span);
             for (const town::Block& block : town::blocksOf(graph, parameters_, face, cuts))

@@ -19,7 +19,11 @@
 #include "modeler/field/primitives.h"
 #include "modeler/image/image_file.h"
 #include "modeler/plan/read.h"
-#include "modeler/town/grow.h"
+#include "modeler/town/road_parameters.h"
+
+namespace sgm::town {
+struct OwnStreets;
+}
 
 namespace sgm::rules {
 

@@ -1,5 +1,5 @@
-// The settings of `roads`: what is asked at every place, the words, and the numbers (modeler/town/grow.h has those).
-// Enters: nothing. Leaves: rows. Assumes that `network` gives each its meaning.
+// The settings of `roads`: what is asked at every place, the words, and the numbers (modeler/town/road_parameters.h has
+// those). Enters: nothing. Leaves: rows. Assumes that `network` gives each its meaning.
 #pragma once
 
 #include <optional>

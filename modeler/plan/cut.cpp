@@ -1,8 +1,10 @@
 #include "modeler/plan/cut.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "modeler/plan/edit.h"
+#include "modeler/plan/ring_parts.h"
 
 namespace sgm::plan {
 namespace {
@@ -25,12 +27,25 @@ double coordinateOfArea(const Footprint& footprint, int axis, double wanted) {
     return hi;
 }
 
+/// Of one polygon that the line cuts into two at most.
+std::optional<Footprint> clippedOnce(const Footprint& footprint, const HalfPlane& keep) {
+    constexpr double leastArea_m2 = 1e-5;
+    if (footprint.polygons.size() != 1 || !footprint.polygons[0].courts.empty()) return std::nullopt;
+    const Ring& outline = footprint.polygons[0].outer;
+    if (!isCutOnce(outline, keep.normal, keep.offset)) return std::nullopt;
+    Ring ring = partBelow(outline, keep.normal, keep.offset);
+    Footprint part{{}, footprint.tags};
+    if (ring.size() >= 3 && signedArea(ring) > leastArea_m2) part.polygons.push_back({std::move(ring), {}});
+    return part;
+}
+
 }  // namespace
 
 Footprint clipped(const Footprint& footprint, const HalfPlane& keep) {
     const double l = length(keep.normal);
     const Box2 box = bounds(footprint);
     if (footprint.empty() || !(l > 0)) return footprint;
+    if (auto part = clippedOnce(footprint, keep)) return std::move(*part);
     const Vec2 n = keep.normal * (1 / l), along{-n.z, n.x};
     // A rectangle that holds all of the footprint on the near side of the line.
     const double reach = length(box.size()) + 1;

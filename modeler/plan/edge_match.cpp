@@ -19,16 +19,17 @@ struct Line {
 
 constexpr double sure_m = 4e-6;
 
-Edge bestFor(Vec2 a, Vec2 b, const std::vector<Line>& lines, const std::vector<SourceEdge>& sources) {
+/// The line that fits the segment from a to b best; the search begins at `first`.
+size_t bestFor(Vec2 a, Vec2 b, const std::vector<Line>& lines, size_t first) {
     double least = Box2::far;
-    size_t best = 0;
-    for (size_t i = 0; i < lines.size(); ++i) {
+    size_t best = first;
+    for (size_t n = 0, i = first; n < lines.size(); ++n, i = i + 1 == lines.size() ? 0 : i + 1) {
         const double misfit = lines[i].misfit(a, b);
         if (misfit >= least) continue;
         least = misfit, best = i;
         if (least < sure_m && std::abs(dot(lines[i].normal, b - a)) < sure_m) break;
     }
-    return sources[best].edge;
+    return best;
 }
 
 }  // namespace
@@ -42,8 +43,13 @@ void matchEdges(Footprint& footprint, const std::vector<SourceEdge>& sources) {
         const Vec2 along = (s.to - s.from) * (1 / l);
         lines.push_back({s.from, along, {along.z, -along.x}, l, s.out});
     }
+    // Neighbours come from neighbours for the most part: the search begins where the last one ended.
+    size_t last = 0;
     const auto match = [&](Ring& ring) {
-        for (size_t i = 0; i < ring.size(); ++i) ring.edges[i] = bestFor(ring.from(i), ring.to(i), lines, sources);
+        for (size_t i = 0; i < ring.size(); ++i) {
+            last = bestFor(ring.from(i), ring.to(i), lines, last);
+            ring.edges[i] = sources[last].edge;
+        }
     };
     for (Polygon& polygon : footprint.polygons) {
         match(polygon.outer);

@@ -1,18 +1,15 @@
 // Setbacks: what is nearer to an edge than its distance goes, by strips along edges and wedges at corners.
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "modeler/plan/clipper_paths.h"
 #include "modeler/plan/edge_match.h"
 #include "modeler/plan/edit.h"
+#include "modeler/plan/ring_parts.h"
 #include "modeler/plan/validate.h"
 
 namespace sgm::plan {
 namespace {
-
-/// How far off the corner of two moved lines may lie, in the larger of their distances.
-constexpr double mitreLimit = 4;
 
 LatticePath strip(std::initializer_list<Vec2> corners) {
     Ring ring = ringOf(corners);
@@ -20,23 +17,6 @@ LatticePath strip(std::initializer_list<Vec2> corners) {
     LatticePath path;
     for (const Vec2 p : ring.points) path.push_back(latticePoint(p));
     return path;
-}
-
-/// An edge and the one after it in its ring, with their distances.
-struct Corner {
-    const PlacedEdge &before, &after;
-    double in, inAfter;
-};
-
-/// Where the moved lines of both edges cross, if not too far off.
-std::optional<Vec2> movedCorner(const Corner& c) {
-    const Vec2 n = c.before.normal(), m = c.after.normal();
-    const double by = cross(n, m);
-    if (std::abs(by) < 1e-9) return {};
-    // dot(n, p) = −in, dot(m, p) = −inAfter about the corner.
-    const Vec2 p{(-c.in * m.z + c.inAfter * n.z) / by, (-c.inAfter * n.x + c.in * m.x) / by};
-    if (length(p) > mitreLimit * std::max(c.in, c.inAfter)) return {};
-    return c.after.from + p;
 }
 
 /// The part of a strip that hangs together with its edge inside the footprint: not what lies beyond a gap.
@@ -77,13 +57,15 @@ LatticePaths stripsOf(const Footprint& footprint, const std::vector<PlacedEdge>&
             else
                 for (LatticePath& part : partAt(e, whole, footprint)) strips.push_back(std::move(part));
         }
-        const Corner corner{e, edges[next], in[i], in[next]};
-        const Vec2 at = e.to, foot = at - e.normal() * in[i], footAfter = at - edges[next].normal() * in[next];
-        const bool reflex = cross(e.to - e.from, edges[next].to - edges[next].from) < 0;
-        if (const auto tip = movedCorner(corner)) {
-            strips.push_back(strip({at, foot, *tip}));
-            strips.push_back(strip({at, *tip, footAfter}));
-        } else if (reflex) {
+        const Vec2 n = e.normal(), m = edges[next].normal(), at = e.to, foot = at - n * in[i];
+        const Vec2 footAfter = at - m * in[next];
+        const double turn = cross(n, m);
+        const auto corner = cornerMovedIn({-n.z, n.x}, {-m.z, m.x}, in[i], in[next]);
+        if (corner && std::abs(turn) >= 1e-9) {
+            const Vec2 tip = at + *corner;
+            strips.push_back(strip({at, foot, tip}));
+            strips.push_back(strip({at, tip, footAfter}));
+        } else if (turn < 0) {
             strips.push_back(strip({at, foot, footAfter}));
         }
     }
@@ -100,6 +82,12 @@ Footprint setback(const Footprint& footprint, std::span<const double> distances_
         out[i] = -in[i];
     }
     if (std::all_of(in.begin(), in.end(), [](double d) { return d == 0; })) return footprint;
+    if (footprint.polygons.size() == 1 && footprint.polygons[0].courts.empty())
+        if (auto ring = movedIn(footprint.polygons[0].outer, in)) {
+            Footprint result{{}, footprint.tags};
+            if (ring->size() >= 3) result.polygons.push_back({std::move(*ring), {}});
+            return result;
+        }
     Footprint result = booleanOf(PathBoolean::Difference, pathsOf(footprint), stripsOf(footprint, edges, in));
     result.tags = footprint.tags;
     matchEdges(result, sourcesOf(footprint, out));

@@ -5,6 +5,7 @@
 
 #include "modeler/core/random.h"
 #include "modeler/plan/edit.h"
+#include "modeler/plan/validate.h"
 #include "modeler/town/lot_parts.h"
 #include "modeler/town/outline.h"
 
@@ -41,21 +42,6 @@ Footprint stripOf(const RoadGraph& graph, const RoadParameters& parameters, uint
     plan::Ring ring = plan::ringOf({a - d - n, b + d - n, b + d + n, a - d + n}, tagged);
     out.polygons.push_back({std::move(ring), {}});
     return out;
-}
-
-/// The outline with every edge moved in by its distance, where it is convex: what all the moved lines leave. Most
-/// blocks are, and this is ten times as fast as the general way.
-std::optional<Footprint> insetConvex(const Footprint& land, const std::vector<double>& distances) {
-    if (land.polygons.size() != 1 || !isConvex(land.polygons[0])) return std::nullopt;
-    const plan::Ring& outline = land.polygons[0].outer;
-    plan::Ring ring = outline;
-    for (size_t i = 0; i < outline.size() && ring.size() >= 3; ++i) {
-        const Vec2 d = unit(outline.to(i) - outline.from(i)), out{d.z, -d.x};
-        ring = convexPart(ring, out, dot(out, outline.from(i)) - distances[i], outline.edges[i]);
-    }
-    Footprint left{{}, land.tags};
-    if (ring.size() >= 3) left.polygons.push_back({std::move(ring), {}});
-    return left;
 }
 
 /// Where `holds` in the box of the land, taken off it. Edges of `what` keep their tag.
@@ -141,6 +127,7 @@ std::optional<Footprint> crossingOf(const std::vector<Arm>& arms) {
     if (points.size() < 3) return std::nullopt;
     Footprint raw;
     raw.polygons.push_back({plan::ringOf(std::move(points)), {}});
+    if (!plan::firstFault(raw)) return raw;
     auto resolved = plan::resolved(raw);
     if (!resolved.ok() || resolved->empty()) return std::nullopt;
     return std::move(*resolved);
@@ -162,8 +149,7 @@ std::vector<Block> blocksOf(const RoadGraph& graph, const RoadParameters& parame
         const bool highway = land.tags[e.edge.tag].find("highway") != std::string::npos;
         distances.push_back(parameters.width_m(highway ? RoadClass::Highway : RoadClass::Street) / 2);
     }
-    const auto inset = insetConvex(land, distances);
-    land = inset ? *inset : plan::setback(land, distances);
+    land = plan::setback(land, distances);
     for (const uint32_t spur : face.spurs)
         land = plan::boolean(Boolean::Difference, land, stripOf(graph, parameters, spur));
     cut(land, cuts.water, cuts.cell_m, "water");

@@ -27,8 +27,18 @@ struct Parted {
     std::vector<uint32_t> spurs;
 };
 
+/// Whether some number is there twice.
+bool repeats(std::vector<uint32_t>& numbers) {
+    std::sort(numbers.begin(), numbers.end());
+    return std::adjacent_find(numbers.begin(), numbers.end()) != numbers.end();
+}
+
 /// Loops without a common edge: what lies between both directions of an edge is a loop of its own.
 void partAtSpurs(const Loop& walk, Parted& out) {
+    std::vector<uint32_t> edges;
+    edges.reserve(walk.size());
+    for (const HalfEdge h : walk) edges.push_back(edgeOf(h));
+    if (!repeats(edges)) return out.loops.push_back(walk);
     std::map<uint32_t, int> times;
     for (const HalfEdge h : walk) ++times[edgeOf(h)];
     std::vector<Loop> open(1);
@@ -51,6 +61,10 @@ void partAtSpurs(const Loop& walk, Parted& out) {
 
 /// Loops that meet no node twice.
 void partAtNodes(const RoadGraph& graph, const Loop& loop, std::vector<Loop>& out) {
+    std::vector<uint32_t> nodes;
+    nodes.reserve(loop.size());
+    for (const HalfEdge h : loop) nodes.push_back(beginOf(graph, h));
+    if (!repeats(nodes)) return out.push_back(loop);
     Loop stack;
     std::map<uint32_t, size_t> place;  // of the node where each half-edge on the stack begins
     for (const HalfEdge h : loop) {

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "modeler/core/random.h"
-#include "modeler/plan/cut.h"
 #include "modeler/town/point.h"
 
 namespace sgm::town {
@@ -29,14 +28,24 @@ OrientedBox boxAlong(const plan::Ring& outline, Vec2 u) {
 /// The longest run of street edges and its direction.
 std::pair<double, Vec2> longestRun(const plan::Ring& ring, const StreetTags& isStreet) {
     constexpr double bend = .94;  // cos 20°
+    const size_t n = ring.size();
+    const auto next = [n](size_t i) { return i + 1 == n ? 0 : i + 1; };
+    const auto wayOf = [&](size_t i) { return unit(ring.to(i) - ring.from(i)); };
     std::pair<double, Vec2> best{0, {1, 0}};
-    for (size_t i = 0; i < ring.size(); ++i) {
-        Vec2 sum, last;
+    Vec2 before = wayOf(n - 1);
+    bool beganSomewhere = false;
+    for (size_t i = 0; i < n; ++i) {
+        const Vec2 first = wayOf(i);
+        const bool goesOn = isStreet(ring.edges[i == 0 ? n - 1 : i - 1]) && dot(first, before) >= bend;
+        before = first;
+        // A run that the edge before belongs to as well is part of a longer one; all of a ring is a run from anywhere.
+        if (!isStreet(ring.edges[i]) || (goesOn && (beganSomewhere || i + 1 < n))) continue;
+        beganSomewhere = true;
+        Vec2 sum, last = first;
         double run = 0;
-        for (size_t k = 0, at = i; k < ring.size(); ++k, at = at + 1 == ring.size() ? 0 : at + 1) {
-            if (!isStreet(ring.edges[at])) break;
-            const Vec2 d = ring.to(at) - ring.from(at), way = unit(d);
-            if (k > 0 && dot(way, last) < bend) break;
+        for (size_t k = 0, at = i; k < n && isStreet(ring.edges[at]); ++k, at = next(at)) {
+            const Vec2 d = ring.to(at) - ring.from(at), way = k == 0 ? first : unit(d);
+            if (dot(way, last) < bend) break;
             sum = sum + d, run += lengthOf(d), last = way;
         }
         if (run > best.first) best = {run, unit(sum)};
@@ -62,50 +71,6 @@ bool isCorner(const plan::Polygon& land, const StreetTags& isStreet) {
 
 StreetTags::StreetTags(const Footprint& block) {
     for (const std::string& tag : block.tags) isStreet_.push_back(tag.starts_with("street"));
-}
-
-bool isConvex(const plan::Polygon& land) {
-    if (!land.courts.empty()) return false;
-    const plan::Ring& ring = land.outer;
-    for (size_t i = 0; i < ring.size(); ++i) {
-        const size_t k = i + 1 == ring.size() ? 0 : i + 1;
-        if (cross(ring.to(i) - ring.from(i), ring.to(k) - ring.from(k)) < 0) return false;
-    }
-    return true;
-}
-
-plan::Ring convexPart(const plan::Ring& ring, Vec2 n, double at, plan::Edge edge) {
-    constexpr double same_m = 1e-3;
-    plan::Ring out;
-    out.points.reserve(ring.size() + 1), out.edges.reserve(ring.size() + 1);
-    const auto isSame = [](Vec2 d) { return dot(d, d) < same_m * same_m; };
-    const auto add = [&](Vec2 p, plan::Edge own) {
-        if (!out.points.empty() && isSame(p - out.points.back()))
-            out.edges.back() = own;
-        else
-            out.points.push_back(p), out.edges.push_back(own);
-    };
-    for (size_t i = 0; i < ring.size(); ++i) {
-        const Vec2 a = ring.from(i), b = ring.to(i);
-        const double u = dot(n, a) - at, v = dot(n, b) - at;
-        if (u <= 0) add(a, ring.edges[i]);
-        if ((u < 0 && v > 0) || (u > 0 && v < 0)) {
-            const Vec2 p = a + (b - a) * (u / (u - v));
-            add(p, u < 0 ? edge : ring.edges[i]);
-        } else if (u == 0 && v > 0 && !out.edges.empty()) {
-            out.edges.back() = edge;
-        }
-    }
-    if (out.size() > 1 && isSame(out.points.front() - out.points.back())) out.points.pop_back(), out.edges.pop_back();
-    return out;
-}
-
-Footprint partBelow(const Footprint& land, Vec2 n, double at) {
-    if (land.polygons.size() != 1 || !isConvex(land.polygons[0])) return plan::clipped(land, {n, at});
-    plan::Ring ring = convexPart(land.polygons[0].outer, n, at);
-    Footprint part{{}, land.tags};
-    if (ring.size() >= 3) part.polygons.push_back({std::move(ring), {}});
-    return part;
 }
 
 OrientedBox leastBox(const plan::Ring& outline) {

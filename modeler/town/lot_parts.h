@@ -27,13 +27,6 @@ struct OrientedBox {
 };
 /// The least box; one in the direction of an edge is the least of all for convex outlines.
 OrientedBox leastBox(const plan::Ring& outline);
-/// The part where dot(n, p) ≤ at; edges keep their tags, the cut has none.
-plan::Footprint partBelow(const plan::Footprint& land, plan::Vec2 n, double at);
-/// Whether the outline turns one way alone, without courts.
-bool isConvex(const plan::Polygon& land);
-/// The part of a convex outline where dot(n, p) ≤ at (Sutherland & Hodgman 1974): exact to rounding; the cut is `edge`.
-/// Fewer than three points where nothing is left.
-plan::Ring convexPart(const plan::Ring& ring, plan::Vec2 n, double at, plan::Edge edge = {0, plan::EdgeSource::Cut});
 /// Metres along streets.
 double streetOf(const plan::Polygon& land, const StreetTags& isStreet);
 /// Metres of the longest side along a street; pieces that bend by less than 20° are one side.

@@ -5,6 +5,7 @@
 
 #include "modeler/core/random.h"
 #include "modeler/plan/cut.h"
+#include "modeler/plan/ring_parts.h"
 #include "modeler/town/lot_parts.h"
 #include "modeler/town/point.h"
 
@@ -37,13 +38,13 @@ private:
     std::vector<Polygon> cutAcross(const Polygon& land, Vec2 n, double at) const {
         std::vector<Polygon> parts;
         parts.reserve(2);
-        const bool convex = isConvex(land);
+        const bool once = land.courts.empty() && plan::isCutOnce(land.outer, n, at);
         const auto add = [&](Polygon&& part) {
             if (part.outer.size() >= 3 && area(part) > 1e-3) parts.push_back(std::move(part));
         };
         for (const double side : {1.0, -1.0}) {
-            if (convex)
-                add({convexPart(land.outer, n * side, at * side), {}});
+            if (once)
+                add({plan::partBelow(land.outer, n * side, at * side), {}});
             else
                 for (Polygon& polygon : plan::clipped({{land}, tags_}, {n * side, at * side}).polygons)
                     add(std::move(polygon));

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "modeler/core/random.h"
+#include "modeler/plan/cut.h"
 #include "modeler/plan/edit.h"
 #include "modeler/plan/validate.h"
 #include "modeler/town/join_pieces.h"
@@ -169,8 +170,8 @@ private:
             const double at = dot(edges_[e].from, n) + deep_m_;
             std::vector<Footprint> kept;
             for (const Footprint& piece : land_[e]) {
-                keep(kept, partBelow(piece, n, at));
-                keep(behind_, partBelow(piece, n * -1, -at));
+                keep(kept, plan::clipped(piece, {n, at}));
+                keep(behind_, plan::clipped(piece, {n * -1, -at}));
             }
             land_[e] = std::move(kept);
         }
@@ -290,8 +291,8 @@ private:
         const double origin = dot(edges_[e].from, d) - a;
         for (const Footprint& piece : land_[e]) {
             Footprint part = piece;
-            if (from > a + 1e-6) part = partBelow(part, d * -1, -(origin + from));
-            if (to < b - 1e-6 && !part.empty()) part = partBelow(part, d, origin + to);
+            if (from > a + 1e-6) part = plan::clipped(part, {d * -1, -(origin + from)});
+            if (to < b - 1e-6 && !part.empty()) part = plan::clipped(part, {d, origin + to});
             keep(into, part);
         }
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "modeler/plan/edit.h"
 #include "modeler/plan/validate.h"
@@ -75,6 +76,7 @@ private:
     /// The pieces of outline in one cell; with the inside on the left they run from one cell edge to another.
     void march(int i, int k) {
         const bool in[4] = {inside(i, k), inside(i + 1, k), inside(i + 1, k + 1), inside(i, k + 1)};
+        if (in[0] == in[1] && in[0] == in[2] && in[0] == in[3]) return;
         const CellEdge edges[4] = {{i, k, 0}, {i + 1, k, 1}, {i, k + 1, 0}, {i, k, 1}};  // counter-clockwise
         std::vector<int> leaves, enters;  // going round: edges where the inside ends, where it begins
         for (int s = 0; s < 4; ++s) {
@@ -98,7 +100,38 @@ private:
     std::map<CellEdge, CellEdge> next_;
 };
 
+/// What a function has answered at the points of a lattice.
+struct LatticeSamples {
+    std::function<bool(Vec2)> holds;
+    double cell_m = 1;
+    int x0 = 0, z0 = 0, nx = 0, nz = 0;
+    enum class State : uint8_t { Unknown, No, Yes };
+    std::vector<State> known;
+
+    bool at(Vec2 p) {
+        const double i = std::nearbyint(p.x / cell_m), k = std::nearbyint(p.z / cell_m);
+        const bool isPoint = i * cell_m == p.x && k * cell_m == p.z;
+        if (!isPoint || i < x0 || k < z0 || i >= x0 + nx || k >= z0 + nz) return holds(p);
+        State& state = known[static_cast<size_t>(k - z0) * static_cast<size_t>(nx) + static_cast<size_t>(i - x0)];
+        if (state == State::Unknown) state = holds(p) ? State::Yes : State::No;
+        return state == State::Yes;
+    }
+};
+
 }  // namespace
+
+std::function<bool(Vec2)> remembered(std::function<bool(Vec2)> holds, Vec2 lo, Vec2 hi, double cell_m) {
+    if (!holds) return holds;
+    const auto samples = std::make_shared<LatticeSamples>();
+    samples->holds = std::move(holds), samples->cell_m = cell_m;
+    samples->x0 = static_cast<int>(std::floor(lo.x / cell_m)),
+    samples->z0 = static_cast<int>(std::floor(lo.z / cell_m));
+    samples->nx = static_cast<int>(std::ceil(hi.x / cell_m)) - samples->x0 + 1;
+    samples->nz = static_cast<int>(std::ceil(hi.z / cell_m)) - samples->z0 + 1;
+    samples->known.assign(static_cast<size_t>(samples->nx) * static_cast<size_t>(samples->nz),
+                          LatticeSamples::State::Unknown);
+    return [samples](Vec2 p) { return samples->at(p); };
+}
 
 plan::Footprint outlineOf(const std::function<bool(Vec2)>& holds, Vec2 lo, Vec2 hi, double cell_m,
                           const std::string& tag) {

@@ -6,11 +6,13 @@
 namespace sgm::town {
 namespace {
 
-constexpr int cellBits = 17;  // cells of 131.072 m
+constexpr int cellBits = 16;  // cells of 65.536 m
 
-uint64_t cellKey(int32_t x, int32_t z) {
+uint64_t pageKey(int32_t x, int32_t z) {
     return static_cast<uint64_t>(static_cast<uint32_t>(x)) << 32 | static_cast<uint32_t>(z);
 }
+
+int32_t millimetres(double metres) { return static_cast<int32_t>(std::ceil(metres * 1000)); }
 
 /// Whether p, on the line through shared → end, goes the same way as end: two edges of one node would overlap.
 bool runsAlong(Point shared, Point end, Point p) {
@@ -21,32 +23,55 @@ bool runsAlong(Point shared, Point end, Point p) {
 
 }  // namespace
 
-template <class Visit>
-void RoadGraph::eachCell(Point a, Point b, int32_t margin_mm, Visit&& visit) {
-    const int32_t x0 = (std::min(a.x, b.x) - margin_mm) >> cellBits, x1 = (std::max(a.x, b.x) + margin_mm) >> cellBits;
-    const int32_t z0 = (std::min(a.z, b.z) - margin_mm) >> cellBits, z1 = (std::max(a.z, b.z) + margin_mm) >> cellBits;
-    for (int32_t x = x0; x <= x1; ++x)
-        for (int32_t z = z0; z <= z1; ++z) visit(cellKey(x, z));
+RoadGraph::Box RoadGraph::boxOf(Point a, Point b, int32_t margin_mm) {
+    return {{std::min(a.x, b.x) - margin_mm, std::min(a.z, b.z) - margin_mm},
+            {std::max(a.x, b.x) + margin_mm, std::max(a.z, b.z) + margin_mm}};
 }
 
-std::vector<uint32_t> RoadGraph::gather(const Cells& cells, Point a, Point b, double margin_m) {
-    std::vector<uint32_t> found;
-    found.reserve(32);
-    eachCell(a, b, static_cast<int32_t>(std::ceil(margin_m * 1000)), [&](uint64_t key) {
-        if (const auto cell = cells.find(key); cell != cells.end())
-            found.insert(found.end(), cell->second.begin(), cell->second.end());
+template <class Of, class Visit>
+void RoadGraph::eachCell(Of& pages, const Box& box, Visit&& visit) {
+    constexpr int32_t cellsAlong = 1 << pageBits;
+    const Point lo{box.lo.x >> cellBits, box.lo.z >> cellBits}, hi{box.hi.x >> cellBits, box.hi.z >> cellBits};
+    for (int32_t px = lo.x >> pageBits; px <= hi.x >> pageBits; ++px)
+        for (int32_t pz = lo.z >> pageBits; pz <= hi.z >> pageBits; ++pz) {
+            std::conditional_t<std::is_const_v<Of>, const Page, Page>* page;
+            if constexpr (std::is_const_v<Of>) {
+                const auto found = pages.find(pageKey(px, pz));
+                if (found == pages.end()) continue;
+                page = &found->second;
+            } else {
+                page = &pages[pageKey(px, pz)];
+            }
+            const Point first{px * cellsAlong, pz * cellsAlong};
+            const int32_t endX = std::min(hi.x - first.x + 1, cellsAlong),
+                          endZ = std::min(hi.z - first.z + 1, cellsAlong);
+            for (int32_t x = std::max(lo.x - first.x, 0); x < endX; ++x)
+                for (int32_t z = std::max(lo.z - first.z, 0); z < endZ; ++z)
+                    visit((*page)[static_cast<size_t>(x * cellsAlong + z)]);
+        }
+}
+
+Nearby RoadGraph::gather(const Pages& pages, const Box& box) {
+    Nearby found;
+    eachCell(pages, box, [&](const Cell& cell) {
+        for (const Entry& entry : cell) {
+            const auto& [lo, hi] = entry.box;
+            if (lo.x <= box.hi.x && hi.x >= box.lo.x && lo.z <= box.hi.z && hi.z >= box.lo.z)
+                found.push_back(entry.index);
+        }
     });
+    if (found.size() < 2) return found;
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;
 }
 
-std::vector<uint32_t> RoadGraph::edgesNear(Point a, Point b, double margin_m) const {
-    return gather(edgeCells_, a, b, margin_m);
+Nearby RoadGraph::edgesNear(Point a, Point b, double margin_m) const {
+    return gather(edgePages_, boxOf(a, b, millimetres(margin_m)));
 }
 
-std::vector<uint32_t> RoadGraph::nodesNear(Point a, Point b, double margin_m) const {
-    return gather(nodeCells_, a, b, margin_m);
+Nearby RoadGraph::nodesNear(Point a, Point b, double margin_m) const {
+    return gather(nodePages_, boxOf(a, b, millimetres(margin_m)));
 }
 
 bool RoadGraph::areJoined(uint32_t a, uint32_t b) const {
@@ -57,16 +82,19 @@ bool RoadGraph::areJoined(uint32_t a, uint32_t b) const {
 uint32_t RoadGraph::addNode(Point at) {
     const auto index = static_cast<uint32_t>(nodes_.size());
     nodes_.push_back({at, {}});
-    nodeCells_[cellKey(at.x >> cellBits, at.z >> cellBits)].push_back(index);
+    nodes_.back().edges.reserve(4);
+    eachCell(nodePages_, boxOf(at, at), [&](Cell& cell) { cell.push_back({boxOf(at, at), index}); });
     return index;
 }
 
 void RoadGraph::enter(uint32_t edge) {
-    eachCell(at(edges_[edge].a), at(edges_[edge].b), 0, [&](uint64_t key) { edgeCells_[key].push_back(edge); });
+    const Box box = boxOf(at(edges_[edge].a), at(edges_[edge].b));
+    eachCell(edgePages_, box, [&](Cell& cell) { cell.push_back({box, edge}); });
 }
 
 void RoadGraph::leave(uint32_t edge) {
-    eachCell(at(edges_[edge].a), at(edges_[edge].b), 0, [&](uint64_t key) { std::erase(edgeCells_[key], edge); });
+    eachCell(edgePages_, boxOf(at(edges_[edge].a), at(edges_[edge].b)),
+             [&](Cell& cell) { std::erase_if(cell, [&](const Entry& entry) { return entry.index == edge; }); });
 }
 
 uint32_t RoadGraph::addEdge(uint32_t a, uint32_t b, RoadClass kind, bool bridge, bool own, uint32_t curve,
@@ -100,6 +128,8 @@ void RoadGraph::remove(uint32_t edge) {
 
 void RoadGraph::compact() {
     RoadGraph kept;
+    kept.nodes_.reserve(nodes_.size());
+    kept.edges_.reserve(edges_.size());
     std::vector<uint32_t> number(nodes_.size(), noIndex);
     for (uint32_t n = 0; n < nodes_.size(); ++n)
         if (!nodes_[n].edges.empty()) number[n] = kept.addNode(nodes_[n].at);

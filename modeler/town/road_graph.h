@@ -3,18 +3,22 @@
 // edge asked `isFree` before; then no two edges share a point but a common node, decided exactly on the lattice.
 #pragma once
 
+#include <array>
+#include <boost/container/small_vector.hpp>
 #include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "modeler/town/point.h"
+#include "modeler/town/road_parameters.h"
 
 namespace sgm::town {
 
-enum class RoadClass : uint8_t { Highway, Street };
-
 inline constexpr uint32_t noIndex = 0xffffffffu;
+
+/// Numbers of edges or nodes near a place, for the most part so few that nothing is allocated.
+using Nearby = boost::container::small_vector<uint32_t, 24>;
 
 /// A crossing, a bend or a dead end.
 struct RoadNode {
@@ -56,24 +60,41 @@ public:
     void compact();
 
     /// Edges whose boxes come within `margin_m` of the box around a and b, each once, in ascending order.
-    std::vector<uint32_t> edgesNear(Point a, Point b, double margin_m) const;
+    Nearby edgesNear(Point a, Point b, double margin_m) const;
     /// Nodes within `margin_m` of the box around a and b, in ascending order.
-    std::vector<uint32_t> nodesNear(Point a, Point b, double margin_m) const;
+    Nearby nodesNear(Point a, Point b, double margin_m) const;
     /// Whether the segment from `a` to `b` shares no point with any edge but those that end at `nodeA` or `nodeB`
     /// (noIndex: a new place), nor with `but`; those may share that node alone.
     bool isFree(Point a, Point b, uint32_t nodeA, uint32_t nodeB, uint32_t but = noIndex) const;
 
 private:
-    using Cells = std::unordered_map<uint64_t, std::vector<uint32_t>>;
-    template <class Visit>
-    static void eachCell(Point a, Point b, int32_t margin_mm, Visit&& visit);
-    static std::vector<uint32_t> gather(const Cells& cells, Point a, Point b, double margin_m);
+    /// An axis-aligned rectangle of the lattice, its borders included.
+    struct Box {
+        Point lo, hi;
+    };
+    /// An edge or node that reaches into a cell. Its box lies beside its number: most of what a cell holds is too far
+    /// away, and is told so without a look at the graph.
+    struct Entry {
+        Box box;
+        uint32_t index = noIndex;
+    };
+    using Cell = std::vector<Entry>;
+    static constexpr int32_t pageBits = 4;
+    /// A square of cells side by side, so that most questions look up one.
+    using Page = std::array<Cell, size_t{1} << 2 * pageBits>;
+    using Pages = std::unordered_map<uint64_t, Page>;
+    /// Calls visit(cell) for each cell that the box reaches into; pages that aren't there are made unless `Of` is
+    /// const.
+    template <class Of, class Visit>
+    static void eachCell(Of& pages, const Box& box, Visit&& visit);
+    static Box boxOf(Point a, Point b, int32_t margin_mm = 0);
+    static Nearby gather(const Pages& pages, const Box& box);
     void enter(uint32_t edge);
     void leave(uint32_t edge);
 
     std::vector<RoadNode> nodes_;
     std::vector<RoadEdge> edges_;
-    Cells nodeCells_, edgeCells_;
+    Pages nodePages_, edgePages_;
 };
 
 }  // namespace sgm::town

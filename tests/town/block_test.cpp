@@ -157,6 +157,21 @@ TEST(Outlines, FollowTheirFormula) {
     EXPECT_NEAR(area(outlineOf(checkers, {-100, -100}, {100, 100}, 10, "")), 20000, 2500);
 }
 
+TEST(Outlines, OfNeighboursAskALatticePointOnce) {
+    size_t asked = 0;
+    const std::function<bool(Vec2)> disc = [&](Vec2 p) { return ++asked, length(p - Vec2{7, 3}) < 63; };
+    const auto once = remembered(disc, {-100, -100}, {100, 100}, 10);
+    const Footprint expected = outlineOf(disc, {-60, -100}, {100, 100}, 10, "water");
+    const size_t alone = asked;
+    EXPECT_EQ(outlineOf(once, {-60, -100}, {100, 100}, 10, "water"), expected);
+    const size_t first = asked - alone;
+    EXPECT_EQ(first, alone);
+    EXPECT_EQ(outlineOf(once, {-60, -100}, {100, 100}, 10, "water"), expected);
+    EXPECT_LT(asked - alone - first, first - 17 * 21 + 1);  // bisections alone
+    EXPECT_EQ(once({250, 0}), false);                       // beyond the rectangle
+    EXPECT_FALSE(remembered({}, {-1, -1}, {1, 1}, 1));
+}
+
 TEST(TownPlan, CanBeReadBack) {
     TownPlan plan;
     const Town town(5);
