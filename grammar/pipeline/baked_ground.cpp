@@ -62,6 +62,9 @@ Gathered gather(std::vector<mesh::Chunk> chunks, const std::vector<Columns>& cel
     return out;
 }
 
+/// The square of four by four whose ground is made together.
+Cell squareOf(const Cell& cell) { return cell.parent().parent(); }
+
 /// The box around pieces about `centre` and what hangs from them, in the model's frame.
 Box3f spaceOf(const std::vector<tiles::SurfacePiece>& pieces, Vec3d centre, double depth_m) {
     const Box3f box = tiles::boundsOf(pieces);
@@ -79,7 +82,6 @@ eval::Tape within(const eval::Tape& tape, const Box3f& box, eval::Workspace& wor
 }  // namespace
 
 std::vector<Cell> BakedGround::groupOf(const std::vector<Cell>& cells) {
-    const auto squareOf = [](const Cell& c) { return c.parent().parent(); };
     std::vector<Cell> group;
     for (const Cell& cell : cells)
         if (cell.level == cells.front().level && squareOf(cell) == squareOf(cells.front())) group.push_back(cell);
@@ -127,7 +129,7 @@ mesh::Grid BakedGround::gridOver(const std::vector<Cell>& group, Vec3i& corner) 
 }
 
 Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const std::vector<Cell>& group,
-                                                                           Context& context) const {
+                                                                           Context& context) {
     std::map<Cell, std::vector<tiles::SurfacePiece>> made;
     if (model_.lowered->field.bounds.empty() || group.empty()) return made;
     Vec3i corner;
@@ -147,7 +149,8 @@ Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const
         return skipped;
     };
     mesh::Counts counts;
-    const auto found = mesh::subdivide(model_.tape, grid, context.threads, context.progress, counts, filter);
+    const eval::Tape& tape = tapes_.over(squareOf(group.front()));
+    const auto found = mesh::subdivide(tape, grid, context.threads, context.progress, counts, filter);
     if (!found.ok()) return found.error();
     mesh::PolygonizeOptions options{.surface = mesh::Surface::Crisp, .threads = context.threads};
     auto chunks = mesh::meshBlocks(*found, grid, options, context.progress, counts);
@@ -162,7 +165,7 @@ Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const
     }
     if (request_.levels < 2 || space.empty()) return made;
     eval::Workspace workspace;
-    const eval::Tape around = within(model_.tape, space, workspace);
+    const eval::Tape around = within(tape, space, workspace);
     for (auto& [cell, pieces] : made)
         if (!pieces.empty()) addSkirts(cell, around, pieces);
     return made;

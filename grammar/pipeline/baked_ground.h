@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grammar/pipeline/model.h"
+#include "grammar/pipeline/square_tapes.h"
 #include "modeler/mesh/subdivide.h"
 #include "modeler/tiles/cell.h"
 #include "modeler/tiles/surface_buffer.h"
@@ -21,7 +22,8 @@ struct GroundRequest {
 
 class BakedGround {
 public:
-    BakedGround(const Model& model, const GroundRequest& request) : model_(model), request_(request) {}
+    BakedGround(const Model& model, const GroundRequest& request)
+        : model_(model), request_(request), tapes_(model.tape, model.lowered->field.bounds, request.side_m) {}
 
     /// Error::Usage where the grid has more cells than can be counted and its cells are no power of two.
     Status check() const;
@@ -30,7 +32,7 @@ public:
     static std::vector<tiles::Cell> groupOf(const std::vector<tiles::Cell>& cells);
     /// The pieces of each, about its centre. Errors of mesh::subdivide and mesh::meshBlocks.
     Result<std::map<tiles::Cell, std::vector<tiles::SurfacePiece>>> make(const std::vector<tiles::Cell>& group,
-                                                                         Context& context) const;
+                                                                         Context& context);
     /// Where vertices of a cell's ground may lie once packed, about its centre: places that neighbours share.
     tiles::QuantizationGrid placesOf(const tiles::Cell& cell) const;
     /// Edge of a cell of the grid, metres.
@@ -44,6 +46,7 @@ private:
 
     const Model& model_;
     const GroundRequest request_;
+    SquareTapes tapes_;
 };
 
 }  // namespace sgm::pipeline

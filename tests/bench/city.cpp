@@ -11,6 +11,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "grammar/pipeline/bake.h"
 #include "grammar/pipeline/load.h"
@@ -69,16 +70,20 @@ void readLibrary(const fs::path& folder, CityCosts& costs) {
     }
 }
 
-/// The cells that are baked: squares of four by four, whose ground is made together, drawn by their places; at least
-/// one cell.
+/// The cells that are baked: squares of sixteen by sixteen, as a worker has them one after the other, drawn by their
+/// places until there are enough; at least one.
 std::vector<size_t> drawn(const std::vector<tiles::Cell>& cells, double share) {
+    std::map<uint64_t, std::vector<size_t>> squares;  // in a random order
+    for (size_t i = 0; i < cells.size(); ++i)
+        squares[combine(combine(uint64_t(cells[i].level), uint64_t(uint32_t(cells[i].x >> 4))),
+                        uint64_t(uint32_t(cells[i].z >> 4)))]
+            .push_back(i);
     std::vector<size_t> out;
-    for (size_t i = 0; i < cells.size(); ++i) {
-        const uint64_t key = combine(combine(uint64_t(cells[i].level), uint64_t(uint32_t(cells[i].x >> 2))),
-                                     uint64_t(uint32_t(cells[i].z >> 2)));
-        if (static_cast<double>(key % 100'000) < 1e5 * share) out.push_back(i);
-    }
-    if (out.empty()) out.push_back(0);
+    for (const auto& [key, square] : squares)
+        if (out.empty() ||
+            static_cast<double>(out.size() + square.size() / 2) < share * static_cast<double>(cells.size()))
+            out.insert(out.end(), square.begin(), square.end());
+    std::sort(out.begin(), out.end());
     return out;
 }
 

@@ -1,0 +1,38 @@
+// The model's tape over squares of the plan, each shortened from that of the square around it.
+// Enters: a tape, cells. Leaves: tapes with what matters there alone, so that a cell of a large city costs what stands
+// in it and not what stands in the city. Assumes cells in an order in which neighbours come close to each other; any
+// other order takes longer and gives the same tapes.
+#pragma once
+
+#include <vector>
+
+#include "modeler/eval/tape.h"
+#include "modeler/tiles/cell.h"
+
+namespace sgm::pipeline {
+
+class SquareTapes {
+public:
+    /// The tape of the whole model, which has to stay, and the box it is asked in; `finest_m` is the side of cells of
+    /// level 0.
+    SquareTapes(const eval::Tape& whole, const Box3f& bounds, double finest_m)
+        : whole_(whole), bounds_(bounds), finest_m_(finest_m) {}
+
+    /// The tape for a square and a third of its side around it, at heights within the box and 1/8 of the side beyond:
+    /// the values, owners and labels there are those of the whole one. Valid until the next call.
+    const eval::Tape& over(const tiles::Cell& square);
+
+private:
+    struct Step {
+        tiles::Cell square;
+        eval::Tape tape;
+    };
+    Box3f boxOf(const tiles::Cell& square) const;
+
+    const eval::Tape& whole_;
+    const Box3f bounds_;
+    const double finest_m_;
+    std::vector<Step> path_;  ///< from the coarsest square down to the last one asked for
+};
+
+}  // namespace sgm::pipeline
