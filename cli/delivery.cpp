@@ -131,7 +131,7 @@ bool keepsObjectsApart(const BuildRequest& request) {
 Status deliver(const BuildRequest& request, const Model& model, pipeline::Division division, MeshedModel meshed,
                const mesh::Scene& scene, Context& context) {
     Figures figures;
-    if (wantsFigures(request)) {
+    if (wantsFigures(request) && (request.seeksThinParts || !request.report.empty())) {
         auto found = context.timed("thin parts", [&] {
             return pipeline::findMissingParts(model, meshed, request.grid.threads, context.progress);
         });

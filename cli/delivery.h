@@ -18,6 +18,7 @@ struct BuildRequest {
     std::string report, agent, floor;     ///< agent as `parseAgent` reads it, "" for the usual one
     MeshEdits edits;
     bool validate = false, cave = false, flipNormals = false, stream = false, quiet = false, progress = false;
+    bool seeksThinParts = true;  ///< even without a report: parts thinner than the mesh's cells are named
 };
 
 /// How a build shows its progress.

@@ -114,7 +114,10 @@ Status buildFrames(const BuildRequest& request) {
         if (!request.quiet)
             fmt::print("frame {} of {}, {}: ", frame + 1, scene->animation.frames,
                        scene->animation.text(*scene->grammar, frame));
-        const Status written = writeFrame(*requestOf(request, frame), incremental, grid, context);
+        BuildRequest framed = *requestOf(request, frame);
+        // What parameters make too thin in between is too thin at one of the ends.
+        framed.seeksThinParts = frame == 0 || frame + 1 == scene->animation.frames;
+        const Status written = writeFrame(framed, incremental, grid, context);
         if (!written.ok()) return written;
         std::fflush(stdout);
     }

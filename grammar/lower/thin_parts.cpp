@@ -5,7 +5,6 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
-#include <unordered_set>
 
 #include "grammar/derive/lift.h"
 #include "modeler/core/parallel.h"
@@ -23,6 +22,62 @@ constexpr double leastMissing = 0.1;            ///< share of the surface that a
 constexpr size_t partsPerGroup = 64;            ///< of a parallel loop
 constexpr size_t partsPerTape = 4;              ///< that are probed with one shortened tape
 
+/// Where the i-th of n lines passes a half extent: denser towards the ends, for a bar may run through a house and show
+/// these alone; off the middle, so that no line lies in a plane of symmetry.
+double shareOf(int i, int n) { return -std::cos(std::numbers::pi * (i + 0.535) / n); }
+
+/// Calls visit(share, axis) for each line through the scope along its thin axes until one call returns false; whether
+/// none did. `share` is where the line passes, in half extents, 0 along the axis.
+template <class Visit>
+bool eachLine(const derive::Scope& scope, double cell_m, Visit&& visit) {
+    const auto linesAlong = [&](int across) {
+        return std::clamp(static_cast<int>(std::ceil(scope.size[across] / cell_m)), fewestLines, mostLines);
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(scope.size[axis] < cell_m || scope.size[axis] == minComponent(scope.size))) continue;
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3, alongU = linesAlong(u), alongV = linesAlong(v);
+        for (int j = 0; j < alongV; ++j)
+            for (int i = 0; i < alongU; ++i) {
+                Vec3d share{};
+                share[u] = shareOf(i, alongU), share[v] = shareOf(j, alongV);
+                if (!visit(share, axis)) return false;
+            }
+    }
+    return true;
+}
+
+/// Numbers but 0, in a table of a power of two with room for twice as many: they are asked for millions of times.
+class NumberSet {
+public:
+    void insert(uint64_t number) {
+        if (2 * (count_ + 1) > slots_.size()) grow();
+        count_ += place(number);
+    }
+    bool contains(uint64_t number) const {
+        size_t at = number & (slots_.size() - 1);
+        while (slots_[at] != 0 && slots_[at] != number) at = (at + 1) & (slots_.size() - 1);
+        return slots_[at] != 0;
+    }
+
+private:
+    bool place(uint64_t number) {
+        size_t at = number & (slots_.size() - 1);
+        while (slots_[at] != 0 && slots_[at] != number) at = (at + 1) & (slots_.size() - 1);
+        const bool isNew = slots_[at] == 0;
+        slots_[at] = number;
+        return isNew;
+    }
+    void grow() {
+        std::vector<uint64_t> old(4 * slots_.size());
+        old.swap(slots_);
+        for (const uint64_t number : old)
+            if (number != 0) place(number);
+    }
+
+    std::vector<uint64_t> slots_ = std::vector<uint64_t>(1024);
+    size_t count_ = 0;
+};
+
 /// Cells as large as the mesh's that hold triangles of thin parts.
 class Presence {
 public:
@@ -31,21 +86,39 @@ public:
         positions.reserve(mesh.vertexCount());
         for (const mesh::Chunk& c : mesh.chunks)
             for (const Vec3f& p : c.positions) positions.push_back(&p);
+        uint64_t last = 0;
         for (const mesh::Chunk& c : mesh.chunks)
             for (size_t t = 0; t < c.origins.size(); ++t) {
                 if (!isThin[c.origins[t]]) continue;
                 const mesh::Triangle corners = c.inMesh(c.triangles[t]);
-                for (int i = 0; i < 3; ++i) cells_.insert(keyOf(cellOf(*positions[corners[i]]), c.origins[t]));
+                for (int i = 0; i < 3; ++i) {
+                    const uint64_t key = keyOf(cellOf(*positions[corners[i]]), c.origins[t]);
+                    if (key != last) cells_.insert(key);
+                    last = key;
+                }
             }
     }
     /// Whether a triangle of the part has a corner within a cell or so.
     bool isNear(Vec3f p, OriginId part) const {
         const Vec3i cell = cellOf(p);
+        if (cells_.contains(keyOf(cell, part))) return true;
         for (int z = -1; z <= 1; ++z)
             for (int y = -1; y <= 1; ++y)
                 for (int x = -1; x <= 1; ++x)
                     if (cells_.contains(keyOf(cell + Vec3i{x, y, z}, part))) return true;
         return false;
+    }
+
+    /// Whether triangles of the part lie along every line through its scope, which is thinner than a cell there: then
+    /// nothing of it is missing, whatever the field says.
+    bool isWhole(const derive::Scope& scope, OriginId part, double cell_m) const {
+        return eachLine(scope, cell_m, [&](Vec3d share, int axis) {
+            for (const double end : {0., -lineReach, lineReach}) {
+                share[axis] = end;
+                if (!isNear(scope.point(share).as<float>(), part)) return false;
+            }
+            return true;
+        });
     }
 
 private:
@@ -57,11 +130,11 @@ private:
         const auto bits = [](int c) { return static_cast<uint64_t>(static_cast<uint32_t>(c)); };
         uint64_t key = part * 0xd6e8feb86659fd93u;
         for (const int c : {cell.x, cell.y, cell.z}) key = (key ^ bits(c)) * 0x9e3779b97f4a7c15u, key ^= key >> 29;
-        return key;
+        return key | 1;
     }
 
     const float perMetre_;
-    std::unordered_set<uint64_t> cells_;
+    NumberSet cells_;
 };
 
 /// Points as the evaluation takes them.
@@ -78,6 +151,7 @@ struct Candidate {
     OriginId part = 0;
     const derive::Scope* scope = nullptr;
     double missing = 0;
+    bool isWhole = false;  ///< told by the mesh alone
 };
 
 /// The box that a part is looked for in.
@@ -155,8 +229,13 @@ private:
     /// Where lines through the scope along its thin axes cross the field's surface.
     void findCrossings(const derive::Scope& scope) {
         rows_.clear();
-        for (int axis = 0; axis < 3; ++axis)
-            if (scope.size[axis] < cell_m_ || scope.size[axis] == minComponent(scope.size)) addLines(scope, axis);
+        eachLine(scope, cell_m_, [&](Vec3d share, int axis) {
+            for (int s = 0; s <= steps; ++s) {
+                share[axis] = lineReach * (2.0 * s / steps - 1);
+                rows_.add(scope.point(share).as<float>());
+            }
+            return true;
+        });
         evaluate(rows_);
         inside_.clear(), outside_.clear();
         for (size_t i = 0; i + 1 < values_.size(); ++i) {
@@ -169,24 +248,6 @@ private:
             evaluate(middles_);
             for (size_t i = 0; i < inside_.size(); ++i) (values_[i] < 0 ? inside_ : outside_)[i] = middles_[i];
         }
-    }
-    /// Where the i-th of n lines passes a half extent: denser towards the ends, for a bar may run through a house and
-    /// show these alone; off the middle, so that no line lies in a plane of symmetry.
-    static double shareOf(int i, int n) { return -std::cos(std::numbers::pi * (i + 0.535) / n); }
-    void addLines(const derive::Scope& scope, int axis) {
-        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-        const auto linesAlong = [&](int across) {
-            return std::clamp(static_cast<int>(std::ceil(scope.size[across] / cell_m_)), fewestLines, mostLines);
-        };
-        const int alongU = linesAlong(u), alongV = linesAlong(v);
-        for (int j = 0; j < alongV; ++j)
-            for (int i = 0; i < alongU; ++i)
-                for (int s = 0; s <= steps; ++s) {
-                    Vec3d share;
-                    share[u] = shareOf(i, alongU), share[v] = shareOf(j, alongV);
-                    share[axis] = lineReach * (2.0 * s / steps - 1);
-                    rows_.add(scope.point(share).as<float>());
-                }
     }
     void evaluate(const Rows& rows) {
         values_.resize(rows.x.size());
@@ -231,11 +292,15 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
         const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[part]];
         if (shape.solid == derive::none || !(cellThatHolds(shape.scope) < static_cast<double>(cell_m))) continue;
         scopes.push_back(derive::liftedScope(derivation, model.shapeOf[part]));
-        thin.push_back({part, &scopes.back(), 0});
+        thin.push_back({part, &scopes.back()});
         isThin[part] = true;
     }
     if (thin.empty() || mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
     const Presence presence(mesh, isThin, cell_m);
+    parallelFor(thin.size(), threads, nullptr, [&](size_t i, int) {
+        thin[i].isWhole = presence.isWhole(*thin[i].scope, thin[i].part, static_cast<double>(cell_m));
+    });
+    std::erase_if(thin, [](const Candidate& c) { return c.isWhole; });
     orderByPlace(thin);
     std::vector<Prober> probers;
     probers.reserve(static_cast<size_t>(threadCount(threads)));

@@ -42,6 +42,7 @@ std::string pathFrom(const std::filesystem::path& folder, const std::filesystem:
 
 std::string validUtf8(const std::string& text) {
     using Json = nlohmann::json;
+    if (std::none_of(text.begin(), text.end(), [](char c) { return (c & 0x80) != 0; })) return text;
     return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
