@@ -20,7 +20,7 @@ constexpr int halvings = 6;                     ///< of a step around a crossing
 constexpr int fewestCrossings = 3;              ///< of a part that isn't buried
 constexpr double leastMissing = 0.1;            ///< share of the surface that a part in the list lacks
 constexpr size_t partsPerGroup = 64;            ///< of a parallel loop
-constexpr size_t partsPerTape = 4;              ///< that are probed with one shortened tape
+constexpr size_t partsPerTape = 8;              ///< that are shortened from one tape
 
 /// Where the i-th of n lines passes a half extent: denser towards the ends, for a bar may run through a house and show
 /// these alone; off the middle, so that no line lies in a plane of symmetry.
@@ -186,29 +186,49 @@ public:
     Prober(const eval::Tape& tape, const Presence& presence, float cell_m)
         : tape_(tape), presence_(presence), cell_m_(static_cast<double>(cell_m)) {}
 
-    /// Looks for parts that lie beside each other. The tape is shortened to all, to halves of them, and so on, so that
-    /// none is asked with the whole tape.
-    void probe(std::span<Candidate> parts, size_t depth = 0) {
-        Box3f box;
-        for (const Candidate& c : parts) box = hull(box, boxOf(*c.scope));
-        const eval::Tape& above = depth == 0 ? tape_ : tapes_[depth - 1];
-        if (depth == tapes_.size()) tapes_.emplace_back();
-        if (!shortenTo(above, box, tapes_[depth])) return;
-        if (parts.size() > partsPerTape) {
-            probe(parts.first(parts.size() / 2), depth + 1);
-            probe(parts.subspan(parts.size() / 2), depth + 1);
-            return;
-        }
-        for (Candidate& c : parts) c.missing = missing(c.part, *c.scope, tapes_[depth]);
+    /// Looks for at most partsPerGroup parts that lie beside each other. The tape is shortened to all, to some of them
+    /// and to each: ranges of boxes side by side cost little more than one.
+    void probe(std::span<Candidate> parts) {
+        const Box3f all = boxAround(parts);
+        shortenTo(tape_, {&all, 1}, {&group_, 1});
+        if (group_.isEmpty) return;
+        std::array<Box3f, partsPerGroup / partsPerTape> boxes;
+        const size_t count = (parts.size() + partsPerTape - 1) / partsPerTape;
+        const auto some = [&](size_t k) {
+            return parts.subspan(k * partsPerTape, std::min(partsPerTape, parts.size() - k * partsPerTape));
+        };
+        for (size_t k = 0; k < count; ++k) boxes[k] = boxAround(some(k));
+        shortenTo(group_.tape, {boxes.data(), count}, some_);
+        for (size_t k = 0; k < count; ++k)
+            if (!some_[k].isEmpty) probeEach(some(k), some_[k].tape);
     }
 
 private:
+    /// A tape for a box.
+    struct Local {
+        eval::Tape tape;
+        bool isEmpty = true;  ///< no surface may be there
+    };
+
+    static Box3f boxAround(std::span<const Candidate> parts) {
+        Box3f box;
+        for (const Candidate& c : parts) box = hull(box, boxOf(*c.scope));
+        return box;
+    }
+
+    void probeEach(std::span<Candidate> parts, const eval::Tape& tape) {
+        std::array<Box3f, partsPerTape> boxes;
+        for (size_t i = 0; i < parts.size(); ++i) boxes[i] = boxOf(*parts[i].scope);
+        shortenTo(tape, {boxes.data(), parts.size()}, each_);
+        for (size_t i = 0; i < parts.size(); ++i)
+            if (!each_[i].isEmpty) parts[i].missing = missing(parts[i].part, *parts[i].scope, each_[i].tape);
+    }
+
     double missing(OriginId part, const derive::Scope& scope, const eval::Tape& tape) {
-        if (!shortenTo(tape, boxOf(scope), local_)) return 0;
-        findCrossings(scope);
+        findCrossings(scope, tape);
         if (inside_.empty()) return 0;
         owners_.resize(middles_.x.size());
-        eval::evaluateOrigin(local_, middles_.points(), owners_.data(), workspace_);
+        eval::evaluateOrigin(tape, middles_.points(), owners_.data(), workspace_);
         int met = 0, lacks = 0;
         for (size_t i = 0; i < owners_.size(); ++i) {
             if (owners_[i] != part) continue;
@@ -217,17 +237,18 @@ private:
         return met < fewestCrossings ? 0 : static_cast<double>(lacks) / met;
     }
 
-    /// Leaves in `to` what matters in the box; whether the surface may be there.
-    bool shortenTo(const eval::Tape& from, const Box3f& box, eval::Tape& to) {
-        eval::FloatInterval range{};
-        eval::evaluateRanges(from, {&box, 1}, &range, workspace_);
-        if (range.lo > 0 || range.hi < 0) return false;
-        eval::shorten(from, 0, workspace_, to);
-        return true;
+    /// Leaves in `to` what matters in each box.
+    void shortenTo(const eval::Tape& from, std::span<const Box3f> boxes, std::span<Local> to) {
+        std::array<eval::FloatInterval, partsPerGroup> ranges;
+        eval::evaluateRanges(from, {boxes.data(), boxes.size()}, ranges.data(), workspace_);
+        for (size_t i = 0; i < boxes.size(); ++i) {
+            to[i].isEmpty = ranges[i].lo > 0 || ranges[i].hi < 0;
+            if (!to[i].isEmpty) eval::shorten(from, i, workspace_, to[i].tape);
+        }
     }
 
     /// Where lines through the scope along its thin axes cross the field's surface.
-    void findCrossings(const derive::Scope& scope) {
+    void findCrossings(const derive::Scope& scope, const eval::Tape& tape) {
         rows_.clear();
         eachLine(scope, cell_m_, [&](Vec3d share, int axis) {
             for (int s = 0; s <= steps; ++s) {
@@ -236,7 +257,7 @@ private:
             }
             return true;
         });
-        evaluate(rows_);
+        evaluate(rows_, tape);
         inside_.clear(), outside_.clear();
         for (size_t i = 0; i + 1 < values_.size(); ++i) {
             if (i % (steps + 1) == steps || (values_[i] < 0) == (values_[i + 1] < 0)) continue;
@@ -245,20 +266,21 @@ private:
         for (int halving = 0; halving < halvings && !inside_.empty(); ++halving) {
             middles_.clear();
             for (size_t i = 0; i < inside_.size(); ++i) middles_.add((inside_[i] + outside_[i]) * 0.5f);
-            evaluate(middles_);
+            evaluate(middles_, tape);
             for (size_t i = 0; i < inside_.size(); ++i) (values_[i] < 0 ? inside_ : outside_)[i] = middles_[i];
         }
     }
-    void evaluate(const Rows& rows) {
+    void evaluate(const Rows& rows, const eval::Tape& tape) {
         values_.resize(rows.x.size());
-        eval::evaluate(local_, rows.points(), values_.data(), workspace_);
+        eval::evaluate(tape, rows.points(), values_.data(), workspace_);
     }
 
     const eval::Tape& tape_;
     const Presence& presence_;
     const double cell_m_;
-    std::deque<eval::Tape> tapes_;  ///< by depth; a deque, for references stay
-    eval::Tape local_;
+    Local group_;
+    std::array<Local, partsPerGroup / partsPerTape> some_;
+    std::array<Local, partsPerTape> each_;
     eval::Workspace workspace_;
     Rows rows_, middles_;
     std::vector<float> values_;

@@ -36,8 +36,8 @@ void CellPieces::addPolygon(std::span<const LoopNode> nodes) {
     polygons_.push_back({first, static_cast<uint32_t>(nodes_.size()), nodes[0].label, nodes[0].origin});
 }
 
-void CellPieces::addLoop(Vec3i cell, std::span<const LoopNode> nodes) {
-    Loop loop{cell, static_cast<uint32_t>(nodes_.size()), 0, 0, 0, -1};
+void CellPieces::addLoop(Vec3i cell, size_t brick, std::span<const LoopNode> nodes) {
+    Loop loop{cell, brick, static_cast<uint32_t>(nodes_.size()), 0, 0, 0, -1};
     nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
     loop.endNode = static_cast<uint32_t>(nodes_.size());
     loop.firstPolygon = static_cast<uint32_t>(polygons_.size());
@@ -85,7 +85,7 @@ void CellPieces::addSplit(Loop& loop, std::vector<LoopNode>& nodes) {
 void CellPieces::addCorner(Loop& loop, const std::vector<LoopNode>& nodes) {
     loop.corner = static_cast<int32_t>(corners_.size());
     Corner& corner = corners_.emplace_back();
-    corner.cell = loop.cell;
+    corner.cell = loop.cell, corner.brick = loop.brick;
     corner.loop = static_cast<uint32_t>(loops_.size());
     const size_t n = nodes.size();
     const size_t first = static_cast<size_t>(
@@ -138,63 +138,50 @@ void CellPieces::intersect(Corner& corner) const {
     corner.at = inCell(corner.cell, corner.meeting);
 }
 
-/// Evaluates the pieces at some points.
-void CellPieces::probe(const eval::Tape& tape, eval::Workspace& workspace, std::span<const Vec3f> points) {
-    const size_t n = points.size();
-    std::vector<float> x(n), y(n), z(n), rows(4 * n);
-    std::vector<uint32_t> labels(n);
-    std::vector<OriginId> origins(n);
-    for (size_t i = 0; i < n; ++i) x[i] = points[i].x, y[i] = points[i].y, z[i] = points[i].z;
-    eval::evaluatePieces(tape, {x.data(), y.data(), z.data(), n},
-                         {rows.data(), &rows[n], &rows[2 * n], &rows[3 * n], labels.data(), origins.data()}, workspace);
+/// A meeting outside the cell counts where it lies on the surface, on one of the corner's pieces. Returns at how many
+/// the field was evaluated.
+uint64_t CellPieces::confirmMeetings(const BlockTapes& tapes, eval::Workspace& workspace) {
     probes_.clear();
-    for (size_t i = 0; i < n; ++i)
-        probes_.push_back(
-            {rows[i],
-             {points[i], {rows[n + i], rows[2 * n + i], rows[3 * n + i]}, labelOf(labels[i], origins[i]), origins[i]}});
-}
-
-/// A meeting outside the cell counts where it lies on the surface, on one of the corner's pieces.
-void CellPieces::confirmMeetings(const eval::Tape& tape, eval::Workspace& workspace) {
-    std::vector<Vec3f> points;
     for (Corner& corner : corners_) {
         corner.leaves =
             corner.meeting != corner.at && length(corner.meeting - corner.at) <= leavingReach * grid_->cell_m;
-        if (corner.leaves) points.push_back(corner.meeting);
+        if (corner.leaves) probes_.add(tapes, corner.brick, corner.meeting);
     }
-    if (points.empty()) return;
-    probe(tape, workspace, points);
+    probes_.evaluate(workspace);
     size_t i = 0;
     for (Corner& corner : corners_) {
         if (!corner.leaves) continue;
-        const Probe& seen = probes_[i++];
+        float value;
+        const PiecePoint seen = probes_.point(i++, value);
         const auto& labels = corner.labels;
-        corner.leaves = std::find(labels.begin(), labels.end(), seen.point.label) != labels.end() &&
-                        std::abs(seen.value) <= confirmShare * grid_->cell_m * length(seen.point.gradient);
+        corner.leaves = std::find(labels.begin(), labels.end(), seen.label) != labels.end() &&
+                        std::abs(value) <= confirmShare * grid_->cell_m * length(seen.gradient);
     }
+    return probes_.size();
 }
 
-uint64_t CellPieces::placeCorners(const eval::Tape& tape, const Grid& grid, eval::Workspace& workspace,
+uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eval::Workspace& workspace,
                                   uint32_t firstVertex) {
     grid_ = &grid;
     firstVertex_ = firstVertex;
     for (Corner& corner : corners_) intersect(corner);
     uint64_t evaluations = 0;
     for (int round = 0; round < cornerRounds && !corners_.empty(); ++round) {
-        std::vector<Vec3f> points;
+        probes_.clear();
         for (const Corner& corner : corners_) {
             const bool isNear = length(corner.meeting - corner.at) <= leavingReach * grid.cell_m;
             const Vec3f from = round > 0 && isNear ? corner.meeting : corner.at;
-            for (const Vec3f& mean : corner.means) points.push_back(from + (mean - from) * probeShare);
+            for (const Vec3f& mean : corner.means) probes_.add(tapes, corner.brick, from + (mean - from) * probeShare);
         }
-        probe(tape, workspace, points);
+        probes_.evaluate(workspace);
         evaluations += probes_.size();
         size_t i = 0;
         for (Corner& corner : corners_) {
             std::vector<PiecePoint> seen;
             for (size_t k = 0; k < corner.means.size(); ++k, ++i) {
-                PiecePoint plane = probes_[i].point;
-                const double value = probes_[i].value;
+                float found;
+                PiecePoint plane = probes_.point(i, found);
+                const double value = found;
                 const Vec3d g = plane.gradient.as<double>();
                 const double square = dot(g, g);
                 if (plane.label == corner.labels[k] && square > 0 &&
@@ -210,9 +197,7 @@ uint64_t CellPieces::placeCorners(const eval::Tape& tape, const Grid& grid, eval
             intersect(corner);
         }
     }
-    probes_.clear();
-    confirmMeetings(tape, workspace);
-    evaluations += probes_.size();
+    evaluations += confirmMeetings(tapes, workspace);
     for (const Loop& loop : loops_) {
         if (loop.corner < 0) continue;
         const Corner& corner = corners_[static_cast<size_t>(loop.corner)];

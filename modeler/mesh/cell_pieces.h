@@ -51,12 +51,12 @@ class CellPieces {
 public:
     /// Begins a block.
     void clear();
-    /// Adds a loop of `cell`, counter-clockwise seen from outside the solid.
-    void addLoop(Vec3i cell, std::span<const LoopNode> nodes);
+    /// Adds a loop of `cell`, which lies in `brick`, counter-clockwise seen from outside the solid.
+    void addLoop(Vec3i cell, size_t brick, std::span<const LoopNode> nodes);
     /// Ends a group of loops: their triangles are one after the other.
     void endCell() { cellEnds_.push_back(static_cast<uint32_t>(loops_.size())); }
     /// Places corners, numbered from `firstVertex` on. Returns how often the field was evaluated.
-    uint64_t placeCorners(const eval::Tape& tape, const Grid& grid, eval::Workspace& workspace, uint32_t firstVertex);
+    uint64_t placeCorners(const BlockTapes& tapes, const Grid& grid, eval::Workspace& workspace, uint32_t firstVertex);
     /// Triangulates everything. `cellEnds[i]` is the end of the triangles of the i-th cell.
     void triangulate(PieceTriangles& out, std::vector<uint32_t>& cellEnds);
 
@@ -69,12 +69,14 @@ private:
     };
     struct Loop {
         Vec3i cell;
+        size_t brick;
         uint32_t firstNode, endNode;        ///< as they came
         uint32_t firstPolygon, endPolygon;  ///< in order
         int32_t corner;                     ///< −1 for none
     };
     struct Corner {
         Vec3i cell;
+        size_t brick;
         uint32_t loop;
         Vec3f at;             ///< inside the cell
         Vec3f meeting;        ///< of its planes: `at`, or outside the cell
@@ -87,13 +89,7 @@ private:
     void addPolygon(std::span<const LoopNode> nodes);
     void addSplit(Loop& loop, std::vector<LoopNode>& nodes);
     void addCorner(Loop& loop, const std::vector<LoopNode>& nodes);
-    /// A point of the field near a corner.
-    struct Probe {
-        float value;
-        PiecePoint point;
-    };
-    void probe(const eval::Tape& tape, eval::Workspace& workspace, std::span<const Vec3f> points);
-    void confirmMeetings(const eval::Tape& tape, eval::Workspace& workspace);
+    uint64_t confirmMeetings(const BlockTapes& tapes, eval::Workspace& workspace);
     Vec3f inCell(Vec3i cell, Vec3f p) const;
     void intersect(Corner& corner) const;
     bool liesInFace(Vec3f a, Vec3f b) const;
@@ -115,7 +111,7 @@ private:
     std::vector<Polygon> polygons_;
     std::vector<Loop> loops_;
     std::vector<Corner> corners_;
-    std::vector<Probe> probes_;
+    PieceSamples probes_;  ///< near corners
     std::vector<uint32_t> cellEnds_;
     uint32_t firstVertex_ = 0;
     /// The cell in work.

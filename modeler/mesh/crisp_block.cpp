@@ -14,6 +14,11 @@ constexpr Vec3i cornerAt(int number) {
 constexpr Vec3i offset(int corner) { return {corner & 1, corner >> 1 & 1, corner >> 2}; }
 constexpr Vec3i unit(int axis) { return {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0}; }
 
+/// The brick of the cell at a corner of its block.
+size_t brickOf(Vec3i low) {
+    return static_cast<size_t>(brickNumber({low.x / brickCells, low.y / brickCells, low.z / brickCells}));
+}
+
 /// An edge's number among the four of a face: along u or v, at the low or high end of the other.
 int codeInFace(int edge, int axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3, along = edgeAxis(edge), other = along == u ? v : u;
@@ -118,7 +123,7 @@ int32_t CrispBlock::segmentOf(const SurfaceCell& cell, const CellLoop& loop, int
         FaceSegment segment;
         segment.face = first_ + corner, segment.axis = axis;
         segment.alone = !isAmbiguous(cell.inside, axis, face % 2);
-        segment.brick = static_cast<size_t>(brickNumber({low.x / brickCells, low.y / brickCells, low.z / brickCells}));
+        segment.brick = brickOf(low);
         segments_.list.push_back(segment);
         segments_.ends.push_back({place[reversed], place[1 ^ reversed]});
         segments_.codes.push_back(static_cast<uint8_t>(std::min(codes[0], codes[1])));
@@ -259,7 +264,7 @@ void CrispBlock::splitCells() {
         const CellLoops& loops = loopsOfCell(mixed);
         for (int l = 0; l < loops.count; ++l) {
             addNodes(cell, loops.loops[l], side);
-            pieces_.addLoop(first_ + cornerAt(cell.corner), nodes_);
+            pieces_.addLoop(first_ + cornerAt(cell.corner), brickOf(cornerAt(cell.corner)), nodes_);
         }
         pieces_.endCell();
     }
@@ -314,7 +319,7 @@ uint64_t CrispBlock::run(const BlockSurface& surface, eval::Workspace& workspace
     numberBreaks();
     splitCells();
     const auto corners = surface.own + static_cast<uint32_t>(out_.positions.size());
-    evaluations += pieces_.placeCorners(surface.block->tape, *surface.grid, workspace, corners);
+    evaluations += pieces_.placeCorners(surface.tapes, *surface.grid, workspace, corners);
     pieces_.triangulate(split_, cellEnds_);
     assemble(cellEnds_);
     return evaluations;
