@@ -8,6 +8,9 @@
 
 EVERY = 7 runs every seventh case; SIGUSR1 ends a run early, with its counts. Every run has to end by itself with exit code 0, 1 or 3 (130 where it was cancelled), and
 an output is afterwards either what it was before or whole. Prints what went wrong, and the counts.
+
+`memory`, `kills` and `signals` keep a line for each case in build/faults-WHAT.txt and leave out those that stand there, so that a run goes on where the last one
+ended; the counts are of all of them. Remove the file to begin anew, as with another program.
 """
 import collections
 import glob
@@ -29,6 +32,7 @@ FOLDER = tempfile.mkdtemp(prefix="sgm-faults-")
 COMMANDS = [["build", "-q", "--resolution", "96", "-o", "x.glb"], ["build", "-q", "--resolution", "64", "-o", "x.vdb"],
             ["build", "-q", "--resolution", "96", "--stream", "-o", "x.ply"], ["render", "-q", "-o", "x.png", "--size", "160x120"],
             ["check"], ["tree"], ["params"], ["fmt", "--check"], ["bake", "-q", "-o", "city"]]
+KEPT = f"build/faults-{WHAT}.txt"
 wrong = 0
 stopped = False
 
@@ -48,30 +52,55 @@ def tell(text):
     print(text, flush=True)
 
 
-def run(arguments, limit_bytes=0, timeout=300, **more):
+class Kept:
+    """The cases that have had their turn, in a file that outlasts the run: a name and how it ended, a line each."""
+
+    def __init__(self):
+        os.makedirs(os.path.dirname(KEPT), exist_ok=True)
+        with open(KEPT, "a+", encoding="utf-8") as file:
+            file.seek(0)
+            self.ends = dict(line.rstrip("\n").split("\t")[:2] for line in file)
+
+    def keep(self, case, ended):
+        self.ends[case] = str(ended)
+        with open(KEPT, "a", encoding="utf-8") as file:
+            file.write(f"{case}\t{ended}\n")
+
+    def counts(self, kind=lambda case: ""):
+        """How many of each kind of case ended in each way."""
+        return sorted(collections.Counter((kind(case), ended) for case, ended in self.ends.items()).items())
+
+
+def run(arguments, limit_bytes=0, **more):
     def prepare():
+        resource.setrlimit(resource.RLIMIT_CPU, (300, 310))  # so that a busy machine is no hang
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         if limit_bytes:
             resource.setrlimit(resource.RLIMIT_AS, (limit_bytes, limit_bytes))
-    return subprocess.run([PROGRAM, *arguments], cwd=FOLDER, preexec_fn=prepare, timeout=timeout, stdin=subprocess.DEVNULL,
+    return subprocess.run([PROGRAM, *arguments], cwd=FOLDER, preexec_fn=prepare, timeout=3000, stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False, **more)
 
 
 def memory():
-    counts = collections.Counter()
-    cases = [(m, e, c) for m in (200, 400, 800, 4000) for e in EXAMPLES for c in COMMANDS]
-    for mebibytes, example, command in cases[::NUMBER]:
+    kept = Kept()
+    cases = [(m, e, c) for m in (200, 400, 800, 4000) for e in EXAMPLES for c in COMMANDS][::NUMBER]
+    random.Random(5).shuffle(cases)  # so that a run that is cut short has met all commands and limits
+    for mebibytes, example, command in cases:
+        what = f"{mebibytes} MB: {' '.join(command)} {os.path.relpath(example)}"
+        if what in kept.ends:
+            continue
         if stopped:
             break
-        what = f"{mebibytes} MB: {' '.join(command)} {os.path.relpath(example)}"
         try:
             ended = run([command[0], example, *command[1:]], mebibytes * 1_000_000)
         except subprocess.TimeoutExpired:
-            tell(f"{what}: has not ended after 300 s")
+            tell(f"{what}: waits for ever")
+            kept.keep(what, "no end")
             continue
-        counts[mebibytes, ended.returncode] += 1
         said = ended.stdout.decode("utf-8", "replace")
-        if ended.returncode not in (0, 1, 3) or "internal error" in said:
+        if ended.returncode == -signal.SIGXCPU:
+            tell(f"{what}: has not ended after 300 s of processor time")
+        elif ended.returncode not in (0, 1, 3) or "internal error" in said:
             tell(f"{what}: ended with {ended.returncode}: {said[-200:]}")
         if ended.returncode == 1 and command[0] not in ("fmt", "check"):
             tell(f"{what}: is refused: {said[-200:]}")
@@ -80,8 +109,10 @@ def memory():
                 tell(f"{what}: left {file}")
             path = os.path.join(FOLDER, file)
             shutil.rmtree(path) if os.path.isdir(path) else os.remove(path)
-    for key in sorted(counts):
-        print(f"{key[0]} MB: {counts[key]} ended with {key[1]}")
+        kept.keep(what, ended.returncode)
+    print(f"{len(kept.ends)} cases")
+    for (limit, ended), count in kept.counts(lambda case: case.split(":")[0]):
+        print(f"{limit}: {count} ended with {ended}")
 
 
 JOBS = [["build", "-q", "--resolution", "160", "-o", "x.glb"], ["build", "-q", "--resolution", "160", "-o", "x.ply", "--stream"],
@@ -92,7 +123,7 @@ JOBS = [["build", "-q", "--resolution", "160", "-o", "x.glb"], ["build", "-q", "
 
 def interrupted(signals):
     """Interrupts builds at moments spread over the time that they take."""
-    draw = random.Random(11)
+    kept = Kept()
     grammar = os.path.abspath("examples/tower.sgm")
     whole, lasts = {}, {}
     for job in JOBS:
@@ -102,10 +133,11 @@ def interrupted(signals):
         lasts[name] = time.monotonic() - started
         with open(os.path.join(FOLDER, name), "rb") as file:
             whole[name] = file.read()
-    counts, waits = collections.Counter(), []
-    for i in range(NUMBER):
+    waits = [float(ended.split()[1]) for ended in kept.ends.values() if ended != "no end"]
+    for i in range(len(kept.ends), NUMBER):
         if stopped:
             break
+        draw = random.Random(f"11 {i}")
         job = JOBS[i % len(JOBS)]
         name = job[job.index("-o") + 1]
         path = os.path.join(FOLDER, name)
@@ -122,9 +154,10 @@ def interrupted(signals):
             process.kill()
             process.communicate()
             tell(f"{name}: has not ended 60 s after signal {sent}")
+            kept.keep(f"{i} {name}", "no end")
             continue
         waits.append(time.monotonic() - at)
-        counts[process.returncode] += 1
+        kept.keep(f"{i} {name}", f"{process.returncode} {waits[-1]:.3f}")
         # A program that has not begun to listen ends by the signal, as any does.
         if process.returncode not in (0, 130, -sent) or "internal" in said:
             tell(f"{name}: ended with {process.returncode}: {said[-200:]}")
@@ -135,9 +168,12 @@ def interrupted(signals):
         if sent != signal.SIGKILL and any(".tmp" in f for f in os.listdir(FOLDER)):
             tell(f"{name}: a temporary file is left after signal {sent}")
     waits.sort()
-    print(", ".join(f"{n} ended with {c}" for c, n in sorted(counts.items())),
+    ends = collections.Counter(ended.split(" ")[0] for ended in kept.ends.values())
+    print(", ".join(f"{n} ended with {c}" for c, n in sorted(ends.items())),
           f"; from the signal to the end {waits[len(waits) // 2]:.3f} s in the median, {waits[-1]:.2f} s at most")
     if signals == [signal.SIGKILL]:
+        for file in os.listdir(FOLDER):  # as if a minute had passed, for a file younger than that may be another's
+            os.utime(os.path.join(FOLDER, file), (time.time() - 120,) * 2)
         assert run(["build", grammar, "-q", "--resolution", "16", "-o", "x.ply"]).returncode == 0
         left = [f for f in os.listdir(FOLDER) if ".tmp" in f]
         print(f"{len(left)} temporary files are left after the next build")
