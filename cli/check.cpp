@@ -63,8 +63,9 @@ int checkOne(const std::string& file, const CheckRequest& request, nlohmann::jso
     const auto source = pipeline::readSource(file);
     if (!source.ok()) return fail(source.error());
     syntax::Diagnostics diagnostics;
-    const auto grammar = rules::load(*source, operations::table(), pipeline::fileLoader(), diagnostics);
-    int code = grammar ? tryGrammar(file, grammar, request, diagnostics) : 0;
+    pipeline::FilesRead inputs;
+    const auto grammar = rules::load(*source, operations::table(), pipeline::fileLoader(nullptr, &inputs), diagnostics);
+    int code = grammar ? tryGrammar(file, grammar, request, diagnostics) : inputs.overBudget ? 3 : 0;
     if (grammar && code != 130) code = std::max(code, runGrammarChecks(grammar, request, diagnostics));
     if (request.json) {
         for (auto& entry : nlohmann::json::parse(syntax::toJson(diagnostics))) found.push_back(std::move(entry));

@@ -99,7 +99,7 @@ Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& re
     const EndsAtOnce nothingIsWritten;
     Result<syntax::SourcePtr> source = pipeline::readSource(request.file);
     if (!source.ok()) return source.error();
-    std::vector<std::filesystem::path> inputs{request.file};
+    pipeline::FilesRead inputs{{request.file}, false};
     syntax::Diagnostics diagnostics;
     const syntax::Ast ast =
         context.timed("parse", [&] { return syntax::parse(*source, operations::table(), diagnostics); });
@@ -107,9 +107,11 @@ Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& re
         "check", [&] { return rules::check(ast, pipeline::fileLoader(context.progress, &inputs), diagnostics); });
     if (cancelled(context.progress)) return cancelledError();
     printDiagnostics(diagnostics);
+    if (inputs.overBudget)
+        return Error{Error::Kind::Budget, "a file that the grammar reads is too large, or would take too much work"};
     if (diagnostics.hasErrors()) return Error{Error::Kind::Reported, "the grammar has errors"};
-    if (const Status s = checkAgainstInputs(request.targets, inputs); !s.ok()) return s.error();
-    if (read) read->insert(read->end(), inputs.begin(), inputs.end());
+    if (const Status s = checkAgainstInputs(request.targets, inputs.paths); !s.ok()) return s.error();
+    if (read) read->insert(read->end(), inputs.paths.begin(), inputs.paths.end());
     return grammar;
 }
 

@@ -39,7 +39,7 @@ bool share(const ShapeTree& tree, const Scope& a, const Scope& b, double least) 
     if (!arePlans) return true;
     plan::Footprint p = planOf(a, tree.footprints);
     if (least < 0) p = plan::offset(p, -least);
-    return plan::area(plan::boolean(plan::Boolean::Intersection, p, planOf(b, tree.footprints))) > 1e-6;
+    return plan::shareArea(p, planOf(b, tree.footprints), 1e-6);
 }
 
 /// Whether the point stands in the volume of a scope.

@@ -255,7 +255,9 @@ Result<plan::Footprint> drawWalls(const rules::Lsystem& lsystem, const Place& pl
         if (isClosed) chain.points.pop_back();
         auto one = plan::band(chain, tags, width_m, isClosed);
         if (!one.ok()) return errorOf(one.error().kind, lsystem, "draws no walls: " + one.error().message);
-        walls = walls.empty() ? std::move(*one) : plan::boolean(plan::Boolean::Union, walls, *one);
+        if (!walls.empty()) one = plan::booleanInBudget(plan::Boolean::Union, walls, *one);
+        if (!one.ok()) return errorOf(one.error().kind, lsystem, "draws no walls: " + one.error().message);
+        walls = std::move(*one);
     }
     if (walls.empty()) return errorOf(Error::Kind::Input, lsystem, "draws no walls: it has no letter F or G");
     return walls;

@@ -260,7 +260,9 @@ Result<DrawnPlan> drawParts(const AttributeContext& context, const PlanExpr& pla
     Result<DrawnPlan> b = draw(context, plan.parts[1]);
     if (!b.ok()) return b;
     const auto how = plan.kind == PlanExpr::Kind::Union ? plan::Boolean::Union : plan::Boolean::Difference;
-    return DrawnPlan{plan::boolean(how, a->footprint, b->footprint), a->keepsPlace && b->keepsPlace};
+    auto both = plan::booleanInBudget(how, a->footprint, b->footprint);
+    if (!both.ok()) return both.error();
+    return DrawnPlan{std::move(*both), a->keepsPlace && b->keepsPlace};
 }
 
 Result<DrawnPlan> drawRow(const AttributeContext& context, const PlanExpr& plan) {

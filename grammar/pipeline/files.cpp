@@ -198,18 +198,35 @@ Result<std::shared_ptr<const T>> shared(Result<T> made) {
     return std::make_shared<const T>(std::move(*made));
 }
 
-/// Reads a file that the grammar may reach, and tells `note` of it: what a Loader has for each kind of file.
-template <class Note, class Read>
+/// Tells a caller of fileLoader(), who may not care, what it was asked for.
+class Note {
+public:
+    explicit Note(FilesRead* read) : read_(read) {}
+    void path(const fs::path& path) const {
+        if (read_) read_->paths.push_back(path);
+    }
+    /// Why a file can't be used.
+    std::string refusal(const Error& error) const {
+        if (read_ && error.kind == Error::Kind::Budget) read_->overBudget = true;
+        return error.message;
+    }
+
+private:
+    FilesRead* read_;
+};
+
+/// Reads a file that the grammar may reach, and notes it: what a Loader has for each kind of file.
+template <class Read>
 auto besideGrammar(Note note, Read read) {
     using Pointer = std::decay_t<decltype(*read(fs::path()))>;
     return [note, files = ReadFiles<Pointer>(read)](const std::string& name, const syntax::Source& from,
                                                     std::string& why) mutable -> Pointer {
         const auto path = pathOf(name, from, why);
         if (!path) return nullptr;
-        note(*path);
+        note.path(*path);
         const auto file = files(*path);
         if (file.ok()) return *file;
-        why = file.error().message;
+        why = note.refusal(file.error());
         return nullptr;
     };
 }
@@ -222,7 +239,7 @@ Result<syntax::SourcePtr> readSource(const fs::path& path) {
         return Error{Error::Kind::Input, fmt::format("'{}' is a folder, not a grammar file", path.string())};
     Result<std::string> text = readRegularFile(path, mostGrammar_bytes);
     if (!text.ok())
-        return Error{Error::Kind::Input, fmt::format("can't read '{}': {}", path.string(), text.error().message)};
+        return Error{text.error().kind, fmt::format("can't read '{}': {}", path.string(), text.error().message)};
     return std::make_shared<const syntax::Source>(path.string(), std::move(*text));
 }
 
@@ -239,32 +256,30 @@ std::vector<std::pair<std::string, syntax::SourcePtr>> standardFiles() {
     return files;
 }
 
-rules::Loader fileLoader(const Progress* progress, std::vector<fs::path>* read) {
-    const auto note = [read](const fs::path& path) {
-        if (read) read->push_back(path);
-    };
+rules::Loader fileLoader(const Progress* progress, FilesRead* read) {
+    const Note note(read);
     rules::Loader loader(
         [note](const std::string& name, const syntax::Source& from, std::string& why) -> syntax::SourcePtr {
             const auto path = pathOf(name, from, why);
             if (!path) return nullptr;
-            note(*path);
+            note.path(*path);
             std::error_code failed;
             if (!fs::exists(*path, failed) && !failed) return why = missingFile(name, *path), nullptr;
             Result<syntax::SourcePtr> source = readSource(*path);
             if (source.ok() && beginsAsGrammar(**source)) return *source;
-            why = source.ok() ? "it is no grammar: one begins with 'grammar 1'" : source.error().message;
+            why = source.ok() ? "it is no grammar: one begins with 'grammar 1'" : note.refusal(source.error());
             return nullptr;
         });
     loader.mesh = [note, meshes = Meshes(progress)](const std::string& name, const syntax::Source& from,
                                                     std::string& why) mutable -> field::SampledGridPtr {
         const auto path = pathOf(name, from, why);
         if (!path) return nullptr;
-        note(*path);
+        note.path(*path);
         std::vector<fs::path> files;
         const auto grid = meshes(*path, files);
-        std::for_each(files.begin(), files.end(), note);
+        for (const fs::path& file : files) note.path(file);
         if (grid.ok()) return *grid;
-        why = grid.error().message;
+        why = note.refusal(grid.error());
         return nullptr;
     };
     loader.outlines = besideGrammar(

@@ -15,12 +15,18 @@ namespace sgm::pipeline {
 /// larger than 16 MiB.
 Result<syntax::SourcePtr> readSource(const std::filesystem::path& path);
 
+/// What a loader was asked for.
+struct FilesRead {
+    std::vector<std::filesystem::path> paths;
+    bool overBudget = false;  ///< whether one was refused for its size or for the work it would take
+};
+
 /// Finds "std/…" in the standard library shipped with the program and other names beside the file that uses them;
 /// refuses names that lead outside these two folders, also through links, files that aren't regular, and used files
 /// that don't begin as a grammar does, without a word of what they hold. A loader reads a mesh again only when its file
-/// has changed; reading one ends early when `progress` says so. The paths of all files that are asked for are added to
-/// `read`, unless it is null; both outlive the loader.
-rules::Loader fileLoader(const Progress* progress = nullptr, std::vector<std::filesystem::path>* read = nullptr);
+/// has changed; reading one ends early when `progress` says so. What is asked for is told in `read`, unless it is null;
+/// both outlive the loader.
+rules::Loader fileLoader(const Progress* progress = nullptr, FilesRead* read = nullptr);
 
 /// The files of the standard library as `use` names them, "std/walls.sgm", with their texts, in the order of their
 /// names.

@@ -23,7 +23,7 @@ const char* kindOf(mode_t mode) {
 
 Error tooLarge(uint64_t most_bytes) {
     constexpr uint64_t mebibyte = 1 << 20;
-    return {Error::Kind::Input, fmt::format("it is larger than {} MiB", most_bytes / mebibyte)};
+    return {Error::Kind::Budget, fmt::format("it is larger than {} MiB", most_bytes / mebibyte)};
 }
 
 /// Closes what it holds.

@@ -110,8 +110,8 @@ Result<ImageFilePtr> readImageBytes(std::string bytes, const ImageLimits& limits
         return Error{Error::Kind::Input, "it is no picture: a texture is a .png or .jpg"};
     }
     if (file->width > limits.mostSide || file->height > limits.mostSide)
-        return Error{Error::Kind::Input, fmt::format("the picture has {} x {} pixels, and at most {} a side are read",
-                                                     file->width, file->height, limits.mostSide)};
+        return Error{Error::Kind::Budget, fmt::format("the picture has {} x {} pixels, and at most {} a side are read",
+                                                      file->width, file->height, limits.mostSide)};
     file->bytes = std::move(bytes);
     return ImageFilePtr(std::move(file));
 }

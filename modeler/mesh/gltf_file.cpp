@@ -201,7 +201,7 @@ Status GltfFile::parse(std::string_view text) {
     if (!Json::sax_parse(text, &counter)) {
         if (counter.depth > deepest) return damaged(0, fmt::format("its JSON nests deeper than {}", deepest));
         if (counter.values > mostValues)
-            return Error{Error::Kind::Input, fmt::format("has more than {} values of JSON: simplify it", mostValues)};
+            return Error{Error::Kind::Budget, fmt::format("has more than {} values of JSON: simplify it", mostValues)};
         return damaged(0, "it is neither a .glb nor JSON");
     }
     json_ = std::make_unique<Json>(Json::parse(text, nullptr, false));
@@ -229,7 +229,7 @@ Status GltfFile::readBuffers(const ReadBeside& beside) {
             if (!read.ok()) return read.error();
             bytes = owned_.emplace_back(std::move(*read));
             if ((read_bytes_ += bytes.size()) > mostBeside_bytes)
-                return Error{Error::Kind::Input, "is larger than 1 GiB with its buffers"};
+                return Error{Error::Kind::Budget, "is larger than 1 GiB with its buffers"};
         } else if (binary_ && buffers_.empty()) {
             bytes = *binary_;
         }

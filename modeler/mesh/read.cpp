@@ -57,7 +57,7 @@ Status checkSoup(const TriangleSoup& soup) {
         return Error{Error::Kind::Input, "has a coordinate that is no number"};
     if (soup.triangles.empty()) return Error{Error::Kind::Input, "holds no triangles: it is damaged or cut short"};
     if (soup.triangles.size() > mostTriangles)
-        return Error{Error::Kind::Input, fmt::format("holds more than {} triangles: simplify it", mostTriangles)};
+        return Error{Error::Kind::Budget, fmt::format("holds more than {} triangles: simplify it", mostTriangles)};
     const auto known = [&](const Triangle& t) { return std::max({t.x, t.y, t.z}) < soup.positions.size(); };
     if (!std::all_of(soup.triangles.begin(), soup.triangles.end(), known))
         return Error{Error::Kind::Input, fmt::format("is damaged: a face has a corner that is none of its {} vertices",

@@ -151,7 +151,7 @@ private:
         if (corners < 3) return Done{};
         const size_t triangles = mode == asTriangles ? corners / 3 : corners - 2;
         if (before + positions.count > most_ || soup_.triangles.size() + triangles > most_)
-            return Error{Error::Kind::Input,
+            return Error{Error::Kind::Budget,
                          "puts its parts in so many places that it is far larger than its file: simplify it"};
         for (size_t i = 0; i < positions.count; ++i) {
             if (i % 4096 == 0 && cancelled(progress_)) return cancelledError();

@@ -37,6 +37,14 @@ PathBoolean pathBoolean(Boolean how) {
     return PathBoolean::Union;
 }
 
+/// Of sound footprints, so that edges cross those of the other one alone.
+bool crossTooOften(const Footprint& a, const Footprint& b) {
+    if (a.edgeCount() * b.edgeCount() <= mostCrossings) return false;
+    Footprint both = a;
+    both.polygons.insert(both.polygons.end(), b.polygons.begin(), b.polygons.end());
+    return countCrossings(both, mostCrossings) > mostCrossings;
+}
+
 }  // namespace
 
 Footprint boolean(Boolean how, const Footprint& a, const Footprint& b) {
@@ -45,6 +53,17 @@ Footprint boolean(Boolean how, const Footprint& a, const Footprint& b) {
     const std::vector<SourceEdge> sources = sourcesOfBoth(result, how, a, b);
     matchEdges(result, sources);
     return tidied(std::move(result));
+}
+
+Result<Footprint> booleanInBudget(Boolean how, const Footprint& a, const Footprint& b) {
+    if (crossTooOften(a, b))
+        return Error{Error::Kind::Budget, "the outlines cross each other more than " + std::to_string(mostCrossings) +
+                                              " times: draw them with fewer points"};
+    return boolean(how, a, b);
+}
+
+bool shareArea(const Footprint& a, const Footprint& b, double least_m2) {
+    return crossTooOften(a, b) || area(boolean(Boolean::Intersection, a, b)) > least_m2;
 }
 
 Result<Footprint> resolved(const Footprint& footprint) {

@@ -17,6 +17,12 @@ namespace sgm::plan {
 enum class Boolean { Union, Difference, Intersection };
 /// a ∪ b, a − b or a ∩ b. Edges of `b` that cut `a` are EdgeSource::Cut in a difference. O((n + k) log n), k crossings.
 Footprint boolean(Boolean how, const Footprint& a, const Footprint& b);
+/// The same of outlines that anybody may have drawn: Error::Budget where they cross more than 20,000 times, or where
+/// finding out takes 2·10⁸ steps.
+Result<Footprint> booleanInBudget(Boolean how, const Footprint& a, const Footprint& b);
+/// Whether two sound footprints share more than `least_m2`. The same number of steps at most: edges that cross so often
+/// as booleanInBudget() refuses are taken for an area.
+bool shareArea(const Footprint& a, const Footprint& b, double least_m2);
 /// Outlines that may cross themselves, and courts, resolved by winding ≠ 0: what is left is sound. For outlines drawn
 /// by a turtle. Points beyond 10⁵ m or not finite are Error::Input, more than 20,000 crossings Error::Budget.
 Result<Footprint> resolved(const Footprint& footprint);

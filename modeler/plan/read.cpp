@@ -16,13 +16,13 @@ namespace sgm::plan {
 
 std::optional<Error> ReadBudget::addFeature() {
     if (++features_ <= limits_.mostFeatures) return {};
-    return Error{Error::Kind::Input, fmt::format("it has more than {} features", limits_.mostFeatures)};
+    return Error{Error::Kind::Budget, fmt::format("it has more than {} features", limits_.mostFeatures)};
 }
 
 std::optional<Error> ReadBudget::addPoints(size_t count) {
     points_ += count;
     if (points_ <= limits_.mostPoints) return {};
-    return Error{Error::Kind::Input, fmt::format("it has more than {} points", limits_.mostPoints)};
+    return Error{Error::Kind::Budget, fmt::format("it has more than {} points", limits_.mostPoints)};
 }
 
 Result<Footprint> soundFootprint(const Footprint& drawn, const Limits& limits) {
@@ -44,6 +44,10 @@ Result<Footprint> soundFootprint(const Footprint& drawn, const Limits& limits) {
 
 Error damaged(std::string_view unit, uint64_t number, std::string_view why) {
     return {Error::Kind::Input, fmt::format("{} {}: {}", unit, number, why)};
+}
+
+Error damaged(std::string_view unit, uint64_t number, const Error& why) {
+    return {why.kind, damaged(unit, number, why.message).message};
 }
 
 std::optional<double> takeNumber(std::string_view& text) {

@@ -141,7 +141,7 @@ void layOnPlane(Features& features, bool isPlane, double farthest_m) {
 }  // namespace
 
 Result<Features> readGeoJson(std::string_view bytes, const ReadLimits& limits, const Progress* progress) {
-    if (bytes.size() > limits.mostBytes) return Error{Error::Kind::Input, "it is too large"};
+    if (bytes.size() > limits.mostBytes) return Error{Error::Kind::Budget, "it is too large"};
     const Result<Json> parsed = parseGeoJson(bytes);
     if (!parsed.ok()) return parsed.error();
     const Json& root = *parsed;
@@ -161,7 +161,7 @@ Result<Features> readGeoJson(std::string_view bytes, const ReadLimits& limits, c
     for (Feature& feature : reading.features.list) {
         if (cancelled(progress)) return cancelledError();
         Result<Footprint> sound = soundFootprint(feature.footprint, limits.footprint);
-        if (!sound) return damaged("feature", feature.place, sound.error().message);
+        if (!sound) return damaged("feature", feature.place, sound.error());
         feature.footprint = *std::move(sound);
     }
     return std::move(reading.features);

@@ -73,7 +73,7 @@ std::optional<Error> readFeature(const Json& object, Reading& reading) {
 }  // namespace
 
 Result<Lines> readGeoJsonLines(std::string_view bytes, const ReadLimits& limits, const Progress* progress) {
-    if (bytes.size() > limits.mostBytes) return Error{Error::Kind::Input, "it is too large"};
+    if (bytes.size() > limits.mostBytes) return Error{Error::Kind::Budget, "it is too large"};
     const Result<Json> root = parseGeoJson(bytes);
     if (!root.ok()) return root.error();
     Reading reading{ReadBudget(limits)};

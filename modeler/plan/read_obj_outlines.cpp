@@ -98,7 +98,7 @@ Result<Features> readObjOutlines(std::string_view bytes, const ReadLimits& limit
         if (cancelled(progress)) return cancelledError();
         Footprint joined = tidied(booleanOf(PathBoolean::Union, group.faces, {}));
         Result<Footprint> sound = soundFootprint(joined, limits.footprint);
-        if (!sound) return damaged("line", group.line, sound.error().message);
+        if (!sound) return damaged("line", group.line, sound.error());
         features.list.push_back({group.name, *std::move(sound), {}, group.line});
     }
     if (features.list.empty())

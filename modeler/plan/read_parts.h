@@ -27,6 +27,8 @@ Result<Footprint> soundFootprint(const Footprint& drawn, const Limits& limits);
 
 /// Error::Input: "feature 3: …", "line 12: …".
 Error damaged(std::string_view unit, uint64_t number, std::string_view why);
+/// The same of an error inside, whose kind it keeps.
+Error damaged(std::string_view unit, uint64_t number, const Error& why);
 
 /// The number at the beginning of `text`, which is moved behind it; nothing where there is none or it isn't finite.
 std::optional<double> takeNumber(std::string_view& text);

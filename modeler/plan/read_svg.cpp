@@ -164,7 +164,7 @@ bool isHidden(std::string_view name) {
 }  // namespace
 
 Result<Features> readSvg(std::string_view bytes, const ReadLimits& limits, const Progress* progress) {
-    if (bytes.size() > limits.mostBytes) return Error{Error::Kind::Input, "it is too large"};
+    if (bytes.size() > limits.mostBytes) return Error{Error::Kind::Budget, "it is too large"};
     TagScanner scanner(bytes);
     std::vector<Level> levels{{"", {}, true}};
     ReadBudget budget(limits);
@@ -174,7 +174,7 @@ Result<Features> readSvg(std::string_view bytes, const ReadLimits& limits, const
     for (;;) {
         if (cancelled(progress)) return cancelledError();
         auto next = scanner.next();
-        if (!next) return damaged("behind line", line, next.error().message);
+        if (!next) return damaged("behind line", line, next.error());
         if (!next.value()) break;
         const Tag& tag = **next;
         line += static_cast<uint64_t>(std::count(bytes.begin() + static_cast<ptrdiff_t>(counted),
@@ -185,18 +185,18 @@ Result<Features> readSvg(std::string_view bytes, const ReadLimits& limits, const
             continue;
         }
         const auto own = svgTransform(tag.attribute("transform"));
-        if (!own) return damaged("line", line, own.error().message);
+        if (!own) return damaged("line", line, own.error());
         const Level level{tag.name, levels.back().map * *own, levels.back().isShown && !isHidden(tag.name)};
         if (level.isShown) {
             const auto rings = ringsOf(tag, limits.mostPoints);
-            if (!rings) return damaged("line", line, rings.error().message);
+            if (!rings) return damaged("line", line, rings.error());
             if (!rings->empty()) {
                 size_t points = 0;
                 for (const auto& ring : *rings) points += ring.size();
                 if (auto e = budget.addFeature()) return *e;
                 if (auto e = budget.addPoints(points)) return *e;
                 const auto sound = footprintOf(*rings, level.map, limits.footprint);
-                if (!sound) return damaged("line", line, sound.error().message);
+                if (!sound) return damaged("line", line, sound.error());
                 Feature feature{shortened(printable(tag.attribute("id")), 256), *sound, {}, line};
                 if (const auto word = tag.attribute("class"); !word.empty())
                     feature.properties.push_back({"class", shortened(printable(word), 4096)});

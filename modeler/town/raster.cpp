@@ -84,7 +84,7 @@ std::array<uint8_t, 3> Raster::colorAt(double u, double v) const {
 Status judgeSize(uint64_t width, uint64_t height, const RasterLimits& limits) {
     if (width == 0 || height == 0) return Error{Error::Kind::Input, "it has no pixels"};
     if (width > limits.mostSide || height > limits.mostSide || width * height > limits.mostPixels)
-        return Error{Error::Kind::Input,
+        return Error{Error::Kind::Budget,
                      fmt::format("its {} x {} pixels are more than {} a side or {} in all: make it smaller", width,
                                  height, limits.mostSide, limits.mostPixels)};
     return Done{};

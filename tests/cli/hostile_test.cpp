@@ -198,8 +198,61 @@ TEST_F(Hostile, OutlinesThatCrossThemselvesMillionsOfTimesAreRefused) {
     }
     scratch_.write("star.geojson", R"({"type":"Polygon","coordinates":[[)" + ring + "]]}");
     const Outcome run = quick("check " + grammar("start A -> footprint file(\"star.geojson\", 1) extrude 3m\n"));
-    EXPECT_EQ(run.code, 1) << run.out;
+    EXPECT_EQ(run.code, 3) << run.out;
     EXPECT_NE(run.out.find("crosses itself more than"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("test.sgm:2:"), std::string::npos) << run.out;
+}
+
+TEST_F(Hostile, OutlinesThatCrossEachOtherMillionsOfTimesHaveABudget) {
+    constexpr int teeth = 800;  // 2,560,000 crossings
+    for (const bool isTurned : {false, true}) {
+        std::string ring;
+        const auto add = [&](int x, int z) {
+            ring += (ring.empty() ? "[" : ",[") + std::to_string(isTurned ? z - .5 : x) + "," +
+                    std::to_string(isTurned ? x + .5 : z) + "]";
+        };
+        for (int i = 0; i < teeth; ++i) {
+            add(2 * i, i ? 1 : 0), add(2 * i, 2 * teeth), add(2 * i + 1, 2 * teeth);
+            add(2 * i + 1, i + 1 < teeth ? 1 : 0);
+        }
+        scratch_.write(isTurned ? "b.geojson" : "a.geojson", R"({"type":"Polygon","coordinates":[[)" + ring + "]]}");
+    }
+    const std::string plans = "(file(\"a.geojson\", 1) % file(\"b.geojson\", 1))";
+    for (const char* sign : {"+", "-"}) {
+        std::string both = plans;
+        both.replace(both.find('%'), 1, sign);
+        const Outcome run =
+            quick("build -q " + grammar("start A -> footprint " + both + " extrude 3m\n") + " -o " + path("x.ply"));
+        EXPECT_EQ(run.code, 3) << run.out;
+        EXPECT_NE(run.out.find("cross each other more than"), std::string::npos) << run.out;
+        EXPECT_NE(run.out.find("test.sgm:2:"), std::string::npos) << run.out;
+    }
+}
+
+TEST_F(Hostile, FilesThatTakeTooMuchWorkAreRefusedAsBudgetsAre) {
+    // Each pair of large triangles covers the whole box, which takes every node of the grid.
+    std::string layers;
+    for (int i = 0; i < 1000; ++i)
+        for (const char* corner : {"0 0", "100 0", "0 100", "100 100"})
+            layers += std::string("v ") + corner + " " + std::to_string(i / 10.) + "\n";
+    for (int i = 0; i < 1000; ++i) {
+        const auto face = [&](int a, int b, int c) {
+            layers += "f " + std::to_string(4 * i + a) + " " + std::to_string(4 * i + b) + " " +
+                      std::to_string(4 * i + c) + "\n";
+        };
+        face(1, 2, 4), face(1, 4, 3), face(1, 4, 2), face(1, 3, 4);
+    }
+    scratch_.write("layers.obj", layers);
+    fs::resize_file(scratch_.write("sparse.obj", ""), 2u << 30);
+    const auto refused = [&](const std::string& mesh, const std::string& why, const std::string& command) {
+        const Outcome run = sgm(command + grammar("start A -> mesh(\"" + mesh + "\")\n"));
+        EXPECT_EQ(run.code, 3) << run.out;
+        EXPECT_NE(run.out.find("test.sgm:2:"), std::string::npos) << run.out;
+        EXPECT_NE(run.out.find(why), std::string::npos) << run.out;
+    };
+    refused("layers.obj", "too many large triangles", "check ");
+    refused("sparse.obj", "larger than 1024 MiB", "check ");
+    refused("sparse.obj", "larger than 1024 MiB", "build -q -o " + path("x.ply") + " ");
 }
 
 TEST_F(Hostile, NumbersWithoutEndAreToldWhereTheyAre) {

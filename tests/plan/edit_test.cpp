@@ -56,6 +56,34 @@ TEST(Edit, BooleansOfRectangles) {
     EXPECT_TRUE(boolean(Boolean::Intersection, a, at(*rectangle(1, 1), 50, 0)).empty());
 }
 
+/// A comb of `teeth` as long as all of them are wide together; turned, they run along x.
+Footprint comb(int teeth, bool isTurned) {
+    std::vector<Vec2> points;
+    const double side = 2 * teeth;
+    for (int i = 0; i < teeth; ++i)
+        for (const Vec2 p : {Vec2{2.0 * i, i ? 1. : 0}, Vec2{2.0 * i, side}, Vec2{2 * i + 1.0, side},
+                             Vec2{2 * i + 1.0, i + 1 < teeth ? 1. : 0}})
+            points.push_back(isTurned ? Vec2{p.z - .25, p.x + .25} : p);
+    return footprintOf(polygonOf(std::move(points)));
+}
+
+TEST(Edit, BooleansOfOutlinesThatCrossTooOftenHaveABudget) {
+    const Footprint a = comb(40, false), b = comb(40, true);
+    expectSound(a), expectSound(b);
+    const auto fine = booleanInBudget(Boolean::Union, a, b);
+    ASSERT_TRUE(fine.ok()) << fine.error().message;
+    EXPECT_EQ(*fine, boolean(Boolean::Union, a, b));
+    EXPECT_TRUE(shareArea(a, b, 1));
+    EXPECT_FALSE(shareArea(a, b, 1e5));
+    const Footprint many = comb(1000, false), others = comb(1000, true);
+    const auto refused = booleanInBudget(Boolean::Difference, many, others);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().kind, Error::Kind::Budget);
+    EXPECT_NE(refused.error().message.find("cross each other more than 20000 times"), std::string::npos);
+    EXPECT_TRUE(shareArea(many, others, 1e-6));
+    EXPECT_TRUE(booleanInBudget(Boolean::Union, many, at(*rectangle(4, 4), 0, 0)).ok()) << "many points, few crossings";
+}
+
 TEST(Edit, ChurchPlansOfUnionsAreOneOutline) {
     const Footprint nave = boolean(Boolean::Union, *rectangle(12, 40), at(*rectangle(26, 10), 0, 7));
     Footprint apse = at(*round(24, 6), 0, 20);
