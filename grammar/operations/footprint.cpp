@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "grammar/derive/builder.h"
 #include "grammar/operations/operations.h"
 #include "grammar/operations/plan_expressions.h"
 #include "modeler/plan/edge_words.h"
@@ -109,7 +110,10 @@ void applySetback(AttributeContext& context, const Attribute& attribute) {
                 ? 0
                 : std::max(0.0, context.number(attribute.args[static_cast<size_t>(word - words.begin())])));
     }
-    context.setFootprint(plan::setback(footprint, distances), attribute.span);
+    auto inner = plan::setbackInBudget(footprint, distances);
+    if (!inner.ok())
+        return context.place.builder->monitor().fail(inner.error().kind, inner.error().message, attribute.span);
+    context.setFootprint(std::move(*inner), attribute.span);
 }
 
 void applyCourt(AttributeContext& context, const Attribute& attribute) {

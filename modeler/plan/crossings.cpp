@@ -20,9 +20,12 @@ bool cross(const Segment& a, const Segment& b) {
 
 }  // namespace
 
-size_t countCrossings(const Footprint& footprint, size_t most) {
+size_t countCrossings(const Footprint& footprint, size_t most) { return countCrossings(pathsOf(footprint), most); }
+
+size_t countCrossings(const LatticePaths& paths, size_t most) {
     std::vector<Segment> segments, open;
-    for (const PlacedEdge& e : edgesOf(footprint)) segments.push_back({latticePoint(e.from), latticePoint(e.to)});
+    for (const LatticePath& path : paths)
+        for (size_t i = 0; i < path.size(); ++i) segments.push_back({path[i], path[i + 1 == path.size() ? 0 : i + 1]});
     std::sort(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) { return a.lowX() < b.lowX(); });
     size_t crossings = 0, compared = 0;
     for (const Segment& next : segments) {

@@ -9,8 +9,6 @@ namespace sgm::plan {
 namespace {
 
 constexpr double farthest_m = 1e5;
-/// Clipper takes some 40 µs each.
-constexpr size_t mostCrossings = 20'000;
 
 /// The sources of two operands in the tags of `result`; those of the second become cuts where they cut.
 std::vector<SourceEdge> sourcesOfBoth(Footprint& result, Boolean how, const Footprint& a, const Footprint& b) {

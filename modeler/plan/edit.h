@@ -35,6 +35,9 @@ Footprint rim(const Footprint& footprint, double width_m);
 /// Every edge moved inward by its own distance ≥ 0, metres, by number as in edgesOf(). Neighbours meet where their
 /// moved lines do; where those meet far off (nearly parallel) a step is left.
 Footprint setback(const Footprint& footprint, std::span<const double> distances_m);
+/// The same of an outline that anybody may have drawn: Error::Budget where what is too near to the edges overlaps in
+/// more than 20,000 crossings, or reaches over so many edges that finding its parts takes 2·10⁷ steps.
+Result<Footprint> setbackInBudget(const Footprint& footprint, std::span<const double> distances_m);
 /// With a court that leaves wings of `wing_m`; its edges are EdgeSource::Court and tagged "court". Error::Input where
 /// the wings leave no court.
 Result<Footprint> court(const Footprint& footprint, double wing_m);

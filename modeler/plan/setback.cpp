@@ -1,8 +1,10 @@
 // Setbacks: what is nearer to an edge than its distance goes, by strips along edges and wedges at corners.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "modeler/plan/clipper_paths.h"
+#include "modeler/plan/crossings.h"
 #include "modeler/plan/edge_match.h"
 #include "modeler/plan/edit.h"
 #include "modeler/plan/ring_parts.h"
@@ -10,6 +12,10 @@
 
 namespace sgm::plan {
 namespace {
+
+/// Edges that booleans of single strips may look at, ten seconds of work.
+constexpr size_t mostSteps = 20'000'000;
+constexpr size_t unlimited = static_cast<size_t>(-1);
 
 LatticePath strip(std::initializer_list<Vec2> corners) {
     Ring ring = ringOf(corners);
@@ -39,9 +45,11 @@ bool reachesOver(const std::vector<PlacedEdge>& edges, size_t of, const Box2& bo
     return false;
 }
 
-/// All that lies too near to some edge.
-LatticePaths stripsOf(const Footprint& footprint, const std::vector<PlacedEdge>& edges, std::span<const double> in) {
+/// All that lies too near to some edge; nothing where finding it takes more than `most` steps.
+std::optional<LatticePaths> stripsOf(const Footprint& footprint, const std::vector<PlacedEdge>& edges,
+                                     std::span<const double> in, size_t most) {
     LatticePaths strips;
+    size_t steps = 0;
     for (size_t i = 0, ringBegin = 0; i < edges.size(); ++i) {
         const PlacedEdge& e = edges[i];
         if (e.index == 0) ringBegin = i;
@@ -54,6 +62,8 @@ LatticePaths stripsOf(const Footprint& footprint, const std::vector<PlacedEdge>&
             const LatticePath whole = strip({e.from, e.to, e.to + deep, e.from + deep});
             if (!reachesOver(edges, i, box))
                 strips.push_back(whole);
+            else if ((steps += edges.size()) > most)
+                return std::nullopt;
             else
                 for (LatticePath& part : partAt(e, whole, footprint)) strips.push_back(std::move(part));
         }
@@ -72,9 +82,8 @@ LatticePaths stripsOf(const Footprint& footprint, const std::vector<PlacedEdge>&
     return strips;
 }
 
-}  // namespace
-
-Footprint setback(const Footprint& footprint, std::span<const double> distances_m) {
+/// Nothing where the outline `isLimited` and asks for too much.
+std::optional<Footprint> setBack(const Footprint& footprint, std::span<const double> distances_m, bool isLimited) {
     const std::vector<PlacedEdge> edges = edgesOf(footprint);
     std::vector<double> in(edges.size()), out(edges.size());
     for (size_t i = 0; i < edges.size(); ++i) {
@@ -88,10 +97,30 @@ Footprint setback(const Footprint& footprint, std::span<const double> distances_
             if (ring->size() >= 3) result.polygons.push_back({std::move(*ring), {}});
             return result;
         }
-    Footprint result = booleanOf(PathBoolean::Difference, pathsOf(footprint), stripsOf(footprint, edges, in));
+    auto strips = stripsOf(footprint, edges, in, isLimited ? mostSteps : unlimited);
+    if (!strips) return std::nullopt;
+    if (isLimited) {
+        LatticePaths all = pathsOf(footprint);
+        all.insert(all.end(), strips->begin(), strips->end());
+        if (countCrossings(all, mostCrossings) > mostCrossings) return std::nullopt;
+    }
+    Footprint result = booleanOf(PathBoolean::Difference, pathsOf(footprint), *strips);
     result.tags = footprint.tags;
     matchEdges(result, sourcesOf(footprint, out));
     return tidied(std::move(result));
+}
+
+}  // namespace
+
+Footprint setback(const Footprint& footprint, std::span<const double> distances_m) {
+    return *setBack(footprint, distances_m, false);
+}
+
+Result<Footprint> setbackInBudget(const Footprint& footprint, std::span<const double> distances_m) {
+    if (auto result = setBack(footprint, distances_m, true)) return std::move(*result);
+    return Error{Error::Kind::Budget,
+                 "the outline has so many edges within the setback of others that they would take minutes: draw it "
+                 "with fewer points, or set it back by less"};
 }
 
 }  // namespace sgm::plan

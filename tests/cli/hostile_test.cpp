@@ -227,6 +227,11 @@ TEST_F(Hostile, OutlinesThatCrossEachOtherMillionsOfTimesHaveABudget) {
         EXPECT_NE(run.out.find("cross each other more than"), std::string::npos) << run.out;
         EXPECT_NE(run.out.find("test.sgm:2:"), std::string::npos) << run.out;
     }
+    const Outcome set =
+        sgm("build -q " + grammar("start A -> footprint file(\"a.geojson\", 1) extrude 3m setback 100m\n") + " -o " +
+            path("x.ply"));
+    EXPECT_EQ(set.code, 3) << set.out;
+    EXPECT_NE(set.out.find("test.sgm:2:"), std::string::npos) << set.out;
 }
 
 TEST_F(Hostile, FilesThatTakeTooMuchWorkAreRefusedAsBudgetsAre) {

@@ -84,6 +84,18 @@ TEST(Edit, BooleansOfOutlinesThatCrossTooOftenHaveABudget) {
     EXPECT_TRUE(booleanInBudget(Boolean::Union, many, at(*rectangle(4, 4), 0, 0)).ok()) << "many points, few crossings";
 }
 
+TEST(Edit, SetbacksOfManyEdgesOverOthersHaveABudget) {
+    const Footprint few = comb(20, false), many = comb(300, false);
+    const std::vector<double> narrow(few.edgeCount(), .2), wide(many.edgeCount(), 100), thin(many.edgeCount(), .2);
+    const auto fine = setbackInBudget(few, narrow);
+    ASSERT_TRUE(fine.ok()) << fine.error().message;
+    EXPECT_EQ(*fine, setback(few, narrow));
+    EXPECT_TRUE(setbackInBudget(many, thin).ok()) << "many edges, none over another";
+    const auto refused = setbackInBudget(many, wide);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().kind, Error::Kind::Budget);
+}
+
 TEST(Edit, ChurchPlansOfUnionsAreOneOutline) {
     const Footprint nave = boolean(Boolean::Union, *rectangle(12, 40), at(*rectangle(26, 10), 0, 7));
     Footprint apse = at(*round(24, 6), 0, 20);
