@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fuzzes.  tests/fuzz/run.sh [TIME] [TARGET…]   (10m each, all targets; TIME in seconds, or as 90s, 10m, 2h)
-#   mesh maps syntax                  libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, by clang++
+#   mesh maps syntax grammar          libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, by clang++
 #   format check lower models edits incremental    inputs by number, through the tests of the Release build
 # Both go on where the last run ended: corpora stay in build/fuzz/corpus, and tests/fuzz/tally.txt holds how many inputs each
 # target has had. An input that crashes, hangs or takes more than 2 GB ends the run with an error.
@@ -13,7 +13,7 @@ case "$time" in
   *m) seconds=$((${time%m} * 60)) ;;
   *) seconds="${time%s}" ;;
 esac
-[ $# -gt 0 ] || set -- mesh maps syntax format check lower models edits incremental
+[ $# -gt 0 ] || set -- mesh maps syntax grammar format check lower models edits incremental
 tally=tests/fuzz/tally.txt
 
 had() { sed -n "s/^$1 //p" "$tally"; }
@@ -29,7 +29,7 @@ coverage_guided() {  # TARGET LONGEST SEEDS…
   [ -f build/fuzz/build.ninja ] || cmake --preset fuzz >build/fuzz.log 2>&1
   ninja -C build/fuzz "fuzz_$target" >>build/fuzz.log
   mkdir -p "build/fuzz/corpus/$target"
-  "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -timeout=5 -max_len="$longest" -rss_limit_mb=2048 -print_final_stats=1 \
+  "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -timeout=20 -max_len="$longest" -rss_limit_mb=2048 -print_final_stats=1 \
     -artifact_prefix=build/fuzz/ "build/fuzz/corpus/$target" "$@" 2>"build/fuzz/$target.log" ||
     { tail -n 40 "build/fuzz/$target.log"; exit 1; }
   count "$target" "$(sed -n 's/^stat::number_of_executed_units: *//p' "build/fuzz/$target.log")"
@@ -51,6 +51,7 @@ for target in "$@"; do
     mesh) coverage_guided mesh 4000 tests/fuzz/mesh ;;
     maps) coverage_guided maps 2000 tests/fuzz/maps ;;
     syntax) coverage_guided syntax 1500 tests/bad tests/syntax grammar/std examples ;;
+    grammar) coverage_guided grammar 3000 tests/bad tests/syntax grammar/std examples ;;
     format) by_number format syntax 'Fuzz.Mutants*' 20000 ;;
     check) by_number check rules 'Fuzz.Mutants*' 6000 ;;
     lower) by_number lower lower 'Fuzz.Mutants*' 4000 ;;
