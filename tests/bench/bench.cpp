@@ -7,6 +7,7 @@
 
 #include "modeler/core/parallel.h"
 #include "tests/bench/city.h"
+#include "tests/bench/derivation.h"
 #include "tests/bench/gallery.h"
 #include "tests/bench/kifs.h"
 #include "tests/bench/meshes.h"
@@ -25,7 +26,7 @@ struct Request {
     MeasureOptions measure;
     std::string json, drag, gallery;
     bool bars = false, cpu = false, noPeers = false, noDense = false, kifs = false, pictures = false;
-    bool meshes = false, crossings = false, city = false, plan = false;
+    bool meshes = false, crossings = false, city = false, plan = false, derive = false;
     double buildings = 1e6;
     std::string only;
     int sides = MeshesOptions{}.sides;
@@ -66,6 +67,8 @@ void addOptions(CLI::App& app, Request& request) {
         ->capture_default_str();
     app.add_option("--only", request.only, "Measure those cities of --city whose name has this in it")->needs(city);
     app.add_flag("--plan", request.plan, "Measure what the plans of cities cost instead: roads, blocks and lots");
+    app.add_flag("--derive", request.derive,
+                 "Measure what comes before the tape instead: derivation, lowering, plans of files, L-systems");
     auto* meshes =
         app.add_flag("--meshes", request.meshes,
                      "Hold meshes of buildings against exact solid geometry instead (needs node and manifold-3d)");
@@ -195,6 +198,14 @@ void runPlan() {
     for (const Bar& bar : bars) fmt::print("{}\n", barLine(bar));
 }
 
+/// The table of --derive.
+Status runDerive() {
+    const auto bars = measureDerivation();
+    if (!bars.ok()) return bars.error();
+    for (const Bar& bar : *bars) fmt::print("{}\n", barLine(bar));
+    return Done{};
+}
+
 int fail(const Error& error) {
     fmt::print(stderr, "{}\n", error.message);
     return error.kind == Error::Kind::Usage ? 2 : 1;
@@ -216,6 +227,10 @@ int main(int argc, char** argv) {
     if (request.plan) {
         runPlan();
         return 0;
+    }
+    if (request.derive) {
+        const Status done = runDerive();
+        return done.ok() ? 0 : fail(done.error());
     }
     if (request.city) {
         const Status done = runCity(request.buildings, request.only);
