@@ -77,10 +77,9 @@ void printSummary(const BuildRequest& request, const Model& model, const pipelin
     double total = 0;
     for (const auto& stage : stages) total += stage.second;
     const mesh::MeshFigures& f = figures.mesh;
-    fmt::print("{} shapes, {} bonds, {} rules; {} triangles in {} component{}, {:.4g} m³; {:.2f} s\n",
-               model.derivation.tree.shapes.size(), model.derivation.tree.bonds.size(),
-               model.derivation.classic + model.derivation.morphic, f.triangles, f.components,
-               f.components == 1 ? "" : "s", f.volume_m3, total);
+    fmt::print("{} shapes, {} rules; {} triangles in {} component{}, {:.4g} m³; {:.2f} s\n",
+               model.derivation.tree.shapes.size(), model.derivation.classic + model.derivation.morphic, f.triangles,
+               f.components, f.components == 1 ? "" : "s", f.volume_m3, total);
     if (!scene.empty()) {
         uint64_t own = 0;
         for (const mesh::SceneObject& object : scene.objects) own += object.mesh.triangleCount();
@@ -182,9 +181,8 @@ Status stream(const BuildRequest& request, const Model& model, Context& context)
                                         });
     });
     if (!written.ok() || request.quiet) return written;
-    fmt::print("{} shapes, {} bonds, {} rules; {} triangles; {:.2f} s\nwrote {}\n", model.derivation.tree.shapes.size(),
-               model.derivation.tree.bonds.size(), model.derivation.classic + model.derivation.morphic, triangles,
-               watch.seconds(), request.out.files[0]);
+    fmt::print("{} shapes, {} rules; {} triangles; {:.2f} s\nwrote {}\n", model.derivation.tree.shapes.size(),
+               model.derivation.classic + model.derivation.morphic, triangles, watch.seconds(), request.out.files[0]);
     return Done{};
 }
 

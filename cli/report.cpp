@@ -103,7 +103,7 @@ std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh
     for (const auto& [name, seconds] : stages) json["stages"][name] = seconds;
     json["shapes"] = d.tree.shapes.size();
     json["terminals"] = d.terminals();
-    json["bonds"] = d.tree.bonds.size();
+    json["bonds"] = d.tree.bonds().all.size();
     json["rules_applied"] = {{"classic", d.classic}, {"morphic", d.morphic}};
     json["field"] = fieldFigures(model, meshed);
     json["mesh"] = meshFigures(figures);

@@ -1,93 +1,91 @@
 #include "grammar/derive/bond_builder.h"
 
-#include <tuple>
+#include <algorithm>
 #include <utility>
 
 namespace sgm::derive {
-namespace {
 
-bool isDirected(const Joint& j) { return j.direction != Vec3d{}; }
-
-}  // namespace
-
-uint32_t& BondBuilder::firstBondAt(ShapeId id, uint32_t joint) {
-    const Shape& s = tree_.shapes[id];
-    return joint < firstNamedJoint ? tree_.bodies[s.body].bond[joint]
-                                   : tree_.namedBonds[s.firstNamedBond + joint - firstNamedJoint];
-}
-
-void BondBuilder::linkBond(uint32_t index, int end) {
-    Bond& b = tree_.bonds[index];
-    Body& body = tree_.bodies[tree_.shapes[b.shape[end]].body];
-    b.next[end] = std::exchange(body.firstBond, index);
-    uint32_t& first = firstBondAt(b.shape[end], b.joint[end]);
-    if (first == none || (b.directed && !tree_.bonds[first].directed)) first = index;
-}
-
-void BondBuilder::bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
+void BondBuilder::place(const Mate& mate) {
     if (recorder_.isReplaying())
-        replayBond(a, jointA, b, jointB);
+        replay(mate);
     else
-        join(a, jointA, b, jointB);
+        tree_.mates.push_back(mate);
 }
 
-void BondBuilder::join(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
-    const Joint ja = tree_.joint(a, jointA), jb = tree_.joint(b, jointB);
-    const auto index = static_cast<uint32_t>(tree_.bonds.size());
-    tree_.bonds.push_back(
-        {{a, b}, {jointA, jointB}, jb.point - ja.point, isDirected(ja) && isDirected(jb), {none, none}});
-    linkBond(index, 0);
-    linkBond(index, 1);
-    if (isDirected(ja) && !isDirected(jb)) {
-        const uint32_t back = opposedFace(tree_.shapes[b].scope.axes, ja.direction);
-        if (dot(tree_.joint(b, back).direction, ja.direction) < -0.999 && firstBondAt(b, back) == none)
-            firstBondAt(b, back) = index;
+const Bonds& BondBuilder::asked() {
+    if (recorder_.isReplaying() && !areAsked_) {  // the first run asked nothing
+        monitor_.diverge();
+        return tree_.bonds();
     }
+    Bonds& bonds = areAsked_ ? *tree_.bondsOnDemand.made() : tree_.bondsOnDemand.begin();
+    areAsked_ = true;
+    Recording* const recording = recorder_.recording();
+    if (!recorder_.isReplaying()) maker_.follow(bonds, recording ? &recording->made() : nullptr);
+    return bonds;
 }
 
-void BondBuilder::bondCoincidentFaces(ShapeId id) {
-    if (!ownsBody(id)) return;
-    if (recorder_.isReplaying()) return replayContacts(id);
-    meeting_.clear();
-    for (uint32_t j = 0; j < tree_.jointCount(id); ++j)
-        if (const Joint joint = tree_.joint(id, j); isDirected(joint))
-            meeting_.push_back({j, joint, joints_.expect(joint)});
-    for (const auto& [j, joint, spot] : meeting_) {
-        const auto partner = joints_.add(tree_, {id, j}, joint, spot);
-        if (partner && recorder_.recording()) recorder_.recording()->made().met({id, j}, *partner);
-        if (!partner || tree_.closed(id, j) || tree_.closed(partner->shape, partner->joint)) continue;
-        if (tree_.shapes[partner->shape].body == tree_.shapes[id].body) continue;
-        if (recorder_.recording()) recorder_.recording()->made().bondedByContact(tree_.bonds.size());
-        join(partner->shape, partner->joint, id, j);
-    }
+void BondBuilder::settle() {
+    if (areAsked_)
+        asked();
+    else
+        tree_.bondsOnDemand.forget();
 }
 
 /// The bonds of a vanished place free its partners' joints.
 void BondBuilder::release(ShapeId id) {
-    ShapeTree& t = tree_;
-    const Body& body = t.bodies[t.shapes[id].body];
-    if (body.owner != id) return;
-    for (uint32_t i = body.firstBond; i != none;) {
-        const Bond& b = t.bonds[i];
-        const int mine = t.bodies[t.shapes[b.shape[0]].body].owner == id ? 0 : 1;
-        uint32_t& first = firstBondAt(b.shape[1 - mine], b.joint[1 - mine]);
+    Bonds& bonds = *tree_.bondsOnDemand.made();
+    if (!bonds.ownsBody(id)) return;
+    for (uint32_t i = bonds.bodies[bonds.bodyOf[id]].firstBond; i != none;) {
+        const Bond& b = bonds.all[i];
+        const int mine = bonds.bodies[bonds.bodyOf[b.shape[0]]].owner == id ? 0 : 1;
+        uint32_t& first = bonds.at(b.shape[1 - mine], b.joint[1 - mine]);
         if (first == i) first = none;
         i = b.next[mine];
     }
 }
 
-void BondBuilder::replayBond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB) {
-    const uint32_t index = recorder_.recording()->nextBond();
-    if (index == none) return monitor_.diverge();
-    const Bond& known = tree_.bonds[index];
-    const std::tuple told(known.shape[0], known.joint[0], known.shape[1], known.joint[1]);
-    // A centre that came to a face closes the newcomer's face that looks back: which one, hangs on how both are turned.
-    const bool turned = !known.directed && (recorder_.recording()->changes().has(a, ShapeChanges::Turned) ||
-                                            recorder_.recording()->changes().has(b, ShapeChanges::Turned));
-    if (told != std::tuple(a, jointA, b, jointB) || turned) monitor_.diverge();
+void BondBuilder::sweep(const std::vector<uint32_t>& newId, const std::vector<uint32_t>& ownerOf) {
+    Bonds& bonds = *tree_.bondsOnDemand.made();
+    const std::vector<Bond> old = std::exchange(bonds.all, {});
+    for (Body& body : bonds.bodies) body = Body{};
+    for (ShapeId s = 0; s < newId.size(); ++s) {
+        if (newId[s] == none) continue;
+        bonds.bodyOf[newId[s]] = bonds.bodyOf[s];
+        bonds.namedAt[newId[s]] = bonds.namedAt[s];
+    }
+    bonds.bodyOf.resize(tree_.shapes.size());
+    bonds.namedAt.resize(tree_.shapes.size());
+    for (ShapeId s = 0; s < tree_.shapes.size(); ++s) {
+        ShapeId& owner = bonds.bodies[bonds.bodyOf[s]].owner;
+        owner = std::min(owner, s);
+    }
+    std::fill(bonds.named.begin(), bonds.named.end(), none);
+    for (const Bond& b : old) {
+        // A bond made by content that was replaced stays with the shape whose place that content filled.
+        ShapeId end[2];
+        for (int k = 0; k < 2; ++k) {
+            end[k] = newId[b.shape[k]];
+            if (end[k] == none && b.joint[k] < firstNamedJoint) end[k] = newId[ownerOf[b.shape[k]]];
+        }
+        if (end[0] != none && end[1] != none) maker_.join(bonds, {end[0], b.joint[0], end[1], b.joint[1]});
+    }
 }
 
-void BondBuilder::replayContacts(ShapeId id) {
+void BondBuilder::replay(const Mate& mate) {
+    const uint32_t index = recorder_.recording()->nextMate();
+    if (index == none || tree_.mates[index] != mate) return monitor_.diverge();
+    if (!areAsked_) return;
+    // A centre that came to a face closes the newcomer's face that looks back: which one, hangs on how both are turned.
+    const ShapeChanges& changes = recorder_.recording()->changes();
+    const bool directed = tree_.joint(mate.host, mate.ours).direction != Vec3d{} &&
+                          tree_.joint(mate.newcomer, mate.theirs).direction != Vec3d{};
+    if (!directed && (changes.has(mate.host, ShapeChanges::Turned) || changes.has(mate.newcomer, ShapeChanges::Turned)))
+        monitor_.diverge();
+}
+
+void BondBuilder::revalidate(ShapeId id) {
+    if (!recorder_.isReplaying() || !areAsked_) return;
+    if (tree_.shapes[id].sharesPlace || tree_.shapes[id].meetsNobody) return;
     if (!recorder_.recording()->changes().has(id, ShapeChanges::Moved)) return;
     for (uint32_t j = 0; j < tree_.jointCount(id); ++j) {
         const Joint joint = tree_.joint(id, j);
@@ -99,7 +97,8 @@ void BondBuilder::replayContacts(ShapeId id) {
 }
 
 bool BondBuilder::revalidateContacts() {
-    ShapeTree& t = tree_;
+    if (!areAsked_) return true;
+    const ShapeTree& t = tree_;
     const auto moved = [&](ShapeId id) { return recorder_.recording()->changes().has(id, ShapeChanges::Moved); };
     const auto asBefore = [&](JointIndex::Entry e) {
         return moved(e.shape) ||
@@ -108,7 +107,7 @@ bool BondBuilder::revalidateContacts() {
     for (const MadeNotes::Contact& m : recorder_.recording()->made().contacts())
         if (moved(m.partner.shape) && !asBefore(m.at)) return false;
     for (const ShapeId id : recorder_.recording()->changes().shapes()) {
-        if (!moved(id) || !ownsBody(id)) continue;
+        if (!moved(id) || t.shapes[id].sharesPlace) continue;
         for (uint32_t j = 0; j < t.jointCount(id); ++j) {
             const Joint joint = t.joint(id, j);
             bool same = true;
@@ -119,7 +118,7 @@ bool BondBuilder::revalidateContacts() {
             if (!same) return false;
         }
     }
-    for (Bond& b : t.bonds)
+    for (Bond& b : tree_.bondsOnDemand.made()->all)
         if (moved(b.shape[0]) || moved(b.shape[1]))
             b.shift = t.joint(b.shape[1], b.joint[1]).point - t.joint(b.shape[0], b.joint[0]).point;
     return true;

@@ -1,8 +1,9 @@
-// Bonds shapes of a tree under construction, and finds whom their faces meet.
-// Enters: shapes that stand in the tree, and their joints. Leaves: bonds, and the lists of them by joint. Assumes one
-// thread.
+// The bonds of a tree under construction: noted where newcomers are placed, made when a rule first asks for them.
+// Enters: shapes that stand in the tree, and what placed them. Leaves: bonds that hold all shapes so far, each time
+// somebody asks. Assumes one thread.
 #pragma once
 
+#include "grammar/derive/bond_maker.h"
 #include "grammar/derive/recorder.h"
 
 namespace sgm::derive {
@@ -10,40 +11,35 @@ namespace sgm::derive {
 class BondBuilder {
 public:
     BondBuilder(ShapeTree& tree, JointIndex& joints, Monitor& monitor, const Recorder& recorder)
-        : tree_(tree), joints_(joints), monitor_(monitor), recorder_(recorder) {}
+        : tree_(tree), joints_(joints), monitor_(monitor), recorder_(recorder), maker_(tree, joints) {}
 
-    /// Joins two joints; the shift is what lies between their points. A directed bond closes both, any other leaves
-    /// them open. Where a centre came to our face, the newcomer's face that looks back counts as bonded too.
-    void bond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
-    /// Bonds every face of `id` that coincides with another's, so that no rule grows there again. Call after the bond
-    /// that placed it.
-    void bondCoincidentFaces(ShapeId id);
-    /// Frees the joints of those that are bonded to a shape that vanishes.
+    /// Notes what placed the newest shape.
+    void place(const Mate& mate);
+    /// While pieces run again: whether the shape meets whom it met.
+    void revalidate(ShapeId id);
+    /// The bonds of all that stands. From the first time on they follow the tree: O(joints that came since).
+    const Bonds& asked();
+    /// Brings bonds that were asked for up to date, and lets others be made anew when somebody asks the tree.
+    void settle();
+    /// Frees the joints of those that are bonded to a shape that vanishes. Call `asked` before it dies.
     void release(ShapeId id);
+    /// After dead shapes were swept out: bonds what is left of shapes that were bonded, by the new ids of old shapes
+    /// and the old owners of their bodies.
+    void sweep(const std::vector<uint32_t>& newId, const std::vector<uint32_t>& ownerOf);
     /// After the last piece that runs again: whether those that stayed where they are meet whom they met, and bonds'
     /// shifts.
     bool revalidateContacts();
     size_t jointsIndexed() const { return joints_.size(); }
-    /// True where the shape doesn't share the joints of its parent.
-    bool ownsBody(ShapeId id) const { return tree_.bodies[tree_.shapes[id].body].owner == id; }
 
 private:
-    struct Contact {
-        uint32_t joint;
-        Joint at;
-        JointIndex::Spot spot;
-    };
-    void join(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
-    void linkBond(uint32_t bond, int end);
-    uint32_t& firstBondAt(ShapeId id, uint32_t joint);
-    void replayBond(ShapeId a, uint32_t jointA, ShapeId b, uint32_t jointB);
-    void replayContacts(ShapeId id);
+    void replay(const Mate& mate);
 
     ShapeTree& tree_;
     JointIndex& joints_;
     Monitor& monitor_;
     const Recorder& recorder_;
-    std::vector<Contact> meeting_;  ///< scratch of bondCoincidentFaces
+    BondMaker maker_;
+    bool areAsked_ = false;
 };
 
 }  // namespace sgm::derive

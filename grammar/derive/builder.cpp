@@ -17,8 +17,9 @@ uint64_t bytes(const std::vector<T>& v) {
 }  // namespace
 
 uint64_t Derivation::memory() const {
-    return bytes(tree.shapes) + bytes(tree.bonds) + bytes(tree.bodies) + bytes(tree.solids) + bytes(tree.extras) +
-           bytes(tree.namedBonds) + bytes(steps) + bytes(materials);
+    const Bonds* const bonds = tree.bondsOnDemand.made();
+    return bytes(tree.shapes) + bytes(tree.mates) + bytes(tree.solids) + bytes(tree.extras) + bytes(steps) +
+           bytes(materials) + (bonds ? bonds->memory() : 0);
 }
 
 TreeBuilder::TreeBuilder(Derivation& derivation, const Budget& budget, Progress* progress)
@@ -86,17 +87,9 @@ ShapeId TreeBuilder::add(Shape shape, ShapeId before) {
             shape.valuesAt = parent.valuesAt;
         // The root's box is only where the start begins: nothing stands there to be met.
         if (shape.parent != 0 && shape.op == rules::Operator::None && shape.scope == parent.scope)
-            shape.body = parent.body;
+            shape.sharesPlace = true;
         linkChild(shape.parent, id, before);
         shape.nextSibling = before;
-    }
-    if (shape.body == none) {
-        shape.body = static_cast<uint32_t>(t.bodies.size());
-        t.bodies.emplace_back().owner = id;
-    }
-    if (shape.jointSet) {
-        shape.firstNamedBond = static_cast<uint32_t>(t.namedBonds.size());
-        t.namedBonds.insert(t.namedBonds.end(), t.namedJoints[shape.jointSet].size(), none);
     }
     if (shape.symbol != rules::none) ++counts_[shape.symbol];
     if (shape.live) live_.push_back(id);
@@ -159,6 +152,7 @@ void TreeBuilder::clearContent(ShapeId id) {
     if (recording() && t.shapes[id].solid != none) recording()->made().cleared(id);
     t.shapes[id].solid = none;
     if (t.shapes[id].firstChild == none) return;
+    bonds_.asked();
     for (ShapeId s = t.next(id, id); s != none; s = t.next(s, id)) kill(s);
     t.shapes[id].firstChild = t.shapes[id].lastChild = none;
     killBound();
@@ -218,27 +212,6 @@ std::vector<uint32_t> sweepShapes(Derivation& derivation) {
     return newId;
 }
 
-/// Bonds what is left of shapes that were bonded.
-void sweepBonds(ShapeTree& t, BondBuilder& bonds, const std::vector<uint32_t>& newId,
-                const std::vector<uint32_t>& ownerOf) {
-    const std::vector<Bond> old = std::exchange(t.bonds, {});
-    for (Body& body : t.bodies) body = Body{};
-    for (ShapeId s = 0; s < t.shapes.size(); ++s) {
-        ShapeId& owner = t.bodies[t.shapes[s].body].owner;
-        owner = std::min(owner, s);
-    }
-    std::fill(t.namedBonds.begin(), t.namedBonds.end(), none);
-    for (const Bond& b : old) {
-        // A bond made by content that was replaced stays with the shape whose place that content filled.
-        ShapeId end[2];
-        for (int k = 0; k < 2; ++k) {
-            end[k] = newId[b.shape[k]];
-            if (end[k] == none && b.joint[k] < firstNamedJoint) end[k] = newId[ownerOf[b.shape[k]]];
-        }
-        if (end[0] != none && end[1] != none) bonds.bond(end[0], b.joint[0], end[1], b.joint[1]);
-    }
-}
-
 void numberOccurrences(ShapeTree& t) {
     std::vector<uint32_t> seen(t.labels.size(), 0), touched;
     for (const Shape& parent : t.shapes) {
@@ -256,11 +229,12 @@ void numberOccurrences(ShapeTree& t) {
 }  // namespace
 
 void TreeBuilder::finish() {
+    bonds_.settle();
     if (deadCount_ > 0) {
+        const Bonds& bonds = bonds_.asked();
         std::vector<uint32_t> ownerOf;
-        for (const Shape& s : tree().shapes) ownerOf.push_back(tree().bodies[s.body].owner);
-        const auto newId = sweepShapes(derivation_);
-        sweepBonds(tree(), bonds_, newId, ownerOf);
+        for (ShapeId s = 0; s < tree().shapes.size(); ++s) ownerOf.push_back(bonds.bodies[bonds.bodyOf[s]].owner);
+        bonds_.sweep(sweepShapes(derivation_), ownerOf);
         if (recording()) recording()->unfit();
     }
     numberOccurrences(tree());

@@ -26,7 +26,7 @@ double countOf(const Derivation& d, std::initializer_list<std::string_view> laye
 double figureOf(const Derivation& d, Figure figure) {
     switch (figure) {
         case Figure::Bonds:
-            return static_cast<double>(d.tree.bonds.size());
+            return static_cast<double>(d.tree.bonds().all.size());
         case Figure::Overlaps:
             return static_cast<double>(d.overlaps());
         case Figure::Shapes:

@@ -12,10 +12,10 @@ namespace {
 constexpr uint64_t mostOverlaps = 1'000'000;
 
 /// Places that a bond joins, as unordered pairs.
-std::unordered_set<uint64_t> bondedPlaces(const ShapeTree& tree) {
+std::unordered_set<uint64_t> bondedPlaces(const Bonds& bonds) {
     std::unordered_set<uint64_t> pairs;
-    for (const Bond& b : tree.bonds) {
-        const auto [lo, hi] = std::minmax(tree.shapes[b.shape[0]].body, tree.shapes[b.shape[1]].body);
+    for (const Bond& b : bonds.all) {
+        const auto [lo, hi] = std::minmax(bonds.bodyOf[b.shape[0]], bonds.bodyOf[b.shape[1]]);
         pairs.insert(uint64_t(lo) << 32 | hi);
     }
     return pairs;
@@ -59,7 +59,8 @@ Reported Derivation::reported(uint32_t report) const {
 }
 
 uint64_t Derivation::overlaps() const {
-    const auto bonded = bondedPlaces(tree);
+    const Bonds& bonds = tree.bonds();
+    const auto bonded = bondedPlaces(bonds);
     const auto spans = intervals(tree);
     const auto above = [&](ShapeId a, ShapeId b) {
         return spans[a].first <= spans[b].first && spans[b].first <= spans[a].second;
@@ -67,9 +68,10 @@ uint64_t Derivation::overlaps() const {
     uint64_t count = 0;
     forPairs(tree, 0, [&](ShapeId a, ShapeId b) {
         const Shape &p = tree.shapes[a], &q = tree.shapes[b];
-        if (p.body == q.body || above(a, b) || above(b, a)) return true;
+        const uint32_t mine = bonds.bodyOf[a], theirs = bonds.bodyOf[b];
+        if (mine == theirs || above(a, b) || above(b, a)) return true;
         if (penetration(p.scope, q.scope) <= boxSlack_m) return true;
-        const auto [lo, hi] = std::minmax(p.body, q.body);
+        const auto [lo, hi] = std::minmax(mine, theirs);
         count += !bonded.contains(uint64_t(lo) << 32 | hi);
         return count < mostOverlaps;
     });

@@ -25,19 +25,18 @@ public:
 
     void run() {
         const ShapeTree& from = object_.tree;
+        tree_.bonds();  // those of what stands, before the copy comes
         for (const std::string& label : from.labels) labels_.push_back(indexIn(tree_.labels, 0, label));
         const size_t own = object_.grammar->materials.size();
         for (size_t i = 0; i < object_.materials.size(); ++i)
             materials_.push_back(i < own ? static_cast<uint32_t>(i)
                                          : indexIn(into_.materials, own, object_.materials[i]));
-        first_ = {tree_.shapes.size(),     tree_.bonds.size(),  tree_.bodies.size(),
-                  tree_.solids.size(),     tree_.extras.size(), tree_.namedJoints.size(),
-                  tree_.namedBonds.size(), into_.steps.size(),  tree_.footprints.append(from.footprints)};
+        first_ = {tree_.shapes.size(),      tree_.solids.size(), tree_.extras.size(),
+                  tree_.namedJoints.size(), into_.steps.size(),  tree_.footprints.append(from.footprints)};
         tree_.solids.insert(tree_.solids.end(), from.solids.begin(), from.solids.end());
         tree_.namedJoints.insert(tree_.namedJoints.end(), from.namedJoints.begin(), from.namedJoints.end());
-        for (const uint32_t bond : from.namedBonds) tree_.namedBonds.push_back(shifted(bond, first_.bond));
         copyExtras();
-        copyBonds();
+        copyBonds(*tree_.bondsOnDemand.made(), from.bonds());
         copySteps();
         for (ShapeId s = 0; s < from.shapes.size(); ++s) tree_.shapes.push_back(copyOf(s));
         attach(static_cast<ShapeId>(first_.shape));
@@ -48,7 +47,7 @@ public:
 
 private:
     struct First {
-        size_t shape = 0, bond = 0, body = 0, solid = 0, extras = 0, joints = 0, namedBond = 0, step = 0, footprint = 0;
+        size_t shape = 0, solid = 0, extras = 0, joints = 0, step = 0, footprint = 0;
     };
 
     uint32_t materialOf(uint32_t material) const { return material == none ? none : materials_[material]; }
@@ -63,9 +62,7 @@ private:
         s.solid = shifted(s.solid, first_.solid);
         s.material = materialOf(s.material);
         s.extras = shifted(s.extras, first_.extras);
-        s.body = shifted(s.body, first_.body);
         s.jointSet = s.jointSet == 0 ? 0 : shifted(s.jointSet, first_.joints);
-        s.firstNamedBond = shifted(s.firstNamedBond, first_.namedBond);
         s.madeBy = shifted(s.madeBy, first_.step);
         s.scope.centre = pose_.origin + pose_.axes * s.scope.centre;
         s.scope.axes = pose_.axes * s.scope.axes;
@@ -93,21 +90,25 @@ private:
         if (s.extras != none && !object_.tree.extras[s.extras].displace.empty()) displaced_.emplace_back(s.extras, id);
     }
 
-    void copyBonds() {
-        for (Bond bond : object_.tree.bonds) {
+    void copyBonds(Bonds& into, const Bonds& from) const {
+        const size_t bonds = into.all.size(), bodies = into.bodies.size(), named = into.named.size();
+        for (Bond bond : from.all) {
             bond.shift = pose_.axes * bond.shift;
             for (int end = 0; end < 2; ++end) {
                 bond.shape[end] = shifted(bond.shape[end], first_.shape);
-                bond.next[end] = shifted(bond.next[end], first_.bond);
+                bond.next[end] = shifted(bond.next[end], bonds);
             }
-            tree_.bonds.push_back(bond);
+            into.all.push_back(bond);
         }
-        for (Body body : object_.tree.bodies) {
+        for (Body body : from.bodies) {
             body.owner = shifted(body.owner, first_.shape);
-            body.firstBond = shifted(body.firstBond, first_.bond);
-            for (uint32_t& bond : body.bond) bond = shifted(bond, first_.bond);
-            tree_.bodies.push_back(body);
+            body.firstBond = shifted(body.firstBond, bonds);
+            for (uint32_t& bond : body.bond) bond = shifted(bond, bonds);
+            into.bodies.push_back(body);
         }
+        for (const uint32_t body : from.bodyOf) into.bodyOf.push_back(shifted(body, bodies));
+        for (const uint32_t at : from.namedAt) into.namedAt.push_back(shifted(at, named));
+        for (const uint32_t bond : from.named) into.named.push_back(shifted(bond, bonds));
     }
 
     void copySteps() {
@@ -184,10 +185,10 @@ void graftMass(Derivation& into, ShapeId at, const Derivation& object, const Pos
     cube.kind = rules::Solid::Kind::Primitive;
     cube.primitive = field::findPrimitive("cube");
     held.tree.solids.push_back(std::move(cube));
-    held.tree.bodies.emplace_back().owner = 0;
     Shape& box = held.tree.shapes.emplace_back();
     box.key = object.tree.shapes[0].key;
-    box.solid = box.body = 0;
+    box.solid = 0;
+    box.meetsNobody = true;
     box.material = mass->material;
     box.scope = mass->box;
     box.span = object.tree.shapes[0].span;

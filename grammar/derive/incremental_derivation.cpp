@@ -93,6 +93,7 @@ bool IncrementalDerivation::follow(const Options& options, Progress* progress) {
             return false;
     }
     if (!builder.bonds().revalidateContacts() || !recording.isReplayable()) return false;
+    builder.bonds().settle();
     recording.endAgain();
     builder.monitor().watch(nullptr);
     return true;

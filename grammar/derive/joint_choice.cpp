@@ -39,7 +39,10 @@ std::vector<uint32_t> openJoints(TreeBuilder& builder, const rules::JointChoice&
             if (tree.joint(host, j).direction != Vec3d{}) joints.push_back(j);
     Recording* const recording = builder.recording();
     const std::vector<uint32_t> asked = recording ? joints : std::vector<uint32_t>();
-    const auto taken = [&](uint32_t j) { return at.free ? tree.joint(host, j).bond != none : tree.closed(host, j); };
+    const auto taken = [&](uint32_t j) {
+        const Bonds& bonds = builder.bonds().asked();
+        return at.free ? bonds.at(host, j) != none : bonds.closed(host, j);
+    };
     joints.erase(std::remove_if(joints.begin(), joints.end(), taken), joints.end());
     if (recording && !recording->answer(asked, joints)) builder.monitor().diverge();
     return joints;

@@ -155,8 +155,8 @@ bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint
     }
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
-    if (shape.parent != frame.node) builder_.bonds().bondCoincidentFaces(shape.parent);
-    builder_.bonds().bondCoincidentFaces(id);
+    if (shape.parent != frame.node) builder_.bonds().revalidate(shape.parent);
+    builder_.bonds().revalidate(id);
     if (!fill(e, id, frame)) return false;
     target = {shape.parent == frame.node ? id : shape.parent, id};
     remember(e, frame, id, centreJoint);
@@ -197,12 +197,13 @@ bool Interpreter::cutAbove(const Element& e, const Target& target, const Frame& 
     for (size_t i = 0; i < places.size(); ++i) {
         shape.parent = places[i].shape;
         shape.key = i == 0 ? key : combine(key, i);
+        shape.meetsNobody = i > 0;
         const ShapeId id = builder_.add(shape, places[i].before);
         if (id == none) return false;
         if (places[i].before != none && !builder_.isReplaying()) builder_.bindTo(id, target.node);
         if (i == 0) {
-            builder_.bonds().bond(host, ours, id, theirs);
-            builder_.bonds().bondCoincidentFaces(id);
+            builder_.bonds().place({host, ours, id, theirs});
+            builder_.bonds().revalidate(id);
             remember(e, frame, id, ours);
         }
         if (!fill(e, id, frame)) return false;
@@ -272,8 +273,8 @@ bool Interpreter::join(const Element& e, Frame& frame, const Target& target, con
     }
     const ShapeId id = builder_.add(shape);
     if (id == none) return false;
-    builder_.bonds().bond(attachment.host, attachment.ours, id, theirs);
-    builder_.bonds().bondCoincidentFaces(id);
+    builder_.bonds().place({attachment.host, attachment.ours, id, theirs});
+    builder_.bonds().revalidate(id);
     remember(e, frame, id, attachment.ours);
     return fill(e, id, frame);
 }

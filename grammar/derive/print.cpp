@@ -71,8 +71,9 @@ uint32_t lineOf(syntax::SourceSpan span) { return span.source ? span.source->pla
 /// Bonds that put a shape where it is: those in which it is the newcomer.
 std::vector<uint32_t> bondsOfNewcomers(const ShapeTree& tree) {
     std::vector<uint32_t> first(tree.shapes.size(), none);
-    for (uint32_t i = 0; i < tree.bonds.size(); ++i)
-        if (uint32_t& at = first[tree.bonds[i].shape[1]]; at == none) at = i;
+    const std::vector<Bond>& bonds = tree.bonds().all;
+    for (uint32_t i = 0; i < bonds.size(); ++i)
+        if (uint32_t& at = first[bonds[i].shape[1]]; at == none) at = i;
     return first;
 }
 
@@ -113,7 +114,7 @@ void printShape(const Derivation& d, ShapeId id, uint32_t bond, std::back_insert
     const Vec3d &z = s.scope.size, c{settled(s.scope.centre.x), settled(s.scope.centre.y), settled(s.scope.centre.z)};
     fmt::format_to(out, "  size ({:.4g}, {:.4g}, {:.4g}) at ({:.4g}, {:.4g}, {:.4g})", z.x, z.y, z.z, c.x, c.y, c.z);
     if (bond != none) {
-        const Bond& b = d.tree.bonds[bond];
+        const Bond& b = d.tree.bonds().all[bond];
         fmt::format_to(out, "  bond {} of {} to {}", d.tree.joint(b.shape[0], b.joint[0]).name, d.tree.path(b.shape[0]),
                        d.tree.joint(id, b.joint[1]).name);
     }
@@ -152,7 +153,7 @@ std::string toText(const Derivation& d, bool steps) {
     std::string text;
     const auto out = std::back_inserter(text);
     fmt::format_to(out, "{} shapes, {} bonds, {} classic and {} morphic rules, seed {}\n", d.tree.shapes.size(),
-                   d.tree.bonds.size(), d.classic, d.morphic, d.seed);
+                   d.tree.bonds().all.size(), d.classic, d.morphic, d.seed);
     if (steps) printSteps(d, out);
     if (steps) printClosed(d, out);
     const auto bonds = bondsOfNewcomers(d.tree);
@@ -171,7 +172,7 @@ std::string toJson(const Derivation& d) {
               {"steps", json::array()},
               {"closed", json::array()}};
     for (ShapeId s = 0; s < d.tree.shapes.size(); ++s) root["shapes"].push_back(shapeJson(d, s));
-    for (const Bond& b : d.tree.bonds)
+    for (const Bond& b : d.tree.bonds().all)
         root["bonds"].push_back(
             {{"shapes", {b.shape[0], b.shape[1]}},
              {"joints", {d.tree.joint(b.shape[0], b.joint[0]).name, d.tree.joint(b.shape[1], b.joint[1]).name}},

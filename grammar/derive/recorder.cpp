@@ -16,7 +16,7 @@ void Recorder::endPiece() {
 
 Piece::Place Recorder::end() const {
     const ShapeTree& t = derivation_.tree;
-    return {t.shapes.size(), t.solids.size(), t.extras.size(), t.bonds.size(), derivation_.steps.size(), 0};
+    return {t.shapes.size(), t.solids.size(), t.extras.size(), t.mates.size(), derivation_.steps.size(), 0};
 }
 
 }  // namespace sgm::derive

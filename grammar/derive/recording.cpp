@@ -62,14 +62,9 @@ uint32_t Recording::nextSolid() {
     return next(at_.solid, end_.solid);
 }
 
-uint32_t Recording::nextBond() {
-    while (at_.bond < end_.bond && made_.isBondedByContact(at_.bond)) ++at_.bond;
-    return next(at_.bond, end_.bond);
-}
-
 bool Recording::complete() {
     return nextShape() == none && nextStep() == none && nextExtras() == none && nextSolid() == none &&
-           nextBond() == none && at_.answer == end_.answer;
+           nextMate() == none && at_.answer == end_.answer;
 }
 
 void ShapeChanges::begin(size_t shapes) {

@@ -27,7 +27,7 @@ struct Piece {
     uint64_t work = 0;        ///< turns it took of the budget
     /// Where in the lists begins what it made and what it was answered; it ends where the next piece begins.
     struct Place {
-        size_t shape = 0, solid = 0, extras = 0, bond = 0, step = 0, answer = 0;
+        size_t shape = 0, solid = 0, extras = 0, mate = 0, step = 0, answer = 0;
     } from{};
 };
 
@@ -70,8 +70,6 @@ public:
     std::span<const Contact> contacts() const { return contacts_; }
     /// Whom the joint met, if anyone.
     std::optional<JointIndex::Entry> partnerOf(JointIndex::Entry at) const;
-    void bondedByContact(size_t bond) { setFlag(byContact_, bond); }
-    bool isBondedByContact(size_t bond) const { return hasFlag(byContact_, bond); }
     void sharedSolid(size_t solid) { setFlag(shared_, solid); }
     bool isSharedSolid(size_t solid) const { return hasFlag(shared_, solid); }
     void annotated(ShapeId id) { setFlag(annotated_, id); }
@@ -81,7 +79,7 @@ public:
 
 private:
     std::vector<Contact> contacts_;  ///< in the order of `at`
-    std::vector<bool> byContact_, shared_, annotated_, cleared_;
+    std::vector<bool> shared_, annotated_, cleared_;
 };
 
 class Recording {
@@ -129,9 +127,9 @@ public:
     uint32_t nextShape() { return next(at_.shape, end_.shape); }
     uint32_t nextStep() { return next(at_.step, end_.step); }
     uint32_t nextExtras() { return next(at_.extras, end_.extras); }
-    /// Passes over those that several shapes share, and over bonds of faces that merely met.
+    uint32_t nextMate() { return next(at_.mate, end_.mate); }
+    /// Passes over those that several shapes share.
     uint32_t nextSolid();
-    uint32_t nextBond();
     uint32_t shapesMade() const { return static_cast<uint32_t>(at_.shape); }
 
 private:

@@ -73,7 +73,7 @@ ShapeId TreeBuilder::replayShape(const Shape& made) {
                         made.scope == t.shapes[made.parent].scope;
     const bool cleared = recording()->made().isCleared(id);
     if (recording()->made().isAnnotated(id) || told(known) != told(made) || known.madeBy != monitor_.step() ||
-        shares == bonds_.ownsBody(id) || (!cleared && known.solid != made.solid)) {
+        shares != known.sharesPlace || (!cleared && known.solid != made.solid)) {
         monitor_.diverge();
         return none;
     }

@@ -38,17 +38,18 @@ bool morphs(const SolidValue& solid) {
 bool isBeside(TreeBuilder& builder, ShapeId shape, rules::SymbolId symbol) {
     if (builder.recording()) builder.recording()->readsWorld();
     const ShapeTree& tree = builder.tree();
-    const uint32_t body = tree.shapes[shape].body;
-    for (uint32_t i = tree.bodies[body].firstBond; i != none;) {
-        const Bond& bond = tree.bonds[i];
-        const int mine = tree.shapes[bond.shape[0]].body == body ? 0 : 1;
+    const Bonds& bonds = builder.bonds().asked();
+    const uint32_t body = bonds.bodyOf[shape];
+    for (uint32_t i = bonds.bodies[body].firstBond; i != none;) {
+        const Bond& bond = bonds.all[i];
+        const int mine = bonds.bodyOf[bond.shape[0]] == body ? 0 : 1;
         // The neighbour, what it wraps and what wraps it stand at one place.
-        const uint32_t theirs = tree.shapes[bond.shape[1 - mine]].body;
-        const ShapeId owner = tree.bodies[theirs].owner;
+        const uint32_t theirs = bonds.bodyOf[bond.shape[1 - mine]];
+        const ShapeId owner = bonds.bodies[theirs].owner;
         for (ShapeId s = owner; s != none && !tree.shapes[owner].dead;) {
             if (tree.shapes[s].symbol == symbol && !tree.shapes[s].dead) return true;
             const ShapeId child = tree.shapes[s].firstChild;
-            s = child != none && tree.shapes[child].body == theirs ? child : none;
+            s = child != none && bonds.bodyOf[child] == theirs ? child : none;
         }
         i = bond.next[mine];
     }
@@ -81,6 +82,7 @@ void Interpreter::start(const rules::Start& start, uint64_t seed, const Lot* lot
     root.key = combine(mix(seed), hashText(grammar_.symbols[start.symbol].name));
     root.label = maker_.labelIndex(grammar_.symbols[start.symbol].name);
     root.span = start.span;
+    root.meetsNobody = true;
     builder_.monitor().at(none, none, none);
     if (lot) root.scope.size = lot->size_m;
     if (lot && !lot->footprint.empty()) {

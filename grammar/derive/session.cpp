@@ -25,6 +25,7 @@ Result<std::shared_ptr<Session::State>> Session::begun(std::shared_ptr<const rul
     auto state = std::make_shared<State>(std::move(*empty), options, progress);
     state->rewriter.start(grammar->starts[options.start], options);
     if (state->builder.monitor().failed()) return state->builder.monitor().takeFailure();
+    state->builder.bonds().settle();
     return state;
 }
 
@@ -44,6 +45,7 @@ Result<std::shared_ptr<Session::State>> Session::replayed(const std::vector<Appl
     for (const Applications& step : steps)
         for (const Application& a : step) (*state)->rewriter.apply(a);
     if ((*state)->builder.monitor().failed()) return (*state)->builder.monitor().takeFailure();
+    (*state)->builder.bonds().settle();
     return state;
 }
 
@@ -84,6 +86,7 @@ Status Session::applyRest(Progress* progress) {
 /// Keeps a step that went well; takes one back that failed.
 Status Session::settled(Applications step) {
     state_->builder.monitor().resume(nullptr);
+    state_->builder.bonds().settle();
     if (state_->builder.monitor().failed()) {
         const Error error = state_->builder.monitor().takeFailure();
         auto state = replayed(done_);
@@ -110,6 +113,7 @@ Status Session::undo() {
 Status Session::redo() {
     if (undone_.empty()) return Done{};
     for (const Application& a : undone_.back()) state_->rewriter.apply(a);
+    state_->builder.bonds().settle();
     done_.push_back(std::move(undone_.back()));
     undone_.pop_back();
     return Done{};

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "grammar/derive/bond_maker.h"
+
 namespace sgm::derive {
 
 Vec3d faceDirection(uint32_t joint) {
@@ -24,11 +26,11 @@ Joint ShapeTree::joint(ShapeId id, uint32_t index) const {
     const Shape& s = shapes[id];
     if (index < firstNamedJoint) {
         const Vec3d d = faceDirection(index);
-        return {faceName(index), s.scope.point(d), s.scope.axes * d, bodies[s.body].bond[index]};
+        return {faceName(index), s.scope.point(d), s.scope.axes * d};
     }
     const uint32_t i = index - firstNamedJoint;
     const rules::Joint& named = namedJoints[s.jointSet][i];
-    return {named.name, s.scope.point(named.at), s.scope.axes * named.facing, namedBonds[s.firstNamedBond + i]};
+    return {named.name, s.scope.point(named.at), s.scope.axes * named.facing};
 }
 
 uint32_t ShapeTree::findJoint(ShapeId id, std::string_view name) const {
@@ -40,10 +42,8 @@ uint32_t ShapeTree::findJoint(ShapeId id, std::string_view name) const {
     return none;
 }
 
-bool ShapeTree::closed(ShapeId id, uint32_t index) const {
-    const uint32_t bond = index < firstNamedJoint ? bodies[shapes[id].body].bond[index]
-                                                  : namedBonds[shapes[id].firstNamedBond + index - firstNamedJoint];
-    return bond != none && bonds[bond].directed;
+const Bonds& ShapeTree::bonds() const {
+    return bondsOnDemand.get([&] { return bondsOf(*this); });
 }
 
 ShapeId ShapeTree::next(ShapeId id, ShapeId root, bool over) const {

@@ -8,15 +8,13 @@
 #include <string_view>
 #include <vector>
 
+#include "grammar/derive/bonds.h"
 #include "grammar/derive/footprints.h"
 #include "grammar/rules/grammar.h"
 #include "modeler/core/provenance.h"
 #include "modeler/core/vec.h"
 
 namespace sgm::derive {
-
-using ShapeId = uint32_t;
-inline constexpr uint32_t none = rules::none;
 
 /// An oriented box: centre, axes, size in metres; and what it holds of the plan.
 struct Scope {
@@ -31,27 +29,11 @@ struct Scope {
     friend bool operator==(const Scope&, const Scope&) = default;
 };
 
-/// Joints 0 … 5 are the faces +x −x +y −y +z −z, 6 is the centre; 7 and on are those the symbol or its solid names.
-inline constexpr uint32_t faceCount = 6, centreJoint = 6, firstNamedJoint = 7;
-
 /// A joint point J = (P, D), eq. 15, in the object's frame.
 struct Joint {
     std::string_view name;  ///< "+x" … "-z", "centre", or declared
     Vec3d point;
-    Vec3d direction;       ///< unit; zero meets any other
-    uint32_t bond = none;  ///< the first bond that met it
-};
-
-/// B = (J₁, J₂) ⇔ J₁.P = J₂.P ∧ J₁.D = −J₂.D, eq. 16, or a D of zero, which meets any other.
-/// Where the grammar says `shift`, `overlap` or `move`, J₁.P stands for the moved point J₁.P + shift.
-/// A bond of two directed joints closes both: nothing more is put there. A bond with a D of zero at either end (what
-/// merges cave cells and puffs) leaves the joint open: a rule that names it may meet it again, `free(…)` won't pick it.
-struct Bond {
-    ShapeId shape[2];
-    uint32_t joint[2];     ///< indices of the shapes' joints
-    Vec3d shift;           ///< S_J and what else moved the mating point, metres, in the object's frame
-    bool directed = true;  ///< both joints have a direction
-    uint32_t next[2];      ///< next bond of either shape's body, or none
+    Vec3d direction;  ///< unit; zero meets any other
 };
 
 /// An evaluated solid, numbers bound.
@@ -124,39 +106,27 @@ struct Shape : ShapeLinks, ShapeContent {
     rules::SymbolId symbol = rules::none;  ///< none for an anonymous solid or group
     uint32_t label = 0;                    ///< index into ShapeTree::labels: symbol or primitive name
     ShapeId valuesAt = none;               ///< nearest shape, itself or above, that sets values by `with`
-    uint32_t body = none;                  ///< index into ShapeTree::bodies
     uint32_t jointSet = 0;                 ///< index into ShapeTree::namedJoints
-    uint32_t firstNamedBond = none;        ///< index into ShapeTree::namedBonds, one a named joint
     uint32_t madeBy = none;                ///< step that made it; none for the start
     uint32_t chainRule = none;  ///< the `repeat` rule whose chain it is a link of: starts no such chain itself
     bool live = false;          ///< rules may still rewrite it
     bool dead = false;          ///< replaced; swept away before `derive` returns
+    bool sharesPlace = false;   ///< its joints are those of its parent, whose scope it fills
+    bool meetsNobody = false;   ///< its faces bond with none that they coincide with
     Scope scope;
     syntax::SourceSpan span;  ///< the text that made it
-};
-
-/// The joints of one place in space, shared by a shape and the content that fills its scope exactly: A, rewritten to a
-/// B of the same scope, passes its bonds on to B.
-struct Body {
-    ShapeId owner = none;       ///< the first shape that stood here
-    uint32_t bond[7];           ///< by joint: the first bond that met it, or none
-    uint32_t firstBond = none;  ///< list of all its bonds, linked by Bond::next
-    Body() {
-        for (uint32_t& b : bond) b = none;
-    }
 };
 
 /// The shape tree; shapes[0] is the root.
 struct ShapeTree {
     std::vector<Shape> shapes;
-    std::vector<Bond> bonds;
-    std::vector<Body> bodies;
     std::vector<SolidValue> solids;
     std::vector<Extras> extras;
     std::vector<std::string> labels;
     std::vector<std::vector<rules::Joint>> namedJoints;  ///< sets of declared joints; set 0 is empty
     Footprints footprints;
-    std::vector<uint32_t> namedBonds;  ///< first bond of each named joint, or none
+    std::vector<Mate> mates;      ///< what placed newcomers, in their order
+    BondsOnDemand bondsOnDemand;  ///< what `bonds` made
 
     const SolidValue* solidOf(ShapeId id) const {
         return shapes[id].solid == none ? nullptr : &solids[shapes[id].solid];
@@ -169,8 +139,8 @@ struct ShapeTree {
     Joint joint(ShapeId id, uint32_t index) const;
     /// The joint called `name`, or none.
     uint32_t findJoint(ShapeId id, std::string_view name) const;
-    /// True when a directed bond has closed the joint.
-    bool closed(ShapeId id, uint32_t index) const;
+    /// Who is bonded to whom: made when first asked for, O(joints). From any thread.
+    const Bonds& bonds() const;
     /// "Cave/Cell[3]": labels from the root, occurrences from 2 on in brackets; the middle of very deep paths is elided
     /// unless `whole`.
     std::string path(ShapeId id, bool whole = false) const;

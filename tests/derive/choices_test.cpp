@@ -9,7 +9,7 @@ using namespace testing_;
 /// How many of the shapes that grew stand toward each of the six directions of their host.
 std::array<int, 6> grownToward(const derive::Derivation& d) {
     std::array<int, 6> count{};
-    for (const derive::Bond& b : d.tree.bonds) ++count[b.joint[0]];
+    for (const derive::Bond& b : d.tree.bonds().all) ++count[b.joint[0]];
     return count;
 }
 

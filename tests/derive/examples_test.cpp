@@ -10,8 +10,8 @@ TEST(Examples, EveryBondObeysEquation16AndSolidsHangTogether) {
     for (const char* name : {"grotto.sgm", "cumulus.sgm", "tower.sgm", "joints.sgm"}) {
         SCOPED_TRACE(name);
         const auto d = derived(fileText(std::string("examples/") + name));
-        ASSERT_FALSE(d.tree.bonds.empty());
-        for (const derive::Bond& b : d.tree.bonds) {
+        ASSERT_FALSE(d.tree.bonds().all.empty());
+        for (const derive::Bond& b : d.tree.bonds().all) {
             const auto p = d.tree.joint(b.shape[0], b.joint[0]), q = d.tree.joint(b.shape[1], b.joint[1]);
             expectNear(p.point + b.shift, q.point, 1e-6);
             EXPECT_TRUE(!b.directed || dot(p.direction, q.direction) < -1 + 1e-6);

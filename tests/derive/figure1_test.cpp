@@ -35,9 +35,9 @@ TEST(Figure1, LeftWay) {
     EXPECT_EQ(d.grammar->rules[d.steps[2].rule].name, "R3");
     expectNear(at(d, "Figure/I0/A/B").scope.centre, {1, 0, 0});
     expectNear(at(d, "Figure/I0/A/B/C").scope.centre, {1, 1, 0});
-    EXPECT_EQ(d.tree.bonds.size(), 2u);
+    EXPECT_EQ(d.tree.bonds().all.size(), 2u);
     // B took A's place and with it A's bond: its -x is no longer free.
-    EXPECT_TRUE(d.tree.closed(d.tree.find("Figure/I0/A/B"), 1));
+    EXPECT_TRUE(d.tree.bonds().closed(d.tree.find("Figure/I0/A/B"), 1));
 }
 
 TEST(Figure1, RightWay) {

@@ -11,7 +11,7 @@ using namespace testing_;
 
 /// Eq. 16 for every bond; where the grammar moves no mating point, the shift is zero too.
 void expectEquation16(const derive::Derivation& d, bool unmoved) {
-    for (const derive::Bond& b : d.tree.bonds) {
+    for (const derive::Bond& b : d.tree.bonds().all) {
         const auto p = d.tree.joint(b.shape[0], b.joint[0]), q = d.tree.joint(b.shape[1], b.joint[1]);
         expectNear(p.point + b.shift, q.point, 1e-6);
         EXPECT_TRUE(!unmoved || length(b.shift) < 1e-6);
@@ -35,7 +35,7 @@ TEST(Joints, EveryBondObeysEquation16) {
     size_t bonds = 0;
     for (uint64_t seed = 1; seed <= 200; ++seed) {
         const auto d = derived(randomGrammar(seed), withSeed(seed));
-        bonds += d.tree.bonds.size();
+        bonds += d.tree.bonds().all.size();
         expectEquation16(d, true);
     }
     EXPECT_GT(bonds, 1000u);
@@ -47,7 +47,7 @@ TEST(Joints, EveryBondObeysEquation16) {
 TEST(Joints, FaceToFaceByDefault) {
     const auto d = derived("grammar 1\nstart S -> cube size (2, 2, 2) + sphere size (1, 3, 1) at +y\n");
     expectNear(at(d, "S/cube/sphere").scope.centre, {0, 2.5, 0});
-    EXPECT_EQ(d.tree.bonds[0].joint[1], 3u);
+    EXPECT_EQ(d.tree.bonds().all[0].joint[1], 3u);
 }
 
 TEST(Joints, CentreOverlapAndShift) {
@@ -73,9 +73,10 @@ TEST(Joints, NewcomerIsTurnedUntilDirectionsOppose) {
 
 TEST(Joints, ABondClosesFacesButNotCentres) {
     // The second box finds +y taken; spheres on a joint's point leave it open.
-    EXPECT_EQ(derived("grammar 1\nstart S -> cube + cube at +y + cone at +y\n").tree.bonds.size(), 1u);
-    EXPECT_EQ(derived("grammar 1\nstart S -> cube + sphere at +y to centre + cone at +y to centre\n").tree.bonds.size(),
-              2u);
+    EXPECT_EQ(derived("grammar 1\nstart S -> cube + cube at +y + cone at +y\n").tree.bonds().all.size(), 1u);
+    EXPECT_EQ(
+        derived("grammar 1\nstart S -> cube + sphere at +y to centre + cone at +y to centre\n").tree.bonds().all.size(),
+        2u);
 }
 
 TEST(Joints, CoincidingFacesAreBonded) {
@@ -87,7 +88,7 @@ rule B -> + cube at +z : C
 rule C -> + cube at -x : D
 rule D -> + sphere at free(-z, +z)
 )");
-    EXPECT_EQ(d.tree.bonds.size(), 5u);
+    EXPECT_EQ(d.tree.bonds().all.size(), 5u);
     expectNear(at(d, "S/A/B/C/D/sphere").scope.centre, {0, 0, 2});  // -z looks at A, so only +z is free
     expectEquation16(d, true);
 }
@@ -129,10 +130,10 @@ TEST(Figures, ChecksRun) {
 TEST(Bonds, NothingMeetsTheBoxWhereTheStartBegins) {
     // The ball's lower joint touches the unit box of the start, in which nothing stands.
     const auto d = derived("grammar 1\nstart S -> cone size 2 + sphere size 1 at apex to centre\n");
-    EXPECT_EQ(d.tree.bonds.size(), 1u);
+    EXPECT_EQ(d.tree.bonds().all.size(), 1u);
     // The first solid's own joints still meet, when it fills that box exactly too.
     const auto met = derived("grammar 1\nstart S -> cube size 1, cube size 1 move (1, 0, 0)\n");
-    EXPECT_EQ(met.tree.bonds.size(), 1u);
+    EXPECT_EQ(met.tree.bonds().all.size(), 1u);
 }
 
 TEST(Bonds, AClosedJointIsCountedWhereNothingGrew) {
@@ -179,7 +180,7 @@ TEST(Joints, ShapesThatAllStandAtOnePlaceTakeNoLongerThanOthers) {
     // The newest of the crowd meets the one beside it.
     const auto last = static_cast<derive::ShapeId>(d.tree.shapes.size() - 1);
     size_t met = 0;
-    for (const derive::Bond& b : d.tree.bonds)
+    for (const derive::Bond& b : d.tree.bonds().all)
         if (b.directed && (b.shape[0] == last || b.shape[1] == last))
             met += b.shape[0] == last - 1 || b.shape[1] == last - 1;
     EXPECT_EQ(met, 1u);

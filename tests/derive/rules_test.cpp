@@ -22,10 +22,10 @@ TEST(Chains, CloudAddsNSpheresInTheNthRule) {
 TEST(Chains, CaveRunsOnTheNewestAndNeverTurnsBack) {
     const auto d = derived(cave);
     EXPECT_EQ(d.morphic, 14u);
-    EXPECT_EQ(d.tree.bonds.size(), 14u);
-    for (size_t i = 1; i < d.tree.bonds.size(); ++i) {
-        EXPECT_EQ(d.tree.bonds[i].shape[0], d.tree.bonds[i - 1].shape[1]);
-        const auto came = d.tree.bonds[i - 1].joint[0], went = d.tree.bonds[i].joint[0];
+    EXPECT_EQ(d.tree.bonds().all.size(), 14u);
+    for (size_t i = 1; i < d.tree.bonds().all.size(); ++i) {
+        EXPECT_EQ(d.tree.bonds().all[i].shape[0], d.tree.bonds().all[i - 1].shape[1]);
+        const auto came = d.tree.bonds().all[i - 1].joint[0], went = d.tree.bonds().all[i].joint[0];
         EXPECT_NE(went, came ^ 1u);
     }
     expectNear(at(d, "Cave/Cell/Cell").scope.size, {2, 2, 2});
@@ -45,7 +45,7 @@ TEST(Chains, MorphsGoFromFirstToLast) {
 
 TEST(Chains, HouseStacksStoreysAndPutsTheRoofOnTheLast) {
     const auto d = derived(house);
-    EXPECT_EQ(d.tree.bonds.size(), 7u);
+    EXPECT_EQ(d.tree.bonds().all.size(), 7u);
     expectNear(at(d, "House/Storey/Storey[6]").scope.size, {8, 2.8, 7});
     const auto& top = at(d, "House/Storey/Storey[6]").scope;
     const auto& roof = at(d, "House/Storey/roof").scope;
@@ -70,7 +70,7 @@ TEST(Chains, AnyDrawsAmongTheStepBefore) {
     const auto d = derived(
         "grammar 1\nstart S -> cube : A\nrule A repeat 3 -> for k in 1..2 { + cube size .5 on any(+x) at +x to centre "
         ": A }\n");
-    for (const derive::Bond& b : d.tree.bonds) {
+    for (const derive::Bond& b : d.tree.bonds().all) {
         if (b.directed) continue;  // faces that happen to coincide
         const uint32_t step = d.steps[d.tree.shapes[b.shape[1]].madeBy].chainIndex;
         const uint32_t madeBy = d.tree.shapes[b.shape[0]].madeBy;
@@ -143,7 +143,7 @@ TEST(Draws, ALoopsTurnsAreKeyedByTheirValue) {
     const auto size = [](const std::string& axes) {
         const auto d = derived("grammar 1\nstart S -> cube + cube size 3 : A\nrule A -> for d in (" + axes +
                                ") { + sphere size .2..1 at d }\n");
-        for (const auto& b : d.tree.bonds)
+        for (const auto& b : d.tree.bonds().all)
             if (b.joint[0] == 5) return d.tree.shapes[b.shape[1]].scope.size.x;
         return 0.0;
     };

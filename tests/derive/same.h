@@ -11,8 +11,8 @@ namespace sgm::testing_ {
 
 inline auto told(const derive::Shape& s) {
     return std::tie(s.key, s.parent, s.firstChild, s.lastChild, s.nextSibling, s.symbol, s.label, s.occurrence, s.depth,
-                    s.solid, s.material, s.extras, s.valuesAt, s.body, s.jointSet, s.firstNamedBond, s.madeBy,
-                    s.chainRule, s.op, s.live, s.dead, s.amount, s.blend_m, s.scope.centre, s.scope.axes, s.scope.size,
+                    s.solid, s.material, s.extras, s.valuesAt, s.jointSet, s.madeBy, s.chainRule, s.op, s.live, s.dead,
+                    s.sharesPlace, s.meetsNobody, s.amount, s.blend_m, s.scope.centre, s.scope.axes, s.scope.size,
                     s.span.source, s.span.begin, s.span.end);
 }
 inline auto told(const derive::Bond& b) {
@@ -44,13 +44,14 @@ inline void expectSame(const derive::Derivation& a, const derive::Derivation& b)
         ASSERT_TRUE(!mine || *mine == *theirs) << "footprint of shape " << i;
     }
     expectSame(a.tree.shapes, b.tree.shapes, "shape");
-    expectSame(a.tree.bonds, b.tree.bonds, "bond");
-    expectSame(a.tree.bodies, b.tree.bodies, "body");
+    expectSame(a.tree.bonds().all, b.tree.bonds().all, "bond");
+    expectSame(a.tree.bonds().bodies, b.tree.bonds().bodies, "body");
+    EXPECT_EQ(a.tree.bonds().bodyOf, b.tree.bonds().bodyOf);
+    EXPECT_EQ(a.tree.bonds().named, b.tree.bonds().named);
     expectSame(a.tree.extras, b.tree.extras, "extras");
     expectSame(a.steps, b.steps, "step");
     EXPECT_TRUE(a.tree.solids == b.tree.solids);
     EXPECT_EQ(a.tree.labels, b.tree.labels);
-    EXPECT_EQ(a.tree.namedBonds, b.tree.namedBonds);
     EXPECT_TRUE(a.materials == b.materials);
     EXPECT_TRUE(a.params == b.params);
     EXPECT_EQ(a.closed.size(), b.closed.size());

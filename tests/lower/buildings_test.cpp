@@ -123,8 +123,9 @@ TEST(House, GluedWallsDontGrow) {
     const auto d = derived(house("floors = 4"));
     for (const derive::Shape* s : shapesCalled(d, "Storey")) {
         const auto id = static_cast<derive::ShapeId>(s - d.tree.shapes.data());
-        EXPECT_TRUE(d.tree.closed(id, 2) && d.tree.closed(id, 3));  // +y, -y: floors, the roof, the plinth
-        EXPECT_FALSE(d.tree.closed(id, 0) || d.tree.closed(id, 5));
+        EXPECT_TRUE(d.tree.bonds().closed(id, 2) &&
+                    d.tree.bonds().closed(id, 3));  // +y, -y: floors, the roof, the plinth
+        EXPECT_FALSE(d.tree.bonds().closed(id, 0) || d.tree.bonds().closed(id, 5));
     }
     // Blocks that would grow a knob on every side grow none where they are glued to another.
     const auto knobs = derived(R"(grammar 1

@@ -94,14 +94,14 @@ namespace {
 
 /// The shape on which `shape` was put: that of its bond as a newcomer, else the one it lies in.
 ShapeId hostOf(const ShapeTree& tree, ShapeId shape) {
-    for (const derive::Bond& bond : tree.bonds)
+    for (const derive::Bond& bond : tree.bonds().all)
         if (bond.shape[1] == shape) return bond.shape[0];
     return tree.shapes[shape].parent;
 }
 
 /// A shape and the content that fills it exactly have the same joints.
 bool samePlace(const ShapeTree& tree, ShapeId a, ShapeId b) {
-    return a == b || (tree.shapes[a].body != none && tree.shapes[a].body == tree.shapes[b].body);
+    return a == b || tree.bonds().bodyOf[a] == tree.bonds().bodyOf[b];
 }
 
 }  // namespace

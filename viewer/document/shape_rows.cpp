@@ -94,19 +94,21 @@ ShapeLabel labelOf(const derive::Derivation& derivation, ShapeId shape) {
 
 std::vector<JointMark> jointMarks(const ShapeTree& tree, ShapeId shape) {
     std::vector<JointMark> marks;
+    const derive::Bonds& bonds = tree.bonds();
     for (uint32_t j = 0; j < tree.jointCount(shape); ++j) {
         const derive::Joint joint = tree.joint(shape, j);
-        const bool bonded = joint.bond != none;
+        const uint32_t bond = bonds.at(shape, j);
+        const bool bonded = bond != none;
         const bool pointless = joint.direction == Vec3d{};
         marks.push_back({shape, j, joint.name, joint.point, joint.direction,
-                         bonded ? !tree.bonds[joint.bond].directed : pointless, bonded});
+                         bonded ? !bonds.all[bond].directed : pointless, bonded});
     }
     return marks;
 }
 
 std::vector<BondMark> bondMarks(const ShapeTree& tree, size_t most) {
     std::vector<BondMark> marks;
-    for (const derive::Bond& bond : tree.bonds) {
+    for (const derive::Bond& bond : tree.bonds().all) {
         if (marks.size() == most) break;
         const Vec3d at = tree.joint(bond.shape[0], bond.joint[0]).point + bond.shift;
         marks.push_back({{bond.shape[0], bond.shape[1]},

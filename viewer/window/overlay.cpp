@@ -44,7 +44,7 @@ std::vector<ScreenJoint> screenJoints(const derive::ShapeTree& tree, const std::
 std::vector<derive::ShapeId> everyOwner(const derive::ShapeTree& tree) {
     std::vector<derive::ShapeId> owners;
     for (derive::ShapeId id = 0; id != derive::none && owners.size() < mostMarks; id = tree.next(id))
-        if (tree.shapes[id].body != derive::none && tree.bodies[tree.shapes[id].body].owner == id) owners.push_back(id);
+        if (tree.bonds().ownsBody(id)) owners.push_back(id);
     return owners;
 }
 

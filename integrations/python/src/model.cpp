@@ -189,7 +189,7 @@ void bindModel(py::module_& module) {
         .def_property_readonly("warnings",
                                [](const Model& m) { return syntax::toJson(derive::warnings(m.made->derivation)); })
         .def_property_readonly("shapes", [](const Model& m) { return m.made->derivation.tree.shapes.size(); })
-        .def_property_readonly("bonds", [](const Model& m) { return m.made->derivation.tree.bonds.size(); })
+        .def_property_readonly("bonds", [](const Model& m) { return m.made->derivation.tree.bonds().all.size(); })
         .def_property_readonly("instructions", [](const Model& m) { return m.made->tape.size(); })
         .def_property_readonly("lipschitz", [](const Model& m) { return m.made->tape.lipschitz(); })
         .def_property_readonly("stages", [](const Model& m) { return dictOf(m.stages); });

@@ -1,0 +1,153 @@
+// Bonds are made when somebody asks, and are those that making them shape by shape gives.
+#include "grammar/derive/bond_maker.h"
+
+#include <array>
+#include <filesystem>
+#include <map>
+
+#include "grammar/derive/incremental_derivation.h"
+#include "grammar/derive/joints.h"
+#include "grammar/derive/session.h"
+#include "grammar/pipeline/load.h"
+#include "tests/derive/same.h"
+
+namespace sgm::derive {
+namespace {
+
+using namespace testing_;
+
+/// Two joints that are bonded.
+using Pair = std::array<uint32_t, 4>;
+
+/// The bonds of a tree by their definition: what placed each newcomer, then every face of a place of its own with the
+/// newest one that looks at it, where neither is closed.
+class Definition {
+public:
+    explicit Definition(const ShapeTree& tree) : tree_(tree), place_(tree.shapes.size()) {
+        size_t mate = 0;
+        for (ShapeId id = 0; id < tree.shapes.size(); ++id) {
+            const Shape& s = tree.shapes[id];
+            const bool shares = s.parent != none && s.parent != 0 && s.op == rules::Operator::None &&
+                                s.scope == tree.shapes[s.parent].scope;
+            place_[id] = shares ? place_[s.parent] : id;
+            for (; mate < tree.mates.size() && tree.mates[mate].newcomer == id; ++mate) place(tree.mates[mate]);
+            if (!shares && !s.meetsNobody) meet(id);
+        }
+    }
+    const std::vector<Pair>& bonds() const { return bonds_; }
+
+private:
+    /// Joints of faces are those of the place, declared ones the shape's own.
+    std::pair<ShapeId, uint32_t> at(ShapeId id, uint32_t joint) const {
+        return {joint < firstNamedJoint ? place_[id] : id, joint};
+    }
+    void close(ShapeId a, uint32_t ja, ShapeId b, uint32_t jb) {
+        bonds_.push_back({a, ja, b, jb});
+        const bool directed = tree_.joint(a, ja).direction != Vec3d{} && tree_.joint(b, jb).direction != Vec3d{};
+        if (directed) closed_[at(a, ja)] = closed_[at(b, jb)] = true;
+    }
+    void place(const Mate& m) { close(m.host, m.ours, m.newcomer, m.theirs); }
+    void meet(ShapeId id) {
+        for (uint32_t j = 0; j < tree_.jointCount(id); ++j) {
+            const Joint joint = tree_.joint(id, j);
+            if (joint.direction == Vec3d{}) continue;
+            const auto newest = newestFacing(joint);
+            stood_.emplace(joint.point.x, std::pair(id, j));
+            if (!newest || closed_.contains(at(id, j)) || closed_.contains(at(newest->first, newest->second))) continue;
+            if (place_[newest->first] != place_[id]) close(newest->first, newest->second, id, j);
+        }
+    }
+    std::optional<std::pair<ShapeId, uint32_t>> newestFacing(const Joint& joint) const {
+        std::optional<std::pair<ShapeId, uint32_t>> newest;
+        const auto end = stood_.upper_bound(joint.point.x + 2 * jointTolerance_m);
+        for (auto e = stood_.lower_bound(joint.point.x - 2 * jointTolerance_m); e != end; ++e)
+            if (faceEachOther(joint, tree_.joint(e->second.first, e->second.second)))
+                if (!newest || *newest < e->second) newest = e->second;
+        return newest;
+    }
+
+    const ShapeTree& tree_;
+    std::vector<ShapeId> place_;  ///< by shape: the first one that stood there
+    std::multimap<double, std::pair<ShapeId, uint32_t>> stood_;
+    std::map<std::pair<ShapeId, uint32_t>, bool> closed_;
+    std::vector<Pair> bonds_;
+};
+
+std::vector<Pair> pairsOf(const Bonds& bonds) {
+    std::vector<Pair> pairs;
+    for (const Bond& b : bonds.all) pairs.push_back({b.shape[0], b.joint[0], b.shape[1], b.joint[1]});
+    return pairs;
+}
+
+TEST(Bonds, OfAllExamplesAreThoseOfTheDefinition) {
+    size_t files = 0, bonds = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator("examples")) {
+        if (entry.path().extension() != ".sgm") continue;
+        SCOPED_TRACE(entry.path().string());
+        syntax::Diagnostics problems;
+        const auto grammar = pipeline::loadFile(entry.path(), problems);
+        ASSERT_TRUE(grammar.ok());
+        if (!*grammar) continue;  // a library
+        for (uint32_t start = 0; start < (*grammar)->starts.size(); ++start) {
+            Options options;
+            options.start = start;
+            const auto d = derive(*grammar, options, nullptr);
+            if (!d.ok()) continue;
+            const Definition defined(d->tree);
+            EXPECT_EQ(pairsOf(d->tree.bonds()), defined.bonds());
+            bonds += defined.bonds().size();
+        }
+        ++files;
+    }
+    EXPECT_GT(files, 40u);
+    EXPECT_GT(bonds, 50'000u);
+}
+
+constexpr const char* wall =
+    "grammar 2\nterminal a\nterminal b\nparam width = 6m in 2m..9m\n"
+    "start Wall -> size (width, 3m, .5m) split x { { ~1m: Bay }* }\nrule Bay -> split y { 1m: a | ~1: Pane }\n";
+
+TEST(Bonds, AreMadeWhereSomebodyAsks) {
+    const auto silent = derived(std::string(wall) + "rule Pane -> b\n");
+    EXPECT_EQ(silent.tree.bondsOnDemand.made(), nullptr);
+    const auto asking = derived(std::string(wall) + "rule Pane -> b + a size (1, .1m, .1m) at +z\n");
+    EXPECT_NE(asking.tree.bondsOnDemand.made(), nullptr);
+
+    // Twelve panes and feet: each meets its neighbours beside it and above or below.
+    EXPECT_EQ(silent.tree.bonds().all.size(), 6u * 1 + 5u * 3);
+    EXPECT_EQ(pairsOf(silent.tree.bonds()), Definition(silent.tree).bonds());
+    EXPECT_NE(silent.tree.bondsOnDemand.made(), nullptr);
+}
+
+TEST(Bonds, FollowAChangeThatNobodyAsked) {
+    const auto grammar = grammarOf(std::string(wall) + "rule Pane -> b\n");
+    IncrementalDerivation derivation;
+    Options options;
+    options.params = {grammar->params[0].value};
+    ASSERT_TRUE(derivation.to(grammar, options, nullptr).ok());
+    const auto before = derivation.derivation().tree.bonds().all;
+    options.params[0].n[0] = 6.3;
+    ASSERT_TRUE(derivation.to(grammar, options, nullptr).ok());
+    EXPECT_FALSE(derivation.whole());
+    const auto whole = derive(grammar, options, nullptr);
+    expectSame(derivation.derivation(), *whole);
+    EXPECT_EQ(before.size(), whole->tree.bonds().all.size());
+}
+
+TEST(Bonds, FollowASession) {
+    auto session = Session::begin(grammarOf("grammar 1\nstart S -> cube + A at +x\n"
+                                            "rule A -> cube\nrule A -> cube + cube at +z\n"),
+                                  {}, nullptr);
+    ASSERT_TRUE(session.ok());
+    EXPECT_EQ(session->tree().bonds().all.size(), 1u);
+    const ShapeId live = session->live().at(0);
+    ASSERT_TRUE(session->apply({1, live}).ok());
+    EXPECT_EQ(session->tree().bonds().all.size(), 2u);
+    ASSERT_TRUE(session->undo().ok());
+    EXPECT_EQ(session->tree().bonds().all.size(), 1u);
+    ASSERT_TRUE(session->redo().ok());
+    EXPECT_EQ(session->tree().bonds().all.size(), 2u);
+}
+
+}  // namespace
+}  // namespace sgm::derive
