@@ -17,11 +17,28 @@ const Bonds& BondBuilder::asked() {
         monitor_.diverge();
         return tree_.bonds();
     }
+    inPlanes_.reset();
     Bonds& bonds = areAsked_ ? *tree_.bondsOnDemand.made() : tree_.bondsOnDemand.begin();
     areAsked_ = true;
     Recording* const recording = recorder_.recording();
     if (!recorder_.isReplaying()) maker_.follow(bonds, recording ? &recording->made() : nullptr);
     return bonds;
+}
+
+/// Bonds that tell about a joint. A second run has to know all whom faces met.
+const Bonds& BondBuilder::bondsAt(ShapeId id, uint32_t index) {
+    if (areAsked_ || recorder_.recording()) return asked();
+    const Joint joint = tree_.joint(id, index);
+    if (!inPlanes_) inPlanes_ = std::make_unique<InPlanes>(tree_);
+    InPlanes& some = *inPlanes_;
+    if (joint.direction != Vec3d{} && some.planes.sideOf(joint) != AskedPlanes::Side::In) {
+        if (!some.planes.add(joint)) return asked();
+        some.bonds = {};
+        some.joints = {};
+        some.maker.restart();
+    }
+    some.maker.follow(some.bonds, nullptr);
+    return some.maker.isUnclear() ? asked() : some.bonds;
 }
 
 void BondBuilder::settle() {

@@ -3,6 +3,8 @@
 // somebody asks. Assumes one thread.
 #pragma once
 
+#include <memory>
+
 #include "grammar/derive/bond_maker.h"
 #include "grammar/derive/recorder.h"
 
@@ -17,6 +19,10 @@ public:
     void place(const Mate& mate);
     /// While pieces run again: whether the shape meets whom it met.
     void revalidate(ShapeId id);
+    /// Whether a joint is bonded at all, or closed by a directed bond. Where joints of few planes are asked for, faces
+    /// in those alone are looked at.
+    bool isBonded(ShapeId id, uint32_t joint) { return bondsAt(id, joint).at(id, joint) != none; }
+    bool isClosed(ShapeId id, uint32_t joint) { return bondsAt(id, joint).closed(id, joint); }
     /// The bonds of all that stands. From the first time on they follow the tree: O(joints that came since).
     const Bonds& asked();
     /// Brings bonds that were asked for up to date, and lets others be made anew when somebody asks the tree.
@@ -33,6 +39,16 @@ public:
 
 private:
     void replay(const Mate& mate);
+    const Bonds& bondsAt(ShapeId id, uint32_t joint);
+
+    /// Bonds of the faces in some planes.
+    struct InPlanes {
+        explicit InPlanes(const ShapeTree& tree) : maker(tree, joints, &planes) {}
+        AskedPlanes planes;
+        JointIndex joints;
+        Bonds bonds;
+        BondMaker maker;
+    };
 
     ShapeTree& tree_;
     JointIndex& joints_;
@@ -40,6 +56,7 @@ private:
     const Recorder& recorder_;
     BondMaker maker_;
     bool areAsked_ = false;
+    std::unique_ptr<InPlanes> inPlanes_;  ///< until all are asked for
 };
 
 }  // namespace sgm::derive

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "grammar/rules/grammar.h"
+#include "modeler/core/pages.h"
 #include "modeler/core/vec.h"
 
 namespace sgm::derive {
@@ -54,10 +55,10 @@ struct Body {
 /// The bonds of a shape tree.
 struct Bonds {
     std::vector<Bond> all;
-    std::vector<Body> bodies;
-    std::vector<uint32_t> bodyOf;   ///< by shape: index into `bodies`
-    std::vector<uint32_t> namedAt;  ///< by shape: index into `named` of its first named joint, or none
-    std::vector<uint32_t> named;    ///< the first bond of each named joint, or none
+    PageVector<Body> bodies;
+    PageVector<uint32_t> bodyOf;   ///< by shape: index into `bodies`
+    PageVector<uint32_t> namedAt;  ///< by shape: index into `named` of its first named joint, or none
+    std::vector<uint32_t> named;   ///< the first bond of each named joint, or none
 
     /// The first bond that met a joint, or none.
     uint32_t at(ShapeId id, uint32_t joint) const {

@@ -9,9 +9,9 @@ namespace sgm::derive {
 
 namespace {
 
-template <class T>
-uint64_t bytes(const std::vector<T>& v) {
-    return v.capacity() * sizeof(T);
+template <class List>
+uint64_t bytes(const List& list) {
+    return list.capacity() * sizeof(typename List::value_type);
 }
 
 }  // namespace

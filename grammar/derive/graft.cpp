@@ -185,7 +185,8 @@ void graftMass(Derivation& into, ShapeId at, const Derivation& object, const Pos
     cube.kind = rules::Solid::Kind::Primitive;
     cube.primitive = field::findPrimitive("cube");
     held.tree.solids.push_back(std::move(cube));
-    Shape& box = held.tree.shapes.emplace_back();
+    held.tree.shapes.push_back(Shape{});
+    Shape& box = held.tree.shapes.back();
     box.key = object.tree.shapes[0].key;
     box.solid = 0;
     box.meetsNobody = true;

@@ -40,8 +40,7 @@ std::vector<uint32_t> openJoints(TreeBuilder& builder, const rules::JointChoice&
     Recording* const recording = builder.recording();
     const std::vector<uint32_t> asked = recording ? joints : std::vector<uint32_t>();
     const auto taken = [&](uint32_t j) {
-        const Bonds& bonds = builder.bonds().asked();
-        return at.free ? bonds.at(host, j) != none : bonds.closed(host, j);
+        return at.free ? builder.bonds().isBonded(host, j) : builder.bonds().isClosed(host, j);
     };
     joints.erase(std::remove_if(joints.begin(), joints.end(), taken), joints.end());
     if (recording && !recording->answer(asked, joints)) builder.monitor().diverge();

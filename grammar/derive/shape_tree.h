@@ -11,6 +11,7 @@
 #include "grammar/derive/bonds.h"
 #include "grammar/derive/footprints.h"
 #include "grammar/rules/grammar.h"
+#include "modeler/core/pages.h"
 #include "modeler/core/provenance.h"
 #include "modeler/core/vec.h"
 
@@ -119,13 +120,13 @@ struct Shape : ShapeLinks, ShapeContent {
 
 /// The shape tree; shapes[0] is the root.
 struct ShapeTree {
-    std::vector<Shape> shapes;
+    PageVector<Shape> shapes;
     std::vector<SolidValue> solids;
     std::vector<Extras> extras;
     std::vector<std::string> labels;
     std::vector<std::vector<rules::Joint>> namedJoints;  ///< sets of declared joints; set 0 is empty
     Footprints footprints;
-    std::vector<Mate> mates;      ///< what placed newcomers, in their order
+    PageVector<Mate> mates;       ///< what placed newcomers, in their order
     BondsOnDemand bondsOnDemand;  ///< what `bonds` made
 
     const SolidValue* solidOf(ShapeId id) const {

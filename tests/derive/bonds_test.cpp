@@ -110,13 +110,37 @@ constexpr const char* wall =
 TEST(Bonds, AreMadeWhereSomebodyAsks) {
     const auto silent = derived(std::string(wall) + "rule Pane -> b\n");
     EXPECT_EQ(silent.tree.bondsOnDemand.made(), nullptr);
-    const auto asking = derived(std::string(wall) + "rule Pane -> b + a size (1, .1m, .1m) at +z\n");
+    const auto asking = derived(std::string(wall) + "rule Pane beside a -> b\nrule Pane -> b\n");
     EXPECT_NE(asking.tree.bondsOnDemand.made(), nullptr);
 
     // Twelve panes and feet: each meets its neighbours beside it and above or below.
     EXPECT_EQ(silent.tree.bonds().all.size(), 6u * 1 + 5u * 3);
     EXPECT_EQ(pairsOf(silent.tree.bonds()), Definition(silent.tree).bonds());
     EXPECT_NE(silent.tree.bondsOnDemand.made(), nullptr);
+}
+
+/// Panes that look into many directions, each with a sill, and stones before some of them.
+TEST(Bonds, OfAskedPlanesAnswerAsAllWould) {
+    for (const char* turns : {"1", "3", "20"}) {
+        const auto grammar =
+            grammarOf("grammar 2\nterminal a\nterminal b\nparam many = " + std::string(turns) +
+                      " in 1..30\n"
+                      "start Town -> for k in 1..many { House turn (k * 11deg) move (20m * k, 0, 0), "
+                      "a size (20m * k, 1m, 1m) move (10m * k, 0, 2.5m) }\n"
+                      "rule House -> size (9m, 3m, 4m) split x { { ~1m: Bay }* }\n"
+                      "rule Bay -> split y { 1m: a | ~1: Pane }\n"
+                      "rule Pane -> b + a size (.5m, .1m, .1m) at +z + b size .2m at free(+x, -x, +y) + "
+                      "a size .1m at -y\n");
+        Options options;
+        options.params = {grammar->params[0].value};
+        const auto inPlanes = derive(grammar, options, nullptr);
+        ASSERT_TRUE(inPlanes.ok());
+        IncrementalDerivation ofAll;  // which notes whom faces meet, and so makes all bonds
+        ASSERT_TRUE(ofAll.to(grammar, options, nullptr).ok());
+        expectSame(ofAll.derivation(), *inPlanes);
+        EXPECT_FALSE(inPlanes->closed.empty());
+        EXPECT_EQ(pairsOf(inPlanes->tree.bonds()), Definition(inPlanes->tree).bonds());
+    }
 }
 
 TEST(Bonds, FollowAChangeThatNobodyAsked) {

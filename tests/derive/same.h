@@ -26,8 +26,8 @@ inline auto told(const derive::Step& s) {
 }
 inline auto told(const derive::Extras& x) { return std::tie(x.clad, x.displace, x.values, x.tags); }
 
-template <class T>
-void expectSame(const std::vector<T>& a, const std::vector<T>& b, const char* what) {
+template <class List>
+void expectSame(const List& a, const List& b, const char* what) {
     ASSERT_EQ(a.size(), b.size()) << what;
     for (size_t i = 0; i < a.size(); ++i) ASSERT_TRUE(told(a[i]) == told(b[i])) << what << ' ' << i;
 }
