@@ -149,7 +149,7 @@ Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const
         return skipped;
     };
     mesh::Counts counts;
-    const eval::Tape& tape = tapes_.over(squareOf(group.front()));
+    const eval::Tape& tape = tapes_.over(squareOf(group.front()), workspace_);
     const auto found = mesh::subdivide(tape, grid, context.threads, context.progress, counts, filter);
     if (!found.ok()) return found.error();
     mesh::PolygonizeOptions options{.surface = mesh::Surface::Crisp, .threads = context.threads};
@@ -160,31 +160,28 @@ Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const
     for (size_t i = 0; i < group.size(); ++i) {
         const Vec3d centre = group[i].centre(request_.side_m);
         auto& pieces = made[group[i]] = tiles::groundPieces(
-            gathered.mesh, gathered.triangles[i], model_.lowered->provenance, centre, static_cast<float>(pitch / 20));
+            gathered.mesh, gathered.triangles[i], model_.lowered->provenance, centre, pitch);
         if (!pieces.empty()) space = hull(space, spaceOf(pieces, centre, pitch / 2));
     }
     if (request_.levels < 2 || space.empty()) return made;
-    eval::Workspace workspace;
-    const eval::Tape around = within(tape, space, workspace);
+    const eval::Tape around = within(tape, space, workspace_);
     for (auto& [cell, pieces] : made)
         if (!pieces.empty()) addSkirts(cell, around, pieces);
     return made;
 }
 
-void BakedGround::addSkirts(const Cell& cell, const eval::Tape& around,
-                            std::vector<tiles::SurfacePiece>& pieces) const {
+void BakedGround::addSkirts(const Cell& cell, const eval::Tape& around, std::vector<tiles::SurfacePiece>& pieces) {
     const Vec3d centre = cell.centre(request_.side_m);
     // Surfaces of neighbouring levels are closer to each other than half a cell of the finer one's grid.
     const double depth = pitch_m(cell.level) / 2;
-    eval::Workspace workspace;
-    const eval::Tape tape = within(around, spaceOf(pieces, centre, depth), workspace);
+    const eval::Tape tape = within(around, spaceOf(pieces, centre, depth), workspace_);
     const tiles::InsideTest inside = [&](const std::vector<Vec3d>& places) {
         std::vector<float> x, y, z, value(places.size());
         for (const Vec3d& place : places) {
             const Vec3f p = (place + centre).as<float>();
             x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
         }
-        if (!places.empty()) eval::evaluate(tape, {x.data(), y.data(), z.data(), x.size()}, value.data(), workspace);
+        if (!places.empty()) eval::evaluate(tape, {x.data(), y.data(), z.data(), x.size()}, value.data(), workspace_);
         std::vector<bool> is;
         for (const float v : value) is.push_back(v < 0);
         return is;

@@ -41,12 +41,13 @@ public:
 private:
     /// Closes the gaps to neighbours of other levels, by strips on the cell's borders; `around` is a tape that holds
     /// there.
-    void addSkirts(const tiles::Cell& cell, const eval::Tape& around, std::vector<tiles::SurfacePiece>& pieces) const;
+    void addSkirts(const tiles::Cell& cell, const eval::Tape& around, std::vector<tiles::SurfacePiece>& pieces);
     mesh::Grid gridOver(const std::vector<tiles::Cell>& group, Vec3i& corner) const;
 
     const Model& model_;
     const GroundRequest request_;
     SquareTapes tapes_;
+    eval::Workspace workspace_;  ///< kept from group to group: its memory is large
 };
 
 }  // namespace sgm::pipeline

@@ -16,7 +16,7 @@ Box3f SquareTapes::boxOf(const Cell& square) const {
             {static_cast<float>(centre.x + reach), bounds_.hi.y + lift, static_cast<float>(centre.z + reach)}};
 }
 
-const eval::Tape& SquareTapes::over(const Cell& square) {
+const eval::Tape& SquareTapes::over(const Cell& square, eval::Workspace& workspace) {
     const double extent = static_cast<double>(std::max(bounds_.hi.x - bounds_.lo.x, bounds_.hi.z - bounds_.lo.z));
     std::vector<Cell> way{square};
     while (way.back().side_m(finest_m_) < extent / 2) way.push_back(way.back().parent());
@@ -24,7 +24,6 @@ const eval::Tape& SquareTapes::over(const Cell& square) {
     size_t kept = 0;
     while (kept < std::min(way.size(), path_.size()) && path_[kept].square == way[kept]) ++kept;
     path_.resize(kept);
-    eval::Workspace workspace;
     for (size_t i = kept; i < way.size(); ++i) {
         const eval::Tape& around = i == 0 ? whole_ : path_[i - 1].tape;
         const Box3f box = boxOf(way[i]);

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "modeler/eval/tape.h"
+#include "modeler/eval/evaluate.h"
 #include "modeler/tiles/cell.h"
 
 namespace sgm::pipeline {
@@ -20,7 +20,7 @@ public:
 
     /// The tape for a square and a third of its side around it, at heights within the box and 1/8 of the side beyond:
     /// the values, owners and labels there are those of the whole one. Valid until the next call.
-    const eval::Tape& over(const tiles::Cell& square);
+    const eval::Tape& over(const tiles::Cell& square, eval::Workspace& workspace);
 
 private:
     struct Step {

@@ -8,9 +8,10 @@
 namespace sgm::mesh {
 namespace {
 
-constexpr int probeRounds = 5;    ///< times that both sides of a crease are looked at
-constexpr int borderRounds = 12;  ///< halvings of a border's bracket
-constexpr int mostSplits = 3;     ///< pieces found between the ends of a segment
+constexpr int probeRounds = 5;     ///< times that both sides of a crease are looked at
+constexpr size_t borderParts = 4;  ///< of a border's bracket, one of which is the next: few rounds fill vectors
+constexpr int borderRounds = 6;    ///< 4^-6 of a segment is left
+constexpr int mostSplits = 3;      ///< pieces found between the ends of a segment
 constexpr float probeShare = 0.0625f;
 constexpr float settledShare = 1e-4f;       ///< of a cell, within which a crease point may still move
 constexpr float endMargin = 0x1.0p-12f;     ///< of a segment, kept free of breaks at its ends
@@ -41,6 +42,8 @@ PiecePoint onSurface(PiecePoint point, float value) {
 
 Vec3f between(Vec3f a, Vec3f b, double share) { return (a.as<double>() + (b - a).as<double>() * share).as<float>(); }
 
+double shareOfPart(size_t k) { return static_cast<double>(k) / static_cast<double>(borderParts); }
+
 }  // namespace
 
 uint64_t FaceCreases::solve(const BlockTapes& tapes, const Grid& grid, eval::Workspace& workspace,
@@ -67,7 +70,7 @@ uint64_t FaceCreases::solve(const BlockTapes& tapes, const Grid& grid, eval::Wor
         size_t sample = 0;
         for (const uint32_t g : open_) {
             const size_t first = sample;
-            sample += gaps_[g].state == State::Border ? 1 : 2;
+            sample += gaps_[g].state == State::Border ? borderParts - 1 : 2;
             take(segments[gaps_[g].segment], g, first);
             if (gaps_[g].state != State::Done) next_.push_back(g);
         }
@@ -139,7 +142,7 @@ void FaceCreases::ask(const FaceSegment& segment, const Gap& gap) {
             add(between(gap.at, gap.a.at, probeShare)), add(between(gap.at, gap.b.at, probeShare));
             break;
         default:
-            add(between(gap.lineA.at, gap.lineB.at, 0.5));
+            for (size_t k = 1; k < borderParts; ++k) add(between(gap.lineA.at, gap.lineB.at, shareOfPart(k)));
     }
 }
 
@@ -153,7 +156,7 @@ void FaceCreases::take(const FaceSegment& segment, uint32_t gap, size_t sample) 
         case State::Crease:
             return takeProbes(segment, gap, sample);
         default:
-            return takeMiddle(segment, gap, sample);
+            return takeParts(segment, gap, sample);
     }
 }
 
@@ -247,29 +250,46 @@ void FaceCreases::searchBorder(Gap& gap) {
     gap.valueA = gap.valueB = 0;
 }
 
-/// Halves a border's bracket, on the surface.
-void FaceCreases::takeMiddle(const FaceSegment& segment, uint32_t g, size_t sample) {
-    Gap& gap = gaps_[g];
+/// A point of a border's bracket, on the surface where that is at most so many metres away; on the line, with the
+/// piece before it, where the field isn't known.
+PiecePoint FaceCreases::inBracket(const FaceSegment& segment, const PiecePoint& before, double most,
+                                  size_t sample) const {
     float value;
-    PiecePoint middle = samples_.point(sample, value);
-    const Plane plane(segment.axis);
-    const double square = plane.dot(middle.gradient, middle.gradient);
-    const double most = 0.5 * length(gap.lineB.at - gap.lineA.at);
+    PiecePoint point = samples_.point(sample, value);
     if (!isKnown(value)) {
-        middle = gap.lineA;
-        middle.at = between(gap.lineA.at, gap.lineB.at, 0.5);
-    } else if (square > 0 && std::abs(value) <= most * std::sqrt(square)) {
-        middle.at[plane.u] -= static_cast<float>(value * middle.gradient[plane.u] / square);
-        middle.at[plane.v] -= static_cast<float>(value * middle.gradient[plane.v] / square);
+        const Vec3f at = point.at;
+        point = before;
+        point.at = at;
+        return point;
     }
-    if (middle.label == gap.a.label)
-        gap.lineA = middle;
-    else if (middle.label == gap.b.label)
-        gap.lineB = middle;
-    else if (gap.splits < mostSplits && mayLieAt(segment, middle.at))
-        return split(g, middle);
-    else
-        (gap.rounds % 2 ? gap.lineA : gap.lineB).at = middle.at;
+    const Plane plane(segment.axis);
+    const double square = plane.dot(point.gradient, point.gradient);
+    if (square > 0 && std::abs(value) <= most * std::sqrt(square)) {
+        point.at[plane.u] -= static_cast<float>(value * point.gradient[plane.u] / square);
+        point.at[plane.v] -= static_cast<float>(value * point.gradient[plane.v] / square);
+    }
+    return point;
+}
+
+/// The bracket becomes that part of itself where the first piece ends.
+void FaceCreases::takeParts(const FaceSegment& segment, uint32_t g, size_t sample) {
+    Gap& gap = gaps_[g];
+    const double bracket = length((gap.lineB.at - gap.lineA.at).as<double>());
+    for (size_t k = 1; k < borderParts; ++k) {
+        const double most = shareOfPart(std::min(k, borderParts - k)) * bracket;
+        const PiecePoint point = inBracket(segment, gap.lineA, most, sample + k - 1);
+        if (point.label == gap.a.label) {
+            gap.lineA = point;
+            continue;
+        }
+        if (point.label != gap.b.label && gap.splits < mostSplits && mayLieAt(segment, point.at))
+            return split(g, point);
+        if (point.label == gap.b.label)
+            gap.lineB = point;
+        else
+            gap.lineB.at = point.at;
+        break;
+    }
     if (++gap.rounds < borderRounds) return;
     gap.at = between(gap.lineA.at, gap.lineB.at, 0.5);
     if (!mayLieAt(segment, gap.at)) gap.at = between(gap.a.at, gap.b.at, 0.5);

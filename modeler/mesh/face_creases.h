@@ -56,7 +56,8 @@ private:
     void take(const FaceSegment& segment, uint32_t gap, size_t sample);
     void takeEnds(const FaceSegment& segment, Gap& gap, const PiecePoint& a, const PiecePoint& b);
     void takeProbes(const FaceSegment& segment, uint32_t gap, size_t sample);
-    void takeMiddle(const FaceSegment& segment, uint32_t gap, size_t sample);
+    PiecePoint inBracket(const FaceSegment& segment, const PiecePoint& before, double most, size_t sample) const;
+    void takeParts(const FaceSegment& segment, uint32_t gap, size_t sample);
     void aim(const FaceSegment& segment, Gap& gap);
     void projectOntoCrease(Gap& gap, Vec3f from) const;
     void searchBorder(Gap& gap);

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "modeler/tiles/level_squares.h"
 #include "modeler/tiles/textures.h"
 
 namespace sgm::tiles {
@@ -113,7 +114,8 @@ std::map<uint32_t, std::vector<uint32_t>> byMaterial(const mesh::PackedMesh& mes
 
 Vec3f unitOr(Vec3f v, Vec3f otherwise) { return length(v) > 0 ? normalized(v) : otherwise; }
 
-constexpr float nearly = .94f;  // cosine of the angle, 20°, between a triangle and what it may be shaded as
+constexpr double errorShare = .05;  // of a cell of the ground's grid, how far its simplification may move it
+constexpr float nearly = .94f;      // cosine of the angle, 20°, between a triangle and what it may be shaded as
 
 /// Every triangle with a normal of its own where its neighbours lie in other planes. Corners whose vertex has a normal
 /// (by `normals`, where there are some) that is nearly the triangle's get that one, so that hills look smooth.
@@ -215,7 +217,7 @@ std::vector<SurfacePiece> coarsePiecesOf(const mesh::PackedMesh& mesh, const Pro
 }
 
 std::vector<SurfacePiece> groundPieces(const mesh::PackedMesh& mesh, const std::vector<uint32_t>& triangles,
-                                       const Provenance& provenance, Vec3d centre, float error_m) {
+                                       const Provenance& provenance, Vec3d centre, double pitch_m) {
     TextureCharts charts;
     std::map<uint32_t, std::map<uint32_t, std::vector<uint32_t>>> lists;  // material, chart: vertices, three a triangle
     for (const uint32_t t : triangles) {
@@ -235,7 +237,8 @@ std::vector<SurfacePiece> groundPieces(const mesh::PackedMesh& mesh, const std::
     std::vector<uint32_t> local(mesh.positions.size(), none);
     for (const auto& [material, byChart] : lists) {
         PieceBuilder builder(material, byChart.begin()->second.size() / 6);
-        for (const auto& [chart, corners] : byChart) {
+        for (const auto& [chart, all] : byChart) {
+            const std::vector<uint32_t> corners = mergedSquares(all, mesh.positions, centre, pitch_m);
             std::vector<Vec3f> positions, normals;
             std::vector<uint32_t> indices, used;
             indices.reserve(corners.size());
@@ -255,8 +258,7 @@ std::vector<SurfacePiece> groundPieces(const mesh::PackedMesh& mesh, const std::
                 lies = movedTo(charts[chart], centre, *texture);
                 builder.enter(lies, *texture, indices.size() / 3);
             }
-            addFaceted(builder,
-                       simplified(indices, positions, static_cast<double>(error_m), meshopt_SimplifyLockBorder),
+            addFaceted(builder, simplified(indices, positions, errorShare * pitch_m, meshopt_SimplifyLockBorder),
                        positions, normals);
         }
         if (!builder.piece.indices.empty()) pieces.push_back(std::move(builder.piece));

@@ -29,11 +29,12 @@ std::vector<SurfacePiece> piecesOf(const mesh::PackedMesh& mesh, const Provenanc
 /// normals are those of the triangles. Borders of materials don't open. O(n log n).
 std::vector<SurfacePiece> coarsePiecesOf(const mesh::PackedMesh& mesh, const Provenance& provenance, double error_m);
 
-/// Simplifies the ground's triangles that belong to a cell, which `triangles` names in `mesh`, within `error_m`;
-/// vertices on the cell's border, and those between materials, stay. Positions become those about `centre`; normals are
-/// the mesh's where they are nearly those of the triangles.
+/// Simplifies the ground's triangles that belong to a cell, which `triangles` names in `mesh`, within a
+/// twentieth of `pitch_m`, a cell of the grid that it was meshed on and that has a corner at `centre`; vertices on the
+/// cell's border, and those between materials, stay. Positions become those about `centre`; normals are the mesh's
+/// where they are nearly those of the triangles.
 std::vector<SurfacePiece> groundPieces(const mesh::PackedMesh& mesh, const std::vector<uint32_t>& triangles,
-                                       const Provenance& provenance, Vec3d centre, float error_m);
+                                       const Provenance& provenance, Vec3d centre, double pitch_m);
 
 /// Of the pieces together.
 Box3f boundsOf(const std::vector<SurfacePiece>& pieces);
