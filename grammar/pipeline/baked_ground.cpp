@@ -159,8 +159,8 @@ Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const
     Box3f space;
     for (size_t i = 0; i < group.size(); ++i) {
         const Vec3d centre = group[i].centre(request_.side_m);
-        auto& pieces = made[group[i]] = tiles::groundPieces(
-            gathered.mesh, gathered.triangles[i], model_.lowered->provenance, centre, pitch);
+        auto& pieces = made[group[i]] =
+            tiles::groundPieces(gathered.mesh, gathered.triangles[i], model_.lowered->provenance, centre, pitch);
         if (!pieces.empty()) space = hull(space, spaceOf(pieces, centre, pitch / 2));
     }
     if (request_.levels < 2 || space.empty()) return made;

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <limits>
 
-#include "modeler/eval/labels.h"
+#include "modeler/eval/chosen_paths.h"
 #include "modeler/eval/owners.h"
 
 namespace sgm::eval {
@@ -112,9 +112,32 @@ void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& w
         [&](const StepContext&, size_t first, size_t n) { pass.store(out + first, n); });
 }
 
+namespace {
+
+/// Instructions from which on it pays to find out first which ones matter to a few points.
+constexpr size_t longTape = 64;
+
+/// evaluateLabels and, with 4 planes, evaluatePieces; `done(context, names, first, n)` for each block.
+template <class DoneBlock>
+void followPaths(const Tape& tape, const Points& points, Workspace::Impl& w, size_t planes, const Step* steps,
+                 DoneBlock&& done) {
+    ChosenPaths paths(tape, w, planes, steps);
+    for (size_t first = 0; first < points.n; first += pathPoints) {
+        const size_t n = std::min(pathPoints, points.n - first);
+        done(paths.run({points.x + first, points.y + first, points.z + first, n}), paths.names(), first, n);
+    }
+}
+
+}  // namespace
+
 void evaluateLabels(const Tape& tape, Points points, uint32_t* labels, OriginId* origins, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
     count(tape, points.n, EvaluationKind::Value, w.tally);
+    if (tape.size() >= longTape)
+        return followPaths(tape, points, w, 1, w.kernels.values,
+                           [&](const StepContext&, const LabelPass& names, size_t first, size_t n) {
+                               names.store(labels + first, origins + first, n);
+                           });
     LabelPass pass(tape, w, 1);
     runBlocks(
         tape, points, w.kernels.values, 1, w, {}, [&](const Instruction& in, const StepContext& c) { pass(in, c); },
@@ -124,16 +147,18 @@ void evaluateLabels(const Tape& tape, Points points, uint32_t* labels, OriginId*
 void evaluatePieces(const Tape& tape, Points points, const PieceSamples& out, Workspace& workspace) {
     Workspace::Impl& w = workspace.impl();
     count(tape, points.n, EvaluationKind::Gradient, w.tally);
-    float* const rows[] = {out.value, out.dx, out.dy, out.dz};
+    const auto store = [&](const StepContext& c, const LabelPass& names, size_t first, size_t n) {
+        float* const rows[] = {out.value, out.dx, out.dy, out.dz};
+        for (size_t plane = 0; plane < 4; ++plane)
+            storeResult(tape, c, w.kernels.store, 4, plane, rows[plane] + first, n);
+        names.store(out.labels + first, out.origins + first, n);
+    };
+    if (tape.size() >= longTape) return followPaths(tape, points, w, 4, w.pieceGradients.data(), store);
     LabelPass pass(tape, w, 4);
     runBlocks(
         tape, points, w.pieceGradients.data(), 4, w, {},
         [&](const Instruction& in, const StepContext& c) { pass(in, c); },
-        [&](const StepContext& c, size_t first, size_t n) {
-            for (size_t plane = 0; plane < 4; ++plane)
-                storeResult(tape, c, w.kernels.store, 4, plane, rows[plane] + first, n);
-            pass.store(out.labels + first, out.origins + first, n);
-        });
+        [&](const StepContext& c, size_t first, size_t n) { store(c, pass, first, n); });
 }
 
 void evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out, Workspace& workspace,

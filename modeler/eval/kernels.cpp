@@ -300,6 +300,13 @@ uint64_t notAbove(const float* row, const float* most) {
     return bits;
 }
 
+uint64_t below(const float* a, float more, const float* b, float less, size_t n) {
+    uint64_t bits = 0;
+    for (size_t i = 0; i < n; i += Float::size)
+        bits |= bitsOf(Float::load(a + i) + Float(more) < Float::load(b + i) + Float(less)) << i;
+    return bits;
+}
+
 /// A blend whose derivatives are, bit for bit, those of the least field where no other counts.
 struct BlendOfPieces : field::ops::Blend {
     template <class D>
@@ -329,6 +336,7 @@ Kernels kernels() {
             load,
             store,
             notAbove,
+            below,
             step<BlendOfPieces, Dual<Float>>};
 }
 }  // namespace SGM_ISA

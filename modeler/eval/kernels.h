@@ -56,6 +56,9 @@ using StoreRow = void (*)(const float* row, size_t n, float* to);
 /// Bit i is set where row[i] isn't above most[i], of maxBoxes floats (aligned).
 using NotAbove = uint64_t (*)(const float* row, const float* most);
 
+/// Bit i is set where a[i] + more < b[i] + less, of n ≤ 64 floats (a multiple of vectorFloats, both rows aligned).
+using Below = uint64_t (*)(const float* a, float more, const float* b, float less, size_t n);
+
 /// The steps of every op for one instruction set, by OpCode.
 struct Kernels {
     const Step* values;
@@ -66,6 +69,7 @@ struct Kernels {
     LoadRow load;
     StoreRow store;
     NotAbove notAbove;
+    Below below;
     Step blendOfPieces;  ///< as of `gradients`, but a field alone keeps the bits of its derivatives
 };
 

@@ -83,25 +83,39 @@ void LabelPass::choose(const Instruction& in, const Source* sources, const StepC
         compare(number(o[0]), row(o[1]));
     else
         compare(number(o[0]), number(o[1]));
-    const auto taken = [&](const Names& a, const Names& b, uint32_t* to) -> Names {
-        if (!a.row && !b.row && a.one == b.one) return a;
-        const auto take = [&](auto first, auto other) {
-            for (size_t i = 0; i < n; ++i) to[i] = (other(i) & second[i]) | (first(i) & ~second[i]);
-        };
-        const auto ofRow = [](const Names& of) { return [p = of.row](size_t i) { return p[i]; }; };
-        const auto ofOne = [](const Names& of) { return [v = of.one](size_t) { return v; }; };
-        if (a.row && b.row)
-            take(ofRow(a), ofRow(b));
-        else if (a.row)
-            take(ofRow(a), ofOne(b));
-        else if (b.row)
-            take(ofOne(a), ofRow(b));
-        else
-            take(ofOne(a), ofOne(b));
-        return settled(to, n);
+    names_[in.out] = {taken(o[0].names.label, o[1].names.label, second.data(), n, labelRow(in.out)),
+                      taken(o[0].names.origin, o[1].names.origin, second.data(), n, originRow(in.out))};
+}
+
+void LabelPass::choose(const Instruction& in, const StepContext& c, const Choice& choice) {
+    const Source sources[] = {in.a, in.b};
+    const bool first = (choice.points & ~choice.names) != 0, second = (choice.points & choice.names) != 0;
+    const PieceNames of[] = {first ? operand(in, sources, 0, c).names : PieceNames{},
+                             second ? operand(in, sources, 1, c).names : PieceNames{}};
+    const size_t n = c.count;
+    std::array<uint32_t, maxBlock> takesSecond;
+    for (size_t i = 0; i < n; ++i) takesSecond[i] = !first || (second && (choice.names >> i & 1)) ? ~0u : 0u;
+    names_[in.out] = {taken(of[0].label, of[1].label, takesSecond.data(), n, labelRow(in.out)),
+                      taken(of[0].origin, of[1].origin, takesSecond.data(), n, originRow(in.out))};
+}
+
+/// Of each point one of two names; `takesSecond` is all bits or none. In `to` where they differ.
+Names LabelPass::taken(const Names& first, const Names& second, const uint32_t* takesSecond, size_t n, uint32_t* to) {
+    if (!first.row && !second.row && first.one == second.one) return first;
+    const auto take = [&](auto a, auto b) {
+        for (size_t i = 0; i < n; ++i) to[i] = (b(i) & takesSecond[i]) | (a(i) & ~takesSecond[i]);
     };
-    names_[in.out] = {taken(o[0].names.label, o[1].names.label, labelRow(in.out)),
-                      taken(o[0].names.origin, o[1].names.origin, originRow(in.out))};
+    const auto ofRow = [](const Names& of) { return [p = of.row](size_t i) { return p[i]; }; };
+    const auto ofOne = [](const Names& of) { return [v = of.one](size_t) { return v; }; };
+    if (first.row && second.row)
+        take(ofRow(first), ofRow(second));
+    else if (first.row)
+        take(ofRow(first), ofOne(second));
+    else if (second.row)
+        take(ofOne(first), ofRow(second));
+    else
+        take(ofOne(first), ofOne(second));
+    return settled(to, n);
 }
 
 /// One piece with all that it joins; a field with edges of its own keeps them where no other counts.

@@ -18,6 +18,10 @@ public:
     /// To be called before each instruction runs.
     void operator()(const Instruction& in, const StepContext& c);
 
+    /// The same for a minimum or maximum whose operands' names the points take by `choice`. Of operands that no point
+    /// takes the names aren't read.
+    void choose(const Instruction& in, const StepContext& c, const Choice& choice);
+
     /// Labels and origins of the tape's value at the first n points of the block.
     void store(uint32_t* labels, OriginId* origins, size_t n) const;
 
@@ -33,6 +37,7 @@ private:
     Operand operand(const Instruction& in, const Source* sources, uint32_t k, const StepContext& c) const;
     bool isUnnamed(const Instruction& in, const Source* sources) const;
     void choose(const Instruction& in, const Source* sources, const StepContext& c, bool least);
+    Names taken(const Names& first, const Names& second, const uint32_t* takesSecond, size_t n, uint32_t* to);
     void blend(const Instruction& in, const Source* sources, const StepContext& c);
     void nameFaces(const Instruction& in, const Source* sources, const StepContext& c);
     void nameSides(const Instruction& in, const Source* sources, const StepContext& c);

@@ -70,8 +70,22 @@ struct OwnerRegisters {
     std::vector<PieceNames> registerNames;
 };
 
+/// What points take at a minimum or maximum, bit by bit, see ChosenPaths.
+struct Choice {
+    uint64_t values = 0;  ///< the second operand's value and derivatives
+    uint64_t names = 0;   ///< the second operand's name
+    uint64_t points = 0;  ///< those that need the result
+};
+
+/// Scratch of ChosenPaths.
+struct PathRegisters {
+    std::vector<Choice> choices;             ///< by instruction
+    std::vector<uint64_t> pathReaders;       ///< by register
+    std::vector<uint32_t> liveInstructions;  ///< descending
+};
+
 /// Aligned, so that no two threads write to one line of cache, nor to the next one, which processors fetch with it.
-struct alignas(128) Workspace::Impl : OwnerRegisters {
+struct alignas(128) Workspace::Impl : OwnerRegisters, PathRegisters {
     Kernels kernels;
     Tally* tally = nullptr;  ///< where operations are counted, if at all
     AlignedFloats registers, arguments;

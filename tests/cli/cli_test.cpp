@@ -118,6 +118,22 @@ TEST_F(Cli, SameBytesAtAnyThreadCount) {
     }
 }
 
+TEST_F(Cli, TownsOnHillsAreTheSameAtAnyThreadCount) {
+    std::string first[2];
+    for (const std::string threads : {"1", "3"}) {
+        const std::string files[] = {path("town.glb"), path("plan.geojson")};
+        const Outcome run = sgm("build examples/city/hills.sgm --set side=500m --cell 8 --object-cell 2 --threads " +
+                                threads + " -o " + files[0] + " -o " + files[1]);
+        ASSERT_EQ(run.code, 0) << run.out;
+        for (const int k : {0, 1}) {
+            const std::string bytes = read(files[k]);
+            if (first[k].empty()) first[k] = bytes;
+            EXPECT_TRUE(bytes == first[k]) << files[k] << " at " << threads << " threads";
+        }
+    }
+    EXPECT_NE(first[0].find("\"mesh\""), std::string::npos);
+}
+
 TEST_F(Cli, AnotherSeedChangesOnlyWhatHasChoices) {
     for (const std::string example : {"grotto", "cumulus", "tower"}) {
         std::string bytes[2];
