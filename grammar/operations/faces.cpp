@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "grammar/derive/parts_context.h"
 #include "grammar/operations/operations.h"
@@ -28,9 +30,12 @@ using syntax::OperationArgument;
 using Part = Parts::Part;
 
 constexpr double leastPart_m = 1e-6;
+constexpr double mostBend = std::numbers::pi / 2;
 
 constexpr OperationArgument facesArguments[] = {
-    {"thickness", syntax::ArgumentType::Length, "metres of the plates; 0.2m unless said", true}};
+    {"thickness", syntax::ArgumentType::Length, "metres of the plates; 0.2m unless said", true},
+    {"angle", syntax::ArgumentType::Angle,
+     "sides of one part that bend by no more are one curved face; none unless said", true, "smooth"}};
 
 std::shared_ptr<Parts> checkFaces(OperationChecker& checker, const syntax::Attribute& written) {
     auto out = std::make_shared<Parts>();
@@ -42,6 +47,12 @@ std::shared_ptr<Parts> checkFaces(OperationChecker& checker, const syntax::Attri
                             : checker.expression(written.args[0], rules::Want::Length, "'faces'"));
     if (const auto value = checker.atDefaults(out->args[0]); value && !(value->num() > 0))
         checker.error(out->args[0].span, "the plates of 'faces' are thicker than 0");
+    if (written.args.size() > 1) {
+        out->args.push_back(checker.expression(written.args[1], rules::Want::Angle, "'smooth'"));
+        const auto value = checker.atDefaults(out->args[1]);
+        if (value && !(value->num() >= 0 && value->num() < mostBend))
+            checker.error(out->args[1].span, "'smooth' lies between 0deg and 90deg");
+    }
     for (const syntax::Case& c : written.cases) {
         Part part;
         part.span = c.span;
@@ -77,22 +88,21 @@ struct Levels {
 
 class Faces {
 public:
-    Faces(PartsContext& context, const Parts& faces, double thickness_m, plan::Plates plates)
+    Faces(PartsContext& context, const Parts& faces, double thickness_m, double smooth, plan::Plates plates)
         : context_(context),
           faces_(faces),
           footprint_(context.footprint()),
           edges_(plan::edgesOf(footprint_)),
           thickness_m_(thickness_m),
+          smooth_(smooth),
           plates_(std::move(plates)) {}
 
     bool run() {
         plan::Footprint core = std::move(plates_.core);
-        for (plan::Plate& plate : plates_.plates) {
-            const Part* part = partOf(edges_[plate.edge]);
-            if (part && !runSide(*part, plate)) return false;
-            if (!part)
-                core = core.empty() ? std::move(plate.footprint)
-                                    : plan::boolean(plan::Boolean::Union, core, plate.footprint);
+        for (const Face& face : facesOf()) {
+            if (face.part && !runSide(face)) return false;
+            if (!face.part)
+                core = core.empty() ? joined(face) : plan::boolean(plan::Boolean::Union, core, joined(face));
         }
         if (core.empty()) return true;
         const Part *top = findPart(faces_, "top"), *bottom = findPart(faces_, "bottom"),
@@ -131,21 +141,94 @@ private:
         return scope;
     }
 
-    /// The plate in its own frame, about the middle of its edge.
-    bool runSide(const Part& part, const plan::Plate& plate) {
-        const PlacedEdge& edge = edges_[plate.edge];
-        const Vec2 n = edge.normal(), right{n.z, -n.x}, middle = middleOf(edge);
-        const Scope scope = plateOf(edge);
-        plan::Footprint own = plate.footprint;
-        for (plan::Polygon& polygon : own.polygons) {
-            const auto place = [&](plan::Ring& ring) {
-                for (Vec2& p : ring.points) p = {dot(p - middle, right), dot(p - middle, n)};
-            };
-            place(polygon.outer);
-            for (plan::Ring& court : polygon.courts) place(court);
+    /// Plates that one part gets as one.
+    struct Face {
+        const Part* part = nullptr;
+        std::vector<size_t> plates;  ///< one after the other along the outline
+        bool closed = false;         ///< the last one meets the first
+    };
+
+    /// Whether the outline goes on from one plate to the next, and bends little there.
+    bool goesOn(size_t plate, size_t next) const {
+        const PlacedEdge &a = edges_[plates_.plates[plate].edge], &b = edges_[plates_.plates[next].edge];
+        if (plate == next || a.to != b.from) return false;
+        const Vec2 da = a.to - a.from, db = b.to - b.from;
+        return std::abs(std::atan2(plan::cross(da, db), plan::dot(da, db))) <= smooth_;
+    }
+
+    /// The plates in the order of the outline, smooth ones together.
+    std::vector<Face> facesOf() {
+        std::vector<Face> faces;
+        size_t ring = 0;  // the first face of the ring
+        for (size_t i = 0; i < plates_.plates.size(); ++i) {
+            const PlacedEdge& edge = edges_[plates_.plates[i].edge];
+            const Part* const part = partOf(edge);
+            const bool first = i == 0 || edges_[plates_.plates[i - 1].edge].to != edge.from;
+            if (first) ring = faces.size();
+            if (smooth_ > 0 && !first && part && faces.back().part == part && goesOn(i - 1, i))
+                faces.back().plates.push_back(i);
+            else
+                faces.push_back({part, {i}, false});
+            if (smooth_ > 0 && edge.to == edges_[plates_.plates[faces[ring].plates[0]].edge].from) close(faces, ring);
+        }
+        return faces;
+    }
+
+    /// The last face of a ring may go on into its first one.
+    void close(std::vector<Face>& faces, size_t ring) const {
+        Face &begin = faces[ring], &end = faces.back();
+        if (!end.part || end.part != begin.part || !goesOn(end.plates.back(), begin.plates[0])) return;
+        if (&begin == &end) {
+            begin.closed = true;
+            return;
+        }
+        begin.plates.insert(begin.plates.begin(), end.plates.begin(), end.plates.end());
+        faces.pop_back();
+    }
+
+    plan::Footprint joined(const Face& face) const {
+        std::vector<plan::Plate> plates;
+        for (const size_t plate : face.plates) plates.push_back(plates_.plates[plate]);
+        return plan::joined(plates, face.closed);
+    }
+
+    /// Runs the part in the face's own frame: x along its chord, z outward; about the middle of what it covers.
+    bool runSide(const Face& face) {
+        const PlacedEdge &first = edges_[plates_.plates[face.plates[0]].edge],
+                         &last = edges_[plates_.plates[face.plates.back()].edge];
+        Scope scope = plateOf(first);
+        Vec2 right{1, 0}, outward{0, 1}, middle = middleOf(first);
+        if (!face.closed) {
+            const Vec2 chord = last.to - first.from;
+            outward = Vec2{chord.z, -chord.x} * (1 / length(chord));
+            right = {outward.z, -outward.x};
+        }
+        plan::Footprint own = joined(face);
+        const auto turn = [&](Vec2 p) { return Vec2{dot(p - middle, right), dot(p - middle, outward)}; };
+        const auto eachRing = [&](auto&& visit) {
+            for (plan::Polygon& polygon : own.polygons) {
+                visit(polygon.outer);
+                for (plan::Ring& court : polygon.courts) visit(court);
+            }
+        };
+        eachRing([&](plan::Ring& ring) {
+            std::transform(ring.points.begin(), ring.points.end(), ring.points.begin(), turn);
+        });
+        if (face.plates.size() > 1) {
+            const plan::Box2 box = bounds(own);
+            const Vec2 c = box.centre();
+            eachRing([&](plan::Ring& ring) {
+                for (Vec2& p : ring.points) p = p - c;
+            });
+            middle = middle + right * c.x + outward * c.z;
+            const Scope& whole = context_.scope();
+            scope.centre = whole.centre + whole.axes * Vec3d{middle.x, 0, middle.z};
+            scope.axes = whole.axes * Mat3{{right.x, 0, right.z}, {0, 1, 0}, {outward.x, 0, outward.z}};
+            scope.size = {box.size().x, whole.size.y, box.size().z};
         }
         const auto over = context_.over(scope, own, faces_.span);
-        return over && context_.run(*part.body, *over, combine(hashText("side"), plate.edge));
+        const uint32_t edge = plates_.plates[face.plates[0]].edge;
+        return over && context_.run(*face.part->body, *over, combine(hashText("side"), edge));
     }
 
     bool runLevel(const Part& part, const plan::Footprint& plan, Levels levels, uint64_t key) {
@@ -163,16 +246,19 @@ private:
     const Parts& faces_;
     const plan::Footprint footprint_;
     const std::vector<PlacedEdge> edges_;
-    const double thickness_m_;
+    const double thickness_m_, smooth_;  ///< radians that smooth sides may bend by, 0 for none
     plan::Plates plates_;
 };
 
 bool runFaces(PartsContext& context, const Parts& faces) {
     const double thickness_m = context.evaluate(faces.args[0], hashText("thickness")).num();
     if (!(thickness_m > 0)) return context.fail("the plates of 'faces' are thicker than 0", faces.args[0].span);
+    const double smooth = faces.args.size() > 1 ? context.evaluate(faces.args[1], hashText("smooth")).num() : 0;
+    if (!(smooth >= 0 && smooth < mostBend))
+        return context.fail("'smooth' lies between 0deg and 90deg", faces.args[1].span);
     auto plates = plan::platesOf(context.footprint(), thickness_m);
     if (!plates.ok()) return context.fail(plates.error().message, faces.span);
-    return Faces(context, faces, thickness_m, std::move(*plates)).run();
+    return Faces(context, faces, thickness_m, smooth, std::move(*plates)).run();
 }
 
 }  // namespace
@@ -184,9 +270,13 @@ constinit const Operation faces{
         "court, shared (where another shape stood before most of it when the generation began) or by a tag; "
         "top and bottom plates; and rest, the core. The first word that fits an edge wins; in a plate x runs from left "
         "to right seen "
-        "from outside and z outward.",
+        "from outside and z outward. With 'smooth', sides of one part that bend by no more than the angle are one "
+        "face, "
+        "whose outline is called outer: 'split along outer' gives it bays that follow the curve.",
     .example =
-        "footprint ell(16, 12, 5, 6) extrude 6m faces .3m { front: split x { ~1: wall } | side: wall | rest: nil }",
+        "footprint arc(9m, 14m, 30deg, 150deg, 24) extrude 6m faces .3m smooth 20deg { outer: split along outer { { "
+        "~3m: "
+        "wall }* } | side: wall | rest: nil }",
     .arguments = facesArguments,
     .phase = Operation::Phase::Content,
     .block = {.label = "side"},

@@ -84,6 +84,14 @@ bool fits(const Cursor& cursor, ArgumentType type) {
     return startsArgument(cursor) && !beginsOperation(cursor);
 }
 
+/// The argument behind `argument` whose word stands at the cursor, where that is one: arguments are told by their
+/// order.
+const OperationArgument* argumentAt(const Cursor& cursor, const Operation& row, const OperationArgument& argument) {
+    for (const OperationArgument& later : row.arguments)
+        if (&later > &argument && !later.word.empty() && cursor.at(later.word)) return &later;
+    return nullptr;
+}
+
 }  // namespace
 
 void refuseCalculation(Cursor& cursor, std::string_view word) {
@@ -100,6 +108,12 @@ void readArguments(Cursor& cursor, const Operation& row, Attribute& attribute) {
                 return;
         }
         if (argument.optional && isWholeOperation(cursor)) continue;
+        if (const OperationArgument* later = argumentAt(cursor, row, argument)) {
+            cursor.fail("'" + plain(row.name) + "' needs " + plain(describe(argument.type)) + " before '" +
+                            plain(later->word) + "'",
+                        "as in '" + plain(row.example) + "'");
+            return;
+        }
         if (!fits(cursor, argument.type)) {
             if (argument.optional) continue;
             cursor.fail(

@@ -115,6 +115,56 @@ std::vector<Plate> cutInTurn(const Footprint& footprint, const std::vector<Place
     return plates;
 }
 
+/// Trapezoids that share their mitres, as trapezoid() makes them: booleans would leave gaps of the lattice's width.
+std::optional<Footprint> joinedTrapezoids(const std::vector<Plate>& plates, bool closed) {
+    Ring out, in;  // the latter from the first plate to the last
+    for (size_t i = 0; i < plates.size(); ++i) {
+        const Footprint& plate = plates[i].footprint;
+        if (plate.polygons.size() != 1 || plate.polygons[0].outer.size() != 4) return {};
+        const Ring& ring = plate.polygons[0].outer;
+        if (i > 0 && (out.points.back() != ring.points[0] || in.points.back() != ring.points[3])) return {};
+        if (i == 0) out.points.push_back(ring.points[0]), in.points.push_back(ring.points[3]);
+        out.points.push_back(ring.points[1]), in.points.push_back(ring.points[2]);
+        out.edges.push_back(ring.edges[0]), in.edges.push_back(cut);
+    }
+    Polygon polygon;
+    if (closed) {
+        if (out.points.back() != out.points[0] || in.points.back() != in.points[0]) return {};
+        out.points.pop_back(), in.points.pop_back();
+        const bool isCourt = signedArea(out) < 0;
+        polygon.outer = isCourt ? reversed(in) : std::move(out);
+        polygon.courts.push_back(isCourt ? std::move(out) : reversed(in));
+    } else {
+        out.points.insert(out.points.end(), in.points.rbegin(), in.points.rend());
+        out.edges.resize(out.points.size(), cut);
+        polygon.outer = std::move(out);
+    }
+    Footprint whole = footprintOf(std::move(polygon));
+    whole.tags = plates[0].footprint.tags;
+    if (firstFault(whole)) return {};
+    return whole;
+}
+
+/// Calls what isn't cut `outer` as well.
+void nameOutline(Footprint& face) {
+    const size_t words = face.tags.size();
+    std::vector<uint32_t> outer(words, 0);
+    const auto outerOf = [&](uint32_t tag) {
+        if (outer[tag] != 0) return outer[tag];
+        const std::string word = face.tags[tag];
+        const bool has = (" " + word + " ").find(" outer ") != std::string::npos;
+        return outer[tag] = has ? tag : face.tag(word.empty() ? "outer" : word + " outer");
+    };
+    for (Polygon& polygon : face.polygons) {
+        const auto name = [&](Ring& ring) {
+            for (Edge& edge : ring.edges)
+                if (edge.source != EdgeSource::Cut) edge.tag = outerOf(edge.tag);
+        };
+        name(polygon.outer);
+        for (Ring& court : polygon.courts) name(court);
+    }
+}
+
 }  // namespace
 
 Result<Plates> platesOf(const Footprint& footprint, double thickness_m) {
@@ -132,6 +182,19 @@ Result<Plates> platesOf(const Footprint& footprint, double thickness_m) {
     result.core = offset(footprint, -thickness_m);
     result.plates = cutInTurn(footprint, edges, result.core, thickness_m);
     return result;
+}
+
+Footprint joined(const std::vector<Plate>& plates, bool closed) {
+    if (plates.size() == 1) return plates[0].footprint;
+    Footprint whole;
+    if (auto direct = joinedTrapezoids(plates, closed)) {
+        whole = std::move(*direct);
+    } else {
+        whole = plates[0].footprint;
+        for (size_t i = 1; i < plates.size(); ++i) whole = boolean(Boolean::Union, whole, plates[i].footprint);
+    }
+    nameOutline(whole);
+    return whole;
 }
 
 Result<Footprint> band(const Ring& chain, const std::vector<std::string>& tags, double width_m, bool closed) {

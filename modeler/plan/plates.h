@@ -25,6 +25,10 @@ struct Plates {
 /// Error::Input for a thickness that isn't > 0.
 Result<Plates> platesOf(const Footprint& footprint, double thickness_m);
 
+/// Plates that follow each other along an outline as one; `closed`: the last one meets the first. Edges keep tags and
+/// sources, and where there are several plates those that aren't EdgeSource::Cut are called `outer` as well.
+Footprint joined(const std::vector<Plate>& plates, bool closed);
+
 /// What lies within half of `width_m` of a chain of points, with mitred corners and straight ends; `closed`: from the
 /// last point back to the first. Edges of the result have the entry of the segment they run along, edges[i] from point
 /// i to i + 1. Chains may cross themselves. Error::Input for fewer than two points, points that aren't finite or within

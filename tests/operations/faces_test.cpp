@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 
 #include "modeler/core/random.h"
+#include "modeler/plan/edge_words.h"
 #include "tests/lower/lowered.h"
 
 namespace sgm::testing_ {
@@ -71,6 +73,63 @@ TEST(Faces, WhereNoPlateStandsTheCoreGoesToTheEdge) {
     const auto volumes = volumesOf(derived(block("rect(10, 6)", "faces .5m { front: front | rest: core }")));
     EXPECT_NEAR(volumes.at("front"), (10 + 9) / 2. * .5 * 4, 1e-2);
     EXPECT_NEAR(volumes.at("core"), 10 * 6 * 4 - (10 + 9) / 2. * .5 * 4, 1e-2);
+}
+
+TEST(Faces, SmoothSidesAreOneFace) {
+    const Derivation d =
+        derived(block("arc(20m, 32m, 20deg, 160deg, 24)",
+                      "faces .5m smooth 20deg { outer: front | inner: wall | side: ground | rest: core }"));
+    std::map<std::string, int> count;
+    for (const Shape& s : d.tree.shapes) {
+        if (s.solid == derive::none) continue;
+        ++count[d.tree.labels[s.label]];
+        if (d.tree.labels[s.label] != "front") continue;
+        const plan::Footprint face = d.tree.footprints.inMetres(s.scope.footprint, s.scope.half());
+        double outer_m = 0;
+        for (const plan::PlacedEdge& edge : plan::edgesOf(face)) {
+            if (plan::isEdgeCalled(face, edge, "outer")) outer_m += edge.length();
+        }
+        EXPECT_NEAR(outer_m, 24 * 2 * 32 * std::sin(140. / 24 / 2 * std::numbers::pi / 180), 1e-3);
+        EXPECT_NEAR(s.scope.size.x, 2 * 32 * std::cos(20 * std::numbers::pi / 180), 1e-3) << "along the chord";
+    }
+    EXPECT_EQ(count, (std::map<std::string, int>{{"front", 1}, {"wall", 1}, {"ground", 2}, {"core", 1}}));
+}
+
+TEST(Faces, SmoothSidesAllAroundAreARing) {
+    const Derivation d = derived(block("ngon(24, 10m)", "faces .5m smooth 20deg { side: wall | rest: core }"));
+    const auto volumes = volumesOf(d);
+    EXPECT_EQ(std::count_if(d.tree.shapes.begin(), d.tree.shapes.end(),
+                            [](const Shape& s) { return s.solid != derive::none; }),
+              2);
+    const double area_m2 = 12 * 100 * std::sin(2 * std::numbers::pi / 24);
+    EXPECT_NEAR(volumes.at("wall") + volumes.at("core"), area_m2 * 4, .2);
+    EXPECT_NEAR(volumes.at("wall"), 24 * 2 * 10 * std::sin(std::numbers::pi / 24) * .5 * 4, 4);
+}
+
+TEST(Faces, CornersAndOtherPartsEndASmoothFace) {
+    // Sides bend by 60 degrees.
+    const auto pieces = [](const std::string& faces) {
+        const Derivation d = derived(block("ngon(6, 5m)", faces));
+        return std::count_if(d.tree.shapes.begin(), d.tree.shapes.end(),
+                             [](const Shape& s) { return s.solid != derive::none; });
+    };
+    EXPECT_EQ(pieces("faces .3m smooth 59deg { side: wall | rest: nil }"), 6);
+    EXPECT_EQ(pieces("faces .3m smooth 61deg { side: wall | rest: nil }"), 1);
+    EXPECT_EQ(pieces("faces .3m smooth 61deg { front: front | side: wall | rest: nil }"), 2);
+}
+
+TEST(Faces, BaysFollowASmoothFace) {
+    const Derivation d = derived(
+        block("ngon(48, 10m)", "faces .5m smooth 20deg { side: split along outer { { ~3m: wall }* } | rest: nil }"));
+    int bays = 0;
+    for (const Shape& s : d.tree.shapes) {
+        if (s.solid == derive::none) continue;
+        ++bays;
+        const Vec3d out = s.scope.axes * Vec3d{0, 0, 1}, to = s.scope.centre;
+        EXPECT_GT(out.x * to.x + out.z * to.z, .999 * std::hypot(to.x, to.z)) << "z looks outward";
+        EXPECT_NEAR(s.scope.size.x, 3, .1);
+    }
+    EXPECT_EQ(bays, 21);
 }
 
 TEST(Faces, APlateLooksOutwardAndCanBeSplit) {
