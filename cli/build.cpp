@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <tuple>
 
 #include "cli/cave.h"
 #include "cli/commands.h"
@@ -10,6 +11,7 @@
 #include "cli/frames.h"
 #include "cli/renamed.h"
 #include "cli/watch.h"
+#include "modeler/core/packages.h"
 #include "modeler/export/exporter.h"
 
 namespace sgm::cli {
@@ -48,9 +50,23 @@ Status checkSection(const BuildRequest& request) {
     return Done{};
 }
 
+/// What this build of the program can't do: Error::Input names the package.
+Status checkPackages(const BuildRequest& request) {
+    const std::tuple<bool, Package, const char*> all[] = {
+        {surveys(request), Package::OpenVdb, "--cave"},
+        {request.validate, Package::Cgal, "--validate"},
+        {request.edits.simplify < 1 || request.edits.tolerance_m.value_or(0) > 0, Package::Cgal, "--simplify"},
+        {request.out.lod > 1, Package::Cgal, "--lod"},
+        {request.out.collider == "mesh", Package::Cgal, "--collider mesh"}};
+    for (const auto& [asked, package, option] : all)
+        if (asked && !isBuiltWith(package)) return missingPackage(package, option);
+    return Done{};
+}
+
 /// What can be refused before the work.
 Status checkRequest(const BuildRequest& request) {
     if (const Status s = checkOutputs(request.out); !s.ok()) return s;
+    if (const Status s = checkPackages(request); !s.ok()) return s;
     if (const Status s = request.floor.empty() ? Done{} : checkMeshFile("--floor", request.floor); !s.ok()) return s;
     if (request.stream)
         if (const Status s = checkStream(request); !s.ok()) return s;

@@ -14,6 +14,7 @@
 #include "grammar/pipeline/floating.h"
 #include "grammar/pipeline/gaps.h"
 #include "grammar/pipeline/missing.h"
+#include "modeler/core/packages.h"
 #include "modeler/mesh/edit.h"
 
 namespace sgm::cli {
@@ -41,6 +42,10 @@ Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, Mes
         error.message += " (--cell, --resolution)";
         return error;
     }
+    const bool usuallySimplified = request.grid.surface == mesh::Surface::Crisp && request.edits.smooth == 0;
+    if (usuallySimplified && !request.edits.tolerance_m && !isBuiltWith(Package::Cgal) && !request.quiet)
+        printMessage("note: {}: the mesh keeps all its triangles\n",
+                     missingPackage(Package::Cgal, "simplification").message);
     if (request.validate && mesh->triangleCount() > 0)
         if (const Status s = validated(*mesh, context); !s.ok()) return s.error();
     if (request.validate)

@@ -23,6 +23,7 @@ Result<exporter::ExportOptions> fogOptions(const std::vector<std::string>& words
                             text)};
         options[name] = text.substr(equals + 1);
     }
+    if (options.empty()) return options;
     if (const Status s = exporter::checkOptions(*exporter::findExporter(".vdb"), options); !s.ok()) return s.error();
     return options;
 }

@@ -19,6 +19,7 @@
 #include "grammar/pipeline/mesh_edits.h"
 #include "grammar/pipeline/missing.h"
 #include "modeler/core/conventions.h"
+#include "modeler/core/packages.h"
 #include "viewer/render/draw.h"
 
 namespace sgm::cli {
@@ -111,6 +112,7 @@ Status checkRequest(const RenderRequest& request) {
         return wrong("--keep, --smooth, --simplify and --tolerance change a mesh: add --view mesh, labels or creases");
     if (request.grid.objectCell_m > 0 && !drawsMesh(request))
         return wrong("--object-cell is of meshes: add --view mesh, labels or creases");
+    if (request.view == "fog" && !isBuiltWith(Package::OpenVdb)) return missingPackage(Package::OpenVdb, "--view fog");
     if (request.fog.extinction > 0 && request.view != "fog") return wrong("--extinction is of fog: add --view fog");
     if (!request.fog.options.empty() && request.view != "fog")
         return wrong("--format-option is of fog, as .vdb files have it: add --view fog");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/messages.h"
+#include "modeler/core/packages.h"
 
 namespace sgm::cli {
 
@@ -20,6 +21,11 @@ Status validated(const mesh::Mesh& mesh, Context& context) {
 }
 
 void warnOfFaults(const mesh::Mesh& mesh, Context& context) {
+    if (!isBuiltWith(Package::Cgal)) {
+        printMessage("warning: {}: the mesh may cross itself since it was smoothed\n",
+                     missingPackage(Package::Cgal, "finding faults").message);
+        return;
+    }
     const auto judgement = context.timed("validate", [&] { return mesh::validate(mesh); });
     if (!judgement.ok() || (judgement->closed && !judgement->selfIntersects)) return;
     printMessage(

@@ -9,12 +9,15 @@
 #include <filesystem>
 
 #include "cli/commands.h"
+#include "cli/requests.h"
+#include "modeler/core/packages.h"
 
 namespace sgm::cli {
 namespace {
 
 /// Becomes the other program; comes back only where that can't be.
 int become(std::vector<std::string> words) {
+    if (!isBuiltWith(Package::Window)) return fail(missingPackage(Package::Window, "view"));
     std::error_code ignored;
     const std::filesystem::path beside =
         std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / "sgm-viewer";
@@ -32,6 +35,7 @@ int become(std::vector<std::string> words) {
 void addView(CLI::App& app, int& exitCode) {
     CLI::App* command = app.add_subcommand("view", "Open the window: see the model at once, change it by hand");
     command->prefix_command();
+    command->fallthrough(false);  // what follows is no argument of sgm
     command->footer(
         "All that follows goes to sgm-viewer; see sgm-viewer --help.\nExample:\n  sgm view examples/grotto.sgm");
     command->callback([command, &exitCode] { exitCode = become(command->remaining()); });

@@ -8,6 +8,7 @@
 #include "grammar/operations/plan_parts.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/words.h"
+#include "modeler/core/packages.h"
 #include "modeler/core/random.h"
 #include "modeler/town/lots.h"
 
@@ -16,7 +17,6 @@ namespace {
 
 using derive::PartsContext;
 using derive::Scope;
-using plan::Vec2;
 using rules::OperationChecker;
 using rules::Parts;
 using rules::Unit;
@@ -71,6 +71,8 @@ std::shared_ptr<Parts> checkLots(OperationChecker& checker, const syntax::Attrib
         const syntax::Expr& e = written.args[0];
         checker.beginDraws("lots");
         const bool isCall = e.kind == syntax::Expr::Kind::Call;
+        if (isCall && e.text == "skeleton" && !isBuiltWith(Package::Cgal))
+            checker.error(e.span, missingPackage(Package::Cgal, "'skeleton'").message + "; write box(…)");
         out->args[4] = rules::makeConstant(written.span, rules::Value::boolean(isCall && e.text == "skeleton"));
         if (isCall && (e.text == "box" || e.text == "skeleton"))
             checkCuts(checker, e, *out);

@@ -1,5 +1,6 @@
 #include "grammar/pipeline/mesh_edits.h"
 
+#include "modeler/core/packages.h"
 #include "modeler/mesh/edit.h"
 #include "modeler/mesh/simplify.h"
 
@@ -7,7 +8,8 @@ namespace sgm::pipeline {
 
 double toleranceOf(const MeshEdits& edits, mesh::Surface surface, float cell_m) {
     if (edits.tolerance_m) return *edits.tolerance_m;
-    return surface == mesh::Surface::Crisp && edits.smooth == 0 ? mesh::usualTolerance(cell_m) : 0;
+    const bool simplifies = surface == mesh::Surface::Crisp && edits.smooth == 0 && isBuiltWith(Package::Cgal);
+    return simplifies ? mesh::usualTolerance(cell_m) : 0;
 }
 
 Result<mesh::Mesh> edited(mesh::Mesh mesh, const MeshEdits& edits, mesh::Surface surface, float cell_m,

@@ -21,7 +21,7 @@ struct MeshEdits {
 };
 
 /// How far simplification may move the surface, metres: of a crisp mesh a hundredth of a cell, unless the edits say
-/// otherwise or smooth it; 0 keeps all triangles.
+/// otherwise or smooth it; 0 keeps all triangles. Nothing unless the edits say so in a build without CGAL.
 double toleranceOf(const MeshEdits& edits, mesh::Surface surface, float cell_m);
 
 /// Smooths and simplifies, stages "smooth" and "simplify"; components were dropped before (mesh::keepOnly).

@@ -100,6 +100,7 @@ Status replaced(const ExportInput& input, const Path& path, Fill fill) {
 }  // namespace
 
 Status checkOptions(const Exporter& row, const ExportOptions& options) {
+    if (row.needs && !isBuiltWith(*row.needs)) return missingPackage(*row.needs, std::string(row.extension));
     for (const auto& [name, value] : options) {
         const auto known = std::find_if(row.options.begin(), row.options.end(),
                                         [&name = name](const ExportOption& o) { return o.name == name; });

@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "modeler/core/object_tree.h"
+#include "modeler/core/packages.h"
 #include "modeler/core/progress.h"
 #include "modeler/core/provenance.h"
 #include "modeler/core/result.h"
@@ -76,11 +78,12 @@ struct Exporter {
                      const std::filesystem::path& target) = nullptr;
     /// A second file that `write` makes beside the target; null where there is none.
     std::filesystem::path (*beside)(const std::filesystem::path& target) = nullptr;
-    bool wantsSolids = false;   ///< holds the model's solid tree, and neither a mesh nor a volume
-    bool holdsObjects = false;  ///< divides a mesh by ExportInput::objects
-    bool holdsScenes = false;   ///< writes ExportInput::scene, each object once
-    bool holdsLevels = false;   ///< writes ExportInput::levels beside the mesh
-    bool wantsPlan = false;     ///< holds the plan of a town alone
+    bool wantsSolids = false;                     ///< holds the model's solid tree, and neither a mesh nor a volume
+    bool holdsObjects = false;                    ///< divides a mesh by ExportInput::objects
+    bool holdsScenes = false;                     ///< writes ExportInput::scene, each object once
+    bool holdsLevels = false;                     ///< writes ExportInput::levels beside the mesh
+    bool wantsPlan = false;                       ///< holds the plan of a town alone
+    std::optional<Package> needs = std::nullopt;  ///< without which a build can't write the format
     bool wantsMesh() const { return !wantsVolume && !wantsSolids && !wantsPlan; }
 };
 
@@ -92,7 +95,8 @@ const Exporter* findExporter(std::string_view extension);
 const Exporter* exporterFor(const std::filesystem::path& path);
 /// Extensions of the formats that take a mesh chunk by chunk: ".ply .stl …".
 std::string streamedExtensions();
-/// Error::Usage, in words, for a name that the format doesn't have and for a value that the option doesn't take.
+/// Error::Usage, in words, for a name that the format doesn't have and for a value that the option doesn't take;
+/// Error::Input where this build lacks the package that the format needs.
 Status checkOptions(const Exporter& row, const ExportOptions& options);
 /// Whether files of the format hold colliders: those with the option `engine` do.
 bool holdsColliders(const Exporter& row);

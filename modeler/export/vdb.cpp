@@ -67,6 +67,7 @@ constinit const Exporter vdbFormat{
     .takesPositionsOnly = saysPositionsOnly,
     .write = writeVdb,
     .stream = nullptr,
+    .needs = Package::OpenVdb,
 };
 
 }  // namespace sgm::exporter

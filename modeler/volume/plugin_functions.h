@@ -27,6 +27,10 @@ struct PluginFunctions {
     void (*startThreads)(int most);
 };
 
+/// Loads the module and gives its table. Error::Internal where the module or OpenVDB isn't to be found, Error::Budget
+/// where there are no threads, Error::Input in a build without OpenVDB.
+Result<const PluginFunctions*> loadPlugin();
+
 }  // namespace sgm::volume
 
 /// The module's table.

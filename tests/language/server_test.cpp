@@ -10,6 +10,7 @@
 
 #include "grammar/language/text.h"
 #include "grammar/pipeline/files.h"
+#include "modeler/core/packages.h"
 #include "modeler/core/random.h"
 #include "tests/cpu_time.h"
 #include "tests/scratch.h"
@@ -95,7 +96,9 @@ TEST_F(Client, EveryFeatureAnswersOnEveryGrammar) {
             SCOPED_TRACE(path);
             const std::string text = textOf(path);
             open(path.string(), text);
-            const bool good = std::string_view(folder) == "examples";
+            // Lots of a skeleton are an error in a build without CGAL.
+            const bool whole = isBuiltWith(Package::Cgal) || text.find("lots skeleton") == text.npos;
+            const bool good = std::string_view(folder) == "examples" && whole;
             EXPECT_TRUE(!good || problems_[uri_].empty()) << problems_[uri_];
             askWhole("documentSymbol");
             askWhole("foldingRange");

@@ -1,6 +1,7 @@
 // Streets of a file, fields, curves, strips of the skeleton, pictures of floats and means: in the language.
 #include <gtest/gtest.h>
 
+#include "modeler/core/packages.h"
 #include "modeler/town/own_streets.h"
 #include "tests/operations/town_grammars.h"
 
@@ -125,6 +126,7 @@ TEST(Roads, BendInCurvesOfOnePiece) {
 }
 
 TEST(Lots, CanBeStripsOfTheSkeleton) {
+    if (!isBuiltWith(Package::Cgal)) GTEST_SKIP() << "built without CGAL";
     const std::string body =
         "block: lots skeleton(300, front: 8m, depth: 25m) { lot: wall | corner: wall | inner: yard } }\n";
     const Derivation d = derived(head + start + body);

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "modeler/core/packages.h"
 #include "modeler/tiles/deliver.h"
 #include "modeler/tiles/read_back.h"
 #include "tests/scratch.h"
@@ -74,6 +75,8 @@ protected:
 };
 
 TEST_F(Textures, CoverObjectsInMetres) {
+    if (!isBuiltWith(Package::Cgal))
+        GTEST_SKIP() << "built without CGAL: triangles too small for the strain that packing leaves";
     ASSERT_EQ(objects("-0.glb").size(), 1u);
     const auto object = tiles::readObject(objects("-0.glb")[0]);
     ASSERT_TRUE(object.ok()) << object.error().message;

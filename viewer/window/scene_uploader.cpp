@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "modeler/core/guarded.h"
+#include "modeler/core/packages.h"
 #include "modeler/core/stopwatch.h"
 #include "modeler/mesh/simplify.h"
 
@@ -181,8 +182,8 @@ Status SceneUploader::makeMesh(std::shared_ptr<const document::BuiltMesh> meshed
     UploadResult<render::MeshScene> ready;
     Stopwatch watch;
     // As it would be exported.
-    Result<mesh::Mesh> simple = mesh::Mesh();
-    if (meshed->mesh->triangleCount() > 0)
+    Result<mesh::Mesh> simple = isBuiltWith(Package::Cgal) ? mesh::Mesh() : *meshed->mesh;
+    if (meshed->mesh->triangleCount() > 0 && isBuiltWith(Package::Cgal))
         simple = mesh::simplify(*meshed->mesh, {mesh::usualTolerance(meshed->grid.cell_m), 0}, &progress);
     if (!simple) return simple.error();
     const Result<render::PreparedMesh> mesh = render::prepareMesh(*simple, meshed->of->model.lowered->provenance);

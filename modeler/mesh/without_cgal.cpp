@@ -1,0 +1,18 @@
+// What simplify.cpp and validate_exactly.cpp say in a build without CGAL.
+#include "modeler/core/packages.h"
+#include "modeler/mesh/simplify.h"
+#include "modeler/mesh/validate.h"
+
+namespace sgm::mesh {
+
+Result<MeshValidation> validate(const Mesh&) { return missingPackage(Package::Cgal, "validation"); }
+
+Result<Mesh> simplify(const Mesh&, const SimplifyOptions&, Progress*) {
+    return missingPackage(Package::Cgal, "simplification");
+}
+
+Result<Mesh> simplifyToShare(const Mesh&, double, int, Progress*) {
+    return missingPackage(Package::Cgal, "simplification");
+}
+
+}  // namespace sgm::mesh
