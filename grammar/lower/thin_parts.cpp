@@ -240,10 +240,11 @@ private:
     /// Leaves in `to` what matters in each box.
     void shortenTo(const eval::Tape& from, std::span<const Box3f> boxes, std::span<Local> to) {
         std::array<eval::FloatInterval, partsPerGroup> ranges;
-        eval::evaluateRanges(from, {boxes.data(), boxes.size()}, ranges.data(), workspace_);
+        const eval::RangeTrace trace =
+            eval::evaluateRanges(from, {boxes.data(), boxes.size()}, ranges.data(), workspace_);
         for (size_t i = 0; i < boxes.size(); ++i) {
             to[i].isEmpty = ranges[i].lo > 0 || ranges[i].hi < 0;
-            if (!to[i].isEmpty) eval::shorten(from, i, workspace_, to[i].tape);
+            if (!to[i].isEmpty) eval::shorten(from, trace, i, workspace_, to[i].tape);
         }
     }
 

@@ -75,8 +75,8 @@ Box3f spaceOf(const std::vector<tiles::SurfacePiece>& pieces, Vec3d centre, doub
 /// The tape without what can't matter in a box.
 eval::Tape within(const eval::Tape& tape, const Box3f& box, eval::Workspace& workspace) {
     eval::FloatInterval range;
-    eval::evaluateRanges(tape, {&box, 1}, &range, workspace);
-    return eval::shorten(tape, 0, workspace);
+    const eval::RangeTrace trace = eval::evaluateRanges(tape, {&box, 1}, &range, workspace);
+    return eval::shorten(tape, trace, 0, workspace);
 }
 
 }  // namespace

@@ -190,8 +190,8 @@ public:
         eval::Tape local;
         eval::FloatInterval range{};
         const Box3f box = Box3d{low_, low_ + Vec3d{4, 4, 4} * cell_m}.as<float>();
-        eval::evaluateRanges(tape, {&box, 1}, &range, workspace);
-        eval::shorten(tape, 0, workspace, local);
+        const eval::RangeTrace trace = eval::evaluateRanges(tape, {&box, 1}, &range, workspace);
+        eval::shorten(tape, trace, 0, workspace, local);
         eval::evaluate(local, {x.data(), y.data(), z.data(), nodes}, values.data(), workspace);
         for (const float v : values) solid_.push_back(v < 0);
     }
@@ -224,7 +224,8 @@ private:
     static constexpr int side = 33, nodes = side * side * side;
 
     Vec3d at(int node) const {
-        return low_ + Vec3d{double(node % side), double(node / side % side), double(node / side / side)} * step_m_;
+        const Vec3i place{node % side, node / side % side, node / side / side};
+        return low_ + place.as<double>() * step_m_;
     }
     int nearestSolid(Vec3d p) const {
         int best = -1;

@@ -28,8 +28,8 @@ const eval::Tape& SquareTapes::over(const Cell& square, eval::Workspace& workspa
         const eval::Tape& around = i == 0 ? whole_ : path_[i - 1].tape;
         const Box3f box = boxOf(way[i]);
         eval::FloatInterval range;
-        eval::evaluateRanges(around, {&box, 1}, &range, workspace);
-        path_.push_back({way[i], eval::shorten(around, 0, workspace)});
+        const eval::RangeTrace trace = eval::evaluateRanges(around, {&box, 1}, &range, workspace);
+        path_.push_back({way[i], eval::shorten(around, trace, 0, workspace)});
     }
     return path_.back().tape;
 }

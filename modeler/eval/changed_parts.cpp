@@ -34,7 +34,7 @@ void ChangedParts::descend(const Tape& tape) {
     while (!stack_.empty()) {
         const uint32_t value = stack_.back();
         stack_.pop_back();
-        if (tape.code()[value - 3].op != field::codeOf<field::ops::Min>) {
+        if (!isMinimum(tape.code()[value - 3])) {
             found_.push_back(value);
             continue;
         }
@@ -91,8 +91,8 @@ Tape ChangedParts::around(const Tape& tape, const Box3f& box, RelevantRange rele
     for (const uint32_t value : found_) free.push_back(value - 3);
     std::sort(free.begin(), free.end());
     FloatInterval whole;
-    evaluateRanges(tape, {&box, 1}, &whole, workspace, free);
-    return shorten(tape, 0, workspace, relevant);
+    const RangeTrace trace = evaluateRanges(tape, {&box, 1}, &whole, workspace, free);
+    return shorten(tape, trace, 0, workspace, relevant);
 }
 
 }  // namespace sgm::eval

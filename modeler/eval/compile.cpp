@@ -151,7 +151,7 @@ void Compiler::namePieces() {
     for (NodeId id = root_ + 1; id-- > 0;) {  // a blend before what it joins
         if (nodeClasses_[id].kind == NodeClass::Unreached) continue;
         const field::OpTraits& row = field::traits(graph_.node(id).op);
-        const bool blends = graph_.node(id).op == codeOf<ops::Blend>;
+        const bool blends = row.pieces == ops::Pieces::Joined;
         if (blends && pieces_[id] == 0) pieces_[id] = nameOf(id);
         if (!blends && !row.selects && !row.hasSides) continue;
         for (const field::Operand& o : graph_.operands(id).subspan(blends ? 1 : 0))

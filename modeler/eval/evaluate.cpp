@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <utility>
 
 #include "modeler/eval/chosen_paths.h"
 #include "modeler/eval/owners.h"
@@ -29,14 +30,17 @@ void count(const Tape& tape, size_t n, EvaluationKind asked, Tally* tally) {
 
 /// Copies the two rows that `needsRange` speaks of, see UseDefChains::boundRows.
 void keepRange(const Tape& tape, const Instruction& in, const StepContext& c) {
-    for (uint32_t row = 0; row < 2; ++row) {
-        float* const to = c.bounds + row * maxBoxes;
-        const bool difference = in.op == field::codeOf<field::ops::Sub>;
-        const Source source = difference ? in.b : tape.sources()[in.a + row];
+    const field::OpTraits& row = field::traits(in.op);
+    for (uint32_t end = 0; end < 2; ++end) {
+        float* const to = c.bounds + end * maxBoxes;
+        const auto [operand, high] = row.keptEnds[end];
+        const Source source = row.arity == field::ops::variadic ? tape.sources()[in.a + operand]
+                              : operand == 0                    ? in.a
+                                                                : in.b;
         if (isConstant(source))
             std::fill_n(to, c.count, tape.constants()[indexOf(source)]);
         else
-            std::copy_n(rowOf(c, source, 2, difference ? row : 0), c.count, to);
+            std::copy_n(rowOf(c, source, 2, high ? 1 : 0), c.count, to);
     }
 }
 
@@ -52,11 +56,7 @@ Isa bestIsa() {
     return Isa::Portable;
 }
 
-Workspace::Workspace(Isa isa) : impl_(std::make_unique<Impl>()) {
-    impl_->kernels = kernelsFor(isa);
-    std::copy_n(impl_->kernels.gradients, field::opCount, impl_->pieceGradients.data());
-    impl_->pieceGradients[static_cast<size_t>(field::codeOf<field::ops::Blend>)] = impl_->kernels.blendOfPieces;
-}
+Workspace::Workspace(Isa isa) : impl_(std::make_unique<Impl>()) { impl_->kernels = kernelsFor(isa); }
 Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
@@ -95,7 +95,7 @@ void evaluateGradient(const Tape& tape, Points points, float* value, float* dx, 
     const auto apart = static_cast<size_t>(dx - value);
     const bool atOnce = points.padded && endsInResult(tape) && dx > value && dy == dx + apart && dz == dy + apart &&
                         apart % pointPadding == 0;
-    runBlocks(tape, points, exact ? w.pieceGradients.data() : w.kernels.gradients, 4, w,
+    runBlocks(tape, points, exact ? w.kernels.pieceGradients : w.kernels.gradients, 4, w,
               atOnce ? ResultRows{value, apart} : ResultRows{}, nothingBefore,
               [&](const StepContext& c, size_t first, size_t n) {
                   for (size_t plane = 0; plane < 4 && !atOnce; ++plane)
@@ -153,16 +153,34 @@ void evaluatePieces(const Tape& tape, Points points, const PieceSamples& out, Wo
             storeResult(tape, c, w.kernels.store, 4, plane, rows[plane] + first, n);
         names.store(out.labels + first, out.origins + first, n);
     };
-    if (tape.size() >= longTape) return followPaths(tape, points, w, 4, w.pieceGradients.data(), store);
+    if (tape.size() >= longTape) return followPaths(tape, points, w, 4, w.kernels.pieceGradients, store);
     LabelPass pass(tape, w, 4);
     runBlocks(
-        tape, points, w.pieceGradients.data(), 4, w, {},
+        tape, points, w.kernels.pieceGradients, 4, w, {},
         [&](const Instruction& in, const StepContext& c) { pass(in, c); },
         [&](const StepContext& c, size_t first, size_t n) { store(c, pass, first, n); });
 }
 
-void evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out, Workspace& workspace,
-                    std::span<const uint32_t> free) {
+RangeTrace::RangeTrace(std::shared_ptr<Pool> pool) : pool_(std::move(pool)) {
+    if (pool_->free.empty()) {
+        impl_ = std::make_unique<Impl>();
+        return;
+    }
+    impl_ = std::move(pool_->free.back());
+    pool_->free.pop_back();
+}
+RangeTrace::~RangeTrace() {
+    if (impl_) pool_->free.push_back(std::move(impl_));
+}
+RangeTrace::RangeTrace(RangeTrace&&) noexcept = default;
+RangeTrace& RangeTrace::operator=(RangeTrace&& other) noexcept {
+    std::swap(pool_, other.pool_);
+    std::swap(impl_, other.impl_);
+    return *this;
+}
+
+RangeTrace evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out, Workspace& workspace,
+                          std::span<const uint32_t> free) {
     assert(regions.n >= 1 && regions.n <= maxBoxes);
     Workspace::Impl& w = workspace.impl();
     count(tape, regions.n, EvaluationKind::Range, w.tally);
@@ -178,14 +196,16 @@ void evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out, Work
         std::fill(lo + regions.n, lo + c.count, lo[regions.n - 1]);
         std::fill(hi + regions.n, hi + c.count, hi[regions.n - 1]);
     }
-    w.chains.build(tape);
-    w.parts.build(tape, w.chains);
-    w.regions = regions.n;
-    float* const bounds = w.bounds.get(w.chains.boundRows() * maxBoxes);
+    RangeTrace trace(w.traces);
+    RangeTrace::Impl& t = trace.impl();
+    t.chains.build(tape);
+    t.parts.build(tape, t.chains);
+    t.regions = regions.n;
+    float* const bounds = t.bounds.get(t.chains.boundRows() * maxBoxes);
     constexpr float infinity = std::numeric_limits<float>::infinity();
     for (size_t i = 0; i < tape.size(); ++i) {
         const Instruction& in = tape.code()[i];
-        c.bounds = bounds + size_t{w.chains.bounds(i)} * maxBoxes;
+        c.bounds = bounds + size_t{t.chains.bounds(i)} * maxBoxes;
         if (needsRange(in)) keepRange(tape, in, c);
         w.kernels.ranges[static_cast<size_t>(in.op)](in, c);
         if (free.empty() || free.front() != i) continue;
@@ -201,6 +221,7 @@ void evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out, Work
                                     : FloatInterval{rowOf(c, tape.result(), 2, 0)[i], rowOf(c, tape.result(), 2, 1)[i]};
         out[i] = r.lo <= r.hi ? r : FloatInterval{-infinity, infinity};
     }
+    return trace;
 }
 
 }  // namespace sgm::eval

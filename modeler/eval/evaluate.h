@@ -81,24 +81,42 @@ struct PieceSamples {
 /// Writes n entries of each row of `out`.
 void evaluatePieces(const Tape& tape, Points points, const PieceSamples& out, Workspace& workspace);
 
-/// Which branches of a tape can't matter in which of up to 64 regions; filled by evaluateRanges, read by shorten.
-/// Valid until the workspace's next evaluateRanges.
+/// Up to 64 regions.
 struct BoxBatch {
     const Box3f* boxes;
     size_t n;  ///< 1 … 64
 };
 
-/// out[i] encloses f over boxes[i]; remembers the choices for `shorten`. The instructions `free`, by number, ascending,
-/// count as any number whatever they read.
-void evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out, Workspace& workspace,
-                    std::span<const uint32_t> free = {});
+/// What evaluateRanges found out of a tape: which of its branches can't matter in which region. A value, which
+/// `shorten` takes; its memory comes from the workspace that made it and goes back there, so that nothing is allocated
+/// in steady state. One thread's, as that is.
+class RangeTrace {
+public:
+    struct Impl;
+    struct Pool;
+    explicit RangeTrace(std::shared_ptr<Pool> pool);
+    ~RangeTrace();
+    RangeTrace(RangeTrace&&) noexcept;
+    RangeTrace& operator=(RangeTrace&&) noexcept;
+    Impl& impl() const { return *impl_; }
 
-/// The tape with everything dropped that can't matter in region `index` of the last evaluateRanges on this workspace
-/// (which must have been of this very tape). Inside the region it returns the same bits as `tape` wherever those lie in
-/// what `relevant` tells apart, with the same owners and derivatives up to rounding; elsewhere some number on the same
-/// side.
-Tape shorten(const Tape& tape, size_t index, Workspace& workspace, RelevantRange relevant = {});
+private:
+    std::shared_ptr<Pool> pool_;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// out[i] encloses f over boxes[i]; gives the choices for `shorten`. The instructions `free`, by number, ascending,
+/// count as any number whatever they read.
+RangeTrace evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out, Workspace& workspace,
+                          std::span<const uint32_t> free = {});
+
+/// The tape with everything dropped that can't matter in region `index` of a trace, which must be of this very tape.
+/// Inside the region it returns the same bits as `tape` wherever those lie in what `relevant` tells apart, with the
+/// same owners and derivatives up to rounding; elsewhere some number on the same side.
+Tape shorten(const Tape& tape, const RangeTrace& trace, size_t index, Workspace& workspace,
+             RelevantRange relevant = {});
 /// The same in the memory of another tape than `tape`: nothing is allocated in steady state.
-void shorten(const Tape& tape, size_t index, Workspace& workspace, Tape& into, RelevantRange relevant = {});
+void shorten(const Tape& tape, const RangeTrace& trace, size_t index, Workspace& workspace, Tape& into,
+             RelevantRange relevant = {});
 
 }  // namespace sgm::eval

@@ -26,9 +26,9 @@ constexpr uint32_t registerNan = 0x7fc00000u, otherNan = 0x7fe00000u;
 
 /// Ops with long bodies are kept apart: the interpreter visits them once each, not at every instruction.
 bool heavy(OpCode op) {
+    constexpr uint32_t longCost = 20;
     const auto& row = field::traits(op);
-    return row.arity == field::ops::variadic || row.name == "sin" || row.name == "cos" || row.name == "exp" ||
-           row.name == "atan2";
+    return row.arity == field::ops::variadic || row.cost(static_cast<uint32_t>(row.arity), 0) >= longCost;
 }
 
 /// Body of the switch case for an op of one or two operands; it sets `value` from `a` and `b`.
@@ -50,12 +50,20 @@ std::string caseBody(OpCode op) {
     });
 }
 
+/// The numbers that an op's text names.
+std::string constants(const field::OpTraits& row) {
+    std::string text;
+    for (const auto& [name, number] : row.glslNumbers) text += fmt::format("const uint {} = {}u;\n", name, number);
+    return text;
+}
+
 std::string functions(const OpSet& ops) {
     std::string text;
     for (size_t i = 0; i < field::opCount; ++i) {
         const auto& row = field::traits(OpCode{static_cast<uint16_t>(i)});
         if (ops[i] && row.arity == field::ops::variadic)
-            text += fmt::format("float op_{}(uint first, uint count, uint data) {{\n{}\n}}\n", row.name, row.glsl);
+            text += fmt::format("float op_{}(uint first, uint count, uint data) {{\n{}{}\n}}\n", row.name,
+                                constants(row), row.glsl);
     }
     return text;
 }
@@ -131,6 +139,7 @@ float arg(uint at) {{
   uint w = texelFetch(tapeWords, int(at)).x;
   return (w >> 16) == {}u ? registers[w & 65535u & registerMask] : uintBitsToFloat(w);
 }}
+vec3 arg3(uint at) {{ return vec3(arg(at), arg(at + 1u), arg(at + 2u)); }}
 float word(uint texel, uint i) {{ return uintBitsToFloat(texelFetch(tapeWords, int(texel * 4u + i)).x); }}
 )",
                                    registers - 1, registers, registerNan >> 16);

@@ -307,17 +307,36 @@ uint64_t below(const float* a, float more, const float* b, float less, size_t n)
     return bits;
 }
 
-/// A blend whose derivatives are, bit for bit, those of the least field where no other counts.
-struct BlendOfPieces : field::ops::Blend {
+/// A row whose derivatives are, bit for bit, those of the least field where no other counts.
+template <class Row>
+struct OfPieces : Row {
     template <class D>
     static D gradient(std::span<const D> args, uint32_t data) {
-        return gradientOf<true>(args, data);
+        return Row::template gradientOf<true>(args, data);
     }
 };
+/// Whether a row has derivatives that tell exactness apart.
+template <class Row>
+concept HasExactGradient = requires(std::span<const Dual<Float>> args) {
+    Row::template gradientOf<true>(args, 0u);
+};
+template <class Row>
+constexpr Step pieceStep() {
+    if constexpr (HasExactGradient<Row>)
+        return step<OfPieces<Row>, Dual<Float>>;
+    else
+        return step<Row, Dual<Float>>;
+}
 
 template <class V, class... Rows>
 const Step* steps(field::TypeList<Rows...>) {
     static constexpr Step table[] = {step<Rows, V>...};
+    return table;
+}
+
+template <class... Rows>
+const Step* pieceSteps(field::TypeList<Rows...>) {
+    static constexpr Step table[] = {pieceStep<Rows>()...};
     return table;
 }
 
@@ -328,6 +347,7 @@ Kernels kernels() {
     constexpr field::OpTable rows;
     return {steps<Float>(rows),
             steps<Dual<Float>>(rows),
+            pieceSteps(rows),
             steps<Interval<Float>>(rows),
             moveOwners<true>,
             moveOwners<false>,
@@ -336,8 +356,7 @@ Kernels kernels() {
             load,
             store,
             notAbove,
-            below,
-            step<BlendOfPieces, Dual<Float>>};
+            below};
 }
 }  // namespace SGM_ISA
 

@@ -62,15 +62,15 @@ using Below = uint64_t (*)(const float* a, float more, const float* b, float les
 /// The steps of every op for one instruction set, by OpCode.
 struct Kernels {
     const Step* values;
-    const Step* gradients;  ///< Dual: rows value, dx, dy, dz
-    const Step* ranges;     ///< Interval: rows lo, hi; ops that choose also write `bounds`
+    const Step* gradients;       ///< Dual: rows value, dx, dy, dz
+    const Step* pieceGradients;  ///< the same, but of several fields one that counts alone keeps the bits of its own
+    const Step* ranges;          ///< Interval: rows lo, hi; ops that choose also write `bounds`
     ArgMinUpdate argMinUpdate, toGreater;
     OwnersOfTwo ofLesser, ofGreater;
     LoadRow load;
     StoreRow store;
     NotAbove notAbove;
     Below below;
-    Step blendOfPieces;  ///< as of `gradients`, but a field alone keeps the bits of its derivatives
 };
 
 namespace portable {

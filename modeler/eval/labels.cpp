@@ -6,8 +6,8 @@ namespace sgm::eval {
 namespace {
 
 namespace ops = field::ops;
-using field::codeOf;
 using ops::Owner;
+using ops::Pieces;
 
 /// A name made of two, never 0; the order counts.
 constexpr uint32_t join(uint32_t a, uint32_t b) {
@@ -264,9 +264,9 @@ void LabelPass::operator()(const Instruction& in, const StepContext& c) {
     const field::OpTraits& row = field::traits(in.op);
     const Source direct[] = {in.a, in.b};
     const Source* const sources = row.arity == ops::variadic ? c.sources + in.a : direct;
-    if (in.op == codeOf<ops::Box>) {
+    if (row.pieces == Pieces::Faces) {
         nameFaces(in, sources, c);
-    } else if (in.op == codeOf<ops::Abs>) {
+    } else if (row.pieces == Pieces::Sides) {
         nameSides(in, sources, c);
     } else if (isUnnamed(in, sources)) {
         names_[in.out] = {row.selects ? Names{} : ofPiece(in, {}, c.count), {}};
@@ -275,13 +275,13 @@ void LabelPass::operator()(const Instruction& in, const StepContext& c) {
     } else if (row.hasSides) {
         choose(in, sources, c, false);
         names_[in.out].label = ofPiece(in, names_[in.out].label, c.count);
-    } else if (in.op == codeOf<ops::Blend>) {
+    } else if (row.pieces == Pieces::Joined) {
         blend(in, sources, c);
-    } else if (in.op == codeOf<ops::Morph>) {
+    } else if (row.pieces == Pieces::OfNearer) {
         morph(in, sources, c);
     } else {
         const Names origin = firstOrigin(in, sources, c);
-        const Names label = in.op == codeOf<ops::Square> ? Names{} : combined(in, sources, c);
+        const Names label = row.pieces == Pieces::Forgotten ? Names{} : combined(in, sources, c);
         names_[in.out] = {ofPiece(in, label, c.count), origin};
     }
 }

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "modeler/core/provenance.h"
 #include "modeler/core/vec.h"
 #include "modeler/field/field.h"
+#include "modeler/field/relevant_range.h"
 #include "modeler/field/sampled_grid.h"
 
 namespace sgm::eval {
@@ -34,13 +34,7 @@ struct Instruction {
     uint32_t piece = 0;    ///< names the smooth piece of surface that this value makes, 0 where no op chooses from it
 };
 
-/// What the consumers of a value tell apart: any two numbers above `most` are the same to them, and any two below
-/// `least`.
-struct RelevantRange {
-    float least = -std::numeric_limits<float>::infinity();
-    float most = std::numeric_limits<float>::infinity();
-    friend bool operator==(const RelevantRange&, const RelevantRange&) = default;
-};
+using field::RelevantRange;
 
 /// The grids of a graph, by number, and their words as kernels read them.
 struct Grids {

@@ -9,9 +9,7 @@ namespace sgm::eval {
 void UnionParts::build(const Tape& tape, const UseDefChains& chains) {
     parts_.clear();
     classified_ = listed_ = false;
-    const auto isMin = [&](Source s) {
-        return !isConstant(s) && s >= 3 && tape.code()[s - 3].op == field::codeOf<field::ops::Min>;
-    };
+    const auto isMin = [&](Source s) { return !isConstant(s) && s >= 3 && eval::isMinimum(tape.code()[s - 3]); };
     if (!isMin(chains.result())) return;
     pruneBound_ = chains.bounds(chains.result() - 3) + 2;
     minima_.assign(tape.size() + 3, 0);

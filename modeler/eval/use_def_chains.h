@@ -10,10 +10,17 @@
 
 namespace sgm::eval {
 
-/// True where what of an operand matters hangs on the range of another: differences of two values, and morphs.
+/// True where what of an operand matters hangs on the range of another (OpTraits::keptEnds): differences of two values,
+/// and morphs.
 inline bool needsRange(const Instruction& in) {
-    return (in.op == field::codeOf<field::ops::Sub> && !isConstant(in.a) && !isConstant(in.b)) ||
-           in.op == field::codeOf<field::ops::Morph>;
+    const field::OpTraits& row = field::traits(in.op);
+    return row.keptEnds && (row.arity == field::ops::variadic || (!isConstant(in.a) && !isConstant(in.b)));
+}
+
+/// Whether an instruction takes the lesser of two operands as it is.
+inline bool isMinimum(const Instruction& in) {
+    const field::OpTraits& row = field::traits(in.op);
+    return row.selects && row.owner == field::ops::Owner::Least;
 }
 
 /// What a shorter tape may leave out of an instruction's operands.
@@ -34,8 +41,8 @@ public:
     /// Its first row of bounds, if it chooses or `needsRange` (evaluateRanges).
     uint32_t bounds(size_t i) const { return chains_[i].bounds; }
     Pruning pruning(size_t i) const { return chains_[i].pruning; }
-    /// Rows of bounds of all instructions: where they choose one an operand and one for the reach; both ends of a
-    /// difference's second operand; the low ends of a morph's two.
+    /// Rows of bounds of all instructions: where they choose one an operand and one for the reach; else the two
+    /// of OpTraits::keptEnds.
     uint32_t boundRows() const { return boundRows_; }
     /// How many operands a value is.
     uint32_t readers(uint32_t value) const { return readers_[value]; }

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <iterator>
+#include <memory>
 #include <vector>
 
 #include "modeler/eval/evaluate.h"
@@ -84,17 +85,26 @@ struct PathRegisters {
     std::vector<uint32_t> liveInstructions;  ///< descending
 };
 
+/// What a trace holds.
+struct RangeTrace::Impl {
+    UseDefChains chains;   ///< of the tape
+    UnionParts parts;      ///< likewise
+    size_t regions = 0;    ///< that it was asked about
+    AlignedFloats bounds;  ///< rows of maxBoxes floats, see UseDefChains::bounds
+};
+
+/// The memory of traces that are gone.
+struct RangeTrace::Pool {
+    std::vector<std::unique_ptr<Impl>> free;
+};
+
 /// Aligned, so that no two threads write to one line of cache, nor to the next one, which processors fetch with it.
 struct alignas(128) Workspace::Impl : OwnerRegisters, PathRegisters {
     Kernels kernels;
     Tally* tally = nullptr;  ///< where operations are counted, if at all
     AlignedFloats registers, arguments;
-    AlignedFloats points;                             ///< copies of coordinates that aren't padded
-    UseDefChains chains;                              ///< of the last evaluateRanges
-    UnionParts parts;                                 ///< of the same tape
-    size_t regions = 0;                               ///< that it asked about
-    AlignedFloats bounds;                             ///< rows of maxBoxes floats, see UseDefChains::bounds
-    std::array<Step, field::opCount> pieceGradients;  ///< see evaluatePieces
+    AlignedFloats points;  ///< copies of coordinates that aren't padded
+    std::shared_ptr<RangeTrace::Pool> traces = std::make_shared<RangeTrace::Pool>();
     TapeBuilder builder;
     std::vector<TapeBuilder::Use> uses;
 

@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include "modeler/field/relevant_range.h"
 #include "modeler/field/values.h"
 
 namespace sgm::field::ops {
@@ -18,16 +19,22 @@ struct Blend {
     static constexpr int arity = variadic;
     static constexpr Owner owner = Owner::Least;
     static constexpr uint32_t firstPrunable = 1;
+    static constexpr Pieces pieces = Pieces::Joined;
+    /// Two steps of Newton at most points.
+    static constexpr uint32_t cost(uint32_t operands, uint32_t) { return 10 * operands; }
     /// Far more than Newton needs: about ½ log₂ n + 5.
     static constexpr int maxSteps = 40;
 
+    enum Operand : size_t { radius, fields };
+    static constexpr GlslNumber glslNumbers[] = {
+        {"atRadius", radius}, {"atFields", fields}, {"mostSteps", size_t{maxSteps}}};
     static constexpr std::string_view glsl =
-        "float k = arg(first), m = arg(first + 1u);\n"
-        "for (uint i = 2u; i < count; ++i) m = min(arg(first + i), m);\n"
+        "float k = arg(first + atRadius), m = arg(first + atFields);\n"
+        "for (uint i = atFields + 1u; i < count; ++i) m = min(arg(first + i), m);\n"
         "float c = k;\n"
-        "for (int pass = 0; pass < 40; ++pass) {\n"
+        "for (uint pass = 0u; pass < mostSteps; ++pass) {\n"
         "    float total = 0.0, squares = 0.0;\n"
-        "    for (uint i = 1u; i < count; ++i) {\n"
+        "    for (uint i = atFields; i < count; ++i) {\n"
         "        float t = max(0.0, c - (arg(first + i) - m));\n"
         "        total += t;\n"
         "        squares += t * t;\n"
@@ -94,6 +101,14 @@ struct Blend {
         V least = args[1].hi;
         for (size_t i = 2; i < args.size(); ++i) least = min(args[i].hi, least);
         return (least + args[0].hi) + (abs(least) + args[0].hi) * 4e-7f;
+    }
+
+    /// Of a blend f = c − k with the least operand m, where m − k ≤ f ≤ m and an operand counts below m + k alone:
+    /// those above most + 2k don't where f ≤ most, and elsewhere leave f above it. The rest is for rounding.
+    static RelevantRange shownBy(RelevantRange relevant, OperandRange k) {
+        const float twice = 2 * k.lo;
+        if (!k.isNumber || !(twice >= 0)) return {};
+        return {relevant.least, relevant.most + twice + 1e-5f * (std::abs(relevant.most) + twice)};
     }
 
 private:

@@ -49,31 +49,59 @@ struct Facade {
     static constexpr float noBay = 3;
     static constexpr uint32_t pack(const Kifs::Form& form) { return Kifs::pack(form); }
 
+    /// How far behind their places in Kifs the fractal's parameters lie.
+    static constexpr size_t behind = size_t{fractal} - size_t{Kifs::centreOfScale};
+    static constexpr uint32_t foldSteps(uint32_t data) { return Kifs::foldSteps(data); }
+    /// Near the ornament some cells are folded, far from it none.
+    static constexpr uint32_t cost(uint32_t operands, uint32_t data) { return 200 + 2 * Kifs::cost(operands, data); }
+
+    static constexpr GlslNumber glslNumbers[] = {{"atPosition", position},
+                                                 {"atOuter", outer},
+                                                 {"atInner", inner},
+                                                 {"atCentre", fractal},
+                                                 {"atScale", behind + size_t{Kifs::scale}},
+                                                 {"atFold", behind + size_t{Kifs::fold}},
+                                                 {"atTurn", behind + size_t{Kifs::turn}},
+                                                 {"atPeriod", period},
+                                                 {"atShrink", shrink},
+                                                 {"atMirrors", mirrors},
+                                                 {"atStorey", storey},
+                                                 {"atStoreys", storeys},
+                                                 {"atRise", rise},
+                                                 {"atMost", most},
+                                                 {"atDeepest", deepest},
+                                                 {"atSlack", slack},
+                                                 {"atBays", bays},
+                                                 {"mostBays", mostBays},
+                                                 {"passesMask", Kifs::passesMask},
+                                                 {"isCube", Kifs::isCube},
+                                                 {"hasFold", Kifs::hasFold},
+                                                 {"hasTurn", Kifs::hasTurn}};
     /// The operands from the fractal on have to be constants here, as modeler/field/facade.cpp makes them: fetching
     /// them from registers too took a third of a picture's time.
     static constexpr std::string_view glsl = R"(
 #define number(at) uintBitsToFloat(texelFetch(tapeWords, int(at)).x)
-float most = number(first + 37u);
-if (arg(first + 3u) >= most || arg(first + 4u) <= -number(first + 38u)) return most;
-vec3 c = vec3(number(first + 5u), number(first + 6u), number(first + 7u));
-float s = number(first + 8u), h = c.z * (s - 1.0) * 0.5;
+float most = number(first + atMost);
+if (arg(first + atOuter) >= most || arg(first + atInner) <= -number(first + atDeepest)) return most;
+vec3 c = vec3(number(first + atCentre), number(first + atCentre + 1u), number(first + atCentre + 2u));
+float s = number(first + atScale), h = c.z * (s - 1.0) * 0.5;
 mat3 r2 = mat3(1.0), r1 = mat3(1.0);
 for (uint i = 0u; i < 9u; ++i) {
-    if ((data & 2048u) != 0u) r2[i / 3u][i % 3u] = number(first + 9u + i);
-    if ((data & 4096u) != 0u) r1[i / 3u][i % 3u] = number(first + 18u + i);
+    if ((data & hasFold) != 0u) r2[i / 3u][i % 3u] = number(first + atFold + i);
+    if ((data & hasTurn) != 0u) r1[i / 3u][i % 3u] = number(first + atTurn + i);
 }
-vec2 period = vec2(number(first + 27u), number(first + 28u));
-vec2 reach = period * vec2(number(first + 29u), number(first + 30u)) * 0.5;
-vec2 raw = abs(fract(vec2(arg(first), arg(first + 2u)) / period) * 2.0 - 1.0), u = raw;
-for (uint i = 0u; i < 3u; ++i) u = abs(abs(u - number(first + 31u + i)) - number(first + 31u + i));
-float height = number(first + 34u), last = number(first + 35u) - 1.0, rise = number(first + 36u), slack = number(first + 39u);
-float up = arg(first + 1u) / height, level = min(max(floor(up), 0.0), last), v = up - level;
+vec2 period = vec2(number(first + atPeriod), number(first + atPeriod + 1u));
+vec2 reach = period * vec2(number(first + atShrink), number(first + atShrink + 1u)) * 0.5;
+vec2 raw = abs(fract(vec2(arg(first + atPosition), arg(first + atPosition + 2u)) / period) * 2.0 - 1.0), u = raw;
+for (uint i = 0u; i < 3u; ++i) u = abs(abs(u - number(first + atMirrors + i)) - number(first + atMirrors + i));
+float height = number(first + atStorey), last = number(first + atStoreys) - 1.0, rise = number(first + atRise), slack = number(first + atSlack);
+float up = arg(first + atPosition + 1u) / height, level = min(max(floor(up), 0.0), last), v = up - level;
 float below = level > 0.0 ? v : 1e4, above = level < last ? 1.0 - v : 1e4;
 float edge = min(below, above) * height, beyond = below < above ? v + 1.0 : v - 1.0;
 uint bays = 1u;
 uvec2 own = uvec2(0u);
-for (; bays < 14u; ++bays) {
-    float from = number(first + 41u + 3u * bays);
+for (; bays < mostBays; ++bays) {
+    float from = number(first + atBays + 3u * bays);
     if (from >= 2.0) break;
     own = uvec2(raw.x >= from ? bays : own.x, raw.y >= from ? bays : own.y);
 }
@@ -83,17 +111,17 @@ bool here = true, over = false;
 uvec2 bay = own;
 vec2 off = vec2(0.0);
 for (int axis = 0; axis < 2; ++axis) {
-    uint at = first + 41u + 3u * own[axis];
+    uint at = first + atBays + 3u * own[axis];
     off[axis] = max((own[axis] == 0u ? -1e4 : number(at)) - raw[axis], raw[axis] - (own[axis] + 1u == bays ? 1e4 : number(at + 3u))) * reach[axis];
 }
 float border = min(min(-off.x, -off.y), edge) - slack, slab = max(max(off.x, off.y), -edge) - slack;
 for (uint next = 0u;;) {
-    uvec2 at = first + 41u + 3u * bay;
+    uvec2 at = first + atBays + 3u * bay;
     vec2 zoom = vec2(number(at.x + 1u), number(at.y + 1u));
     vec2 across = zoom * u + vec2(number(at.x + 2u), number(at.y + 2u));
     vec3 p = vec3(across.x, rise * (over ? beyond : v), across.y);
     float scales = 1.0;
-    for (uint pass = 0u; pass < (data & 255u); ++pass) {
+    for (uint pass = 0u; pass < (data & passesMask); ++pass) {
         p = abs(r1 * p);
         p.xy = vec2(max(p.x, p.y), min(p.x, p.y));
         p.xz = vec2(max(p.x, p.z), min(p.x, p.z));
@@ -104,7 +132,7 @@ for (uint next = 0u;;) {
         scales *= s;
     }
     vec3 q = abs(p);
-    float d = (data & 256u) != 0u ? max(max(q.x, q.y), q.z) - max(max(c.x, c.y), c.z) : length(p) - 2.0;
+    float d = (data & isCube) != 0u ? max(max(q.x, q.y), q.z) - max(max(c.x, c.y), c.z) : length(p) - 2.0;
     vec2 k = abs(zoom) / reach;
     best = min(best, max(d / (scales * max(max(k.x, k.y), rise / height)), slab));
     if (here && best <= border) return best;  // nothing else is so near
@@ -114,7 +142,7 @@ for (uint next = 0u;;) {
         uint column = next % (2u * bays);
         bay = uvec2(column / 2u, next / (2u * bays));
         over = (next & 1u) == 0u;
-        at = first + 41u + 3u * bay;
+        at = first + atBays + 3u * bay;
         if (column == 0u) off.y = max((bay.y == 0u ? -1e4 : number(at.y)) - raw.y, raw.y - (bay.y + 1u == bays ? 1e4 : number(at.y + 3u))) * reach.y;
         if (off.y - slack >= best) {
             next += 2u * bays - column;

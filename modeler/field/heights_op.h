@@ -18,12 +18,21 @@ struct Heights {
     static constexpr size_t operandCount = 2, varyingOperands = 2;
     static constexpr bool readsGrid = true;
 
-    static_assert(HeightWords::firstHeight == 48);
+    static constexpr uint32_t cost = 180;  // four gathers
+
+    static constexpr GlslNumber glslNumbers[] = {{"atPosition", 0},
+                                                 {"atLow", SampledGrid::low},
+                                                 {"atInverseCell", SampledGrid::inverseCell},
+                                                 {"atCells", SampledGrid::cells},
+                                                 {"atNodesX", SampledGrid::nodesX},
+                                                 {"firstHeight", HeightWords::firstHeight}};
     static constexpr std::string_view glsl =
-        "vec2 cells = vec2(word(data, 7u), word(data, 8u));\n"
-        "vec2 q = clamp((vec2(arg(first), arg(first + 1u)) - vec2(word(data, 0u), word(data, 1u))) * word(data, 4u), "
-        "vec2(0.0), cells), c = min(floor(q), cells - 1.0), t = q - c;\n"
-        "uint row = uint(word(data, 10u)), at = 48u + uint(c.x) + uint(c.y) * row;\n"
+        "vec2 cells = vec2(word(data, atCells), word(data, atCells + 1u));\n"
+        "vec2 low2 = vec2(word(data, atLow), word(data, atLow + 1u));\n"
+        "vec2 p = vec2(arg(first + atPosition), arg(first + atPosition + 1u));\n"
+        "vec2 q = clamp((p - low2) * word(data, atInverseCell), vec2(0.0), cells);\n"
+        "vec2 c = min(floor(q), cells - 1.0), t = q - c;\n"
+        "uint row = uint(word(data, atNodesX)), at = firstHeight + uint(c.x) + uint(c.y) * row;\n"
         "float low = word(data, at), high = word(data, at + row);\n"
         "low += t.x * (word(data, at + 1u) - low);\n"
         "high += t.x * (word(data, at + row + 1u) - high);\n"

@@ -12,46 +12,16 @@
 #include <string_view>
 #include <type_traits>
 
+#include "modeler/field/kifs_form.h"
 #include "modeler/field/kifs_glsl.h"
 #include "modeler/field/values.h"
 
 namespace sgm::field::ops {
 
-struct Kifs {
+struct Kifs : KifsForm {
     static constexpr std::string_view name = "kifs";
     static constexpr int arity = variadic;
     static constexpr size_t varyingOperands = 3;
-
-    /// Places of the operands; vectors take three, rotations nine (by columns). Coordinates are multiplied by the
-    /// stretch before the passes.
-    enum Operand : size_t {
-        position,
-        centreOfScale = 3,
-        scale = 6,
-        fold = 7,
-        turn = 16,
-        bailout = 25,
-        stretch = 26,
-        operandCount = 29
-    };
-
-    /// What of a node is structure.
-    struct Form {
-        uint32_t passes = 6;  ///< 1 … 255
-        bool cube = false;    ///< terminal solid: the cube of the centre's largest component, or the ball of radius 2
-        bool jump = false;    ///< as printed, instead of the continuous fold
-        bool bails = false;   ///< stop where the squared radius exceeds the bailout
-        bool folds = true;    ///< false: R₂ = I and its operands are not read
-        bool turns = true;    ///< the same for R₁
-        constexpr bool continuous() const { return !bails && !(jump && turns); }
-    };
-    static constexpr uint32_t pack(const Form& f) {
-        return f.passes | (f.cube ? 256u : 0u) | (f.jump ? 512u : 0u) | (f.bails ? 1024u : 0u) |
-               (f.folds ? 2048u : 0u) | (f.turns ? 4096u : 0u);
-    }
-    static constexpr Form unpack(uint32_t d) {
-        return {d & 255u, (d & 256u) != 0, (d & 512u) != 0, (d & 1024u) != 0, (d & 2048u) != 0, (d & 4096u) != 0};
-    }
 
     static constexpr std::string_view glsl = kifsGlsl;
 

@@ -17,10 +17,13 @@ struct Noise {
     static constexpr int arity = variadic;
     static constexpr size_t operandCount = 3, varyingOperands = 3;
     static constexpr int maxOctaves = 8;
+    /// Bits of `data`.
+    enum Bits : uint32_t { octavesMask = 7, fbmBit = 8, seedShift = 4 };
+    static constexpr uint32_t cost(uint32_t, uint32_t data) { return 170 * ((data & octavesMask) + 1); }
 
     /// The `data` of a node: octaves 1 … 8, kind, and a seed of which 28 bits are kept.
     static constexpr uint32_t pack(bool fbm, int octaves, uint32_t seed) {
-        return static_cast<uint32_t>(octaves - 1) | (fbm ? 8u : 0u) | (mixed(seed) << 4);
+        return static_cast<uint32_t>(octaves - 1) | (fbm ? uint32_t{fbmBit} : 0) | (mixed(seed) << seedShift);
     }
 
     /// Lipschitz bound per lattice cell. One octave of v: the greatest slope of a trilinear patch with corners ±1 under
@@ -32,11 +35,13 @@ struct Noise {
         return 3.7501f * static_cast<float>(octaves) / weights;
     }
 
+    static constexpr GlslNumber glslNumbers[] = {
+        {"atPosition", 0}, {"octavesMask", octavesMask}, {"fbmBit", fbmBit}, {"seedShift", seedShift}};
     static constexpr std::string_view glsl =
-        "vec3 p = vec3(arg(first), arg(first + 1u), arg(first + 2u));\n"
-        "uint seed = data >> 4;\n"
+        "vec3 p = arg3(first + atPosition);\n"
+        "uint seed = data >> seedShift;\n"
         "float total = 0.0, weights = 0.0, weight = 1.0;\n"
-        "for (uint octave = 0u; octave <= (data & 7u); ++octave) {\n"
+        "for (uint octave = 0u; octave <= (data & octavesMask); ++octave) {\n"
         "    vec3 cell = floor(p), t = p - cell, w = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);\n"
         "    uvec3 at = uvec3(ivec3(cell)) * uvec3(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu);\n"
         "    float corner[8];\n"
@@ -51,7 +56,7 @@ struct Noise {
         "    vec4 y = vec4(corner[0], corner[2], corner[4], corner[6]);\n"
         "    y += w.x * (vec4(corner[1], corner[3], corner[5], corner[7]) - y);\n"
         "    float low = y.x + w.y * (y.y - y.x), high = y.z + w.y * (y.w - y.z), v = low + w.z * (high - low);\n"
-        "    total += weight * ((data & 8u) != 0u ? v : abs(v));\n"
+        "    total += weight * ((data & fbmBit) != 0u ? v : abs(v));\n"
         "    weights += weight;\n"
         "    weight *= 0.5;\n"
         "    p = p * 2.0 + 0.371;\n"
@@ -104,8 +109,8 @@ private:
 
     static constexpr uint32_t primes[] = {0x8da6b343u, 0xd8163841u, 0xcb1ab31fu};
 
-    static constexpr int octavesOf(uint32_t data) { return static_cast<int>(data & 7u) + 1; }
-    static constexpr bool isFbm(uint32_t data) { return (data & 8u) != 0; }
+    static constexpr int octavesOf(uint32_t data) { return static_cast<int>(data & octavesMask) + 1; }
+    static constexpr bool isFbm(uint32_t data) { return (data & fbmBit) != 0; }
 
     /// lowbias32.
     template <class U>

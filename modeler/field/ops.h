@@ -2,10 +2,11 @@
 // Enters: values of any type (modeler/field/values.h). Leaves: OpCode, its name and traits, and dispatch over the
 // rows. Assumes nothing but + − × ÷ √ min max and integers in the bodies: that keeps bits equal on all machines.
 //
-// To add an op: write a row (a struct, below or in a header of its own) and name it in `OpTable`. Nothing else changes:
-// tapes, kernels, intervals, derivatives, GLSL and the conformance tests are made from the row.
+// To add an op: write a row (a struct, in elementary_ops.h or a header of its own) and name it in `OpTable`. Nothing
+// else changes: tapes, kernels, intervals, derivatives, GLSL and the conformance tests are made from the row.
 //   name, arity                          operands: 1, 2, or `variadic`
 //   V apply(a) | apply(a, b) | apply(span<const V> args, uint32_t data)      the op itself, over any V
+//   cost | cost(operands, data)          what it takes at a point, in additions, about; at least 1
 // and, where the default won't do or could be better:
 //   operandCount, varyingOperands        of a variadic row: it always has so many operands, and those from
 //                                        `varyingOperands` on are mostly numbers: kernels are fast then
@@ -27,218 +28,44 @@
 //                                        before `firstPrunable` are never dropped
 //   readsGrid = true                     `data` is the number of a SampledGrid in the graph, and every function above
 //                                        that takes `uint32_t data` takes the grid's words, `const float* grid`
+//   passOn(relevant, operands)           what of its first three operands matters, from what of its result does
+//                                        (relevant_range.h); nothing where all of it. `keptEnds`: two ends of operands'
+//                                        bounds that it asks for
+//   shownBy(relevant, first)             for rows that choose: what of the result matters, as far as operands show it
+//   foldSteps(data)                      how many steps the op folds space in; `foldsEverywhere` where every point does
+//   pieces                               how it names pieces of surface from those of its operands (Pieces)
+//   neutralSecond                        op(a, number) is a, bit for bit, whatever a is
+//   fallsWithLast = true                 it falls where its last operand rises
 //   selects = true                       the result is one of the operands, so that values which the consumer of the
 //                                        result doesn't tell apart needn't be told apart in the operands either
 //   hasSides = true                      the surface has an edge where its two operands are equal, as at their maximum
 //   glsl                                 body of `float op_NAME(uint first, uint count, uint data)`, in which operand
-//                                        i is `arg(first + i)`; needed by variadic rows: a loop can't become one
-//                                        expression. word(data, i) is the i-th word of the grid
+//                                        i is `arg(first + i)`, three from i on `arg3(first + i)`; needed by variadic
+//                                        rows: a loop can't become one expression. word(data, i) is the i-th word of
+//                                        the grid. No place or bit is written there as a number: `glslNumbers` gives
+//                                        the names of the enum's to the shader
 #pragma once
 
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
 
 #include "modeler/field/blend_op.h"
+#include "modeler/field/elementary_ops.h"
 #include "modeler/field/facade_op.h"
 #include "modeler/field/graph.h"
 #include "modeler/field/heights_op.h"
 #include "modeler/field/kifs.h"
 #include "modeler/field/noise.h"
-#include "modeler/field/ops_math.h"
+#include "modeler/field/relevant_range.h"
 #include "modeler/field/sampled_op.h"
 #include "modeler/field/solid_ops.h"
 #include "modeler/field/transcendental_ops.h"
 #include "modeler/field/values.h"
-
-namespace sgm::field::ops {
-
-struct Input {
-    static constexpr std::string_view name = "input";
-    static constexpr int arity = leaf;
-};
-struct Literal {
-    static constexpr std::string_view name = "literal";
-    static constexpr int arity = leaf;
-};
-struct Slot {
-    static constexpr std::string_view name = "slot";
-    static constexpr int arity = leaf;
-};
-/// The operand itself; only tapes have it.
-struct Copy {
-    static constexpr std::string_view name = "copy";
-    static constexpr int arity = 1;
-    template <class V>
-    static V apply(V a) {
-        return a;
-    }
-};
-struct Add {
-    static constexpr std::string_view name = "add";
-    static constexpr int arity = 2;
-    static constexpr bool commutative = true;
-    template <class V>
-    static V apply(V a, V b) {
-        return a + b;
-    }
-};
-struct Sub {
-    static constexpr std::string_view name = "sub";
-    static constexpr int arity = 2;
-    template <class V>
-    static V apply(V a, V b) {
-        return a - b;
-    }
-};
-struct Mul {
-    static constexpr std::string_view name = "mul";
-    static constexpr int arity = 2;
-    static constexpr bool commutative = true;
-    template <class V>
-    static V apply(V a, V b) {
-        return a * b;
-    }
-};
-struct Div {
-    static constexpr std::string_view name = "div";
-    static constexpr int arity = 2;
-    template <class V>
-    static V apply(V a, V b) {
-        return a / b;
-    }
-};
-struct Neg {
-    static constexpr std::string_view name = "neg";
-    static constexpr int arity = 1;
-    template <class V>
-    static V apply(V a) {
-        return -a;
-    }
-};
-struct Abs {
-    static constexpr std::string_view name = "abs";
-    static constexpr int arity = 1;
-    template <class V>
-    static V apply(V a) {
-        return abs(a);
-    }
-};
-/// √ of what is positive, 0 of the rest.
-struct Sqrt {
-    static constexpr std::string_view name = "sqrt";
-    static constexpr int arity = 1;
-    template <class V>
-    static V apply(V a) {
-        return sqrt(max(V(0.0f), a));
-    }
-};
-struct Square {
-    static constexpr std::string_view name = "square";
-    static constexpr int arity = 1;
-    template <class V>
-    static V apply(V a) {
-        return a * a;
-    }
-    template <class I>
-    static I interval(I a) {
-        const I m = abs(a);
-        return I{m.lo * m.lo, m.hi * m.hi};
-    }
-};
-struct Floor {
-    static constexpr std::string_view name = "floor";
-    static constexpr int arity = 1;
-    template <class V>
-    static V apply(V a) {
-        return floor(a);
-    }
-};
-/// Floor-modulo a − b·⌊a/b⌋.
-struct Mod {
-    static constexpr std::string_view name = "mod";
-    static constexpr int arity = 2;
-    template <class V>
-    static V apply(V a, V b) {
-        return a - b * floor(a / b);
-    }
-    /// Within one period the plain extension is tight; across several the result is in [0, b] but for rounding.
-    template <class I>
-    static I interval(I a, I b) {
-        using V = typename I::Value;
-        const I plain = a - b * floor(a / b);
-        const V slack = max(max(abs(a.lo), abs(a.hi)), b.hi) * 5e-7f;
-        const auto known = b.lo > V(0.0f);
-        return I{select(known, max(-slack, plain.lo), plain.lo), select(known, min(b.hi + slack, plain.hi), plain.hi)};
-    }
-};
-
-struct Min {
-    static constexpr std::string_view name = "min";
-    static constexpr int arity = 2;
-    static constexpr bool commutative = true;
-    static constexpr Owner owner = Owner::Least;
-    template <class V>
-    static V apply(V a, V b) {
-        return min(a, b);
-    }
-    static constexpr bool selects = true;
-    template <class I>
-    static auto pruneBound(std::span<const I> args, uint32_t) {
-        return min(args[0].hi, args[1].hi);
-    }
-};
-struct Max {
-    static constexpr std::string_view name = "max";
-    static constexpr int arity = 2;
-    static constexpr bool commutative = true;
-    static constexpr Owner owner = Owner::Greatest;
-    template <class V>
-    static V apply(V a, V b) {
-        return max(a, b);
-    }
-    static constexpr bool selects = true;
-    template <class I>
-    static auto pruneBound(std::span<const I> args, uint32_t) {
-        return max(args[0].lo, args[1].lo);
-    }
-};
-/// Distance to the rim where two perpendicular faces meet, from the distances to both: |max((a, b), 0)| +
-/// min(max(a, b), 0).
-struct Rim {
-    static constexpr std::string_view name = "rim";
-    static constexpr int arity = 2;
-    static constexpr bool hasSides = true;
-    template <class V>
-    static V apply(V a, V b) {
-        const V zero = 0.0f;
-        // On the surface the second operand wins: the derivative is the face's.
-        return Sqrt::apply(Square::apply(max(zero, a)) + Square::apply(max(zero, b))) + min(zero, max(a, b));
-    }
-    /// It grows with both.
-    template <class I>
-    static I interval(I a, I b) {
-        return I{apply(a.lo, b.lo), apply(a.hi, b.hi)};
-    }
-};
-/// a·(1 − t) + b·t over (a, b, t): SG-M eq. 14.
-struct Morph {
-    static constexpr std::string_view name = "morph";
-    static constexpr int arity = variadic;
-    static constexpr size_t operandCount = 3, varyingOperands = 3;
-    static constexpr Owner owner = Owner::Nearer;
-    static constexpr std::string_view glsl =
-        "float t = arg(first + 2u); return arg(first) * (1.0 - t) + arg(first + 1u) * t;";
-    template <class V>
-    static V apply(std::span<const V> args, uint32_t) {
-        return args[0] * (1.0f - args[2]) + args[1] * args[2];
-    }
-};
-
-}  // namespace sgm::field::ops
 
 namespace sgm::field {
 
@@ -282,30 +109,54 @@ constexpr decltype(auto) visitOp(OpCode code, Fn&& fn) {
     return detail::visit(code, fn, OpTable{});
 }
 
-/// What a row says about itself without its body.
+/// What a row says about itself without its body. Functions that a row doesn't have are null.
 struct OpTraits {
     std::string_view name;
-    int arity;
-    bool commutative;
-    bool chooses;  ///< has a reach
-    bool selects;
-    bool readsGrid;
-    bool hasSides;
-    uint32_t firstPrunable;  ///< operands before it are never dropped
-    ops::Owner owner;
-    std::string_view glsl;  ///< empty where the body is made from apply
+    int arity = 0;
+    bool commutative = false;
+    bool chooses = false;  ///< has a reach
+    bool selects = false;
+    bool readsGrid = false;
+    bool hasSides = false;
+    bool fallsWithLast = false;
+    bool foldsEverywhere = false;
+    uint32_t firstPrunable = 0;  ///< operands before it are never dropped
+    ops::Owner owner = ops::Owner::First;
+    ops::Pieces pieces = ops::Pieces::OfOperands;
+    std::optional<float> neutralSecond = std::nullopt;
+    /// Additions that an instruction of so many operands and this structural integer takes at a point, about.
+    uint32_t (*cost)(uint32_t operands, uint32_t data) = nullptr;
+    uint32_t (*foldSteps)(uint32_t data) = nullptr;
+    const KeptEnd* keptEnds = nullptr;  ///< two
+    std::optional<RelevantOperands> (*passOn)(RelevantRange relevant, const OperandRange* operands) = nullptr;
+    RelevantRange (*shownBy)(RelevantRange relevant, OperandRange first) = nullptr;
+    std::string_view glsl = {};  ///< empty where the body is made from apply
+    std::span<const ops::GlslNumber> glslNumbers = {};
 };
 
 template <class Row>
 constexpr OpTraits traitsOf() {
-    OpTraits t{Row::name, Row::arity, false, false, false, false, false, 0, ops::Owner::First, {}};
+    OpTraits t{.name = Row::name, .arity = Row::arity};
     if constexpr (requires { Row::commutative; }) t.commutative = Row::commutative;
     if constexpr (requires { Row::selects; }) t.selects = Row::selects;
     if constexpr (requires { Row::readsGrid; }) t.readsGrid = Row::readsGrid;
     if constexpr (requires { Row::hasSides; }) t.hasSides = Row::hasSides;
+    if constexpr (requires { Row::fallsWithLast; }) t.fallsWithLast = Row::fallsWithLast;
+    if constexpr (requires { Row::foldsEverywhere; }) t.foldsEverywhere = Row::foldsEverywhere;
     if constexpr (requires { Row::firstPrunable; }) t.firstPrunable = Row::firstPrunable;
     if constexpr (requires { Row::owner; }) t.owner = Row::owner;
+    if constexpr (requires { Row::pieces; }) t.pieces = Row::pieces;
+    if constexpr (requires { Row::neutralSecond; }) t.neutralSecond = Row::neutralSecond;
+    if constexpr (requires { Row::cost(1u, 0u); })
+        t.cost = Row::cost;
+    else
+        t.cost = [](uint32_t, uint32_t) { return Row::cost; };
+    if constexpr (requires { Row::foldSteps(0u); }) t.foldSteps = Row::foldSteps;
+    if constexpr (requires { Row::keptEnds; }) t.keptEnds = Row::keptEnds;
+    if constexpr (requires { &Row::passOn; }) t.passOn = Row::passOn;
+    if constexpr (requires { &Row::shownBy; }) t.shownBy = Row::shownBy;
     if constexpr (requires { Row::glsl; }) t.glsl = Row::glsl;
+    if constexpr (requires { Row::glslNumbers; }) t.glslNumbers = Row::glslNumbers;
     t.chooses = t.owner == ops::Owner::Least || t.owner == ops::Owner::Greatest;
     return t;
 }
@@ -324,8 +175,8 @@ inline constexpr size_t opCount = OpTable::size;
 
 /// True where op(a, number) is a, bit for bit, whatever a is.
 constexpr bool keepsFirst(OpCode op, float number) {
-    return (number == 1.0f && (op == codeOf<ops::Mul> || op == codeOf<ops::Div>)) ||
-           (std::bit_cast<uint32_t>(number) == 0 && op == codeOf<ops::Sub>);
+    const std::optional<float>& neutral = traits(op).neutralSecond;
+    return neutral && std::bit_cast<uint32_t>(number) == std::bit_cast<uint32_t>(*neutral);
 }
 
 }  // namespace sgm::field

@@ -19,15 +19,24 @@ struct Sampled {
     static constexpr int arity = variadic;
     static constexpr size_t operandCount = 3, varyingOperands = 3;
     static constexpr bool readsGrid = true;
+    static constexpr uint32_t cost = 320;  // eight gathers
 
+    static constexpr GlslNumber glslNumbers[] = {{"atPosition", 0},
+                                                 {"atLow", SampledGrid::low},
+                                                 {"atCell", SampledGrid::cell},
+                                                 {"atInverseCell", SampledGrid::inverseCell},
+                                                 {"atCells", SampledGrid::cells},
+                                                 {"atNodesX", SampledGrid::nodesX},
+                                                 {"atNodesXY", SampledGrid::nodesXY},
+                                                 {"firstSample", SampledGrid::firstSample}};
     static constexpr std::string_view glsl =
-        "vec3 low = vec3(word(data, 0u), word(data, 1u), word(data, 2u));\n"
-        "vec3 cells = vec3(word(data, 7u), word(data, 8u), word(data, 9u));\n"
-        "vec3 u = (vec3(arg(first), arg(first + 1u), arg(first + 2u)) - low) * word(data, 4u);\n"
-        "vec3 q = clamp(u, vec3(0.0), cells), c = min(floor(q), cells - 1.0), t = q - c, off = (u - q) * word(data, "
-        "3u);\n"
-        "uint sy = uint(word(data, 10u)), sz = uint(word(data, 11u)), at = 12u + uint(c.x) + uint(c.y) * sy + "
-        "uint(c.z) * sz;\n"
+        "vec3 low = vec3(word(data, atLow), word(data, atLow + 1u), word(data, atLow + 2u));\n"
+        "vec3 cells = vec3(word(data, atCells), word(data, atCells + 1u), word(data, atCells + 2u));\n"
+        "vec3 u = (arg3(first + atPosition) - low) * word(data, atInverseCell);\n"
+        "vec3 q = clamp(u, vec3(0.0), cells), c = min(floor(q), cells - 1.0), t = q - c;\n"
+        "vec3 off = (u - q) * word(data, atCell);\n"
+        "uint sy = uint(word(data, atNodesX)), sz = uint(word(data, atNodesXY));\n"
+        "uint at = firstSample + uint(c.x) + uint(c.y) * sy + uint(c.z) * sz;\n"
         "vec4 y = vec4(word(data, at), word(data, at + sy), word(data, at + sz), word(data, at + sy + sz));\n"
         "++at;\n"
         "y += t.x * (vec4(word(data, at), word(data, at + sy), word(data, at + sz), word(data, at + sy + sz)) - y);\n"

@@ -75,14 +75,15 @@ D chained(std::span<const D> args) {
 struct Ball {
     static constexpr std::string_view name = "ball";
     static constexpr int arity = variadic;
+    static constexpr uint32_t cost = 18;
     static constexpr size_t varyingOperands = 3;
     enum Operand : size_t { position, centreAt = 3, scale = 6, radius = 9, operandCount };
 
+    static constexpr GlslNumber glslNumbers[] = {
+        {"atPosition", position}, {"atCentre", centreAt}, {"atScale", scale}, {"atRadius", radius}};
     static constexpr std::string_view glsl =
-        "vec3 p = vec3(arg(first), arg(first + 1u), arg(first + 2u));\n"
-        "vec3 c = vec3(arg(first + 3u), arg(first + 4u), arg(first + 5u));\n"
-        "vec3 s = vec3(arg(first + 6u), arg(first + 7u), arg(first + 8u));\n"
-        "return length((p - c) * s) - arg(first + 9u);";
+        "vec3 p = arg3(first + atPosition), c = arg3(first + atCentre), s = arg3(first + atScale);\n"
+        "return length((p - c) * s) - arg(first + atRadius);";
 
     template <class V>
     static V apply(std::span<const V> args, uint32_t) {
@@ -121,13 +122,14 @@ private:
 struct Box {
     static constexpr std::string_view name = "box";
     static constexpr int arity = variadic;
+    static constexpr uint32_t cost = 20;
+    static constexpr Pieces pieces = Pieces::Faces;
     static constexpr size_t varyingOperands = 3;
     enum Operand : size_t { position, centreAt = 3, half = 6, operandCount = 9 };
 
+    static constexpr GlslNumber glslNumbers[] = {{"atPosition", position}, {"atCentre", centreAt}, {"atHalf", half}};
     static constexpr std::string_view glsl =
-        "vec3 p = vec3(arg(first), arg(first + 1u), arg(first + 2u));\n"
-        "vec3 c = vec3(arg(first + 3u), arg(first + 4u), arg(first + 5u));\n"
-        "vec3 q = abs(p - c) - vec3(arg(first + 6u), arg(first + 7u), arg(first + 8u));\n"
+        "vec3 q = abs(arg3(first + atPosition) - arg3(first + atCentre)) - arg3(first + atHalf);\n"
         "return length(max(q, vec3(0.0))) + min(max(max(q.x, q.y), q.z), 0.0);";
 
     template <class V>

@@ -21,6 +21,7 @@ I ofTurn(I angle, typename I::Value middle) {
 struct Sin {
     static constexpr std::string_view name = "sin";
     static constexpr int arity = 1;
+    static constexpr uint32_t cost = 25;
     template <class V>
     static V apply(V a) {
         return sine(a, 0.0f);
@@ -37,6 +38,7 @@ struct Sin {
 struct Cos {
     static constexpr std::string_view name = "cos";
     static constexpr int arity = 1;
+    static constexpr uint32_t cost = 25;
     template <class V>
     static V apply(V a) {
         return sine(a, 1.0f);
@@ -53,6 +55,7 @@ struct Cos {
 struct Exp {
     static constexpr std::string_view name = "exp";
     static constexpr int arity = 1;
+    static constexpr uint32_t cost = 25;
     template <class V>
     static V apply(V a) {
         return exponential(a);
@@ -72,6 +75,7 @@ struct Exp {
 struct Atan2 {
     static constexpr std::string_view name = "atan2";
     static constexpr int arity = 2;
+    static constexpr uint32_t cost = 40;
     template <class V>
     static V apply(V y, V x) {
         return angleOf(y, x);

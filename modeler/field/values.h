@@ -16,7 +16,9 @@
 
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 namespace sgm::field::ops {
 
@@ -60,6 +62,17 @@ inline constexpr int variadic = -1;  ///< arity of ops over a span of operands
 /// Whose surface it is where an op meets several: the first operand that has an owner, the least, the greatest, or for
 /// a morph the nearer of two.
 enum class Owner { First, Least, Greatest, Nearer };
+
+/// How an op names the piece of surface that its value lies on: by the names of all operands together, as pieces of its
+/// own (the faces of a box, the two sides of a mirror), as one piece with what it joins, by those of the nearer of two,
+/// or not at all.
+enum class Pieces : uint8_t { OfOperands, Faces, Sides, Joined, OfNearer, Forgotten };
+
+/// A number of a row's, as the place of an operand, for its shader text.
+struct GlslNumber {
+    std::string_view name;
+    size_t number;
+};
 
 // For rows that enclose themselves. I is an interval: members `lo` and `hi` of type I::Value, I{lo, hi}, lo ≤ hi. A
 // result with a NaN bound means "anything, NaN included".

@@ -9,12 +9,10 @@
 namespace sgm::mesh {
 
 bool isExpensive(const eval::Tape& tape) {
-    using field::ops::Kifs;
-    constexpr uint32_t manyParts = 8;
+    constexpr uint32_t manySteps = 8;
     return std::any_of(tape.code().begin(), tape.code().end(), [](const eval::Instruction& in) {
-        if (in.op != field::codeOf<Kifs> && in.op != field::codeOf<field::ops::Facade>) return false;
-        const Kifs::Form form = Kifs::unpack(in.data);
-        return form.passes * (1u + form.folds + form.turns) >= manyParts;
+        const field::OpTraits& row = field::traits(in.op);
+        return row.foldSteps && row.foldSteps(in.data) >= manySteps;
     });
 }
 

@@ -14,17 +14,20 @@ constexpr size_t shortEnough = 4;
 constexpr int vainEnough = 8;
 constexpr size_t notLong = 16;
 
-/// Whether all bricks may take the block's tape, where `regions` of the last evaluateRanges are: it folds one fractal,
+/// Whether all bricks may take the block's tape, where `regions` of the trace are: it folds one fractal,
 /// and shortening would spare that to none.
-bool foldsEverywhere(const eval::Tape& tape, uint64_t regions, eval::Workspace& workspace, eval::RelevantRange care) {
+bool foldsEverywhere(const eval::Tape& tape, uint64_t regions, const eval::RangeTrace& trace,
+                     eval::RelevantRange care) {
     if (tape.size() > notLong) return false;
     size_t fractals = 0, last = 0;
     for (size_t i = 0; i < tape.size(); ++i) {
-        if (tape.code()[i].op == field::codeOf<field::ops::Facade>) return false;
-        if (tape.code()[i].op == field::codeOf<field::ops::Kifs>) ++fractals, last = i;
+        const field::OpTraits& row = field::traits(tape.code()[i].op);
+        if (!row.foldSteps) continue;
+        if (!row.foldsEverywhere) return false;
+        ++fractals, last = i;
     }
     const auto n = static_cast<size_t>(std::bit_width(regions));
-    return fractals == 1 && n > 0 && (eval::mayLeaveOut(tape, last, n, workspace, care) & regions) == 0;
+    return fractals == 1 && n > 0 && (eval::mayLeaveOut(tape, last, n, trace, care) & regions) == 0;
 }
 
 /// Rows of bricks that end in the grid, by `sampledBelow`.
@@ -41,13 +44,10 @@ const std::array<SampleRows, 256>& fullBricks() {
 /// Whether the corners that lower bricks have are found sooner by evaluating them again: a seventh of all, but then
 /// nothing is gathered and scattered.
 bool isQuick(const eval::Tape& tape) {
-    namespace ops = field::ops;
     constexpr size_t quick = 10;
-    constexpr uint32_t manyOperands = 16;
+    constexpr uint32_t mostCost = 165;  // of the longest instruction
     const auto slow = [](const eval::Instruction& in) {
-        if (in.op == field::codeOf<ops::Kifs>) return false;  // it isn't expensive
-        return in.count > manyOperands || field::traits(in.op).readsGrid || in.op == field::codeOf<ops::Facade> ||
-               in.op == field::codeOf<ops::Noise>;
+        return field::traits(in.op).cost(in.count, in.data) > mostCost;
     };
     return tape.size() <= quick && std::none_of(tape.code().begin(), tape.code().end(), slow);
 }
@@ -80,7 +80,8 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
                 regions_.of[brick] = static_cast<uint8_t>(n);
                 regions_.boxes[n++] = {cornerAt(low), cornerAt(high)};
             }
-    eval::evaluateRanges(block.tape, {regions_.boxes.data(), n}, regions_.ranges.data(), workspace);
+    trace_.reset();  // its memory is taken again
+    trace_ = eval::evaluateRanges(block.tape, {regions_.boxes.data(), n}, regions_.ranges.data(), workspace);
     counts.intervalEvaluations += n;
     active_ = 0;
     uint64_t regions = 0;
@@ -93,7 +94,7 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
     }
     useCoarseSampling_ = mesh::isExpensive(block.tape);
     expensive_ = useCoarseSampling_ && std::isfinite(relevant_.most);
-    oneTape_ = expensive_ && foldsEverywhere(block.tape, regions, workspace, relevant_);
+    oneTape_ = expensive_ && foldsEverywhere(block.tape, regions, *trace_, relevant_);
     if (!expensive_) {
         wholeBricks_.enter(coordinates_);
         return;
@@ -201,7 +202,7 @@ const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Co
     const bool whole = length <= shortEnough || (length <= notLong && tapes_.inVain >= vainEnough);
     eval::Tape& shortened = tapes_.list[tapes_.list.size() == 1 ? 0 : static_cast<size_t>(brick)];
     if (!whole) {
-        eval::shorten(block_->tape, regions_.of[brick], workspace, shortened, relevant_);
+        eval::shorten(block_->tape, *trace_, regions_.of[brick], workspace, shortened, relevant_);
         tapes_.inVain = shortened.size() < length ? 0 : tapes_.inVain + 1;
     }
     tapes_.whole |= static_cast<uint64_t>(whole) << brick;

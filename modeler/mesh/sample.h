@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <optional>
 #include <vector>
 
 #include "modeler/core/pages.h"
@@ -85,6 +86,7 @@ private:
 
     const Block* block_ = nullptr;
     eval::RelevantRange relevant_;
+    std::optional<eval::RangeTrace> trace_;  ///< of the block's tape over its bricks
     uint64_t active_ = 0;
     bool useCoarseSampling_ = false;  ///< the block's tape is expensive
     bool expensive_ =

@@ -31,13 +31,14 @@ std::vector<Region> split(const eval::Tape& tape, Vec3i index, int part, int par
     if (filter.skips) children.leaveOut(filter.skips({children.indices.data(), children.n}, blocks));
     if (children.n == 0) return {};
     std::array<eval::FloatInterval, splits * splits * splits> ranges;
-    eval::evaluateRanges(tape, {children.boxes.data(), children.n}, ranges.data(), workspace);
+    const eval::RangeTrace trace =
+        eval::evaluateRanges(tape, {children.boxes.data(), children.n}, ranges.data(), workspace);
     counts.intervalEvaluations += children.n;
 
     std::vector<Region> kept;
     for (size_t c = 0; c < children.n; ++c) {
         if (!mayHoldSurface(ranges[c], children.cells[c], grid)) continue;
-        Region child{children.indices[c], eval::shorten(tape, c, workspace, relevantRangeFor(tape, grid))};
+        Region child{children.indices[c], eval::shorten(tape, trace, c, workspace, relevantRangeFor(tape, grid))};
         if (!filter.wants || filter.wants(child.index, blocks, child.tape)) kept.push_back(std::move(child));
     }
     return kept;

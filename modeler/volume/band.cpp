@@ -41,10 +41,10 @@ public:
         std::vector<Box3f> boxes;
         for (const Vec3i& b : blocks) boxes.push_back(voxelBox(b * mesh::blockCells, mesh::blockCells));
         eval::FloatInterval ranges[batchBlocks];
-        eval::evaluateRanges(whole_, {boxes.data(), boxes.size()}, ranges, workspace_);
+        const eval::RangeTrace trace = eval::evaluateRanges(whole_, {boxes.data(), boxes.size()}, ranges, workspace_);
         std::vector<std::pair<Vec3i, eval::Tape>> kept;
         for (size_t i = 0; i < blocks.size() && !cancelled(progress_); ++i)
-            if (meetsBand(ranges[i])) kept.emplace_back(blocks[i], eval::shorten(whole_, i, workspace_));
+            if (meetsBand(ranges[i])) kept.emplace_back(blocks[i], eval::shorten(whole_, trace, i, workspace_));
         std::vector<BandLeaf> leaves;
         for (const auto& [block, tape] : kept) sampleBlock(block * mesh::blockCells, tape, leaves);
         return leaves;
@@ -69,9 +69,10 @@ private:
                     boxes[n] = voxelBox(corners[n], leafVoxels);
                 }
         eval::FloatInterval ranges[leavesInBlock];
-        eval::evaluateRanges(tape, {boxes, n}, ranges, workspace_);
+        const eval::RangeTrace trace = eval::evaluateRanges(tape, {boxes, n}, ranges, workspace_);
         for (size_t i = 0; i < n && !cancelled(progress_); ++i)
-            if (meetsBand(ranges[i])) leaves.push_back(sampleLeaf(corners[i], eval::shorten(tape, i, workspace_)));
+            if (meetsBand(ranges[i]))
+                leaves.push_back(sampleLeaf(corners[i], eval::shorten(tape, trace, i, workspace_)));
     }
 
     BandLeaf sampleLeaf(Vec3i corner, const eval::Tape& tape) {

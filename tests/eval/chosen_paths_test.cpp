@@ -66,7 +66,7 @@ TEST(ChosenPaths, GiveTheBitsOfAllInstructions) {
         const Box3f box = draws.below(2) == 0 ? boxIn(2, draws) : Box3f{{-2, -2, -2}, {2, 2, 2}};
         const Cloud cloud = pointsIn(box, 1 + draws.below(pathPoints), draws);
         for (const size_t planes : {size_t{1}, size_t{4}}) {
-            const Step* const steps = planes == 1 ? w.impl().kernels.values : w.impl().pieceGradients.data();
+            const Step* const steps = planes == 1 ? w.impl().kernels.values : w.impl().kernels.pieceGradients;
             const Seen expected = byAll(tape, cloud, planes, steps, w), got = byPaths(tape, cloud, planes, steps, w);
             for (size_t i = 0; i < cloud.size(); ++i) {
                 for (size_t plane = 0; plane < planes; ++plane)

@@ -1,6 +1,9 @@
 // Every op of the table on every value type: one family of tests, no list of ops.
 #include <limits>
+#include <regex>
+#include <string>
 
+#include "modeler/eval/glsl.h"
 #include "samples.h"
 
 namespace sgm::eval::testing {
@@ -102,6 +105,35 @@ TYPED_TEST(OpConformance, OddNumbersGiveTheSameBitsToo) {
                                                         << cloud.y[i] << " with isa " << int(isa);
             }
         }
+    }
+}
+
+TYPED_TEST(OpConformance, StatesWhatItCosts) {
+    const field::OpTraits& row = field::traits(codeOf<TypeParam>);
+    for (const Example& e : examplesOf<TypeParam>()) {
+        const auto count = static_cast<uint32_t>(e.operands.size());
+        EXPECT_GT(row.cost(count, e.data), 0u);
+        EXPECT_LE(row.cost(count, e.data), row.cost(count + 1, e.data)) << "more operands are never cheaper";
+        if (row.foldSteps) EXPECT_GE(row.cost(count, e.data), row.foldSteps(e.data));
+    }
+}
+
+/// The shader's text has places and bits by the names that the row gives, and these with the row's numbers.
+TYPED_TEST(OpConformance, ShaderHasTheNumbersOfTheRow) {
+    const field::OpTraits& row = field::traits(codeOf<TypeParam>);
+    const std::string text(row.glsl);
+    EXPECT_EQ(row.arity == ops::variadic, !text.empty());
+    const std::regex byHand(R"(first\)|first,|first \+ \d|word\(data, \d|data (&|>>|<<) \d)");
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(text, found, byHand)) << found.str();
+    OpSet one;
+    one.set(static_cast<size_t>(codeOf<TypeParam>));
+    const std::string shader = interpreterGlsl(8, one);
+    for (const auto& [name, number] : row.glslNumbers) {
+        EXPECT_TRUE(std::regex_search(text, std::regex("\\b" + std::string(name) + "\\b"))) << name << " is unused";
+        EXPECT_NE(shader.find("const uint " + std::string(name) + " = " + std::to_string(number) + "u;"),
+                  std::string::npos)
+            << name;
     }
 }
 

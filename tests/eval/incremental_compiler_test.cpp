@@ -113,18 +113,18 @@ TEST(ChangedParts, WhereNoneComesNearTheShortenedTapeStays) {
         ASSERT_TRUE(parts.find(recompiler.tape(), recompiler.changed()));
         std::vector<Box3f> boxes;
         for (int i = 0; i < 64; ++i) {
-            const Vec3f lo{static_cast<float>(i % 4) * 5 - 10, static_cast<float>(i / 4 % 4) * 5 - 10,
-                           static_cast<float>(i / 16) * 5 - 10};
+            const Vec3i place{i % 4, i / 4 % 4, i / 16};
+            const Vec3f lo = place.as<float>() * 5 - Vec3f{10, 10, 10};
             boxes.push_back({lo, lo + Vec3f{5, 5, 5}});
         }
         const uint64_t unreached = parts.reach(boxes, care, asked).unreached;
         std::array<FloatInterval, 64> ranges;
-        evaluateRanges(then, {boxes.data(), 64}, ranges.data(), before);
-        evaluateRanges(recompiler.tape(), {boxes.data(), 64}, ranges.data(), now);
+        const RangeTrace traceThen = evaluateRanges(then, {boxes.data(), 64}, ranges.data(), before);
+        const RangeTrace traceNow = evaluateRanges(recompiler.tape(), {boxes.data(), 64}, ranges.data(), now);
         for (size_t i = 0; i < 64; ++i) {
             if (ranges[i].lo >= 0) continue;  // the descent doesn't go there
-            const bool same =
-                fingerprint(shorten(then, i, before, care)) == fingerprint(shorten(recompiler.tape(), i, now, care));
+            const bool same = fingerprint(shorten(then, traceThen, i, before, care)) ==
+                              fingerprint(shorten(recompiler.tape(), traceNow, i, now, care));
             const bool away = (unreached >> i & 1) != 0;
             EXPECT_TRUE(same || !away) << "round " << round << ", box " << i;
             ++(away ? far : near);
@@ -165,14 +165,15 @@ TEST(ChangedParts, AroundABoxTheTapeHoldsWhateverNumbersCome) {
             boxes.push_back({lo, lo + Vec3f{2, 2, 2}});
         }
         std::array<FloatInterval, 64> ranges, inPart;
-        evaluateRanges(tape, {boxes.data(), 64}, ranges.data(), whole);
-        evaluateRanges(around, {boxes.data(), 64}, inPart.data(), part);
+        const RangeTrace ofWhole = evaluateRanges(tape, {boxes.data(), 64}, ranges.data(), whole);
+        const RangeTrace ofPart = evaluateRanges(around, {boxes.data(), 64}, inPart.data(), part);
         for (size_t i = 0; i < 64; ++i) {
             const bool may = ranges[i].lo < 0 && ranges[i].hi >= 0;
             ASSERT_EQ(may, inPart[i].lo < 0 && inPart[i].hi >= 0);
             if (!may) continue;
             ++surface;
-            EXPECT_EQ(fingerprint(shorten(tape, i, whole, care)), fingerprint(shorten(around, i, part, care)))
+            EXPECT_EQ(fingerprint(shorten(tape, ofWhole, i, whole, care)),
+                      fingerprint(shorten(around, ofPart, i, part, care)))
                 << "round " << round << ", box " << i;
         }
     }

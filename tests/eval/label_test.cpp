@@ -48,8 +48,8 @@ void descend(const Graph& graph, NodeRef root, const Tape& full, const Tape& tap
     FloatInterval ranges[8];
     for (size_t at = 0; at < 2; ++at) {
         Workspace w;
-        evaluateRanges(tape, {boxes, 8}, ranges, w);
-        const Tape shorter = shorten(tape, at, w);
+        const RangeTrace trace = evaluateRanges(tape, {boxes, 8}, ranges, w);
+        const Tape shorter = shorten(tape, trace, at, w);
         dropped += tape.size() - shorter.size();
         const Cloud cloud = pointsIn(boxes[at], 40, draws);
         const Pieces expected = piecesOf(full, cloud), got = piecesOf(shorter, cloud);

@@ -1,3 +1,4 @@
+#include "modeler/eval/fingerprint.h"
 #include "modeler/eval/left_out.h"
 #include "samples.h"
 
@@ -29,9 +30,9 @@ void descend(const Tape& full, const Tape& tape, const Box3f& box, int depth, Dr
     for (int pick = 0; pick < 3; ++pick) {
         const size_t at = draws.below(n);
         Workspace inner;
-        evaluateRanges(tape, {boxes, n}, ranges, inner);
+        const RangeTrace trace = evaluateRanges(tape, {boxes, n}, ranges, inner);
         Tape shorter = full;  // whose memory is taken
-        shorten(tape, at, inner, shorter);
+        shorten(tape, trace, at, inner, shorter);
         EXPECT_LE(shorter.size(), tape.size());
         dropped += tape.size() - shorter.size();
         const Cloud cloud = pointsIn(boxes[at], 40, draws);
@@ -83,12 +84,32 @@ TEST(Shorten, AUnionNearOneOfItsSpheresIsThatSphere) {
     Workspace w;
     const Box3f box{{99.9f, -0.1f, -0.1f}, {100.1f, 0.1f, 0.1f}};
     FloatInterval range;
-    evaluateRanges(tape, {&box, 1}, &range, w);
-    const Tape one = shorten(tape, 0, w);
+    const RangeTrace trace = evaluateRanges(tape, {&box, 1}, &range, w);
+    const Tape one = shorten(tape, trace, 0, w);
     const NodeRef hundredth = spheres(graph, 100, 1);
     const Tape alone = compile(graph, {hundredth, {}, 1, 1}, graph.constants());
     EXPECT_EQ(one.size(), alone.size());
     EXPECT_LE(one.registerCount(), alone.registerCount() + 1);
+}
+
+TEST(Shorten, TracesOfOneWorkspaceStandBesideEachOther) {
+    Graph graph;
+    const Tape many = compile(graph, {spheres(graph, 0, 64), {}, 1, 1}, graph.constants());
+    const Tape few = compile(graph, {spheres(graph, 8, 16), {}, 1, 1}, graph.constants());
+    const auto around = [](float x) { return Box3f{{x - 0.1f, -0.1f, -0.1f}, {x + 0.1f, 0.1f, 0.1f}}; };
+    const Box3f boxes[] = {around(10), around(20), around(40)};
+    FloatInterval ranges[3];
+    Workspace shared, alone;
+    const RangeTrace first = evaluateRanges(many, {boxes, 3}, ranges, shared);
+    const RangeTrace second = evaluateRanges(few, {boxes, 2}, ranges, shared);
+    for (size_t i = 0; i < 3; ++i) {
+        const RangeTrace own = evaluateRanges(many, {boxes, 3}, ranges, alone);
+        EXPECT_EQ(fingerprint(shorten(many, first, i, shared)), fingerprint(shorten(many, own, i, alone)));
+        if (i == 2) break;
+        const RangeTrace other = evaluateRanges(few, {boxes, 2}, ranges, alone);
+        EXPECT_EQ(fingerprint(shorten(few, second, i, shared)), fingerprint(shorten(few, other, i, alone)));
+    }
+    EXPECT_LT(shorten(many, first, 2, shared).size(), 20u);
 }
 
 TEST(Shorten, APartIsDroppedForANearerOneElsewhereInTheTree) {
@@ -104,8 +125,8 @@ TEST(Shorten, APartIsDroppedForANearerOneElsewhereInTheTree) {
     Workspace w;
     const Box3f box{{-0.3f, -0.3f, -0.3f}, {0.3f, 0.3f, 0.3f}};
     FloatInterval range;
-    evaluateRanges(tape, {&box, 1}, &range, w);
-    const Tape one = shorten(tape, 0, w);
+    const RangeTrace trace = evaluateRanges(tape, {&box, 1}, &range, w);
+    const Tape one = shorten(tape, trace, 0, w);
     size_t balls = 0;
     for (const Instruction& in : one.code()) balls += in.op == codeOf<ops::Sqrt>;
     EXPECT_EQ(balls, 2u);  // those at 0 and 0.6, whose ranges meet
@@ -116,8 +137,8 @@ void expectSides(const Tape& tape, const Box3f& box, RelevantRange care) {
     Workspace w;
     Draws draws{5};
     FloatInterval range;
-    evaluateRanges(tape, {&box, 1}, &range, w);
-    const Tape exact = shorten(tape, 0, w), near = shorten(tape, 0, w, care);
+    const RangeTrace trace = evaluateRanges(tape, {&box, 1}, &range, w);
+    const Tape exact = shorten(tape, trace, 0, w), near = shorten(tape, trace, 0, w, care);
     const auto operands = [](const Tape& t) {
         size_t n = 0;
         for (const Instruction& in : t.code()) n += in.count;
@@ -165,11 +186,11 @@ TEST(Shorten, WhatItMayLeaveOutIsKnownBefore) {
         }
         Workspace w;
         FloatInterval ranges[64];
-        evaluateRanges(tape, {boxes, 64}, ranges, w);
+        const RangeTrace trace = evaluateRanges(tape, {boxes, 64}, ranges, w);
         const RelevantRange care{-0.4f, 0.4f};
-        const uint64_t out = mayLeaveOut(tape, root, 64, w, care);
+        const uint64_t out = mayLeaveOut(tape, root, 64, trace, care);
         for (size_t i = 0; i < 64; ++i) {
-            const bool left = roots(shorten(tape, i, w, care)) == 0, may = (out >> i & 1) != 0;
+            const bool left = roots(shorten(tape, trace, i, w, care)) == 0, may = (out >> i & 1) != 0;
             if (form < 2)
                 EXPECT_EQ(left, may) << "form " << form << ", box " << i;
             else
@@ -224,8 +245,8 @@ TEST(Shorten, NothingIsCopiedWhenOperandsHaveOwners) {
     Workspace w;
     const Box3f box{{-0.1f, 0, 0}, {0.1f, 0, 0}};
     FloatInterval range;
-    evaluateRanges(tape, {&box, 1}, &range, w);
-    const Tape one = shorten(tape, 0, w);
+    const RangeTrace trace = evaluateRanges(tape, {&box, 1}, &range, w);
+    const Tape one = shorten(tape, trace, 0, w);
     for (const Instruction& in : one.code()) EXPECT_NE(in.op, codeOf<ops::Copy>);
     Cloud cloud;
     cloud.add(0, 0, 0);

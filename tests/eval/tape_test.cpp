@@ -44,8 +44,8 @@ TEST(Tape, HoldsBlendsOfMoreOperandsThanSixteenBits) {
     EXPECT_EQ(owners[1], 70'000u);
     const Box3f box{{69'000.5f, 0, 0}, {69'001, 1, 1}};
     FloatInterval range;
-    evaluateRanges(all, {&box, 1}, &range, w);
-    const Tape shorter = shorten(all, 0, w);
+    const RangeTrace trace = evaluateRanges(all, {&box, 1}, &range, w);
+    const Tape shorter = shorten(all, trace, 0, w);
     EXPECT_LT(shorter.size(), 20u);
     EXPECT_EQ(values(shorter, cloud)[0], got[0]);
 }
@@ -121,9 +121,9 @@ TEST(Tape, ConstantAndCoordinateFieldsNeedNoCode) {
     evaluateRanges(y, {&box, 1}, &range, w);
     EXPECT_EQ(range.lo, 1.0f);
     EXPECT_EQ(range.hi, 4.0f);
-    evaluateRanges(four, {&box, 1}, &range, w);
+    const RangeTrace trace = evaluateRanges(four, {&box, 1}, &range, w);
     EXPECT_EQ(range.hi, 4.0f);
-    EXPECT_EQ(shorten(four, 0, w).size(), 0u);
+    EXPECT_EQ(shorten(four, trace, 0, w).size(), 0u);
 }
 
 TEST(Tape, BalancedUnionsNeedFewRegisters) {
@@ -154,8 +154,8 @@ TEST(Tape, DeepChainsAndManyNodesDoNotOverflow) {
     Workspace w;
     const Box3f box{{0, 0, 0}, {1, 1, 1}};
     FloatInterval range;
-    evaluateRanges(tape, {&box, 1}, &range, w);
-    EXPECT_LT(shorten(tape, 0, w).size(), tape.size());
+    const RangeTrace trace = evaluateRanges(tape, {&box, 1}, &range, w);
+    EXPECT_LT(shorten(tape, trace, 0, w).size(), tape.size());
 }
 
 TEST(Tape, BitsDoNotDependOnThePlaceInABatch) {

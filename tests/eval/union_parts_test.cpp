@@ -52,8 +52,8 @@ TEST(UnionParts, ThatAreAllLeftTakeFewRegisters) {
     Workspace w;
     const Box3f box{{-1, -600, -1}, {1000, 600, 1}};  // so wide that no ball is above another all over
     FloatInterval range;
-    evaluateRanges(tape, {&box, 1}, &range, w);
-    const Tape same = shorten(tape, 0, w);
+    const RangeTrace trace = evaluateRanges(tape, {&box, 1}, &range, w);
+    const Tape same = shorten(tape, trace, 0, w);
     EXPECT_EQ(same.size(), tape.size());
     EXPECT_LE(same.registerCount(), tape.registerCount());
     Draws draws{9};
@@ -74,8 +74,8 @@ TEST(UnionParts, OwnersAreHeardFromTheResultDown) {
     const Box3f boxes[] = {{{-1, -9, -1}, {9, 9, 1}}, {{0.9f, 0, 0}, {1.1f, 0, 0}}, {{2.9f, 0, 0}, {3.1f, 0, 0}}};
     FloatInterval ranges[3];
     for (size_t region = 0; region < 3; ++region) {
-        evaluateRanges(tape, {boxes, 3}, ranges, w);
-        const Tape some = shorten(tape, region, w);
+        const RangeTrace trace = evaluateRanges(tape, {boxes, 3}, ranges, w);
+        const Tape some = shorten(tape, trace, region, w);
         Draws draws{11};
         const Cloud cloud = pointsIn(boxes[region], 200, draws);
         const std::vector<OriginId> owners = ownersOf(some, cloud);
@@ -94,8 +94,8 @@ TEST(UnionParts, AMinimumWithAnotherReaderIsAPart) {
     Workspace w;
     const Box3f box{{-1, -1, -1}, {2, 1, 1}};
     FloatInterval range;
-    evaluateRanges(tape, {&box, 1}, &range, w);
-    EXPECT_EQ(shorten(tape, 0, w).size(), tape.size());
+    const RangeTrace trace = evaluateRanges(tape, {&box, 1}, &range, w);
+    EXPECT_EQ(shorten(tape, trace, 0, w).size(), tape.size());
 }
 
 }  // namespace

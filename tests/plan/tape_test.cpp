@@ -80,8 +80,8 @@ TEST(Tape, BricksOfRoundWallsKeepFewEdges) {
     const Vec3f at{10 * std::cos(.7f), 0, 10 * std::sin(.7f)};
     const Box3f brick{at - Vec3f{half, half, half}, at + Vec3f{half, half, half}};
     eval::FloatInterval range;
-    eval::evaluateRanges(tape, {&brick, 1}, &range, w);
-    EXPECT_LT(eval::shorten(tape, 0, w).code().size(), 300u);
+    const eval::RangeTrace trace = eval::evaluateRanges(tape, {&brick, 1}, &range, w);
+    EXPECT_LT(eval::shorten(tape, trace, 0, w).code().size(), 300u);
 }
 
 /// Outlines as nobody should draw them: points on one another, hairs, crossings, courts that touch.

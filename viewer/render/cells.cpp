@@ -40,12 +40,12 @@ Children childrenOf(const Pending& cell, float edge, float margin, eval::Workspa
         children.lows[size_t(i)] = low;
         boxes[size_t(i)] = Box3f{low, low + Vec3f{edge, edge, edge}}.inflated(edge / 32);
     }
-    evaluateRanges(cell.tape, {boxes.data(), boxes.size()}, ranges.data(), workspace);
+    const eval::RangeTrace trace = evaluateRanges(cell.tape, {boxes.data(), boxes.size()}, ranges.data(), workspace);
     for (size_t i = 0; i < 64; ++i) {
         children.states[i] = ranges[i].lo > margin    ? CellState::Outside
                              : ranges[i].hi < -margin ? CellState::Inside
                                                       : CellState::Near;
-        if (children.states[i] == CellState::Near) children.tapes.push_back(shorten(cell.tape, i, workspace));
+        if (children.states[i] == CellState::Near) children.tapes.push_back(shorten(cell.tape, trace, i, workspace));
     }
     return children;
 }
@@ -70,7 +70,7 @@ uint8_t doubtsOf(const eval::Tape& tape) {
         }
         greatest |= row.owner == Owner::Greatest && count > 1;
         least |= row.owner == Owner::Least && count > 1;
-        turned |= last && (in.op == field::codeOf<field::ops::Neg> || in.op == field::codeOf<field::ops::Sub>);
+        turned |= last && row.fallsWithLast;
         owned[in.out] = count > 0;
     }
     return static_cast<uint8_t>((greatest || (least && turned) ? DoubtfulOutside : 0) |

@@ -45,9 +45,9 @@ Samples sample(const eval::Tape& tape, const Box3f& bounds) {
     }
     eval::Workspace workspace;
     std::vector<eval::FloatInterval> ranges(boxes.size());
-    evaluateRanges(tape, {boxes.data(), boxes.size()}, ranges.data(), workspace);
+    const eval::RangeTrace trace = evaluateRanges(tape, {boxes.data(), boxes.size()}, ranges.data(), workspace);
     std::vector<eval::Tape> tapes;
-    for (size_t part = 0; part < boxes.size(); ++part) tapes.push_back(shorten(tape, part, workspace));
+    for (size_t part = 0; part < boxes.size(); ++part) tapes.push_back(shorten(tape, trace, part, workspace));
     for (size_t part = 0; part < boxes.size(); ++part) {
         std::vector<Vec3f> points;
         for (const size_t i : members[part])
