@@ -14,7 +14,6 @@ using derive::none;
 using derive::Shape;
 using derive::ShapeId;
 using derive::SolidValue;
-using field::PlacedSolid;
 using field::SolidNode;
 using field::SolidTree;
 using rules::Operator;
@@ -32,8 +31,7 @@ struct Pending {
 /// solid is noted and counts only where it is part of the whole in the end.
 class Collector {
 public:
-    Collector(const derive::Derivation& d, const Model& model)
-        : d_(d), tree_(d.tree), origins_(d.tree.shapes.size(), 0) {
+    Collector(const derive::Derivation& d, const Model& model) : tree_(d.tree), origins_(d.tree.shapes.size(), 0) {
         for (OriginId o = static_cast<OriginId>(model.shapeOf.size()); o-- > 1;) origins_[model.shapeOf[o]] = o;
         all_.bounds = model.field.bounds.as<double>();
     }
@@ -57,7 +55,6 @@ private:
     Pending inexact(Pending part, ShapeId id, std::string what);
     Result<SolidTree> compacted(uint32_t root) const;
 
-    const derive::Derivation& d_;
     const derive::ShapeTree& tree_;
     std::vector<OriginId> origins_;             ///< by shape
     SolidTree all_;                             ///< with nodes that nothing uses in the end

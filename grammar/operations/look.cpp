@@ -14,7 +14,6 @@ namespace sgm::operations {
 namespace {
 
 using derive::AttributeContext;
-using derive::EvaluatedAttributes;
 using rules::Attribute;
 using rules::Value;
 using syntax::ArgumentType;

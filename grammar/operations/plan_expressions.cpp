@@ -46,7 +46,7 @@ Expr checkPoint(OperationChecker& checker, const Written& e, bool* shares) {
     const auto every = [&](auto holds) { return holds(like.units[0]) && holds(like.units[1]); };
     const bool lengths = every([](Unit u) { return u == Unit::None || u == Unit::Metre; });
     const bool parts = every([](Unit u) { return u == Unit::Share; });
-    if (!two || (point.type.known && !lengths && !(parts && shares)))
+    if (!two || (point.type.known && !lengths && !(parts && shares != nullptr)))
         checker.error(e.span, fmt::format("a point of a plan is (x, z), not {}", describe(point.type)),
                       "write '(4m, 2m)'");
     if (shares) *shares = point.type.known && parts;

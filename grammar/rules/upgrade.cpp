@@ -12,7 +12,6 @@
 namespace sgm::rules {
 namespace {
 
-using syntax::ArgumentType;
 using syntax::Attribute;
 using syntax::Body;
 using syntax::Element;

@@ -33,7 +33,7 @@ Field swept(const PrimitiveInput& in, std::span<const Vec2> profile) {
     const PlanOf plan(in);
     const Quantity foot{-in.half.y, -in.halfValue.y};
     auto field = moulding(*plan, profile, foot, combine(in.path, hashText("moulding")));
-    return field.ok() ? std::move(*field) : nothing(in.p.x.graph());
+    return field.ok() ? *field : nothing(in.p.x.graph());
 }
 
 /// Points of a curve from s = 0 to 1, in (share of what stands out, share of the height).

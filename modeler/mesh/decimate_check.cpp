@@ -77,10 +77,10 @@ bool DecimationJob::chainStays(uint32_t u, float tolerance) const {
 
 void DecimationJob::gatherPoints() {
     points_.clear();
-    for (uint16_t side = 0; side < star_.sideCount; ++side)
+    for (size_t side = 0; side < star_.sideCount; ++side)
         for (size_t i = star_.sides[side].from; i < star_.sides[side].to; ++i)
             for (uint32_t p = patch_.triangles.firstPoint[star_.halves[i] / 3]; p != none; p = patch_.vertices[p].next)
-                points_.push_back({p, side, 0});
+                points_.push_back({p, static_cast<uint16_t>(side), 0});
 }
 
 /// Whether one side's fan about the target is within the tolerance of the original surface.

@@ -28,7 +28,8 @@ std::vector<float> distancesFrom(uint32_t start, size_t nodes, const Links& link
     distance[start] = 0;
     open.push({0.0f, start});
     while (!open.empty()) {
-        const auto [d, node] = open.top();
+        const float d = open.top().first;
+        const uint32_t node = open.top().second;
         open.pop();
         if (d > distance[node]) continue;
         links(node, [&](uint32_t other, float metres) {

@@ -106,7 +106,7 @@ public:
     }
 
 private:
-    static constexpr uint32_t wispData = Noise::pack(true, 4, 1), billowData = Noise::pack(false, 3, 2);
+    static inline const uint32_t wispData = Noise::pack(true, 4, 1), billowData = Noise::pack(false, 3, 2);
     static float noise(Vec3f p, uint32_t data) {
         const std::array<float, 3> at{p.x, p.y, p.z};
         return Noise::apply<float>(at, data);

@@ -80,8 +80,8 @@ std::vector<size_t> drawn(const std::vector<tiles::Cell>& cells, double share) {
             .push_back(i);
     std::vector<size_t> out;
     for (const auto& [key, square] : squares)
-        if (out.empty() ||
-            static_cast<double>(out.size() + square.size() / 2) < share * static_cast<double>(cells.size()))
+        if (const size_t half = square.size() / 2;
+            out.empty() || static_cast<double>(out.size() + half) < share * static_cast<double>(cells.size()))
             out.insert(out.end(), square.begin(), square.end());
     std::sort(out.begin(), out.end());
     return out;

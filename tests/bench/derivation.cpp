@@ -152,11 +152,12 @@ std::string outlinesText() {
             "{}{{\"type\": \"Feature\", \"properties\": {{\"height\": {}}}, \"geometry\": {{\"type\": \"Polygon\", "
             "\"coordinates\": [[",
             i ? ",\n" : "", 6 + i % 7);
+        const auto row = i / 100;
         for (size_t k = 0; k <= edges; ++k) {
             const double angle = fullTurn * static_cast<double>(k % edges) / edges,
                          radius = 7 + double((i + k * k) % 5) / 3;
             text += fmt::format("{}[{:.2f}, {:.2f}]", k ? ", " : "", double(i % 100) * 25 + radius * std::cos(angle),
-                                double(i / 100) * 25 + radius * std::sin(angle));
+                                25 * double(row) + radius * std::sin(angle));
         }
         text += "]]}}";
     }

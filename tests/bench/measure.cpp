@@ -19,7 +19,8 @@ constexpr double mostVtkCorners = 3e8;
 mesh::Grid cubeOf(mesh::Grid grid) {
     const int n = maxComponent(grid.cells);
     for (int axis = 0; axis < 3; ++axis) {
-        grid.origin[axis] -= grid.cell_m * static_cast<float>((n - grid.cells[axis]) / 2);
+        const int before = (n - grid.cells[axis]) / 2;
+        grid.origin[axis] -= grid.cell_m * static_cast<float>(before);
         grid.cells[axis] = n;
     }
     return grid;

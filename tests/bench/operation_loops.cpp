@@ -31,7 +31,7 @@ inline void opaque(Float& f) {
     asm volatile("" : "+m"(f.v.data));
 #endif
 }
-inline void opaque(float& f) { asm volatile("" : "+m"(f)); }
+[[maybe_unused]] inline void opaque(float& f) { asm volatile("" : "+m"(f)); }
 template <class V>
 inline void opaque(eval::Pair<V>& p) {
     opaque(p.a), opaque(p.b);

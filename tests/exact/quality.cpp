@@ -94,7 +94,7 @@ bool isFlatAndThick(const TriangleTree& exact, const ExactModel& model, Vec3d p,
     const auto [at, triangle] = exact.nearest(p);
     if (model.round[triangle]) return false;
     const double off_m = 1e-3 * cell_m;
-    const auto own = [&](const Plane& plane) { return plane.distance(at.point) < 0.1 * off_m; };
+    const auto own = [off_m, &at = at](const Plane& plane) { return plane.distance(at.point) < 0.1 * off_m; };
     const Vec3d off = at.normal * off_m;
     return std::min(exact.hit(at.point - off, -at.normal, own), exact.hit(at.point + off, at.normal, own)) >=
            2 * cell_m;

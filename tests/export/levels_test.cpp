@@ -48,7 +48,7 @@ TEST_F(Levels, GltfHasANodeALevelAndSaysWhichStandsForWhich) {
     EXPECT_EQ(nodes[0]["name"], "rock");
     EXPECT_EQ(nodes[0]["extras"], Json({{"seed", "1"}}));
     EXPECT_FALSE(nodes[0].contains("mesh"));
-    EXPECT_EQ(file.json["scenes"][0]["nodes"], Json({0}));
+    EXPECT_EQ(file.json["scenes"][0]["nodes"], Json::array({0}));
     std::vector<std::string> names;
     for (const Json& child : nodes[0]["children"]) names.push_back(nodes[child.get<size_t>()]["name"]);
     EXPECT_EQ(names, (std::vector<std::string>{"rock_LOD0", "rock_LOD1", "rock_LOD2", "rock_00-convcolonly"}));
