@@ -199,8 +199,9 @@ private:
         Scope scope = plateOf(first);
         Vec2 right{1, 0}, outward{0, 1}, middle = middleOf(first);
         if (!face.closed) {
-            const Vec2 chord = last.to - first.from;
-            outward = Vec2{chord.z, -chord.x} * (1 / length(chord));
+            PlacedEdge chord = first;
+            chord.to = last.to;
+            outward = chord.normal();
             right = {outward.z, -outward.x};
         }
         plan::Footprint own = joined(face);

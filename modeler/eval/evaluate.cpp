@@ -32,7 +32,7 @@ void count(const Tape& tape, size_t n, EvaluationKind asked, Tally* tally) {
 void keepRange(const Tape& tape, const Instruction& in, const StepContext& c) {
     const field::OpTraits& row = field::traits(in.op);
     for (uint32_t end = 0; end < 2; ++end) {
-        float* const to = c.bounds + end * maxBoxes;
+        float* const to = c.bounds + end * c.stride;
         const auto [operand, high] = row.keptEnds[end];
         const Source source = row.arity == field::ops::variadic ? tape.sources()[in.a + operand]
                               : operand == 0                    ? in.a
@@ -185,8 +185,8 @@ RangeTrace evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out
     Workspace::Impl& w = workspace.impl();
     count(tape, regions.n, EvaluationKind::Range, w.tally);
     StepContext c;
-    w.setUp(c, tape, 2, maxBoxes);
     c.count = roundedUp(regions.n);
+    w.setUp(c, tape, 2, c.count);
     for (uint32_t axis = 0; axis < 3; ++axis) {
         float *lo = rowOf(c, axis, 2, 0), *hi = rowOf(c, axis, 2, 1);
         for (size_t i = 0; i < regions.n; ++i) {
@@ -200,12 +200,12 @@ RangeTrace evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out
     RangeTrace::Impl& t = trace.impl();
     t.chains.build(tape);
     t.parts.build(tape, t.chains);
-    t.regions = regions.n;
-    float* const bounds = t.bounds.get(t.chains.boundRows() * maxBoxes);
+    t.regions = regions.n, t.stride = c.stride;
+    float* const bounds = t.row(0);
     constexpr float infinity = std::numeric_limits<float>::infinity();
     for (size_t i = 0; i < tape.size(); ++i) {
         const Instruction& in = tape.code()[i];
-        c.bounds = bounds + size_t{t.chains.bounds(i)} * maxBoxes;
+        c.bounds = bounds + t.chains.bounds(i) * c.stride;
         if (needsRange(in)) keepRange(tape, in, c);
         w.kernels.ranges[static_cast<size_t>(in.op)](in, c);
         if (free.empty() || free.front() != i) continue;

@@ -110,10 +110,10 @@ void keepBounds(std::span<const Interval<Float>> args, uint32_t data, size_t i, 
     auto mask = known(args[0]);
     for (size_t k = 0; k < args.size(); ++k) {
         mask = mask & known(args[k]);
-        (Row::owner == field::ops::Owner::Least ? args[k].lo : args[k].hi).store(c.bounds + k * maxBoxes + i);
+        (Row::owner == field::ops::Owner::Least ? args[k].lo : args[k].hi).store(c.bounds + k * c.stride + i);
     }
     const Float pruneBound = select(mask, Row::pruneBound(args, data), Float(std::numeric_limits<float>::quiet_NaN()));
-    pruneBound.store(c.bounds + args.size() * maxBoxes + i);
+    pruneBound.store(c.bounds + args.size() * c.stride + i);
 }
 
 /// Any operands, gathered vector by vector.
@@ -293,10 +293,9 @@ inline uint64_t bitsOf(Float::Mask mask) {
 #endif
 }
 
-uint64_t notAbove(const float* row, const float* most) {
+uint64_t notAbove(const float* row, const float* most, size_t n) {
     uint64_t bits = 0;
-    for (size_t i = 0; i < maxBoxes; i += Float::size)
-        bits |= bitsOf(!(Float::load(row + i) > Float::load(most + i))) << i;
+    for (size_t i = 0; i < n; i += Float::size) bits |= bitsOf(!(Float::load(row + i) > Float::load(most + i))) << i;
     return bits;
 }
 

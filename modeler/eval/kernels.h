@@ -16,7 +16,7 @@ namespace sgm::eval {
 inline constexpr size_t vectorFloats = 16;
 /// The most points at a time: no fewer than the 9³ corners of a brick.
 inline constexpr size_t maxBlock = 768;
-/// Boxes at once: floats of a row of bounds.
+/// Boxes at once.
 inline constexpr size_t maxBoxes = 64;
 /// Bytes of argument scratch a variadic op needs for each operand: a Dual of the longest vector.
 inline constexpr size_t argumentBytes = 4 * vectorFloats * sizeof(float);
@@ -53,8 +53,8 @@ using LoadRow = void (*)(const float* from, size_t n, size_t count, float* row);
 /// Copies n floats of an aligned row.
 using StoreRow = void (*)(const float* row, size_t n, float* to);
 
-/// Bit i is set where row[i] isn't above most[i], of maxBoxes floats (aligned).
-using NotAbove = uint64_t (*)(const float* row, const float* most);
+/// Bit i is set where row[i] isn't above most[i], of n ≤ 64 floats (a multiple of vectorFloats, both rows aligned).
+using NotAbove = uint64_t (*)(const float* row, const float* most, size_t n);
 
 /// Bit i is set where a[i] + more < b[i] + less, of n ≤ 64 floats (a multiple of vectorFloats, both rows aligned).
 using Below = uint64_t (*)(const float* a, float more, const float* b, float less, size_t n);

@@ -44,17 +44,24 @@ bool beyond(const field::OpTraits& row, float bound, RelevantRange relevant) {
     return row.owner == Owner::Least ? bound > relevant.most : bound < relevant.least;
 }
 
+/// One region's numbers in rows of bounds, by row.
+struct BoundRows {
+    const float* first;
+    size_t stride;
+    float operator[](size_t row) const { return first[row * stride]; }
+};
+
 /// What an instruction's operands pass on of what its result's consumers tell apart; nothing where all of it matters.
 /// `range`: the rows of UseDefChains::bounds.
 std::optional<field::RelevantOperands> passedOn(const Tape& tape, const Instruction& in, const field::OpTraits& row,
-                                                const Source* values, const float* range, RelevantRange relevant) {
+                                                const Source* values, BoundRows range, RelevantRange relevant) {
     if (!row.passOn || relevant == RelevantRange{}) return {};
     std::array<field::OperandRange, 3> known;
     for (uint32_t k = 0; k < in.count; ++k) known[k] = numberOf(tape, values[k]);
     if (needsRange(in))
         for (uint32_t r = 0; r < 2; ++r) {
             field::OperandRange& of = known[row.keptEnds[r].operand];
-            (row.keptEnds[r].high ? of.hi : of.lo) = range[r * maxBoxes];
+            (row.keptEnds[r].high ? of.hi : of.lo) = range[r];
         }
     return row.passOn(relevant, known.data());
 }
@@ -66,13 +73,13 @@ const OriginId* ownersOf(const Tape& tape, const Instruction& in) {
 
 /// The operands that are left of an instruction that chooses, with what of them matters.
 void operandsLeft(const field::OpTraits& row, const Instruction& in, const Source* values, const OriginId* origins,
-                  const float* bounds, RelevantRange outer, float tieMargin, std::vector<TapeBuilder::Use>& uses) {
+                  BoundRows bounds, RelevantRange outer, float tieMargin, std::vector<TapeBuilder::Use>& uses) {
     const auto use = [&](uint32_t k, RelevantRange c) { uses.push_back({values[k], origins ? origins[k] : 0, c}); };
     uses.clear();
-    const RelevantRange inner = relevantRangeOfOperands(row.owner, bounds[in.count * maxBoxes], outer, tieMargin);
+    const RelevantRange inner = relevantRangeOfOperands(row.owner, bounds[in.count], outer, tieMargin);
     for (uint32_t k = 0; k < row.firstPrunable; ++k) use(k, {});
     for (uint32_t k = row.firstPrunable; k < in.count; ++k)
-        if (!beyond(row, bounds[k * maxBoxes], inner)) use(k, inner);
+        if (!beyond(row, bounds[k], inner)) use(k, inner);
     // All beyond what the consumer tells apart: any of them will do.
     if (uses.size() == row.firstPrunable) use(row.firstPrunable, inner);
 }
@@ -81,19 +88,17 @@ void operandsLeft(const field::OpTraits& row, const Instruction& in, const Sourc
 std::optional<RelevantRange> enterUnion(RangeTrace::Impl& t, NotAbove notAbove, size_t region, RelevantRange relevant,
                                         float tieMargin) {
     if (t.parts.empty()) return {};
-    const float* const bounds = t.bounds.get(t.chains.boundRows() * maxBoxes);
-    if (!t.parts.isClassified(relevant)) t.parts.classify(bounds, t.regions, relevant, tieMargin, notAbove);
+    if (!t.parts.isClassified(relevant)) t.parts.classify(t.row(0), t.stride, t.regions, relevant, tieMargin, notAbove);
     if (!t.parts.enter(region)) return {};
-    return relevantRangeOfOperands(Owner::Least, bounds[t.parts.pruneBound() * maxBoxes + region], relevant, tieMargin);
+    return relevantRangeOfOperands(Owner::Least, t.row(t.parts.pruneBound())[region], relevant, tieMargin);
 }
 
 /// Of a selection of two, the operands that can matter here; where neither is told apart, any will do.
 void selectsLeft(const Tape& tape, const Instruction& in, const Source* operands, const OriginId* origins,
-                 const float* ends, uint32_t value, TapeBuilder& b) {
+                 BoundRows ends, uint32_t value, TapeBuilder& b) {
     const field::OpTraits& row = field::traits(in.op);
-    const RelevantRange inner =
-        relevantRangeOfOperands(row.owner, ends[2 * maxBoxes], b.relevant(value), tape.tieMargin());
-    const bool first = !beyond(row, ends[0], inner), second = !beyond(row, ends[maxBoxes], inner);
+    const RelevantRange inner = relevantRangeOfOperands(row.owner, ends[2], b.relevant(value), tape.tieMargin());
+    const bool first = !beyond(row, ends[0], inner), second = !beyond(row, ends[1], inner);
     const auto use = [&](uint32_t k) -> TapeBuilder::Use { return {operands[k], origins ? origins[k] : 0, inner}; };
     if (first && second) {
         const TapeBuilder::Use both[] = {use(0), use(1)};
@@ -110,7 +115,9 @@ void shorten(const Tape& tape, const RangeTrace& trace, size_t index, Workspace&
     Workspace::Impl& w = workspace.impl();
     RangeTrace::Impl& t = trace.impl();
     assert(t.chains.follows(tape) && index < t.regions && &into != &tape);
-    const float* const bounds = t.bounds.get(t.chains.boundRows() * maxBoxes) + index;
+    const auto boundsOf = [&, first = t.row(0) + index, stride = t.stride](size_t i) {
+        return BoundRows{first + t.chains.bounds(i) * stride, stride};
+    };
     TapeBuilder& b = w.builder;
     b.begin(tape.size() + 3);
     for (uint32_t axis = 0; axis < 3; ++axis) b.bindInput(axis, axis);
@@ -138,10 +145,10 @@ void shorten(const Tape& tape, const RangeTrace& trace, size_t index, Workspace&
                 b.defineLeaf(value, in, operands, origins);
                 break;
             case Pruning::Selects:
-                selectsLeft(tape, in, operands, origins, bounds + size_t{t.chains.bounds(i)} * maxBoxes, value, b);
+                selectsLeft(tape, in, operands, origins, boundsOf(i), value, b);
                 break;
             case Pruning::Chooses:
-                operandsLeft(row, in, operands, origins, bounds + size_t{t.chains.bounds(i)} * maxBoxes,
+                operandsLeft(row, in, operands, origins, boundsOf(i),
                              relevantRangeOfResult(tape, row, operands, b.relevant(value)), tape.tieMargin(), w.uses);
                 if (w.uses.size() == row.firstPrunable + 1u)
                     b.alias(value, w.uses.back());
@@ -149,8 +156,7 @@ void shorten(const Tape& tape, const RangeTrace& trace, size_t index, Workspace&
                     b.define(value, in, w.uses.data(), w.uses.size(), origins != nullptr);
                 break;
             case Pruning::NeedsAll: {
-                const auto passed = passedOn(tape, in, row, operands, bounds + size_t{t.chains.bounds(i)} * maxBoxes,
-                                             b.relevant(value));
+                const auto passed = passedOn(tape, in, row, operands, boundsOf(i), b.relevant(value));
                 if (!passed) {
                     b.define(value, in, operands, origins);
                     break;
@@ -188,12 +194,12 @@ uint64_t mayLeaveOut(const Tape& tape, size_t instruction, size_t n, const Range
     const Source* const values = t.chains.operands(last);
     if (need(values[0]) == need(values[1])) return need(values[0]) ? 0 : all;
     const bool isFirst = need(values[0]);
-    const float* const ends = t.bounds.get(t.chains.boundRows() * maxBoxes) + size_t{t.chains.bounds(last)} * maxBoxes;
+    const float* const ends = t.row(t.chains.bounds(last));
     uint64_t out = 0;
     for (size_t i = 0; i < n; ++i) {
         const RelevantRange inner =
-            relevantRangeOfOperands(row.owner, ends[2 * maxBoxes + i], relevant, tape.tieMargin());
-        const bool first = !beyond(row, ends[i], inner), second = !beyond(row, ends[maxBoxes + i], inner);
+            relevantRangeOfOperands(row.owner, ends[2 * t.stride + i], relevant, tape.tieMargin());
+        const bool first = !beyond(row, ends[i], inner), second = !beyond(row, ends[t.stride + i], inner);
         const bool left = isFirst ? first || !second : second;  // where neither is told apart, the first one is
         out |= uint64_t{!left} << i;
     }

@@ -34,18 +34,19 @@ void UnionParts::build(const Tape& tape, const UseDefChains& chains) {
     if (operands_.size() < tape.size() + 3) operands_.resize(tape.size() + 3);
 }
 
-void UnionParts::classify(const float* bounds, size_t n, RelevantRange relevant, float tieMargin, NotAbove notAbove) {
+void UnionParts::classify(const float* bounds, size_t stride, size_t n, RelevantRange relevant, float tieMargin,
+                          NotAbove notAbove) {
     alignas(vectorFloats * sizeof(float)) std::array<float, maxBoxes> most{};
     std::array<uint32_t, maxBoxes> count{};
     uint64_t asked = 0;
     for (size_t r = 0; r < n; ++r) {
-        const float pruneBound = bounds[pruneBound_ * maxBoxes + r];
+        const float pruneBound = bounds[pruneBound_ * stride + r];
         most[r] = std::min(relevant.most, pruneBound + tieMargin);
         asked |= uint64_t{!std::isnan(pruneBound)} << r;
     }
     regions_.clear();
     for (const Part& part : parts_) {
-        const uint64_t regions = notAbove(bounds + part.bound * maxBoxes, most.data()) & asked;
+        const uint64_t regions = notAbove(bounds + part.bound * stride, most.data(), stride) & asked;
         for (uint64_t rest = regions; rest != 0; rest &= rest - 1) ++count[static_cast<size_t>(std::countr_zero(rest))];
         regions_.push_back(regions);
     }

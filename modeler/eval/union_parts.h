@@ -39,9 +39,10 @@ public:
     uint32_t pruneBound() const { return pruneBound_; }
 
     /// Tells for each of the first n regions which parts aren't above all that counts there, by `bounds`, rows of
-    /// maxBoxes floats, and what is told apart of the result.
+    /// `stride` floats, and what is told apart of the result.
     /// A part that may tie with the least, see Tape::tieMargin, isn't above it.
-    void classify(const float* bounds, size_t n, RelevantRange relevant, float tieMargin, NotAbove notAbove);
+    void classify(const float* bounds, size_t stride, size_t n, RelevantRange relevant, float tieMargin,
+                  NotAbove notAbove);
     /// True once `classify` was called for this care and the last tape.
     bool isClassified(RelevantRange relevant) const { return classified_ && relevant == relevant_; }
     /// Goes to a region, by what `classify` said. False where nothing is left, for then any part will do, and where an

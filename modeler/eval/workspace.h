@@ -90,7 +90,10 @@ struct RangeTrace::Impl {
     UseDefChains chains;   ///< of the tape
     UnionParts parts;      ///< likewise
     size_t regions = 0;    ///< that it was asked about
-    AlignedFloats bounds;  ///< rows of maxBoxes floats, see UseDefChains::bounds
+    size_t stride = 0;     ///< floats of a row of bounds: the regions, rounded up
+    AlignedFloats bounds;  ///< see UseDefChains::bounds
+
+    float* row(uint32_t number) { return bounds.get(chains.boundRows() * stride) + size_t{number} * stride; }
 };
 
 /// The memory of traces that are gone.

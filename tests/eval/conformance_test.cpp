@@ -114,7 +114,9 @@ TYPED_TEST(OpConformance, StatesWhatItCosts) {
         const auto count = static_cast<uint32_t>(e.operands.size());
         EXPECT_GT(row.cost(count, e.data), 0u);
         EXPECT_LE(row.cost(count, e.data), row.cost(count + 1, e.data)) << "more operands are never cheaper";
-        if (row.foldSteps) EXPECT_GE(row.cost(count, e.data), row.foldSteps(e.data));
+        if constexpr (requires { TypeParam::foldSteps(0u); }) {
+            EXPECT_GE(row.cost(count, e.data), TypeParam::foldSteps(e.data));
+        }
     }
 }
 
@@ -125,7 +127,8 @@ TYPED_TEST(OpConformance, ShaderHasTheNumbersOfTheRow) {
     EXPECT_EQ(row.arity == ops::variadic, !text.empty());
     const std::regex byHand(R"(first\)|first,|first \+ \d|word\(data, \d|data (&|>>|<<) \d)");
     std::smatch found;
-    EXPECT_FALSE(std::regex_search(text, found, byHand)) << found.str();
+    const std::string code = std::regex_replace(text, std::regex("//[^\n]*"), "");
+    EXPECT_FALSE(std::regex_search(code, found, byHand)) << found.str();
     OpSet one;
     one.set(static_cast<size_t>(codeOf<TypeParam>));
     const std::string shader = interpreterGlsl(8, one);

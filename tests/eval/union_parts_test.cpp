@@ -16,7 +16,7 @@ TEST(NotAbove, IsTheSameOnEveryLevel) {
         expected |= uint64_t{!(row[i] > most[i])} << i;
     }
     for (const Isa isa : {Isa::Portable, Isa::Avx2, Isa::Avx512})
-        EXPECT_EQ(Workspace(isa).impl().kernels.notAbove(row, most), expected);
+        EXPECT_EQ(Workspace(isa).impl().kernels.notAbove(row, most, maxBoxes), expected);
 }
 
 field::Operand ball(Graph& graph, float x, OriginId owner) {
