@@ -94,8 +94,9 @@ TEST(Shorten, AUnionNearOneOfItsSpheresIsThatSphere) {
 
 TEST(Shorten, TracesOfOneWorkspaceStandBesideEachOther) {
     Graph graph;
-    const Tape many = compile(graph, {spheres(graph, 0, 64), {}, 1, 1}, graph.constants());
-    const Tape few = compile(graph, {spheres(graph, 8, 16), {}, 1, 1}, graph.constants());
+    const NodeRef roots[] = {spheres(graph, 0, 64), spheres(graph, 8, 16)};
+    const Tape many = compile(graph, {roots[0], {}, 1, 1}, graph.constants());
+    const Tape few = compile(graph, {roots[1], {}, 1, 1}, graph.constants());
     const auto around = [](float x) { return Box3f{{x - 0.1f, -0.1f, -0.1f}, {x + 0.1f, 0.1f, 0.1f}}; };
     const Box3f boxes[] = {around(10), around(20), around(40)};
     FloatInterval ranges[3];
