@@ -109,8 +109,20 @@ constexpr decltype(auto) visitOp(OpCode code, Fn&& fn) {
     return detail::visit(code, fn, OpTable{});
 }
 
-/// What a row says about itself without its body. Functions that a row doesn't have are null.
-struct OpTraits {
+/// What a row says to those who shorten tapes. Functions that a row doesn't have are null.
+struct PruningTraits {
+    uint32_t firstPrunable = 0;         ///< operands before it are never dropped
+    const KeptEnd* keptEnds = nullptr;  ///< two
+    std::optional<RelevantOperands> (*passOn)(RelevantRange relevant, const OperandRange* operands) = nullptr;
+    RelevantRange (*shownBy)(RelevantRange relevant, OperandRange first) = nullptr;
+};
+/// What a row says to those who write shaders.
+struct ShaderTraits {
+    std::string_view glsl = {};  ///< empty where the body is made from apply
+    std::span<const ops::GlslNumber> glslNumbers = {};
+};
+/// What a row says about itself without its body.
+struct OpTraits : PruningTraits, ShaderTraits {
     std::string_view name;
     int arity = 0;
     bool commutative = false;
@@ -120,23 +132,18 @@ struct OpTraits {
     bool hasSides = false;
     bool fallsWithLast = false;
     bool foldsEverywhere = false;
-    uint32_t firstPrunable = 0;  ///< operands before it are never dropped
     ops::Owner owner = ops::Owner::First;
     ops::Pieces pieces = ops::Pieces::OfOperands;
     std::optional<float> neutralSecond = std::nullopt;
     /// Additions that an instruction of so many operands and this structural integer takes at a point, about.
     uint32_t (*cost)(uint32_t operands, uint32_t data) = nullptr;
     uint32_t (*foldSteps)(uint32_t data) = nullptr;
-    const KeptEnd* keptEnds = nullptr;  ///< two
-    std::optional<RelevantOperands> (*passOn)(RelevantRange relevant, const OperandRange* operands) = nullptr;
-    RelevantRange (*shownBy)(RelevantRange relevant, OperandRange first) = nullptr;
-    std::string_view glsl = {};  ///< empty where the body is made from apply
-    std::span<const ops::GlslNumber> glslNumbers = {};
 };
 
 template <class Row>
 constexpr OpTraits traitsOf() {
-    OpTraits t{.name = Row::name, .arity = Row::arity};
+    OpTraits t;
+    t.name = Row::name, t.arity = Row::arity;
     if constexpr (requires { Row::commutative; }) t.commutative = Row::commutative;
     if constexpr (requires { Row::selects; }) t.selects = Row::selects;
     if constexpr (requires { Row::readsGrid; }) t.readsGrid = Row::readsGrid;

@@ -57,7 +57,7 @@ bool isQuick(const eval::Tape& tape) {
 void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& workspace, Counts& counts) {
     block_ = &block;
     tapes_.inVain = 0, tapes_.whole = 0;
-    relevant_ = relevantRangeFor(block.tape, grid);
+    shortening_.relevant = relevantRangeFor(block.tape, grid);
     const Vec3i first = block.index * blockCells;
     last_ = grid.cells - first;
     for (int i = 0; i < blockCorners; ++i) {
@@ -80,8 +80,8 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
                 regions_.of[brick] = static_cast<uint8_t>(n);
                 regions_.boxes[n++] = {cornerAt(low), cornerAt(high)};
             }
-    trace_.reset();  // its memory is taken again
-    trace_ = eval::evaluateRanges(block.tape, {regions_.boxes.data(), n}, regions_.ranges.data(), workspace);
+    shortening_.trace.reset();  // its memory is taken again
+    shortening_.trace = eval::evaluateRanges(block.tape, {regions_.boxes.data(), n}, regions_.ranges.data(), workspace);
     counts.intervalEvaluations += n;
     active_ = 0;
     uint64_t regions = 0;
@@ -93,8 +93,8 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
         active_ |= 1ull << brick;
     }
     useCoarseSampling_ = mesh::isExpensive(block.tape);
-    expensive_ = useCoarseSampling_ && std::isfinite(relevant_.most);
-    oneTape_ = expensive_ && foldsEverywhere(block.tape, regions, *trace_, relevant_);
+    expensive_ = useCoarseSampling_ && std::isfinite(shortening_.relevant.most);
+    oneTape_ = expensive_ && foldsEverywhere(block.tape, regions, *shortening_.trace, shortening_.relevant);
     if (!expensive_) {
         wholeBricks_.enter(coordinates_);
         return;
@@ -202,7 +202,7 @@ const eval::Tape& BlockSamples::sample(int brick, eval::Workspace& workspace, Co
     const bool whole = length <= shortEnough || (length <= notLong && tapes_.inVain >= vainEnough);
     eval::Tape& shortened = tapes_.list[tapes_.list.size() == 1 ? 0 : static_cast<size_t>(brick)];
     if (!whole) {
-        eval::shorten(block_->tape, *trace_, regions_.of[brick], workspace, shortened, relevant_);
+        eval::shorten(block_->tape, *shortening_.trace, regions_.of[brick], workspace, shortened, shortening_.relevant);
         tapes_.inVain = shortened.size() < length ? 0 : tapes_.inVain + 1;
     }
     tapes_.whole |= static_cast<uint64_t>(whole) << brick;

@@ -85,8 +85,12 @@ private:
     static constexpr int maxBatch = brickCorners * brickCorners * brickCorners + rowPadding;
 
     const Block* block_ = nullptr;
-    eval::RelevantRange relevant_;
-    std::optional<eval::RangeTrace> trace_;  ///< of the block's tape over its bricks
+    /// How the block's tape becomes those of its bricks.
+    struct Shortening {
+        eval::RelevantRange relevant;
+        std::optional<eval::RangeTrace> trace;  ///< over the bricks
+    };
+    Shortening shortening_;
     uint64_t active_ = 0;
     bool useCoarseSampling_ = false;  ///< the block's tape is expensive
     bool expensive_ =
