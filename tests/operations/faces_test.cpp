@@ -103,7 +103,9 @@ TEST(Faces, SmoothSidesAllAroundAreARing) {
               2);
     const double area_m2 = 12 * 100 * std::sin(2 * std::numbers::pi / 24);
     EXPECT_NEAR(volumes.at("wall") + volumes.at("core"), area_m2 * 4, .2);
-    EXPECT_NEAR(volumes.at("wall"), 24 * 2 * 10 * std::sin(std::numbers::pi / 24) * .5 * 4, 4);
+    const double inner_m = 10 * std::cos(std::numbers::pi / 24) - .5;  // from the middle to a side of the core
+    const double core_m2 = 24 * inner_m * inner_m * std::tan(std::numbers::pi / 24);
+    EXPECT_NEAR(volumes.at("wall"), (area_m2 - core_m2) * 4, .2);
 }
 
 TEST(Faces, CornersAndOtherPartsEndASmoothFace) {
