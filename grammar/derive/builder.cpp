@@ -209,6 +209,7 @@ std::vector<uint32_t> sweepShapes(Derivation& derivation) {
         t.shapes[newId[s]] = shape;
     }
     t.shapes.resize(kept);
+    for (LettersRead& read : derivation.letters) read.valuesAt = renamed(read.valuesAt);
     return newId;
 }
 
@@ -227,6 +228,16 @@ void numberOccurrences(ShapeTree& t) {
 }
 
 }  // namespace
+
+void TreeBuilder::noteLetters(const LettersRead& read) {
+    std::vector<LettersRead>& all = derivation_.letters;
+    const auto known =
+        std::find_if(all.begin(), all.end(), [&](const LettersRead& r) { return r.lsystem == read.lsystem; });
+    if (known == all.end())
+        all.push_back(read);
+    else if (known->key == read.key)
+        *known = read;
+}
 
 void TreeBuilder::finish() {
     bonds_.settle();

@@ -50,6 +50,8 @@ public:
     bool isReplaying() const { return recorder_.isReplaying(); }
     /// Adds a remark to the derivation, once a place; a second run of a recording adds none.
     void warn(syntax::SourceSpan span, std::string message, std::string hint);
+    /// The first of an L-system counts, and what is read again at its place.
+    void noteLetters(const LettersRead& read);
     Derivation& derivation() { return derivation_; }
     ShapeTree& tree() { return derivation_.tree; }
     std::span<const uint64_t> counts() const { return counts_; }

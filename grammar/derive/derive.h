@@ -43,6 +43,17 @@ struct Warning {
     std::string message, hint;
 };
 
+/// Where an L-system was first read: what decides its letters besides the grammar and its parameters.
+struct LettersRead {
+    uint32_t lsystem = 0;     ///< index into Grammar::lsystems
+    uint64_t key = 0;         ///< the stream that draws
+    Scope scope;              ///< of the shape that asked
+    ShapeId valuesAt = none;  ///< nearest shape with `with` values
+    bool isInSpace = false;   ///< read by `turtle`, not for a footprint
+    bool rises = false;       ///< `turtle … upward`
+    double width_m = 0;       ///< of the turtle's first step
+};
+
 /// What shapes reported under one word.
 struct Reported {
     uint64_t count = 0;
@@ -69,13 +80,14 @@ struct Derivation : DerivationInput, DerivationCounts {
     std::shared_ptr<const rules::Grammar> grammar;
     ShapeTree tree;
     PageVector<Step> steps;
-    std::vector<Closed> closed;       ///< one an element, in the order they first met a closed joint
-    std::vector<Warning> warnings;    ///< in the order they were met, the first few hundred
-    std::vector<Material> materials;  ///< the grammar's, then those given by attributes
-    town::TownPlan plan;              ///< what `network` and `lots` laid out
-    PlacedObjects objects;            ///< what `place` puts; Extras::object says where
-    std::vector<Relief> reliefs;      ///< heights that lift shapes; Extras::relief says which
-    bool usedChance = false;          ///< another seed could have made another tree
+    std::vector<Closed> closed;        ///< one an element, in the order they first met a closed joint
+    std::vector<Warning> warnings;     ///< in the order they were met, the first few hundred
+    std::vector<Material> materials;   ///< the grammar's, then those given by attributes
+    town::TownPlan plan;               ///< what `network` and `lots` laid out
+    PlacedObjects objects;             ///< what `place` puts; Extras::object says where
+    std::vector<Relief> reliefs;       ///< heights that lift shapes; Extras::relief says which
+    std::vector<LettersRead> letters;  ///< one an L-system that was read
+    bool usedChance = false;           ///< another seed could have made another tree
 
     /// Pairs of shapes with a solid whose boxes overlap by more than 0.1 mm without being bonded or related (one above
     /// the other in the tree); counting ends at a million. O(n log n) plus the pairs that share an interval of an axis.

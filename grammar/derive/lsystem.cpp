@@ -68,12 +68,12 @@ public:
         }
     }
 
-    Result<Letters> run() {
+    Result<Letters> run(double mostPasses) {
         const uint64_t seed = combine(place_.key, hashText(lsystem_.name));
         begin(next_);
         for (size_t i = 0; i < lsystem_.axiom.size(); ++i) put(lsystem_.axiom[i], combine(seed, i), {});
         end();
-        const double passes = std::floor(number(lsystem_.passes, place_));
+        const double passes = std::min(std::floor(number(lsystem_.passes, place_)), mostPasses);
         for (double pass = 0; pass < passes; ++pass) {
             const auto changed = rewrite(pass);
             if (!changed.ok()) return changed.error();
@@ -175,6 +175,8 @@ private:
 
 }  // namespace
 
-Result<Letters> rewritten(const rules::Lsystem& lsystem, const Place& place) { return Rewriting(lsystem, place).run(); }
+Result<Letters> rewritten(const rules::Lsystem& lsystem, const Place& place, double mostPasses) {
+    return Rewriting(lsystem, place).run(mostPasses);
+}
 
 }  // namespace sgm::derive

@@ -4,6 +4,7 @@
 // building letters are those of "Building Generation with 3D L-System" (docs/papers.md, paper L).
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,9 +26,10 @@ struct Letters {
 /// The string after all passes. A production applies where its letter, the letters beside it, how many numbers it has
 /// and its condition agree; among several one is drawn by weight. Letters beside one are looked for past the turtle's
 /// commands and past branches. Each letter draws by the productions above it, so that a change of one production leaves
-/// the draws of the others. Error::Budget when it has more than `mostLetters`.
+/// the draws of the others. Passes beyond `mostPasses` aren't made. Error::Budget when it has more than `mostLetters`.
 inline constexpr size_t mostLetters = 4'000'000;
-Result<Letters> rewritten(const rules::Lsystem& lsystem, const Place& place);
+Result<Letters> rewritten(const rules::Lsystem& lsystem, const Place& place,
+                          double mostPasses = std::numeric_limits<double>::infinity());
 
 /// The outline that the turtle walks, from (0, 0) along +x: F and G step and draw an edge, f and g step without drawing
 /// and begin another outline, + and - turn left and right by the angle, | turns round, [ and ] keep and recall where it
@@ -42,6 +44,7 @@ Result<plan::Footprint> drawWalls(const rules::Lsystem& lsystem, const Place& pl
 /// A letter as the turtle in space met it.
 struct TurtleStep {
     char letter = 'F';
+    uint32_t at = 0;  ///< its index among the letters
     uint64_t key = 0;
     Vec3d from, to;           ///< the same where the letter draws no step
     Vec3d heading, left, up;  ///< unit, square to each other
@@ -49,7 +52,8 @@ struct TurtleStep {
 };
 /// All letters but commands, in order, from the origin: along +x with y up, or upward (`rises`). Beside the letters of
 /// outlines & and ^ pitch down and up, \\ and / roll, $ rolls level, ! sets the width (without a number by 10 % less),
-/// % cuts off what is left of a branch. Error::Budget as `rewritten`.
-Result<std::vector<TurtleStep>> walk(const rules::Lsystem& lsystem, const Place& place, bool rises, double width_m);
+/// % cuts off what is left of a branch. O(letters).
+std::vector<TurtleStep> walk(const rules::Lsystem& lsystem, const Letters& letters, const Place& place, bool rises,
+                             double width_m);
 
 }  // namespace sgm::derive

@@ -143,7 +143,9 @@ public:
                      : State{{}, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}, width_m};
     }
 
-    void read(char letter, uint64_t key, std::span<const double> numbers) {
+    void read(const Letters& letters, uint32_t at) {
+        const char letter = letters.text[at];
+        const std::span<const double> numbers = letters.of(at);
         if (skips_ > 0 && letter != '[' && letter != ']') return;
         const double turn = numbers.empty() ? angle_ : numbers[0];
         switch (letter) {
@@ -178,7 +180,7 @@ public:
             case ']':
                 return recall();
             default:
-                return step(letter, key, numbers);
+                return step(letters, at);
         }
     }
     std::vector<TurtleStep> take() { return std::move(steps_); }
@@ -214,8 +216,10 @@ private:
         now_ = kept_.back().first, step_m_ = kept_.back().second;
         kept_.pop_back();
     }
-    void step(char letter, uint64_t key, std::span<const double> numbers) {
-        TurtleStep made{letter, key, now_.at, now_.at, now_.heading, now_.left, now_.up, now_.width_m};
+    void step(const Letters& letters, uint32_t at) {
+        const char letter = letters.text[at];
+        const std::span<const double> numbers = letters.of(at);
+        TurtleStep made{letter, at, letters.keys[at], now_.at, now_.at, now_.heading, now_.left, now_.up, now_.width_m};
         const bool goes = letter == 'F' || letter == 'G' || letter == 'f' || letter == 'g';
         if (goes) {
             now_.at += now_.heading * (numbers.empty() ? step_m_ : numbers[0]);
@@ -263,12 +267,11 @@ Result<plan::Footprint> drawWalls(const rules::Lsystem& lsystem, const Place& pl
     return walls;
 }
 
-Result<std::vector<TurtleStep>> walk(const rules::Lsystem& lsystem, const Place& place, bool rises, double width_m) {
-    const auto letters = rewritten(lsystem, place);
-    if (!letters.ok()) return letters.error();
+std::vector<TurtleStep> walk(const rules::Lsystem& lsystem, const Letters& letters, const Place& place, bool rises,
+                             double width_m) {
     Walker walker(number(lsystem.angle, place), number(lsystem.step, place), number(lsystem.shrink, place), rises,
                   width_m);
-    for (size_t i = 0; i < letters->text.size(); ++i) walker.read(letters->text[i], letters->keys[i], letters->of(i));
+    for (uint32_t i = 0; i < letters.text.size(); ++i) walker.read(letters, i);
     return walker.take();
 }
 

@@ -211,7 +211,14 @@ plan::Vec2 pointOf(const AttributeContext& context, const Expr& e) {
     return {v.n[0], v.count > 1 ? v.n[1] : v.n[0]};
 }
 
+/// For the window, which shows the letters pass by pass.
+void noteLetters(const AttributeContext& context, uint32_t lsystem) {
+    const derive::Place& place = context.place;
+    if (place.builder) place.builder->noteLetters({lsystem, place.key, place.scope, place.valuesAt});
+}
+
 Result<DrawnPlan> drawLsystem(const AttributeContext& context, const PlanExpr& plan) {
+    noteLetters(context, plan.index);
     auto drawn = derive::drawOutline(context.grammar().lsystems[plan.index], context.place);
     if (!drawn.ok()) return drawn.error();
     return DrawnPlan{std::move(*drawn), false};
@@ -220,6 +227,7 @@ Result<DrawnPlan> drawLsystem(const AttributeContext& context, const PlanExpr& p
 Result<DrawnPlan> drawWallsOf(const AttributeContext& context, const PlanExpr& plan) {
     const double width_m = context.number(plan.args[0]);
     if (plan.index != rules::none) {
+        noteLetters(context, plan.index);
         auto drawn = derive::drawWalls(context.grammar().lsystems[plan.index], context.place, width_m);
         if (!drawn.ok()) return drawn.error();
         return DrawnPlan{std::move(*drawn), false};

@@ -92,12 +92,15 @@ bool runTurtle(PartsContext& context, const Parts& turtle) {
     const bool rises = turtle.axis == 1;
     const Vec3d size = context.scope().size;
     const double width_m = rises ? std::min(size.x, size.z) : size.z;
-    const auto steps = derive::walk(context.grammar().lsystems[turtle.index], context.place(), rises, width_m);
-    if (!steps.ok()) return context.fail(steps.error(), turtle.span);
+    const rules::Lsystem& lsystem = context.grammar().lsystems[turtle.index];
+    const auto letters = derive::rewritten(lsystem, context.place());
+    if (!letters.ok()) return context.fail(letters.error(), turtle.span);
+    const derive::Place& place = context.place();
+    place.builder->noteLetters({turtle.index, place.key, place.scope, place.valuesAt, true, rises, width_m});
+    const std::vector<TurtleStep> steps = derive::walk(lsystem, *letters, place, rises, width_m);
     std::array<const Parts::Part*, 256> partOf{};
     for (const Parts::Part& part : turtle.parts) partOf[static_cast<unsigned char>(part.label[0])] = &part;
-    for (size_t i = 0; i < steps->size(); ++i) {
-        const TurtleStep& step = (*steps)[i];
+    for (const TurtleStep& step : steps) {
         const Parts::Part* part = partOf[static_cast<unsigned char>(step.letter)];
         if (part && !context.run(*part->body, scopeOf(context.scope(), step, rises), combine(step.key, 1)))
             return false;

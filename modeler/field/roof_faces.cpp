@@ -74,6 +74,17 @@ RoofFace onEdge(RoofFace::Kind kind, const std::vector<PlacedEdge>& edges, size_
     return face;
 }
 
+Vec3d pointAt(Vec2 at, double height_m) { return {at.x, height_m, at.z}; }
+
+/// The corners of a face that is as wide at its top as below: upright where it has no run.
+std::array<Vec3d, 4> rectangleOf(const RoofFace& face) {
+    const Vec2 along = Vec2{face.outward.z * -1, face.outward.x} * (face.width_m / 2),
+               out = face.outward * (face.run_m / 2);
+    const double low = face.height_m - face.rise_m / 2, high = face.height_m + face.rise_m / 2;
+    return {pointAt(face.at + out - along, low), pointAt(face.at + out + along, low),
+            pointAt(face.at - out + along, high), pointAt(face.at - out - along, high)};
+}
+
 /// The middle of the slope over an edge, where it is as wide as the lines around leave it.
 std::optional<RoofFace> slopeOver(const RoofPlanes& planes, const RoofSurface& roof,
                                   const std::vector<PlacedEdge>& edges, size_t i) {
@@ -90,6 +101,12 @@ std::optional<RoofFace> slopeOver(const RoofPlanes& planes, const RoofSurface& r
     face.rise_m = whole * side.slope;
     face.height_m = planes.fascia_m + side.rise + face.rise_m / 2;
     if (face.width_m < leastFace_m) return std::nullopt;
+    // Beside the end of the middle line, a little below where other slopes begin.
+    const double run_m = whole * .999, foot_m = planes.fascia_m + side.rise, top_m = foot_m + run_m * side.slope;
+    const Vec2 top = (edges[i].from + edges[i].to) * .5 + in * run_m;
+    face.corners = {pointAt(edges[i].from, foot_m), pointAt(edges[i].to, foot_m),
+                    pointAt(top + along * reach(roof, face.edge, top, along), top_m),
+                    pointAt(top - along * reach(roof, face.edge, top, along * -1), top_m)};
     return face;
 }
 
@@ -107,12 +124,15 @@ std::vector<RoofFace> facesOf(const RoofPlanes& planes, const plan::Footprint& f
             RoofFace& eave = faces.emplace_back(onEdge(RoofFace::Kind::Eave, edges, i, planes.overhang_m));
             eave.rise_m = planes.fascia_m;
             eave.height_m = planes.fascia_m / 2 - planes.overhang_m * least;
+            eave.corners = rectangleOf(eave);
             continue;
         }
         RoofFace& gable = faces.emplace_back(onEdge(RoofFace::Kind::Gable, edges, i, planes.overhang_m));
         const Vec2 inside = (edges[i].from + edges[i].to) * .5 - gable.outward * 1e-4;
         gable.rise_m = std::max(0.0, -plan::valueOf(formula, roof.slopes, inside)) + planes.fascia_m;
         gable.height_m = gable.rise_m / 2;
+        gable.corners = rectangleOf(gable);
+        gable.corners[2] = gable.corners[3] = pointAt(gable.at, gable.rise_m);
     }
     const plan::Deepest top = plan::deepestPoint(footprint, formula);
     RoofFace& apex = faces.emplace_back();
@@ -120,6 +140,7 @@ std::vector<RoofFace> facesOf(const RoofPlanes& planes, const plan::Footprint& f
     apex.at = top.at;
     apex.outward = {0, 1};
     apex.height_m = planes.fascia_m - plan::valueOf(formula, roof.slopes, top.at);
+    apex.corners.fill(pointAt(apex.at, apex.height_m));
     return faces;
 }
 
@@ -136,6 +157,7 @@ RoofFace shedSlope(const plan::Footprint& footprint, std::span<const Argument> a
     face.width_m = alongX ? size.z : size.x;
     face.rise_m = face.run_m * std::tan(valueAt(a, 0));
     face.height_m = valueAt(a, 2) + face.rise_m / 2;
+    face.corners = rectangleOf(face);
     return face;
 }
 
@@ -152,6 +174,8 @@ std::vector<RoofFace> pyramidSlopes(const plan::Footprint& footprint, double fas
         face.width_m /= 2;
         face.rise_m = height_m - fascia_m;
         face.height_m = fascia_m + face.rise_m / 2;
+        const Vec3d point = pointAt(top, height_m);
+        face.corners = {pointAt(edges[i].from, fascia_m), pointAt(edges[i].to, fascia_m), point, point};
         faces.push_back(face);
     }
     return faces;
@@ -174,7 +198,69 @@ std::vector<RoofFace> roofFaces(const Primitive& row, const plan::Footprint& foo
     apex.at = row.name == "pyramidRoof" ? plan::centroid(footprint) : plan::deepestPoint(footprint, formula).at;
     apex.outward = {0, 1};
     apex.height_m = height_m;
+    apex.corners.fill(pointAt(apex.at, height_m));
     return faces;
+}
+
+namespace {
+
+/// The number of the leaf that is the formula's value at a point: of slopes in one plane that over the nearest edge.
+uint32_t leafAt(const plan::Formula& formula, std::span<const Linear> leaves, std::span<const PlacedEdge> edges,
+                Vec2 at) {
+    constexpr double tie_m = 1e-7;
+    const double value = plan::valueOf(formula, leaves, at);
+    const auto away = [&](uint32_t i) { return std::max(std::abs(leaves[i].at(at) - value), tie_m); };
+    const auto isNearer = [&](uint32_t i, uint32_t k) {
+        return std::pair(away(i), plan::distanceTo(edges[i], at)) < std::pair(away(k), plan::distanceTo(edges[k], at));
+    };
+    uint32_t nearest = 0;
+    for (uint32_t i = 1; i < leaves.size(); ++i)
+        if (isNearer(i, nearest)) nearest = i;
+    return nearest;
+}
+
+/// The plane of a slope, as its height negated.
+Linear planeOf(const RoofFace& slope) {
+    const double pitch = slope.rise_m / slope.run_m;
+    return {pitch * slope.outward.x, pitch * slope.outward.z, -slope.height_m - pitch * dot(slope.outward, slope.at)};
+}
+
+/// What a point of a roof of planes lies on: its kind and edge.
+std::pair<RoofFace::Kind, uint32_t> placeOn(const RoofPlanes& planes, const plan::Footprint& footprint,
+                                            const plan::Formula& formula, Vec2 at, double above_m) {
+    constexpr double tolerance_m = .01;
+    const RoofSurface roof = surfaceOf(planes, footprint, formula);
+    const double value = plan::valueOf(formula, roof.slopes, at);
+    const double top_m = planes.fascia_m + std::min(-value, planes.highest_m);
+    const std::vector<PlacedEdge> edges = plan::edgesOf(footprint);
+    if (above_m >= top_m - tolerance_m) return {RoofFace::Kind::Slope, leafAt(formula, roof.slopes, edges, at)};
+    uint32_t edge = 0;
+    for (uint32_t i = 1; i < edges.size(); ++i)
+        if (plan::distanceTo(edges[i], at) < plan::distanceTo(edges[edge], at)) edge = i;
+    return {planes.sides[edge].slope > 0 ? RoofFace::Kind::Eave : RoofFace::Kind::Gable, edge};
+}
+
+}  // namespace
+
+std::optional<RoofFace> roofFaceAt(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
+                                   std::span<const Argument> arguments, double height_m, plan::Vec2 at,
+                                   double above_m) {
+    const std::vector<RoofFace> faces = roofFaces(row, footprint, formula, arguments, height_m);
+    const auto find = [&](RoofFace::Kind kind, uint32_t edge) -> std::optional<RoofFace> {
+        for (const RoofFace& face : faces)
+            if (face.kind == kind && face.edge == edge) return face;
+        return std::nullopt;
+    };
+    if (const auto planes = roofPlanes(row, footprint, formula, arguments)) {
+        const auto [kind, edge] = placeOn(*planes, footprint, formula, at, above_m);
+        return find(kind, edge);
+    }
+    if (row.name == "shedRoof") return find(RoofFace::Kind::Slope, 0);
+    std::vector<Linear> slopes;  // of a pyramid, one an edge
+    for (const RoofFace& face : faces)
+        if (face.kind == RoofFace::Kind::Slope) slopes.push_back(planeOf(face));
+    if (slopes.empty()) return std::nullopt;
+    return find(RoofFace::Kind::Slope, leafAt(formula, slopes, plan::edgesOf(footprint), at));
 }
 
 }  // namespace sgm::field

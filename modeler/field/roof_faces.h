@@ -4,6 +4,8 @@
 // about the scope's centre. Slopes meet where the formula's leaves do, as those of the roof itself.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +29,9 @@ struct RoofFace {
     double width_m = 0;   ///< along the edge; of a slope where its middle is
     double rise_m = 0;    ///< from its lower to its upper end
     double run_m = 0;     ///< the same in plan
+    /// x, height and z of its four corners, the lower two first: of slopes where they end beside the middle, two alike
+    /// where the face ends in a point; of an apex all in it.
+    std::array<Vec3d, 4> corners;
 };
 
 /// Whether faces of the row are known: a roof over a footprint.
@@ -36,6 +41,11 @@ bool isRoof(const Primitive& row);
 /// O(n²).
 std::vector<RoofFace> roofFaces(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
                                 std::span<const Argument> arguments, double height_m);
+
+/// The slope, eave or gable on which a point of the roof's surface lies, `above_m` over its foot: where the surface of
+/// the slopes runs higher, what stands upright below it. Nothing on curved and flat roofs. O(n²).
+std::optional<RoofFace> roofFaceAt(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
+                                   std::span<const Argument> arguments, double height_m, plan::Vec2 at, double above_m);
 
 /// A line where two slopes meet.
 struct RoofLine {

@@ -29,4 +29,18 @@ bool isEdgeCalled(const Footprint& footprint, const PlacedEdge& edge, std::strin
     return holdsWord(footprint.tags[edge.edge.tag], word);
 }
 
+std::vector<std::string> edgeWords(const Footprint& footprint, const PlacedEdge& edge) {
+    std::vector<std::string> words;
+    for (const char* word : {"front", "back", "left", "right", "court", "cut"})
+        if (isEdgeCalled(footprint, edge, word)) words.emplace_back(word);
+    std::string_view tag = footprint.tags[edge.edge.tag];
+    while (!tag.empty()) {
+        const size_t end = std::min(tag.find(' '), tag.size());
+        const std::string word(tag.substr(0, end));
+        if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+        tag.remove_prefix(std::min(end + 1, tag.size()));
+    }
+    return words;
+}
+
 }  // namespace sgm::plan

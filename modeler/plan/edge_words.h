@@ -2,7 +2,9 @@
 // Enters: an edge and a word. Leaves: whether it is called so. Assumes tags of several words are separated by blanks.
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "modeler/plan/polygon.h"
 
@@ -11,5 +13,8 @@ namespace sgm::plan {
 /// front (+z), back, left, right by its normal, side and rest for every edge, court, cut, or one of the words of its
 /// tag.
 bool isEdgeCalled(const Footprint& footprint, const PlacedEdge& edge, std::string_view word);
+
+/// The words that an edge alone is called by, besides side and rest: front, court, those of its tag.
+std::vector<std::string> edgeWords(const Footprint& footprint, const PlacedEdge& edge);
 
 }  // namespace sgm::plan

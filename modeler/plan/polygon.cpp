@@ -184,15 +184,17 @@ bool contains(const Footprint& footprint, Vec2 p) {
     return inside;
 }
 
+double distanceTo(const PlacedEdge& edge, Vec2 p) {
+    const Vec2 along = edge.to - edge.from;
+    const double square = dot(along, along);
+    const double share = square > 0 ? std::clamp(dot(p - edge.from, along) / square, 0.0, 1.0) : 0;
+    return plan::length(p - edge.from - along * share);
+}
+
 double distanceToEdges(const Footprint& footprint, Vec2 p) {
     double least = Box2::far;
     forEachRing(footprint, [&](const Ring& ring) {
-        for (size_t i = 0; i < ring.size(); ++i) {
-            const Vec2 a = ring.from(i), along = ring.to(i) - a;
-            const double square = dot(along, along);
-            const double t = square > 0 ? std::clamp(dot(p - a, along) / square, 0.0, 1.0) : 0;
-            least = std::min(least, plan::length(p - a - along * t));
-        }
+        for (size_t i = 0; i < ring.size(); ++i) least = std::min(least, distanceTo({ring.from(i), ring.to(i), {}}, p));
     });
     return least;
 }

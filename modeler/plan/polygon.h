@@ -115,6 +115,8 @@ Box2 bounds(const Footprint& footprint);
 Vec2 centroid(const Footprint& footprint);
 /// Whether `p` lies inside, by crossings of the ray towards +x; points on an edge belong to either side. O(n).
 bool contains(const Footprint& footprint, Vec2 p);
+/// Metres from `p` to an edge.
+double distanceTo(const PlacedEdge& edge, Vec2 p);
 /// Metres from `p` to the nearest edge, unsigned. O(n).
 double distanceToEdges(const Footprint& footprint, Vec2 p);
 

@@ -51,6 +51,45 @@ TEST_F(Plans, APlanIsDraggedByItsHandles) {
     EXPECT_NE(text().find("rect(8, 6)"), std::string::npos) << "one step back for the whole drag";
 }
 
+TEST_F(Plans, FacesAreTold) {
+    openText(
+        "grammar 2\nterminal wall\nterminal tiles = hipRoof(40deg)\n"
+        "start A -> footprint rect(8, 6) extrude 3m House\nrule House -> wall + tiles at +y\n");
+    key("1");  // from the front
+    point("view.field", .5, .62);
+    const auto told = [&](const std::string& face) {
+        until(face,
+              [&](const auto& s) { return s["hover"].template get<std::string>().find(face) != std::string::npos; });
+    };
+    told("side: front");
+    point("view.field", .5, .32);
+    told("slope: front");
+    click("view.field", .5, .32);
+    EXPECT_EQ(state()["face"], "slope: front") << "lit";
+    shoot("face");
+    click("view.field", .02, .02);
+    EXPECT_EQ(state()["face"], "");
+}
+
+TEST_F(Plans, LettersOfAnLsystem) {
+    openText(
+        "grammar 2\nlsystem Plan passes 2 angle 90deg step 2m\n  axiom \"F+F+F+F\"\n  F -> \"F-F+FK\"\n"
+        "start A -> footprint Plan extrude 3m block\n");
+    click("tab.Step");
+    EXPECT_EQ(state()["letters"]["pass"], 2);
+    const size_t whole = state()["letters"]["count"];
+    EXPECT_EQ(state()["letters"]["read"], whole);
+    click("letters.fewer");
+    EXPECT_EQ(state()["letters"]["pass"], 1);
+    EXPECT_EQ(state()["letters"]["count"], 4u * 6 + 3);
+    click("letters.letter", .5);
+    EXPECT_LT(state()["letters"]["read"], 4u * 6 + 3);
+    EXPECT_GT(state()["letters"]["read"], 0u);
+    shoot("letters");
+    click("letters.more");
+    EXPECT_EQ(state()["letters"]["count"], whole);
+}
+
 TEST_F(Plans, AMapIsLaidOverTheGround) {
     openText("grammar 2\nmap rise = here.x\nstart A -> cube size (30m, 2m, 30m) color #808080\n");
     click("look.map");

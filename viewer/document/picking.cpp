@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "grammar/derive/lift.h"
 #include "viewer/document/nodes.h"
 
 namespace sgm::document {
@@ -35,6 +36,18 @@ std::optional<Picked> pick(const BuiltModel& shown, OriginId origin) {
     const ShapeId shape = origin == 0 ? 0 : origin < shapeOf.size() ? shapeOf[origin] : none;
     if (shape == none || shape >= shown.model.derivation.tree.shapes.size()) return std::nullopt;
     return about(shown.model.derivation, shape);
+}
+
+std::optional<derive::NamedFace> faceAt(const BuiltModel& shown, ShapeId shape, Vec3d point) {
+    const Vec3d lift{0, derive::liftOf(shown.model.derivation, shape), 0};
+    auto face = derive::namedFaceAt(shown.model.derivation.tree, shape, point - lift);
+    if (face)
+        for (Vec3d& corner : face->corners) corner += lift;
+    return face;
+}
+
+std::string labelOf(const derive::NamedFace& face) {
+    return face.words.empty() ? face.kind : fmt::format("{}: {}", face.kind, fmt::join(face.words, ", "));
 }
 
 ShapeId selected(const ShapeTree& tree, const std::string& path) {

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "grammar/derive/faces.h"
 #include "viewer/document/edits.h"
 #include "viewer/document/session.h"
 
@@ -20,6 +21,12 @@ struct Picked {
 Picked about(const derive::Derivation& derivation, derive::ShapeId shape);
 /// The shape that owns surface of this origin; nothing for an origin that no shape has.
 std::optional<Picked> pick(const BuiltModel& shown, OriginId origin);
+
+/// The face of the shape on which a point of its surface lies, in the picture's space: sides, tops, slopes, eaves and
+/// gables, with the words that `each(…)` and `faces { … }` call it by.
+std::optional<derive::NamedFace> faceAt(const BuiltModel& shown, derive::ShapeId shape, Vec3d point);
+/// What a label says of it: "slope: front, street".
+std::string labelOf(const derive::NamedFace& face);
 
 /// The shape that a selection means in this tree, or none.
 derive::ShapeId selected(const derive::ShapeTree& tree, const std::string& path);

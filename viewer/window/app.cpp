@@ -158,6 +158,7 @@ void describe(const Workbench& bench, nlohmann::json& state) {
     for (const document::Problem& p : bench.session.problems())
         state["problems"].push_back({{"line", p.line}, {"message", p.message}});
     state["selection"] = bench.selected() == derive::none ? "" : bench.tree()->path(bench.selected(), true);
+    state["face"] = bench.view.face ? document::labelOf(*bench.view.face) : "";
     state["hover"] = bench.view.hover ? bench.view.hover->text : "";
     state["shapes"] = bench.tree() ? bench.tree()->shapes.size() : 0;
     const render::Camera camera = bench.view.orbit.camera();

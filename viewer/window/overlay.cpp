@@ -100,6 +100,22 @@ void drawScope(const Workbench& bench, derive::ShapeId shape, const Projection& 
         }
 }
 
+void drawFace(const derive::NamedFace& face, const Projection& project, ImDrawList& list) {
+    ImVec2 corners[4], middle(0, 0);
+    for (size_t i = 0; i < 4; ++i) {
+        const auto at = project(face.corners[i]);
+        if (!at) return;
+        corners[i] = *at;
+        middle = {middle.x + at->x / 4, middle.y + at->y / 4};
+    }
+    list.AddConvexPolyFilled(corners, 4, (tint::selected & 0x00ffffff) | 0x40000000);
+    list.AddPolyline(corners, 4, tint::selected, ImDrawFlags_Closed, 2);
+    const std::string label = document::labelOf(face);
+    const ImVec2 size = ImGui::CalcTextSize(label.c_str()), low(middle.x - size.x / 2, middle.y - size.y / 2);
+    list.AddRectFilled({low.x - 5, low.y - 2}, {low.x + size.x + 5, low.y + size.y + 2}, IM_COL32(10, 12, 16, 190), 3);
+    list.AddText(low, tint::text, label.c_str());
+}
+
 void drawAxes(const Projection& project, ImDrawList& list) {
     const float reach = ImGui::GetFontSize() * 1.7f;
     const ImVec2 centre(project.low.x + reach * 1.6f, project.low.y + project.size.y - reach * 1.6f);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "viewer/document/export_job.h"
+#include "viewer/document/letters.h"
 #include "viewer/document/param_rows.h"
 #include "viewer/document/report_rows.h"
 #include "viewer/document/rule_rows.h"
@@ -109,6 +110,24 @@ private:
     std::vector<std::vector<document::Coloured>> colors_;
 };
 
+/// The letters of an L-system pass by pass, and the way that its turtle goes.
+class LettersView {
+public:
+    /// Nothing where the model reads no L-system.
+    void show(Workbench& bench);
+
+private:
+    static constexpr uint32_t mostPasses = ~uint32_t(0);
+    bool take(Workbench& bench, const std::vector<uint32_t>& known);
+
+    uint32_t lsystem_ = 0, passes_ = mostPasses;
+    std::shared_ptr<const document::BuiltModel> of_;  ///< what `made_` is of
+    uint32_t asked_ = 0;                              ///< passes that `made_` was asked with
+    document::LettersShown made_;
+    std::string fault_;  ///< why there are no letters
+    int letter_ = 0;     ///< how many the turtle has read
+};
+
 /// The derivation by hand: live shapes, the rules that match, forward and back, saved as a `derive` line.
 class StepPanel {
 public:
@@ -119,6 +138,7 @@ private:
     void shapes(Workbench& bench);
     void save(Workbench& bench);
 
+    LettersView letters_;
     std::string way_ = "byhand";
     derive::ShapeId seen_ = derive::none;  ///< the selection that was last scrolled to
 };

@@ -33,11 +33,13 @@ std::optional<Hover> hoverOf(const Workbench& bench, const Pick& pick) {
     const auto picked = document::pick(*bench.shown(), pick.origin);
     if (!picked) return std::nullopt;
     Hover hover{pick.position, picked->shape,
-                fmt::format("{}  ·  {}", picked->symbol, picked->rule.empty() ? "start" : "rule " + picked->rule)};
+                fmt::format("{}  ·  {}", picked->symbol, picked->rule.empty() ? "start" : "rule " + picked->rule),
+                document::faceAt(*bench.shown(), picked->shape, pick.position.as<double>())};
     if (picked->element.source)
         hover.text +=
             fmt::format("  ·  {}:{}", std::filesystem::path(picked->element.source->name()).filename().string(),
                         picked->element.source->place(picked->element.begin).line);
+    if (hover.face) hover.text += "  ·  " + document::labelOf(*hover.face);
     return hover;
 }
 

@@ -133,6 +133,7 @@ void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMe
     isMesh ? showMesh(bench, low, size) : showField(bench, low, size);
     const Projection project(bench.view.orbit.camera(size.x / size.y), low, size);
     if (bench.tree() && bench.selected() != derive::none) drawScope(bench, bench.selected(), project, list);
+    if (bench.view.face) drawFace(*bench.view.face, project, list);
     bench.view.mapLayer.draw(bench, project, list);
     drawPlan(bench, project, list);
     drawBonds(bench, project, list);
@@ -152,6 +153,7 @@ void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMe
     if (click) {
         bench.view.hover = hoverAt(bench, low, io.MousePos);
         bench.select(bench.view.hover ? bench.view.hover->shape : derive::none);
+        if (bench.view.hover) bench.view.face = bench.view.hover->face;
     }
     if (hovered && !onHandle && bench.view.hover && !ImGui::IsAnyMouseDown()) {
         ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(10, 6));

@@ -147,6 +147,7 @@ void Workbench::exportTo(document::ExportRequest request) {
 
 void Workbench::select(derive::ShapeId shape, bool quiet) {
     selected_ = shape;
+    view.face.reset();
     document.select(shape == derive::none ? "" : tree()->path(shape, true));
     if (shape == derive::none || quiet) return;
     const syntax::SourceSpan span = tree()->shapes[shape].span;
@@ -157,6 +158,7 @@ void Workbench::select(derive::ShapeId shape, bool quiet) {
 }
 
 void Workbench::resolveSelection() {
+    view.face.reset();
     selected_ = tree() ? document::selected(*tree(), document.choice().selection) : derive::none;
 }
 

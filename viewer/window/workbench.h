@@ -63,6 +63,7 @@ struct Hover {
     Vec3f position;  ///< metres
     derive::ShapeId shape = derive::none;
     std::string text;  ///< "Cell · rule Cell · grotto.sgm:24"
+    std::optional<derive::NamedFace> face;
 };
 
 /// What looks at the model, and how.
@@ -74,7 +75,8 @@ struct ModelView {
     PlanHandleControl planHandles;
     Look look;
     std::optional<Hover> hover;
-    bool framed = false;  ///< the camera has been set for this file
+    std::optional<derive::NamedFace> face;  ///< of the selected shape, where the click was
+    bool framed = false;                    ///< the camera has been set for this file
 
     bool wantsMesh() const { return look.pane == Pane::Mesh || look.pane == Pane::Split; }
     /// All that the window shows is whole.

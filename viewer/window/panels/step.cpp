@@ -19,13 +19,13 @@ void StepPanel::begin(Workbench& bench) {
     if (!bench.shown()) return;
     if (button(bench.report, "step.begin", "Begin at the start")) bench.beginSteps("");
     const std::vector<std::string> ways = document::waysOf(*bench.shown()->grammar);
-    if (ways.empty()) return;
-    heading("Walk a way");
+    if (!ways.empty()) heading("Walk a way");
     for (const std::string& way : ways) {
         if (button(bench.report, "step.way." + way, way.c_str())) bench.beginSteps(way);
         ImGui::SameLine();
     }
-    ImGui::NewLine();
+    if (!ways.empty()) ImGui::NewLine();
+    letters_.show(bench);
 }
 
 void StepPanel::show(Workbench& bench) {
