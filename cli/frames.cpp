@@ -8,6 +8,7 @@
 #include "cli/animation.h"
 #include "cli/messages.h"
 #include "cli/watch.h"
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/incremental.h"
 
 namespace sgm::cli {
@@ -103,13 +104,15 @@ Status buildFrames(const BuildRequest& request) {
     if (!scene.ok()) return scene.error();
     const auto bounds = boundsOfFrames(scene->grammar, scene->options, scene->animation, watch.progress());
     if (!bounds.ok()) return bounds.error();
-    const mesh::Grid grid = gridOver(*bounds, request.grid);
+    mesh::Grid grid = gridOver(*bounds, request.grid);
     pipeline::IncrementalPipeline incremental(meshingOf(request.grid, needsPositionsOnly(request)));
     for (int frame = 0; frame < scene->animation.frames; ++frame) {
         Context context{watch.progress(), request.grid.threads};
         derive::Options options = scene->options;
         options.params = scene->animation.values(options.params, frame);
         if (const Status done = incremental.to(scene->grammar, options, context); !done.ok()) return done;
+        if (frame == 0 && request.grid.surface == mesh::Surface::Crisp)
+            grid = pipeline::movedOffPlanes(grid, incremental.derivation());
         if (frame == 0 && !request.quiet) printDiagnostics(derive::warnings(incremental.derivation()));
         if (!request.quiet)
             fmt::print("frame {} of {}, {}: ", frame + 1, scene->animation.frames,

@@ -11,6 +11,7 @@
 #include "cli/watch.h"
 #include "grammar/operations/operations.h"
 #include "grammar/pipeline/files.h"
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/section.h"
 #include "grammar/rules/check.h"
 #include "grammar/syntax/parser.h"
@@ -174,7 +175,8 @@ mesh::PolygonizeOptions meshingOf(const GridRequest& request, bool positionsOnly
 }
 
 Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Context& context, bool positionsOnly) {
-    return makeMesh(model, gridOver(model.lowered->field.bounds, request), meshingOf(request, positionsOnly), context);
+    return makeMesh(model, pipeline::gridOver(model, {request.resolution, request.cell_m}, request.surface),
+                    meshingOf(request, positionsOnly), context);
 }
 
 int fail(const Error& error) {

@@ -1,6 +1,7 @@
 // The library in 20 lines: a grammar in a string becomes a closed mesh in a file.
 #include <cstdio>
 
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/load.h"
 #include "grammar/pipeline/products.h"
 

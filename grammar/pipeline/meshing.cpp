@@ -27,11 +27,6 @@ Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::P
     return made;
 }
 
-mesh::Grid gridOf(const Model& model, int cells) {
-    const Box3f& bounds = model.lowered->field.bounds;
-    return mesh::gridFor(bounds, mesh::cellFor(bounds, cells));
-}
-
 Error noSurface(const Model& model, float cell_m) {
     return {Error::Kind::Input,
             fmt::format("{}there is no surface at cells of {:.3g} m: all is cut away, or thinner than a cell",

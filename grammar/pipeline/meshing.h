@@ -20,8 +20,6 @@ struct MeshedModel {
 /// Stages "subdivide", "sample" and "polygonize", on `context.threads` threads whatever `options` say of them.
 Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::PolygonizeOptions options,
                              Context& context);
-/// The grid over the model's bounds with so many cells along their longest side.
-mesh::Grid gridOf(const Model& model, int cells);
 
 /// Error::Input, located at the start's rule, for a model that has no surface at cells of `cell_m` metres.
 Error noSurface(const Model& model, float cell_m);

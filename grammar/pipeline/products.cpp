@@ -1,4 +1,5 @@
 #include "grammar/pipeline/products.h"
+#include "grammar/pipeline/grids.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +15,7 @@ Result<std::vector<mesh::LevelOfDetail>> makeLevels(const Model& model, const me
                                                     const ProductRequest& request, const Context& context) {
     const auto meshAt = [&](float coarse_m) -> Result<mesh::Mesh> {
         Context own{context.progress, context.threads, {}};
-        const mesh::Grid grid = mesh::gridFor(model.lowered->field.bounds, coarse_m);
+        const mesh::Grid grid = gridOver(model, {.cell_m = static_cast<double>(coarse_m)}, request.meshing.surface);
         auto meshed = makeMesh(model, grid, request.meshing, own);
         if (!meshed.ok()) return meshed.error();
         mesh::keepOnly(meshed->mesh, request.edits.keep, coarse_m, own.threads);

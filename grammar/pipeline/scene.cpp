@@ -1,4 +1,5 @@
 #include "grammar/pipeline/scene.h"
+#include "grammar/pipeline/grids.h"
 
 #include <fmt/format.h>
 
@@ -94,10 +95,9 @@ private:
 Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest& request, Context& context) {
     auto model = makeModel(std::move(derivation), context, Objects::Apart);
     if (!model.ok()) return model.error();
-    const Box3f& bounds = model->lowered->field.bounds;
-    const float cell_m =
-        request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
-    auto meshed = makeMesh(*model, mesh::gridFor(bounds, cell_m), request.meshing, context);
+    const mesh::Grid grid = gridOver(*model, {request.resolution, request.cell_m}, request.meshing.surface);
+    const float cell_m = grid.cell_m;
+    auto meshed = makeMesh(*model, grid, request.meshing, context);
     if (!meshed.ok()) return meshed.error();
     mesh::keepOnly(meshed->mesh, request.edits.keep, cell_m, context.threads);
     auto mesh = edited(std::move(meshed->mesh), request.edits, request.meshing.surface, cell_m, context);

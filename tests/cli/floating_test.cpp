@@ -90,15 +90,15 @@ TEST_F(Cli, AFloatingPieceNamesTheThinPartThatHoldsIt) {
 
 TEST_F(Cli, PartsThatMeetByLessThanACellAreToldFromAGap) {
     const auto built = [&](const char* place, const char* cell) {
-        return sgm("build " + grammar(std::string("start A -> sphere size 4, sphere size 4 move ") + place + "\n") +
+        return sgm("build " + grammar(std::string("start A -> sphere size 5, sphere size 4 move ") + place + "\n") +
                    " --cell " + cell)
             .out;
     };
-    EXPECT_NE(built("(.3, 3.965, .05)", ".7").find("by less than a cell of 0.7 m: let them overlap more"),
+    EXPECT_NE(built("(3.15, 3.182, .15)", ".9").find("by less than a cell of 0.9 m: let them overlap more"),
               std::string::npos);
-    EXPECT_NE(built("(.2, 3.97, 0)", ".7").find("by less than a cell of 0.7 m: let them overlap more"),
+    EXPECT_NE(built("(3.2, 3.146, .15)", ".85").find("by less than a cell of 0.85 m: let them overlap more"),
               std::string::npos);
-    EXPECT_NE(built("(.3, 4.3, .05)", ".4").find("a gap of 0.3"), std::string::npos);
+    EXPECT_NE(built("(.3, 4.8, .05)", ".4").find("a gap of 0.3"), std::string::npos);
 }
 
 TEST_F(Cli, EveryCommandTellsGapsAndThinParts) {
@@ -108,7 +108,8 @@ TEST_F(Cli, EveryCommandTellsGapsAndThinParts) {
     const std::string thin = scratch_
                                  .write("thin.sgm",
                                         "grammar 1\nstart A -> cube size (20, 3, 20) : Base\n"
-                                        "rule Base -> + cube size (.03, 3, .03) at +y move (.13, 0, .13)\n")
+                                        "rule Base -> + cube size (.03, 3, .03) at +y move (.13, 0, .13) "
+                                        "turn (0deg, 20deg, 0deg)\n")
                                  .string();
     const std::string picture = " --size 32x32 -o " + path("a.png");
     for (const std::string command : {"check ", "build ", "mutate ", "render "}) {

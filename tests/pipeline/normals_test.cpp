@@ -1,6 +1,7 @@
 // The normals that files get, from grammars whose faces coincide.
 #include <gtest/gtest.h>
 
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/load.h"
 #include "grammar/pipeline/meshing.h"
 #include "modeler/mesh/chunk.h"
@@ -25,7 +26,9 @@ TEST(Normals, NoCornerLooksIntoTheSolidWherePartsStandOnOneAnother) {
     Context context{nullptr, 2};
     const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
     ASSERT_TRUE(model.ok());
-    const auto meshed = makeMesh(*model, gridOf(*model, 160), {.surface = mesh::Surface::Crisp}, context);
+    const mesh::Grid grid = gridOf(*model, 160);
+    const float sliver_m2 = grid.cell_m * grid.cell_m / 10;
+    const auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
     ASSERT_TRUE(meshed.ok());
     size_t corners = 0, inward = 0;
     for (const mesh::Chunk& chunk : meshed->mesh.chunks)
@@ -37,7 +40,7 @@ TEST(Normals, NoCornerLooksIntoTheSolidWherePartsStandOnOneAnother) {
                 at[k] = owner.positions[t[k] - owner.firstVertex];
             }
             const Vec3f across = cross(at[1] - at[0], at[2] - at[0]), face = normalized(across);
-            if (face.y < .99f || length(across) < 1e-5f) continue;  // the slab's top, less slivers
+            if (face.y < .99f || length(across) < sliver_m2) continue;  // the slab's top, less slivers
             inward += dot(face, corner.normal) < -0.9f;
             ++corners;
         }

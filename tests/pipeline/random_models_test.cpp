@@ -1,4 +1,5 @@
 // Grammars by chance become meshes: closed, oriented, without crossings, and the same bytes on one thread and on three.
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/mesh_edits.h"
 #include "grammar/pipeline/meshing.h"
 #include "grammar/pipeline/model.h"

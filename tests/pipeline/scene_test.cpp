@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/load.h"
 #include "grammar/pipeline/products.h"
 #include "grammar/pipeline/scene.h"

@@ -1,6 +1,7 @@
 // A picture of the field shows the solid that the mesh is: no films where cutters touch, no shadows of cutters.
 #include <cmath>
 
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/load.h"
 #include "grammar/pipeline/meshing.h"
 #include "modeler/core/random.h"

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/products.h"
 #include "grammar/pipeline/scene.h"
 #include "modeler/core/atomic_file.h"
@@ -51,12 +52,11 @@ Status write(const BuiltModel& shown, const ExportRequest& request, const export
     if (!model.ok()) return model.error();
     auto division = pipeline::divide(*model, format.holdsObjects ? request.objects : "");
     if (!division.ok()) return division.error();
-    const Box3f& bounds = model->lowered->field.bounds;
-    const float cell_m =
-        request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution);
     mesh::PolygonizeOptions meshing{.surface = mesh::Surface::Crisp};
+    const mesh::Grid grid = pipeline::gridOver(*model, {request.resolution, request.cell_m}, meshing.surface);
+    const float cell_m = grid.cell_m;
     meshing.positionsOnly = !apart && exporter::takesPositionsOnly(format, request.options);
-    auto meshed = pipeline::makeMesh(*model, mesh::gridFor(bounds, cell_m), meshing, context);
+    auto meshed = pipeline::makeMesh(*model, grid, meshing, context);
     if (!meshed.ok()) return meshed.error();
     const pipeline::MeshEdits edits{.keep = request.keep};
     mesh::keepOnly(meshed->mesh, edits.keep, cell_m, request.threads);

@@ -1,4 +1,5 @@
 // The session's mesh: of the whole model, block by block again, or of the model cut open.
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/meshing.h"
 #include "grammar/pipeline/missing.h"
 #include "viewer/document/session.h"
@@ -29,7 +30,8 @@ void Session::meshIt(const ShowRequest& request, Progress& progress) {
     auto meshed = std::make_shared<BuiltMesh>();
     meshed->of = last_.shown;
     meshed->grid =
-        mesh::gridToKeep(last_.meshed ? last_.meshed->grid : mesh::Grid{}, bounds, keep ? before_m : wished_m);
+        pipeline::gridToKeep(last_.meshed ? last_.meshed->grid : mesh::Grid{}, bounds, keep ? before_m : wished_m,
+                             last_.shown->model.derivation, mesh::Surface::Crisp);
     const auto mesh = last_.rebuild.update(last_.shown->model.tape, meshed->grid, &progress, meshed->counts);
     if (!mesh.ok()) {
         if (mesh.error().kind == Error::Kind::Cancelled) return;

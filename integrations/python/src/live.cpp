@@ -1,6 +1,7 @@
 // Models that follow their parameters, every stage keeping what a change doesn't reach.
 #include <pybind11/stl.h>
 
+#include "grammar/pipeline/grids.h"
 #include "integrations/python/src/call.h"
 #include "integrations/python/src/objects.h"
 
@@ -20,7 +21,7 @@ Result<std::shared_ptr<Mesh>> follow(Live& live, const derive::Options& options,
     const Box3f& bounds = stages.model().field.bounds;
     float cell_m = static_cast<float>(live.request.cell_m);
     if (cell_m <= 0) cell_m = live.grid.cells.x > 0 ? live.grid.cell_m : mesh::cellFor(bounds, live.request.resolution);
-    live.grid = mesh::gridToKeep(live.grid, bounds, cell_m);
+    live.grid = pipeline::gridToKeep(live.grid, bounds, cell_m, stages.derivation(), live.request.surface);
     auto meshed = stages.meshed(live.grid, context);
     if (!meshed.ok()) return meshed.error();
     auto model = context.timed("copy", [&] { return std::make_shared<pipeline::Model>(stages.copyModel()); });

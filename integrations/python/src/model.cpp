@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "grammar/pipeline/grids.h"
 #include "grammar/rules/grammar.h"
 #include "integrations/python/src/call.h"
 #include "integrations/python/src/objects.h"
@@ -116,9 +117,7 @@ double evaluationSeconds(const Model& model, const Points& points) {
 }
 
 mesh::Grid gridOf(const Model& model, const MeshRequest& request) {
-    const Box3f& bounds = model.made->lowered->field.bounds;
-    return mesh::gridFor(
-        bounds, request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution));
+    return pipeline::gridOver(*model.made, {request.resolution, request.cell_m}, request.surface);
 }
 
 std::shared_ptr<Mesh> meshOf(const Model& model, const MeshRequest& request, const py::object& progress) {

@@ -1,3 +1,4 @@
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/load.h"
 #include "grammar/pipeline/products.h"
 
