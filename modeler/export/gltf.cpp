@@ -300,7 +300,7 @@ static Status writeGltf(const ExportInput& input, const Path& temporary, const P
     return writeScene(input, temporary, target, false);
 }
 
-static constexpr ExportOption options[] = {
+static constexpr ExportOption gltfOptions[] = {
     uvOption,
     lightMapOption,
     instancesOption("yes"),
@@ -315,7 +315,7 @@ static constexpr ExportOption options[] = {
 constinit const Exporter glbFormat{
     .extension = ".glb",
     .doc = "glTF 2.0, binary: normals, texture coordinates, a primitive a material",
-    .options = options,
+    .options = gltfOptions,
     .takesPositionsOnly = nullptr,
     .write = writeGlb,
     .stream = nullptr,
@@ -327,7 +327,7 @@ constinit const Exporter glbFormat{
 constinit const Exporter gltfFormat{
     .extension = ".gltf",
     .doc = "glTF 2.0 as JSON, with its buffer inside",
-    .options = options,
+    .options = gltfOptions,
     .takesPositionsOnly = nullptr,
     .write = writeGltf,
     .stream = nullptr,

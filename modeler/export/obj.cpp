@@ -227,12 +227,12 @@ static Status writeObj(const ExportInput& input, const Path& temporary, const Pa
     return writeMaterials(input, used, names, materials);
 }
 
-static constexpr ExportOption options[] = {upOption, unitOption, uvOption};
+static constexpr ExportOption objOptions[] = {upOption, unitOption, uvOption};
 
 constinit const Exporter objFormat{
     .extension = ".obj",
     .doc = "Wavefront OBJ, with a .mtl beside it",
-    .options = options,
+    .options = objOptions,
     .takesPositionsOnly = nullptr,
     .write = writeObj,
     .stream = nullptr,

@@ -45,12 +45,12 @@ static Status streamOff(const ExportInput& input, const ChunkSource& chunks, con
     return streamLists(Off(input), input, chunks, temporary, target);
 }
 
-static constexpr ExportOption options[] = {upOption, unitOption};
+static constexpr ExportOption offOptions[] = {upOption, unitOption};
 
 constinit const Exporter offFormat{
     .extension = ".off",
     .doc = "OFF: positions and triangles as text",
-    .options = options,
+    .options = offOptions,
     .takesPositionsOnly = saysPositionsOnly,
     .write = writeOff,
     .stream = streamOff,

@@ -122,7 +122,7 @@ static Status streamPly(const ExportInput& input, const ChunkSource& chunks, con
     return streamLists(Ply(input), input, chunks, temporary, target);
 }
 
-static constexpr ExportOption options[] = {
+static constexpr ExportOption plyOptions[] = {
     upOption,
     unitOption,
     {"attributes", "all", "all|none",
@@ -136,7 +136,7 @@ static bool withoutAttributes(const ExportOptions& options) {
 constinit const Exporter plyFormat{
     .extension = ".ply",
     .doc = "PLY, binary: normals, texture coordinates s t, colours, an origin a face",
-    .options = options,
+    .options = plyOptions,
     .takesPositionsOnly = withoutAttributes,
     .write = writePly,
     .stream = streamPly,

@@ -91,13 +91,13 @@ static Status writeScad(const ExportInput& input, const Path& temporary, const P
     return out.finish();
 }
 
-static constexpr ExportOption options[] = {
+static constexpr ExportOption scadOptions[] = {
     upOption, unitOption, {"sides", "128", "16|32|64|128|256|512|1024|2048|4096", "sides of round solids, inscribed"}};
 
 constinit const Exporter scadFormat{
     .extension = ".scad",
     .doc = "The solid tree as an OpenSCAD program: a module a boolean, of the same models",
-    .options = options,
+    .options = scadOptions,
     .takesPositionsOnly = saysPositionsOnly,
     .write = writeScad,
     .stream = nullptr,

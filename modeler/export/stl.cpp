@@ -51,12 +51,12 @@ static Status writeStl(const ExportInput& input, const Path& temporary, const Pa
     return streamStl(input, whole, temporary, target);
 }
 
-static constexpr ExportOption options[] = {upOption, unitOption};
+static constexpr ExportOption stlOptions[] = {upOption, unitOption};
 
 constinit const Exporter stlFormat{
     .extension = ".stl",
     .doc = "STL, binary: positions only",
-    .options = options,
+    .options = stlOptions,
     .takesPositionsOnly = saysPositionsOnly,
     .write = writeStl,
     .stream = streamStl,

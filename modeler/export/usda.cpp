@@ -368,12 +368,12 @@ static Status writeUsda(const ExportInput& input, const Path& temporary, const P
     return out.finish();
 }
 
-static constexpr ExportOption options[] = {upOption, unitOption, uvOption, lightMapOption, instancesOption("no")};
+static constexpr ExportOption usdaOptions[] = {upOption, unitOption, uvOption, lightMapOption, instancesOption("no")};
 
 constinit const Exporter usdaFormat{
     .extension = ".usda",
     .doc = "OpenUSD as text: normals, display colours, a subset and preview surface a material",
-    .options = options,
+    .options = usdaOptions,
     .takesPositionsOnly = nullptr,
     .write = writeUsda,
     .stream = nullptr,

@@ -46,7 +46,7 @@ static Status writeVdb(const ExportInput& input, const Path& temporary, const Pa
                            input.progress);
 }
 
-static constexpr ExportOption options[] = {
+static constexpr ExportOption vdbOptions[] = {
     {"grids", "levelset", "levelset|fog|levelset,fog", "which grids the file holds; the fog's is called density"},
     {"grid", "level_set", "", "name of the level set's grid"},
     {"distance", "exact", "exact|raw",
@@ -63,7 +63,7 @@ constinit const Exporter vdbFormat{
     .extension = ".vdb",
     .doc = "OpenVDB: a narrow-band level set, fog for renderers, or both; voxels in metres",
     .wantsVolume = true,
-    .options = options,
+    .options = vdbOptions,
     .takesPositionsOnly = saysPositionsOnly,
     .write = writeVdb,
     .stream = nullptr,

@@ -21,7 +21,7 @@ using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 
-constexpr uint64_t mostVoxels = uint64_t{1} << 28;
+constexpr uint64_t mostVoxelsOfBox = uint64_t{1} << 28;
 constexpr uint32_t columns = 64;  ///< of a leaf, along z: column x · 8 + y
 
 /// The parts of a mask that hang together by faces. The mask has no active tiles and must outlive this. OpenVDB's
@@ -176,7 +176,7 @@ Status keepOnly(Volume& level, mesh::Keep keep, float slack_m, Progress* progres
     if (progress) progress->begin("keep", 3);
     const openvdb::BoolGrid::Ptr inside = openvdb::tools::sdfInteriorMask(grid);
     if (inside->tree().empty()) return Done{};
-    if (inside->evalActiveVoxelBoundingBox().volume() > mostVoxels)
+    if (inside->evalActiveVoxelBoundingBox().volume() > mostVoxelsOfBox)
         return Error{Error::Kind::Budget, "more than 2^28 voxels to look for what floats: choose a larger --cell"};
     inside->tree().voxelizeActiveTiles();
     tick(progress);

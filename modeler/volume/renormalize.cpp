@@ -21,14 +21,15 @@ namespace {
 using openvdb::Coord;
 using openvdb::FloatGrid;
 using Leaf = openvdb::FloatTree::LeafNodeType;
-constexpr int side = static_cast<int>(Leaf::DIM);
+constexpr int leafSide = static_cast<int>(Leaf::DIM);
 
 /// Calls f(origin, leaves away) for all leaves up to `reach` away from the one at `origin`.
 template <class F>
 void forAround(Coord origin, int reach, const F& f) {
     for (int i = -reach; i <= reach; ++i)
         for (int j = -reach; j <= reach; ++j)
-            for (int k = -reach; k <= reach; ++k) f(origin.offsetBy(side * i, side * j, side * k), Vec3i{i, j, k});
+            for (int k = -reach; k <= reach; ++k)
+                f(origin.offsetBy(leafSide * i, leafSide * j, leafSide * k), Vec3i{i, j, k});
 }
 
 std::vector<Coord> sortedOnce(std::vector<Coord> origins) {
@@ -54,8 +55,8 @@ public:
         std::vector<Coord> origins;
         for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
             for (int below = 0; below < 8; ++below)
-                origins.push_back(
-                    leaf->origin().offsetBy(-side * (below & 1), -side * (below >> 1 & 1), -side * (below >> 2 & 1)));
+                origins.push_back(leaf->origin().offsetBy(-leafSide * (below & 1), -leafSide * (below >> 1 & 1),
+                                                          -leafSide * (below >> 2 & 1)));
         origins_ = sortedOnce(std::move(origins));
         surfaces_.resize(origins_.size());
         if (progress) progress->begin("isosurface", origins_.size());

@@ -1,11 +1,9 @@
 #include "viewer/window/window.h"
 
-#include <epoxy/gl.h>
-// GLFW comes after epoxy, which brings the GL declarations.
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
 #include <imgui.h>
 
 #include <algorithm>
