@@ -25,20 +25,21 @@ const Bonds& BondBuilder::asked() {
     return bonds;
 }
 
-/// Bonds that tell about a joint. A second run has to know all whom faces met.
-const Bonds& BondBuilder::bondsAt(ShapeId id, uint32_t index) {
-    if (areAsked_ || recorder_.recording()) return asked();
-    const Joint joint = tree_.joint(id, index);
-    if (!inPlanes_) inPlanes_ = std::make_unique<InPlanes>(tree_);
-    InPlanes& some = *inPlanes_;
-    if (joint.direction != Vec3d{} && some.planes.sideOf(joint) != AskedPlanes::Side::In) {
-        if (!some.planes.add(joint)) return asked();
-        some.bonds = {};
-        some.joints = {};
-        some.maker.restart();
-    }
-    some.maker.follow(some.bonds, nullptr);
-    return some.maker.isUnclear() ? asked() : some.bonds;
+/// What bonds in a few planes tell about a joint. A second run has to know all whom faces met.
+std::optional<JointState> BondBuilder::stateInPlanes(ShapeId id, uint32_t joint) {
+    if (areAsked_ || recorder_.recording()) return std::nullopt;
+    if (!inPlanes_) inPlanes_.emplace(tree_);
+    return inPlanes_->stateOf(id, joint);
+}
+
+bool BondBuilder::isBonded(ShapeId id, uint32_t joint) {
+    if (const auto state = stateInPlanes(id, joint)) return *state != JointState::Open;
+    return asked().at(id, joint) != none;
+}
+
+bool BondBuilder::isClosed(ShapeId id, uint32_t joint) {
+    if (const auto state = stateInPlanes(id, joint)) return *state == JointState::Closed;
+    return asked().closed(id, joint);
 }
 
 void BondBuilder::settle() {

@@ -3,9 +3,10 @@
 // somebody asks. Assumes one thread.
 #pragma once
 
-#include <memory>
+#include <optional>
 
 #include "grammar/derive/bond_maker.h"
+#include "grammar/derive/bonds_in_planes.h"
 #include "grammar/derive/recorder.h"
 
 namespace sgm::derive {
@@ -21,8 +22,8 @@ public:
     void revalidate(ShapeId id);
     /// Whether a joint is bonded at all, or closed by a directed bond. Where joints of few planes are asked for, faces
     /// in those alone are looked at.
-    bool isBonded(ShapeId id, uint32_t joint) { return bondsAt(id, joint).at(id, joint) != none; }
-    bool isClosed(ShapeId id, uint32_t joint) { return bondsAt(id, joint).closed(id, joint); }
+    bool isBonded(ShapeId id, uint32_t joint);
+    bool isClosed(ShapeId id, uint32_t joint);
     /// The bonds of all that stands. From the first time on they follow the tree: O(joints that came since).
     const Bonds& asked();
     /// Brings bonds that were asked for up to date, and lets others be made anew when somebody asks the tree.
@@ -39,16 +40,7 @@ public:
 
 private:
     void replay(const Mate& mate);
-    const Bonds& bondsAt(ShapeId id, uint32_t joint);
-
-    /// Bonds of the faces in some planes.
-    struct InPlanes {
-        explicit InPlanes(const ShapeTree& tree) : maker(tree, joints, &planes) {}
-        AskedPlanes planes;
-        JointIndex joints;
-        Bonds bonds;
-        BondMaker maker;
-    };
+    std::optional<JointState> stateInPlanes(ShapeId id, uint32_t joint);
 
     ShapeTree& tree_;
     JointIndex& joints_;
@@ -56,7 +48,7 @@ private:
     const Recorder& recorder_;
     BondMaker maker_;
     bool areAsked_ = false;
-    std::unique_ptr<InPlanes> inPlanes_;  ///< until all are asked for
+    std::optional<BondsInPlanes> inPlanes_;  ///< until all are asked for
 };
 
 }  // namespace sgm::derive

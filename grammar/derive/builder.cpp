@@ -18,7 +18,7 @@ uint64_t bytes(const List& list) {
 
 uint64_t Derivation::memory() const {
     const Bonds* const bonds = tree.bondsOnDemand.made();
-    return bytes(tree.shapes) + bytes(tree.mates) + bytes(tree.solids) + bytes(tree.extras) + bytes(steps) +
+    return tree.shapes.memory() + bytes(tree.mates) + bytes(tree.solids) + bytes(tree.extras) + bytes(steps) +
            bytes(materials) + (bonds ? bonds->memory() : 0);
 }
 
@@ -44,12 +44,12 @@ void TreeBuilder::warn(syntax::SourceSpan span, std::string message, std::string
 /// already.
 void TreeBuilder::linkChild(ShapeId parentId, ShapeId id, ShapeId before) {
     ShapeTree& t = tree();
-    Shape& parent = t.shapes[parentId];
+    ShapeRecord& parent = t.shapes.record(parentId);
     if (before == none) {
         if (parent.firstChild == none)
             parent.firstChild = id;
         else
-            t.shapes[parent.lastChild].nextSibling = id;
+            t.shapes.record(parent.lastChild).nextSibling = id;
         parent.lastChild = id;
         return;
     }
@@ -58,7 +58,7 @@ void TreeBuilder::linkChild(ShapeId parentId, ShapeId id, ShapeId before) {
         last = parent.firstChild == before ? none : parent.firstChild;
         while (last != none && t.shapes[last].nextSibling != before) last = t.shapes[last].nextSibling;
     }
-    (last == none ? parent.firstChild : t.shapes[last].nextSibling) = id;
+    (last == none ? parent.firstChild : t.shapes.record(last).nextSibling) = id;
     last = id;
 }
 
@@ -73,9 +73,9 @@ ShapeId TreeBuilder::add(Shape shape, ShapeId before) {
     }
     shape.madeBy = monitor_.step();
     if (shape.parent != none) {
-        Shape& parent = t.shapes[shape.parent];
+        const ShapeRecord& parent = t.shapes.record(shape.parent);
         shape.depth = parent.depth + 1;
-        if (shape.depth > monitor_.budget().depth) {
+        if (shape.depth > std::min(monitor_.budget().depth, Shapes::mostDepth)) {
             monitor_.fail(Error::Kind::Budget,
                           fmt::format("the budget of {} levels of depth is spent", monitor_.budget().depth), shape.span,
                           "a rule that makes itself again needs an end, such as 'when scope.x > .1m'");
@@ -86,7 +86,7 @@ ShapeId TreeBuilder::add(Shape shape, ShapeId before) {
         else if (before == none)
             shape.valuesAt = parent.valuesAt;
         // The root's box is only where the start begins: nothing stands there to be met.
-        if (shape.parent != 0 && shape.op == rules::Operator::None && shape.scope == parent.scope)
+        if (shape.parent != 0 && shape.op == rules::Operator::None && shape.scope == t.shapes.scopeOf(shape.parent))
             shape.sharesPlace = true;
         linkChild(shape.parent, id, before);
         shape.nextSibling = before;
@@ -101,7 +101,7 @@ ShapeId TreeBuilder::add(Shape shape, ShapeId before) {
 Extras& TreeBuilder::extras(ShapeId id) {
     if (isReplaying()) monitor_.diverge();
     if (recording()) recording()->made().annotated(id);
-    Shape& s = tree().shapes[id];
+    ShapeRecord& s = tree().shapes.record(id);
     if (s.extras == none) {
         s.extras = static_cast<uint32_t>(tree().extras.size());
         tree().extras.emplace_back();
@@ -149,21 +149,22 @@ const Surroundings& TreeBuilder::surroundings() {
 void TreeBuilder::clearContent(ShapeId id) {
     if (isReplaying()) return;
     ShapeTree& t = tree();
-    if (recording() && t.shapes[id].solid != none) recording()->made().cleared(id);
-    t.shapes[id].solid = none;
-    if (t.shapes[id].firstChild == none) return;
+    ShapeRecord& cleared = t.shapes.record(id);
+    if (recording() && cleared.solid != none) recording()->made().cleared(id);
+    cleared.solid = none;
+    if (cleared.firstChild == none) return;
     bonds_.asked();
     for (ShapeId s = t.next(id, id); s != none; s = t.next(s, id)) kill(s);
-    t.shapes[id].firstChild = t.shapes[id].lastChild = none;
+    cleared.firstChild = cleared.lastChild = none;
     killBound();
 }
 
 void TreeBuilder::kill(ShapeId id) {
-    Shape& dead = tree().shapes[id];
+    ShapeRecord& dead = tree().shapes.record(id);
     dead.dead = true;
     dead.live = false;
     ++deadCount_;
-    if (dead.symbol != rules::none) --counts_[dead.symbol];
+    if (const rules::SymbolId symbol = tree().shapes[id].symbol; symbol != rules::none) --counts_[symbol];
     bonds_.release(id);
 }
 
@@ -172,11 +173,11 @@ void TreeBuilder::killBound() {
     ShapeTree& t = tree();
     for (const auto& [cutter, origin] : bound_) {
         if (t.shapes[cutter].dead || !t.shapes[origin].dead) continue;
-        Shape& parent = t.shapes[t.shapes[cutter].parent];
+        ShapeRecord& parent = t.shapes.record(t.shapes[cutter].parent);
         ShapeId previous = none;
         for (ShapeId c = parent.firstChild; c != cutter && c != none; c = t.shapes[c].nextSibling) previous = c;
         const ShapeId next = t.shapes[cutter].nextSibling;
-        (previous == none ? parent.firstChild : t.shapes[previous].nextSibling) = next;
+        (previous == none ? parent.firstChild : t.shapes.record(previous).nextSibling) = next;
         if (parent.lastChild == cutter) parent.lastChild = previous;
         for (ShapeId s = cutter; s != none; s = t.next(s, cutter)) kill(s);
     }
@@ -203,28 +204,28 @@ std::vector<uint32_t> sweepShapes(Derivation& derivation) {
     }
     for (ShapeId s = 0; s < t.shapes.size(); ++s) {
         if (newId[s] == none) continue;
-        Shape shape = t.shapes[s];
+        ShapeRecord shape = t.shapes.record(s);
         for (ShapeId* link : {&shape.parent, &shape.firstChild, &shape.lastChild, &shape.nextSibling, &shape.valuesAt})
             *link = renamed(*link);
-        t.shapes[newId[s]] = shape;
+        t.shapes.record(newId[s]) = shape;
     }
-    t.shapes.resize(kept);
+    t.shapes.truncate(kept);
     for (LettersRead& read : derivation.letters) read.valuesAt = renamed(read.valuesAt);
     return newId;
 }
 
 void numberOccurrences(ShapeTree& t) {
     std::vector<uint32_t> seen(t.labels.size(), 0), touched;
-    for (const Shape& parent : t.shapes) {
-        for (ShapeId c = parent.firstChild; c != none; c = t.shapes[c].nextSibling) {
+    for (ShapeId parent = 0; parent < t.shapes.size(); ++parent) {
+        for (ShapeId c = t.shapes[parent].firstChild; c != none; c = t.shapes[c].nextSibling) {
             uint32_t& count = seen[t.shapes[c].label];
             if (count++ == 0) touched.push_back(t.shapes[c].label);
-            t.shapes[c].occurrence = count;
+            t.shapes.record(c).occurrence = count;
         }
         for (const uint32_t label : touched) seen[label] = 0;
         touched.clear();
     }
-    t.shapes[0].occurrence = 1;
+    t.shapes.record(0).occurrence = 1;
 }
 
 }  // namespace
@@ -250,6 +251,9 @@ void TreeBuilder::finish() {
     }
     numberOccurrences(tree());
     finishReliefs(derivation_);
+    tree().shapes.shrink();
+    tree().mates.shrink();
+    derivation_.steps.shrink();
 }
 
 }  // namespace sgm::derive

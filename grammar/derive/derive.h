@@ -79,7 +79,7 @@ struct DerivationCounts {
 struct Derivation : DerivationInput, DerivationCounts {
     std::shared_ptr<const rules::Grammar> grammar;
     ShapeTree tree;
-    PageVector<Step> steps;
+    PageArray<Step> steps;
     std::vector<Closed> closed;        ///< one an element, in the order they first met a closed joint
     std::vector<Warning> warnings;     ///< in the order they were met, the first few hundred
     std::vector<Material> materials;   ///< the grammar's, then those given by attributes

@@ -139,10 +139,10 @@ private:
 
     /// The copy's root becomes the last child of the shape that holds the object.
     void attach(ShapeId root) {
-        Shape& holder = tree_.shapes[at_];
-        tree_.shapes[root].parent = at_;
-        tree_.shapes[root].occurrence = 1;
-        (holder.lastChild == none ? holder.firstChild : tree_.shapes[holder.lastChild].nextSibling) = root;
+        ShapeRecord& holder = tree_.shapes.record(at_);
+        tree_.shapes.record(root).parent = at_;
+        tree_.shapes.record(root).occurrence = 1;
+        (holder.lastChild == none ? holder.firstChild : tree_.shapes.record(holder.lastChild).nextSibling) = root;
         holder.lastChild = root;
     }
 
@@ -185,14 +185,14 @@ void graftMass(Derivation& into, ShapeId at, const Derivation& object, const Pos
     cube.kind = rules::Solid::Kind::Primitive;
     cube.primitive = field::findPrimitive("cube");
     held.tree.solids.push_back(std::move(cube));
-    held.tree.shapes.push_back(Shape{});
-    Shape& box = held.tree.shapes.back();
+    Shape box;
     box.key = object.tree.shapes[0].key;
     box.solid = 0;
     box.meetsNobody = true;
     box.material = mass->material;
     box.scope = mass->box;
     box.span = object.tree.shapes[0].span;
+    held.tree.shapes.push_back(box);
     graft(into, at, held, pose);
 }
 

@@ -94,6 +94,7 @@ bool IncrementalDerivation::follow(const Options& options, Progress* progress) {
     }
     if (!builder.bonds().revalidateContacts() || !recording.isReplayable()) return false;
     builder.bonds().settle();
+    d.tree.shapes.shrink();
     recording.endAgain();
     builder.monitor().watch(nullptr);
     return true;

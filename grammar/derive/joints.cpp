@@ -131,12 +131,21 @@ JointIndex::Spot JointIndex::expect(const Joint& joint) const {
     return spot;
 }
 
-std::optional<JointIndex::Entry> JointIndex::add(const ShapeTree& tree, Entry entry, const Joint& joint, Spot spot) {
+std::optional<JointIndex::Entry> JointIndex::facing(const ShapeTree& tree, const Joint& joint, Spot spot) const {
     std::optional<Entry> partner;
     if (spot.inside)
         search(tree, opposite(spot.cell), joint, partner);
     else
         forCells(offset(joint.point), -joint.direction, [&](uint64_t cell) { search(tree, cell, joint, partner); });
+    return partner;
+}
+
+std::optional<JointIndex::Entry> JointIndex::newestFacing(const ShapeTree& tree, const Joint& joint) const {
+    return facing(tree, joint, expect(joint));
+}
+
+std::optional<JointIndex::Entry> JointIndex::add(const ShapeTree& tree, Entry entry, const Joint& joint, Spot spot) {
+    const auto partner = facing(tree, joint, spot);
     enter({spot.cell, entry});
     return partner;
 }

@@ -38,6 +38,10 @@ public:
     Spot expect(const Joint& joint) const;
     /// Adds the joint and returns the newest living one that faces it, if any.
     std::optional<Entry> add(const ShapeTree& tree, Entry entry, const Joint& joint, Spot spot);
+    /// Adds the joint alone.
+    void put(Entry entry, Spot spot) { enter({spot.cell, entry}); }
+    /// The newest living joint that faces this one, if any.
+    std::optional<Entry> newestFacing(const ShapeTree& tree, const Joint& joint) const;
     /// For a joint that moved: enters its new spot. The old one may stay, for a joint is found only where it stands.
     void move(Entry entry, Spot spot);
     /// Calls f with every entry that faces the joint, some of them twice.
@@ -68,6 +72,7 @@ private:
         Entry entry;        ///< of no shape: the slot is empty
     };
     static std::vector<uint64_t> cellsFacing(const Joint& joint);
+    std::optional<Entry> facing(const ShapeTree& tree, const Joint& joint, Spot spot) const;
     void grow();
     void enter(Slot slot);
     bool insert(Slot slot);

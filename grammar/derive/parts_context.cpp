@@ -132,7 +132,8 @@ bool PartsContext::cutting(const std::function<bool()>& run) {
     ShapeTree& tree = interpreter_.builder_.tree();
     const ShapeId before = tree.shapes[frame_.node].lastChild;
     if (!run()) return false;
-    eachNew(tree, frame_.node, before, [&](ShapeId s) { tree.shapes[s].op = rules::Operator::Difference; });
+    eachNew(tree, frame_.node, before,
+            [&](ShapeId s) { tree.shapes.record(s).op = static_cast<uint32_t>(rules::Operator::Difference); });
     return true;
 }
 

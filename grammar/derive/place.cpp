@@ -124,7 +124,7 @@ void Interpreter::annotate(const Element& e, Frame& frame, uint64_t key) {
         all.laid = true;
         if (frame.place.scope != builder_.tree().shapes[frame.node].scope) all.laidScope = frame.place.scope;
     }
-    if (!x.values.empty()) frame.place.valuesAt = builder_.tree().shapes[frame.node].valuesAt = frame.node;
+    if (!x.values.empty()) frame.place.valuesAt = builder_.tree().shapes.record(frame.node).valuesAt = frame.node;
 }
 
 bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint64_t key, bool followed) {

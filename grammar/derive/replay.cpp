@@ -64,13 +64,13 @@ ShapeId TreeBuilder::replayShape(const Shape& made) {
         monitor_.diverge();
         return none;
     }
-    Shape& known = t.shapes[id];
+    const Shape known = t.shapes[id];
     const auto told = [](const Shape& s) {
         return std::tie(s.key, s.parent, s.symbol, s.label, s.jointSet, s.material, s.extras, s.chainRule, s.op,
                         s.span.source, s.span.begin, s.span.end);
     };
     const bool shares = made.parent != none && made.parent != 0 && made.op == rules::Operator::None &&
-                        made.scope == t.shapes[made.parent].scope;
+                        made.scope == t.shapes.scopeOf(made.parent);
     const bool cleared = recording()->made().isCleared(id);
     if (recording()->made().isAnnotated(id) || told(known) != told(made) || known.madeBy != monitor_.step() ||
         shares != known.sharesPlace || (!cleared && known.solid != made.solid)) {
@@ -83,9 +83,8 @@ ShapeId TreeBuilder::replayShape(const Shape& made) {
     if (made.scope.axes != known.scope.axes) change |= ShapeChanges::Turned;
     if (!(made.scope == known.scope)) change |= ShapeChanges::Moved;
     if (change == 0) return id;
-    known.amount = made.amount;
-    known.blend_m = made.blend_m;
-    known.scope = made.scope;
+    t.shapes.setJoining(id, {made.amount, made.blend_m});
+    t.shapes.setScope(id, made.scope);
     recording()->changes().add(t, id, change);
     return id;
 }

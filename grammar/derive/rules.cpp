@@ -145,7 +145,7 @@ bool Interpreter::runLogged(const rules::Body& body, const Frame& frame, Step st
 
 void Interpreter::apply(uint32_t index, ShapeId id, uint32_t generation) {
     const Rule& rule = grammar_.rules[index];
-    builder_.tree().shapes[id].live = false;
+    builder_.tree().shapes.record(id).live = false;
     locals_.assign(rule.locals, {});
     if (rule.repeat) return runChain(index, id, generation);
     chainRule_ = none;
@@ -175,7 +175,7 @@ void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
         frame.place.ramp = steps > 1 ? (i - 1) / (steps - 1) : 0;
         if (rule.stepLocal != none) count(rule.stepLocal, i, key);
         if (!canGrow(rule.body, host, frame.place)) break;
-        if (!rule.body.grows) builder_.clearContent(host), builder_.tree().shapes[host].live = false;
+        if (!rule.body.grows) builder_.clearContent(host), builder_.tree().shapes.record(host).live = false;
         state.ownSymbol = false;
         if (!runLogged(rule.body, frame,
                        {index, host, generation, static_cast<uint32_t>(i), rule.morphic, false, 0, 0}))

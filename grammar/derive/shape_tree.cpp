@@ -23,14 +23,17 @@ uint32_t ShapeTree::jointCount(ShapeId id) const {
 }
 
 Joint ShapeTree::joint(ShapeId id, uint32_t index) const {
-    const Shape& s = shapes[id];
+    const ShapeRecord& s = shapes.record(id);
+    const Mat3& axes = shapes.axesOf(id);
+    const auto placed = [&](std::string_view name, Vec3d at, Vec3d facing) {
+        return Joint{name, s.centre + axes * (at * (s.size * 0.5)), axes * facing};
+    };
     if (index < firstNamedJoint) {
         const Vec3d d = faceDirection(index);
-        return {faceName(index), s.scope.point(d), s.scope.axes * d};
+        return placed(faceName(index), d, d);
     }
-    const uint32_t i = index - firstNamedJoint;
-    const rules::Joint& named = namedJoints[s.jointSet][i];
-    return {named.name, s.scope.point(named.at), s.scope.axes * named.facing};
+    const rules::Joint& named = namedJoints[shapes[id].jointSet][index - firstNamedJoint];
+    return placed(named.name, named.at, named.facing);
 }
 
 uint32_t ShapeTree::findJoint(ShapeId id, std::string_view name) const {
@@ -57,7 +60,7 @@ namespace {
 
 /// Counted on the fly while the tree still grows.
 uint32_t occurrenceOf(const ShapeTree& tree, ShapeId id) {
-    const Shape& s = tree.shapes[id];
+    const Shape s = tree.shapes[id];
     if (s.occurrence || s.parent == none) return s.occurrence;
     uint32_t n = 1;
     for (ShapeId c = tree.shapes[s.parent].firstChild; c != none && c != id; c = tree.shapes[c].nextSibling)
@@ -75,7 +78,7 @@ std::string ShapeTree::path(ShapeId id, bool whole) const {
         if (shapes[s].depth < shown || depth - shapes[s].depth < shown) line.push_back(s);
     std::string text;
     for (auto it = line.rbegin(); it != line.rend(); ++it) {
-        const Shape& s = shapes[*it];
+        const Shape s = shapes[*it];
         if (!text.empty()) text += '/';
         if (it != line.rbegin() && s.depth > shapes[it[-1]].depth + 1) text += "…/";
         text += labels[s.label];
@@ -130,13 +133,13 @@ ShapeId ShapeTree::find(std::string_view path) const {
 }
 
 Scope ShapeTree::contentBox(ShapeId root) const {
-    const Scope& own = shapes[root].scope;
+    const Scope own = shapes.scopeOf(root);
     const Mat3 localFromWorld = own.axes.transposed();
     Box3d box;
     for (ShapeId s = root; s != none;) {
         const bool cuts = s != root && shapes[s].op == rules::Operator::Difference;
         if (!cuts && shapes[s].solid != none) {
-            const Scope& scope = shapes[s].scope;
+            const Scope scope = shapes.scopeOf(s);
             const Mat3 axes = localFromWorld * scope.axes;
             const Vec3d centre = localFromWorld * (scope.centre - own.centre), h = scope.half();
             Vec3d reach;

@@ -10,25 +10,12 @@
 
 #include "grammar/derive/bonds.h"
 #include "grammar/derive/footprints.h"
+#include "grammar/derive/shapes.h"
 #include "grammar/rules/grammar.h"
-#include "modeler/core/pages.h"
 #include "modeler/core/provenance.h"
 #include "modeler/core/vec.h"
 
 namespace sgm::derive {
-
-/// An oriented box: centre, axes, size in metres; and what it holds of the plan.
-struct Scope {
-    Vec3d centre;
-    Mat3 axes;                  ///< world from local
-    Vec3d size{1, 1, 1};        ///< metres, > 0
-    uint32_t footprint = none;  ///< index into ShapeTree::footprints; none: the whole rectangle
-
-    Vec3d half() const { return size * 0.5; }
-    /// The point at `shares` (−1 … 1) of the half-size.
-    Vec3d point(Vec3d shares) const { return centre + axes * (shares * half()); }
-    friend bool operator==(const Scope&, const Scope&) = default;
-};
 
 /// A joint point J = (P, D), eq. 15, in the object's frame.
 struct Joint {
@@ -83,57 +70,24 @@ struct Extras {
     }
 };
 
-/// Where a shape stands in the tree.
-struct ShapeLinks {
-    ShapeId parent = none;
-    ShapeId firstChild = none, lastChild = none, nextSibling = none;  ///< children in joining order
-    uint32_t occurrence = 0;  ///< 1 for the first child of this label under its parent; 0: not yet counted
-    uint32_t depth = 0;       ///< 0 at the root
-};
-
-/// What a shape holds and looks like.
-struct ShapeContent {
-    uint32_t solid = none;                       ///< index into ShapeTree::solids
-    uint32_t material = none;                    ///< index into Derivation::materials; none inherits
-    uint32_t extras = none;                      ///< index into ShapeTree::extras
-    rules::Operator op = rules::Operator::None;  ///< how it joins what its parent holds so far; None: as its content
-    double amount = 0.5;                         ///< for op Morph: a (`by`)
-    double blend_m = 0;                          ///< blends into what stands with this radius
-};
-
-/// A node of the shape tree. Its field is its own solid combined with its children in order.
-struct Shape : ShapeLinks, ShapeContent {
-    uint64_t key = 0;  ///< hash(parent's key, rule, label, ordinal, repeat index): its random stream
-    rules::SymbolId symbol = rules::none;  ///< none for an anonymous solid or group
-    uint32_t label = 0;                    ///< index into ShapeTree::labels: symbol or primitive name
-    ShapeId valuesAt = none;               ///< nearest shape, itself or above, that sets values by `with`
-    uint32_t jointSet = 0;                 ///< index into ShapeTree::namedJoints
-    uint32_t madeBy = none;                ///< step that made it; none for the start
-    uint32_t chainRule = none;  ///< the `repeat` rule whose chain it is a link of: starts no such chain itself
-    bool live = false;          ///< rules may still rewrite it
-    bool dead = false;          ///< replaced; swept away before `derive` returns
-    bool sharesPlace = false;   ///< its joints are those of its parent, whose scope it fills
-    bool meetsNobody = false;   ///< its faces bond with none that they coincide with
-    Scope scope;
-    syntax::SourceSpan span;  ///< the text that made it
-};
-
 /// The shape tree; shapes[0] is the root.
 struct ShapeTree {
-    PageVector<Shape> shapes;
+    Shapes shapes;
     std::vector<SolidValue> solids;
     std::vector<Extras> extras;
     std::vector<std::string> labels;
     std::vector<std::vector<rules::Joint>> namedJoints;  ///< sets of declared joints; set 0 is empty
     Footprints footprints;
-    PageVector<Mate> mates;       ///< what placed newcomers, in their order
+    PageArray<Mate> mates;        ///< what placed newcomers, in their order
     BondsOnDemand bondsOnDemand;  ///< what `bonds` made
 
     const SolidValue* solidOf(ShapeId id) const {
-        return shapes[id].solid == none ? nullptr : &solids[shapes[id].solid];
+        const uint32_t solid = shapes.record(id).solid;
+        return solid == none ? nullptr : &solids[solid];
     }
     const Extras* extrasOf(ShapeId id) const {
-        return shapes[id].extras == none ? nullptr : &extras[shapes[id].extras];
+        const uint32_t index = shapes.record(id).extras;
+        return index == none ? nullptr : &extras[index];
     }
     /// The joints of a shape are 0 … jointCount − 1.
     uint32_t jointCount(ShapeId id) const;

@@ -170,7 +170,7 @@ private:
     }
 
     const Model& model_;
-    const PageVector<derive::Shape>& shapes_;
+    const derive::Shapes& shapes_;
     const std::vector<lower::ThinPart>& missing_;
     std::vector<bool> isMissing_;  ///< by shape
 };

@@ -39,6 +39,8 @@ Status graftAll(Derivation& model, const PlacedModels& objects, bool copies, con
     }
     for (derive::Extras& extras : model.tree.extras) extras.object = derive::none;
     model.objects = {};
+    model.tree.shapes.shrink();
+    model.steps.shrink();
     return Done{};
 }
 

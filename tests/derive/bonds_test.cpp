@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 
+#include "grammar/derive/bonds_in_planes.h"
 #include "grammar/derive/incremental_derivation.h"
 #include "grammar/derive/joints.h"
 #include "grammar/derive/session.h"
@@ -141,6 +142,63 @@ TEST(Bonds, OfAskedPlanesAnswerAsAllWould) {
         EXPECT_FALSE(inPlanes->closed.empty());
         EXPECT_EQ(pairsOf(inPlanes->tree.bonds()), Definition(inPlanes->tree).bonds());
     }
+}
+
+/// Boxes on a lattice, some turned, that come one after the other, and some of them by a mate.
+class Boxes {
+public:
+    explicit Boxes(uint64_t seed) : seed_(seed) {
+        tree.namedJoints.resize(2);
+        tree.namedJoints[1].push_back({"tip", {0, 0, 1}, {0, 0, 1}});
+        tree.namedJoints[1].push_back({"heart", {}, {}});
+        Shape root;
+        root.meetsNobody = true;
+        tree.shapes.push_back(root);
+    }
+    uint32_t drawn(uint32_t of) { return static_cast<uint32_t>(pick(combine(seed_, ++draws_), of)); }
+    void add() {
+        const auto id = static_cast<ShapeId>(tree.shapes.size());
+        Shape s;
+        s.parent = id > 3 && drawn(6) == 0 ? drawn(id) : 0;
+        s.scope.centre = {drawn(4) * .5, drawn(3) * .5, drawn(2) * 1.0};
+        if (drawn(4) == 0) s.scope.axes = Mat3::rotation({0, 1, 0}, drawn(8) * 3.14159265358979323846 / 4);
+        s.jointSet = drawn(5) == 0;
+        s.meetsNobody = drawn(9) == 0;
+        if (s.parent != 0) s.scope = tree.shapes.scopeOf(s.parent), s.sharesPlace = drawn(2) == 0;
+        tree.shapes.push_back(s);
+        if (id > 1 && drawn(3) == 0) {
+            const ShapeId host = drawn(id);
+            tree.mates.push_back({host, drawn(tree.jointCount(host)), id, drawn(tree.jointCount(id))});
+        }
+    }
+    ShapeTree tree;
+
+private:
+    uint64_t seed_, draws_ = 0;
+};
+
+/// Questions while shapes come: each is answered as by the bonds of all that stand.
+TEST(Bonds, InPlanesAreThoseOfAllAtAnyTime) {
+    size_t asked = 0, closed = 0, bonded = 0;
+    for (uint64_t seed = 1; seed <= 600; ++seed) {
+        Boxes boxes(seed);
+        BondsInPlanes inPlanes(boxes.tree);
+        for (int i = 0; i < 60; ++i) {
+            boxes.add();
+            if (boxes.drawn(3) != 0) continue;
+            const ShapeId id = boxes.drawn(static_cast<uint32_t>(boxes.tree.shapes.size()));
+            const uint32_t joint = seed % 3 == 0 ? boxes.drawn(boxes.tree.jointCount(id)) : 4 + boxes.drawn(2);
+            const auto state = inPlanes.stateOf(id, joint);
+            if (!state) break;
+            const Bonds all = bondsOf(boxes.tree);
+            ASSERT_EQ(*state != JointState::Open, all.at(id, joint) != none) << "seed " << seed << " shape " << id;
+            ASSERT_EQ(*state == JointState::Closed, all.closed(id, joint)) << "seed " << seed << " shape " << id;
+            ++asked, closed += all.closed(id, joint), bonded += *state == JointState::Bonded;
+        }
+    }
+    EXPECT_GT(asked, 3000u);
+    EXPECT_GT(closed, 500u);
+    EXPECT_GT(bonded, 100u);
 }
 
 TEST(Bonds, FollowAChangeThatNobodyAsked) {

@@ -67,7 +67,7 @@ inline derive::Options way(const std::string& name) {
 }
 
 /// The shape at a path, asserted to exist.
-inline const derive::Shape& at(const derive::Derivation& d, const std::string& path) {
+inline derive::Shape at(const derive::Derivation& d, const std::string& path) {
     const derive::ShapeId id = d.tree.find(path);
     EXPECT_NE(id, derive::none) << path << "\n" << derive::toText(d, true);
     return d.tree.shapes[id == derive::none ? 0 : id];

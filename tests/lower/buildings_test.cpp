@@ -39,10 +39,10 @@ bool airBetween(const Lowered& model, Vec3f a, Vec3f b) {
     return true;
 }
 
-std::vector<const derive::Shape*> shapesCalled(const derive::Derivation& d, const std::string& label) {
-    std::vector<const derive::Shape*> found;
+std::vector<derive::Shape> shapesCalled(const derive::Derivation& d, const std::string& label) {
+    std::vector<derive::Shape> found;
     for (const derive::Shape& s : d.tree.shapes)
-        if (d.tree.labels[s.label] == label) found.push_back(&s);
+        if (d.tree.labels[s.label] == label) found.push_back(s);
     return found;
 }
 
@@ -89,7 +89,7 @@ TEST(House, EveryCharacteristicOfAStoreyRunsLinearly) {
     const mesh::Mesh mesh = meshed(d, 0.2f);
     for (size_t i = 0; i < 5; ++i) {
         const double t = static_cast<double>(i) / 4;
-        const derive::Scope& scope = storeys[i]->scope;
+        const derive::Scope& scope = storeys[i].scope;
         const Vec3d size = Vec3d{20, 5, 16} + (Vec3d{12, 3, 8} - Vec3d{20, 5, 16}) * t;
         expectNear(scope.size, size);
         const Vec3f window = (scope.centre + Vec3d{0, -.2, .1 - size.z / 2}).as<float>();
@@ -111,7 +111,7 @@ TEST(House, ConvexFloorsAreFourSumsConcaveOnesFourDifferences) {
     const auto sides = [](const std::string& bulge, const std::string& label, rules::Operator op) {
         const auto d = derived(house("floors = 2 bays = 1 deep = 1 bulgelo = " + bulge + " bulgehi = " + bulge));
         size_t count = 0;
-        for (const derive::Shape* s : shapesCalled(d, label)) count += s->op == op && s->scope.centre.y > 2.2;
+        for (const derive::Shape& s : shapesCalled(d, label)) count += s.op == op && s.scope.centre.y > 2.2;
         return count;
     };
     EXPECT_EQ(sides(".8m", "Oriel", rules::Operator::Sum), 4u);
@@ -121,8 +121,8 @@ TEST(House, ConvexFloorsAreFourSumsConcaveOnesFourDifferences) {
 
 TEST(House, GluedWallsDontGrow) {
     const auto d = derived(house("floors = 4"));
-    for (const derive::Shape* s : shapesCalled(d, "Storey")) {
-        const auto id = static_cast<derive::ShapeId>(s - d.tree.shapes.data());
+    for (derive::ShapeId id = 0; id < d.tree.shapes.size(); ++id) {
+        if (d.tree.labels[d.tree.shapes[id].label] != "Storey") continue;
         EXPECT_TRUE(d.tree.bonds().closed(id, 2) &&
                     d.tree.bonds().closed(id, 3));  // +y, -y: floors, the roof, the plinth
         EXPECT_FALSE(d.tree.bonds().closed(id, 0) || d.tree.bonds().closed(id, 5));
@@ -158,9 +158,9 @@ TEST(House, TheRoofIsClosedFromPyramidToSphere) {
 TEST(House, SetbacksTwistsAndCourtyards) {
     const auto set = derived(house("floors = 9 tier = 3 lowest = (20, 4, 20) topmost = (10, 4, 10)"));
     const auto storeys = shapesCalled(set, "Storey");
-    for (size_t i = 0; i < 9; ++i) EXPECT_NEAR(storeys[i]->scope.size.x, 20 - 5.0 * static_cast<double>(i / 3), 1e-9);
+    for (size_t i = 0; i < 9; ++i) EXPECT_NEAR(storeys[i].scope.size.x, 20 - 5.0 * static_cast<double>(i / 3), 1e-9);
     const auto twisted = derived(house("floors = 10 spin = 5deg"));
-    EXPECT_NEAR(shapesCalled(twisted, "Storey").back()->scope.axes.x.x, std::cos(45 * 3.14159265358979 / 180), 1e-9);
+    EXPECT_NEAR(shapesCalled(twisted, "Storey").back().scope.axes.x.x, std::cos(45 * 3.14159265358979 / 180), 1e-9);
     const Lowered court(house("floors = 2 court = .5 rooms = none lowest = (30, 4, 30) topmost = (30, 4, 30)"));
     EXPECT_TRUE(airBetween(court, {0, 30, 0}, {0, -1.9f, 0}));
     EXPECT_NEAR(airAlong(court, {0, 1.8f, 0}, 0), 15, 0.02);  // above the windows

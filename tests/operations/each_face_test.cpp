@@ -22,11 +22,11 @@ TEST(EachFace, SidesAreAsLongAsTheirEdgesAndLookOutward) {
     const auto bays = shapesCalled(d, "bay");
     ASSERT_EQ(bays.size(), 6u);
     double around = 0;
-    for (const Shape* bay : bays) {
-        around += bay->scope.size.x;
-        EXPECT_NEAR(bay->scope.size.y, 3, 1e-9);
-        EXPECT_NEAR(bay->scope.axes.y.y, 1, 1e-12);
-        EXPECT_NEAR(dot(cross(bay->scope.axes.x, bay->scope.axes.y), bay->scope.axes.z), 1, 1e-12);
+    for (const Shape& bay : bays) {
+        around += bay.scope.size.x;
+        EXPECT_NEAR(bay.scope.size.y, 3, 1e-9);
+        EXPECT_NEAR(bay.scope.axes.y.y, 1, 1e-12);
+        EXPECT_NEAR(dot(cross(bay.scope.axes.x, bay.scope.axes.y), bay.scope.axes.z), 1, 1e-12);
     }
     EXPECT_NEAR(around, 56, 1e-9) << "the outline's length";
 }
@@ -42,18 +42,18 @@ TEST(EachFace, WordsAndTagsChooseEdges) {
 
 TEST(EachFace, ANewcomerStandsOutsideOfTheWall) {
     const Derivation d = house("+ bay size (1, 1, .4m) at each(front)", "rect(10, 6)");
-    const Shape& bay = *shapesCalled(d, "bay")[0];
+    const Shape bay = shapesCalled(d, "bay")[0];
     expectNear(bay.scope.centre, {0, 2.5, 3.2});
     const Derivation centred = house("+ bay size (1, 1, .4m) at each(front) to centre", "rect(10, 6)");
-    expectNear(shapesCalled(centred, "bay")[0]->scope.centre, {0, 2.5, 3});
+    expectNear(shapesCalled(centred, "bay")[0].scope.centre, {0, 2.5, 3});
 }
 
 TEST(EachFace, CornersThatStandOutAlone) {
     EXPECT_EQ(shapesCalled(house("+ bay size (1, 100%, 1) at each(corner) to centre"), "bay").size(), 5u);
     const Derivation d = house("+ bay size (1, 100%, 1) at each(corner) to centre", "rect(10, 6)");
-    for (const Shape* bay : shapesCalled(d, "bay")) {
-        EXPECT_NEAR(std::abs(bay->scope.centre.x), 5, 1e-9);
-        EXPECT_NEAR(std::abs(bay->scope.axes.z.x), std::sqrt(.5), 1e-9);
+    for (const Shape& bay : shapesCalled(d, "bay")) {
+        EXPECT_NEAR(std::abs(bay.scope.centre.x), 5, 1e-9);
+        EXPECT_NEAR(std::abs(bay.scope.axes.z.x), std::sqrt(.5), 1e-9);
     }
 }
 
@@ -68,8 +68,8 @@ TEST(EachFace, SlopesOfRoofsLieOnTheRoof) {
             const Derivation d = derived(text + " + bay size .2m at each(slope)\n");
             const auto bays = shapesCalled(d, "bay");
             EXPECT_FALSE(bays.empty()) << roof << " over " << plan;
-            for (const Shape* bay : bays)
-                EXPECT_NEAR(alone.value(bay->scope.centre.as<float>()), 0, 1e-4) << roof << " over " << plan;
+            for (const Shape& bay : bays)
+                EXPECT_NEAR(alone.value(bay.scope.centre.as<float>()), 0, 1e-4) << roof << " over " << plan;
         }
     }
 }
@@ -83,9 +83,9 @@ TEST(EachFace, GablesEavesAndApexesHaveTheirPlaces) {
     const Derivation d = derived(text);
     EXPECT_EQ(shapesCalled(d, "bay").size(), 2u);
     ASSERT_EQ(shapesCalled(d, "gutter").size(), 2u);
-    EXPECT_NEAR(shapesCalled(d, "gutter")[0]->scope.size.x, 12, 1e-9);
+    EXPECT_NEAR(shapesCalled(d, "gutter")[0].scope.size.x, 12, 1e-9);
     ASSERT_EQ(shapesCalled(d, "top").size(), 1u);
-    EXPECT_NEAR(shapesCalled(d, "top")[0]->scope.centre.y, -.5 + 4 + .1, .02) << "4 m above the eaves";
+    EXPECT_NEAR(shapesCalled(d, "top")[0].scope.centre.y, -.5 + 4 + .1, .02) << "4 m above the eaves";
 }
 
 TEST(EachFace, RidgesHipsAndValleysAreWhereSlopesMeet) {
@@ -93,7 +93,7 @@ TEST(EachFace, RidgesHipsAndValleysAreWhereSlopesMeet) {
         const Derivation d = derived("grammar 1\nterminal bay = cube\nstart A -> footprint " + plan + " " + roof +
                                      " + bay size (100%, .2m, .2m) at each(" + kind + ")\n");
         std::vector<double> lengths;
-        for (const Shape* bay : shapesCalled(d, "bay")) lengths.push_back(bay->scope.size.x);
+        for (const Shape& bay : shapesCalled(d, "bay")) lengths.push_back(bay.scope.size.x);
         return lengths;
     };
     const auto expect = [](const std::vector<double>& found, const std::vector<double>& expected) {
@@ -123,11 +123,11 @@ TEST(EachFace, LinesOfRoofsLieOnTheRoof) {
             const Lowered alone(text + "\n");
             for (const std::string kind : {"ridge", "hip", "valley"}) {
                 const Derivation d = derived(text + " + bay size (100%, .2m, .2m) at each(" + kind + ")\n");
-                for (const Shape* bay : shapesCalled(d, "bay"))
+                for (const Shape& bay : shapesCalled(d, "bay"))
                     for (const double at : {-.45, -.2, .1, .45}) {
-                        const Vec3d p = bay->scope.point({2 * at, 0, 0});
+                        const Vec3d p = bay.scope.point({2 * at, 0, 0});
                         EXPECT_NEAR(alone.value(p.as<float>()), 0, 1e-4) << roof << " over " << plan << " " << kind;
-                        EXPECT_GT(bay->scope.axes.y.y, .2) << "upright";
+                        EXPECT_GT(bay.scope.axes.y.y, .2) << "upright";
                     }
             }
         }

@@ -18,10 +18,10 @@ plan::Footprint footprintOf(const Derivation& d, const Shape& s) {
 }
 
 /// All shapes of a label that hold a solid.
-std::vector<const Shape*> solidsCalled(const Derivation& d, const std::string& label) {
-    std::vector<const Shape*> found;
+std::vector<Shape> solidsCalled(const Derivation& d, const std::string& label) {
+    std::vector<Shape> found;
     for (const Shape& s : d.tree.shapes)
-        if (s.solid != derive::none && d.tree.labels[s.label] == label) found.push_back(&s);
+        if (s.solid != derive::none && d.tree.labels[s.label] == label) found.push_back(s);
     return found;
 }
 
@@ -31,7 +31,7 @@ double areaOf(const std::string& text) {
     const auto walls = solidsCalled(d, "wall");
     EXPECT_EQ(walls.size(), 1u);
     if (walls.empty()) return 0;
-    const Shape& s = *walls[0];
+    const Shape& s = walls[0];
     return s.scope.footprint == derive::none ? s.scope.size.x * s.scope.size.z : area(footprintOf(d, s));
 }
 
@@ -43,7 +43,7 @@ std::string errorOf(const std::string& text) {
 TEST(Footprints, APlanInMetresSetsTheSizeAndAnExtrusionKeepsTheFoot) {
     const Derivation d = derived(
         "grammar 1\nterminal wall\nstart A -> footprint ell(16, 12, 6, 5) extrude 7m Mass\nrule Mass -> wall\n");
-    const Shape& s = *solidsCalled(d, "wall")[0];
+    const Shape s = solidsCalled(d, "wall")[0];
     expectNear(s.scope.size, {16, 7, 12});
     expectNear(s.scope.centre, {0, -.5 + 3.5, 0});  // the root's foot is at -.5
     EXPECT_NEAR(area(footprintOf(d, s)), 16 * 6 + 5 * 6, 1e-9);
@@ -53,7 +53,7 @@ TEST(Footprints, ATerminalWithoutASolidFillsItAndACubeIsABox) {
     const std::string plan = "start A -> footprint ell(16, 12, 6, 5) extrude 4m ";
     const Lowered wall("grammar 1\nterminal wall\n" + plan + "wall\n"), cube("grammar 1\n" + plan + "cube\n");
     const Derivation& d = wall.derivation;
-    const Shape& s = *solidsCalled(d, "wall")[0];
+    const Shape s = solidsCalled(d, "wall")[0];
     const plan::Footprint footprint = footprintOf(d, s);
     size_t tried = 0;
     for (uint64_t i = 0; i < 2000; ++i) {
@@ -97,7 +97,7 @@ TEST(Footprints, OffsetSetbackCourtAndInnerChangeThePlan) {
 TEST(Footprints, ASetbackMovesTheScopeToWhatIsLeft) {
     const Derivation d =
         derived("grammar 1\nterminal wall\nstart A -> footprint rect(10, 6) setback edges(front: 2m) wall\n");
-    expectNear(solidsCalled(d, "wall")[0]->scope.centre, {0, 0, -1}, 1e-3);
+    expectNear(solidsCalled(d, "wall")[0].scope.centre, {0, 0, -1}, 1e-3);
 }
 
 TEST(Footprints, WhereNothingIsLeftNoShapeIsMade) {
@@ -111,7 +111,7 @@ TEST(Footprints, ASplitClipsThem) {
     const Derivation d = derived(
         "grammar 1\nterminal wall, glass\nstart A -> footprint ell(16, 12, 6, 5) extrude 4m Mass\n"
         "rule Mass -> split x { 4m: wall | ~1: glass }\n");
-    const Shape &wall = *solidsCalled(d, "wall")[0], &glass = *solidsCalled(d, "glass")[0];
+    const Shape wall = solidsCalled(d, "wall")[0], glass = solidsCalled(d, "glass")[0];
     EXPECT_NEAR(wall.scope.size.x, 4, 1e-9);
     EXPECT_EQ(wall.scope.footprint, derive::none) << "a rectangle is a box";
     EXPECT_NEAR(area(footprintOf(d, glass)), 16 * 6 + 5 * 6 - 4 * 12, 1e-3);
@@ -121,7 +121,7 @@ TEST(Footprints, ARoofIsAsHighAsItsPitchMakesItAndStandsOnItsHost) {
     const Derivation d = derived(
         "grammar 1\nterminal wall\nterminal tiles = hipRoof(45deg)\nstart A -> footprint rect(10, 6) extrude 4m Mass\n"
         "rule Mass -> wall + tiles at +y\n");
-    const Shape& roof = *solidsCalled(d, "tiles")[0];
+    const Shape roof = solidsCalled(d, "tiles")[0];
     EXPECT_NEAR(roof.scope.size.y, 3, .02);
     EXPECT_NEAR(roof.scope.point({0, -1, 0}).y, 3.5, 1e-9);
     const Lowered model("grammar 1\nstart A -> footprint rect(10, 6) hipRoof(45deg)\n");
@@ -168,8 +168,8 @@ TEST(Footprints, OutlinesOfAFileKeepTheirPlace) {
     ASSERT_TRUE(d.ok()) << d.error().message;
     const auto walls = solidsCalled(*d, "wall");
     ASSERT_EQ(walls.size(), 2u);
-    expectNear(walls[0]->scope.centre, {-16, 0, 3}, 1e-3);
-    expectNear(walls[1]->scope.centre, {34, 0, 3}, 1e-3);
+    expectNear(walls[0].scope.centre, {-16, 0, 3}, 1e-3);
+    expectNear(walls[1].scope.centre, {34, 0, 3}, 1e-3);
     EXPECT_FALSE(load("other.svg", diagnostics));
     EXPECT_EQ(diagnostics.all().back().message, "can't use \"other.svg\": there is no such file");
 }

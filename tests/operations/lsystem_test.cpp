@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "grammar/derive/lsystem.h"
 #include "tests/derive/grammars.h"
@@ -144,23 +145,23 @@ TEST(Turtle, StepsInSpaceAreJoined) {
         "grammar 1\nterminal wall\nterminal leaf = sphere\nlsystem P passes 0 angle 90deg step 2m\n  axiom "
         "\"F+F&F^F[-F]L\"\n"
         "start S -> size (1, 3, .2m) turtle P { F: wall | L: leaf }\n");
-    std::vector<const derive::Shape*> walls;
-    const derive::Shape* leaf = nullptr;
+    std::vector<derive::Shape> walls;
+    std::optional<derive::Shape> leaf;
     for (const derive::Shape& s : d.tree.shapes) {
         const std::string label = d.tree.labels[s.label];
-        if (label == "wall") walls.push_back(&s);
-        if (label == "leaf") leaf = &s;
+        if (label == "wall") walls.push_back(s);
+        if (label == "leaf") leaf = s;
     }
     ASSERT_EQ(walls.size(), 5u);
     ASSERT_TRUE(leaf);
-    for (const derive::Shape* s : walls) {
-        expectNear(s->scope.size, {2, 3, .2});
-        EXPECT_NEAR(dot(cross(s->scope.axes.x, s->scope.axes.y), s->scope.axes.z), 1, 1e-12);
+    for (const derive::Shape& s : walls) {
+        expectNear(s.scope.size, {2, 3, .2});
+        EXPECT_NEAR(dot(cross(s.scope.axes.x, s.scope.axes.y), s.scope.axes.z), 1, 1e-12);
     }
-    expectNear(walls[0]->scope.centre, {1, 0, 0});
-    expectNear(walls[1]->scope.centre, {2, 0, 1});  // left turns go from +x to +z, as in outlines
-    expectNear(walls[2]->scope.centre, {2, -1, 2});
-    expectNear(walls[3]->scope.centre, {2, -2, 3});
+    expectNear(walls[0].scope.centre, {1, 0, 0});
+    expectNear(walls[1].scope.centre, {2, 0, 1});  // left turns go from +x to +z, as in outlines
+    expectNear(walls[2].scope.centre, {2, -1, 2});
+    expectNear(walls[3].scope.centre, {2, -2, 3});
     expectNear(leaf->scope.centre, {2, -2, 4});
 }
 

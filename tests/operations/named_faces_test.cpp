@@ -43,8 +43,8 @@ TEST(NamedFaces, AreTheSlopesThatEachMeans) {
                 const Derivation d =
                     house(roof, std::string("+ bay size (.1, .1, .1) at each(slope, ") + word + ")", plan);
                 const ShapeId tiles = idOf(d, "tiles");
-                for (const Shape* bay : shapesCalled(d, "bay")) {
-                    const auto face = namedFaceAt(d.tree, tiles, bay->scope.centre);
+                for (const Shape& bay : shapesCalled(d, "bay")) {
+                    const auto face = namedFaceAt(d.tree, tiles, bay.scope.centre);
                     ASSERT_TRUE(face) << roof << ' ' << plan;
                     EXPECT_EQ(face->kind, "slope") << roof << ' ' << plan << ' ' << word;
                     EXPECT_TRUE(has(*face, word)) << roof << ' ' << plan << ' ' << word;
@@ -61,11 +61,11 @@ TEST(NamedFaces, HoldWhatLiesBetweenTheirCorners) {
     for (const char* plan : plans) {
         const Derivation d = house("hipRoof(35deg)", "+ bay size (.1, .1, .1) at each(slope)", plan);
         const ShapeId tiles = idOf(d, "tiles");
-        for (const Shape* bay : shapesCalled(d, "bay")) {
-            const auto face = namedFaceAt(d.tree, tiles, bay->scope.centre);
+        for (const Shape& bay : shapesCalled(d, "bay")) {
+            const auto face = namedFaceAt(d.tree, tiles, bay.scope.centre);
             ASSERT_TRUE(face);
             const auto& c = face->corners;
-            EXPECT_NEAR(dot(cross(c[1] - c[0], c[2] - c[0]), bay->scope.centre - c[0]), 0, 1e-6);
+            EXPECT_NEAR(dot(cross(c[1] - c[0], c[2] - c[0]), bay.scope.centre - c[0]), 0, 1e-6);
             const Vec3d up = normalized(cross(c[1] - c[0], c[2] - c[0]));
             EXPECT_NEAR(std::abs(up.y), std::cos(35 * 3.14159265358979 / 180), 1e-6) << "they lie in the slope";
             const Vec3d middle = (c[0] + c[1] + c[2] + c[3]) * .25;

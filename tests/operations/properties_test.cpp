@@ -42,7 +42,7 @@ TEST(OutlineProperties, ReachRulesBelow) {
         "terminal wall\nstart S -> for k in 1..outlines(\"town.geojson\") { Lot footprint file(\"town.geojson\", k) }\n"
         "rule Lot -> Deep\nrule Deep -> extrude (value(\"height\", 5m)) wall\n");
     std::multiset<double> heights_m;
-    for (const derive::Shape* wall : shapesCalled(d, "wall")) heights_m.insert(wall->scope.size.y);
+    for (const derive::Shape& wall : shapesCalled(d, "wall")) heights_m.insert(wall.scope.size.y);
     EXPECT_EQ(heights_m, (std::multiset<double>{5, 7.5, 12}))
         << "texts that begin with a number count, and what is no number is as if nothing was said";
 }
@@ -51,7 +51,7 @@ TEST(OutlineProperties, AreSaidBeforeAShapeToo) {
     const auto d = derivedOver(
         "terminal wall\nstart S -> footprint file(\"town.geojson\", 1) Lot\nrule Lot -> extrude (value(\"height\", "
         "5m)) wall\n");
-    EXPECT_DOUBLE_EQ(shapesCalled(d, "wall")[0]->scope.size.y, 12);
+    EXPECT_DOUBLE_EQ(shapesCalled(d, "wall")[0].scope.size.y, 12);
 }
 
 TEST(OutlineProperties, WordsChooseRules) {
@@ -67,7 +67,7 @@ TEST(OutlineProperties, NumbersHaveTheUnitOfWhatStandsForThem) {
     const auto d = derivedOver(
         "terminal wall = cube\nstart S -> footprint file(\"town.geojson\", 1) Lot\nrule Lot -> wall turn "
         "(value(\"turned\", 0deg))\n");
-    const derive::Shape& wall = *shapesCalled(d, "wall")[0];
+    const derive::Shape wall = shapesCalled(d, "wall")[0];
     EXPECT_NEAR(std::abs(wall.scope.axes.x.z), 1, 1e-9) << "a quarter turn, in degrees in the file";
 }
 

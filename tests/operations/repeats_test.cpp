@@ -22,11 +22,11 @@ TEST(Repeats, DrawSizesForEveryRepetition) {
     const auto parts = shapesCalled(d, "a");
     std::set<long> widths;
     double all = 0;
-    for (const Shape* s : parts) {
-        widths.insert(std::lround(s->scope.size.x * 1e6));
-        all += s->scope.size.x;
-        EXPECT_GT(s->scope.size.x, .7);
-        EXPECT_LT(s->scope.size.x, 3.8);
+    for (const Shape& s : parts) {
+        widths.insert(std::lround(s.scope.size.x * 1e6));
+        all += s.scope.size.x;
+        EXPECT_GT(s.scope.size.x, .7);
+        EXPECT_LT(s.scope.size.x, 3.8);
     }
     EXPECT_GE(parts.size(), 6u);
     EXPECT_EQ(widths.size(), parts.size()) << "each has a width of its own";
@@ -37,7 +37,7 @@ TEST(Repeats, CanFollowTheNumberOfTheRepetition) {
     const Derivation d = cut("x { { (1m * i): a }* }");
     const auto parts = shapesCalled(d, "a");
     ASSERT_EQ(parts.size(), 5u) << "1 + 2 + 3 + 4 + 5 fit into 20";
-    EXPECT_NEAR(parts[4]->scope.size.x, 5, 1e-9);
+    EXPECT_NEAR(parts[4].scope.size.x, 5, 1e-9);
 }
 
 TEST(Repeats, AsOftenAsIsSaid) {
@@ -53,7 +53,7 @@ TEST(Repeats, InsideRepeats) {
     const Derivation d = cut("x { { 1m: a | { ~2m: b }* }3 | 1m: a }", "(22, 3, 1)");
     EXPECT_EQ(shapesCalled(d, "a").size(), 4u);
     EXPECT_EQ(shapesCalled(d, "b").size(), 9u);
-    for (const Shape* s : shapesCalled(d, "b")) EXPECT_NEAR(s->scope.size.x, 2, 1e-9);
+    for (const Shape& s : shapesCalled(d, "b")) EXPECT_NEAR(s.scope.size.x, 2, 1e-9);
     const Derivation twice = cut("x { { { .5m: a }2 | ~1m: b }* }");
     EXPECT_EQ(shapesCalled(twice, "a").size(), 2 * shapesCalled(twice, "b").size());
 }
@@ -75,7 +75,7 @@ TEST(Snap, CutsMoveToFacesWithinReach) {
     const Derivation snapped = derived(text + "rule Row after Shops -> split x { { ~2.5m: pane }* } snap shop .3m\n");
     const auto edges = [](const Derivation& d, const std::string& name) {
         std::vector<double> all;
-        for (const Shape* s : shapesCalled(d, name)) all.push_back(s->scope.centre.x + s->scope.size.x / 2);
+        for (const Shape& s : shapesCalled(d, name)) all.push_back(s.scope.centre.x + s.scope.size.x / 2);
         return all;
     };
     EXPECT_NE(edges(plain, "pane"), edges(plain, "shop"));
@@ -100,11 +100,11 @@ TEST(SplitAlong, PartsStandOnTheirOwnChords) {
     const auto houses = shapesCalled(d, "house");
     EXPECT_EQ(houses.size(), 15u);  // 44 m · 130° − 15° … in radians is 88.3 m
     double sum = 0, whole = 0;
-    for (const Shape* s : houses) {
-        ASSERT_NE(s->scope.footprint, derive::none);
-        sum += area(d.tree.footprints.inMetres(s->scope.footprint, s->scope.half()));
-        EXPECT_NEAR(dot(cross(s->scope.axes.x, s->scope.axes.y), s->scope.axes.z), 1, 1e-9);
-        EXPECT_GT(dot(s->scope.axes.z, Vec3d{s->scope.centre.x, 0, s->scope.centre.z} - d.tree.shapes[0].scope.centre),
+    for (const Shape& s : houses) {
+        ASSERT_NE(s.scope.footprint, derive::none);
+        sum += area(d.tree.footprints.inMetres(s.scope.footprint, s.scope.half()));
+        EXPECT_NEAR(dot(cross(s.scope.axes.x, s.scope.axes.y), s.scope.axes.z), 1, 1e-9);
+        EXPECT_GT(dot(s.scope.axes.z, Vec3d{s.scope.centre.x, 0, s.scope.centre.z} - d.tree.shapes[0].scope.centre),
                   -50);
     }
     for (const Shape& s : d.tree.shapes)
@@ -119,10 +119,10 @@ TEST(SplitAlong, FixedLengthsAreThoseOfTheStreet) {
         "rule Row -> split along front { 4m: house | 6m: house | ~1: house }\n");
     const auto houses = shapesCalled(d, "house");
     ASSERT_EQ(houses.size(), 3u);
-    EXPECT_NEAR(houses[0]->scope.size.x, 4, 1e-6);
-    EXPECT_NEAR(houses[1]->scope.size.x, 6, 1e-6);
-    EXPECT_NEAR(houses[2]->scope.size.x, 10, 1e-6);
-    EXPECT_NEAR(houses[0]->scope.axes.z.z, 1, 1e-9) << "z looks outward";
+    EXPECT_NEAR(houses[0].scope.size.x, 4, 1e-6);
+    EXPECT_NEAR(houses[1].scope.size.x, 6, 1e-6);
+    EXPECT_NEAR(houses[2].scope.size.x, 10, 1e-6);
+    EXPECT_NEAR(houses[0].scope.axes.z.z, 1, 1e-9) << "z looks outward";
 }
 
 TEST(SplitAlong, NoSuchEdgeIsTold) {
@@ -135,10 +135,9 @@ TEST(SplitArea, PartsHaveTheirAreas) {
     const Derivation d = derived(
         "grammar 1\nterminal lot\nterminal rest\nstart S -> footprint ell(40, 30, 12, 14) extrude 1m Block\n"
         "rule Block -> split area x { 200: lot | { ~150: lot }2 | 100: rest }\n");
-    const auto areaOf = [&](const Shape* s) {
-        return s->scope.footprint == derive::none
-                   ? s->scope.size.x * s->scope.size.z
-                   : area(d.tree.footprints.inMetres(s->scope.footprint, s->scope.half()));
+    const auto areaOf = [&](const Shape& s) {
+        return s.scope.footprint == derive::none ? s.scope.size.x * s.scope.size.z
+                                                 : area(d.tree.footprints.inMetres(s.scope.footprint, s.scope.half()));
     };
     const auto lots = shapesCalled(d, "lot");
     ASSERT_EQ(lots.size(), 3u);

@@ -9,10 +9,10 @@
 
 namespace sgm::testing_ {
 
-inline std::vector<const derive::Shape*> shapesCalled(const derive::Derivation& d, const std::string& symbol) {
-    std::vector<const derive::Shape*> found;
+inline std::vector<derive::Shape> shapesCalled(const derive::Derivation& d, const std::string& symbol) {
+    std::vector<derive::Shape> found;
     for (const derive::Shape& s : d.tree.shapes)
-        if (s.symbol != rules::none && d.grammar->symbols[s.symbol].name == symbol) found.push_back(&s);
+        if (s.symbol != rules::none && d.grammar->symbols[s.symbol].name == symbol) found.push_back(s);
     return found;
 }
 

@@ -27,10 +27,10 @@ terminal asphalt, deck, lawn, sea, grove, wall, yard
 )";
 inline const std::string start = "start Town -> size (500, 10, 500) network Net { ";
 
-inline std::map<std::string, std::vector<const Shape*>> solidsOf(const Derivation& d) {
-    std::map<std::string, std::vector<const Shape*>> found;
+inline std::map<std::string, std::vector<Shape>> solidsOf(const Derivation& d) {
+    std::map<std::string, std::vector<Shape>> found;
     for (const Shape& s : d.tree.shapes)
-        if (s.solid != derive::none) found[d.tree.labels[s.label]].push_back(&s);
+        if (s.solid != derive::none) found[d.tree.labels[s.label]].push_back(s);
     return found;
 }
 

@@ -91,12 +91,12 @@ TEST(Roads, FollowAFieldOfWeightedParts) {
         town);
     double square = 0, west = 0, east = 0, slant = 0;
     const auto solids = solidsOf(d);
-    for (const Shape* s : solids.at("asphalt")) {
-        const Vec3d along = s->scope.axes * Vec3d{0, 0, 1};
+    for (const Shape& s : solids.at("asphalt")) {
+        const Vec3d along = s.scope.axes * Vec3d{0, 0, 1};
         const double off = std::min(std::abs(along.x), std::abs(along.z));
-        (s->scope.centre.x < -40 ? west : east) += s->scope.size.z;
-        if (s->scope.centre.x < -40 && off < .1) square += s->scope.size.z;
-        if (s->scope.centre.x > 40 && off > .2) slant += s->scope.size.z;
+        (s.scope.centre.x < -40 ? west : east) += s.scope.size.z;
+        if (s.scope.centre.x < -40 && off < .1) square += s.scope.size.z;
+        if (s.scope.centre.x > 40 && off > .2) slant += s.scope.size.z;
     }
     EXPECT_GT(square, .9 * west);
     EXPECT_GT(slant, .2 * east);

@@ -20,15 +20,15 @@ TEST(Network, PutsABodyInEveryPart) {
     EXPECT_EQ(solids.at("asphalt").size(), layers.at("highway") + layers.at("street") + layers.at("crossing"));
     EXPECT_EQ(solids.at("deck").size(), layers.at("bridge"));
     EXPECT_EQ(solids.at("sea").size(), 1u);
-    EXPECT_NEAR(areaOf(d, *solids.at("grove")[0]), 3.14159 * 2500, 150);
-    EXPECT_EQ(areaOf(d, *solids.at("lawn")[0]), 250000);
+    EXPECT_NEAR(areaOf(d, solids.at("grove")[0]), 3.14159 * 2500, 150);
+    EXPECT_EQ(areaOf(d, solids.at("lawn")[0]), 250000);
     double whole = 0, drawn = 0;
-    for (const Shape* s : solids.at("wall")) whole += areaOf(d, *s);
+    for (const Shape& s : solids.at("wall")) whole += areaOf(d, s);
     for (const auto& f : d.plan.features)
         if (f.layer == "block") drawn += area(f.area);
     EXPECT_NEAR(whole, drawn, .5);
     // A stretch of street lies along its z.
-    for (const Shape* s : solids.at("asphalt")) EXPECT_LT(s->scope.size.x, 60);
+    for (const Shape& s : solids.at("asphalt")) EXPECT_LT(s.scope.size.x, 60);
 }
 
 TEST(Network, PartsThatAreNotNamedStayEmpty) {
@@ -65,8 +65,8 @@ TEST(Lots, StandAlongTheirStreets) {
     EXPECT_EQ(solids.at("asphalt").size(), layers.at("corner"));
     EXPECT_GT(layers.at("lot") + layers.at("corner"), 100u);
     size_t facing = 0;
-    for (const Shape* s : solids.at("wall")) {
-        const plan::Footprint f = d.tree.footprints.inMetres(s->scope.footprint, s->scope.half());
+    for (const Shape& s : solids.at("wall")) {
+        const plan::Footprint f = d.tree.footprints.inMetres(s.scope.footprint, s.scope.half());
         double front = 0;
         for (const plan::PlacedEdge& e : plan::edgesOf(f))
             if (f.tags[e.edge.tag].starts_with("street") && e.normal().z > .9) front += e.length();
@@ -81,9 +81,9 @@ TEST(Lots, OfSquareBlocksHaveTheirStreets) {
     const Derivation d = derived(raster + start + "block: lots 300 { lot: wall | inner: yard } }\n");
     const auto solids = solidsOf(d);
     double built = 0, behind = 0;
-    for (const Shape* s : solids.at("wall")) built += areaOf(d, *s);
+    for (const Shape& s : solids.at("wall")) built += areaOf(d, s);
     if (solids.contains("yard"))
-        for (const Shape* s : solids.at("yard")) behind += areaOf(d, *s);
+        for (const Shape& s : solids.at("yard")) behind += areaOf(d, s);
     EXPECT_LT(behind, .1 * built);
 }
 
@@ -92,7 +92,7 @@ TEST(Lots, TakeSetbacksBySide) {
         head + start + "block: lots 300 { lot: Lot } }\nrule Lot -> setback edges(street: 4m, rest: 1m) wall\n");
     const auto solids = solidsOf(d);
     double built = 0, lots = 0;
-    for (const Shape* s : solids.at("wall")) built += areaOf(d, *s);
+    for (const Shape& s : solids.at("wall")) built += areaOf(d, s);
     for (const auto& f : d.plan.features)
         if (f.layer == "lot" || f.layer == "corner") lots += area(f.area);
     EXPECT_LT(built, .8 * lots);
@@ -105,14 +105,14 @@ TEST(Lots, RulesReadMapsAndAreasWhereTheyStand) {
                                  "rule Lot when people > .6 -> extrude (5m + 40m * people) wall\n"
                                  "rule Lot when scope.area > 300 -> lawn\nrule Lot -> yard\n");
     const auto solids = solidsOf(d);
-    for (const Shape* s : solids.at("wall")) {
-        const double x = s->scope.centre.x + 40, z = s->scope.centre.z + 30;
+    for (const Shape& s : solids.at("wall")) {
+        const double x = s.scope.centre.x + 40, z = s.scope.centre.z + 30;
         const double t = 1 - (x * x + z * z) / 160000, people = t * t;
         EXPECT_GT(people, .6);
-        EXPECT_NEAR(s->scope.size.y, 5 + 40 * people, 1e-9);
+        EXPECT_NEAR(s.scope.size.y, 5 + 40 * people, 1e-9);
     }
-    for (const Shape* s : solids.at("lawn")) EXPECT_GT(areaOf(d, *s), 300);
-    for (const Shape* s : solids.at("yard")) EXPECT_LE(areaOf(d, *s), 300 + 1e-6);
+    for (const Shape& s : solids.at("lawn")) EXPECT_GT(areaOf(d, s), 300);
+    for (const Shape& s : solids.at("yard")) EXPECT_LE(areaOf(d, s), 300 + 1e-6);
     EXPECT_GT(solids.at("wall").size(), 10u);
 }
 
@@ -127,8 +127,8 @@ TEST(Lots, AreTheSameEverywhereButAtTheRuleThatChanged) {
     const Derivation c = derived(head + start + "street: asphalt | " + body);
     std::multiset<double> heights, again;
     const auto solidsOfA = solidsOf(a), solidsOfC = solidsOf(c);
-    for (const Shape* s : solidsOfA.at("wall")) heights.insert(s->scope.size.y);
-    for (const Shape* s : solidsOfC.at("wall")) again.insert(s->scope.size.y);
+    for (const Shape& s : solidsOfA.at("wall")) heights.insert(s.scope.size.y);
+    for (const Shape& s : solidsOfC.at("wall")) again.insert(s.scope.size.y);
     EXPECT_EQ(heights, again);
 }
 
