@@ -13,7 +13,6 @@
 #include "grammar/pipeline/files.h"
 #include "grammar/pipeline/floating.h"
 #include "grammar/pipeline/gaps.h"
-#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/missing.h"
 #include "modeler/core/packages.h"
 #include "modeler/mesh/edit.h"
@@ -171,8 +170,7 @@ Status deliver(const BuildRequest& request, const Model& model, pipeline::Divisi
 
 Status stream(const BuildRequest& request, const Model& model, Context& context) {
     const Stopwatch watch;
-    const mesh::Grid grid =
-        pipeline::gridOver(model, {request.grid.resolution, request.grid.cell_m}, request.grid.surface);
+    const mesh::Grid grid = gridOver(model, request.grid);
     mesh::Counts counts;
     const auto blocks = mesh::subdivide(model.tape, grid, request.grid.threads, context.progress, counts);
     if (!blocks.ok()) return blocks.error();

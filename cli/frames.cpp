@@ -112,7 +112,7 @@ Status buildFrames(const BuildRequest& request) {
         options.params = scene->animation.values(options.params, frame);
         if (const Status done = incremental.to(scene->grammar, options, context); !done.ok()) return done;
         if (frame == 0 && request.grid.surface == mesh::Surface::Crisp)
-            grid = pipeline::movedOffPlanes(grid, incremental.derivation());
+            grid = pipeline::moveOffPlanes(grid, incremental.derivation());
         if (frame == 0 && !request.quiet) printDiagnostics(derive::warnings(incremental.derivation()));
         if (!request.quiet)
             fmt::print("frame {} of {}, {}: ", frame + 1, scene->animation.frames,

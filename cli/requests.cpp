@@ -162,8 +162,11 @@ void keepOnly(mesh::Keep keep, MeshedModel& meshed, int threads, bool quiet) {
 }
 
 mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request) {
-    return mesh::gridFor(
-        bounds, request.cell_m > 0 ? static_cast<float>(request.cell_m) : mesh::cellFor(bounds, request.resolution));
+    return pipeline::gridOver(bounds, {request.resolution, request.cell_m});
+}
+
+mesh::Grid gridOver(const Model& model, const GridRequest& request) {
+    return pipeline::gridOver(model, {request.resolution, request.cell_m}, request.surface);
 }
 
 mesh::PolygonizeOptions meshingOf(const GridRequest& request, bool positionsOnly) {
@@ -175,8 +178,7 @@ mesh::PolygonizeOptions meshingOf(const GridRequest& request, bool positionsOnly
 }
 
 Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Context& context, bool positionsOnly) {
-    return makeMesh(model, pipeline::gridOver(model, {request.resolution, request.cell_m}, request.surface),
-                    meshingOf(request, positionsOnly), context);
+    return makeMesh(model, gridOver(model, request), meshingOf(request, positionsOnly), context);
 }
 
 int fail(const Error& error) {

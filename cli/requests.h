@@ -86,6 +86,8 @@ void keepOnly(mesh::Keep keep, MeshedModel& meshed, int threads, bool quiet);
 mesh::PolygonizeOptions meshingOf(const GridRequest& request, bool positionsOnly = false);
 /// The grid that is asked for over these bounds.
 mesh::Grid gridOver(const Box3f& bounds, const GridRequest& request);
+/// The grid that is asked for over a model, moved off its planes for a crisp surface (pipeline::moveOffPlanes).
+mesh::Grid gridOver(const Model& model, const GridRequest& request);
 /// The mesh of the model over its own bounds, `positionsOnly` or with normals and origins.
 Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Context& context,
                              bool positionsOnly = false);

@@ -5,8 +5,6 @@
 namespace sgm::derive {
 namespace {
 
-bool isDirected(const Joint& j) { return j.direction != Vec3d{}; }
-
 void linkBond(Bonds& bonds, uint32_t index, int end) {
     Bond& b = bonds.all[index];
     Body& body = bonds.bodies[bonds.bodyOf[b.shape[end]]];
@@ -27,10 +25,8 @@ void BondMaker::join(Bonds& bonds, const Mate& m) const {
                          {none, none}});
     linkBond(bonds, index, 0);
     linkBond(bonds, index, 1);
-    if (!isDirected(ours) || isDirected(theirs)) return;
-    const uint32_t back = opposedFace(tree_.shapes.axesOf(m.newcomer), ours.direction);
-    if (dot(tree_.joint(m.newcomer, back).direction, ours.direction) < -0.999 && bonds.at(m.newcomer, back) == none)
-        bonds.at(m.newcomer, back) = index;
+    const uint32_t back = faceLookingBack(tree_, m);
+    if (back != none && bonds.at(m.newcomer, back) == none) bonds.at(m.newcomer, back) = index;
 }
 
 /// Makes room for the bonds of a newcomer.

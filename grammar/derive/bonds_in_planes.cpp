@@ -16,9 +16,7 @@ constexpr double sureCosine = 1 - 1e-9, unsureCosine = 1 - 1e-4;
 constexpr uint64_t stateBits = 3;
 uint64_t keyOf(ShapeId id, uint32_t joint) { return uint64_t{id} << 32 | uint64_t{joint} << 2; }
 
-bool isDirected(const Joint& j) { return j.direction != Vec3d{}; }
-
-/// Enters the faces that came since. Several wait for memory together.
+/// Indexes the faces that came since. Several are prefetched together.
 void bringUpToDate(JointIndex& index, const ShapeTree& tree, const PageArray<JointIndex::Entry>& faces,
                    size_t& indexed) {
     std::array<JointIndex::Spot, 8> spots;
@@ -61,7 +59,7 @@ void JointStates::raise(ShapeId id, uint32_t joint, JointState state) {
         if (known != empty) slots_[slotOf(known & ~stateBits)] = known;
 }
 
-/// A joint that two planes claim is unclear: so who faces one in a plane is in the same plane, or unclear.
+/// A joint near two planes is unclear, so that a joint that faces one in a plane is in the same plane or unclear.
 BondsInPlanes::Where BondsInPlanes::whereIs(const Joint& joint) const {
     Where where;
     for (size_t i = 0; i < planes_.size(); ++i) {
@@ -108,15 +106,11 @@ ShapeId BondsInPlanes::placeOf(ShapeId id, uint32_t joint) const {
 }
 
 void BondsInPlanes::join(const Mate& m) {
-    const Joint ours = tree_.joint(m.host, m.ours);
-    const bool areDirected = isDirected(ours) && isDirected(tree_.joint(m.newcomer, m.theirs));
+    const bool areDirected = isDirected(tree_.joint(m.host, m.ours)) && isDirected(tree_.joint(m.newcomer, m.theirs));
     const JointState state = areDirected ? JointState::Closed : JointState::Bonded;
     raise({m.host, m.ours}, state);
     raise({m.newcomer, m.theirs}, state);
-    if (!isDirected(ours) || areDirected) return;
-    const uint32_t back = opposedFace(tree_.shapes.axesOf(m.newcomer), ours.direction);
-    if (dot(tree_.joint(m.newcomer, back).direction, ours.direction) < -0.999)
-        raise({m.newcomer, back}, JointState::Bonded);
+    if (const uint32_t back = faceLookingBack(tree_, m); back != none) raise({m.newcomer, back}, JointState::Bonded);
 }
 
 /// Closes the joint and the newest one that faces it, where both are open and not of one place.

@@ -1,7 +1,7 @@
 // Which joints in a few planes are bonded, without making the bonds of all others.
-// Enters: a tree that grows, and questions about its joints. Leaves: what BondMaker's bonds would answer. Assumes that
-// shapes stand still and none dies. Faces meet in their plane alone, and only those that look at each other: where one
-// side of a plane is empty, or who comes to it is closed by its mate, nobody has to be found, and no face is indexed.
+// Enters: a tree that grows, and joints in question. Leaves: their states, as BondMaker's bonds give them. Assumes that
+// shapes stand still and none is removed. Faces meet in their plane alone, and only those that look at each other:
+// where one side of a plane is empty, or a new joint is closed by its mate, there is no search, and no face is indexed.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,7 @@ enum class JointState : uint8_t {
 class JointStates {
 public:
     JointState of(ShapeId id, uint32_t joint) const;
-    /// From open to met to closed; never back.
+    /// From open to bonded to closed; never back.
     void raise(ShapeId id, uint32_t joint, JointState state);
     void clear() { *this = {}; }
 
@@ -34,12 +34,14 @@ private:
     size_t used_ = 0;
 };
 
+/// The states of the joints in at most eight planes, which are those of the joints in question so far.
 class BondsInPlanes {
 public:
     explicit BondsInPlanes(const ShapeTree& tree) : tree_(tree) {}
 
-    /// The state of a joint with all that stands now; nothing where planes alone don't tell, or there would be too many
-    /// of them: then all bonds have to be made. O(shapes that came since), and O(shapes) for a joint in a new plane.
+    /// The state of a joint with all that stands now; nothing where the planes don't decide it, or there would be too
+    /// many of them: then all bonds have to be made. O(shapes that came since), and O(shapes) for a joint in a new
+    /// plane.
     std::optional<JointState> stateOf(ShapeId id, uint32_t joint);
 
 private:
@@ -55,7 +57,8 @@ private:
         double offset_m = 0;
         Side sides[2];  ///< that look along the direction, and against it
     };
-    /// Where a directed joint lies: in one plane, in none, or so near to one that it may meet who meets one there.
+    /// Where a directed joint lies: in one plane, in none, or so near to one that it may meet a joint that meets one
+    /// there.
     struct Where {
         enum class Kind { Away, In, Unclear } kind = Kind::Away;
         size_t plane = 0;
@@ -76,8 +79,8 @@ private:
     const ShapeTree& tree_;
     std::vector<Plane> planes_;
     JointStates states_;
-    bool isUnclear_ = false;  ///< a face came of which the planes don't tell whether it counts
-    ShapeId next_ = 0;        ///< the first shape that wasn't looked at yet
+    bool isUnclear_ = false;  ///< there is a face of which the planes don't decide whether it counts
+    ShapeId next_ = 0;        ///< the first shape that is not followed yet
     size_t nextMate_ = 0;     ///< the same of ShapeTree::mates
 };
 

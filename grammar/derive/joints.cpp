@@ -73,6 +73,13 @@ double reach(const Mat3& axes, Vec3d size, Vec3d direction) {
 
 }  // namespace
 
+uint32_t faceLookingBack(const ShapeTree& tree, const Mate& mate) {
+    const Joint ours = tree.joint(mate.host, mate.ours);
+    if (!isDirected(ours) || isDirected(tree.joint(mate.newcomer, mate.theirs))) return none;
+    const uint32_t back = opposedFace(tree.shapes.axesOf(mate.newcomer), ours.direction);
+    return dot(tree.joint(mate.newcomer, back).direction, ours.direction) < -0.999 ? back : none;
+}
+
 bool faceEachOther(const Joint& a, const Joint& b) {
     if (!directed(a.direction) || !directed(b.direction)) return false;
     const Vec3d gap = a.point - b.point;

@@ -15,6 +15,13 @@ namespace sgm::derive {
 /// Joints nearer than this are at the same point. Chains of thousands of shapes stay below it in double precision.
 inline constexpr double jointTolerance_m = 1e-6;
 
+/// Whether a joint faces a direction; centres face none.
+inline bool isDirected(const Joint& joint) { return joint.direction != Vec3d{}; }
+
+/// Finds the newcomer's face that looks back at a host's face to which the newcomer's centre came, or `none`: that face
+/// counts as bonded too.
+uint32_t faceLookingBack(const ShapeTree& tree, const Mate& mate);
+
 /// P₁ = P₂ and D₁ = −D₂ within tolerance, both directed: two walls face to face.
 bool faceEachOther(const Joint& a, const Joint& b);
 
@@ -38,7 +45,7 @@ public:
     Spot expect(const Joint& joint) const;
     /// Adds the joint and returns the newest living one that faces it, if any.
     std::optional<Entry> add(const ShapeTree& tree, Entry entry, const Joint& joint, Spot spot);
-    /// Adds the joint alone.
+    /// Adds the joint without a search for its partner.
     void put(Entry entry, Spot spot) { enter({spot.cell, entry}); }
     /// The newest living joint that faces this one, if any.
     std::optional<Entry> newestFacing(const ShapeTree& tree, const Joint& joint) const;

@@ -22,9 +22,11 @@ uint64_t pairOf(uint32_t a, uint32_t b) { return uint64_t{a} << 32 | b; }
 
 }  // namespace
 
-uint64_t BitsAlike::hashOf(const Mat3& axes) { return mix(mixedWith(mixedWith(mixedWith(1, axes.x), axes.y), axes.z)); }
+uint64_t BitwiseEqual::hashOf(const Mat3& axes) {
+    return mix(mixedWith(mixedWith(mixedWith(1, axes.x), axes.y), axes.z));
+}
 
-uint64_t BitsAlike::hashOf(const ShapeKind& kind) {
+uint64_t BitwiseEqual::hashOf(const ShapeKind& kind) {
     uint64_t hash = mixedWith(1, pairOf(kind.symbol, kind.label));
     hash = mixedWith(hash, pairOf(kind.jointSet, kind.material));
     hash = mixedWith(hash, kind.chainRule);
@@ -32,11 +34,11 @@ uint64_t BitsAlike::hashOf(const ShapeKind& kind) {
     return mix(mixedWith(hash, pairOf(kind.span.begin, kind.span.end)));
 }
 
-uint64_t BitsAlike::hashOf(const Joining& joining) {
+uint64_t BitwiseEqual::hashOf(const Joining& joining) {
     return mix(mixedWith(std::bit_cast<uint64_t>(joining.amount), std::bit_cast<uint64_t>(joining.blend_m)));
 }
 
-bool BitsAlike::isSame(const ShapeKind& a, const ShapeKind& b) {
+bool BitwiseEqual::isSame(const ShapeKind& a, const ShapeKind& b) {
     return a.symbol == b.symbol && a.label == b.label && a.jointSet == b.jointSet && a.material == b.material &&
            a.chainRule == b.chainRule && a.span.source == b.span.source && a.span.begin == b.span.begin &&
            a.span.end == b.span.end;
@@ -89,12 +91,12 @@ void Shapes::shrink() {
     constexpr size_t slack = 1024;  // values that a small tree may leave behind
     const auto isFull = [&](const auto& table) { return table.size() > 2 * size() + slack; };
     if (isFull(axes_)) {
-        ValueTable<Mat3, BitsAlike> used;
+        ValueTable<Mat3, BitwiseEqual> used;
         for (ShapeRecord& r : records_) r.axes = used.put(axes_[r.axes]);
         axes_ = std::move(used);
     }
     if (isFull(joinings_)) {
-        ValueTable<Joining, BitsAlike> used;
+        ValueTable<Joining, BitwiseEqual> used;
         for (ShapeRecord& r : records_) r.joining = used.put(joinings_[r.joining]);
         joinings_ = std::move(used);
     }

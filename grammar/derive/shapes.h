@@ -75,8 +75,8 @@ struct Joining {
     double amount = ShapeContent{}.amount, blend_m = ShapeContent{}.blend_m;
 };
 
-/// Which values of shapes are the same: bit for bit, so that what is read is what was put.
-struct BitsAlike {
+/// Equality of values bit for bit, so that reading a shape gives what was stored.
+struct BitwiseEqual {
     static uint64_t hashOf(const Mat3& axes);
     static uint64_t hashOf(const ShapeKind& kind);
     static uint64_t hashOf(const Joining& joining);
@@ -93,7 +93,7 @@ struct RecordedLinks {
     bool live : 1, dead : 1, sharesPlace : 1, meetsNobody : 1;
 };
 
-/// What is held of a shape itself. What others have too stands in tables.
+/// What is stored of a shape itself. Values that many shapes share stand in tables.
 struct ShapeRecord : RecordedLinks {
     uint64_t key;
     Vec3d centre, size;
@@ -106,14 +106,16 @@ struct ShapeRecord : RecordedLinks {
     uint32_t op : 3;        ///< a rules::Operator
 };
 static_assert(sizeof(ShapeRecord) == 112);
+static_assert(static_cast<uint32_t>(rules::Operator::Morph) < 8, "ShapeRecord::op has three bits");
 
+/// The shapes of a tree by their ids: records of their own, and tables of the values that many share.
 class Shapes {
 public:
     static constexpr uint32_t mostDepth = (1u << 28) - 1;
 
     size_t size() const { return records_.size(); }
     bool empty() const { return records_.empty(); }
-    /// A shape as a value. Who reads a few of its members pays for them alone, as the call is expanded in place.
+    /// A shape as a value. The call is inlined, so that members that are not read cost nothing.
     [[gnu::always_inline]] Shape operator[](size_t id) const;
     Shape back() const { return (*this)[size() - 1]; }
     Scope scopeOf(ShapeId id) const {
@@ -163,9 +165,9 @@ private:
     uint32_t indexOf(Joining joining);
 
     PageArray<ShapeRecord> records_;
-    ValueTable<Mat3, BitsAlike> axes_;
-    ValueTable<ShapeKind, BitsAlike> kinds_;
-    ValueTable<Joining, BitsAlike> joinings_;
+    ValueTable<Mat3, BitwiseEqual> axes_;
+    ValueTable<ShapeKind, BitwiseEqual> kinds_;
+    ValueTable<Joining, BitwiseEqual> joinings_;
 };
 
 inline Shape Shapes::operator[](size_t id) const {

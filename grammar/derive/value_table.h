@@ -1,4 +1,4 @@
-// Values of which many are alike, each held once.
+// Values of which many are equal, each stored once.
 // Enters: values. Leaves: an index for each, the same for the same. Assumes that the same values have
 // the same hash.
 #pragma once
@@ -8,18 +8,18 @@
 
 namespace sgm::derive {
 
-/// `Likeness` has `hashOf(value)` and `isSame(a, b)`.
-template <class T, class Likeness>
+/// Different values and their indices. `Equality` has `hashOf(value)` and `isSame(a, b)`.
+template <class T, class Equality>
 class ValueTable {
 public:
     ValueTable() { put(T{}); }
 
     /// The index of a value; that of T{} is 0. O(1).
     uint32_t put(const T& value) {
-        const uint64_t hash = Likeness::hashOf(value);
+        const uint64_t hash = Equality::hashOf(value);
         size_t i = hash & (slots_.size() - 1);
         for (; slots_[i] != empty; i = (i + 1) & (slots_.size() - 1))
-            if (Likeness::isSame(values_[slots_[i]], value)) return slots_[i];
+            if (Equality::isSame(values_[slots_[i]], value)) return slots_[i];
         const auto index = static_cast<uint32_t>(values_.size());
         slots_[i] = index;
         values_.push_back(value);
@@ -27,7 +27,7 @@ public:
         return index;
     }
     /// The same, faster where it is the value at `hint`.
-    uint32_t put(const T& value, uint32_t hint) { return Likeness::isSame(values_[hint], value) ? hint : put(value); }
+    uint32_t put(const T& value, uint32_t hint) { return Equality::isSame(values_[hint], value) ? hint : put(value); }
     const T& operator[](uint32_t index) const { return values_[index]; }
     size_t size() const { return values_.size(); }
     /// Bytes.
@@ -41,7 +41,7 @@ private:
     void grow() {
         slots_.assign(2 * slots_.size(), empty);
         for (uint32_t index = 0; index < values_.size(); ++index) {
-            size_t i = Likeness::hashOf(values_[index]) & (slots_.size() - 1);
+            size_t i = Equality::hashOf(values_[index]) & (slots_.size() - 1);
             while (slots_[i] != empty) i = (i + 1) & (slots_.size() - 1);
             slots_[i] = index;
         }

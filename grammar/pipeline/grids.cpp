@@ -134,7 +134,7 @@ Planes planesOf(const derive::Derivation& derivation) {
 
 }  // namespace
 
-mesh::Grid movedOffPlanes(mesh::Grid grid, const derive::Derivation& derivation) {
+mesh::Grid moveOffPlanes(mesh::Grid grid, const derive::Derivation& derivation) {
     Planes planes = planesOf(derivation);
     for (int axis = 0; axis < 3; ++axis) {
         const SampleCosts costs(std::move(planes[static_cast<size_t>(axis)]), static_cast<double>(grid.origin[axis]),
@@ -145,11 +145,14 @@ mesh::Grid movedOffPlanes(mesh::Grid grid, const derive::Derivation& derivation)
     return grid;
 }
 
+mesh::Grid gridOver(const Box3f& bounds, const CellSize& size) {
+    return mesh::gridFor(bounds,
+                         size.cell_m > 0 ? static_cast<float>(size.cell_m) : mesh::cellFor(bounds, size.resolution));
+}
+
 mesh::Grid gridOver(const Model& model, const CellSize& size, mesh::Surface surface) {
-    const Box3f& bounds = model.lowered->field.bounds;
-    const float cell_m = size.cell_m > 0 ? static_cast<float>(size.cell_m) : mesh::cellFor(bounds, size.resolution);
-    const mesh::Grid grid = mesh::gridFor(bounds, cell_m);
-    return surface == mesh::Surface::Crisp ? movedOffPlanes(grid, model.derivation) : grid;
+    const mesh::Grid grid = gridOver(model.lowered->field.bounds, size);
+    return surface == mesh::Surface::Crisp ? moveOffPlanes(grid, model.derivation) : grid;
 }
 
 mesh::Grid gridToKeep(const mesh::Grid& previous, const Box3f& bounds, float cell_m,
@@ -157,7 +160,7 @@ mesh::Grid gridToKeep(const mesh::Grid& previous, const Box3f& bounds, float cel
     const mesh::Grid grid = mesh::gridToKeep(previous, bounds, cell_m);
     const bool isKept =
         grid.origin == previous.origin && grid.cell_m == previous.cell_m && grid.cells == previous.cells;
-    return isKept || surface != mesh::Surface::Crisp ? grid : movedOffPlanes(grid, derivation);
+    return isKept || surface != mesh::Surface::Crisp ? grid : moveOffPlanes(grid, derivation);
 }
 
 mesh::Grid gridOf(const Model& model, int cells) {

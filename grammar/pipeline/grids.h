@@ -13,6 +13,8 @@ struct CellSize {
     double cell_m = 0;     ///< metres; > 0 goes before `resolution`
 };
 
+/// The grid over bounds.
+mesh::Grid gridOver(const Box3f& bounds, const CellSize& size);
 /// The grid over the model's bounds. For crisp surfaces it is moved off the model's planes.
 mesh::Grid gridOver(const Model& model, const CellSize& size, mesh::Surface surface);
 /// The same for a crisp surface with so many cells along the longest side of the bounds.
@@ -25,8 +27,8 @@ mesh::Grid gridToKeep(const mesh::Grid& previous, const Box3f& bounds, float cel
 
 /// The grid moved by at most a fifth of a cell along each axis, so that as few as possible of the model's creases run
 /// within a fiftieth of a cell of its samples, where they have no room in the faces of cells, and as few gaps as
-/// possible between neighbouring planes pass between its samples. Seen are boxes and footprints that lie along the
-/// axes. For grids of mesh::gridFor, which leave that room. O(shapes log shapes).
-mesh::Grid movedOffPlanes(mesh::Grid grid, const derive::Derivation& derivation);
+/// possible between neighbouring planes pass between its samples. Planes are those of boxes and footprints that lie
+/// along the axes. For grids of mesh::gridFor, which leave that room. O(shapes log shapes).
+mesh::Grid moveOffPlanes(mesh::Grid grid, const derive::Derivation& derivation);
 
 }  // namespace sgm::pipeline

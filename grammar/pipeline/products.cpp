@@ -1,10 +1,10 @@
 #include "grammar/pipeline/products.h"
-#include "grammar/pipeline/grids.h"
 
 #include <fmt/format.h>
 
 #include "grammar/lower/objects.h"
 #include "grammar/lower/solid_tree.h"
+#include "grammar/pipeline/grids.h"
 #include "modeler/mesh/edit.h"
 #include "modeler/volume/keep.h"
 

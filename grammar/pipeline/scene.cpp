@@ -1,11 +1,11 @@
 #include "grammar/pipeline/scene.h"
-#include "grammar/pipeline/grids.h"
 
 #include <fmt/format.h>
 
 #include <map>
 #include <utility>
 
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/meshing.h"
 #include "grammar/pipeline/placed_models.h"
 #include "modeler/mesh/connected_components.h"

@@ -2,14 +2,15 @@
 
 #include <sys/mman.h>
 
-#include <cstdint>
 #include <cstdlib>
 #include <new>
+
+#include "modeler/core/map_pages.h"
 
 namespace sgm::detail {
 namespace {
 
-constexpr size_t page = 4096, hugePage = size_t{2} << 20;
+constexpr size_t page = 4096;
 /// Pieces up to here come from the heap; larger ones are mappings of their own.
 constexpr size_t largestSmall = hugePage / 2;
 
@@ -18,31 +19,19 @@ size_t roundedUp(size_t bytes, size_t unit) { return (bytes + unit - 1) / unit *
 bool isMapped(size_t bytes) { return bytes > largestSmall; }
 size_t mappedBytes(size_t bytes) { return roundedUp(bytes, page); }
 
-/// Maps whole pages at a multiple of the huge page.
-void* mapAligned(size_t bytes) {
-    void* const mapped =
-        mmap(nullptr, bytes + hugePage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (mapped == MAP_FAILED) throw std::bad_alloc();
-    char* const from = static_cast<char*>(mapped);
-    const size_t before = (hugePage - reinterpret_cast<uintptr_t>(from) % hugePage) % hugePage;
-    if (before > 0) munmap(from, before);
-    munmap(from + before + bytes, hugePage - before);
-#if defined(MADV_HUGEPAGE)
-    madvise(from + before, bytes, MADV_HUGEPAGE);
-#endif
-    return from + before;
-}
-
 void* remapped(void* memory, size_t bytes, size_t newBytes) {
     if (bytes == newBytes) return memory;
     if (newBytes < bytes) {
         munmap(static_cast<char*>(memory) + newBytes, bytes - newBytes);
         return memory;
     }
-    void* const target = mapAligned(newBytes);
+    void* const target = mapPages(newBytes, hugePage);
 #if defined(MREMAP_FIXED)
     // Both begin at a huge page, so whole tables of pages move.
-    if (mremap(memory, bytes, newBytes, MREMAP_MAYMOVE | MREMAP_FIXED, target) != target) throw std::bad_alloc();
+    if (mremap(memory, bytes, newBytes, MREMAP_MAYMOVE | MREMAP_FIXED, target) != target) {
+        munmap(target, newBytes);
+        throw std::bad_alloc();
+    }
 #else
     std::memcpy(target, memory, bytes);
     munmap(memory, bytes);
@@ -73,7 +62,8 @@ void* resizePiece(void* memory, size_t bytes, size_t newBytes) {
     const bool wasMapped = memory && isMapped(bytes);
     if (wasMapped && isMapped(newBytes)) return remapped(memory, mappedBytes(bytes), mappedBytes(newBytes));
     if (!wasMapped && !isMapped(newBytes)) return resizedSmall(memory, newBytes);
-    void* const piece = isMapped(newBytes) ? mapAligned(mappedBytes(newBytes)) : resizedSmall(nullptr, newBytes);
+    void* const piece =
+        isMapped(newBytes) ? mapPages(mappedBytes(newBytes), hugePage) : resizedSmall(nullptr, newBytes);
     if (!memory) return piece;
     std::memcpy(piece, memory, bytes < newBytes ? bytes : newBytes);
     release(memory, bytes);

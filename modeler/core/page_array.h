@@ -20,6 +20,7 @@ void* resizePiece(void* memory, size_t bytes, size_t newBytes);
 size_t roomFor(size_t bytes);
 }  // namespace detail
 
+/// A growing array in one piece of memory. Growing doesn't copy large arrays; pointers to elements don't survive it.
 template <class T>
 class PageArray {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);

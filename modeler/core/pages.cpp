@@ -7,10 +7,12 @@
 #include <mutex>
 #include <new>
 
+#include "modeler/core/map_pages.h"
+
 namespace sgm {
 namespace {
 
-constexpr size_t hugePage = size_t{2} << 20;
+using detail::hugePage;
 constexpr size_t regionBytes = 4 * hugePage;
 constexpr size_t mostFreeRegions = 512;
 /// Free regions beyond these are the system's to take back, should it need memory.
@@ -18,21 +20,6 @@ constexpr size_t mostHeldRegions = 32;
 constexpr size_t lineBytes = 64;
 /// Larger pieces get a mapping of their own.
 constexpr size_t largest = regionBytes / 4;
-
-/// Maps `bytes` at a multiple of `alignment` and asks for huge pages.
-void* mapPages(size_t bytes, size_t alignment) {
-    void* const mapped =
-        mmap(nullptr, bytes + alignment, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (mapped == MAP_FAILED) throw std::bad_alloc();
-    char* const from = static_cast<char*>(mapped);
-    const size_t before = (alignment - reinterpret_cast<uintptr_t>(from) % alignment) % alignment;
-    if (before > 0) munmap(from, before);
-    if (before < alignment) munmap(from + before + bytes, alignment - before);
-#if defined(MADV_HUGEPAGE)
-    madvise(from + before, bytes, MADV_HUGEPAGE);
-#endif
-    return from + before;
-}
 
 /// The start of a region: pieces are cut one after the other and never reused before all of them are free.
 struct alignas(lineBytes) Region {
@@ -53,7 +40,7 @@ public:
                 return new (region) Region;
             }
         }
-        return new (mapPages(regionBytes, regionBytes)) Region;
+        return new (detail::mapPages(regionBytes, regionBytes)) Region;
     }
     void put(Region* region) {
         const std::lock_guard lock(mutex_);
