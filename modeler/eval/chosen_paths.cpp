@@ -1,5 +1,6 @@
 #include "modeler/eval/chosen_paths.h"
 
+#include <bit>
 #include <cassert>
 
 namespace sgm::eval {
@@ -12,6 +13,14 @@ const float* operandRow(Source source, const StepContext& c, size_t planes, size
     if (!isConstant(source)) return placeOf(c, source, planes, plane);
     std::fill_n(scratch, c.count, plane == 0 ? c.constants[indexOf(source)] : 0.0f);
     return scratch;
+}
+
+/// Of each point a or b, by masks of all bits or none.
+void takeEach(const float* a, const float* b, const uint32_t* takesSecond, size_t n, float* out) {
+    for (size_t i = 0; i < n; ++i) {
+        const auto first = std::bit_cast<uint32_t>(a[i]), second = std::bit_cast<uint32_t>(b[i]);
+        out[i] = std::bit_cast<float>((second & takesSecond[i]) | (first & ~takesSecond[i]));
+    }
 }
 
 }  // namespace
@@ -93,6 +102,8 @@ void ChosenPaths::findLive(size_t n) {
 void ChosenPaths::takeValues(const Instruction& in, const Choice& choice) const {
     alignas(vectorFloats * sizeof(float)) std::array<float, pathPoints> numbers[2];
     const bool first = (choice.points & ~choice.values) != 0, second = (choice.points & choice.values) != 0;
+    std::array<uint32_t, pathPoints> takesSecond;
+    if (first && second) spreadBits(choice.values, live_.count, takesSecond.data());
     for (size_t plane = 0; plane < planes_; ++plane) {
         const float* const a = operandRow(in.a, live_, planes_, plane, numbers[0].data());
         const float* const b = operandRow(in.b, live_, planes_, plane, numbers[1].data());
@@ -100,7 +111,7 @@ void ChosenPaths::takeValues(const Instruction& in, const Choice& choice) const 
         if (!first || !second)
             std::copy_n(first ? a : b, live_.count, out);
         else
-            for (size_t i = 0; i < live_.count; ++i) out[i] = choice.values >> i & 1 ? b[i] : a[i];
+            takeEach(a, b, takesSecond.data(), live_.count, out);
     }
 }
 

@@ -54,6 +54,13 @@ Names LabelPass::settled(uint32_t* row, size_t n) {
     return others == 0 ? Names{nullptr, row[0]} : Names{row, 0};
 }
 
+/// The names of an operand in another row, for its own may be taken by another value.
+Names LabelPass::copied(const Names& names, size_t n, uint32_t* to) {
+    if (!names.row) return names;
+    std::copy_n(names.row, n, to);
+    return settled(to, n);
+}
+
 /// The label of a value from its operands': with the piece's name, where an op chooses from it.
 Names LabelPass::ofPiece(const Instruction& in, Names label, size_t n) {
     const auto named = [&](uint32_t l) { return l == 0 ? in.piece : join(in.piece, l); };
@@ -93,8 +100,13 @@ void LabelPass::choose(const Instruction& in, const StepContext& c, const Choice
     const PieceNames of[] = {first ? operand(in, sources, 0, c).names : PieceNames{},
                              second ? operand(in, sources, 1, c).names : PieceNames{}};
     const size_t n = c.count;
+    if (!first || !second) {
+        const PieceNames& all = of[first ? 0 : 1];
+        names_[in.out] = {copied(all.label, n, labelRow(in.out)), copied(all.origin, n, originRow(in.out))};
+        return;
+    }
     std::array<uint32_t, maxBlock> takesSecond;
-    for (size_t i = 0; i < n; ++i) takesSecond[i] = !first || (second && (choice.names >> i & 1)) ? ~0u : 0u;
+    spreadBits(choice.names, n, takesSecond.data());
     names_[in.out] = {taken(of[0].label, of[1].label, takesSecond.data(), n, labelRow(in.out)),
                       taken(of[0].origin, of[1].origin, takesSecond.data(), n, originRow(in.out))};
 }

@@ -45,6 +45,7 @@ private:
     Names combined(const Instruction& in, const Source* sources, const StepContext& c);
     Names firstOrigin(const Instruction& in, const Source* sources, const StepContext& c);
     Names ofPiece(const Instruction& in, Names label, size_t n);
+    static Names copied(const Names& names, size_t n, uint32_t* to);
     static Names settled(uint32_t* row, size_t n);
 
     uint32_t* labelRow(uint32_t reg) { return rows_ + 2 * reg * maxBlock; }

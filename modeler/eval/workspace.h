@@ -78,6 +78,16 @@ struct Choice {
     uint64_t points = 0;  ///< those that need the result
 };
 
+/// All bits of masks[i] where bit i is set, none else, for n points and up to seven more. Written so that the compiler
+/// makes vectors of it.
+inline void spreadBits(uint64_t bits, size_t n, uint32_t* masks) {
+    static constexpr uint32_t lanes[8] = {1, 2, 4, 8, 16, 32, 64, 128};
+    for (size_t i = 0; i < n; i += 8) {
+        const auto byte = static_cast<uint32_t>(bits >> i & 255);
+        for (size_t k = 0; k < 8; ++k) masks[i + k] = (byte & lanes[k]) == lanes[k] ? ~0u : 0u;
+    }
+}
+
 /// Scratch of ChosenPaths.
 struct PathRegisters {
     std::vector<Choice> choices;             ///< by instruction
