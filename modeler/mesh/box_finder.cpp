@@ -32,34 +32,20 @@ BoxFinder::BoxFinder(std::span<const Box3f> boxes) : boxes_(boxes) {
     std::sort(entries_.begin(), entries_.end());
 }
 
-bool BoxFinder::cellsOf(const Box3f& box, Cells& cells) const {
-    const Vec3f lo = (max(box.lo, around_.lo) - around_.lo) * cellsPerMetre_,
-                hi = (min(box.hi, around_.hi) - around_.lo) * cellsPerMetre_;
-    if (minComponent(hi - lo) < 0) return false;
-    cells = {{static_cast<int>(lo.x), static_cast<int>(lo.y), static_cast<int>(lo.z)},
-             {static_cast<int>(hi.x), static_cast<int>(hi.y), static_cast<int>(hi.z)}};
-    return true;
-}
-
-BoxFinder::Cells BoxFinder::Cells::coarse() const {
-    const auto of = [](Vec3i cell) { return Vec3i{cell.x / coarseness, cell.y / coarseness, cell.z / coarseness}; };
-    return {of(first), of(last)};
-}
-
 template <class Visit>
 bool BoxFinder::Cells::any(Visit&& visit) const {
     for (int z = first.z; z <= last.z; ++z)
         for (int y = first.y; y <= last.y; ++y)
             for (int x = first.x; x <= last.x; ++x)
-                if (visit(static_cast<uint64_t>(z) << 42 | static_cast<uint64_t>(y) << 21 | static_cast<uint64_t>(x)))
-                    return true;
+                if (visit(numberOf({x, y, z}))) return true;
     return false;
 }
 
-void BoxFinder::find(const Box3f& box, std::vector<uint32_t>& found) const {
-    found.clear();
-    Cells cells;
-    if (!cellsOf(box, cells) || !cells.coarse().any([&](uint64_t cell) { return coarseMarks_.has(cell); })) return;
+bool BoxFinder::isOneMarked(const Cells& coarse) const {
+    return coarse.any([&](uint64_t cell) { return coarseMarks_.has(cell); });
+}
+
+void BoxFinder::findIn(const Cells& cells, const Box3f& box, std::vector<uint32_t>& found) const {
     cells.any([&](uint64_t cell) {
         if (!marks_.has(cell)) return false;
         for (auto e = std::lower_bound(entries_.begin(), entries_.end(), Entry{cell, 0});

@@ -17,7 +17,11 @@ public:
     /// O(n) in the boxes, which have to stay.
     explicit BoxFinder(std::span<const Box3f> boxes);
     /// The boxes that meet `box`, ascending. O(1) as a rule where none is near and `box` is about as large as they are.
-    void find(const Box3f& box, std::vector<uint32_t>& found) const;
+    void find(const Box3f& box, std::vector<uint32_t>& found) const {
+        found.clear();
+        Cells cells;
+        if (cellsOf(box, cells) && isMarked(cells.coarse())) findIn(cells, box, found);
+    }
 
 private:
     struct Entry {
@@ -27,17 +31,41 @@ private:
             return a.cell != b.cell ? a.cell < b.cell : a.box < b.box;
         }
     };
+    static constexpr int coarseBits = 2;
     /// Cells that a box meets.
     struct Cells {
         Vec3i first, last;
-        /// As many as `coarseness` cells along an axis make one.
-        Cells coarse() const;
+        /// As many as two to the power of `coarseBits` cells along an axis make one.
+        Cells coarse() const {
+            const auto of = [](Vec3i cell) {
+                return Vec3i{cell.x >> coarseBits, cell.y >> coarseBits, cell.z >> coarseBits};
+            };
+            return {of(first), of(last)};
+        }
         /// Calls `visit` with the number of each until it returns true; whether one did.
         template <class Visit>
         bool any(Visit&& visit) const;
     };
+    static uint64_t numberOf(Vec3i cell) {
+        return static_cast<uint64_t>(cell.z) << 42 | static_cast<uint64_t>(cell.y) << 21 |
+               static_cast<uint64_t>(cell.x);
+    }
     /// Those of a box; false where it is beside all boxes.
-    bool cellsOf(const Box3f& box, Cells& cells) const;
+    bool cellsOf(const Box3f& box, Cells& cells) const {
+        const Vec3f lo = (max(box.lo, around_.lo) - around_.lo) * cellsPerMetre_,
+                    hi = (min(box.hi, around_.hi) - around_.lo) * cellsPerMetre_;
+        if (hi.x < lo.x || hi.y < lo.y || hi.z < lo.z) return false;
+        cells = {{static_cast<int>(lo.x), static_cast<int>(lo.y), static_cast<int>(lo.z)},
+                 {static_cast<int>(hi.x), static_cast<int>(hi.y), static_cast<int>(hi.z)}};
+        return true;
+    }
+    /// Whether one of some coarse cells has entries, or seems to.
+    bool isMarked(const Cells& coarse) const {
+        if (coarse.first == coarse.last) return coarseMarks_.has(numberOf(coarse.first));
+        return isOneMarked(coarse);
+    }
+    bool isOneMarked(const Cells& coarse) const;
+    void findIn(const Cells& cells, const Box3f& box, std::vector<uint32_t>& found) const;
 
     /// A bit for each hash of a cell.
     class Marks {
@@ -51,7 +79,6 @@ private:
         std::vector<uint64_t> words_ = std::vector<uint64_t>((size_t{1} << bits) / 64);
     };
 
-    static constexpr int coarseness = 4;
     std::span<const Box3f> boxes_;
     Box3f around_;
     float cellsPerMetre_ = 0;

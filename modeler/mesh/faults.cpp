@@ -12,6 +12,7 @@ namespace {
 
 constexpr uint32_t leafTriangles = 4;
 constexpr size_t tasksPerThread = 64;
+constexpr uint32_t none = 0xffffffffu;
 
 /// The bits of a coordinate in [0, 1023], two places between each.
 uint32_t spread(uint32_t x) {
@@ -24,7 +25,8 @@ uint32_t spread(uint32_t x) {
 /// What a node bounds: triangles and their unit normals.
 struct Bounds {
     Box3f box, normals;
-    bool fresh = false;  ///< whether one of them is to be compared with all
+    bool fresh = false;     ///< whether one of them is to be compared with all
+    uint32_t sound = none;  ///< the sound region that has all of them
 
     /// Whether all normals are in one half-space, well off its border.
     bool isNarrow() const {
@@ -32,19 +34,22 @@ struct Bounds {
         const Vec3f least = min(normals.lo * d, normals.hi * d);
         return least.x + least.y + least.z > 0.1f * length(d);
     }
+    /// Whether the triangles of both are known to meet nowhere wrongly.
+    bool isSoundWith(const Bounds& other) const { return sound != none && sound == other.sound; }
     bool meets(const Bounds& other) const { return !intersection(box, other.box).empty(); }
 };
 
 Bounds hull(const Bounds& a, const Bounds& b) {
-    return {sgm::hull(a.box, b.box), sgm::hull(a.normals, b.normals), a.fresh || b.fresh};
+    const uint32_t sound = a.box.empty() || a.sound == b.sound ? b.sound : b.box.empty() ? a.sound : none;
+    return {sgm::hull(a.box, b.box), sgm::hull(a.normals, b.normals), a.fresh || b.fresh, sound};
 }
 
 /// A complete binary tree over triangles in the order of a space-filling curve (Morton 1966); node n has 2n and 2n + 1.
 class Hierarchy {
 public:
-    /// `fresh` by triangle: whether it is to be compared with all, not only with those.
+    /// `fresh` by triangle: whether it is to be compared with all, not only with those. `sound` by region, or empty.
     Hierarchy(std::span<const Vec3f> positions, std::span<const SimpleTriangle> triangles,
-              std::span<const uint8_t> fresh, int threads)
+              std::span<const uint8_t> fresh, std::span<const uint8_t> sound, int threads)
         : positions_(positions), triangles_(triangles) {
         own_.resize(triangles.size());
         Box3f all;
@@ -73,7 +78,9 @@ public:
             const auto [begin, end] = placesOf(leaves_ + leaf);
             for (size_t i = begin; i < end; ++i) {
                 const Vec3f n = normalOf(order_[i]);
-                own_[i] = {boxOf(order_[i]), {n, n}, fresh[order_[i]] != 0};
+                const uint32_t region = triangles_[order_[i]].region;
+                const bool isSound = region < sound.size() && sound[region] != 0;
+                own_[i] = {boxOf(order_[i]), {n, n}, fresh[order_[i]] != 0, isSound ? region : none};
                 nodes_[leaves_ + leaf] = hull(nodes_[leaves_ + leaf], own_[i]);
             }
         });
@@ -86,6 +93,7 @@ public:
     template <class Found>
     void compare(Pair pair, std::vector<Pair>& open, Found&& found) const {
         const auto [a, b] = pair;
+        if (nodes_[a].isSoundWith(nodes_[b])) return;
         if (a == b) {
             if (!nodes_[a].fresh || nodes_[a].isNarrow() || nodes_[a].box.empty()) return;
             if (a >= leaves_) return compareLeaves(a, b, found);
@@ -119,7 +127,8 @@ private:
         for (size_t i = firstLeft; i < endLeft; ++i) {
             if (!nodes_[b].meets(own_[i])) continue;
             for (size_t j = a == b ? i + 1 : firstRight; j < endRight; ++j) {
-                if (!(own_[i].fresh || own_[j].fresh) || !own_[i].meets(own_[j])) continue;
+                if (!(own_[i].fresh || own_[j].fresh) || own_[i].isSoundWith(own_[j])) continue;
+                if (!own_[i].meets(own_[j])) continue;
                 const uint32_t s = order_[i], t = order_[j];
                 if (meetWrongly(positions_, triangles_[s].corners, triangles_[t].corners)) found(s), found(t);
             }
@@ -212,11 +221,12 @@ void FaultFinder::remember(std::span<const SimpleTriangle> triangles, std::span<
     forSound([&](const Triangle& c) { sound_[next[c.x]++] = {c.y, c.z}; });
 }
 
-std::vector<uint32_t> FaultFinder::find(std::span<const SimpleTriangle> triangles) {
+std::vector<uint32_t> FaultFinder::find(std::span<const SimpleTriangle> triangles,
+                                        std::span<const uint8_t> soundRegions) {
     std::vector<uint32_t> faults;
     if (triangles.empty()) return faults;
     findNonManifold(positions_, triangles, faults);
-    const Hierarchy hierarchy(positions_, triangles, findFresh(triangles), threads_);
+    const Hierarchy hierarchy(positions_, triangles, findFresh(triangles), soundRegions, threads_);
     const auto note = [&faults](uint32_t t) { faults.push_back(t); };
     std::vector<Hierarchy::Pair> tasks{{1, 1}}, next;
     while (!tasks.empty() && tasks.size() < tasksPerThread * static_cast<size_t>(threadCount(threads_))) {

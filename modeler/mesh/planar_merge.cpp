@@ -72,6 +72,12 @@ bool PlanarMerge::refine(uint32_t region, Decimation& curved) {
     return true;
 }
 
+std::vector<uint8_t> PlanarMerge::triangulated() const {
+    std::vector<uint8_t> found(left_.size());
+    for (uint32_t r = 0; r < found.size(); ++r) found[r] = isPlanar(r) && !left_[r];
+    return found;
+}
+
 void PlanarMerge::simplifyChain(uint32_t index, const Decimation& curved) {
     const Chain& chain = input_.chains.chains[index];
     if (!isPlanar(chain.left) || !isPlanar(chain.right)) {

@@ -24,6 +24,9 @@ public:
 
     /// Whether a planar region keeps its original triangles.
     bool isLeft(uint32_t region) const { return left_[region] != 0; }
+    /// By region: 1 where its triangles are those of its plane's triangulation, which meet nowhere but in common
+    /// vertices and edges.
+    std::vector<uint8_t> triangulated() const;
     /// The triangles of a planar region that doesn't.
     const std::vector<Triangle>& triangles(uint32_t region) const { return triangles_[region]; }
 

@@ -289,6 +289,8 @@ private:
             boxes.push_back(boxOf(t));
         }
         for (Move& move : moves_) move.compared = flat_.positions[move.vertex];
+        std::vector<uint8_t> isChanged(flat_.triangles.size());
+        for (const uint32_t t : changed) isChanged[t] = 1;
         const auto isElsewhere = [&](uint32_t t) { return hasMovedFrom(&Move::before, flat_.triangles[t]); };
         const BoxFinder finder(boxes);
         std::mutex mutex;
@@ -301,7 +303,8 @@ private:
                 finder.find(boxOf(flat_.triangles[t]), beside);
                 for (const uint32_t b : beside) {
                     const uint32_t other = changed[b];
-                    if (other == t || !(isElsewhere(other) || isElsewhere(static_cast<uint32_t>(t)))) continue;
+                    if (isChanged[t] && other <= t) continue;  // compared from the other one's side, or the same
+                    if (!(isElsewhere(other) || isElsewhere(static_cast<uint32_t>(t)))) continue;
                     if (meetWrongly(flat_.positions, flat_.triangles[t], flat_.triangles[other]))
                         found.insert(found.end(), {static_cast<uint32_t>(t), other});
                 }

@@ -49,7 +49,7 @@ public:
             if (cancelled(progress_)) return cancelledError();
             if (again) continue;
             collect();
-            const auto faults = finder.find(triangles_);
+            const auto faults = finder.find(triangles_, planar_->triangulated());
             if (cancelled(progress_)) return cancelledError();
             if (faults.empty()) return composeMesh(mesh_, flat_, regions_, planes_, triangles_);
             if (!refine(faults)) break;

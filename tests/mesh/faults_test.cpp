@@ -41,6 +41,22 @@ TEST(Faults, CrossingsAre) {
     EXPECT_FALSE(faultsOf(moved, triangles).empty());
 }
 
+TEST(Faults, CrossingsWithinASoundRegionAreNotLookedFor) {
+    std::vector<Vec3f> moved = corners;
+    for (size_t i = 4; i < 8; ++i) moved[i] -= Vec3f{2.9f, -0.1f, 1.9f};
+    std::vector<SimpleTriangle> triangles;
+    addTetrahedron(triangles, 0, 1, 2, 3), addTetrahedron(triangles, 4, 5, 6, 7);
+    const std::vector<uint8_t> sound{1, 1}, mixed{0, 1};
+    const auto found = [&](std::span<const uint8_t> soundRegions) {
+        return FaultFinder(moved, 2, nullptr).find(triangles, soundRegions);
+    };
+    EXPECT_TRUE(found(sound).empty());
+    EXPECT_EQ(found(mixed), faultsOf(moved, triangles));
+    for (size_t t = 4; t < 8; ++t) triangles[t].region = 1;  // two sound regions may cross each other
+    EXPECT_EQ(found(sound), faultsOf(moved, triangles));
+    EXPECT_FALSE(found(sound).empty());
+}
+
 TEST(Faults, EdgesThatAreThereTwiceAre) {
     std::vector<SimpleTriangle> triangles;
     addTetrahedron(triangles, 0, 1, 2, 3), addTetrahedron(triangles, 0, 1, 2, 7);
