@@ -9,6 +9,7 @@ namespace {
 constexpr uint32_t cornerVertex = 0xffffffffu;  ///< stands for a loop's corner until that is placed
 constexpr float probeShare = 0.0625f;
 constexpr int cornerRounds = 3;
+constexpr float settledShare = 1e-4f;    ///< of a cell, within which a corner may still move
 constexpr float leavingReach = 2;        ///< of a cell, that a corner may lie outside its cell
 constexpr float confirmShare = 0x1p-8f;  ///< of a cell times the slope: the field at a confirmed corner
 constexpr double towardsMiddle = 1e-6;   ///< weight of the nodes' middle where planes leave a corner open
@@ -169,6 +170,7 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
     for (int round = 0; round < cornerRounds && !corners_.empty(); ++round) {
         probes_.clear();
         for (const Corner& corner : corners_) {
+            if (corner.settled) continue;
             const bool isNear = length(corner.meeting - corner.at) <= leavingReach * grid.cell_m;
             const Vec3f from = round > 0 && isNear ? corner.meeting : corner.at;
             for (const Vec3f& mean : corner.means) probes_.add(tapes, corner.brick, from + (mean - from) * probeShare);
@@ -177,7 +179,9 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
         evaluations += probes_.size();
         size_t i = 0;
         for (Corner& corner : corners_) {
+            if (corner.settled) continue;
             std::vector<PiecePoint> seen;
+            corner.settled = true;
             for (size_t k = 0; k < corner.means.size(); ++k, ++i) {
                 float found;
                 PiecePoint plane = probes_.point(i, found);
@@ -189,12 +193,15 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
                     plane.at = (plane.at.as<double>() - g * (value / square)).as<float>();
                     seen.push_back(plane);
                 } else {
+                    corner.settled = false;
                     for (const PiecePoint& known : corner.planes)
                         if (known.label == corner.labels[k]) seen.push_back(known);
                 }
             }
             corner.planes = std::move(seen);
+            const Vec3f before = corner.meeting;
             intersect(corner);
+            corner.settled = corner.settled && length(corner.meeting - before) <= settledShare * grid.cell_m;
         }
     }
     evaluations += confirmMeetings(tapes, workspace);

@@ -78,9 +78,10 @@ private:
         Vec3i cell;
         size_t brick;
         uint32_t loop;
-        Vec3f at;             ///< inside the cell
-        Vec3f meeting;        ///< of its planes: `at`, or outside the cell
-        bool leaves = false;  ///< the pieces were found around a meeting outside the cell
+        Vec3f at;              ///< inside the cell
+        Vec3f meeting;         ///< of its planes: `at`, or outside the cell
+        bool settled = false;  ///< looking again would move it no more
+        bool leaves = false;   ///< the pieces were found around a meeting outside the cell
         std::vector<PiecePoint> planes;
         std::vector<uint32_t> labels;
         std::vector<Vec3f> means;  ///< by label: the middle of its nodes
