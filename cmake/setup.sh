@@ -21,9 +21,9 @@ install_missing() {
     { tail -n 20 build/apt.log; echo "Installing failed: see build/apt.log" >&2; exit 1; }
 }
 
-# build TARGET…: configures once, then builds; quiet unless something is to be done or fails.
+# build TARGET…: configures once, for a short first build, then builds; quiet unless something is to be done or fails.
 build() {
-  [ -f build/release/build.ninja ] || cmake --preset release >build/configure.log 2>&1 ||
+  [ -f build/release/build.ninja ] || cmake --preset release -DSGM_UNITY=ON >build/configure.log 2>&1 ||
     { tail -n 30 build/configure.log; exit 1; }
   ninja -C build/release -n "$@" | grep -q 'no work to do' && return 0
   echo "Building (a first build takes some minutes)…"

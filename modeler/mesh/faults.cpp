@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint32_t leafTriangles = 4;
 constexpr size_t tasksPerThread = 64;
-constexpr uint32_t none = 0xffffffffu;
+constexpr uint32_t noRegion = 0xffffffffu;
 
 /// The bits of a coordinate in [0, 1023], two places between each.
 uint32_t spread(uint32_t x) {
@@ -25,8 +25,8 @@ uint32_t spread(uint32_t x) {
 /// What a node bounds: triangles and their unit normals.
 struct Bounds {
     Box3f box, normals;
-    bool fresh = false;     ///< whether one of them is to be compared with all
-    uint32_t sound = none;  ///< the sound region that has all of them
+    bool fresh = false;         ///< whether one of them is to be compared with all
+    uint32_t sound = noRegion;  ///< the sound region that has all of them
 
     /// Whether all normals are in one half-space, well off its border.
     bool isNarrow() const {
@@ -35,12 +35,12 @@ struct Bounds {
         return least.x + least.y + least.z > 0.1f * length(d);
     }
     /// Whether the triangles of both are known to meet nowhere wrongly.
-    bool isSoundWith(const Bounds& other) const { return sound != none && sound == other.sound; }
+    bool isSoundWith(const Bounds& other) const { return sound != noRegion && sound == other.sound; }
     bool meets(const Bounds& other) const { return !intersection(box, other.box).empty(); }
 };
 
 Bounds hull(const Bounds& a, const Bounds& b) {
-    const uint32_t sound = a.box.empty() || a.sound == b.sound ? b.sound : b.box.empty() ? a.sound : none;
+    const uint32_t sound = a.box.empty() || a.sound == b.sound ? b.sound : b.box.empty() ? a.sound : noRegion;
     return {sgm::hull(a.box, b.box), sgm::hull(a.normals, b.normals), a.fresh || b.fresh, sound};
 }
 
@@ -80,7 +80,7 @@ public:
                 const Vec3f n = normalOf(order_[i]);
                 const uint32_t region = triangles_[order_[i]].region;
                 const bool isSound = region < sound.size() && sound[region] != 0;
-                own_[i] = {boxOf(order_[i]), {n, n}, fresh[order_[i]] != 0, isSound ? region : none};
+                own_[i] = {boxOf(order_[i]), {n, n}, fresh[order_[i]] != 0, isSound ? region : noRegion};
                 nodes_[leaves_ + leaf] = hull(nodes_[leaves_ + leaf], own_[i]);
             }
         });
