@@ -114,7 +114,7 @@ private:
         return true;
     }
 
-    /// The plane amid what is near to it.
+    /// The plane amid what is near to it; where that isn't in one plane, the plane of most of the region.
     void settle(std::span<const uint32_t> triangles, double near) {
         Vec3d sum;
         for (const uint32_t t : triangles)
@@ -126,8 +126,11 @@ private:
             const double h = dot(settled.normal, at(mesh_.triangles[t].x));
             low = std::min(low, h), high = std::max(high, h);
         }
-        settled.offset = (low + high) / 2;
-        if (settled.planar()) plane_ = settled;
+        if (!settled.planar()) return;
+        plane_ = settled;
+        plane_.offset = high - low <= 2 * bound_
+                            ? (low + high) / 2
+                            : medianOf(triangles, [&](const Triangle& t) { return dot(settled.normal, at(t.x)); });
     }
 
     void separate(uint32_t from) {
