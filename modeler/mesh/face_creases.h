@@ -65,6 +65,7 @@ private:
     bool moveBeforeThird(Gap& gap, const PiecePoint& third, float value) const;
     void split(uint32_t gap, const PiecePoint& between);
     Vec3f inFace(const FaceSegment& segment, Vec3f p) const;
+    static Vec3f onLine(const Gap& gap, Vec3f p);
     bool mayLieAt(const FaceSegment& segment, Vec3f p) const;
     bool isMonotone(const FaceSegment& segment) const;
     void arrange(const FaceSegment& segment);
