@@ -168,20 +168,23 @@ Result<CityCosts> measureCity(const CityCase& what) {
     const double objects = costs.baked_s * times.objects / all, rest = costs.baked_s - objects;
     const double ofObjects = double(costs.objects) / double(std::max<uint64_t>(costs.bakedObjects, 1));
     const double ofCells = double(costs.cells) / double(costs.bakedCells);
-    costs.total_s = costs.plan_s + objects * ofObjects + rest * ofCells;
+    costs.objects_s = objects * ofObjects;
+    costs.ground_s = costs.baked_s * times.ground / all * ofCells;
+    costs.total_s = costs.plan_s + costs.objects_s + rest * ofCells;
     costs.folder_MB = megabytesOf(folder / "lib") * ofObjects + megabytesOf(folder / "cells") * ofCells;
     return costs;
 }
 
 std::string cityHeader() {
-    return fmt::format("{:20} {:>9} {:>8} {:>7} {:>7} {:>8} {:>10} {:>9} {:>9} {:>8}", "city", "places", "objects",
-                       "cells", "baked", "plan s", "total s", "plan MB", "bake MB", "disk MB");
+    return fmt::format("{:20} {:>9} {:>8} {:>7} {:>7} {:>8} {:>10} {:>9} {:>10} {:>9} {:>9} {:>8}", "city", "places",
+                       "objects", "cells", "baked", "plan s", "objects s", "ground s", "total s", "plan MB", "bake MB",
+                       "disk MB");
 }
 
 std::string cityLine(const CityCosts& c) {
-    return fmt::format("{:20} {:>9} {:>8} {:>7} {:>7} {:>8.1f} {:>9.0f}{} {:>9.0f} {:>9.0f} {:>8.1f}", c.what.name,
-                       c.places, c.objects, c.cells, c.bakedCells, c.plan_s, c.total_s, c.what.share < 1 ? "*" : " ",
-                       c.planMemory_MB, c.bakeMemory_MB, c.folder_MB);
+    return fmt::format("{:20} {:>9} {:>8} {:>7} {:>7} {:>8.1f} {:>10.0f} {:>9.0f} {:>9.0f}{} {:>9.0f} {:>9.0f} {:>8.1f}",
+                       c.what.name, c.places, c.objects, c.cells, c.bakedCells, c.plan_s, c.objects_s, c.ground_s,
+                       c.total_s, c.what.share < 1 ? "*" : " ", c.planMemory_MB, c.bakeMemory_MB, c.folder_MB);
 }
 
 namespace {

@@ -27,6 +27,7 @@ struct CityCosts {
     uint64_t places = 0, objects = 0, cells = 0, bakedCells = 0, bakedObjects = 0;
     double plan_s = 0, baked_s = 0;                ///< processor time, measured
     double total_s = 0;                            ///< plan and all cells; projected where only a share was baked
+    double objects_s = 0, ground_s = 0;            ///< of it, of objects and of the ground of cells
     double planMemory_MB = 0, bakeMemory_MB = 0;   ///< the second beyond the first
     double folder_MB = 0, largestDwelling_kB = 0;  ///< the first projected as the time
     double twoWorkers_s = 0;  ///< processor time of the slower of two, with its plan; 0: not measured
