@@ -182,9 +182,10 @@ std::string cityHeader() {
 }
 
 std::string cityLine(const CityCosts& c) {
-    return fmt::format("{:20} {:>9} {:>8} {:>7} {:>7} {:>8.1f} {:>10.0f} {:>9.0f} {:>9.0f}{} {:>9.0f} {:>9.0f} {:>8.1f}",
-                       c.what.name, c.places, c.objects, c.cells, c.bakedCells, c.plan_s, c.objects_s, c.ground_s,
-                       c.total_s, c.what.share < 1 ? "*" : " ", c.planMemory_MB, c.bakeMemory_MB, c.folder_MB);
+    return fmt::format(
+        "{:20} {:>9} {:>8} {:>7} {:>7} {:>8.1f} {:>10.0f} {:>9.0f} {:>9.0f}{} {:>9.0f} {:>9.0f} {:>8.1f}", c.what.name,
+        c.places, c.objects, c.cells, c.bakedCells, c.plan_s, c.objects_s, c.ground_s, c.total_s,
+        c.what.share < 1 ? "*" : " ", c.planMemory_MB, c.bakeMemory_MB, c.folder_MB);
 }
 
 namespace {

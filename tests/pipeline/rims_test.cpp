@@ -14,9 +14,9 @@ namespace {
 
 TEST(Rims, OfPrismsHaveNoChamfers) {
     syntax::Diagnostics problems;
-    const auto grammar = load(
-        "drum.sgm",
-        "grammar 2\nterminal solid\nstart A -> size (40m, 12m, 40m) solid footprint ngon(64, 20m)\n", problems);
+    const auto grammar =
+        load("drum.sgm", "grammar 2\nterminal solid\nstart A -> size (40m, 12m, 40m) solid footprint ngon(64, 20m)\n",
+             problems);
     ASSERT_TRUE(grammar);
     Context context{nullptr, 2};
     const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
