@@ -216,7 +216,7 @@ std::map<std::string, std::string> metadataOf(const RenderRequest& request, cons
     for (size_t id = 1; id < provenance.parts.size(); ++id) {
         const Part& part = provenance.parts[id];
         origins[std::to_string(id)] = {
-            {"shape", part.path}, {"symbol", part.symbol}, {"rule", part.rule}, {"line", part.line}};
+            {"shape", part.path.text()}, {"symbol", part.symbol()}, {"rule", part.rule()}, {"line", part.line()}};
     }
     return {{"model", request.model.file},
             {"seed", std::to_string(request.model.seed)},

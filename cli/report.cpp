@@ -40,7 +40,7 @@ Json causeOf(const Model& model, const FloatCause& cause) {
     if (cause.kind == FloatCause::Kind::Unknown) return {};
     const auto partOf = [&](OriginId origin) {
         const Part& part = model.lowered->provenance.parts[origin];
-        return Json{{"path", part.path}, {"file", part.file}, {"line", part.line}};
+        return Json{{"path", part.path.text()}, {"file", part.file()}, {"line", part.line()}};
     };
     if (cause.kind == FloatCause::Kind::Thin)
         return {
@@ -77,9 +77,9 @@ Json missingFigures(const Model& model, const std::vector<lower::ThinPart>& miss
     Json list = Json::array();
     for (const lower::ThinPart& m : missing) {
         const Part& part = model.lowered->provenance.parts[m.part];
-        list.push_back({{"path", part.path},
-                        {"file", part.file},
-                        {"line", part.line},
+        list.push_back({{"path", part.path.text()},
+                        {"file", part.file()},
+                        {"line", part.line()},
                         {"thickness_m", m.thickness_m},
                         {"cell_m", m.cell_m},
                         {"missing", m.missing}});

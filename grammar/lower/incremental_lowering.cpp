@@ -66,7 +66,7 @@ bool Lowering::replay(std::span<const ShapeId> changed) {
     if (std::any_of(tree_.extras.begin(), tree_.extras.end(), [](const derive::Extras& x) { return !x.clad.empty(); }))
         return false;
     again_ = true;
-    findTurns();
+    for (ShapeId id = 0; id < tree_.shapes.size(); ++id) noteTurn(id);
     open_.clear();
     const size_t nodes = model_.graph.nodeCount(), parts = model_.provenance.parts.size();
     Dirty dirty;

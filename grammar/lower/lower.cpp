@@ -16,15 +16,30 @@
 
 namespace sgm::lower {
 
-std::vector<bool> Lowering::plainSums() const {
-    std::vector<bool> plain(tree_.shapes.size(), true);
-    for (ShapeId s = 0; s < tree_.shapes.size(); ++s) {
-        const Shape& shape = tree_.shapes[s];
-        const auto* x = tree_.extrasOf(s);
-        if (x && !(x->displace.empty() && x->clad.empty() && x->relief == none)) plain[s] = false;
-        if (shape.parent != none && !isSum(shape)) plain[shape.parent] = false;
+void Lowering::noteTurn(ShapeId id) {
+    const Shape& s = tree_.shapes[id];
+    const bool turned = s.parent == none || tree_.shapes[s.parent].scope.axes != s.scope.axes;
+    turnedAt_[id] = turned ? id : turnedAt_[s.parent];
+}
+
+/// What hangs on a shape and its parent alone, in one pass: the shapes of a large tree are far more than the caches
+/// hold. Returns how many have a solid of their own.
+size_t Lowering::surveyShapes() {
+    plain_.assign(tree_.shapes.size(), true);
+    turnedAt_.resize(tree_.shapes.size());
+    auto paths = std::make_shared<ShapePaths>(tree_);
+    size_t solids = 0;
+    for (ShapeId id = 0; id < tree_.shapes.size(); ++id) {
+        const Shape& s = tree_.shapes[id];
+        paths->add(s);
+        const auto* x = tree_.extrasOf(id);
+        if (x && !(x->displace.empty() && x->clad.empty() && x->relief == none)) plain_[id] = false;
+        if (s.parent != none && !isSum(s)) plain_[s.parent] = false;
+        noteTurn(id);
+        solids += s.solid != none;
     }
-    return plain;
+    texts_.take(std::move(paths));
+    return solids;
 }
 
 /// True when the shape's terms belong to its parent's sum.
@@ -48,13 +63,8 @@ OriginId Lowering::ownerOf(ShapeId id) {
     owners_[id] = static_cast<OriginId>(model_.provenance.parts.size());
     const Shape& s = tree_.shapes[id];
     Part part;
-    part.path = tree_.path(id);
-    part.symbol = tree_.labels[s.label];
-    if (s.madeBy != none) part.rule = d_.grammar->rules[d_.steps[s.madeBy].rule].name;
-    if (s.span.source) {
-        part.file = s.span.source->name();
-        part.line = s.span.source->place(s.span.begin).line;
-    }
+    part.path = texts_.pathOf(id);
+    part.madeBy = texts_.madeBy(s);
     part.material = materials_.of(id);
     part.pose = {derive::liftedScope(d_, id).centre, s.scope.axes};
     const derive::SolidValue* solid = tree_.solidOf(id);
@@ -103,7 +113,7 @@ void Lowering::join(Content& content, ShapeId id, Owned part) {
     if (isSum(s)) {
         if (content.blend_m > 0 || !content.cuts.terms.empty()) flush(content);
         content.terms.push_back(part);
-        content.from.push_back(id);
+        if (keeps_) content.from.push_back(id);
         return;
     }
     if (s.op == Operator::Sum || s.op == Operator::None) {
@@ -154,8 +164,10 @@ Owned Lowering::applyCladding(Owned part, ShapeId id) {
     OriginId ornament = ownerOf(id);
     if (!clad.name.empty()) {
         Part own = model_.provenance.parts[ornament];
-        own.path += "/" + clad.name;
-        own.symbol = clad.name;
+        own.path = own.path.text() + "/" + clad.name;
+        PartSource source = own.source();
+        source.symbol = clad.name;
+        own.madeBy = std::make_shared<const PartSource>(std::move(source));
         if (clad.material != none) own.material = clad.material;
         ornament = static_cast<OriginId>(model_.provenance.parts.size());
         model_.provenance.parts.push_back(std::move(own));
@@ -223,7 +235,7 @@ void Lowering::enter(ShapeId id) {
     Content& content = open_.back();
     if (content.blend_m > 0 || !content.cuts.terms.empty()) flush(content);
     content.terms.push_back(part);
-    content.from.push_back(id);
+    if (keeps_) content.from.push_back(id);
 }
 
 void Lowering::leave(ShapeId id) {
@@ -278,19 +290,11 @@ Status Lowering::walk(ShapeId top, Progress* progress) {
     }
 }
 
-/// By shape: the highest shape above it, or itself, from which on nothing turned.
-void Lowering::findTurns() {
-    turnedAt_.resize(tree_.shapes.size());
-    for (ShapeId id = 0; id < tree_.shapes.size(); ++id) {
-        const Shape& s = tree_.shapes[id];
-        const bool turned = s.parent == none || tree_.shapes[s.parent].scope.axes != s.scope.axes;
-        turnedAt_[id] = turned ? id : turnedAt_[s.parent];
-    }
-}
-
 Status Lowering::run(Progress* progress) {
-    findTurns();
-    plain_ = plainSums();
+    const size_t solids = surveyShapes();
+    model_.graph.reserveBoxes(solids);
+    model_.provenance.parts.reserve(solids + 1);
+    model_.shapeOf.reserve(solids + 1);
     if (keeps_) {
         kept_.parts.resize(tree_.shapes.size());
         kept_.termOf.resize(tree_.shapes.size(), none);
@@ -326,7 +330,12 @@ Status Lowering::run(Progress* progress) {
 void Lowering::nameTheWhole() {
     auto& parts = model_.provenance.parts;
     Part all = parts.size() > 1 ? parts[1] : Part{};
-    if (parts.size() > 2) all.path = tree_.path(0), all.symbol = tree_.labels[0], all.rule.clear();
+    if (parts.size() > 2) {
+        PartSource source = all.source();
+        source.symbol = tree_.labels[0], source.rule.clear();
+        all.path = tree_.path(0);
+        all.madeBy = std::make_shared<const PartSource>(std::move(source));
+    }
     parts[0] = std::move(all);
     poseTheWhole();
 }
@@ -346,10 +355,12 @@ void Lowering::mergeMaterials() {
         const Material& m = d_.materials[i];
         return Look{{m.color.x, m.color.y, m.color.z, m.roughness, m.metallic}, m.texture};
     };
-    std::set<size_t> used;
-    for (const Part& part : model_.provenance.parts) used.insert(part.material);
+    std::vector<bool> used(d_.materials.size());
+    for (const Part& part : model_.provenance.parts) used[part.material] = true;
     const auto isNamed = [&](size_t i) { return i > 0 && lookOf(i) == lookOf(0); };
-    std::vector<size_t> order(used.begin(), used.end());
+    std::vector<size_t> order;
+    for (size_t i = 0; i < used.size(); ++i)
+        if (used[i]) order.push_back(i);
     if (std::any_of(order.begin(), order.end(), isNamed)) std::stable_partition(order.begin(), order.end(), isNamed);
 
     std::vector<Material>& merged = model_.provenance.materials;

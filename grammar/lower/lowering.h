@@ -8,6 +8,7 @@
 
 #include "grammar/lower/lower.h"
 #include "grammar/lower/materials.h"
+#include "grammar/lower/part_texts.h"
 #include "modeler/field/combine.h"
 
 namespace sgm::lower {
@@ -21,14 +22,14 @@ using rules::Operator;
 
 /// Parts of one pending n-ary sum, or of one pending blend.
 struct Parts {
-    std::vector<Owned> terms;
+    PageVector<Owned> terms;
     double blend_m = 0;  ///< > 0: the terms are those of a blend with this radius
     uint64_t blendKey = 0;
 };
 
 /// A plain sum of many parts, kept.
 struct KeptSum {
-    std::vector<Owned> terms;
+    PageVector<Owned> terms;
     field::NodeRef value;
 };
 
@@ -36,7 +37,7 @@ struct KeptSum {
 /// cheap.
 struct Content : Parts {
     ShapeId shape = none;       ///< the node whose content this is
-    std::vector<ShapeId> from;  ///< who gave each term, while they are a plain sum
+    std::vector<ShapeId> from;  ///< who gave each term, while they are a plain sum; only where the lowering keeps
     Parts cuts;                 ///< taken from the terms when anything else comes
 };
 
@@ -46,7 +47,13 @@ class Lowering {
 public:
     /// With `keeps`, `replay` may follow.
     Lowering(const derive::Derivation& d, Model& model, bool keeps)
-        : d_(d), tree_(d.tree), model_(model), materials_(d), owners_(d.tree.shapes.size()), keeps_(keeps) {}
+        : d_(d),
+          tree_(d.tree),
+          model_(model),
+          materials_(d),
+          texts_(d),
+          owners_(d.tree.shapes.size(), 0),
+          keeps_(keeps) {}
 
     Status run(Progress* progress);
     /// After `run`, when the derivation changed in place: the parts that hold one of these shapes, again. False where
@@ -54,7 +61,8 @@ public:
     bool replay(std::span<const ShapeId> changed);
 
 private:
-    void findTurns();
+    size_t surveyShapes();
+    void noteTurn(ShapeId id);
     Status walk(ShapeId top, Progress* progress);
     void attachToParent(ShapeId id, const Owned& part);
     Owned whole(Content& content, ShapeId id);
@@ -82,19 +90,19 @@ private:
     Owned draped(Owned part, ShapeId id);
     bool flattensIntoParent(ShapeId id) const;
     bool isSum(const Shape& s) const { return (s.op == Operator::Sum || s.op == Operator::None) && s.blend_m <= 0; }
-    std::vector<bool> plainSums() const;
 
     const derive::Derivation& d_;
     const ShapeTree& tree_;
     Model& model_;
     Materials materials_;
     std::vector<Content> open_;
-    std::vector<ShapeId> turnedAt_;
+    PageVector<ShapeId> turnedAt_;  ///< by shape: the highest above it, or itself, from which on nothing turned
     std::vector<bool> plain_;       ///< by shape: its content is nothing but a sum
-    std::vector<OriginId> owners_;  ///< by shape; 0: not asked for
-    size_t cladNodes_ = 0;          ///< of the graph, made for cladding
-    ShapeId refused_ = none;        ///< the first shape whose cladding was one too much
-    ShapeId boundless_ = none;      ///< the first shape whose noise left no bounds
+    PartTexts texts_;
+    PageVector<OriginId> owners_;  ///< by shape; 0: not asked for
+    size_t cladNodes_ = 0;         ///< of the graph, made for cladding
+    ShapeId refused_ = none;       ///< the first shape whose cladding was one too much
+    ShapeId boundless_ = none;     ///< the first shape whose noise left no bounds
 
     /// What a second run begins with.
     struct Kept {

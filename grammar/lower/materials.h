@@ -3,9 +3,8 @@
 // before its children and for elder siblings' subtrees before the younger.
 #pragma once
 
-#include <vector>
-
 #include "grammar/derive/derive.h"
+#include "modeler/core/pages.h"
 
 namespace sgm::lower {
 
@@ -32,8 +31,8 @@ public:
 
 private:
     const derive::ShapeTree& tree_;
-    std::vector<uint32_t> own_;
-    std::vector<uint32_t> first_;  ///< material of the first solid below a node, so far
+    PageVector<uint32_t> own_;
+    PageVector<uint32_t> first_;  ///< material of the first solid below a node, so far
 };
 
 }  // namespace sgm::lower

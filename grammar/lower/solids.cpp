@@ -1,6 +1,7 @@
 #include "grammar/lower/solids.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "modeler/core/random.h"
@@ -107,15 +108,11 @@ bool standsOverPlan(const SolidValue& solid) {
 
 Frame frameOf(Graph& graph, const derive::Scope& scope, uint64_t key, uint64_t rotationKey,
               std::span<const field::SampledGridPtr> meshes) {
-    const Vec3d h = scope.half();
-    const auto half = [&](std::string_view name, double value) {
-        return graph.slot({key, hashText(name)}, static_cast<float>(value));
-    };
-    return {field::toLocal(graph.position(), {scope.centre, scope.axes}, key, rotationKey),
-            {half("size.x", h.x), half("size.y", h.y), half("size.z", h.z)},
-            scope,
-            meshes,
-            nullptr};
+    constexpr std::array names{hashText("size.x"), hashText("size.y"), hashText("size.z")};
+    const field::Point p = field::toLocal(graph.position(), {scope.centre, scope.axes}, key, rotationKey);
+    const Vec3f h = scope.half().as<float>();
+    const auto [x, y, z] = graph.slots(key, names, std::array{h.x, h.y, h.z});
+    return {p, {x, y, z}, scope, meshes, nullptr};
 }
 
 }  // namespace

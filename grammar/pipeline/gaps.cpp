@@ -253,7 +253,7 @@ bool meets(const eval::Tape& tape, const Closest& closest, double cell_m) {
 
 std::string partText(const Model& model, OriginId origin) {
     const Part& part = model.lowered->provenance.parts[origin];
-    return fmt::format("'{}' ({}:{})", part.path, part.file, part.line);
+    return fmt::format("'{}' ({}:{})", part.path.text(), part.file(), part.line());
 }
 
 }  // namespace

@@ -34,10 +34,10 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
     std::map<std::pair<std::string, uint32_t>, Line> lines;
     for (const lower::ThinPart& m : missing) {
         const Part& part = model.lowered->provenance.parts[m.part];
-        Line& line = lines[{part.file, part.line}];
+        Line& line = lines[{part.file(), part.line()}];
         if (line.parts++ == 0) {
             const derive::ShapeId shape = model.lowered->shapeOf[m.part];
-            line = {part.symbol, 1, m.thickness_m, m.cell_m, 0, {}};
+            line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, {}};
             if (shape != derive::none) line.span = model.derivation.tree.shapes[shape].span;
         }
         line.thickness_m = std::min(line.thickness_m, m.thickness_m), line.cell_m = std::min(line.cell_m, m.cell_m);

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "grammar/lower/part_texts.h"
 #include "grammar/rules/params.h"
 
 namespace sgm::pipeline {
@@ -31,12 +32,7 @@ Part partOf(const Derivation& derivation, derive::ShapeId id) {
     const derive::Shape& shape = derivation.tree.shapes[id];
     Part part;
     part.path = derivation.tree.path(id);
-    part.symbol = derivation.tree.labels[shape.label];
-    if (shape.madeBy != derive::none) part.rule = derivation.grammar->rules[derivation.steps[shape.madeBy].rule].name;
-    if (shape.span.source) {
-        part.file = shape.span.source->name();
-        part.line = shape.span.source->place(shape.span.begin).line;
-    }
+    part.madeBy = std::make_shared<const PartSource>(lower::sourceOf(derivation, shape));
     return part;
 }
 
@@ -178,7 +174,7 @@ Status PlacedModels::addPlaces(const Derivation& derivation, const std::vector<u
         const uint32_t index = of(holds, placement.object);
         const PlacedModel& object = objects_[index];
         Part part = partOf(derivation, placement.shape);
-        if (!path.empty()) part.path = path + "/" + part.path;
+        if (!path.empty()) part.path = path + "/" + part.path.text();
         Pose local = poseOf(object, derivation.tree.shapes[placement.shape].scope);
         local.origin.y += derivation.tree.extrasOf(placement.shape)->lift_m;
         part.pose = {frame.origin + frame.axes * local.origin, frame.axes * local.axes};

@@ -39,6 +39,18 @@ struct PageAllocator {
     friend bool operator==(PageAllocator, PageAllocator) { return true; }
 };
 
+/// For std::vector of many elements that aren't plain: they are made and ended as in any vector.
+template <class T>
+struct ObjectPageAllocator {
+    using value_type = T;
+    ObjectPageAllocator() = default;
+    template <class U>
+    ObjectPageAllocator(const ObjectPageAllocator<U>&) {}
+    T* allocate(size_t n) { return static_cast<T*>(detail::allocatePages(n * sizeof(T))); }
+    void deallocate(T* p, size_t n) noexcept { detail::freePages(p, n * sizeof(T)); }
+    friend bool operator==(ObjectPageAllocator, ObjectPageAllocator) { return true; }
+};
+
 /// A vector for what is large and plain; elements added by `resize(n)` hold anything until they are written.
 template <class T>
 using PageVector = std::vector<T, PageAllocator<T>>;

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "modeler/core/pages.h"
 #include "modeler/core/vec.h"
 
 namespace sgm::image {
@@ -35,24 +37,64 @@ struct Pose {
     friend bool operator==(const Pose&, const Pose&) = default;
 };
 
+/// Paths in a shape tree, by the number of the shape.
+struct PartPaths {
+    virtual ~PartPaths() = default;
+    /// "Cave/Cell[3]". From any thread.
+    virtual std::string of(uint32_t shape) const = 0;
+};
+
+/// A path in the shape tree: a text that is made whenever somebody asks for it, for models have many more parts than
+/// anybody asks about.
+class PartPath {
+public:
+    PartPath() = default;
+    PartPath(std::string text);
+    PartPath(const char* text) : PartPath(std::string(text)) {}
+    PartPath(std::shared_ptr<const PartPaths> paths, uint32_t shape) : paths_(std::move(paths)), shape_(shape) {}
+    /// O(depth of the shape).
+    std::string text() const { return paths_ ? paths_->of(shape_) : std::string(); }
+    operator std::string() const { return text(); }
+    friend bool operator==(const PartPath& a, const PartPath& b) { return a.text() == b.text(); }
+    friend bool operator==(const PartPath& a, const std::string& b) { return a.text() == b; }
+    friend bool operator==(const PartPath& a, const char* b) { return a.text() == b; }
+
+private:
+    std::shared_ptr<const PartPaths> paths_;
+    uint32_t shape_ = 0;
+};
+
+/// What of a grammar made a part; shared by all parts that the same text made.
+struct PartSource {
+    std::string symbol;  ///< terminal or non-terminal name
+    std::string rule;    ///< the rule application that made it, "" for the start
+    std::string file;    ///< grammar file
+    uint32_t line = 0;   ///< 1-based line of the text that made it
+    friend bool operator==(const PartSource&, const PartSource&) = default;
+};
+using PartSourcePtr = std::shared_ptr<const PartSource>;
+
 /// One shape of the derived tree that owns surface.
 struct Part {
-    std::string path;           ///< path in the shape tree, "Cave/Cell[3]"
-    std::string symbol;         ///< terminal or non-terminal name
-    std::string rule;           ///< the rule application that made it, "" for the start
-    std::string file;           ///< grammar file
-    uint32_t line = 0;          ///< 1-based line of the text that made it
+    PartPath path;
+    PartSourcePtr madeBy;       ///< null: nothing is known
     uint32_t material = 0;      ///< index into Provenance::materials
-    Pose pose;                  ///< of the shape's scope
     bool hasFlatFaces = false;  ///< its surface is made of planes, so that textures lie in them
+    Pose pose;                  ///< of the shape's scope
     /// Where its textures begin; null: at the object's origin.
     std::shared_ptr<const image::TextureFrame> textureFrame;
+
+    const PartSource& source() const;
+    const std::string& symbol() const { return source().symbol; }
+    const std::string& rule() const { return source().rule; }
+    const std::string& file() const { return source().file; }
+    uint32_t line() const { return source().line; }
 };
 
 /// The table behind OriginId and material indices. parts[0] and materials[0] always exist; no two materials look the
 /// same.
 struct Provenance {
-    std::vector<Part> parts{Part{}};
+    std::vector<Part, ObjectPageAllocator<Part>> parts{Part{}};
     std::vector<Material> materials{Material{}};
 
     const Material& materialOf(OriginId id) const { return materials[parts[id < parts.size() ? id : 0].material]; }

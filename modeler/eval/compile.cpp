@@ -92,7 +92,11 @@ std::span<const NodeId> Compiler::byRegisterNeed(NodeId id) {
     const auto heavier = [&](NodeId a, NodeId b) {
         return nodeClasses_[a].need != nodeClasses_[b].need ? nodeClasses_[a].need > nodeClasses_[b].need : a < b;
     };
-    std::sort(sorted_.begin(), sorted_.end(), heavier);
+    if (sorted_.size() == 2) {
+        if (heavier(sorted_[1], sorted_[0])) std::swap(sorted_[0], sorted_[1]);
+    } else if (sorted_.size() > 2) {
+        std::sort(sorted_.begin(), sorted_.end(), heavier);
+    }
     return sorted_;
 }
 
@@ -103,7 +107,8 @@ uint32_t Compiler::need(std::span<const NodeId> heavy) const {
     return most;
 }
 
-/// Post-order over what is left, on a stack of our own.
+/// Post-order over what is left, on a stack of our own. Gives values the keys that the builder knows them by: far fewer
+/// than nodes, most of which are numbers.
 void Compiler::order() {
     if (fateOf(root_).kind != NodeClass::Instruction || isInput(standIn(root_))) return;
     std::vector<bool> done(nodeClasses_.size());
@@ -114,6 +119,7 @@ void Compiler::order() {
         if (done[id]) continue;
         if (ready) {
             done[id] = true;
+            nodeClasses_[id].key = static_cast<uint32_t>(ordered_.size());
             ordered_.push_back(id);
             continue;
         }
@@ -126,13 +132,13 @@ void Compiler::order() {
 
 TapeBuilder::Use Compiler::useOf(const field::Operand& o) {
     const NodeClass& f = fateOf(o.node);
-    return {f.kind == NodeClass::Constant ? constants_.source(o.node, f.value) : standIn(o.node), o.origin};
+    return {f.kind == NodeClass::Constant ? constants_.source(o.node, f.value) : f.key, o.origin};
 }
 
 /// Names each value from which an op chooses by all that it consists of, slots by their keys: so names outlast a change
 /// of numbers and of other parts. What a blend joins has the name of the blend.
 void Compiler::namePieces() {
-    std::vector<uint64_t> hashes(nodeClasses_.size());
+    PageVector<uint64_t> hashes(nodeClasses_.size());  // of reached nodes
     for (NodeId id = 0; id <= root_; ++id) {
         if (nodeClasses_[id].kind == NodeClass::Unreached) continue;
         const Node& n = graph_.node(id);
@@ -177,23 +183,27 @@ TapeBuilder::Scale Compiler::scaleOf(const field::Field& field) const {
 
 Tape Compiler::write(TapeBuilder::Scale scale) {
     TapeBuilder builder;
-    builder.begin(nodeClasses_.size());
-    for (NodeId id = 0; id <= root_; ++id)
-        if (nodeClasses_[id].kind != NodeClass::Unreached && isInput(id)) builder.bindInput(id, graph_.node(id).data);
+    builder.begin(ordered_.size() + 3);
+    for (NodeId id = 0; id <= root_; ++id) {
+        if (nodeClasses_[id].kind == NodeClass::Unreached || !isInput(id)) continue;
+        nodeClasses_[id].key = static_cast<uint32_t>(ordered_.size()) + graph_.node(id).data;
+        builder.bindInput(nodeClasses_[id].key, graph_.node(id).data);
+    }
     builder.result(useOf({root_, 0}));
     std::vector<TapeBuilder::Use> uses;
     for (size_t i = ordered_.size(); i-- > 0;) {
         const Node& n = graph_.node(ordered_[i]);
+        const auto key = static_cast<uint32_t>(i);
         uses.clear();
         for (const field::Operand& o : graph_.operands(ordered_[i])) uses.push_back(useOf(o));
         // min(f, f) is a place for f's owner.
         if (field::traits(n.op).selects && uses[0].source == uses[1].source && uses[0].origin == uses[1].origin) {
-            builder.alias(ordered_[i], uses[0]);
+            builder.alias(key, uses[0]);
             continue;
         }
         const bool listed = owned_ && field::traits(n.op).owner != ops::Owner::First;
         const Instruction like{.op = n.op, .count = 0, .out = 0, .data = n.data, .piece = pieces_[ordered_[i]]};
-        builder.define(ordered_[i], like, uses.data(), uses.size(), listed);
+        builder.define(key, like, uses.data(), uses.size(), listed);
     }
     Tape tape;
     const auto grids = graph_.grids().empty() ? nullptr : std::make_shared<const Grids>(graph_.grids());

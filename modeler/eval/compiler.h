@@ -6,9 +6,10 @@
 
 #include <bit>
 #include <optional>
-#include <unordered_map>
 
+#include "modeler/core/random.h"
 #include "modeler/eval/tape_builder.h"
+#include "modeler/field/hash_index.h"
 #include "modeler/field/ops.h"
 
 namespace sgm::eval {
@@ -21,6 +22,7 @@ struct NodeClass {
     NodeId same = 0;    ///< Same
     float value = 0;    ///< Constant
     uint32_t need = 0;  ///< registers to compute it (Sethi & Ullman 1970), for Instruction
+    uint32_t key = 0;   ///< of the value in TapeBuilder, for Instruction
 };
 
 /// UniformParams of a tape, each once: told by their bits, or by the node they come from, so that one may change alone.
@@ -29,27 +31,38 @@ public:
     explicit Constants(bool byNode) : byNode_(byNode) {}
     Source source(NodeId node, float value) {
         const uint32_t key = byNode_ ? node : std::bit_cast<uint32_t>(value);
-        const auto [at, isNew] = index_.try_emplace(key, static_cast<uint32_t>(values_.size()));
-        if (isNew) values_.push_back(value);
-        return at->second | constantBit;
+        const uint32_t known = find(key);
+        if (known != TapeBuilder::none) return known | constantBit;
+        const auto place = static_cast<uint32_t>(values_.size());
+        index_.insert(mix(key), place);
+        keys_.push_back(key);
+        values_.push_back(value);
+        return place | constantBit;
     }
     /// The number's place in the table, by node; none for a node that no instruction reads.
-    uint32_t placeOf(NodeId node) const {
-        const auto at = index_.find(node);
-        return at == index_.end() ? TapeBuilder::none : at->second;
-    }
+    uint32_t placeOf(NodeId node) const { return find(node); }
     std::vector<float> take() { return std::move(values_); }
 
 private:
+    static_assert(TapeBuilder::none == field::HashIndex::none);
+    uint32_t find(uint32_t key) const {
+        return index_.find(mix(key), [&](uint32_t place) { return keys_[place] == key; });
+    }
+
     const bool byNode_;
     std::vector<float> values_;
-    std::unordered_map<uint32_t, uint32_t> index_;
+    PageVector<uint32_t> keys_;  ///< by place
+    field::HashIndex index_;
 };
 
 class Compiler {
 public:
     Compiler(const field::Graph& graph, NodeId root, std::span<const float> constants, bool byNode)
-        : graph_(graph), root_(root), slots_(constants), nodeClasses_(size_t{root} + 1), constants_(byNode) {}
+        : graph_(graph),
+          root_(root),
+          slots_(constants),
+          nodeClasses_(size_t{root} + 1, NodeClass{}),
+          constants_(byNode) {}
 
     Tape run(const field::Field& field);
 
@@ -86,10 +99,11 @@ private:
     const field::Graph& graph_;
     const NodeId root_;
     std::span<const float> slots_;
-    std::vector<NodeClass> nodeClasses_;
+    PageVector<NodeClass> nodeClasses_;
     std::vector<float> args_;
-    std::vector<NodeId> sorted_, ordered_;
-    std::vector<uint32_t> pieces_;  ///< by node, see Instruction::piece
+    std::vector<NodeId> sorted_;
+    PageVector<NodeId> ordered_;
+    PageVector<uint32_t> pieces_;  ///< by node, see Instruction::piece
     Constants constants_;
     bool owned_ = false;  ///< someone owns something
 };

@@ -27,8 +27,8 @@ Json materialOf(const Material& m) {
 }
 
 Json partOf(const Part& p) {
-    return {{"path", p.path}, {"symbol", p.symbol}, {"rule", p.rule},
-            {"file", p.file}, {"line", p.line},     {"material", p.material}};
+    return {{"path", p.path.text()}, {"symbol", p.symbol()}, {"rule", p.rule()},
+            {"file", p.file()},      {"line", p.line()},     {"material", p.material}};
 }
 
 Json solidOf(const field::PlacedSolid& s) {

@@ -54,10 +54,10 @@ void addPlaces(tinygltf::Model& model, const mesh::Scene& scene, const std::vect
             node.rotation = {q[0], q[1], q[2], q[3]};
         }
         Value::Object extras = valuesOf(object);
-        extras["path"] = textOf(instance.part.path);
-        if (!instance.part.rule.empty()) extras["rule"] = textOf(instance.part.rule);
-        extras["file"] = textOf(instance.part.file);
-        extras["line"] = Value(static_cast<int>(instance.part.line));
+        extras["path"] = textOf(instance.part.path.text());
+        if (!instance.part.rule().empty()) extras["rule"] = textOf(instance.part.rule());
+        extras["file"] = textOf(instance.part.file());
+        extras["line"] = Value(static_cast<int>(instance.part.line()));
         node.extras = Value(extras);
         model.nodes[0].children.push_back(addNode(model, std::move(node)));
     }

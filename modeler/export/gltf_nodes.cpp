@@ -98,10 +98,10 @@ Value originTable(const Provenance& provenance, const mesh::Mesh& mesh) {
     for (const OriginId origin : originsOf(mesh, provenance)) {
         const Part& part = provenance.parts[origin];
         ids.emplace_back(static_cast<int>(origin));
-        paths.push_back(textOf(part.path));
-        rules.push_back(textOf(part.rule));
-        files.push_back(textOf(part.file));
-        lines.emplace_back(static_cast<int>(part.line));
+        paths.push_back(textOf(part.path.text()));
+        rules.push_back(textOf(part.rule()));
+        files.push_back(textOf(part.file()));
+        lines.emplace_back(static_cast<int>(part.line()));
     }
     Value::Object table, extras;
     table["id"] = Value(ids);

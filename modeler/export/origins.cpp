@@ -18,9 +18,9 @@ std::vector<OriginId> originsOf(const mesh::Mesh& mesh, const Provenance& proven
 }
 
 std::string originText(const Part& part) {
-    const std::string rule = part.rule.empty() ? "" : fmt::format(", rule {}", part.rule);
-    const std::string line = part.file.empty() ? "" : fmt::format(", {}:{}", part.file, part.line);
-    return oneLine(part.path + rule + line);
+    const std::string rule = part.rule().empty() ? "" : fmt::format(", rule {}", part.rule());
+    const std::string line = part.file().empty() ? "" : fmt::format(", {}:{}", part.file(), part.line());
+    return oneLine(part.path.text() + rule + line);
 }
 
 std::vector<bool> nodesAbove(const ObjectTree& objects, std::vector<bool> holds) {

@@ -26,7 +26,7 @@ ObjectTree treeOfSymbols(const mesh::Mesh& mesh, const Provenance& provenance, c
     tree.ofOrigin.assign(provenance.parts.size(), 0);
     std::map<std::string, uint32_t> nodeOf;
     for (const OriginId origin : originsOf(mesh, provenance)) {
-        const std::string& symbol = provenance.parts[origin].symbol;
+        const std::string& symbol = provenance.parts[origin].symbol();
         if (symbol.empty()) continue;
         const auto [at, isNew] = nodeOf.try_emplace(symbol, static_cast<uint32_t>(tree.nodes.size()));
         if (isNew) tree.nodes.emplace_back().name = symbol;
@@ -197,10 +197,10 @@ private:
         }
         for (const OriginId origin : parts_) {
             const Part& part = input_.provenance->parts[origin];
-            json_["parts"].push_back({{"path", validUtf8(part.path)},
-                                      {"rule", validUtf8(part.rule)},
-                                      {"file", validUtf8(Path(part.file).filename())},  // pages are for others
-                                      {"line", part.line}});
+            json_["parts"].push_back({{"path", validUtf8(part.path.text())},
+                                      {"rule", validUtf8(part.rule())},
+                                      {"file", validUtf8(Path(part.file()).filename())},  // pages are for others
+                                      {"line", part.line()}});
         }
     }
 

@@ -27,7 +27,7 @@ public:
         for (const auto& [key, value] : input_.extras)
             out.text(fmt::format("comment {}: {}\n", oneLine(key), oneLine(value)));
         // All parts: of a mesh that comes in chunks it isn't known yet which of them it shows.
-        const std::vector<Part>& parts = input_.provenance->parts;
+        const auto& parts = input_.provenance->parts;
         for (size_t i = 0; i < parts.size() && !bare_; ++i)
             out.text(fmt::format("comment origin {}: {}\n", i, originText(parts[i])));
         out.text(fmt::format("element vertex {}\n", vertices));

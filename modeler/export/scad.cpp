@@ -62,7 +62,7 @@ std::string leafText(const field::PlacedSolid& s, const field::SolidTree& tree, 
     const Part& part = provenance.parts[s.origin];
     const Vec3f c = provenance.materials[part.material].color;
     return fmt::format("color([{}, {}, {}]) {}  // {}:{} {}", c.x, c.y, c.z, solidText(s, tree.bounds),
-                       oneLine(part.file), part.line, oneLine(part.path));
+                       oneLine(part.file()), part.line(), oneLine(part.path.text()));
 }
 
 }  // namespace

@@ -130,10 +130,10 @@ void writeOriginTable(OutFile& out, const Provenance& provenance, const mesh::Me
     };
     out.text("        dictionary origins = {\n");
     list("int[] id", [](OriginId id, const Part&) { return fmt::format("{}", id); });
-    list("string[] path", [](OriginId, const Part& part) { return quoted(part.path); });
-    list("string[] rule", [](OriginId, const Part& part) { return quoted(part.rule); });
-    list("string[] file", [](OriginId, const Part& part) { return quoted(part.file); });
-    list("int[] line", [](OriginId, const Part& part) { return fmt::format("{}", part.line); });
+    list("string[] path", [](OriginId, const Part& part) { return quoted(part.path.text()); });
+    list("string[] rule", [](OriginId, const Part& part) { return quoted(part.rule()); });
+    list("string[] file", [](OriginId, const Part& part) { return quoted(part.file()); });
+    list("int[] line", [](OriginId, const Part& part) { return fmt::format("{}", part.line()); });
     out.text("        }\n");
 }
 

@@ -1,5 +1,7 @@
 #include "modeler/field/domain.h"
 
+#include <array>
+
 #include "modeler/core/random.h"
 #include "modeler/field/ops.h"
 #include "modeler/field/solids.h"
@@ -10,8 +12,8 @@ namespace {
 
 using solids::boxDistance;
 
-NodeRef named(Graph& graph, uint64_t path, const char* attribute, double value) {
-    return graph.slot(SlotKey{path, hashText(attribute)}, static_cast<float>(value));
+NodeRef named(Graph& graph, uint64_t path, uint64_t attribute, double value) {
+    return graph.slot(SlotKey{path, attribute}, static_cast<float>(value));
 }
 
 NodeRef& component(Point& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
@@ -30,19 +32,21 @@ Point toLocal(Point p, const Frame& frame, uint64_t path, uint64_t rotationPath)
     Graph& g = p.x.graph();
     const Mat3& r = frame.rotation;
     const Vec3d centre = r.transposed() * frame.centre;
-    constexpr const char* names[3][3] = {{"rotation.xx", "rotation.xy", "rotation.xz"},
-                                         {"rotation.yx", "rotation.yy", "rotation.yz"},
-                                         {"rotation.zx", "rotation.zy", "rotation.zz"}};
-    const auto along = [&](const Vec3d& column, const char* const* name) {
+    // Every shape comes here: its names are hashed once for all.
+    constexpr uint64_t names[3][3] = {{hashText("rotation.xx"), hashText("rotation.xy"), hashText("rotation.xz")},
+                                      {hashText("rotation.yx"), hashText("rotation.yy"), hashText("rotation.yz")},
+                                      {hashText("rotation.zx"), hashText("rotation.zy"), hashText("rotation.zz")}};
+    constexpr std::array centreNames{hashText("centre.x"), hashText("centre.y"), hashText("centre.z")};
+    const auto along = [&](const Vec3d& column, const uint64_t* name) {
         for (int axis = 0; axis < 3; ++axis)
             if (std::abs(column[axis]) == 1) return column[axis] > 0 ? component(p, axis) : -component(p, axis);
         return dot(Point{named(g, rotationPath, name[0], column.x), named(g, rotationPath, name[1], column.y),
                          named(g, rotationPath, name[2], column.z)},
                    p);
     };
-    return Point{along(r.x, names[0]), along(r.y, names[1]), along(r.z, names[2])} -
-           Point{named(g, path, "centre.x", centre.x), named(g, path, "centre.y", centre.y),
-                 named(g, path, "centre.z", centre.z)};
+    const Vec3f c = centre.as<float>();
+    const auto [x, y, z] = g.slots(path, centreNames, std::array{c.x, c.y, c.z});
+    return Point{along(r.x, names[0]), along(r.y, names[1]), along(r.z, names[2])} - Point{x, y, z};
 }
 
 Box3f toWorld(const Box3f& local, const Frame& frame) {

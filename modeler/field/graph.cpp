@@ -15,19 +15,19 @@ namespace {
 
 // Graphs of many shapes are far larger than the caches: what is built together has hashes that lie together.
 
-/// Near those of nodes whose newest operand is as old.
-uint64_t hashOf(OpCode op, std::span<const Operand> operands, uint32_t data) {
-    uint64_t h = mix(static_cast<uint64_t>(op) << 32 | data);
-    uint64_t newest = 0;
-    for (const Operand& o : operands) {
-        h = combine(h, static_cast<uint64_t>(o.origin) << 32 | o.node);
-        newest = std::max<uint64_t>(newest, o.node);
-    }
-    return operands.empty() ? h : 2 * newest + (h & 31);
+/// Of a node without operands.
+uint64_t hashOf(OpCode op, uint32_t data) { return mix(static_cast<uint64_t>(op) << 32 | data); }
+
+/// Near those of nodes whose newest operand is as old: five bits, of a product, tell these apart.
+uint64_t hashOf(OpCode op, std::span<const Operand> operands, uint32_t data, NodeId newest) {
+    constexpr uint64_t spread = 0x9e3779b97f4a7c15ull;
+    uint64_t h = (static_cast<uint64_t>(op) << 32 | data) * spread;
+    uint64_t factor = spread;  // of its own for each place, and no product waits for another
+    for (const Operand& o : operands) h += (static_cast<uint64_t>(o.origin) << 32 | o.node) * (factor += 2 * spread);
+    return 2 * static_cast<uint64_t>(newest) + (h >> 59);
 }
 
-/// Near those of the other numbers of its shape.
-uint64_t hashOf(const SlotKey& key) { return (mix(key.path) & ~uint64_t{31}) | (key.attribute & 31); }
+uint64_t hashOf(const SlotKey& key) { return combine(key.path, key.attribute); }
 
 bool isLiteral(const Node& n) { return n.op == codeOf<ops::Literal>; }
 float literalOf(const Node& n) { return std::bit_cast<float>(n.data); }
@@ -51,21 +51,99 @@ NodeRef unary(OpCode op, NodeRef a) { return a.graph().apply(op, {a}); }
 
 Graph::Graph() = default;
 
-NodeRef Graph::x() { return {this, insert(codeOf<ops::Input>, {}, 0)}; }
-NodeRef Graph::y() { return {this, insert(codeOf<ops::Input>, {}, 1)}; }
-NodeRef Graph::z() { return {this, insert(codeOf<ops::Input>, {}, 2)}; }
+void Graph::reserveBoxes(size_t count) {
+    // Centre and half-size are slots; the coordinates less the centre; the box; the minimum that joins it.
+    constexpr size_t slots = 6, differences = 3;
+    const auto reserve = [](auto& list, size_t more) { list.reserve(list.size() + more); };
+    reserve(nodes_, count * (slots + differences + 2));
+    reserve(operands_, count * (2 * differences + (slots + 3) + 2));
+    reserve(constants_, count * slots);
+    reserve(slotKeys_, count * slots);
+    reserve(slotNodes_, count * slots);
+    reserve(runs_, count);
+    nodeIndex_.reserve(nodes_.size() + count * (differences + 2));
+    runIndex_.reserve(runs_.size() + count);
+}
 
-NodeRef Graph::literal(float value) { return {this, insert(codeOf<ops::Literal>, {}, std::bit_cast<uint32_t>(value))}; }
+NodeRef Graph::input(uint32_t axis) {
+    if (inputs_[axis] == absent) inputs_[axis] = append(codeOf<ops::Input>, {}, axis);
+    return {this, inputs_[axis]};
+}
+
+NodeRef Graph::literal(float value) {
+    const auto bits = std::bit_cast<uint32_t>(value);
+    if (latestLiteral_ == absent || nodes_[latestLiteral_].data != bits)
+        latestLiteral_ = insert(codeOf<ops::Literal>, {}, bits);
+    return {this, latestLiteral_};
+}
 
 NodeRef Graph::slot(SlotKey key, float value) {
-    const uint64_t h = hashOf(key);
-    const SlotId known = slotIndex_.find(h, [&](SlotId id) { return slotKeys_[id] == key; });
-    if (known == HashIndex::none) {
-        slotIndex_.insert(h, static_cast<SlotId>(constants_.size()));
-        return addSlot(key, value);
+    SlotRun& run = runs_[runOf(key.path)];
+    if (const SlotId known = findSlot(run, key); known != absent) {
+        constants_[known] = value;
+        return {this, slotNodes_[known]};
     }
-    constants_[known] = value;
-    return {this, slotNodes_[known]};
+    const auto next = static_cast<SlotId>(constants_.size());
+    if (run.count == 0) run.first = next;
+    if (run.first + run.count == next && run.count < longestRun) {
+        ++run.count;
+    } else {
+        run.hasMore = true;
+        laterSlots_.insert(hashOf(key), next);
+    }
+    return addSlot(key, value);
+}
+
+void Graph::addSlots(uint64_t path, std::span<const uint64_t> attributes, std::span<const float> values,
+                     std::span<NodeRef> slots) {
+    SlotRun& run = runs_[runOf(path)];
+    const size_t first = constants_.size(), count = attributes.size();
+    const bool goesOn = run.count == 0 || (run.first + run.count == first && !run.hasMore);
+    const auto isKnown = [&](uint64_t attribute) { return findSlot(run, {path, attribute}) != absent; };
+    if (!goesOn || run.count + count > longestRun || std::any_of(attributes.begin(), attributes.end(), isKnown)) {
+        for (size_t i = 0; i < count; ++i) slots[i] = slot({path, attributes[i]}, values[i]);
+        return;
+    }
+    if (run.count == 0) run.first = static_cast<SlotId>(first);
+    run.count += static_cast<uint32_t>(count);
+    const auto operands = static_cast<uint32_t>(operands_.size()), node = static_cast<NodeId>(nodes_.size());
+    constants_.resize(first + count);
+    slotKeys_.resize(first + count);
+    slotNodes_.resize(first + count);
+    nodes_.resize(node + count);
+    float* const constant = constants_.data() + first;
+    SlotKey* const key = slotKeys_.data() + first;
+    NodeId* const slotNode = slotNodes_.data() + first;
+    Node* const made = nodes_.data() + node;
+    for (uint32_t i = 0; i < count; ++i) {
+        constant[i] = values[i];
+        key[i] = {path, attributes[i]};
+        slotNode[i] = node + i;
+        made[i] = {codeOf<ops::Slot>, static_cast<SlotId>(first + i), operands, 0};
+        slots[i] = {this, node + i};
+    }
+}
+
+/// The number of the run of a path, which is empty where no slot of the path is known.
+uint32_t Graph::runOf(uint64_t path) {
+    const auto isOf = [&](uint32_t run) { return slotKeys_[runs_[run].first].path == path; };
+    if (latestRun_ != absent && isOf(latestRun_)) return latestRun_;
+    const uint64_t h = mix(path);
+    latestRun_ = runIndex_.find(h, isOf);
+    if (latestRun_ == absent) {
+        latestRun_ = static_cast<uint32_t>(runs_.size());
+        runs_.push_back({});
+        runIndex_.insert(h, latestRun_);
+    }
+    return latestRun_;
+}
+
+/// The slot of the key, or `absent`.
+SlotId Graph::findSlot(const SlotRun& run, const SlotKey& key) const {
+    for (SlotId id = run.first; id < run.first + run.count; ++id)
+        if (slotKeys_[id].attribute == key.attribute) return id;
+    if (!run.hasMore) return absent;
+    return laterSlots_.find(hashOf(key), [&](SlotId id) { return slotKeys_[id] == key; });
 }
 
 NodeRef Graph::slot(float value) { return addSlot({}, value); }
@@ -105,7 +183,7 @@ NodeRef Graph::apply(OpCode op, std::span<const Operand> operands, uint32_t data
 }
 
 NodeRef Graph::apply(OpCode op, std::initializer_list<NodeRef> operands, uint32_t data) {
-    constexpr size_t few = 4;  // all but the longest lists, so that arithmetic allocates nothing here
+    constexpr size_t few = 12;  // all but the longest lists, so that arithmetic and boxes allocate nothing here
     std::array<Operand, few> small;
     std::vector<Operand> large(operands.size() > few ? operands.size() : 0);
     const std::span<Operand> list =
@@ -117,20 +195,28 @@ NodeRef Graph::apply(OpCode op, std::initializer_list<NodeRef> operands, uint32_
 NodeId Graph::insert(OpCode op, std::span<const Operand> operands, uint32_t data) {
     [[maybe_unused]] const bool mayOwn = traits(op).owner != ops::Owner::First;
     for ([[maybe_unused]] const Operand& o : operands) assert(o.node < nodes_.size() && (mayOwn || o.origin == 0));
-    const uint64_t h = hashOf(op, operands, data);
-    const NodeId known = nodeIndex_.find(h, [&](NodeId i) {
-        const Node& n = nodes_[i];
-        const auto seen = this->operands(i);
-        return n.op == op && n.data == data && std::equal(seen.begin(), seen.end(), operands.begin(), operands.end());
-    });
-    if (known != HashIndex::none) return known;
+    NodeId newest = 0;
+    for (const Operand& o : operands) newest = std::max(newest, o.node);
+    const uint64_t h = operands.empty() ? hashOf(op, data) : hashOf(op, operands, data, newest);
+    if (newest <= latestOperand_) {  // else no node has all of these operands
+        const NodeId known = nodeIndex_.find(h, [&](NodeId i) {
+            const Node& n = nodes_[i];
+            const auto seen = this->operands(i);
+            return n.op == op && n.data == data &&
+                   std::equal(seen.begin(), seen.end(), operands.begin(), operands.end());
+        });
+        if (known != absent) return known;
+    }
+    latestOperand_ = std::max(latestOperand_, newest);
     nodeIndex_.insert(h, static_cast<NodeId>(nodes_.size()));
     return append(op, operands, data);
 }
 
 NodeId Graph::append(OpCode op, std::span<const Operand> operands, uint32_t data) {
-    nodes_.push_back({op, data, static_cast<uint32_t>(operands_.size()), static_cast<uint32_t>(operands.size())});
-    operands_.insert(operands_.end(), operands.begin(), operands.end());
+    const size_t first = operands_.size();
+    nodes_.push_back({op, data, static_cast<uint32_t>(first), static_cast<uint32_t>(operands.size())});
+    operands_.resize(first + operands.size());
+    std::copy(operands.begin(), operands.end(), operands_.begin() + static_cast<std::ptrdiff_t>(first));
     return static_cast<NodeId>(nodes_.size() - 1);
 }
 

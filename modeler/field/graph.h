@@ -4,12 +4,14 @@
 // hash-consing never merges two slots. After building, a Graph is only read.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <initializer_list>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "modeler/core/pages.h"
 #include "modeler/core/provenance.h"
 #include "modeler/field/hash_index.h"
 #include "modeler/field/sampled_grid.h"
@@ -73,14 +75,27 @@ public:
     Graph(Graph&&) = default;
     Graph& operator=(Graph&&) = default;
 
-    NodeRef x();
-    NodeRef y();
-    NodeRef z();
+    /// Makes room for so many more boxes that stand each in a place of its own, for graphs of many shapes: arrays that
+    /// grow are copied.
+    void reserveBoxes(size_t count);
+
+    NodeRef x() { return input(0); }
+    NodeRef y() { return input(1); }
+    NodeRef z() { return input(2); }
     Point position() { return {x(), y(), z()}; }
     /// A number that is part of the structure (a formula's 0.5): equal literals are one node.
     NodeRef literal(float value);
     /// A number that may change without changing structure. A key seen before keeps its slot and takes the new value.
     NodeRef slot(SlotKey key, float value);
+    /// Slots of one path by attribute, as `slot` gives them one after the other.
+    template <size_t count>
+    std::array<NodeRef, count> slots(uint64_t path, const std::array<uint64_t, count>& attributes,
+                                     const std::array<float, count>& values) {
+        static_assert(count <= longestRun);
+        std::array<NodeRef, count> made;
+        addSlots(path, attributes, values, made);
+        return made;
+    }
     /// A slot nobody else names; for numbers without a path.
     NodeRef slot(float value);
     /// A node of the op table. Commutative operands are ordered, equal structure is shared.
@@ -104,17 +119,37 @@ public:
     std::span<const SlotKey> slotKeys() const { return slotKeys_; }
 
 private:
+    static constexpr uint32_t absent = HashIndex::none;
+    static constexpr uint32_t longestRun = 32;  ///< is searched one by one
+
+    /// Slots in a row whose keys have the same path: a shape's numbers are mostly made together.
+    struct SlotRun {
+        SlotId first = 0;
+        uint32_t count = 0;
+        bool hasMore = false;  ///< the path has slots elsewhere, which `laterSlots_` knows
+    };
+
+    NodeRef input(uint32_t axis);
     NodeId insert(OpCode op, std::span<const Operand> operands, uint32_t data);
     NodeId append(OpCode op, std::span<const Operand> operands, uint32_t data);
+    uint32_t runOf(uint64_t path);
+    SlotId findSlot(const SlotRun& run, const SlotKey& key) const;
     NodeRef addSlot(SlotKey key, float value);
+    void addSlots(uint64_t path, std::span<const uint64_t> attributes, std::span<const float> values,
+                  std::span<NodeRef> slots);
 
-    std::vector<Node> nodes_;
-    std::vector<Operand> operands_;
-    std::vector<float> constants_;
-    std::vector<SlotKey> slotKeys_;
-    std::vector<NodeId> slotNodes_;  ///< by SlotId
+    PageVector<Node> nodes_;
+    PageVector<Operand> operands_;
+    PageVector<float> constants_;
+    PageVector<SlotKey> slotKeys_;
+    PageVector<NodeId> slotNodes_;  ///< by SlotId
+    PageVector<SlotRun> runs_;
     std::vector<SampledGridPtr> grids_;
-    HashIndex nodeIndex_, slotIndex_;
+    HashIndex nodeIndex_, runIndex_, laterSlots_;
+    std::array<NodeId, 3> inputs_{absent, absent, absent};
+    NodeId latestLiteral_ = absent;
+    uint32_t latestRun_ = absent;
+    NodeId latestOperand_ = 0;  ///< no node has an operand after this one
 };
 
 NodeRef operator+(NodeRef a, NodeRef b);

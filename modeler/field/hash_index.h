@@ -4,10 +4,13 @@
 // Programming" 6.4, algorithm L): no allocation an item.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
-#include <vector>
+
+#include "modeler/core/pages.h"
 
 namespace sgm::field {
 
@@ -25,9 +28,13 @@ public:
         return none;
     }
 
+    /// Makes room for `count` ids in all.
+    void reserve(size_t count) {
+        if (2 * count > places_.size()) resize(std::bit_ceil(2 * count));
+    }
     /// Enters an id whose item isn't there yet.
     void insert(uint64_t hash, uint32_t id) {
-        if (2 * (count_ + 1) > places_.size()) grow();
+        if (2 * (count_ + 1) > places_.size()) resize(std::max<size_t>(64, 2 * places_.size()));
         put({static_cast<uint32_t>(hash), id});
         ++count_;
     }
@@ -44,14 +51,13 @@ private:
         while (places_[at].id != none) at = (at + 1) & mask();
         places_[at] = place;
     }
-    void grow() {
-        const std::vector<Place> old =
-            std::exchange(places_, std::vector<Place>(places_.empty() ? 64 : 2 * places_.size()));
+    void resize(size_t count) {
+        const PageVector<Place> old = std::exchange(places_, PageVector<Place>(count, Place{}));
         for (const Place& place : old)
             if (place.id != none) put(place);
     }
 
-    std::vector<Place> places_;  ///< a power of two of them
+    PageVector<Place> places_;  ///< a power of two of them
     size_t count_ = 0;
 };
 

@@ -179,7 +179,7 @@ Result<FlatScene> flatten(const Scene& scene, const Mesh& ground) {
         append(flat.mesh, vertices, object.mesh, instance.part.pose, firstOrigin);
         std::unordered_map<const image::TextureFrame*, std::shared_ptr<const image::TextureFrame>> frames;
         for (Part part : object.provenance.parts) {
-            part.path = instance.part.path + "/" + part.path;
+            part.path = instance.part.path.text() + "/" + part.path.text();
             part.pose = {instance.part.pose.origin + instance.part.pose.axes * part.pose.origin,
                          instance.part.pose.axes * part.pose.axes};
             if (part.textureFrame) {

@@ -1,5 +1,6 @@
 // What roofs ask of a formula: how deep it is, how far slopes reach, where gables stand.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <queue>
 
@@ -11,18 +12,39 @@ using Kind = FormulaNode::Kind;
 
 namespace {
 
-/// Lower bounds of the formula over a rectangle.
-double lowest(const Formula& formula, std::span<const Linear> leaves, const Box2& box, std::vector<double>& values) {
+/// Two rectangles and their centres, for the formula's lower bounds over the former and its values at the latter: four
+/// numbers a node side by side, which compilers make vectors of.
+struct BoxPair {
+    static constexpr size_t lanes = 4;
+    using Lanes = std::array<double, lanes>;
+    /// By whether a leaf falls along the axis: where it is lowest, and the centre.
+    std::array<Lanes, 2> x, z;
+
+    BoxPair(const Box2& a, const Box2& b) {
+        const Vec2 atA = a.centre(), atB = b.centre();
+        x = {Lanes{a.lo.x, b.lo.x, atA.x, atB.x}, Lanes{a.hi.x, b.hi.x, atA.x, atB.x}};
+        z = {Lanes{a.lo.z, b.lo.z, atA.z, atB.z}, Lanes{a.hi.z, b.hi.z, atA.z, atB.z}};
+    }
+};
+
+/// The lower bounds over both boxes, then the values at both centres.
+BoxPair::Lanes evaluate(const Formula& formula, std::span<const Linear> leaves, const BoxPair& boxes,
+                        std::vector<BoxPair::Lanes>& values) {
     values.resize(formula.nodes.size());
     for (size_t i = 0; i < formula.nodes.size(); ++i) {
         const FormulaNode& node = formula.nodes[i];
+        BoxPair::Lanes& value = values[i];
         if (node.kind == Kind::Edge) {
             const Linear& l = leaves[node.first];
-            values[i] = l.at({l.a < 0 ? box.hi.x : box.lo.x, l.b < 0 ? box.hi.z : box.lo.z});
-        } else {
-            values[i] = node.kind == Kind::Max ? std::max(values[node.first], values[node.second])
-                                               : std::min(values[node.first], values[node.second]);
+            const BoxPair::Lanes &x = boxes.x[l.a < 0], &z = boxes.z[l.b < 0];
+            for (size_t k = 0; k < BoxPair::lanes; ++k) value[k] = l.at({x[k], z[k]});
+            continue;
         }
+        const BoxPair::Lanes &a = values[node.first], &b = values[node.second];
+        if (node.kind == Kind::Max)
+            for (size_t k = 0; k < BoxPair::lanes; ++k) value[k] = std::max(a[k], b[k]);
+        else
+            for (size_t k = 0; k < BoxPair::lanes; ++k) value[k] = std::min(a[k], b[k]);
     }
     return values.back();
 }
@@ -41,21 +63,31 @@ struct Search {
     double tolerance;
     double reached = Box2::far;  ///< the least value found
     Vec2 where{};                ///< its place
-    std::vector<double> values{};
+    std::vector<BoxPair::Lanes> values{};
     std::priority_queue<Candidate> queue{};
 
-    void add(const Box2& box) {
-        if (lowest(formula, outline, box, values) > 0) return;
-        const double bound = lowest(formula, leaves, box, values);
-        if (const Vec2 at = box.centre(); valueOf(formula, outline, at) <= 0)
-            if (const double value = valueOf(formula, leaves, at); value < reached) reached = value, where = at;
+    void add(const Box2& first, const Box2& second) {
+        const BoxPair boxes(first, second);
+        const BoxPair::Lanes outside = evaluate(formula, outline, boxes, values);
+        if (outside[0] > 0 && outside[1] > 0) return;
+        const bool same = leaves.data() == outline.data();
+        const BoxPair::Lanes over = same ? outside : evaluate(formula, leaves, boxes, values);
+        add(first, outside[0], over[0], outside[2], over[2]);
+        add(second, outside[1], over[1], outside[3], over[3]);
+    }
+    /// With the bounds of the outline and of the leaves over the box, and both values at its centre.
+    void add(const Box2& box, double outside, double bound, double outsideAtCentre, double atCentre) {
+        if (outside > 0) return;
+        if (outsideAtCentre <= 0 && atCentre < reached) reached = atCentre, where = box.centre();
         if (bound < reached - tolerance) queue.push({bound, box});
     }
 
     /// A lower bound of what the boxes hold that were left.
     double run(const Box2& box) {
         constexpr size_t mostBoxes = 4096;
-        add(box);
+        const BoxPair::Lanes outside = evaluate(formula, outline, {box, box}, values);
+        const BoxPair::Lanes over = evaluate(formula, leaves, {box, box}, values);
+        add(box, outside[0], over[0], outside[2], over[2]);
         for (size_t n = 0; n < mostBoxes && !queue.empty() && queue.top().bound < reached - tolerance; ++n) {
             const Box2 b = queue.top().box;
             queue.pop();
@@ -64,8 +96,7 @@ struct Search {
                 low.hi.x = high.lo.x = b.centre().x;
             else
                 low.hi.z = high.lo.z = b.centre().z;
-            add(low);
-            add(high);
+            add(low, high);
         }
         return queue.empty() ? Box2::far : queue.top().bound;
     }

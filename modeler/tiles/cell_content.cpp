@@ -188,12 +188,13 @@ private:
     static Json placeNode(const CellObject& object, const Part& part, size_t mesh, const std::array<float, 3>& at,
                           const std::array<float, 4>& turn) {
         Json extras = object.values;
-        extras["path"] = part.path;
-        if (!part.rule.empty()) extras["rule"] = part.rule;
-        extras["file"] = part.file;
-        extras["line"] = part.line;
-        const size_t slash = part.path.rfind('/');
-        return {{"name", slash == std::string::npos ? part.path : part.path.substr(slash + 1)},
+        const std::string path = part.path.text();
+        extras["path"] = path;
+        if (!part.rule().empty()) extras["rule"] = part.rule();
+        extras["file"] = part.file();
+        extras["line"] = part.line();
+        const size_t slash = path.rfind('/');
+        return {{"name", slash == std::string::npos ? path : path.substr(slash + 1)},
                 {"mesh", mesh},
                 {"translation", at},
                 {"rotation", turn},
@@ -220,10 +221,10 @@ private:
         std::vector<std::string> paths, rules, files;
         std::vector<uint32_t> lines;
         for (const Part* part : rows_) {
-            paths.push_back(part->path);
-            rules.push_back(part->rule);
-            files.push_back(std::filesystem::path(part->file).filename().string());
-            lines.push_back(part->line);
+            paths.push_back(part->path.text());
+            rules.push_back(part->rule());
+            files.push_back(std::filesystem::path(part->file()).filename().string());
+            lines.push_back(part->line());
         }
         PropertyTable table("place");
         table.addColumn("path", std::move(paths));

@@ -229,7 +229,8 @@ std::deque<Part> partsOf(const Glb& glb) {
     const auto lines = numbers.words(columns.at("line"), rows);
     for (size_t i = 0; i < rows; ++i) {
         Part& part = parts.emplace_back();
-        part.path = paths[i], part.rule = rules[i], part.file = files[i], part.line = lines[i];
+        part.path = paths[i];
+        part.madeBy = std::make_shared<const PartSource>(PartSource{{}, rules[i], files[i], lines[i]});
     }
     return parts;
 }

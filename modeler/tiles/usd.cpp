@@ -125,10 +125,10 @@ std::string instancerOf(const CellContent& content) {
                listOf(count, [&](size_t i) { return quoted(text(*parts[i])); }) +
                " (\n            interpolation = \"varying\"\n        )";
     };
-    texts("path", [](const Part& part) { return part.path; });
-    texts("rule", [](const Part& part) { return part.rule; });
+    texts("path", [](const Part& part) { return part.path.text(); });
+    texts("rule", [](const Part& part) { return part.rule(); });
     out +=
-        "\n        int[] primvars:line = " + listOf(count, [&](size_t i) { return std::to_string(parts[i]->line); }) +
+        "\n        int[] primvars:line = " + listOf(count, [&](size_t i) { return std::to_string(parts[i]->line()); }) +
         " (\n            interpolation = \"varying\"\n        )\n    }\n";
     return out;
 }

@@ -10,6 +10,7 @@
 #include "modeler/core/conventions.h"
 #include "modeler/core/provenance.h"
 #include "modeler/mesh/mesh.h"
+#include "tests/export/made_part.h"
 
 namespace sgm::exporter {
 
@@ -18,9 +19,8 @@ inline Provenance twoMaterials() {
     Provenance p;
     p.materials = {{"stone", {0.5f, 0.25f, 0.125f}, 0.8f, 0.0f, nullptr},
                    {"moss", {0.1f, 0.6f, 0.2f}, 0.9f, 0.1f, nullptr}};
-    p.parts = {Part{},
-               {"Cave/A", "A", "start", "a.sgm", 1, 0, {}, false, nullptr},
-               {"Cave/B", "B", "grow", "a.sgm", 2, 1, {}, false, nullptr}};
+    p.parts = {Part{}, madePart("Cave/A", {"A", "start", "a.sgm", 1}, 0),
+               madePart("Cave/B", {"B", "grow", "a.sgm", 2}, 1)};
     return p;
 }
 

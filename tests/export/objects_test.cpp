@@ -7,6 +7,7 @@
 #include <set>
 
 #include "modeler/export/exporter.h"
+#include "tests/export/made_part.h"
 #include "tests/hard_box.h"
 #include "tests/scratch.h"
 
@@ -28,7 +29,7 @@ struct House : testing::Test {
         const std::pair<const char*, uint32_t> parts[] = {
             {"House/wall", 0}, {"House/Wing/Window", 1}, {"House/Wing/Window[2]", 1}, {"House/Door", 0}};
         for (const auto& [path, material] : parts)
-            provenance.parts.push_back({path, "box", "grow", "a.sgm", 7, material, {}, false, nullptr});
+            provenance.parts.push_back(madePart(path, {"box", "grow", "a.sgm", 7}, material));
         const auto node = [&](const char* name, uint32_t parent) {
             tree.nodes.push_back({name, parent, "House/…", name, "grow", "a.sgm", 5, {{"size", Vec3d{1, 2, 3}}}});
         };

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "modeler/export/exporter.h"
+#include "tests/export/made_part.h"
 #include "tests/hard_box.h"
 #include "tests/scratch.h"
 
@@ -40,7 +41,7 @@ struct Street : testing::Test {
     /// A box of the node; its chunk.
     mesh::Chunk box(uint32_t node, Vec3d half) {
         tree.ofOrigin.push_back(node);
-        provenance.parts.push_back({tree.nodes[node].name + "/box", "box", "grow", "a.sgm", 3, 0, {}, false, nullptr});
+        provenance.parts.push_back(madePart(tree.nodes[node].name + "/box", {"box", "grow", "a.sgm", 3}, 0));
         return hardBox(tree.nodes[node].centre, {}, half, static_cast<OriginId>(provenance.parts.size() - 1));
     }
     void addHouse(std::vector<mesh::Chunk>& chunks, double x, double halfHeight = 1) {

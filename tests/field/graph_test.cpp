@@ -2,9 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <map>
+#include <tuple>
+#include <utility>
 #include <vector>
 
+#include "modeler/core/random.h"
 #include "modeler/field/ops.h"
 
 namespace sgm::field {
@@ -28,6 +34,66 @@ TEST(Graph, SlotsAreNeverMergedAndKeysKeepThem) {
     ASSERT_EQ(g.constants().size(), 4u);
     EXPECT_EQ(g.constants()[0], 7.0f);
     EXPECT_EQ(g.slotKeys()[1], (SlotKey{1, 3}));
+}
+
+/// Slots of few paths in any order are those that a map of keys gives, however they lie in runs.
+TEST(Graph, SlotsAreFoundByTheirKeysInAnyOrder) {
+    Graph g;
+    std::map<std::pair<uint64_t, uint64_t>, std::pair<NodeId, float>> known;
+    const auto add = [&](uint64_t path, uint64_t attribute, NodeRef node, float value) {
+        const auto [at, isNew] = known.try_emplace({path, attribute}, node.id(), value);
+        EXPECT_EQ(at->second.first, node.id()) << path << ' ' << attribute;
+        at->second.second = value;
+    };
+    for (uint64_t i = 0; i < 4000; ++i) {
+        const auto value = static_cast<float>(i);
+        const uint64_t path = pick(mix(i), i % 3 == 0 ? 8 : 200), attribute = pick(mix(i + 1'000'000), 100);
+        if (i % 5 == 0) {
+            const std::array attributes{attribute, attribute + 1, attribute + 2};
+            const auto made = g.slots(path, attributes, std::array{value, value + 1, value + 2});
+            for (size_t k = 0; k < 3; ++k) add(path, attributes[k], made[k], value + static_cast<float>(k));
+        } else {
+            add(path, attribute, g.slot({path, attribute}, value), value);
+        }
+        if (i % 7 == 0) g.slot(value);
+    }
+    for (const auto& [key, slot] : known) {
+        const SlotId id = g.node(slot.first).data;
+        EXPECT_EQ(g.slotKeys()[id], (SlotKey{key.first, key.second}));
+        EXPECT_EQ(g.constants()[id], slot.second);
+    }
+    EXPECT_EQ(g.constants().size(), known.size() + 572);
+}
+
+/// Nodes are one where a map of their contents has one, with room reserved or not.
+TEST(Graph, NodesAreOneWhereTheirContentsAre) {
+    for (const bool reserves : {false, true}) {
+        Graph g;
+        if (reserves) g.reserveBoxes(1000);
+        std::vector<NodeRef> nodes{g.x(), g.y(), g.z(), g.slot({1, 1}, 1), g.slot({1, 2}, 2)};
+        std::map<std::tuple<uint16_t, NodeId, NodeId>, NodeId> known;
+        size_t again = 0;
+        for (uint64_t i = 0; i < 5000; ++i) {
+            const OpCode op = i % 2 ? codeOf<ops::Sub> : codeOf<ops::Max>;
+            const auto drawn = [&](uint64_t key, uint64_t among) {
+                return pick(mix(key), std::min<uint64_t>(nodes.size(), among));
+            };
+            // Old ones, of which most pairs are known after a while, and old with new ones.
+            const NodeRef a = nodes[drawn(i, 60)],
+                          b = i % 3 == 0 ? nodes[drawn(i + 77, 8)] : nodes[nodes.size() - 1 - drawn(i + 77, 6)];
+            const NodeRef made = g.apply(op, {a, b});
+            const bool swaps = op == codeOf<ops::Max> && b.id() < a.id();
+            const std::tuple content{static_cast<uint16_t>(op), swaps ? b.id() : a.id(), swaps ? a.id() : b.id()};
+            const auto [at, isNew] = known.try_emplace(content, made.id());
+            ASSERT_EQ(at->second, made.id()) << i;
+            if (isNew)
+                nodes.push_back(made);
+            else
+                ++again;
+        }
+        EXPECT_EQ(g.nodeCount(), nodes.size());
+        EXPECT_GT(again, 100u);
+    }
 }
 
 TEST(Graph, StructureSurvivesANewNumber) {

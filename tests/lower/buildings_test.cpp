@@ -73,7 +73,7 @@ TEST(House, AWindowIsAHoleOfItsSize) {
         EXPECT_NEAR(airAlong(d, window, 0), 16 * wide / 5, 0.011);
         EXPECT_NEAR(airAlong(d, window, 1), 4.2 * .62, 0.011);
         EXPECT_TRUE(d.inside({window.x, window.y, 5.2f}));  // glass
-        EXPECT_EQ(d.owner({window.x + .4f, window.y, 5.53f}).symbol, "glass");
+        EXPECT_EQ(d.owner({window.x + .4f, window.y, 5.53f}).symbol(), "glass");
     }
     const Lowered unglazed(house("glazed = false rooms = all"));
     EXPECT_TRUE(airBetween(unglazed, {-2.5f, 4.0f, 12}, {-2.5f, 4.0f, 0}));

@@ -84,10 +84,10 @@ TEST(Clad, AKifsOfTheSketchLiesAsItIsTold) {
     EXPECT_EQ(value(field::FacadeParameter::Passes), 6);
     EXPECT_EQ(clad.name, "ornate");
     // What stands in the middle is the solid's own, what sticks out the ornament's.
-    EXPECT_EQ(model.owner({0, 0, 0}).symbol, "cube");
+    EXPECT_EQ(model.owner({0, 0, 0}).symbol(), "cube");
     int ornaments = 0;
     eachPlace(model, 20000,
-              [&](Vec3f p) { ornaments += std::abs(model.value(p)) < 0.05f && model.owner(p).symbol == "ornate"; });
+              [&](Vec3f p) { ornaments += std::abs(model.value(p)) < 0.05f && model.owner(p).symbol() == "ornate"; });
     EXPECT_GT(ornaments, 0);
 }
 

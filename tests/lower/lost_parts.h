@@ -92,7 +92,7 @@ inline std::vector<OriginId> lostParts(const Lowered& model, const mesh::Mesh& m
 /// "path (line n)".
 inline std::string partText(const Lowered& model, OriginId part) {
     const Part& p = model.model->provenance.parts[part];
-    return fmt::format("{} (line {})", p.path, p.line);
+    return fmt::format("{} (line {})", p.path.text(), p.line());
 }
 
 }  // namespace sgm::testing_

@@ -61,7 +61,7 @@ TEST(Order, AMeltedCutIsTheSharpOneFarFromItsEdge) {
     EXPECT_GT(melted.value({1.01f, 1.98f, 0}), 0);  // the edge, in the rock by 1 cm before
     EXPECT_LT(sharp.value({1.01f, 1.98f, 0}), 0);
     EXPECT_EQ(melted.value({0, -1.5f, 0}), sharp.value({0, -1.5f, 0}));
-    EXPECT_EQ(melted.owner({1.0f, 1.4f, 0}).symbol, sharp.owner({1.0f, 1.4f, 0}).symbol);
+    EXPECT_EQ(melted.owner({1.0f, 1.4f, 0}).symbol(), sharp.owner({1.0f, 1.4f, 0}).symbol());
 }
 
 TEST(Order, DisplacementMovesTheWholeContent) {
@@ -88,18 +88,40 @@ TEST(Owners, SurfaceTellsItsShapeAndLine) {
         "rule Cut: A -> - cube size .5 at +x to centre, - glass size .5 at -x to centre, + sphere size .5 at +y to "
         "centre\n");
     const auto material = [&](const Part& p) { return d.model->provenance.materials[p.material].name; };
-    EXPECT_EQ(d.owner({0, 0, 0.5f}).symbol, "A");
+    EXPECT_EQ(d.owner({0, 0, 0.5f}).symbol(), "A");
     EXPECT_EQ(material(d.owner({0, 0, 0.5f})), "wall");
     const Part& cut = d.owner({0.25f, 0, 0});
-    EXPECT_EQ(cut.rule, "Cut");
-    EXPECT_EQ(cut.line, 5u);
-    EXPECT_EQ(cut.file, "test.sgm");
+    EXPECT_EQ(cut.rule(), "Cut");
+    EXPECT_EQ(cut.line(), 5u);
+    EXPECT_EQ(cut.file(), "test.sgm");
     EXPECT_EQ(material(cut), "wall");                       // the wall of a cut looks like its host
     EXPECT_EQ(material(d.owner({-0.25f, 0, 0})), "glass");  // unless the cutter names a material
     EXPECT_EQ(material(d.owner({0, 0.75f, 0})), "wall");    // inherited
     const Lowered one("grammar 1\nstart S -> sphere\n");
-    EXPECT_EQ(one.owner({0.5f, 0, 0}).symbol, "sphere");
-    EXPECT_EQ(one.model->provenance.parts[0].symbol, "sphere");
+    EXPECT_EQ(one.owner({0.5f, 0, 0}).symbol(), "sphere");
+    EXPECT_EQ(one.model->provenance.parts[0].symbol(), "sphere");
+}
+
+/// Paths of parts are made when asked for, and are those of the tree, which may be gone by then.
+TEST(Owners, PathsOutliveTheTree) {
+    std::string deep = "grammar 1\nstart S -> A0 + A0\n";
+    for (int i = 0; i < 30; ++i) deep += "rule A" + std::to_string(i) + " -> A" + std::to_string(i + 1) + "\n";
+    for (const std::string& text :
+         {deep + "rule A30 -> cube + cube move (2, 0, 0)\n",
+          std::string("grammar 1\nstart S -> (cube + sphere at +y) + A + A\nrule A -> cube - sphere at +x\n")}) {
+        std::vector<std::string> paths;
+        std::unique_ptr<lower::Model> model;
+        {
+            Lowered d(text);
+            ASSERT_TRUE(d.model);
+            for (const derive::ShapeId id : d.model->shapeOf)
+                paths.push_back(d.derivation.tree.path(id == derive::none ? 0 : id));
+            model = std::move(d.model);
+        }
+        ASSERT_GT(paths.size(), 3u);
+        ASSERT_EQ(paths.size(), model->provenance.parts.size());
+        for (size_t i = 0; i < paths.size(); ++i) EXPECT_EQ(model->provenance.parts[i].path.text(), paths[i]);
+    }
 }
 
 TEST(Owners, ARoughenedSurfaceIsStillItsPartsOwn) {
@@ -107,9 +129,9 @@ TEST(Owners, ARoughenedSurfaceIsStillItsPartsOwn) {
         "grammar 1\nterminal wall color #ff0000\nterminal glass color #0000ff\n"
         "start S -> (wall size 2 + glass size 1 at +y - cube size (4, .2, 4) move (0, .5, 0)) displace fbm(.05m, "
         "2/m)\n");
-    EXPECT_EQ(d.owner({1, 0, 0}).symbol, "wall");
-    EXPECT_EQ(d.owner({0.5f, 1.5f, 0}).symbol, "glass");
-    EXPECT_EQ(d.owner({0, 0.4f, 0}).symbol, "cube");
+    EXPECT_EQ(d.owner({1, 0, 0}).symbol(), "wall");
+    EXPECT_EQ(d.owner({0.5f, 1.5f, 0}).symbol(), "glass");
+    EXPECT_EQ(d.owner({0, 0.4f, 0}).symbol(), "cube");
 }
 
 TEST(Owners, AMorphLooksLikeTheFirstOfItsSolidsThatHasALook) {

@@ -156,8 +156,8 @@ TEST(SolidTree, KeepsTheOriginsOfTheModel) {
     const Provenance& p = model.model->provenance;
     EXPECT_EQ(p.parts[tree->solids[0].origin].path, model.owner({1.01f, 0, 0}).path);
     EXPECT_EQ(p.parts[tree->solids[1].origin].path, model.owner({0, 2.01f, 0}).path);
-    EXPECT_EQ(p.parts[tree->solids[2].origin].rule, p.parts.back().rule);
-    EXPECT_EQ(p.parts[tree->solids[2].origin].line, 3u);
+    EXPECT_EQ(p.parts[tree->solids[2].origin].rule(), p.parts.back().rule());
+    EXPECT_EQ(p.parts[tree->solids[2].origin].line(), 3u);
     EXPECT_EQ(p.materialOf(tree->solids[1].origin).color, (Vec3f{0, 1, 0}));
 }
 

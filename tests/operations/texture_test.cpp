@@ -42,7 +42,7 @@ struct Covered {
     }
     const Material& material(const std::string& symbol) const {
         for (const Part& part : model->provenance.parts)
-            if (part.symbol == symbol) return model->provenance.materials[part.material];
+            if (part.symbol() == symbol) return model->provenance.materials[part.material];
         ADD_FAILURE() << "no part is called " << symbol;
         return model->provenance.materials[0];
     }
@@ -93,8 +93,8 @@ TEST(Textures, AnotherMaterialTakesThemOff) {
 TEST(Textures, PartsKnowWhetherTheirFacesAreFlat) {
     const Covered c("grammar 2\nterminal box = cube\nterminal ball = sphere\nstart S -> box + ball at +y\n");
     for (const Part& part : c.model->provenance.parts)
-        if (part.symbol == "box" || part.symbol == "ball") {
-            EXPECT_EQ(part.hasFlatFaces, part.symbol == "box");
+        if (part.symbol() == "box" || part.symbol() == "ball") {
+            EXPECT_EQ(part.hasFlatFaces, part.symbol() == "box");
         }
 }
 
@@ -105,8 +105,8 @@ TEST(Textures, OfShapesThatAreLaidRunOnAroundTheirOutline) {
         "rule Upper -> wall + bare at +y\n");
     std::set<std::shared_ptr<const image::TextureFrame>> frames;
     for (const Part& part : c.model->provenance.parts) {
-        if (part.symbol == "wall") frames.insert(part.textureFrame);
-        if (part.symbol == "bare") {
+        if (part.symbol() == "wall") frames.insert(part.textureFrame);
+        if (part.symbol() == "bare") {
             EXPECT_EQ(part.textureFrame, nullptr);
         }
     }

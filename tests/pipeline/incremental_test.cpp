@@ -11,7 +11,7 @@ namespace {
 
 using namespace testing_;
 
-auto told(const Part& p) { return std::tie(p.path, p.symbol, p.rule, p.file, p.line, p.material, p.pose); }
+auto told(const Part& p) { return std::tuple(p.path.text(), p.source(), p.material, p.pose); }
 
 /// A model followed through options, on one lattice.
 class Followed {

@@ -61,7 +61,7 @@ TEST(Scene, EqualPlacesAreOneObject) {
         EXPECT_NEAR(scene.objects[instance.object].mesh.bounds().size().y, high, 1e-4f);
         // Its lowest point stands on the scope's foot: the scope is 4 m high about y = 0.
         EXPECT_NEAR(instance.part.pose.origin.y + scene.objects[instance.object].mesh.bounds().lo.y, -2, 1e-4);
-        EXPECT_EQ(instance.part.line, 6u);
+        EXPECT_EQ(instance.part.line(), 6u);
     }
 }
 

@@ -1,7 +1,12 @@
 // The monotone formula: signs against point-in-polygon, each edge once, and what it is a bound of.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <queue>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "modeler/plan/formula.h"
 #include "modeler/plan/shapes.h"
@@ -105,6 +110,66 @@ TEST(Formula, TheDepthOfARectangleIsHalfItsWidth) {
     const double least = leastInside(formula, d, d, bounds(f), 1e-3);
     EXPECT_LE(least, -2);
     EXPECT_GE(least, -2 - 2e-3);
+}
+
+/// The least value inside, box by box: leastInside takes two boxes at a time and must make the same choices.
+double leastOneByOne(const Formula& formula, std::span<const Linear> leaves, std::span<const Linear> outline,
+                     const Box2& whole, double tolerance) {
+    const auto lowest = [&](std::span<const Linear> of, const Box2& box) {
+        std::vector<double> values;
+        for (const FormulaNode& node : formula.nodes) {
+            if (node.kind == FormulaNode::Kind::Edge) {
+                const Linear& l = of[node.first];
+                values.push_back(l.at({l.a < 0 ? box.hi.x : box.lo.x, l.b < 0 ? box.hi.z : box.lo.z}));
+            } else {
+                const double a = values[node.first], b = values[node.second];
+                values.push_back(node.kind == FormulaNode::Kind::Max ? std::max(a, b) : std::min(a, b));
+            }
+        }
+        return values.back();
+    };
+    using Candidate = std::pair<double, Box2>;
+    const auto later = [](const Candidate& a, const Candidate& b) { return a.first > b.first; };
+    std::priority_queue<Candidate, std::vector<Candidate>, decltype(later)> queue(later);
+    double reached = Box2::far;
+    const auto add = [&](const Box2& box) {
+        if (lowest(outline, box) > 0) return;
+        const double bound = lowest(leaves, box);
+        if (valueOf(formula, outline, box.centre()) <= 0)
+            reached = std::min(reached, valueOf(formula, leaves, box.centre()));
+        if (bound < reached - tolerance) queue.push({bound, box});
+    };
+    add(whole);
+    for (size_t n = 0; n < 4096 && !queue.empty() && queue.top().first < reached - tolerance; ++n) {
+        const Box2 b = queue.top().second;
+        queue.pop();
+        Box2 low = b, high = b;
+        if (b.size().x > b.size().z)
+            low.hi.x = high.lo.x = b.centre().x;
+        else
+            low.hi.z = high.lo.z = b.centre().z;
+        add(low);
+        add(high);
+    }
+    return std::min(queue.empty() ? Box2::far : queue.top().first, reached - tolerance);
+}
+
+TEST(Formula, TheLeastInsideIsThatOfASearchBoxByBox) {
+    Draws draw(7);
+    for (int round = 0; round < 40; ++round) {
+        const Footprint f =
+            round % 2 ? *ngon(3 + round, 5 + round) : footprintOf(polygonOf(test::comb(draw, 2 + round / 4)));
+        const Formula formula = *monotoneFormula(f);
+        const auto outline = distancesOf(f);
+        std::vector<Linear> leaves = outline;
+        for (size_t i = 0; i < leaves.size(); i += 3)
+            leaves[i] = {leaves[i].a * .5, leaves[i].b * .5, leaves[i].c * .5 - .25};
+        const double tolerance = round % 4 < 2 ? 1e-3 : .1;
+        EXPECT_EQ(leastInside(formula, leaves, outline, bounds(f), tolerance),
+                  leastOneByOne(formula, leaves, outline, bounds(f), tolerance));
+        EXPECT_EQ(leastInside(formula, outline, outline, bounds(f), tolerance),
+                  leastOneByOne(formula, outline, outline, bounds(f), tolerance));
+    }
 }
 
 TEST(Formula, SlopesReachTheirRidges) {

@@ -104,10 +104,10 @@ TEST(Bake, TellsWhoPutWhatWhere) {
             const auto shape = tiles::readObject(object.path);
             ASSERT_TRUE(shape.ok());
             for (const tiles::CellPlace& place : object.places) {
-                EXPECT_TRUE(paths.insert(place.part->path).second) << place.part->path;
-                EXPECT_TRUE(place.part->rule.starts_with("Plot")) << place.part->rule;
-                EXPECT_EQ(place.part->file, "town.sgm");
-                EXPECT_EQ(place.part->line, 9u);
+                EXPECT_TRUE(paths.insert(place.part->path.text()).second) << place.part->path.text();
+                EXPECT_TRUE(place.part->rule().starts_with("Plot")) << place.part->rule();
+                EXPECT_EQ(place.part->file(), "town.sgm");
+                EXPECT_EQ(place.part->line(), 9u);
                 // It stands in its cell, on the slab, and reaches up from there.
                 const Vec3d at = place.part->pose.origin;
                 EXPECT_LE(std::max(std::abs(at.x), std::abs(at.z)), 32.0);

@@ -121,7 +121,7 @@ std::vector<uint32_t> rulesOf(const Provenance& provenance) {
     std::map<std::string, uint32_t> numbers;
     std::vector<uint32_t> rules;
     for (const Part& part : provenance.parts)
-        rules.push_back(numbers.emplace(part.rule, static_cast<uint32_t>(numbers.size())).first->second);
+        rules.push_back(numbers.emplace(part.rule(), static_cast<uint32_t>(numbers.size())).first->second);
     return rules;
 }
 

@@ -81,7 +81,7 @@ py::array cornerNormalsOf(const py::object& self) {
 py::list partsOf(const Mesh& mesh) {
     py::list parts;
     for (const Part& p : mesh.provenance->parts)
-        parts.append(py::make_tuple(p.path, p.symbol, p.rule, p.file, p.line, p.material));
+        parts.append(py::make_tuple(p.path.text(), p.symbol(), p.rule(), p.file(), p.line(), p.material));
     return parts;
 }
 

@@ -68,7 +68,8 @@ py::list objectsOf(const Scene& scene) {
 py::list placesOf(const Scene& scene) {
     py::list places;
     for (const mesh::Instance& instance : scene.made.scene.instances)
-        places.append(py::make_tuple(instance.part.path, instance.part.rule, instance.part.file, instance.part.line));
+        places.append(py::make_tuple(instance.part.path.text(), instance.part.rule(), instance.part.file(),
+                                     instance.part.line()));
     return places;
 }
 
