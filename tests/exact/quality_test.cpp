@@ -8,10 +8,13 @@
 
 #include "modeler/core/conventions.h"
 #include "modeler/export/exporter.h"
+#include "tests/export/made_part.h"
 #include "tests/scratch.h"
 
 namespace sgm::exact {
 namespace {
+
+using exporter::madePart;
 
 /// The eight corners of a box by bits x, y, z, and its faces, outward, from low x to high z.
 constexpr uint32_t boxFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
@@ -76,9 +79,9 @@ Provenance twoLooks() {
                    {"green", {0, 1, 0}, 1, 0, nullptr},
                    {"red again", {1, 0, 0}, 1, 0, nullptr}};
     p.parts = {{},
-               {"A", "A", "", "a.sgm", 1, 0, {}, false, nullptr},
-               {"B", "B", "", "a.sgm", 2, 1, {}, false, nullptr},
-               {"C", "C", "", "a.sgm", 3, 2, {}, false, nullptr}};
+               madePart("A", {"A", "", "a.sgm", 1}, 0),
+               madePart("B", {"B", "", "a.sgm", 2}, 1),
+               madePart("C", {"C", "", "a.sgm", 3}, 2)};
     return p;
 }
 
