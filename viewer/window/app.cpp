@@ -274,6 +274,7 @@ Result<bool> Loop::refineWhenDue() {
 }
 
 void Loop::writeReport() {
+    if (!report_.active()) return;
     describe(bench_, report_.state());
     const Window::InputCounters& given = window_.given();
     report_.state()["still"] = wanted_ == 0 && !window_.pending();
@@ -290,17 +291,21 @@ void Loop::draw(FrameTimeline& timeline, const Stopwatch& whole) {
     if (wanted_ > 0) --wanted_;
     sinceShown_ = {};
     window_.setTitle(titleOf(bench_.document));
-    const ElapsedTimes before = bench_.view.field.times().drawn;
+    const auto drawn = [&] {
+        ElapsedTimes all = bench_.view.field.times().drawn;
+        return all += bench_.view.mesh.drawn();
+    };
+    const ElapsedTimes before = drawn();
     window_.beginFrame();
     workspace_.show();
-    timeline.was("panels", bench_.view.field.times().drawn - before);
+    timeline.was("panels", drawn() - before);
     window_.endFrame();
     timeline.drew();
     frameSeconds_ = whole.seconds();
     bench_.refresh();
     timeline.was("asking workers");
     writeReport();
-    timeline.was("report");
+    timeline.leaveOut();
 }
 
 std::optional<int> Loop::turn() {
@@ -321,6 +326,7 @@ std::optional<int> Loop::turn() {
     if (wanted_ > 0 || *ended ||
         ((refining_ || working) && sinceShown_.seconds() >= std::max(shownEvery, 3 * frameSeconds_)))
         draw(timeline, whole);
+    report_.add(timeline);
     if (bench_.panels.leaving) return 0;
     if (options_.benchmark && !benchmark_.go(bench_, timeline)) {
         benchmark_.print(bench_, window_.driver());

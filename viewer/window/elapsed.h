@@ -46,11 +46,18 @@ public:
     /// What ran since the last call is called so; `drawn` of it was drawing.
     void was(const char* name, const ElapsedTimes& drawn = {}) {
         parts_.push_back({name, watch_.spent() - drawn});
+        drawn_ += drawn;
         watch_ = {};
     }
     /// What ran since the last call was drawing.
-    void drew() { watch_ = {}; }
+    void drew() {
+        drawn_ += watch_.spent();
+        watch_ = {};
+    }
+    /// What ran since the last call doesn't count: it is for tests alone.
+    void leaveOut() { watch_ = {}; }
     const std::vector<Part>& parts() const { return parts_; }
+    const ElapsedTimes& drawn() const { return drawn_; }
     ElapsedTimes spent() const {
         ElapsedTimes all;
         for (const Part& part : parts_) all += part.spent;
@@ -59,6 +66,7 @@ public:
 
 private:
     std::vector<Part> parts_;
+    ElapsedTimes drawn_;
     ElapsedWatch watch_;
 };
 

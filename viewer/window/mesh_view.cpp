@@ -47,6 +47,13 @@ Status MeshView::draw(int samples) {
 }
 
 Status MeshView::step() {
+    const ElapsedWatch watch;
+    Status done = advance();
+    spent_ += watch.spent();
+    return done;
+}
+
+Status MeshView::advance() {
     if (!scene_ || look_.width < 1 || look_.height < 1) return Done{};
     // The sun's shadow belongs to the first picture; the sky's comes bit by bit.
     if (!sunlit_)

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "viewer/render/mesh_scene.h"
+#include "viewer/window/elapsed.h"
 
 namespace sgm::window {
 
@@ -19,11 +20,14 @@ public:
     bool finished() const { return !scene_ || (drawn_ && smooth_ && lit_); }
     bool visible() const { return scene_ && drawn_; }
     uint32_t texture() const { return texture_.id(); }
+    /// What all steps so far took.
+    const ElapsedTimes& drawn() const { return spent_; }
     size_t triangleCount() const { return scene_ ? scene_->triangleCount() : 0; }
     /// The picture so far; whole when `finished`.
     render::Image image() const { return {texture_.width(), texture_.height(), texture_.read()}; }
 
 private:
+    Status advance();
     Status draw(int samples);
     Status light();
 
@@ -33,6 +37,7 @@ private:
     render::MeshStyle style_;
     render::DisplayTexture texture_;
     std::optional<render::ColorTarget> targets_[2];  ///< one sample a pixel; several
+    ElapsedTimes spent_;
     bool drawn_ = false, smooth_ = false, sunlit_ = false, lit_ = false;
 };
 

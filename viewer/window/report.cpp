@@ -1,13 +1,59 @@
 #include "viewer/window/report.h"
 
+#include <algorithm>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 namespace sgm::window {
+namespace {
+
+constexpr double longGap = 0.05;  // seconds
+
+}  // namespace
 
 struct Report::Data {
+    /// How long the window looked away from the user's input, over all turns.
+    struct Gaps {
+        uint64_t over = 0, overOfProcessor = 0;
+        ElapsedTimes longest;                    ///< on each clock
+        uint64_t frame = 0;                      ///< before the longest by the wall's
+        std::vector<FrameTimeline::Part> parts;  ///< of the longest by the wall's
+        std::map<std::string, uint64_t> most;    ///< gaps over 50 ms, by the part that took most of them
+
+        void add(const std::vector<FrameTimeline::Part>& turn, uint64_t frameBefore) {
+            ElapsedTimes gap;
+            for (const FrameTimeline::Part& part : turn) gap += part.spent;
+            if (gap.processor > longGap) ++overOfProcessor;
+            if (gap.wall > longGap) {
+                ++over;
+                ++most[std::max_element(turn.begin(), turn.end(), [](const auto& a, const auto& b) {
+                           return a.spent.wall < b.spent.wall;
+                       })->name];
+            }
+            if (gap.wall > longest.wall) {
+                frame = frameBefore;
+                parts = turn;
+            }
+            longest = {std::max(longest.wall, gap.wall), std::max(longest.processor, gap.processor)};
+        }
+        nlohmann::json told() const {
+            nlohmann::json all{{"over", over},
+                               {"overOfProcessor", overOfProcessor},
+                               {"longest", longest.wall},
+                               {"longestOfProcessor", longest.processor},
+                               {"frame", frame},
+                               {"most", most},
+                               {"parts", nlohmann::json::object()}};
+            for (const auto& [name, spent] : parts) all["parts"][name] = {spent.wall, spent.processor};
+            return all;
+        }
+    };
+
     nlohmann::json widgets = nlohmann::json::object(), state = nlohmann::json::object();
-    uint64_t frame = 0;
+    uint64_t frame = 0, turns = 0;
+    Gaps undrawn, whole;
 };
 
 Report::Report(std::filesystem::path file) : file_(std::move(file)), data_(std::make_unique<Data>()) {}
@@ -23,9 +69,24 @@ void Report::mark(const std::string& name, ImVec2 low, ImVec2 high) {
 
 nlohmann::json& Report::state() { return data_->state; }
 
+void Report::add(const FrameTimeline& turn) {
+    if (!active()) return;
+    ++data_->turns;
+    std::vector<FrameTimeline::Part> parts = turn.parts();
+    data_->undrawn.add(parts, data_->frame);
+    parts.push_back({"drawing", turn.drawn()});
+    data_->whole.add(parts, data_->frame);
+}
+
 void Report::write() {
     if (!active()) return;
-    const nlohmann::json all{{"frame", ++data_->frame}, {"widgets", data_->widgets}, {"state", data_->state}};
+    const nlohmann::json all{{"frame", ++data_->frame},
+                             {"widgets", data_->widgets},
+                             {"state", data_->state},
+                             {"gaps",
+                              {{"turns", data_->turns},
+                               {"drawing excluded", data_->undrawn.told()},
+                               {"drawing included", data_->whole.told()}}}};
     data_->widgets = nlohmann::json::object();
     data_->state = nlohmann::json::object();
     // Not `replaceFile`: this needn't outlive a power cut, and comes with every frame.

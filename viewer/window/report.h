@@ -10,6 +10,8 @@
 #include <imgui.h>
 #include <nlohmann/json_fwd.hpp>
 
+#include "viewer/window/elapsed.h"
+
 namespace sgm::window {
 
 class Report {
@@ -24,8 +26,12 @@ public:
     void mark(const std::string& name, ImVec2 low, ImVec2 high);
     /// Values of this frame, a member each.
     nlohmann::json& state();
-    /// Writes {"frame": n, "widgets": {name: [x, y, width, height]}, "state": {…}} beside the file and renames it
-    /// there.
+    /// A turn of the window's loop between two looks at the user's input, without the wait for events.
+    void add(const FrameTimeline& turn);
+    /// Writes {"frame": n, "widgets": {name: [x, y, width, height]}, "state": {…}, "gaps": {…}} beside the file and
+    /// renames it there. `gaps` is of all turns since the start: how many, how many of them took more than 50 ms by
+    /// the wall's clock and by the processor's for this thread, which part took most of these, and the longest, with
+    /// the frame before it and its parts; drawing excluded, and included.
     void write();
 
 private:
