@@ -243,6 +243,24 @@ TEST_F(Verbs, EveryFormatIsExported) {
     }
 }
 
+TEST_F(Verbs, APictureThatCantBeWrittenIsTriedOnce) {
+    const fs::path gone = folder / "gone";
+    fs::create_directory(gone);
+    openText("grammar 1\nstart A -> sphere\n", "gone/test.sgm");
+    drawn();
+    fs::remove_all(gone);
+    for (const char* asked : {"p", "t"}) {
+        press(asked);
+        until("the word that a picture can't be written", [](const auto& s) {
+            return std::string(s["notice"]).find(".png") != std::string::npos && s["turning"] == false;
+        });
+        settled();
+    }
+    fs::create_directory(gone);
+    settled();
+    EXPECT_TRUE(fs::is_empty(gone));
+}
+
 TEST_F(Verbs, FilesAreOpened) {
     openText(hall);
     std::ofstream(folder / "other.sgm") << "grammar 1\nstart Other -> torus\n";

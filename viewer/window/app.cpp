@@ -309,7 +309,8 @@ void Loop::draw(FrameTimeline& timeline, const Stopwatch& whole) {
 }
 
 std::optional<int> Loop::turn() {
-    const bool working = bench_.busy() || bench_.exporting.running() || options_.benchmark;
+    const bool working =
+        bench_.busy() || bench_.exporting.running() || bench_.pictures.writing.valid() || options_.benchmark;
     window_.listen(wanted_ > 0 || refining_ ? 0 : working ? shownEvery : listenFor);
     const Stopwatch whole;
     FrameTimeline timeline;

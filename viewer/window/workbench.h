@@ -3,6 +3,7 @@
 // context.
 #pragma once
 
+#include <future>
 #include <map>
 #include <optional>
 #include <string>
@@ -98,7 +99,9 @@ struct Panels {
 /// Pictures that were asked for.
 struct Pictures {
     std::optional<Turntable> turntable;
-    bool wanted = false;  ///< one
+    bool wanted = false;          ///< one
+    std::future<Status> writing;  ///< of the last one, on a thread of its own; valid until its end is told
+    std::string name;             ///< of its file
 };
 
 /// What is known of the last field and mesh shown.
