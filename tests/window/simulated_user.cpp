@@ -343,4 +343,11 @@ void SimulatedUser::shoot(const std::string& name) const {
 
 std::string SimulatedUser::fileText() const { return contentOf(file); }
 
+size_t SimulatedUser::residentBytes() const {
+    std::istringstream pages(contentOf("/proc/" + std::to_string(program_) + "/statm"));
+    size_t all = 0, resident = 0;
+    pages >> all >> resident;
+    return resident * static_cast<size_t>(sysconf(_SC_PAGESIZE));
+}
+
 }  // namespace sgm::window::test

@@ -77,6 +77,8 @@ protected:
     void shoot(const std::string& name) const;
 
     std::string fileText() const;
+    /// The program's resident memory in bytes.
+    size_t residentBytes() const;
     std::filesystem::path folder, file;
 
 private:

@@ -2,6 +2,7 @@
 // which.
 #include "tests/window/simulated_user.h"
 
+#include <algorithm>
 #include <fstream>
 
 namespace sgm::window::test {
@@ -314,6 +315,28 @@ TEST_F(Verbs, WorkIsCancelled) {
                 until("rest in the hand", [&](const auto& s) { return !s["busy"] && (cancelled(s) || ended(s)); }));
         });
     EXPECT_TRUE(stopped);
+}
+
+TEST_F(Verbs, MemoryOfLargerModelsIsGivenBack) {
+    openText(
+        "grammar 1\nparam n = 1 in 1..20000\nstart A -> cube : B\nrule B repeat n -> + sphere size .9 ~> .2 on any(+x) "
+        "at free(+x, +y, +z) : B\n");
+    drawn();
+    const size_t before = residentBytes();
+    size_t most = before;
+    for (int turn = 0; turn < 3; ++turn) {
+        click("param.n", 0.97);
+        until(
+            "a large model", [](const auto& s) { return s["shapes"] > 10000 && !s["busy"]; }, 60);
+        most = std::max(most, residentBytes());
+        key("ctrl+z");
+        until("the small model", [](const auto& s) { return s["shapes"] < 10 && !s["busy"]; });
+    }
+    size_t after = 0;
+    until(
+        "memory at rest", [&](const auto&) { return (after = residentBytes()) < before + (most - before) / 2; }, 10);
+    RecordProperty(
+        "MiB", std::to_string(before >> 20) + ", " + std::to_string(most >> 20) + ", " + std::to_string(after >> 20));
 }
 
 TEST_F(Verbs, AnExportGoesOnWhileOneWorks) {

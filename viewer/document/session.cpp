@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "modeler/core/guarded.h"
 
@@ -11,6 +16,15 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double patience_s = 1;  ///< a request that is overtaken may run on for so long
+constexpr std::chrono::seconds restBeforeGivingBack{2};
+
+/// Memory that is free goes to the system. The C library keeps what lies between blocks in use: hundreds of MiB after
+/// some models.
+void giveBackFreeMemory() {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
 
 bool sameOptions(const derive::Options& a, const derive::Options& b) {
     return a.start == b.start && a.derive == b.derive && a.params == b.params && a.seed == b.seed &&
@@ -141,6 +155,7 @@ std::vector<std::filesystem::path> Session::usedFiles() const {
 }
 
 void Session::work() {
+    bool worked = false;  // since memory was given back
     for (;;) {
         std::optional<ShowRequest> request;
         std::vector<std::shared_ptr<const void>> deferred;
@@ -149,8 +164,16 @@ void Session::work() {
             std::unique_lock lock(queue_.mutex);
             queue_.running.reset();
             queue_.meshing = false;
-            queue_.wanted.wait(lock, [this] { return queue_.pending || queue_.quit || !queue_.deferred.empty(); });
+            const auto asked = [this] { return queue_.pending || queue_.quit || !queue_.deferred.empty(); };
+            if (worked && !queue_.wanted.wait_for(lock, restBeforeGivingBack, asked)) {
+                lock.unlock();
+                giveBackFreeMemory();
+                worked = false;
+                continue;
+            }
+            queue_.wanted.wait(lock, asked);
             if (queue_.quit) return;
+            worked = true;
             deferred.swap(queue_.deferred);
             request = std::exchange(queue_.pending, std::nullopt);
             if (request) {
