@@ -130,6 +130,20 @@ TEST_F(Verbs, Parameters) {
     EXPECT_EQ(text(), hall);
 }
 
+TEST_F(Verbs, AFieldIsEnteredAgain) {
+    openText(hall);
+    for (int turn = 0; turn < 2; ++turn) {
+        holding("ctrl", [&] { click("param.tall"); });
+        if (turn == 0) {
+            type("1111111111");
+        } else {
+            for (int i = 0; i < 12; ++i) press("ctrl+z");  // of what was typed before nothing is left to undo
+        }
+        key("Return");
+        EXPECT_EQ(lineOf(text(), 3), "param tall = 5.0 in 1.0..5.0 \"Height\" group Size");
+    }
+}
+
 TEST_F(Verbs, TheView) {
     openText(hall);
     const auto cameraAfter = [&](auto&& act) {

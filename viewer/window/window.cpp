@@ -5,6 +5,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <utility>
@@ -190,6 +191,10 @@ void Window::beginFrame() {
     ImGui_ImplGlfw_NewFrame();
     giveInput();
     ImGui::NewFrame();
+    // A field that is entered again would keep what can be undone in it, though its text may be another now: undoing
+    // that leaves the text's memory.
+    ImGuiContext& context = *ImGui::GetCurrentContext();
+    if (context.ActiveId != context.InputTextState.ID) context.InputTextState.ID = 0;
 }
 
 void Window::endFrame() {
