@@ -1,5 +1,6 @@
 // Finds and loads the module that holds what needs OpenVDB.
 #include <dlfcn.h>
+#include <sys/mman.h>
 
 #include <mutex>
 #include <thread>
@@ -13,6 +14,8 @@ namespace sgm::volume {
 namespace {
 
 constexpr const char* moduleName = "sgm_volumes.so";
+constexpr size_t moduleBytes = size_t{64} << 20;  ///< of address space, at least what the module and its libraries map
+constexpr int loggingThreads = 4;                 ///< log4cplus starts them while it is loaded
 
 /// Whether so many threads can run beside this one. OpenVDB and TBB end the program where they get none.
 bool canStart(int threads) {
@@ -30,6 +33,15 @@ bool canStart(int threads) {
     gate.unlock();
     for (std::thread& thread : started) thread.join();
     return all;
+}
+
+/// Whether the module's libraries, which end the program where they get no threads, can start theirs once it is mapped.
+bool canLoad() {
+    void* const room = mmap(nullptr, moduleBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED) return false;
+    const bool can = canStart(threadCount(0) + loggingThreads);
+    munmap(room, moduleBytes);
+    return can;
 }
 
 /// A module that is there but can't be loaded: there is no memory for it, or a library is missing.
@@ -54,7 +66,7 @@ Result<const PluginFunctions*> loadPlugin() {
     const Error noThreads{Error::Kind::Budget,
                           "volumes: the system gives no more threads: allow more processes (ulimit -u, or the "
                           "container's limit) or memory"};
-    if (!canStart(threadCount(0))) return noThreads;
+    if (!canLoad()) return noThreads;
     std::vector<std::filesystem::path> places;
     for (const std::filesystem::path& folder : binaryFolders())
         for (const char* beside : {"", "sgm", "../sgm", "../lib/sgm"}) places.push_back(folder / beside / moduleName);

@@ -340,6 +340,17 @@ TEST_F(Hostile, ASystemWithoutThreadsIsToldOf) {
     }
 }
 
+TEST_F(Hostile, LibrariesOfVolumesThatFindNoRoomEndInAMessage) {
+    if (isSanitized) GTEST_SKIP() << "memory isn't limited under AddressSanitizer";
+    // They start threads while they are loaded, and end the program where they get none.
+    const std::string file = grammar("start A -> sphere\n"), out = path("x.vdb");
+    for (const int limit_kB : {182'000, 188'000, 242'000, 314'000}) {
+        const Outcome run =
+            sgm("build -q " + file + " --resolution 16 -o " + out, "ulimit -v " + std::to_string(limit_kB) + "; ");
+        EXPECT_TRUE(run.code == 0 || run.code == 3) << limit_kB << ": " << run.code << ' ' << run.out;
+    }
+}
+
 TEST_F(Hostile, ClosedAndFullStreamsHarmNoFile) {
     const std::string file = grammar("param unused = 1\nstart A -> cube\n");
     for (const char* streams : {"2>&-", ">&- 2>&-", "<&- >&- 2>&-", "2>/dev/full"}) {
