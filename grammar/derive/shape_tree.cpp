@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "grammar/derive/bond_maker.h"
+#include "grammar/derive/path_text.h"
 
 namespace sgm::derive {
 
@@ -71,32 +72,17 @@ uint32_t occurrenceOf(const ShapeTree& tree, ShapeId id) {
 }  // namespace
 
 std::string ShapeTree::path(ShapeId id, bool whole) const {
-    const uint32_t shown = whole ? none : 12;  // labels kept at either end
-    std::vector<ShapeId> line;
-    const uint32_t depth = shapes[id].depth;
-    for (ShapeId s = id; s != none; s = shapes[s].parent)
-        if (shapes[s].depth < shown || depth - shapes[s].depth < shown) line.push_back(s);
-    std::string text;
-    for (auto it = line.rbegin(); it != line.rend(); ++it) {
-        const Shape s = shapes[*it];
-        if (!text.empty()) text += '/';
-        if (it != line.rbegin() && s.depth > shapes[it[-1]].depth + 1) text += "…/";
-        text += labels[s.label];
-        if (const uint32_t n = occurrenceOf(*this, *it); n > 1) text += '[' + std::to_string(n) + ']';
-    }
-    return text;
+    std::vector<ShapeId> up;
+    for (ShapeId s = id; s != none; s = shapes[s].parent) up.push_back(s);
+    return pathText(up, whole ? up.size() : shownPathParts, [this](ShapeId s) {
+        return PathPart{labels[shapes[s].label], occurrenceOf(*this, s)};
+    });
 }
 
 namespace {
 
-/// One part of a path: label and occurrence.
-struct Part {
-    std::string_view label;
-    uint32_t occurrence = 1;
-};
-
-Part readPart(std::string_view text) {
-    Part part{text, 1};
+PathPart readPart(std::string_view text) {
+    PathPart part{text, 1};
     const size_t open = text.find('[');
     if (open == std::string_view::npos) return part;
     part.label = text.substr(0, open);
@@ -104,7 +90,7 @@ Part readPart(std::string_view text) {
     return part;
 }
 
-ShapeId findBelow(const ShapeTree& tree, ShapeId under, const Part& part) {
+ShapeId findBelow(const ShapeTree& tree, ShapeId under, const PathPart& part) {
     for (ShapeId c = tree.shapes[under].firstChild; c != none; c = tree.shapes[c].nextSibling)
         if (tree.labels[tree.shapes[c].label] == part.label && occurrenceOf(tree, c) == part.occurrence) return c;
     uint32_t left = part.occurrence;
@@ -119,7 +105,7 @@ ShapeId ShapeTree::find(std::string_view path) const {
     ShapeId at = none;
     while (!path.empty()) {
         const size_t cut = std::min(path.find('/'), path.size());
-        const Part part = readPart(path.substr(0, cut));
+        const PathPart part = readPart(path.substr(0, cut));
         path.remove_prefix(std::min(cut + 1, path.size()));
         if (at == none) {
             if (labels[shapes[0].label] != part.label) return none;

@@ -1,5 +1,7 @@
 #include "grammar/lower/part_texts.h"
 
+#include "grammar/derive/path_text.h"
+
 namespace sgm::lower {
 
 using derive::none;
@@ -26,19 +28,11 @@ PartSourcePtr PartTexts::madeBy(const derive::Shape& shape) {
 }
 
 std::string ShapePaths::of(uint32_t shape) const {
-    constexpr size_t shown = 12;  // labels kept at either end
-    std::vector<uint32_t> line;   // from the shape up
-    for (uint32_t s = shape; s != none; s = links_[s].parent) line.push_back(s);
-    std::string text;
-    for (size_t depth = 0; depth < line.size(); ++depth) {
-        if (depth >= shown && line.size() - 1 - depth >= shown) continue;
-        const Link& link = links_[line[line.size() - 1 - depth]];
-        if (depth > 0) text += '/';
-        if (depth > shown && line.size() - 1 - depth == shown - 1) text += "…/";
-        text += labels_[link.label];
-        if (link.occurrence > 1) text += '[' + std::to_string(link.occurrence) + ']';
-    }
-    return text;
+    std::vector<derive::ShapeId> up;
+    for (uint32_t s = shape; s != none; s = links_[s].parent) up.push_back(s);
+    return derive::pathText(up, derive::shownPathParts, [this](derive::ShapeId s) {
+        return derive::PathPart{labels_[links_[s].label], links_[s].occurrence};
+    });
 }
 
 }  // namespace sgm::lower

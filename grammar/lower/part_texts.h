@@ -1,6 +1,6 @@
 // What parts say of where they came from: the text that made them and their path in the shape tree.
 // Enters: a derivation. Leaves: texts, one for all parts of the same text, and paths that are made when asked for.
-// Assumes a finished shape tree. Models have far more parts than anybody asks about.
+// Assumes a finished shape tree. Most paths of a large model are never asked for.
 #pragma once
 
 #include <array>

@@ -44,8 +44,8 @@ struct PartPaths {
     virtual std::string of(uint32_t shape) const = 0;
 };
 
-/// A path in the shape tree: a text that is made whenever somebody asks for it, for models have many more parts than
-/// anybody asks about.
+/// A path in the shape tree: a text that is made on demand, for most paths of a
+/// large model are never read.
 class PartPath {
 public:
     PartPath() = default;

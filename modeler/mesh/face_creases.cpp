@@ -17,13 +17,13 @@ constexpr float settledShare = 1e-4f;       ///< of a cell, within which a creas
 constexpr float endMargin = 0x1.0p-12f;     ///< of a segment, kept free of breaks at its ends
 constexpr float mergedShare = 0x1.0p-8f;    ///< of a cell, within which two breaks are one
 constexpr double monotoneShare = 0x1.0p-6;  ///< of a segment, between breaks
-constexpr float faceMargin =
-    0x1.0p-7f;                     ///< of a cell, kept free of breaks at the sides of a face; of a gap, at its ends
-constexpr float parallel = 1e-3f;  ///< sine of the least angle between two lines that cross
-constexpr double parallelSquare = 1e-3;  ///< squared sine of the least angle of a crease outside its face
-constexpr double leavingReach = 2.0;     ///< of a cell, that a crossing may lie outside its face
-constexpr double stopShare = 0x1p-10;    ///< of a cell, between a crossing and the piece that ends its crease
-constexpr float confirmShare = 0.0625f;  ///< of a cell times the slope: the field beside a confirmed crossing
+constexpr float faceMargin = 0x1.0p-7f;     ///< of a cell, kept free of breaks at the sides of a face
+constexpr double gapMargin = 0x1.0p-7;      ///< of the line between a gap's ends, kept free of its break
+constexpr float parallel = 1e-3f;           ///< sine of the least angle between two lines that cross
+constexpr double parallelSquare = 1e-3;     ///< squared sine of the least angle of a crease outside its face
+constexpr double leavingReach = 2.0;        ///< of a cell, that a crossing may lie outside its face
+constexpr double stopShare = 0x1p-10;       ///< of a cell, between a crossing and the piece that ends its crease
+constexpr float confirmShare = 0.0625f;     ///< of a cell times the slope: the field beside a confirmed crossing
 
 /// The two axes of a face.
 struct Plane {
@@ -298,12 +298,11 @@ void FaceCreases::takeParts(const FaceSegment& segment, uint32_t g, size_t sampl
     gap.state = State::Done;
 }
 
-/// The point nearest to `p` on the line between a gap's ends, a little away from both: it lies in the face, whatever
-/// `p`.
+/// The point nearest to `p` on the line between a gap's ends, a little away from both: it always lies in the face.
 Vec3f FaceCreases::onLine(const Gap& gap, Vec3f p) {
     const Vec3d way = (gap.b.at - gap.a.at).as<double>();
     const double share = dot((p - gap.a.at).as<double>(), way) / std::max(dot(way, way), 1e-300);
-    return between(gap.a.at, gap.b.at, std::clamp(share, double{faceMargin}, 1 - double{faceMargin}));
+    return between(gap.a.at, gap.b.at, std::clamp(share, gapMargin, 1 - gapMargin));
 }
 
 /// A third piece lies between the two.
