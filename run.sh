@@ -18,15 +18,21 @@ case "${1:-}" in
   fuzz) shift && exec tests/fuzz/run.sh "$@" ;;
   package) shift && exec integrations/package.sh "$@" ;;
   site) shift && exec integrations/site/build.py "$@" ;;
-  view) build sgm sgm-viewer ;;
-  gallery) build sgm sgm-viewer bench && shift && exec docs/gallery.sh "$@" ;;
+  view) build sgm sgm-viewer sgm_volumes ;;
+  gallery) build sgm sgm-viewer sgm_volumes bench && shift && exec docs/gallery.sh "$@" ;;
 esac
-build sgm
 sgm=build/release/cli/sgm
-[ $# -eq 0 ] || exec "$sgm" "$@"
+if [ $# -gt 0 ]; then
+  build sgm sgm_volumes
+  exec "$sgm" "$@"
+fi
+# The mesh and the picture first: what writes volumes takes a minute more to build.
+build sgm
 mkdir -p out
-"$sgm" build examples/grotto.sgm -o out/grotto.glb -o out/grotto.vdb --report out/grotto.json
+"$sgm" build examples/grotto.sgm -o out/grotto.glb --report out/grotto.json
 "$sgm" render examples/grotto.sgm -o out/grotto.png
+build sgm_volumes
+"$sgm" build examples/grotto.sgm -o out/grotto.vdb
 echo
 echo "A mesh:    out/grotto.glb   (drop it into Blender, Houdini, Unreal or Godot)"
 echo "A volume:  out/grotto.vdb"

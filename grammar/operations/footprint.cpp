@@ -19,7 +19,7 @@ using syntax::ArgumentType;
 using syntax::Operation;
 using syntax::OperationArgument;
 
-constexpr double most_m = 1e5;
+constexpr double mostSide_m = 1e5;
 
 constexpr OperationArgument footprintArguments[] = {
     {"plan", ArgumentType::Plan,
@@ -157,7 +157,7 @@ constinit const Operation extrude{
     .doc = "Sets the height of the scope; its foot stays.",
     .example = "footprint ngon(6) extrude 9m block",
     .arguments = extrudeArguments,
-    .range = {1e-6, most_m, "more than 0, and at most 100 km"},
+    .range = {1e-6, mostSide_m, "more than 0, and at most 100 km"},
     .traits = {.beforeShape = true},
     .apply = applyExtrude,
 };
@@ -167,7 +167,7 @@ constinit const Operation offset{
     .doc = "Moves all edges of the footprint outward, with mitred corners; where nothing is left no shape is made.",
     .example = "footprint ell(16, 12, 5, 6) offset .4m block",
     .arguments = offsetArguments,
-    .range = {-most_m, most_m, "at most 100 km"},
+    .range = {-mostSide_m, mostSide_m, "at most 100 km"},
     .traits = {.beforeShape = true},
     .apply = applyOffset,
 };
@@ -189,7 +189,7 @@ constinit const Operation court{
     .doc = "Cuts a court out of the footprint that leaves wings of one depth; its edges are called court.",
     .example = "footprint rect(40, 30) court 11m block",
     .arguments = courtArguments,
-    .range = {1e-3, most_m, "at least 1 mm"},
+    .range = {1e-3, mostSide_m, "at least 1 mm"},
     .traits = {.beforeShape = true},
     .apply = applyCourt,
 };

@@ -49,7 +49,8 @@ View addView(tinygltf::Model& model, size_t count, int components, int target) {
 }
 
 /// Appends an accessor of elements [first, first + count) of a view and returns its index.
-int addAccessor(tinygltf::Model& model, const View& view, size_t first, size_t count, int type, int componentType) {
+int addAccessorOfView(tinygltf::Model& model, const View& view, size_t first, size_t count, int type,
+                      int componentType) {
     tinygltf::Accessor accessor;
     accessor.bufferView = view.index;
     accessor.byteOffset = first * view.stride;
@@ -145,7 +146,7 @@ private:
         primitive.mode = TINYGLTF_MODE_TRIANGLES;
         primitive.material = materialOf(patch.material);
         const auto attribute = [&](const View& view, int type, int component = TINYGLTF_COMPONENT_TYPE_FLOAT) {
-            return addAccessor(model, view, patch.firstVertex, patch.vertexCount, type, component);
+            return addAccessorOfView(model, view, patch.firstVertex, patch.vertexCount, type, component);
         };
         const int position = primitive.attributes["POSITION"] = attribute(positions_, TINYGLTF_TYPE_VEC3);
         model.accessors[static_cast<size_t>(position)].minValues = {bounds.lo.x, bounds.lo.y, bounds.lo.z};
@@ -160,8 +161,8 @@ private:
             model.accessors[static_cast<size_t>(color)].normalized = true;
         }
         primitive.indices =
-            addAccessor(model, indices_, 3 * size_t{patch.firstTriangle}, 3 * size_t{patch.triangleCount},
-                        TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+            addAccessorOfView(model, indices_, 3 * size_t{patch.firstTriangle}, 3 * size_t{patch.triangleCount},
+                              TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
         primitive.extras = originRuns(patched_, patch);
         return primitive;
     }

@@ -26,9 +26,9 @@ constexpr double stopShare = 0x1p-10;       ///< of a cell, between a crossing a
 constexpr float confirmShare = 0.0625f;     ///< of a cell times the slope: the field beside a confirmed crossing
 
 /// The two axes of a face.
-struct Plane {
+struct FaceAxes {
     int u, v;
-    explicit Plane(int axis) : u((axis + 1) % 3), v((axis + 2) % 3) {}
+    explicit FaceAxes(int axis) : u((axis + 1) % 3), v((axis + 2) % 3) {}
     double dot(Vec3f g, Vec3f d) const { return double{g[u]} * d[u] + double{g[v]} * d[v]; }
     double length(Vec3f g) const { return std::sqrt(dot(g, g)); }
 };
@@ -172,7 +172,7 @@ void FaceCreases::takeEnds(const FaceSegment& segment, Gap& gap, const PiecePoin
 
 /// Goes to where the two pieces' lines cross, or looks for a border where they don't.
 void FaceCreases::aim(const FaceSegment& segment, Gap& gap) {
-    const Plane plane(segment.axis);
+    const FaceAxes plane(segment.axis);
     const Vec3f ga = gap.lineA.gradient, gb = gap.lineB.gradient;
     const double la = plane.length(ga), lb = plane.length(gb);
     const double det = double{ga[plane.u]} * gb[plane.v] - double{ga[plane.v]} * gb[plane.u];
@@ -228,7 +228,7 @@ void FaceCreases::takeProbes(const FaceSegment& segment, uint32_t g, size_t samp
             gap.lineB = probe, gap.valueB = value;
         } else if (gap.splits < mostSplits) {
             PiecePoint third = probe;
-            const Plane plane(segment.axis);
+            const FaceAxes plane(segment.axis);
             const double square = plane.dot(probe.gradient, probe.gradient);
             if (square > 0) {
                 third.at[plane.u] -= static_cast<float>(value * probe.gradient[plane.u] / square);
@@ -263,7 +263,7 @@ PiecePoint FaceCreases::inBracket(const FaceSegment& segment, const PiecePoint& 
         point.at = at;
         return point;
     }
-    const Plane plane(segment.axis);
+    const FaceAxes plane(segment.axis);
     const double square = plane.dot(point.gradient, point.gradient);
     if (square > 0 && std::abs(value) <= most * std::sqrt(square)) {
         point.at[plane.u] -= static_cast<float>(value * point.gradient[plane.u] / square);
@@ -329,7 +329,7 @@ bool FaceCreases::mayLieAt(const FaceSegment& segment, Vec3f p) const { return i
 Vec3f FaceCreases::inFace(const FaceSegment& segment, Vec3f p) const {
     const Vec3i at = segment.face;
     const Vec3f low = grid_->corner(at.x, at.y, at.z), high = grid_->corner(at.x + 1, at.y + 1, at.z + 1);
-    for (const int axis : {Plane(segment.axis).u, Plane(segment.axis).v})
+    for (const int axis : {FaceAxes(segment.axis).u, FaceAxes(segment.axis).v})
         p[axis] = std::max(low[axis] + faceMargin * grid_->cell_m,
                            std::min(high[axis] - faceMargin * grid_->cell_m, p[axis]));
     return p;

@@ -38,9 +38,9 @@ Status checkSoup(const TriangleSoup& soup);
 Error damaged(uint64_t line, std::string_view why);
 
 /// Cuts a polygon into a fan while its corners come one after the other, so that a list of any length takes no memory.
-class Fan {
+class PolygonFan {
 public:
-    explicit Fan(TriangleSoup& soup) : soup_(soup) {}
+    explicit PolygonFan(TriangleSoup& soup) : soup_(soup) {}
     void add(uint32_t corner) {
         if (corners_ == 0) first_ = corner;
         if (corners_ >= 2) soup_.triangles.push_back({first_, last_, corner});

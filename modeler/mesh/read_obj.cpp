@@ -27,7 +27,7 @@ Status readObj(std::string_view bytes, TriangleSoup& soup, const Progress* progr
                 p[axis] = *number;
             }
         } else if (key == "f") {
-            Fan fan(soup);
+            PolygonFan fan(soup);
             for (std::string_view word; !(word = text.wordOfLine()).empty();) {
                 const auto vertex = vertexOf(word, soup.positions.size());
                 if (!vertex) return damaged(text.line(), "a face has a corner that is no vertex");

@@ -41,7 +41,7 @@ Status readOff(std::string_view bytes, TriangleSoup& soup, const Progress* progr
         if (i % 4096 == 0 && cancelled(progress)) return cancelledError();
         const auto corners = numberOf<uint64_t>(text.word());
         if (!corners) return damaged(text.line(), "a face begins with the count of its corners");
-        Fan fan(soup);
+        PolygonFan fan(soup);
         for (uint64_t k = 0; k < *corners; ++k) {
             const auto vertex = numberOf<uint32_t>(text.word());
             if (!vertex) return damaged(text.line(), "a face has fewer corners than it says, or one that is no vertex");

@@ -103,7 +103,7 @@ Status readRow(Body& body, const Element& element, TriangleSoup& soup) {
             if (property.axis >= 0) position[property.axis] = number;
             continue;
         }
-        Fan fan(soup);
+        PolygonFan fan(soup);
         const Status read = readList(body, property, [&](double number) {
             if (property.isCorners) fan.add(cornerOf(number));
         });

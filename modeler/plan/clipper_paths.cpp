@@ -11,7 +11,7 @@ namespace sgm::plan {
 namespace {
 
 constexpr double near_m = 1.001e-3, straight_m = 1e-5, leastArea_m2 = 1e-5;
-constexpr double mitreLimit = 4;
+constexpr double offsetMitreLimit = 4;
 
 ClipperLib::Path pathFrom(const LatticePath& points) {
     ClipperLib::Path path;
@@ -134,7 +134,7 @@ Footprint evenOddOf(const LatticePaths& paths) {
 
 Footprint offsetOf(const LatticePaths& paths, double distance_m) {
     if (distance_m == 0) return booleanOf(PathBoolean::Union, paths, {});
-    ClipperLib::ClipperOffset clipper(mitreLimit);
+    ClipperLib::ClipperOffset clipper(offsetMitreLimit);
     clipper.AddPaths(pathsFrom(paths), ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
     ClipperLib::Paths found;
     clipper.Execute(found, distance_m * unitsPerMetre);
@@ -142,7 +142,7 @@ Footprint offsetOf(const LatticePaths& paths, double distance_m) {
 }
 
 Footprint bandOf(const LatticePath& path, double half_m, bool closed) {
-    ClipperLib::ClipperOffset clipper(mitreLimit);
+    ClipperLib::ClipperOffset clipper(offsetMitreLimit);
     clipper.AddPath(pathFrom(path), ClipperLib::jtMiter, closed ? ClipperLib::etClosedLine : ClipperLib::etOpenButt);
     ClipperLib::Paths found;
     clipper.Execute(found, half_m * unitsPerMetre);

@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr int deepest = 64;
+constexpr int deepestList = 64;
 constexpr size_t mostProperties = 256;
 
 /// An error where lists and objects nest too deep: found before anything is built.
@@ -34,8 +34,9 @@ std::optional<Error> tooDeep(std::string_view bytes) {
         } else if (c == '"') {
             inText = true;
         } else if (c == '[' || c == '{') {
-            if (++depth > deepest)
-                return Error{Error::Kind::Input, fmt::format("lists nest deeper than {} at byte {}", deepest, i + 1)};
+            if (++depth > deepestList)
+                return Error{Error::Kind::Input,
+                             fmt::format("lists nest deeper than {} at byte {}", deepestList, i + 1)};
         } else if (c == ']' || c == '}') {
             --depth;
         }

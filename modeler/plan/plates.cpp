@@ -12,7 +12,7 @@
 namespace sgm::plan {
 namespace {
 
-constexpr double mitreLimit = 4;
+constexpr double plateMitreLimit = 4;
 constexpr Edge cut{0, EdgeSource::Cut};
 
 /// Where the lines of two edges cross after both moved inward; bevelled corners have none.
@@ -20,7 +20,7 @@ std::optional<Vec2> insetCorner(Vec2 before, Vec2 at, Vec2 after, double by) {
     const Vec2 a = (at - before) * (1 / length(at - before)), b = (after - at) * (1 / length(after - at));
     const Vec2 sum = Vec2{-a.z, a.x} + Vec2{-b.z, b.x};
     const double square = dot(sum, sum);
-    if (square < 4 / (mitreLimit * mitreLimit)) return {};
+    if (square < 4 / (plateMitreLimit * plateMitreLimit)) return {};
     return at + sum * (2 * by / square);
 }
 
@@ -72,7 +72,7 @@ Vec2 reachAt(Vec2 before, Vec2 at, Vec2 after, double by) {
     const Vec2 a = (at - before) * (1 / length(at - before)), b = (after - at) * (1 / length(after - at));
     const bool convex = cross(a, b) > 0;
     const Vec2 bisector = (b - a) * (1 / std::max(length(b - a), 1e-9));
-    return at + bisector * (convex ? mitreLimit * by : -by);
+    return at + bisector * (convex ? plateMitreLimit * by : -by);
 }
 
 /// Each plate cut in turn from what is left of the rim; what no plate reaches goes to the nearest edge.

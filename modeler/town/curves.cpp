@@ -9,10 +9,8 @@ namespace {
 constexpr double tolerance_m = .2;     // between an arc and its chords
 constexpr double share = .48;          // of a piece that an arc at one of its ends may take
 constexpr double straight = .99985;    // cosine of 1°: bends of less stay
-constexpr double sample_m = 5;         // between the places where a curve asks the maps
+constexpr double curveSample_m = 5;    // between the places where a curve asks the maps
 constexpr double leastTangent_m = .5;  // shorter ones round nothing
-
-double lengthOf(Vec2 v) { return std::sqrt(dot(v, v)); }
 
 /// Whether q lies on the ray from `shared` through `end`: two pieces that leave one node would overlap.
 bool runsAlong(Point shared, Point end, Point q) {
@@ -108,7 +106,7 @@ private:
         };
         for (size_t i = 1; i + 1 < line.size(); ++i) {
             const Vec2 a = metres(line[i - 1]), d = metres(line[i]) - a;
-            const int count = std::max(1, static_cast<int>(std::ceil(lengthOf(d) / sample_m)));
+            const int count = std::max(1, static_cast<int>(std::ceil(lengthOf(d) / curveSample_m)));
             for (int k = 1; k <= count && i > 1; ++k)
                 if (isBad(a + d * (static_cast<double>(k) / count))) return false;
             if (land_.height &&

@@ -6,13 +6,11 @@
 namespace sgm::town {
 namespace {
 
-constexpr double sample_m = 5;   // between the places where a road asks the maps
-constexpr double inland_m = 15;  // behind the shore, where a bridge ends
+constexpr double roadSample_m = 5;  // between the places where a road asks the maps
+constexpr double inland_m = 15;     // behind the shore, where a bridge ends
 constexpr double bridgeStep_m = 20;
 constexpr double least_m = 8;  // shortest piece
 constexpr double deep_m = 10;  // cuts and fills that are deeper become tunnels and bridges
-
-double lengthOf(Vec2 v) { return std::sqrt(dot(v, v)); }
 
 /// The place on a–b nearest to p.
 Vec2 footOn(Vec2 a, Vec2 b, Vec2 p) {
@@ -31,7 +29,7 @@ Grower::Survey Grower::survey(Vec2 from, Vec2 to) const {
     Survey out;
     const Vec2 d = to - from;
     out.length_m = lengthOf(d);
-    const int count = std::max(1, static_cast<int>(std::ceil(out.length_m / sample_m)));
+    const int count = std::max(1, static_cast<int>(std::ceil(out.length_m / roadSample_m)));
     const double low = land_.height ? land_.height(from) : 0, rise = land_.height ? land_.height(to) - low : 0;
     for (int i = 1; i <= count; ++i) {
         const Vec2 p = from + d * (static_cast<double>(i) / count);

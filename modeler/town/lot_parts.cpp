@@ -14,9 +14,6 @@ using plan::Vec2;
 
 namespace {
 
-/// Faster than std::hypot, and the same on every machine.
-double lengthOf(Vec2 v) { return std::sqrt(dot(v, v)); }
-
 OrientedBox boxAlong(const plan::Ring& outline, Vec2 u) {
     const Vec2 n{-u.z, u.x};
     plan::Box2 box;

@@ -13,9 +13,9 @@
 namespace sgm::town {
 namespace {
 
-constexpr double weld_m = 1;      // ends and crossings nearer to one another are one node
-constexpr double widest_m = 4e5;  // of streets in degrees: what is wider was given in metres
-constexpr double sample_m = 5;    // between places where a street asks for water
+constexpr double weld_m = 1;         // ends and crossings nearer to one another are one node
+constexpr double widest_m = 4e5;     // of streets in degrees: what is wider was given in metres
+constexpr double waterSample_m = 5;  // between places where a street asks for water
 
 /// The words of OpenStreetMap for roads between quarters, and for ways that are none for cars.
 constexpr std::array<std::string_view, 10> highwayWords{"motorway", "motorway_link", "trunk",     "trunk_link",
@@ -60,8 +60,6 @@ Result<std::optional<OwnStreet>> kindOf(const plan::LineFeature& feature) {
     }
     return std::optional(street);
 }
-
-double lengthOf(Vec2 v) { return std::sqrt(dot(v, v)); }
 
 /// The part of a–b inside a rectangle (Liang & Barsky 1984), as shares of its length.
 std::optional<std::pair<double, double>> insideShare(Vec2 a, Vec2 b, Vec2 lo, Vec2 hi) {
@@ -211,7 +209,7 @@ private:
 
     bool isWet(Vec2 a, Vec2 b) const {
         if (!land_.water) return false;
-        const int count = std::max(1, static_cast<int>(std::ceil(lengthOf(b - a) / sample_m)));
+        const int count = std::max(1, static_cast<int>(std::ceil(lengthOf(b - a) / waterSample_m)));
         for (int i = 0; i <= count; ++i)
             if (land_.water(a + (b - a) * (static_cast<double>(i) / count))) return true;
         return false;

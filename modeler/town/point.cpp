@@ -34,7 +34,7 @@ bool segmentsMeet(Point a, Point b, Point c, Point d) {
 }
 
 Vec2 unit(Vec2 v) {
-    const double l = std::sqrt(dot(v, v));
+    const double l = lengthOf(v);
     return l > 0 ? v * (1 / l) : v;
 }
 

@@ -10,7 +10,7 @@ constexpr double degenerate = 1e-6;  // strength below which no direction is tol
 
 /// The tensor whose major direction is `d`, of the strength |d|.
 Vec2 tensorAlong(Vec2 d) {
-    const double l = std::sqrt(dot(d, d));
+    const double l = lengthOf(d);
     return l > 0 ? Vec2{(d.x * d.x - d.z * d.z) / l, 2 * d.x * d.z / l} : Vec2{};
 }
 
@@ -23,7 +23,7 @@ Vec2 majorOf(Vec2 tensor) {
 
 /// What holds the share 1 at its strongest.
 Vec2 atMostOne(Vec2 v) {
-    const double l = std::sqrt(dot(v, v));
+    const double l = lengthOf(v);
     return l > 1 ? v * (1 / l) : v;
 }
 

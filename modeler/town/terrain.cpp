@@ -213,7 +213,7 @@ void Terrain::eachBeside(const RoadGraph& graph, const RoadEdge& e, Visit&& visi
         const Vec2 p = lattice_.placeOf(i, k);
         const double t = std::clamp(dot(p - a, d) / dot(d, d), 0.0, 1.0);
         const Vec2 off = p - (a + d * t);
-        const double away = std::sqrt(dot(off, off));
+        const double away = lengthOf(off);
         if (away <= wide) visit(lattice_.indexOf(i, k), from + t * (to - from), away);
     });
 }

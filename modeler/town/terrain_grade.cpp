@@ -23,7 +23,7 @@ void Terrain::solve(const RoadGraph& graph) {
     for (const RoadEdge& e : graph.edges()) {
         if (e.removed || !e.bridge) continue;
         const Vec2 a = graph.metresAt(e.a), d = graph.metresAt(e.b) - a;
-        const int steps = std::max(1, static_cast<int>(std::sqrt(dot(d, d)) / lattice_.cell_m));
+        const int steps = std::max(1, static_cast<int>(lengthOf(d) / lattice_.cell_m));
         double surface = -1e9;
         for (int i = 0; i <= steps; ++i) {
             const Vec2 p = a + d * (static_cast<double>(i) / steps);
@@ -38,10 +38,7 @@ void Terrain::solve(const RoadGraph& graph) {
             nodeHeights_[end] = std::max(nodeHeights_[end], least[end]);
         }
     }
-    const auto lengthOf = [&](const RoadEdge& e) {
-        const Vec2 d = graph.metresAt(e.b) - graph.metresAt(e.a);
-        return std::sqrt(dot(d, d));
-    };
+    const auto lengthOfEdge = [&](const RoadEdge& e) { return lengthOf(graph.metresAt(e.b) - graph.metresAt(e.a)); };
     bool steep = true;
     for (int turn = 0; steep && turn < mostTurns; ++turn) {
         steep = false;
@@ -49,7 +46,7 @@ void Terrain::solve(const RoadGraph& graph) {
             if (e.removed) continue;
             const bool up = nodeHeights_[e.b] >= nodeHeights_[e.a];
             double &low = nodeHeights_[up ? e.a : e.b], &high = nodeHeights_[up ? e.b : e.a];
-            const double over = high - low - parameters_.slope * lengthOf(e);
+            const double over = high - low - parameters_.slope * lengthOfEdge(e);
             if (over <= 1e-3) continue;
             steep = true;
             const double down = std::min(over / 2, std::max(0.0, high - least[up ? e.b : e.a]));
@@ -59,7 +56,7 @@ void Terrain::solve(const RoadGraph& graph) {
     steepest_ = {};
     for (const RoadEdge& e : graph.edges()) {
         if (e.removed) continue;
-        const double slope = std::abs(nodeHeights_[e.b] - nodeHeights_[e.a]) / lengthOf(e);
+        const double slope = std::abs(nodeHeights_[e.b] - nodeHeights_[e.a]) / lengthOfEdge(e);
         if (slope > steepest_.slope) steepest_ = {slope, (graph.metresAt(e.a) + graph.metresAt(e.b)) * .5};
     }
 }
