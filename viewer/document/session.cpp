@@ -160,6 +160,7 @@ void Session::work() {
         std::optional<ShowRequest> request;
         std::vector<std::shared_ptr<const void>> deferred;
         std::shared_ptr<Progress> progress;
+        bool forgets = false;
         {
             std::unique_lock lock(queue_.mutex);
             queue_.running.reset();
@@ -175,6 +176,7 @@ void Session::work() {
             if (queue_.quit) return;
             worked = true;
             deferred.swap(queue_.deferred);
+            forgets = std::exchange(queue_.forgetsMesh, false);
             request = std::exchange(queue_.pending, std::nullopt);
             if (request) {
                 queue_.running = progress = std::make_shared<Progress>();
@@ -182,6 +184,7 @@ void Session::work() {
             }
         }
         deferred.clear();
+        if (forgets) letGoOfMesh();
         if (!request) continue;
         const Status done = guarded([&]() -> Status { return attempt(*request, *progress), Done{}; });
         if (!done.ok()) giveUp(*request, done.error());
@@ -191,12 +194,11 @@ void Session::work() {
 /// What an exception left half made is let go; the last good model stays.
 void Session::giveUp(const ShowRequest& request, const Error& error) {
     last_.liveEdit.reset();
-    last_.rebuild = mesh::Rebuild(mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp});
+    letGoOfMesh();
     last_.ast.reset();
     last_.grammar.reset();
     last_.shown.reset();
     last_.handShown.reset();
-    last_.meshed.reset();
     Update update;
     update.attempted = request.revision;
     update.problems = std::vector<Problem>{problemOf(error)};
@@ -207,7 +209,7 @@ void Session::publish(Update update) {
     {
         const std::lock_guard lock(queue_.mutex);
         if (update.model) queue_.update.model = std::move(update.model);
-        if (update.mesh) queue_.update.mesh = std::move(update.mesh);
+        if (update.mesh && !queue_.forgetsMesh) queue_.update.mesh = std::move(update.mesh);
         if (update.plan) queue_.update.plan = std::move(update.plan);
         if (update.problems) queue_.update.problems = std::move(update.problems);
         if (update.used) queue_.update.used = std::move(update.used);

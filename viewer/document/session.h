@@ -82,6 +82,9 @@ public:
     void show(ShowRequest request);
     /// Stops what runs and forgets what waits.
     void cancel();
+    /// Another document is to be shown: the mesh goes, with what the worker keeps to make the next one of the same
+    /// document faster. The model stays until there is another.
+    void forgetMesh();
     /// Takes over what the worker has finished. True when model, mesh or problems are new.
     bool poll();
 
@@ -130,7 +133,8 @@ private:
         std::optional<ShowRequest> pending;
         std::shared_ptr<Progress> running;  ///< of the request that runs, or null
         bool meshing = false, quit = false;
-        Stopwatch since;  ///< the running request began
+        bool forgetsMesh = false;  ///< the worker has yet to let go of its mesh
+        Stopwatch since;           ///< the running request began
         Update update;
         bool fresh = false;
         std::vector<std::shared_ptr<const void>>
@@ -166,6 +170,7 @@ private:
 
     void work();
     void attempt(const ShowRequest& request, Progress& progress);
+    void letGoOfMesh();
     void giveUp(const ShowRequest& request, const Error& error);
     bool asChecked() const;
     bool follows(const ShowRequest& request);

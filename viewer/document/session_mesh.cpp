@@ -12,6 +12,23 @@ constexpr float keptCells =
 
 }  // namespace
 
+void Session::forgetMesh() {
+    {
+        const std::lock_guard lock(queue_.mutex);
+        queue_.deferred.push_back(std::exchange(mesh_, nullptr));
+        queue_.deferred.push_back(std::exchange(queue_.update.mesh, nullptr));
+        queue_.forgetsMesh = true;
+        if (queue_.running && queue_.meshing) queue_.running->cancel();
+    }
+    queue_.wanted.notify_one();
+}
+
+void Session::letGoOfMesh() {
+    last_.rebuild = mesh::Rebuild(mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp});
+    last_.meshed.reset();
+    last_.problems.mesh.clear();
+}
+
 void Session::meshIt(const ShowRequest& request, Progress& progress) {
     {
         const std::lock_guard lock(queue_.mutex);

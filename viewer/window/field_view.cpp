@@ -40,8 +40,9 @@ std::shared_ptr<const render::PreparedField> FieldView::setField(std::unique_ptr
 }
 
 void FieldView::setFog(std::unique_ptr<render::FogScene> fog) {
+    const bool drew = drawsFog();
     fog_ = std::move(fog);
-    if (drawsFog()) restart();
+    if (drew || drawsFog()) restart();
 }
 
 void FieldView::showFog(bool fog) {

@@ -32,6 +32,7 @@ public:
     const FieldTimes& times() const { return times_; }
     /// The picture starts again; gives what the last one was of.
     std::shared_ptr<const render::PreparedField> setField(std::unique_ptr<render::FieldScene> scene);
+    /// Null: there is none until there is another.
     void setFog(std::unique_ptr<render::FogScene> fog);
     /// Draws fog rather than the field, as soon as there is any.
     void showFog(bool fog);

@@ -16,6 +16,11 @@ Status MeshView::setMesh(std::unique_ptr<render::MeshScene> scene) {
     return Done{};
 }
 
+void MeshView::clear() {
+    scene_.reset();
+    drawn_ = smooth_ = lit_ = sunlit_ = false;
+}
+
 Status MeshView::light() {
     const Result<bool> all = scene_->lightMore(nullptr);
     if (!all) return all.error();

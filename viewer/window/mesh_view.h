@@ -13,6 +13,8 @@ namespace sgm::window {
 class MeshView {
 public:
     Status setMesh(std::unique_ptr<render::MeshScene> scene);
+    /// Shows nothing until there is another mesh.
+    void clear();
     void setLook(const render::PictureOptions& options, const render::MeshStyle& style);
     bool hasMesh() const { return scene_ != nullptr; }
     /// Draws what changed, else completes the light, else draws with smooth edges.

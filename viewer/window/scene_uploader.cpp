@@ -77,6 +77,11 @@ void SceneUploader::cancel() {
     if (running_) running_->cancel();
 }
 
+void SceneUploader::forget() {
+    cancel();
+    const Update forgotten = poll();
+}
+
 SceneUploader::Update SceneUploader::poll() {
     const std::lock_guard lock(mutex_);
     return std::exchange(update_, {});
@@ -102,6 +107,7 @@ template <class Scene>
 void SceneUploader::give(UploadResult<Scene> Update::*where, UploadResult<Scene> ready) {
     render::finish();  // so that the window's context finds all of it
     const std::lock_guard lock(mutex_);
+    if (running_->cancelled()) return;
     std::swap(update_.*where, ready);  // what was never taken dies with `ready`, when nobody waits for the lock
     if constexpr (std::is_same_v<Scene, render::MeshScene>) update_.meshIsPreview = false;
 }

@@ -53,6 +53,8 @@ public:
     void deferDelete(std::shared_ptr<const void> deferred);
     /// Stops what runs and forgets what waits.
     void cancel();
+    /// The same, and forgets what is ready: another document is to be shown.
+    void forget();
     /// What has become ready since the last call.
     struct Update {
         UploadResult<render::FieldScene> field;

@@ -17,13 +17,23 @@ Workbench::Workbench(Report& report, std::unique_ptr<SharedContext> shared, std:
 Status Workbench::open(const std::filesystem::path& path) {
     Result<document::Document> opened = document::Document::open(path);
     if (!opened) return opened.error();
-    document = std::move(*opened);
-    selected_ = derive::none;
+    show(std::move(*opened));
     endSteps();
-    view.framed = false;
-    asked_.revision = ~uint64_t(0);
     refresh();
     return Done{};
+}
+
+void Workbench::show(document::Document other) {
+    document = std::move(other);
+    selected_ = derive::none;
+    view.framed = false;
+    view.mesh.clear();
+    view.field.setFog(nullptr);
+    session.forgetMesh();
+    uploader.forget();
+    uploader.deferDelete(std::exchange(asked_.fog, nullptr));
+    asked_.otherModel = true;
+    asked_.revision = ~uint64_t(0);
 }
 
 void Workbench::edit(const document::edits::Edit& edit, const std::string& label) {
@@ -55,7 +65,7 @@ void Workbench::refresh() {
     recovery_.keep(document);
     followSteps();
     view.field.showFog(view.look.pane == Pane::Fog);
-    if (view.look.pane == Pane::Fog && session.model() && asked_.fog != session.model()) {
+    if (view.look.pane == Pane::Fog && session.model() && !asked_.otherModel && asked_.fog != session.model()) {
         uploader.deferDelete(std::exchange(asked_.fog, session.model()));
         uploader.prepareFog(asked_.fog, fogVoxels);
         asked_.settled = false;
@@ -87,6 +97,7 @@ bool Workbench::poll() {
     const auto meshed = session.mesh();
     bool news = session.poll();
     if (session.model() != model && session.model()) {
+        asked_.otherModel = false;
         resolveSelection();
         view.hover.reset();
         // What a slider let go of looks the same, but was made ready in haste.

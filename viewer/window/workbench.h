@@ -191,9 +191,12 @@ private:
         const derive::Derivation* byHand = nullptr;
         std::optional<pipeline::Section> section;
         std::shared_ptr<const document::BuiltModel> fog, prepared;
-        bool settled = false;  ///< all that was computed has been taken over
+        bool otherModel = false;  ///< the session's model is that of the document before
+        bool settled = false;     ///< all that was computed has been taken over
     };
 
+    /// Goes over to another document; its model comes later, the field of the one before stays until then.
+    void show(document::Document other);
     void resolveSelection();
 
     bool working() const { return session.busy() || uploader.busy(); }

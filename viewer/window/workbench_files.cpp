@@ -35,10 +35,7 @@ void Workbench::offerAbandoned() {
     panels.question = Question{fmt::format("The window was closed by force; unsaved work on {} was kept.", name),
                                {{"Go on with it",
                                  [this, work] {
-                                     document = document::Document::recovered(work.document, work.text);
-                                     selected_ = derive::none;
-                                     view.framed = false;
-                                     asked_.revision = ~uint64_t(0);
+                                     show(document::Document::recovered(work.document, work.text));
                                      recovery_.keep(document);
                                      discard(work);
                                  }},
