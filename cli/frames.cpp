@@ -106,6 +106,7 @@ Status buildFrames(const BuildRequest& request) {
     if (!bounds.ok()) return bounds.error();
     mesh::Grid grid = gridOver(*bounds, request.grid);
     pipeline::IncrementalPipeline incremental(meshingOf(request.grid, needsPositionsOnly(request)));
+    mesh::SimplifiedPieces pieces;
     for (int frame = 0; frame < scene->animation.frames; ++frame) {
         Context context{watch.progress(), request.grid.threads};
         derive::Options options = scene->options;
@@ -119,6 +120,7 @@ Status buildFrames(const BuildRequest& request) {
                        scene->animation.text(*scene->grammar, frame));
         BuildRequest framed = *requestOf(request, frame);
         // What parameters make too thin in between is too thin at one of the ends.
+        framed.edits.pieces = &pieces;
         framed.seeksThinParts = frame == 0 || frame + 1 == scene->animation.frames;
         const Status written = writeFrame(framed, incremental, grid, context);
         if (!written.ok()) return written;

@@ -226,7 +226,7 @@ private:
             if (numbers.empty()) step_m_ = std::max(step_m_ - shrink_m_, 0.0);
             made.to = now_.at;
         }
-        if (letter != 'f' && letter != 'g') steps_.push_back(made);
+        steps_.push_back(made);
     }
 
     double angle_, step_m_, shrink_m_;

@@ -10,6 +10,10 @@
 namespace sgm::lower {
 namespace {
 
+/// The solids of docs/solid-tree.md.
+constexpr std::string_view treeSolids[] = {"cube",  "sphere", "ellipsoid", "cylinder", "cone",     "pyramid",
+                                           "prism", "wedge",  "torus",     "capsule",  "halfspace"};
+
 using derive::none;
 using derive::Shape;
 using derive::ShapeId;
@@ -118,7 +122,11 @@ Pending Collector::primitive(const SolidValue& value, ShapeId id) {
         const field::PrimitiveParameter& p = value.primitive->parameters[i];
         arguments.push_back(std::clamp(value.args[i].n[0], p.lo, p.hi));
     }
-    if (name != "roof") return single(leaf(value.primitive->name, std::move(arguments), scope, id));
+    if (name != "roof") {
+        if (!std::any_of(std::begin(treeSolids), std::end(treeSolids), [&](auto solid) { return solid == name; }))
+            return inexact(emptySolid(), id, fmt::format("is a {}, which is no solid of the tree", name));
+        return single(leaf(value.primitive->name, std::move(arguments), scope, id));
+    }
     if (arguments[0] <= 0) return single(leaf("pyramid", {}, scope, id));
     if (arguments[0] < 1)
         return inexact(

@@ -114,7 +114,8 @@ bool runTurtle(PartsContext& context, const Parts& turtle) {
 constinit const Operation turtle{
     .name = "turtle",
     .doc =
-        "Runs a body at every letter of an lsystem that has one. The scope of F and G lies along their step: with x "
+        "Runs a body at every letter of an lsystem that has one. The scope of F, G, f and g lies along their step: "
+        "with x "
         "along "
         "it and as high as the scope, or where the turtle goes 'upward' with y along it and as wide as '!' says. Other "
         "letters stand at the turtle.",

@@ -22,8 +22,9 @@ Result<mesh::Mesh> edited(mesh::Mesh mesh, const MeshEdits& edits, mesh::Surface
     const double tolerance_m = toleranceOf(edits, surface, cell_m);
     if ((edits.simplify < 1 || tolerance_m > 0) && mesh.triangleCount() > 0) {
         auto result = context.timed("simplify", [&] {
-            return edits.simplify < 1 ? mesh::simplifyToShare(mesh, edits.simplify, context.threads, context.progress)
-                                      : mesh::simplify(mesh, {tolerance_m, context.threads}, context.progress);
+            return edits.simplify < 1
+                       ? mesh::simplifyToShare(mesh, edits.simplify, context.threads, context.progress)
+                       : mesh::simplify(mesh, {tolerance_m, context.threads, edits.pieces}, context.progress);
         });
         if (!result.ok()) return result;
         mesh = std::move(*result);

@@ -8,14 +8,16 @@
 #include "modeler/core/result.h"
 #include "modeler/mesh/connected_components.h"
 #include "modeler/mesh/polygonize.h"
+#include "modeler/mesh/simplify.h"
 
 namespace sgm::pipeline {
 
 struct MeshEdits {
-    mesh::Keep keep = mesh::Keep::All;       ///< which connected components stay
-    int smooth = 0;                          ///< passes of Laplacian smoothing
-    double simplify = 1;                     ///< share of the triangles that stay
-    std::optional<double> tolerance_m = {};  ///< none: see toleranceOf
+    mesh::Keep keep = mesh::Keep::All;         ///< which connected components stay
+    int smooth = 0;                            ///< passes of Laplacian smoothing
+    double simplify = 1;                       ///< share of the triangles that stay
+    std::optional<double> tolerance_m = {};    ///< none: see toleranceOf
+    mesh::SimplifiedPieces* pieces = nullptr;  ///< of the frame before, in an animation
 
     bool isAsked() const { return smooth > 0 || simplify < 1 || tolerance_m || keep != mesh::Keep::All; }
 };

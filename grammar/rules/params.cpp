@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "grammar/rules/check.h"
@@ -101,7 +102,11 @@ Result<Value> conformKind(const Param& param, Value value) {
     if (!numeric(value)) return value;
     if ((value.count != param.value.count && !spread) || !compatible(type, wanted))
         return refuse(fmt::format("'{}' is {}, but this is {}", param.name, describe(wanted), describe(type)));
-    if (param.value.integer && !value.integer)
+    const auto isWhole = [&] {
+        return std::all_of(value.n.begin(), value.n.begin() + static_cast<ptrdiff_t>(value.count),
+                           [](double n) { return n == std::floor(n); });
+    };
+    if (param.value.integer && !value.integer && !isWhole())
         return refuse(fmt::format(
             "'{}' is a whole number, not {}: with a point in its default or range (0..1.0) it would be a real one",
             param.name, toText(value)));

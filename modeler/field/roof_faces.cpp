@@ -110,8 +110,8 @@ std::optional<RoofFace> slopeOver(const RoofPlanes& planes, const RoofSurface& r
     return face;
 }
 
-std::vector<RoofFace> facesOf(const RoofPlanes& planes, const plan::Footprint& footprint,
-                              const plan::Formula& formula) {
+std::vector<RoofFace> facesOf(const RoofPlanes& planes, const plan::Footprint& footprint, const plan::Formula& formula,
+                              double height_m) {
     const std::vector<PlacedEdge> edges = plan::edgesOf(footprint);
     const RoofSurface roof = surfaceOf(planes, footprint, formula);
     double least = 1e9;
@@ -139,7 +139,8 @@ std::vector<RoofFace> facesOf(const RoofPlanes& planes, const plan::Footprint& f
     apex.kind = RoofFace::Kind::Apex;
     apex.at = top.at;
     apex.outward = {0, 1};
-    apex.height_m = planes.fascia_m - plan::valueOf(formula, roof.slopes, top.at);
+    // Roofs of two pitches and cut-off ones end below where their first slopes would meet.
+    apex.height_m = std::min(height_m, planes.fascia_m - plan::valueOf(formula, roof.slopes, top.at));
     apex.corners.fill(pointAt(apex.at, apex.height_m));
     return faces;
 }
@@ -188,7 +189,8 @@ bool isRoof(const Primitive& row) { return row.name.ends_with("Roof"); }
 std::vector<RoofFace> roofFaces(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
                                 std::span<const Argument> arguments, double height_m) {
     if (!isRoof(row) || footprint.empty()) return {};
-    if (const auto planes = roofPlanes(row, footprint, formula, arguments)) return facesOf(*planes, footprint, formula);
+    if (const auto planes = roofPlanes(row, footprint, formula, arguments))
+        return facesOf(*planes, footprint, formula, height_m);
     if (row.name == "shedRoof") return {shedSlope(footprint, arguments)};
     if (row.plan != PlanUse::Fills) return {};
     std::vector<RoofFace> faces;

@@ -80,6 +80,7 @@ std::vector<uint32_t> gablesOf(const plan::Footprint& footprint, const plan::For
         const bool alongX = facing == plan::Facing::Left || facing == plan::Facing::Right;
         if (!reflex[i] && (ends == GableEnds::All || alongX == (ends == GableEnds::X))) found.push_back(i);
     }
+    if (found.size() == edges.size()) return plan::gableEnds(footprint, formula);  // nothing would slope
     return found;
 }
 

@@ -22,18 +22,12 @@ uint32_t spread(uint32_t x) {
     return (x | x << 2) & 0x09249249u;
 }
 
-/// What a node bounds: triangles and their unit normals.
+/// What a node bounds: triangles.
 struct Bounds {
-    Box3f box, normals;
+    Box3f box;
     bool fresh = false;         ///< whether one of them is to be compared with all
     uint32_t sound = noRegion;  ///< the sound region that has all of them
 
-    /// Whether all normals are in one half-space, well off its border.
-    bool isNarrow() const {
-        const Vec3f d = normals.centre();
-        const Vec3f least = min(normals.lo * d, normals.hi * d);
-        return least.x + least.y + least.z > 0.1f * length(d);
-    }
     /// Whether the triangles of both are known to meet nowhere wrongly.
     bool isSoundWith(const Bounds& other) const { return sound != noRegion && sound == other.sound; }
     bool meets(const Bounds& other) const { return !intersection(box, other.box).empty(); }
@@ -41,7 +35,7 @@ struct Bounds {
 
 Bounds hull(const Bounds& a, const Bounds& b) {
     const uint32_t sound = a.box.empty() || a.sound == b.sound ? b.sound : b.box.empty() ? a.sound : noRegion;
-    return {sgm::hull(a.box, b.box), sgm::hull(a.normals, b.normals), a.fresh || b.fresh, sound};
+    return {sgm::hull(a.box, b.box), a.fresh || b.fresh, sound};
 }
 
 /// A complete binary tree over triangles in the order of a space-filling curve (Morton 1966); node n has 2n and 2n + 1.
@@ -77,10 +71,9 @@ public:
         parallelFor(leaves_, threads, nullptr, [&](size_t leaf, int) {
             const auto [begin, end] = placesOf(leaves_ + leaf);
             for (size_t i = begin; i < end; ++i) {
-                const Vec3f n = normalOf(order_[i]);
                 const uint32_t region = triangles_[order_[i]].region;
                 const bool isSound = region < sound.size() && sound[region] != 0;
-                own_[i] = {boxOf(order_[i]), {n, n}, fresh[order_[i]] != 0, isSound ? region : noRegion};
+                own_[i] = {boxOf(order_[i]), fresh[order_[i]] != 0, isSound ? region : noRegion};
                 nodes_[leaves_ + leaf] = hull(nodes_[leaves_ + leaf], own_[i]);
             }
         });
@@ -95,7 +88,7 @@ public:
         const auto [a, b] = pair;
         if (nodes_[a].isSoundWith(nodes_[b])) return;
         if (a == b) {
-            if (!nodes_[a].fresh || nodes_[a].isNarrow() || nodes_[a].box.empty()) return;
+            if (!nodes_[a].fresh || nodes_[a].box.empty()) return;
             if (a >= leaves_) return compareLeaves(a, b, found);
             open.insert(open.end(), {{2 * a, 2 * a}, {2 * a + 1, 2 * a + 1}, {2 * a, 2 * a + 1}});
             return;
@@ -110,10 +103,6 @@ private:
     Vec3f corner(size_t triangle, int i) const { return positions_[triangles_[triangle].corners[i]]; }
     Box3f boxOf(size_t t) const {
         return sgm::hull(sgm::hull(Box3f{corner(t, 0), corner(t, 0)}, corner(t, 1)), corner(t, 2));
-    }
-    Vec3f normalOf(size_t t) const {
-        const Vec3d a = corner(t, 0).as<double>();
-        return normalized(cross(corner(t, 1).as<double>() - a, corner(t, 2).as<double>() - a)).as<float>();
     }
     /// In order_: the first and the end.
     std::pair<size_t, size_t> placesOf(size_t leaf) const {

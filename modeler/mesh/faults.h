@@ -20,12 +20,9 @@ public:
 
     /// The triangles that meet another one elsewhere than in common vertices and edges, or whose edge another triangle
     /// runs along the same way, or which stand around a vertex together with another fan; ascending. Exact on the
-    /// coordinates given. Triangles are compared by a hierarchy of boxes; nothing is compared within a small part of it
-    /// whose normals are all in one half-space, for there a closed surface hardly crosses itself without crossing
-    /// another part too (after Volino and Magnenat-Thalmann, "Efficient self-collision detection on smoothly
-    /// discretized surface animations", 1994). `soundRegions`, by region or empty: other than 0 where triangles of the
-    /// region are known not to meet each other wrongly, as what was triangulated in a plane; those aren't compared. O(n
-    /// log n) as a rule.
+    /// coordinates given. Triangles are compared by a hierarchy of boxes. `soundRegions`, by region or empty: other
+    /// than 0 where triangles of the region are known not to meet each other wrongly, as what was triangulated in a
+    /// plane; those aren't compared. O(n log n) as a rule.
     std::vector<uint32_t> find(std::span<const SimpleTriangle> triangles, std::span<const uint8_t> soundRegions = {});
 
 private:

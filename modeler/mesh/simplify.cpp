@@ -1,8 +1,12 @@
 #include "modeler/mesh/simplify.h"
 
 #include <cmath>
+#include <mutex>
 #include <optional>
 
+#include "modeler/core/parallel.h"
+#include "modeler/mesh/apart.h"
+#include "modeler/mesh/components.h"
 #include "modeler/mesh/faults.h"
 #include "modeler/mesh/planar_merge.h"
 #include "modeler/mesh/planar_split.h"
@@ -19,38 +23,76 @@ constexpr double roundingShare = 0x1p-20;
 /// After so many rounds with faults the mesh stays as it is.
 constexpr int mostRounds = 24;
 
+/// Which solids and cavities a surface has, to see whether simplification turns one inside out: those about as small as
+/// the tolerance may be turned.
+class Insides {
+public:
+    explicit Insides(const FlatMesh& flat) : positions_(flat.positions), component_(flat.positions.size()) {
+        Components joined(flat.positions.size());
+        for (const Triangle& t : flat.triangles) joined.join(joined.join(t.x, t.y), t.z);
+        for (uint32_t v = 0; v < component_.size(); ++v) component_[v] = joined.find(v);
+        before_.resize(component_.size());
+        for (const Triangle& t : flat.triangles) before_[component_[t.x]] += volumeUnder(t);
+    }
+
+    /// The triangles of components that enclose air where they enclosed solid, or the other way round.
+    std::vector<uint32_t> turned(std::span<const SimpleTriangle> triangles) const {
+        PageVector<double> now;
+        now.assign(component_.size(), 0.0);
+        for (const SimpleTriangle& t : triangles) now[component_[t.corners.x]] += volumeUnder(t.corners);
+        std::vector<uint32_t> found;
+        for (uint32_t i = 0; i < triangles.size(); ++i) {
+            const uint32_t component = component_[triangles[i].corners.x];
+            if (!(before_[component] * now[component] > 0)) found.push_back(i);
+        }
+        return found;
+    }
+
+private:
+    /// Six times what lies between a triangle and a vertex of its component, by the divergence theorem.
+    double volumeUnder(const Triangle& t) const {
+        const Vec3d near = positions_[component_[t.x]].as<double>();
+        return dot(positions_[t.x].as<double>() - near,
+                   cross(positions_[t.y].as<double>() - near, positions_[t.z].as<double>() - near));
+    }
+
+    std::span<const Vec3f> positions_;
+    std::vector<uint32_t> component_;  ///< by vertex: the lowest one of its component
+    std::vector<double> before_;       ///< by that vertex: six times the component's volume, of cavities below 0
+};
+
 class Simplifier {
 public:
-    Simplifier(const Mesh& mesh, const SimplifyOptions& options, Progress* progress)
-        : mesh_(mesh), options_(options), progress_(progress) {}
+    Simplifier(const Mesh& mesh, double tolerance_m, double rounding_m, int threads, Progress* progress)
+        : mesh_(mesh), tolerance_m_(tolerance_m), rounding_m_(rounding_m), threads_(threads), progress_(progress) {}
 
     Result<Mesh> run() {
-        flat_ = flatten(mesh_, options_.threads);
-        releaseConfined(mesh_, flat_, options_.threads, progress_);
-        auto regions = findRegions(flat_, options_.threads);
+        flat_ = flatten(mesh_, threads_);
+        releaseConfined(mesh_, flat_, threads_, progress_);
+        auto regions = findRegions(flat_, threads_);
         if (!regions.ok()) return regions.error();
         regions_ = std::move(*regions);
-        const double rounding_m = roundingShare * largestCoordinate(), tolerance_m = options_.tolerance_m;
-        const double planar_m = std::max(rounding_m, planeShare * tolerance_m);
-        planes_ = findPlanes(flat_, regions_, planar_m, options_.threads);
+        const double planar_m = std::max(rounding_m_, planeShare * tolerance_m_);
+        planes_ = findPlanes(flat_, regions_, planar_m, threads_);
         const std::vector<uint32_t> separated = separateBumps(flat_, planar_m, regions_, planes_);
         chains_ = findChains(regions_);
-        rejectTouching(flat_, chains_, separated, std::max(rounding_m, chainShare * tolerance_m), planes_,
-                       options_.threads);
+        rejectTouching(flat_, chains_, separated, std::max(rounding_m_, chainShare * tolerance_m_), planes_, threads_);
         if (cancelled(progress_)) return cancelledError();
         const DecimationInput input{flat_, regions_, chains_, planes_};
-        curved_.emplace(input, DecimationLimits{tolerance_m, chainShare * tolerance_m});
-        planar_.emplace(input, chainShare * tolerance_m, rounding_m);
+        curved_.emplace(input, DecimationLimits{tolerance_m_, chainShare * tolerance_m_});
+        planar_.emplace(input, chainShare * tolerance_m_, rounding_m_);
 
-        FaultFinder finder(flat_.positions, options_.threads, progress_);
+        const Insides insides(flat_);
+        FaultFinder finder(flat_.positions, threads_, progress_);
         for (int round = 0; round < mostRounds; ++round) {
-            if (tolerance_m > rounding_m) curved_->run(options_.threads, progress_);
-            const bool again = !cancelled(progress_) && planar_->run(*curved_, options_.threads, progress_);
+            if (tolerance_m_ > rounding_m_) curved_->run(threads_, progress_);
+            const bool again = !cancelled(progress_) && planar_->run(*curved_, threads_, progress_);
             if (cancelled(progress_)) return cancelledError();
             if (again) continue;
             collect();
-            const auto faults = finder.find(triangles_, planar_->triangulated());
+            auto faults = finder.find(triangles_, planar_->triangulated());
             if (cancelled(progress_)) return cancelledError();
+            if (faults.empty()) faults = insides.turned(triangles_);
             if (faults.empty()) return composeMesh(mesh_, flat_, regions_, planes_, triangles_);
             if (!refine(faults)) break;
         }
@@ -61,12 +103,6 @@ public:
     }
 
 private:
-    double largestCoordinate() const {
-        const Box3f box = mesh_.bounds();
-        if (box.empty()) return 0;
-        return static_cast<double>(std::max(maxComponent(box.hi), -minComponent(box.lo)));
-    }
-
     /// The result so far: curved regions, planar ones, and those that stay as they are.
     void collect() {
         triangles_.assign(curved_->triangles.begin(), curved_->triangles.end());
@@ -101,7 +137,8 @@ private:
     }
 
     const Mesh& mesh_;
-    const SimplifyOptions options_;
+    const double tolerance_m_, rounding_m_;
+    const int threads_;
     Progress* const progress_;
     FlatMesh flat_;
     SurfaceRegions regions_;
@@ -112,13 +149,97 @@ private:
     std::vector<SimpleTriangle> triangles_;  ///< of the result; those of `curved_` first, in its order
 };
 
+/// Pieces that are large share the threads, each of the others has one of them.
+class PieceSimplifier {
+public:
+    PieceSimplifier(const std::vector<Mesh>& pieces, const SimplifyOptions& options, double rounding_m,
+                    Progress* progress)
+        : pieces_(pieces), options_(options), rounding_m_(rounding_m), progress_(progress), made_(pieces.size()) {}
+
+    /// What is made of each piece.
+    Result<std::vector<std::shared_ptr<const Mesh>>> run() {
+        std::vector<size_t> small;
+        for (size_t i = 0; i < pieces_.size(); ++i) {
+            if (options_.pieces && (made_[i] = options_.pieces->find(pieces_[i]))) continue;
+            if (pieces_[i].triangleCount() < largeTriangles)
+                small.push_back(i);
+            else
+                make(i, options_.threads);
+        }
+        parallelFor(small.size(), options_.threads, progress_, [&](size_t k, int) { make(small[k], 1); });
+        if (cancelled(progress_)) return cancelledError();
+        if (failed_) return *failed_;
+        return std::move(made_);
+    }
+
+private:
+    static constexpr size_t largeTriangles = 1 << 17;
+
+    void make(size_t i, int threads) {
+        auto mesh = Simplifier(pieces_[i], options_.tolerance_m, rounding_m_, threads, progress_).run();
+        if (mesh.ok()) {
+            made_[i] = std::make_shared<const Mesh>(std::move(*mesh));
+            return;
+        }
+        const std::lock_guard lock(mutex_);
+        if (failed_ && failedAt_ < i) return;
+        failed_ = mesh.error(), failedAt_ = i;
+    }
+
+    const std::vector<Mesh>& pieces_;
+    const SimplifyOptions& options_;
+    const double rounding_m_;
+    Progress* const progress_;
+    std::vector<std::shared_ptr<const Mesh>> made_;
+    std::mutex mutex_;
+    std::optional<Error> failed_;
+    size_t failedAt_ = 0;  ///< the first piece that failed
+};
+
+double roundingOf(const Mesh& mesh) {
+    const Box3f box = mesh.bounds();
+    if (box.empty()) return 0;
+    return roundingShare * static_cast<double>(std::max(maxComponent(box.hi), -minComponent(box.lo)));
+}
+
 }  // namespace
+
+std::shared_ptr<const Mesh> SimplifiedPieces::find(const Mesh& piece) const {
+    const auto [begin, end] = pieces_.equal_range(hashSurface(piece));
+    for (auto at = begin; at != end; ++at)
+        if (sameSurface(at->second.from, piece)) return at->second.to;
+    return nullptr;
+}
+
+void SimplifiedPieces::begin(double tolerance_m, double rounding_m) {
+    if (tolerance_m != tolerance_m_ || rounding_m != rounding_m_) pieces_.clear();
+    tolerance_m_ = tolerance_m, rounding_m_ = rounding_m;
+}
+
+void SimplifiedPieces::keep(std::vector<Mesh> from, std::vector<std::shared_ptr<const Mesh>> to) {
+    pieces_.clear();
+    for (size_t i = 0; i < from.size(); ++i) {
+        const uint64_t hash = hashSurface(from[i]);
+        pieces_.emplace(hash, Piece{std::move(from[i]), std::move(to[i])});
+    }
+}
 
 Result<Mesh> simplify(const Mesh& mesh, const SimplifyOptions& options, Progress* progress) {
     if (!(options.tolerance_m >= 0) || !std::isfinite(options.tolerance_m))
         return Error{Error::Kind::Usage, "the tolerance of simplification is a length, 0 or more"};
     if (progress) progress->begin("simplify", 1);
-    return Simplifier(mesh, options, progress).run();
+    const double rounding_m = roundingOf(mesh);
+    // Surfaces move by the tolerance at most.
+    std::vector<Mesh> pieces = splitApart(mesh, 4 * std::max(options.tolerance_m, rounding_m), options.threads);
+    if (pieces.empty()) return Simplifier(mesh, options.tolerance_m, rounding_m, options.threads, progress).run();
+    if (options.pieces) options.pieces->begin(options.tolerance_m, rounding_m);
+    auto made = PieceSimplifier(pieces, options, rounding_m, progress).run();
+    if (!made.ok()) return made.error();
+    std::vector<const Mesh*> simplified;
+    for (const auto& piece : *made) simplified.push_back(piece.get());
+    Mesh joined = join(simplified);
+    if (options.pieces) options.pieces->keep(std::move(pieces), std::move(*made));
+    return joined;
 }
 
 Result<Mesh> simplifyToShare(const Mesh& mesh, double share, int threads, Progress* progress) {

@@ -51,7 +51,10 @@ float Cave::narrowest_m() const {
 
 Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Progress* progress,
                         const FloorFilter& isFloor) {
-    if (!(agent.radius_m > 0) || !(agent.height_m >= 2 * agent.radius_m) || !(agent.height_m < 1e6))
+    if (!(agent.radius_m > 0))
+        return Error{Error::Kind::Usage,
+                     fmt::format("an agent of radius {} m: it takes a radius above 0", agent.radius_m)};
+    if (!(agent.height_m >= 2 * agent.radius_m) || !(agent.height_m < 1e6))
         return Error{Error::Kind::Usage,
                      fmt::format("an agent of radius {} m and height {} m: the height is at least twice the radius",
                                  agent.radius_m, agent.height_m)};

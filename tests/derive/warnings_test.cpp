@@ -89,6 +89,9 @@ TEST(Warnings, ASplitThatOverflowsIsTold) {
     EXPECT_EQ(told("start A -> size 10 split x { 60%: cube | 60%: sphere }\n"),
               "2:42 this part is cut off: 4m are left for its 6m\n");
     EXPECT_EQ(told("start A -> size 10 split x { { 3m: cube }* | 1m: sphere }\n"), "");
+    EXPECT_EQ(told("start A -> size 10 split x { 10m: cube | 1m: sphere }\n"),
+              "2:42 this part is cut off: 0m are left for its 1m\n")
+        << "nothing of it is there";
 }
 
 TEST(Warnings, AFailureNamesWhatWasRemarkedInItsText) {

@@ -195,31 +195,6 @@ TEST_F(Sessions, MeshWhenAskedAndKeepWhatStays) {
     EXPECT_EQ(session.mesh()->grid.cell_m, first->grid.cell_m) << "the lattice stays where it can";
 }
 
-TEST_F(Sessions, ForgetTheMeshOfAnotherDocument) {
-    ShowRequest request = requestOf(document);
-    request.meshResolution = 40;
-    session.show(request);
-    settle(session);
-    const std::weak_ptr<const BuiltMesh> mesh = session.mesh();
-    const std::weak_ptr<const BuiltModel> model = session.model();
-    ASSERT_FALSE(mesh.expired());
-    session.forgetMesh();
-    EXPECT_FALSE(session.mesh());
-    EXPECT_TRUE(session.model()) << "it stays until there is another";
-    change("n = 4", "n = 5");
-    EXPECT_FALSE(session.mesh()) << "nobody asked";
-    const Stopwatch watch;  // the worker frees what was let go of
-    while (!(mesh.expired() && model.expired()) && watch.seconds() < 60) std::this_thread::yield();
-    EXPECT_TRUE(mesh.expired());
-    EXPECT_TRUE(model.expired());
-    request = requestOf(document);
-    request.meshResolution = 40;
-    session.show(request);
-    settle(session);
-    ASSERT_TRUE(session.mesh());
-    EXPECT_EQ(session.mesh()->blocksKept, 0u);
-}
-
 TEST_F(Sessions, ProblemsOfTheMeshFollowIt) {
     Document floating;
     floating.type(

@@ -190,6 +190,8 @@ TEST(SolidTree, NamesWhatIsNoSolid) {
     EXPECT_EQ(refusal("+ sphere size 4 at +y displace billow(.05m, 2/m)"),
               "test.sgm:3:3: 'S/cube/sphere' is displaced by noise");
     EXPECT_EQ(refusal("+ cube size 4 at +y clad ornament()"), "test.sgm:3:3: 'S/cube/cube' is clad with an ornament");
+    EXPECT_EQ(refusal("+ shellBlock size 4 at +y"),
+              "test.sgm:3:3: 'S/cube/shellBlock' is a shellBlock, which is no solid of the tree");
     EXPECT_EQ(refusal("+ mesh(\"a.obj\") size 4 at +y"),
               "test.sgm:3:3: 'S/cube/mesh' is a mesh from a file, of which the model knows samples alone");
 }

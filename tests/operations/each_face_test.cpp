@@ -147,5 +147,21 @@ TEST(EachFace, RoofsThatCameBeforeAreFoundAndNoneIsAnError) {
     EXPECT_NE(none.error().message.find("no roof stands here"), std::string::npos) << none.error().message;
 }
 
+TEST(EachFace, TheApexIsWhereTheRoofEnds) {
+    for (const char* roof : {"mansardRoof(70deg, height: 1m)", "gambrelRoof(70deg, height: 1m)", "hipRoof(40deg)",
+                             "gableRoof(40deg, ends: all)"}) {
+        const Derivation d =
+            house(std::string("+ ") + roof + " at +y + bay size .2m at each(apex) to centre", "rect(12, 8)");
+        const auto bays = shapesCalled(d, "bay");
+        ASSERT_EQ(bays.size(), 1u) << roof;
+        double top = 0;
+        for (const Shape& s : d.tree.shapes)
+            if (s.symbol != bays[0].symbol) top = std::max(top, s.scope.centre.y + s.scope.size.y / 2);
+        EXPECT_NEAR(bays[0].scope.centre.y, top, .02)
+            << roof << ": the deepest point is known to a thousandth of the width";
+        EXPECT_GT(top, 3.5) << roof;
+    }
+}
+
 }  // namespace
 }  // namespace sgm::testing_

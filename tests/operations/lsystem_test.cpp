@@ -7,6 +7,7 @@
 
 #include "grammar/derive/lsystem.h"
 #include "tests/derive/grammars.h"
+#include "tests/operations/shapes_called.h"
 
 namespace sgm::testing_ {
 namespace {
@@ -78,6 +79,17 @@ TEST(Lsystems, TooManyLettersAreABudget) {
     const auto text = derive::rewritten(bomb.lsystem(), bomb.place);
     ASSERT_FALSE(text.ok());
     EXPECT_EQ(text.error().kind, Error::Kind::Budget);
+}
+
+TEST(Lsystems, BodiesRunAlongStepsWithoutWallsToo) {
+    const derive::Derivation d = derived(
+        "grammar 2\nlsystem P passes 0 step 2m\n  axiom \"FfF\"\nterminal post = cube\nterminal gap = cube\n"
+        "start A -> size (1, 1, 1) turtle P { F: post | f: gap }\n");
+    EXPECT_EQ(shapesCalled(d, "post").size(), 2u);
+    const auto gaps = shapesCalled(d, "gap");
+    ASSERT_EQ(gaps.size(), 1u);
+    EXPECT_NEAR(gaps[0].scope.centre.x, 3, 1e-9);
+    EXPECT_NEAR(gaps[0].scope.size.x, 2, 1e-9);
 }
 
 TEST(Lsystems, FootprintsStandOnThem) {

@@ -60,6 +60,7 @@ TEST_F(Params, AreSetFromText) {
     EXPECT_EQ(set(5, "square"), "square");
     EXPECT_EQ(set(6, "#000000"), "#000000");
     EXPECT_EQ(set(7, "false"), "false");
+    EXPECT_EQ(set(0, "3.0"), "3") << "a whole number, however it is written";
 }
 
 TEST_F(Params, SayWhyAValueIsRefused) {

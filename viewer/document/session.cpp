@@ -184,7 +184,7 @@ void Session::work() {
             }
         }
         deferred.clear();
-        if (forgets) letGoOfMesh();
+        if (forgets) last_.forgetMesh();
         if (!request) continue;
         const Status done = guarded([&]() -> Status { return attempt(*request, *progress), Done{}; });
         if (!done.ok()) giveUp(*request, done.error());
@@ -194,7 +194,7 @@ void Session::work() {
 /// What an exception left half made is let go; the last good model stays.
 void Session::giveUp(const ShowRequest& request, const Error& error) {
     last_.liveEdit.reset();
-    letGoOfMesh();
+    last_.forgetMesh();
     last_.ast.reset();
     last_.grammar.reset();
     last_.shown.reset();
@@ -268,15 +268,14 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
     if (good && request.meshResolution > 0) meshIt(request, progress);
 }
 
-/// No file that the grammar uses has changed since it was checked.
-bool Session::asChecked() const {
-    return std::none_of(last_.usedByCheck.begin(), last_.usedByCheck.end(),
+bool Session::Last::isAsChecked() const {
+    return std::none_of(usedByCheck.begin(), usedByCheck.end(),
                         [](const UsedFile& used) { return timeOf(used.path) != used.time; });
 }
 
 /// Whether the request can be shown by the grammar of the moment the slider was taken; else that grammar is let go.
 bool Session::follows(const ShowRequest& request) {
-    const bool may = request.dragging && last_.grammar && !request.byHand && asChecked();
+    const bool may = request.dragging && last_.grammar && !request.byHand && last_.isAsChecked();
     if (!may) {
         last_.liveEdit.reset();
         return false;
@@ -320,7 +319,7 @@ Result<std::shared_ptr<const BuiltModel>> Session::followed(const ShowRequest& r
 
 /// Parsed text to a grammar, unless neither the text nor a file it uses has changed. Adds what is wrong to `problems`.
 bool Session::checked(const ShowRequest& request, pipeline::Context& context, std::vector<Problem>& problems) {
-    if (request.ast != last_.ast || !asChecked()) {
+    if (request.ast != last_.ast || !last_.isAsChecked()) {
         std::vector<syntax::SourcePtr> sources;  // diagnostics point into them
         last_.usedByCheck.clear();
         rules::Loader noting = loader_;  // a copy, so that every kind of file can be read

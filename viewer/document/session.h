@@ -166,13 +166,15 @@ private:
         std::shared_ptr<const BuiltMesh> meshed;
         int meshResolution = 0;
         mesh::Rebuild rebuild{mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp}};
+
+        /// No file that the grammar uses has changed since it was checked.
+        bool isAsChecked() const;
+        void forgetMesh();
     };
 
     void work();
     void attempt(const ShowRequest& request, Progress& progress);
-    void letGoOfMesh();
     void giveUp(const ShowRequest& request, const Error& error);
-    bool asChecked() const;
     bool follows(const ShowRequest& request);
     bool checked(const ShowRequest& request, pipeline::Context& context, std::vector<Problem>& problems);
     Result<std::shared_ptr<const BuiltModel>> followed(const ShowRequest& request, std::vector<Problem>& problems,

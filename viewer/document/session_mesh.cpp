@@ -23,10 +23,10 @@ void Session::forgetMesh() {
     queue_.wanted.notify_one();
 }
 
-void Session::letGoOfMesh() {
-    last_.rebuild = mesh::Rebuild(mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp});
-    last_.meshed.reset();
-    last_.problems.mesh.clear();
+void Session::Last::forgetMesh() {
+    rebuild = mesh::Rebuild(mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp});
+    meshed.reset();
+    problems.mesh.clear();
 }
 
 void Session::meshIt(const ShowRequest& request, Progress& progress) {
