@@ -119,8 +119,8 @@ Status buildFrames(const BuildRequest& request) {
             fmt::print("frame {} of {}, {}: ", frame + 1, scene->animation.frames,
                        scene->animation.text(*scene->grammar, frame));
         BuildRequest framed = *requestOf(request, frame);
-        // What parameters make too thin in between is too thin at one of the ends.
         framed.edits.pieces = &pieces;
+        // What parameters make too thin in between is too thin at one of the ends.
         framed.seeksThinParts = frame == 0 || frame + 1 == scene->animation.frames;
         const Status written = writeFrame(framed, incremental, grid, context);
         if (!written.ok()) return written;

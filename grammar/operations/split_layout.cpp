@@ -205,11 +205,11 @@ void placePieces(PartsContext& context, std::vector<Piece>& pieces, double whole
     for (const Piece& piece : pieces) all += piece.length;
     const double perFloat = all.floating > 0 ? std::max(0.0, whole - all.fixed) / all.floating : 0;
     double from = 0;
-    bool isTold = false;  // the first one speaks for those behind it
+    bool isWarned = false;  // of the first part that is cut off; those behind it are as well
     for (Piece& piece : pieces) {
         const double wanted = piece.length.fixed + piece.length.floating * perFloat, left = whole - from;
-        if (!isTold && wanted > left + 1e-6 * std::max(1.0, whole)) {
-            isTold = true;
+        if (!isWarned && wanted > left + 1e-6 * std::max(1.0, whole)) {
+            isWarned = true;
             context.warn(
                 piece.part->span,
                 fmt::format("this part is cut off: {:.4g}m are left for its {:.4g}m", std::max(0.0, left), wanted),

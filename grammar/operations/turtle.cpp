@@ -115,10 +115,8 @@ constinit const Operation turtle{
     .name = "turtle",
     .doc =
         "Runs a body at every letter of an lsystem that has one. The scope of F, G, f and g lies along their step: "
-        "with x "
-        "along "
-        "it and as high as the scope, or where the turtle goes 'upward' with y along it and as wide as '!' says. Other "
-        "letters stand at the turtle.",
+        "with x along it and as high as the scope, or where the turtle goes 'upward' with y along it and as wide as "
+        "'!' says. Other letters stand at the turtle.",
     .example = "turtle Oak upward { F: cylinder | L: sphere size .5m }",
     .arguments = turtleArguments,
     .phase = Operation::Phase::Content,

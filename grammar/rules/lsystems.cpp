@@ -8,6 +8,7 @@
 #include "grammar/rules/expressions.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/words.h"
+#include "modeler/core/conventions.h"
 
 namespace sgm::rules {
 namespace {
@@ -20,10 +21,9 @@ struct LsystemSetting {
     std::string_view text;
 };
 
-constexpr double turn = 6.283185307179587;
 constexpr LsystemSetting rows[] = {
     {"passes", &Lsystem::passes, Want::Count, 1, 0, 100, "0 … 100"},
-    {"angle", &Lsystem::angle, Want::Angle, 1.5707963267948966, -turn, turn, "a turn, at most 360deg"},
+    {"angle", &Lsystem::angle, Want::Angle, 1.5707963267948966, -radians(360), radians(360), "a turn, at most 360deg"},
     {"step", &Lsystem::step, Want::Length, 1, 1e-3, 1e4, "1 mm … 10 km"},
     {"shrink", &Lsystem::shrink, Want::Length, 0, 0, 1e4, "0 … 10 km"},
 };

@@ -88,7 +88,7 @@ public:
         return left;
     }
 
-    /// NAME, or NAME( … ) with the parenthesis glued on. A check asks for `roads`, which is reserved.
+    /// NAME, or NAME( … ) with the parenthesis glued on. `roads` is a figure of checks as well as a reserved word.
     Expr nameOrCall() {
         const uint32_t begin = cursor_.peek().begin;
         Expr e;

@@ -9,7 +9,7 @@ namespace {
 constexpr double tolerance_m = .2;     // between an arc and its chords
 constexpr double share = .48;          // of a piece that an arc at one of its ends may take
 constexpr double straight = .99985;    // cosine of 1°: bends of less stay
-constexpr double curveSample_m = 5;    // between the places where a curve asks the maps
+constexpr double curveSample_m = 5;    // between the places where a curve reads the maps
 constexpr double leastTangent_m = .5;  // shorter ones round nothing
 
 /// Whether q lies on the ray from `shared` through `end`: two pieces that leave one node would overlap.

@@ -15,7 +15,7 @@
 namespace sgm::town {
 namespace {
 
-constexpr double degree = 0.017453292519943295, turn = 6.283185307179587;
+constexpr double degree = 0.017453292519943295;
 using Unit = RoadParameter::Unit;
 
 constexpr RoadParameter table[] = {
@@ -42,7 +42,7 @@ constexpr RoadParameter table[] = {
     {"bank", &RoadParameters::bank, Unit::Share, .05, 10, "5 … 1000%",
      "steepest rise of the ground that `height` lifts where it is cut or filled beside roads, water and buildings"},
     {"bed", &RoadParameters::bed_m, Unit::Length, 0, 200, "0 … 200 m", "depth of water in ground that `height` lifts"},
-    {"axis", &RoadParameters::axis, Unit::Angle, -turn, turn, "at most 360deg",
+    {"axis", &RoadParameters::axis, Unit::Angle, -360 * degree, 360 * degree, "at most 360deg",
      "of the raster and the first highways, from +x towards +z"},
     {"reach", &RoadParameters::reach_m, Unit::Length, 10, 2000, "10 m … 2 km",
      "how far from water `shore` turns the roads of the field"},

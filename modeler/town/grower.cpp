@@ -6,7 +6,7 @@
 namespace sgm::town {
 namespace {
 
-constexpr double roadSample_m = 5;  // between the places where a road asks the maps
+constexpr double roadSample_m = 5;  // between the places where a road reads the maps
 constexpr double inland_m = 15;     // behind the shore, where a bridge ends
 constexpr double bridgeStep_m = 20;
 constexpr double least_m = 8;  // shortest piece

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double weld_m = 1;         // ends and crossings nearer to one another are one node
 constexpr double widest_m = 4e5;     // of streets in degrees: what is wider was given in metres
-constexpr double waterSample_m = 5;  // between places where a street asks for water
+constexpr double waterSample_m = 5;  // between places where the water map is read along a street
 
 /// The words of OpenStreetMap for roads between quarters, and for ways that are none for cars.
 constexpr std::array<std::string_view, 10> highwayWords{"motorway", "motorway_link", "trunk",     "trunk_link",

@@ -225,6 +225,12 @@ double heightAt(const std::string& map, const std::string& expression, double x)
     return height;
 }
 
+TEST(Towns, ChecksMayCountRoads) {
+    const auto grammar = grammarOf("grammar 2\nstart A -> cube\ncheck A expect roads == 0 and 1 + roads > 0\n");
+    ASSERT_TRUE(grammar);
+    EXPECT_EQ(grammar->checks.size(), 1u);
+}
+
 TEST(Maps, PicturesGiveNumbersAndWords) {
     const std::string grey = "map m = \"a.png\" as 10m..30m over (100m, 100m)";
     EXPECT_NEAR(heightAt(grey, "m", -40), 10, 1e-6);
