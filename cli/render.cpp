@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/fog_picture.h"
 #include "cli/ids.h"
+#include "cli/mesh_warnings.h"
 #include "cli/messages.h"
 #include "cli/numbers.h"
 #include "cli/renamed.h"
@@ -147,21 +148,6 @@ render::TracedBy tracedBy(const std::string& name) {
                                  : render::TracedBy::Best;
 }
 
-/// Tells what floats and what is too thin for the cells.
-Status warnOfMesh(const Model& model, const MeshedModel& meshed, Context& context) {
-    const auto warnings = pipeline::meshWarnings(model, meshed.mesh, meshed.grid, context);
-    if (!warnings.ok()) return warnings.error();
-    printMeshWarnings(*warnings);
-    return Done{};
-}
-
-/// What `sgm build` would tell of the mesh at its usual cells, of a model whose field is drawn.
-Status warnAsBuild(const RenderRequest& request, const Model& model, Progress* progress) {
-    Context context{progress, request.grid.threads};
-    const auto meshed = makeMesh(model, GridRequest{.threads = request.grid.threads}, context);
-    return meshed.ok() ? warnOfMesh(model, *meshed, context) : Status(meshed.error());
-}
-
 /// The mesh that `sgm build` writes, objects at all their places.
 Result<DrawnMesh> meshAsBuilt(const RenderRequest& request, const Model& model, Progress* progress) {
     Context context{progress, request.grid.threads};
@@ -278,8 +264,9 @@ Status drawAll(const RenderRequest& request) {
         makeModel(request.model, context, drawsMesh(request) ? pipeline::Objects::Apart : pipeline::Objects::Sketched);
     if (!model.ok()) return model.error();
     if (!request.print.quiet) printWarnings(*model);
-    if (!request.print.quiet && request.view == "field" && model->derivation.objects.empty())
-        if (const Status s = warnAsBuild(request, *model, watch.progress()); !s.ok()) return s;
+    if (!request.print.quiet && request.view == "field")
+        if (const Status told = warnAsBuild(*model, request.model, request.grid.threads, watch.progress()); !told.ok())
+            return told;
     if (const std::string note = pipeline::sketchNote(model->derivation); !note.empty() && !request.print.quiet)
         printMessage("note: {}; add --view mesh\n", note);
     DrawnMesh mesh;

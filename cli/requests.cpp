@@ -130,20 +130,26 @@ Result<Model> makeModel(const ModelRequest& request, Context& context, pipeline:
     return makeModel(std::move(*derivation), *section, context);
 }
 
-Result<mesh::Scene> makeScene(const Model& model, const ModelRequest& request, const GridRequest& grid,
-                              const MeshEdits& edits, bool quiet, Context& context) {
-    if (model.derivation.objects.empty() && grid.objectCell_m > 0)
-        return Error{Error::Kind::Usage, "--object-cell is of objects that 'place' puts, and this model has none"};
+pipeline::SceneRequest sceneRequestOf(const ModelRequest& request, const GridRequest& grid) {
     pipeline::SceneRequest wanted;
     wanted.resolution = grid.resolution;
     wanted.cell_m = grid.objectCell_m > 0 ? grid.objectCell_m : grid.cell_m;
     wanted.meshing = meshingOf(grid);
-    wanted.edits = edits;
     wanted.budget.shapes = request.shapeBudget;
     wanted.budget.seconds = request.secondsBudget;
+    return wanted;
+}
+
+Result<mesh::Scene> makeScene(const Model& model, const ModelRequest& request, const GridRequest& grid,
+                              const MeshEdits& edits, bool quiet, Context& context) {
+    if (model.derivation.objects.empty() && grid.objectCell_m > 0)
+        return Error{Error::Kind::Usage, "--object-cell is of objects that 'place' puts, and this model has none"};
+    pipeline::SceneRequest wanted = sceneRequestOf(request, grid);
+    wanted.edits = edits;
+    wanted.seeksThinParts = !quiet;
     auto made = pipeline::makeScene(model, wanted, context);
     if (!made.ok()) return made.error();
-    if (!quiet) printDiagnostics(made->warnings);
+    if (!quiet) printDiagnostics(made->warnings), printMeshWarnings(made->meshWarnings);
     return std::move(made->scene);
 }
 

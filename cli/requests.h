@@ -69,6 +69,8 @@ Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& re
 Result<Model> makeModel(const ModelRequest& request, Context& context,
                         pipeline::Objects objects = pipeline::Objects::Grafted);
 
+/// How finely the objects of a model are meshed, and their budget.
+pipeline::SceneRequest sceneRequestOf(const ModelRequest& request, const GridRequest& grid);
 /// The objects of a model that was made without them. Error::Usage where `objectCell_m` is said and there are none.
 Result<mesh::Scene> makeScene(const Model& model, const ModelRequest& request, const GridRequest& grid,
                               const MeshEdits& edits, bool quiet, Context& context);

@@ -39,6 +39,8 @@ Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m) {
     support.pieces = pieces.size();
     for (uint32_t i = 0; i < pieces.size(); ++i)
         if (pieces[i].floats) support.floating.push_back({pieces[i], beginOf(model, pieceOf, i, pieces[i]), {}});
+    std::stable_sort(support.floating.begin(), support.floating.end(),
+                     [](const Floating& a, const Floating& b) { return a.piece.volume_m3 > b.piece.volume_m3; });
     return support;
 }
 

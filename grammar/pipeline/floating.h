@@ -33,8 +33,8 @@ struct Floating {
     FloatCause cause;
 };
 struct Support {
-    uint64_t pieces = 0;  ///< separate solids
-    std::vector<Floating> floating;
+    uint64_t pieces = 0;             ///< separate solids
+    std::vector<Floating> floating;  ///< the largest first
 };
 Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m);
 

@@ -135,18 +135,26 @@ public:
     }
 
     /// The thinnest of the missing parts that hold the piece; null where none does.
-    const lower::ThinPart* find(const mesh::ConnectedComponent& piece) const {
+    const lower::ThinPart* find(const mesh::ConnectedComponent& piece, double cell_m) const {
         if (missing_.empty() || missing_.size() * shapes_.size() > mostPairs) return nullptr;
+        derive::Scope
+            around;  // a shape of the piece may have surface elsewhere, and thin parts there don't hold this one
+        around.centre = piece.bounds.centre().as<double>();
+        around.size = piece.bounds.size().as<double>();
         std::set<derive::ShapeId> own;
         for (const OriginId origin : piece.origins) own.insert(model_.lowered->shapeOf[origin]);
         std::vector<bool> reached(missing_.size(), false);
         std::vector<size_t> open;
-        const auto reach = [&](derive::ShapeId from) {
-            for (size_t i = 0; i < missing_.size(); ++i)
-                if (!reached[i] && touch(from, shapeOf(i))) reached[i] = true, open.push_back(i);
+        const auto reach = [&](derive::ShapeId from, bool nearPiece) {
+            for (size_t i = 0; i < missing_.size(); ++i) {
+                if (reached[i] || !touch(from, shapeOf(i))) continue;
+                if (nearPiece && derive::penetration(around, shapes_[shapeOf(i)].scope) < -cell_m) continue;
+                reached[i] = true;
+                open.push_back(i);
+            }
         };
         for (const derive::ShapeId s : own)
-            if (s != derive::none && shapes_[s].solid != derive::none) reach(s);
+            if (s != derive::none && shapes_[s].solid != derive::none) reach(s, true);
         const lower::ThinPart* thinnest = nullptr;
         bool holds = false;
         while (!open.empty()) {
@@ -156,7 +164,7 @@ public:
             for (derive::ShapeId s = 0; s < shapes_.size() && !holds; ++s)
                 holds = shapes_[s].solid != derive::none && s != shapeOf(i) && !own.contains(s) && !isMissing_[s] &&
                         touch(s, shapeOf(i));
-            reach(shapeOf(i));
+            reach(shapeOf(i), false);
         }
         return holds ? thinnest : nullptr;
     }
@@ -265,7 +273,7 @@ void findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const 
     std::optional<GapFinder> gaps;
     for (size_t i = 0; i < std::min(support.floating.size(), mostPieces); ++i) {
         Floating& f = support.floating[i];
-        if (const lower::ThinPart* thin = links.find(f.piece)) {
+        if (const lower::ThinPart* thin = links.find(f.piece, static_cast<double>(cell_m))) {
             f.cause = {FloatCause::Kind::Thin, thin->thickness_m, thin->cell_m, {}, 0, thin->part};
             continue;
         }

@@ -20,6 +20,12 @@ struct Line {
     syntax::SourceSpan span{};           ///< of the first one's shape
 };
 
+/// The largest number of two digits that is no larger.
+double withTwoDigits(double value) {
+    const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+    return std::floor(value / unit + 1e-9) * unit;
+}
+
 }  // namespace
 
 Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const MeshedModel& meshed, int threads,
@@ -29,7 +35,7 @@ Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const 
 }
 
 std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& grid,
-                                         const std::vector<lower::ThinPart>& missing) {
+                                         const std::vector<lower::ThinPart>& missing, const std::string& object) {
     constexpr size_t most = 5;
     std::map<std::pair<std::string, uint32_t>, Line> lines;
     for (const lower::ThinPart& m : missing) {
@@ -43,19 +49,23 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
         line.thickness_m = std::min(line.thickness_m, m.thickness_m), line.cell_m = std::min(line.cell_m, m.cell_m);
         line.missing += m.missing;
     }
-    const Vec3f extent = model.lowered->field.bounds.size();
+    const std::string whose = object.empty() ? "the mesh's cells" : fmt::format("the cells of '{}'", object);
+    const auto remedy = [&](double cell_m) {
+        if (!object.empty()) return fmt::format("--object-cell {:g}", withTwoDigits(cell_m));
+        const auto extent_m = static_cast<double>(maxComponent(model.lowered->field.bounds.size()));
+        return fmt::format("--resolution {}", static_cast<int>(std::ceil(extent_m / cell_m)));
+    };
     std::vector<MeshWarning> warnings;
     for (const auto& [place, line] : lines) {
         if (warnings.size() == most) break;
         const bool one = line.parts == 1;
         warnings.push_back(
             {line.span, fmt::format("{}:{}: ", place.first, place.second),
-             fmt::format("{} '{}' of {:.3g} m {} thinner than the mesh's cells of {:.3g} m and lack{} {:.0f} % "
-                         "of the surface: --resolution {} holds {}",
+             fmt::format("{} '{}' of {:.3g} m {} thinner than {} of {:.3g} m and lack{} {:.0f} % of the surface: {} "
+                         "holds {}",
                          one ? "a" : std::to_string(line.parts), line.symbol, line.thickness_m, one ? "is" : "are",
-                         grid.cell_m, one ? "s" : "", 100 * line.missing / static_cast<double>(line.parts),
-                         static_cast<int>(std::ceil(static_cast<double>(maxComponent(extent)) / line.cell_m)),
-                         one ? "it" : "them"),
+                         whose, grid.cell_m, one ? "s" : "", 100 * line.missing / static_cast<double>(line.parts),
+                         remedy(line.cell_m), one ? "it" : "them"),
              true});
     }
     if (lines.size() > most)

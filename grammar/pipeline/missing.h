@@ -14,9 +14,10 @@ namespace sgm::pipeline {
 Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const MeshedModel& meshed, int threads,
                                                       Progress* progress);
 
-/// A warning for each line of the grammar with such parts, the first few of many.
+/// A warning for each line of the grammar with such parts, the first few of many. `object` names the object of `place`
+/// that the model is, whose cells are set by --object-cell; empty for the whole model.
 std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& grid,
-                                         const std::vector<lower::ThinPart>& missing);
+                                         const std::vector<lower::ThinPart>& missing, const std::string& object = {});
 
 /// Looks at a mesh as it comes from makeMesh for what floats, why, and for what is too thin to be in it: what every
 /// command and the window tell alike. Error::Cancelled.

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 #include <utility>
 
 #include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/meshing.h"
+#include "grammar/pipeline/missing.h"
 #include "grammar/pipeline/placed_models.h"
 #include "modeler/mesh/connected_components.h"
 
@@ -23,22 +25,34 @@ public:
     Status deriveAll() { return objects_.derive(); }
     syntax::Diagnostics warnings() const { return objects_.warnings(); }
 
-    /// Lowers every object; meshes it where `scene` isn't null.
-    Status makeAll(mesh::Scene* scene) {
+    /// Lowers every object.
+    Status tryAll() {
+        return forAll(different(), [&](size_t, uint32_t object, Context& own) { return make(object, nullptr, own); });
+    }
+
+    /// Meshes the first object of each start for what its cells lack.
+    Result<std::vector<MeshWarning>> lookAtFirst() {
+        seekThinParts();
+        std::vector<uint32_t> todo = different();
+        std::erase_if(todo, [&](uint32_t object) { return !isLookedAt_[object]; });
+        std::vector<Made> made(todo.size());
+        const Status done =
+            forAll(todo, [&](size_t i, uint32_t object, Context& own) { return make(object, &made[i], own); });
+        if (!done.ok()) return done.error();
+        return lacksOf(made);
+    }
+
+    /// Lowers and meshes every object.
+    Status makeAll(MadeScene& out) {
         meshed_.assign(objects_.size(), derive::none);
-        std::vector<uint32_t> todo;
-        for (uint32_t i = 0; i < objects_.size(); ++i)
-            if (objects_[i].same == i) todo.push_back(i);
-        if (context_.progress) context_.progress->begin("objects", todo.size());
-        std::vector<Made> made(scene ? todo.size() : 0);
-        std::vector<Status> done(todo.size(), Done{});
-        objects_.inParallel(todo.size(), [&](size_t i, Context& own) {
-            done[i] = make(todo[i], scene ? &made[i] : nullptr, own);
-            tick(context_.progress);
-        });
-        if (cancelled(context_.progress)) return cancelledError();
-        for (const Status& s : done)
-            if (!s.ok()) return s;
+        if (request_.seeksThinParts) seekThinParts();
+        const std::vector<uint32_t> todo = different();
+        std::vector<Made> made(todo.size());
+        const Status done =
+            forAll(todo, [&](size_t i, uint32_t object, Context& own) { return make(object, &made[i], own); });
+        if (!done.ok()) return done;
+        out.meshWarnings = lacksOf(made);
+        mesh::Scene* const scene = &out.scene;
         std::map<std::string, uint32_t> numbers;
         for (size_t i = 0; i < made.size(); ++i) {
             if (made[i].mesh.triangles.empty()) continue;
@@ -67,43 +81,96 @@ private:
     struct Made {
         mesh::PackedMesh mesh;
         Provenance provenance;
+        std::vector<MeshWarning> lacks;
     };
+
+    /// One of each that are alike.
+    std::vector<uint32_t> different() const {
+        std::vector<uint32_t> todo;
+        for (uint32_t i = 0; i < objects_.size(); ++i)
+            if (objects_[i].same == i) todo.push_back(i);
+        return todo;
+    }
+
+    /// work(place in the list, object, context), several at a time; the first error in the order of the list.
+    template <class Work>
+    Status forAll(const std::vector<uint32_t>& todo, Work&& work) {
+        if (context_.progress) context_.progress->begin("objects", todo.size());
+        std::vector<Status> done(todo.size(), Done{});
+        objects_.inParallel(todo.size(), [&](size_t i, Context& own) {
+            done[i] = work(i, todo[i], own);
+            tick(context_.progress);
+        });
+        if (cancelled(context_.progress)) return cancelledError();
+        for (const Status& s : done)
+            if (!s.ok()) return s;
+        return Done{};
+    }
+
+    /// Chooses the first object of each start that has something solid of its own.
+    void seekThinParts() {
+        isLookedAt_.assign(objects_.size(), false);
+        std::set<uint32_t> starts;
+        for (const uint32_t i : different())
+            if (!isEmpty(objects_[i])) isLookedAt_[i] = starts.insert(objects_[i].inputs.start).second;
+    }
+
+    static std::vector<MeshWarning> lacksOf(const std::vector<Made>& made) {
+        std::vector<MeshWarning> all;
+        for (const Made& m : made) all.insert(all.end(), m.lacks.begin(), m.lacks.end());
+        return all;
+    }
+
+    static bool isEmpty(const PlacedModel& object) {
+        return object.derivation->terminals() == 0 && !object.holds.empty();
+    }
 
     /// Lowers an object, and meshes it where `out` isn't null; then its derivation goes, unless it holds objects.
     Status make(uint32_t index, Made* out, Context& own) {
         const PlacedModel& object = objects_[index];
-        if (object.derivation->terminals() == 0 && !object.holds.empty()) return Done{};
+        if (isEmpty(object)) return Done{};
+        const bool isLookedAt = !isLookedAt_.empty() && isLookedAt_[index];
         Derivation derivation = object.holds.empty() ? objects_.release(index) : Derivation(*object.derivation);
         if (!out) {
             const auto model = makeModel(std::move(derivation), own, Objects::Apart);
             return model.ok() ? Status(Done{}) : Status(model.error());
         }
-        auto made = meshObject(std::move(derivation), request_, own);
+        const std::string name = isLookedAt ? objects_.nameOf(object) : std::string();
+        auto made = meshObject(std::move(derivation), request_, own, name);
         if (!made.ok()) return made.error();
-        *out = {mesh::pack(made->mesh), std::move(made->provenance)};
+        *out = {mesh::pack(made->mesh), std::move(made->provenance), std::move(made->lacks)};
         return Done{};
     }
 
     const SceneRequest& request_;
     Context& context_;
     PlacedModels objects_;
+    std::vector<bool> isLookedAt_;  ///< by object, for what its cells lack; empty: none is
     std::vector<uint32_t> meshed_;  ///< by object: its index in Scene::objects; none: nothing solid of its own
 };
 
 }  // namespace
 
-Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest& request, Context& context) {
+Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest& request, Context& context,
+                              const std::string& name) {
     auto model = makeModel(std::move(derivation), context, Objects::Apart);
     if (!model.ok()) return model.error();
     const mesh::Grid grid = gridOver(*model, {request.resolution, request.cell_m}, request.meshing.surface);
     const float cell_m = grid.cell_m;
     auto meshed = makeMesh(*model, grid, request.meshing, context);
     if (!meshed.ok()) return meshed.error();
+    std::vector<MeshWarning> lacks;
+    if (!name.empty()) {
+        const auto missing = lower::findMissingParts(model->derivation, *model->lowered, model->tape, meshed->mesh,
+                                                     cell_m, context.threads, context.progress);
+        if (!missing.ok()) return missing.error();
+        lacks = missingWarnings(*model, grid, *missing, name);
+    }
     mesh::keepOnly(meshed->mesh, request.edits.keep, cell_m, context.threads);
     auto mesh = edited(std::move(meshed->mesh), request.edits, request.meshing.surface, cell_m, context);
     if (!mesh.ok()) return mesh.error();
     if (mesh->triangleCount() == 0) return noSurface(*model, cell_m);
-    return ObjectMesh{std::move(*mesh), model->lowered->provenance};
+    return ObjectMesh{std::move(*mesh), model->lowered->provenance, std::move(lacks)};
 }
 
 Result<MadeScene> makeScene(const Model& model, const SceneRequest& request, Context& context) {
@@ -113,7 +180,7 @@ Result<MadeScene> makeScene(const Model& model, const SceneRequest& request, Con
     const Status done = context.timed("objects", [&]() -> Status {
         SceneBuilder builder(model.derivation, request, context);
         if (const Status s = builder.deriveAll(); !s.ok()) return s;
-        if (const Status s = builder.makeAll(&made.scene); !s.ok()) return s;
+        if (const Status s = builder.makeAll(made); !s.ok()) return s;
         if (const Status s = builder.placeAll(made.scene); !s.ok()) return s;
         made.warnings = builder.warnings();
         mesh::shareMaterials(made.scene);
@@ -129,7 +196,13 @@ Status tryObjects(const derive::Derivation& derivation, const derive::Budget& bu
     request.budget = budget;
     SceneBuilder builder(derivation, request, context);
     if (const Status s = builder.deriveAll(); !s.ok()) return s;
-    return builder.makeAll(nullptr);
+    return builder.tryAll();
+}
+
+Result<std::vector<MeshWarning>> objectWarnings(const Model& model, const SceneRequest& request, Context& context) {
+    SceneBuilder builder(model.derivation, request, context);
+    if (const Status s = builder.deriveAll(); !s.ok()) return s.error();
+    return builder.lookAtFirst();
 }
 
 }  // namespace sgm::pipeline

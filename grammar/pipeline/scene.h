@@ -3,6 +3,7 @@
 // an object, so that objects may be made in any order and at the same time.
 #pragma once
 
+#include "grammar/pipeline/floating.h"
 #include "grammar/pipeline/mesh_edits.h"
 #include "grammar/pipeline/model.h"
 #include "grammar/syntax/source.h"
@@ -17,27 +18,36 @@ struct SceneRequest {
     double cell_m = 0;     ///< of every object, metres; > 0 wins over the resolution
     mesh::PolygonizeOptions meshing = {};
     MeshEdits edits = {};
+    bool seeksThinParts = false;  ///< look at the first object of each start for parts that its cells lack
     derive::Budget budget = {};  ///< of the derivation of each object; its shapes limit the places of the model as well
 };
 
 /// A scene, and what is to be said of its objects.
 struct MadeScene {
     mesh::Scene scene;
-    syntax::Diagnostics warnings;  ///< those of derive::warnings, each once
+    syntax::Diagnostics warnings;           ///< those of derive::warnings, each once
+    std::vector<MeshWarning> meshWarnings;  ///< what the cells of objects lack, where that is sought
 };
 
 /// A mesh and whose its triangles are.
 struct ObjectMesh {
     mesh::Mesh mesh;
     Provenance provenance;
+    std::vector<MeshWarning> lacks;  ///< parts that the cells don't hold, where that is sought
 };
-/// Lowers, compiles, meshes and edits what one object derived to. Error::Input for one without surface at these cells.
-Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest& request, Context& context);
+/// Lowers, compiles, meshes and edits what one object derived to. Thin parts are looked for where it has a name.
+/// Error::Input for one without surface at these cells.
+Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest& request, Context& context,
+                              const std::string& name = {});
 
 /// Derives, lowers and meshes every object of `model`, those that objects place among them, on `context.threads`
 /// threads; stage "objects". Objects that differ by chance alone are one where chance decides nothing. Error::Input,
 /// located, for an object that can't be built or holds itself; Error::Budget for too many places.
 Result<MadeScene> makeScene(const Model& model, const SceneRequest& request, Context& context);
+
+/// What makeScene would say of parts that the cells of objects lack, for pictures of the field: meshes the first object
+/// of each start. Errors as of makeScene.
+Result<std::vector<MeshWarning>> objectWarnings(const Model& model, const SceneRequest& request, Context& context);
 
 /// Derives the objects of `derivation` and puts a copy of their shapes at every place, so that they are part of its
 /// field; stage "objects". Then it holds no objects any more. Nothing for a derivation without objects. Error::Input as

@@ -126,5 +126,48 @@ TEST_F(Cli, EveryCommandTellsGapsAndThinParts) {
     }
 }
 
+TEST_F(Cli, TheLargestFloatingPieceIsToldFirst) {
+    const std::string file = grammar(
+        "start A -> cube size (20, 1, 20) for k in 0..9 { + cube size .8 move (2 * k - 9, 4, 0) } + cube size 3 move "
+        "(0, 9, 0)\n");
+    const Outcome run = sgm("build " + file + " --resolution 64 --report " + path("r.json"));
+    const Json floating = Json::parse(read(path("r.json")))["floating"];
+    ASSERT_EQ(floating.size(), 11u) << run.out;
+    EXPECT_NEAR(floating[0]["volume_m3"].get<double>(), 27, .1);
+    EXPECT_NE(run.out.find("27 m³ about (0.00, 9.00, 0.00)"), std::string::npos) << run.out;
+}
+
+TEST_F(Cli, AThinPartElsewhereOnTheShapeOfAFloatingPieceDoesNotHoldIt) {
+    const std::string file = grammar(
+        "start A -> (cube size (40, 4, 4) - cube size (2, 5, 5) move (5m, 0, 0) + cube size (4, 12, 4) move (-18m, 0, "
+        "0)) "
+        "+ cylinder size .05m from (-18m, 1m, -8m) to (-18m, 1m, 8m)\n");
+    const Outcome run = sgm("build " + file + " --resolution 128");
+    EXPECT_NE(run.out.find("a gap of 2 m lies between"), std::string::npos) << run.out;
+    EXPECT_EQ(run.out.find("thick, holds it"), std::string::npos) << run.out;
+}
+
+TEST_F(Cli, PartsThatTheCellsOfAnObjectLackAreTold) {
+    const std::string file = grammar(
+        "start Town -> cube size (40, 4, 40) : G\n"
+        "rule G -> + place House at +y\n"
+        "start House -> cube size (20, 6, 20) + cube size (.05m, 3m, .05m) at +x\n");
+    const std::string lacks = "lacks 100 % of the surface: --object-cell ";
+    const Outcome built = sgm("build " + file + " -o " + path("a.glb"));
+    EXPECT_EQ(built.code, 0);
+    EXPECT_NE(built.out.find(":4: a 'cube' of 0.05 m is thinner than the cells of 'House' of 0.157 m and " + lacks),
+              std::string::npos)
+        << built.out;
+    const size_t at = built.out.find(lacks) + lacks.size();
+    const std::string cell = built.out.substr(at, built.out.find(' ', at) - at);
+    const Outcome finer = sgm("build " + file + " --object-cell " + cell + " -o " + path("a.glb"));
+    EXPECT_EQ(finer.out.find("thinner"), std::string::npos) << cell << finer.out;
+    EXPECT_EQ(sgm("build " + file + " -q -o " + path("a.glb")).out, "");
+    const Outcome drawn = sgm("render " + file + " --size 32x32 -o " + path("a.png"));
+    if (drawn.out.find("EGL") != std::string::npos) return;  // nothing can be drawn here
+    EXPECT_NE(drawn.out.find("thinner than the cells of 'House'"), std::string::npos) << drawn.out;
+    EXPECT_EQ(drawn.out.find("--resolution"), std::string::npos) << drawn.out;
+}
+
 }  // namespace
 }  // namespace sgm::cli
