@@ -1,5 +1,7 @@
 #include "grammar/derive/attribute_context.h"
 
+#include <fmt/format.h>
+
 #include "grammar/derive/builder.h"
 #include "grammar/derive/scope_footprint.h"
 #include "modeler/plan/validate.h"
@@ -17,7 +19,7 @@ plan::Footprint AttributeContext::footprint() const { return footprintOf(out.sco
 void AttributeContext::setFootprint(plan::Footprint footprint, syntax::SourceSpan span) {
     footprint = plan::cleaned(footprint);
     out.ownsFootprint = true;
-    out.vanishes = footprint.empty();
+    leave(!footprint.empty(), span);
     if (out.vanishes) return;
     if (const auto fault = plan::firstFault(footprint)) return fail(plan::sentenceOf(*fault, footprint), span);
     const plan::Box2 box = bounds(footprint);
@@ -29,6 +31,15 @@ void AttributeContext::setFootprint(plan::Footprint footprint, syntax::SourceSpa
         place.builder->tree().footprints.put(plan::placed(footprint, {1, 1}, {-centre.x, -centre.z}), out.scope.half());
     if (!index.ok()) return fail(index.error().message, span);
     out.scope.footprint = *index;
+}
+
+void AttributeContext::leave(bool anything, syntax::SourceSpan span) {
+    out.vanishes = !anything;
+    select(*place.builder, span, anything, [&] {
+        return Explanation{fmt::format("nothing is left of a plan of {:.3g} m by {:.3g} m, so no shape is made",
+                                       out.scope.size.x, out.scope.size.z),
+                           "take less away, or begin with a larger plan"};
+    });
 }
 
 const rules::Grammar& AttributeContext::grammar() const { return *place.builder->derivation().grammar; }

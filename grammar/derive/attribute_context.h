@@ -60,6 +60,8 @@ struct AttributeContext {
     /// Gives the newcomer's scope a footprint (metres about its centre), whose bounding box it becomes along x and z,
     /// in its place. An empty one lets the newcomer vanish; one that isn't sound is an error located at `span`.
     void setFootprint(plan::Footprint footprint, syntax::SourceSpan span);
+    /// Says whether anything is left of the footprint: else the newcomer vanishes, which is told where it always does.
+    void leave(bool anything, syntax::SourceSpan span);
     const rules::Grammar& grammar() const;
     /// Ends the derivation with an error located at `span`.
     void fail(const std::string& what, syntax::SourceSpan span) const;

@@ -85,4 +85,15 @@ private:
     uint8_t extrasChange_ = 0;  ///< of the extras put last, while pieces run again
 };
 
+/// Notes whether a place of the text picked something here (Selections); `otherwise` makes the Explanation of the first
+/// time that it didn't. A second run of a recording notes only that it did.
+template <class Otherwise>
+void select(TreeBuilder& builder, syntax::SourceSpan at, bool found, Otherwise&& otherwise) {
+    Selections& selections = builder.derivation().selections;
+    if (found)
+        selections.found(at);
+    else if (!builder.isReplaying() && !selections.knows(at))
+        selections.missed(at, otherwise());
+}
+
 }  // namespace sgm::derive

@@ -11,6 +11,7 @@
 
 #include "grammar/derive/placed_objects.h"
 #include "grammar/derive/reliefs.h"
+#include "grammar/derive/selections.h"
 #include "grammar/derive/shape_tree.h"
 #include "grammar/rules/grammar.h"
 #include "modeler/core/progress.h"
@@ -82,6 +83,7 @@ struct Derivation : DerivationInput, DerivationCounts {
     PageArray<Step> steps;
     std::vector<Closed> closed;        ///< one an element, in the order they first met a closed joint
     std::vector<Warning> warnings;     ///< in the order they were met, the first few hundred
+    Selections selections;             ///< which places of the text picked something, and which never did
     std::vector<Material> materials;   ///< the grammar's, then those given by attributes
     town::TownPlan plan;               ///< what `network` and `lots` laid out
     PlacedObjects objects;             ///< what `place` puts; Extras::object says where
@@ -119,8 +121,13 @@ syntax::Diagnostics ungrown(const Derivation& derivation);
 /// lies beside what does. Boxes decide, so that a cutter that only its box lets touch its host isn't told.
 syntax::Diagnostics uncut(const Derivation& derivation);
 
-/// All warnings of a derivation, in the order of the text: its remarks, `ungrown` and `uncut`.
+/// All warnings of a derivation, in the order of the text: its remarks, places that never picked anything, `ungrown`
+/// and `uncut`.
 syntax::Diagnostics warnings(const Derivation& derivation);
+
+/// Error::Input where a derivation leaves nothing solid: its first warning as the cause, or else that no solid is
+/// named.
+Error nothingSolid(const Derivation& derivation);
 
 /// Limits of a derivation; what passes one ends in Error::Budget.
 struct Budget {

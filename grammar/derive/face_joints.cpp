@@ -9,6 +9,7 @@
 #include "grammar/derive/scope_footprint.h"
 #include "modeler/core/random.h"
 #include "modeler/field/roof_faces.h"
+#include "modeler/plan/edge_words.h"
 
 namespace sgm::derive {
 namespace {
@@ -35,6 +36,31 @@ std::vector<ShapeId> roofsOf(TreeBuilder& builder, ShapeId host, ShapeId node, c
     return roofs;
 }
 
+/// Why `each` finds no face of the host.
+Explanation noFace(const Derivation& derivation, ShapeId host, const FaceChoice& choice) {
+    const ShapeTree& tree = derivation.tree;
+    const plan::Footprint footprint = footprintOf(tree.shapes[host].scope, tree.footprints);
+    const std::vector<plan::PlacedEdge> edges = plan::edgesOf(footprint);
+    const bool isCalled = std::any_of(edges.begin(), edges.end(), [&](const plan::PlacedEdge& edge) {
+        return plan::isEdgeCalled(footprint, edge, choice.word);
+    });
+    if (isCalled) {
+        const auto kind = std::find_if(std::begin(rules::faceKinds), std::end(rules::faceKinds),
+                                       [&](const auto& k) { return k.second == choice.kind; });
+        return {
+            fmt::format("'{}' has no {}{}, so nothing grows here", tree.labels[tree.shapes[host].label], kind->first,
+                        choice.word == "side" ? "" : fmt::format(" over edges called '{}'", choice.word)),
+            "name faces that it has (docs/footprints.md, 'Growing on faces')"};
+    }
+    std::vector<std::string> kinds;
+    for (const auto& kind : rules::faceKinds) kinds.emplace_back(kind.first);
+    Explanation explanation = noEdgeCalled(choice.word, footprint, "so nothing grows here", kinds);
+    const auto& symbols = derivation.grammar->symbols;
+    if (std::any_of(symbols.begin(), symbols.end(), [&](const auto& s) { return s.name == choice.word; }))
+        explanation.hint = fmt::format("'on each({})' is every shape of that symbol", choice.word);
+    return explanation;
+}
+
 }  // namespace
 
 bool Interpreter::placeOnFaces(ShapeId host, const rules::Element& e, Frame& frame, const Target& target,
@@ -54,6 +80,7 @@ bool Interpreter::placeOnFaces(ShapeId host, const rules::Element& e, Frame& fra
             return false;
         }
         const std::vector<Face> faces = facesOf(scope, footprints, builder_.tree().solidOf(at), choice);
+        select(builder_, e.at->span, !faces.empty(), [&] { return noFace(builder_.derivation(), at, choice); });
         const uint64_t ofHost = at == host ? key : combine(key, builder_.tree().shapes[at].key);
         for (const Face& face : faces) {
             Attachment attachment{at, centreJoint, {}, frame.place};

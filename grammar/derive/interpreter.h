@@ -21,6 +21,10 @@ public:
     void apply(uint32_t rule, ShapeId shape, uint32_t generation);
     /// Guard apart: symbol, `beside`, chain, and a joint left for what the body grows.
     bool matches(uint32_t rule, ShapeId shape);
+    /// Notes the joints of a rule's body that are closed, all of them (Derivation::closed).
+    void noteClosed(uint32_t rule);
+    /// Rules that `matches` refused for their joints since the last call.
+    std::vector<uint32_t> takeBlocked() { return std::exchange(blocked_, {}); }
     /// Where expressions about a shape stand, drawing from its own stream.
     Place placeOf(ShapeId shape) const;
     /// True when a joint, a count or a neighbour decides whether the rule matches: it may match later.
@@ -99,7 +103,8 @@ private:
     ShapeMaker maker_;
     std::vector<rules::Value> locals_;
     std::vector<uint64_t> series_;  ///< by local that counts: the stream of its repetition
-    uint32_t chainRule_ = none;     ///< the rule whose chain is being run
+    std::vector<uint32_t> blocked_;
+    uint32_t chainRule_ = none;  ///< the rule whose chain is being run
 };
 
 }  // namespace sgm::derive

@@ -65,6 +65,11 @@ public:
     void startsOver() const;
     /// Adds a warning to the derivation, once a place.
     void warn(syntax::SourceSpan span, std::string message, std::string fix) const;
+    /// Notes whether a place of the text picked something here, as derive::select.
+    template <class Otherwise>
+    void select(syntax::SourceSpan at, bool found, Otherwise&& otherwise) const {
+        derive::select(interpreter_.builder_, at, found, std::forward<Otherwise>(otherwise));
+    }
     /// Ends the derivation with an error located at `span`; returns false.
     bool fail(const std::string& what, syntax::SourceSpan span);
     bool fail(const Error& why, syntax::SourceSpan span);

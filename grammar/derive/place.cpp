@@ -213,7 +213,6 @@ bool Interpreter::cutAbove(const Element& e, const Target& target, const Frame& 
 
 bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Target& target, uint64_t key) {
     if (e.at && e.at->each) return placeOnFaces(host, e, frame, target, key);
-    ElementCache& facts = maker_.factsOf(e);
     Attachment attachment{host, centreJoint, {}, frame.place};
     Place& place = attachment.place;
     place.key = key;
@@ -230,13 +229,7 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
         const auto open = openJoints(builder_, *e.at, host, place);
         if (builder_.monitor().failed()) return false;
         if (open.empty()) {  // nothing grows where a bond has closed the joint
-            if (builder_.isReplaying()) return true;
-            auto& closed = builder_.derivation().closed;
-            if (facts.closed == none) {
-                facts.closed = static_cast<uint32_t>(closed.size());
-                closed.push_back({e.span, 0});
-            }
-            ++closed[facts.closed].count;
+            if (!builder_.isReplaying()) maker_.noteClosed(e);
             return true;
         }
         if (open.size() > 1) builder_.monitor().noteChance();

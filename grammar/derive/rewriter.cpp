@@ -78,11 +78,15 @@ std::vector<Rewriter::Decision> Rewriter::decide(std::vector<ShapeId>& waiting) 
         }
         builder_.recorder().beginPiece({.kind = Piece::Kind::Choice, .shape = s});
         if (!builder_.monitor().work()) return {};
+        interpreter_.takeBlocked();
         const uint32_t rule = choose(s);
+        const bool returns = rule == none && mayMatchLater(s);
+        if (rule == none && !returns)
+            for (const uint32_t blocked : interpreter_.takeBlocked()) interpreter_.noteClosed(blocked);
         if (Recording* r = builder_.recording()) r->now().rule = rule;
         if (rule != none)
             decisions.push_back({shape.key, {rule, s}});
-        else if (mayMatchLater(s))
+        else if (returns)
             later.push_back(s);
     }
     std::sort(decisions.begin(), decisions.end(), [](const Decision& a, const Decision& b) {

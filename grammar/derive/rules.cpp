@@ -56,6 +56,16 @@ bool isBeside(TreeBuilder& builder, ShapeId shape, rules::SymbolId symbol) {
     return false;
 }
 
+/// A chain that goes on from its first shape, whose joint its own first step has used, hardly ends as it is meant to.
+void warnOfStop(TreeBuilder& builder, const Rule& rule, double done, double steps) {
+    const std::string& name = builder.derivation().grammar->symbols[rule.symbol].name;
+    builder.warn(rule.repeat->span,
+                 fmt::format("the chain ends after {:g} of {:g} steps: none of its newcomers is a '{}' from which the "
+                             "next step could go on, and the joint of the first one is used",
+                             done, steps, name),
+                 fmt::format("write ': {}' behind the newcomer that the next step grows on", name));
+}
+
 }  // namespace
 
 Interpreter::Interpreter(TreeBuilder& builder, std::span<const rules::Value> params)
@@ -128,7 +138,15 @@ bool Interpreter::matches(uint32_t index, ShapeId id) {
     if (s.symbol != rule.symbol || (rule.repeat && s.chainRule == index)) return false;
     if (rule.beside != rules::none && !isBeside(builder_, id, rule.beside)) return false;
     if (locals_.size() < rule.locals) locals_.resize(rule.locals);
-    return canGrow(rule.body, id, placeOf(id));
+    if (canGrow(rule.body, id, placeOf(id))) return true;
+    if (!builder_.isReplaying()) blocked_.push_back(index);
+    return false;
+}
+
+void Interpreter::noteClosed(uint32_t rule) {
+    for (const Elements& sibling : grammar_.rules[rule].body.siblings)
+        for (const Element& e : sibling)
+            if (e.kind == Element::Kind::Shape && e.op != rules::Operator::None) maker_.noteClosed(e);
 }
 
 bool Interpreter::runLogged(const rules::Body& body, const Frame& frame, Step step) {
@@ -174,7 +192,10 @@ void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
                     false};
         frame.place.ramp = steps > 1 ? (i - 1) / (steps - 1) : 0;
         if (rule.stepLocal != none) count(rule.stepLocal, i, key);
-        if (!canGrow(rule.body, host, frame.place)) break;
+        if (!canGrow(rule.body, host, frame.place)) {
+            if (i > 1 && host == root) warnOfStop(builder_, rule, i - 1, steps);
+            break;
+        }
         if (!rule.body.grows) builder_.clearContent(host), builder_.tree().shapes.record(host).live = false;
         state.ownSymbol = false;
         if (!runLogged(rule.body, frame,

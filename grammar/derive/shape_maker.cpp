@@ -76,6 +76,16 @@ void spanBetween(AttributeContext& context) {
 
 }  // namespace
 
+void ShapeMaker::noteClosed(const Element& e) {
+    ElementCache& facts = factsOf(e);
+    auto& closed = builder_.derivation().closed;
+    if (facts.closed == none) {
+        facts.closed = static_cast<uint32_t>(closed.size());
+        closed.push_back({e.span, 0});
+    }
+    ++closed[facts.closed].count;
+}
+
 ElementCache& ShapeMaker::factsOf(const Element& e) {
     const auto [at, fresh] = elements_.try_emplace(&e);
     ElementCache& facts = at->second;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/scope_footprint.h"
@@ -42,15 +43,24 @@ bool share(const ShapeTree& tree, const Scope& a, const Scope& b, double least) 
     return plan::shareArea(p, planOf(b, tree.footprints), 1e-6);
 }
 
-/// Whether the point stands in the volume of a scope.
-bool holds(const ShapeTree& tree, const Scope& scope, Vec3d p, double slack_m) {
-    const Vec3d at = scope.axes.transposed() * (p - scope.centre), h = scope.half();
-    for (int i = 0; i < 3; ++i)
-        if (std::abs(at[i]) > h[i] + slack_m) return false;
-    if (scope.footprint == none) return true;
-    const plan::Footprint footprint = footprintOf(scope, tree.footprints);
-    return plan::contains(footprint, {at.x, at.z}) || plan::distanceToEdges(footprint, {at.x, at.z}) <= slack_m;
-}
+/// The volume of a scope, for asking about points.
+class Volume {
+public:
+    Volume(const ShapeTree& tree, const Scope& scope) : scope_(scope) {
+        if (scope.footprint != none) footprint_ = footprintOf(scope, tree.footprints);
+    }
+    bool holds(Vec3d p, double slack_m) const {
+        const Vec3d at = scope_.axes.transposed() * (p - scope_.centre), h = scope_.half();
+        for (int i = 0; i < 3; ++i)
+            if (std::abs(at[i]) > h[i] + slack_m) return false;
+        return !footprint_ || plan::contains(*footprint_, {at.x, at.z}) ||
+               plan::distanceToEdges(*footprint_, {at.x, at.z}) <= slack_m;
+    }
+
+private:
+    Scope scope_;
+    std::optional<plan::Footprint> footprint_;
+};
 
 }  // namespace
 
@@ -131,11 +141,11 @@ bool Surroundings::inside(const ShapeTree& tree, ShapeId shape, rules::SymbolId 
     bool found = false;
     forNear(list->second, boxOf(own), [&](ShapeId other) {
         if (areRelated(tree, shape, other)) return false;
-        const Scope& outer = tree.shapes[other].scope;
+        const Volume outer(tree, tree.shapes[other].scope);
         const double half = own.half().y;
         found = std::all_of(edges.begin(), edges.end(), [&](const plan::PlacedEdge& e) {
             const auto at = [&](double y) { return own.centre + own.axes * Vec3d{e.from.x, y, e.from.z}; };
-            return holds(tree, outer, at(-half), touch_m) && holds(tree, outer, at(half), touch_m);
+            return outer.holds(at(-half), touch_m) && outer.holds(at(half), touch_m);
         });
         return found;
     });
@@ -152,23 +162,23 @@ double Surroundings::shared(const ShapeTree& tree, ShapeId shape, const Scope& p
 
 /// By points just before the outer face of `own`.
 double Surroundings::shareOf(const ShapeTree& tree, ShapeId shape, const Scope& own, const List& list) const {
-    constexpr int points = 5;
+    constexpr int points = 20;     // along each side
     constexpr double out_m = .01;  // in front of the face, where another solid may begin
     Scope face = own;
     face.centre = own.centre + own.axes.z * own.half().z;
     face.size.z = 4 * out_m;
-    std::vector<ShapeId> near;
+    std::vector<Volume> near;
     forNear(list, boxOf(face), [&](ShapeId other) {
-        if (!areRelated(tree, shape, other)) near.push_back(other);
+        if (!areRelated(tree, shape, other)) near.emplace_back(tree, tree.shapes[other].scope);
         return false;
     });
+    if (near.empty()) return 0;
     int count = 0;
     for (int i = 0; i < points; ++i)
         for (int k = 0; k < points; ++k) {
             const auto share = [](int at) { return (2.0 * at + 1) / points - 1; };
             const Vec3d p = face.centre + own.axes * Vec3d{share(i) * own.half().x, share(k) * own.half().y, out_m};
-            count += std::any_of(near.begin(), near.end(),
-                                 [&](ShapeId s) { return holds(tree, tree.shapes[s].scope, p, 0); });
+            count += std::any_of(near.begin(), near.end(), [&](const Volume& v) { return v.holds(p, 0); });
         }
     return static_cast<double>(count) / (points * points);
 }

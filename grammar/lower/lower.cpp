@@ -319,11 +319,9 @@ Status Lowering::run(Progress* progress) {
     const bool nothing = model_.field.bounds.empty();
     if (nothing && !d_.objects.empty()) return Done{};  // objects of their own are all there is
     if (!nothing && model_.field.bounds.finite()) return Done{};
-    const std::string path = tree_.path(0);
-    const std::string what =
-        nothing ? fmt::format("nothing solid is left of '{}': name a solid in it, such as 'cube'", path)
-                : fmt::format("'{}' has no end: a half-space may only cut", path);
-    return Error{Error::Kind::Input, syntax::placeText(tree_.shapes[0].span) + what};
+    if (nothing) return derive::nothingSolid(d_);
+    return Error{Error::Kind::Input, syntax::placeText(tree_.shapes[0].span) +
+                                         fmt::format("'{}' has no end: a half-space may only cut", tree_.path(0))};
 }
 
 /// Surface that no operand owns (a field of a single part) is the root's, with the first part's look.

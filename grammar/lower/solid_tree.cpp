@@ -35,7 +35,8 @@ struct Pending {
 /// solid is noted and counts only where it is part of the whole in the end.
 class Collector {
 public:
-    Collector(const derive::Derivation& d, const Model& model) : tree_(d.tree), origins_(d.tree.shapes.size(), 0) {
+    Collector(const derive::Derivation& d, const Model& model)
+        : derivation_(d), tree_(d.tree), origins_(d.tree.shapes.size(), 0) {
         for (OriginId o = static_cast<OriginId>(model.shapeOf.size()); o-- > 1;) origins_[model.shapeOf[o]] = o;
         all_.bounds = model.field.bounds.as<double>();
     }
@@ -59,6 +60,7 @@ private:
     Pending inexact(Pending part, ShapeId id, std::string what);
     Result<SolidTree> compacted(uint32_t root) const;
 
+    const derive::Derivation& derivation_;
     const derive::ShapeTree& tree_;
     std::vector<OriginId> origins_;             ///< by shape
     SolidTree all_;                             ///< with nodes that nothing uses in the end
@@ -304,9 +306,7 @@ Result<SolidTree> Collector::run(Progress* progress) {
     }
     Pending& whole = open_.back();
     if (!whole.operands.empty()) return compacted(close(whole));
-    const std::string where = syntax::placeText(tree_.shapes[0].span);
-    return Error{Error::Kind::Input, fmt::format("{}nothing solid is left of '{}': name a solid in it, such as 'cube'",
-                                                 where, tree_.path(0))};
+    return derive::nothingSolid(derivation_);
 }
 
 /// The nodes that `root` is made of, and their solids, in their order; the first problem among them is the error.

@@ -78,6 +78,9 @@ const Part* findPart(const Parts& faces, std::string_view label) {
     return part == faces.parts.end() ? nullptr : &*part;
 }
 
+/// Words for what isn't at an edge.
+bool isLevelWord(std::string_view word) { return word == "top" || word == "bottom" || word == "rest"; }
+
 /// The share of a side from which on it is `shared` with what stands there.
 constexpr double mostlyShared = .5;
 
@@ -99,7 +102,9 @@ public:
 
     bool run() {
         plan::Footprint core = std::move(plates_.core);
-        for (const Face& face : facesOf()) {
+        const std::vector<Face> faces = facesOf();
+        noteWords(faces);
+        for (const Face& face : faces) {
             if (face.part && !runSide(face)) return false;
             if (!face.part)
                 core = core.empty() ? joined(face) : plan::boolean(plan::Boolean::Union, core, joined(face));
@@ -118,7 +123,7 @@ private:
     /// The first part whose word the edge is called by; top, bottom and rest are no words for edges.
     const Part* partOf(const PlacedEdge& edge) {
         for (const Part& part : faces_.parts) {
-            if (part.label == "top" || part.label == "bottom" || part.label == "rest") continue;
+            if (isLevelWord(part.label)) continue;
             if (plan::isEdgeCalled(footprint_, edge, part.label)) return &part;
             if (part.label == "shared" && context_.sharedBy(plateOf(edge)) >= mostlyShared) return &part;
         }
@@ -172,6 +177,25 @@ private:
             if (smooth_ > 0 && edge.to == edges_[plates_.plates[faces[ring].plates[0]].edge].from) close(faces, ring);
         }
         return faces;
+    }
+
+    /// Words of the user's own that no face gets are told.
+    void noteWords(const std::vector<Face>& faces) const {
+        for (const Part& part : faces_.parts) {
+            if (plan::isCommonEdgeWord(part.label) || isLevelWord(part.label) || part.label == "shared") continue;
+            const bool found =
+                std::any_of(faces.begin(), faces.end(), [&](const Face& face) { return face.part == &part; });
+            context_.select(part.span, found, [&] {
+                const bool isTaken = std::any_of(edges_.begin(), edges_.end(), [&](const PlacedEdge& edge) {
+                    return plan::isEdgeCalled(footprint_, edge, part.label);
+                });
+                if (!isTaken)
+                    return derive::noEdgeCalled(part.label, footprint_, "so no face gets this part",
+                                                {"top", "bottom", "shared"});
+                return derive::Explanation{fmt::format("parts before this one take all edges called '{}'", part.label),
+                                           "write it before them: the first word that fits an edge wins"};
+            });
+        }
     }
 
     /// The last face of a ring may go on into its first one.

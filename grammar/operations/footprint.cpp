@@ -100,16 +100,20 @@ void checkSetback(OperationChecker& checker, const syntax::Attribute& written) {
 
 void applySetback(AttributeContext& context, const Attribute& attribute) {
     const plan::Footprint footprint = context.footprint();
+    const auto& words = attribute.plan->words;
     std::vector<double> distances;
+    std::vector<bool> called(words.size(), false);
     for (const plan::PlacedEdge& edge : plan::edgesOf(footprint)) {
-        const auto& words = attribute.plan->words;
         const auto word = std::find_if(words.begin(), words.end(),
                                        [&](const std::string& w) { return plan::isEdgeCalled(footprint, edge, w); });
-        distances.push_back(
-            word == words.end()
-                ? 0
-                : std::max(0.0, context.number(attribute.args[static_cast<size_t>(word - words.begin())])));
+        const auto at = static_cast<size_t>(word - words.begin());
+        distances.push_back(at == words.size() ? 0 : std::max(0.0, context.number(attribute.args[at])));
+        if (at < words.size()) called[at] = true;
     }
+    for (size_t i = 0; i < words.size(); ++i)
+        if (!plan::isCommonEdgeWord(words[i]))
+            derive::select(*context.place.builder, attribute.args[i].span, called[i],
+                           [&] { return derive::noEdgeCalled(words[i], footprint, "so none goes inward by this"); });
     auto inner = plan::setbackInBudget(footprint, distances);
     if (!inner.ok())
         return context.place.builder->monitor().fail(inner.error().kind, inner.error().message, attribute.span);
@@ -128,10 +132,7 @@ void applyRectify(AttributeContext& context, const Attribute& attribute) {
 
 void applyInner(AttributeContext& context, const Attribute& attribute) {
     const auto box = plan::innerRectangle(context.footprint());
-    if (!box) {
-        context.out.vanishes = true;
-        return;
-    }
+    if (!box) return context.leave(false, attribute.span);
     context.setFootprint(
         plan::footprintOf(plan::polygonOf({box->lo, {box->hi.x, box->lo.z}, box->hi, {box->lo.x, box->hi.z}})),
         attribute.span);

@@ -109,6 +109,12 @@ bool runLots(PartsContext& context, const Parts& parts) {
                             parts.span);
     const std::vector<town::Lot> cut = town::lotsOf(block, parameters, context.key(), context.progress());
     if (cancelled(context.progress())) return context.fail(cancelledError(), parts.span);
+    const bool hasStreet = std::any_of(cut.begin(), cut.end(), [](const town::Lot& lot) { return lot.street_m > 0; });
+    context.select(parts.span, hasStreet, [] {
+        return derive::Explanation{
+            "no edge of this block is called 'street', so all of it is 'inner' and no lot is made",
+            "lots stand along streets, which the blocks of a 'network' have: write 'network Net { block: Block }'"};
+    });
     for (const town::Lot& lot : cut) {
         const bool inner = lot.street_m <= 0;
         const Parts::Part* part = inner ? innerPart : lot.corner && cornerPart ? cornerPart : lotPart;

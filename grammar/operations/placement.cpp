@@ -45,7 +45,7 @@ constexpr OperationArgument shiftArguments[] = {
      "moves the mating point (S_J) along x, y, z of the matched scope: shares of the newcomer's half-size, or metres"}};
 constexpr OperationArgument onArguments[] = {
     {"host", ArgumentType::Shape,
-     "last: the newest shape of the chain; any(d): one placed toward d in the "
+     "last: the shape that was placed last, of the same body too; any(d): one placed toward d in the "
      "step before; each(Name): all of that name; lot: behind 'place', the scope with its plan"}};
 constexpr OperationArgument byArguments[] = {
     {"amount", ArgumentType::Number, "a of the morph (eq. 14): 0 keeps what stands, 1 gives the newcomer"}};
@@ -68,11 +68,7 @@ void note(OperationChecker& checker, const syntax::Attribute& written) {
 
 /// each(side), each(slope, front)
 rules::FaceChoice readFaces(OperationChecker& checker, const Written& e) {
-    using Kind = rules::FaceChoice::Kind;
-    constexpr std::pair<std::string_view, Kind> kinds[] = {
-        {"corner", Kind::Corner}, {"slope", Kind::Slope}, {"eave", Kind::Eave}, {"gable", Kind::Gable},
-        {"apex", Kind::Apex},     {"ridge", Kind::Ridge}, {"hip", Kind::Hip},   {"valley", Kind::Valley}};
-    rules::FaceChoice faces{Kind::Side, "side"};
+    rules::FaceChoice faces{rules::FaceChoice::Kind::Side, "side"};
     const bool words =
         std::all_of(e.args.begin(), e.args.end(), [](const Written& arg) { return arg.kind == Written::Kind::Name; });
     if (!words || e.args.empty() || e.args.size() > 2) {
@@ -80,11 +76,12 @@ rules::FaceChoice readFaces(OperationChecker& checker, const Written& e) {
                       "write 'each(side)', 'each(front)', 'each(corner)', 'each(slope)' or 'each(slope, front)'");
         return faces;
     }
+    const auto end = std::end(rules::faceKinds);
     const auto kind =
-        std::find_if(std::begin(kinds), std::end(kinds), [&](const auto& k) { return k.first == e.args[0].text; });
-    if (kind != std::end(kinds)) faces.kind = kind->second;
-    if (kind == std::end(kinds) || e.args.size() == 2) faces.word = e.args.back().text;
-    if (kind == std::end(kinds) && e.args.size() == 2 && e.args[0].text != "side")
+        std::find_if(std::begin(rules::faceKinds), end, [&](const auto& k) { return k.first == e.args[0].text; });
+    if (kind != end) faces.kind = kind->second;
+    if (kind == end || e.args.size() == 2) faces.word = e.args.back().text;
+    if (kind == end && e.args.size() == 2)
         checker.error(e.args[0].span, fmt::format("'{}' is no kind of face", e.args[0].text),
                       "before a word for edges stands side, corner, slope, eave, gable, apex, ridge, hip or valley");
     return faces;

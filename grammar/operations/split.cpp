@@ -190,9 +190,8 @@ bool runAlong(PartsContext& context, const Parts& split) {
     for (const plan::PlacedEdge& edge : edges) belongs.push_back(plan::isEdgeCalled(footprint, edge, split.edges));
     const plan::Chain chain = plan::longestChain(footprint, belongs);
     if (chain.count == 0) {
-        context.warn(split.span,
-                     fmt::format("no edge of this plan is called '{}', so nothing stands along it", split.edges),
-                     "name edges that the plan has: front, back, left, right, side, court or a tag");
+        derive::Explanation explanation = derive::noEdgeCalled(split.edges, footprint, "so nothing stands along it");
+        context.warn(split.span, std::move(explanation.message), std::move(explanation.hint));
         return true;
     }
     const double whole = plan::length(footprint, chain);

@@ -123,6 +123,7 @@ Status PlacedModels::deriveThese(const std::vector<uint32_t>& these) {
         PlacedModel& object = objects_[these[i]];
         object.usedChance = object.derivation->usedChance;
         object.foot_m = footOf(*object.derivation);
+        selections_.add(std::exchange(object.derivation->selections, {}));
         const syntax::Diagnostics found = derive::warnings(*object.derivation);
         warnings_.insert(warnings_.end(), found.all().begin(), found.all().end());
     }
@@ -147,7 +148,10 @@ uint64_t PlacedModels::shapesOf(uint32_t index) {
 syntax::Diagnostics PlacedModels::warnings() const {
     syntax::Diagnostics all;
     std::set<std::tuple<const void*, uint32_t, std::string>> said;
-    for (const syntax::Diagnostic& d : warnings_)
+    std::vector<syntax::Diagnostic> found = warnings_;
+    const syntax::Diagnostics missed = selections_.warnings();
+    found.insert(found.end(), missed.all().begin(), missed.all().end());
+    for (const syntax::Diagnostic& d : found)
         if (said.emplace(d.span.source, d.span.begin, d.message).second) all.warning(d.span, d.message, d.hint);
     return all;
 }

@@ -115,6 +115,7 @@ private:
     std::unordered_map<uint64_t, uint32_t> firstAlike_;
     std::unordered_map<uint32_t, uint64_t> shapes_;  ///< of an object with those that it holds
     std::vector<syntax::Diagnostic> warnings_;
+    derive::Selections selections_;  ///< of all objects: what one of them has is found
 };
 
 }  // namespace sgm::pipeline

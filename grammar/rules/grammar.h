@@ -210,6 +210,11 @@ struct FaceChoice {
     Kind kind = Kind::Side;
     std::string word;  ///< which of them: a word for edges (front, court, a tag); "side" for all
 };
+/// What `each(…)` calls them; sides are called by words for edges alone as well.
+inline constexpr std::pair<std::string_view, FaceChoice::Kind> faceKinds[] = {
+    {"side", FaceChoice::Kind::Side},   {"corner", FaceChoice::Kind::Corner}, {"slope", FaceChoice::Kind::Slope},
+    {"eave", FaceChoice::Kind::Eave},   {"gable", FaceChoice::Kind::Gable},   {"apex", FaceChoice::Kind::Apex},
+    {"ridge", FaceChoice::Kind::Ridge}, {"hip", FaceChoice::Kind::Hip},       {"valley", FaceChoice::Kind::Valley}};
 
 /// `at`, `to`: which joints are asked for.
 struct JointChoice {

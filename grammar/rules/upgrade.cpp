@@ -78,6 +78,10 @@ bool isDrawn(const Expr& e) {
     return e.kind == Expr::Kind::Range || e.kind == Expr::Kind::Choose ||
            std::any_of(e.args.begin(), e.args.end(), [](const Expr& arg) { return isDrawn(arg); });
 }
+/// Whether the value counts the repetition that it stands in.
+bool counts(const Expr& e) {
+    return (e.kind == Expr::Kind::Name && e.text == "i") || std::any_of(e.args.begin(), e.args.end(), counts);
+}
 /// The same wherever it stands: neither of the scope nor drawn by chance.
 bool isPlain(const Attribute& a) {
     return !isOfScope(a) && std::none_of(a.args.begin(), a.args.end(), [](const Expr& arg) { return isDrawn(arg); });
@@ -159,9 +163,18 @@ private:
 
     void cases(const std::vector<syntax::Case>& all) {
         for (const syntax::Case& c : all) {
+            if (c.repeated) sizes(c.cases);
             cases(c.cases);
             if (c.body) body(*c.body);
         }
+    }
+
+    /// Sizes in `{ … }*` are drawn and counted for every repetition now.
+    void sizes(const std::vector<syntax::Case>& repeated) {
+        for (const syntax::Case& c : repeated)
+            if (c.label && (isDrawn(*c.label) || counts(*c.label)))
+                note(c.label->span, "this size is drawn and counted anew for every repetition now",
+                     "where all shall be alike, draw it before: 'let w = …' at the beginning of the body");
     }
 
     /// `turn 90deg size 50%`: the share was of the axes before the turn, so the size comes first.

@@ -16,6 +16,10 @@ bool holdsWord(std::string_view tag, std::string_view word) {
 
 }  // namespace
 
+bool isCommonEdgeWord(std::string_view word) {
+    return std::find(std::begin(commonEdgeWords), std::end(commonEdgeWords), word) != std::end(commonEdgeWords);
+}
+
 bool isEdgeCalled(const Footprint& footprint, const PlacedEdge& edge, std::string_view word) {
     if (word == "side" || word == "rest") return true;
     if (word == "court" && edge.edge.source == EdgeSource::Court) return true;

@@ -10,6 +10,11 @@
 
 namespace sgm::plan {
 
+/// Words that edges are called by without a tag.
+inline constexpr std::string_view commonEdgeWords[] = {"side",  "front", "back", "left",
+                                                       "right", "court", "cut",  "rest"};
+bool isCommonEdgeWord(std::string_view word);
+
 /// front (+z), back, left, right by its normal, side and rest for every edge, court, cut, or one of the words of its
 /// tag.
 bool isEdgeCalled(const Footprint& footprint, const PlacedEdge& edge, std::string_view word);

@@ -55,6 +55,18 @@ inline derive::Derivation derived(const std::string& text, derive::Options optio
     return *std::move(d);
 }
 
+/// What a derivation warns of: "line:column message", with the hints "; hint" behind it, one a line.
+inline std::string warningsOf(const derive::Derivation& d, bool withHints = false) {
+    std::string text;
+    const syntax::Diagnostics found = derive::warnings(d);
+    for (const syntax::Diagnostic& w : found.all()) {
+        const auto place = w.span.source->place(w.span.begin);
+        text += std::to_string(place.line) + ":" + std::to_string(place.column) + " " + w.message +
+                (withHints ? "; " + w.hint : "") + "\n";
+    }
+    return text;
+}
+
 inline derive::Options withSeed(uint64_t seed) {
     derive::Options options;
     options.seed = seed;

@@ -6,17 +6,7 @@ namespace {
 
 using namespace testing_;
 
-/// "line:column message", one a line.
-std::string told(const std::string& body) {
-    const auto d = derived("grammar 1\n" + body);
-    std::string text;
-    const syntax::Diagnostics found = derive::warnings(d);
-    for (const syntax::Diagnostic& w : found.all()) {
-        const auto place = w.span.source->place(w.span.begin);
-        text += std::to_string(place.line) + ":" + std::to_string(place.column) + " " + w.message + "\n";
-    }
-    return text;
-}
+std::string told(const std::string& body) { return warningsOf(derived("grammar 1\n" + body)); }
 
 TEST(Warnings, ACutThatRemovesNothingIsTold) {
     EXPECT_EQ(told("start A -> cube size 4 : B\nrule B -> - cube size 1 move (9,0,0)\n"),

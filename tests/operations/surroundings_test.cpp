@@ -48,6 +48,7 @@ TEST(Surroundings, CoveredIsTheShareOfTheFace) {
     EXPECT_TRUE(covered("size 2m move (0, 0, 2)", "covered == 1"));
     EXPECT_TRUE(covered("size 2m move (0, 0, 2.1)", "covered == 0"));
     EXPECT_TRUE(covered("size 2m move (.8, 0, 2)", "covered == .6"));
+    EXPECT_TRUE(covered("size (.3, 2, 2) move (.21, 0, 2)", "covered == .15"));
 }
 
 TEST(Surroundings, RulesWaitForShapesThatLive) {

@@ -95,6 +95,18 @@ TEST(Upgrade, PutsASizeOfSharesBeforeItsTurn) {
     expectSameModel("cylinder turn (90deg, 0deg, 0deg) size (1m, 2m, 1m)", 0);
 }
 
+TEST(Upgrade, TellsOfSizesThatEveryRepetitionDraws) {
+    const auto notesOf = [](const std::string& split) {
+        return upgradedText("grammar 1\nstart A -> size (20, 1, 1) split x { " + split + " }\n").notes;
+    };
+    ASSERT_EQ(notesOf("{ ~(4m..9m): cube }*").size(), 1u);
+    EXPECT_EQ(notesOf("{ ~(4m..9m): cube }*")[0].message,
+              "this size is drawn and counted anew for every repetition now");
+    EXPECT_EQ(notesOf("{ 1m: cube | (i * 1m): cube }*").size(), 1u);
+    EXPECT_EQ(notesOf("{ ~4m: cube }*").size(), 0u);
+    EXPECT_EQ(notesOf("(1m..2m): cube | { ~4m: cube }*").size(), 0u) << "what isn't repeated is drawn once in both";
+}
+
 TEST(Upgrade, TellsOfNeighboursThatWin) {
     const auto made = upgradedText("grammar 1\nstart A -> B\nrule B -> cube\nrule B beside A -> sphere\n");
     ASSERT_EQ(made.notes.size(), 1u);

@@ -1,0 +1,56 @@
+#include "grammar/derive/selections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "grammar/rules/words.h"
+#include "modeler/core/random.h"
+#include "modeler/plan/edge_words.h"
+
+namespace sgm::derive {
+
+Explanation noEdgeCalled(std::string_view word, const plan::Footprint& footprint, std::string_view therefore,
+                         const std::vector<std::string>& others) {
+    std::vector<std::string> words(std::begin(plan::commonEdgeWords), std::end(plan::commonEdgeWords));
+    words.insert(words.end(), others.begin(), others.end());
+    for (const plan::PlacedEdge& edge : plan::edgesOf(footprint))
+        for (std::string& word : plan::edgeWords(footprint, edge))
+            if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(std::move(word));
+    std::string hint = rules::nearestHint(word, words);
+    if (hint.empty()) hint = fmt::format("the words here are {}", fmt::join(words, ", "));
+    return {fmt::format("no edge of this plan is called '{}', {}", word, therefore), std::move(hint)};
+}
+
+size_t Selections::KeyHash::operator()(const Key& key) const {
+    return combine(reinterpret_cast<uintptr_t>(key.source), uint64_t(key.begin) << 32 | key.end);
+}
+
+Selections::Selection& Selections::of(syntax::SourceSpan at) {
+    const auto [place, isNew] = indexOf_.try_emplace(keyOf(at), static_cast<uint32_t>(all_.size()));
+    if (isNew) all_.push_back({at, false, {}});
+    return all_[place->second];
+}
+
+void Selections::found(syntax::SourceSpan at) { of(at).found = true; }
+
+void Selections::missed(syntax::SourceSpan at, const Explanation& otherwise) {
+    Selection& selection = of(at);
+    if (selection.otherwise.message.empty()) selection.otherwise = otherwise;
+}
+
+void Selections::add(const Selections& other) {
+    for (const Selection& s : other.all_) {
+        if (s.found) found(s.at);
+        if (!s.otherwise.message.empty()) missed(s.at, s.otherwise);
+    }
+}
+
+syntax::Diagnostics Selections::warnings() const {
+    syntax::Diagnostics warnings;
+    for (const Selection& s : all_)
+        if (!s.found) warnings.warning(s.at, s.otherwise.message, s.otherwise.hint);
+    return warnings;
+}
+
+}  // namespace sgm::derive

@@ -1,0 +1,104 @@
+// Places of the text that pick something out of shapes, and are told where they never do.
+#include "tests/derive/grammars.h"
+
+namespace sgm {
+namespace {
+
+using namespace testing_;
+
+std::string told(const std::string& body) { return warningsOf(derived("grammar 2\n" + body), true); }
+
+TEST(Selections, WordsOfFacesThatNoEdgeHasAreTold) {
+    EXPECT_EQ(told("start A -> size (10, 6, 8) faces .5m { sides: cube | top: cube }\n"),
+              "2:40 no edge of this plan is called 'sides', so no face gets this part; did you mean 'side'?\n");
+    EXPECT_EQ(told("lsystem P passes 1 angle 90deg step 3m\n  axiom \"FW+F+F+F\"\n"
+                   "start A -> footprint P extrude 3m faces .2m { w: cube | top: cube }\n"),
+              "4:47 no edge of this plan is called 'w', so no face gets this part; did you mean 'W'?\n");
+    EXPECT_EQ(told("lsystem P passes 1 angle 90deg step 3m\n  axiom \"FW+F+F+F\"\n"
+                   "start A -> footprint P extrude 3m faces .2m { side: cube | W: cube }\n"),
+              "4:60 parts before this one take all edges called 'W'; write it before them: the first word that fits an "
+              "edge wins\n");
+}
+
+TEST(Selections, WordsThatAPlanMayLackAreNot) {
+    EXPECT_EQ(told("start A -> footprint ngon(5) extrude 3m faces .2m { court: cube | front: cube | side: cube }\n"),
+              "");
+    EXPECT_EQ(told("start A -> footprint ngon(5) setback edges(court: 1m, rest: .1m) extrude 3m block\n"), "");
+}
+
+TEST(Selections, APlaceThatPicksSomethingOnceIsFine) {
+    const std::string plan =
+        "lsystem P passes 1 angle 90deg step 3m\n  axiom \"FW+F+F+F\"\n"
+        "lsystem Q passes 1 angle 90deg step 3m\n  axiom \"F+F+F+F\"\n"
+        "rule B -> extrude 3m faces .2m { W: cube | side: cube }\n";
+    EXPECT_EQ(told(plan + "start A -> footprint P B, footprint Q B\n"), "");
+    EXPECT_EQ(told(plan + "start A -> footprint Q B, footprint P B\n"), "");
+    EXPECT_NE(told(plan + "start A -> footprint Q B\n").find("no edge of this plan is called 'W'"), std::string::npos);
+}
+
+TEST(Selections, SetbacksTellWordsAndWhatTheyLeave) {
+    EXPECT_EQ(told("start A -> footprint rect(10, 8) setback edges(fornt: 2m, rest: 1m) extrude 4m block\n"),
+              "2:55 no edge of this plan is called 'fornt', so none goes inward by this; did you mean 'front'?\n");
+    EXPECT_EQ(
+        told("start A -> footprint rect(10, 8) setback 5m extrude 4m block, cube size 2\n"),
+        "2:34 nothing is left of a plan of 10 m by 8 m, so no shape is made; take less away, or begin with a larger "
+        "plan\n");
+    EXPECT_EQ(told("start A -> for k in 1..3 { footprint rect(10, 8) setback (2m * k) extrude 4m block }\n"), "")
+        << "the first has room";
+}
+
+TEST(Selections, FacesThatAShapeLacksAreTold) {
+    const std::string house = "start A -> footprint rect(10, 8) extrude 4m House\nrule House -> block + ";
+    EXPECT_EQ(told(house + "gableRoof(40deg) at +y + cube at each(slopes)\n"),
+              "3:53 no edge of this plan is called 'slopes', so nothing grows here; did you mean 'slope'?\n");
+    EXPECT_EQ(
+        told(house + "Cover at +y\nrule Cover -> hipRoof(40deg) + cube at each(gable)\n"),
+        "4:37 'hipRoof' has no gable, so nothing grows here; name faces that it has (docs/footprints.md, 'Growing "
+        "on faces')\n");
+    EXPECT_EQ(
+        told(house + "cube at +y : Post + cube size 1 at each(Post)\nrule Post -> cylinder\n"),
+        "3:55 no edge of this plan is called 'Post', so nothing grows here; 'on each(Post)' is every shape of that "
+        "symbol\n");
+    EXPECT_EQ(told(house + "gableRoof(40deg) at +y + cube at each(slope, front)\n"), "");
+}
+
+TEST(Selections, LotsWithoutStreetsAreTold) {
+    EXPECT_EQ(
+        told("start A -> size (40, 2, 40) B\nrule B -> lots 100 { lot: cube | inner: cube }\n"),
+        "3:11 no edge of this block is called 'street', so all of it is 'inner' and no lot is made; lots stand along "
+        "streets, which the blocks of a 'network' have: write 'network Net { block: Block }'\n");
+}
+
+TEST(Selections, TheCauseOfNothingSolidIsNamed) {
+    const auto d = derived("grammar 2\nstart A -> footprint rect(10, 8) setback 5m extrude 4m block\n");
+    EXPECT_EQ(
+        derive::nothingSolid(d).message,
+        "test.sgm:2:34: nothing is left of a plan of 10 m by 8 m, so no shape is made, and nothing solid is left of "
+        "'A'; take less away, or begin with a larger plan");
+    EXPECT_EQ(derive::nothingSolid(derived("grammar 2\nstart A -> nil\n")).message,
+              "test.sgm:2:1: nothing solid is left of 'A': name a solid in it, such as 'cube'");
+}
+
+TEST(Selections, AChainWhoseNewcomerHasNoNameIsTold) {
+    EXPECT_EQ(
+        told("start A -> cube size 3 : B\nrule B repeat 5 -> + cube size (3, 3, 3) at +y\n"),
+        "3:15 the chain ends after 1 of 5 steps: none of its newcomers is a 'B' from which the next step could go "
+        "on, and the joint of the first one is used; write ': B' behind the newcomer that the next step grows on\n");
+    EXPECT_EQ(told("start A -> cube size 3 : B\nrule B repeat 5 -> + cube size (3, 3, 3) at +y : B\n"), "");
+    EXPECT_EQ(told("start A -> cube size 3 : B\nrule B repeat 3 -> + cube size 1 at free(+x, -x, +z)\n"), "");
+}
+
+TEST(Selections, ABodyWhoseJointsAreAllClosedIsTold) {
+    EXPECT_EQ(told("start A -> cube size 2 : H\nrule H -> + cube size 1 at +y : K\nrule K -> + sphere size 1 at -y\n"),
+              "4:11 another shape has closed its joint, so this grows nowhere; choose another joint of ours, 'at "
+              "free(…)', or place it by 'move'\n");
+    const auto d = derived(
+        "grammar 2\nstart A -> cube size 2 : H\nrule H -> + cube size 1 at +y : K + cube size 1 at +x : K\n"
+        "rule K -> + sphere size 1 at -y\n");
+    EXPECT_TRUE(derive::warnings(d).all().empty()) << "it grows on the other";
+    ASSERT_EQ(d.closed.size(), 1u);
+    EXPECT_EQ(d.closed[0].count, 1u);
+}
+
+}  // namespace
+}  // namespace sgm
