@@ -44,7 +44,8 @@ public:
                             if (what != What::Light)
                                 return setNormals(what == What::WideNormals, hitsHere, litsHere, evaluator, cost);
                             setOpenness(hitsHere, litsHere, evaluator, cost);
-                            setSunAndDay(hitsHere, litsHere, evaluator, cost);
+                            setSun(hitsHere, litsHere, evaluator, cost);
+                            setDay(hitsHere, litsHere, evaluator, cost);
                         });
     }
 
@@ -225,12 +226,51 @@ private:
         for (Shading& lit : shadings) lit.openness = 0.08f + 0.92f * lit.openness;
     }
 
-    /// Share of the sun's disc that each hit sees; in a hollow with a lamp that of the day, by wide discs of the upper
-    /// sky.
-    void setSunAndDay(std::span<const Hit> hits, std::span<Shading> shadings, BatchedEvaluator& evaluator,
-                      TraceCost& cost) const {
+    /// Where a walk from a hit into the light begins.
+    Vec3f startOf(const Hit& hit, Vec3f normal) const {
+        return hit.position + normal * std::max(1e-4f * space().size, 0.5f * pixelAt(hit));
+    }
+    float pixelAt(const Hit& hit) const { return pixelAngle() * length(view_.eye.as<float>() - hit.position); }
+
+    /// Share of the sun's disc that each hit sees.
+    void setSun(std::span<const Hit> hits, std::span<Shading> shadings, BatchedEvaluator& evaluator,
+                TraceCost& cost) const {
+        constexpr float radius = 0.035f;
         const CellSpace cells = space();
-        const Vec3f eye = view_.eye.as<float>(), sun = sunDirection();
+        const Vec3f sun = sunDirection();
+        std::vector<DiscWalk> walks, partWalks;
+        std::vector<size_t> of, partsOf;
+        for (size_t i = 0; i < hits.size(); ++i) {
+            shadings[i].sunlight = 0;
+            if ((lamp_m_ > 0 && cells.side < 0) || dot(shadings[i].normal, sun) <= 0) continue;
+            walks.emplace_back(cells, startOf(hits[i], shadings[i].normal), sun, radius, pixelAt(hits[i]));
+            of.push_back(i);
+        }
+        cost.light += evaluator.follow(cells, std::span(walks), cost);
+        constexpr float share = 1.0f / (1 + DiscWalk::parts), partRadius = DiscWalk::partRadius * radius;
+        const std::array<Vec3f, DiscWalk::parts> directions = directionsOfParts(sun, radius);
+        for (size_t j = 0; j < walks.size(); ++j) {
+            const Hit& hit = hits[of[j]];
+            Shading& lit = shadings[of[j]];
+            const float clearance = walks[j].clearance();
+            lit.sunlight = shareOfDisc(clearance);
+            if (!walks[j].isPartial()) continue;
+            lit.sunlight = share * shareOfPart(clearance / DiscWalk::partRadius);
+            for (const Vec3f direction : directions) {
+                partWalks.emplace_back(cells, startOf(hit, lit.normal), direction, partRadius,
+                                       DiscWalk::partRadius * pixelAt(hit), DiscWalk::Of::Part, walks[j].freeUntil());
+                partsOf.push_back(of[j]);
+            }
+        }
+        cost.light += evaluator.follow(cells, std::span(partWalks), cost);
+        for (size_t k = 0; k < partWalks.size(); ++k)
+            shadings[partsOf[k]].sunlight += share * shareOfPart(partWalks[k].clearance());
+    }
+
+    /// In a hollow with a lamp: share of the day that each hit sees, by wide discs of the upper sky.
+    void setDay(std::span<const Hit> hits, std::span<Shading> shadings, BatchedEvaluator& evaluator,
+                TraceCost& cost) const {
+        const CellSpace cells = space();
         std::vector<DiscWalk> walks;
         struct Ray {
             float* into;
@@ -239,26 +279,20 @@ private:
         std::vector<Ray> rays;
         for (size_t i = 0; i < hits.size(); ++i) {
             Shading& lit = shadings[i];
-            lit.sunlight = 0;
             lit.daylight = lamp_m_ > 0 && hits[i].kind() == HitKind::Object ? 0.0f : 1.0f;
-            const float pixel = pixelAngle() * length(eye - hits[i].position);
-            const Vec3f start = hits[i].position + lit.normal * std::max(1e-4f * cells.size, 0.5f * pixel);
-            if ((lamp_m_ == 0 || cells.side > 0) && dot(lit.normal, sun) > 0) {
-                walks.emplace_back(cells, start, sun, 0.035f, pixel);
-                rays.push_back({&lit.sunlight, 1});
-            }
             if (lit.daylight == 1 || cells.side < 0) continue;
             for (const Vec3f direction :
                  {Vec3f{0.7f, 0.714f, 0}, {0, 0.714f, 0.7f}, {-0.7f, 0.714f, 0}, {0, 0.714f, -0.7f}, {0, 1, 0}}) {
                 const float cosine = dot(lit.normal, direction);
                 if (cosine <= 0) continue;
-                walks.emplace_back(cells, start, direction, 0.3f, pixel);
+                walks.emplace_back(cells, startOf(hits[i], lit.normal), direction, 0.3f, pixelAt(hits[i]),
+                                   DiscWalk::Of::Sky);
                 rays.push_back({&lit.daylight, 0.4f * cosine});
             }
         }
         cost.light += evaluator.follow(cells, std::span(walks), cost);
         for (size_t j = 0; j < rays.size(); ++j)
-            *rays[j].into = std::min(*rays[j].into + rays[j].weight * walks[j].seen(), 1.0f);
+            *rays[j].into = std::min(*rays[j].into + rays[j].weight * shareOfDisc(walks[j].clearance()), 1.0f);
     }
 
     std::shared_ptr<const PreparedField> field_;

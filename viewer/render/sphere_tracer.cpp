@@ -146,14 +146,25 @@ void SphereTracer::answer(const CellSpace& space, float value) {
     if (t_ + stride_ > end_) stride_ = free_;  // the long step would leave the box, perhaps past a last surface
 }
 
-DiscWalk::DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float radius, float pixel)
+DiscWalk::DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float radius, float pixel, Of of, float from)
     : line_{place, direction, inverseOf(direction)},
-      radius_(radius),
-      pixel_(pixel),
-      into_(std::max(4e-6f * space.size, 0.05f * pixel)) {
+      look_{radius, pixel, std::max(4e-6f * space.size, 0.05f * pixel), of == Of::Part ? 0.05f : hidden, of != Of::Sky},
+      soft_(of == Of::Part) {
     const auto [near, far] = space.span(place, line_.inverse);
-    start_ = t_ = std::max(near, 3e-4f * space.size);
+    start_ = t_ = std::max({near, 3e-4f * space.size, from});
     end_ = far;
+}
+
+void DiscWalk::restart() {
+    t_ = start_;
+    clearance_ = 1;
+    within_ = 0;
+    pace_ = {};
+    steps_ = 0;
+    freeUntil_ = -1;
+    soft_ = look_.dark > 0;
+    passed_ = {};
+    turn_ = {};
 }
 
 bool DiscWalk::settleDoubt() {
@@ -165,16 +176,13 @@ bool DiscWalk::settleDoubt() {
     doubts_.any = false;
     if (doubts_.probe.found()) return true;
     doubts_.careful = true;
-    t_ = start_;
-    clearance_ = 1;
-    within_ = free_ = stride_ = 0;
-    steps_ = 0;
+    restart();
     return false;
 }
 
 void DiscWalk::doubt(Vec3f place, float value, float clearance) {
     if (doubts_.careful) {
-        doubts_.probe.begin(place, value, into_);
+        doubts_.probe.begin(place, value, look_.into);
         doubts_.probedClearance = clearance;
         doubts_.probing = true;
         return;
@@ -185,19 +193,42 @@ void DiscWalk::doubt(Vec3f place, float value, float clearance) {
     doubts_.leastValue = value;
 }
 
+/// Radius of the circle in which two spheres meet whose centres lie `apart`; 0 where they don't. Nothing comes nearer
+/// to the way between than that where both are free, and an edge that both touch lies just there.
+static float meetingRadius(float a, float b, float apart) {
+    const float along = (apart * apart + a * a - b * b) / (2 * apart);
+    if (along <= 0 || along >= apart) return std::min(a, b);
+    return std::sqrt(std::max(a * a - along * along, 0.0f));
+}
+
+bool DiscWalk::sawAll(float next, float matters_m) const {
+    return pace_.stride <= pace_.free ||
+           (pace_.stride < pace_.free + next && meetingRadius(pace_.free, next, pace_.stride) >= matters_m);
+}
+
 bool DiscWalk::ask(const CellSpace& space, Question& question) {
     for (;;) {
         if (doubts_.probing) {
             if (doubts_.probe.ask(space, question)) return true;
             settleDoubt();
         }
-        for (; steps_ < 128 && t_ + stride_ <= end_ && clearance_ > -0.9f; ++steps_) {
-            const Vec3f place = line_.origin + (t_ + stride_) * line_.direction;
+        for (; steps_ < 128 && t_ + pace_.stride <= end_ && (clearance_ > look_.dark || doubts_.any); ++steps_) {
+            const Vec3f place = line_.origin + (t_ + (turn_.active ? turn_.along : pace_.stride)) * line_.direction;
             if (!cell_.holds(place)) cell_ = space.cellAt(place);
-            // Nothing of the cell comes into the disc.
-            if (cell_.least >= space.margin || cell_.least >= radius_ * (t_ + stride_ + 2 * cell_.edge)) {
-                t_ += stride_ + cell_.exit(place, line_.inverse);
-                free_ = stride_ = 0;
+            if (turn_.active && cell_.state != CellState::Near) {
+                answer(space, cell_.state == CellState::Inside ? -space.margin : space.margin);
+                continue;
+            }
+            // Nothing of the cell comes into the disc, or nearer to its middle than what did before.
+            const float near = std::min(matters() * look_.radius * (t_ + pace_.stride + 2 * cell_.edge), space.margin);
+            if (cell_.least >= near && !turn_.active) {
+                if (!sawAll(cell_.least * space.inverseLipschitz, near)) {
+                    pace_.stride = 0.9f * pace_.free;
+                    continue;
+                }
+                t_ += pace_.stride + cell_.exit(place, line_.inverse);
+                pace_ = {};
+                passed_ = {};
                 continue;
             }
             if (cell_.state == CellState::Near) {
@@ -208,23 +239,59 @@ bool DiscWalk::ask(const CellSpace& space, Question& question) {
             answer(space, -space.margin);
         }
         if (!doubts_.any) return false;
-        doubts_.probe.begin(doubts_.leastPlace, doubts_.leastValue, into_);
+        doubts_.probe.begin(doubts_.leastPlace, doubts_.leastValue, look_.into);
         doubts_.probing = true;
     }
 }
 
+bool DiscWalk::turnsBack(float value, float disc) {
+    if (!look_.sharp || turn_.tried || cell_.doubtful || disc < look_.pixel || passed_.value <= 0 ||
+        passed_.value > clearance_ * disc || passed_.value >= std::min(passed_.before, value))
+        return false;
+    // The vertex of a parabola through the last three values.
+    const float before = (passed_.before - passed_.value) / passed_.stride,
+                after = (value - passed_.value) / pace_.stride,
+                bend = (before + after) / (passed_.stride + pace_.stride);
+    turn_ = {true, true, 0.5f * (pace_.stride - after / bend), value};
+    return true;
+}
+
 void DiscWalk::answer(const CellSpace& space, float value) {
     if (doubts_.probing) return doubts_.probe.answer(space, value);
+    if (turn_.active) {
+        turn_.active = false;
+        const float between = value / std::min(look_.radius * t_, space.margin);
+        if (!cell_.doubtful && between < clearance_) {
+            clearance_ = between;
+            doubts_.any = false;
+        }
+        value = turn_.ahead;
+    }
     const float next = std::abs(value) * space.inverseLipschitz;
-    const float disc = std::min(radius_ * (t_ + stride_), space.margin),
-                least = std::max(0.5f * disc, std::max(1e-3f * space.size, disc < pixel_ ? 1.4f * pixel_ : 0));
-    if (stride_ > std::max(free_ + next, least)) {
-        stride_ = std::max(free_, least);
+    const float disc = std::min(look_.radius * (t_ + pace_.stride), space.margin),
+                least = std::max(
+                    (look_.sharp ? 0.25f : 0.5f) * disc,
+                    std::max((look_.sharp ? 2e-4f : 1e-3f) * space.size, disc < look_.pixel ? 1.4f * look_.pixel : 0));
+    const bool sure = !cell_.doubtful || value <= -0.25f * look_.into;
+    if (look_.dark > 0 && sure && value < 0) {  // of a part no more is asked
+        clearance_ = 0;
+        doubts_.any = false;
         return;
     }
+    if (pace_.stride > least && !(value < 0 ? pace_.stride <= pace_.free + next : sawAll(next, matters() * disc))) {
+        pace_.stride = std::max(0.9f * pace_.free, least);
+        pace_.slope = -1;
+        return;
+    }
+    if (turnsBack(value, disc)) return;
+    turn_.tried = false;
+    if (value < disc) {
+        if (freeUntil_ < 0) freeUntil_ = t_;
+        soft_ |= disc >= look_.pixel;
+    }
     if (value / disc < clearance_) {
-        if (cell_.doubtful && value > -0.25f * into_) {
-            doubt(line_.origin + (t_ + stride_) * line_.direction, value, value / disc);
+        if (!sure) {
+            doubt(line_.origin + (t_ + pace_.stride) * line_.direction, value, value / disc);
         } else {
             clearance_ = value / disc;
             doubts_.any = false;
@@ -232,19 +299,36 @@ void DiscWalk::answer(const CellSpace& space, float value) {
     }
     // Inside, fields may fall little however deep the place is. Where nobody sees the penumbra, a way through the solid
     // counts as half as much depth.
-    within_ = value < 0 ? within_ + stride_ : 0;
-    if (value < 0 && disc < pixel_ && -0.5f * within_ / disc < clearance_) {
+    within_ = value < 0 ? within_ + pace_.stride : 0;
+    if (value < 0 && disc < look_.pixel && -0.5f * within_ / disc < clearance_) {
         clearance_ = -0.5f * within_ / disc;
         doubts_.any = false;
     }
-    t_ += stride_;
-    free_ = next;
-    stride_ = std::max(free_ > 2 * disc ? 1.5f * free_ : 0.9f * free_, least);
+    passed_ = {value, passed_.value, pace_.stride};
+    pace_.slope = pace_.stride > 0 ? (next - pace_.free) / pace_.stride : -1;
+    t_ += pace_.stride;
+    pace_.free = next;
+    pace_.stride = std::max(
+        pace_.free > 2 * matters() * disc ? 1.6f * pace_.free / (1 - std::min(pace_.slope, 0.5f)) : 0.9f * pace_.free,
+        least);
+    if (t_ + pace_.stride > end_) pace_.stride = std::max(0.9f * pace_.free, least);  // perhaps past a last surface
 }
 
-float DiscWalk::seen() const {
-    const float c = std::clamp(0.5f + 0.5f * clearance_, 0.0f, 1.0f);
+float shareOfDisc(float clearance) { return shareOfPart(0.5f + 0.5f * clearance); }
+
+float shareOfPart(float clearance) {
+    const float c = std::clamp(clearance, 0.0f, 1.0f);
     return c * c * (3 - 2 * c);
+}
+
+std::array<Vec3f, DiscWalk::parts> directionsOfParts(Vec3f middle, float radius) {
+    const Vec3f u = normalized(cross(middle, Vec3f{0, 1, 0})), v = cross(u, middle);
+    std::array<Vec3f, DiscWalk::parts> directions;
+    for (int k = 0; k < DiscWalk::parts; ++k) {
+        const float turn = 2.0943951f * static_cast<float>(k), offset = DiscWalk::partOffset * radius;
+        directions[size_t(k)] = normalized(middle + u * (offset * std::cos(turn)) + v * (offset * std::sin(turn)));
+    }
+    return directions;
 }
 
 }  // namespace sgm::render

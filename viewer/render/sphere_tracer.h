@@ -4,6 +4,7 @@
 // same steps as trace.comp.glsl and surface.comp.glsl take, which say where they come from.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "viewer/render/prepared_field.h"
@@ -145,21 +146,47 @@ private:
     Cell cell_;
 };
 
-/// Share that a place sees of a disc of light.
+/// How clear of solid a disc of light is that a place sees: along the ray to its middle, the least distance to solid in
+/// units of the disc's radius there. What a solid hides of the disc no one ray tells, for depth in a thin body is no
+/// distance to its outline: a disc that is neither whole nor hidden for certain is looked at by its parts.
 class DiscWalk {
 public:
-    /// `radius`: half the disc's angle, radians; `pixel`: of the picture at the place, metres.
-    DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float radius, float pixel);
+    /// Parts of a disc beside its middle, a third of a turn apart; how far from its middle theirs lie, and their
+    /// radius, both in radii of the disc. The part in the middle is what the ray there tells.
+    static constexpr int parts = 3;
+    static constexpr float partOffset = 0.4f, partRadius = 0.6f;
+    /// A disc of sky is so wide that it needn't be known as well as the sun's.
+    enum class Of { Disc, Part, Sky };
+
+    /// `radius`: half the angle of the disc or its part, radians; `pixel`: of the picture at the place, metres; `from`:
+    /// the way known to be free, metres.
+    DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float radius, float pixel, Of of = Of::Disc,
+             float from = 0);
     bool ask(const CellSpace& space, Question& question);
     void answer(const CellSpace& space, float value);
-    /// 0 … 1.
-    float seen() const;
+    /// From −1, hidden by far, to 1, free; negative where the ray meets solid. Of a part only what is above 0 counts.
+    float clearance() const { return clearance_; }
+    /// Part of the disc may be hidden, by what is far enough away for its soft edge to be seen.
+    bool isPartial() const { return soft_ && clearance_ > hidden && clearance_ < 1; }
+    /// The way along which all of the disc is free, metres.
+    float freeUntil() const { return freeUntil_; }
 
 private:
+    static constexpr float hidden = -0.9f;
     /// Takes what the probe behind a small value found; false where the way must be walked again, every value probed.
     bool settleDoubt();
     /// A disc this small a share of which is free, by a value that may say nothing.
     void doubt(Vec3f place, float value, float clearance);
+    /// How near solid must be to tell something new, in radii of the disc.
+    float matters() const { return soft_ ? std::max(clearance_, 0.0f) : 1; }
+    /// Whether nothing nearer than `matters_m` to the way of the stride can have been missed, where the field is `next`
+    /// behind it; metres.
+    bool sawAll(float next, float matters_m) const;
+    /// Goes back to the start.
+    void restart();
+    /// Where the last place is nearer to solid than that before it and this one, asks where the least may lie between:
+    /// how near it comes says how dark the place is, and steps alone would show as bands.
+    bool turnsBack(float value, float disc);
 
     /// Values that may say nothing of a surface.
     struct Doubts {
@@ -168,11 +195,42 @@ private:
         float leastValue = 0, probedClearance = 1;
         SolidProbe probe;
     };
+    /// The values at the last place and the one before, and how far apart these are; metres, 0 before there are any.
+    struct Passed {
+        float value = 0, before = 0, stride = 0;
+    };
+    /// A question beside the last place, metres along the ray from it, before the value ahead is taken.
+    struct Turn {
+        bool active = false, tried = false;
+        float along = 0, ahead = 0;
+    };
+    /// What is looked for: radians; metres; the clearance at which nothing more counts; whether it must be known well.
+    struct Look {
+        float radius, pixel, into, dark;
+        bool sharp;
+    };
+    /// The radius about the last place that holds no surface, the stride from there, and how the field grew towards it.
+    struct Pace {
+        float free = 0, stride = 0, slope = -1;
+    };
     WalkLine line_;
-    float start_, t_, end_, radius_, pixel_, into_, clearance_ = 1, within_ = 0, free_ = 0, stride_ = 0;
+    Look look_;
+    float start_, t_, end_, clearance_ = 1, within_ = 0;
+    float freeUntil_ = -1;  // −1 while all of it is
+    bool soft_;
     int steps_ = 0;
+    Pace pace_;
+    Passed passed_;
+    Turn turn_;
     Doubts doubts_;
     Cell cell_;
 };
+
+/// Share of a disc that is free, by how far a straight edge is from its middle: −1 … 1 of its radius.
+float shareOfDisc(float clearance);
+/// Share of a part that counts as free, all or nothing but for a smooth step: 0 … 1 of its radius.
+float shareOfPart(float clearance);
+/// Towards the parts beside the middle of a disc of half angle `radius`, radians, about the unit vector `middle`.
+std::array<Vec3f, DiscWalk::parts> directionsOfParts(Vec3f middle, float radius);
 
 }  // namespace sgm::render

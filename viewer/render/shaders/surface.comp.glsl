@@ -17,44 +17,107 @@ vec3 normalAt(vec3 p, float h) {
     return side * normalize(sum + vec3(0.0, 1e-20, 0.0));
 }
 
-/// Share that p sees of a disc of light of half angle `radius` (radians) about `direction`: along the ray, the least
-/// clearance in units of the disc's radius there. Strides are relaxed as in trace.comp.glsl: away from the penumbra one and
-/// a half times the free radius, taken back when the two radii leave a gap. Where the least clearance is in doubt and no
-/// solid behind it, the way is walked again and every small value looked behind.
-float discSeen(vec3 p, vec3 direction, float radius, float pixel) {
+/// Radius of the circle in which two spheres meet whose centres lie `apart`; 0 where they don't.
+float meetingRadius(float a, float b, float apart) {
+    float along = (apart * apart + a * a - b * b) / (2.0 * apart);
+    if (along <= 0.0 || along >= apart) return min(a, b);
+    return sqrt(max(a * a - along * along, 0.0));
+}
+
+/// Whether nothing nearer than `near` to the way of a stride can have been missed between two free radii.
+bool sawAll(float stride, float free, float next, float near) {
+    return stride <= free || (stride < free + next && meetingRadius(free, next, stride) >= near);
+}
+
+const int ofDisc = 0, ofPart = 1, ofSky = 2;
+const float partOffset = 0.4, partRadius = 0.6;  // of a disc's parts beside its middle, in radii of the disc
+
+/// What a ray into a disc of light tells: as DiscWalk.
+struct DiscSeen {
+    float clearance;  // -1: hidden by far; 1: free
+    float freeUntil;  // metres along the ray; -1: all of it
+    bool soft;        // what comes into the disc is far enough away for its soft edge to be seen
+};
+
+/// How near solid must be to tell something new, in radii of the disc.
+float matters(DiscSeen seen) { return seen.soft ? max(seen.clearance, 0.0) : 1.0; }
+
+/// How clear of solid a disc of light of half angle `radius` (radians) about `direction` is at p, by the least distance to
+/// solid along the ray in units of the disc's radius there. Strides grow with the slope; they are taken back where the radii
+/// at both ends leave room for what would come into the disc. Where the last place was nearer to solid than those beside
+/// it, the least between is asked for. Where the least clearance is in doubt and no solid behind it, the way is walked
+/// again and every small value looked behind.
+DiscSeen lookAtDisc(vec3 p, vec3 direction, float radius, float pixel, int of, float from) {
     vec3 inverseDirection = inverseOf(direction), away;
     vec2 span = boundsSpan(p, inverseDirection);
-    float start = max(span.x, 3e-4 * sceneSize), into = max(4e-6 * sceneSize, 0.05 * pixel);
-    float t = start, clearance = 1.0, free = 0.0, stride = 0.0, within = 0.0;
+    float start = max(max(span.x, 3e-4 * sceneSize), from), into = max(4e-6 * sceneSize, 0.05 * pixel);
+    float dark = of == ofPart ? 0.05 : -0.9, finest = of == ofSky ? 1e-3 * sceneSize : 2e-4 * sceneSize;
+    float t = start, free = 0.0, stride = 0.0, slope = -1.0, within = 0.0;
+    float passed = 0.0, before = 0.0, passedStride = 0.0;  // the last values, and how far apart
+    float turn = 0.0, ahead = 0.0;                         // a place beside the last one, and the value at the next
+    bool turning = false, turned = false, careful = false;
+    DiscSeen seen = DiscSeen(1.0, -1.0, of == ofPart);
     vec4 doubted = vec4(-1.0);  // where the least clearance was found, if in doubt, and the value there
-    bool careful = false;
     for (int step = 0;; ++step) {
-        bool ended = step >= 128 || t + stride > span.y || clearance <= -0.9;
+        bool ended = step >= 128 || t + stride > span.y || (seen.clearance <= dark && doubted.w < 0.0);
         if (ended && doubted.w < 0.0) break;
-        vec3 q = ended ? doubted.xyz : p + (t + stride) * direction;
+        vec3 q = ended ? doubted.xyz : p + (t + (turning ? turn : stride)) * direction;
         float value = doubted.w, next = 0.0, disc = 1.0, least = 0.0;
         bool probing = ended;
         if (!ended) {
             Cell cell = cellAt(q);
-            // Nothing of the cell comes into the disc.
-            if (cell.least >= margin || cell.least >= radius * (t + stride + 2.0 * cell.edge)) {
+            // Nothing of the cell comes into the disc, or nearer to its middle than what did before.
+            float near = min(matters(seen) * radius * (t + stride + 2.0 * cell.edge), margin);
+            if (cell.least >= near && !turning) {
+                if (!sawAll(stride, free, cell.least * inverseLipschitz, near)) {
+                    stride = 0.9 * free;
+                    continue;
+                }
                 t += stride + cellExit(cell, q, inverseDirection);
-                free = stride = 0.0;
+                free = stride = passed = before = passedStride = 0.0;
+                slope = -1.0;
                 continue;
             }
-            value = cell.state == cellInside ? -margin : side * fieldBy(cell.tape, q);
+            value = cell.state == cellNear ? side * fieldBy(cell.tape, q) : cell.state == cellInside ? -margin : margin;
+            if (turning) {
+                turning = false;
+                float between = value / min(radius * t, margin);
+                if (!cell.doubtful && between < seen.clearance) {
+                    seen.clearance = between;
+                    doubted = vec4(-1.0);
+                }
+                value = ahead;
+                q = p + (t + stride) * direction;
+            }
             next = abs(value) * inverseLipschitz;
             disc = min(radius * (t + stride), margin);
-            least = max(0.5 * disc, max(1e-3 * sceneSize, disc < pixel ? 1.4 * pixel : 0.0));
-            if (stride > max(free + next, least)) {
-                stride = max(free, least);
+            least = max((of == ofSky ? 0.5 : 0.25) * disc, max(finest, disc < pixel ? 1.4 * pixel : 0.0));
+            bool sure = !cell.doubtful || value <= -0.25 * into;
+            if (of == ofPart && sure && value < 0.0) {
+                seen.clearance = 0.0;
+                break;
+            }
+            if (stride > least && !(value < 0.0 ? stride <= free + next : sawAll(stride, free, next, matters(seen) * disc))) {
+                stride = max(0.9 * free, least);
+                slope = -1.0;
                 continue;
             }
-            bool doubtful = cell.doubtful && value > -0.25 * into;
-            probing = doubtful && careful && value / disc < clearance;
-            if (value / disc < clearance && !probing) {
-                clearance = value / disc;
-                doubted = doubtful ? vec4(q, max(value, 0.0)) : vec4(-1.0);
+            if (of != ofSky && !turned && !cell.doubtful && disc >= pixel && passed > 0.0 && passed <= seen.clearance * disc && passed < min(before, value)) {
+                float slopeBefore = (before - passed) / passedStride, slopeAfter = (value - passed) / stride;
+                turn = 0.5 * (stride - slopeAfter * (passedStride + stride) / (slopeBefore + slopeAfter));
+                ahead = value;
+                turning = turned = true;
+                continue;
+            }
+            turned = false;
+            if (value < disc) {
+                if (seen.freeUntil < 0.0) seen.freeUntil = t;
+                seen.soft = seen.soft || disc >= pixel;
+            }
+            probing = !sure && careful && value / disc < seen.clearance;
+            if (value / disc < seen.clearance && !probing) {
+                seen.clearance = value / disc;
+                doubted = sure ? vec4(-1.0) : vec4(q, max(value, 0.0));
             }
         }
         bool solid = probing && solidBehind(q, value, into, vec3(0.0), away);
@@ -63,27 +126,38 @@ float discSeen(vec3 p, vec3 direction, float radius, float pixel) {
             careful = true;
             doubted = vec4(-1.0);
             t = start;
-            clearance = 1.0;
-            free = stride = within = 0.0;
+            free = stride = within = passed = before = passedStride = 0.0;
+            slope = -1.0;
+            turning = turned = false;
+            seen = DiscSeen(1.0, -1.0, of == ofPart);
             step = -1;
             continue;
         }
-        if (solid) clearance = value / disc;
+        if (solid) seen.clearance = value / disc;
         // Inside, fields may fall little however deep the place is. Where nobody sees the penumbra, a way through the
         // solid counts as half as much depth.
         within = value < 0.0 ? within + stride : 0.0;
-        if (value < 0.0 && disc < pixel && -0.5 * within / disc < clearance) {
-            clearance = -0.5 * within / disc;
+        if (value < 0.0 && disc < pixel && -0.5 * within / disc < seen.clearance) {
+            seen.clearance = -0.5 * within / disc;
             doubted.w = -1.0;
         }
+        before = passed;
+        passed = value;
+        passedStride = stride;
+        slope = stride > 0.0 ? (next - free) / stride : -1.0;
         t += stride;
         free = next;
-        stride = max(free > 2.0 * disc ? 1.5 * free : 0.9 * free, least);
+        stride = max(free > 2.0 * matters(seen) * disc ? 1.6 * free / (1.0 - min(slope, 0.5)) : 0.9 * free, least);
+        if (t + stride > span.y) stride = max(0.9 * free, least);  // perhaps past a last surface
     }
-    // Area of a disc left of a chord, as a smooth step.
-    clearance = clamp(0.5 + 0.5 * clearance, 0.0, 1.0);
-    return clearance * clearance * (3.0 - 2.0 * clearance);
+    return seen;
 }
+
+/// Share of a part that counts as free, all or nothing but for a smooth step: 0 … 1 of its radius.
+float shareOfPart(float clearance) { return smoothstep(0.0, 1.0, clearance); }
+
+/// Share of a disc that is free, by how far a straight edge is from its middle.
+float shareOfDisc(float clearance) { return shareOfPart(0.5 + 0.5 * clearance); }
 
 /// Share of the sky that p sees, from the field at growing distances along the normal.
 float opennessAt(vec3 p, vec3 normal, float pixel) {
@@ -101,17 +175,34 @@ float opennessAt(vec3 p, vec3 normal, float pixel) {
     return mix(0.08, 1.0, 1.0 - hidden / weight);
 }
 
-/// Shares that p sees of the sun, and of the day that comes into a hollow, by wide discs of the upper sky.
+/// Shares that p sees of the sun, and of the day that comes into a hollow, by wide discs of the upper sky. What solid
+/// hides of the sun no one ray tells, for depth in a thin body is no distance to its outline: a sun that is neither whole
+/// nor hidden for certain is looked at by its parts, three beside the middle.
 vec2 sunAndDayAt(vec3 p, vec3 normal, float pixel, bool sun, bool day) {
-    float sunlight = 0.0, seen = 0.0;
-    for (int i = sun ? 0 : 1; i < (day ? 6 : 1); ++i) {
-        float angle = 1.5707963 * float(i - 1);
-        vec3 direction = i == 0 ? sunDirection : i == 5 ? vec3(0.0, 1.0, 0.0) : vec3(0.7 * cos(angle), 0.714, 0.7 * sin(angle));
-        float cosine = dot(normal, direction);
-        if (cosine <= 0.0) continue;
-        float open = discSeen(p, direction, i == 0 ? 0.035 : 0.3, pixel);
-        if (i == 0) sunlight = open;
-        else seen += cosine * open;
+    const int parts = 3, firstSky = 1 + parts, above = firstSky + 4;
+    const float sunRadius = 0.035, share = 1.0 / float(1 + parts);
+    vec3 u = normalize(cross(sunDirection, vec3(0.0, 1.0, 0.0))), v = cross(u, sunDirection);
+    float sunlight = 0.0, seen = 0.0, from = 0.0;
+    bool inParts = false;
+    for (int i = sun ? 0 : firstSky; i < (day ? above + 1 : firstSky); ++i) {
+        bool part = i > 0 && i < firstSky;
+        if (part && !inParts) continue;
+        float turn = part ? 2.0943951 * float(i - 1) : 1.5707963 * float(i - firstSky);
+        vec3 direction = i == above ? vec3(0.0, 1.0, 0.0) : vec3(0.7 * cos(turn), 0.714, 0.7 * sin(turn));
+        if (i == 0) direction = sunDirection;
+        if (part) direction = normalize(sunDirection + partOffset * sunRadius * (u * cos(turn) + v * sin(turn)));
+        float cosine = dot(normal, direction), size = part ? partRadius : 1.0;
+        if (cosine <= 0.0 && !part) continue;
+        DiscSeen s = lookAtDisc(p, direction, i < firstSky ? size * sunRadius : 0.3, size * pixel, part ? ofPart : i == 0 ? ofDisc : ofSky, part ? from : 0.0);
+        if (part) {
+            sunlight += share * shareOfPart(s.clearance);
+        } else if (i == 0) {
+            inParts = s.soft && s.clearance > -0.9 && s.clearance < 1.0;
+            sunlight = inParts ? share * shareOfPart(s.clearance / partRadius) : shareOfDisc(s.clearance);
+            from = s.freeUntil;
+        } else {
+            seen += cosine * shareOfDisc(s.clearance);
+        }
     }
     return vec2(sunlight, min(0.4 * seen, 1.0));
 }
