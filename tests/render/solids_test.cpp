@@ -189,5 +189,52 @@ TEST_F(Solids, CuttersThatOverlapThrowNoShadow) {
     }
 }
 
+/// The top edges of the walls lie in the planes of the roof.
+TEST_F(Solids, EdgesThatEndInASurfaceDoNotShowThroughIt) {
+    const pipeline::Model model = modelOf("tests/render/solids/eaves.sgm");
+    const PictureOptions options = optionsFor(model, 640);
+    for (const TracedBy by : {TracedBy::Processor, TracedBy::Gpu}) {
+        const Layers layers = layersOf(model, options, by);
+        size_t alone = 0;
+        for (size_t y = 2; y < 638; ++y)
+            for (size_t x = 2; x < 638; ++x) {
+                const size_t at = y * 640 + x;
+                const float around = layers.origin[at - 2];
+                const bool plane = layers.origin[at + 2] == around && layers.origin[at - 1280] == around &&
+                                   layers.origin[at + 1280] == around && layers.depth[at] < Layers::farAway;
+                alone += plane && layers.origin[at] != around;
+            }
+        EXPECT_EQ(alone, 0u) << (by == TracedBy::Gpu ? "shaders" : "processor");
+    }
+}
+
+/// The walls of a block with a nook: no pixel of the line where they meet is brighter than the walls beside it.
+TEST_F(Solids, NooksAreEvenlyDark) {
+    Scene scene;
+    scene.add("cube", {-3, 0, 0}, {5, 3, 6}, {.6f, .6f, .6f});
+    scene.add("cube", {5, 0, -3}, {3, 3, 3}, {.6f, .6f, .6f});
+    const field::Field solid = scene.sum();
+    PictureOptions options;
+    options.width = options.height = 240;
+    options.camera = {{17, 14, 19}, {3, -.2, .1}, .2};
+    options.ground = false;
+    options.samples = 1;
+    auto painter =
+        FieldPainter::create(scene.compile(solid), solid.bounds, scene.provenance, 2, nullptr, TracedBy::Processor);
+    ASSERT_TRUE(painter.ok());
+    Layers layers;
+    ASSERT_TRUE(painter->draw(options, nullptr, &layers).ok());
+    // Pixels that the walls' line crosses, at (2, 0): half of the day is hidden from either wall, and more by this
+    // measure.
+    size_t crossed = 0;
+    for (size_t i = 0; i < layers.ao.size(); ++i) {
+        const Vec3f p = layers.position[i];
+        if (layers.depth[i] == Layers::farAway || std::abs(p.y) > 1.5f || std::hypot(p.x - 2, p.z) > .008f) continue;
+        ++crossed;
+        EXPECT_LT(layers.ao[i], .35f);
+    }
+    EXPECT_GT(crossed, 20u);
+}
+
 }  // namespace
 }  // namespace sgm::render::test

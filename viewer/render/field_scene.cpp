@@ -119,7 +119,10 @@ Result<Rays> FieldScene::trace(std::span<const Job> jobs, Progress* progress) {
     for (size_t i = 0; i < jobs.size(); ++i) {
         if (rays.hits[i].kind() != HitKind::Object) continue;
         of.push_back(i);
-        places.push_back(rays.hits[i].position);
+        // Hits lie a little before their surface, where an edge of another part that ends in it may be as near; behind
+        // it the surface's own part is deepest.
+        const Vec3f ahead = rays.hits[i].position - view_.eye.as<float>();
+        places.push_back(rays.hits[i].position + (0.4f * static_cast<float>(view_.pixelAngle)) * ahead);
     }
     const std::vector<OriginId> origins = field_->originsOf(places, threads_);
     for (size_t k = 0; k < of.size(); ++k) rays.origins[of[k]] = origins[k];

@@ -143,7 +143,8 @@ private:
     }
 
     /// The field's derivatives at every hit of an object, a little before it: behind an edge begin other faces. Wide
-    /// ones are means of four, some sixth of a pixel about it.
+    /// ones are means of four, some sixth of a pixel about it; but not where faces meet in a nook, whose light is
+    /// that of either face and not what a face between them would see.
     void setNormals(bool wide, std::span<const Hit> hits, std::span<Shading> shadings, BatchedEvaluator& evaluator,
                     TraceCost& cost) const {
         const CellSpace cells = space();
@@ -173,8 +174,14 @@ private:
         const size_t each = wide ? 4 : 1;
         for (size_t j = 0; j < of.size(); ++j) {
             BatchedEvaluator::Slope mean{0, {0, 0, 0}};
-            for (size_t k = 0; k < each; ++k) mean.gradient = mean.gradient + normalized(slopes[j * each + k].gradient);
-            shadings[of[j]].normal = normalOf(mean, cells);
+            float bend = 0;
+            for (size_t k = 0; k < each; ++k) {
+                const Vec3f normal = normalized(slopes[j * each + k].gradient);
+                mean.gradient = mean.gradient + normal;
+                bend += cells.side * dot(normal, questions[j * each + k].place - hits[of[j]].position);
+            }
+            const float pixel = pixelAngle() * length(eye - hits[of[j]].position);
+            shadings[of[j]].normal = normalOf(wide && bend < -0.02f * pixel ? slopes[j * each] : mean, cells);
         }
     }
 
