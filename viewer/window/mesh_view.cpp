@@ -18,6 +18,7 @@ Status MeshView::setMesh(std::unique_ptr<render::MeshScene> scene) {
 
 void MeshView::clear() {
     scene_.reset();
+    for (auto& target : targets_) target.reset();
     drawn_ = smooth_ = lit_ = sunlit_ = false;
 }
 

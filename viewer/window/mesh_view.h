@@ -13,7 +13,7 @@ namespace sgm::window {
 class MeshView {
 public:
     Status setMesh(std::unique_ptr<render::MeshScene> scene);
-    /// Shows nothing until there is another mesh.
+    /// Shows nothing, and holds no buffers, until there is another mesh.
     void clear();
     void setLook(const render::PictureOptions& options, const render::MeshStyle& style);
     bool hasMesh() const { return scene_ != nullptr; }
