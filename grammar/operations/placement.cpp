@@ -48,7 +48,8 @@ constexpr OperationArgument onArguments[] = {
      "last: the shape that was placed last, of the same body too; any(d): one placed toward d in the "
      "step before; each(Name): all of that name; lot: behind 'place', the scope with its plan"}};
 constexpr OperationArgument byArguments[] = {
-    {"amount", ArgumentType::Number, "a of the morph (eq. 14): 0 keeps what stands, 1 gives the newcomer"}};
+    {"amount", ArgumentType::Number,
+     "a of the morph (eq. 14): 0 keeps what stands, 1 gives the newcomer; .5 unless said"}};
 constexpr OperationArgument throughArguments[] = {
     {"shape", ArgumentType::Symbol, "the nearest shape of that name above the matched one"}};
 constexpr OperationArgument blendArguments[] = {

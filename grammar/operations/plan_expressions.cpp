@@ -38,18 +38,31 @@ Expr fallbackOf(syntax::SourceSpan span, const PlanParameter& parameter) {
     return rules::makeConstant(span, Value::number(parameter.fallback));
 }
 
-/// A point (x, z): two lengths, or where `shares` is given two shares.
-Expr checkPoint(OperationChecker& checker, const Written& e, bool* shares) {
+/// What a point is written in; (0, 0) may be either.
+enum class PointUnit { Either, Lengths, Shares };
+
+bool isZero(const Written& e) { return e.kind == Written::Kind::Number && e.number == 0 && e.unit.empty(); }
+
+/// A point (x, z): two lengths, or where `unit` is given two shares.
+Expr checkPoint(OperationChecker& checker, const Written& e, PointUnit* unit) {
     const rules::Typed point = checker.value(e);
     const Value& like = point.type.like;
     const bool two = !point.type.known || (like.kind == Value::Kind::Vector && like.count == 2);
-    const auto every = [&](auto holds) { return holds(like.units[0]) && holds(like.units[1]); };
+    const auto zero = [&](size_t i) { return i < e.args.size() && isZero(e.args[i]); };
+    const auto every = [&](auto holds) {
+        return (zero(0) || holds(like.units[0])) && (zero(1) || holds(like.units[1]));
+    };
     const bool lengths = every([](Unit u) { return u == Unit::None || u == Unit::Metre; });
     const bool parts = every([](Unit u) { return u == Unit::Share; });
-    if (!two || (point.type.known && !lengths && !(parts && shares != nullptr)))
-        checker.error(e.span, fmt::format("a point of a plan is (x, z), not {}", describe(point.type)),
-                      "write '(4m, 2m)'");
-    if (shares) *shares = point.type.known && parts;
+    if (!two || (point.type.known && !lengths && !(parts && unit != nullptr)))
+        checker.error(e.span,
+                      two ? "a point of a plan has two lengths, or in 'outline' two shares"
+                          : fmt::format("a point of a plan is (x, z), not {}", describe(point.type)),
+                      unit ? "write '(4m, 2m)' or '(50%, 25%)'" : "write '(4m, 2m)'");
+    if (unit)
+        *unit = lengths && parts            ? PointUnit::Either
+                : point.type.known && parts ? PointUnit::Shares
+                                            : PointUnit::Lengths;
     return point.expr;
 }
 
@@ -105,21 +118,24 @@ void checkCall(OperationChecker& checker, const Written& e, PlanExpr& plan) {
 
 void checkOutline(OperationChecker& checker, const Written& e, PlanExpr& plan) {
     plan.kind = PlanExpr::Kind::Outline;
-    std::optional<bool> inShares;
+    PointUnit unit = PointUnit::Either;
     for (size_t i = 0; i < e.args.size(); ++i) {
         if (!e.argNames[i].empty()) {
             if (!checkPlacement(checker, e, i, plan))
                 checker.error(e.args[i].span, fmt::format("'outline' has no parameter '{}'", e.argNames[i]));
             continue;
         }
-        bool shares = false;
+        PointUnit own = PointUnit::Either;
         checker.beginDraws("footprint.outline");
-        plan.args.push_back(checkPoint(checker, e.args[i], &shares));
-        if (inShares && *inShares != shares)
-            checker.error(e.args[i].span, "the points of an outline are all lengths or all shares of the scope");
-        inShares = shares;
+        plan.args.push_back(checkPoint(checker, e.args[i], &own));
+        if (own == PointUnit::Either) continue;
+        if (unit != PointUnit::Either && unit != own)
+            checker.error(e.args[i].span, "the points of an outline are all lengths or all shares of the scope",
+                          unit == PointUnit::Shares ? "write shares here too, such as '(50%, 25%)'"
+                                                    : "write lengths here too, such as '(4m, 2m)'");
+        unit = own;
     }
-    plan.inShares = inShares.value_or(false);
+    plan.inShares = unit == PointUnit::Shares;
     if (plan.args.size() < 3)
         checker.error(e.span, "an outline has three points or more", "write 'outline((0, 0), (8, 0), (8, 6))'");
 }

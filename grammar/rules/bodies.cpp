@@ -183,6 +183,18 @@ Expr loopDomain(CheckContext& ctx, Place& place, const Written& e, Type& type) {
     return result;
 }
 
+/// What a name means already, for a message: "names a value of the file (line 3)".
+std::string meaningOf(const CheckContext& ctx, const Place& place, const std::string& name) {
+    const auto isName = [&](const auto& l) { return l.name == name; };
+    const auto lineOf = [](syntax::SourceSpan span) { return span.source->place(span.begin).line; };
+    if (std::any_of(place.locals.begin(), place.locals.end(), isName)) return "names another value of this body";
+    if (const auto param = ctx.names.params.find(name); param != ctx.names.params.end())
+        return fmt::format("names a parameter (line {})", lineOf(ctx.grammar.params[param->second].span));
+    if (const auto let = ctx.names.lets.find(name); let != ctx.names.lets.end() && let->second.decl)
+        return fmt::format("names a value of the file (line {})", lineOf(let->second.decl->span));
+    return "names a value that a 'with' sets";
+}
+
 void checkLoop(CheckContext& ctx, Place& place, const syntax::Element& written, Element& out) {
     const size_t outside = place.locals.size();
     place.enter("loop");
@@ -195,7 +207,7 @@ void checkLoop(CheckContext& ctx, Place& place, const syntax::Element& written, 
             std::any_of(place.locals.begin(), place.locals.end(), [&](const auto& l) { return l.name == local.name; });
         if (again || ctx.names.params.contains(local.name))
             ctx.diagnostics.error(written.variable.span,
-                                  fmt::format("'{}' already means something else here", local.name),
+                                  fmt::format("'{}' {}", local.name, meaningOf(ctx, place, local.name)),
                                   "give the loop's variable another name");
         else if (local.name != "i" && isTaken(local.name))
             ctx.diagnostics.error(
@@ -224,11 +236,11 @@ void checkLet(CheckContext& ctx, Place& place, const syntax::Element& written, E
     const bool taken = isTaken(name) || axisNumber(name) >= 0;
     if (taken || std::any_of(place.locals.begin(), place.locals.end(), isName) || ctx.names.params.contains(name) ||
         ctx.names.lets.contains(name) || ctx.names.inherited.contains(name))
-        ctx.diagnostics.error(written.variable.span,
-                              fmt::format("'{}' {}", name,
-                                          taken ? "is a word of the language and can't name a value"
-                                                : "already means something else here"),
-                              "give the value another name");
+        ctx.diagnostics.error(
+            written.variable.span,
+            fmt::format("'{}' {}", name,
+                        taken ? "is a word of the language and can't name a value" : meaningOf(ctx, place, name)),
+            "give the value another name");
     out.over = std::move(value.expr);
     out.local = place.frame++;
     place.locals.push_back({name, out.local, value.type});

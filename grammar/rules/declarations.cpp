@@ -11,6 +11,7 @@
 #include "grammar/rules/make.h"
 #include "grammar/rules/params.h"
 #include "grammar/rules/words.h"
+#include "modeler/core/conventions.h"
 
 namespace sgm::rules {
 namespace {
@@ -18,6 +19,26 @@ namespace {
 using Written = syntax::Expr;
 
 Vec3d vectorOf(const Value& v) { return {v.n[0], v.n[1], v.n[2]}; }
+
+/// Plain numbers beside angles are degrees.
+void takeAngles(std::initializer_list<Value*> values) {
+    bool hasAngle = false, hasOther = false;
+    const auto eachUnit = [&](auto visit) {
+        for (Value* v : values)
+            for (size_t i = 0; i < std::min<size_t>(v->count, v->units.size()); ++i) visit(*v, i);
+    };
+    eachUnit([&](const Value& v, size_t i) {
+        hasAngle = hasAngle || v.units[i] == Unit::Angle;
+        hasOther = hasOther || (v.units[i] != Unit::Angle && v.units[i] != Unit::None);
+    });
+    if (!hasAngle || hasOther) return;
+    eachUnit([](Value& v, size_t i) {
+        if (v.units[i] != Unit::None) return;
+        v.n[i] = radians(v.n[i]);
+        v.units[i] = Unit::Angle;
+        v.integer = false;
+    });
+}
 
 void checkParameter(CheckContext& ctx, const syntax::ParamDecl& decl) {
     Param& param = ctx.grammar.params[ctx.names.params.at(decl.name.text)];
@@ -58,12 +79,15 @@ void checkParameter(CheckContext& ctx, const syntax::ParamDecl& decl) {
             ctx.diagnostics.error(decl.range->span, "'in' takes a range", "write 'in 0..1'");
         return;
     }
-    const auto lo = plainValue(ctx, decl.range->args[0], false), hi = plainValue(ctx, decl.range->args[1], false);
+    auto lo = plainValue(ctx, decl.range->args[0], false), hi = plainValue(ctx, decl.range->args[1], false);
     if (!lo || !hi) return;
+    takeAngles({&param.value, &*lo, &*hi});
     if (const std::string problem = setRange(param, *lo, *hi); !problem.empty())
         ctx.diagnostics.error(decl.range->span, problem);
     else if (const auto fitted = conform(param, param.value); !fitted.ok()) {
-        ctx.diagnostics.error(decl.value.span, fitted.error().message);
+        const bool isPlain = value->kind == Value::Kind::Number && value->units[0] == Unit::None;
+        ctx.diagnostics.error(decl.value.span, fitted.error().message,
+                              isPlain && hi->units[0] == Unit::Share ? fmt::format("write '{:g}%'", value->num()) : "");
         ctx.params.broken.insert(ctx.names.params.at(decl.name.text));
     } else if (param.value.integer && param.value.count == 1 && param.lo->num() == 0 && param.hi->num() == 1) {
         ctx.diagnostics.warning(decl.range->span,

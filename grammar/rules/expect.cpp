@@ -69,10 +69,17 @@ bool expectType(CheckContext& ctx, const Typed& value, Want want, std::string_vi
         if (want == Want::Length && value.type.like.units[0] == Unit::Share)
             hint = fmt::format("write a length such as '{}m'", digits);
     }
+    const bool isSize = want == Want::Size || want == Want::Extent || want == Want::Length;
+    if (isSize && written && written->kind == Written::Kind::Number && value.type.like.units[0] == Unit::Angle)
+        hint = fmt::format("write a length such as '{:.12g}m'", written->number);
+    if (want == Want::Size && value.type.like.kind == Value::Kind::Vector && value.type.like.count == 2)
+        hint = "write all three, x, y and z, as in '(10, 1, 3)'";
     if (want == Want::Color && written && written->kind == Written::Kind::Text && written->text.starts_with('#'))
         hint = "leave the quotes out";
     if (want == Want::Count && value.type.like.kind == Value::Kind::Number && value.type.like.units[0] == Unit::None)
-        hint = "write 'round(…)' around it";
+        hint = value.expr.span.text().find("...") != std::string_view::npos || value.expr.span.text().starts_with(".")
+                   ? "a range has two dots, as in '1..3'"
+                   : "write 'round(…)' around it";
     const std::string got = want == Want::Count && !hint.empty() ? "may have a fraction" : "is " + describe(value.type);
     ctx.diagnostics.error(value.expr.span, fmt::format("{} takes {}, but this {}", what, describe(want), got),
                           std::move(hint));

@@ -53,6 +53,19 @@ void checkModules(CheckContext& ctx, Place& place, const std::vector<syntax::Lsy
     }
 }
 
+/// Brackets of a text of letters belong together.
+void checkBrackets(CheckContext& ctx, const std::vector<syntax::LsystemDecl::Module>& written,
+                   syntax::SourceSpan span) {
+    int open = 0;
+    for (const auto& module : written) {
+        open += module.letter == '[' ? 1 : module.letter == ']' ? -1 : 0;
+        if (open < 0) break;
+    }
+    if (open == 0) return;
+    ctx.diagnostics.error(span, open < 0 ? "a ']' here has no '[' before it" : "a '[' here is never closed",
+                          "'[' begins a branch, and ']' takes the turtle back to where it began");
+}
+
 void checkProduction(CheckContext& ctx, const syntax::LsystemDecl::Production& written, Lsystem& out) {
     if (written.symbol.empty()) return;
     Lsystem::Production& p = out.productions.emplace_back();
@@ -72,6 +85,7 @@ void checkProduction(CheckContext& ctx, const syntax::LsystemDecl::Production& w
     place.enter("when");
     if (written.when) p.when = checkExpression(ctx, place, *written.when, Want::Truth, "'when'");
     checkModules(ctx, place, written.modules, p.modules);
+    checkBrackets(ctx, written.modules, written.span);
     if (!written.weight) return;
     const auto weight = plainValue(ctx, *written.weight, false);
     if (weight && !(weight->kind == Value::Kind::Number && weight->num() >= 0))
@@ -111,6 +125,7 @@ void checkLsystem(CheckContext& ctx, const syntax::LsystemDecl& decl) {
     }
     Place letters(Place::Where::Guard);
     checkModules(ctx, letters, decl.axiomModules, out.axiom);
+    checkBrackets(ctx, decl.axiomModules, decl.axiom.span);
     if (out.axiom.empty() && decl.axiom.kind == syntax::Expr::Kind::Text)
         ctx.diagnostics.error(decl.axiom.span, "an axiom has at least one letter", "write 'axiom \"F+F+F+F\"'");
     for (const auto& written : decl.productions) checkProduction(ctx, written, out);

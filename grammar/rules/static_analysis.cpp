@@ -13,6 +13,13 @@
 namespace sgm::rules {
 namespace {
 
+/// Whether a share other than 0 and 100 % is written somewhere in it.
+bool holdsShare(const Expr& e) {
+    if (e.kind == Expr::Kind::Constant && e.value.units[0] == Unit::Share && e.value.n[0] != 0 && e.value.n[0] != 1)
+        return true;
+    return std::any_of(e.args.begin(), e.args.end(), holdsShare);
+}
+
 std::set<SymbolId> reachable(const Grammar& grammar) {
     std::set<SymbolId> found;
     std::vector<SymbolId> open;
@@ -297,7 +304,7 @@ void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostic
                     a.operation->phase == Operation::Phase::Scope && takes(a, syntax::ArgumentType::Vector);
                 if (!sizes(a) && !moves) continue;
                 const auto value = fold(a.args[0], params);
-                if (value && isShare(*value))
+                if (value ? isShare(*value) : holdsShare(a.args[0]))
                     diagnostics.warning(a.span, "a share of what? A start's own scope is 1m",
                                         "write lengths, such as '.5m' for 50%");
             }

@@ -259,8 +259,13 @@ std::vector<Element> readChain(Cursor& cursor) {
 void refuseStray(Cursor& cursor) {
     const Token token = cursor.peek();
     if (token.kind == Token::Kind::Word && !isReserved(cursor.text(token)) && !token.columnOne) {
-        const std::string foreign = foreignAttributeHint(cursor.text(token));
-        const std::string near = foreign.empty() ? nearestWord(cursor.operations(), cursor.text(token)) : foreign;
+        const std::string word(cursor.text(token));
+        const std::string foreign = foreignAttributeHint(word);
+        const bool isSymbol = word[0] >= 'A' && word[0] <= 'Z';
+        const std::string near = !foreign.empty() ? foreign
+                                 : isSymbol       ? "write " + quoted(": " + word) + " to call this shape so, or " +
+                                                  quoted(", " + word) + " for one beside it"
+                                            : nearestWord(cursor.operations(), word);
         cursor.fail(cursor.found() + " can't follow a shape",
                     near.empty()
                         ? "name an attribute (size, color …), join shapes with + - & morph, or list them with ','"

@@ -134,13 +134,14 @@ std::vector<RoofFace> facesOf(const RoofPlanes& planes, const plan::Footprint& f
         gable.corners = rectangleOf(gable);
         gable.corners[2] = gable.corners[3] = pointAt(gable.at, gable.rise_m);
     }
-    const plan::Deepest top = plan::deepestPoint(footprint, formula);
+    const auto isOther = [&](const RoofPlanes::Side& side) { return side.slope > least; };
+    const bool isUneven = std::any_of(planes.sides.begin(), planes.sides.end(), isOther);
     RoofFace& apex = faces.emplace_back();
     apex.kind = RoofFace::Kind::Apex;
-    apex.at = top.at;
+    apex.at = isUneven ? plan::leastPoint(footprint, formula, roof.slopes) : plan::deepestPoint(footprint, formula).at;
     apex.outward = {0, 1};
     // Roofs of two pitches and cut-off ones end below where their first slopes would meet.
-    apex.height_m = std::min(height_m, planes.fascia_m - plan::valueOf(formula, roof.slopes, top.at));
+    apex.height_m = std::min(height_m, planes.fascia_m - plan::valueOf(formula, roof.slopes, apex.at));
     apex.corners.fill(pointAt(apex.at, apex.height_m));
     return faces;
 }

@@ -56,6 +56,9 @@ struct Deepest {
     double depth = 0;
 };
 Deepest deepestPoint(const Footprint& footprint, const Formula& formula);
+/// Where inside the footprint the formula is least with these leaves, within 1e-4 of its width: a
+/// point of a roof's ridge, whatever its pitches.
+Vec2 leastPoint(const Footprint& footprint, const Formula& formula, std::span<const Linear> leaves);
 
 /// How far the slope of an edge reaches inward, square to the edge, from the point at `share` (0 … 1) of its length: to
 /// the ridge, hip or valley where another leaf takes over. `leaves` rise over the edges: distancesOf() for equal

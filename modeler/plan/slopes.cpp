@@ -119,6 +119,14 @@ Deepest deepestPoint(const Footprint& footprint, const Formula& formula) {
     return {search.where, -search.reached};
 }
 
+Vec2 leastPoint(const Footprint& footprint, const Formula& formula, std::span<const Linear> leaves) {
+    const std::vector<Linear> distances = distancesOf(footprint);
+    const Box2 box = bounds(footprint);
+    Search search{formula, leaves, distances, 1e-4 * std::min(box.size().x, box.size().z)};
+    search.run(box);
+    return search.where;
+}
+
 double slopeDepth(const Footprint& footprint, const Formula& formula, std::span<const Linear> leaves, uint32_t edge,
                   double share) {
     const std::vector<PlacedEdge> edges = edgesOf(footprint);

@@ -149,7 +149,7 @@ TEST(EachFace, RoofsThatCameBeforeAreFoundAndNoneIsAnError) {
 
 TEST(EachFace, TheApexIsWhereTheRoofEnds) {
     for (const char* roof : {"mansardRoof(70deg, height: 1m)", "gambrelRoof(70deg, height: 1m)", "hipRoof(40deg)",
-                             "gableRoof(40deg, ends: all)"}) {
+                             "gableRoof(40deg, ends: all)", "saltboxRoof(60deg, 20deg)"}) {
         const Derivation d =
             house(std::string("+ ") + roof + " at +y + bay size .2m at each(apex) to centre", "rect(12, 8)");
         const auto bays = shapesCalled(d, "bay");

@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"for d in axes when v[d] > 2 { + cube at -d }", ""},
         Case{"for d in axes { + cube size d at +x }",
              "'size' takes a length, a share (30%) or (x, y, z) of them, but this is a direction"},
-        Case{"for n in axes { + cube at +x }", "'n' already means something else here"},
+        Case{"for n in axes { + cube at +x }", "'n' names a parameter (line 2)"},
         Case{"when c == round { + cube at +x }", "it is never 'round', but one of flat, steep"},
         Case{"when not (n == 2) or b { + cube at +x }", ""},
         Case{"when n { + cube at +x }", "'when' takes something true or false, but this is a plain number"},

@@ -1,0 +1,78 @@
+// What a grammar's text is told where it means something else than its author.
+#include "grammar/syntax/parser.h"
+#include "tests/derive/grammars.h"
+
+namespace sgm {
+namespace {
+
+using namespace testing_;
+
+/// "line:column message; hint" of all problems of a text, one a line.
+std::string told(const std::string& body) {
+    syntax::Diagnostics diagnostics;
+    const auto source = std::make_shared<const syntax::Source>("test.sgm", "grammar 2\n" + body);
+    rules::load(source, operations::table(), nullptr, diagnostics);
+    std::string text;
+    for (const auto& d : diagnostics.all()) {
+        const auto place = d.span.source->place(d.span.begin);
+        text += std::to_string(place.line) + ":" + std::to_string(place.column) + " " + d.message;
+        text += (d.hint.empty() ? "" : "; " + d.hint) + "\n";
+    }
+    return text;
+}
+
+TEST(Told, WhatANameMeansAlready) {
+    EXPECT_EQ(told("start A -> let step = 2m P with step = step\nrule P -> cube size step\n"),
+              "2:16 'step' names a value that a 'with' sets; give the value another name\n");
+    EXPECT_EQ(told("param step = 1m in 1..2m\nstart A -> let step = 2m cube size step\n"),
+              "3:16 'step' names a parameter (line 2); give the value another name\n");
+}
+
+TEST(Told, ASymbolBehindAShape) {
+    EXPECT_EQ(told("start A -> cube size 3 B\nrule B -> cube\n"),
+              "2:24 'B' can't follow a shape; write ': B' to call this shape so, or ', B' for one beside it\n");
+}
+
+TEST(Told, BracketsOfLsystemsThatDoNotMatch) {
+    const std::string rest = "\nstart A -> footprint P extrude 3m block\n";
+    EXPECT_EQ(told("lsystem P passes 2 angle 90deg step 3m\n  axiom \"F+F[+F\"" + rest).substr(0, 31),
+              "3:9 a '[' here is never closed;");
+    EXPECT_EQ(told("lsystem P passes 2 angle 90deg step 3m\n  axiom \"F+F\"\n  F -> \"F]F\"" + rest).substr(0, 36),
+              "4:3 a ']' here has no '[' before it;");
+    EXPECT_EQ(told("lsystem P passes 2 angle 90deg step 3m\n  axiom \"F+F[+F]\"" + rest), "");
+}
+
+TEST(Told, SharesOfAStartInSums) {
+    EXPECT_EQ(told("start A -> cube size (10, 3m + 30%, 5m)\n"),
+              "2:17 a share of what? A start's own scope is 1m; write lengths, such as '.5m' for 50%\n");
+    EXPECT_EQ(told("start A -> cube size (10, 100%, 5m)\n"), "");
+}
+
+TEST(Told, SizesAndRangesThatAreNone) {
+    EXPECT_NE(told("start A -> cube size (10, 3)\n").find("; write all three, x, y and z"), std::string::npos);
+    EXPECT_NE(told("start A -> cube size 5deg\n").find("; write a length such as '5m'"), std::string::npos);
+    EXPECT_NE(told("start A -> for k in 1...3 { cube move (k, 0, 0) }\n").find("; a range has two dots, as in '1..3'"),
+              std::string::npos);
+}
+
+TEST(Told, AngleUnitsCountForTheWholeParameter) {
+    for (const char* range : {"30 in 0deg..90deg", "30deg in 0..90", "30 in 0..90deg"}) {
+        const std::string text = std::string("param ang = ") + range + "\nstart A -> cube turn ang\n";
+        EXPECT_EQ(told(text), "");
+        EXPECT_NEAR(grammarOf("grammar 2\n" + text)->params[0].value.num(), .5235987755982988, 1e-12) << range;
+        EXPECT_NEAR(grammarOf("grammar 2\n" + text)->params[0].hi->num(), 1.5707963267948966, 1e-12) << range;
+    }
+    EXPECT_NE(told("param pc = 20 in 0..100%\nstart A -> cube size pc\n").find("; write '20%'"), std::string::npos);
+}
+
+TEST(Told, ZeroIsAShareInOutlines) {
+    EXPECT_EQ(
+        told("start A -> size 8 B\nrule B -> footprint outline((0, 0), (50%, 0), (50%, 100%)) extrude 3m block\n"), "");
+    EXPECT_EQ(
+        told("start A -> size 8 B\nrule B -> footprint outline((0, 0), (50%, 50%), (4m, 2m)) extrude 3m block\n"),
+        "3:49 the points of an outline are all lengths or all shares of the scope; write shares here too, such as "
+        "'(50%, 25%)'\n");
+}
+
+}  // namespace
+}  // namespace sgm
