@@ -14,8 +14,8 @@
 #include <map>
 
 #include "cli/commands.h"
-#include "cli/numbers.h"
 #include "cli/requests.h"
+#include "cli/validators.h"
 #include "cli/watch.h"
 #include "modeler/core/stopwatch.h"
 #include "modeler/tiles/deliver.h"
@@ -162,7 +162,7 @@ void addBake(CLI::App& app, int& exitCode) {
     command
         ->add_option("--missing", options->missing,
                      "Make nothing; print which of so many tasks aren't done, as 3,7,12-15, for job arrays")
-        ->check(CLI::Range(1, 1'000'000));
+        ->check(wholeNumber(1, 1'000'000));
     command->add_option("--side", options->bake.side_m, "Side of the finest cells, metres")
         ->check(between(1, 1e5))
         ->capture_default_str();
@@ -178,14 +178,14 @@ void addBake(CLI::App& app, int& exitCode) {
         ->add_option(
             "--pack", options->pack,
             "How triangles are stored: meshopt (EXT_meshopt_compression over 16-bit positions) or none (floats)")
-        ->check(CLI::IsMember({"meshopt", "none"}))
+        ->check(oneOf({"meshopt", "none"}))
         ->capture_default_str();
     command
         ->add_option("--levels", options->bake.levels,
                      "Levels of detail, each over cells twice as wide: objects, coarser ones, then their boxes")
-        ->check(CLI::Range(1, 8))
+        ->check(wholeNumber(1, 8))
         ->capture_default_str();
-    command->add_option("--threads", options->threads, "Threads; 0 = all")->check(CLI::Range(0, 1024));
+    command->add_option("--threads", options->threads, "Threads; 0 = all")->check(wholeNumber(0, 1024));
     command->add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
     command->footer(
         "Examples:\n  sgm bake examples/city/town.sgm -o city && sgm merge city\n"
@@ -204,7 +204,7 @@ void addMerge(CLI::App& app, int& exitCode) {
     command
         ->add_option("--for", options->format,
                      "Write the finest cells for other programs too: plain glTF for Blender, USD, height maps")
-        ->check(CLI::IsMember({"blender", "usd", "heights"}));
+        ->check(oneOf({"blender", "usd", "heights"}));
     command->add_flag("--verify", options->verify, "Read every cell and compare it with its digest");
     command->add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
     command->add_flag("--progress", options->progressLines,

@@ -105,6 +105,7 @@ Status buildOne(const BuildRequest& request) {
 }
 
 int build(BuildRequest request) {
+    request.model.quiet = request.quiet;
     Status done = checkRequest(request);
     if (done.ok() && request.animations.empty()) {
         request.model.targets = targetsOf(request, 0);

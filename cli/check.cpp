@@ -8,9 +8,9 @@
 
 #include "cli/commands.h"
 #include "cli/messages.h"
-#include "cli/numbers.h"
 #include "cli/requests.h"
 #include "cli/trials.h"
+#include "cli/validators.h"
 #include "cli/watch.h"
 #include "grammar/operations/operations.h"
 #include "grammar/pipeline/files.h"
@@ -59,6 +59,12 @@ int tryGrammar(const std::string& file, const std::shared_ptr<const rules::Gramm
     return trials->budgetSpent ? 3 : 0;
 }
 
+/// "fine", or how many warnings there are.
+std::string verdictOn(const syntax::Diagnostics& warnings) {
+    const size_t count = warnings.all().size();
+    return count == 0 ? "fine" : fmt::format("no errors, {} warning{}", count, count == 1 ? "" : "s");
+}
+
 int checkOne(const std::string& file, const CheckRequest& request, nlohmann::json& found) {
     const auto source = pipeline::readSource(file);
     if (!source.ok()) return fail(source.error());
@@ -71,7 +77,7 @@ int checkOne(const std::string& file, const CheckRequest& request, nlohmann::jso
         for (auto& entry : nlohmann::json::parse(syntax::toJson(diagnostics))) found.push_back(std::move(entry));
     } else {
         printDiagnostics(diagnostics);
-        if (!diagnostics.hasErrors() && code == 0) fmt::print("{}: fine\n", file);
+        if (!diagnostics.hasErrors() && code == 0) fmt::print("{}: {}\n", file, verdictOn(diagnostics));
     }
     return diagnostics.hasErrors() ? std::max(1, code) : code;
 }
@@ -91,14 +97,14 @@ void addCheck(CLI::App& app, int& exitCode) {
         "check", "Show every problem of grammar files, also of what they derive, and run their `check` lines");
     auto request = std::make_shared<CheckRequest>();
     command->add_option("FILE", request->files, "Grammar files (.sgm)")->required();
-    command->add_option("--seed", request->seed, "Seed for the `check` lines")->capture_default_str();
+    command->add_option("--seed", request->seed, "Seed for the `check` lines")->check(anySeed())->capture_default_str();
     command
         ->add_option("--max-seconds", request->seconds,
                      "Budget of time for all `check` lines of a file, and for the model that `sgm build` makes of it")
         ->check(between(1e-3, 1e9))
         ->capture_default_str();
     command->add_option("--max-shapes", request->shapes, "Budget of derived shapes of each model")
-        ->check(CLI::Range(uint64_t{1}, uint64_t{4'000'000'000}))
+        ->check(wholeNumber(1, 4'000'000'000))
         ->capture_default_str();
     command
         ->add_option("--try-seconds", request->otherSeconds,

@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/requests.h"
+#include "cli/validators.h"
 #include "grammar/language/words.h"
 #include "grammar/pipeline/files.h"
 #include "grammar/syntax/lexer.h"
@@ -169,7 +170,7 @@ void addExamples(CLI::App& app, int& exitCode) {
     fresh->add_option("NAME", *name, "Its name: NAME.sgm is written")->required();
     std::vector<std::string> kinds;
     for (const Template& t : templates) kinds.emplace_back(t.name);
-    fresh->add_option("--template", *kind, "What it begins as")->check(CLI::IsMember(kinds))->capture_default_str();
+    fresh->add_option("--template", *kind, "What it begins as")->check(oneOf(kinds))->capture_default_str();
     fresh->callback([name, kind, &exitCode] { exitCode = writeNew(*name, *kind); });
 
     CLI::App* list = app.add_subcommand("examples", "List the examples, or copy one with what it uses");

@@ -7,7 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/messages.h"
-#include "cli/numbers.h"
+#include "cli/validators.h"
 #include "cli/variations.h"
 #include "cli/watch.h"
 #include "grammar/operations/operations.h"
@@ -234,6 +234,7 @@ Status mutated(const MutateRequest& request) {
 }
 
 int mutate(MutateRequest request) {
+    request.model.quiet = request.quiet;
     if (!request.output.empty()) request.model.targets.push_back({"-o", request.output});
     const Status done = mutated(request);
     return done.ok() ? 0 : fail(done.error());
@@ -247,9 +248,9 @@ void addMutate(CLI::App& app, int& exitCode) {
     auto request = std::make_shared<MutateRequest>();
     addModelOptions(*command, request->model);
     command->add_option("-o,--output", request->output, "Sheet to write (.png)");
-    command->add_option("--rows", request->rows, "Rows of the sheet")->check(CLI::Range(1, 20))->capture_default_str();
+    command->add_option("--rows", request->rows, "Rows of the sheet")->check(wholeNumber(1, 20))->capture_default_str();
     command->add_option("--cols", request->columns, "Columns of the sheet")
-        ->check(CLI::Range(1, 20))
+        ->check(wholeNumber(1, 20))
         ->capture_default_str();
     command->add_option("--size", request->size, "Pixels of one picture, WxH")->capture_default_str();
     command->add_option("--lock", request->lock, "Leave a parameter as it is; may be given again")
@@ -258,12 +259,12 @@ void addMutate(CLI::App& app, int& exitCode) {
         ->check(between(0, 1))
         ->capture_default_str();
     command->add_option("--resolution", request->resolution, "Cells along the longest side of the mesh that is judged")
-        ->check(CLI::Range(16, 1024))
+        ->check(wholeNumber(16, 1024))
         ->capture_default_str();
     command->add_option("--threads", request->threads, "Threads (0: all)")
-        ->check(CLI::Range(0, 1024))
+        ->check(wholeNumber(0, 1024))
         ->capture_default_str();
-    command->add_option("--pick", request->pick, "Number of the variation to keep")->check(CLI::NonNegativeNumber);
+    command->add_option("--pick", request->pick, "Number of the variation to keep")->check(wholeNumber(0, 1000));
     command->add_option("--save", request->save, "Name of the style it becomes");
     command->add_flag("-q,--quiet", request->quiet, "Say nothing but errors");
     command->footer(

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "cli/numbers.h"
 #include "cli/renamed.h"
+#include "cli/validators.h"
 #include "grammar/lower/objects.h"
 #include "grammar/lower/solid_tree.h"
 #include "modeler/mesh/proxy.h"
@@ -146,13 +146,13 @@ void addOutputOptions(CLI::App& command, OutputRequest& request) {
         .add_option(
             "--lod", request.lod,
             "Levels of detail, the finest included; each further one is off by twice as much: see docs/programs.md")
-        ->check(CLI::Range(1, mesh::mostLevels))
+        ->check(wholeNumber(1, mesh::mostLevels))
         ->capture_default_str();
     command
         .add_option(
             "--collider", request.collider,
             "Add colliders to .glb and .gltf: boxes or convex parts made from the terminals, or the mesh, simplified")
-        ->check(CLI::IsMember({"boxes", "convex", "mesh"}));
+        ->check(oneOf({"boxes", "convex", "mesh"}));
     auto* proxy = command.add_option(
         "--proxy", request.proxy,
         "Mesh file for a coarse closed mesh around the model; goes with the next version: see --collider");

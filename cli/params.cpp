@@ -13,7 +13,11 @@ namespace {
 
 std::string rangeText(const rules::Param& p) {
     if (!p.choices.empty()) return fmt::format("of {}", fmt::join(p.choices, ", "));
-    return p.lo && p.hi ? fmt::format("in {}..{}", rules::toText(*p.lo), rules::toText(*p.hi)) : "";
+    if (!p.lo || !p.hi) return "";
+    const std::string lo = rules::toText(*p.lo), hi = rules::toText(*p.hi);
+    const bool isReal = rules::kindName(p.value) == "real" && p.value.units[0] == rules::Unit::None;
+    const bool looksWhole = lo.find('.') == std::string::npos && hi.find('.') == std::string::npos;
+    return fmt::format("in {}..{}{}", lo, hi, isReal && looksWhole ? ".0" : "");  // 0..1 would be whole numbers
 }
 
 int params(const std::string& file, bool json, bool panel) {

@@ -8,14 +8,15 @@
 #include <optional>
 
 #include "cli/animation.h"
+#include "cli/camera.h"
 #include "cli/commands.h"
 #include "cli/fog_picture.h"
 #include "cli/ids.h"
 #include "cli/mesh_warnings.h"
 #include "cli/messages.h"
-#include "cli/numbers.h"
 #include "cli/renamed.h"
 #include "cli/requests.h"
+#include "cli/validators.h"
 #include "cli/watch.h"
 #include "grammar/pipeline/mesh_edits.h"
 #include "grammar/pipeline/missing.h"
@@ -70,28 +71,6 @@ Result<render::PictureOptions> parseSize(const std::string& text) {
 
 /// A mesh with what its triangles are, as it is drawn: with the objects that `place` puts at all their places.
 using DrawnMesh = std::optional<mesh::FlatScene>;
-
-/// "ex,ey,ez,ax,ay,az": where the eye is and what it looks at, metres; "inside"; or nothing for the default frame.
-Result<render::Camera> parseCamera(const RenderRequest& request, const Model& model, const Box3f& bounds,
-                                   double aspect) {
-    const std::string& text = request.camera;
-    const bool hasObjects = !model.derivation.objects.empty();  // which the tape is without
-    if (text.empty() && hasObjects) return render::frame(bounds, aspect);
-    if (text.empty())
-        return request.turntable > 0 ? render::frameTurning(model.tape, bounds, aspect)
-                                     : render::frame(model.tape, bounds, aspect);
-    if (text == "inside" && hasObjects)
-        return Error{Error::Kind::Usage, "--camera inside: with objects that 'place' puts, say where the eye is"};
-    if (text == "inside") return render::inside(model.tape, bounds);
-    render::Camera c;
-    int used = 0;
-    if (std::sscanf(text.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf%n", &c.eye.x, &c.eye.y, &c.eye.z, &c.at.x, &c.at.y, &c.at.z,
-                    &used) != 6 ||
-        used != static_cast<int>(text.size()) || c.eye == c.at)
-        return Error{Error::Kind::Usage,
-                     fmt::format("--camera {}: write EYE,AT as x,y,z,x,y,z in metres, or 'inside'", text)};
-    return c;
-}
 
 bool isExr(const RenderRequest& request) { return fs::path(request.output).extension() == ".exr"; }
 
@@ -277,8 +256,10 @@ Status drawAll(const RenderRequest& request) {
     }
     const Box3f bounds = model->derivation.objects.empty() ? render::tighten(model->tape, model->lowered->field.bounds)
                                                            : mesh->mesh.bounds();
-    const auto camera = parseCamera(request, *model, bounds, static_cast<double>(options->width) / options->height);
+    const auto camera = cameraFor(request.camera, request.turntable > 0, *model, bounds,
+                                  static_cast<double>(options->width) / options->height);
     if (!camera.ok()) return camera.error();
+    if (!request.print.quiet && request.view != "fog") warnOfEye(*model, *camera);
     options->camera = *camera;
     options->samples = request.samples;
     options->threads = request.grid.threads;
@@ -309,6 +290,7 @@ std::vector<Target> targetsOf(const RenderRequest& request) {
 }
 
 int render(RenderRequest request) {
+    request.model.quiet = request.print.quiet;
     Status done = checkRequest(request);
     if (done.ok()) request.model.targets = targetsOf(request);
     if (done.ok()) done = checkTargets(request.model.targets);
@@ -326,12 +308,12 @@ void addRayOptions(CLI::App& app, RenderRequest& request) {
         ->allow_extra_args(false);
     addRenamedOption(app, "--export", "--format-option", request.fog.options);
     app.add_option("--samples", request.samples, "Samples a pixel, for smooth edges")
-        ->check(CLI::Range(1, 64))
+        ->check(wholeNumber(1, 64))
         ->capture_default_str();
     app.add_option("--rays", request.rays,
                    "Who walks the rays of a field: shaders, the processor, or what is best here, the processor where "
                    "OpenGL has no GPU")
-        ->check(CLI::IsMember({"best", "shaders", "processor"}))
+        ->check(oneOf({"best", "shaders", "processor"}))
         ->capture_default_str();
 }
 
@@ -351,7 +333,7 @@ void addRender(CLI::App& app, int& exitCode) {
         ->add_option("--view", request->view,
                      "What is drawn: the field, its mesh, the mesh with a hue for each smooth piece (labels) or with "
                      "its hard edges (creases), fog in its place, or the facade ids and storeys of what is clad")
-        ->check(CLI::IsMember({"field", "mesh", "labels", "creases", "fog", "ids"}))
+        ->check(oneOf({"field", "mesh", "labels", "creases", "fog", "ids"}))
         ->capture_default_str();
     command->add_option("--camera", request->camera,
                         "x,y,z,x,y,z: the eye and what it looks at; or 'inside' for a cave");
@@ -361,11 +343,11 @@ void addRender(CLI::App& app, int& exitCode) {
                      "with their names in the file")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(CLI::IsMember(render::layerNames()));
+        ->check(oneOf(render::layerNames()));
     command
         ->add_option("--turntable", request->turntable,
                      "Draw this many pictures around the model; -o needs a number: turn_%04d.png")
-        ->check(CLI::Range(1, 10'000));
+        ->check(wholeNumber(1, 10'000));
     addRayOptions(*command, *request);
     command->add_flag("--wires", request->wires, "Draw the edges of the mesh's triangles");
     command->add_flag("--no-ground", request->noGround, "Leave out the ground");

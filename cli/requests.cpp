@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "cli/messages.h"
-#include "cli/numbers.h"
+#include "cli/validators.h"
 #include "cli/watch.h"
 #include "grammar/operations/operations.h"
 #include "grammar/pipeline/files.h"
@@ -32,9 +32,9 @@ void addModelOptions(CLI::App& command, ModelRequest& request) {
     command.add_option("--set", request.settings, "Set a parameter, NAME=VALUE; may be given again")
         ->allow_extra_args(false);
     command.add_option("--style", request.style, "Use a named set of parameter values");
-    command.add_option("--seed", request.seed, "Seed of all random choices")->capture_default_str();
+    command.add_option("--seed", request.seed, "Seed of all random choices")->check(anySeed())->capture_default_str();
     command.add_option("--max-shapes", request.shapeBudget, "Budget of derived shapes")
-        ->check(CLI::Range(uint64_t{1}, mostShapes))
+        ->check(wholeNumber(1, mostShapes))
         ->capture_default_str();
     command.add_option("--max-seconds", request.secondsBudget, "Budget of time for the derivation")
         ->check(between(1e-3, 1e9))
@@ -50,19 +50,17 @@ void addSectionOption(CLI::App& command, ModelRequest& request) {
 void addGridOptions(CLI::App& command, GridRequest& request) {
     auto* resolution =
         command.add_option("--resolution", request.resolution, "Cells along the longest side of the bounds");
-    resolution->check(CLI::Range(2, 8192))->capture_default_str();
+    resolution->check(wholeNumber(2, 8192))->capture_default_str();
     command.add_option("--cell", request.cell_m, "Edge of a cell in metres")
         ->check(between(1e-6, 1e6))
         ->excludes(resolution);
-    const std::map<std::string, mesh::Surface> surfaces{{"crisp", mesh::Surface::Crisp},
-                                                        {"cubes", mesh::Surface::Cubes}};
     command
         .add_option("--surface", request.surface,
                     "crisp: creases and borders of materials are exact; cubes: plain marching cubes")
-        ->transform(CLI::CheckedTransformer(surfaces, CLI::ignore_case))
+        ->transform(namedValue({{"crisp", int(mesh::Surface::Crisp)}, {"cubes", int(mesh::Surface::Cubes)}}))
         ->option_text("{crisp,cubes} [crisp]");
     command.add_option("--threads", request.threads, "Threads (0: all)")
-        ->check(CLI::Range(0, 1024))
+        ->check(wholeNumber(0, 1024))
         ->capture_default_str();
 }
 
@@ -76,15 +74,15 @@ void addObjectOptions(CLI::App& command, GridRequest& request) {
 }
 
 void addEditOptions(CLI::App& command, MeshEdits& edits) {
-    const std::map<std::string, mesh::Keep> kept{
-        {"all", mesh::Keep::All}, {"grounded", mesh::Keep::Grounded}, {"largest", mesh::Keep::Largest}};
     command
         .add_option("--keep", edits.keep,
                     "Which separate solids stay: all, those that stand and aren't debris, or the largest one; the "
                     "latter two fill closed cavities")
-        ->transform(CLI::CheckedTransformer(kept))
+        ->transform(namedValue({{"all", int(mesh::Keep::All)},
+                                {"grounded", int(mesh::Keep::Grounded)},
+                                {"largest", int(mesh::Keep::Largest)}}))
         ->option_text("{all,grounded,largest} [all]");
-    command.add_option("--smooth", edits.smooth, "Passes of Laplacian smoothing")->check(CLI::Range(0, 1000));
+    command.add_option("--smooth", edits.smooth, "Passes of Laplacian smoothing")->check(wholeNumber(0, 1000));
     auto* share = command.add_option("--simplify", edits.simplify, "Simplify to at most this share of the triangles");
     share->check(between(0.001, 1));
     command
@@ -107,7 +105,7 @@ Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& re
     auto grammar = context.timed(
         "check", [&] { return rules::check(ast, pipeline::fileLoader(context.progress, &inputs), diagnostics); });
     if (cancelled(context.progress)) return cancelledError();
-    printDiagnostics(diagnostics);
+    if (!request.quiet || diagnostics.hasErrors()) printDiagnostics(diagnostics);
     if (inputs.overBudget)
         return Error{Error::Kind::Budget, "a file that the grammar reads is too large, or would take too much work"};
     if (diagnostics.hasErrors()) return Error{Error::Kind::Reported, "the grammar has errors"};
@@ -127,7 +125,11 @@ Result<Model> makeModel(const ModelRequest& request, Context& context, pipeline:
     if (request.section.empty()) return makeModel(*grammar, *options, context, objects);
     auto derivation = context.timed("derive", [&] { return derive::derive(*grammar, *options, context.progress); });
     if (!derivation.ok()) return derivation.error();
-    return makeModel(std::move(*derivation), *section, context);
+    auto cut = makeModel(std::move(*derivation), *section, context);
+    if (cut.ok() && section->isBeside(cut->lowered->field.bounds))
+        printMessage("warning: --section {} cuts nothing: the model reaches from {:.4g} to {:.4g} m\n", request.section,
+                     cut->lowered->field.bounds.lo[section->axis], cut->lowered->field.bounds.hi[section->axis]);
+    return cut;
 }
 
 pipeline::SceneRequest sceneRequestOf(const ModelRequest& request, const GridRequest& grid) {

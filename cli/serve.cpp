@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/requests.h"
+#include "cli/validators.h"
 #include "cli/watch.h"
 #include "modeler/tiles/page.h"
 
@@ -109,7 +110,7 @@ void addServe(CLI::App& app, int& exitCode) {
     auto options = std::make_shared<ServeOptions>();
     command->add_option("FOLDER", options->folder, "What `sgm merge` wrote")->required();
     command->add_option("--port", options->port, "Port on 127.0.0.1; 0 takes any that is free")
-        ->check(CLI::Range(0, 65535))
+        ->check(wholeNumber(0, 65535))
         ->capture_default_str();
     command->add_flag("-q,--quiet", options->quiet, "Say nothing but errors");
     command->footer("Example:\n  sgm serve city");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/validators.h"
 
 namespace sgm::cli {
 namespace {
@@ -220,9 +221,7 @@ void addShell(CLI::App& app, int& exitCode) {
     CLI::App* completion =
         app.add_subcommand("completion", "Print the script that completes commands and options in a shell");
     auto shell = std::make_shared<std::string>();
-    completion->add_option("SHELL", *shell, "bash, zsh or fish")
-        ->required()
-        ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+    completion->add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(oneOf({"bash", "zsh", "fish"}));
     completion->callback([&app, shell, &exitCode] {
         fmt::print("{}", *shell == "bash" ? bashScript(app) : *shell == "zsh" ? zshScript(app) : fishScript(app));
         exitCode = 0;

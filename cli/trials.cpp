@@ -155,6 +155,8 @@ private:
         Context context{progress_};
         const auto meshed = makeMesh(model, GridRequest{}, context);
         if (!meshed.ok()) return meshed.error();
+        if (meshed->mesh.triangleCount() == 0 && model.derivation.objects.empty())
+            return pipeline::noSurface(model, meshed->grid.cell_m);
         const auto found = pipeline::meshWarnings(model, meshed->mesh, meshed->grid, context);
         if (!found.ok()) return found.error();
         // Where the cells lack parts, what seems to hang over a gap may stand on them.

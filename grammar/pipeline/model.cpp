@@ -1,6 +1,7 @@
 #include "grammar/pipeline/model.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "grammar/pipeline/scene.h"
 #include "grammar/rules/check.h"
@@ -18,8 +19,14 @@ Result<uint32_t> find(const List& list, const std::string& wanted, const char* w
         if (names.back() == wanted) return i;
     }
     const std::string near = syntax::didYouMean(wanted, names);
-    return Error{Error::Kind::Usage, fmt::format("no {} is called '{}'{}", what, wanted,
-                                                 near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near))};
+    constexpr size_t most = 20;
+    const bool all = names.size() <= most;
+    if (!all) names.resize(most);
+    return Error{Error::Kind::Usage, fmt::format("no {} is called '{}'{}; {}{}", what, wanted,
+                                                 near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near),
+                                                 names.empty() ? fmt::format("the grammar has no {}", what)
+                                                               : fmt::format("there are {}", fmt::join(names, ", ")),
+                                                 all ? "" : " …")};
 }
 
 void applySettings(const rules::Style& style, const ValueChange& change, derive::Options& options) {

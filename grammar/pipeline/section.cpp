@@ -15,6 +15,10 @@ double Section::offset_m(const Box3f& bounds) const {
     return isShare ? low + (high - low) * at : at;
 }
 
+bool Section::isBeside(const Box3f& bounds) const {
+    return !isShare && (at < static_cast<double>(bounds.lo[axis]) || at > static_cast<double>(bounds.hi[axis]));
+}
+
 Vec3d Section::normal() const {
     Vec3d normal{0, 0, 0};
     normal[axis] = leavesLow ? 1 : -1;

@@ -33,6 +33,7 @@ TEST_F(Check, RefusesWhatBuildRefuses) {
     expectRefused("start A -> cube & sphere move (9,0,0)\n", "2:1", "nothing solid is left of 'A'");
     expectRefused("start A -> nil\n", "2:1", "nothing solid is left of 'A'");
     expectRefused("start A -> cube size 2 - cube size 4\n", "2:1", "nothing solid is left of 'A'");
+    expectRefused("start A -> cube - cube\n", "2:1", "there is no surface at cells of");
     expectRefused("start A -> cube with n = n : B\nrule B -> + cube size n at +x\n", "2:26",
                   "neither this shape nor any above it sets 'n'");
     expectRefused("start A -> size 10 split x { { 0m: cube }* }\n", "2:30", "what repeats has no extent");

@@ -1,0 +1,21 @@
+// The camera of a picture, as the command line says it.
+// Enters: a text and a model. Leaves: a camera. Assumes metres.
+#pragma once
+
+#include <string>
+
+#include "grammar/pipeline/model.h"
+#include "viewer/render/draw.h"
+
+namespace sgm::cli {
+
+/// "ex,ey,ez,ax,ay,az" says where the eye is and what it looks at, metres; "inside" looks for a place in the largest
+/// hollow; "" frames the bounds, of a model that turns at every angle. Error::Usage for anything else.
+Result<render::Camera> cameraFor(const std::string& text, bool turns, const pipeline::Model& model, const Box3f& bounds,
+                                 double aspect);
+
+/// Tells on stderr when the eye stands within the model's solid, from where walls are seen from their inner sides. Of
+/// objects that are kept apart nothing is known.
+void warnOfEye(const pipeline::Model& model, const render::Camera& camera);
+
+}  // namespace sgm::cli
