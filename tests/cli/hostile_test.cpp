@@ -183,8 +183,8 @@ TEST_F(Hostile, CladdingInCladdingHasABudget) {
 }
 
 TEST_F(Hostile, LsystemsOfManyWallsHaveABudget) {
-    const Outcome run = quick("check " + grammar("lsystem P passes 12 angle 90deg step 1m\n  axiom \"[[[[[F\"\n"
-                                                 "  F -> \"[F[+F]F\"\nstart A -> footprint P extrude 3m\n"));
+    const Outcome run = quick("check " + grammar("lsystem P passes 12 angle 90deg step 1m\n  axiom \"[[[[[F]]]]]\"\n"
+                                                 "  F -> \"[F[+F]F]\"\nstart A -> footprint P extrude 3m\n"));
     EXPECT_EQ(run.code, 3) << run.out;
     EXPECT_NE(run.out.find("walls"), std::string::npos) << run.out;
     EXPECT_NE(run.out.find("test.sgm:5:"), std::string::npos) << run.out;
