@@ -19,7 +19,6 @@
 #include "cli/validators.h"
 #include "cli/watch.h"
 #include "grammar/pipeline/mesh_edits.h"
-#include "grammar/pipeline/missing.h"
 #include "modeler/core/conventions.h"
 #include "modeler/core/packages.h"
 #include "viewer/render/draw.h"

@@ -126,7 +126,7 @@ Result<Model> makeModel(const ModelRequest& request, Context& context, pipeline:
     auto derivation = context.timed("derive", [&] { return derive::derive(*grammar, *options, context.progress); });
     if (!derivation.ok()) return derivation.error();
     auto cut = makeModel(std::move(*derivation), *section, context);
-    if (cut.ok() && section->isBeside(cut->lowered->field.bounds))
+    if (!request.quiet && cut.ok() && section->isBeside(cut->lowered->field.bounds))
         printMessage("warning: --section {} cuts nothing: the model reaches from {:.4g} to {:.4g} m\n", request.section,
                      cut->lowered->field.bounds.lo[section->axis], cut->lowered->field.bounds.hi[section->axis]);
     return cut;

@@ -37,7 +37,7 @@ struct ModelRequest : pipeline::ModelChoice {
     std::string file;
     std::string section;          ///< as pipeline::parseSection reads it; "" for the whole model
     std::vector<Target> targets;  ///< what will be written, which may replace no file that is read
-    bool quiet = false;           ///< warnings of the grammar's text aren't printed
+    bool quiet = false;           ///< warnings of the text and of the section aren't printed
 };
 /// Adds FILE, --start, --derive, --set, --style, --seed and the budgets.
 void addModelOptions(CLI::App& command, ModelRequest& request);

@@ -131,7 +131,6 @@ private:
             else
                 known->count += closed.count;
         }
-        into_.selections.add(object_.selections);
         for (const Warning& warning : object_.warnings)
             if (std::none_of(into_.warnings.begin(), into_.warnings.end(),
                              [&](const Warning& w) { return isAt(w, warning.span); }))

@@ -15,8 +15,8 @@ Explanation noEdgeCalled(std::string_view word, const plan::Footprint& footprint
     std::vector<std::string> words(std::begin(plan::commonEdgeWords), std::end(plan::commonEdgeWords));
     words.insert(words.end(), others.begin(), others.end());
     for (const plan::PlacedEdge& edge : plan::edgesOf(footprint))
-        for (std::string& word : plan::edgeWords(footprint, edge))
-            if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(std::move(word));
+        for (std::string& own : plan::edgeWords(footprint, edge))
+            if (std::find(words.begin(), words.end(), own) == words.end()) words.push_back(std::move(own));
     std::string hint = rules::nearestHint(word, words);
     if (hint.empty()) hint = fmt::format("the words here are {}", fmt::join(words, ", "));
     return {fmt::format("no edge of this plan is called '{}', {}", word, therefore), std::move(hint)};

@@ -137,8 +137,8 @@ public:
     /// The thinnest of the missing parts that hold the piece; null where none does.
     const lower::ThinPart* find(const mesh::ConnectedComponent& piece, double cell_m) const {
         if (missing_.empty() || missing_.size() * shapes_.size() > mostPairs) return nullptr;
-        derive::Scope
-            around;  // a shape of the piece may have surface elsewhere, and thin parts there don't hold this one
+        // A shape of the piece may have surface elsewhere, and thin parts there don't hold this one.
+        derive::Scope around;
         around.centre = piece.bounds.centre().as<double>();
         around.size = piece.bounds.size().as<double>();
         std::set<derive::ShapeId> own;

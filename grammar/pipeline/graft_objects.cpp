@@ -55,6 +55,7 @@ Status graftObjects(Derivation& derivation, Objects objects, const derive::Budge
         uint64_t shapes = model.tree.shapes.size();
         for (const Placement& placement : derive::placementsOf(model))
             shapes += made.shapesOf(made.of(made.ofModel(), placement.object));
+        derivation.selections.add(made.selections());
         const bool copies = shapes <= budget.shapes;
         if (copies || objects == Objects::Sketched) return graftAll(derivation, made, copies, context.progress);
         return Error{Error::Kind::Budget,

@@ -78,6 +78,8 @@ public:
     Result<std::vector<Place>> places(uint64_t most) const;
     /// Shapes of the object with those of all that it holds.
     uint64_t shapesOf(uint32_t index);
+    /// Which places of the text picked something in one of them.
+    const derive::Selections& selections() const { return selections_; }
     /// What derive::warnings says of them, each once.
     syntax::Diagnostics warnings() const;
     /// The object's derivation, taken out of it: it has none any more. May be called for different objects at once.

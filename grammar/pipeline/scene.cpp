@@ -35,11 +35,9 @@ public:
         seekThinParts();
         std::vector<uint32_t> todo = different();
         std::erase_if(todo, [&](uint32_t object) { return !isLookedAt_[object]; });
-        std::vector<Made> made(todo.size());
-        const Status done =
-            forAll(todo, [&](size_t i, uint32_t object, Context& own) { return make(object, &made[i], own); });
-        if (!done.ok()) return done.error();
-        return lacksOf(made);
+        const auto made = meshAll(todo);
+        if (!made.ok()) return made.error();
+        return lacksOf(*made);
     }
 
     /// Lowers and meshes every object.
@@ -47,10 +45,9 @@ public:
         meshed_.assign(objects_.size(), derive::none);
         if (request_.seeksThinParts) seekThinParts();
         const std::vector<uint32_t> todo = different();
-        std::vector<Made> made(todo.size());
-        const Status done =
-            forAll(todo, [&](size_t i, uint32_t object, Context& own) { return make(object, &made[i], own); });
-        if (!done.ok()) return done;
+        auto meshed = meshAll(todo);
+        if (!meshed.ok()) return meshed.error();
+        std::vector<Made>& made = *meshed;
         out.meshWarnings = lacksOf(made);
         mesh::Scene* const scene = &out.scene;
         std::map<std::string, uint32_t> numbers;
@@ -105,6 +102,14 @@ private:
         for (const Status& s : done)
             if (!s.ok()) return s;
         return Done{};
+    }
+
+    Result<std::vector<Made>> meshAll(const std::vector<uint32_t>& todo) {
+        std::vector<Made> made(todo.size());
+        const Status done =
+            forAll(todo, [&](size_t i, uint32_t object, Context& own) { return make(object, &made[i], own); });
+        if (!done.ok()) return done.error();
+        return made;
     }
 
     /// Chooses the first object of each start that has something solid of its own.

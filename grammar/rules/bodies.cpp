@@ -183,16 +183,16 @@ Expr loopDomain(CheckContext& ctx, Place& place, const Written& e, Type& type) {
     return result;
 }
 
-/// What a name means already, for a message: "names a value of the file (line 3)".
+/// What a name means already, for a message: "names a value of the file (line 3)"; "" where it means nothing.
 std::string meaningOf(const CheckContext& ctx, const Place& place, const std::string& name) {
     const auto isName = [&](const auto& l) { return l.name == name; };
     const auto lineOf = [](syntax::SourceSpan span) { return span.source->place(span.begin).line; };
     if (std::any_of(place.locals.begin(), place.locals.end(), isName)) return "names another value of this body";
     if (const auto param = ctx.names.params.find(name); param != ctx.names.params.end())
         return fmt::format("names a parameter (line {})", lineOf(ctx.grammar.params[param->second].span));
-    if (const auto let = ctx.names.lets.find(name); let != ctx.names.lets.end() && let->second.decl)
+    if (const auto let = ctx.names.lets.find(name); let != ctx.names.lets.end())
         return fmt::format("names a value of the file (line {})", lineOf(let->second.decl->span));
-    return "names a value that a 'with' sets";
+    return ctx.names.inherited.contains(name) ? "names a value that a 'with' sets" : "";
 }
 
 void checkLoop(CheckContext& ctx, Place& place, const syntax::Element& written, Element& out) {
@@ -232,15 +232,12 @@ void checkLet(CheckContext& ctx, Place& place, const syntax::Element& written, E
     place.material = true;
     Typed value = written.over ? checkExpression(ctx, place, *written.over) : Typed{{}, Type::unknown()};
     place.material = false;
-    const auto isName = [&](const auto& l) { return l.name == name; };
-    const bool taken = isTaken(name) || axisNumber(name) >= 0;
-    if (taken || std::any_of(place.locals.begin(), place.locals.end(), isName) || ctx.names.params.contains(name) ||
-        ctx.names.lets.contains(name) || ctx.names.inherited.contains(name))
-        ctx.diagnostics.error(
-            written.variable.span,
-            fmt::format("'{}' {}", name,
-                        taken ? "is a word of the language and can't name a value" : meaningOf(ctx, place, name)),
-            "give the value another name");
+    const bool isWord = isTaken(name) || axisNumber(name) >= 0;
+    const std::string meaning =
+        isWord ? "is a word of the language and can't name a value" : meaningOf(ctx, place, name);
+    if (!meaning.empty())
+        ctx.diagnostics.error(written.variable.span, fmt::format("'{}' {}", name, meaning),
+                              "give the value another name");
     out.over = std::move(value.expr);
     out.local = place.frame++;
     place.locals.push_back({name, out.local, value.type});

@@ -58,6 +58,12 @@ Typed makeApplied(CheckContext& ctx, Expr::Kind kind, Fn fn, SourceSpan span, st
     return result;
 }
 
+/// Whether the text is ".3" of "1...3", a number behind the dots of a range.
+static bool followsTwoDots(syntax::SourceSpan span) {
+    return span.source && span.begin >= 2 && span.text().starts_with('.') &&
+           span.source->text().substr(span.begin - 2, 2) == "..";
+}
+
 bool expectType(CheckContext& ctx, const Typed& value, Want want, std::string_view what, const Written* written) {
     if (fits(value.type, want)) return true;
     const bool angle = want == Want::Angle || want == Want::Angles;
@@ -77,9 +83,7 @@ bool expectType(CheckContext& ctx, const Typed& value, Want want, std::string_vi
     if (want == Want::Color && written && written->kind == Written::Kind::Text && written->text.starts_with('#'))
         hint = "leave the quotes out";
     if (want == Want::Count && value.type.like.kind == Value::Kind::Number && value.type.like.units[0] == Unit::None)
-        hint = value.expr.span.text().find("...") != std::string_view::npos || value.expr.span.text().starts_with(".")
-                   ? "a range has two dots, as in '1..3'"
-                   : "write 'round(…)' around it";
+        hint = followsTwoDots(value.expr.span) ? "a range has two dots, as in '1..3'" : "write 'round(…)' around it";
     const std::string got = want == Want::Count && !hint.empty() ? "may have a fraction" : "is " + describe(value.type);
     ctx.diagnostics.error(value.expr.span, fmt::format("{} takes {}, but this {}", what, describe(want), got),
                           std::move(hint));

@@ -13,10 +13,16 @@
 namespace sgm::rules {
 namespace {
 
-/// Whether a share other than 0 and 100 % is written somewhere in it.
+/// Whether a component is a share other than 0 and 100 %.
+bool isShare(const Value& v) {
+    for (size_t i = 0; i < std::min<size_t>(v.count, v.units.size()); ++i)
+        if (v.units[i] == Unit::Share && v.n[i] != 1 && v.n[i] != 0) return true;
+    return false;
+}
+
+/// Whether such a share is written somewhere in it.
 bool holdsShare(const Expr& e) {
-    if (e.kind == Expr::Kind::Constant && e.value.units[0] == Unit::Share && e.value.n[0] != 0 && e.value.n[0] != 1)
-        return true;
+    if (e.kind == Expr::Kind::Constant && isShare(e.value)) return true;
     return std::any_of(e.args.begin(), e.args.end(), holdsShare);
 }
 
@@ -285,11 +291,6 @@ void findShadowed(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
 }
 
 void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
-    const auto isShare = [](const Value& v) {
-        for (size_t i = 0; i < std::min<size_t>(v.count, v.units.size()); ++i)
-            if (v.units[i] == Unit::Share && v.n[i] != 1 && v.n[i] != 0) return true;
-        return false;
-    };
     for (uint32_t s = 0; s < grammar.starts.size(); ++s) {
         const std::vector<Value> params = valuesOf(grammar, s);
         for (const auto& chain : grammar.starts[s].body.siblings) {

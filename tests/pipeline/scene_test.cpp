@@ -176,6 +176,23 @@ nlohmann::json gltfOf(const std::string& text, int threads, const std::string& p
     return nlohmann::json::parse(bytes);
 }
 
+TEST(Scene, WordsThatNoObjectHasAreToldApartAndGrafted) {
+    const auto told = [](const syntax::Diagnostics& found) {
+        size_t count = 0;
+        for (const auto& d : found.all()) count += d.message.find("no edge of this plan is called 'sides'") == 0;
+        return count;
+    };
+    const std::string text = street +
+                             "rule Plot -> grass, size 4 place House variety 3\n"
+                             "start House -> cube size (4, 1m..9m, 4), size 4 faces .2m { sides: cube | top: cube }\n";
+    const auto apart = sceneOf(text);
+    ASSERT_TRUE(apart.ok()) << apart.error().message;
+    EXPECT_EQ(told(apart->warnings), 1u);
+    const auto grafted = modelOf(text, Objects::Grafted);
+    ASSERT_TRUE(grafted.ok()) << grafted.error().message;
+    EXPECT_EQ(told(derive::warnings(grafted->derivation)), 1u);
+}
+
 TEST(Scene, FilesHoldEachObjectOnce) {
     const std::string text = street +
                              "terminal stone color #c8b090\n"

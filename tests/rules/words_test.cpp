@@ -55,6 +55,11 @@ TEST(Told, SizesAndRangesThatAreNone) {
               std::string::npos);
 }
 
+TEST(Told, AFractionInARangeIsNoThirdDot) {
+    EXPECT_NE(told("start A -> for k in .5..3 { cube move (k, 0, 0) }\n").find("; write 'round(…)' around it"),
+              std::string::npos);
+}
+
 TEST(Told, AngleUnitsCountForTheWholeParameter) {
     for (const char* range : {"30 in 0deg..90deg", "30deg in 0..90", "30 in 0..90deg"}) {
         const std::string text = std::string("param ang = ") + range + "\nstart A -> cube turn ang\n";

@@ -184,8 +184,9 @@ private:
     bool sawAll(float next, float matters_m) const;
     /// Goes back to the start.
     void restart();
-    /// Where the last place is nearer to solid than that before it and this one, asks where the least may lie between:
-    /// how near it comes says how dark the place is, and steps alone would show as bands.
+    /// True where the last sample is nearer to solid than the one before it and this one; the next sample is then at
+    /// the minimum of a parabola through the three. The least distance says how dark the shadow is, and that of the
+    /// steps alone would show as bands.
     bool turnsBack(float value, float disc);
 
     /// Values that may say nothing of a surface.
