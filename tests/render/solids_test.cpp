@@ -236,5 +236,44 @@ TEST_F(Solids, NooksAreEvenlyDark) {
     EXPECT_GT(crossed, 20u);
 }
 
+TEST_F(Solids, SkyIsHiddenGraduallyInFrontOfOpenings) {
+    const pipeline::Model model = modelOf("examples/buildings/palace.sgm");
+    PictureOptions options = optionsFor(model, 320);
+    options.camera = {{30, 8, 12}, {19.5, -3.3, 0}, .5};  // the plinth beside a row of windows
+    for (const TracedBy by : {TracedBy::Processor, TracedBy::Gpu}) {
+        const Layers layers = layersOf(model, options, by);
+        const auto onPlinth = [&](size_t i) {
+            return layers.depth[i] < Layers::farAway && layers.normal[i].y > .99f && layers.position[i].x > 19.6f &&
+                   layers.position[i].x < 20.2f && std::abs(layers.position[i].y + 3.3f) < .05f;
+        };
+        float steepest = 0;
+        size_t count = 0;
+        for (size_t i = 0; i + 1 < layers.ao.size(); ++i) {
+            if (!onPlinth(i) || !onPlinth(i + 1)) continue;
+            ++count;
+            steepest = std::max(steepest, std::abs(layers.ao[i + 1] - layers.ao[i]) /
+                                              length(layers.position[i + 1] - layers.position[i]));
+        }
+        EXPECT_GT(count, 5000u);
+        EXPECT_LT(steepest, 2) << "a metre; " << (by == TracedBy::Gpu ? "shaders" : "processor");
+    }
+}
+
+TEST_F(Solids, SeamsOfAWallHaveItsNormal) {
+    const pipeline::Model model = modelOf("tests/render/solids/tiles.sgm");
+    PictureOptions options = optionsFor(model, 320);
+    options.camera = {{14, 8, 12}, {0, 0, .5}, .5};
+    const Layers layers = layersOf(model, options, TracedBy::Processor);
+    size_t count = 0, turned = 0;
+    for (size_t i = 0; i < layers.normal.size(); ++i) {
+        const Vec3f p = layers.position[i];
+        if (layers.depth[i] == Layers::farAway || p.z < .49f || std::abs(p.x) > 5.8f || std::abs(p.y) > 2.8f) continue;
+        ++count;
+        turned += layers.normal[i].z < .99f;
+    }
+    EXPECT_GT(count, 10000u);
+    EXPECT_EQ(turned, 0u);
+}
+
 }  // namespace
 }  // namespace sgm::render::test

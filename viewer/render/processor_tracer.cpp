@@ -169,9 +169,10 @@ private:
             for (const Vec3f off : {aside + 0.4f * up, -aside - 0.4f * up, up - 0.4f * aside, 0.4f * aside - up})
                 questions.push_back({place + off, cell.tape});
         }
-        const std::vector<BatchedEvaluator::Slope>& slopes = evaluator.slopesOf(questions, cost);
-        cost.light += questions.size();
         const size_t each = wide ? 4 : 1;
+        std::vector<BatchedEvaluator::Slope> slopes = evaluator.slopesOf(questions, cost);
+        cost.light += questions.size();
+        leaveSolid(hits, of, questions, slopes, evaluator, cost);
         for (size_t j = 0; j < of.size(); ++j) {
             BatchedEvaluator::Slope mean{0, {0, 0, 0}};
             float bend = 0;
@@ -185,6 +186,37 @@ private:
         }
     }
 
+    /// Places that lie in the solid near a seam of two parts have the seam's normal. Those that differ from the others
+    /// of their hit, `questions.size() / of.size()` each, are asked again in front of the surface.
+    void leaveSolid(std::span<const Hit> hits, std::span<const size_t> of, const std::vector<Question>& questions,
+                    std::span<BatchedEvaluator::Slope> slopes, BatchedEvaluator& evaluator, TraceCost& cost) const {
+        const CellSpace cells = space();
+        const Vec3f eye = view_.eye.as<float>();
+        const size_t each = of.empty() ? 0 : questions.size() / of.size();
+        std::vector<Question> again;
+        std::vector<size_t> which;
+        for (size_t j = 0; j < of.size(); ++j) {
+            const Vec3f hit = hits[of[j]].position;
+            Vec3f outward{0, 0, 0};
+            for (size_t k = j * each; k < (j + 1) * each; ++k)
+                if (cells.side * slopes[k].value >= 0) outward = outward + normalOf(slopes[k], cells);
+            const bool known = dot(outward, outward) > 0;
+            outward = normalized(known ? outward : eye - hit);
+            for (size_t k = j * each; k < (j + 1) * each; ++k) {
+                if (cells.side * slopes[k].value >= 0) continue;
+                if (known && dot(normalOf(slopes[k], cells), outward) > 0.98f) continue;
+                const Vec3f place = questions[k].place;
+                const float depth = std::max(dot(outward, hit - place), 0.0f), lift = (known ? 0.05f : 0.15f);
+                again.push_back(questions[k]);
+                again.back().place = place + outward * (depth + lift * pixelAt(hits[of[j]]));
+                which.push_back(k);
+            }
+        }
+        const std::vector<BatchedEvaluator::Slope>& lifted = evaluator.slopesOf(again, cost);
+        cost.light += again.size();
+        for (size_t i = 0; i < which.size(); ++i) slopes[which[i]] = lifted[i];
+    }
+
     /// Share of the sky that each hit sees, from the field at growing distances along the normal.
     void setOpenness(std::span<const Hit> hits, std::span<Shading> shadings, BatchedEvaluator& evaluator,
                      TraceCost& cost) const {
@@ -193,7 +225,7 @@ private:
         std::vector<Question> questions;
         struct Weighed {
             size_t hit;
-            float enough;
+            float enough, beyond;  ///< metres: of the field where more doesn't matter; from there to the place
             bool doubtful;
         };
         std::vector<Weighed> of;
@@ -201,16 +233,18 @@ private:
             shadings[i].openness = 1;  // less what is hidden, a quarter a distance
             float reach = 0.07f * cells.size;
             for (int k = 0; k < 4; ++k, reach *= 0.4f) {
-                const float enough = std::min(reach, cells.margin);
-                const Vec3f place = hits[i].position + shadings[i].normal * reach;
-                if (!box.contains(place)) continue;
-                const Cell cell = cells.cellAt(place);
-                if (cell.least >= enough) continue;
+                // Beyond the box nothing lies: what is near there is near its nearest place.
+                const Vec3f place = hits[i].position + shadings[i].normal * reach,
+                            within = max(box.lo, min(box.hi, place));
+                const float beyond = length(place - within), most = std::min(reach, cells.margin),
+                            enough = most - beyond;
+                const Cell cell = cells.cellAt(within);
+                if (enough <= 0 || cell.least >= enough) continue;
                 if (cell.state == CellState::Near) {
-                    of.push_back({i, enough, cell.doubtful});
-                    questions.push_back({place, cell.tape});
+                    of.push_back({i, enough, beyond, cell.doubtful});
+                    questions.push_back({within, cell.tape});
                 } else if (cell.state == CellState::Inside) {
-                    shadings[i].openness -= 0.25f;
+                    shadings[i].openness -= 0.25f * (1 - beyond / most);
                 }
             }
         }
@@ -228,7 +262,8 @@ private:
         cost.light += evaluator.follow(cells, std::span(walks), cost);
         for (size_t k = 0; k < walks.size(); ++k) free[walked[k]] = walks[k].clearance();
         for (size_t j = 0; j < of.size(); ++j)
-            shadings[of[j].hit].openness -= 0.25f * (1 - std::clamp(free[j] / of[j].enough, 0.0f, 1.0f));
+            shadings[of[j].hit].openness -=
+                0.25f * std::clamp((of[j].enough - free[j]) / (of[j].enough + of[j].beyond), 0.0f, 1.0f);
         // A little stays even where things touch: light creeps in.
         for (Shading& lit : shadings) lit.openness = 0.08f + 0.92f * lit.openness;
     }

@@ -13,7 +13,7 @@ void SolidProbe::begin(Vec3f place, float value, float into, Vec3f direction) {
     step_ = ray ? alongRay : 0;
     round_ = 0;
     foot_ = place + direction * (std::max(value, 0.0f) + into);
-    slope_ = away_ = {};
+    slope_ = {};
     running_ = true;
     found_ = false;
 }
@@ -35,12 +35,14 @@ bool SolidProbe::ask(const CellSpace& space, Question& question) {
     return false;
 }
 
-/// A step of Newton's, and a little more; no field falls less than a quarter as fast as a distance.
+/// No field falls less than a quarter as fast as a distance.
+static constexpr float slightest = 0.25f;
+
+/// A step of Newton's, and a little more.
 void SolidProbe::findFoot() {
     const float steep = length(slope_);
     const Vec3f up = slope_ / std::max(steep, 1e-6f);
-    if (round_ == 0) away_ = up;
-    foot_ = place_ - up * ((value_ + into_) / std::max(steep, 0.25f));
+    foot_ = place_ - up * ((value_ + into_) / std::max(steep, slightest));
 }
 
 void SolidProbe::answer(const CellSpace&, float value) {
@@ -60,29 +62,47 @@ void SolidProbe::answer(const CellSpace&, float value) {
 }
 
 ClearanceWalk::ClearanceWalk(const CellSpace& space, Vec3f place, float value, float enough, float pixel)
-    : place_(place), value_(value), enough_(enough) {
-    probe_.begin(place, value, std::max(4e-6f * space.size, 0.05f * pixel));
+    : place_(place),
+      value_(value),
+      enough_(enough),
+      into_(std::max(4e-6f * space.size, 0.05f * pixel)),
+      depth_(enough) {}
+
+Vec3f ClearanceWalk::placeOfStep() const {
+    Vec3f place = place_;
+    if (step_ < firstBehind) {
+        place[step_] += into_;
+        return place;
+    }
+    const float steep = length(slope_);
+    const Vec3f up = slope_ / std::max(steep, 1e-6f);
+    return step_ < aside ? place - up * (value_ / std::max(steep, slightest) + depth_)
+                         : place + up * (enough_ - value_);
 }
 
-/// What is near beside the place shows a little farther away from where no surface was found.
 bool ClearanceWalk::ask(const CellSpace& space, Question& question) {
-    if (ended_ || probe_.ask(space, question)) return !ended_;
-    ended_ = true;
-    if (probe_.found()) return false;
-    const Vec3f place = place_ + probe_.away() * (enough_ - value_);
-    const Cell cell = space.cellAt(place);
-    if (cell.state == CellState::Near) {
-        aside_ = true;
-        question = {place, cell.tape};
-        return true;
+    while (step_ <= aside && open_ > 0) {
+        const Vec3f place = placeOfStep();
+        if (!cell_.holds(place)) cell_ = space.cellAt(place);
+        if (cell_.state == CellState::Near) {
+            question = {place, cell_.tape};
+            return true;
+        }
+        answer(space, cell_.state == CellState::Inside ? -space.margin : space.margin);
     }
-    value_ = cell.state == CellState::Outside ? enough_ : value_;
     return false;
 }
 
-void ClearanceWalk::answer(const CellSpace& space, float value) {
-    if (!aside_) return probe_.answer(space, value);
-    value_ = std::max(value_, std::min(value, enough_));
+void ClearanceWalk::answer(const CellSpace&, float value) {
+    if (step_ < firstBehind)
+        slope_[step_] = (value - value_) / into_;
+    else if (step_ == aside)
+        value_ += shareOfPart(open_) * (std::max(value_, std::min(value, enough_)) - value_);
+    else {
+        open_ = std::min(open_, std::max(2 * value / depth_, 0.0f));
+        depth_ *= 0.5f;
+    }
+    ++step_;
 }
 
 }  // namespace sgm::render

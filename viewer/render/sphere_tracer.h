@@ -69,34 +69,42 @@ public:
     void answer(const CellSpace& space, float value);
     bool isRunning() const { return running_; }
     bool found() const { return found_; }
-    /// Unit direction in which the field grew at the place, once it isn't found.
-    Vec3f away() const { return away_; }
 
 private:
     static constexpr int alongRay = -1, atFoot = 3, rounds = 3;
     void findFoot();
 
-    Vec3f place_, foot_, slope_, away_;
+    Vec3f place_, foot_, slope_;
     float value_ = 0, into_ = 0;
     int step_ = 0, round_ = 0;
     bool running_ = false, found_ = false;
     Cell cell_;
 };
 
-/// How far a place is from solid, as far as that matters, where the field's own value is in doubt.
+/// How far a place is from solid, as far as that matters, where the field's own value is in doubt. What is looked for
+/// is the share of light that gets to a surface, so it changes gradually from place to place: the larger the field
+/// behind the surface that its value tells of, the less that surface counts.
 class ClearanceWalk {
 public:
     /// `value`: of the field at `place`, times the space's side; `enough`: more doesn't matter. Metres.
     ClearanceWalk(const CellSpace& space, Vec3f place, float value, float enough, float pixel);
+    /// False once it is known. Nine questions at most.
     bool ask(const CellSpace& space, Question& question);
     void answer(const CellSpace& space, float value);
+    /// Metres: `value` where there is solid behind it, at most `enough`.
     float clearance() const { return value_; }
 
 private:
-    Vec3f place_;
-    float value_, enough_;
-    bool aside_ = false, ended_ = false;
-    SolidProbe probe_;
+    /// Three differences, places behind the surface, and one as far away from it as matters.
+    static constexpr int firstBehind = 3, aside = 8;
+    Vec3f placeOfStep() const;
+
+    Vec3f place_, slope_;
+    float value_, enough_, into_;
+    float depth_;     // how far behind the surface the next step looks, metres
+    float open_ = 1;  // the share of the surface that isn't there
+    int step_ = 0;
+    Cell cell_;
 };
 
 /// The line that a walk goes along.

@@ -78,11 +78,9 @@ float valueAt(vec3 p) {
     return side * fieldBy(cell.tape, p);
 }
 
-/// Whether solid lies behind a small value of the field at p, `into` metres deep: as viewer::SolidProbe. `away` becomes
-/// the direction in which the field grows there. The field is asked in one place, for compilers copy the interpreter to
-/// each.
-bool solidBehind(vec3 p, float value, float into, vec3 direction, out vec3 away) {
-    away = vec3(0.0);
+/// Whether solid lies behind a small value of the field at p, `into` metres deep: as SolidProbe. The
+/// field is asked in one place, for compilers copy the interpreter to each.
+bool solidBehind(vec3 p, float value, float into, vec3 direction) {
     vec3 slope = vec3(0.0), q = p + direction * (max(value, 0.0) + into);
     for (int i = direction == vec3(0.0) ? 0 : -1; i < 12; ++i) {
         int step = i & 3;  // three differences, then the foot
@@ -93,7 +91,6 @@ bool solidBehind(vec3 p, float value, float into, vec3 direction, out vec3 away)
             if (step < 2) continue;
             float steep = length(slope);
             vec3 up = slope / max(steep, 1e-6);
-            if (i == 2) away = up;
             q = p - up * ((value + into) / max(steep, 0.25));
             continue;
         }
@@ -105,18 +102,33 @@ bool solidBehind(vec3 p, float value, float into, vec3 direction, out vec3 away)
     return false;
 }
 
-/// Distance to solid at p: exact near the surface, ±margin elsewhere. Where it is at least `enough`, that may be all it
-/// says.
+/// Distance to solid at p within the bounds: exact near the surface, ±margin elsewhere. Where it is at least `enough`,
+/// that may be all it says.
 float distanceAt(vec3 p, float enough, float pixel) {
-    if (any(lessThan(p, boundsLow)) || any(greaterThan(p, boundsHigh)))
-        return margin;
     Cell cell = cellAt(p);
     if (cell.least >= enough) return cell.least;
     if (cell.state != cellNear) return cell.state == cellInside ? -margin : margin;
     float value = side * fieldBy(cell.tape, p);
     if (!cell.doubtful || value < 0.0 || value > 0.95 * enough) return value;
-    vec3 away;
-    if (solidBehind(p, value, max(4e-6 * sceneSize, 0.05 * pixel), vec3(0.0), away)) return value;
-    // What is near beside the place shows a little farther away from where no surface was found.
-    return max(value, min(valueAt(p + away * (enough - value)), enough));
+    // As ClearanceWalk: where the field behind the surface that its value tells of is large, there is none.
+    float into = max(4e-6 * sceneSize, 0.05 * pixel), depth = enough, open = 1.0, steep = 0.0;
+    vec3 slope = vec3(0.0), up = vec3(0.0);
+    for (int i = 0; i < 9 && open > 0.0; ++i) {
+        vec3 q = p + into * vec3(i == 0, i == 1, i == 2);
+        if (i == 3) {
+            steep = length(slope);
+            up = slope / max(steep, 1e-6);
+        }
+        if (i > 2) q = i < 8 ? p - up * (value / max(steep, 0.25) + depth) : p + up * (enough - value);
+        float here = valueAt(q);
+        if (i < 3) {
+            slope[i] = (here - value) / into;
+        } else if (i < 8) {
+            open = clamp(2.0 * here / depth, 0.0, open);
+            depth *= 0.5;
+        } else {
+            value = mix(value, max(value, min(here, enough)), smoothstep(0.0, 1.0, open));
+        }
+    }
+    return value;
 }

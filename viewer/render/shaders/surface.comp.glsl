@@ -48,7 +48,7 @@ float matters(DiscSeen seen) { return seen.soft ? max(seen.clearance, 0.0) : 1.0
 /// it, the least between is asked for. Where the least clearance is in doubt and no solid behind it, the way is walked
 /// again and every small value looked behind.
 DiscSeen lookAtDisc(vec3 p, vec3 direction, float radius, float pixel, int of, float from) {
-    vec3 inverseDirection = inverseOf(direction), away;
+    vec3 inverseDirection = inverseOf(direction);
     vec2 span = boundsSpan(p, inverseDirection);
     float start = max(max(span.x, 3e-4 * sceneSize), from), into = max(4e-6 * sceneSize, 0.05 * pixel);
     float dark = of == ofPart ? 0.05 : -0.9, finest = of == ofSky ? 1e-3 * sceneSize : 2e-4 * sceneSize;
@@ -120,7 +120,7 @@ DiscSeen lookAtDisc(vec3 p, vec3 direction, float radius, float pixel, int of, f
                 doubted = sure ? vec4(-1.0) : vec4(q, max(value, 0.0));
             }
         }
-        bool solid = probing && solidBehind(q, value, into, vec3(0.0), away);
+        bool solid = probing && solidBehind(q, value, into, vec3(0.0));
         if (ended) {
             if (solid) break;
             careful = true;
@@ -161,18 +161,19 @@ float shareOfDisc(float clearance) { return shareOfPart(0.5 + 0.5 * clearance); 
 
 /// Share of the sky that p sees, from the field at growing distances along the normal.
 float opennessAt(vec3 p, vec3 normal, float pixel) {
-    float hidden = 0.0, weight = 0.0;
+    float hidden = 0.0;
     float reach = 0.07 * sceneSize;
     for (int i = 0; i < 4; ++i) {
-        float w = 1.0;
         float enough = min(reach, margin);
-        float free = clamp(distanceAt(p + normal * reach, enough, pixel) / enough, 0.0, 1.0);
-        hidden += w * (1.0 - free);
-        weight += w;
+        // Beyond the bounds nothing lies: what is near there is near their nearest place.
+        vec3 place = p + normal * reach, within = clamp(place, boundsLow, boundsHigh);
+        float beyond = length(place - within);
+        if (beyond < enough)
+            hidden += 0.25 * clamp(1.0 - (beyond + distanceAt(within, enough - beyond, pixel)) / enough, 0.0, 1.0);
         reach *= 0.4;
     }
     // A little stays even where things touch: light creeps in.
-    return mix(0.08, 1.0, 1.0 - hidden / weight);
+    return mix(0.08, 1.0, 1.0 - hidden);
 }
 
 /// Shares that p sees of the sun, and of the day that comes into a hollow, by wide discs of the upper sky. What solid

@@ -63,8 +63,7 @@ float trace(vec3 origin, vec3 direction, Ray ray, out float beside) {
         t += stride;
         if (value < max(tolerance, near * t)) {  // one more safe step, or back out by the secant
             float into = max(tolerance, 0.05 * pixelAngle * t);
-            vec3 away;
-            if (!cell.doubtful || value <= -0.25 * into || solidBehind(origin + t * direction, value, into, direction, away))
+            if (!cell.doubtful || value <= -0.25 * into || solidBehind(origin + t * direction, value, into, direction))
                 return max(t + (next < 0.0 && stride > 0.0 ? stride * next / (free - next) : next), 0.0);
             t += max(2.0 * gapAt(t), 2.0 * tolerance);
             free = stride = 0.0;
