@@ -275,5 +275,33 @@ TEST_F(Solids, SeamsOfAWallHaveItsNormal) {
     EXPECT_EQ(turned, 0u);
 }
 
+/// A bar on a pane, seen at a slant: where they meet each has its own look.
+TEST_F(Solids, NooksShowThePartOfTheirFace) {
+    Scene scene;
+    scene.add("cube", {1.6, 0, 0}, {2.4, 3, .1}, {.2f, .3f, .4f});
+    scene.add("cube", {-1, 0, .3}, {.2, 3, .3}, {.9f, .9f, .8f});
+    const OriginId bar = static_cast<OriginId>(scene.provenance.parts.size() - 1);
+    const field::Field solid = scene.sum();
+    PictureOptions options;
+    options.width = options.height = 200;
+    options.camera = {{9, 3, 9}, {0, 0, 0}, .4};
+    options.ground = false;
+    options.samples = 1;
+    auto painter =
+        FieldPainter::create(scene.compile(solid), solid.bounds, scene.provenance, 2, nullptr, TracedBy::Processor);
+    ASSERT_TRUE(painter.ok());
+    Layers layers;
+    ASSERT_TRUE(painter->draw(options, nullptr, &layers).ok());
+    size_t pane = 0, mixed = 0;
+    for (size_t i = 0; i < layers.origin.size(); ++i) {
+        const Vec3f p = layers.position[i];
+        if (layers.depth[i] == Layers::farAway || layers.normal[i].z < .99f || p.z > .12f || p.x < -.8f) continue;
+        ++pane;
+        mixed += layers.origin[i] == static_cast<float>(bar);
+    }
+    EXPECT_GT(pane, 5000u);
+    EXPECT_EQ(mixed, 0u);
+}
+
 }  // namespace
 }  // namespace sgm::render::test

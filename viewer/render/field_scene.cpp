@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 
 #include "modeler/core/parallel.h"
 #include "viewer/render/scene.h"
@@ -58,6 +59,23 @@ Status FieldScene::ask(Tracer::What what, const std::vector<uint32_t>& which, Ra
     return Done{};
 }
 
+/// Hits lie a little before their surface, where an edge of another part that ends in it may be as near; behind it the
+/// surface's own part is deepest. Behind is where the normal says, for a slanting ray passes into the part beside it;
+/// or along the ray while no normal is known.
+void FieldScene::findOrigins(const std::vector<uint32_t>& which, Rays& rays) const {
+    std::vector<Vec3f> places;
+    std::vector<uint32_t> of;
+    for (const uint32_t i : which) {
+        if (rays.hits[i].kind() != HitKind::Object) continue;
+        of.push_back(i);
+        const Vec3f ahead = rays.hits[i].position - view_.eye.as<float>(), normal = rays.shadings[i].normal;
+        const Vec3f behind = normal == Vec3f{} ? ahead : normal * std::min(dot(normal, ahead), -0.6f * length(ahead));
+        places.push_back(rays.hits[i].position + (0.4f * static_cast<float>(view_.pixelAngle)) * behind);
+    }
+    const std::vector<OriginId> origins = field_->originsOf(places, threads_);
+    for (size_t k = 0; k < of.size(); ++k) rays.origins[of[k]] = origins[k];
+}
+
 /// Key pixels ask the field, others only for what those around them don't tell.
 Status FieldScene::light(std::span<const Job> jobs, Rays& rays, Progress* progress) {
     const auto put = [&](uint32_t i) { seen_.put(jobs[i], rays.hits[i], rays.shadings[i], rays.origins[i]); };
@@ -83,6 +101,8 @@ Status FieldScene::light(std::span<const Job> jobs, Rays& rays, Progress* progre
         withoutNormal.resize(withoutNormal.size() - others.size());
         if (Status s = ask(Tracer::What::WideNormals, withoutNormal, rays, progress); !s) return s;
         if (Status s = ask(Tracer::What::Normals, others, rays, progress); !s) return s;
+        findOrigins(withoutNormal, rays);
+        findOrigins(others, rays);
         for (const uint32_t i : unknown)
             if (key || !take(i, seen_.light(jobs[i], rays.hits[i], rays.shadings[i].normal, rays.origins[i])))
                 dark.push_back(i);
@@ -114,18 +134,9 @@ Result<Rays> FieldScene::trace(std::span<const Job> jobs, Progress* progress) {
             seen_.put(jobs[which[k]], met->free[k]);
         }
     }
-    std::vector<Vec3f> places;
-    std::vector<size_t> of;
-    for (size_t i = 0; i < jobs.size(); ++i) {
-        if (rays.hits[i].kind() != HitKind::Object) continue;
-        of.push_back(i);
-        // Hits lie a little before their surface, where an edge of another part that ends in it may be as near; behind
-        // it the surface's own part is deepest.
-        const Vec3f ahead = rays.hits[i].position - view_.eye.as<float>();
-        places.push_back(rays.hits[i].position + (0.4f * static_cast<float>(view_.pixelAngle)) * ahead);
-    }
-    const std::vector<OriginId> origins = field_->originsOf(places, threads_);
-    for (size_t k = 0; k < of.size(); ++k) rays.origins[of[k]] = origins[k];
+    std::vector<uint32_t> all(jobs.size());
+    std::iota(all.begin(), all.end(), 0u);
+    findOrigins(all, rays);
     return rays;
 }
 

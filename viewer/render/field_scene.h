@@ -53,6 +53,7 @@ public:
 private:
     /// Asks the tracer about some of the hits.
     Status ask(Tracer::What what, const std::vector<uint32_t>& which, Rays& rays, Progress* progress);
+    void findOrigins(const std::vector<uint32_t>& which, Rays& rays) const;
     Status light(std::span<const Job> jobs, Rays& rays, Progress* progress);
     /// What the hits are like, for the shader that colours them.
     struct Surfaces {
