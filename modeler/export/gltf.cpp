@@ -92,6 +92,7 @@ public:
           vertices_(*input.mesh),
           materials_(input.provenance->materials.size(), -1) {
         model.buffers.emplace_back();
+        if (patched_.triangles.empty()) return;  // no view of a glTF file is empty
         const size_t count = patched_.vertices.size(), textured = texture_.empty() ? 0 : texture_.light ? 16 : 8;
         // One allocation: the buffer is the largest thing here.
         model.buffers[0].data.reserve(count * (24 + textured + (input.byMaterial ? 0 : 8)) +
@@ -224,7 +225,7 @@ private:
     TextureSets texture_;
     PatchedMesh patched_;
     Vertices vertices_;
-    View positions_, normals_, tangents_{}, uvs_, lightUvs_, colors_, indices_;
+    View positions_{}, normals_{}, tangents_{}, uvs_{}, lightUvs_{}, colors_{}, indices_{};
     std::vector<int> materials_;  ///< by Provenance::materials: the file's, -1 where not yet used
 };
 

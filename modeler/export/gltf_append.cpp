@@ -45,4 +45,9 @@ int addNode(tinygltf::Model& model, tinygltf::Node node) {
     return static_cast<int>(model.nodes.size()) - 1;
 }
 
+void addToRoot(tinygltf::Model& model, tinygltf::Node node) {
+    const int number = addNode(model, std::move(node));  // before the root is looked at: the list of nodes moves
+    model.nodes[0].children.push_back(number);
+}
+
 }  // namespace sgm::exporter

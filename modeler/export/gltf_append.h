@@ -16,5 +16,7 @@ using ModelOfMesh = std::function<Result<tinygltf::Model>(const ExportInput& inp
 int appendMesh(tinygltf::Model& model, const tinygltf::Model& other);
 /// Appends a node; its number.
 int addNode(tinygltf::Model& model, tinygltf::Node node);
+/// Appends a node as a child of the first one.
+void addToRoot(tinygltf::Model& model, tinygltf::Node node);
 
 }  // namespace sgm::exporter

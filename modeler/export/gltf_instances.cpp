@@ -59,7 +59,7 @@ void addPlaces(tinygltf::Model& model, const mesh::Scene& scene, const std::vect
         extras["file"] = textOf(instance.part.file());
         extras["line"] = Value(static_cast<int>(instance.part.line()));
         node.extras = Value(extras);
-        model.nodes[0].children.push_back(addNode(model, std::move(node)));
+        addToRoot(model, std::move(node));
     }
 }
 
@@ -105,7 +105,7 @@ void addGpuPlaces(tinygltf::Model& model, const mesh::Scene& scene, const std::v
         node.mesh = meshOf[i];
         node.extras = Value(valuesOf(scene.objects[i]));
         node.extensions["EXT_mesh_gpu_instancing"] = Value(Value::Object{{"attributes", Value(attributes)}});
-        model.nodes[0].children.push_back(addNode(model, std::move(node)));
+        addToRoot(model, std::move(node));
     }
     model.extensionsUsed.emplace_back("EXT_mesh_gpu_instancing");
     model.extensionsRequired.emplace_back("EXT_mesh_gpu_instancing");

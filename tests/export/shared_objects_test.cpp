@@ -5,6 +5,7 @@
 #include <tiny_gltf.h>
 
 #include <cstdlib>
+#include <numeric>
 
 #include "modeler/export/exporter.h"
 #include "tests/export/made_part.h"
@@ -100,6 +101,42 @@ TEST_F(Street, NothingIsSharedWhereNothingIsAlike) {
     mesh = meshOfChunks(chunks);
     const SharedObjects shared = shareObjects(mesh, tree);
     EXPECT_FALSE(shared.mesh);
+}
+
+TEST_F(Street, PlacesAreAllInTheSceneOfGltf) {
+    mesh::Scene scene;
+    scene.ground = provenance;
+    std::vector<mesh::Chunk> chunks;
+    for (const char* name : {"House", "Shed"}) {
+        mesh::SceneObject object;
+        object.name = name;
+        object.provenance.materials = provenance.materials;
+        object.provenance.parts.push_back(madePart(name, {"box", "grow", "a.sgm", 3}, 0));
+        chunks.assign(1, hardBox({}, {}, {1, 1, 1}, 0));
+        object.mesh = meshOfChunks(chunks);
+        scene.objects.push_back(std::move(object));
+    }
+    for (int i = 0; i < 10; ++i) {
+        mesh::Instance instance;
+        instance.object = static_cast<uint32_t>(i % 2);
+        instance.part = madePart("place", {"box", "grow", "a.sgm", 3}, 0);
+        instance.part.pose.origin = {6. * i, 0, 0};
+        scene.instances.push_back(instance);
+    }
+    input.objects = nullptr;
+    input.scene = &scene;
+    for (const std::string_view places : {"nodes", "gpu"}) {
+        input.options = {{"places", std::string(places)}};
+        tinygltf::Model model;
+        std::string error, warning;
+        ASSERT_TRUE(tinygltf::TinyGLTF().LoadBinaryFromFile(&model, &error, &warning, written("a.glb").string()))
+            << error;
+        ASSERT_EQ(model.nodes.size(), places == "gpu" ? 3u : 11u);
+        std::vector<int> all(model.nodes.size() - 1);
+        std::iota(all.begin(), all.end(), 1);
+        EXPECT_EQ(model.nodes[0].children, all) << places;
+        for (const tinygltf::BufferView& view : model.bufferViews) EXPECT_GT(view.byteLength, 0u);
+    }
 }
 
 TEST_F(Street, NodesOfGltfShareMeshes) {
